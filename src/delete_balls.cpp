@@ -1,0 +1,82 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#include "delete_balls.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix_wall_gran_balls.h"
+#include "group.h"
+#include "input.h"
+#include "lammps_compat.h"
+
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+
+static constexpr double PI = 3.14159265358979323846;
+static constexpr const char *MARKED = "delete_balls_marked";
+
+/* ----------------------------------------------------------------------
+   delete_balls GROUP overlap FRACTION
+   removes the balls that overlap fixed balls of any fix wall/gran/balls by more than
+   FRACTION of the ball's radius
+------------------------------------------------------------------------- */
+
+void DeleteBalls::command(int narg, char **arg)
+{
+  if (!domain->box_exist) error->all(FLERR, "Delete_balls before the simulation box is defined");
+  if (narg != 3 || strcmp(arg[1], "overlap") != 0)
+    error->all(FLERR, "Delete_balls needs GROUP overlap FRACTION, got {} arguments", narg);
+  const int igroup = group->find(arg[0]);
+  if (igroup < 0) error->all(FLERR, "Delete_balls group must exist, got {}", arg[0]);
+  const std::string name = arg[0];    // arg does not outlive the commands that we issue
+  const double fraction = utils::numeric(FLERR, arg[2], false, lmp);
+  if (!(fraction >= 0.0 && fraction < 1.0))
+    error->all(FLERR, "Delete_balls overlap must be >= 0 and < 1 (of the radius), got {}", arg[2]);
+  if (!atom->radius_flag)
+    error->all(FLERR, "Delete_balls requires balls: atom_style must be sphere, got {}",
+               atom->atom_style);
+
+  const auto walls = compat::fixes_of_style(lmp, "wall/gran/balls");
+  if (walls.empty())
+    error->all(FLERR, "Delete_balls requires a fix wall/gran/balls before it, there is none");
+
+  // mark them by a group, and let LAMMPS delete the group
+
+  const int marked = group->bitmask[group->find_or_create(MARKED)];
+  const int groupbit = group->bitmask[igroup];
+  double mine[3] = {0.0, 0.0, 0.0}, all[3];    // marked, their volume, left
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    const double r = atom->radius[i];
+    double deepest = 0.0;
+    for (Fix *fix : walls)
+      deepest = std::fmax(
+          deepest, static_cast<FixWallGranBalls *>(fix)->deepest_overlap(atom->x[i], r));
+    if (deepest > fraction * r) {
+      atom->mask[i] |= marked;
+      mine[0] += 1.0;
+      mine[1] += 4.0 / 3.0 * PI * r * r * r;
+    } else {
+      mine[2] += 1.0;
+    }
+  }
+  MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_SUM, world);
+
+  if (all[0] > 0.0) input->one(fmt::format("delete_atoms group {} compress no", MARKED));
+  input->one(fmt::format("group {} delete", MARKED));
+
+  if (comm->me == 0)
+    utils::logmesg(lmp,
+                   "Delete_balls: {:.0f} balls of group {} removed that overlapped fixed balls by "
+                   "more than {:g} of their radius: {:.6g} m3 of balls, {:.6g} m3 of ground at "
+                   "6/pi; {:.0f} balls left\n",
+                   all[0], name, fraction, all[1], all[1] * 6.0 / PI, all[2]);
+  if (all[2] == 0.0) error->all(FLERR, "Delete_balls: no ball of group {} is left", name);
+}

@@ -1,0 +1,54 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#include "initial_overlap.h"
+
+#include "comm.h"
+#include "error.h"
+
+#include <cstring>
+
+using namespace LAMMPS_NS;
+
+/* ---------------------------------------------------------------------- */
+
+void InitialOverlap::look(double overlap, double radius, tagint ball, const double *where,
+                          const std::string &partner)
+{
+  const double ratio = overlap / radius;
+  if (ratio <= LIMIT) return;
+  count++;
+  if (ratio <= worst) return;
+  worst = ratio;
+  text = fmt::format("ball {} and {} at {:.6g} {:.6g} {:.6g}", ball, partner, where[0], where[1],
+                     where[2]);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void InitialOverlap::check(const std::string &caller)
+{
+  bigint total;
+  MPI_Allreduce(&count, &total, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (total == 0) return;
+
+  struct {
+    double value;
+    int rank;
+  } mine, all;
+  mine.value = worst;
+  mine.rank = comm->me;
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
+
+  char buffer[256];
+  strncpy(buffer, text.c_str(), sizeof(buffer) - 1);
+  buffer[sizeof(buffer) - 1] = '\0';
+  MPI_Bcast(buffer, sizeof(buffer), MPI_CHAR, all.rank, world);
+
+  error->all(FLERR,
+             "{}: {} pairs overlap at the start by more than {:g} % of the radius, worst {:.4g} % "
+             "between {} (see delete_balls)",
+             caller, total, 100.0 * LIMIT, 100.0 * all.value, buffer);
+}

@@ -1,0 +1,57 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+/* What differs between the LAMMPS versions that the package supports. The only file that
+   may ask for the version. */
+
+#ifndef SLOPE_LAMMPS_COMPAT_H
+#define SLOPE_LAMMPS_COMPAT_H
+
+#include "domain.h"
+#include "fix.h"
+#include "modify.h"
+#include "neigh_request.h"
+#include "neighbor.h"
+#include "region.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+class Pair;
+
+namespace compat {
+
+  // region by its ID, nullptr if there is none
+  inline Region *find_region(LAMMPS *lmp, const std::string &id)
+  {
+    Domain *domain = lmp->domain;
+    for (int i = 0; i < domain->nregion; i++)
+      if (id == domain->regions[i]->id) return domain->regions[i];
+    return nullptr;
+  }
+
+  // fixes of one style, in the order of the deck
+  inline std::vector<Fix *> fixes_of_style(LAMMPS *lmp, const std::string &style)
+  {
+    std::vector<Fix *> found;
+    Modify *modify = lmp->modify;
+    for (int i = 0; i < modify->nfix; i++)
+      if (style == modify->fix[i]->style) found.push_back(modify->fix[i]);
+    return found;
+  }
+
+  // half neighbor list of touching spheres with contact history
+  inline void request_history_list(Neighbor *neighbor, Pair *pair, int instance)
+  {
+    int irequest = neighbor->request(pair, instance);
+    neighbor->requests[irequest]->size = 1;
+    neighbor->requests[irequest]->history = 1;
+  }
+
+}    // namespace compat
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,730 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#include "pair_gran_restitution.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "fix_dummy.h"
+#include "fix_neigh_history.h"
+#include "force.h"
+#include "initial_overlap.h"
+#include "lammps_compat.h"
+#include "memory.h"
+#include "neigh_list.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace Slope;
+
+static constexpr double STEP_RULE = 0.25;    // dt <= STEP_RULE sqrt(m/kn)
+static constexpr double DEGREE = PI / 180.0;
+
+/* ---------------------------------------------------------------------- */
+
+PairGranRestitution::PairGranRestitution(LAMMPS *lmp) : Pair(lmp)
+{
+  single_enable = 1;
+  no_virial_fdotr_compute = 1;
+  centroidstressflag = CENTROID_NOTAVAIL;
+  finitecutflag = 1;
+  single_extra = 10;
+  svector = new double[single_extra];
+
+  mass_ball = 0;
+  limit_damping = 0;
+  rolling_reduced = 0;
+  freeze_group_bit = 0;
+  dt = update->dt;
+
+  // a placeholder holds the history's place in the order of the fixes
+  // numbered by the lowest free number, not by instance_me, which clear does not reset:
+  // a restart file hands the history back to a fix of the same ID
+
+  fix_history = nullptr;
+  for (int n = 0; history_id.empty() || modify->find_fix(history_id) >= 0 ||
+       modify->find_fix(dummy_id) >= 0; n++) {
+    history_id = fmt::format("NEIGH_HISTORY_SLOPE{}", n);
+    dummy_id = fmt::format("NEIGH_HISTORY_SLOPE_DUMMY{}", n);
+  }
+  modify->add_fix(dummy_id + " all DUMMY");
+}
+
+/* ---------------------------------------------------------------------- */
+
+PairGranRestitution::~PairGranRestitution()
+{
+  if (copymode) return;
+  delete[] svector;
+  for (const std::string &fix_id : {history_id, dummy_id})
+    if (modify->find_fix(fix_id) >= 0) modify->delete_fix(fix_id);
+  if (allocated) {
+    memory->destroy(setflag);
+    memory->destroy(cutsq);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   allocate what depends on the number of types
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::allocate()
+{
+  allocated = 1;
+  const int n = atom->ntypes + 1;
+  memory->create(setflag, n, n, "pair:setflag");
+  memory->create(cutsq, n, n, "pair:cutsq");
+
+  // LAMMPS wants every I,I to be set, but a wall type meets only the moving types:
+  // coeffs[].set is what counts, and init_one() asks for the pairs that can touch
+
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++) setflag[i][j] = (i == j);
+
+  Coeff none;
+  memset(&none, 0, sizeof(Coeff));
+  coeffs.assign(n * n, none);
+  laws.assign(n * n, ContactLaw());
+  wall_type.assign(n, 0);
+}
+
+/* ---------------------------------------------------------------------- */
+
+int PairGranRestitution::index(int i, int j) const
+{
+  return i * (atom->ntypes + 1) + j;
+}
+
+/* ----------------------------------------------------------------------
+   pair_style gran/restitution keyword value ...
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::settings(int narg, char **arg)
+{
+  mass_ball = limit_damping = rolling_reduced = 0;
+
+  int iarg = 0;
+  while (iarg < narg) {
+    const std::string keyword = arg[iarg];
+    if (iarg + 2 > narg)
+      error->all(FLERR, "Pair gran/restitution {}: value missing or unknown keyword", keyword);
+    const std::string value = arg[iarg + 1];
+    int *setting;
+    const char *off, *on;
+    if (keyword == "mass") {
+      setting = &mass_ball;
+      off = "pair";
+      on = "ball";
+    } else if (keyword == "limit_damping") {
+      setting = &limit_damping;
+      off = "no";
+      on = "yes";
+    } else if (keyword == "rolling_radius") {
+      setting = &rolling_reduced;
+      off = "ball";
+      on = "reduced";
+    } else {
+      error->all(FLERR,
+                 "Pair gran/restitution: unknown keyword {}, must be mass, limit_damping or "
+                 "rolling_radius",
+                 keyword);
+      return;
+    }
+    if (value != off && value != on)
+      error->all(FLERR, "Pair gran/restitution {} must be {} or {}, got {}", keyword, off, on,
+                 value);
+    *setting = (value == on);
+    iarg += 2;
+  }
+  if (allocated) make_laws();
+}
+
+/* ----------------------------------------------------------------------
+   pair_coeff I J keyword values ...
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::coeff(int narg, char **arg)
+{
+  if (narg < 2) error->all(FLERR, "Pair gran/restitution pair_coeff needs two atom types");
+  if (!allocated) allocate();
+
+  int ilo, ihi, jlo, jhi;
+  utils::bounds(FLERR, arg[0], 1, atom->ntypes, ilo, ihi, error);
+  utils::bounds(FLERR, arg[1], 1, atom->ntypes, jlo, jhi, error);
+
+  Coeff c;
+  memset(&c, 0, sizeof(Coeff));
+  c.set = 1;
+  bool stiffness = false, damping = false;
+
+  int iarg = 2;
+  while (iarg < narg) {
+    const std::string keyword = arg[iarg];
+    auto value = [&](int k) {
+      if (iarg + k >= narg)
+        error->all(FLERR, "Pair gran/restitution {}: value {} is missing", keyword, k);
+      if (!utils::is_double(arg[iarg + k]))
+        error->all(FLERR, "Pair gran/restitution {}: value {} must be a number, got {}", keyword, k,
+                   arg[iarg + k]);
+      return utils::numeric(FLERR, arg[iarg + k], false, lmp);
+    };
+    auto rule = [&](bool holds, const char *text, double got) {
+      if (!holds || !std::isfinite(got))
+        error->all(FLERR, "Pair gran/restitution {} must be {}, got {:.15g}", keyword, text, got);
+    };
+    if (keyword == "stiffness") {
+      c.kn = value(1);
+      c.kt = value(2);
+      rule(c.kn > 0.0, "> 0 (kn)", c.kn);
+      rule(c.kt >= 0.0, ">= 0 (kt)", c.kt);
+      stiffness = true;
+      iarg += 3;
+    } else if (keyword == "restitution") {
+      c.e = value(1);
+      rule(c.e > 0.0 && c.e <= 1.0, "> 0 and <= 1", c.e);
+      c.restitution_set = 1;
+      iarg += 2;
+    } else if (keyword == "damping") {
+      c.cn = value(1);
+      c.ct = value(2);
+      rule(c.cn >= 0.0, ">= 0 (cn)", c.cn);
+      rule(c.ct >= 0.0, ">= 0 (ct)", c.ct);
+      damping = true;
+      iarg += 3;
+    } else if (keyword == "friction") {
+      c.phi = value(1);
+      rule(c.phi >= 0.0 && c.phi < 90.0, ">= 0 and < 90 degrees", c.phi);
+      iarg += 2;
+    } else if (keyword == "rolling") {
+      c.rolling = value(1);
+      rule(c.rolling >= 0.0, ">= 0", c.rolling);
+      iarg += 2;
+    } else if (keyword == "rolling_spring") {
+      c.kr = value(1);
+      c.cr = value(2);
+      rule(c.kr >= 0.0, ">= 0 (kr)", c.kr);
+      rule(c.cr >= 0.0, ">= 0 (cr)", c.cr);
+      c.spring_set = 1;
+      iarg += 3;
+    } else {
+      error->all(FLERR,
+                 "Pair gran/restitution pair_coeff: unknown keyword {}, must be stiffness, "
+                 "restitution, damping, friction, rolling or rolling_spring",
+                 keyword);
+    }
+  }
+
+  if (!stiffness)
+    error->all(FLERR, "Pair gran/restitution pair_coeff {} {}: stiffness kn kt is required",
+               arg[0], arg[1]);
+  if (damping == (c.restitution_set == 1))
+    error->all(FLERR,
+               "Pair gran/restitution pair_coeff {} {}: exactly one of restitution and damping is "
+               "required, got {}",
+               arg[0], arg[1], damping ? "both" : "neither");
+
+  int count = 0;
+  for (int i = ilo; i <= ihi; i++)
+    for (int j = std::max(jlo, i); j <= jhi; j++) {
+      coeffs[index(i, j)] = coeffs[index(j, i)] = c;
+      setflag[i][j] = 1;
+      count++;
+    }
+  if (count == 0)
+    error->all(FLERR, "Pair gran/restitution pair_coeff {} {}: no pair I <= J of {} types",
+               arg[0], arg[1], atom->ntypes);
+  make_laws();
+}
+
+/* ----------------------------------------------------------------------
+   contact laws from the coefficients: c = 2 zeta sqrt(k m) in both directions
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::make_laws()
+{
+  for (size_t k = 0; k < coeffs.size(); k++) {
+    const Coeff &c = coeffs[k];
+    if (!c.set) continue;
+    ContactLaw law = ContactLaw();
+    const double zeta = c.restitution_set ? damping_ratio(c.e) : 0.0;
+    law.kn = c.kn;
+    law.kt = c.kt;
+    law.cn_given = c.cn;
+    law.ct_given = c.ct;
+    law.cn_root = 2.0 * zeta * sqrt(c.kn);
+    law.ct_root = 2.0 * zeta * sqrt(c.kt);
+    law.kr = c.spring_set ? c.kr : law.kt;
+    law.cr_given = c.spring_set ? c.cr : law.ct_given;
+    law.cr_root = c.spring_set ? 0.0 : law.ct_root;
+    law.friction = tan(c.phi * DEGREE);
+    law.rolling = c.rolling;
+    law.mass_factor = mass_ball ? 2.0 : 1.0;
+    law.rolling_factor = rolling_reduced ? 1.0 : 2.0;
+    law.fn_least = limit_damping ? 0.0 : -HUGE_VAL;
+    laws[k] = law;
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+const ContactLaw *PairGranRestitution::law(int itype, int jtype) const
+{
+  if (!allocated || !coeffs[index(itype, jtype)].set) return nullptr;
+  return &laws[index(itype, jtype)];
+}
+
+/* ----------------------------------------------------------------------
+   init specific to this pair style
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::init_style()
+{
+  if (!atom->radius_flag || !atom->rmass_flag || !atom->omega_flag || !atom->torque_flag)
+    error->all(FLERR,
+               "Pair gran/restitution requires balls: atom_style must be sphere, got {}",
+               atom->atom_style);
+  if (!comm->ghost_velocity)
+    error->all(FLERR, "Pair gran/restitution requires ghost velocities: comm_modify vel yes");
+
+  compat::request_history_list(neighbor, this, instance_me);
+  dt = update->dt;
+
+  if (!fix_history) {
+    fix_history = static_cast<FixNeighHistory *>(modify->replace_fix(
+        dummy_id, fmt::format("{} all NEIGH_HISTORY {}", history_id, HISTORY), 1));
+    fix_history->pair = this;
+  }
+
+  const int ifreeze = modify->find_fix_by_style("^freeze$");
+  freeze_group_bit = ifreeze < 0 ? 0 : modify->fix[ifreeze]->groupbit;
+
+  find_ranges();
+  std::fill(wall_type.begin(), wall_type.end(), 0);    // wall fixes announce themselves after
+}
+
+/* ----------------------------------------------------------------------
+   masses and radii of the atoms of each type
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::find_ranges()
+{
+  const int n = atom->ntypes + 1;
+  enum { MASS_MIN, MASS_MAX, DYNAMIC, FROZEN, NVALUE };
+  std::vector<double> mine(n * NVALUE, 0.0), all(n * NVALUE);
+  for (int t = 0; t < n; t++) mine[t * NVALUE + MASS_MIN] = -HUGE_VAL;    // as -mass: one MPI_MAX
+
+  for (int i = 0; i < atom->nlocal; i++) {
+    double *value = &mine[atom->type[i] * NVALUE];
+    const double r = atom->radius[i], m = atom->rmass[i];
+    if (atom->mask[i] & freeze_group_bit) {
+      value[FROZEN] = std::max(value[FROZEN], r);
+    } else {
+      value[MASS_MIN] = std::max(value[MASS_MIN], -m);
+      value[MASS_MAX] = std::max(value[MASS_MAX], m);
+      value[DYNAMIC] = std::max(value[DYNAMIC], r);
+    }
+  }
+  MPI_Allreduce(mine.data(), all.data(), n * NVALUE, MPI_DOUBLE, MPI_MAX, world);
+
+  ranges.assign(n, TypeRange());
+  for (int t = 1; t < n; t++) {
+    const double *value = &all[t * NVALUE];
+    TypeRange &range = ranges[t];
+    range.moving = value[MASS_MAX] > 0.0;
+    range.frozen = value[FROZEN] > 0.0;
+    range.mass_min = -value[MASS_MIN];
+    range.mass_max = value[MASS_MAX];
+    range.radius_dynamic = value[DYNAMIC];
+    range.radius_frozen = value[FROZEN];
+
+    // balls that fix pour or fix deposit will add later count as moving
+
+    for (const char *style : {"pour", "deposit"})
+      for (Fix *fix : compat::fixes_of_style(lmp, style)) {
+        int itype = t;
+        const double *radius = static_cast<double *>(fix->extract("radius", itype));
+        if (radius) range.radius_dynamic = std::max(range.radius_dynamic, *radius);
+      }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   init for one type pair i,j and corresponding j,i
+------------------------------------------------------------------------- */
+
+double PairGranRestitution::init_one(int i, int j)
+{
+  const TypeRange &a = ranges[i], &b = ranges[j];
+  const bool amoves = a.radius_dynamic > 0.0, bmoves = b.radius_dynamic > 0.0;
+  const bool can_touch = (amoves && (bmoves || b.frozen)) || (bmoves && (amoves || a.frozen));
+  if (can_touch && !coeffs[index(i, j)].set)
+    error->all(FLERR, "Pair gran/restitution: pair_coeff {} {} is not set, and balls of both types "
+                      "exist", i, j);
+
+  // no contact between two frozen balls
+
+  double cutoff = a.radius_dynamic + b.radius_dynamic;
+  cutoff = std::max(cutoff, a.radius_frozen + b.radius_dynamic);
+  cutoff = std::max(cutoff, a.radius_dynamic + b.radius_frozen);
+  return cutoff;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairGranRestitution::announce_wall(int type, int groupbit)
+{
+  for (int itype = 1; itype <= atom->ntypes; itype++) {
+    int mine = 0, any;
+    for (int i = 0; i < atom->nlocal && !mine; i++)
+      if ((atom->mask[i] & groupbit) && atom->type[i] == itype) mine = 1;
+    MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+    if (any && !law(itype, type))
+      error->all(FLERR,
+                 "Fix wall/gran/balls: pair_coeff {} {} is not set (moving type {}, wall type {})",
+                 std::min(itype, type), std::max(itype, type), itype, type);
+  }
+  if (allocated) wall_type[type] = 1;
+}
+
+/* ----------------------------------------------------------------------
+   once per run, when masses, coefficients and step are final
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::setup()
+{
+  dt = update->dt;
+  print_table();
+  check_timestep();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairGranRestitution::reset_dt()
+{
+  dt = update->dt;
+}
+
+/* ----------------------------------------------------------------------
+   largest step of the rule for a type pair: that of its lightest moving ball
+------------------------------------------------------------------------- */
+
+double PairGranRestitution::bound_on_step(int i, int j) const
+{
+  double m = HUGE_VAL;
+  if (ranges[i].moving) m = std::min(m, ranges[i].mass_min);
+  if (ranges[j].moving) m = std::min(m, ranges[j].mass_min);
+  return STEP_RULE * sqrt(m / coeffs[index(i, j)].kn);
+}
+
+/* ----------------------------------------------------------------------
+   table of the coefficients, for the lightest balls of each type pair
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::print_table()
+{
+  std::string text =
+      "Pair gran/restitution: contact coefficients (lightest balls of each type pair)\n"
+      "  types    kn N/m       kt N/m       cn N s/m     zeta     e moving e fixed  friction "
+      "rolling  contact/dt\n";
+  auto number = [](double x) { return std::isfinite(x) ? fmt::format("{:.4g}", x) : "inf"; };
+
+  for (int i = 1; i <= atom->ntypes; i++)
+    for (int j = i; j <= atom->ntypes; j++) {
+      const Coeff &c = coeffs[index(i, j)];
+      const TypeRange &a = ranges[i], &b = ranges[j];
+      if (!c.set || !(a.moving || b.moving)) continue;
+      const ContactLaw &law = laws[index(i, j)];
+      const bool both = a.moving && b.moving;
+      const bool fixed = a.frozen || b.frozen || wall_type[i] || wall_type[j];
+      if (!both && !fixed) continue;
+
+      // a ball on a fixed one: the lighter of the moving types
+
+      const double single = std::min(a.moving ? a.mass_min : HUGE_VAL,
+                                     b.moving ? b.mass_min : HUGE_VAL);
+      const double zeta_fixed = law.cn(law.mass_fixed(single)) / (2.0 * sqrt(c.kn * single));
+      double m = single, cn = law.cn(law.mass_fixed(single)), zeta = zeta_fixed;
+      std::string e_moving = "-";
+      if (both) {
+        m = a.mass_min * b.mass_min / (a.mass_min + b.mass_min);
+        cn = law.cn(law.mass(a.mass_min, b.mass_min));
+        zeta = cn / (2.0 * sqrt(c.kn * m));
+        e_moving = fmt::format("{:.4f}", restitution(zeta));
+      }
+      text += fmt::format("  {:<3} {:<3}  {:<12.4g} {:<12.4g} {:<12.4g} {:<8.4f} {:<8} {:<8.4f} "
+                          "{:<8.4g} {:<8.4g} {}\n",
+                          i, j, c.kn, c.kt, cn, zeta, e_moving, restitution(zeta_fixed), c.phi,
+                          atan(c.rolling) / DEGREE, number(contact_time(c.kn, m, zeta) / dt));
+    }
+  text += "  e fixed: against a fixed ball. friction, rolling: angles in degrees.\n";
+
+  if (text != table && comm->me == 0) utils::logmesg(lmp, text);
+  table = text;
+}
+
+/* ----------------------------------------------------------------------
+   warn when the step breaks dt <= 0.25 sqrt(m_min/kn)
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::check_timestep()
+{
+  double bound = HUGE_VAL;
+  int iworst = 0, jworst = 0;
+  for (int i = 1; i <= atom->ntypes; i++)
+    for (int j = i; j <= atom->ntypes; j++) {
+      if (!coeffs[index(i, j)].set || !(ranges[i].moving || ranges[j].moving)) continue;
+      const double b = bound_on_step(i, j);
+      if (b < bound) {
+        bound = b;
+        iworst = i;
+        jworst = j;
+      }
+    }
+  if (dt > bound * (1.0 + 1.0e-12) && comm->me == 0)
+    error->warning(FLERR,
+                   "Pair gran/restitution: time step {:.4g} s is {:.3g} times the largest that "
+                   "holds the restitution, 0.25 sqrt(m_min/kn) = {:.4g} s (types {} {})",
+                   dt, dt / bound, bound, iworst, jworst);
+}
+
+/* ----------------------------------------------------------------------
+   kinematics of the contact i on j at distance r
+------------------------------------------------------------------------- */
+
+Contact PairGranRestitution::geometry(int i, int j, double delx, double dely, double delz,
+                                      double r) const
+{
+  const double rinv = 1.0 / r;
+  const double radi = atom->radius[i], radj = atom->radius[j];
+  const double *vi = atom->v[i], *vj = atom->v[j];
+  const double *wi = atom->omega[i], *wj = atom->omega[j];
+  const double mi = atom->rmass[i], mj = atom->rmass[j];
+  const ContactLaw &law = laws[index(atom->type[i], atom->type[j])];
+
+  Contact c;
+  c.n[0] = delx * rinv;
+  c.n[1] = dely * rinv;
+  c.n[2] = delz * rinv;
+  c.overlap = radi + radj - r;
+  for (int k = 0; k < 3; k++) {
+    c.v[k] = vi[k] - vj[k];
+    c.rw[k] = radi * wi[k] + radj * wj[k];
+    c.w[k] = wi[k] - wj[k];
+  }
+  c.rolling_radius = law.rolling_factor * radi * radj / (radi + radj);
+
+  // a frozen ball is one of infinite mass
+
+  if (atom->mask[i] & freeze_group_bit) c.mass = law.mass_fixed(mj);
+  else if (atom->mask[j] & freeze_group_bit) c.mass = law.mass_fixed(mi);
+  else c.mass = law.mass(mi, mj);
+  return c;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairGranRestitution::compute(int eflag, int vflag)
+{
+  ev_init(eflag, vflag);
+
+  // at set-up the springs keep their length: the step that ends here has grown them already
+
+  const bool starting = update->setupflag;
+  InitialOverlap initial(lmp);
+
+  double **x = atom->x;
+  double **f = atom->f;
+  double **torque = atom->torque;
+  double *radius = atom->radius;
+  int *mask = atom->mask;
+  int *type = atom->type;
+  const int nlocal = atom->nlocal;
+  const int newton_pair = force->newton_pair;
+
+  const int inum = list->inum;
+  const int *ilist = list->ilist;
+  const int *numneigh = list->numneigh;
+  int **firstneigh = list->firstneigh;
+  int **firsttouch = fix_history->firstflag;
+  double **firstvalue = fix_history->firstvalue;
+
+  for (int ii = 0; ii < inum; ii++) {
+    const int i = ilist[ii];
+    const double xi = x[i][0], yi = x[i][1], zi = x[i][2];
+    const double radi = radius[i];
+    const int frozen = mask[i] & freeze_group_bit;
+    int *touch = firsttouch[i];
+    double *values = firstvalue[i];
+    const int *jlist = firstneigh[i];
+    const int jnum = numneigh[i];
+    double fi[3] = {0.0, 0.0, 0.0}, ti[3] = {0.0, 0.0, 0.0};
+
+    for (int jj = 0; jj < jnum; jj++) {
+      const int j = jlist[jj] & NEIGHMASK;
+      const double delx = xi - x[j][0];
+      const double dely = yi - x[j][1];
+      const double delz = zi - x[j][2];
+      const double rsq = delx * delx + dely * dely + delz * delz;
+      const double radj = radius[j];
+      const double radsum = radi + radj;
+      double *history = &values[HISTORY * jj];
+
+      if (rsq >= radsum * radsum || (frozen && (mask[j] & freeze_group_bit))) {
+        if (touch[jj]) {
+          touch[jj] = 0;
+          memset(history, 0, HISTORY * sizeof(double));
+        }
+        continue;
+      }
+
+      const double r = sqrt(rsq);
+      if (starting && !touch[jj])
+        initial.look(radsum - r, std::min(radi, radj), atom->tag[i], x[i],
+                     fmt::format("ball {}", atom->tag[j]));
+      touch[jj] = 1;
+
+      const Contact contact = geometry(i, j, delx, dely, delz, r);
+      ContactForce c;
+      double kept[HISTORY];
+      if (starting) memcpy(kept, history, sizeof(kept));
+      contact_force(laws[index(type[i], type[j])], contact, starting ? 0.0 : dt,
+                    starting ? kept : history, c);
+
+      for (int k = 0; k < 3; k++) {
+        fi[k] += c.f[k];
+        ti[k] += c.m[k] - radi * c.t[k];
+      }
+      if (newton_pair || j < nlocal)
+        for (int k = 0; k < 3; k++) {
+          f[j][k] -= c.f[k];
+          torque[j][k] -= c.m[k] + radj * c.t[k];
+        }
+      if (evflag)
+        ev_tally_xyz(i, j, nlocal, newton_pair, 0.0, 0.0, c.f[0], c.f[1], c.f[2], delx, dely, delz);
+    }
+
+    for (int k = 0; k < 3; k++) {
+      f[i][k] += fi[k];
+      torque[i][k] += ti[k];
+    }
+  }
+
+  if (starting) initial.check("Pair gran/restitution");
+}
+
+/* ----------------------------------------------------------------------
+   the force of one pair, for computes; changes no history
+   svector: tangential force (3), its size, normal velocity (3), tangential velocity (3)
+------------------------------------------------------------------------- */
+
+double PairGranRestitution::single(int i, int j, int itype, int jtype, double rsq,
+                                   double /*factor_coul*/, double /*factor_lj*/, double &fforce)
+{
+  fforce = 0.0;
+  std::fill(svector, svector + single_extra, 0.0);
+  const double radsum = atom->radius[i] + atom->radius[j];
+  if (rsq >= radsum * radsum) return 0.0;
+  if ((atom->mask[i] & freeze_group_bit) && (atom->mask[j] & freeze_group_bit)) return 0.0;
+
+  double history[HISTORY] = {0.0};
+  const int *jlist = list->firstneigh[i];
+  for (int jj = 0; jj < list->numneigh[i]; jj++)
+    if ((jlist[jj] & NEIGHMASK) == j)
+      memcpy(history, &fix_history->firstvalue[i][HISTORY * jj], sizeof(history));
+
+  double **x = atom->x;
+  const double r = sqrt(rsq);
+  const Contact contact =
+      geometry(i, j, x[i][0] - x[j][0], x[i][1] - x[j][1], x[i][2] - x[j][2], r);
+  ContactForce c;
+  contact_force(laws[index(itype, jtype)], contact, 0.0, history, c);
+
+  const double *n = contact.n;
+  const double fn = c.f[0] * n[0] + c.f[1] * n[1] + c.f[2] * n[2];
+  const double vn = contact.v[0] * n[0] + contact.v[1] * n[1] + contact.v[2] * n[2];
+  fforce = fn / r;
+  for (int k = 0; k < 3; k++) {
+    svector[k] = c.f[k] - fn * n[k];
+    svector[4 + k] = vn * n[k];
+    svector[7 + k] = contact.v[k] - vn * n[k];
+  }
+  svector[3] = sqrt(svector[0] * svector[0] + svector[1] * svector[1] + svector[2] * svector[2]);
+  return 0.0;
+}
+
+/* ----------------------------------------------------------------------
+   settings and coefficients in the restart file
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::write_restart(FILE *fp)
+{
+  write_restart_settings(fp);
+  fwrite(coeffs.data(), sizeof(Coeff), coeffs.size(), fp);
+}
+
+void PairGranRestitution::read_restart(FILE *fp)
+{
+  read_restart_settings(fp);
+  allocate();
+  if (comm->me == 0)
+    utils::sfread(FLERR, coeffs.data(), sizeof(Coeff), coeffs.size(), fp, nullptr, error);
+  MPI_Bcast(coeffs.data(), sizeof(Coeff) * coeffs.size(), MPI_BYTE, 0, world);
+  for (int i = 1; i <= atom->ntypes; i++)
+    for (int j = i; j <= atom->ntypes; j++)
+      if (coeffs[index(i, j)].set) setflag[i][j] = 1;
+  make_laws();
+}
+
+void PairGranRestitution::write_restart_settings(FILE *fp)
+{
+  const int values[3] = {mass_ball, limit_damping, rolling_reduced};
+  fwrite(values, sizeof(int), 3, fp);
+}
+
+void PairGranRestitution::read_restart_settings(FILE *fp)
+{
+  int values[3] = {0, 0, 0};
+  if (comm->me == 0) utils::sfread(FLERR, values, sizeof(int), 3, fp, nullptr, error);
+  MPI_Bcast(values, 3, MPI_INT, 0, world);
+  mass_ball = values[0];
+  limit_damping = values[1];
+  rolling_reduced = values[2];
+}
+
+/* ---------------------------------------------------------------------- */
+
+void *PairGranRestitution::extract(const char *name, int &dim)
+{
+  dim = 0;
+  if (strcmp(name, "history_size") == 0) {
+    static int size = HISTORY;
+    return &size;
+  }
+  return nullptr;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double PairGranRestitution::memory_usage()
+{
+  return coeffs.size() * (sizeof(Coeff) + sizeof(ContactLaw));
+}
+
+/* ---------------------------------------------------------------------- */
+
+double PairGranRestitution::atom2cut(int i)
+{
+  return 2.0 * atom->radius[i];
+}
+
+double PairGranRestitution::radii2cut(double r1, double r2)
+{
+  return r1 + r2;
+}

@@ -1,0 +1,102 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#include "region_surface.h"
+
+#include "domain.h"
+#include "error.h"
+#include "lammps_compat.h"
+#include "region.h"
+#include "region_terrain.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+
+static constexpr double UNBOUNDED = 1.0e19;     // LAMMPS writes INF as 1e20
+static constexpr double PRECISION = 1.0e-12;    // of the region's height
+static constexpr double DEFAULT_STEPS = 1000.0;
+
+/* ---------------------------------------------------------------------- */
+
+RegionSurface::RegionSurface(LAMMPS *lmp, const std::string &caller, const char *region_id,
+                             int side, double step_in) :
+    Pointers(lmp), terrain(nullptr)
+{
+  region = compat::find_region(lmp, region_id);
+  if (!region) error->all(FLERR, "{} region {} does not exist", caller, region_id);
+  region->init();
+
+  if (region->dynamic_check())
+    error->all(FLERR, "{} region {} must stand still, got one that moves or varies", caller,
+               region_id);
+  if (region->openflag)
+    error->all(FLERR, "{} region {} must have no open faces, got some", caller, region_id);
+  if (!region->bboxflag)
+    error->all(FLERR, "{} region {} must have a bounding box, style {} has none here", caller,
+               region_id, region->style);
+
+  xlo = region->extent_xlo;
+  xhi = region->extent_xhi;
+  ylo = region->extent_ylo;
+  yhi = region->extent_yhi;
+  zlo = region->extent_zlo;
+  zhi = region->extent_zhi;
+  bounded = side == LOWER ? zlo > -UNBOUNDED : zhi < UNBOUNDED;
+
+  double *lo[3] = {&xlo, &ylo, &zlo}, *hi[3] = {&xhi, &yhi, &zhi};
+  for (int d = 0; d < 3; d++) {
+    const double *boxlo = domain->triclinic ? domain->boxlo_bound : domain->boxlo;
+    const double *boxhi = domain->triclinic ? domain->boxhi_bound : domain->boxhi;
+    if (*lo[d] > -UNBOUNDED && *hi[d] < UNBOUNDED) continue;
+    if (!domain->box_exist)
+      error->all(FLERR, "{} region {} must be bounded as long as there is no simulation box, got INF",
+                 caller, region_id);
+    if (*lo[d] <= -UNBOUNDED) *lo[d] = boxlo[d];
+    if (*hi[d] >= UNBOUNDED) *hi[d] = boxhi[d];
+  }
+
+  start = side == LOWER ? zlo : zhi;
+  direction = side == LOWER ? 1.0 : -1.0;
+  step = step_in > 0.0 ? step_in : (zhi - zlo) / DEFAULT_STEPS;
+
+  // the upper boundary of a terrain is its elevation grid: no search
+
+  if (side == UPPER && region->interior) terrain = dynamic_cast<RegTerrain *>(region);
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool RegionSurface::height(double x, double y, double &z) const
+{
+  if (x < xlo || x > xhi || y < ylo || y > yhi || !(zlo <= zhi)) return false;
+
+  if (terrain) {
+    z = terrain->grid().height(x, y);
+    return !std::isnan(z);
+  }
+
+  // the first point inside, walking into the region
+
+  const double length = zhi - zlo;
+  double out = 0.0, in = 0.0;    // distance walked
+  while (!region->match(x, y, start + direction * in)) {
+    if (in >= length) return false;
+    out = in;
+    in = std::min(in + step, length);
+  }
+
+  while (in - out > PRECISION * length) {
+    const double middle = 0.5 * (in + out);
+    if (middle <= out || middle >= in) break;
+    if (region->match(x, y, start + direction * middle))
+      in = middle;
+    else
+      out = middle;
+  }
+  z = start + direction * in;
+  return true;
+}

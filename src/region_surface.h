@@ -1,0 +1,45 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#ifndef SLOPE_REGION_SURFACE_H
+#define SLOPE_REGION_SURFACE_H
+
+#include "pointers.h"
+
+#include <string>
+
+namespace LAMMPS_NS {
+
+// The lower or upper boundary of any region that stands still, as a height over the plan.
+// Only Region::match() is asked, so intersections and unions of whatever regions do.
+class RegionSurface : protected Pointers {
+ public:
+  enum { LOWER, UPPER };
+
+  // A column is searched in steps: a part of the region thinner than the step may be missed.
+  // step 0: a thousandth of the region's height. Errors start with caller.
+  RegionSurface(class LAMMPS *, const std::string &caller, const char *region_id, int side,
+                double step = 0.0);
+
+  // lowest (topmost) point of the region over x,y; false if the region is not there.
+  // No communication: any rank may ask for any column.
+  bool height(double x, double y, double &z) const;
+
+  // false if the region goes on beyond any box on this side (INF): no boundary there
+  bool has_boundary() const { return bounded; }
+
+  // bounding box; where the region has no bound, that of the simulation box
+  double xlo, xhi, ylo, yhi, zlo, zhi;
+
+ private:
+  class Region *region;
+  const class RegTerrain *terrain;    // set if its grid is the boundary
+  double start, direction, step;      // of the search along z
+  bool bounded;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

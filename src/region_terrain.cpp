@@ -1,0 +1,143 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#include "region_terrain.h"
+
+#include "comm.h"
+#include "error.h"
+
+#include <cmath>
+#include <cstring>
+#include <exception>
+#include <vector>
+
+using namespace LAMMPS_NS;
+
+static constexpr double DEFAULT_CELLS = 5.0;    // depth and headroom, in cells of the raster
+
+/* ----------------------------------------------------------------------
+   region ID terrain FILE.asc keyword value ...
+------------------------------------------------------------------------- */
+
+RegTerrain::RegTerrain(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, arg)
+{
+  if (narg < 3) error->all(FLERR, "Region terrain: file name of the elevation grid is missing");
+
+  // own keywords are taken here, those of every region are passed on
+
+  double depth = -1.0, headroom = -1.0;
+  std::vector<char *> rest;
+  for (int iarg = 3; iarg < narg; iarg++) {
+    const std::string keyword = arg[iarg];
+    if (keyword == "depth" || keyword == "headroom") {
+      if (iarg + 1 >= narg) error->all(FLERR, "Region terrain {}: value is missing", keyword);
+      const double value = utils::numeric(FLERR, arg[++iarg], false, lmp);
+      if (!(value > 0.0 && std::isfinite(value)))
+        error->all(FLERR, "Region terrain {} must be > 0, got {:.15g}", keyword, value);
+      (keyword == "depth" ? depth : headroom) = value;
+    } else if (keyword == "units" && iarg + 1 < narg) {
+      if (strcmp(arg[++iarg], "box") != 0)
+        error->all(FLERR, "Region terrain units must be box, got {}", arg[iarg]);
+    } else
+      rest.push_back(arg[iarg]);
+  }
+
+  std::string units = "units", box = "box";
+  rest.push_back(&units[0]);
+  rest.push_back(&box[0]);
+  options((int) rest.size(), rest.data());
+  if (openflag) error->all(FLERR, "Region terrain cannot have open faces");
+
+  read(arg[2]);
+
+  const double zmin = elevation.zmin();
+  const double zmax = elevation.zmax();
+  if (depth < 0.0) depth = DEFAULT_CELLS * elevation.cell;
+  if (headroom < 0.0) headroom = DEFAULT_CELLS * elevation.cell;
+  bottom = zmin - depth;
+
+  bboxflag = interior;
+  extent_xlo = elevation.xlo;
+  extent_xhi = elevation.xhi();
+  extent_ylo = elevation.ylo;
+  extent_yhi = elevation.yhi();
+  extent_zlo = bottom;
+  extent_zhi = zmax + headroom;
+
+  cmax = tmax = 0;
+
+  if (comm->me == 0)
+    utils::logmesg(lmp,
+                   "Region terrain {}: {} x {} cells of {:.8g}, x {:.8g} to {:.8g}, "
+                   "y {:.8g} to {:.8g}, heights {:.8g} to {:.8g}, {} cells without data\n",
+                   id, elevation.nx, elevation.ny, elevation.cell, extent_xlo, extent_xhi,
+                   extent_ylo, extent_yhi, zmin, zmax, elevation.count_nodata());
+}
+
+/* ----------------------------------------------------------------------
+   one rank reads; what went wrong there ends the run on all of them
+------------------------------------------------------------------------- */
+
+void RegTerrain::read(const char *path)
+{
+  std::string problem;
+  if (comm->me == 0) {
+    try {
+      elevation = Slope::ElevationGrid::read(path);
+    } catch (std::exception &e) {
+      problem = std::string("Region terrain: ") + e.what();
+    }
+  }
+
+  int length = problem.size();
+  MPI_Bcast(&length, 1, MPI_INT, 0, world);
+  if (length) {
+    problem.resize(length);
+    MPI_Bcast(&problem[0], length, MPI_CHAR, 0, world);
+    error->all(FLERR, problem);
+  }
+
+  int size[2] = {elevation.nx, elevation.ny};
+  double place[3] = {elevation.xlo, elevation.ylo, elevation.cell};
+  MPI_Bcast(size, 2, MPI_INT, 0, world);
+  MPI_Bcast(place, 3, MPI_DOUBLE, 0, world);
+  if (comm->me != 0)
+    elevation = Slope::ElevationGrid(size[0], size[1], place[0], place[1], place[2], 0.0);
+  MPI_Bcast(elevation.z.data(), (int) elevation.z.size(), MPI_DOUBLE, 0, world);
+}
+
+/* ----------------------------------------------------------------------
+   below the ground surface; no height (NaN) has nothing below it
+------------------------------------------------------------------------- */
+
+int RegTerrain::inside(double x, double y, double z)
+{
+  return z >= bottom && z <= elevation.height(x, y);
+}
+
+/* ---------------------------------------------------------------------- */
+
+int RegTerrain::surface_interior(double * /*x*/, double /*cutoff*/)
+{
+  return no_contacts();
+}
+
+/* ---------------------------------------------------------------------- */
+
+int RegTerrain::surface_exterior(double * /*x*/, double /*cutoff*/)
+{
+  return no_contacts();
+}
+
+/* ---------------------------------------------------------------------- */
+
+int RegTerrain::no_contacts()
+{
+  error->one(FLERR,
+             "Region terrain {} has no smooth wall: the ground is made of balls, see fix "
+             "wall/gran/balls",
+             id);
+  return 0;
+}

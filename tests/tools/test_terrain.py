@@ -1,0 +1,652 @@
+"""tools/slope terrain: survey rasters to terrain.asc, against planes, whose heights are known everywhere."""
+import os
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import rasterio
+import rasterio.warp
+import yaml
+from affine import Affine
+from rasterio.crs import CRS
+
+TOP = Path(__file__).resolve().parents[2]
+TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
+sys.path.insert(0, str(TOOLS))
+
+from slope_tools import cli, rasters, terrain  # noqa: E402  (after the path is set)
+
+CRS_M = "EPSG:6677"               # metres, zone IX of Japan
+EAST, NORTH = -12000.0, 34000.0   # lower left corner of the surveys below
+pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
+MM = 0.0005 + 1e-9                # heights are written in whole mm
+
+
+def plane(x, y):
+    """Height (m) of the test slope at east x, north y (m): 0.3 up to the east, 0.7 down to the north."""
+    return 500 + 0.3 * (x - EAST) - 0.7 * (y - NORTH)
+
+
+def centres(transform, shape):
+    """East and north of the cell centres, each of that shape."""
+    return transform * np.meshgrid(np.arange(shape[1]) + 0.5, np.arange(shape[0]) + 0.5)
+
+
+def survey(columns=20, rows=16, cell=5.0, east=EAST, north=NORTH):
+    """Heights of the plane on a grid, and its transform."""
+    transform = Affine(cell, 0, east, 0, -cell, north + rows * cell)
+    return plane(*centres(transform, (rows, columns))), transform
+
+
+def write_tif(path, z, transform, crs=CRS_M, nodata=-9999.0, dtype="float64", tags=None):
+    """Write heights (rows, columns), or several bands of them, NaN as nodata if that is not None."""
+    bands = np.reshape(z, (-1, *np.shape(z)[-2:]))
+    if nodata is not None:
+        bands = np.where(np.isnan(bands), nodata, bands)
+    with rasterio.open(path, "w", driver="GTiff", height=bands.shape[1], width=bands.shape[2], count=len(bands),
+                       dtype=dtype, crs=crs, transform=transform, nodata=nodata) as out:
+        out.write(bands.astype(dtype))
+        for name, value in (tags or {}).items():
+            setattr(out, name, value)
+    return path
+
+
+def asc_text(z, x, y, cell, where="corner", nodata="NODATA_value -9999\n"):
+    """An ESRI ASCII grid; x, y of the lower left corner, or of the lower left cell's centre."""
+    rows = "\n".join(" ".join("-9999" if np.isnan(value) else repr(float(value)) for value in row) for row in z)
+    return (f"ncols {z.shape[1]}\nnrows {z.shape[0]}\nxll{where} {x!r}\nyll{where} {y!r}\ncellsize {cell!r}\n"
+            f"{nodata}{rows}\n")
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def slope(here, capsys):
+    """Run `slope terrain ARGUMENTS`, in the test's folder; gives status, stdout, stderr."""
+    def run(arguments):
+        capsys.readouterr()
+        try:
+            status = cli.main(["terrain", *shlex.split(arguments)])
+        except SystemExit as error:
+            status = error.code
+        return status, *capsys.readouterr()
+    return run
+
+
+@pytest.fixture
+def written(slope):
+    """Run it, which must succeed; gives heights, east and north of the centres, the sidecar, stdout."""
+    def run(arguments):
+        status, out, err = slope(f"{arguments} -o out.asc")
+        assert status == 0, err
+        z, transform, _, offset = rasters.read_asc_local("out.asc")
+        east, north = centres(Affine.translation(*offset) * transform, z.shape)
+        return z, east, north, yaml.safe_load(Path("out.yaml").read_text()), out
+    return run
+
+
+def assert_plane(z, east, north, tolerance=MM):
+    known = np.isfinite(z)
+    assert known.any()
+    assert np.abs(z - plane(east, north))[known].max() <= tolerance
+
+
+# --- what is written ---
+
+def test_the_file_to_the_letter(slope, here):
+    (here / "dem.asc").write_text("ncols 3\nnrows 2\nxllcorner 100.25\nyllcorner -7.5\ncellsize 2.5\n"
+                                  "NODATA_value -1\n1 2.12349 -1\n-0.0001 1234.5675001 6\n")
+    status, out, err = slope("dem.asc -o out.asc --crs EPSG:6677")
+    assert (status, err) == (0, "")
+    assert (here / "out.asc").read_bytes() == (
+        b"ncols 3\nnrows 2\nxllcorner 0.25\nyllcorner 0.5\ncellsize 2.5\nNODATA_value -9999\n"
+        b"1.000 2.123 -9999\n0.000 1234.568 6.000\n")
+    assert out.splitlines() == [
+        "dem.asc has no CRS: taken as EPSG:6677",
+        "out.asc: 3 x 2 cells of 2.5 m, x 0.250 to 7.750, y 0.500 to 5.500, z 0.000 to 1234.568 m, 1 NODATA cells, "
+        "0 0 at 100 -8",
+        "region ground terrain out.asc"]
+    about = yaml.safe_load((here / "out.yaml").read_text())
+    assert about.pop("crs")["epsg"] == 6677
+    assert about == {"origin": {"east": 100, "north": -8}, "cell": 2.5, "size": {"columns": 3, "rows": 2},
+                     "extent": {"xlo": 0.25, "xhi": 7.75, "ylo": 0.5, "yhi": 5.5},
+                     "height": {"min": 0.0, "max": 1234.568}, "nodata_cells": 1, "filled_cells": 0,
+                     "sources": ["dem.asc"], "steps": ["dem.asc has no CRS: taken as EPSG:6677"]}
+    assert sorted(os.listdir()) == ["dem.asc", "out.asc", "out.yaml"]
+
+
+def test_corner_and_center_headers_and_geotiff_are_one_raster(slope, here):
+    z, transform = survey()
+    z[3, 4] = np.nan
+    (here / "corner.asc").write_text(asc_text(z, EAST, NORTH, 5.0))
+    (here / "center.asc").write_text(asc_text(z, EAST + 2.5, NORTH + 2.5, 5.0, "center"))
+    write_tif("dem.tif", z, transform)
+    results = set()
+    for name in ("corner.asc", "center.asc", "dem.tif"):
+        assert slope(f"{name} -o out.asc --crs {CRS_M}")[0] == 0
+        results.add((here / "out.asc").read_bytes())
+    assert len(results) == 1
+
+
+@pytest.mark.parametrize("change", [
+    lambda text: text.replace("\n", "\r\n"),
+    lambda text: text.upper(),
+    lambda text: text.replace("NODATA_value -9999\n", ""),           # -9999 is ESRI's default
+    lambda text: text.replace("cellsize 5.0", "dx 5.0\ndy 5.0"),
+    lambda text: text[:120] + text[120:].replace(" ", "\n", 40),     # wrapped rows
+    lambda text: text.replace("-9999 ", "nan "),
+], ids=["crlf", "upper case", "no NODATA_value", "dx dy", "wrapped", "nan"])
+def test_spellings_of_an_ascii_grid(written, here, change):
+    z, _ = survey()
+    z[0, 0] = np.nan
+    (here / "dem.asc").write_bytes(change(asc_text(z, EAST, NORTH, 5.0)).encode())
+    got, east, north, about, _ = written("dem.asc")
+    assert_plane(got, east, north)
+    assert np.argwhere(np.isnan(got)).tolist() == [[0, 0]] and about["nodata_cells"] == 1
+
+
+def test_origin(written):
+    z, transform = survey(east=EAST + 0.75)
+    write_tif("dem.tif", z, transform)
+    for option, origin, corner in (("", (-12000, 34000), (0.75, 0)), ("--origin auto", (-12000, 34000), (0.75, 0)),
+                                   ("--origin -12100.5 33000", (-12100.5, 33000), (101.25, 1000)),
+                                   ("--origin 0 0", (0, 0), (EAST + 0.75, NORTH))):
+        _, east, north, about, _ = written(f"dem.tif {option}")
+        assert about["origin"] == {"east": origin[0], "north": origin[1]}
+        assert (about["extent"]["xlo"], about["extent"]["ylo"]) == corner
+        assert (east.min(), north.min()) == (EAST + 0.75 + 2.5, NORTH + 2.5)
+
+
+def test_a_written_terrain_is_an_input_again(written, here):
+    write_tif("dem.tif", *survey())
+    written("dem.tif --origin -12345 33000")
+    (here / "out.asc").rename("first.asc")
+    (here / "out.yaml").rename("first.yaml")
+    z, east, north, about, _ = written("first.asc --cell 10")
+    assert about["crs"]["epsg"] == 6677
+    assert_plane(z, east, north, 2 * MM)
+    assert east.min() == EAST + 5
+
+
+def test_round_trip_of_the_reader(written):
+    z, transform = survey()
+    z[2, 3] = np.nan
+    write_tif("dem.tif", z, transform)
+    written("dem.tif")
+    raster = rasters.read_asc_local("out.asc")
+    assert np.allclose(raster.z, z, rtol=0, atol=MM, equal_nan=True)
+    assert raster.crs == CRS.from_string(CRS_M)
+    assert raster.offset == (EAST, NORTH)
+    assert raster.transform == Affine(5, 0, 0, 0, -5, 80)
+    Path("out.yaml").unlink()
+    assert rasters.read_asc_local("out.asc")[2:] == (None, (0, 0))
+
+
+# --- resampling, cropping ---
+
+@pytest.mark.parametrize("cell, size", [(1, (96, 76)), (2.5, (38, 30)), (3, (32, 25)), (4.9, (19, 15)), (5, (20, 16)),
+                                        (7, (14, 11)), (10, (10, 8)), (16, (6, 5)), (20, (5, 4))])
+def test_resampling_keeps_a_plane(written, cell, size):
+    write_tif("dem.tif", *survey())
+    z, east, north, about, out = written(f"dem.tif --cell {cell}")
+    assert_plane(z, east, north)
+    assert not np.isnan(z).any()
+    assert about["cell"] == cell and (about["size"]["columns"], about["size"]["rows"]) == size
+    assert ("resampled, cells of 5 x 5 m" in out) == (cell != 5)
+
+
+def test_larger_cells_are_means_not_samples(written):
+    z, transform = survey()
+    z += np.random.default_rng(3).normal(0, 5, z.shape)
+    write_tif("dem.tif", z, transform)
+    got = written("dem.tif --cell 20")[0]
+    assert np.allclose(got, z.reshape(4, 4, 5, 4).mean(axis=(1, 3)), rtol=0, atol=MM)
+
+
+def test_rounding_does_not_cost_cells(written):
+    """Three new cells to an old one: every third centre is an old one, also the outermost, and beside a hole."""
+    cell = 0.1
+    z, transform = survey(cell=cell)
+    z[5, 5] = np.nan
+    write_tif("dem.tif", z, transform)
+    got, east, north, about, _ = written(f"dem.tif --cell {cell / 3!r}")
+    assert about["size"] == {"columns": 3 * 19 + 1, "rows": 3 * 15 + 1}
+    assert_plane(got, east, north)
+    assert about["nodata_cells"] == 5 * 5  # between the neighbours' centres, these not included
+
+
+def test_resampling_does_not_reach_into_nodata(written):
+    z, transform = survey()
+    z[5:7, 8:11] = np.nan
+    write_tif("dem.tif", z, transform)
+    got, east, north, _, _ = written("dem.tif --cell 1")
+    assert_plane(got, east, north)
+    hole = Affine.translation(8, 5), Affine.translation(11, 7)  # outer edges of the hole; heights end half a cell off
+    (west, top), (right, bottom) = (transform * step * (0, 0) for step in hole)
+    empty = (east > west - 2.5) & (east < right + 2.5) & (north < top + 2.5) & (north > bottom - 2.5)
+    assert (np.isnan(got) == empty).all()
+
+
+@pytest.mark.parametrize("name, transform", [
+    ("non-square", Affine(5, 0, EAST, 0, -4, NORTH + 80)),
+    ("south up", Affine(5, 0, EAST, 0, 5, NORTH)),
+    ("turned", Affine.translation(EAST, NORTH + 80) * Affine.rotation(-20) * Affine.scale(5, -5)),
+])
+def test_other_grids_are_resampled_to_a_north_up_square_one(written, name, transform):
+    write_tif("dem.tif", plane(*centres(transform, (16, 20))), transform)
+    z, east, north, about, out = written("dem.tif")
+    assert_plane(z, east, north)
+    assert about["cell"] == pytest.approx(4 if name == "non-square" else 5, rel=1e-6)
+    assert "resampled, cells of 5 x " in out
+    assert np.isfinite(z).sum() * about["cell"] ** 2 > 0.8 * 20 * 16 * abs(transform.determinant)
+
+
+def test_crop_takes_whole_cells(written):
+    z, transform = survey()
+    write_tif("dem.tif", z, transform)
+    got, east, north, _, out = written(f"dem.tif --bounds {EAST + 11} {NORTH + 20} {EAST + 40} {NORTH + 33}")
+    assert "cropped to 6 x 3 of 20 x 16 cells" in out
+    assert np.allclose(got, z[9:12, 2:8], rtol=0, atol=MM)
+    assert (east.min(), east.max()) == (EAST + 12.5, EAST + 37.5)
+    assert (north.min(), north.max()) == (NORTH + 22.5, NORTH + 32.5)
+
+
+def test_crop_with_a_cell_starts_at_the_corner(written):
+    write_tif("dem.tif", *survey())
+    z, east, north, about, _ = written(f"dem.tif --cell 2 --bounds {EAST + 11} {NORTH + 21} {EAST + 41} {NORTH + 31}")
+    assert_plane(z, east, north)
+    assert about["size"] == {"columns": 15, "rows": 5}
+    assert (east.min(), north.min()) == (EAST + 12, NORTH + 22)
+
+
+def test_bounds_beyond_the_input_are_cut_with_a_warning(slope):
+    write_tif("dem.tif", *survey())
+    status, out, err = slope(f"dem.tif -o out.asc --bounds {EAST - 100} {NORTH} {EAST + 50} {NORTH + 40}")
+    assert status == 0 and "cropped to 10 x 8" in out
+    assert err.startswith("slope terrain: warning: --bounds reaches beyond the input") and err.count("\n") == 1
+    assert slope(f"dem.tif -o out.asc --bounds {EAST} {NORTH} {EAST + 100} {NORTH + 80}")[2] == ""
+
+
+# --- reprojection ---
+
+def degrees_survey(n=80, second=0.2):
+    """The plane of EPSG:6677 on a grid of degrees (JGD2011) around EAST, NORTH, cells of 0.2 seconds of arc."""
+    lon, lat = (values[0] for values in rasterio.warp.transform(CRS_M, "EPSG:6668", [EAST], [NORTH]))
+    transform = Affine(second / 3600, 0, lon, 0, -second / 3600, lat)
+    x, y = centres(transform, (n, n))
+    east, north = rasterio.warp.transform("EPSG:6668", CRS_M, x.ravel(), y.ravel())
+    return plane(np.reshape(east, (n, n)), np.reshape(north, (n, n))), transform
+
+
+@pytest.mark.parametrize("option, cell", [("", 4.99), ("--cell 2", 2), ("--cell 12", 12)])
+def test_degrees_to_metres(written, option, cell):
+    write_tif("dem.tif", *degrees_survey(), crs="EPSG:6668")
+    z, east, north, about, out = written(f"dem.tif --crs {CRS_M} {option}")
+    assert "reprojected from EPSG:6668 to EPSG:6677" in out
+    assert about["cell"] == cell and about["crs"]["epsg"] == 6677
+    corner = about["origin"]["east"] + about["extent"]["xlo"], about["origin"]["north"] + about["extent"]["ylo"]
+    assert np.allclose(np.divide(corner, cell), np.round(np.divide(corner, cell)), rtol=0, atol=1e-6)
+    assert_plane(z, east, north, 0.001)  # GDAL's warper, whose points are off by up to 1/8 cell: 0.16 m
+    assert np.isnan(z).mean() < 0.15
+
+
+def test_metres_to_other_metres_with_bounds(written):
+    """Zone VIII to zone IX: turned by more than a degree."""
+    x, y = (values[0] for values in rasterio.warp.transform(CRS_M, "EPSG:6676", [EAST], [NORTH]))
+    transform = Affine(5, 0, x, 0, -5, y)
+    east, north = rasterio.warp.transform("EPSG:6676", CRS_M, *(a.ravel() for a in centres(transform, (100, 100))))
+    write_tif("dem.tif", np.reshape(plane(np.array(east), np.array(north)), (100, 100)), transform, crs="EPSG:6676")
+    z, east, north, about, _ = written(
+        f"dem.tif --crs {CRS_M} --bounds {EAST + 100} {NORTH - 300} {EAST + 300} {NORTH - 200}")
+    assert about["cell"] == 5 and about["size"] == {"columns": 40, "rows": 20} and about["nodata_cells"] == 0
+    assert (east.min(), north.min()) == (EAST + 102.5, NORTH - 297.5)
+    assert_plane(z, east, north, 0.001)
+
+
+def test_an_esri_spelling_of_the_crs_is_not_reprojected(written, here):
+    z, _ = survey()
+    (here / "dem.asc").write_text(asc_text(z, EAST, NORTH, 5.0))
+    (here / "dem.prj").write_text(CRS.from_string(CRS_M).to_wkt(version="WKT1_ESRI"))
+    got, _, _, about, out = written(f"dem.asc --crs {CRS_M}")
+    assert "reprojected" not in out and np.allclose(got, z, rtol=0, atol=MM)
+    assert about["crs"]["epsg"] == 6677
+
+
+def test_missing_crs(slope, here):
+    z, _ = survey()
+    (here / "dem.asc").write_text(asc_text(z, EAST, NORTH, 5.0))
+    status, _, err = slope("dem.asc -o out.asc")
+    assert status == 0 and err.startswith("slope terrain: warning: dem.asc has no CRS") and err.count("\n") == 1
+    assert yaml.safe_load((here / "out.yaml").read_text())["crs"] is None
+    before = (here / "out.asc").read_bytes()
+    status, out, err = slope(f"dem.asc -o out.asc --crs {CRS_M}")
+    assert (status, err) == (0, "") and "taken as EPSG:6677" in out
+    assert yaml.safe_load((here / "out.yaml").read_text())["crs"]["epsg"] == 6677
+    assert (here / "out.asc").read_bytes() == before
+
+
+def test_a_stretched_crs_is_warned_of(slope):
+    write_tif("dem.tif", *degrees_survey(), crs="EPSG:6668")
+    status, _, err = slope("dem.tif -o out.asc --crs EPSG:3857")
+    scale = float(re.search(r"a metre in EPSG:3857 is ([\d.]+) m on the ground", err).group(1))
+    assert status == 0 and scale == pytest.approx(np.cos(np.radians(36.3)), abs=0.005)
+
+
+# --- values ---
+
+def test_scale_offset_and_mask_of_a_geotiff(written):
+    transform = Affine(5, 0, EAST, 0, -5, NORTH)
+    write_tif("dem.tif", np.array([[10, 20], [30, -1]]), transform, nodata=-1, dtype="int16",
+              tags={"scales": (0.5,), "offsets": (100.0,), "units": ("metre",)})
+    z = written("dem.tif")[0]
+    assert z[0].tolist() == [105, 110] and z[1, 0] == 115 and np.isnan(z[1, 1])
+    write_tif("dem.tif", np.array([[1, 2], [3, np.nan]]), transform, nodata=None)
+    assert np.isnan(written("dem.tif")[0][1, 1])
+
+
+# --- merging ---
+
+def test_tiles_merge_to_the_whole(written, slope, here):
+    z, transform = survey()
+    z[4, 4] = np.nan
+    write_tif("whole.tif", z, transform)
+    slope("whole.tif -o whole.asc")
+    write_tif("a.tif", z[:, :12], transform)
+    write_tif("b.tif", z[:10, 12:], transform * Affine.translation(12, 0))
+    (here / "c.asc").write_text(asc_text(z[10:, 12:], EAST + 60.002, NORTH, 5.0))  # a coordinate rounded: same grid
+    _, _, _, about, out = written(f"c.asc b.tif a.tif --crs {CRS_M}")
+    assert "merged 3 rasters; 0 cells in more than one" in out
+    assert about["sources"] == ["c.asc", "b.tif", "a.tif"]
+    assert (here / "out.asc").read_text().split()[12:] == (here / "whole.asc").read_text().split()[12:]
+
+
+def test_overlap_and_gap(written):
+    z, transform = survey()
+    left, right = z[:, :8].copy(), z[:, 6:].copy() + 2
+    left[0, 7] = np.nan
+    write_tif("a.tif", left, transform)
+    write_tif("b.tif", right, transform * Affine.translation(6, 0))
+    got, _, _, _, out = written("a.tif b.tif")
+    assert "31 cells in more than one, the first file counts, heights differ by up to 2.000 m" in out
+    expected = np.hstack([z[:, :8], z[:, 8:] + 2])
+    expected[0, 7] += 2  # the first file has no height there
+    assert np.allclose(got, expected, rtol=0, atol=MM)
+    write_tif("c.tif", z[:, 15:], transform * Affine.translation(15, 0))
+    assert np.isnan(written("a.tif c.tif")[0][:, 8:15]).all()
+
+
+# --- holes ---
+
+def test_only_small_holes_inside_are_filled(written):
+    z, transform = survey()
+    known = z.copy()
+    for row, column in ((3, 3), (4, 4), (8, 10), (0, 8), (12, 0)):  # a diagonal pair, one alone, two at the edge
+        z[row, column] = np.nan
+    z[10:13, 14:17] = np.nan                                       # nine
+    write_tif("dem.tif", z, transform)
+
+    for option, holes, cells, left in (("", 0, 0, 14), ("--fill 1", 1, 1, 13), ("--fill 2", 2, 3, 11),
+                                       ("--fill 8", 2, 3, 11), ("--fill 9", 3, 12, 2), ("--fill 1000", 3, 12, 2)):
+        got, _, _, about, out = written(f"dem.tif {option}")
+        assert (about["filled_cells"], about["nodata_cells"]) == (cells, left)
+        assert ("filled" in out) == bool(option)
+        if option:
+            assert f"filled {holes} NODATA holes of at most {option[7:]} cells, {cells} cells" in out
+        assert np.nanmax(np.abs(got - known)) <= MM  # the plane goes through (GDAL's fillnodata: off by up to 2.6 m)
+
+
+def test_a_large_hole_is_filled_by_the_plane(written):
+    z, transform = survey(60, 60)
+    z[10:45, 12:50] = np.nan
+    z[20:22, 20:30] = 7  # heights inside the hole: an island
+    write_tif("dem.tif", z, transform)
+    got, east, north, about, _ = written("dem.tif --fill 2000")
+    assert about["nodata_cells"] == 0 and about["filled_cells"] == 35 * 38 - 20
+    z[20:22, 20:30] = plane(east, north)[20:22, 20:30]
+    write_tif("dem.tif", z, transform)
+    assert_plane(*written("dem.tif --fill 2000")[:3])
+
+
+def test_small_holes_against_a_flood_fill():
+    random = np.random.default_rng(7)
+    for density in (0.1, 0.3, 0.5, 0.7):
+        for _ in range(20):
+            empty = random.random((13, 17)) < density
+            expected, count = np.zeros_like(empty), 0
+            todo = set(map(tuple, np.argwhere(empty)))
+            while todo:
+                group = [todo.pop()]
+                for row, column in group:
+                    near = {(row + i, column + j) for i in (-1, 0, 1) for j in (-1, 0, 1)} & todo
+                    todo -= near
+                    group += near
+                if len(group) <= 4 and all(0 < r < 12 and 0 < c < 16 for r, c in group):
+                    count += 1
+                    expected[tuple(zip(*group))] = True
+            mask, holes = terrain.small_holes(empty, 4)
+            assert (mask == expected).all() and holes == count
+
+
+# --- bad input ---
+
+def bad_ascii(change):
+    return lambda: Path("bad.asc").write_text(change(asc_text(np.array([[1., 2, 3], [4, 5, 6]]), 0.0, 0.0, 2.0)))
+
+
+def bad_tif(**changes):
+    def write():
+        z, transform = survey()
+        arguments = {"z": z, "transform": transform, **changes}
+        write_tif("bad.tif", **arguments)
+    return write
+
+
+def truncated_tif():
+    write_tif("bad.tif", *survey(200, 200))
+    Path("bad.tif").write_bytes(Path("bad.tif").read_bytes()[:5000])
+
+
+def huge_gap():
+    z, transform = survey()
+    write_tif("far.tif", z, transform * Affine.translation(10 ** 7, 10 ** 7))
+
+
+def half_a_cell_off():
+    z, transform = survey()
+    write_tif("off.tif", z, transform * Affine.translation(3.5, 0))
+
+
+def no_input():
+    pass
+
+
+OK = "ok.tif -o out.asc "
+BAD = {
+    "missing file": (no_input, "none.tif -o out.asc", "none.tif: must be an existing file"),
+    "folder": (no_input, ". -o out.asc", ".: must be an existing file"),
+    "no raster": (lambda: Path("bad.tif").write_text("hello\n"), "bad.tif -o out.asc", "bad.tif: must be a raster"),
+    "empty": (lambda: Path("bad.asc").write_text(""), "bad.asc -o out.asc", "bad.asc: must be a raster"),
+    "truncated tif": (truncated_tif, "bad.tif -o out.asc", "bad.tif: must be a raster"),
+    "too few values": (bad_ascii(lambda t: t.replace("5.0 6.0", "5.0")), "bad.asc -o out.asc",
+                       "bad.asc: values: must be 2 rows of 3, 6 values, got 5, first at line 8, which has 2"),
+    "a row missing": (bad_ascii(lambda t: t.replace("4.0 5.0 6.0\n", "")), "bad.asc -o out.asc",
+                      "bad.asc: values: must be 2 rows of 3, 6 values, got 3, in 1 rows"),
+    "too many values": (bad_ascii(lambda t: t.replace("3.0", "3.0 3.5")), "bad.asc -o out.asc",
+                        "bad.asc: values: must be 2 rows of 3, 6 values, got 7, first at line 7, which has 4"),
+    "a row too many": (bad_ascii(lambda t: t + "7 8 9\n"), "bad.asc -o out.asc",
+                       "bad.asc: values: must be 2 rows of 3, 6 values, got 9, in 3 rows"),
+    "a value moved": (bad_ascii(lambda t: t.replace("3.0\n4.0", "3.0 4.0\n")), "bad.asc -o out.asc",
+                      "bad.asc: values: must be 2 rows of 3, 6 values, got 6, first at line 7, which has 4"),
+    "a word": (bad_ascii(lambda t: t.replace("5.0", "5.0m")), "bad.asc -o out.asc",
+               "bad.asc: line 8: must hold numbers with a decimal point, got '5.0m'"),
+    "decimal comma": (bad_ascii(lambda t: t.replace("5.0", "5,0")), "bad.asc -o out.asc",
+                      "bad.asc: line 8: must hold numbers with a decimal point, got '5,0'"),
+    "header word": (bad_ascii(lambda t: t.replace("xllcorner 0.0", "xllcorner west")), "bad.asc -o out.asc",
+                    "bad.asc: line 3: must be a name and a number, got xllcorner west"),
+    "corner and center": (bad_ascii(lambda t: t.replace("xllcorner", "xllcenter")), "bad.asc -o out.asc",
+                          "bad.asc: header: must have xllcorner and yllcorner, or xllcenter and yllcenter"),
+    "no corner": (bad_ascii(lambda t: t.replace("yllcorner 0.0\n", "")), "bad.asc -o out.asc",
+                  "bad.asc: header: must have xllcorner and yllcorner, or xllcenter and yllcenter"),
+    "cellsize": (bad_ascii(lambda t: t.replace("cellsize 2.0", "cellsize 0")), "bad.asc -o out.asc",
+                 "bad.asc: header: cellsize: must be > 0, got 0"),
+    "all NODATA": (bad_tif(z=np.full((4, 4), np.nan)), "bad.tif -o out.asc", "bad.tif: must have a height, all cells"),
+    "undeclared NODATA": (bad_tif(z=np.array([[1, 2], [3, -32768.0]]), nodata=None), "bad.tif -o out.asc",
+                          "bad.tif: row 2 column 2: must be a height in metres between -9000 and 9000"),
+    "colours": (bad_tif(z=np.ones((3, 4, 4))), "bad.tif -o out.asc",
+                "bad.tif: must have one band, the heights, got 3 bands"),
+    "no georeference": (bad_tif(transform=None, crs=None), "bad.tif -o out.asc", "bad.tif: must be georeferenced"),
+    "heights in feet": (bad_tif(tags={"units": ("ft",)}), "bad.tif -o out.asc",
+                        "bad.tif: heights must be in metres, got ft"),
+    "degrees": (bad_tif(crs="EPSG:6668", transform=Affine(1e-4, 0, 139, 0, -1e-4, 36)), "bad.tif -o out.asc",
+                "bad.tif: CRS must be in metres; give --crs EPSG:n of a projected one, got EPSG:6668 in degrees"),
+    "feet": (bad_tif(crs="EPSG:2263"), "bad.tif -o out.asc",
+             "bad.tif: CRS must be in metres; give --crs EPSG:n of a projected one, got EPSG:2263 in US survey foot"),
+    "outside its CRS": (bad_tif(crs="EPSG:4326", transform=Affine(1e-4, 0, 10, 0, -1e-4, 95)),
+                        f"bad.tif -o out.asc --crs {CRS_M}", "--crs: must cover the input, which is in EPSG:4326"),
+    "CRS of degrees": (no_input, OK + "--crs EPSG:6668", "--crs: CRS must be in metres"),
+    "CRS of space": (no_input, OK + "--crs EPSG:4978", "--crs: CRS must be in metres"),
+    "CRS unknown": (no_input, OK + "--crs EPSG:999999", "--crs: must be a CRS such as EPSG:6677, got EPSG:999999"),
+    "two CRS": (bad_tif(crs="EPSG:6676"), "ok.tif bad.tif -o out.asc",
+                "bad.tif: CRS: must be that of ok.tif, EPSG:6677, got EPSG:6676"),
+    "CRS and none": (bad_ascii(lambda t: t), "ok.tif bad.asc -o out.asc",
+                     "bad.asc: CRS: must be that of ok.tif, EPSG:6677, got none"),
+    "other cells": (lambda: write_tif("bad.tif", *survey(cell=10.0)), "ok.tif bad.tif -o out.asc",
+                    "bad.tif: grid: must share the grid of ok.tif, cells of 5 x 5 from -12000 34080, got cells of 10"),
+    "shifted cells": (half_a_cell_off, "ok.tif off.tif -o out.asc", "off.tif: grid: must share the grid of ok.tif"),
+    "merged too large": (huge_gap, "ok.tif far.tif -o out.asc", "merged raster: must fit in the "),
+    "bounds outside": (no_input, OK + "--bounds 1 2 3 4",
+                       "--bounds: must overlap the input, -12000 34000 -11900 34080, got 1 2 3 4"),
+    "bounds inverted": (no_input, OK + "--bounds -11000 34000 -12000 35000", "--bounds: W S E N must have W < E"),
+    "bounds of NODATA": (bad_tif(z=np.where(np.arange(20) < 10, np.nan, survey()[0])),
+                         f"bad.tif -o out.asc --bounds {EAST} {NORTH} {EAST + 30} {NORTH + 30}",
+                         "--bounds: must hold a height, all cells are NODATA"),
+    "bounds of one cell": (no_input, OK + f"--bounds {EAST + 1} {NORTH + 1} {EAST + 2} {NORTH + 2}",
+                           "output: must have at least 2 x 2 cells, got 1 x 1"),
+    "bounds a word": (no_input, OK + "--bounds 1 2 3 x", "argument --bounds: must be a finite number, got 'x'"),
+    "cell zero": (no_input, OK + "--cell 0", "--cell: must be > 0, got 0"),
+    "cell negative": (no_input, OK + "--cell -2", "--cell: must be > 0, got -2"),
+    "cell nan": (no_input, OK + "--cell nan", "argument --cell: must be a finite number, got 'nan'"),
+    "cell tiny": (no_input, OK + "--cell 0.04", "--cell: must be at least 1/100 of the input's, 5 m, got 0.04"),
+    "cell huge": (no_input, OK + "--cell 1e9", "output: must have at least 2 x 2 cells, got 1 x 1"),
+    "origin": (no_input, OK + "--origin 5", "--origin: must be auto or two numbers, E N, got 5"),
+    "fill": (no_input, OK + "--fill -1", "--fill: must be >= 0, got -1"),
+    "output folder": (no_input, "ok.tif -o none/out.asc", "-o: must be in an existing folder, got none/out.asc"),
+    "output suffix": (no_input, "ok.tif -o out.tif", "-o: must be a file that ends in .asc, got out.tif"),
+    "output is a folder": (lambda: Path("x.asc").mkdir(), "ok.tif -o x.asc", "-o: must be a file that ends in"),
+    "output is input": (bad_ascii(lambda t: t), "bad.asc -o ./bad.asc", "-o: must not be an input, got bad.asc"),
+    "no output": (no_input, "ok.tif", "the following arguments are required: -o"),
+    "sidecar of another": (lambda: (bad_ascii(lambda t: t)(), Path("bad.yaml").write_text("size: 3\n")),
+                           "bad.asc -o out.asc", "bad.yaml: must be a sidecar that `slope terrain` wrote"),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_bad_input_is_one_line_and_leaves_no_trace(slope, here, name):
+    make, arguments, message = BAD[name]
+    write_tif("ok.tif", *survey())
+    make()
+    before = {path.name: path.is_file() and path.read_bytes() for path in here.iterdir()}
+    status, _, err = slope(arguments)
+    lines = [line for line in err.splitlines() if "warning: " not in line]
+    assert status == 2 and len(lines) == 1
+    assert lines[0].startswith(f"slope terrain: {message}")
+    assert {path.name: path.is_file() and path.read_bytes() for path in here.iterdir()} == before
+
+
+def test_output_too_large_says_how_much_memory(slope, monkeypatch):
+    write_tif("ok.tif", *survey())
+    monkeypatch.setattr(os, "sysconf", lambda name: {"SC_PAGE_SIZE": 1024, "SC_PHYS_PAGES": 1000}[name])
+    assert slope("ok.tif -o out.asc --cell 2")[0] == 0
+    status, _, err = slope("ok.tif -o out.asc --cell 0.5")
+    assert (status, err) == (2, "slope terrain: output: must fit in the 0.00102 GB of memory of this machine, "
+                                "got 200 x 160 cells, which need 0.00128 GB\n")
+
+
+def test_a_sidecar_of_another_grid_is_refused(written, slope, here):
+    write_tif("dem.tif", *survey())
+    written("dem.tif")
+    (here / "out.asc").write_text(asc_text(survey(21)[0], 0.0, 0.0, 5.0))
+    status, _, err = slope("out.asc -o again.asc")
+    assert (status, err) == (2, "slope terrain: out.yaml: must be the sidecar of out.asc: size and extent differ\n")
+
+
+@pytest.mark.parametrize("failing", ["safe_dump", "replace"])
+def test_a_full_disk_leaves_the_old_files(slope, here, monkeypatch, failing):
+    write_tif("dem.tif", *survey())
+    assert slope("dem.tif -o out.asc")[0] == 0
+    before = {path.name: path.read_bytes() for path in here.iterdir()}
+
+    def full(*_, **__):
+        raise OSError(28, "No space left on device")
+    monkeypatch.setattr({"safe_dump": yaml, "replace": os}[failing], failing, full)
+    assert slope("dem.tif -o out.asc --cell 10")[::2] == (
+        2, "slope terrain: out.asc: cannot be written: No space left on device\n")
+    assert {path.name: path.read_bytes() for path in here.iterdir()} == before
+
+
+# --- the program ---
+
+def test_the_program_itself(here):
+    slope = TOOLS / "slope"
+    assert slope.read_text().splitlines()[0] == "#!/usr/bin/python3"
+    write_tif("cut.tif", *survey(200, 200))
+    Path("cut.tif").write_bytes(Path("cut.tif").read_bytes()[:5000])
+    write_tif("nowhere.tif", survey()[0], None, crs=None)
+    for arguments, message in (("terrain cut.tif -o out.asc", "slope terrain: cut.tif: "),
+                               ("terrain nowhere.tif -o out.asc", "slope terrain: nowhere.tif: "),
+                               ("terrain none.tif -o out.asc --crs EPSG:999999", "slope terrain: --crs: "),
+                               ("nothing", "slope: "), ("", "slope: ")):
+        done = subprocess.run([slope, *arguments.split()], capture_output=True, text=True)
+        assert done.returncode == 2 and done.stdout == ""
+        assert done.stderr.startswith(message) and done.stderr.count("\n") == 1
+    write_tif("dem.tif", *survey())
+    done = subprocess.run([slope, "terrain", "dem.tif", "-o", "out.asc"], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "") and done.stdout.endswith("\nregion ground terrain out.asc\n")
+
+
+def test_help_has_units_and_an_example(slope):
+    status, out, _ = slope("--help")
+    assert status == 0 and "units: metres" in out and "\n  tools/slope terrain " in out
+
+
+def doc_examples():
+    page = TOP / "doc" / "src" / "tool_terrain.rst"
+    text = page.read_text(encoding="ascii").replace("\\\n", " ")
+    return [command for command in re.findall(r"^ +tools/slope (terrain .*)", text, re.MULTILINE)
+            if " IN " not in command]
+
+
+@pytest.mark.parametrize("command", [*doc_examples(), terrain.EPILOG.split("tools/slope ")[1].split("\n")[0]])
+def test_every_example_of_the_page_and_the_help_runs(slope, here, command):
+    z, transform = degrees_survey(200)
+    write_tif("north.tif", z[:100], transform, crs="EPSG:6668")
+    write_tif("south.tif", z[100:], transform * Affine.translation(0, 100), crs="EPSG:6668")
+    z, transform = survey(200, 200)
+    write_tif("survey.tif", z, transform)
+    (here / "survey.asc").write_text(asc_text(z, EAST, NORTH, 5.0))
+    status, out, err = slope(command.removeprefix("terrain "))
+    assert (status, err) == (0, "")
+    if "--help" not in command:
+        assert out.endswith("\nregion ground terrain terrain.asc\n")
+
+
+def test_a_real_survey(written):
+    path = TOP.parent / "shared" / "data" / "hit.asc"
+    if not path.exists():
+        pytest.skip("needs hit.asc, the elevation model of Hintertux, which is not part of the package")
+    z, east, north, about, _ = written(f"{path} --crs EPSG:31287")
+    raw = np.loadtxt(path, skiprows=6)
+    assert z.shape == (446, 526)
+    assert (np.isnan(z) == (raw == -9999)).all() and np.nanmax(np.abs(z - np.where(raw == -9999, np.nan, raw))) <= MM
+    assert (east[0, 0], north[-1, 0]) == pytest.approx((272771.421744369, 357502.69532628), abs=1e-6)
+    assert about["origin"] == {"east": 272768, "north": 357500}
+    coarse, _, _, about, _ = written(f"{path} --crs EPSG:31287 --cell 10 --fill 50")
+    assert about["cell"] == 10 and abs(np.nanmean(coarse) - np.nanmean(z)) < 2

@@ -1,0 +1,12 @@
+#!/bin/bash
+# Set-up, configure, build: build/lmp. Arguments go to cmake, e.g. -D SLOPE_NATIVE=OFF.
+# JOBS=<n> in the environment: number of compilers at a time (default 2).
+set -euo pipefail
+
+top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+
+"$top/tools/setup.sh"
+# the source is named each time, or cmake would go on with the one of the build before
+cmake -S "$top" -B "$top/build" \
+  -D LAMMPS_SOURCE_DIR="$(realpath "${LAMMPS_SOURCE_DIR:-$top/.lammps/source}")" "$@"
+cmake --build "$top/build" -j "${JOBS:-2}"

@@ -1,0 +1,1 @@
+"""The subcommands of tools/slope and what they share."""

@@ -1,0 +1,64 @@
+"""tools/slope: one program, one table of subcommands.
+
+A subcommand NAME is the module slope_tools.NAME with
+
+    add_parser(commands, **kwargs)   calls commands.add_parser(NAME, **kwargs), adds its arguments, returns the parser
+    run(args)                        does the work; raises SlopeError on bad input
+
+Only the module that is asked for is imported: a subcommand starts fast, and needs only its own libraries.
+"""
+import argparse
+import importlib
+import math
+import sys
+
+from .errors import SlopeError
+
+COMMANDS = {
+    "terrain": "survey rasters (GeoTIFF, ESRI ASCII) to the plain terrain.asc that decks read",
+}
+
+
+class Parser(argparse.ArgumentParser):
+    """An ArgumentParser whose errors are one line."""
+
+    def error(self, message):
+        self.exit(2, f"{self.prog}: {message}\n")
+
+
+def number(text):
+    """argparse type: a finite number."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"must be a finite number, got {text!r}")
+    return value
+
+
+def main(argv=None):
+    """Run one subcommand on argv (default: the command line); return the status: 0, 2 bad input, 130 interrupted."""
+    argv = sys.argv[1:] if argv is None else argv
+    parser = Parser(prog="slope", description="Tools of the SLOPE package: what goes into a deck and what comes out.",
+                    epilog="`slope COMMAND --help` explains a command, with units and an example.")
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    for name, summary in COMMANDS.items():
+        if argv[:1] == [name]:
+            module = importlib.import_module(f"{__package__}.{name}")
+            module.add_parser(commands, help=summary).set_defaults(run=module.run)
+        else:
+            commands.add_parser(name, help=summary)
+    args = parser.parse_args(argv)
+    try:
+        args.run(args)
+    except SlopeError as error:
+        print(f"slope {args.command}: {error}", file=sys.stderr)
+        return 2
+    except MemoryError as error:
+        print(f"slope {args.command}: not enough memory: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print(f"slope {args.command}: interrupted", file=sys.stderr)
+        return 130
+    return 0
