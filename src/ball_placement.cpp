@@ -32,8 +32,8 @@ static constexpr double SEARCH_STEP = 0.125;
 BallPlacement::BallPlacement(LAMMPS *lmp, const std::string &caller_in, double diameter_in,
                              int narg, char **arg, bool may_write) :
     Pointers(lmp),
-    caller(caller_in), diameter(diameter_in), side(RegionSurface::UPPER), spacing(0.0),
-    origin{0.0, 0.0}, filter_inside(true)
+    caller(caller_in), diameter(diameter_in), side(RegionSurface::UPPER),
+    spacing(0.0), origin{0.0, 0.0}, filter_inside(true)
 {
   if (!(diameter > 0.0) || !std::isfinite(diameter))
     error->all(FLERR, "{} diameter must be > 0, got {}", caller, diameter);
@@ -187,39 +187,46 @@ void BallPlacement::place_on_surface()
                                 spacing,      origin[0],    origin[1]};
   if (!(grid.xlo <= grid.xhi && grid.ylo <= grid.yhi)) return;    // an empty intersection
   if (!(Slope::plan_nodes(grid) < MAX_BALLS))
-    throw std::runtime_error(fmt::format("spacing must give fewer than 2^31 balls, got {:.3g} with {}",
-                                         Slope::plan_nodes(grid), spacing));
+    throw std::runtime_error(
+        fmt::format("spacing must give fewer than 2^31 balls, got {:.3g} with {}",
+                    Slope::plan_nodes(grid), spacing));
 
-  // distance to the nearest ball: on level ground, and at worst where it is steep
+  // how far a point of the surface may be from the nearest ball, from the plan grid alone on
+  // level ground, with extra balls where it is steep
 
-  const double level = spacing / std::sqrt(2.0);
-  const double worst = Slope::cover_radius(spacing, radius) + Slope::sampling_slack(radius);
-  if (worst >= diameter)
+  const bool leaks = spacing / std::sqrt(2.0) >= diameter;
+  const double steep = Slope::cover_radius(spacing, radius) + Slope::sampling_slack(radius);
+  if (leaks || steep >= diameter)
     error->warning(FLERR,
                    "{} spacing {} lets a ball of diameter {} through {}: spacing must be < {:.4g}",
-                   caller, spacing, diameter,
-                   level >= diameter ? "even on level ground" : "on steep ground",
-                   level >= diameter ? diameter * std::sqrt(2.0) : 1.3 * diameter);
+                   caller, spacing, diameter, leaks ? "even on level ground" : "on steep ground",
+                   diameter * (leaks ? std::sqrt(2.0) : 1.299));
 
   Slope::Surface ground;
-  ground.height = [this](double x, double y, double &z) { return surface->height(x, y, z); };
+  ground.height = [this](double x, double y, double &z) {
+    return surface->height(x, y, z);
+  };
   if (columns) {
-    ground.keep = [this](double x, double y) { return keep(x, y); };
+    ground.keep = [this](double x, double y) {
+      return keep(x, y);
+    };
 
     // what lies outside of a region borders on the scar that it leaves; a prism without a
     // bottom leaves none, it only selects
 
     if (!filter_inside && columns->has_boundary())
-      ground.scar = [this](double x, double y, double &z) { return columns->height(x, y, z); };
+      ground.scar = [this](double x, double y, double &z) {
+        return columns->height(x, y, z);
+      };
   }
 
   Slope::SurfaceBalls balls = Slope::sample_surface(grid, radius, ground);
   xyz.swap(balls.xyz);
 
-  summary = fmt::format("{}: {} fixed balls of diameter {} ({} on the plan grid every {}, {} extra "
-                        "where the surface is steep or ends",
-                        caller, balls.base + balls.extra, diameter, balls.base, spacing,
-                        balls.extra);
+  summary =
+      fmt::format("{}: {} fixed balls of diameter {} ({} on the plan grid every {}, {} extra "
+                  "where the surface is steep or ends",
+                  caller, balls.base + balls.extra, diameter, balls.base, spacing, balls.extra);
   if (balls.without_surface)
     summary += fmt::format(", {} plan nodes without surface", balls.without_surface);
   if (columns)
@@ -253,8 +260,8 @@ void BallPlacement::read_file()
       const bool good = utils::is_double(words[d]);
       x[d] = good ? utils::numeric(FLERR, words[d].c_str(), false, lmp) : NAN;
       if (!std::isfinite(x[d]))
-        throw std::runtime_error(fmt::format("{}{} must be a finite number, got {}", where,
-                                             "xyz"[d], words[d]));
+        throw std::runtime_error(
+            fmt::format("{}{} must be a finite number, got {}", where, "xyz"[d], words[d]));
     }
     if (keep(x[0], x[1]))
       xyz.insert(xyz.end(), x, x + 3);
@@ -269,8 +276,8 @@ void BallPlacement::read_file()
   summary = fmt::format("{}: {} fixed balls of diameter {} (from file {}", caller, xyz.size() / 3,
                         diameter, file);
   if (columns)
-    summary += fmt::format(", {} not {} region {}", dropped, filter_inside ? "inside" : "outside",
-                           filter);
+    summary +=
+        fmt::format(", {} not {} region {}", dropped, filter_inside ? "inside" : "outside", filter);
   summary += ")";
 }
 

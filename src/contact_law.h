@@ -124,7 +124,9 @@ inline void limited_spring(double k, double c, double limit, const double *n, co
 }
 
 // Force of one touching contact. dt: the step by which the springs grow; 0 leaves their
-// length as it is (set-up). history: HISTORY values, updated.
+// length as it is (set-up). history: HISTORY values, updated. ROLLING = false leaves out the
+// rolling resistance, for laws that have none.
+template <bool ROLLING = true>
 inline void contact_force(const ContactLaw &law, const Contact &c, double dt, double *history,
                           ContactForce &out)
 {
@@ -147,6 +149,15 @@ inline void contact_force(const ContactLaw &law, const Contact &c, double dt, do
   limited_spring(law.kt, law.ct_given + law.ct_root * root, law.friction * pressing, n, vt, dt,
                  history, ft);
 
+  out.f[0] = fn * n[0] + ft[0];
+  out.f[1] = fn * n[1] + ft[1];
+  out.f[2] = fn * n[2] + ft[2];
+  out.t[0] = n[1] * ft[2] - n[2] * ft[1];
+  out.t[1] = n[2] * ft[0] - n[0] * ft[2];
+  out.t[2] = n[0] * ft[1] - n[1] * ft[0];
+  out.m[0] = out.m[1] = out.m[2] = 0.0;
+  if (!ROLLING) return;
+
   // rolling: the same construction on Rr (wi - wj) in the tangent plane, with torque arm Rr
 
   const double wn = c.w[0] * n[0] + c.w[1] * n[1] + c.w[2] * n[2];
@@ -156,13 +167,6 @@ inline void contact_force(const ContactLaw &law, const Contact &c, double dt, do
   double fr[3];
   limited_spring(law.kr, law.cr_given + law.cr_root * root, law.rolling * pressing, n, vr, dt,
                  history + 3, fr);
-
-  out.f[0] = fn * n[0] + ft[0];
-  out.f[1] = fn * n[1] + ft[1];
-  out.f[2] = fn * n[2] + ft[2];
-  out.t[0] = n[1] * ft[2] - n[2] * ft[1];
-  out.t[1] = n[2] * ft[0] - n[0] * ft[2];
-  out.t[2] = n[0] * ft[1] - n[1] * ft[0];
   out.m[0] = rr * fr[0];
   out.m[1] = rr * fr[1];
   out.m[2] = rr * fr[2];

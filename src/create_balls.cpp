@@ -30,20 +30,26 @@ void CreateBalls::command(int narg, char **arg)
   if (domain->dimension != 3)
     error->all(FLERR, "Create_balls dimension must be 3, got {}", domain->dimension);
   if (modify->nfix_restart_peratom)
-    error->all(FLERR, "Create_balls cannot follow a restart file with per-atom info of a fix "
+    error->all(FLERR,
+               "Create_balls cannot follow a restart file with per-atom info of a fix "
                "before that fix is defined");
   if (!atom->radius_flag || !atom->rmass_flag)
-    error->all(FLERR, "Create_balls atom_style must have radius and mass per atom, as sphere has, "
-               "got {}", atom->atom_style);
+    error->all(FLERR,
+               "Create_balls atom_style must have radius and mass per atom, as sphere has, "
+               "got {}",
+               atom->atom_style);
 
   if (narg < 4)
-    error->all(FLERR, "Create_balls needs TYPE DIAMETER DENSITY and surface or file, got {} "
-               "arguments", narg);
-  for (int i = 0; i < 3; i++)
-    if (!(i == 0 ? utils::is_integer(arg[0]) : utils::is_double(arg[i])))
-      error->all(FLERR, "Create_balls {} must be {} number, got {}",
-                 i == 0 ? "type" : i == 1 ? "diameter" : "density", i == 0 ? "a whole" : "a",
-                 arg[i]);
+    error->all(FLERR,
+               "Create_balls needs TYPE DIAMETER DENSITY and surface or file, got {} "
+               "arguments",
+               narg);
+  if (!utils::is_integer(arg[0]))
+    error->all(FLERR, "Create_balls type must be a whole number, got {}", arg[0]);
+  if (!utils::is_double(arg[1]))
+    error->all(FLERR, "Create_balls diameter must be a number, got {}", arg[1]);
+  if (!utils::is_double(arg[2]))
+    error->all(FLERR, "Create_balls density must be a number, got {}", arg[2]);
   const int type = utils::inumeric(FLERR, arg[0], false, lmp);
   const double diameter = utils::numeric(FLERR, arg[1], false, lmp);
   const double density = utils::numeric(FLERR, arg[2], false, lmp);
@@ -118,9 +124,10 @@ void CreateBalls::into_box(std::vector<double> &xyz) const
       }
   }
   if (outside)
-    error->all(FLERR, "Create_balls balls must lie in the simulation box (below its upper faces), "
-               "got {} of {} outside, the first at {} {} {}", outside, xyz.size() / 3, first[0],
-               first[1], first[2]);
+    error->all(FLERR,
+               "Create_balls balls must lie in the simulation box (below its upper faces), "
+               "got {} of {} outside, the first at {} {} {}",
+               outside, xyz.size() / 3, first[0], first[1], first[2]);
 }
 
 /* ----------------------------------------------------------------------

@@ -133,6 +133,8 @@ FixDepositGrid::FixDepositGrid(LAMMPS *lmp, int narg, char **arg) :
   if (cell == 0.0) error->all(FLERR, "Fix deposit/grid keyword cell is missing");
   if (region_id.empty()) error->all(FLERR, "Fix deposit/grid keyword terrain is missing");
   if (prefix.empty()) error->all(FLERR, "Fix deposit/grid keyword output is missing");
+  cell_inv = 1.0 / cell;
+  side_factor = cbrt(bulk * PI / 6.0);
   if (window == 0) window = nfreq > 0 ? nfreq : 10 * nevery;
 
   // the grid covers its extent with whole cells, from the south-west corner on
@@ -148,7 +150,7 @@ FixDepositGrid::FixDepositGrid(LAMMPS *lmp, int narg, char **arg) :
       fmt::format("{:.10g} {:.10g} {:.10g} {:.10g}", extent[0], extent[1], extent[2], extent[3]);
   if (!(extent[0] < extent[1] && extent[2] < extent[3]))
     error->all(FLERR, "Fix deposit/grid extent must have xlo < xhi and ylo < yhi, got {}", got);
-  const double tiny = 1.0e-9 * (whole[1] - whole[0] + whole[3] - whole[2]);
+  const double tiny = 1.0e-3 * cell;    // coordinates in decks are rounded
   for (int k = 0; k < 4; k += 2)
     if (!(extent[k] >= whole[k] - tiny && extent[k + 1] <= whole[k + 1] + tiny))
       error->all(FLERR,
@@ -158,25 +160,29 @@ FixDepositGrid::FixDepositGrid(LAMMPS *lmp, int narg, char **arg) :
 
   double ncells = 1.0;
   for (int dim = X; dim <= Y; dim++) {
-    const double count = std::ceil((extent[2 * dim + 1] - extent[2 * dim]) / cell - 1.0e-9);
+    const double count =
+        std::max(1.0, std::ceil((extent[2 * dim + 1] - extent[2 * dim]) / cell - 1.0e-9));
+    n[dim] = (int) std::min(count, MAXCELLS);
     lo[dim] = extent[2 * dim];
-    ncells *= std::max(count, 1.0);
-    n[dim] = (int) std::min(std::max(count, 1.0), MAXCELLS);
+    hi[dim] = lo[dim] + n[dim] * cell;
+    ncells *= count;
   }
   const std::string need = fmt::format("{:.0f} cells, they need {:.3g} GB of memory on one rank",
                                        ncells, 1.0e-9 * ncells * BYTES_PER_CELL);
   if (ncells > MAXCELLS)
     error->all(FLERR, "Fix deposit/grid cell must give at most {:g} cells, got {}", MAXCELLS, need);
 
+  std::string problem;
   if (comm->me == 0) {
     try {
       const ElevationGrid zero(n[X], n[Y], lo[X], lo[Y], cell, 0.0);
       thickness = snapshot = max_thickness = max_speed = max_energy = zero;
       base = arrival = last_motion = ElevationGrid(n[X], n[Y], lo[X], lo[Y], cell, NaN);
     } catch (std::bad_alloc &) {
-      error->one(FLERR, "Fix deposit/grid: not enough memory for {}", need);
+      problem = "not enough memory for " + need;
     }
   }
+  stop_if(problem);
   read_base();
 
   // state
@@ -300,7 +306,7 @@ FixDepositGrid::Lost FixDepositGrid::count_outside(bool note)
     }
     if (!out) continue;
     count.number += 1.0;
-    count.volume += bulk_volume(i);
+    count.volume += volume_of(i);
     if (note && losses.size() < MAXLOGGED) {
       const double *at = atom->x[i];
       losses.push_back({(double) atom->tag[i], {at[0], at[1], at[2]}, (double) update->ntimestep});
@@ -343,11 +349,11 @@ void FixDepositGrid::start()
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
     Top ball;
-    domain->unmap(atom->x[i], atom->image[i], ball.x);
+    unwrap(i, ball.x);
     ball.tag = atom->tag[i];
     if (top.below(ball)) top = ball;
     const double m = atom->rmass[i];
-    const double add[5] = {1.0, bulk_volume(i), m, m * ball.x[X], m * ball.x[Y]};
+    const double add[5] = {1.0, volume_of(i), m, m * ball.x[X], m * ball.x[Y]};
     for (int k = 0; k < 5; k++) mine[k] += add[k];
   }
   MPI_Allreduce(mine, all, 5, MPI_DOUBLE, MPI_SUM, world);
@@ -493,7 +499,7 @@ void FixDepositGrid::sample(bool record)
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
     double x[3];
-    domain->unmap(atom->x[i], atom->image[i], x);
+    unwrap(i, x);
     const double m = atom->rmass[i];
     const double add[5] = {1.0, bin(i), m, m * x[X], m * x[Y]};
     for (int k = 0; k < 5; k++) mine[k] += add[k];
@@ -503,7 +509,7 @@ void FixDepositGrid::sample(bool record)
   lost.number += all[5];
   lost.volume += all[6];
   lost_here = Lost();
-  if (all[5] > 0.0 && nlogged < MAXLOGGED) log_losses();
+  if (all[5] > 0.0 && nlogged < MAXLOGGED) log_losses(lost.number - all[5]);
 
   double on_grid = add_windows(record);
   MPI_Bcast(&on_grid, 1, MPI_DOUBLE, 0, world);
@@ -544,31 +550,32 @@ void FixDepositGrid::sample(bool record)
 bool FixDepositGrid::farthest(double &distance, double &z) const
 {
   struct {
-    double distance;
+    double square;
     int rank;
   } mine = {-1.0, comm->me}, all;
   z = 0.0;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
     double x[3];
-    domain->unmap(atom->x[i], atom->image[i], x);
-    const double d = hypot(x[X] - released.top[X], x[Y] - released.top[Y]);
-    if (d > mine.distance) {
-      mine.distance = d;
+    unwrap(i, x);
+    const double dx = x[X] - released.top[X], dy = x[Y] - released.top[Y];
+    const double square = dx * dx + dy * dy;
+    if (square > mine.square) {
+      mine.square = square;
       z = x[Z];
     }
   }
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
   MPI_Bcast(&z, 1, MPI_DOUBLE, all.rank, world);
-  distance = std::max(0.0, all.distance);
-  return all.distance >= 0.0;
+  distance = sqrt(std::max(0.0, all.square));
+  return all.square >= 0.0;
 }
 
 /* ----------------------------------------------------------------------
-   the first balls that were lost, one line each
+   the first balls that were lost, one line each; before: number lost until the last sample
 ------------------------------------------------------------------------- */
 
-void FixDepositGrid::log_losses()
+void FixDepositGrid::log_losses(double before)
 {
   const int width = sizeof(Loss) / sizeof(double);
   int mine = width * (int) losses.size();
@@ -588,20 +595,39 @@ void FixDepositGrid::log_losses()
     nlogged++;
     if (comm->me == 0)
       error->warning(FLERR, "Fix deposit/grid {}: ball {:.0f} left the box at {:.8g} {:.8g} {:.8g}, "
-                     "step {:.0f}, lost so far: {}{}",
-                     id, loss.tag, loss.x[X], loss.x[Y], loss.x[Z], loss.step, nlogged,
+                     "step {:.0f}, lost so far: {:.0f}{}",
+                     id, loss.tag, loss.x[X], loss.x[Y], loss.x[Z], loss.step, ++before,
                      nlogged == MAXLOGGED ? ", more are only counted" : "");
   }
 }
 
 /* ----------------------------------------------------------------------
-   volume of ground that a ball stands for
+   a ball stands for a cube of ground; this is the cube's side
 ------------------------------------------------------------------------- */
 
-double FixDepositGrid::bulk_volume(int i) const
+double FixDepositGrid::side_of(int i) const
 {
-  const double d = 2.0 * atom->radius[i];
-  return bulk * PI / 6.0 * d * d * d;
+  return side_factor * 2.0 * atom->radius[i];
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixDepositGrid::volume_of(int i) const
+{
+  const double side = side_of(i);
+  return side * side * side;
+}
+
+/* ----------------------------------------------------------------------
+   place of a ball that does not jump when it crosses a periodic boundary
+------------------------------------------------------------------------- */
+
+void FixDepositGrid::unwrap(int i, double *x) const
+{
+  if (domain->xperiodic || domain->yperiodic || domain->zperiodic)
+    domain->unmap(atom->x[i], atom->image[i], x);
+  else
+    std::copy(atom->x[i], atom->x[i] + 3, x);
 }
 
 /* ----------------------------------------------------------------------
@@ -610,53 +636,72 @@ double FixDepositGrid::bulk_volume(int i) const
 
 double FixDepositGrid::wrap(int dim, double x) const
 {
-  if (!domain->periodicity[dim] || domain->triclinic) return x;
+  if (!periodic(dim)) return x;
   return x - domain->prd[dim] * std::floor((x - domain->boxlo[dim]) / domain->prd[dim]);
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool FixDepositGrid::periodic(int dim) const
+{
+  return domain->periodicity[dim] && !domain->triclinic;
 }
 
 /* ---------------------------------------------------------------------- */
 
 int FixDepositGrid::cell_of(int dim, double x) const
 {
-  return std::min(n[dim] - 1, (int) ((x - lo[dim]) / cell));
+  return std::min(n[dim] - 1, (int) ((x - lo[dim]) * cell_inv));
 }
 
 /* ----------------------------------------------------------------------
-   the part of a ball's square that is on the grid, along one axis: one piece, or two across a
-   periodic boundary. Returns their number; inside is the share of the side that they make up.
+   a ball's square along one axis: its shares in the cells there, and beyond, the length that is
+   off the grid, exactly 0 for a square that does not touch the edge
 ------------------------------------------------------------------------- */
 
-int FixDepositGrid::cut(int dim, double centre, double side, Piece *piece, double &inside) const
+void FixDepositGrid::cut(int dim, double centre, double side, Shares &shares, double &beyond) const
 {
-  const double x = wrap(dim, centre);
-  piece[0] = {x - 0.5 * side, x + 0.5 * side};
-  int count = 1;
-  if (domain->periodicity[dim] && !domain->triclinic) {
-    const double boxlo = domain->boxlo[dim], boxhi = domain->boxhi[dim], prd = domain->prd[dim];
-    if (piece[0].a < boxlo) {
-      piece[count++] = {piece[0].a + prd, boxhi};
-      piece[0].a = boxlo;
-    } else if (piece[0].b > boxhi) {
-      piece[count++] = {boxlo, piece[0].b - prd};
-      piece[0].b = boxhi;
-    }
+  double a = centre - 0.5 * side, b = centre + 0.5 * side;
+  shares.count = 0;
+  beyond = 0.0;
+  if (!periodic(dim)) {
+    cut_piece(dim, a, b, side, shares, beyond);
+    return;
   }
 
-  // beyond is exactly 0, and inside exactly 1, for a square that does not touch the edge
+  // what is out of the periodic box goes on at its other side
 
-  const double gridlo = lo[dim], gridhi = lo[dim] + n[dim] * cell;
-  double beyond = 0.0;
-  int kept = 0;
-  for (int k = 0; k < count; k++) {
-    const Piece all = piece[k];
-    const Piece part = {std::max(all.a, gridlo), std::min(all.b, gridhi)};
-    beyond += all.b - all.a;
-    if (part.b <= part.a) continue;
-    beyond -= part.b - part.a;
-    piece[kept++] = part;
+  const double boxlo = domain->boxlo[dim], boxhi = domain->boxhi[dim], prd = domain->prd[dim];
+  if (a < boxlo) {
+    cut_piece(dim, a + prd, boxhi, side, shares, beyond);
+    a = boxlo;
+  } else if (b > boxhi) {
+    cut_piece(dim, boxlo, b - prd, side, shares, beyond);
+    b = boxhi;
   }
-  inside = kept ? 1.0 - beyond / side : 0.0;
-  return kept;
+  cut_piece(dim, a, b, side, shares, beyond);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixDepositGrid::cut_piece(int dim, double a, double b, double side, Shares &shares,
+                               double &beyond) const
+{
+  const double from = std::max(a, lo[dim]);
+  const double to = std::min(b, hi[dim]);
+  beyond += b - a;
+  if (!(from < to)) return;
+  beyond -= to - from;
+
+  const int last = cell_of(dim, to);
+  for (int c = cell_of(dim, from); c <= last; c++) {
+    const double left = std::max(from, lo[dim] + c * cell);
+    const double right = std::min(to, lo[dim] + (c + 1) * cell);
+    if (!(left < right)) continue;
+    shares.cell[shares.count] = c - bins.first[dim];
+    shares.part[shares.count] = (right - left) / side;
+    shares.count++;
+  }
 }
 
 /* ----------------------------------------------------------------------
@@ -665,26 +710,31 @@ int FixDepositGrid::cut(int dim, double centre, double side, Piece *piece, doubl
 
 void FixDepositGrid::place_window()
 {
-  int first[2] = {n[X], n[Y]}, last[2] = {-1, -1};
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & groupbit)) continue;
-    const double side = cbrt(bulk_volume(i));
-    Piece piece[2][2];
-    int count[2];
-    double inside;
-    for (int dim = X; dim <= Y; dim++)
-      count[dim] = cut(dim, atom->x[i][dim], side, piece[dim], inside);
-    if (count[X] == 0 || count[Y] == 0) continue;
-    for (int dim = X; dim <= Y; dim++)
-      for (int k = 0; k < count[dim]; k++) {
-        first[dim] = std::min(first[dim], cell_of(dim, piece[dim][k].a));
-        last[dim] = std::max(last[dim], cell_of(dim, piece[dim][k].b));
-      }
-  }
-  if (last[X] < 0) first[X] = first[Y] = 0, last[Y] = -1;
+  double largest = 0.0;
   for (int dim = X; dim <= Y; dim++) {
-    bins.first[dim] = first[dim];
-    bins.size[dim] = last[dim] - first[dim] + 1;
+    double a = HUGE_VAL, b = -HUGE_VAL;
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!(atom->mask[i] & groupbit)) continue;
+      const double x = wrap(dim, atom->x[i][dim]), side = side_of(i);
+      a = std::min(a, x - 0.5 * side);
+      b = std::max(b, x + 0.5 * side);
+      largest = std::max(largest, side);
+    }
+
+    // what goes on at the other side of a periodic box may be anywhere
+
+    if (periodic(dim) && (a < domain->boxlo[dim] || b > domain->boxhi[dim])) {
+      a = lo[dim];
+      b = hi[dim];
+    }
+    a = std::max(a, lo[dim]);
+    b = std::min(b, hi[dim]);
+    bins.first[dim] = a < b ? cell_of(dim, a) : 0;
+    bins.size[dim] = a < b ? cell_of(dim, b) - bins.first[dim] + 1 : 0;
+  }
+  for (Shares &s : shares) {
+    s.cell.resize((size_t) (largest * cell_inv) + 6);    // two pieces, each with two cut cells
+    s.part.resize(s.cell.size());
   }
   bins.clear();
 }
@@ -696,44 +746,35 @@ void FixDepositGrid::place_window()
 
 double FixDepositGrid::bin(int i)
 {
-  const double volume = bulk_volume(i);
-  const double side = cbrt(volume);
+  const double side = side_of(i);
+  const double volume = side * side * side;
 
-  double inside[2];
+  double place[2], beyond[2];
   for (int dim = X; dim <= Y; dim++) {
-    shares[dim].clear();
-    Piece piece[2];
-    const int count = cut(dim, atom->x[i][dim], side, piece, inside[dim]);
-    for (int k = 0; k < count; k++) {
-      const int last = cell_of(dim, piece[k].b);
-      for (int c = cell_of(dim, piece[k].a); c <= last; c++) {
-        const double a = std::max(piece[k].a, lo[dim] + c * cell);
-        const double b = std::min(piece[k].b, lo[dim] + (c + 1) * cell);
-        if (b > a) shares[dim].push_back({c - bins.first[dim], (b - a) / side});
-      }
-    }
+    place[dim] = wrap(dim, atom->x[i][dim]);
+    cut(dim, place[dim], side, shares[dim], beyond[dim]);
   }
-  for (const Share &y : shares[Y])
-    for (const Share &x : shares[X]) bins.volume(x.cell, y.cell) += volume * x.part * y.part;
+  for (int j = 0; j < shares[Y].count && shares[X].count > 0; j++) {
+    double *row = &bins.volume(0, shares[Y].cell[j]);
+    const double strip = volume * shares[Y].part[j];
+    for (int k = 0; k < shares[X].count; k++)
+      row[shares[X].cell[k]] += strip * shares[X].part[k];
+  }
 
-  int at[2];
-  bool here = true;
-  for (int dim = X; dim <= Y; dim++) {
-    const double x = wrap(dim, atom->x[i][dim]);
-    here = here && x >= lo[dim] && x < lo[dim] + n[dim] * cell;
-    if (here) at[dim] = cell_of(dim, x) - bins.first[dim];
-  }
-  if (here) {
+  if (place[X] >= lo[X] && place[X] < hi[X] && place[Y] >= lo[Y] && place[Y] < hi[Y]) {
+    const int ic = cell_of(X, place[X]) - bins.first[X];
+    const int jc = cell_of(Y, place[Y]) - bins.first[Y];
     const double *v = atom->v[i], *omega = atom->omega[i];
     const double vv = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
     const double ww = omega[0] * omega[0] + omega[1] * omega[1] + omega[2] * omega[2];
     const double r = atom->radius[i];
     const double energy = 0.5 * atom->rmass[i] * (vv + 0.4 * r * r * ww);
-    double &most_speed = bins.speed(at[X], at[Y]), &most_energy = bins.energy(at[X], at[Y]);
+    double &most_speed = bins.speed(ic, jc), &most_energy = bins.energy(ic, jc);
     most_speed = std::max(most_speed, sqrt(vv));
     most_energy = std::max(most_energy, energy);
   }
-  return volume * (1.0 - inside[X] * inside[Y]);
+  if (beyond[X] == 0.0 && beyond[Y] == 0.0) return 0.0;
+  return volume * (1.0 - (1.0 - beyond[X] / side) * (1.0 - beyond[Y] / side));
 }
 
 /* ----------------------------------------------------------------------
@@ -886,7 +927,7 @@ void FixDepositGrid::stop_if(std::string problem)
   if (length == 0) return;
   problem.resize(length);
   MPI_Bcast(&problem[0], length, MPI_CHAR, 0, world);
-  error->all(FLERR, "Fix deposit/grid output: {}", problem);
+  error->all(FLERR, "Fix deposit/grid: {}", problem);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -925,7 +966,7 @@ FixDepositGrid::Motion FixDepositGrid::motion_of_balls() const
     if (!(atom->mask[i] & groupbit)) continue;
     const double *v = atom->v[i];
     mine.push_back(sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
-    if (mine.back() > motion) moving += bulk_volume(i);
+    if (mine.back() > motion) moving += volume_of(i);
   }
   MPI_Reduce(&moving, &all_moving, 1, MPI_DOUBLE, MPI_SUM, 0, world);
 
@@ -1008,8 +1049,7 @@ std::string FixDepositGrid::summary(const std::string &reason, const Motion &bal
   line("  cell", real(cell));
   line("  columns", fmt::format("{}", n[X]));
   line("  rows", fmt::format("{}", n[Y]));
-  line("  extent", fmt::format("[{}, {}, {}, {}]", real(lo[X]), real(lo[X] + n[X] * cell),
-                               real(lo[Y]), real(lo[Y] + n[Y] * cell)));
+  line("  extent", fmt::format("[{}, {}, {}, {}]", real(lo[X]), real(hi[X]), real(lo[Y]), real(hi[Y])));
   s += "balls:\n";
   line("  released", count(released.number));
   line("  present", count(present));

@@ -46,10 +46,12 @@ class FixDepositGrid : public Fix {
   int nfreq, window;
   bool series;
   double cell, bulk, motion;
-  int n[2];        // cells along x and y
-  double lo[2];    // south-west corner
+  double cell_inv, side_factor;    // 1/cell; side of the cube of ground / diameter
+  int n[2];               // cells along x and y
+  double lo[2], hi[2];    // south-west and north-east corner
 
-  double bulk_volume(int i) const;
+  double side_of(int i) const;
+  double volume_of(int i) const;
 
   // --- what was released: the group at the first set-up ---
 
@@ -81,7 +83,7 @@ class FixDepositGrid : public Fix {
 
   Lost count_outside(bool note);
   void settle_outside();
-  void log_losses();
+  void log_losses(double before);
 
   // --- sampling: every rank bins its balls in the window of cells that they occupy ---
 
@@ -98,21 +100,22 @@ class FixDepositGrid : public Fix {
     void clear();
     void cover(const Window &);
   };
-  struct Piece {
-    double a, b;
-  };
-  struct Share {
-    int cell;
-    double part;
+  struct Shares {    // of one ball's square in the cells along one axis
+    std::vector<int> cell;
+    std::vector<double> part;
+    int count;
   };
   Window bins;
-  std::vector<Share> shares[2];    // of one ball's square in the cells, along x and y
+  Shares shares[2];
 
   void sample(bool record);
   void place_window();
   double bin(int i);
-  int cut(int dim, double centre, double side, Piece *piece, double &inside) const;
+  void cut(int dim, double centre, double side, Shares &, double &beyond) const;
+  void cut_piece(int dim, double a, double b, double side, Shares &, double &beyond) const;
+  void unwrap(int i, double *x) const;
   double wrap(int dim, double x) const;
+  bool periodic(int dim) const;
   int cell_of(int dim, double x) const;
   bool farthest(double &distance, double &z) const;
 

@@ -12,7 +12,6 @@
 #include "atom.h"
 #include "ball_placement.h"
 #include "comm.h"
-#include "contact_law.h"
 #include "error.h"
 #include "force.h"
 #include "initial_overlap.h"
@@ -300,35 +299,26 @@ void FixWallGranBalls::post_force(int)
 }
 
 /* ----------------------------------------------------------------------
-   contact forces of the fixed balls on the moving ones
+   contact forces of the fixed balls on the moving ones: touching contacts are gathered into a
+   block per type of the moving ball, as in the pair style
 ------------------------------------------------------------------------- */
 
 void FixWallGranBalls::apply(bool starting)
 {
   InitialOverlap initial(lmp);
-  const double dt = update->dt;
-
   double **x = atom->x;
   double **v = atom->v;
   double **omega = atom->omega;
-  double **f = atom->f;
-  double **torque = atom->torque;
   const double *r = atom->radius;
-  const double *rmass = atom->rmass;
   const int *type = atom->type;
 
   force_mine[0] = force_mine[1] = force_mine[2] = 0.0;
   force_ready = 0;
+  blocks.resize(atom->ntypes + 1);
 
   for (size_t a = 0; a < near.size(); a++) {
     const int i = near[a];
     const double radsum = r[i] + radius;
-    const ContactLaw *found = pair->law(type[i], wall_type);
-    if (!found)    // of a type that came after init(), by fix pour or fix deposit
-      error->one(FLERR, "{}: pair_coeff {} {} is not set (moving type {}, wall type {})", caller,
-                 std::min(type[i], wall_type), std::max(type[i], wall_type), type[i], wall_type);
-    const ContactLaw &law = *found;
-    double fi[3] = {0.0, 0.0, 0.0}, ti[3] = {0.0, 0.0, 0.0};
 
     for (int k = offset[a]; k < offset[a + 1]; k++) {
       const Ball &ball = balls[wall[k]];
@@ -351,41 +341,60 @@ void FixWallGranBalls::apply(bool starting)
                      fmt::format("the fixed ball at {:.6g} {:.6g} {:.6g},", ball.x, ball.y, ball.z));
       touch[k] = 1;
 
-      Contact c;
+      const ContactLaw *found = pair->law(type[i], wall_type);
+      if (!found)    // a type that came after init(), by fix pour or fix deposit
+        error->one(FLERR, "{}: pair_coeff {} {} is not set (moving type {}, wall type {})", caller,
+                   std::min(type[i], wall_type), std::max(type[i], wall_type), type[i], wall_type);
+      const ContactLaw &law = *found;
+      if (!blocks[type[i]]) blocks[type[i]].reset(new ContactBlock);
+      ContactBlock &b = *blocks[type[i]];
+      const int c = b.count++;
       const double rinv = 1.0 / distance;
-      c.n[0] = delx * rinv;
-      c.n[1] = dely * rinv;
-      c.n[2] = delz * rinv;
-      c.overlap = radsum - distance;
+      b.i[c] = i;
+      b.radius_i[c] = r[i];
+      b.n[0][c] = delx * rinv;
+      b.n[1][c] = dely * rinv;
+      b.n[2][c] = delz * rinv;
+      b.overlap[c] = radsum - distance;
       for (int d = 0; d < 3; d++) {
-        c.v[d] = v[i][d];
-        c.rw[d] = r[i] * omega[i][d];
-        c.w[d] = omega[i][d];
+        b.v[d][c] = v[i][d];
+        b.rw[d][c] = r[i] * omega[i][d];
+        b.w[d][c] = omega[i][d];
       }
-      c.rolling_radius = law.rolling_factor * r[i] * radius / radsum;
-      c.mass = law.mass_fixed(rmass[i]);
-
-      // at set-up the springs keep their length: the step that ends here has grown them already
-
-      ContactForce out;
-      double kept[HISTORY];
-      if (starting) memcpy(kept, values, sizeof(kept));
-      contact_force(law, c, starting ? 0.0 : dt, starting ? kept : values, out);
-      for (int d = 0; d < 3; d++) {
-        fi[d] += out.f[d];
-        ti[d] += out.m[d] - r[i] * out.t[d];
-      }
-    }
-
-    for (int d = 0; d < 3; d++) {
-      f[i][d] += fi[d];
-      torque[i][d] += ti[d];
-      force_mine[d] -= fi[d];
+      b.rolling_radius[c] = law.rolling_factor * r[i] * radius / radsum;
+      b.mass[c] = law.mass_fixed(atom->rmass[i]);
+      b.history_of[c] = values;
+      for (int h = 0; h < HISTORY; h++) b.history[h][c] = values[h];
+      if (b.count == ContactBlock::SIZE) finish(b, law, starting);
     }
   }
+  for (int t = 1; t <= atom->ntypes; t++)
+    if (blocks[t] && blocks[t]->count) finish(*blocks[t], *pair->law(t, wall_type), starting);
 
   lists_newer = true;
   if (starting) initial.check(caller);
+}
+
+/* ----------------------------------------------------------------------
+   evaluate a block, add its forces to the balls, empty it
+------------------------------------------------------------------------- */
+
+void FixWallGranBalls::finish(ContactBlock &b, const ContactLaw &law, bool starting)
+{
+  // at set-up the springs keep their length: the step that ends here has grown them already
+
+  b.evaluate(law, starting ? 0.0 : update->dt);
+  if (!starting) b.store_history();
+
+  for (int c = 0; c < b.count; c++) {
+    double *f = atom->f[b.i[c]], *torque = atom->torque[b.i[c]];
+    for (int d = 0; d < 3; d++) {
+      f[d] += b.f[d][c];
+      torque[d] += b.m[d][c] - b.radius_i[c] * b.t[d][c];
+      force_mine[d] -= b.f[d][c];
+    }
+  }
+  b.count = 0;
 }
 
 /* ----------------------------------------------------------------------

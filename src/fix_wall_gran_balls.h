@@ -13,8 +13,11 @@ FixStyle(wall/gran/balls,FixWallGranBalls);
 #define LMP_FIX_WALL_GRAN_BALLS_H
 
 #include "fix.h"
+
+#include "contact_block.h"
 #include "my_page.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -75,6 +78,7 @@ class FixWallGranBalls : public Fix {
   std::vector<int> near, offset, wall;
   std::vector<char> touch;
   std::vector<double> history;
+  std::vector<std::unique_ptr<Slope::ContactBlock>> blocks;    // by type of the moving ball
   bool lists_newer;    // contacts have been updated since they were last stored by atom
 
   // the same contacts stored by atom, touching ones only: what exchange and restart carry
@@ -92,6 +96,7 @@ class FixWallGranBalls : public Fix {
   template <typename Visit> void visit_near(const double *, double, Visit) const;
   void store_contacts();
   void apply(bool);
+  void finish(Slope::ContactBlock &, const Slope::ContactLaw &, bool);
 };
 
 }    // namespace LAMMPS_NS

@@ -27,6 +27,17 @@ using namespace Slope;
 static constexpr double STEP_RULE = 0.25;    // dt <= STEP_RULE sqrt(m/kn)
 static constexpr double DEGREE = PI / 180.0;
 
+// LAMMPS keeps the rows of these arrays one after the other
+
+struct Vector {
+  double x, y, z;
+};
+
+static inline Vector *vectors(double **array)
+{
+  return reinterpret_cast<Vector *>(array ? array[0] : nullptr);
+}
+
 /* ---------------------------------------------------------------------- */
 
 PairGranRestitution::PairGranRestitution(LAMMPS *lmp) : Pair(lmp)
@@ -92,6 +103,7 @@ void PairGranRestitution::allocate()
   memset(&none, 0, sizeof(Coeff));
   coeffs.assign(n * n, none);
   laws.assign(n * n, ContactLaw());
+  blocks.resize(n * n);
   wall_type.assign(n, 0);
 }
 
@@ -495,88 +507,51 @@ void PairGranRestitution::check_timestep()
 }
 
 /* ----------------------------------------------------------------------
-   kinematics of the contact i on j at distance r
+   touching contacts are gathered into a block per law; a full block is evaluated and its
+   forces handed out
 ------------------------------------------------------------------------- */
-
-Contact PairGranRestitution::geometry(int i, int j, double delx, double dely, double delz,
-                                      double r) const
-{
-  const double rinv = 1.0 / r;
-  const double radi = atom->radius[i], radj = atom->radius[j];
-  const double *vi = atom->v[i], *vj = atom->v[j];
-  const double *wi = atom->omega[i], *wj = atom->omega[j];
-  const double mi = atom->rmass[i], mj = atom->rmass[j];
-  const ContactLaw &law = laws[index(atom->type[i], atom->type[j])];
-
-  Contact c;
-  c.n[0] = delx * rinv;
-  c.n[1] = dely * rinv;
-  c.n[2] = delz * rinv;
-  c.overlap = radi + radj - r;
-  for (int k = 0; k < 3; k++) {
-    c.v[k] = vi[k] - vj[k];
-    c.rw[k] = radi * wi[k] + radj * wj[k];
-    c.w[k] = wi[k] - wj[k];
-  }
-  c.rolling_radius = law.rolling_factor * radi * radj / (radi + radj);
-
-  // a frozen ball is one of infinite mass
-
-  if (atom->mask[i] & freeze_group_bit) c.mass = law.mass_fixed(mj);
-  else if (atom->mask[j] & freeze_group_bit) c.mass = law.mass_fixed(mi);
-  else c.mass = law.mass(mi, mj);
-  return c;
-}
-
-/* ---------------------------------------------------------------------- */
 
 void PairGranRestitution::compute(int eflag, int vflag)
 {
   ev_init(eflag, vflag);
-
-  // at set-up the springs keep their length: the step that ends here has grown them already
-
-  const bool starting = update->setupflag;
+  starting = update->setupflag;
   InitialOverlap initial(lmp);
 
-  double **x = atom->x;
-  double **f = atom->f;
-  double **torque = atom->torque;
-  double *radius = atom->radius;
-  int *mask = atom->mask;
-  int *type = atom->type;
-  const int nlocal = atom->nlocal;
-  const int newton_pair = force->newton_pair;
+  const Vector *const x = vectors(atom->x);
+  const Vector *const v = vectors(atom->v);
+  const Vector *const omega = vectors(atom->omega);
+  const double *const radius = atom->radius;
+  const double *const rmass = atom->rmass;
+  const int *const mask = atom->mask;
+  const int *const type = atom->type;
+  const int nlaw = atom->ntypes + 1;
 
   const int inum = list->inum;
   const int *ilist = list->ilist;
   const int *numneigh = list->numneigh;
-  int **firstneigh = list->firstneigh;
-  int **firsttouch = fix_history->firstflag;
-  double **firstvalue = fix_history->firstvalue;
 
   for (int ii = 0; ii < inum; ii++) {
     const int i = ilist[ii];
-    const double xi = x[i][0], yi = x[i][1], zi = x[i][2];
+    const Vector xi = x[i];
     const double radi = radius[i];
-    const int frozen = mask[i] & freeze_group_bit;
-    int *touch = firsttouch[i];
-    double *values = firstvalue[i];
-    const int *jlist = firstneigh[i];
+    const bool frozen_i = mask[i] & freeze_group_bit;
+    int *touch = fix_history->firstflag[i];
+    double *values = fix_history->firstvalue[i];
+    const int *jlist = list->firstneigh[i];
     const int jnum = numneigh[i];
-    double fi[3] = {0.0, 0.0, 0.0}, ti[3] = {0.0, 0.0, 0.0};
 
     for (int jj = 0; jj < jnum; jj++) {
       const int j = jlist[jj] & NEIGHMASK;
-      const double delx = xi - x[j][0];
-      const double dely = yi - x[j][1];
-      const double delz = zi - x[j][2];
+      const double delx = xi.x - x[j].x;
+      const double dely = xi.y - x[j].y;
+      const double delz = xi.z - x[j].z;
       const double rsq = delx * delx + dely * dely + delz * delz;
       const double radj = radius[j];
       const double radsum = radi + radj;
+      const bool frozen_j = mask[j] & freeze_group_bit;
       double *history = &values[HISTORY * jj];
 
-      if (rsq >= radsum * radsum || (frozen && (mask[j] & freeze_group_bit))) {
+      if (rsq >= radsum * radsum || (frozen_i && frozen_j)) {
         if (touch[jj]) {
           touch[jj] = 0;
           memset(history, 0, HISTORY * sizeof(double));
@@ -586,37 +561,93 @@ void PairGranRestitution::compute(int eflag, int vflag)
 
       const double r = sqrt(rsq);
       if (starting && !touch[jj])
-        initial.look(radsum - r, std::min(radi, radj), atom->tag[i], x[i],
+        initial.look(radsum - r, std::min(radi, radj), atom->tag[i], atom->x[i],
                      fmt::format("ball {}", atom->tag[j]));
       touch[jj] = 1;
 
-      const Contact contact = geometry(i, j, delx, dely, delz, r);
-      ContactForce c;
-      double kept[HISTORY];
-      if (starting) memcpy(kept, history, sizeof(kept));
-      contact_force(laws[index(type[i], type[j])], contact, starting ? 0.0 : dt,
-                    starting ? kept : history, c);
+      const int ilaw = type[i] * nlaw + type[j];
+      const ContactLaw &law = laws[ilaw];
+      if (!blocks[ilaw]) blocks[ilaw].reset(new ContactBlock);
+      ContactBlock &b = *blocks[ilaw];
+      const int k = b.count++;
+      const double rinv = 1.0 / r;
+      const Vector vi = v[i], vj = v[j], wi = omega[i], wj = omega[j];
+      b.i[k] = i;
+      b.j[k] = j;
+      b.radius_i[k] = radi;
+      b.radius_j[k] = radj;
+      b.n[0][k] = delx * rinv;
+      b.n[1][k] = dely * rinv;
+      b.n[2][k] = delz * rinv;
+      b.overlap[k] = radsum - r;
+      b.v[0][k] = vi.x - vj.x;
+      b.v[1][k] = vi.y - vj.y;
+      b.v[2][k] = vi.z - vj.z;
+      b.rw[0][k] = radi * wi.x + radj * wj.x;
+      b.rw[1][k] = radi * wi.y + radj * wj.y;
+      b.rw[2][k] = radi * wi.z + radj * wj.z;
+      b.w[0][k] = wi.x - wj.x;
+      b.w[1][k] = wi.y - wj.y;
+      b.w[2][k] = wi.z - wj.z;
+      b.rolling_radius[k] = law.rolling_factor * radi * radj / radsum;
 
-      for (int k = 0; k < 3; k++) {
-        fi[k] += c.f[k];
-        ti[k] += c.m[k] - radi * c.t[k];
-      }
-      if (newton_pair || j < nlocal)
-        for (int k = 0; k < 3; k++) {
-          f[j][k] -= c.f[k];
-          torque[j][k] -= c.m[k] + radj * c.t[k];
-        }
-      if (evflag)
-        ev_tally_xyz(i, j, nlocal, newton_pair, 0.0, 0.0, c.f[0], c.f[1], c.f[2], delx, dely, delz);
-    }
+      // a frozen ball is one of infinite mass
 
-    for (int k = 0; k < 3; k++) {
-      f[i][k] += fi[k];
-      torque[i][k] += ti[k];
+      b.mass[k] = frozen_i ? law.mass_fixed(rmass[j])
+          : frozen_j       ? law.mass_fixed(rmass[i])
+                           : law.mass(rmass[i], rmass[j]);
+      b.history_of[k] = history;
+      for (int h = 0; h < HISTORY; h++) b.history[h][k] = history[h];
+      if (b.count == ContactBlock::SIZE) finish(b, law);
     }
   }
+  for (size_t k = 0; k < blocks.size(); k++)
+    if (blocks[k] && blocks[k]->count) finish(*blocks[k], laws[k]);
 
   if (starting) initial.check("Pair gran/restitution");
+}
+
+/* ----------------------------------------------------------------------
+   evaluate a block, add its forces to the balls, empty it
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::finish(ContactBlock &b, const ContactLaw &law)
+{
+  // at set-up the springs keep their length: the step that ends here has grown them already
+
+  b.evaluate(law, starting ? 0.0 : dt);
+  if (!starting) b.store_history();
+
+  Vector *const f = vectors(atom->f);
+  Vector *const torque = vectors(atom->torque);
+  const int nlocal = atom->nlocal;
+  const int newton_pair = force->newton_pair;
+
+  for (int k = 0; k < b.count; k++) {
+    const int i = b.i[k], j = b.j[k];
+    const double radi = b.radius_i[k], radj = b.radius_j[k];
+    const double fx = b.f[0][k], fy = b.f[1][k], fz = b.f[2][k];
+    f[i].x += fx;
+    f[i].y += fy;
+    f[i].z += fz;
+    torque[i].x += b.m[0][k] - radi * b.t[0][k];
+    torque[i].y += b.m[1][k] - radi * b.t[1][k];
+    torque[i].z += b.m[2][k] - radi * b.t[2][k];
+    if (newton_pair || j < nlocal) {
+      f[j].x -= fx;
+      f[j].y -= fy;
+      f[j].z -= fz;
+      torque[j].x -= b.m[0][k] + radj * b.t[0][k];
+      torque[j].y -= b.m[1][k] + radj * b.t[1][k];
+      torque[j].z -= b.m[2][k] + radj * b.t[2][k];
+    }
+    if (evflag) {
+      const double r = radi + radj - b.overlap[k];
+      ev_tally_xyz(i, j, nlocal, newton_pair, 0.0, 0.0, fx, fy, fz, r * b.n[0][k], r * b.n[1][k],
+                   r * b.n[2][k]);
+    }
+  }
+  b.count = 0;
 }
 
 /* ----------------------------------------------------------------------
@@ -639,12 +670,24 @@ double PairGranRestitution::single(int i, int j, int itype, int jtype, double rs
     if ((jlist[jj] & NEIGHMASK) == j)
       memcpy(history, &fix_history->firstvalue[i][HISTORY * jj], sizeof(history));
 
-  double **x = atom->x;
+  const ContactLaw &law = laws[index(itype, jtype)];
+  const double radi = atom->radius[i], radj = atom->radius[j];
+  const double mi = atom->rmass[i], mj = atom->rmass[j];
   const double r = sqrt(rsq);
-  const Contact contact =
-      geometry(i, j, x[i][0] - x[j][0], x[i][1] - x[j][1], x[i][2] - x[j][2], r);
+  Contact contact;
+  for (int k = 0; k < 3; k++) {
+    contact.n[k] = (atom->x[i][k] - atom->x[j][k]) / r;
+    contact.v[k] = atom->v[i][k] - atom->v[j][k];
+    contact.rw[k] = radi * atom->omega[i][k] + radj * atom->omega[j][k];
+    contact.w[k] = atom->omega[i][k] - atom->omega[j][k];
+  }
+  contact.overlap = radsum - r;
+  contact.rolling_radius = law.rolling_factor * radi * radj / radsum;
+  contact.mass = (atom->mask[i] & freeze_group_bit) ? law.mass_fixed(mj)
+      : (atom->mask[j] & freeze_group_bit)          ? law.mass_fixed(mi)
+                                                    : law.mass(mi, mj);
   ContactForce c;
-  contact_force(laws[index(itype, jtype)], contact, 0.0, history, c);
+  contact_force(law, contact, 0.0, history, c);
 
   const double *n = contact.n;
   const double fn = c.f[0] * n[0] + c.f[1] * n[1] + c.f[2] * n[2];
@@ -714,7 +757,10 @@ void *PairGranRestitution::extract(const char *name, int &dim)
 
 double PairGranRestitution::memory_usage()
 {
-  return coeffs.size() * (sizeof(Coeff) + sizeof(ContactLaw));
+  double bytes = coeffs.size() * (sizeof(Coeff) + sizeof(ContactLaw));
+  for (const auto &block : blocks)
+    if (block) bytes += sizeof(ContactBlock);
+  return bytes;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -14,8 +14,10 @@ PairStyle(gran/restitution,PairGranRestitution);
 
 #include "pair.h"
 
+#include "contact_block.h"
 #include "contact_law.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -72,9 +74,11 @@ class PairGranRestitution : public Pair {
   std::vector<Coeff> coeffs;              // (ntypes+1) x (ntypes+1), both triangles filled
   std::vector<Slope::ContactLaw> laws;    // same layout
   std::vector<TypeRange> ranges;          // by type
+  std::vector<std::unique_ptr<Slope::ContactBlock>> blocks;    // by type pair, where needed
   std::vector<char> wall_type;            // by type: 1 if a wall fix uses it
 
   double dt;
+  bool starting;    // at set-up
   int freeze_group_bit;
   class FixNeighHistory *fix_history;
   std::string history_id, dummy_id;
@@ -87,7 +91,7 @@ class PairGranRestitution : public Pair {
   void print_table();
   void check_timestep();
   double bound_on_step(int, int) const;
-  Slope::Contact geometry(int, int, double, double, double, double) const;
+  void finish(Slope::ContactBlock &, const Slope::ContactLaw &);
 };
 
 }    // namespace LAMMPS_NS

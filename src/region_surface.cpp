@@ -24,7 +24,8 @@ static constexpr double DEFAULT_STEPS = 1000.0;
 
 RegionSurface::RegionSurface(LAMMPS *lmp, const std::string &caller, const char *region_id,
                              int side, double step_in) :
-    Pointers(lmp), terrain(nullptr)
+    Pointers(lmp),
+    terrain(nullptr)
 {
   region = compat::find_region(lmp, region_id);
   if (!region) error->all(FLERR, "{} region {} does not exist", caller, region_id);
@@ -53,7 +54,8 @@ RegionSurface::RegionSurface(LAMMPS *lmp, const std::string &caller, const char 
     const double *boxhi = domain->triclinic ? domain->boxhi_bound : domain->boxhi;
     if (*lo[d] > -UNBOUNDED && *hi[d] < UNBOUNDED) continue;
     if (!domain->box_exist)
-      error->all(FLERR, "{} region {} must be bounded as long as there is no simulation box, got INF",
+      error->all(FLERR,
+                 "{} region {} must be bounded as long as there is no simulation box, got INF",
                  caller, region_id);
     if (*lo[d] <= -UNBOUNDED) *lo[d] = boxlo[d];
     if (*hi[d] >= UNBOUNDED) *hi[d] = boxhi[d];

@@ -135,9 +135,17 @@ int RegTerrain::surface_exterior(double * /*x*/, double /*cutoff*/)
 
 int RegTerrain::no_contacts()
 {
-  error->one(FLERR,
-             "Region terrain {} has no smooth wall: the ground is made of balls, see fix "
-             "wall/gran/balls",
-             id);
+  // LAMMPS built with exceptions leaves by MPI_Abort, which drops a line that is not flushed
+
+  try {
+    error->one(FLERR,
+               "Region terrain {} has no smooth wall: the ground is made of balls, see fix "
+               "wall/gran/balls",
+               id);
+  } catch (...) {
+    if (screen) fflush(screen);
+    if (logfile) fflush(logfile);
+    throw;
+  }
   return 0;
 }

@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <unordered_map>
 
-namespace Slope {
+using namespace Slope;
 
 // in ball radii
 
@@ -29,14 +29,14 @@ static constexpr double ROUND_OFF = 1.0e-9;    // of the spacing
 
 static constexpr double MAX_COUNT = 2147483647.0;
 
-double cover_radius(double spacing, double radius)
+double Slope::cover_radius(double spacing, double radius)
 {
   // Where the nodes of level ground are farther apart than that, be as dense as level ground.
 
   return std::max(COVER * radius, LEVEL_SPARE * spacing / std::sqrt(2.0));
 }
 
-double sampling_slack(double radius)
+double Slope::sampling_slack(double radius)
 {
   return PITCH * radius / std::sqrt(2.0);    // half the diagonal between samples
 }
@@ -49,7 +49,7 @@ static void node_range(double lo, double hi, double origin, double spacing, doub
   count = std::max(0.0, std::floor((hi - origin) / spacing + ROUND_OFF) - first + 1.0);
 }
 
-double plan_nodes(const PlanGrid &g)
+double Slope::plan_nodes(const PlanGrid &g)
 {
   double first, nx, ny;
   node_range(g.xlo, g.xhi, g.xorigin, g.spacing, first, nx);
@@ -89,10 +89,10 @@ class Sampler {
   double xfirst, yfirst;    // node 0,0
   int nx, ny;
 
-  std::vector<double> node_z;      // NaN: no surface
-  std::vector<char> node_ball;     // kept, so there is a ball
-  std::vector<char> refined;       // by cell
-  std::vector<int> to_refine;      // cells
+  std::vector<double> node_z;                                // NaN: no surface
+  std::vector<char> node_ball;                               // kept, so there is a ball
+  std::vector<char> refined;                                 // by cell
+  std::vector<int> to_refine;                                // cells
   std::unordered_map<int64_t, std::vector<Point>> extras;    // by cell
   std::vector<Point> samples;
   SurfaceBalls balls;
@@ -103,23 +103,21 @@ class Sampler {
   double node_y(int j) const;
   bool is_node(int i, int j) const { return i >= 0 && i < nx && j >= 0 && j < ny; }
   bool has_ball(int i, int j) const { return is_node(i, j) && node_ball[node(i, j)]; }
-  bool has_surface(int i, int j) const { return is_node(i, j) && node_z[node(i, j)] == node_z[node(i, j)]; }
+  bool has_surface(int i, int j) const
+  {
+    return is_node(i, j) && node_z[node(i, j)] == node_z[node(i, j)];
+  }
   size_t node(int i, int j) const { return static_cast<size_t>(j) * nx + i; }
   int64_t cell(int i, int j) const { return static_cast<int64_t>(j + 1) * (nx + 1) + (i + 1); }
   Point node_point(int i, int j) const { return {node_x(i), node_y(j), node_z[node(i, j)]}; }
 
-  // one column of cell i,j
+  // columns of cell i,j
 
-  struct Column {
-    Point p;       // on the surface, if there is one
-    bool on;       // there is one, and it is kept
-    bool scar;     // not kept, and the ground there is at p.z
-  };
   struct Rim {
-    Point p;                // last point of the kept surface
-    bool scarp;             // it falls (or rises) here,
-    Point foot;             // to this point
-    bool leaving;           // walking round the cell, the kept surface ends here (else it begins)
+    Point p;         // last point of the kept surface
+    bool scarp;      // it falls (or rises) here,
+    Point foot;      // to this point
+    bool leaving;    // walking round the cell, the kept surface ends here (else it begins)
   };
   bool column_height(int i, int j, double x, double y, double &z) const;
   bool column_on(int i, int j, double x, double y, double &z) const;
@@ -131,6 +129,8 @@ class Sampler {
   void sample(const Point &, const Point &, const Point &, const Point &);
   void cover_samples();
 };
+
+}    // namespace
 
 /* ---------------------------------------------------------------------- */
 
@@ -163,7 +163,7 @@ double Sampler::node_y(int j) const
 }
 
 /* ----------------------------------------------------------------------
-   balls on the nodes, then extra ones cell by cell, row by row
+ balls on the nodes, then extra ones cell by cell, row by row
 ------------------------------------------------------------------------- */
 
 SurfaceBalls Sampler::run()
@@ -233,12 +233,12 @@ void Sampler::place_on_nodes()
 }
 
 /* ----------------------------------------------------------------------
-   cell with balls on all corners: the surface is the bilinear patch between them
+ cell with balls on all corners: the surface is the bilinear patch between them
 
-   A point p of the patch is the mean of the corners with the weights of the bilinear
-   interpolation, so the mean square of its distances to them is the sum of the variances of
-   their coordinates, at most S^2/4 + S^2/4 + dz^2/4: the nearest corner is no farther than
-   the root of that. Only where this is too far are samples needed.
+ A point p of the patch is the mean of the corners with the weights of the bilinear
+ interpolation, so the mean square of its distances to them is the sum of the variances of
+ their coordinates, at most S^2/4 + S^2/4 + dz^2/4: the nearest corner is no farther than
+ the root of that. Only where this is too far are samples needed.
 ------------------------------------------------------------------------- */
 
 void Sampler::close_cell(int i, int j)
@@ -253,8 +253,8 @@ void Sampler::close_cell(int i, int j)
 }
 
 /* ----------------------------------------------------------------------
-   height of the surface within cell i,j: between its corners where all have one, so that it
-   continues the patches of the neighbor cells
+ height of the surface within cell i,j: between its corners where all have one, so that it
+ continues the patches of the neighbor cells
 ------------------------------------------------------------------------- */
 
 bool Sampler::column_height(int i, int j, double x, double y, double &z) const
@@ -283,7 +283,7 @@ bool Sampler::column_on(int i, int j, double x, double y, double &z) const
 }
 
 /* ----------------------------------------------------------------------
-   where the kept surface ends between a column on it and one off it
+ where the kept surface ends between a column on it and one off it
 ------------------------------------------------------------------------- */
 
 Sampler::Rim Sampler::find_rim(int i, int j, const Point &on, const Point &off, bool leaving) const
@@ -302,10 +302,12 @@ Sampler::Rim Sampler::find_rim(int i, int j, const Point &on, const Point &off, 
     }
   }
 
+  // a scar is a cut into the ground: what hovers above the ground leaves none
+
   Point &foot = rim.foot;
   double z;
-  if (surface.scar && column_height(i, j, foot.x, foot.y, z) &&
-      surface.scar(foot.x, foot.y, foot.z)) {
+  if (surface.scar && column_height(i, j, foot.x, foot.y, z) && surface.height(foot.x, foot.y, z) &&
+      surface.scar(foot.x, foot.y, foot.z) && foot.z <= z + pitch) {
     foot.x = rim.p.x;
     foot.y = rim.p.y;
     rim.scarp = std::fabs(rim.p.z - foot.z) > LOW_SCARP * radius;
@@ -314,8 +316,8 @@ Sampler::Rim Sampler::find_rim(int i, int j, const Point &on, const Point &off, 
 }
 
 /* ----------------------------------------------------------------------
-   cell in which the kept surface ends: what there is of it, piece by piece of a finer grid,
-   up to the rim; and the scarp below the rim
+ cell in which the kept surface ends: what there is of it, piece by piece of a finer grid,
+ up to the rim; and the scarp below the rim
 ------------------------------------------------------------------------- */
 
 void Sampler::refine_cell(int i, int j)
@@ -393,7 +395,7 @@ void Sampler::refine_cell(int i, int j)
 }
 
 /* ----------------------------------------------------------------------
-   samples of the bilinear patch between four points, a side a00-a10 may have no length
+ samples of the bilinear patch between four points, a side a00-a10 may have no length
 ------------------------------------------------------------------------- */
 
 void Sampler::sample(const Point &a00, const Point &a10, const Point &a01, const Point &a11)
@@ -405,13 +407,14 @@ void Sampler::sample(const Point &a00, const Point &a10, const Point &a01, const
   const double nu = std::ceil(across / pitch), nv = std::max(1.0, std::ceil(along / pitch));
   for (double v = 0.0; v <= nv; v++) {
     const Point left = between(a00, a01, v / nv), right = between(a10, a11, v / nv);
-    for (double u = 0.0; u <= nu; u++) samples.push_back(between(left, right, u / std::max(nu, 1.0)));
+    for (double u = 0.0; u <= nu; u++)
+      samples.push_back(between(left, right, u / std::max(nu, 1.0)));
     if (samples.size() >= BATCH) cover_samples();
   }
 }
 
 /* ----------------------------------------------------------------------
-   add balls until every sample is covered, each on the sample farthest from all balls so far
+ add balls until every sample is covered, each on the sample farthest from all balls so far
 ------------------------------------------------------------------------- */
 
 void Sampler::cover_samples()
@@ -455,7 +458,8 @@ void Sampler::cover_samples()
   size_t open = 0;
   for (const Point &p : samples) {
     double d2 = 4.0 * cover2;
-    for (size_t b = 0; b < near.size() && d2 > cover2; b++) d2 = std::min(d2, distance2(near[b], p));
+    for (size_t b = 0; b < near.size() && d2 > cover2; b++)
+      d2 = std::min(d2, distance2(near[b], p));
     if (d2 <= cover2) continue;
     samples[open++] = p;
     far2.push_back(d2);
@@ -486,9 +490,9 @@ void Sampler::cover_samples()
   samples.clear();
 }
 
-}    // namespace
+/* ---------------------------------------------------------------------- */
 
-SurfaceBalls sample_surface(const PlanGrid &grid, double radius, const Surface &surface)
+SurfaceBalls Slope::sample_surface(const PlanGrid &grid, double radius, const Surface &surface)
 {
   if (!(grid.spacing > 0.0) || !(radius > 0.0))
     throw std::invalid_argument("spacing and radius must be > 0");
@@ -496,5 +500,3 @@ SurfaceBalls sample_surface(const PlanGrid &grid, double radius, const Surface &
     throw std::invalid_argument("the plan rectangle must not be empty");
   return Sampler(grid, radius, surface).run();
 }
-
-}    // namespace Slope

@@ -33,8 +33,8 @@ struct Surface {
   // true where balls are wanted; empty: everywhere
   std::function<bool(double x, double y)> keep;
 
-  // height of the ground where keep() is false and other balls make it; false where unknown.
-  // A vertical gap between it and height() at the rim of keep() is closed. Empty: leave it.
+  // Where keep() is false: height of the ground that other balls make there, below height();
+  // false where unknown. The vertical gap at the rim of keep() is closed. Empty: leave it.
   std::function<bool(double x, double y, double &z)> scar;
 };
 
@@ -42,9 +42,9 @@ struct SurfaceBalls {
   std::vector<double> xyz;    // x,y,z of each ball: those on nodes row by row, then the extra ones
   int64_t nodes = 0;          // of the plan grid = without_surface + dropped + base
   int64_t without_surface = 0;
-  int64_t dropped = 0;        // by keep()
-  int64_t base = 0;           // balls on nodes
-  int64_t extra = 0;          // balls that close the surface between nodes
+  int64_t dropped = 0;    // by keep()
+  int64_t base = 0;       // balls on nodes
+  int64_t extra = 0;      // balls that close the surface between nodes
 };
 
 // number of nodes of the plan grid; a double, because it may be beyond any integer

@@ -1,4 +1,4 @@
-"""Reading rasters, and writing the plain .asc with its sidecar: the one place in Python that does either.
+"""Reading rasters, writing the plain .asc with its sidecar, and GeoTIFFs: the one place in Python that does it.
 
 Heights are metres above the vertical datum of the survey, NaN where there is none (NODATA). Arrays have the shape
 (rows, columns), rows from north to south; a value belongs to the centre of its cell. A transform takes (column, row),
@@ -69,10 +69,11 @@ def crs_name(crs):
     return f"EPSG:{epsg(crs)}" if epsg(crs) else crs.to_wkt().split('"')[1]
 
 
-def read(path):
+def read(path, heights=True):
     """Read a single-band raster in metres (GeoTIFF, ESRI ASCII grid, or another format of GDAL) into a Raster.
 
-    The CRS is None where the file has none; it may be in degrees, the heights may not. Raises SlopeError on anything
+    The CRS is None where the file has none; it may be in degrees, the heights may not. heights=False: other values
+    than heights, such as the energies of fix deposit/grid; their size is not checked. Raises SlopeError on anything
     that is not such a raster.
     """
     if not Path(path).is_file():
@@ -84,6 +85,8 @@ def read(path):
                 raster = _read(path, source)
     except (RasterioError, OSError) as error:  # RasterioIOError is an OSError only
         raise SlopeError(path, f"must be a raster that GDAL can read ({error})") from error
+    if not heights:
+        return raster
     with np.errstate(invalid="ignore"):
         wrong = np.argwhere(np.abs(raster.z) > HIGHEST)
     if len(wrong):
@@ -177,21 +180,51 @@ def read_asc_local(path):
     sidecar is read as by read(). Raises SlopeError if either file is broken or they do not belong together.
     """
     raster = read(path)
+    place = read_sidecar(path)
+    if place is None:
+        return raster
+    if place.size != raster.z.shape or not np.allclose(raster.transform * (0, 0), place.extent[::3], rtol=0, atol=1e-3):
+        raise SlopeError(Path(path).with_suffix(".yaml"), f"must be the sidecar of {path}: size and extent differ")
+    return Raster(raster.z, raster.transform, place.crs, place.offset)
+
+
+class Place(NamedTuple):
+    """Where a terrain lies."""
+    crs: Optional[CRS]
+    offset: Tuple[float, float]                # east, north of local 0 0
+    size: Tuple[int, int]                      # rows, columns
+    extent: Tuple[float, float, float, float]  # local xlo, ylo, xhi, yhi
+
+
+def read_sidecar(path):
+    """The Place of an .asc that write_asc_local wrote, None if it has no sidecar; the .asc itself is not read."""
     sidecar = Path(path).with_suffix(".yaml")
     if Path(path).suffix != ".asc" or not sidecar.exists():
-        return raster
+        return None
     try:
         about = yaml.safe_load(sidecar.read_text(encoding="utf-8"))
-        size = about["size"]["rows"], about["size"]["columns"]
-        corner = about["extent"]["xlo"], about["extent"]["yhi"]
-        offset = float(about["origin"]["east"]), float(about["origin"]["north"])
-        crs = about["crs"] and CRS.from_wkt(about["crs"]["wkt"])
-        fits = size == raster.z.shape and np.allclose(raster.transform * (0, 0), corner, rtol=0, atol=1e-3)
+        return Place(about["crs"] and CRS.from_wkt(about["crs"]["wkt"]),
+                     (float(about["origin"]["east"]), float(about["origin"]["north"])),
+                     (about["size"]["rows"], about["size"]["columns"]),
+                     tuple(float(about["extent"][side]) for side in ("xlo", "ylo", "xhi", "yhi")))
     except (OSError, ValueError, KeyError, TypeError, yaml.YAMLError, CRSError) as error:
         raise SlopeError(sidecar, f"must be a sidecar that `slope terrain` wrote ({error!r})") from error
-    if not fits:
-        raise SlopeError(sidecar, f"must be the sidecar of {path}: size and extent differ")
-    return Raster(raster.z, raster.transform, crs, offset)
+
+
+def read_place(path):
+    """The Place of a terrain: of its sidecar, else of the raster's own header; heights are not read."""
+    if not Path(path).is_file():
+        raise SlopeError(path, "must be an existing file")
+    place = read_sidecar(path)
+    if place is not None:
+        return place
+    try:
+        with warnings.catch_warnings(), rasterio.Env():
+            warnings.simplefilter("ignore", NotGeoreferencedWarning)
+            with rasterio.open(path) as source:
+                return Place(source.crs, (0.0, 0.0), source.shape, tuple(source.bounds))
+    except (RasterioError, OSError) as error:
+        raise SlopeError(path, f"must be a raster that GDAL can read ({error})") from error
 
 
 def write_asc_local(path, raster, about):
@@ -234,3 +267,28 @@ def write_asc_local(path, raster, about):
         new_asc.unlink(missing_ok=True)
         new_yaml.unlink(missing_ok=True)
     return sidecar
+
+
+def write_geotiff(path, bands, raster):
+    """Write bands, a dict of name -> values (NaN: NODATA), on the grid of raster (its z is not used) to a GeoTIFF.
+
+    It lies at the CRS coordinates, transform plus offset; without a CRS at the local ones. Doubles, so that sums over
+    the cells are those of the array. The file is complete or not touched. Raises SlopeError where it cannot be written.
+    """
+    path = Path(path)
+    new = path.with_name(f".{path.name}.{os.getpid()}.new")
+    rows, columns = next(iter(bands.values())).shape
+    try:
+        with warnings.catch_warnings(), rasterio.Env():
+            warnings.simplefilter("ignore", NotGeoreferencedWarning)
+            with rasterio.open(new, "w", driver="GTiff", height=rows, width=columns, count=len(bands), dtype="float64",
+                               crs=raster.crs, transform=Affine.translation(*raster.offset) * raster.transform,
+                               nodata=NODATA, compress="deflate") as out:
+                for band, (name, values) in enumerate(bands.items(), 1):
+                    out.write(np.where(np.isnan(values), NODATA, values), band)
+                    out.set_band_description(band, name)
+        os.replace(new, path)
+    except (RasterioError, OSError) as error:
+        raise SlopeError(path, f"cannot be written: {getattr(error, 'strerror', None) or error}") from error
+    finally:
+        new.unlink(missing_ok=True)

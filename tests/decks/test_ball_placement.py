@@ -1,0 +1,217 @@
+"""Where fixed balls go: the arguments that fix wall/gran/balls and create_balls share."""
+
+import math
+import re
+
+import pytest
+from deck_helpers import run_deck
+
+# a sphere around 0,0,6 (radius 5) and prisms; the fix reports and writes when it is defined
+
+DECK = """
+units           si
+atom_style      sphere
+boundary        f f f
+comm_modify     vel yes
+region          box block -10 10 -10 10 -2 12 units box
+create_box      2 box
+region          ball sphere 0 0 6 5 units box
+region          slab block -8 8 -8 8 0 6 units box
+region          trench block -3 2.6 -2.2 3.3 2 6 units box
+region          column cylinder z 0 0 3 INF INF units box
+region          nowhere block 20 21 20 21 0 1 units box
+region          outer block -8 8 -8 8 0 6 side out units box
+region          plane plane 0 0 0 0 0 1 units box
+region          none intersect 2 nowhere ball units box
+region          small intersect 2 ball slab units box
+variable        move equal 0.1*step
+region          moving sphere 0 0 6 5 move v_move NULL NULL units box
+region          open block -8 8 -8 8 0 6 open 6 units box
+region          bottomless block -8 8 -8 8 INF 6 units box
+fix             w all wall/gran/balls 2 0.5 {placement}
+"""
+
+
+def placed(placement, tmp_path, np=1, name="balls.txt"):
+    """Log and positions of the balls."""
+    log = run_deck(DECK.format(placement=f"{placement} write {name}"), tmp_path, np=np)
+    return log, balls(tmp_path / name)
+
+
+def balls(path):
+    lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
+    return [tuple(float(word) for word in line.split()) for line in lines]
+
+
+def counts(log):
+    """Number of balls, on the plan grid, extra."""
+    match = re.search(r"w: (\d+) fixed balls .*\((\d+) on the plan grid every \S+, (\d+) extra", log)
+    return tuple(int(n) for n in match.groups())
+
+
+def test_upper_and_lower_boundary(tmp_path):
+    log, upper = placed("surface ball upper spacing 0.5", tmp_path)
+    log, lower = placed("surface ball lower spacing 0.5", tmp_path)
+    total, base, extra = counts(log)
+    assert len(lower) == len(upper) == total == base + extra
+    assert extra > 0     # the sphere is steep at its rim
+    for (x, y, z), (xl, yl, zl) in zip(upper[:base], lower[:base]):
+        assert (x, y) == (xl, yl)
+        assert z == pytest.approx(6 + math.sqrt(25 - x * x - y * y), abs=1e-6)
+        assert zl == pytest.approx(6 - math.sqrt(25 - x * x - y * y), abs=1e-6)
+
+
+def test_level_ground_is_the_plan_grid(tmp_path):
+    log, slab = placed("surface slab upper spacing 0.5", tmp_path)
+    assert counts(log) == (33 * 33, 33 * 33, 0)
+    assert slab == [(-8 + 0.5 * i, -8 + 0.5 * j, 6) for j in range(33) for i in range(33)]
+    log, slab = placed("surface slab upper spacing 0.5 origin 0.2 0.1", tmp_path)
+    assert slab[0] == pytest.approx((-7.8, -7.9, 6))
+
+
+def test_terrain(tmp_path):
+    # 30 degrees down along x, without data in one corner
+
+    rows = [["%.9f" % (-math.tan(math.pi / 6) * (i + 0.5)) for i in range(12)] for j in range(10)]
+    rows[0][0] = rows[0][1] = "-9999"
+    (tmp_path / "hill.asc").write_text(
+        "ncols 12\nnrows 10\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n" +
+        "".join(" ".join(row) + "\n" for row in rows))
+    text = DECK.format(placement="surface hill upper spacing 0.5 write balls.txt").replace(
+        "fix  ", "region hill terrain hill.asc\nfix  ")
+    log = run_deck(text, tmp_path)
+    total, base, extra = counts(log)
+    assert "plan nodes without surface" in log
+    for x, y, z in balls(tmp_path / "balls.txt")[:base]:
+        if 0.5 <= x <= 11.5:      # between the middles of the outermost cells
+            assert z == pytest.approx(-math.tan(math.pi / 6) * x, abs=1e-8)
+    assert extra < 20             # at the rim of the corner only
+
+    # the general search finds the same surface as the short cut to the grid
+
+    run_deck(text.replace("surface hill", "surface both").replace(
+        "fix  ", "region both intersect 2 hill hill\nfix  ").replace("balls.txt", "search.txt"), tmp_path)
+    for a, b in zip(balls(tmp_path / "balls.txt")[:base], balls(tmp_path / "search.txt")):
+        assert a == pytest.approx(b, abs=1e-9)
+
+
+def test_filters_split_the_nodes(tmp_path):
+    log_in, inside = placed("surface slab upper spacing 0.5 inside column", tmp_path)
+    log_out, outside = placed("surface slab upper spacing 0.5 outside column", tmp_path)
+    nodes = [(-8 + 0.5 * i, -8 + 0.5 * j) for j in range(33) for i in range(33)]
+    near = [p for p in nodes if math.hypot(*p) <= 3]
+    assert counts(log_in)[1] == len(near)
+    assert counts(log_out)[1] == len(nodes) - len(near)
+    assert f"{len(nodes) - len(near)} plan nodes not inside region column" in log_in
+    assert f"{len(near)} plan nodes not outside region column" in log_out
+    assert [p[:2] for p in inside[:len(near)]] == near
+    assert all(math.hypot(x, y) < 3.01 for x, y, _ in inside)
+    assert all(math.hypot(x, y) > 2.99 for x, y, _ in outside)
+    assert all(z == 6 for _, _, z in inside + outside)      # a prism without a bottom leaves no scar
+
+
+def test_scarp_of_a_trench_is_closed(tmp_path):
+    # the trench has vertical walls from z = 2 to the ground at z = 6
+
+    log, field = placed("surface slab upper spacing 0.5 outside trench", tmp_path)
+    log, floor = placed("surface trench lower spacing 0.5", tmp_path)
+    solid = field + floor
+    assert {z for _, _, z in floor} == {2}
+
+    worst = 0
+    for k in range(0, 561, 8):
+        for m in range(0, 401, 8):
+            for point in ((-3 + k / 100, -2.2, 2 + m / 100), (-3 + k / 100, 3.3, 2 + m / 100),
+                          (-3, -2.2 + k / 560 * 5.5, 2 + m / 100), (2.6, -2.2 + k / 560 * 5.5, 2 + m / 100)):
+                worst = max(worst, min(
+                    (point[0] - x) ** 2 + (point[1] - y) ** 2 + (point[2] - z) ** 2
+                    for x, y, z in solid if abs(x - point[0]) < 0.5 and abs(y - point[1]) < 0.5))
+    assert math.sqrt(worst) < 0.5    # one diameter: a ball there touches
+
+
+def test_written_file_is_read_back(tmp_path):
+    log, first = placed("surface ball lower spacing 0.25", tmp_path, name="first.txt")
+    header = (tmp_path / "first.txt").read_text().splitlines()[:2]
+    assert header == [f"# Fix wall/gran/balls w: {len(first)} fixed balls of diameter 0.5, units si",
+                      "# x y z"]
+    log, second = placed("file first.txt", tmp_path, name="second.txt")
+    assert f"w: {len(first)} fixed balls of diameter 0.5 (from file first.txt)" in log
+    assert second == first
+    log, inner = placed("file first.txt inside column", tmp_path, name="inner.txt")
+    assert inner == [p for p in first if math.hypot(p[0], p[1]) <= 3]
+    assert not list(tmp_path.glob("*.tmp"))
+
+
+def test_same_balls_on_any_number_of_ranks(tmp_path):
+    placement = "surface ball lower spacing 0.5 outside trench"
+    for np in (1, 2, 4):
+        run_deck(DECK.format(placement=f"{placement} write {np}.txt"), tmp_path, np=np)
+    assert balls(tmp_path / "1.txt")
+    assert balls(tmp_path / "1.txt") == balls(tmp_path / "2.txt") == balls(tmp_path / "4.txt")
+
+
+@pytest.mark.parametrize("spacing, warning", [
+    (0.60, None),
+    (0.67, "spacing 0.67 lets a ball of diameter 0.5 through on steep ground: spacing must be < 0.65"),
+    (0.71, "spacing 0.71 lets a ball of diameter 0.5 through even on level ground: spacing must be < 0.7071"),
+])
+def test_wide_spacing_is_warned_of(tmp_path, spacing, warning):
+    log, _ = placed(f"surface slab upper spacing {spacing}", tmp_path)
+    assert ("lets a ball" in log) == bool(warning)
+    assert warning is None or f"WARNING: Fix wall/gran/balls w {warning}" in log
+
+
+BAD = [
+    ("", "needs TYPE DIAMETER and surface or file"),
+    ("volume ball", "w needs surface or file, got volume"),
+    ("surface ball", "w surface must be followed by REGION upper|lower, got 1 of 2 values"),
+    ("surface ball middle spacing 1", "w surface side must be upper or lower, got middle"),
+    ("surface ball upper", "w surface needs a spacing, got none"),
+    ("surface ball upper spacing", "w spacing must be followed by S, got 0 of 1 values"),
+    ("surface ball upper spacing 0", "w spacing must be > 0, got 0"),
+    ("surface ball upper spacing -2", "w spacing must be > 0, got -2"),
+    ("surface ball upper spacing wide", "w spacing must be a number, got wide"),
+    ("surface ball upper spacing 1e-6", "w: spacing must give fewer than 2^31 balls, got 1e+14 with 1e-06"),
+    ("surface ball upper spacing 1 origin 2", "w origin must be followed by x y, got 1 of 2 values"),
+    ("surface ball upper spacing 1 origin 2 y", "w origin y must be a number, got y"),
+    ("surface ball upper spacing 1 within slab",
+     "w keyword must be spacing, origin, inside, outside or write, got within"),
+    ("surface ball upper spacing 1 inside slab outside column",
+     "w can have one filter (inside or outside), got outside column as well"),
+    ("surface ball upper spacing 1 inside gone", "w region gone does not exist"),
+    ("surface gone upper spacing 1", "w region gone does not exist"),
+    ("surface outer upper spacing 1", "w region outer must have a bounding box, style block has none here"),
+    ("surface ball upper spacing 1 outside plane", "w region plane must have a bounding box, style plane"),
+    ("surface moving upper spacing 1", "w region moving must stand still, got one that moves or varies"),
+    ("surface open upper spacing 1", "w region open must have no open faces, got some"),
+    ("surface bottomless lower spacing 1", "w region bottomless must have a lower boundary, got INF"),
+    ("surface none upper spacing 1", "w: the surface of region none holds no balls"),
+    ("surface ball upper spacing 1 inside nowhere", "w: the surface of region ball holds no balls"),
+    ("file", "w file must be followed by FILE, got 0 of 1 values"),
+    ("file gone.txt", "w: cannot open file gone.txt: No such file or directory"),
+    ("file balls.txt spacing 1", "w keyword must be inside, outside or write, got spacing"),
+    ("file two.txt", "w: file two.txt line 3: must hold x y z, got 2 values"),
+    ("file word.txt", "w: file word.txt line 2: y must be a finite number, got zwei"),
+    ("file nan.txt", "w: file nan.txt line 1: z must be a finite number, got nan"),
+    ("file empty.txt", "w: file empty.txt holds no balls"),
+    ("surface ball upper spacing 1 write gone/balls.txt", "w: cannot write gone/balls.txt: "),
+]
+
+
+@pytest.mark.parametrize("placement, message", BAD, ids=[placement for placement, _ in BAD])
+def test_bad_input_ends_with_one_line(tmp_path, placement, message):
+    (tmp_path / "balls.txt").write_text("1 2 3\n")
+    (tmp_path / "two.txt").write_text("# x y z\n1 2 3\n1 2\n")
+    (tmp_path / "word.txt").write_text("1 2 3\n1 zwei 3\n")
+    (tmp_path / "nan.txt").write_text("1 2 nan\n")
+    (tmp_path / "empty.txt").write_text("# nothing\n")
+    before = set(tmp_path.iterdir())
+    run_deck(DECK.format(placement=placement), tmp_path, expect_error=message)
+    left = {path.name for path in set(tmp_path.iterdir()) - before}
+    assert left <= {"in.deck", "log.deck"}
+
+
+def test_error_on_rank_0_ends_all_ranks(tmp_path):
+    (tmp_path / "two.txt").write_text("1 2 3\n1 2\n")
+    run_deck(DECK.format(placement="file two.txt"), tmp_path, np=2, timeout=60,
+             expect_error="file two.txt line 2: must hold x y z, got 2 values")

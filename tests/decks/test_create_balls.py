@@ -1,0 +1,203 @@
+"""create_balls: the balls of a surface as atoms, the same ones on any number of ranks."""
+
+import math
+
+import pytest
+from deck_helpers import run_deck
+
+DIAMETER = 0.5
+DENSITY = 2000.0
+
+DECK = """
+units           si
+atom_style      {style}
+atom_modify     map array
+boundary        {boundary}
+comm_modify     vel yes
+{decomposition}
+region          box block {box} units box
+create_box      2 box
+region          ball sphere 0 0 6 5 units box
+create_balls    2 0.5 2000 surface ball lower spacing 0.5 {more}
+dump            all all custom 1 {dump} id type x y z vx vy vz radius mass
+dump_modify     all sort id format float %.17g
+run             0
+"""
+
+
+def deck(style="sphere", boundary="f f f", box="-6 6 -6 6 0 12", decomposition="", more="",
+         dump="balls.dump"):
+    return DECK.format(**locals())
+
+
+def atoms(path):
+    """Rows of a dump: id type x y z vx vy vz radius mass."""
+    lines = path.read_text().splitlines()
+    start = next(k for k, line in enumerate(lines) if line.startswith("ITEM: ATOMS"))
+    return [[float(word) for word in line.split()] for line in lines[start + 1:]]
+
+
+def positions(path):
+    return sorted((x, y, z) for _, _, x, y, z, *_ in atoms(path))
+
+
+def same(a, b):
+    """Are the points the same but for round-off, in whatever order?"""
+    in_order = [sorted(points, key=lambda p: [round(c + 3e-7, 5) for c in p]) for points in (a, b)]
+    return len(a) == len(b) and all(p == pytest.approx(q, abs=1e-9) for p, q in zip(*in_order))
+
+
+def nodes(radius, spacing, x0=0.0, y0=0.0):
+    """Nodes of a plan grid within a circle around 0,0."""
+    reach = int(radius / spacing) + 2
+    grid = [(x0 + i * spacing, y0 + j * spacing)
+            for i in range(-reach, reach + 1) for j in range(-reach, reach + 1)]
+    return [p for p in grid if math.hypot(*p) <= radius]
+
+
+@pytest.fixture(scope="module")
+def one_rank(tmp_path_factory):
+    path = tmp_path_factory.mktemp("one")
+    log = run_deck(deck(), path)
+    return log, path / "balls.dump"
+
+
+def test_balls_are_on_the_lower_half_of_the_sphere(one_rank):
+    log, dump = one_rank
+    rows = atoms(dump)
+    assert f"Create_balls: {len(rows)} fixed balls of diameter 0.5" in log
+    assert [row[0] for row in rows] == list(range(1, len(rows) + 1))
+    for _, kind, x, y, z, vx, vy, vz, radius, mass in rows:
+        assert kind == 2
+        assert z < 6.1
+        assert 4.85 < math.dist((x, y, z), (0, 0, 6)) < 5 + 1e-6      # extra ones may lie on chords
+        assert (vx, vy, vz) == (0, 0, 0)
+        assert radius == DIAMETER / 2
+        assert mass == pytest.approx(DENSITY * math.pi / 6 * DIAMETER ** 3, rel=1e-12)
+
+    # one on each node of the plan grid, first, row by row
+
+    base = sorted(nodes(5, 0.5), key=lambda p: (p[1], p[0]))
+    assert f"({len(base)} on the plan grid every 0.5, {len(rows) - len(base)} extra" in log
+    for (x, y), row in zip(base, rows):
+        assert row[2:4] == pytest.approx([x, y], abs=1e-9)
+        assert row[4] == pytest.approx(6 - math.sqrt(25 - x * x - y * y), abs=1e-6)
+
+
+def test_origin_moves_the_plan_grid(tmp_path):
+    run_deck(deck(more="origin 0.1 -0.2"), tmp_path)
+    base = sorted(nodes(5, 0.5, 0.1, -0.2), key=lambda p: (p[1], p[0]))
+    rows = atoms(tmp_path / "balls.dump")
+    assert len(rows) > len(base)
+    for (x, y), row in zip(base, rows):
+        assert row[2:4] == pytest.approx([x, y], abs=1e-9)
+
+
+@pytest.mark.parametrize("ranks, decomposition", [
+    (2, ""),
+    (4, ""),
+    (4, "comm_style tiled\nprocessors 1 * 2"),
+])
+def test_same_balls_on_any_number_of_ranks(tmp_path, one_rank, ranks, decomposition):
+    run_deck(deck(decomposition=decomposition), tmp_path, np=ranks)
+    dump = tmp_path / "balls.dump"
+    assert positions(dump) == positions(one_rank[1])
+    assert [row[0] for row in atoms(dump)] == list(range(1, len(atoms(dump)) + 1))
+
+
+def test_boxes_that_are_tiled_tilted_or_wrapped_hold_the_same_balls(tmp_path, one_rank):
+    # an uneven tiling by balance, then a second command into boxes that hold atoms already
+
+    run_deck(deck() + """
+comm_style      tiled
+balance         1.0 rcb
+create_balls    1 0.5 2000 surface ball lower spacing 0.5
+dump            first all custom 1 both.dump id type x y z vx vy vz radius mass
+dump_modify     first sort id format float %.17g
+run             0
+""", tmp_path, np=4)
+    both = atoms(tmp_path / "both.dump")
+    assert sorted(tuple(row[2:5]) for row in both if row[1] == 1) == positions(one_rank[1])
+    assert [row[0] for row in both] == list(range(1, len(both) + 1))
+
+    # a periodic box takes in what lies beyond it
+
+    run_deck(deck(boundary="p p f", box="-2 10 -6 6 0 12", dump="periodic.dump"), tmp_path, np=2)
+    wrapped = [(x - 12 if x > 6 else x, y, z) for x, y, z in positions(tmp_path / "periodic.dump")]
+    assert same(wrapped, positions(one_rank[1]))
+
+    tilted = deck(dump="tilted.dump").replace("block -6 6 -6 6 0 12", "prism -9 6 -6 6 0 12 3 0 0")
+    run_deck(tilted, tmp_path, np=2)
+    assert same(positions(tmp_path / "tilted.dump"), positions(one_rank[1]))
+
+
+def test_fixes_and_the_atom_map_know_the_new_atoms(tmp_path):
+    # a fix that stores a value per atom gets told of each; x[700] asks the atom map
+
+    log = run_deck("""
+units           si
+atom_style      sphere
+atom_modify     map hash
+region          box block -6 6 -6 6 0 12 units box
+create_box      1 box
+region          ball sphere 0 0 6 5 units box
+fix             store all store/state 0 mass
+create_balls    1 0.5 2000 surface ball lower spacing 0.5
+create_balls    1 0.5 2000 surface ball upper spacing 0.5
+compute         s all reduce max f_store
+thermo_style    custom step c_s
+run             0
+variable        z equal z[700]
+variable        stored equal f_store[700]
+print           "z $z stored ${stored}"
+""", tmp_path, np=2)
+    z, stored = next(line for line in log.splitlines() if line.startswith("z ")).split()[1::2]
+    assert float(z) > 6      # of the second lot
+    assert float(stored) == 0      # as for atoms of create_atoms
+
+
+def test_positions_from_a_file(tmp_path):
+    (tmp_path / "balls.txt").write_text("# three balls\n1 2 3\n\n-1.5 0 2e-1  # the last but one\n0 0 4\n")
+    run_deck(deck().replace("surface ball lower spacing 0.5", "file balls.txt"), tmp_path, np=2)
+    assert positions(tmp_path / "balls.dump") == [(-1.5, 0, 0.2), (0, 0, 4), (1, 2, 3)]
+
+
+BAD = [
+    ("2 0.5 2000", "0 0.5 2000", "Create_balls type must be 1 to 2 (the atom types of the box), got 0"),
+    ("2 0.5 2000", "3 0.5 2000", "Create_balls type must be 1 to 2 (the atom types of the box), got 3"),
+    ("2 0.5 2000", "x 0.5 2000", "Create_balls type must be a whole number, got x"),
+    ("2 0.5 2000", "2 -1 2000", "Create_balls diameter must be > 0, got -1"),
+    ("2 0.5 2000", "2 0 2000", "Create_balls diameter must be > 0, got 0"),
+    ("2 0.5 2000", "2 thick 2000", "Create_balls diameter must be a number, got thick"),
+    ("2 0.5 2000", "2 0.5 0", "Create_balls density must be > 0, got 0"),
+    ("2 0.5 2000", "2 0.5 heavy", "Create_balls density must be a number, got heavy"),
+    ("2 0.5 2000 surface ball lower spacing 0.5", "2 0.5",
+     "Create_balls needs TYPE DIAMETER DENSITY and surface or file, got 2 arguments"),
+    ("spacing 0.5", "spacing 0.5 write out.txt",
+     "Create_balls keyword must be spacing, origin, inside, outside, got write"),
+    ("atom_style      sphere", "atom_style      atomic",
+     "Create_balls atom_style must have radius and mass per atom, as sphere has, got atomic"),
+    ("create_box      2 box", "", "Create_balls before the simulation box is defined"),
+    ("-6 6 -6 6 0 12", "-6 6 -6 6 2 12",
+     "Create_balls balls must lie in the simulation box (below its upper faces), got "),
+]
+
+
+@pytest.mark.parametrize("good, bad, message", BAD, ids=[message[13:60] for _, _, message in BAD])
+def test_bad_input_ends_with_one_line(tmp_path, good, bad, message):
+    text = deck()
+    assert good in text
+    run_deck(text.replace(good, bad), tmp_path, expect_error=message)
+    assert not (tmp_path / "balls.dump").exists()
+
+
+def test_balls_outside_the_box_are_counted_and_located(tmp_path):
+    # z = 6 - sqrt(25 - x^2 - y^2) < 2 for all within 3 of the middle
+
+    outside = [p for p in nodes(3, 0.5) if math.hypot(*p) < 3 - 1e-9]
+    x, y = min(outside, key=lambda p: (p[1], p[0]))
+    z = 6 - math.sqrt(25 - x * x - y * y)
+    message = f"got {len(outside)} of "
+    run_deck(deck(box="-6 6 -6 6 2 12"), tmp_path, np=2, expect_error=message)
+    log = (tmp_path / "log.deck").read_text()
+    assert f"the first at {x:g} {y:g} {z:.5f}" in log

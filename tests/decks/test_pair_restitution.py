@@ -1,0 +1,401 @@
+"""Pair gran/restitution: what it promises of restitution, dashpots, friction, rolling, its table, its errors."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+
+from deck_helpers import run_deck
+
+# Two balls on the x axis, no gravity. kind of the second: ball (moving), frozen (an atom of fix freeze), wall
+PAIR = """
+units si
+newton {newton}
+atom_style sphere
+atom_modify map array
+boundary f f f
+comm_modify vel yes
+region box block -{box} {box} -{box} {box} -{box} {box}
+create_box 3 box
+neighbor 0.01 bin
+neigh_modify delay 0
+create_atoms 1 single {x1} {y1} 0
+set atom 1 diameter {d1} density {rho1}
+{second}
+pair_style gran/restitution {style}
+{coeff}
+{wall}
+timestep {dt}
+fix move moving nve/sphere
+velocity all set 0 0 0
+velocity moving set {v1[0]} {v1[1]} 0
+{extra}
+fix print all print 1 "$(step) $(x[1]) $(y[1]) $(vx[1]) $(vy[1]) $(c_w[1][3])" file one.txt screen no
+fix print2 all print 1 "$(step) {two}" file two.txt screen no
+thermo {steps}
+run {steps}
+"""
+
+
+def collide(tmp_path, kind="ball", coeff="restitution 0.5", style="", k=1e6, kt=None, d1=0.1, d2=0.1,
+            rho1=2500.0, rho2=2500.0, v1=(1.0, 0.0), v2=(-1.0, 0.0), y1=0.0, dt=2e-6, steps=2500,
+            newton="on", extra="", gap=1e-5, box=1, expect_error=None, np=1):
+    """Let two balls collide; return log and, per step, x y vx vy wz of the first and of the second."""
+    half = 0.5 * (d1 + d2)
+    x1 = -math.sqrt((half + gap) ** 2 - y1 ** 2)
+    second, wall, two = "", "", "0 0 0 0 0"
+    if kind in ("ball", "frozen"):
+        second = (f"create_atoms 2 single 0 0 0\nset atom 2 diameter {d2} density {rho2}\n"
+                  "group second id 2\n")
+        two = "$(x[2]) $(y[2]) $(vx[2]) $(vy[2]) $(c_w[2][3])"
+    if kind == "ball":
+        second += "group moving union all"
+        extra = f"velocity second set {v2[0]} {v2[1]} 0\n" + extra
+    elif kind == "frozen":
+        second += "group moving subtract all second"
+        extra = "fix freeze second freeze\n" + extra
+    else:
+        second = "group moving union all"
+        (tmp_path / "wall.xyz").write_text("0 0 0\n")
+        wall = f"fix wall moving wall/gran/balls 3 {d2} file wall.xyz"
+    if "pair_coeff" not in coeff:
+        coeff = f"pair_coeff * * stiffness {k} {kt or k} {coeff}"
+    extra = "compute w all property/atom omegax omegay omegaz\n" + extra
+    deck = PAIR.format(**{**locals(), "second": second})
+    log = run_deck(deck, tmp_path, np=np, expect_error=expect_error)
+    if expect_error:
+        return log
+    one, other = (numbers(tmp_path / name) for name in ("one.txt", "two.txt"))
+    return log, one, other
+
+
+def numbers(file):
+    return np.loadtxt(file, comments="#")[:, 1:]
+
+
+def ball_mass(d, rho):
+    return rho * math.pi * d ** 3 / 6
+
+
+def speed_ratio(one, two):
+    return -(one[-1, 2] - two[-1, 2]) / (one[0, 2] - two[0, 2])
+
+
+def table(log):
+    """The start-up table: {(i, j): [kn, kt, cn, zeta, e_moving, e_fixed, friction, rolling, contact/dt]}."""
+    text = log.split("contact coefficients")[1].split("e fixed:")[0]
+    rows = [line.split() for line in text.splitlines()[2:] if line.strip()]
+    return {(int(row[0]), int(row[1])): [None if word == "-" else float(word) for word in row[2:]]
+            for row in rows}
+
+
+# --- restitution ---
+
+
+@pytest.mark.parametrize("e", [0.1, 0.48, 1.0])
+@pytest.mark.parametrize("case", [
+    dict(), dict(rho2=10000.0), dict(d2=0.1 * 4 ** (1 / 3)), dict(kind="frozen"), dict(kind="wall"),
+    dict(kind="frozen", d2=0.2), dict(kind="wall", d2=0.2)],
+    ids=["equal", "4:1 by density", "4:1 by size", "frozen", "wall", "frozen, unequal", "wall, unequal"])
+def test_mass_pair_gives_the_target(tmp_path, e, case):
+    """Oblique impact test 3 of Chung & Ooi at normal incidence: e out is e in, for every kind of pair."""
+    log, one, two = collide(tmp_path, coeff=f"restitution {e}", **case)
+    assert speed_ratio(one, two) == pytest.approx(e, abs=0.005)
+    i, j = (1, 3) if case.get("kind") == "wall" else (1, 2)
+    assert table(log)[i, j][5 if "kind" in case else 4] == pytest.approx(e, abs=1e-4)
+
+
+def test_momentum_of_an_unequal_pair(tmp_path):
+    _, one, two = collide(tmp_path, rho2=10000.0)
+    assert one[-1, 2] + 4 * two[-1, 2] == pytest.approx(1.0 - 4.0, rel=1e-12)
+
+
+PRINTED = [  # ball mass from diameter and density; kn; e; printed dashpot
+    (0.185, 8.78 / (math.pi * 0.185 ** 3 / 6), 3.67e7, 0.25, 1.45e4),
+    (0.185, 8.78 / (math.pi * 0.185 ** 3 / 6), 3.67e7, 0.445, 8.96e3),
+    (1.25, 3411.4, 1.96e9, 0.48, 1.19e6),
+    (1.25, 3411.4, 1.96e9, 0.10, 3.09e6)]
+
+
+@pytest.mark.parametrize("d, rho, k, e, printed", PRINTED)
+def test_mass_ball_gives_the_printed_dashpots(tmp_path, d, rho, k, e, printed):
+    """Tables 1 and 4: c from the mass of one ball, whether the partner moves or not."""
+    def dashpots(style):
+        log, _, _ = collide(tmp_path, style=style, coeff=f"restitution {e}", k=k, d1=d, d2=d, rho1=rho,
+                            rho2=rho, dt=1e-6, steps=1, box=4)
+        wall, _, _ = collide(tmp_path, "wall", style=style, coeff=f"restitution {e}", k=k, d1=d, d2=d,
+                             rho1=rho, dt=1e-6, steps=1, box=4)
+        return table(log)[1, 2][2], table(wall)[1, 3][2]
+
+    three_digits = [float(f"{c:.3g}") for c in dashpots("mass ball")]
+    assert three_digits == [printed, printed]
+    moving, fixed = dashpots("mass pair")
+    assert float(f"{fixed:.3g}") == printed
+    assert moving == pytest.approx(fixed / math.sqrt(2), rel=1e-3)
+
+
+def test_table_4_means_0_344_between_moving_balls(tmp_path):
+    given = dict(k=1.96e9, d1=1.25, d2=1.25, rho1=3411.4, rho2=3411.4, dt=1e-5, steps=1500, box=4)
+    for style, coeff, e in [("mass ball", "restitution 0.48", 0.344), ("", "damping 1.19e6 1.19e6", 0.344),
+                            ("mass pair", "restitution 0.48", 0.48), ("", "damping 8.41e5 8.41e5", 0.48)]:
+        log, one, two = collide(tmp_path, style=style, coeff=coeff, **given)
+        assert speed_ratio(one, two) == pytest.approx(e, abs=0.005), coeff
+        assert table(log)[1, 2][4] == pytest.approx(e, abs=0.001), coeff
+    log, one, two = collide(tmp_path, "wall", style="mass ball", coeff="restitution 0.48", **given)
+    assert speed_ratio(one, two) == pytest.approx(0.48, abs=0.005)
+
+
+def test_contact_time_and_largest_overlap(tmp_path):
+    """REFERENCE 8: contact time pi/(w sqrt(1-z^2)), overlap v/w exp(-z/sqrt(1-z^2) acos z)."""
+    log, one, _ = collide(tmp_path, "wall", coeff="restitution 0.3")
+    zeta = -math.log(0.3) / math.hypot(math.pi, math.log(0.3))
+    w, root = math.sqrt(1e6 / ball_mass(0.1, 2500)), math.sqrt(1 - zeta ** 2)
+    overlap = 0.1 + one[:, 0]
+    assert overlap.max() == pytest.approx(1 / w * math.exp(-zeta / root * math.acos(zeta)), rel=0.005)
+    assert (overlap > 0).sum() * 2e-6 == pytest.approx(math.pi / (w * root), rel=0.005)
+    assert table(log)[1, 3][8] * 2e-6 == pytest.approx(math.pi / (w * root), rel=1e-3)
+
+
+def test_limit_damping(tmp_path):
+    """A force that never pulls lets go where it is zero (Schwager & Poeschel 2007): e above the formula's."""
+    zeta = -math.log(0.3) / math.hypot(math.pi, math.log(0.3))
+    root = math.sqrt(1 - zeta ** 2)
+    limited = math.exp(-zeta / root * (math.pi - math.atan2(2 * zeta * root, 1 - 2 * zeta ** 2)))
+    assert limited > 0.3 + 0.05
+    for kind in ("ball", "wall"):
+        for style, e in (("", 0.3), ("limit_damping no", 0.3), ("limit_damping yes", limited)):
+            _, one, two = collide(tmp_path, kind, coeff="restitution 0.3", style=style)
+            assert speed_ratio(one, two) == pytest.approx(e, abs=0.005), (kind, style)
+            pulls = np.diff(one[:, 2]).max() > 1e-9
+            assert pulls == (style != "limit_damping yes"), (kind, style)
+
+
+# --- friction ---
+
+
+@pytest.mark.parametrize("kind", ["wall", "frozen"])
+@pytest.mark.parametrize("angle", [50, 70])
+def test_oblique_impact(tmp_path, kind, angle):
+    """Chung & Ooi 2011, test 4, gross sliding: e_t = 1 - mu(1+e)/tan(theta), spin 2.5 mu (1+e) vn/R."""
+    mu, e, v, radius = 0.092, 0.98, 3.9, 2.5e-3
+    vn, vt = v * math.cos(math.radians(angle)), v * math.sin(math.radians(angle))
+    _, one, _ = collide(tmp_path, kind, coeff=f"restitution {e} friction {math.degrees(math.atan(mu))}",
+                        k=1e8, d1=2 * radius, d2=1.0, v1=(vn, vt), dt=2e-8, steps=400, gap=1e-7)
+    assert -one[-1, 2] / vn == pytest.approx(e, abs=0.005)
+    assert one[-1, 3] / vt == pytest.approx(1 - mu * (1 + e) * vn / vt, rel=0.003)
+    assert abs(one[-1, 4]) == pytest.approx(2.5 * mu * (1 + e) * vn / radius, rel=0.01)
+
+
+@pytest.mark.parametrize("newton", ["on", "off"])
+def test_conservation(tmp_path, newton):
+    """Oblique collision of two moving balls of different radius and mass, friction and rolling resistance.
+
+    Momentum is exact. The friction acts at the ends of the radii, which overlap: angular momentum is
+    off by at most the overlap's share of the distance, times the tangential momentum."""
+    d1, d2, rho1, rho2 = 0.1, 0.16, 2500.0, 4000.0
+    _, one, two = collide(tmp_path, d1=d1, d2=d2, rho1=rho1, rho2=rho2, y1=0.05, v1=(1.0, 0.3), v2=(-0.5, 0.2),
+                          coeff="restitution 0.6 friction 30 rolling 0.2", newton=newton,
+                          extra="set atom 1 omega 0 0 20")
+    m = [ball_mass(d1, rho1), ball_mass(d2, rho2)]
+    inertia = [0.1 * m[0] * d1 ** 2, 0.1 * m[1] * d2 ** 2]
+
+    def momentum(row):
+        return m[0] * one[row, 2:4] + m[1] * two[row, 2:4]
+
+    def angular(row, spin=1.0):
+        return sum(mass * (ball[row, 0] * ball[row, 3] - ball[row, 1] * ball[row, 2]) + spin * i * ball[row, 4]
+                   for ball, mass, i in zip((one, two), m, inertia))
+
+    assert np.hypot(*(one[-1, :2] - two[-1, :2])) > 0.5 * (d1 + d2)  # it is over
+    assert np.allclose(momentum(-1), momentum(0), rtol=0, atol=1e-12)
+    distance = np.hypot(*(one[:, :2] - two[:, :2]).T)
+    overlap = 0.5 * (d1 + d2) - distance.min()
+    turned = abs(inertia[0] * (one[-1, 4] - one[0, 4])) + abs(inertia[1] * (two[-1, 4] - two[0, 4]))
+    assert turned > 0.01
+    assert abs(angular(-1) - angular(0)) < turned * overlap / distance.min()
+    assert abs(angular(-1, 0.0) - angular(0, 0.0)) > 100 * abs(angular(-1) - angular(0))  # spin is needed
+
+
+# --- rolling ---
+
+
+def pressed(tmp_path, kind, spin, friction=0, steps=2500, coeff="", style="", d2=0.1, k=1e6, dt=2e-6):
+    """A ball pressed against a fixed one by 50 N and spinning about z: its wz per step."""
+    force = 50.0
+    _, one, _ = collide(
+        tmp_path, kind, v1=(0, 0), d2=d2, k=k, gap=-force / k, dt=dt, steps=steps, style=style,
+        coeff=f"restitution 0.3 friction {friction} {coeff}",
+        extra=f"set atom 1 omega 0 0 {spin}\nfix press moving addforce {force} 0 0")
+    return one[:, 4]
+
+
+INERTIA = 0.1 * ball_mass(0.1, 2500) * 0.1 ** 2
+
+
+@pytest.mark.parametrize("kind", ["wall", "frozen"])
+@pytest.mark.parametrize("style, d2, arm", [
+    ("", 0.1, 0.05), ("rolling_radius ball", 0.1, 0.05), ("rolling_radius reduced", 0.1, 0.025),
+    ("", 0.3, 0.075), ("rolling_radius reduced", 0.3, 0.0375)])
+def test_rolling_limit(tmp_path, kind, style, d2, arm):
+    """Spin-down of a pressed ball: dw/dt = -mu_r * arm * Fn / I, arm 2 Ri Rj/(Ri+Rj) or half of it."""
+    w = pressed(tmp_path, kind, spin=50.0, coeff="rolling 0.3", style=style, d2=d2)
+    rate = (w[2000] - w[500]) / (1500 * 2e-6)
+    assert rate == pytest.approx(-0.3 * arm * 50.0 / INERTIA, rel=0.001)
+
+
+@pytest.mark.parametrize("kind", ["wall", "frozen"])
+@pytest.mark.parametrize("style, arm", [("", 0.05), ("rolling_radius reduced", 0.025)])
+def test_rolling_spring(tmp_path, kind, style, arm):
+    """Below the limit the spin swings on the rolling spring: w^2 = kr arm^2 / I. The arm counts twice."""
+    w = pressed(tmp_path, kind, spin=0.01, coeff="rolling 0.9 rolling_spring 4e5 0", style=style, steps=8000)
+    theory = 0.01 * np.cos(math.sqrt(4e5 * arm ** 2 / INERTIA) * 2e-6 * np.arange(8001))
+    assert np.abs(w - theory).max() < 0.02 * 0.01
+    assert w.min() < -0.0095  # more than half a period
+
+
+def test_rolling_spring_defaults_to_the_tangential_one(tmp_path):
+    e, kt = 0.3, 1e6
+    zeta = -math.log(e) / math.hypot(math.pi, math.log(e))
+    ct = 2 * zeta * math.sqrt(kt * ball_mass(0.1, 2500))
+    default = pressed(tmp_path, "wall", 0.01, coeff="rolling 0.9")
+    same = pressed(tmp_path, "wall", 0.01, coeff=f"rolling 0.9 rolling_spring {kt} {ct}")
+    other = pressed(tmp_path, "wall", 0.01, coeff=f"rolling 0.9 rolling_spring {0.5 * kt} {ct}")
+    assert np.allclose(default, same, rtol=0, atol=1e-12)
+    assert np.abs(default - other).max() > 1e-4
+
+
+# --- time step ---
+
+
+@pytest.mark.parametrize("kind", ["ball", "wall"])
+def test_time_step_warning(tmp_path, kind):
+    rule = 0.25 * math.sqrt(ball_mass(0.1, 2500) / 1e6)
+    for dt, warned in ((0.99 * rule, False), (1.01 * rule, True)):
+        log, _, _ = collide(tmp_path, kind, d2=0.2, dt=dt, steps=1)  # the lighter ball counts
+        assert ("WARNING: Pair gran/restitution: time step" in log) == warned
+    assert f"is 1.01 times the largest that holds the restitution, 0.25 sqrt(m_min/kn) = {rule:.4g} s" in log
+
+
+# --- start-up table and restart ---
+
+
+COEFFS = """pair_coeff 1 1 stiffness 1e6 8e5 restitution 0.48 friction 30 rolling 0.1
+pair_coeff 1 2 stiffness 2e6 2e6 damping 500 400 friction 20
+pair_coeff 2 2 stiffness 3e6 3e6 restitution 1 rolling_spring 1e5 10
+pair_coeff 1 3 stiffness 1e6 1e6 restitution 0.1 friction 35
+"""
+
+
+def test_start_up_table(tmp_path):
+    log, _, _ = collide(tmp_path, "ball", coeff=COEFFS, steps=1, rho2=5000.0)
+    rows = table(log)
+    assert sorted(rows) == [(1, 1), (1, 2), (2, 2)]  # no ball, frozen or wall of type 3
+    m1, m2 = ball_mass(0.1, 2500), ball_mass(0.1, 5000)
+    zeta = -math.log(0.48) / math.hypot(math.pi, math.log(0.48))
+    assert rows[1, 1] == pytest.approx([1e6, 8e5, 2 * zeta * math.sqrt(1e6 * m1 / 2), zeta, 0.48, 0.48, 30,
+                                        math.degrees(math.atan(0.1)), math.pi / math.sqrt(2e6 / m1 * (1 - zeta ** 2)) / 2e-6],
+                                       rel=1e-3)
+    pair = m1 * m2 / (m1 + m2)
+    assert rows[1, 2][2:5] == pytest.approx([500, 250 / math.sqrt(2e6 * pair), math.exp(
+        -math.pi * (z := 250 / math.sqrt(2e6 * pair)) / math.sqrt(1 - z * z))], rel=1e-3)
+    assert rows[2, 2][3:6] == [0.0, 1.0, 1.0]
+
+    # once, not at every run; again when a coefficient changes
+
+    extra = "run 0\nrun 0\npair_coeff 1 1 stiffness 1e6 1e6 restitution 0.4\nrun 0"
+    log, _, _ = collide(tmp_path, "ball", coeff=COEFFS, steps=1, extra=extra)
+    assert log.count("contact coefficients (") == 2
+
+    log, _, _ = collide(tmp_path, "wall", coeff=COEFFS, steps=1)
+    assert table(log)[1, 3][4:6] == pytest.approx([None, 0.1], abs=1e-4)
+
+
+def test_coefficients_survive_a_restart(tmp_path):
+    style = "mass ball limit_damping yes rolling_radius reduced"
+    first, _, _ = collide(tmp_path, coeff=COEFFS, style=style, steps=100,
+                          extra="run 100\nwrite_restart mid.restart")
+    read = "read_restart mid.restart\nneigh_modify delay 0\ncomm_modify vel yes\n"
+    log = run_deck(read + "fix move all nve/sphere\nrun 100\nprint \"velocities $(vx[1]:%.17g) $(vx[2]:%.17g)\"\n", tmp_path)
+    assert table(log) == table(first)
+    end = [float(word) for word in re.findall(r"^velocities (\S+) (\S+)", log, re.M)[0]]
+    one, two = numbers(tmp_path / "one.txt"), numbers(tmp_path / "two.txt")
+    assert end == pytest.approx([one[-1, 2], two[-1, 2]], rel=1e-5)  # fix print writes six digits
+
+    # the settings too: limit_damping yes is part of what came back
+
+    other, _, _ = collide(tmp_path, coeff=COEFFS, style="mass pair", steps=1)
+    assert table(other) != table(first)
+
+
+# --- bad input ---
+
+
+STIFF = "pair_coeff * * stiffness 1e6 1e6"
+
+
+@pytest.mark.parametrize("coeff, message", [
+    (f"{STIFF} restitution 0", "Pair gran/restitution restitution must be > 0 and <= 1, got 0"),
+    (f"{STIFF} restitution 1.2", "Pair gran/restitution restitution must be > 0 and <= 1, got 1.2"),
+    (f"{STIFF} restitution -0.5", "restitution must be > 0 and <= 1, got -0.5"),
+    (f"{STIFF} restitution nan", "restitution"),
+    (f"{STIFF} restitution 0.5 friction 90", "friction must be >= 0 and < 90 degrees, got 90"),
+    (f"{STIFF} restitution 0.5 friction -1", "friction must be >= 0 and < 90 degrees, got -1"),
+    (f"{STIFF} restitution 0.5 damping 1 1", "exactly one of restitution and damping is required, got both"),
+    (STIFF, "exactly one of restitution and damping is required, got neither"),
+    (f"{STIFF} damping -1 1", "damping must be >= 0 (cn), got -1"),
+    (f"{STIFF} damping 1 -2", "damping must be >= 0 (ct), got -2"),
+    ("pair_coeff * * restitution 0.5", "pair_coeff * *: stiffness kn kt is required"),
+    ("pair_coeff * * stiffness 0 1e6 restitution 0.5", "stiffness must be > 0 (kn), got 0"),
+    ("pair_coeff * * stiffness 1e6 -1 restitution 0.5", "stiffness must be >= 0 (kt), got -1"),
+    ("pair_coeff * * stiffness inf 1 restitution 0.5", "stiffness: value 1 must be a number, got inf"),
+    ("pair_coeff * * stiffness stiff 1 restitution 0.5",
+     "Pair gran/restitution stiffness: value 1 must be a number, got stiff"),
+    (f"{STIFF} restitution", "Pair gran/restitution restitution: value 1 is missing"),
+    (f"{STIFF} damping 10", "Pair gran/restitution damping: value 2 is missing"),
+    (f"{STIFF} restitution 0.5 rolling -0.1", "rolling must be >= 0, got -0.1"),
+    (f"{STIFF} restitution 0.5 rolling_spring -1 0", "rolling_spring must be >= 0 (kr), got -1"),
+    (f"{STIFF} restitution 0.5 rolling_spring 1 -1", "rolling_spring must be >= 0 (cr), got -1"),
+    (f"{STIFF} restitution 0.5 viscosity 3", "pair_coeff: unknown keyword viscosity, must be stiffness"),
+    ("pair_coeff 1 4 stiffness 1e6 1e6 restitution 0.5", "4"),
+    ("pair_coeff 1 1 stiffness 1e6 1e6 restitution 0.5", "pair_coeff 1 2 is not set"),
+    ("", "pair coeffs are not set"),
+])
+def test_bad_pair_coeff(tmp_path, coeff, message):
+    collide(tmp_path, coeff=coeff or "# pair_coeff: none", expect_error=message)
+
+
+@pytest.mark.parametrize("style, message", [
+    ("mass reduced", "Pair gran/restitution mass must be pair or ball, got reduced"),
+    ("limit_damping maybe", "limit_damping must be no or yes, got maybe"),
+    ("rolling_radius half", "rolling_radius must be ball or reduced, got half"),
+    ("gamma 3", "unknown keyword gamma, must be mass, limit_damping or rolling_radius"),
+    ("mass", "mass: value missing"),
+])
+def test_bad_pair_style(tmp_path, style, message):
+    collide(tmp_path, style=style, expect_error=message)
+
+
+def test_unset_pair_coeff_of_a_wall_type(tmp_path):
+    collide(tmp_path, "wall", coeff="pair_coeff 1 1 stiffness 1e6 1e6 restitution 0.5",
+            expect_error="Fix wall/gran/balls: pair_coeff 1 3 is not set (moving type 1, wall type 3)")
+
+
+def test_unset_pair_coeff_of_balls_to_come(tmp_path):
+    """Balls that fix deposit will add count from the start."""
+    collide(tmp_path, coeff="pair_coeff 1*2 1*2 stiffness 1e6 1e6 restitution 0.5",
+            extra="region above block -0.5 0.5 -0.5 0.5 0.5 0.9\n"
+                  "fix rain all deposit 5 3 100 12345 region above",
+            expect_error="pair_coeff 1 3 is not set")
+
+
+def test_ghost_velocities_off(tmp_path):
+    collide(tmp_path, extra="comm_modify vel no",
+            expect_error="Pair gran/restitution requires ghost velocities: comm_modify vel yes")
+
+
+def test_atoms_without_radius(tmp_path):
+    run_deck("units si\natom_style atomic\ncomm_modify vel yes\nregion box block 0 1 0 1 0 1\ncreate_box 1 box\n"
+             "create_atoms 1 single 0.5 0.5 0.5\nmass 1 1.0\npair_style gran/restitution\n"
+             "pair_coeff 1 1 stiffness 1e6 1e6 restitution 0.5\nrun 0\n", tmp_path,
+             expect_error="Pair gran/restitution requires balls: atom_style must be sphere, got atomic")

@@ -1,0 +1,458 @@
+"""Fix wall/gran/balls: the same physics as frozen atoms, whatever the ranks, the order of the atoms, a restart."""
+
+import math
+
+import numpy as np
+import pytest
+
+from deck_helpers import run_deck
+
+D, RHO = 0.1, 2500.0
+MASS = RHO * math.pi * D ** 3 / 6
+G = 9.81
+
+
+def floor(origin=(0.0, 0.0, 0.0), diameter=D, spacing=0.5 * D, nx=36, ny=10):
+    """A rough gutter along x: balls on a plan grid, their heights scattered by 4 % of the diameter."""
+    heights = np.random.default_rng(7).uniform(-0.02, 0.02, (44, 12))[:nx, :ny] * diameter
+    return [(origin[0] + (i - 0.5 * nx) * spacing, origin[1] + y, origin[2] + heights[i, j] + 0.8 * y * y)
+            for i in range(1, nx) for j in range(ny) for y in [(j - 0.5 * ny + 0.5) * spacing]]
+
+
+# One moving ball that falls on the floor, bounces and rolls along x
+BALLS = [dict(x=-0.83, y=-0.03, z=0.17, d=D, v=(1.8, 0.1, -1.0))]
+# several, of different size, that also meet each other
+CROWD = [dict(x=-0.6 + 0.17 * (k % 4), y=-0.08 + 0.17 * (k // 4), z=0.2 + 0.02 * k, d=(0.1, 0.14, 0.07)[k % 3],
+              v=(0.5 - 0.5 * (k % 3), 0.1, -1.0)) for k in range(8)]
+
+COEFF = "stiffness 1e5 8e4 restitution 0.5 friction 30 rolling 0.05"
+SLOPE = "0.2 0 -1"  # direction of gravity
+
+# so that the borders of 2 and 4 ranks lie where the ball touches the floor
+BOX = [(-0.8732, 0.8628), (-0.2982, 0.3018), (-0.6, 0.6)]
+
+SETUP = """
+units si
+newton {newton}
+processors {processors}
+atom_style sphere
+atom_modify map array {atom_modify}
+boundary f f f
+comm_modify vel yes
+region box block {box}
+create_box 2 box
+neighbor {skin} bin
+neigh_modify {neigh_modify}
+"""
+
+CONTACT = """
+pair_style gran/restitution {style}
+pair_coeff 1 1 {coeff}
+pair_coeff 1 2 {coeff}
+timestep {dt}
+group moving type 1
+{wall}
+fix gravity moving gravity 9.81 vector {gravity}
+fix move moving nve/sphere
+dump trace moving custom {every} {trace} id x y z vx vy vz omegax omegay omegaz
+dump_modify trace sort id format float %.17g
+thermo 1000
+{before}
+"""
+
+
+def make_deck(tmp_path, wall=True, balls=BALLS, positions=None, diameter=D, origin=(0.0, 0.0, 0.0), newton="on",
+              processors="* * *", atom_modify="", skin=0.02, neigh_modify="delay 0", style="", coeff=COEFF, dt=4e-4,
+              gravity=SLOPE, every=100, trace="trace.txt", before=""):
+    positions = floor(origin) if positions is None else positions
+    box = " ".join(f"{low + o} {high + o}" for o, (low, high) in zip(origin, BOX))
+    deck = SETUP.format(**locals())
+    for k, ball in enumerate(balls, 1):
+        x, y, z = (ball[axis] + o for axis, o in zip("xyz", origin))
+        deck += f"create_atoms 1 single {x!r} {y!r} {z!r}\nset atom {k} diameter {ball['d']} density {RHO}\n"
+        deck += "velocity all set 0 0 0\n" * (k == 1)
+        deck += f"group one id {k}\nvelocity one set {ball['v'][0]} {ball['v'][1]} {ball['v'][2]}\ngroup one delete\n"
+    if wall:
+        (tmp_path / "floor.xyz").write_text("".join(f"{x!r} {y!r} {z!r}\n" for x, y, z in positions))
+        ground = f"fix ground moving wall/gran/balls 2 {diameter} file floor.xyz"
+    else:
+        for x, y, z in positions:
+            deck += f"create_atoms 2 single {x!r} {y!r} {z!r}\n"
+        deck += f"set type 2 diameter {diameter} density {RHO}\n"
+        ground = "group floor type 2\nfix ground floor freeze"
+    return deck + CONTACT.format(**{**locals(), "wall": ground})
+
+
+def trajectory(tmp_path, name="trace.txt"):
+    """Frames x ball x (x y z vx vy vz omega) of a dump sorted by ID."""
+    frames, rows = [], None
+    for line in (tmp_path / name).read_text().splitlines():
+        if line.startswith("ITEM: ATOMS"):
+            rows = []
+            frames.append(rows)
+        elif line.startswith("ITEM"):
+            rows = None
+        elif rows is not None:
+            rows.append([float(word) for word in line.split()[1:]])
+    return np.array(frames)
+
+
+def run(tmp_path, steps=2000, np=1, **settings):
+    log = run_deck(make_deck(tmp_path, **settings) + f"run {steps}\n", tmp_path, np=np)
+    assert "Dangerous builds = 0" in log or "check no" in settings.get("neigh_modify", "")
+    return trajectory(tmp_path)
+
+
+def difference(a, b):
+    """Largest difference of positions, velocities and spins, each relative to its own size."""
+    assert a.shape == b.shape
+    parts = [(a[..., k:k + 3], b[..., k:k + 3]) for k in (0, 3, 6)]
+    largest = max(np.abs(p - q).max() / np.abs(p).max() for p, q in parts)
+    print(f"difference {largest:.3g}")  # pytest -rP shows it
+    return largest
+
+
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory):
+    """One rank, wall balls, default settings: one ball, and the crowd."""
+    one = run(tmp_path_factory.mktemp("one"))
+    crowd = run(tmp_path_factory.mktemp("crowd"), balls=CROWD)
+    return {"one": one, "crowd": crowd}
+
+
+def in_contact(path, dt, gravity=SLOPE):
+    """Per step of a dump of every step: is the ball's acceleration other than that of gravity?"""
+    g = np.array([float(word) for word in gravity.split()])
+    acceleration = np.diff(path[:, 3:6], axis=0) / dt
+    return np.linalg.norm(acceleration - G * g / np.linalg.norm(g), axis=1) > 1.0
+
+
+def test_the_ball_bounces_and_rolls_and_touches_at_the_borders(tmp_path):
+    """The trajectory that the tests below compare is worth comparing."""
+    path = run(tmp_path, every=1)[:, 0]
+    touch = in_contact(path, 4e-4)
+    assert np.sum(touch[1:] & ~touch[:-1]) > 10
+    assert path[-1, 7] > 20.0  # rolls along +x: turns about +y
+    for axis, border in ((0, -0.4392), (0, -0.0052), (1, 0.0018)):
+        crossing = np.argmax(path[:, axis] > border)
+        assert touch[crossing - 3:crossing + 3].all()
+
+
+# --- frozen atoms ---
+
+
+@pytest.mark.parametrize("case", [
+    dict(), dict(style="rolling_radius reduced limit_damping yes mass ball"),
+    dict(coeff="stiffness 1e5 1e5 damping 60 40 friction 35 rolling 0.2 rolling_spring 3e4 5"),
+    dict(balls=[{**BALLS[0], "d": 0.16, "z": 0.2}]), dict(balls=[{**BALLS[0], "d": 0.06, "z": 0.15}])],
+    ids=["default", "other style", "other coefficients", "larger ball", "smaller ball"])
+def test_wall_balls_are_frozen_atoms(tmp_path, case):
+    wall = run(tmp_path, **case)
+    for newton in ("on", "off"):
+        assert difference(wall, run(tmp_path, wall=False, newton=newton, **case)) < 1e-9
+    assert np.abs(wall[-1, 0, :3] - wall[0, 0, :3]).max() > 0.3
+
+
+def test_the_comparison_sees_a_small_change(tmp_path, reference):
+    positions = floor()
+    positions = [(x, y, z + 1e-6) for x, y, z in positions]
+    assert difference(reference["one"], run(tmp_path, positions=positions)) > 1e-6
+    assert difference(reference["one"], run(tmp_path, coeff=COEFF.replace("rolling 0.05", "rolling 0.05005"))) > 1e-6
+
+
+# --- ranks, order, lists ---
+
+
+@pytest.mark.parametrize("ranks, processors", [(2, "2 1 1"), (2, "1 2 1"), (4, "4 1 1"), (4, "2 2 1"), (4, "2 1 2")])
+def test_ranks(tmp_path, reference, ranks, processors):
+    settings = dict(np=ranks, processors=processors)
+    assert difference(reference["one"], run(tmp_path, **settings)) < 1e-9
+    assert difference(reference["crowd"], run(tmp_path, balls=CROWD, **settings)) < 1e-9
+
+
+@pytest.mark.parametrize("ranks, processors", [(1, "* * *"), (4, "2 2 1")])
+def test_newton_off(tmp_path, reference, ranks, processors):
+    settings = dict(np=ranks, processors=processors, newton="off")
+    assert difference(reference["one"], run(tmp_path, **settings)) < 1e-9
+    assert difference(reference["crowd"], run(tmp_path, balls=CROWD, **settings)) < 1e-9
+
+
+def test_frozen_atoms_on_ranks(tmp_path, reference):
+    assert difference(reference["one"], run(tmp_path, wall=False, np=4, processors="4 1 1")) < 1e-9
+
+
+@pytest.mark.parametrize("settings", [
+    dict(neigh_modify="every 1 delay 0 check no"), dict(atom_modify="sort 1 0.3"), dict(atom_modify="sort 0 0"),
+    dict(atom_modify="sort 1 0.3", neigh_modify="every 1 delay 0 check no"), dict(skin=0.2), dict(skin=0.003)],
+    ids=["rebuilt every step", "sorted", "never sorted", "sorted every step", "large skin", "small skin"])
+def test_sorting_and_lists(tmp_path, reference, settings):
+    assert difference(reference["one"], run(tmp_path, **settings)) < 1e-9
+    assert difference(reference["crowd"], run(tmp_path, balls=CROWD, **settings)) < 1e-9
+
+
+def test_lists_rebuilt_every_step_on_ranks(tmp_path, reference):
+    """The ball changes its rank in the middle of a contact."""
+    settings = dict(np=4, atom_modify="sort 1 0.3", neigh_modify="every 1 delay 0 check no")
+    for processors in ("4 1 1", "2 2 1"):
+        assert difference(reference["one"], run(tmp_path, processors=processors, **settings)) < 1e-9
+    assert difference(reference["crowd"], run(tmp_path, balls=CROWD, processors="4 1 1", **settings)) < 1e-9
+
+
+def test_runs_in_pieces(tmp_path, reference):
+    """Ten runs instead of one, without a restart: the lists are made anew, the contacts are not forgotten.
+
+    Each start evaluates the forces with the velocity of the full step, where the step before used that
+    of the half step: undamped it is exact, with dashpots it is off as a restart is, see below."""
+    log = run_deck(make_deck(tmp_path) + "run 200\n" * 10, tmp_path)
+    assert log.count("Loop time") == 10
+    assert difference(reference["one"], trajectory(tmp_path)) < 0.05
+    coeff = COEFF.replace("restitution 0.5", "damping 0 0")
+    whole = run(tmp_path, coeff=coeff)
+    run_deck(make_deck(tmp_path, coeff=coeff) + "run 200\n" * 10, tmp_path)
+    assert difference(whole, trajectory(tmp_path)) < 1e-9
+
+
+def test_shifted_origin(tmp_path, reference):
+    """Coordinates of 2e4 m leave 4e-12 m of resolution, 1e-8 of the overlaps; friction and bounces enlarge it."""
+    origin = np.array([-20000.0, 13000.0, 1500.0])
+    shifted = run(tmp_path, origin=tuple(origin))
+    shifted[..., :3] -= origin
+    assert difference(reference["one"], shifted) < 1e-5
+
+
+def test_sparse_and_large_floor_balls(tmp_path):
+    """Other sizes of the search cells: fixed balls far apart, and larger than the moving one."""
+    far = [(x, y, -0.3) for x in (-0.8, 0.0, 0.8) for y in (-0.2, 0.2)] + floor(nx=4, ny=2)
+    settings = dict(positions=far, balls=[dict(x=0.01, y=0.02, z=0.2, d=D, v=(0.5, 0.1, 0.0))], steps=800)
+    assert difference(run(tmp_path, **settings), run(tmp_path, wall=False, **settings)) < 1e-9
+    large = floor(diameter=0.3, spacing=0.2, nx=8, ny=3)
+    settings = dict(positions=large, diameter=0.3, balls=[{**BALLS[0], "z": 0.35}])
+    assert difference(run(tmp_path, **settings), run(tmp_path, wall=False, **settings)) < 1e-9
+
+
+# --- restart ---
+
+
+def held(tmp_path, **settings):
+    """Two fixed balls in a row carry a ball that could roll over them along x, but for its contact springs."""
+    rail = [(0.0, y, 0.0) for y in (-0.05, 0.05)]
+    ball = [dict(x=0.0, y=0.0, z=math.sqrt(D * D - 0.05 ** 2) - 1e-5, d=D, v=(0, 0, 0))]
+    options = dict(positions=rail, balls=ball, gravity="0.05 0 -1", every=50,
+                   coeff="stiffness 1e5 1e5 restitution 0.1 friction 40 rolling 0.4")
+    return make_deck(tmp_path, **{**options, **settings})
+
+
+RESTART = """
+read_restart mid.restart
+neighbor 0.02 bin
+neigh_modify delay 0
+comm_modify vel yes
+timestep 1e-4
+fix {id} moving wall/gran/balls 2 0.1 file floor.xyz
+fix gravity moving gravity 9.81 vector {gravity}
+fix move moving nve/sphere
+dump trace moving custom {every} again.txt id x y z vx vy vz omegax omegay omegaz
+dump_modify trace sort id format float %.17g
+run {steps}
+"""
+
+
+@pytest.mark.parametrize("ranks", [(1, 1), (4, 4), (4, 1), (1, 4)])
+def test_restart_of_a_ball_held_by_its_springs(tmp_path, ranks):
+    """At rest the restart is exact to 1e-9; without the springs' history the ball rolls off."""
+    run_deck(held(tmp_path, processors="4 1 1" if ranks[0] == 4 else "* * *")
+             + "run 2000\nwrite_restart mid.restart\nrun 1000\n", tmp_path, np=ranks[0])
+    whole = trajectory(tmp_path)[-21:]
+    assert np.abs(whole[-1, 0, 0]) < 1e-4  # held
+
+    run_deck(RESTART.format(id="ground", gravity="0.05 0 -1", every=50, steps=1000), tmp_path, np=ranks[1])
+    again = trajectory(tmp_path, "again.txt")
+    assert np.abs(again[..., :3] - whole[..., :3]).max() < 1e-9 * D
+
+    # the same under another name: the contacts of the restart file find no owner
+
+    run_deck(RESTART.format(id="other", gravity="0.05 0 -1", every=50, steps=1000), tmp_path, np=ranks[1])
+    forgot = trajectory(tmp_path, "again.txt")
+    assert np.abs(forgot[..., :3] - whole[..., :3]).max() > 1e-6 * D
+
+
+def cut_and_go_on(tmp_path, steps=150, dt=4e-4, forget=None, **settings):
+    """Cut a run in the middle of a contact; the frames of the uncut run from there, and of the restarted one."""
+    deck = make_deck(tmp_path, dt=dt, every=1, **settings)
+    run_deck(deck + f"run {round(0.6 / dt)}\n", tmp_path)
+    path = trajectory(tmp_path)
+    touch = in_contact(path[:, 0], dt)
+    begins = np.where(touch[1:] & ~touch[:-1])[0] + 1
+    half = round(0.004 / dt)
+    cut = next(k for k in begins[1:] if touch[k:k + 2 * half].all()) + half  # the second long contact or later
+    assert cut + steps * 4e-4 / dt < len(path)
+
+    run_deck(deck.replace("custom 1 trace", f"custom {round(4e-4 / dt)} trace")
+             + f"restart {cut} cut.*.restart\nrun {cut}\n", tmp_path)
+    ground = "fix ground moving wall/gran/balls 2 0.1 file floor.xyz"
+    again = RESTART.replace("fix {id} moving wall/gran/balls 2 0.1 file floor.xyz",
+                            ground if settings.get("wall", True) else "fix ground floor freeze")
+    again = again.replace("mid.", f"cut.{cut}.").replace("timestep 1e-4", f"timestep {dt}")
+    if forget:
+        again = again.replace("fix ground", "fix other")
+    steps = round(steps * 4e-4 / dt)
+    run_deck(again.format(gravity=SLOPE, every=1, steps=steps), tmp_path, expect_error=forget)
+    return path[cut:cut + steps + 1], trajectory(tmp_path, "again.txt")
+
+
+UNDAMPED = COEFF.replace("restitution 0.5", "damping 0 0")
+
+
+@pytest.mark.parametrize("settings", [dict(), dict(balls=CROWD), dict(wall=False), dict(balls=CROWD, wall=False)],
+                         ids=["ball", "crowd", "ball on atoms", "crowd on atoms"])
+def test_restart_during_a_contact(tmp_path, settings):
+    """Undamped, the continued run is the uncut one to 1e-9."""
+    assert difference(*cut_and_go_on(tmp_path, coeff=UNDAMPED, **settings)) < 1e-9
+
+
+def test_restart_that_forgets_a_contact(tmp_path):
+    """An impact overlaps by more than 5 % of the radius: as a new contact it would stop the run."""
+    cut_and_go_on(tmp_path, coeff=UNDAMPED, forget="Fix wall/gran/balls other: 1 pairs overlap at the start")
+
+
+def test_restart_during_a_damped_contact(tmp_path):
+    """With dashpots the first forces after a restart come from full-step velocities: exact to the order dt^2.
+
+    Seen: 6e-4 at 28 steps per contact, 5e-6 at 280."""
+    error = [difference(*cut_and_go_on(tmp_path, steps=50, dt=dt)) for dt in (4e-4, 4e-5)]
+    assert error[0] < 2e-3 and error[1] < 2e-2 * error[0]
+
+
+def test_restart_after_clear(tmp_path):
+    """The contacts come back too when the restart file is read by the same process."""
+    again = RESTART.replace("mid.", "cut.1100.").replace("fix {id} moving wall/gran/balls 2 0.1 file floor.xyz",
+                                                         "fix ground floor freeze").replace("1e-4", "4e-4")
+    deck = make_deck(tmp_path, balls=CROWD, wall=False, coeff=UNDAMPED)
+    run_deck(deck + "restart 1100 cut.*.restart\nrun 1500\nclear\n"
+             + again.format(gravity=SLOPE, every=100, steps=400), tmp_path)
+    assert difference(trajectory(tmp_path)[11:], trajectory(tmp_path, "again.txt")) < 1e-9
+
+
+def test_restart_with_other_balls(tmp_path):
+    run_deck(held(tmp_path) + "run 100\nwrite_restart mid.restart\n", tmp_path)
+    again = RESTART.format(id="ground", gravity="0 0 -1", every=50, steps=100)
+    for other in ("0 -0.05 0\n", "0 -0.05 0\n0 0.06 0\n"):
+        (tmp_path / "floor.xyz").write_text(other)
+        run_deck(again, tmp_path, expect_error="Fix wall/gran/balls ground: the restart file was written with other fixed balls")
+
+
+# --- overlaps at the start ---
+
+
+def test_initial_overlap_with_a_fixed_ball(tmp_path):
+    for share, stops in ((0.049, False), (0.06, True)):
+        ball = [dict(x=0.0, y=0.0, z=D - share * D / 2, d=D, v=(0, 0, 0))]
+        deck = make_deck(tmp_path, balls=ball, positions=[(0.0, 0.0, 0.0), (0.3, 0.0, 0.0)])
+        run_deck(deck + "run 1\n", tmp_path, expect_error=(
+            "Fix wall/gran/balls ground: 1 pairs overlap at the start by more than 5 % of the radius, worst 6 % "
+            "between ball 1 and the fixed ball at 0 0 0, at 0 0 0.097") if stops else None)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_initial_overlap_of_two_balls(tmp_path, ranks):
+    balls = [dict(x=x, y=0.0, z=0.3, d=d, v=(0, 0, 0)) for x, d in
+             ((-0.5, D), (-0.5 + 0.97 * D, D), (0.5, D), (0.5 + 0.06, 0.06))]
+    # the second pair: centres 0.06 apart, radii 0.05 + 0.03; the smaller radius counts
+    deck = make_deck(tmp_path, balls=balls, processors="2 1 1" if ranks == 2 else "* * *")
+    run_deck(deck + "run 1\n", tmp_path, np=ranks, expect_error=(
+        "Pair gran/restitution: 2 pairs overlap at the start by more than 5 % of the radius, worst 66.67 % between ball"))
+    balls[3]["x"] = 0.5 + 0.08 - 0.04 * 0.03
+    balls[1]["x"] = -0.5 + 0.98 * D
+    deck = make_deck(tmp_path, balls=balls, processors="2 1 1" if ranks == 2 else "* * *")
+    run_deck(deck + "run 1\n", tmp_path, np=ranks)
+
+
+def test_delete_balls(tmp_path):
+    """Overlaps of 3, 8 and 20 % of the radius: the limit decides, the volume is that of the removed balls."""
+    balls = [dict(x=0.3 * k, y=0.0, z=D - share * D / 2, d=D, v=(0, 0, 0)) for k, share in enumerate((0.03, 0.08, 0.2))]
+    balls.append(dict(x=-0.5, y=0.0, z=0.3, d=0.2, v=(0, 0, 0)))
+    settings = dict(balls=balls, positions=[(0.3 * k, 0.0, 0.0) for k in range(3)])
+    volume = math.pi * D ** 3 / 6
+    for fraction, removed in ((0.05, 2), (0.1, 1), (0.0, 3), (0.5, 0)):
+        log = run_deck(make_deck(tmp_path, **settings, before=f"delete_balls moving overlap {fraction}") + "print \"left $(atoms)\"\n",
+                       tmp_path)
+        line = next(line for line in log.splitlines() if line.startswith("Delete_balls:"))
+        assert line == (f"Delete_balls: {removed} balls of group moving removed that overlapped fixed balls by more than "
+                        f"{fraction:g} of their radius: {removed * volume:.6g} m3 of balls, {removed * D ** 3:.6g} m3 of "
+                        f"ground at 6/pi; {4 - removed} balls left")
+        assert f"left {4 - removed}" in log.splitlines()
+    run_deck(make_deck(tmp_path, **settings, before="delete_balls moving overlap 0.05") + "run 1\n", tmp_path, np=2)
+
+
+@pytest.mark.parametrize("command, message", [
+    ("delete_balls moving overlap", "Delete_balls needs GROUP overlap FRACTION, got 2 arguments"),
+    ("delete_balls nobody overlap 0.1", "Delete_balls group must exist, got nobody"),
+    ("delete_balls moving overlap 1.0", "Delete_balls overlap must be >= 0 and < 1 (of the radius), got 1.0"),
+    ("delete_balls moving overlap -0.1", "Delete_balls overlap must be >= 0 and < 1 (of the radius), got -0.1"),
+    ("unfix ground\ndelete_balls moving overlap 0.1", "Delete_balls requires a fix wall/gran/balls before it"),
+])
+def test_bad_delete_balls(tmp_path, command, message):
+    run_deck(make_deck(tmp_path, before=command), tmp_path, expect_error=message)
+
+
+def test_delete_balls_leaves_none(tmp_path):
+    ball = [dict(x=0.0, y=0.0, z=0.5 * D, d=D, v=(0, 0, 0))]
+    run_deck(make_deck(tmp_path, balls=ball, positions=[(0.0, 0.0, 0.0)], before="delete_balls all overlap 0.05"),
+             tmp_path, expect_error="Delete_balls: no ball of group all is left")
+
+
+# --- output ---
+
+
+@pytest.mark.parametrize("ranks", [1, 4])
+def test_force_on_the_ground_is_the_weight(tmp_path, ranks):
+    """Balls at rest in the hollows of a regular floor: force = their weight, along gravity."""
+    positions = [(0.1 * i, 0.1 * j, 0.0) for i in range(-8, 9) for j in range(-3, 4)]
+    balls = [dict(x=x, y=y, z=math.sqrt(D * D - 2 * 0.05 ** 2), d=D, v=(0, 0, 0)) for x in (-0.65, -0.25, 0.25, 0.65)
+             for y in (-0.15, 0.15)]
+    deck = make_deck(tmp_path, balls=balls, positions=positions, processors="4 1 1" if ranks == 4 else "* * *",
+                     gravity="0 0 -1", coeff="stiffness 1e5 1e5 restitution 0.01 friction 30 rolling 0.1", dt=5e-5)
+    log = run_deck(deck + "run 6000\nprint \"ground $(f_ground[1]:%.9e) $(f_ground[2]:%.9e) $(f_ground[3]:%.9e) $(f_ground)\"\n",
+                   tmp_path, np=ranks)
+    words = next(line for line in log.splitlines() if line.startswith("ground")).split()[1:]
+    weight = 8 * MASS * G
+    assert float(words[2]) == pytest.approx(-weight, rel=1e-7)
+    assert abs(float(words[0])) < 1e-7 * weight and abs(float(words[1])) < 1e-7 * weight
+    assert float(words[3]) == len(positions)
+
+
+# --- bad input ---
+
+
+@pytest.mark.parametrize("fix, message", [
+    ("wall/gran/balls 3 0.1 file floor.xyz", "Fix wall/gran/balls ground type must be 1 to 2 (the atom types of the box), got 3"),
+    ("wall/gran/balls 0 0.1 file floor.xyz", "type must be 1 to 2 (the atom types of the box), got 0"),
+    ("wall/gran/balls 2 0 file floor.xyz", "diameter must be > 0, got 0"),
+    ("wall/gran/balls 2 -0.1 file floor.xyz", "diameter must be > 0, got -0.1"),
+    ("wall/gran/balls 2 0.1 file floor.xyz colour red", "keyword must be inside, outside or write, got colour"),
+    ("wall/gran/balls 2 0.1 file nowhere.xyz", "cannot open file nowhere.xyz"),
+    ("wall/gran/balls 2 0.1 plane", "needs surface or file, got plane"),
+    ("wall/gran/balls 2 0.1", "Fix wall/gran/balls ground: needs TYPE DIAMETER and surface or file, got 2 arguments"),
+])
+def test_bad_fix(tmp_path, fix, message):
+    deck = make_deck(tmp_path).replace(f"wall/gran/balls 2 {D} file floor.xyz", fix)
+    run_deck(deck + "run 1\n", tmp_path, expect_error=message)
+
+
+@pytest.mark.parametrize("text, message", [
+    ("0 0 0\n0 0\n", "file floor.xyz line 2: must hold x y z, got 2 values"),
+    ("0 0 0\n0 zero 0\n", "file floor.xyz line 2: y must be a finite number, got zero"),
+    ("# nothing\n", "file floor.xyz holds no balls"),
+])
+def test_bad_file(tmp_path, text, message):
+    deck = make_deck(tmp_path)
+    (tmp_path / "floor.xyz").write_text(text)
+    run_deck(deck + "run 1\n", tmp_path, expect_error=message)
+
+
+def test_other_pair_style(tmp_path):
+    deck = make_deck(tmp_path)
+    start, end = deck.index("pair_style"), deck.index("timestep")
+    deck = deck[:start] + "pair_style gran/hooke 1e5 NULL 50 NULL 0.5 1\npair_coeff * *\n" + deck[end:]
+    run_deck(deck + "run 1\n", tmp_path,
+             expect_error="Fix wall/gran/balls ground: requires pair_style gran/restitution, which holds its coefficients")

@@ -1,0 +1,308 @@
+"""The cut surface above a road, and what of a deposit lies above it. Index coordinates of the deposit's grid.
+
+Surface of the cut: inside the road, the ground; outside, the height of the ground at the nearest point of the road's
+edge plus tangent x distance. With h = cut - ground and the thickness t, which is even in a cell, what is removed is
+
+    clip(surface - max(ground, cut), 0, t) = max(0, t - max(0, h)) = max(0, t - h) - max(0, -h)
+
+that is, all of it on the road and where the cut lies below the ground, and never more than there is.
+
+Every cell near the cut is divided into k x k parts, each of which the mesh's lines divide further. h is linear in the
+triangles of a part, where the two terms have exact integrals: plane ground and a straight edge give exact volumes
+whatever k is; only round corners (the cut around a corner is a cone), the seams between two edges, and rough ground
+depend on k. A part that the edge crosses is divided by it into its exact areas.
+"""
+from typing import NamedTuple
+
+import numpy as np
+from shapely.affinity import translate
+from shapely.geometry import box
+
+from .deposit import Lines, coverage, edges, polygons_of
+from .errors import SlopeError
+from .rasters import progress
+
+LEAF = 8            # cells along a side of a block that is not divided further
+LEAF_FEW = 32       # the same where few edges are near
+FEW = 12            # edges
+TICK = 1000         # cells that the progress bar moves on at a time
+CHUNK = 1_000_000   # point-edge pairs at a time
+WHOLE = 1e-12       # relative; an area that differs less is the same
+
+
+class Removed(NamedTuple):
+    """Volumes in cells x m: of every cell of the grid, of every mesh cell; and of parts of the total."""
+    cells: np.ndarray
+    mesh_road: np.ndarray    # on the road
+    mesh_beside: np.ndarray  # beside it
+    steep: float             # of that beside it: where the cut lies below the ground
+    unknown: float           # left, because the ground beneath is not known
+
+
+class Ground:
+    """The ground, bilinear between the centres of the cells, and linear on to the edges of the grid.
+
+    A cell without a height is NaN in known; for its neighbours' sake it gets the mean of those that have one.
+    """
+
+    def __init__(self, z):
+        self.known = np.isfinite(z)
+        self.z = z if self.known.all() else rim_filled(z, self.known)
+
+    def height(self, x, y):
+        """At index coordinates x, y (arrays)."""
+        (i, fx), (j, fy) = (self.weight(place, n) for place, n in ((x, self.z.shape[1]), (y, self.z.shape[0])))
+        north = self.z[j, i] * (1 - fx) + self.z[j, i + 1] * fx
+        south = self.z[j + 1, i] * (1 - fx) + self.z[j + 1, i + 1] * fx
+        return north * (1 - fy) + south * fy
+
+    @staticmethod
+    def weight(place, n):
+        first = np.clip(np.floor(place - 0.5).astype(int), 0, n - 2)
+        return first, place - 0.5 - first
+
+    def bounds(self, rows, columns):
+        """Lowest and highest ground of the cells in those ranges (slices, which all lie in the grid)."""
+        z = np.pad(self.z, 1, mode="reflect", reflect_type="odd")  # linear on to the edges
+        z = z[rows.start:rows.stop + 2, columns.start:columns.stop + 2]
+        low, high = z, z
+        for _ in range(2):  # along the columns, then along the rows
+            low = np.minimum(np.minimum(low[:-2], low[1:-1]), low[2:]).T
+            high = np.maximum(np.maximum(high[:-2], high[1:-1]), high[2:]).T
+        return low, high
+
+
+def rim_filled(z, known):
+    padded = np.pad(np.where(known, z, 0), 1)
+    counted = np.pad(known.astype(float), 1)
+    rows, columns = z.shape
+    total, count = np.zeros(z.shape), np.zeros(z.shape)
+    for j in range(3):
+        for i in range(3):
+            total += padded[j:j + rows, i:i + columns]
+            count += counted[j:j + rows, i:i + columns]
+    with np.errstate(invalid="ignore"):
+        return np.where(known, z, total / count)
+
+
+class Edge:
+    """The road's edge: its straight pieces, and the height of the ground along them."""
+
+    def __init__(self, road, ground, tangent):
+        self.start, self.end = edges(road)
+        self.along = self.end - self.start
+        self.length2 = (self.along ** 2).sum(axis=1)
+        self.ground, self.tangent = ground, tangent
+        # lowest and highest ground along each piece, from points at most half a cell apart
+        count = np.ceil(2 * np.sqrt(self.length2)).astype(int) + 1
+        first = np.cumsum(count) - count
+        edge = np.repeat(np.arange(len(count)), count)
+        share = (np.arange(len(edge)) - first[edge]) / (count - 1)[edge]
+        points = self.start[edge] + share[:, None] * self.along[edge]
+        z = ground.height(*points.T)
+        if not np.isfinite(z).all():
+            raise NoGround(points[np.isnan(z)][0])
+        between = np.abs(np.diff(z, append=z[-1]))
+        between[first + count - 1] = 0
+        slack = np.maximum.reduceat(between, first)
+        self.low, self.high = np.minimum.reduceat(z, first) - slack, np.maximum.reduceat(z, first) + slack
+
+    def distance(self, x, y, which):
+        """Distance of one point to each of the pieces `which`."""
+        to = np.array([x, y]) - self.start[which]
+        along = self.along[which]
+        share = np.clip((to * along).sum(axis=1) / self.length2[which], 0, 1)
+        return np.hypot(*(to - share[:, None] * along).T)
+
+    def cut(self, x, y, which):
+        """Height of the cut at points x, y (1-d arrays), to which the nearest of the pieces `which` is the nearest."""
+        sx, sy = self.start[which].T
+        ax, ay = self.along[which].T
+        length2 = self.length2[which]
+        z = np.empty(len(x))
+        step = max(1, CHUNK // len(which))
+        for first in range(0, len(x), step):
+            px, py = x[first:first + step], y[first:first + step]
+            tx, ty = px[:, None] - sx, py[:, None] - sy
+            share = np.clip((tx * ax + ty * ay) / length2, 0, 1)
+            distance2 = (tx - share * ax) ** 2 + (ty - share * ay) ** 2
+            nearest = distance2.argmin(axis=1)
+            points = np.arange(len(px)), nearest
+            share = share[points]
+            z[first:first + step] = (self.ground.height(sx[nearest] + share * ax[nearest],
+                                                        sy[nearest] + share * ay[nearest])
+                                     + self.tangent * np.sqrt(distance2[points]))
+        return z
+
+
+class NoGround(Exception):
+    """Raised with a point (index coordinates) of the road's edge where the ground is not known."""
+
+
+def positive_mean(u, v, w):
+    """Mean over triangles of max(0, f), f being linear with the values u, v, w (arrays) at the corners."""
+    a, c = np.minimum(np.minimum(u, v), w), np.maximum(np.maximum(u, v), w)
+    total = u + v + w
+    b = total - a - c
+    with np.errstate(invalid="ignore", divide="ignore"):
+        tip = c ** 3 / (3 * (c - a) * (c - b))                # only c is above 0
+        rest = total / 3 - a ** 3 / (3 * (a - b) * (a - c))   # only a is below
+    return np.where(a >= 0, total / 3, np.where(c <= 0, 0, np.where(b <= 0, tip, rest)))
+
+
+def linear_mean(h, t):
+    """Mean of what is removed in the cells of a lattice of h (rows + 1, columns + 1), of thickness t (rows, columns).
+
+    Mean over both ways to divide a cell into two triangles.
+    """
+    a, b, c, d = h[:-1, :-1], h[:-1, 1:], h[1:, 1:], h[1:, :-1]
+    total = 0
+    for corners in ((a, b, c), (a, d, c), (a, b, d), (b, c, d)):
+        total = total + positive_mean(*(t - corner for corner in corners)) - positive_mean(*(-corner for corner in corners))
+    return np.clip(total / 4, 0, t)
+
+
+def removed(thickness, ground, road, tangent, mesh, k):
+    """What must be removed, a Removed. road: polygon in the grid; tangent: rise of the cut (m) per cell of distance.
+
+    The grid is divided into blocks, and these again; a block where nothing, or all of it, lies above the cut is done,
+    by bounds that hold for every point in it. Each block knows the pieces of the edge that may be nearest to it.
+    """
+    work = _Work(thickness, ground, road, tangent, mesh, k)
+    rows, columns = (np.flatnonzero((thickness > 0).any(axis=axis)) for axis in (1, 0))
+    if len(rows):
+        work.go(rows[0], rows[-1] + 1, columns[0], columns[-1] + 1, road)
+    return Removed(work.cells, work.mesh_road, work.mesh_beside, float(work.steep), float(work.unknown))
+
+
+class _Work:
+    def __init__(self, thickness, ground, road, tangent, mesh, k):
+        self.t, self.ground, self.tangent = thickness, ground, tangent
+        self.edge = Edge(road, ground, tangent)
+        n = thickness.shape
+        self.fine = Lines(n[0], k, mesh.y), Lines(n[1], k, mesh.x)
+        self.coarse = Lines(n[0], 1, mesh.y), Lines(n[1], 1, mesh.x)
+        self.cells = np.zeros(n)
+        self.mesh_road, self.mesh_beside = np.zeros(mesh.shape), np.zeros(mesh.shape)
+        self.steep = self.unknown = 0.0
+
+    def go(self, top, bottom, left, right, road):
+        window = slice(top, bottom), slice(left, right)
+        t = self.t[window]
+        low, high = self.ground.bounds(*window)
+        known = self.ground.known[window] & np.isfinite(low)
+        with np.errstate(invalid="ignore"):
+            # bounds of the ground and of the surface, where there is a deposit
+            self.low = np.where(t > 0, np.where(known, low, -np.inf), np.inf)
+            self.high = np.where(t > 0, np.where(known, high + t, np.inf), -np.inf)
+        self.corner = top, left
+        blocks = [(top, bottom, left, right, road, np.arange(len(self.edge.length2)))]
+        total = (bottom - top) * (right - left) // TICK
+        for _ in progress(self.walk(blocks), "cutting", total):
+            pass
+
+    def walk(self, blocks):
+        """Do all blocks; yields once per TICK cells done, for the progress bar."""
+        done = 0
+        while blocks:
+            top, bottom, left, right, *_ = block = blocks.pop()
+            parts = self.block(*block)
+            blocks += parts
+            if not parts:
+                done += (bottom - top) * (right - left)
+                yield from range(done // TICK)
+                done %= TICK
+
+    def block(self, top, bottom, left, right, road, near):
+        """Do a block, or give the blocks that it must be divided into."""
+        at = slice(top - self.corner[0], bottom - self.corner[0]), slice(left - self.corner[1], right - self.corner[1])
+        high = self.high[at].max()
+        if high == -np.inf:
+            return []
+        if road is not None:
+            road = road.intersection(box(left, top, right, bottom))
+            cells = (bottom - top) * (right - left)
+            area = sum(part.area for part in polygons_of(road))
+            if area >= cells * (1 - WHOLE):
+                self.take_all(top, bottom, left, right, self.mesh_road)
+                return []
+            if area <= cells * WHOLE:
+                road = None
+        distance = self.edge.distance((left + right) / 2, (top + bottom) / 2, near)
+        reach = np.hypot(bottom - top, right - left) / 2
+        nearest = distance.min()
+        near = near[distance <= nearest + 2 * reach + WHOLE]
+        if road is None:
+            low = self.low[at].min()
+            if self.edge.low[near].min() + self.tangent * max(0, nearest - reach) >= high:
+                return []
+            if self.edge.high[near].max() + self.tangent * (nearest + reach) <= low:
+                self.steep += self.take_all(top, bottom, left, right, self.mesh_beside)
+                return []
+        side = LEAF_FEW if len(near) <= FEW else LEAF
+        if max(bottom - top, right - left) <= side:
+            self.leaf(top, bottom, left, right, road, near)
+            return []
+        rows = [top, (top + bottom) // 2, bottom] if bottom - top > 1 else [top, bottom]
+        columns = [left, (left + right) // 2, right] if right - left > 1 else [left, right]
+        return [(a, b, c, d, road, near) for a, b in zip(rows, rows[1:]) for c, d in zip(columns, columns[1:])]
+
+    def place(self, lines, top, bottom, left, right):
+        """Of a block, on fine or coarse lines: lines (y, x), cell and mesh cell of each part (rows, columns)."""
+        found = []
+        for axis, first, last in ((lines[0], top, bottom), (lines[1], left, right)):
+            a, b = axis.first[first], axis.first[last]
+            found.append((axis.at[a:b + 1], np.repeat(np.arange(first, last), np.diff(axis.first[first:last + 1])),
+                          axis.mesh[a:b]))
+        return found
+
+    def add(self, total, volume, rows, columns):
+        """Add the volumes of parts to the cells (of the grid, of the mesh) that they are in: rows, columns, ascending."""
+        for axis, index in ((0, rows), (1, columns)):
+            volume = np.add.reduceat(volume, np.flatnonzero(np.diff(index, prepend=-1)), axis)
+        total[rows[0]:rows[-1] + 1, columns[0]:columns[-1] + 1] += volume
+
+    def take_all(self, top, bottom, left, right, mesh):
+        (y, row, mesh_row), (x, column, mesh_column) = self.place(self.coarse, top, bottom, left, right)
+        volume = self.t[np.ix_(row, column)] * (np.diff(y)[:, None] * np.diff(x))
+        self.cells[top:bottom, left:right] = self.t[top:bottom, left:right]
+        self.add(mesh, volume, mesh_row, mesh_column)
+        return volume.sum()
+
+    def leaf(self, top, bottom, left, right, road, near):
+        (y, row, mesh_row), (x, column, mesh_column) = self.place(self.fine, top, bottom, left, right)
+        t = self.t[np.ix_(row, column)]
+        h = self.above_ground(*np.meshgrid(x, y), near)
+        mean = linear_mean(h, t)
+        flat = (h[:-1, :-1] + h[:-1, 1:] + h[1:, 1:] + h[1:, :-1]) / 4
+        area = np.diff(y)[:, None] * np.diff(x)
+        on_road = np.zeros(area.shape)
+        if road is not None:
+            # moments about the block's corner: those of slivers are differences of larger numbers
+            u, v = x - left, y - top
+            on_road, in_x, in_y = coverage(translate(road, -left, -top), u, v)
+            on_road = np.clip(on_road, 0, area)
+            on_road[on_road < area * WHOLE] = 0
+            on_road[on_road > area * (1 - WHOLE)] = area[on_road > area * (1 - WHOLE)]
+            mixed = (on_road > 0) & (on_road < area) & (t > 0)
+            j, i = np.nonzero(mixed)
+            # beside the road h is linear: its mean is its value at the centre of what is beside
+            rest = (area - on_road)[mixed]
+            cx = np.clip(((np.diff(u ** 2) / 2 * np.diff(v)[:, None] - in_x)[mixed]) / rest, u[i], u[i + 1])
+            cy = np.clip(((np.diff(v ** 2)[:, None] / 2 * np.diff(u) - in_y)[mixed]) / rest, v[j], v[j + 1])
+            flat[mixed] = self.above_ground(cx + left, cy + top, near)
+            mean[mixed] = np.clip(t[mixed] - np.maximum(0, flat[mixed]), 0, t[mixed])
+        beside = (area - on_road) * mean
+        bad = np.isnan(beside) | ~self.ground.known[np.ix_(row, column)]
+        if bad.any():
+            self.unknown += ((area - on_road) * t)[bad].sum()
+            beside[bad] = 0
+        self.steep += beside[flat < 0].sum()
+        on_road = on_road * t
+        self.add(self.cells, on_road + beside, row, column)
+        self.add(self.mesh_road, on_road, mesh_row, mesh_column)
+        self.add(self.mesh_beside, beside, mesh_row, mesh_column)
+
+    def above_ground(self, x, y, near):
+        """Height of the cut above the ground at index coordinates x, y (arrays of one shape)."""
+        return (self.edge.cut(x.ravel(), y.ravel(), near) - self.ground.height(x.ravel(), y.ravel())).reshape(x.shape)

@@ -1,0 +1,229 @@
+"""Decks, and the folders in which they ran: what a deck asks for, what its log says, what fix deposit/grid wrote."""
+import os
+import re
+from pathlib import Path
+
+import yaml
+
+from . import rasters
+from .errors import SlopeError
+
+LOG = "log.lammps"
+VARIABLES = "variables.yaml"       # what `slope study` ran, written before the run
+WORD = re.compile(r'"""(.*?)"""|"([^"]*)"|\'([^\']*)\'|(\S+)')
+INPUT_PLACE = re.compile(r"\s*\([^()]*\.(?:cpp|h):\d+\)\s*$")     # LAMMPS names its source line at the end of a message
+SUMMARY_KEYS = {"volume": ("released", "on_grid", "off_grid", "lost", "residual"),
+                "travel": ("front", "front_at_release", "centroid", "reach_angle"),
+                "largest": ("thickness", "max_thickness", "max_speed"),
+                "stop": ("step", "time", "reason"), "grid": ("cell", "extent"), "balls": ("released", "lost"),
+                "motion": ("moving_share",), "moving": (), "ranks": (), "dt": (), "bulk_factor": (),
+                "slope_version": (), "lammps_version": ()}
+
+
+# --- decks ---
+
+def commands(deck):
+    """The commands of a deck and of the files that it includes by name: lists of words, comments taken off."""
+    found, waiting, seen = [], [Path(deck)], set()
+    while waiting:
+        path = waiting.pop(0)
+        seen.add(path)
+        try:
+            text = path.read_text(encoding="utf-8", errors="replace")
+        except OSError as error:
+            raise SlopeError(path, f"must be a LAMMPS input deck ({error.strerror})") from error
+        for line in re.sub(r"&[ \t]*\n", " ", text).splitlines():
+            words = []
+            for match in WORD.finditer(line):
+                if match.lastindex == 4 and "#" in match[4]:
+                    words += [match[4].split("#")[0]] * (not match[4].startswith("#"))
+                    break
+                words.append(match[match.lastindex])
+            if not words:
+                continue
+            found.append(words)
+            included = Path(deck).parent / words[-1]
+            if words[0] == "include" and included.is_file() and included not in seen:
+                waiting.append(included)
+    return found
+
+
+def variables(deck):
+    """{name: (style, text)} of a deck's `variable` commands; the first of a name counts, as for index variables."""
+    found = {}
+    for words in commands(deck):
+        if words[0] == "variable" and len(words) > 2:
+            found.setdefault(words[1], (words[2], " ".join(words[3:])))
+    return found
+
+
+def index_variables(deck):
+    """{name: default} of the variables that -var can set."""
+    return {name: text.split()[0] if text else "" for name, (style, text) in variables(deck).items()
+            if style == "index"}
+
+
+# --- logs ---
+
+class Log:
+    """What the log of a run says; update() reads what LAMMPS has added since.
+
+    step, time, first, last: of the run command under way; time (s) is None without a thermo column of that name, last
+    None before a run. thermo: number of lines of output since the command began.
+    """
+
+    def __init__(self, path):
+        self.path = Path(path)
+        self.place, self.rest = 0, ""
+        self.lammps = self.wall = self.error = self.step = self.time = self.last = self.terrain = None
+        self.first, self.steps, self.thermo, self.header = 0, None, 0, None
+        self.warnings, self.settings, self.notes, self.table = [], [], [], []
+        self.names = set()        # words of the commands: which files they name
+        self.in_table = False
+
+    def update(self):
+        """Read on; a log that is not there yet is an empty one."""
+        try:
+            with open(self.path, "rb") as log:
+                log.seek(self.place)
+                new = log.read()
+        except OSError:
+            return self
+        self.place += len(new)
+        *lines, self.rest = (self.rest + new.decode("utf-8", "replace")).split("\n")
+        for line in lines:
+            self._line(line)
+        return self
+
+    def _line(self, line):
+        words = line.split()
+        if not words:
+            return
+        if self.in_table and line.startswith("  "):
+            self.table.append(line)
+            return
+        self.in_table = False
+        if self.header and self._is_output(words):
+            return
+        if words[0] == "LAMMPS" and self.lammps is None:
+            self.lammps = line.strip()
+        elif words[0] == "ERROR:" or line.startswith("ERROR on proc"):
+            self.error = self.error or told(line)
+        elif words[0] == "WARNING:":
+            text = told(line).removeprefix("WARNING: ")
+            if text not in self.warnings:
+                self.warnings.append(text)
+        elif line.startswith("Pair gran/restitution: contact coefficients"):
+            self.table, self.in_table = [line], True
+        elif line.startswith("Total wall time:"):
+            self.wall = words[-1]
+        elif line.startswith(("Region terrain", "Fix wall/gran/balls", "Fix deposit/grid", "Delete_balls:", "Created ")):
+            self.notes.append(line.strip())
+        elif words[0] == "Step":
+            self.header, self.thermo = words, 0
+        elif words[0] == "Loop":
+            self.header = None
+        else:
+            self._command(words, line)
+
+    def _is_output(self, words):
+        """Take a line of thermodynamic output; False if it is none."""
+        if len(words) != len(self.header) or not re.fullmatch(r"\d+", words[0]):
+            return False
+        self.step = int(words[0])
+        if "Time" in self.header:
+            self.time = float(words[self.header.index("Time")])
+        if self.thermo == 0:
+            self.first = self.step
+            if self.steps is not None:
+                self.last = self.steps[0] if self.steps[1] else self.first + self.steps[0]
+        self.thermo += 1
+        return True
+
+    def _command(self, words, line):
+        """A command as the log echoes it; the last of its echoes has all variables replaced."""
+        self.names.update(words)
+        if "${" in line:
+            return
+        if words[0] == "run" and len(words) > 1 and words[1].isdigit():
+            self.steps = int(words[1]), "upto" in words
+        elif words[0] == "region" and words[2:3] == ["terrain"] and len(words) > 3 and self.terrain is None:
+            self.terrain = words[3].strip("\"'")
+        if (words[0] in ("pair_style", "pair_coeff", "timestep", "units", "lattice", "neighbor")
+                or (words[0] == "fix" and len(words) > 3)):
+            self.settings.append(" ".join(line.split("#")[0].split()))
+
+
+def told(line):
+    """A message of LAMMPS without the place in its source."""
+    return INPUT_PLACE.sub("", line.strip())
+
+
+def last_words(path):
+    """The last line of a text file that is not empty; '' if there is none."""
+    try:
+        lines = Path(path).read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return ""
+    return next((line.strip() for line in reversed(lines) if line.strip(" -\t")), "")
+
+
+# --- results ---
+
+def summaries(folder):
+    """The summaries of fix deposit/grid in a folder."""
+    return sorted(Path(folder).glob("*.summary.yaml"))
+
+
+def prefix_of(summary):
+    """PREFIX of the rasters that belong to a summary."""
+    return Path(str(summary).removesuffix(".summary.yaml"))
+
+
+def write(path, text):
+    """Write a text file: complete, or not touched."""
+    path = Path(path)
+    new = path.with_name(f".{path.name}.{os.getpid()}.new")
+    try:
+        new.write_text(text, encoding="utf-8")
+        os.replace(new, path)
+    except OSError as error:
+        raise SlopeError(path, f"cannot be written: {error.strerror}") from error
+    finally:
+        new.unlink(missing_ok=True)
+
+
+def load_yaml(path, what):
+    """A YAML file that holds a mapping; what says what it must be."""
+    try:
+        about = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+    except (OSError, ValueError, yaml.YAMLError) as error:
+        raise SlopeError(path, f"must be {what} ({getattr(error, 'strerror', None) or error})") from error
+    if not isinstance(about, dict):
+        raise SlopeError(path, f"must be {what}")
+    return about
+
+
+def load_summary(path):
+    """The summary of fix deposit/grid as a dict, with all that the tools need of it."""
+    about = load_yaml(path, "a summary that fix deposit/grid wrote")
+    for key, entries in SUMMARY_KEYS.items():
+        for entry in entries or (None,):
+            if key not in about or (entry and (not isinstance(about[key], dict) or entry not in about[key])):
+                raise SlopeError(path, "must be a summary that fix deposit/grid wrote, with "
+                                 + (f"{key}: {entry}" if entry else key))
+    return about
+
+
+def load_terrain(folder, log):
+    """The terrain of a run, with its sidecar; None if the log names none or the file is not in reach."""
+    path = log.terrain and Path(folder) / log.terrain
+    return rasters.read_asc_local(path) if path and path.is_file() else None
+
+
+def load_raster(prefix, name):
+    """One of the rasters of fix deposit/grid."""
+    path = Path(f"{prefix}.{name}.asc")
+    if not path.is_file():
+        raise SlopeError(path, "must be there: fix deposit/grid writes it beside its summary")
+    return rasters.read(path)
