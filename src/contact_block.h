@@ -34,6 +34,8 @@ struct ContactBlock {
   double w[3][SIZE];
   double rolling_radius[SIZE];
   double mass[SIZE];
+  double inverse_mass[SIZE];
+  double fresh[SIZE];
   double f[3][SIZE];
   double t[3][SIZE];
   double m[3][SIZE];
@@ -74,6 +76,8 @@ struct ContactBlock {
       c.overlap = overlap[k];
       c.rolling_radius = rolling_radius[k];
       c.mass = mass[k];
+      c.inverse_mass = inverse_mass[k];
+      c.fresh = fresh[k];
       for (int h = 0; h < HISTORY; h++) values[h] = history[h][k];
       contact_force<ROLLING>(law, c, dt, values, out);
       for (int h = 0; h < HISTORY; h++) history[h][k] = values[h];

@@ -17,8 +17,8 @@
 
 using namespace Slope;
 
-static constexpr double NODATA = -9999.0;          // in a file whose header names no other
-static constexpr double MAXCELLS = 2147483647.0;   // cells are counted with int
+static constexpr double NODATA = -9999.0;           // in a file whose header names no other
+static constexpr double MAXCELLS = 2147483647.0;    // cells are counted with int
 static const double NaN = std::numeric_limits<double>::quiet_NaN();
 
 static const double POWER[] = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
@@ -256,8 +256,8 @@ ElevationGrid ElevationGrid::read(const std::string &path)
   if (text.at_end()) throw std::runtime_error(path + " is empty");
   const Header header = read_header(text);
 
-  const std::string size = std::to_string(header.ny) + " rows x " + std::to_string(header.nx) +
-      " columns";
+  const std::string size =
+      std::to_string(header.ny) + " rows x " + std::to_string(header.nx) + " columns";
   const size_t ncells = (size_t) header.nx * header.ny;
   ElevationGrid grid;
   try {
@@ -296,8 +296,8 @@ ElevationGrid ElevationGrid::read(const std::string &path)
     throw text.error("more than " + std::to_string(ncells) + " values (" + size + "), next is " +
                      word);
   }
-  if (!any) throw std::runtime_error(path + ": all " + std::to_string(ncells) +
-                                     " values are NODATA");
+  if (!any)
+    throw std::runtime_error(path + ": all " + std::to_string(ncells) + " values are NODATA");
   return grid;
 }
 
@@ -408,5 +408,7 @@ double ElevationGrid::zmax() const
 
 int ElevationGrid::count_nodata() const
 {
-  return std::count_if(z.begin(), z.end(), [](double value) { return std::isnan(value); });
+  return std::count_if(z.begin(), z.end(), [](double value) {
+    return std::isnan(value);
+  });
 }

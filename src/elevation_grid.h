@@ -53,9 +53,9 @@ class ElevationGrid {
   double &at(int i, int j) { return z[(size_t) j * nx + i]; }
   double at(int i, int j) const { return z[(size_t) j * nx + i]; }
 
-  int nx, ny;              // columns, rows
-  double xlo, ylo, cell;   // south-west corner of the raster, size of a cell
-  std::vector<double> z;   // values, row by row from the south; public for those who send it
+  int nx, ny;               // columns, rows
+  double xlo, ylo, cell;    // south-west corner of the raster, size of a cell
+  std::vector<double> z;    // values, row by row from the south; public for those who send it
 };
 
 }    // namespace Slope

@@ -42,14 +42,26 @@ static constexpr double MOTION = 0.1;               // m/s, default of keyword m
 static constexpr double MOVING_SHARE = 0.05;        // of the volume: more is a mass in motion
 static constexpr double BALANCE = 1.0e-9;           // of the released volume
 static constexpr double MAXCELLS = 4.0e8;
-static constexpr double BYTES_PER_CELL = 72.0;      // eight rasters, one more to write a file
-static constexpr int MAXLOGGED = 5;                 // lost balls that get a line in the log
-static constexpr double RESTART_FORMAT = 1.0;       // first number of what a restart file holds
-static constexpr int PER_CELL = 7;                  // numbers of a cell there
+static constexpr double BYTES_PER_CELL = 72.0;    // eight rasters, one more to write a file
+static constexpr int MAXLOGGED = 5;               // lost balls that get a line in the log
+static constexpr double RESTART_FORMAT = 1.0;     // first number of what a restart file holds
+static constexpr int PER_CELL = 7;                // numbers of a cell there
 static constexpr double DEGREE = PI / 180.0;
 static const double NaN = std::numeric_limits<double>::quiet_NaN();
 
-enum { RELEASED, ON_GRID, OFF_GRID, LOST, RESIDUAL, CHANGE, FRONT, REACH, CENTROID, NLOST, NRESULT };
+enum {
+  RELEASED,
+  ON_GRID,
+  OFF_GRID,
+  LOST,
+  RESIDUAL,
+  CHANGE,
+  FRONT,
+  REACH,
+  CENTROID,
+  NLOST,
+  NRESULT
+};
 enum { X, Y, Z };
 
 /* ----------------------------------------------------------------------
@@ -71,8 +83,8 @@ FixDepositGrid::FixDepositGrid(LAMMPS *lmp, int narg, char **arg) :
   if (nevery < 1) error->all(FLERR, "Fix deposit/grid Nevery must be >= 1, got {}", nevery);
   nfreq = utils::inumeric(FLERR, arg[4], false, lmp);
   if (nfreq < 0 || nfreq % nevery)
-    error->all(FLERR, "Fix deposit/grid Nfreq must be 0 or a multiple of Nevery {}, got {}",
-               nevery, nfreq);
+    error->all(FLERR, "Fix deposit/grid Nfreq must be 0 or a multiple of Nevery {}, got {}", nevery,
+               nfreq);
 
   cell = 0.0;
   window = 0;
@@ -112,8 +124,8 @@ FixDepositGrid::FixDepositGrid(LAMMPS *lmp, int narg, char **arg) :
     } else if (keyword == "window") {
       window = utils::inumeric(FLERR, text(1), false, lmp);
       if (window < 1 || window % nevery)
-        error->all(FLERR, "Fix deposit/grid window must be a multiple of Nevery {}, got {}",
-                   nevery, window);
+        error->all(FLERR, "Fix deposit/grid window must be a multiple of Nevery {}, got {}", nevery,
+                   window);
       iarg += 2;
     } else if (keyword == "series") {
       if (strcmp(text(1), "yes") != 0 && strcmp(text(1), "no") != 0)
@@ -126,8 +138,8 @@ FixDepositGrid::FixDepositGrid(LAMMPS *lmp, int narg, char **arg) :
       iarg += 5;
     } else
       error->all(FLERR,
-                 "Fix deposit/grid: unknown keyword {}, must be cell, terrain, output, bulk, extent, "
-                 "motion, window or series",
+                 "Fix deposit/grid: unknown keyword {}, must be cell, terrain, output, bulk, "
+                 "extent, motion, window or series",
                  keyword);
   }
   if (cell == 0.0) error->all(FLERR, "Fix deposit/grid keyword cell is missing");
@@ -359,8 +371,8 @@ void FixDepositGrid::start()
   MPI_Allreduce(mine, all, 5, MPI_DOUBLE, MPI_SUM, world);
   if (all[0] == 0.0)
     error->all(FLERR,
-               "Fix deposit/grid group must hold balls when the run starts, got none: its region or "
-               "lattice made no ball");
+               "Fix deposit/grid group must hold balls when the run starts, got none: its region "
+               "or lattice made no ball");
 
   std::vector<Top> tops(comm->nprocs);
   MPI_Allgather(&top, 4, MPI_DOUBLE, tops.data(), 4, MPI_DOUBLE, world);
@@ -380,8 +392,8 @@ void FixDepositGrid::start()
 
   if (comm->me == 0)
     utils::logmesg(lmp,
-                   "Fix deposit/grid {}: {:.0f} balls released, bulk volume {:.10g}; {} x {} cells of "
-                   "{:g}\n",
+                   "Fix deposit/grid {}: {:.0f} balls released, bulk volume {:.10g}; {} x {} cells "
+                   "of {:g}\n",
                    id, released.number, released.volume, n[X], n[Y], cell);
 }
 
@@ -594,7 +606,8 @@ void FixDepositGrid::log_losses(double before)
     if (nlogged == MAXLOGGED) break;
     nlogged++;
     if (comm->me == 0)
-      error->warning(FLERR, "Fix deposit/grid {}: ball {:.0f} left the box at {:.8g} {:.8g} {:.8g}, "
+      error->warning(FLERR,
+                     "Fix deposit/grid {}: ball {:.0f} left the box at {:.8g} {:.8g} {:.8g}, "
                      "step {:.0f}, lost so far: {:.0f}{}",
                      id, loss.tag, loss.x[X], loss.x[Y], loss.x[Z], loss.step, ++before,
                      nlogged == MAXLOGGED ? ", more are only counted" : "");
@@ -659,13 +672,13 @@ int FixDepositGrid::cell_of(int dim, double x) const
    off the grid, exactly 0 for a square that does not touch the edge
 ------------------------------------------------------------------------- */
 
-void FixDepositGrid::cut(int dim, double centre, double side, Shares &shares, double &beyond) const
+void FixDepositGrid::cut(int dim, double centre, double side, Shares &found, double &beyond) const
 {
   double a = centre - 0.5 * side, b = centre + 0.5 * side;
-  shares.count = 0;
+  found.count = 0;
   beyond = 0.0;
   if (!periodic(dim)) {
-    cut_piece(dim, a, b, side, shares, beyond);
+    cut_piece(dim, a, b, side, found, beyond);
     return;
   }
 
@@ -673,18 +686,18 @@ void FixDepositGrid::cut(int dim, double centre, double side, Shares &shares, do
 
   const double boxlo = domain->boxlo[dim], boxhi = domain->boxhi[dim], prd = domain->prd[dim];
   if (a < boxlo) {
-    cut_piece(dim, a + prd, boxhi, side, shares, beyond);
+    cut_piece(dim, a + prd, boxhi, side, found, beyond);
     a = boxlo;
   } else if (b > boxhi) {
-    cut_piece(dim, boxlo, b - prd, side, shares, beyond);
+    cut_piece(dim, boxlo, b - prd, side, found, beyond);
     b = boxhi;
   }
-  cut_piece(dim, a, b, side, shares, beyond);
+  cut_piece(dim, a, b, side, found, beyond);
 }
 
 /* ---------------------------------------------------------------------- */
 
-void FixDepositGrid::cut_piece(int dim, double a, double b, double side, Shares &shares,
+void FixDepositGrid::cut_piece(int dim, double a, double b, double side, Shares &found,
                                double &beyond) const
 {
   const double from = std::max(a, lo[dim]);
@@ -698,9 +711,9 @@ void FixDepositGrid::cut_piece(int dim, double a, double b, double side, Shares 
     const double left = std::max(from, lo[dim] + c * cell);
     const double right = std::min(to, lo[dim] + (c + 1) * cell);
     if (!(left < right)) continue;
-    shares.cell[shares.count] = c - bins.first[dim];
-    shares.part[shares.count] = (right - left) / side;
-    shares.count++;
+    found.cell[found.count] = c - bins.first[dim];
+    found.part[found.count] = (right - left) / side;
+    found.count++;
   }
 }
 
@@ -757,8 +770,7 @@ double FixDepositGrid::bin(int i)
   for (int j = 0; j < shares[Y].count && shares[X].count > 0; j++) {
     double *row = &bins.volume(0, shares[Y].cell[j]);
     const double strip = volume * shares[Y].part[j];
-    for (int k = 0; k < shares[X].count; k++)
-      row[shares[X].cell[k]] += strip * shares[X].part[k];
+    for (int k = 0; k < shares[X].count; k++) row[shares[X].cell[k]] += strip * shares[X].part[k];
   }
 
   if (place[X] >= lo[X] && place[X] < hi[X] && place[Y] >= lo[Y] && place[Y] < hi[Y]) {
@@ -1033,8 +1045,12 @@ std::string FixDepositGrid::summary(const std::string &reason, const Motion &bal
   };
 
   std::string s;
-  auto line = [&](const std::string &key, const std::string &value) { s += key + ": " + value + "\n"; };
-  auto count = [&](double value) { return fmt::format("{:.0f}", value); };
+  auto line = [&](const std::string &key, const std::string &value) {
+    s += key + ": " + value + "\n";
+  };
+  auto count = [&](double value) {
+    return fmt::format("{:.0f}", value);
+  };
 
   s += "# fix deposit/grid of the SLOPE package for LAMMPS; units of the run, angles in degrees\n";
   line("slope_version", quoted(SLOPE_VERSION));
@@ -1049,7 +1065,8 @@ std::string FixDepositGrid::summary(const std::string &reason, const Motion &bal
   line("  cell", real(cell));
   line("  columns", fmt::format("{}", n[X]));
   line("  rows", fmt::format("{}", n[Y]));
-  line("  extent", fmt::format("[{}, {}, {}, {}]", real(lo[X]), real(hi[X]), real(lo[Y]), real(hi[Y])));
+  line("  extent",
+       fmt::format("[{}, {}, {}, {}]", real(lo[X]), real(hi[X]), real(lo[Y]), real(hi[Y])));
   s += "balls:\n";
   line("  released", count(released.number));
   line("  present", count(present));
@@ -1075,7 +1092,8 @@ std::string FixDepositGrid::summary(const std::string &reason, const Motion &bal
   line("  largest_speed", real(balls.largest));
   line("  median_speed", real(balls.median));
   line("  moving_share", real(balls.share));
-  line("change_rate", real(result[CHANGE]) + "  # share of the volume that changes cell, per second");
+  line("change_rate",
+       real(result[CHANGE]) + "  # share of the volume that changes cell, per second");
   line("moving", balls.share > MOVING_SHARE ? "true" : "false");
   s += "stop:\n";
   line("  step", fmt::format("{}", update->ntimestep));
@@ -1140,7 +1158,8 @@ void FixDepositGrid::restart(char *buffer)
   Key key;
   take(&key, sizeof(Key));
   if (key.format != mine.format)
-    error->all(FLERR, "Fix deposit/grid {}: the restart file is from another version of the fix", id);
+    error->all(FLERR, "Fix deposit/grid {}: the restart file is from another version of the fix",
+               id);
   if (memcmp(&key, &mine, sizeof(Key)) != 0) {
     auto text = [](const Key &k) {
       return fmt::format("cell {:.10g}, {:.0f} x {:.0f} cells from {:.10g} {:.10g}, bulk {:.10g}",

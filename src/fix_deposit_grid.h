@@ -47,8 +47,8 @@ class FixDepositGrid : public Fix {
   bool series;
   double cell, bulk, motion;
   double cell_inv, side_factor;    // 1/cell; side of the cube of ground / diameter
-  int n[2];               // cells along x and y
-  double lo[2], hi[2];    // south-west and north-east corner
+  int n[2];                        // cells along x and y
+  double lo[2], hi[2];             // their south-west and north-east corner
 
   double side_of(int i) const;
   double volume_of(int i) const;

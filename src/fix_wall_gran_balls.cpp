@@ -336,6 +336,7 @@ void FixWallGranBalls::apply(bool starting)
       }
 
       const double distance = std::sqrt(rsq);
+      const bool fresh = !touch[k] && !starting;
       if (starting && !touch[k])
         initial.look(radsum - distance, std::min(r[i], radius), atom->tag[i], x[i],
                      fmt::format("the fixed ball at {:.6g} {:.6g} {:.6g},", ball.x, ball.y, ball.z));
@@ -363,6 +364,8 @@ void FixWallGranBalls::apply(bool starting)
       }
       b.rolling_radius[c] = law.rolling_factor * r[i] * radius / radsum;
       b.mass[c] = law.mass_fixed(atom->rmass[i]);
+      b.inverse_mass[c] = 1.0 / atom->rmass[i];
+      b.fresh[c] = fresh;
       b.history_of[c] = values;
       for (int h = 0; h < HISTORY; h++) b.history[h][c] = values[h];
       if (b.count == ContactBlock::SIZE) finish(b, law, starting);

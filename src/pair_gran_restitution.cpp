@@ -52,6 +52,7 @@ PairGranRestitution::PairGranRestitution(LAMMPS *lmp) : Pair(lmp)
   mass_ball = 0;
   limit_damping = 0;
   rolling_reduced = 0;
+  plain = 0;
   freeze_group_bit = 0;
   dt = update->dt;
 
@@ -120,7 +121,7 @@ int PairGranRestitution::index(int i, int j) const
 
 void PairGranRestitution::settings(int narg, char **arg)
 {
-  mass_ball = limit_damping = rolling_reduced = 0;
+  mass_ball = limit_damping = rolling_reduced = plain = 0;
 
   int iarg = 0;
   while (iarg < narg) {
@@ -142,10 +143,14 @@ void PairGranRestitution::settings(int narg, char **arg)
       setting = &rolling_reduced;
       off = "ball";
       on = "reduced";
+    } else if (keyword == "scheme") {
+      setting = &plain;
+      off = "predicted";
+      on = "plain";
     } else {
       error->all(FLERR,
-                 "Pair gran/restitution: unknown keyword {}, must be mass, limit_damping or "
-                 "rolling_radius",
+                 "Pair gran/restitution: unknown keyword {}, must be mass, limit_damping, "
+                 "rolling_radius or scheme",
                  keyword);
       return;
     }
@@ -280,6 +285,7 @@ void PairGranRestitution::make_laws()
     law.mass_factor = mass_ball ? 2.0 : 1.0;
     law.rolling_factor = rolling_reduced ? 1.0 : 2.0;
     law.fn_least = limit_damping ? 0.0 : -HUGE_VAL;
+    law.predicted = plain ? 0.0 : 1.0;
     laws[k] = law;
   }
 }
@@ -560,6 +566,7 @@ void PairGranRestitution::compute(int eflag, int vflag)
       }
 
       const double r = sqrt(rsq);
+      const bool fresh = !touch[jj] && !starting;
       if (starting && !touch[jj])
         initial.look(radsum - r, std::min(radi, radj), atom->tag[i], atom->x[i],
                      fmt::format("ball {}", atom->tag[j]));
@@ -593,9 +600,12 @@ void PairGranRestitution::compute(int eflag, int vflag)
 
       // a frozen ball is one of infinite mass
 
-      b.mass[k] = frozen_i ? law.mass_fixed(rmass[j])
-          : frozen_j       ? law.mass_fixed(rmass[i])
-                           : law.mass(rmass[i], rmass[j]);
+      const double mi = rmass[i], mj = rmass[j];
+      b.mass[k] = frozen_i ? law.mass_fixed(mj)
+          : frozen_j       ? law.mass_fixed(mi)
+                           : law.mass(mi, mj);
+      b.inverse_mass[k] = frozen_i ? 1.0 / mj : frozen_j ? 1.0 / mi : (mi + mj) / (mi * mj);
+      b.fresh[k] = fresh;
       b.history_of[k] = history;
       for (int h = 0; h < HISTORY; h++) b.history[h][k] = history[h];
       if (b.count == ContactBlock::SIZE) finish(b, law);
@@ -686,6 +696,7 @@ double PairGranRestitution::single(int i, int j, int itype, int jtype, double rs
   contact.mass = (atom->mask[i] & freeze_group_bit) ? law.mass_fixed(mj)
       : (atom->mask[j] & freeze_group_bit)          ? law.mass_fixed(mi)
                                                     : law.mass(mi, mj);
+  contact.inverse_mass = contact.fresh = 0.0;    // dt = 0: nothing is predicted
   ContactForce c;
   contact_force(law, contact, 0.0, history, c);
 
@@ -727,18 +738,19 @@ void PairGranRestitution::read_restart(FILE *fp)
 
 void PairGranRestitution::write_restart_settings(FILE *fp)
 {
-  const int values[3] = {mass_ball, limit_damping, rolling_reduced};
-  fwrite(values, sizeof(int), 3, fp);
+  const int values[4] = {mass_ball, limit_damping, rolling_reduced, plain};
+  fwrite(values, sizeof(int), 4, fp);
 }
 
 void PairGranRestitution::read_restart_settings(FILE *fp)
 {
-  int values[3] = {0, 0, 0};
-  if (comm->me == 0) utils::sfread(FLERR, values, sizeof(int), 3, fp, nullptr, error);
-  MPI_Bcast(values, 3, MPI_INT, 0, world);
+  int values[4] = {0, 0, 0, 0};
+  if (comm->me == 0) utils::sfread(FLERR, values, sizeof(int), 4, fp, nullptr, error);
+  MPI_Bcast(values, 4, MPI_INT, 0, world);
   mass_ball = values[0];
   limit_damping = values[1];
   rolling_reduced = values[2];
+  plain = values[3];
 }
 
 /* ---------------------------------------------------------------------- */

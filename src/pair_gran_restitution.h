@@ -70,6 +70,7 @@ class PairGranRestitution : public Pair {
   int mass_ball;         // mass ball instead of mass pair
   int limit_damping;     // the normal force never pulls
   int rolling_reduced;   // rolling radius RiRj/(Ri+Rj) instead of its double
+  int plain;             // velocities of the dashpots as velocity Verlet has them
 
   std::vector<Coeff> coeffs;              // (ntypes+1) x (ntypes+1), both triangles filled
   std::vector<Slope::ContactLaw> laws;    // same layout

@@ -34,14 +34,14 @@ def main(out, rolling):
     for r, (summary, thickness, _) in runs.items():
         x = thickness.transform.c + thickness.transform.a * (np.arange(thickness.z.shape[1]) + 0.5)
         column = thickness.z.sum(axis=0) * thickness.transform.a**2
-        volume = summary["volumes"]
+        volume = summary["volume"]
         table.add_row(r, f"{volume['released']:.0f}", f"{column[(x > ROAD[0]) & (x < ROAD[1])].sum():.0f}",
                       f"{column[x < ROAD[0]].sum():.0f}", f"{volume['lost']:.0f}", f"{volume['residual']:.1e}",
                       f"{summary['time']:.1f}")
     Console(width=100).print(table)
 
-    figure, axes = plt.subplots(2, len(runs), figsize=(4.6 * len(runs), 6.6), squeeze=False,
-                                constrained_layout=True, height_ratios=[1.4, 1])
+    figure, axes = plt.subplots(2, len(runs), figsize=(4.6 * len(runs), 5.4), squeeze=False,
+                                constrained_layout=True, height_ratios=[2, 1])
     light = matplotlib.colors.LightSource(azdeg=315, altdeg=40)
     rows, columns = terrain.z.shape
     cell = terrain.transform.a

@@ -1,6 +1,7 @@
-"""Runs LAMMPS decks for the tests in this folder. LMP=<binary> in the environment says which lmp."""
+"""Runs LAMMPS decks for the tests in this folder; the environment says LMP=<binary>."""
 
 import os
+import re
 import subprocess
 from pathlib import Path
 
@@ -65,3 +66,11 @@ def read_asc(path):
     assert values.shape == (header["nrows"], header["ncols"])
     values[values == header["NODATA_value"]] = numpy.nan
     return values[::-1], header
+
+
+def doc_examples(page):
+    """The commands in the Examples section of doc/src/PAGE.rst, without the indentation."""
+    folder = Path(__file__).resolve().parents[2] / "doc" / "src"
+    text = (folder / f"{page}.rst").read_text()
+    block = re.search(r'Examples\n"+\n\n\.\. code-block:: LAMMPS\n\n((?:   .*\n|\n)+)', text)
+    return "\n".join(line[3:] for line in block.group(1).splitlines())

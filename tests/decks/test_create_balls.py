@@ -1,6 +1,8 @@
 """create_balls: the balls of a surface as atoms, the same ones on any number of ranks."""
 
 import math
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import pytest
 from deck_helpers import run_deck
@@ -157,14 +159,34 @@ print           "z $z stored ${stored}"
 
 
 def test_positions_from_a_file(tmp_path):
-    (tmp_path / "balls.txt").write_text("# three balls\n1 2 3\n\n-1.5 0 2e-1  # the last but one\n0 0 4\n")
+    text = "# three balls\n1 2 3\n\n-1.5 0 2e-1  # the last but one\n0 0 4\n"
+    (tmp_path / "balls.txt").write_text(text)
     run_deck(deck().replace("surface ball lower spacing 0.5", "file balls.txt"), tmp_path, np=2)
     assert positions(tmp_path / "balls.dump") == [(-1.5, 0, 0.2), (0, 0, 4), (1, 2, 3)]
 
 
+def test_examples_of_the_page_run(tmp_path):
+    page = Path(__file__).resolve().parents[2] / "doc" / "src" / "create_balls.rst"
+    examples = page.read_text().split("Examples")[1].split("Description")[0]
+    commands = [line.strip() for line in examples.splitlines() if "create_balls" in line]
+    assert len(commands) >= 3
+    (tmp_path / "ground.txt").write_text("20.5 20.5 10\n30 0 10\n")
+    log = run_deck("""
+units           si
+atom_style      sphere
+boundary        f f f
+region          box block -1 41 -1 41 -1 20 units box
+create_box      3 box
+region          ground block 0 40 0 40 0 10 units box
+region          ball sphere 20 20 15 10 units box
+region          soil intersect 2 ground ball units box
+""" + "\n".join(commands), tmp_path, np=2)
+    assert log.count("Create_balls: ") == len(commands)
+
+
 BAD = [
-    ("2 0.5 2000", "0 0.5 2000", "Create_balls type must be 1 to 2 (the atom types of the box), got 0"),
-    ("2 0.5 2000", "3 0.5 2000", "Create_balls type must be 1 to 2 (the atom types of the box), got 3"),
+    ("2 0.5 2000", "0 0.5 2000", "type must be 1 to 2 (the atom types of the box), got 0"),
+    ("2 0.5 2000", "3 0.5 2000", "type must be 1 to 2 (the atom types of the box), got 3"),
     ("2 0.5 2000", "x 0.5 2000", "Create_balls type must be a whole number, got x"),
     ("2 0.5 2000", "2 -1 2000", "Create_balls diameter must be > 0, got -1"),
     ("2 0.5 2000", "2 0 2000", "Create_balls diameter must be > 0, got 0"),
@@ -183,12 +205,17 @@ BAD = [
 ]
 
 
-@pytest.mark.parametrize("good, bad, message", BAD, ids=[message[13:60] for _, _, message in BAD])
-def test_bad_input_ends_with_one_line(tmp_path, good, bad, message):
-    text = deck()
-    assert good in text
-    run_deck(text.replace(good, bad), tmp_path, expect_error=message)
-    assert not (tmp_path / "balls.dump").exists()
+def test_bad_input_ends_with_one_line(tmp_path):
+    def check(k):
+        good, bad, message = BAD[k]
+        path = tmp_path / str(k)
+        path.mkdir()
+        assert good in deck()
+        run_deck(deck().replace(good, bad), path, expect_error=message)
+        assert not (path / "balls.dump").exists()
+
+    with ThreadPoolExecutor(4) as pool:      # a run of LAMMPS sleeps half a second in MPI_Init
+        list(pool.map(check, range(len(BAD))))
 
 
 def test_balls_outside_the_box_are_counted_and_located(tmp_path):

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import yaml
 
-from deck_helpers import read_asc, run_deck, write_asc
+from deck_helpers import doc_examples, read_asc, run_deck, write_asc
 
 HEAD = """
 units si
@@ -291,7 +291,8 @@ def test_maxima_and_times(tmp_path):
     the fix and goes on over runs, changes of the time step and of the step number."""
     flat(tmp_path, 10)
     d, spin = 0.8, 5.0
-    write_balls(tmp_path / "balls.data", [[1.3, 3.5, 5], [7.5, 7.5, 5]], d, [[2.0, 0, 0], [0, 0, 0]],
+    write_balls(tmp_path / "balls.data", [[1.3, 3.5, 5], [7.5, 7.5, 5]], d,
+                [[2.0, 0, 0], [0, 0, 0]],
                 [(0.0, 10.0)] * 3, [[0, spin, 0], [0, 0, 0]])
     run_deck(head() + """
 run 100
@@ -408,7 +409,8 @@ run 40
     assert all(isinstance(value, float) for value in found["volume"].values())
 
     # a run that dies leaves the files of the last Nfreq, whole
-    run_deck(text.replace("run 40", "run 60"), tmp_path, expect_error="Fix halt condition for fix-id crash")
+    run_deck(text.replace("run 40", "run 60"), tmp_path,
+             expect_error="Fix halt condition for fix-id crash")
     found = summary(tmp_path / "it's")
     assert found["stop"] == {"step": 40, "time": pytest.approx(0.04), "reason": "running"}
     assert sorted(f.name for f in (tmp_path / "it's").iterdir()) == expected
@@ -455,7 +457,8 @@ thermo_modify lost ignore
 {dep}
 {run}
 """
-DEP = "fix dep all deposit/grid 20 0 cell 0.7 terrain ground output {} window 200 extent -2 8.5 -1 9"
+DEP = ("fix dep all deposit/grid 20 0 cell 0.7 terrain ground output {} window 200 "
+       "extent -2 8.5 -1 9")
 
 
 def heap(begin, dep, run):
@@ -496,7 +499,8 @@ set group all density 2000
         assert np.nan_to_num(b) == pytest.approx(np.nan_to_num(a), rel=1e-5, abs=1e-6), name
 
     # and none of it is made up after the restart
-    before = [np.nansum(raster(tmp_path, name, "one") < 0.75) for name in ("arrival", "last_motion")]
+    before = [np.nansum(raster(tmp_path, name, "one") < 0.75)
+              for name in ("arrival", "last_motion")]
     assert min(before) > 4
 
     # another grid is refused
@@ -528,8 +532,10 @@ GOOD = "fix dep all deposit/grid 10 0 cell 1 terrain ground output out"
     ("output out", "output out motion -1", "Fix deposit/grid motion must be > 0, got -1"),
     ("output out", "output out window 15",
      "Fix deposit/grid window must be a multiple of Nevery 10, got 15"),
-    ("output out", "output out series maybe", "Fix deposit/grid series must be yes or no, got maybe"),
-    ("output out", "output out colour red", "Fix deposit/grid: unknown keyword colour, must be cell, "),
+    ("output out", "output out series maybe",
+     "Fix deposit/grid series must be yes or no, got maybe"),
+    ("output out", "output out colour red",
+     "Fix deposit/grid: unknown keyword colour, must be cell, "),
     ("output out", "output out extent 5 1 0 9",
      "Fix deposit/grid extent must have xlo < xhi and ylo < yhi, got 5 1 0 9"),
     ("output out", "output out extent 0 11 0 9",
@@ -539,7 +545,8 @@ GOOD = "fix dep all deposit/grid 10 0 cell 1 terrain ground output out"
     ("terrain ground", "terrain halfspace", "Fix deposit/grid terrain region halfspace must have "
      "an upper boundary, got INF"),
     ("cell 1", "cell 0.0001",
-     "Fix deposit/grid cell must give at most 4e+08 cells, got 10000000000 cells, they need 720 GB"),
+     "Fix deposit/grid cell must give at most 4e+08 cells, got 10000000000 cells, "
+     "they need 720 GB"),
     ("dep all", "dep nogroup", "Could not find fix group ID"),
     ("dep all", "dep none", "Fix deposit/grid group must hold balls when the run starts, got none"),
 ])
@@ -595,3 +602,18 @@ def test_release_beside_the_ground(tmp_path):
     run_deck(head() + GOOD + "\nrun 1\n", tmp_path)
     write_balls(tmp_path / "balls.data", [[-0.1, 5, 5]], 0.5, None, [(-5.0, 10.0)] * 3)
     run_deck(head() + GOOD + "\nrun 1\n", tmp_path, expect_error="got none at ball 1, -0.1 5 5")
+
+
+def test_doc_examples(tmp_path):
+    flat(tmp_path, 60)
+    write_balls(tmp_path / "balls.data", [[5, 5, 5]], 0.5, None, [(0.0, 60.0)] * 3)
+    regions = """
+region out sphere 30 30 0 5 side out units box
+region stays intersect 2 ground out
+"""
+    run_deck(head(regions=regions) + "group soil type 1\n" + doc_examples("fix_deposit_grid") +
+             "\nrun 30000\n", tmp_path)
+    # the last of them: a ball that lies still is at rest when the deck has waited long enough
+    found = summary(tmp_path, "collapse")
+    assert found["stop"]["step"] == 21000 and found["stop"]["reason"] == "halted"
+    assert found["grid"]["extent"] == [0, 60, 0, 40] and found["bulk_factor"] == 1.7

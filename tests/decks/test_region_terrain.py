@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from deck_helpers import run_deck, write_asc
+from deck_helpers import doc_examples, run_deck, write_asc
 
 DECK = """
 units si
@@ -142,3 +142,12 @@ def test_bad_options(tmp_path, options, message):
 def test_missing_file_name(tmp_path):
     run_deck("region ground terrain\n", tmp_path,
              expect_error="Region terrain: file name of the elevation grid is missing")
+
+
+def test_doc_examples(tmp_path):
+    write_asc(tmp_path / "terrain.asc", np.full((30, 40), 200.0), cell=10.0)
+    run_deck("units si\natom_style sphere\nboundary f f f\n" + doc_examples("region_terrain") + """
+lattice sc 5
+create_atoms 1 region mass
+create_atoms 2 region stays
+""", tmp_path)

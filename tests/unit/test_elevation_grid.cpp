@@ -285,7 +285,8 @@ TEST_F(Grid, Digits)
       values.push_back(sign * v);
       values.push_back(std::round(sign * v));
     }
-  for (double v : {9.9999999999, 999999.9999996, 1e8, 1.0, 10.0, 100.0, 0.1, 999999999.7, 1e9, 1e15})
+  for (double v :
+       {9.9999999999, 999999.9999996, 1e8, 1.0, 10.0, 100.0, 0.1, 999999999.7, 1e9, 1e15})
     values.push_back(v);
   for (int digits : {6, 9, 12, 15}) {
     ElevationGrid g(values.size(), 1, 0.0, 0.0, 1.0, 0.0);

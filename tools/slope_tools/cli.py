@@ -16,6 +16,7 @@ from .errors import SlopeError
 
 COMMANDS = {
     "terrain": "survey rasters (GeoTIFF, ESRI ASCII) to the plain terrain.asc that decks read",
+    "polygon": "polygons (GeoJSON, shapefile, CSV, WKT) to the .csv in local metres that decks read",
     "volume": "what must be removed from a road, per mesh cell and in total, above a cut surface",
     "score": "a run's deposit against a mapped one: overlap, run-out, volume",
     "study": "one deck over lists of its variables, several runs at a time: table, envelope, exceedance",

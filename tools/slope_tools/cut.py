@@ -27,6 +27,7 @@ LEAF_FEW = 32       # the same where few edges are near
 FEW = 12            # edges
 TICK = 1000         # cells that the progress bar moves on at a time
 CHUNK = 1_000_000   # point-edge pairs at a time
+HALF_DIAGONAL = 0.5 ** 0.5  # of a cell
 WHOLE = 1e-12       # relative; an area that differs less is the same
 
 
@@ -107,31 +108,38 @@ class Edge:
         slack = np.maximum.reduceat(between, first)
         self.low, self.high = np.minimum.reduceat(z, first) - slack, np.maximum.reduceat(z, first) + slack
 
+    def squares(self, x, y, which):
+        """Squared distance of points x, y to the pieces `which`, and the places on them (shares): (points, pieces)."""
+        sx, sy, ax, ay, length2 = (values[which] for values in (*self.start.T, *self.along.T, self.length2))
+        tx, ty = x[:, None] - sx, y[:, None] - sy
+        share = tx * (ax / length2) + ty * (ay / length2)
+        np.clip(share, 0, 1, out=share)
+        tx -= share * ax
+        ty -= share * ay
+        tx *= tx
+        ty *= ty
+        tx += ty
+        return tx, share
+
     def distance(self, x, y, which):
         """Distance of one point to each of the pieces `which`."""
-        to = np.array([x, y]) - self.start[which]
-        along = self.along[which]
-        share = np.clip((to * along).sum(axis=1) / self.length2[which], 0, 1)
-        return np.hypot(*(to - share[:, None] * along).T)
+        return np.sqrt(self.squares(np.array([x]), np.array([y]), which)[0][0])
+
+    def nearest(self, x, y, which):
+        """Distance of points x, y (2-d arrays) to the nearest of the pieces `which`."""
+        return np.sqrt(self.squares(x.ravel(), y.ravel(), which)[0].min(axis=1)).reshape(x.shape)
 
     def cut(self, x, y, which):
         """Height of the cut at points x, y (1-d arrays), to which the nearest of the pieces `which` is the nearest."""
-        sx, sy = self.start[which].T
-        ax, ay = self.along[which].T
-        length2 = self.length2[which]
         z = np.empty(len(x))
         step = max(1, CHUNK // len(which))
         for first in range(0, len(x), step):
-            px, py = x[first:first + step], y[first:first + step]
-            tx, ty = px[:, None] - sx, py[:, None] - sy
-            share = np.clip((tx * ax + ty * ay) / length2, 0, 1)
-            distance2 = (tx - share * ax) ** 2 + (ty - share * ay) ** 2
-            nearest = distance2.argmin(axis=1)
-            points = np.arange(len(px)), nearest
-            share = share[points]
-            z[first:first + step] = (self.ground.height(sx[nearest] + share * ax[nearest],
-                                                        sy[nearest] + share * ay[nearest])
-                                     + self.tangent * np.sqrt(distance2[points]))
+            some = slice(first, first + step)
+            square, share = self.squares(x[some], y[some], which)
+            nearest = square.argmin(axis=1)
+            points = np.arange(len(nearest)), nearest
+            foot = self.start[which[nearest]] + share[points][:, None] * self.along[which[nearest]]
+            z[some] = self.ground.height(*foot.T) + self.tangent * np.sqrt(square[points])
         return z
 
 
@@ -150,16 +158,23 @@ def positive_mean(u, v, w):
     return np.where(a >= 0, total / 3, np.where(c <= 0, 0, np.where(b <= 0, tip, rest)))
 
 
-def linear_mean(h, t):
-    """Mean of what is removed in the cells of a lattice of h (rows + 1, columns + 1), of thickness t (rows, columns).
+def linear_mean(a, b, c, d, t):
+    """Mean of what is removed in squares with h = a, b, c, d at the corners, in turn, and the thickness t (arrays).
 
-    Mean over both ways to divide a cell into two triangles.
+    Mean over both ways to divide a square into two triangles.
     """
-    a, b, c, d = h[:-1, :-1], h[:-1, 1:], h[1:, 1:], h[1:, :-1]
-    total = 0
-    for corners in ((a, b, c), (a, d, c), (a, b, d), (b, c, d)):
-        total = total + positive_mean(*(t - corner for corner in corners)) - positive_mean(*(-corner for corner in corners))
-    return np.clip(total / 4, 0, t)
+    h = (a + b + c + d) / 4
+    mean = np.clip(t - h, 0, t)
+    low, high = np.minimum(np.minimum(a, b), np.minimum(c, d)), np.maximum(np.maximum(a, b), np.maximum(c, d))
+    bent = ((low < 0) & (high > 0)) | ((low < t) & (high > t))
+    if bent.any():
+        a, b, c, d, t = (values[bent] for values in (a, b, c, d, t))
+        total = 0
+        for corners in ((a, b, c), (a, c, d), (a, b, d), (b, c, d)):
+            total = total + (positive_mean(*(t - corner for corner in corners))
+                             - positive_mean(*(-corner for corner in corners)))
+        mean[bent] = np.clip(total / 4, 0, t)
+    return mean
 
 
 def removed(thickness, ground, road, tangent, mesh, k):
@@ -271,38 +286,58 @@ class _Work:
 
     def leaf(self, top, bottom, left, right, road, near):
         (y, row, mesh_row), (x, column, mesh_column) = self.place(self.fine, top, bottom, left, right)
-        t = self.t[np.ix_(row, column)]
-        h = self.above_ground(*np.meshgrid(x, y), near)
-        mean = linear_mean(h, t)
-        flat = (h[:-1, :-1] + h[:-1, 1:] + h[1:, 1:] + h[1:, :-1]) / 4
+        fine = np.ix_(row - top, column - left)
         area = np.diff(y)[:, None] * np.diff(x)
         on_road = np.zeros(area.shape)
         if road is not None:
             # moments about the block's corner: those of slivers are differences of larger numbers
             u, v = x - left, y - top
             on_road, in_x, in_y = coverage(translate(road, -left, -top), u, v)
-            on_road = np.clip(on_road, 0, area)
             on_road[on_road < area * WHOLE] = 0
-            on_road[on_road > area * (1 - WHOLE)] = area[on_road > area * (1 - WHOLE)]
-            mixed = (on_road > 0) & (on_road < area) & (t > 0)
-            j, i = np.nonzero(mixed)
-            # beside the road h is linear: its mean is its value at the centre of what is beside
-            rest = (area - on_road)[mixed]
-            cx = np.clip(((np.diff(u ** 2) / 2 * np.diff(v)[:, None] - in_x)[mixed]) / rest, u[i], u[i + 1])
-            cy = np.clip(((np.diff(v ** 2)[:, None] / 2 * np.diff(u) - in_y)[mixed]) / rest, v[j], v[j + 1])
-            flat[mixed] = self.above_ground(cx + left, cy + top, near)
-            mean[mixed] = np.clip(t[mixed] - np.maximum(0, flat[mixed]), 0, t[mixed])
+            on_road = np.where(on_road > area * (1 - WHOLE), area, on_road)
+
+        # cells of which all, or nothing, lies above the cut need no more than their distance from the edge
+        t = self.t[top:bottom, left:right]
+        at = slice(top - self.corner[0], bottom - self.corner[0]), slice(left - self.corner[1], right - self.corner[1])
+        distance = self.edge.nearest(*np.meshgrid(np.arange(left, right) + 0.5, np.arange(top, bottom) + 0.5), near)
+        below = self.edge.high[near].max() + self.tangent * (distance + HALF_DIAGONAL) <= self.low[at]
+        above = self.edge.low[near].min() + self.tangent * (distance - HALF_DIAGONAL) >= self.high[at]
+        open_ = (~(below | above) & (t > 0))[fine] & (on_road < area)
+        t, below = t[fine], below[fine]
+        mean = np.where(below, t, 0)
+
+        if open_.any():
+            corners = np.zeros((len(y), len(x)), bool)
+            for part in (corners[:-1, :-1], corners[:-1, 1:], corners[1:, 1:], corners[1:, :-1]):
+                part |= open_
+            h = np.full(corners.shape, np.nan)
+            j, i = np.nonzero(corners)
+            h[corners] = self.above_ground(x[i], y[j], near)
+            h = [part[open_] for part in (h[:-1, :-1], h[:-1, 1:], h[1:, 1:], h[1:, :-1])]
+            mean[open_] = linear_mean(*h, t[open_])
+            below[open_] = sum(h) < 0
+            mixed = open_ & (on_road > 0)
+            if mixed.any():
+                # beside the road h is linear: its mean is its value at the centre of what is beside
+                j, i = np.nonzero(mixed)
+                rest = (area - on_road)[mixed]
+                cx = np.clip((np.diff(u ** 2) / 2 * np.diff(v)[:, None] - in_x)[mixed] / rest, u[i], u[i + 1])
+                cy = np.clip((np.diff(v ** 2)[:, None] / 2 * np.diff(u) - in_y)[mixed] / rest, v[j], v[j + 1])
+                h = self.above_ground(cx + left, cy + top, near)
+                mean[mixed] = np.clip(t[mixed] - np.maximum(0, h), 0, t[mixed])
+                below[mixed] = h < 0
+
         beside = (area - on_road) * mean
         bad = np.isnan(beside) | ~self.ground.known[np.ix_(row, column)]
         if bad.any():
             self.unknown += ((area - on_road) * t)[bad].sum()
             beside[bad] = 0
-        self.steep += beside[flat < 0].sum()
+        self.steep += beside[below].sum()
         on_road = on_road * t
         self.add(self.cells, on_road + beside, row, column)
         self.add(self.mesh_road, on_road, mesh_row, mesh_column)
         self.add(self.mesh_beside, beside, mesh_row, mesh_column)
 
     def above_ground(self, x, y, near):
-        """Height of the cut above the ground at index coordinates x, y (arrays of one shape)."""
-        return (self.edge.cut(x.ravel(), y.ravel(), near) - self.ground.height(x.ravel(), y.ravel())).reshape(x.shape)
+        """Height of the cut above the ground at points in index coordinates x, y (1-d arrays)."""
+        return self.edge.cut(x, y, near) - self.ground.height(x, y)

@@ -22,14 +22,13 @@ from shapely.geometry import MultiPolygon, Polygon, box, shape
 from shapely.ops import unary_union
 from shapely.validation import explain_validity
 
-from . import rasters
 from .deposit import extent, polygons_of
 from .errors import SlopeError
 from .rasters import crs_name
 from .terrain import same_crs
 
 DIGITS = 6     # decimals of a written coordinate, m: beyond them is the noise of origins and projections
-PLACE = re.compile(r"# local metres: east = x \+ (\S+), north = y \+ (\S+), CRS (.+)")
+PLACE = re.compile(r"^# local metres: .+", re.MULTILINE)
 WKT = re.compile(r"[A-Za-z]+\s*(?:Z|M|ZM)?\s*(?:\(|EMPTY)", re.IGNORECASE)
 
 for library in ("fiona", "shapely"):  # what they log is in the exceptions as well, or of no interest
@@ -161,7 +160,7 @@ def _parts(where, geometry):
 
 
 def _checked(where, geometry):
-    if geometry.is_empty or geometry.area == 0:
+    if geometry.is_empty or geometry.convex_hull.area == 0:
         raise SlopeError(where, "must have an area > 0")
     if not geometry.is_valid:
         raise crossing(where, geometry)
@@ -302,10 +301,10 @@ def rings_of(geometry):
             for ring in (part.exterior, *part.interiors)]
 
 
-def write(path, geometry, raster, source):
-    """Write a valid geometry in the local metres of a terrain to path, for region polygon; return what was written.
+def write(path, geometry, raster):
+    """Write a valid geometry in the local metres of a terrain to path, for region polygon; return it as it is written.
 
-    source: one word on where it comes from, for the first line. The file is complete or not touched.
+    The file is complete or not touched.
     """
     rounded = map_points(geometry, lambda points: np.round(points, DIGITS) + 0.0)  # + 0.0 because of -0.0
     if rounded.is_valid and rounded.area > 0:
@@ -314,7 +313,7 @@ def write(path, geometry, raster, source):
     new = path.with_name(f".{path.name}.{os.getpid()}.new")
     try:
         with open(new, "w", encoding="utf-8") as out:
-            out.write(f"# slope polygon, from {source}\n{_place_line(raster)}\n")
+            out.write(_place_line(raster) + "\n")
             out.write("\n".join("".join(f"{x!r},{y!r}\n" for x, y in ring.tolist()) for ring in rings_of(geometry)))
         os.replace(new, path)
     except OSError as error:

@@ -1,5 +1,7 @@
 """Decks, and the folders in which they ran: what a deck asks for, what its log says, what fix deposit/grid wrote."""
+import datetime
 import os
+import platform
 import re
 from pathlib import Path
 
@@ -9,7 +11,8 @@ from . import rasters
 from .errors import SlopeError
 
 LOG = "log.lammps"
-VARIABLES = "variables.yaml"       # what `slope study` ran, written before the run
+VARIABLES = "variables.yaml"       # what `slope study` runs, written before the run
+MARKER = "finished.yaml"           # written when the run is complete
 WORD = re.compile(r'"""(.*?)"""|"([^"]*)"|\'([^\']*)\'|(\S+)')
 INPUT_PLACE = re.compile(r"\s*\([^()]*\.(?:cpp|h):\d+\)\s*$")     # LAMMPS names its source line at the end of a message
 SUMMARY_KEYS = {"volume": ("released", "on_grid", "off_grid", "lost", "residual"),
@@ -166,6 +169,22 @@ def last_words(path):
     except OSError:
         return ""
     return next((line.strip() for line in reversed(lines) if line.strip(" -\t")), "")
+
+
+# --- provenance ---
+
+def now():
+    return datetime.datetime.now().astimezone().isoformat(timespec="seconds")
+
+
+def machine():
+    """Name, processor and cores of this machine."""
+    try:
+        model = re.search(r"model name\s*:\s*(.*)", Path("/proc/cpuinfo").read_text(encoding="ascii", errors="replace"))
+    except OSError:
+        model = None
+    return {"name": platform.node(), "system": f"{platform.system()} {platform.release()}",
+            "processor": model[1] if model else platform.machine(), "cores": len(os.sched_getaffinity(0))}
 
 
 # --- results ---

@@ -12,7 +12,6 @@ import hashlib
 import io
 import itertools
 import os
-import platform
 import re
 import shutil
 import signal
@@ -40,7 +39,6 @@ POLL = 0.1              # s between two looks at the runs
 TELL = 30.0             # s between two lines about a run, where there is no terminal
 PATIENCE = 10.0         # s that a run gets to end after SIGTERM
 BALANCE = 1e-9          # of the released volume
-FINISHED = "finished.yaml"
 SCREEN = "screen.txt"
 # what runs, and the tools after them, leave in the deck's folder; a file that the deck names is copied all the same
 OUTPUTS = re.compile(r"^\.|^core|^log\.|\.(restart|dump|lammpstrj|vtp|vts|pvd)(\.gz)?$|\.(yaml|csv|tif)\.new$"
@@ -80,6 +78,13 @@ def add_parser(commands, **kwargs):
                         help="runs at a time (default: as many as the cores of this machine allow)")
     parser.add_argument("--exceed", default="0.1,0.5,1", metavar="T1,T2,...",
                         help="thicknesses of the maps of exceedance, m (default 0.1,0.5,1)")
+    parser.add_argument("--road", metavar="POLYGON", type=Path,
+                        help="tell the volume to remove from this road too: GeoJSON, shapefile, CSV or WKT")
+    parser.add_argument("--cut-angle", metavar="DEG", type=number, default=30.0,
+                        help="rise of the cut surface from the road's edges, degrees (default 30); see `slope volume`")
+    parser.add_argument("--mesh", metavar="SIZE", type=number, default=10.0,
+                        help="side of the mesh cells of that volume, m (default 10)")
+    parser.add_argument("--local", action="store_true", help="the road is in local metres, not in a CRS")
     parser.add_argument("--lmp", metavar="FILE", help="the LAMMPS program (default: LMP of the environment, then "
                         "build/lmp beside tools/)")
     parser.add_argument("--dry-run", action="store_true", help="only list the runs")
@@ -91,6 +96,8 @@ def run(args):
     settings = check_settings(args.set, args.deck)
     thresholds = check_thresholds(args.exceed)
     files = data_files(args.deck, settings)
+    if args.road:
+        check_road(args, settings)
     todo = plan(args.output, settings)
     check_folder(args, todo)
     if args.dry_run:
@@ -103,12 +110,12 @@ def run(args):
         warn(f"{min(jobs, len(todo))} runs of {args.np} ranks at a time on {cores()} cores: they slow each other down")
 
     args.output.mkdir(parents=True, exist_ok=True)
-    with alone_in(args.output), signals_interrupt():
+    with alone_in(args.output), signals_interrupt(), copied(files, args.output / ".inputs") as digests:
         for one in todo:
-            check_finished(one, args.deck, files)
-        work = Work(args.deck, files, lmp, args.np, jobs)
+            check_finished(one, args.deck, digests)
+        work = Work(args.deck, digests, args.output / ".inputs", lmp, args.np, jobs)
         work.do(todo)
-        collect(args.output, args.deck, settings, todo, work, thresholds)
+        collect(args, settings, todo, work, thresholds)
     failed = [one for one in todo if one.error]
     if failed:
         more = f" and {len(failed) - 1} more" if len(failed) > 1 else ""
@@ -209,6 +216,24 @@ def check_thresholds(text):
     return found
 
 
+def check_road(args, settings):
+    """Raise SlopeError now if the road cannot be used after the runs, as far as the deck names its terrain."""
+    from . import polygons
+    if not args.road.is_file():
+        raise SlopeError("--road", "must be an existing file", args.road)
+    if not 0 < args.cut_angle < 90:
+        raise SlopeError("--cut-angle", "must be > 0 and < 90 degrees", f"{args.cut_angle:g}")
+    if args.mesh <= 0:
+        raise SlopeError("--mesh", "must be > 0", f"{args.mesh:g}")
+    known = {**runs.index_variables(args.deck), **{name: several[0] for name, several in settings.items()}}
+    for words in runs.commands(args.deck):
+        if words[0] == "region" and words[2:3] == ["terrain"] and len(words) > 3:
+            path = args.deck.parent / re.sub(r"\$\{(\w+)\}", lambda match: known.get(match[1], match[0]), words[3])
+            if path.is_file():
+                polygons.read_local(args.road, rasters.read_place(path), args.local)
+            return
+
+
 class Run:
     """One run: its values, its folder, and what became of it."""
 
@@ -221,7 +246,7 @@ class Run:
 
     @property
     def marker(self):
-        return self.folder / FINISHED
+        return self.folder / runs.MARKER
 
     def state(self):
         if self.marker.exists():
@@ -328,12 +353,28 @@ def sha256(path):
     return digest.hexdigest()
 
 
-def check_finished(one, deck, files):
+@contextlib.contextmanager
+def copied(files, folder):
+    """Copy the deck and its data: what is edited while the study runs does not reach its later runs.
+
+    Gives {name: digest}.
+    """
+    shutil.rmtree(folder, ignore_errors=True)
+    try:
+        for name, source in files.items():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(source, folder / name)
+        yield {name: sha256(folder / name) for name in files}
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def check_finished(one, deck, digests):
     """Raise SlopeError if a finished run was made from files that are not the present ones."""
     if not one.marker.exists():
         return
     for name, digest in (runs.load_yaml(one.marker, "what `slope study` wrote").get("inputs") or {}).items():
-        if name in files and sha256(files[name]) != digest:
+        if digests.get(name, digest) != digest:
             raise SlopeError(one.folder, f"was run with another {name} than that of {deck.parent}: remove the folder "
                              "to run it again, or give another -o")
 
@@ -365,20 +406,6 @@ def signals_interrupt():
             signal.signal(name, handler)
 
 
-def now():
-    return datetime.datetime.now().astimezone().isoformat(timespec="seconds")
-
-
-def machine():
-    """Name, processor and cores of this machine."""
-    try:
-        model = re.search(r"model name\s*:\s*(.*)", Path("/proc/cpuinfo").read_text(encoding="ascii", errors="replace"))
-    except OSError:
-        model = None
-    return {"name": platform.node(), "system": f"{platform.system()} {platform.release()}",
-            "processor": model[1] if model else platform.machine(), "cores": cores()}
-
-
 def package_version():
     """What `git describe` calls the package, None where it is no git checkout."""
     try:
@@ -399,11 +426,12 @@ class Active(NamedTuple):
 class Work:
     """Runs the deck in the run folders, some at a time."""
 
-    def __init__(self, deck, files, lmp, ranks, jobs):
-        self.deck, self.files, self.lmp, self.ranks, self.jobs = deck, files, lmp, ranks, jobs
+    def __init__(self, deck, digests, inputs, lmp, ranks, jobs):
+        self.deck, self.digests, self.inputs = deck, digests, inputs
+        self.lmp, self.ranks, self.jobs = lmp, ranks, jobs
         self.package = package_version()
         self.lmp_digest = sha256(lmp)
-        self.defaults = runs.index_variables(deck)
+        self.defaults = runs.index_variables(inputs / deck.name)
         self.active = []
 
     def do(self, todo):
@@ -463,13 +491,10 @@ class Work:
         old = one.folder.with_name(f".{one.name}.old")
         for rest in (new, old):
             shutil.rmtree(rest, ignore_errors=True)
-        new.mkdir()
-        for name, source in self.files.items():
-            (new / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(source, new / name)
+        shutil.copytree(self.inputs, new)
         about = {"deck": self.deck.name, "set": one.chosen, "variables": {**self.defaults, **one.chosen},
                  "command": " ".join([self.lmp.name, *self.command(one.chosen)]), "ranks": self.ranks,
-                 "package": self.package, "lmp_sha256": self.lmp_digest, "started": now()}
+                 "package": self.package, "lmp_sha256": self.lmp_digest, "started": runs.now()}
         runs.write(new / runs.VARIABLES, yaml.safe_dump(about, sort_keys=False))
         if one.folder.exists():
             one.folder.rename(old)
@@ -490,11 +515,12 @@ class Work:
             one.error = str(error)
             return None
         one.log.update()
-        used = {name: sha256(one.folder / name) for name, source in self.files.items()
-                if name == self.deck.name or name in one.log.names}
-        about = {"finished": now(), "wall_seconds": round(time.monotonic() - active.began, 1),
-                 "summary": summaries[0].name, "machine": machine(),
-                 "inputs": {name: digest for name, digest in used.items() if digest == sha256(self.files[name])}}
+        # what the run used, and did not overwrite
+        inputs = {name: digest for name, digest in self.digests.items()
+                  if (name == self.deck.name or name in one.log.names) and sha256(one.folder / name) == digest}
+        about = {"finished": runs.now(), "wall_seconds": round(time.monotonic() - active.began, 1),
+                 "summary": summaries[0].name, "machine": runs.machine(),
+                 "inputs": inputs}
         runs.write(one.marker, yaml.safe_dump(about, sort_keys=False))
         return None
 
@@ -630,45 +656,59 @@ def clock(seconds):
 
 # --- what came out ---
 
-def collect(output, deck, settings, todo, work, thresholds):
+def collect(args, settings, todo, work, thresholds):
     """Table, maps and study.yaml over all runs that finished."""
+    output, deck = args.output, args.deck
     maps = Maps(thresholds)
     warnings, rows = [], []
-    for one in todo:
+    for one in rasters.progress(todo, "collecting the runs"):
         row = {"run": one.name, "status": "failed" if one.error else "finished", "set": one.chosen}
         if one.error:
             rows.append({**row, "error": one.error, "log_warnings": one.log.warnings})
             continue
-        rows.append(result(one, row, maps))
-    place = None
+        row = result(one, row, maps)
+        if args.road:
+            row.update(on_road(one, args, output / row["summary"]))
+        rows.append(row)
     for row in rows:
         if row["status"] == "failed":
             warnings.append(f"{row['run']}: failed: {row['error']}")
             continue
         if row["moving"]:
             warnings.append(f"{row['run']}: the deposit still moves at the end, {row['stop_time_s']:.1f} s: its "
-                            "numbers are not those of a deposit at rest")
+                            f"numbers are not those of a deposit at rest ({100 * row['moving_share']:.0f} % of the "
+                            f"volume moves)")
+        left = row["off_grid_m3"] + row["lost_m3"]
+        if left > 1e-6 * row["released_m3"]:
+            warnings.append(f"{row['run']}: {left:.6g} m3 left the grid or the box")
         if not abs(row["mass_error"]) <= BALANCE:
             warnings.append(f"{row['run']}: the volume in the thickness raster differs from released - off the grid - "
                             f"lost by {row['mass_error']:.1e} of the released volume")
     finished = [row for row in rows if row["status"] == "finished"]
+    of_road = {}
+    for row in finished:
+        for text in row.get("road_warnings", ()):
+            of_road.setdefault(text, []).append(row["run"])
+    for text, names in of_road.items():
+        warnings.append(text if len(names) == len(finished) else f"{', '.join(names)}: {text}")
     for what in ("slope_version", "lammps_version", "lmp_sha256"):
         if len({row[what] for row in finished}) > 1:
             warnings.append(f"the runs are of different programs: {what} "
                             + ", ".join(sorted({str(row[what]) for row in finished})))
     if maps.problem:
         warnings.append(maps.problem)
-    if finished:
-        first = next(one for one in todo if not one.error)
-        place = terrain_place(first)
+    place = terrain_place(next(one for one in todo if not one.error)) if finished else None
     written = maps.write(output, place)
     about = {
         "study": {"deck": deck.name, "set": settings, "runs": len(rows), "finished": len(finished),
-                  "ranks": work.ranks, "jobs": work.jobs, "package": work.package, "collected": now(),
-                  "machine": machine()},
+                  "ranks": work.ranks, "jobs": work.jobs, "package": work.package, "collected": runs.now(),
+                  "machine": runs.machine()},
         "largest": {key: largest(finished, key) for key in ("front_m", "thickness_m", "max_thickness_m",
                                                             "max_speed_m_s") if finished},
-        **written, "warnings": warnings, "runs": rows}
+        "conservative": None, **written, "warnings": warnings, "runs": rows}
+    if args.road and finished:
+        about["study"]["road"] = write_road(args, finished[0], place)
+        about["conservative"] = conservative(settings, rows, finished)
     for text in warnings:
         warn(text)
     runs.write(output / "study.csv", table(settings, rows))
@@ -676,6 +716,8 @@ def collect(output, deck, settings, todo, work, thresholds):
                + yaml.safe_dump(about, sort_keys=False))
     print_table(settings, rows, f"{deck.name}: {len(rows)} runs, volumes in m3 of ground")
     print(f"{output / 'study.yaml'}, {output / 'study.csv'}: all numbers")
+    if about["conservative"]:
+        print(told(about["conservative"]))
     for entry in [*(written["envelope"] or {}).values(), *(written["exceedance"] or ())]:
         print(f"{output / entry['file']}: {entry['what']}")
 
@@ -693,16 +735,70 @@ def result(one, row, maps):
     volume, travel = summary["volume"], summary["travel"]
     stays = volume["released"] - volume["off_grid"] - volume["lost"]
     on_grid = float(np.nansum(thickness.z)) * thickness.transform.a ** 2
-    return {**row, "variables": about.get("variables"), "released_m3": volume["released"],
+    return {**row, "variables": about.get("variables"), "ranks": about.get("ranks"), "package": about.get("package"), "released_m3": volume["released"],
             "on_grid_m3": volume["on_grid"], "off_grid_m3": volume["off_grid"], "lost_m3": volume["lost"],
             "residual_m3": volume["residual"], "mass_error": (on_grid - stays) / volume["released"],
             "front_m": travel["front"], "reach_angle_deg": travel["reach_angle"], "centroid_m": travel["centroid"],
             "thickness_m": summary["largest"]["thickness"], "max_thickness_m": summary["largest"]["max_thickness"],
             "max_speed_m_s": summary["largest"]["max_speed"], "stop_time_s": summary["stop"]["time"],
             "stop_reason": summary["stop"]["reason"], "moving": summary["moving"],
+            "moving_share": summary["motion"]["moving_share"], "change_rate": summary.get("change_rate"),
             "wall_s": marker.get("wall_seconds"), "summary": f"{one.name}/{path.name}",
             "slope_version": summary["slope_version"], "lammps_version": summary["lammps_version"],
             "lmp_sha256": about.get("lmp_sha256"), "log_warnings": one.log.warnings}
+
+
+def on_road(one, args, summary):
+    """What `slope volume` says of a run; all it writes goes to the folder volume of the run."""
+    from . import volume
+    parser = argparse.ArgumentParser()
+    volume.add_parser(parser.add_subparsers())
+    words = ["volume", str(runs.prefix_of(summary)), "--road", str(args.road), "--cut-angle", str(args.cut_angle),
+             "--mesh", str(args.mesh), "-o", str(one.folder / "volume")]
+    if one.log.terrain:
+        words += ["--terrain", str(one.folder / one.log.terrain)]
+    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+        volume.run(parser.parse_args(words + ["--local"] * args.local))
+    about = runs.load_yaml(one.folder / "volume" / "volume.yaml", "what `slope volume` wrote")
+    return {"remove_m3": about["volume"]["remove"], "remove_on_road_m3": about["volume"]["remove_on_road"],
+            "remove_beside_road_m3": about["volume"]["remove_beside_road"],
+            "blocked_m": about["axis"]["blocked_length"], "axis_thickness_m": about["axis"]["largest_thickness"],
+            # what it says of the summary is in the table
+            "road_warnings": [text.replace(f"{one.folder}/", "") for text in about["warnings"]
+                              if not text.startswith(f"{summary}:")]}
+
+
+def write_road(args, row, place):
+    """Keep the road, in local metres, with the study; what study.yaml says of it."""
+    from . import polygons
+    raster = runs.load_raster(runs.prefix_of(args.output / row["summary"]), "thickness")
+    if place:
+        raster = raster._replace(crs=place.crs, offset=place.offset)
+    polygons.write(args.output / "road.csv", polygons.read_local(args.road, raster, args.local), raster)
+    return {"file": args.road.name, "local": "road.csv", "cut_angle": args.cut_angle, "mesh": args.mesh}
+
+
+def conservative(settings, rows, finished):
+    """The largest volume to remove, which run gave it, and what speaks against taking it as the largest."""
+    best = max(finished, key=lambda row: row["remove_m3"])
+    doubts = []
+    if len(finished) < len(rows):
+        doubts.append(f"{len(rows) - len(finished)} of {len(rows)} runs failed")
+    moving = sum(row["moving"] for row in finished)
+    if moving:
+        doubts.append(f"{moving} of {len(finished)} deposits still move")
+    for name, several in settings.items():
+        numbers = [as_number(value) for value in several]
+        value = as_number(best["set"][name])
+        if len(several) > 1 and all(isinstance(one, float) for one in numbers) and value != 0 \
+                and value in (min(numbers), max(numbers)):
+            doubts.append(f"it lies at the end of the range of {name}, {min(numbers):g} to {max(numbers):g}")
+    return {"remove_m3": best["remove_m3"], "run": best["run"], "doubts": doubts}
+
+
+def told(best):
+    return (f"conservative volume to remove: {best['remove_m3']:,.0f} m3, run {best['run']}"
+            + "".join(f"; {doubt}" for doubt in best["doubts"]))
 
 
 def terrain_place(one):
@@ -781,16 +877,18 @@ class Maps:
 COLUMNS = ("released_m3", "on_grid_m3", "off_grid_m3", "lost_m3", "residual_m3", "front_m", "reach_angle_deg",
            "centroid_m", "thickness_m", "max_thickness_m", "max_speed_m_s", "stop_time_s", "stop_reason", "moving",
            "wall_s")
+ROAD_COLUMNS = ("remove_m3", "remove_on_road_m3", "remove_beside_road_m3", "blocked_m", "axis_thickness_m")
 
 
 def table(settings, rows):
     """The CSV over all runs."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["run", *settings, *COLUMNS, "status", "error"])
+    columns = [*COLUMNS, *(ROAD_COLUMNS if any("remove_m3" in row for row in rows) else ()), "status", "error"]
+    writer.writerow(["run", *settings, *columns])
     for row in rows:
         cells = {**row, "moving": {True: "yes", False: "no"}.get(row.get("moving"))}
-        writer.writerow([row["run"], *row["set"].values(), *(cells.get(key) for key in (*COLUMNS, "status", "error"))])
+        writer.writerow([row["run"], *row["set"].values(), *(cells.get(key) for key in columns)])
     return text.getvalue()
 
 
@@ -799,11 +897,14 @@ SHOWN = {"released_m3": ("released", "{:,.0f}"), "on_grid_m3": ("on grid", "{:,.
          "reach_angle_deg": ("reach deg", "{:.1f}"), "centroid_m": ("centroid m", "{:.1f}"),
          "stop_time_s": ("stop s", "{:.1f}"), "stop_reason": ("reason", "{}"), "moving": ("moving", "{}"),
          "wall_s": ("wall s", "{:.0f}")}
+SHOWN_ROAD = {"remove_m3": ("to remove", "{:,.0f}"), "remove_on_road_m3": ("on the road", "{:,.0f}"),
+              "blocked_m": ("blocked m", "{:.0f}")}
 
 
 def print_table(settings, rows, title):
     shown = Table(title=title)
-    for head in (*settings, *(head for head, _ in SHOWN.values())):
+    columns = {**SHOWN, **(SHOWN_ROAD if any("remove_m3" in row for row in rows) else {})}
+    for head in (*settings, *(head for head, _ in columns.values())):
         shown.add_column(head, justify="right")
     for row in rows:
         cells = list(row["set"].values())
@@ -811,7 +912,7 @@ def print_table(settings, rows, title):
             cells += ["failed"]
         else:
             cells += [form.format({True: "YES", False: "no"}.get(row[key], row[key]) if key == "moving" else row[key])
-                      for key, (_, form) in SHOWN.items()]
+                      for key, (_, form) in columns.items()]
         shown.add_row(*cells)
     console = Console() if sys.stdout.isatty() else Console(width=160)
     console.print(shown)

@@ -1,0 +1,472 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#include "polygon.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+using namespace Slope;
+
+static constexpr double LARGEST = 1.0e12;         // coordinates; their products must be finite
+static constexpr double MOST_PARTS = 64.0;        // of edges in strips, per edge: bounds the memory
+static constexpr double ROUNDING = 4.0e-16;       // relative error of a determinant's terms
+static constexpr double FAR = 1.0e-14;            // more than the relative rounding of a coordinate
+static constexpr double ON_LINE = 1.0e-9;         // of a cell, a strip, or the bounding box
+
+namespace {
+
+struct Point {
+  double x, y;
+  bool operator==(const Point &p) const { return x == p.x && y == p.y; }
+};
+
+struct Segment {
+  Point a, b;
+  int ring;
+  int line;         // in the file, of point a
+  int next, prev;   // edges of the same ring that share a point with it
+
+  double xmin() const { return std::min(a.x, b.x); }
+  double xmax() const { return std::max(a.x, b.x); }
+  double ymin() const { return std::min(a.y, b.y); }
+  double ymax() const { return std::max(a.y, b.y); }
+};
+
+struct Rings {
+  std::vector<std::vector<Point>> points;
+  std::vector<std::vector<int>> lines;
+};
+
+std::string to_text(double value)
+{
+  char text[32];
+  snprintf(text, sizeof(text), "%.10g", value);
+  return text;
+}
+
+std::runtime_error error(const std::string &path, int line, const std::string &what)
+{
+  return std::runtime_error(path + ", line " + std::to_string(line) + ": " + what);
+}
+
+// what a message quotes: short and printable
+
+std::string quoted(const std::string &text)
+{
+  std::string found = text.substr(0, 40);
+  for (char &c : found)
+    if (!isprint((unsigned char) c)) c = '?';
+  return found;
+}
+
+std::string trimmed(const std::string &text)
+{
+  const char *space = " \t\r\v\f";
+  const size_t begin = text.find_first_not_of(space);
+  if (begin == std::string::npos) return "";
+  return text.substr(begin, text.find_last_not_of(space) - begin + 1);
+}
+
+std::string text_of(const std::string &path)
+{
+  FILE *fp = fopen(path.c_str(), "rb");
+  if (!fp) throw std::runtime_error("cannot read " + path + ": " + strerror(errno));
+  std::string text;
+  std::vector<char> chunk(1 << 20);
+  size_t n;
+  while ((n = fread(chunk.data(), 1, chunk.size(), fp)) > 0) text.append(chunk.data(), n);
+  const std::string reason = ferror(fp) ? strerror(errno) : "";
+  fclose(fp);
+  if (!reason.empty()) throw std::runtime_error("cannot read " + path + ": " + reason);
+  return text;
+}
+
+// "x,y" and nothing else
+
+bool parse(const std::string &text, Point &p)
+{
+  char *end;
+  p.x = strtod(text.c_str(), &end);
+  if (end == text.c_str()) return false;
+  while (isspace((unsigned char) *end)) end++;
+  if (*end != ',') return false;
+  const char *second = end + 1;
+  p.y = strtod(second, &end);
+  return end != second && *end == '\0';
+}
+
+Rings read_rings(const std::string &path)
+{
+  std::string text = text_of(path);
+  if (text.compare(0, 3, "\xef\xbb\xbf") == 0) text.erase(0, 3);    // mark of UTF-8
+
+  Rings rings;
+  bool open = false;    // the last ring goes on
+  int line = 0;
+  for (size_t pos = 0; pos < text.size();) {
+    const size_t end = std::min(text.find('\n', pos), text.size());
+    const std::string whole = trimmed(text.substr(pos, end - pos));
+    const std::string content = trimmed(whole.substr(0, whole.find('#')));
+    pos = end + 1;
+    line++;
+    if (whole.empty()) open = false;
+    if (content.empty()) continue;
+
+    Point p;
+    if (!parse(content, p))
+      throw error(path, line, "must be two numbers, x,y, got " + quoted(content));
+    if (!(std::fabs(p.x) <= LARGEST && std::fabs(p.y) <= LARGEST))    // NaN, too
+      throw error(path, line, "x and y must be numbers within +-" + to_text(LARGEST) + ", got " +
+                  quoted(content));
+    if (!open) {
+      rings.points.emplace_back();
+      rings.lines.emplace_back();
+      open = true;
+    }
+    if (!rings.points.back().empty() && rings.points.back().back() == p) continue;
+    rings.points.back().push_back(p);
+    rings.lines.back().push_back(line);
+  }
+  if (rings.points.empty())
+    throw std::runtime_error(path + ": must hold a ring of points x,y, it has none");
+
+  for (size_t r = 0; r < rings.points.size(); r++) {
+    std::vector<Point> &points = rings.points[r];
+    if (points.size() > 1 && points.front() == points.back()) {
+      points.pop_back();
+      rings.lines[r].pop_back();
+    }
+    if (points.size() < 3)
+      throw error(path, rings.lines[r][0], "a ring must have at least 3 points, got " +
+                  std::to_string(points.size()));
+  }
+  return rings;
+}
+
+// On which side of the line from a to b is c? 1: left, -1: right, 0: on it, or too near to tell
+
+int side(const Point &a, const Point &b, const Point &c)
+{
+  const double left = (b.x - a.x) * (c.y - a.y);
+  const double right = (b.y - a.y) * (c.x - a.x);
+  const double bound = ROUNDING * (std::fabs(left) + std::fabs(right));
+  if (left - right > bound) return 1;
+  if (left - right < -bound) return -1;
+  return 0;
+}
+
+// Whether two edges meet where they may not. Edges of one ring: anywhere but in the point that
+// neighbours share. Edges of two rings: only a true crossing is an error, rings may touch.
+
+bool meet(const Segment &s, const Segment &t, bool neighbours)
+{
+  if (neighbours) {
+    const Point &shared = s.b == t.a ? s.b : s.a;
+    const Point &p = s.b == t.a ? s.a : s.b;
+    const Point &q = s.b == t.a ? t.b : t.a;
+    const double same =
+        (p.x - shared.x) * (q.x - shared.x) + (p.y - shared.y) * (q.y - shared.y);
+    return side(p, shared, q) == 0 && same > 0.0;
+  }
+  const int c = side(s.a, s.b, t.a) * side(s.a, s.b, t.b);
+  const int d = side(t.a, t.b, s.a) * side(t.a, t.b, s.b);
+  if (s.ring != t.ring) return c < 0 && d < 0;
+  return c <= 0 && d <= 0 && s.xmin() <= t.xmax() && t.xmin() <= s.xmax() &&
+      s.ymin() <= t.ymax() && t.ymin() <= s.ymax();
+}
+
+// where they do; for edges on one line a point that both have
+
+Point meeting(const Segment &s, const Segment &t)
+{
+  const double ux = s.b.x - s.a.x, uy = s.b.y - s.a.y;
+  const double vx = t.b.x - t.a.x, vy = t.b.y - t.a.y;
+  const double det = ux * vy - uy * vx;
+  const double f = ((t.a.x - s.a.x) * vy - (t.a.y - s.a.y) * vx) / det;
+  if (f >= 0.0 && f <= 1.0) return {s.a.x + f * ux, s.a.y + f * uy};
+  for (const Point &p : {t.a, t.b})
+    if (p.x >= s.xmin() && p.x <= s.xmax() && p.y >= s.ymin() && p.y <= s.ymax()) return p;
+  return s.a;
+}
+
+// Calls work(cell) for the cells of a grid over the bounding box that an edge touches, and maybe
+// for some that it only comes near to
+
+struct Cells {
+  double xlo, ylo, dx, dy;
+  int n;    // along each axis
+
+  int column(double x) const { return clamped((x - xlo) / dx); }
+  int row(double y) const { return clamped((y - ylo) / dy); }
+  int clamped(double at) const { return at > 0.0 ? std::min(n - 1, (int) at) : 0; }
+
+  template <class Work> void along(const Segment &s, Work work) const
+  {
+    const double slope = (s.b.y - s.a.y) / (s.b.x - s.a.x);    // not used if infinite
+    const int last = column(s.xmax() + ON_LINE * dx);
+    for (int i = column(s.xmin() - ON_LINE * dx); i <= last; i++) {
+      double y0 = s.ymin(), y1 = s.ymax();
+      if (s.xmax() - s.xmin() > dx) {    // shorter ones: all rows that they reach
+        const double ya = s.a.y + slope * (xlo + (i - ON_LINE) * dx - s.a.x);
+        const double yb = s.a.y + slope * (xlo + (i + 1 + ON_LINE) * dx - s.a.x);
+        y0 = std::max(y0, std::min(ya, yb));
+        y1 = std::min(y1, std::max(ya, yb));
+      }
+      const int top = row(y1 + ON_LINE * dy);
+      for (int j = row(y0 - ON_LINE * dy); j <= top; j++) work((size_t) j * n + i);
+    }
+  }
+};
+
+// The first edge (in the file) that meets another one where it may not, and the first such one
+
+void check_crossings(const std::string &path, const std::vector<Segment> &all, const Polygon &box)
+{
+  Cells cells;
+  cells.n = 1 + (int) std::sqrt((double) all.size());
+  cells.xlo = box.xlo;
+  cells.ylo = box.ylo;
+  cells.dx = (box.xhi - box.xlo) / cells.n;
+  cells.dy = (box.yhi - box.ylo) / cells.n;
+
+  // edges cell by cell: counted, then put
+
+  std::vector<size_t> first((size_t) cells.n * cells.n + 1, 0);
+  for (const Segment &s : all) cells.along(s, [&](size_t cell) { first[cell + 1]++; });
+  for (size_t k = 1; k < first.size(); k++) first[k] += first[k - 1];
+  std::vector<int> member(first.back());
+  std::vector<size_t> place = first;
+  for (size_t e = 0; e < all.size(); e++)
+    cells.along(all[e], [&](size_t cell) { member[place[cell]++] = (int) e; });
+
+  std::pair<int, int> found((int) all.size(), 0);
+  for (size_t cell = 0; cell + 1 < first.size(); cell++)
+    for (size_t k = first[cell]; k < first[cell + 1]; k++) {
+      const Segment &s = all[member[k]];
+      for (size_t l = k + 1; l < first[cell + 1]; l++) {
+        const Segment &t = all[member[l]];
+        if (s.xmin() > t.xmax() || t.xmin() > s.xmax() || s.ymin() > t.ymax() ||
+            t.ymin() > s.ymax())
+          continue;
+        const std::pair<int, int> pair(member[k], member[l]);    // members ascend
+        if (pair < found && meet(s, t, pair.second == s.next || pair.second == s.prev))
+          found = pair;
+      }
+    }
+  if (found.first == (int) all.size()) return;
+
+  const Segment &s = all[found.first], &t = all[found.second];
+  const Point at = meeting(s, t);
+  const std::string where = " at " + to_text(at.x) + "," + to_text(at.y);
+  if (s.ring == t.ring)
+    throw error(path, s.line, "a ring must not cross or touch itself, the edges from lines " +
+                std::to_string(s.line) + " and " + std::to_string(t.line) + " meet" + where);
+  throw error(path, s.line, "rings must not cross, the edges from lines " +
+              std::to_string(s.line) + " and " + std::to_string(t.line) + " do" + where);
+}
+
+}    // namespace
+
+/* ---------------------------------------------------------------------- */
+
+Polygon::Polygon(const std::vector<double> &_xy, const std::vector<int> &_sizes) :
+    xy(_xy), sizes(_sizes), scale(0.0)
+{
+  xlo = xhi = xy.at(0);
+  ylo = yhi = xy.at(1);
+  for (size_t k = 0; k < xy.size(); k += 2) {
+    xlo = std::min(xlo, xy[k]);
+    xhi = std::max(xhi, xy[k]);
+    ylo = std::min(ylo, xy[k + 1]);
+    yhi = std::max(yhi, xy[k + 1]);
+  }
+
+  // edges along x are crossed by no ray along x; the order of the ends is that of y, whatever way
+  // the ring goes round, so that edges of two rings round in the same way
+
+  size_t start = 0;
+  for (const int size : sizes) {
+    for (int k = 0; k < size; k++) {
+      const double *p = &xy[2 * (start + k)];
+      const double *q = &xy[2 * (start + (k + 1) % size)];
+      if (p[1] < q[1]) edges.push_back({p[0], p[1], q[0], q[1]});
+      if (p[1] > q[1]) edges.push_back({q[0], q[1], p[0], p[1]});
+    }
+    start += size;
+  }
+  cut_into_strips();
+}
+
+/* ----------------------------------------------------------------------
+   edges into strips
+------------------------------------------------------------------------- */
+
+int Polygon::strip(double y) const
+{
+  return std::min((int) first_ending.size() - 2, (int) ((y - ylo) * scale));
+}
+
+void Polygon::cut_into_strips()
+{
+  if (edges.empty()) return;
+
+  // as many strips as edges, but fewer if edges are long and in too many of them
+
+  double parts;
+  int n = 2 * (int) edges.size();
+  do {
+    n = (n + 1) / 2;
+    scale = n / (yhi - ylo);
+    first_ending.assign(n + 1, 0);
+    parts = 0.0;
+    for (const Edge &e : edges) parts += strip(e.y1) - strip(e.y0) + 1;
+  } while (n > 1 && parts > MOST_PARTS * edges.size());
+
+  // counted, then put
+
+  first_through.assign(n + 1, 0);
+  for (const Edge &e : edges) {
+    const int lo = strip(e.y0), hi = strip(e.y1);
+    first_ending[lo + 1]++;
+    if (hi > lo) first_ending[hi + 1]++;
+    for (int k = lo + 1; k < hi; k++) first_through[k + 1]++;
+  }
+  for (int k = 0; k < n; k++) {
+    first_ending[k + 1] += first_ending[k];
+    first_through[k + 1] += first_through[k];
+  }
+  ending.resize(first_ending[n]);
+  through.resize(first_through[n]);
+  std::vector<int> place_ending = first_ending, place_through = first_through;
+  const double slack = ON_LINE * (xhi - xlo) + FAR * std::max(std::fabs(xlo), std::fabs(xhi));
+  const double rim = ON_LINE / scale + FAR * std::max(std::fabs(ylo), std::fabs(yhi));
+  for (size_t i = 0; i < edges.size(); i++) {
+    const Edge &e = edges[i];
+    const int lo = strip(e.y0), hi = strip(e.y1);
+    ending[place_ending[lo]++] = (int) i;
+    if (hi > lo) ending[place_ending[hi]++] = (int) i;
+    for (int k = lo + 1; k < hi; k++) {
+      const double xa = e.xat(ylo + k / scale - rim);
+      const double xb = e.xat(ylo + (k + 1) / scale + rim);
+      through[place_through[k]++] = {std::min(xa, xb) - slack, std::max(xa, xb) + slack, 0.0,
+                                     (int) i};
+    }
+  }
+
+  for (int k = 0; k < n; k++) {
+    std::sort(ending.begin() + first_ending[k], ending.begin() + first_ending[k + 1],
+              [this](int a, int b) { return edges[a].xmax() > edges[b].xmax(); });
+    std::sort(through.begin() + first_through[k], through.begin() + first_through[k + 1],
+              [](const Through &a, const Through &b) { return a.xmin > b.xmin; });
+    double reach = -LARGEST;
+    for (int i = first_through[k + 1] - 1; i >= first_through[k]; i--)
+      through[i].reach = reach = std::max(reach, through[i].xmax);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   Whether the number of edges at height y that are to the east is odd. is_east(edge) says if one
+   is; it is not asked if the edge is all to the east of the second or to the west of the first x.
+------------------------------------------------------------------------- */
+
+template <class East> bool Polygon::odd(double y, double west, double east, East is_east) const
+{
+  const int k = strip(y);
+  bool found = false;
+  for (int i = first_ending[k]; i < first_ending[k + 1]; i++) {
+    const Edge &e = edges[ending[i]];
+    if (e.xmax() <= west) break;
+    if (e.y0 <= y && y < e.y1 && is_east(e)) found = !found;
+  }
+
+  const auto end = through.begin() + first_through[k + 1];
+  const auto begin = through.begin() + first_through[k];
+  auto t = std::partition_point(begin, end, [&](const Through &t) { return t.xmin > east; });
+  if ((t - begin) % 2) found = !found;
+  for (; t != end && t->reach > west; t++)
+    if (is_east(edges[t->edge])) found = !found;
+  return found;
+}
+
+/* ---------------------------------------------------------------------- */
+
+Polygon Polygon::read(const std::string &path)
+{
+  const Rings rings = read_rings(path);
+
+  std::vector<double> points;
+  std::vector<int> sizes;
+  std::vector<Segment> all;
+  for (size_t r = 0; r < rings.points.size(); r++) {
+    const std::vector<Point> &ring = rings.points[r];
+    const int n = (int) ring.size(), base = (int) all.size();
+    for (int k = 0; k < n; k++) {
+      const Point &p = ring[k], &q = ring[(k + 1) % n];
+      points.push_back(p.x);
+      points.push_back(p.y);
+      all.push_back({p, q, (int) r, rings.lines[r][k], base + (k + 1) % n,
+                     base + (k + n - 1) % n});
+    }
+    bool flat = true;
+    for (const Point &p : ring) flat = flat && side(ring[0], ring[1], p) == 0;
+    if (flat)
+      throw error(path, rings.lines[r][0], "a ring must have an area > 0, its points are on a line");
+    sizes.push_back(n);
+  }
+
+  const Polygon polygon(points, sizes);
+  check_crossings(path, all, polygon);
+  const double area = polygon.area();
+  if (!(area > 0.0))
+    throw std::runtime_error(path + ": must have an area > 0, got " + to_text(area) +
+                             ", rings cancel each other");
+  return polygon;
+}
+
+/* ----------------------------------------------------------------------
+   a ray to the east crosses an odd number of edges
+------------------------------------------------------------------------- */
+
+bool Polygon::inside(double x, double y) const
+{
+  if (!(x >= xlo && x <= xhi && y >= ylo && y <= yhi)) return false;    // NaN, too
+  if (edges.empty()) return false;
+  return odd(y, x, x, [=](const Edge &e) {
+    return (e.x1 - e.x0) * (y - e.y0) > (x - e.x0) * (e.y1 - e.y0);
+  });
+}
+
+/* ----------------------------------------------------------------------
+   Sum over the edges of the area to the west of them, + if the inside is on that side. Edges do
+   not cross, so that two of them have one order at all heights that both have; of edges on one
+   line, whose areas cancel, any order will do if it is always the same.
+------------------------------------------------------------------------- */
+
+double Polygon::area() const
+{
+  const double slack = ON_LINE * (xhi - xlo);
+  double total = 0.0;
+  for (const Edge &e : edges) {
+    const double middle = e.y0 + 0.5 * (e.y1 - e.y0);
+    const double x = e.xat(middle);
+    const bool others = odd(middle, x - slack, x + slack, [&](const Edge &f) {
+      const double lo = std::max(e.y0, f.y0), hi = std::min(e.y1, f.y1);
+      const double y = lo + 0.5 * (hi - lo);
+      const double gap = f.xat(y) - e.xat(y);
+      return std::fabs(gap) > slack ? gap > 0.0 : &f > &e;
+    });
+    const double to_the_west = (0.5 * (e.x0 + e.x1) - xlo) * (e.y1 - e.y0);
+    total += others ? -to_the_west : to_the_west;
+  }
+  return total;
+}
