@@ -95,8 +95,8 @@ struct ContactForce {
 };
 
 // Spring and dashpot in the tangent plane with a limit, for sliding and for rolling alike:
-// s += u dt, kept in the plane of n; F = -k s - c u; if |F| exceeds the limit, F is cut to
-// it and s is cut back so that -k s - c u is the cut force. u must lie in the plane of n.
+// s += u dt, kept in the plane of n; F = -k s - c (u + yield F); if |F| exceeds the limit, F is
+// cut to it and s is cut back to what gives the cut force. u must lie in the plane of n.
 // yield: what half a step of unit force adds to u, so that the dashpot sees u at its end.
 inline void limited_spring(double k, double c, double limit, const double *n, const double *u,
                            double dt, double yield, double *s, double *f)
@@ -109,7 +109,8 @@ inline void limited_spring(double k, double c, double limit, const double *n, co
   sy -= sn * n[1];
   sz -= sn * n[2];
 
-  const double implicit = 1.0 / (1.0 + c * yield);
+  const double stiffer = 1.0 + c * yield;
+  const double implicit = 1.0 / stiffer;
   const double fx = -implicit * (k * sx + c * u[0]);
   const double fy = -implicit * (k * sy + c * u[1]);
   const double fz = -implicit * (k * sz + c * u[2]);
@@ -123,9 +124,9 @@ inline void limited_spring(double k, double c, double limit, const double *n, co
   f[0] = scale * fx;
   f[1] = scale * fy;
   f[2] = scale * fz;
-  s[0] = cut ? -(f[0] + c * u[0]) * kinv : sx;
-  s[1] = cut ? -(f[1] + c * u[1]) * kinv : sy;
-  s[2] = cut ? -(f[2] + c * u[2]) * kinv : sz;
+  s[0] = cut ? -(stiffer * f[0] + c * u[0]) * kinv : sx;
+  s[1] = cut ? -(stiffer * f[1] + c * u[1]) * kinv : sy;
+  s[2] = cut ? -(stiffer * f[2] + c * u[2]) * kinv : sz;
 }
 
 // Force of one touching contact. dt: the step by which the springs grow; 0 leaves their

@@ -369,7 +369,8 @@ def test_bad_pair_coeff(tmp_path, coeff, message):
     ("mass reduced", "Pair gran/restitution mass must be pair or ball, got reduced"),
     ("limit_damping maybe", "limit_damping must be no or yes, got maybe"),
     ("rolling_radius half", "rolling_radius must be ball or reduced, got half"),
-    ("gamma 3", "unknown keyword gamma, must be mass, limit_damping or rolling_radius"),
+    ("gamma 3", "unknown keyword gamma, must be mass, limit_damping"),
+    ("scheme euler", "scheme must be predicted or plain, got euler"),
     ("mass", "mass: value missing"),
 ])
 def test_bad_pair_style(tmp_path, style, message):

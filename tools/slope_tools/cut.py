@@ -22,9 +22,9 @@ from .deposit import Lines, coverage, edges, polygons_of
 from .errors import SlopeError
 from .rasters import progress
 
-LEAF = 8            # cells along a side of a block that is not divided further
-LEAF_FEW = 32       # the same where few edges are near
-FEW = 12            # edges
+LEAF = 16           # cells along a side of a block that is not divided further
+LEAF_FEW = 64       # the same where few edges are near
+FEW = 24            # edges
 TICK = 1000         # cells that the progress bar moves on at a time
 CHUNK = 1_000_000   # point-edge pairs at a time
 HALF_DIAGONAL = 0.5 ** 0.5  # of a cell
@@ -128,6 +128,22 @@ class Edge:
     def nearest(self, x, y, which):
         """Distance of points x, y (2-d arrays) to the nearest of the pieces `which`."""
         return np.sqrt(self.squares(x.ravel(), y.ravel(), which)[0].min(axis=1)).reshape(x.shape)
+
+    def candidates(self, which, left, top, right, bottom):
+        """Those of the pieces `which` that may be the nearest to a point in the box: none is left out wrongly.
+
+        Let r be the point of the edge nearest to the box's middle. Of a point p of the box, a point q of the edge is
+        farther than r where f = |q - r|^2 - 2 (p - r)(q - r) > 0. f is linear in p: least at a corner; along a piece of
+        length s it is at most s^2 / 4 less than at the piece's ends.
+        """
+        middle = np.array([[(left + right) / 2], [(top + bottom) / 2]])
+        square, share = self.squares(*middle, which)
+        first = square[0].argmin()
+        r = self.start[which[first]] + share[0, first] * self.along[which[first]]
+        corners = np.array([(x, y) for x in (left, right) for y in (top, bottom)]) - r
+        least = np.minimum(*((q ** 2).sum(axis=1) - 2 * (corners @ q.T).max(axis=0)
+                             for q in (self.start[which] - r, self.end[which] - r)))
+        return which[least <= self.length2[which] / 4 + WHOLE]
 
     def cut(self, x, y, which):
         """Height of the cut at points x, y (1-d arrays), to which the nearest of the pieces `which` is the nearest."""
@@ -247,6 +263,7 @@ class _Work:
         reach = np.hypot(bottom - top, right - left) / 2
         nearest = distance.min()
         near = near[distance <= nearest + 2 * reach + WHOLE]
+        near = self.edge.candidates(near, left, top, right, bottom)
         if road is None:
             low = self.low[at].min()
             if self.edge.low[near].min() + self.tangent * max(0, nearest - reach) >= high:

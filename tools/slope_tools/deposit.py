@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import NamedTuple, Optional
 
 import numpy as np
+import shapely.geometry
 import yaml
 from shapely.affinity import affine_transform
 from shapely.geometry import MultiPolygon
@@ -122,6 +123,11 @@ def extent(raster):
     rows, columns = raster.z.shape
     (xlo, yhi), (xhi, ylo) = raster.transform * (0, 0), raster.transform * (columns, rows)
     return xlo, ylo, xhi, yhi
+
+
+def box_of(raster):
+    """The grid of a north-up raster as a polygon in local metres."""
+    return shapely.geometry.box(*extent(raster))
 
 
 def box(bounds):

@@ -296,7 +296,7 @@ TINTS = matplotlib.colors.LinearSegmentedColormap.from_list(
 
 def small_maps(layers, panels, bar, bounds, colours):
     """The same map of several runs side by side, as the paper's Figure 14; panels: list of (title, values)."""
-    columns = min(3, len(panels))
+    columns = 2 if len(panels) in (2, 4) else 3
     rows = math.ceil(len(panels) / columns)
     shown = layers.shown
     cmap, norm = scheme(colours, bounds)
@@ -362,7 +362,7 @@ def section(s, before, base, runs, road, cut, title):
                       zorder=9, bbox={"boxstyle": "circle,pad=0.15", "fc": "white", "ec": SECTION, "lw": 0.5})
         handles, labels = axes.get_legend_handles_labels()
         axes.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, -0.42 / (height - 0.75)), frameon=False,
-                    ncol=min(4, len(labels)))
+                    ncol=min(len(labels), max(2, 88 // (8 + max(map(len, labels))))))
         return data_uri(figure, "svg"), exaggeration
 
 

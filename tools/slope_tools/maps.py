@@ -7,7 +7,7 @@ import numpy as np
 matplotlib.use("Agg")  # no display is needed
 
 from matplotlib import pyplot as plt  # noqa: E402  (after the backend is set)
-from matplotlib.colors import LightSource  # noqa: E402
+from matplotlib.colors import LightSource, ListedColormap  # noqa: E402, F401
 
 from .deposit import extent, polygons_of  # noqa: E402
 

@@ -275,25 +275,26 @@ class Page:
         for row in self.rows:
             if row["status"] != "finished":
                 add(("red", f"Run {row['run']} failed: {row.get('error')}"))
-        results = self.finished or [None]
-        for row in results:
-            summary = self.result.summary if row is None else None
-            moving = summary["moving"] if summary else row["moving"]
-            if moving:
-                share = summary["motion"]["moving_share"] if summary else row["moving_share"]
-                time = summary["stop"]["time"] if summary else row["stop_time_s"]
-                who = "The deposit" if row is None else f"Run {row['run']}: the deposit"
-                add(("red", f"{who} still moves at the end of the run, {time:.1f} s: {100 * share:.0f} % of the volume "
-                     f"is faster than {self.result.summary['motion'].get('threshold', 0.1):g} m/s. Its numbers are not "
-                     "those of a deposit at rest."))
-            released = summary["volume"]["released"] if summary else row["released_m3"]
-            left = (summary["volume"]["off_grid"] + summary["volume"]["lost"] if summary
-                    else row["off_grid_m3"] + row["lost_m3"])
+        summary = self.result.summary
+        ends = [(self.label_of(row), row["moving"], row["stop_time_s"], row["moving_share"], row["released_m3"],
+                 row["off_grid_m3"] + row["lost_m3"]) for row in self.finished]
+        if not self.study:
+            volume = summary["volume"]
+            ends = [("", summary["moving"], summary["stop"]["time"], summary["motion"]["moving_share"],
+                     volume["released"], volume["off_grid"] + volume["lost"])]
+        moving = [(f"{name}: " if name else "") + f"{100 * share:.0f} % of the volume at {time:.1f} s"
+                  for name, moves, time, share, _, _ in ends if moves]
+        if moving:
+            who = "The deposit still moves at the end of the run" if len(ends) == 1 else \
+                f"{len(moving)} of {len(ends)} deposits still move at the end of the run"
+            add(("red", f"{who}, faster than {summary['motion'].get('threshold', 0.1):g} m/s: {'; '.join(moving)}. "
+                 "Such numbers are not those of a deposit at rest: let it run longer."))
+        for name, _, _, _, released, left in ends:
             if left > SMALL * released:
-                add(("amber", f"{'' if row is None else 'Run ' + row['run'] + ': '}{left:,.1f} m3 ({100 * left / released:.2g} "
-                     "% of the released volume) left the grid or the box and are in no map"))
+                add(("amber", f"{name}{': ' if name else ''}{left:,.1f} m3 ({100 * left / released:.2g} % of the "
+                     "released volume) left the grid or the box and are in no map"))
         if self.study:
-            for doubt in (self.study["conservative"] or {}).get("doubts", ()):
+            for doubt in (self.study["conservative"] or {}).get("doubts") or ():
                 add(("amber", f"The conservative volume may be exceeded: {doubt}"))
             told = (" failed: ", "still moves", "left the grid or the box")
             for text in self.study.get("warnings") or ():
@@ -303,13 +304,13 @@ class Page:
         if self.study:
             for row in self.rows:
                 for text in row.get("log_warnings") or ():
-                    from_logs.setdefault(text, []).append(row["run"])
+                    from_logs.setdefault(text, []).append(self.label_of(row))
         else:
             from_logs = {text: [] for text in self.result.log.warnings}
         for text, names in from_logs.items():
             whose = ""
             if names:
-                whose = " (all runs)" if len(names) == len(self.rows) else f" (run {', '.join(names)})"
+                whose = " (all runs)" if len(names) == len(self.rows) else f" (runs: {'; '.join(names)})"
             add(("amber", f"LAMMPS: {text}{whose}"))
 
     # --- pictures ---
@@ -331,7 +332,7 @@ class Page:
                               "YlOrBr", figures.FULL, name),
             "Map of the deposit's thickness at the end",
             f"Final thickness, {one.deposit.cell:g} m cells; less than {bounds[0]:g} m is not drawn."
-            + ("" if not self.study else f" Run {one.name}."))
+            + ("" if not self.study else f" Run: {self.label(one)}."))
         found["terrain"] = self.picture(
             figures.terrain_map(layers._replace(shown=whole), layers.shown, name), "Map of the terrain before",
             "Terrain before the collapse, light from the north-west" + (
@@ -385,7 +386,7 @@ class Page:
             self.figures.mesh_map(layers, removed.z, mesh, "Volume to remove", crs_name(crs) if crs is not None else ""),
             "Map of the volume to remove", f"Thickness of what lies on the road and above a cut rising at "
             f"{road['cut_angle']:g} degrees from its edges, and its volume in m3 in squares of {mesh.transform.a:g} m; "
-            f"together {self.result.row['remove_m3']:,.0f} m3, run {self.result.name}. Compare the paper's Figure 15.")
+            f"together {self.result.row['remove_m3']:,.0f} m3; run: {self.label(self.result)}. Compare the paper's Figure 15.")
 
     def maps_over_all(self):
         """Maps of a study over all of its runs."""
@@ -428,9 +429,11 @@ class Page:
 
     def label(self, one):
         """A short name of a run: the values that differ in the study."""
-        chosen = (one.row or {}).get("set") or {}
-        varied = [f"{name} {value}" for name, value in chosen.items() if len(self.settings.get(name) or ()) > 1]
-        return ", ".join(varied) or one.name
+        return self.label_of(one.row) if self.study else one.name
+
+    def label_of(self, row):
+        varied = [f"{name} {value}" for name, value in row["set"].items() if len(self.settings.get(name) or ()) > 1]
+        return ", ".join(varied) or row["run"]
 
     def profile(self):
         """Distance, x, y along the section and, at the same points, ground before, base, and (name, surface,
@@ -523,7 +526,7 @@ class Page:
         varied = [name for name, several in self.settings.items()
                   if len(several) > 1 and all(is_number(value) for value in several)]
         if not varied:
-            return [self.picture(figures.bars([row["run"] for row in self.finished], [row[key] for row in self.finished],
+            return [self.picture(figures.bars([self.label_of(row) for row in self.finished], [row[key] for row in self.finished],
                                               label, title), title, f"{title} of every run.")
                     for key, label, title in wanted]
         name = "rolling" if "rolling" in varied else varied[0]
@@ -583,6 +586,9 @@ class Page:
             "road": self.study["study"].get("road") if self.study else None,
             "conservative": self.study["conservative"] if self.study else None,
             "summary": summary, "one": one, "label": self.label(one), "single": not self.study,
+            "labels": {row["run"]: self.label_of(row) for row in self.finished},
+            "released": sorted({round(row["released_m3"], 3) for row in self.finished}
+                               or {summary["volume"]["released"]}),
             "finished": self.finished, "warnings": self.warnings, "maps": self.maps(),
             "removal": self.removal(),
             "over_all": self.maps_over_all(), "charts": self.charts(), "section": self.section_picture(),

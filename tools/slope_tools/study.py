@@ -241,6 +241,7 @@ class Run:
         self.chosen: Dict[str, str] = chosen
         self.name = "_".join(f"{name}_{SAFE.sub('-', value)}" for name, value in chosen.items())
         self.folder = Path(output) / self.name
+        self.varied = self.name     # for a narrow terminal: the values that differ
         self.error = None
         self.log = runs.Log(self.folder / runs.LOG)
 
@@ -276,6 +277,8 @@ def plan(output, settings):
             raise SlopeError("--set", f"must not give two runs the folder {one.name}",
                              f"{list(names[one.name].values())} and {list(one.chosen.values())}")
         names[one.name] = one.chosen
+        one.varied = ", ".join(f"{name} {one.chosen[name]}" for name, several in settings.items()
+                               if len(several) > 1) or one.name
     return todo
 
 
@@ -628,11 +631,13 @@ class Display:
 
     def _table(self, active, waiting):
         table = Table(box=None, padding=(0, 2, 0, 0))
-        for head in ("run", "", "step", "ends by"):
-            table.add_column(head, no_wrap=True)
+        table.add_column("run", no_wrap=True)
+        table.add_column("", no_wrap=True)
+        for head in ("step", "ends by"):
+            table.add_column(head, no_wrap=True, min_width=8)
         for job in active:
             share, text, end = self._progress(job)
-            table.add_row(self.label(job.run), ProgressBar(100, 100 * (share or 0), width=20), text, end)
+            table.add_row(f"[{self.numbers[job.run.name]}/{self.total}] {job.run.varied}", ProgressBar(100, 100 * (share or 0), width=12), text, end)
         ends = ""
         if self.walls and waiting:
             ends = clock(sum(self.walls) / len(self.walls) * (waiting + len(active) / 2) / self.jobs)
@@ -904,10 +909,14 @@ SHOWN_ROAD = {"remove_m3": ("to remove", "{:,.0f}"), "remove_on_road_m3": ("on t
 def print_table(settings, rows, title):
     shown = Table(title=title)
     columns = {**SHOWN, **(SHOWN_ROAD if any("remove_m3" in row for row in rows) else {})}
-    for head in (*settings, *(head for head, _ in columns.values())):
+    same = {name: several[0] for name, several in settings.items() if len(several) == 1}
+    if same:
+        shown.caption = "in all runs " + ", ".join(f"{name} {value}" for name, value in same.items())
+    varied = [name for name in settings if name not in same]
+    for head in (*varied, *(head for head, _ in columns.values())):
         shown.add_column(head, justify="right")
     for row in rows:
-        cells = list(row["set"].values())
+        cells = [row["set"][name] for name in varied]
         if row["status"] == "failed":
             cells += ["failed"]
         else:

@@ -14,7 +14,7 @@ from affine import Affine
 from rasterio.crs import CRS
 from rasterio.errors import CRSError
 
-from . import rasters
+from . import fggml, rasters
 from .cli import number
 from .errors import SlopeError
 from .rasters import Raster, crs_name, epsg
@@ -28,8 +28,13 @@ STRIP = 250_000        # points resampled at a time
 EPILOG = """\
 units: metres for heights, --cell, and coordinates; N of --fill is a number of cells of the input.
 
-example: two tiles in degrees, to zone IX of the Japanese plane rectangular system, cells of 2 m:
+FG-GML of Japan's Geospatial Information Authority (DEM1A, DEM5A to 5C, DEM10A, 10B) is taken as it is downloaded. Its
+--crs is the zone of the plane rectangular system at the site if none is given, and its --cell 1, 5 or 10 m. Tiles of
+several resolutions need a --cell: finer ones count where they have heights.
+
+examples: two tiles in degrees, to zone IX of the Japanese plane rectangular system, cells of 2 m; a download of FG-GML:
   tools/slope terrain north.tif south.tif -o terrain.asc --crs EPSG:6677 --cell 2 --fill 20
+  tools/slope terrain FG-GML-5439-23-DEM5A.zip -o terrain.asc
 
 Writes terrain.asc and terrain.yaml (CRS, origin, sources, what was done).
 """
@@ -39,9 +44,10 @@ def add_parser(commands, **kwargs):
     """Add `terrain` and its arguments to argparse's commands; return its parser."""
     parser = commands.add_parser(
         "terrain", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
-        description="Survey rasters (GeoTIFF, ESRI ASCII grid) to the plain terrain.asc that decks read.", **kwargs)
+        description="Survey rasters (GeoTIFF, ESRI ASCII grid, FG-GML) to the plain terrain.asc that decks read.", **kwargs)
     parser.add_argument("inputs", metavar="IN", nargs="+",
-                        help="raster of heights in metres; several are merged, which needs one CRS and one grid")
+                        help="raster of heights in metres, or FG-GML (.xml, or .zip of them); several are merged, which "
+                             "needs one CRS and one grid")
     parser.add_argument("-o", dest="output", metavar="OUT.asc", required=True, type=Path,
                         help="the terrain; OUT.yaml beside it is its sidecar")
     parser.add_argument("--crs", metavar="EPSG:n",
@@ -68,8 +74,12 @@ def run(args):
         steps.append(step)
         print(step)
 
-    raster = merge([declare(path, crs, tell) for path in args.inputs], args.inputs, tell)
-    crs = crs or raster.crs
+    cell = args.cell
+    if any(map(fggml.is_one, args.inputs)):
+        raster, crs, cell = read_fggml(args.inputs, crs, cell, tell)
+    else:
+        raster = merge([declare(path, crs, tell) for path in args.inputs], args.inputs, tell)
+        crs = crs or raster.crs
     require_metres(crs, args.inputs[0])
     if not np.isfinite(raster.z).any():
         raise SlopeError(", ".join(args.inputs), "must have a height, all cells are NODATA")
@@ -79,7 +89,7 @@ def run(args):
         filled = int(holes.sum())
         raster = raster._replace(z=fill(raster.z, holes))
         tell(f"filled {count} NODATA holes of at most {args.fill} cells, {filled} cells")
-    raster = regrid(raster, crs, args.cell, args.bounds, tell)
+    raster = regrid(raster, crs, cell, args.bounds, tell)
     if crs is not None:
         warn_of_stretch(raster)
 
@@ -174,6 +184,56 @@ def declare(path, crs, tell):
     if raster.crs is None:
         warn(f"{path} has no CRS: its coordinates are taken as metres; --crs declares one")
     return raster
+
+
+def read_fggml(paths, crs, cell, tell):
+    """One raster in degrees of all FG-GML tiles in the files, and the wanted CRS and cell, found if they are None."""
+    tiles = []
+    for path in paths:
+        if not fggml.is_one(path):
+            raise SlopeError(path, "must be FG-GML as other inputs are: make a terrain of each kind")
+        found = fggml.read(path)
+        sizes = {f"{z.shape[1]} x {z.shape[0]} cells" for z in (tile.raster.z for tile in found)}
+        tell(f"{path}: FG-GML, {len(found)} tiles of {' or '.join(sorted(sizes))}, "
+             f"{' and '.join(sorted({tile.datum for tile in found}))}")
+        tiles += found
+    tiles = fggml.one_datum(tiles, warn)
+    groups = fggml.by_resolution(tiles)
+    if len(groups) > 1 and cell is None:
+        raise SlopeError(groups[1][0].name, f"must have the resolution of {groups[0][0].name}, "
+                         f"{seconds(groups[0][0])}, unless a --cell is given", seconds(groups[1][0]))
+    merged = [merge([tile.raster for tile in group], [tile.name for tile in group], tell) for group in groups]
+    raster = merged[0]
+    for group, coarse in zip(groups[1:], merged[1:]):
+        raster = enlarge(raster, coarse)
+        tell(f"where there was no height: bilinear from {len(group)} tiles of {seconds(group[0])}")
+    if crs is None:
+        number, crs = fggml.zone(raster, tiles[0].datum)
+        tell(f"CRS {crs_name(crs)}, zone {number} of the plane rectangular system, which is the site's; --crs names another")
+    return raster, crs, cell or fggml.nominal_cell(min(footprint(raster, crs)[1]))
+
+
+def seconds(tile):
+    return "{:.4g} x {:.4g} seconds of arc".format(*fggml.spacing(tile))
+
+
+def enlarge(fine, coarse):
+    """A raster on the grid of `fine` over both, in one CRS; where fine has no height, it is coarse's, bilinear."""
+    rows, columns = fine.z.shape
+    (left, top), (right, bottom) = (~fine.transform * (coarse.transform * corner)
+                                    for corner in ((0, 0), coarse.z.shape[::-1]))
+    left, top = (min(0, math.floor(value + ON_GRID)) for value in (left, top))
+    right, bottom = max(columns, math.ceil(right - ON_GRID)), max(rows, math.ceil(bottom - ON_GRID))
+    rasters.check_memory(bottom - top, right - left, "merged raster")
+    z = np.full((bottom - top, right - left), np.nan)
+    z[-top:rows - top, -left:columns - left] = fine.z
+    transform = fine.transform * Affine.translation(left, top)
+    strip = max(1, STRIP // z.shape[1])
+    for first in rasters.progress(range(0, len(z), strip), "merging"):
+        part = z[first:first + strip]
+        row, column = np.nonzero(np.isnan(part))
+        part[row, column] = sample(coarse, *(transform * (column + 0.5, row + first + 0.5)))
+    return Raster(z, transform, fine.crs)
 
 
 def merge(inputs, paths, tell):

@@ -8,17 +8,24 @@ import json
 import math
 from pathlib import Path
 
+import fiona
 import numpy as np
 import rasterio.warp
+from fiona.errors import FionaError
+from rasterio.crs import CRS
+from rasterio.errors import CRSError
+from shapely import wkt
 from shapely.affinity import rotate
-from shapely.geometry import LineString, MultiLineString, box
+from shapely.errors import ShapelyError
+from shapely.geometry import GeometryCollection, LineString, MultiLineString, shape
 from shapely.ops import linemerge
 
-from . import cut, deposit, rasters
+from . import cut, deposit, maps, polygons, rasters
 from .cli import number
 from .deposit import Mesh
 from .errors import SlopeError
 from .rasters import crs_name, epsg
+from .terrain import same_crs, transform
 
 CUT_ANGLE = 30.0       # degrees
 BLOCKED = 0.1          # m
@@ -75,7 +82,6 @@ def add_parser(commands, **kwargs):
 
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints the totals."""
-    from . import maps, polygons
     check(args)
     warnings = []
     warn = deposit.warner("volume", warnings)
@@ -109,7 +115,7 @@ def run(args):
         rasters.write_geotiff(new / "volume_mesh.tif", {"volume to remove (m3)": result.volume},
                               run_.raster._replace(transform=mesh.transform))
         write_profile(new / "axis.csv", run_, profile)
-        draw(maps, new / "volume.png", run_, road, axis, mesh, result, about)
+        draw(new / "volume.png", run_, road, axis, mesh, result, about)
         about["files"] = sorted(path.name for path in new.iterdir()) + ["volume.yaml"]
         deposit.write_yaml(new / "volume.yaml", about, "slope volume: what must be removed; m, m2, m3, degrees")
     print(summary(about, folder))
@@ -140,13 +146,9 @@ def make_mesh(size, raster):
 
 def in_grid(polygon, raster, path, warn):
     """The part of a polygon (local metres) that lies in the grid; SlopeError if none does."""
-    grid = box(*deposit.extent(raster))
-    slack = deposit.ON_LINE * raster.transform.a
-    if grid.buffer(slack, join_style=2).covers(polygon):
-        inside = polygon if grid.covers(polygon) else deposit.as_multi(polygon.intersection(grid))
-    else:
-        inside = deposit.as_multi(polygon.intersection(grid))
-    if inside.area <= slack ** 2:
+    grid = deposit.box_of(raster)
+    inside = polygon if grid.covers(polygon) else deposit.as_multi(polygon.intersection(grid))
+    if inside.area <= 0:
         raise SlopeError(path, f"must lie in the grid of the run, {deposit.box(deposit.extent(raster))} (local metres)",
                          deposit.box(polygon.bounds))
     outside = 1 - inside.area / polygon.area
@@ -238,7 +240,7 @@ def eastward(lines):
 def along(axis, run_, removed, blocked, path):
     """Profile along the axis, a dict of arrays: one entry per cell that it crosses. Lengths are exact."""
     shape = run_.raster.z.shape
-    inside = lines_of(axis.intersection(box(*deposit.extent(run_.raster))))
+    inside = lines_of(axis.intersection(deposit.box_of(run_.raster)))
     if inside.is_empty:
         raise SlopeError(path, "axis of the road must lie in the grid of the run", deposit.box(axis.bounds))
     parts = [np.asarray(line.coords)[:, :2] for line in deposit.to_index(eastward(inside), run_.raster).geoms]
@@ -268,9 +270,41 @@ def stretches(profile):
 
 
 def read_axis(path, raster, local):
-    """A line from a file, in local metres."""
-    from . import polygons
-    return eastward(lines_of(polygons.read_local(path, raster, local)))
+    """The line in a file (GeoJSON, shapefile, CSV with x,y in its lines, WKT), in local metres.
+
+    As for polygons: a CSV or WKT without a CRS is in that of the terrain; --local: all of them are in local metres.
+    """
+    if not path.is_file():
+        raise SlopeError(path, "must be an existing file")
+    text_ = polygons.read_text(path)
+    crs = raster.crs
+    try:
+        if text_ is None:
+            with fiona.Env(), fiona.open(path) as source:
+                crs = CRS.from_wkt(source.crs_wkt) if source.crs_wkt else None
+                lines = lines_of(GeometryCollection([shape(feature["geometry"]) for feature in source
+                                                     if feature["geometry"]]))
+        elif polygons.WKT.match(text_.lstrip()):
+            lines = lines_of(wkt.loads(text_))
+        else:
+            content = [line.split("#")[0].strip() for line in text_.splitlines()]
+            lines = lines_of(LineString([tuple(map(float, line.split(","))) for line in content if line]))
+    except (FionaError, ShapelyError, OSError, ValueError, TypeError, AttributeError, CRSError) as error:
+        raise SlopeError(path, "must be a line: GeoJSON, shapefile, WKT, or CSV with x,y in its lines "
+                         f"({error})") from error
+    if lines.is_empty or not all(np.isfinite(line.coords).all() for line in lines.geoms) or lines.length == 0:
+        raise SlopeError(path, "must hold a line of a length > 0")
+    points = [np.asarray(line.coords)[:, :2] for line in lines.geoms]
+    if not local:
+        if text_ is None and (crs is None or raster.crs is None):
+            raise SlopeError(path if crs is None else "--terrain", "must have a CRS, so that axis and deposit can be "
+                             "brought together (--local if the axis is in the run's local metres)", "none")
+        if not same_crs(crs, raster.crs):
+            points = [np.transpose(transform(crs, raster.crs, *line.T)) for line in points]
+            if not all(np.isfinite(line).all() for line in points):
+                raise SlopeError(path, f"must lie where {crs_name(raster.crs)}, the CRS of the terrain, covers it")
+        points = [line - raster.offset for line in points]
+    return eastward(MultiLineString(points))
 
 
 # --- output ---
@@ -378,7 +412,7 @@ def write_profile(path, run_, profile):
             writer.writerow(map(text, values))
 
 
-def draw(maps, path, run_, road, axis, mesh, result, about):
+def draw(path, run_, road, axis, mesh, result, about):
     raster = run_.raster
     full = np.argwhere(result.deposit > 0)
     deposited = ()

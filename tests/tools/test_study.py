@@ -1,0 +1,599 @@
+"""tools/slope study: the product of variables, resuming, failing runs; table and maps against the runs' own files."""
+import csv
+import os
+import pty
+import re
+import shlex
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import rasterio
+import yaml
+
+from tiny_collapse import LMP, TOP, read_asc, write_case
+
+TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
+sys.path.insert(0, str(TOOLS))
+
+from slope_tools import cli, rasters, runs, study  # noqa: E402  (after the path is set)
+
+pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
+MM = 0.0005 + 1e-9          # .asc maps are in whole mm
+PROGRAM = [sys.executable, str(TOOLS / "slope")]
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("LMP", LMP)
+    write_case(tmp_path / "case")
+    return tmp_path
+
+
+@pytest.fixture
+def slope(here, capsys):
+    """Run `slope study ARGUMENTS` in the test's folder; gives status, stdout, stderr."""
+    def run(arguments):
+        capsys.readouterr()
+        try:
+            status = cli.main(["study", *shlex.split(arguments)])
+        except SystemExit as error:
+            status = error.code
+        return status, *capsys.readouterr()
+    return run
+
+
+def summary_of(folder):
+    return yaml.safe_load(next(Path(folder).glob("*.summary.yaml")).read_text())
+
+
+def edit(path, old, new):
+    text = Path(path).read_text()
+    assert old in text
+    Path(path).write_text(text.replace(old, new))
+
+
+def fake_lmp(path, body):
+    """A program in place of lmp, which leaves what one leaves; body: shell commands before that."""
+    Path(path).write_text(f"#!/bin/bash\n{body}\ncp {shlex.quote(str(Path('kept').absolute()))}/tiny.* .\n")
+    Path(path).chmod(0o755)
+    return Path(path).absolute()
+
+
+@pytest.fixture
+def kept(here, slope):
+    """Outputs of one real run in the folder kept, for fake_lmp."""
+    assert slope("case/in.tiny --set rolling=0 -o first")[0] == 0
+    os.rename("first/rolling_0", "kept")
+
+
+def processes_in(folder):
+    """Process ids whose working folder is below a folder."""
+    found = []
+    for link in Path("/proc").glob("[0-9]*/cwd"):
+        try:
+            if os.readlink(link).startswith(str(folder)):
+                found.append(int(link.parent.name))
+        except OSError:
+            continue
+    return found
+
+
+def wait_for(condition, what, seconds=30):
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, f"waited in vain for {what}"
+        time.sleep(0.02)
+
+
+# --- what --set stands for ---
+
+@pytest.mark.parametrize("text, expected", [
+    ("0,0.05,0.10", ["0", "0.05", "0.10"]),
+    ("0:0.1:0.05", ["0", "0.05", "0.1"]),
+    ("0:1:0.1", ["0", "0.1", "0.2", "0.3", "0.4", "0.5", "0.6", "0.7", "0.8", "0.9", "1"]),
+    ("0:0.1:0.03", ["0", "0.03", "0.06", "0.09"]),
+    ("30:10:-10", ["30", "20", "10"]),
+    ("-0.5:0.5:0.5,7", ["-0.5", "0", "0.5", "7"]),
+    ("1e-3:2e-3:5e-4", ["0.001", "0.0015", "0.002"]),
+    ("5:5:1", ["5"]),
+    ("north.asc,south.asc", ["north.asc", "south.asc"]),
+    ("a:b:c", ["a:b:c"]),
+])
+def test_values(text, expected):
+    assert study.values(f"x={text}", text) == expected
+
+
+def test_the_product_has_a_folder_per_run_with_all_that_it_needs(slope, here):
+    (here / "case" / "data").mkdir()
+    (here / "case" / "data" / "extra.txt").write_text("extra\n")
+    (here / "case" / "unused").mkdir()
+    (here / "case" / "unused" / "extra.txt").write_text("extra\n")
+    for name in ("log.lammps", "tiny.restart", "old.png", "tiny.00001000.dump", ".hidden"):
+        (here / "case" / name).write_text("left by an earlier run\n")
+    edit("case/in.tiny", "group       soil", "shell       cat data/extra.txt\ngroup       soil")
+    status, out, err = slope("case/in.tiny --set rolling=0,0.1 --set friction=20:40:20 --set steps=50 -o out --jobs 2")
+    assert status == 0, err
+    names = [f"rolling_{r}_friction_{f}_steps_50" for r in ("0", "0.1") for f in ("20", "40")]
+    assert sorted(path.name for path in (here / "out").iterdir() if path.is_dir()) == sorted(names)
+    assert [line for line in out.splitlines() if line.startswith("[4/4]")] == [
+        f"[4/4] {names[3]}: started", next(line for line in out.splitlines() if f"{names[3]}: finished at 0.1 s" in line)]
+    for name in names:
+        folder = here / "out" / name
+        files = {path.name for path in folder.iterdir()}
+        assert {"in.tiny", "terrain.asc", "road.csv", "data", "variables.yaml", "log.lammps", "screen.txt",
+                "finished.yaml", "tiny.summary.yaml", "tiny.thickness.asc"} <= files
+        assert not files & {"tiny.restart", "old.png", "tiny.00001000.dump", ".hidden", "unused"}
+        assert (folder / "in.tiny").read_bytes() == (here / "case" / "in.tiny").read_bytes()
+        about = yaml.safe_load((folder / "variables.yaml").read_text())
+        rolling, friction = name.split("_")[1:4:2]
+        assert about["set"] == {"rolling": rolling, "friction": friction, "steps": "50"}
+        assert about["variables"] == {**about["set"], "cell": "1.0", "out": "tiny", "terrain": "terrain.asc"}
+        assert {"package", "lmp_sha256", "command", "started", "ranks"} <= about.keys()
+        # the values reached LAMMPS
+        log = (folder / "log.lammps").read_text()
+        assert re.search(rf"^pair_coeff  1 1 .* friction {friction} rolling {rolling}$", log, re.MULTILINE)
+        assert summary_of(folder)["step"] == 50
+        assert set(yaml.safe_load((folder / "finished.yaml").read_text())["inputs"]) == {
+            "in.tiny", "terrain.asc", "data/extra.txt"}
+    assert not list((here / "out").glob(".inputs")) and not list((here / "out").glob(".*.new"))
+
+
+def test_dry_run_lists_and_makes_nothing(slope, here):
+    status, out, err = slope("case/in.tiny --set rolling=0:0.2:0.1 --set friction=30,35 -o out --dry-run")
+    assert (status, err) == (0, "")
+    assert out.splitlines()[0] == "rolling_0_friction_30: rolling 0 friction 30, new"
+    assert len(out.splitlines()) == 7 and out.endswith("6 runs, 0 of them finished\n")
+    assert not (here / "out").exists()
+
+
+def test_ranks_agree_and_are_kept(slope, here):
+    assert slope("case/in.tiny --set steps=100 -o one")[0] == 0
+    assert slope("case/in.tiny --set steps=100 -o two --np 2 --jobs 1")[0] == 0
+    one, two = (summary_of(here / folder / "steps_100") for folder in ("one", "two"))
+    assert (one["ranks"], two["ranks"]) == (1, 2)
+    assert two["volume"] == pytest.approx(one["volume"], abs=1e-9)
+
+
+# --- table, yaml and summaries are one ---
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    """A study with a road, a terrain with a CRS and mass that leaves the grid; its folder, stdout and stderr."""
+    folder = tmp_path_factory.mktemp("finished")
+    write_case(folder / "case")
+    edit(folder / "case" / "in.tiny", "output ${out}", "output ${out} extent 12 40 0 24")
+    terrain = rasters.read(folder / "case" / "terrain.asc")
+    rasters.write_asc_local(folder / "case" / "terrain.asc", terrain._replace(
+        crs=rasterio.crs.CRS.from_epsg(6677), offset=(-12000.0, 34000.0)), {})
+    (folder / "case" / "road.csv").write_text("-11987,34000\n-11983,34000\n-11983,34024\n-11987,34024\n")
+    done = subprocess.run([*PROGRAM, "study", "case/in.tiny", "--set", "rolling=0,0.3", "--set", "friction=10,30",
+                           "--set", "steps=900", "-o", "out", "--road", "case/road.csv", "--mesh", "4",
+                           "--exceed", "0.1,0.8,5"],
+                          cwd=folder, env={**os.environ, "LMP": LMP}, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return folder / "out", done.stdout, done.stderr
+
+
+def load(folder):
+    about = yaml.safe_load((folder / "study.yaml").read_text())
+    with open(folder / "study.csv", newline="", encoding="ascii") as lines:
+        return about, list(csv.DictReader(lines))
+
+
+def test_table_yaml_and_summaries_have_the_same_numbers(finished):
+    folder, out, _ = finished
+    about, table = load(folder)
+    assert [row["run"] for row in table] == [row["run"] for row in about["runs"]]
+    assert len(table) == 4 and about["study"]["finished"] == 4
+    for row, line in zip(about["runs"], table):
+        summary = summary_of(folder / row["run"])
+        volume, travel = summary["volume"], summary["travel"]
+        expected = {**{f"{key}_m3": volume[key] for key in ("released", "on_grid", "off_grid", "lost", "residual")},
+                    "front_m": travel["front"], "reach_angle_deg": travel["reach_angle"],
+                    "centroid_m": travel["centroid"], "thickness_m": summary["largest"]["thickness"],
+                    "max_thickness_m": summary["largest"]["max_thickness"],
+                    "max_speed_m_s": summary["largest"]["max_speed"], "stop_time_s": summary["stop"]["time"]}
+        removal = yaml.safe_load((folder / row["run"] / "volume" / "volume.yaml").read_text())
+        expected.update(remove_m3=removal["volume"]["remove"], remove_on_road_m3=removal["volume"]["remove_on_road"],
+                        blocked_m=removal["axis"]["blocked_length"])
+        for key, value in expected.items():
+            assert row[key] == value and float(line[key]) == value, key
+        assert (row["stop_reason"], line["stop_reason"]) == (summary["stop"]["reason"],) * 2
+        assert row["moving"] is summary["moving"] and line["moving"] == {True: "yes", False: "no"}[summary["moving"]]
+        assert (row["status"], line["status"], line["error"]) == ("finished", "finished", "")
+        assert [line[name] for name in ("rolling", "friction", "steps")] == list(row["set"].values())
+        assert row["wall_s"] > 0 and row["variables"]["cell"] == "1.0"
+        assert f"{row['remove_m3']:,.0f}" in out
+    assert any(row["off_grid_m3"] > 0.1 for row in about["runs"])
+
+
+def test_the_conservative_volume_is_the_largest(finished):
+    folder, out, _ = finished
+    about, table = load(folder)
+    largest = max(float(line["remove_m3"]) for line in table)
+    assert largest > 1
+    best = about["conservative"]
+    assert best["remove_m3"] == largest
+    assert [line["run"] for line in table if float(line["remove_m3"]) == largest] == [best["run"]]
+    assert f"conservative volume to remove: {largest:,.0f} m3, run {best['run']}" in out
+    moving = sum(line["moving"] == "yes" for line in table)
+    assert any("still move" in doubt for doubt in best["doubts"]) == (moving > 0)
+    ends = {name for name in ("rolling", "friction")
+            if float(next(line[name] for line in table if line["run"] == best["run"])) != 0}
+    assert {doubt.split("range of ")[1].split(",")[0] for doubt in best["doubts"] if "range of" in doubt} == ends
+    for key, column in (("front_m", "front_m"), ("thickness_m", "thickness_m")):
+        assert about["largest"][key]["value"] == max(float(line[column]) for line in table)
+
+
+def test_envelope_and_exceedance_by_hand(finished):
+    folder, _, _ = finished
+    about, table = load(folder)
+    final = np.array([read_asc(folder / line["run"] / "tiny.thickness.asc") for line in table])
+    most = np.array([read_asc(folder / line["run"] / "tiny.max_thickness.asc") for line in table])
+    assert final.shape == (4, 24, 28) and not np.array_equal(final[0], final[1])
+
+    def check(entry, expected):
+        name = folder / entry["file"]
+        assert np.abs(read_asc(name) - expected).max() <= MM
+        with rasterio.open(name.with_suffix(".tif")) as tif:
+            assert tif.crs.to_epsg() == 6677 and tif.nodata == -9999
+            assert tuple(tif.bounds) == (-11988, 34000, -11960, 34024)
+            assert np.array_equal(tif.read(1), expected)
+        local = rasters.read_asc_local(name)
+        assert local.offset == (-12000, 34000) and local.transform.c == 12
+
+    check(about["envelope"]["thickness"], final.max(axis=0))
+    check(about["envelope"]["max_thickness"], most.max(axis=0))
+    assert about["envelope"]["thickness"]["largest_m"] == final.max()
+    assert [entry["threshold_m"] for entry in about["exceedance"]] == [0.1, 0.8, 5.0]
+    for entry in about["exceedance"]:
+        above = final > entry["threshold_m"]
+        check(entry, above.mean(axis=0))
+        assert entry["area_in_any_run_m2"] == above.any(axis=0).sum()
+        assert entry["area_in_every_run_m2"] == above.all(axis=0).sum()
+    shares = {share for entry in about["exceedance"]
+              for share in np.unique(read_asc(folder / entry["file"]))}
+    assert shares >= {0.0, 0.25, 0.5, 1.0}
+
+
+@pytest.mark.parametrize("ranks, cells", [(1, "0.7,1,2.5"), (2, "0.7,2.5")])
+def test_mass_in_every_run_for_any_cell(slope, here, ranks, cells):
+    edit("case/in.tiny", "output ${out}", "output ${out} extent 19 40 2 20.5")
+    status, _, err = slope(f"case/in.tiny --set cell={cells} --set friction=10 --set steps=100 -o out --np {ranks}")
+    assert status == 0, err
+    about, table = load(here / "out")
+    for row in about["runs"]:
+        summary = summary_of(here / "out" / row["run"])
+        volume, cell = summary["volume"], summary["grid"]["cell"]
+        assert cell == float(row["set"]["cell"])
+        mass = read_asc(here / "out" / row["run"] / "tiny.thickness.asc").sum() * cell ** 2
+        stays = volume["released"] - volume["off_grid"] - volume["lost"]
+        assert abs(mass - stays) <= 1e-9 * volume["released"]
+        assert volume["off_grid"] > 1
+        assert row["mass_error"] == pytest.approx((mass - stays) / volume["released"], abs=1e-12)
+    # grids of several sizes: no maps over them, and a word about it
+    assert about["envelope"] is None and about["exceedance"] is None
+    second = about["runs"][1]["run"]
+    assert f"no maps over all runs: the rasters of {second} have another grid than those of cell_0.7_" in err
+    assert not list((here / "out").glob("e*.asc"))
+    assert sum("m3 left the grid or the box" in text for text in about["warnings"]) == len(table)
+
+
+def test_a_raster_that_lost_mass_is_told(slope, here):
+    assert slope("case/in.tiny --set steps=20 -o out")[0] == 0
+    path = here / "out" / "steps_20" / "tiny.thickness.asc"
+    lines = path.read_text().splitlines()
+    row = next(i for i in range(6, len(lines)) if float(max(lines[i].split(), key=float)) > 0)
+    lines[row] = " ".join(["0"] * len(lines[row].split()))
+    path.write_text("\n".join(lines) + "\n")
+    status, _, err = slope("case/in.tiny --set steps=20 -o out")
+    assert status == 0 and "steps_20: the volume in the thickness raster differs from released" in err
+
+
+# --- interruptions ---
+
+LONG = ["study", "case/in.tiny", "--set", "steps=2500", "--set", "rolling=0,0.1,0.2", "-o", "out", "--jobs", "1"]
+
+
+def start_long(here):
+    return subprocess.Popen([*PROGRAM, *LONG], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                            start_new_session=True)
+
+
+def print_of(folder):
+    """What would change if a run were repeated."""
+    return {path.name: (path.stat().st_mtime_ns, path.stat().st_ino) for path in folder.iterdir() if path.is_file()}
+
+
+@pytest.mark.parametrize("how, status", [(signal.SIGKILL, -9), (signal.SIGINT, 130), (signal.SIGTERM, 130)])
+def test_resume_after_a_kill(slope, here, how, status):
+    out = here / "out"
+    process = start_long(here)
+    second = out / "steps_2500_rolling_0.1"
+    wait_for((second / "log.lammps").exists, "the second run")
+    wait_for(lambda: "Step" in (second / "log.lammps").read_text(), "its steps")
+    assert processes_in(second)
+    process.send_signal(how)
+    told, complaint = process.communicate(timeout=20)
+    assert process.returncode == status
+    wait_for(lambda: not processes_in(out), "the end of the run that was under way", 10)
+    if how != signal.SIGKILL:
+        assert "stopped with 1 of 3 runs finished; the same command goes on" in told
+        assert complaint == "slope study: interrupted\n"
+    assert (out / "steps_2500_rolling_0" / "finished.yaml").exists()
+    assert not (second / "finished.yaml").exists() and not (out / "study.yaml").exists()
+    before = print_of(out / "steps_2500_rolling_0")
+
+    state, listed, _ = slope(shlex.join(LONG[1:]) + " --dry-run")
+    assert [line.rsplit(", ", 1)[1] for line in listed.splitlines()[:3]] == ["finished", "unfinished", "new"]
+    (second / "rubbish").write_text("of the run that was cut\n")
+    edit(second / "terrain.asc", "ncols", "broken")
+    state, told, complaint = slope(shlex.join(LONG[1:]))
+    assert state == 0, complaint
+    assert "1 of 3 runs are finished already" in told
+    assert "[1/3]" not in told and "[2/3]" in told and "[3/3]" in told
+    assert print_of(out / "steps_2500_rolling_0") == before
+    assert not (second / "rubbish").exists()
+    assert load(out)[0]["study"]["finished"] == 3
+    assert not list(out.glob(".*.old")) and not list(out.glob(".*.new"))
+
+
+def test_nothing_is_repeated_when_all_is_done_and_values_can_be_added(slope, here):
+    assert slope("case/in.tiny --set rolling=0,0.1 --set steps=20 -o out")[0] == 0
+    folders = [here / "out" / f"rolling_{value}_steps_20" for value in ("0", "0.1")]
+    before = [print_of(folder) for folder in folders]
+    status, out, _ = slope("case/in.tiny --set rolling=0,0.1,0.2 --set steps=20 -o out")
+    assert status == 0 and "2 of 3 runs are finished already" in out
+    assert [print_of(folder) for folder in folders] == before
+    assert len(load(here / "out")[1]) == 3
+
+
+def test_finished_runs_of_another_deck_are_not_taken(slope, here):
+    assert slope("case/in.tiny --set rolling=0 --set steps=20 -o out")[0] == 0
+    (here / "case" / "notes.txt").write_text("not named by the deck\n")
+    assert slope("case/in.tiny --set rolling=0 --set steps=20 -o out")[0] == 0
+    edit("case/in.tiny", "0.1 friction", "0.2 friction")
+    assert slope("case/in.tiny --set rolling=0 --set steps=20 -o out")[::2] == (
+        2, "slope study: out/rolling_0_steps_20: was run with another in.tiny than that of case: remove the folder to "
+           "run it again, or give another -o\n")
+
+
+def test_an_edit_while_the_study_runs_does_not_reach_later_runs(slope, here, kept):
+    lmp = fake_lmp("lmp.sh", f"echo '# edited' >> {here}/case/in.tiny")
+    deck = (here / "case" / "in.tiny").read_bytes()
+    assert slope(f"case/in.tiny --set rolling=0,0.1 -o out --jobs 1 --lmp {lmp}")[0] == 0
+    assert all((here / "out" / f"rolling_{value}" / "in.tiny").read_bytes() == deck for value in ("0", "0.1"))
+
+
+def test_two_studies_do_not_share_a_folder(slope, here, kept):
+    lmp = fake_lmp("lmp.sh", "touch began; while [ ! -e ../../go ]; do sleep 0.05; done")
+    first = subprocess.Popen([*PROGRAM, "study", "case/in.tiny", "--set", "rolling=0", "-o", "out", "--lmp", str(lmp)],
+                             stdout=subprocess.DEVNULL)
+    wait_for((here / "out" / "rolling_0" / "began").exists, "the first study")
+    assert slope(f"case/in.tiny --set rolling=0.1 -o out --lmp {lmp}")[::2] == (
+        2, "slope study: out: must not be in use by another study\n")
+    (here / "go").touch()
+    assert first.wait(20) == 0
+
+
+# --- runs that fail ---
+
+def test_a_failing_run_is_told_and_the_others_go_on(slope, here):
+    status, out, err = slope("case/in.tiny --set friction=30,95,20 --set steps=20 -o out")
+    assert status == 2
+    assert err.splitlines()[-1].startswith("slope study: out: 1 of 3 runs failed: friction_95_steps_20: ERROR: Pair "
+                                           "gran/restitution friction must be >= 0 and < 90 degrees, got 95 (ended with status 1")
+    assert "[2/3] friction_95_steps_20: failed: ERROR: Pair gran/restitution friction" in out
+    about, table = load(here / "out")
+    assert [line["status"] for line in table] == ["finished", "failed", "finished"]
+    assert "must be >= 0 and < 90" in table[1]["error"] and table[1]["released_m3"] == ""
+    assert about["study"]["finished"] == 2 and about["exceedance"][0]["area_in_every_run_m2"] > 0
+    # it is tried again, and only it
+    edit(here / "out" / "friction_30_steps_20" / "variables.yaml", "package:", "kept: true\npackage:")
+    assert slope("case/in.tiny --set friction=30,95,20 --set steps=20 -o out")[0] == 2
+    assert "kept: true" in (here / "out" / "friction_30_steps_20" / "variables.yaml").read_text()
+
+
+@pytest.mark.parametrize("body, message", [
+    ("exit 3", "no word in its log (ended with status 3; see out/rolling_0/log.lammps)"),
+    ("echo 'mpirun was unable to launch'; exit 1", "mpirun was unable to launch (ended with status 1"),
+    ("echo 'ERROR on proc 1: lost (src/pair.cpp:12)'; exit 1", "ERROR on proc 1: lost (ended with status 1"),
+    ("echo 'ERROR: bad (src/a/pair.cpp:12)' > log.lammps; kill -SEGV $$", "ERROR: bad (ended by SIGSEGV"),
+    ("exit 0", "no word in its log (lmp ended with status 0, but left no complete run"),
+    ("echo 'step: 3' > tiny.summary.yaml; exit 0", "out/rolling_0/tiny.summary.yaml: must be a summary that fix "
+                                                   "deposit/grid wrote, with volume: released"),
+])
+def test_how_a_run_failed(slope, here, body, message):
+    Path("lmp.sh").write_text(f"#!/bin/bash\n{body}\n")
+    Path("lmp.sh").chmod(0o755)
+    status, _, err = slope("case/in.tiny --set rolling=0 -o out --lmp ./lmp.sh")
+    assert status == 2 and err.splitlines()[-1].startswith(
+        f"slope study: out: 1 of 1 runs failed: rolling_0: {message}")
+    assert not (here / "out" / "rolling_0" / "finished.yaml").exists()
+    assert [line["status"] for line in load(here / "out")[1]] == ["failed"]
+
+
+def test_warnings_of_the_logs_are_kept(slope, here):
+    edit("case/in.tiny", "timestep    0.002", "timestep    0.004")
+    assert slope("case/in.tiny --set steps=20 -o out")[0] == 0
+    row = load(here / "out")[0]["runs"][0]
+    assert len(row["log_warnings"]) == 1 and row["log_warnings"][0].startswith("Pair gran/restitution: time step 0.004 s")
+
+
+# --- progress ---
+
+LOG = """\
+LAMMPS (29 Sep 2021 - Update 2)
+region ground terrain ${where} depth 8
+region ground terrain dem.asc depth 8
+WARNING: Something is odd (src/some.cpp:77)
+run         ${steps}
+run         200
+Pair gran/restitution: contact coefficients (lightest balls of each type pair)
+  types    kn N/m
+  1   1    1e+05
+Per MPI rank memory allocation (min/avg/max) = 6.1 | 6.1 | 6.1 Mbytes
+   Step          Time          Atoms          KinEng
+        50   0.1            351            0
+WARNING: Something is odd (src/some.cpp:77)
+       100   0.2            351            1.5e3
+"""
+
+
+def test_the_log_is_read_as_it_grows(tmp_path):
+    path = tmp_path / "log.lammps"
+    log = runs.Log(path)
+    assert log.update().step is None
+    for i in range(0, len(LOG), 7):
+        with open(path, "a", encoding="ascii") as out:
+            out.write(LOG[i:i + 7])
+        log.update()
+    assert (log.step, log.time, log.first, log.last) == (100, 0.2, 50, 250)
+    assert log.warnings == ["Something is odd"] and log.terrain == "dem.asc" and log.table[1:] == [
+        "  types    kn N/m", "  1   1    1e+05"]
+    with open(path, "a", encoding="ascii") as out:
+        out.write("Loop time of 1 on 1 procs\nrun 500 upto\n   Step          Time\n       100   0.2\n")
+    assert (log.update().last, log.step, log.thermo) == (500, 100, 1)
+    with open(path, "a", encoding="ascii") as out:
+        out.write("ERROR: Lost atoms: original 3 current 2 (../thermo.cpp:438)\nLast command: run 5\n")
+    assert log.update().error == "ERROR: Lost atoms: original 3 current 2"
+
+
+def test_a_terminal_gets_a_live_display(here):
+    leader, follower = pty.openpty()
+    process = subprocess.Popen([*PROGRAM, "study", "case/in.tiny", "--set", "steps=1500", "--set", "rolling=0,0.1",
+                                "-o", "out", "--jobs", "1"], stdout=subprocess.DEVNULL, stderr=follower,
+                               env={**os.environ, "TERM": "xterm", "COLUMNS": "120"})
+    os.close(follower)
+    shown = b""
+    while True:
+        try:
+            part = os.read(leader, 65536)
+        except OSError:
+            break
+        if not part:
+            break
+        shown += part
+    os.close(leader)
+    assert process.wait(20) == 0
+    text = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", shown.decode())
+    assert re.search(r"\[1/2\] rolling 0 .*step \d+ of 1500, \d\.\d\d s +\d\d:\d\d:\d\d", text)
+    assert "[1/2] steps_1500_rolling_0: finished at 3.0 s, wall time" in text
+    assert "0 of 2 finished" in text and "1 waiting" in text
+
+
+def test_lines_now_and_then_without_a_terminal(slope, here, monkeypatch):
+    monkeypatch.setattr(study, "TELL", 0.2)
+    status, out, _ = slope("case/in.tiny --set steps=1500 -o out")
+    assert status == 0
+    assert re.search(r"^\[1/1\] steps_1500: step \d+ of 1500, \d\.\d\d s, ends by \d\d:\d\d:\d\d$", out, re.MULTILINE)
+
+
+# --- bad input: one line, status 2, nothing made ---
+
+def deck(change):
+    return lambda: Path("case/in.tiny").write_text(change(Path("case/in.tiny").read_text()))
+
+
+def nothing():
+    pass
+
+
+OK = "case/in.tiny --set rolling=0 -o out"
+BAD = {
+    "unknown variable": (nothing, "case/in.tiny --set colour=1 -o out",
+                         "--set: must name an index variable of case/in.tiny (cell, friction, out, rolling, steps, "
+                         "terrain), got colour"),
+    "not an index variable": (nothing, "case/in.tiny --set kn=1 -o out", "--set: must name an index variable of "
+                              "case/in.tiny (cell, friction, out, rolling, steps, terrain), got kn of style equal"),
+    "no variables": (deck(lambda text: text.replace(" index ", " string ")), OK,
+                     "--set: must name an index variable of case/in.tiny (none), got rolling of style string"),
+    "no equals": (nothing, "case/in.tiny --set rolling -o out", "--set: must be NAME=V1,V2,... or NAME=A:B:STEP"),
+    "no value": (nothing, "case/in.tiny --set rolling=0,,1 -o out", "--set: must have no empty value"),
+    "empty": (nothing, "case/in.tiny --set rolling= -o out", "--set: must have no empty value"),
+    "twice": (nothing, "case/in.tiny --set rolling=0 --set rolling=1 -o out", "--set: must name a variable once"),
+    "value twice": (nothing, "case/in.tiny --set rolling=0.1,0.10 -o out",
+                    "--set: must have every value once, got rolling=0.1,0.10 with 0.10 twice"),
+    "range without way": (nothing, "case/in.tiny --set rolling=0:1:-1 -o out", "--set: A:B:STEP must have a STEP that"),
+    "range without step": (nothing, "case/in.tiny --set rolling=0:1:0 -o out", "--set: A:B:STEP must have a STEP that"),
+    "range of nan": (nothing, "case/in.tiny --set rolling=0:nan:1 -o out", "--set: A:B:STEP must have a STEP that"),
+    "huge range": (nothing, "case/in.tiny --set rolling=0:1:1e-9 -o out", "--set: must make at most 10000 runs"),
+    "huge product": (nothing, "case/in.tiny --set rolling=0:1:0.001 --set friction=0:80:1 -o out",
+                     "--set: must make at most 10000 runs, got 81081"),
+    "same folder": (nothing, "case/in.tiny --set terrain=a_b,a/b -o out", "--set: must not give two runs the folder"),
+    "no deck": (nothing, "case/in.none --set rolling=0 -o out", "case/in.none: must be a LAMMPS input deck (No such"),
+    "deck is a folder": (nothing, "case --set rolling=0 -o out", "case: must be a LAMMPS input deck (Is a directory"),
+    "no deposit": (deck(lambda text: text.replace("deposit/grid", "nve/none")), OK,
+                   "case/in.tiny: must have one fix deposit/grid, which gives the deposit, got 0"),
+    "data above": (deck(lambda text: text.replace("index terrain.asc", "index ../dem.asc")), OK,
+                   "case/in.tiny: must find its data in its own folder (a symbolic link will do) or by an absolute path, "
+                   "got ../dem.asc"),
+    "output is a file": (lambda: Path("out").write_text(""), OK, "-o: must be a folder, got out"),
+    "output is the deck's": (nothing, "case/in.tiny --set rolling=0 -o case", "-o: must not be the folder of the deck"),
+    "folder of somebody": (lambda: Path("out/rolling_0").mkdir(parents=True), OK,
+                           "out/rolling_0: must be a run folder of a study, with variables.yaml"),
+    "folder of another run": (lambda: (Path("out/rolling_0").mkdir(parents=True),
+                                       Path("out/rolling_0/variables.yaml").write_text("set: {rolling: '7'}")), OK,
+                              "out/rolling_0/variables.yaml: must be of the run rolling_0"),
+    "jobs": (nothing, OK + " --jobs 0", "argument --jobs: must be a whole number >= 1, got '0'"),
+    "np": (nothing, OK + " --np 1.5", "argument --np: must be a whole number >= 1, got '1.5'"),
+    "lmp": (nothing, OK + " --lmp none/lmp", "--lmp: must lead to the LAMMPS program, got "),
+    "thresholds": (nothing, OK + " --exceed 0.1,x", "--exceed: must be different thicknesses >= 0, with commas"),
+    "thresholds twice": (nothing, OK + " --exceed 1,1", "--exceed: must be different thicknesses >= 0, with commas"),
+    "no road": (nothing, OK + " --road none.csv", "--road: must be an existing file, got none.csv"),
+    "road elsewhere": (lambda: Path("far.csv").write_text("100,0\n110,0\n110,10\n"), OK + " --road far.csv",
+                       "far.csv: must overlap the terrain, local x y 0 0 40 24"),
+    "cut angle": (nothing, OK + " --road case/road.csv --cut-angle 90", "--cut-angle: must be > 0 and < 90 degrees"),
+    "mesh": (nothing, OK + " --road case/road.csv --mesh 0", "--mesh: must be > 0, got 0"),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_bad_input_is_one_line_and_leaves_no_trace(slope, here, name):
+    make, arguments, message = BAD[name]
+    Path("dem.asc").write_text(Path("case/terrain.asc").read_text())
+    make()
+    before = sorted(str(path) for path in here.rglob("*"))
+    status, out, err = slope(arguments)
+    assert (status, out) == (2, "") and err.count("\n") == 1
+    assert err.startswith(f"slope study: {message}")
+    assert sorted(str(path) for path in here.rglob("*")) == before
+
+
+def test_lmp_from_the_environment(slope, here, monkeypatch):
+    monkeypatch.setenv("LMP", "nowhere/lmp")
+    status, _, err = slope(OK)
+    assert status == 2 and err.startswith("slope study: LMP in the environment: must lead to the LAMMPS program, got ")
+    assert not (here / "out").exists()
+
+
+def test_help_has_units_and_an_example(slope):
+    status, out, _ = slope("--help")
+    assert status == 0 and "units: metres" in out and "\n  tools/slope study " in out
+
+
+def doc_examples():
+    page = TOP / "doc" / "src" / "tool_study.rst"
+    text = page.read_text(encoding="ascii").replace("\\\n", " ")
+    return [command for command in re.findall(r"^ +tools/slope (study .*)", text, re.MULTILINE)
+            if " DECK " not in command]
+
+
+@pytest.mark.parametrize("command", [*doc_examples(), study.EPILOG.split("tools/slope ")[1].split("\n")[0]])
+def test_every_example_of_the_page_and_the_help_runs(slope, here, command):
+    """On a deck of this test with the variables and files that the examples name, and no more than 20 steps."""
+    folder = here / "inputs" / "20_embankment"
+    folder.parent.mkdir()
+    (here / "case").rename(folder)
+    (folder / "in.tiny").rename(folder / "in.embankment")
+    edit(folder / "in.embankment", "index 150", "index 20")
+    edit(folder / "in.embankment", "variable  kn", "variable  d index 1\nvariable  xoffset index 0\nvariable  kn")
+    (here / "road.csv").write_text((folder / "road.csv").read_text())
+    status, _, err = slope(command.removeprefix("study "))
+    assert status == 0, err

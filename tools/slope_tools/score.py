@@ -1,0 +1,352 @@
+"""slope score: a run's deposit against a mapped one.
+
+Mapped is a polygon, or a raster of thickness. Areas are exact: a simulated deposit is made of whole cells, and the
+polygon is cut by them; a mapped raster on another grid is spread over the run's cells by the areas that they share.
+"""
+import argparse
+import csv
+import math
+from pathlib import Path
+from typing import NamedTuple, Optional
+
+import numpy as np
+from affine import Affine
+
+from . import deposit, maps, polygons, rasters
+from .cli import number
+from .deposit import coverage, extent
+from .errors import SlopeError
+from .rasters import Raster, crs_name
+from .terrain import same_crs
+from .volume import make_mesh, text
+
+THRESHOLD = 0.1   # m
+RASTERS = {".tif", ".tiff", ".asc", ".vrt", ".img", ".bil"}
+FULL = 1e-9       # a smaller share of a cell, or of the largest thickness, is rounding
+
+EPILOG = """\
+units: metres, m2, m3, degrees. PREFIX is what fix deposit/grid was given as output.
+
+example: the mapped outline of the deposit; a thickness raster from two surveys, errors per mesh cell of 20 m:
+  tools/slope score embankment --observed mapped.geojson -o score
+  tools/slope score embankment --observed thickness.tif --mesh 20 -o score
+
+Writes score.yaml, score.csv (one row per cell of the run or of the mesh) and score.png.
+"""
+
+
+class Observed(NamedTuple):
+    """The mapped deposit on the run's grid: share of each cell; thickness (m, mean of the cell) or None."""
+    share: np.ndarray
+    thickness: Optional[np.ndarray]
+    points: np.ndarray      # local x, y of the corners of its outline: its farthest point is one of them
+    polygon: object         # shapely, local metres; None for a raster
+    outside: float          # area outside of the run's grid, m2
+    volume_outside: float   # m3
+
+
+def add_parser(commands, **kwargs):
+    """Add `score` and its arguments to argparse's commands; return its parser."""
+    parser = commands.add_parser(
+        "score", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
+        description="A run's deposit against a mapped one: overlap, run-out, volume.", **kwargs)
+    parser.add_argument("prefix", metavar="PREFIX", help="output of fix deposit/grid: PREFIX.thickness.asc and so on")
+    parser.add_argument("--observed", metavar="POLYGON|RASTER", required=True, type=Path,
+                        help="the mapped deposit: its outline (GeoJSON, shapefile, CSV, WKT), or its thickness in "
+                             "metres (GeoTIFF, ESRI ASCII grid; NODATA is no deposit)")
+    parser.add_argument("-o", dest="output", metavar="DIR", type=Path,
+                        help="folder for the results (default PREFIX.score)")
+    parser.add_argument("--threshold", metavar="T", type=number, default=THRESHOLD,
+                        help=f"a deposit is where it is thicker than this, m (default {THRESHOLD:g})")
+    parser.add_argument("--mesh", metavar="SIZE", type=number,
+                        help="side of the mesh cells of score.csv, m; their corners are at multiples of it in local x "
+                             "and y (default: the cells of the run)")
+    parser.add_argument("--terrain", metavar="TERRAIN.asc", type=Path,
+                        help="the run's terrain, whose sidecar tells the CRS (default: terrain.asc beside PREFIX)")
+    parser.add_argument("--local", action="store_true", help="the mapped deposit is in local metres, not in a CRS")
+    return parser
+
+
+def run(args):
+    """Do the command; raises SlopeError on bad input. Prints the scores."""
+    if args.threshold < 0:
+        raise SlopeError("--threshold", "must be >= 0", f"{args.threshold:g}")
+    if args.mesh is not None and args.mesh <= 0:
+        raise SlopeError("--mesh", "must be > 0", f"{args.mesh:g}")
+    warnings = []
+    warn = deposit.warner("score", warnings)
+    run_ = deposit.read(args.prefix, args.terrain, warn)
+    folder = args.output or Path(f"{args.prefix}.score")
+    deposit.check_folder(folder)
+    mesh = make_mesh(args.mesh or run_.cell, run_.raster)
+    observed = read_observed(args.observed, run_.raster, args.threshold, args.local)
+    if observed.outside > 0:
+        warn(f"{args.observed}: {observed.outside:.6g} m2 of it lie outside of the grid of the run: counted as not met")
+    simulated = run_.raster.z > args.threshold
+    if not simulated.any():
+        warn(f"{run_.prefix}.thickness.asc is nowhere thicker than {args.threshold:g} m")
+    about = {"prefix": run_.prefix, "observed": args.observed, "terrain": run_.terrain,
+             "crs": None if run_.raster.crs is None else crs_name(run_.raster.crs),
+             "run": {"slope_version": run_.summary.get("slope_version"), "time": run_.summary["time"],
+                     "moving": run_.summary["moving"]},
+             "threshold": args.threshold, "cell": run_.cell, "mesh": mesh.size,
+             "area": overlap(simulated, observed, run_.cell),
+             "runout": runout(run_, simulated, observed)}
+    table = mesh_table(run_, simulated, observed, mesh)
+    if observed.thickness is not None:
+        about["bulk_factor"] = run_.bulk
+        about["volume"] = volumes(run_, observed, table)
+    about["warnings"] = warnings
+    with deposit.complete(folder) as new:
+        write_csv(new / "score.csv", run_, mesh, table)
+        draw(new / "score.png", run_, simulated, observed, about)
+        about["files"] = ["score.csv", "score.png", "score.yaml"]
+        deposit.write_yaml(new / "score.yaml", about, "slope score: simulated against mapped; m, m2, m3, degrees")
+    print(summary(about, folder))
+
+
+# --- the mapped deposit ---
+
+def read_observed(path, raster, threshold, local):
+    """The Observed of a file, on the grid of a run's thickness raster."""
+    if path.suffix.lower() not in RASTERS:
+        polygon = polygons.read_local(path, raster, local)
+        return from_polygon(polygon, raster)
+    mapped = rasters.read_asc_local(path) if path.suffix == ".asc" else rasters.read(path)
+    return from_raster(path, mapped, raster, threshold, local)
+
+
+def from_polygon(polygon, raster):
+    grid = deposit.box_of(raster)
+    inside = polygon if grid.covers(polygon) else deposit.as_multi(polygon.intersection(grid))
+    rows, columns = raster.z.shape
+    share = coverage(deposit.to_index(inside, raster), np.arange(columns + 1.0), np.arange(rows + 1.0))[0]
+    share = np.clip(np.where(share > FULL, share, 0), 0, 1)
+    points = np.concatenate([np.asarray(part.exterior.coords)[:, :2] for part in deposit.polygons_of(polygon)])
+    return Observed(share, None, points, polygon, max(0, polygon.area - inside.area), 0.0)
+
+
+def from_raster(path, mapped, raster, threshold, local):
+    """A mapped raster of thickness on the run's grid: what each of its cells holds goes to the cells it shares."""
+    t = mapped.transform
+    if t.b or t.d or t.a <= 0 or t.e >= 0:
+        raise SlopeError(path, "must be a raster with rows from west to east and columns from north to south")
+    if local:
+        mapped = mapped._replace(crs=raster.crs, offset=raster.offset)
+    elif (mapped.crs is None) != (raster.crs is None):
+        raise SlopeError(path if mapped.crs is None else "--terrain", "must have a CRS, so that both can be brought "
+                         "together (--local if the mapped deposit is in the run's local metres)", "none")
+    elif not same_crs(mapped.crs, raster.crs):
+        raise SlopeError(path, f"must be in the CRS of the run, {crs_name(raster.crs)} (gdalwarp -t_srs reprojects)",
+                         crs_name(mapped.crs))
+    thickness = np.nan_to_num(mapped.z, nan=0.0)
+    wrong = np.argwhere(thickness < 0)
+    if len(wrong):
+        row, column = wrong[0]
+        raise SlopeError(f"{path}: row {row + 1} column {column + 1}", "must be a thickness >= 0",
+                         f"{thickness[row, column]:g}")
+    there = Affine.translation(*np.subtract(mapped.offset, raster.offset)) * t  # to the run's local metres
+    to_index = ~raster.transform * there
+    shape = raster.z.shape
+    x = to_index.c + to_index.a * np.arange(thickness.shape[1] + 1)
+    y = to_index.f + to_index.e * np.arange(thickness.shape[0] + 1)
+    if x[0] >= shape[1] or x[-1] <= 0 or y[0] >= shape[0] or y[-1] <= 0:
+        raise SlopeError(path, f"must overlap the grid of the run, {deposit.box(extent(raster))} (local metres)",
+                         deposit.box(extent(Raster(thickness, there, None))))
+    thick = thickness > threshold
+    share = np.clip(spread(thick.astype(float), x, y, shape), 0, 1)
+    share[share < FULL] = 0
+    area = abs(there.a * there.e)
+    cell = raster.transform.a ** 2
+    mean = spread(thickness, x, y, shape)
+    mean[mean < FULL * mean.max(initial=0)] = 0
+    row, column = np.nonzero(edge_cells(thick))
+    corners = [there * (column + i, row + j) for i in (0, 1) for j in (0, 1)]
+    points = np.concatenate([np.transpose(corner) for corner in corners])
+    outside = thick.sum() * area - share.sum() * cell
+    volume_outside = thickness.sum() * area - mean.sum() * cell
+    return Observed(share, mean, points, None, *(value if value > 1e-9 * total * area else 0.0 for value, total in
+                                                 ((outside, thick.sum()), (volume_outside, thickness.sum()))))
+
+
+def spread(values, x, y, shape):
+    """Values, even in the cells between lines x and y (index coordinates, ascending), as means of the unit cells."""
+    for axis, lines, n in ((0, y, shape[0]), (1, x, shape[1])):
+        values = np.moveaxis(values, axis, 0)
+        # sum up to each line; between lines it grows evenly
+        total = np.concatenate([np.zeros((1, *values.shape[1:])), np.cumsum(values * np.diff(lines)[:, None], axis=0)])
+        at = np.clip(np.arange(n + 1.0), lines[0], lines[-1])
+        first = np.clip(np.searchsorted(lines, at, "right") - 1, 0, len(lines) - 2)
+        part = ((at - lines[first]) / np.diff(lines)[first])[:, None]
+        values = np.moveaxis(np.diff(total[first] * (1 - part) + total[first + 1] * part, axis=0), 0, axis)
+    return np.maximum(values, 0)
+
+
+def edge_cells(mask):
+    """The cells of a mask that have a neighbour outside of it."""
+    padded = np.pad(mask, 1)
+    inner = padded[:-2, 1:-1] & padded[2:, 1:-1] & padded[1:-1, :-2] & padded[1:-1, 2:]
+    return mask & ~inner
+
+
+# --- scores ---
+
+def overlap(simulated, observed, cell):
+    """Areas (m2) and their ratios; a ratio without a denominator is None."""
+    area = cell ** 2
+    met = float(observed.share[simulated].sum()) * area
+    total = float(observed.share.sum()) * area + observed.outside
+    run_ = float(simulated.sum()) * area
+    union = run_ + total - met
+
+    def ratio(part, whole):
+        return round(part / whole, 9) if whole > 0 else None
+
+    return {"simulated": round(run_, 6), "observed": round(total, 6), "true_positive": round(met, 6),
+            "false_positive": round(run_ - met, 6), "false_negative": round(total - met, 6),
+            "jaccard": ratio(met, union), "hit_rate": ratio(met, total), "precision": ratio(met, run_)}
+
+
+def runout(run_, simulated, observed):
+    """Distances in plan of the farthest points of both from the highest released point, and along the fall line (m)."""
+    (x, y), source = top(run_)
+    row, column = np.nonzero(edge_cells(simulated))
+    points = np.concatenate([np.transpose(run_.raster.transform * (column + i, row + j)) for i in (0, 1) for j in (0, 1)])
+    found = {"from": [round(x, 6), round(y, 6)], "from_source": source}
+    if not len(points) or not len(observed.points):
+        return {**found, "simulated": None, "observed": None, "difference": None}
+    centre = centroid(observed, run_.raster)
+    way = np.subtract(centre, (x, y))
+    length = math.hypot(*way)
+    for name, distance in (
+            ("", lambda at: np.hypot(*(at - (x, y)).T).max()),
+            ("along_fall_line", lambda at: float(((at - (x, y)) @ (way / length)).max()) if length > 0 else None)):
+        values = [distance(points), distance(observed.points)]
+        if None in values:
+            continue
+        ours, theirs = (round(float(value), 6) for value in values)
+        numbers = {"simulated": ours, "observed": theirs, "difference": round(ours - theirs, 6)}
+        if name:
+            # clockwise from north, as a compass has it
+            found[name] = {"azimuth": round(math.degrees(math.atan2(*way)) % 360, 6), **numbers}
+        else:
+            found.update(numbers)
+    return found
+
+
+def top(run_):
+    """Local x, y of the highest released point, and where that is known from."""
+    told = (run_.summary.get("travel") or {}).get("top")
+    if isinstance(told, list) and len(told) == 3 and all(isinstance(v, (int, float)) for v in told):
+        return (float(told[0]), float(told[1])), "summary: highest released ball"
+    name = f"{run_.prefix}.max_thickness.asc"
+    source, thickness = "highest cell of the deposit", run_.raster.z
+    if Path(name).is_file():
+        largest = rasters.read(name, heights=False)
+        if largest.z.shape == thickness.shape and largest.transform == run_.raster.transform:
+            source, thickness = "highest cell that the mass was in", largest.z
+    surface = np.where((thickness > 0) & np.isfinite(run_.base), run_.base + thickness, -np.inf)
+    row, column = np.unravel_index(surface.argmax(), surface.shape)
+    return tuple(float(v) for v in run_.raster.transform * (column + 0.5, row + 0.5)), source
+
+
+def centroid(observed, raster):
+    if observed.polygon is not None:
+        return observed.polygon.centroid.coords[0]
+    rows, columns = observed.share.shape
+    weight = observed.share.sum()
+    return raster.transform * ((observed.share.sum(axis=0) @ (np.arange(columns) + 0.5)) / weight,
+                               (observed.share.sum(axis=1) @ (np.arange(rows) + 0.5)) / weight)
+
+
+def mesh_table(run_, simulated, observed, mesh):
+    """Arrays (mesh rows, mesh columns) by name: areas (m2) and, for a mapped raster, volumes (m3)."""
+    area = run_.cell ** 2
+    met = np.where(simulated, observed.share, 0)
+    table = {"true_positive": met, "false_positive": simulated - met, "false_negative": observed.share - met,
+             "simulated_volume": run_.raster.z}
+    if observed.thickness is not None:
+        table["observed_volume"] = observed.thickness
+    table = {name: mesh.sums(values) * area for name, values in table.items()}
+    if observed.thickness is not None:
+        table["volume_error"] = table["simulated_volume"] - table["observed_volume"]
+    return table
+
+
+def volumes(run_, observed, table):
+    """Volumes (m3) and their errors; per mesh cell: mean of the absolute errors over those with a deposit, and RMS."""
+    ours = math.fsum(table["simulated_volume"].ravel())
+    theirs = math.fsum(table["observed_volume"].ravel()) + observed.volume_outside
+    error = table["volume_error"][(table["simulated_volume"] > 0) | (table["observed_volume"] > 0)]
+    found = {"simulated": round(ours, 6), "observed": round(theirs, 6), "error": round(ours - theirs, 6),
+             "relative_error": round((ours - theirs) / theirs, 9) if theirs > 0 else None,
+             "mesh_cells": len(error)}
+    if len(error):
+        found["mean_absolute_error_of_mesh_cells"] = round(float(np.abs(error).mean()), 6)
+        found["rms_error_of_mesh_cells"] = round(float(np.sqrt((error ** 2).mean())), 6)
+        found["share_in_wrong_mesh_cells"] = round(float(np.abs(error).sum()) / (ours + theirs), 9)
+    return found
+
+
+# --- output ---
+
+def write_csv(path, run_, mesh, table):
+    """One row per mesh cell with a deposit, simulated or mapped."""
+    east, north = run_.raster.offset
+    listed = np.argwhere(np.any([np.abs(values) > 0 for values in table.values()], axis=0))
+    with open(path, "w", encoding="ascii", newline="") as out:
+        writer = csv.writer(out, lineterminator="\n")
+        writer.writerow(["row", "column", "xlo", "ylo", "east", "north", *table])
+        for row, column in listed.tolist():
+            x, y = mesh.corner(row, column)
+            places = map(float, (x, y, x + east, y + north))
+            writer.writerow([row + 1, column + 1, *map(text, places),
+                             *(text(float(values[row, column])) for values in table.values())])
+
+
+def draw(path, run_, simulated, observed, about):
+    raster = run_.raster
+    kind = np.where(simulated, np.where(observed.share >= 0.5, 1, 2), np.where(observed.share >= 0.5, 3, 0))
+    row, column = np.nonzero(kind > 0)
+    bounds = []
+    if len(row):
+        t = raster.transform
+        bounds.append((t.c + column.min() * t.a, t.f + (row.max() + 1) * t.e, t.c + (column.max() + 1) * t.a,
+                       t.f + row.min() * t.e))
+    if observed.polygon is not None:
+        bounds.append(deposit.as_multi(observed.polygon.intersection(deposit.box_of(raster))).bounds)
+    shown = maps.window(raster, *(bounds or [extent(raster)]))
+    area = about["area"]
+    jaccard = "none" if area["jaccard"] is None else f"{area['jaccard']:.3f}"
+    figure, axes = maps.relief(raster, run_.base, shown, f"{about['prefix']}: Jaccard {jaccard}, thicker than "
+                                                         f"{about['threshold']:g} m")
+    classes = {1: ("tab:green", "both"), 2: ("tab:orange", "simulated only"), 3: ("tab:blue", "mapped only")}
+    values, where = maps.part(raster, kind, shown)
+    colours = maps.ListedColormap([colour for colour, _ in classes.values()])
+    axes.imshow(np.ma.masked_equal(values, 0), cmap=colours, vmin=0.5, vmax=3.5, alpha=0.65, extent=where,
+                interpolation="nearest")
+    for colour, name in classes.values():
+        axes.plot([], [], "s", color=colour, alpha=0.65, label=name)
+    if observed.polygon is not None:
+        maps.outline(axes, observed.polygon, color="black", linewidth=1.0, label="mapped outline")
+    axes.plot(*about["runout"]["from"], "k^", markersize=6, label=about["runout"]["from_source"].split(": ")[-1])
+    axes.legend(loc="upper right", fontsize=8)
+    maps.save(figure, path)
+
+
+def summary(about, folder):
+    """What the user needs to know."""
+    area, out = about["area"], about["runout"]
+    jaccard = "none" if area["jaccard"] is None else f"{area['jaccard']:.3f}"
+    lines = [f"thicker than {about['threshold']:g} m: {area['true_positive']:.1f} m2 in both, "
+             f"{area['false_positive']:.1f} m2 simulated only, {area['false_negative']:.1f} m2 mapped only; "
+             f"Jaccard {jaccard}"]
+    if out["difference"] is not None:
+        lines.append(f"run-out: {out['simulated']:.1f} m simulated, {out['observed']:.1f} m mapped: "
+                     f"{out['difference']:+.1f} m")
+    if "volume" in about:
+        volume = about["volume"]
+        lines.append(f"volume: {volume['simulated']:.1f} m3 simulated (bulk factor {about['bulk_factor']:.6g}), "
+                     f"{volume['observed']:.1f} m3 mapped: {volume['error']:+.1f} m3")
+    lines.append(f"written to {folder}: {' '.join(about['files'])}")
+    return "\n".join(lines)
