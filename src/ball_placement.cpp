@@ -8,6 +8,7 @@
 #include "atomic_file.h"
 #include "comm.h"
 #include "error.h"
+#include "rank_zero.h"
 #include "region_surface.h"
 #include "surface_sampler.h"
 #include "tokenizer.h"
@@ -49,13 +50,16 @@ BallPlacement::BallPlacement(LAMMPS *lmp, const std::string &caller_in, double d
                  side == RegionSurface::LOWER ? " lower" : "n upper");
   }
 
-  on_rank_0(region.empty() ? &BallPlacement::read_file : &BallPlacement::place_on_surface);
+  on_rank_zero(lmp, caller, [this]() {
+    if (region.empty()) read_file();
+    else place_on_surface();
+  });
   share();
   if (xyz.empty())
     error->all(FLERR, "{}: {} holds no balls", caller,
                region.empty() ? "file " + file : "the surface of region " + region);
   if (comm->me == 0) utils::logmesg(lmp, "{}\n", summary);
-  if (!write.empty()) on_rank_0(&BallPlacement::write_file);
+  if (!write.empty()) on_rank_zero(lmp, caller, [this]() { write_file(); });
 }
 
 BallPlacement::~BallPlacement() = default;
@@ -134,30 +138,6 @@ void BallPlacement::parse(int narg, char **arg, bool may_write)
   }
   if (!region.empty() && spacing == 0.0)
     error->all(FLERR, "{} surface needs a spacing, got none", caller);
-}
-
-/* ----------------------------------------------------------------------
-   what only rank 0 does; its failure is everybody's
-------------------------------------------------------------------------- */
-
-void BallPlacement::on_rank_0(void (BallPlacement::*work)())
-{
-  std::string problem;
-  if (comm->me == 0) {
-    try {
-      (this->*work)();
-    } catch (std::bad_alloc &) {
-      problem = "there is not enough memory for the balls";
-    } catch (std::exception &e) {
-      problem = e.what();
-    }
-  }
-  int length = problem.size();
-  MPI_Bcast(&length, 1, MPI_INT, 0, world);
-  if (length == 0) return;
-  problem.resize(length);
-  MPI_Bcast(&problem[0], length, MPI_CHAR, 0, world);
-  error->all(FLERR, "{}: {}", caller, problem);
 }
 
 void BallPlacement::share()

@@ -51,7 +51,6 @@ class BallPlacement : protected Pointers {
   void place_on_surface();
   void read_file();
   void write_file();
-  void on_rank_0(void (BallPlacement::*)());
   void share();
 };
 

@@ -12,6 +12,7 @@
 
 #include "atomic_file.h"
 #include "lammps_compat.h"
+#include "rank_zero.h"
 #include "region_surface.h"
 #include "region_terrain.h"
 #include "slope_version.h"
@@ -185,17 +186,11 @@ FixDepositGrid::FixDepositGrid(LAMMPS *lmp, int narg, char **arg) :
   if (ncells > MAXCELLS)
     error->all(FLERR, "Fix deposit/grid cell must give at most {:g} cells, got {}", MAXCELLS, need);
 
-  std::string problem;
-  if (comm->me == 0) {
-    try {
-      const ElevationGrid zero(n[X], n[Y], lo[X], lo[Y], cell, 0.0);
-      thickness = snapshot = max_thickness = max_speed = max_energy = zero;
-      base = arrival = last_motion = ElevationGrid(n[X], n[Y], lo[X], lo[Y], cell, NaN);
-    } catch (std::bad_alloc &) {
-      problem = "not enough memory for " + need;
-    }
-  }
-  stop_if(problem);
+  on_rank_zero(lmp, "Fix deposit/grid: " + need, [&]() {
+    const ElevationGrid zero(n[X], n[Y], lo[X], lo[Y], cell, 0.0);
+    thickness = snapshot = max_thickness = max_speed = max_energy = zero;
+    base = arrival = last_motion = ElevationGrid(n[X], n[Y], lo[X], lo[Y], cell, NaN);
+  });
   read_base();
 
   // state
@@ -918,29 +913,9 @@ double FixDepositGrid::clock() const
 
 void FixDepositGrid::check_folder()
 {
-  std::string problem;
-  if (comm->me == 0) {
-    try {
-      AtomicFile(prefix + ".summary.yaml");    // opened beside, and removed
-    } catch (std::exception &e) {
-      problem = e.what();
-    }
-  }
-  stop_if(problem);
-}
-
-/* ----------------------------------------------------------------------
-   collective: what went wrong on rank 0 ends the run on all ranks, with one line
-------------------------------------------------------------------------- */
-
-void FixDepositGrid::stop_if(std::string problem)
-{
-  int length = problem.size();
-  MPI_Bcast(&length, 1, MPI_INT, 0, world);
-  if (length == 0) return;
-  problem.resize(length);
-  MPI_Bcast(&problem[0], length, MPI_CHAR, 0, world);
-  error->all(FLERR, "Fix deposit/grid: {}", problem);
+  on_rank_zero(lmp, "Fix deposit/grid", [this]() {
+    AtomicFile(prefix + ".summary.yaml");    // opened beside, and removed
+  });
 }
 
 /* ---------------------------------------------------------------------- */
@@ -950,21 +925,13 @@ void FixDepositGrid::write_files(const std::string &reason)
   if (sampled != update->ntimestep) sample(false);
 
   const Motion balls = motion_of_balls();
-  std::string problem;
-  if (comm->me == 0) {
-    try {
-      std::vector<std::string> files;
-      write_rasters(files);
-      AtomicFile file(prefix + ".summary.yaml");
-      file.write(summary(reason, balls, files));
-      file.commit();
-    } catch (std::bad_alloc &) {
-      problem = "not enough memory to write " + prefix + ".surface.asc";
-    } catch (std::exception &e) {
-      problem = e.what();
-    }
-  }
-  stop_if(problem);
+  on_rank_zero(lmp, "Fix deposit/grid", [&]() {
+    std::vector<std::string> files;
+    write_rasters(files);
+    AtomicFile file(prefix + ".summary.yaml");
+    file.write(summary(reason, balls, files));
+    file.commit();
+  });
 }
 
 /* ----------------------------------------------------------------------

@@ -150,7 +150,6 @@ class FixDepositGrid : public Fix {
   };
 
   void check_folder();
-  void stop_if(std::string problem);
   void write_files(const std::string &reason);
   Motion motion_of_balls() const;
   void write_rasters(std::vector<std::string> &files) const;

@@ -20,7 +20,7 @@ using namespace Slope;
 static constexpr double LARGEST = 1.0e12;         // coordinates; their products must be finite
 static constexpr double MOST_PARTS = 64.0;        // of edges in strips, per edge: bounds the memory
 static constexpr double ROUNDING = 4.0e-16;       // relative error of a determinant's terms
-static constexpr double FAR = 1.0e-14;            // more than the relative rounding of a coordinate
+static constexpr double COORDINATE = 1.0e-14;     // more than the relative rounding of a coordinate
 static constexpr double ON_LINE = 1.0e-9;         // of a cell, a strip, or the bounding box
 
 namespace {
@@ -153,7 +153,29 @@ Rings read_rings(const std::string &path)
   return rings;
 }
 
-// On which side of the line from a to b is c? 1: left, -1: right, 0: on it, or too near to tell
+// A number of twice the digits, hi + lo: enough for the sign of a determinant of coordinates, so
+// that a polygon that other programs take for valid is valid here
+
+struct Exact {
+  double hi, lo;
+};
+
+Exact difference(double a, double b)
+{
+  const double hi = a - b;
+  const double part = hi - a;
+  return {hi, (a - (hi - part)) - (b + part)};
+}
+
+Exact product(const Exact &a, const Exact &b)
+{
+  const double most = a.hi * b.hi;
+  const double rest = std::fma(a.hi, b.hi, -most) + (a.hi * b.lo + a.lo * b.hi);
+  const double hi = most + rest;
+  return {hi, rest - (hi - most)};
+}
+
+// On which side of the line from a to b is c? 1: left, -1: right, 0: on it
 
 int side(const Point &a, const Point &b, const Point &c)
 {
@@ -162,7 +184,11 @@ int side(const Point &a, const Point &b, const Point &c)
   const double bound = ROUNDING * (std::fabs(left) + std::fabs(right));
   if (left - right > bound) return 1;
   if (left - right < -bound) return -1;
-  return 0;
+
+  const Exact l = product(difference(b.x, a.x), difference(c.y, a.y));
+  const Exact r = product(difference(b.y, a.y), difference(c.x, a.x));
+  if (l.hi != r.hi) return l.hi > r.hi ? 1 : -1;
+  return l.lo > r.lo ? 1 : l.lo < r.lo ? -1 : 0;
 }
 
 // Whether two edges meet where they may not. Edges of one ring: anywhere but in the point that
@@ -348,8 +374,8 @@ void Polygon::cut_into_strips()
   ending.resize(first_ending[n]);
   through.resize(first_through[n]);
   std::vector<int> place_ending = first_ending, place_through = first_through;
-  const double slack = ON_LINE * (xhi - xlo) + FAR * std::max(std::fabs(xlo), std::fabs(xhi));
-  const double rim = ON_LINE / scale + FAR * std::max(std::fabs(ylo), std::fabs(yhi));
+  const double slack = ON_LINE * (xhi - xlo) + COORDINATE * std::max(std::fabs(xlo), std::fabs(xhi));
+  const double rim = ON_LINE / scale + COORDINATE * std::max(std::fabs(ylo), std::fabs(yhi));
   for (size_t i = 0; i < edges.size(); i++) {
     const Edge &e = edges[i];
     const int lo = strip(e.y0), hi = strip(e.y1);
@@ -372,30 +398,6 @@ void Polygon::cut_into_strips()
     for (int i = first_through[k + 1] - 1; i >= first_through[k]; i--)
       through[i].reach = reach = std::max(reach, through[i].xmax);
   }
-}
-
-/* ----------------------------------------------------------------------
-   Whether the number of edges at height y that are to the east is odd. is_east(edge) says if one
-   is; it is not asked if the edge is all to the east of the second or to the west of the first x.
-------------------------------------------------------------------------- */
-
-template <class East> bool Polygon::odd(double y, double west, double east, East is_east) const
-{
-  const int k = strip(y);
-  bool found = false;
-  for (int i = first_ending[k]; i < first_ending[k + 1]; i++) {
-    const Edge &e = edges[ending[i]];
-    if (e.xmax() <= west) break;
-    if (e.y0 <= y && y < e.y1 && is_east(e)) found = !found;
-  }
-
-  const auto end = through.begin() + first_through[k + 1];
-  const auto begin = through.begin() + first_through[k];
-  auto t = std::partition_point(begin, end, [&](const Through &t) { return t.xmin > east; });
-  if ((t - begin) % 2) found = !found;
-  for (; t != end && t->reach > west; t++)
-    if (is_east(edges[t->edge])) found = !found;
-  return found;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -441,32 +443,94 @@ bool Polygon::inside(double x, double y) const
 {
   if (!(x >= xlo && x <= xhi && y >= ylo && y <= yhi)) return false;    // NaN, too
   if (edges.empty()) return false;
-  return odd(y, x, x, [=](const Edge &e) {
+  auto is_east = [=](const Edge &e) {
     return (e.x1 - e.x0) * (y - e.y0) > (x - e.x0) * (e.y1 - e.y0);
-  });
+  };
+
+  const int k = strip(y);
+  bool odd = false;
+  for (int i = first_ending[k]; i < first_ending[k + 1]; i++) {
+    const Edge &e = edges[ending[i]];
+    if (e.xmax() <= x) break;
+    if (e.y0 <= y && y < e.y1 && is_east(e)) odd = !odd;
+  }
+
+  const auto begin = through.begin() + first_through[k];
+  const auto end = through.begin() + first_through[k + 1];
+  auto t = std::partition_point(begin, end, [=](const Through &t) { return t.xmin > x; });
+  if ((t - begin) % 2) odd = !odd;
+  for (; t != end && t->reach > x; t++)
+    if (is_east(edges[t->edge])) odd = !odd;
+  return odd;
 }
 
 /* ----------------------------------------------------------------------
-   Sum over the edges of the area to the west of them, + if the inside is on that side. Edges do
-   not cross, so that two of them have one order at all heights that both have; of edges on one
-   line, whose areas cancel, any order will do if it is always the same.
+   Rings do not cross: a ring is all in a larger one if a point of its inside is. It counts + in
+   an even number of others, and - in an odd one.
 ------------------------------------------------------------------------- */
 
 double Polygon::area() const
 {
-  const double slack = ON_LINE * (xhi - xlo);
+  struct Ring {
+    Polygon alone;
+    double area;
+    Point middle;
+  };
+  std::vector<Ring> rings;
+  size_t start = 0;
+  for (const int size : sizes) {
+    Ring ring;
+    const auto begin = xy.begin() + 2 * start;
+    ring.alone = Polygon(std::vector<double>(begin, begin + 2 * size), {size});
+    ring.area = 0.0;
+    for (int k = 0; k < size; k++) {
+      const double *p = &xy[2 * (start + k)], *q = &xy[2 * (start + (k + 1) % size)];
+      ring.area += 0.5 * ((p[0] - xlo) * (q[1] - p[1]) - (p[1] - ylo) * (q[0] - p[0]));
+    }
+    ring.area = std::fabs(ring.area);
+    ring.alone.middle(ring.middle.x, ring.middle.y);
+    rings.push_back(ring);
+    start += size;
+  }
+
   double total = 0.0;
-  for (const Edge &e : edges) {
-    const double middle = e.y0 + 0.5 * (e.y1 - e.y0);
-    const double x = e.xat(middle);
-    const bool others = odd(middle, x - slack, x + slack, [&](const Edge &f) {
-      const double lo = std::max(e.y0, f.y0), hi = std::min(e.y1, f.y1);
-      const double y = lo + 0.5 * (hi - lo);
-      const double gap = f.xat(y) - e.xat(y);
-      return std::fabs(gap) > slack ? gap > 0.0 : &f > &e;
-    });
-    const double to_the_west = (0.5 * (e.x0 + e.x1) - xlo) * (e.y1 - e.y0);
-    total += others ? -to_the_west : to_the_west;
+  for (size_t r = 0; r < rings.size(); r++) {
+    int depth = 0;
+    for (size_t s = 0; s < rings.size(); s++) {
+      const bool larger = rings[s].area > rings[r].area || (rings[s].area == rings[r].area && s < r);
+      if (larger && rings[s].alone.inside(rings[r].middle.x, rings[r].middle.y)) depth++;
+    }
+    total += depth % 2 ? -rings[r].area : rings[r].area;
   }
   return total;
+}
+
+/* ----------------------------------------------------------------------
+   A point inside and not near to an edge: in the middle of the widest part of several heights
+------------------------------------------------------------------------- */
+
+void Polygon::middle(double &x, double &y) const
+{
+  std::vector<double> heights;
+  for (size_t k = 1; k < xy.size(); k += 2) heights.push_back(xy[k]);
+  std::sort(heights.begin(), heights.end());
+  heights.erase(std::unique(heights.begin(), heights.end()), heights.end());
+
+  double widest = -1.0;
+  x = xlo;
+  y = ylo;
+  const size_t n = heights.size() - 1, step = 1 + n / 16;
+  for (size_t k = 0; k < n; k += step) {
+    const double height = heights[k] + 0.5 * (heights[k + 1] - heights[k]);
+    std::vector<double> cuts;
+    for (const Edge &e : edges)
+      if (e.y0 <= height && height < e.y1) cuts.push_back(e.xat(height));
+    std::sort(cuts.begin(), cuts.end());
+    for (size_t i = 0; i + 1 < cuts.size(); i += 2)
+      if (cuts[i + 1] - cuts[i] > widest) {
+        widest = cuts[i + 1] - cuts[i];
+        x = cuts[i] + 0.5 * widest;
+        y = height;
+      }
+  }
 }

@@ -63,7 +63,7 @@ class Polygon {
 
   int strip(double y) const;
   void cut_into_strips();
-  template <class East> bool odd(double y, double west, double east, East is_east) const;
+  void middle(double &x, double &y) const;
 };
 
 }    // namespace Slope

@@ -8,6 +8,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "rank_zero.h"
 
 #include <cstring>
 #include <exception>
@@ -83,22 +84,7 @@ void RegPolygon::init()
 
 void RegPolygon::read(const char *path)
 {
-  std::string problem;
-  if (comm->me == 0) {
-    try {
-      polygon = Slope::Polygon::read(path);
-    } catch (std::exception &e) {
-      problem = std::string("Region polygon: ") + e.what();
-    }
-  }
-
-  int length = problem.size();
-  MPI_Bcast(&length, 1, MPI_INT, 0, world);
-  if (length) {
-    problem.resize(length);
-    MPI_Bcast(&problem[0], length, MPI_CHAR, 0, world);
-    error->all(FLERR, problem);
-  }
+  on_rank_zero(lmp, "Region polygon", [&]() { polygon = Slope::Polygon::read(path); });
 
   std::vector<double> xy = polygon.xy;
   std::vector<int> sizes = polygon.sizes;
@@ -136,17 +122,9 @@ int RegPolygon::surface_exterior(double * /*x*/, double /*cutoff*/)
 
 int RegPolygon::no_contacts()
 {
-  // LAMMPS built with exceptions leaves by MPI_Abort, which drops a line that is not flushed
-
-  try {
-    error->one(FLERR,
-               "Region polygon {} has no smooth wall: fixed balls make walls, see fix "
-               "wall/gran/balls",
-               id);
-  } catch (...) {
-    if (screen) fflush(screen);
-    if (logfile) fflush(logfile);
-    throw;
-  }
+  error->one(FLERR,
+             "Region polygon {} has no smooth wall: fixed balls make walls, see fix "
+             "wall/gran/balls",
+             id);
   return 0;
 }

@@ -7,6 +7,7 @@
 
 #include "comm.h"
 #include "error.h"
+#include "rank_zero.h"
 
 #include <cmath>
 #include <cstring>
@@ -82,22 +83,7 @@ RegTerrain::RegTerrain(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
 
 void RegTerrain::read(const char *path)
 {
-  std::string problem;
-  if (comm->me == 0) {
-    try {
-      elevation = Slope::ElevationGrid::read(path);
-    } catch (std::exception &e) {
-      problem = std::string("Region terrain: ") + e.what();
-    }
-  }
-
-  int length = problem.size();
-  MPI_Bcast(&length, 1, MPI_INT, 0, world);
-  if (length) {
-    problem.resize(length);
-    MPI_Bcast(&problem[0], length, MPI_CHAR, 0, world);
-    error->all(FLERR, problem);
-  }
+  on_rank_zero(lmp, "Region terrain", [&]() { elevation = Slope::ElevationGrid::read(path); });
 
   int size[2] = {elevation.nx, elevation.ny};
   double place[3] = {elevation.xlo, elevation.ylo, elevation.cell};
@@ -135,17 +121,9 @@ int RegTerrain::surface_exterior(double * /*x*/, double /*cutoff*/)
 
 int RegTerrain::no_contacts()
 {
-  // LAMMPS built with exceptions leaves by MPI_Abort, which drops a line that is not flushed
-
-  try {
-    error->one(FLERR,
-               "Region terrain {} has no smooth wall: the ground is made of balls, see fix "
-               "wall/gran/balls",
-               id);
-  } catch (...) {
-    if (screen) fflush(screen);
-    if (logfile) fflush(logfile);
-    throw;
-  }
+  error->one(FLERR,
+             "Region terrain {} has no smooth wall: the ground is made of balls, see fix "
+             "wall/gran/balls",
+             id);
   return 0;
 }

@@ -78,9 +78,9 @@ def on_a_sphere(time, phi=30.0, spin=False, mu=0.0, mu_r=0.0):
 
 @pytest.mark.parametrize("variables, observed", [
     ({"e": 0.25}, 0.249), ({"cn": 1.45e4}, 0.249), ({"e": 0.445}, 0.445), ({"cn": 8.96e3}, 0.445)])
-@pytest.mark.parametrize("g", [9.81, 9.80665])  # two phases of the step at which the contact ends
-def test_table_2(tmp_path, variables, observed, g):
-    log = run_case("01_restitution", tmp_path, tend=0.45, g=g, **variables)
+@pytest.mark.parametrize("scheme, g", [("predicted", 9.81), ("plain", 9.81), ("plain", 9.80665)])  # plain: two phases
+def test_table_2(tmp_path, variables, observed, scheme, g):
+    log = run_case("01_restitution", tmp_path, tend=0.45, scheme=scheme, g=g, **variables)
     line, = printed(log, "restitution:")
     assert number("observed", line) == pytest.approx(observed, abs=0.003)
     assert math.sqrt(number("h2", line) / 0.741) == pytest.approx(observed, abs=0.003)
@@ -107,20 +107,21 @@ def test_curve_of_figure_5(tmp_path):
 # --- 02_timestep ---
 
 
-def test_time_step(tmp_path):
-    log = run_case("02_timestep", tmp_path, tend=0.7)
+@pytest.mark.parametrize("scheme, tolerances", [
+    ("plain", (0.002, 0.004, 0.025, 0.04)), ("predicted", (0.002, 0.002, 0.015, 0.025))])
+def test_time_step(tmp_path, scheme, tolerances):
+    log = run_case("02_timestep", tmp_path, tend=0.7, scheme=scheme)
     lines = printed(log, "timestep:")
-    steps = [number("dt", line) for line in lines]
-    assert steps == [5e-7, 5e-6, 5e-5, 1.2e-4, 5e-4]
+    assert [number("dt", line) for line in lines] == [5e-7, 5e-6, 5e-5, 1.2e-4, 5e-4]
     low = [number("from", line) for line in lines]
     high = [number("to", line) for line in lines]
 
     # the shorter the step, the less it matters when in a step the contact begins
 
-    for k, tolerance in enumerate([0.002, 0.004, 0.025, 0.04]):
+    for k, tolerance in enumerate(tolerances):
         assert 0.445 - tolerance < low[k] <= high[k] < 0.445 + tolerance, lines[k]
-    assert high[4] > 0.445 * 1.5 and low[4] < 0.445 * 0.6, lines[4]
-    assert number("observed", lines[4]) > 0.445 * 1.2, lines[4]
+    assert high[4] > 0.445 * 1.5, lines[4]
+    assert number("observed", lines[4]) > 0.445 * 1.1, lines[4]
 
     # and the warning: not in the log before the last run
 
@@ -133,7 +134,7 @@ def test_time_step(tmp_path):
     bounce = extreme["time"] > 0.39
     right = curve(tmp_path, "timestep.5.0e-6.csv")
     assert right["height"][right["time"] > 0.39].max() == pytest.approx(0.147, abs=0.002)
-    assert extreme["height"][bounce].max() > 1.5 * 0.147
+    assert extreme["height"][bounce].max() > 1.2 * 0.147
     assert extreme["highest"][bounce].max() > 2.5 * 0.147
 
 

@@ -29,8 +29,7 @@ COEFF = "stiffness 1e5 8e4 restitution 0.5 friction 30 rolling 0.05"
 UNDAMPED = COEFF.replace("restitution 0.5", "damping 0 0")
 SLOPE = "0.2 0 -1"  # direction of gravity
 
-# so that the borders of 2 and 4 ranks lie where the ball touches the floor
-BOX = [(-0.8732, 0.8628), (-0.2982, 0.3018), (-0.6, 0.6)]
+BOX = [(-1.2, 1.2), (-0.3, 0.3), (-0.6, 0.6)]
 
 SETUP = """
 units si
@@ -64,9 +63,9 @@ thermo 1000
 
 def make_deck(tmp_path, wall=True, balls=BALLS, positions=None, diameter=D, origin=(0.0, 0.0, 0.0), newton="on",
               processors="* * *", atom_modify="", skin=0.02, neigh_modify="delay 0", style="", coeff=COEFF, dt=4e-4,
-              gravity=SLOPE, every=100, trace="trace.txt", before=""):
+              gravity=SLOPE, every=100, trace="trace.txt", before="", box=BOX):
     positions = floor(origin) if positions is None else positions
-    box = " ".join(f"{low + o} {high + o}" for o, (low, high) in zip(origin, BOX))
+    box = " ".join(f"{low + o} {high + o}" for o, (low, high) in zip(origin, box))
     deck = SETUP.format(**locals())
     for k, ball in enumerate(balls, 1):
         x, y, z = (ball[axis] + o for axis, o in zip("xyz", origin))
@@ -113,14 +112,6 @@ def difference(a, b):
     return largest
 
 
-@pytest.fixture(scope="module")
-def reference(tmp_path_factory):
-    """One rank, wall balls, default settings: one ball, and the crowd."""
-    one = run(tmp_path_factory.mktemp("one"))
-    crowd = run(tmp_path_factory.mktemp("crowd"), balls=CROWD)
-    return {"one": one, "crowd": crowd}
-
-
 def in_contact(path, dt, gravity=SLOPE):
     """Per step of a dump of every step: is the ball's acceleration other than that of gravity?"""
     g = np.array([float(word) for word in gravity.split()])
@@ -128,13 +119,37 @@ def in_contact(path, dt, gravity=SLOPE):
     return np.linalg.norm(acceleration - G * g / np.linalg.norm(g), axis=1) > 1.0
 
 
-def test_the_ball_bounces_and_rolls_and_touches_at_the_borders(tmp_path):
+def contacts(path, dt):
+    """First and last step of each contact."""
+    touch = np.concatenate([[False], in_contact(path, dt), [False]])
+    return list(zip(np.where(touch[1:] & ~touch[:-1])[0], np.where(~touch[1:] & touch[:-1])[0]))
+
+
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory):
+    """One rank, wall balls, default settings: one ball, and the crowd.
+
+    The box for the runs on ranks: the borders of two and of four ranks in x, and of two in y, lie where
+    the ball is in the middle of a contact."""
+    path = run(tmp_path_factory.mktemp("one"), every=1)
+    crowd = run(tmp_path_factory.mktemp("crowd"), balls=CROWD)
+    middle = [path[(begin + end) // 2, 0, :2] for begin, end in contacts(path[:, 0], 4e-4) if end - begin > 15]
+    border = min((x for x, y in middle), key=abs)
+    other = max(x for x, y in middle if x < border - 0.48)
+    side = min((y for x, y in middle), key=abs)
+    reach = 2 * (border - other)
+    box = [(border - reach, border + reach), (side - 0.3, side + 0.3), BOX[2]]
+    return {"one": path[::100], "every": path[:, 0], "crowd": crowd, "box": box, "borders": (border, other, side)}
+
+
+def test_the_ball_bounces_and_rolls_and_touches_at_the_borders(reference):
     """The trajectory that the tests below compare is worth comparing."""
-    path = run(tmp_path, every=1)[:, 0]
-    touch = in_contact(path, 4e-4)
-    assert np.sum(touch[1:] & ~touch[:-1]) > 10
+    path = reference["every"]
+    assert len(contacts(path, 4e-4)) > 8
+    assert path[-1, 0] - path[0, 0] > 0.8
     assert path[-1, 7] > 20.0  # rolls along +x: turns about +y
-    for axis, border in ((0, -0.4392), (0, -0.0052), (1, 0.0018)):
+    touch = in_contact(path, 4e-4)
+    for axis, border in zip((0, 0, 1), reference["borders"]):
         crossing = np.argmax(path[:, axis] > border)
         assert touch[crossing - 3:crossing + 3].all()
 
@@ -166,20 +181,20 @@ def test_the_comparison_sees_a_small_change(tmp_path, reference):
 
 @pytest.mark.parametrize("ranks, processors", [(2, "2 1 1"), (2, "1 2 1"), (4, "4 1 1"), (4, "2 2 1"), (4, "2 1 2")])
 def test_ranks(tmp_path, reference, ranks, processors):
-    settings = dict(np=ranks, processors=processors)
+    settings = dict(np=ranks, processors=processors, box=reference["box"])
     assert difference(reference["one"], run(tmp_path, **settings)) < 1e-9
     assert difference(reference["crowd"], run(tmp_path, balls=CROWD, **settings)) < 1e-9
 
 
 @pytest.mark.parametrize("ranks, processors", [(1, "* * *"), (4, "2 2 1")])
 def test_newton_off(tmp_path, reference, ranks, processors):
-    settings = dict(np=ranks, processors=processors, newton="off")
+    settings = dict(np=ranks, processors=processors, newton="off", box=reference["box"])
     assert difference(reference["one"], run(tmp_path, **settings)) < 1e-9
     assert difference(reference["crowd"], run(tmp_path, balls=CROWD, **settings)) < 1e-9
 
 
 def test_frozen_atoms_on_ranks(tmp_path, reference):
-    assert difference(reference["one"], run(tmp_path, wall=False, np=4, processors="4 1 1")) < 1e-9
+    assert difference(reference["one"], run(tmp_path, wall=False, np=4, processors="4 1 1", box=reference["box"])) < 1e-9
 
 
 @pytest.mark.parametrize("settings", [
@@ -193,7 +208,7 @@ def test_sorting_and_lists(tmp_path, reference, settings):
 
 def test_lists_rebuilt_every_step_on_ranks(tmp_path, reference):
     """The ball changes its rank in the middle of a contact."""
-    settings = dict(np=4, atom_modify="sort 1 0.3", neigh_modify="every 1 delay 0 check no")
+    settings = dict(np=4, atom_modify="sort 1 0.3", neigh_modify="every 1 delay 0 check no", box=reference["box"])
     for processors in ("4 1 1", "2 2 1"):
         assert difference(reference["one"], run(tmp_path, processors=processors, **settings)) < 1e-9
     assert difference(reference["crowd"], run(tmp_path, balls=CROWD, processors="4 1 1", **settings)) < 1e-9
@@ -287,10 +302,8 @@ def cut_and_go_on(tmp_path, steps=150, dt=4e-4, forget=None, **settings):
     deck = make_deck(tmp_path, dt=dt, every=1, **settings)
     run_deck(deck + f"run {round(0.6 / dt)}\n", tmp_path)
     path = trajectory(tmp_path)
-    touch = in_contact(path[:, 0], dt)
-    begins = np.where(touch[1:] & ~touch[:-1])[0] + 1
     half = round(0.004 / dt)
-    cut = next(k for k in begins[1:] if touch[k:k + 2 * half].all()) + half  # the second long contact or later
+    cut = next(begin for begin, end in contacts(path[:, 0], dt)[1:] if end - begin > 2 * half) + half
     assert cut + steps * 4e-4 / dt < len(path)
 
     run_deck(deck.replace("custom 1 trace", f"custom {round(4e-4 / dt)} trace")

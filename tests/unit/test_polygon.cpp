@@ -149,10 +149,26 @@ TEST_F(PolygonFile, RingsMayTouch)
 {
   const std::string s = SQUARE;
   EXPECT_EQ(read(s + "\n10,0\n20,0\n20,10\n10,10\n").area(), 200.0);     // share an edge
+  EXPECT_EQ(read(s + "\n10,3\n20,3\n20,4\n10,4\n").area(), 110.0);    // a part of an edge
   EXPECT_EQ(read(s + "\n10,10\n20,10\n20,20\n10,20\n").area(), 200.0);   // share a point
   EXPECT_EQ(read(s + "\n0,0\n5,0\n5,5\n0,5\n").area(), 75.0);    // a hole at the edge
   EXPECT_EQ(read(s + "\n0,0\n10,0\n10,5\n0,5\n\n0,5\n10,5\n10,10\n0,10\n\n20,0\n21,0\n21,1\n").area(),
             0.5);
+}
+
+// slivers thinner than rounding: what exact arithmetic takes for valid is valid here, too
+TEST_F(PolygonFile, NearlyTouchingIsNotTouching)
+{
+  const double thin = std::nextafter(0.1, 1.0), line = 0.1 * 3.0;    // 0.30000000000000004
+  char text[400];
+  snprintf(text, sizeof(text), "0,0\n100,0\n100,10\n0.3,0.1\n0,10\n\n0.1,0.1\n%.17g,0.1\n0.1,0.2\n",
+           thin);
+  EXPECT_NO_THROW(read(text));
+  // a vertex within 1e-17 of the line from 0,0 to 0.9,0.3, on either side of it
+  snprintf(text, sizeof(text), "0,0\n0.9,0.3\n5,5\n%.17g,0.1\n-5,5\n", 0.29999999999999993);
+  EXPECT_NO_THROW(read(text));
+  snprintf(text, sizeof(text), "0,0\n0.9,0.3\n5,5\n%.17g,0.1\n-5,5\n", line);
+  EXPECT_NE(error(text).find("lines 1 and 3 meet at 0.3,0.1"), std::string::npos) << error(text);
 }
 
 /* ---- inside ---- */

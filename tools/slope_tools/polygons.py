@@ -236,11 +236,15 @@ def _even_odd(path, rings):
 
 
 def _is_local(path, text, raster):
-    """Whether a text was written by write(); SlopeError if it was for a terrain at another place."""
+    """Whether a text was written by write(); SlopeError if it was for a terrain at another place.
+
+    A run without a terrain that tells its place (no CRS, origin 0 0) is in the local metres of whatever terrain.
+    """
     place = PLACE.search(text)
     if not place:
         return False
-    if place.group(0) != _place_line(raster):
+    unknown = raster.crs is None and tuple(raster.offset) == (0, 0)
+    if place.group(0) != _place_line(raster) and not unknown:
         raise SlopeError(path, f"must be for this terrain ({_place_line(raster)[2:]})", place.group(0)[2:])
     return True
 

@@ -325,7 +325,7 @@ class Page:
         crs = layers.raster.crs
         name = crs_name(crs) if crs is not None else ""
         whole = deposit.extent(layers.raster)
-        found = {}
+        found = {"slip": None, "arrival": None}
         bounds = figures.classes(one.thickness.max())
         found["deposit"] = self.picture(
             figures.value_map(layers, one.thickness, "Thickness of the deposit at the end", "thickness (m)", bounds,

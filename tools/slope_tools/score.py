@@ -202,8 +202,8 @@ def overlap(simulated, observed, cell):
     def ratio(part, whole):
         return round(part / whole, 9) if whole > 0 else None
 
-    return {"simulated": round(run_, 6), "observed": round(total, 6), "true_positive": round(met, 6),
-            "false_positive": round(run_ - met, 6), "false_negative": round(total - met, 6),
+    return {"simulated": round(run_, 9), "observed": round(total, 9), "true_positive": round(met, 9),
+            "false_positive": round(run_ - met, 9), "false_negative": round(total - met, 9),
             "jaccard": ratio(met, union), "hit_rate": ratio(met, total), "precision": ratio(met, run_)}
 
 
@@ -212,7 +212,7 @@ def runout(run_, simulated, observed):
     (x, y), source = top(run_)
     row, column = np.nonzero(edge_cells(simulated))
     points = np.concatenate([np.transpose(run_.raster.transform * (column + i, row + j)) for i in (0, 1) for j in (0, 1)])
-    found = {"from": [round(x, 6), round(y, 6)], "from_source": source}
+    found = {"from": [round(x, 9), round(y, 9)], "from_source": source}
     if not len(points) or not len(observed.points):
         return {**found, "simulated": None, "observed": None, "difference": None}
     centre = centroid(observed, run_.raster)
@@ -224,11 +224,11 @@ def runout(run_, simulated, observed):
         values = [distance(points), distance(observed.points)]
         if None in values:
             continue
-        ours, theirs = (round(float(value), 6) for value in values)
-        numbers = {"simulated": ours, "observed": theirs, "difference": round(ours - theirs, 6)}
+        ours, theirs = (round(float(value), 9) for value in values)
+        numbers = {"simulated": ours, "observed": theirs, "difference": round(ours - theirs, 9)}
         if name:
             # clockwise from north, as a compass has it
-            found[name] = {"azimuth": round(math.degrees(math.atan2(*way)) % 360, 6), **numbers}
+            found[name] = {"azimuth": round(math.degrees(math.atan2(*way)) % 360, 9), **numbers}
         else:
             found.update(numbers)
     return found
@@ -278,12 +278,12 @@ def volumes(run_, observed, table):
     ours = math.fsum(table["simulated_volume"].ravel())
     theirs = math.fsum(table["observed_volume"].ravel()) + observed.volume_outside
     error = table["volume_error"][(table["simulated_volume"] > 0) | (table["observed_volume"] > 0)]
-    found = {"simulated": round(ours, 6), "observed": round(theirs, 6), "error": round(ours - theirs, 6),
+    found = {"simulated": round(ours, 9), "observed": round(theirs, 9), "error": round(ours - theirs, 9),
              "relative_error": round((ours - theirs) / theirs, 9) if theirs > 0 else None,
              "mesh_cells": len(error)}
     if len(error):
-        found["mean_absolute_error_of_mesh_cells"] = round(float(np.abs(error).mean()), 6)
-        found["rms_error_of_mesh_cells"] = round(float(np.sqrt((error ** 2).mean())), 6)
+        found["mean_absolute_error_of_mesh_cells"] = round(float(np.abs(error).mean()), 9)
+        found["rms_error_of_mesh_cells"] = round(float(np.sqrt((error ** 2).mean())), 9)
         found["share_in_wrong_mesh_cells"] = round(float(np.abs(error).sum()) / (ours + theirs), 9)
     return found
 

@@ -817,6 +817,10 @@ def largest(rows, key):
     return {"value": best[key], "run": best["run"]}
 
 
+def same_grid(one, other):
+    return one.z.shape == other.z.shape and one.transform.almost_equals(other.transform)
+
+
 class Maps:
     """Over all runs, cell by cell: the largest thickness, and how many runs exceed a threshold."""
 
@@ -831,7 +835,7 @@ class Maps:
             shape = thickness.z.shape
             self.envelope = {"thickness": np.zeros(shape), "max_thickness": np.zeros(shape)}
             self.exceeding = [np.zeros(shape, int) for _ in self.thresholds]
-        elif thickness.z.shape != self.grid.z.shape or not thickness.transform.almost_equals(self.grid.transform):
+        elif not self.problem and not same_grid(thickness, self.grid):
             self.problem = (f"no maps over all runs: the rasters of {name} have another grid than those of "
                             f"{self.first}")
         if self.problem:

@@ -1,0 +1,85 @@
+"""Runs of fix deposit/grid made by hand, for the tests of the commands that evaluate them."""
+import json
+import math
+import os
+import shlex
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from rasterio.crs import CRS
+from shapely.geometry import mapping
+
+TOP = Path(__file__).resolve().parents[2]
+TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
+sys.path.insert(0, str(TOOLS))
+
+from slope_tools import cli  # noqa: E402  (after the path is set)
+
+BULK = 6 / math.pi
+CRS_M = "EPSG:6677"               # metres, zone IX of Japan
+EAST, NORTH = -12000.0, 34000.0   # of local 0 0
+
+
+def centres(rows, columns, cell, xlo=0.0, ylo=0.0):
+    """x and y of the cell centres, rows from the north."""
+    return np.meshgrid(xlo + cell * (np.arange(columns) + 0.5), ylo + cell * (rows - 0.5 - np.arange(rows)))
+
+
+def write_asc(path, z, cell, xlo=0.0, ylo=0.0):
+    with open(path, "w", encoding="ascii") as out:
+        out.write(f"ncols {z.shape[1]}\nnrows {z.shape[0]}\nxllcorner {xlo!r}\nyllcorner {ylo!r}\n"
+                  f"cellsize {cell!r}\nNODATA_value -9999\n")
+        for row in z:
+            out.write(" ".join("-9999" if math.isnan(value) else repr(value) for value in row.tolist()) + "\n")
+
+
+def write_run(thickness, base, cell, prefix="run", xlo=0.0, ylo=0.0, **summary):
+    """What fix deposit/grid writes: thickness and ground are functions of x, y, or arrays from the north-west on."""
+    x, y = centres(*thickness.shape, cell, xlo, ylo) if isinstance(thickness, np.ndarray) else (None, None)
+    z = base(x, y) if callable(base) else base
+    z = z * np.ones_like(thickness)
+    write_asc(f"{prefix}.thickness.asc", thickness, cell, xlo, ylo)
+    write_asc(f"{prefix}.surface.asc", z + thickness, cell, xlo, ylo)
+    volume = float(thickness.sum()) * cell ** 2
+    about = {"slope_version": "0.1.0", "time": 12.5, "bulk_factor": BULK, "moving": False,
+             "volume": {"released": volume, "on_grid": volume, "off_grid": 0.0, "lost": 0.0, "residual": 0.0}}
+    about.update(summary)
+    Path(f"{prefix}.summary.yaml").write_text(yaml.safe_dump(about))
+    return thickness
+
+
+def write_sidecar(rows, columns, cell, path="terrain.asc", xlo=0.0, ylo=0.0, crs=CRS_M):
+    """terrain.asc, of which only the sidecar counts, as slope terrain writes it."""
+    write_asc(path, np.zeros((rows, columns)), cell, xlo, ylo)
+    about = {"crs": crs and {"epsg": CRS.from_user_input(crs).to_epsg(), "wkt": CRS.from_user_input(crs).to_wkt()},
+             "origin": {"east": EAST, "north": NORTH}, "cell": cell, "size": {"columns": columns, "rows": rows},
+             "extent": {"xlo": xlo, "xhi": xlo + columns * cell, "ylo": ylo, "yhi": ylo + rows * cell}}
+    Path(path).with_suffix(".yaml").write_text(yaml.safe_dump(about))
+
+
+def write_geojson(path, *geometries, crs=None):
+    about = {"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, "geometry": mapping(g)}
+                                                       for g in geometries]}
+    if crs:
+        about["crs"] = {"type": "name", "properties": {"name": f"urn:ogc:def:crs:EPSG::{crs.split(':')[1]}"}}
+    Path(path).write_text(json.dumps(about))
+    return path
+
+
+def run_command(command, arguments, capsys):
+    """Run `slope COMMAND ARGUMENTS`; gives status, stdout, stderr."""
+    capsys.readouterr()
+    try:
+        status = cli.main([command, *shlex.split(arguments)])
+    except SystemExit as error:
+        status = error.code
+    return status, *capsys.readouterr()
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path

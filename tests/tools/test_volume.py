@@ -1,0 +1,574 @@
+"""tools/slope volume: prisms and wedges by hand, conservation, files that agree, places that are right, bad input."""
+import csv
+import json
+import math
+import os
+import re
+import subprocess
+from pathlib import Path
+
+import fiona
+import numpy as np
+import pytest
+import rasterio
+import rasterio.warp
+import yaml
+from shapely.affinity import rotate, translate
+from shapely.geometry import LineString, MultiPolygon, Point, Polygon, box, shape
+from shapely.ops import unary_union
+
+from run_helpers import (BULK, CRS_M, EAST, NORTH, TOP, centres, here, run_command, write_asc,  # noqa: F401
+                         write_geojson, write_run, write_sidecar)
+
+from slope_tools import cut, deposit, rasters, volume
+
+LMP = os.environ.get("LMP", str(TOP / "build" / "lmp"))
+TAN30 = math.tan(math.radians(30))
+pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
+
+
+@pytest.fixture
+def slope(here, capsys):  # noqa: F811
+    """Run `slope volume ARGUMENTS`, in the test's folder; gives status, stdout, stderr."""
+    return lambda arguments: run_command("volume", arguments, capsys)
+
+
+@pytest.fixture
+def no_map(monkeypatch):
+    """The map, which takes most of the time, is left out."""
+    monkeypatch.setattr(volume, "draw", lambda path, *_: path.touch())
+
+
+@pytest.fixture
+def cleared(slope, no_map):
+    """Run it on `run` with --local, which must succeed; gives volume.yaml."""
+    def run(road, arguments="--mesh 10"):
+        write_geojson("road.geojson", *(road if isinstance(road, list) else [road]))
+        status, _, err = slope(f"run --road road.geojson --local -o out {arguments}")
+        assert status == 0, err
+        return yaml.safe_load(Path("out/volume.yaml").read_text())
+    return run
+
+
+def read_csv(path):
+    with open(path, newline="", encoding="ascii") as lines:
+        return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(lines)]
+
+
+def strip(rows=80, columns=100, cell=2.5, thickness=3.0, y=(80, 120), x=(0, 1e9)):
+    """An even deposit between two y, right across the grid, and the centres of its cells."""
+    east, north = centres(rows, columns, cell)
+    return np.where((north > y[0]) & (north < y[1]) & (east > x[0]) & (east < x[1]), thickness, 0.0)
+
+
+def wedge(thickness, length, rise):
+    """By hand, per metre of road: what lies above a cut that rises from a deposit's foot, over a length beside it."""
+    if rise <= 0:
+        return thickness * length
+    if length * rise >= thickness:
+        return thickness ** 2 / (2 * rise)
+    return thickness * length - rise * length ** 2 / 2
+
+
+# --- by hand ---
+
+def plain_deposit(thickness, base, cell):
+    transform = rasters.Affine(cell, 0, 0, 0, -cell, thickness.shape[0] * cell)
+    return deposit.Deposit("run", rasters.Raster(thickness, transform, None), base, {"bulk_factor": BULK}, None)
+
+
+def evaluated(thickness, ground, road, mesh=10, angle=30, samples=4):
+    """The volumes, as functions give them: what is removed on the road, beside it, and where the cut is below ground."""
+    x, y = centres(*thickness.shape, 2.5)
+    run = plain_deposit(thickness, ground(x, y) * np.ones_like(x), 2.5)
+    result = volume.evaluate(run, road, angle, volume.make_mesh(mesh, run.raster), samples)
+    return result.total(result.road), result.total(result.beside), result.steep
+
+
+@pytest.mark.parametrize("samples", [2, 4, 6])
+@pytest.mark.parametrize("west, east", [(90, 110), (91.3, 108.9), (100.01, 102.5), (98.75, 103.75)])
+def test_prism_and_wedges_on_flat_ground(west, east, samples):
+    for angle in (30, 1, 80):
+        road, beside, _ = evaluated(strip(), lambda x, y: 7 + 0 * x, box(west, 0, east, 200), 7, angle, samples)
+        tangent = math.tan(math.radians(angle))
+        assert road == pytest.approx(3 * 40 * (east - west), rel=1e-9)
+        assert beside == pytest.approx(40 * (wedge(3, west, tangent) + wedge(3, 250 - east, tangent)), rel=1e-9)
+
+
+@pytest.mark.parametrize("sx, sy", [(0.2, 0), (0.5, 0), (-0.3, 0), (0.7, 0), (0.3, 0.4), (-0.9, 0.2)])
+@pytest.mark.parametrize("turn", [0, 13, -31])
+def test_prism_and_wedges_on_a_plane(sx, sy, turn):
+    """A road that crosses the strip at an angle, on ground that rises along x and y."""
+    road = rotate(box(116.2, -400, 131.9, 600), turn, origin=(125, 100)).intersection(box(0, 0, 250, 200))
+    got = evaluated(strip(), lambda x, y: 100 + sx * x + sy * y, road, 9)
+    outward = np.array([math.cos(math.radians(turn)), math.sin(math.radians(turn))])  # of the eastern edge
+    along = 40 / math.cos(math.radians(turn))  # length of an edge in the strip
+    beside, steep = 0.0, 0.0
+    for way, half in ((1, 131.9 - 125), (-1, 125 - 116.2)):
+        rise = TAN30 - way * outward @ (sx, sy)
+        if rise > 0:
+            beside += along * wedge(3, 1e9, rise)
+        else:  # all of it, to the edge of the grid
+            steep += 3 * 40 * (125 - half * along / 40)
+    assert got == pytest.approx((3 * 15.7 * along, beside + steep, steep), rel=1e-9, abs=1e-9)
+
+
+def test_the_command_gives_the_prism_and_the_wedges(cleared):
+    write_run(strip(), 7.0, 2.5)
+    about = cleared(box(91.3, 0, 108.9, 200), "--mesh 7 --cut-angle 40")
+    hand = 40 * 3 * 17.6, 40 * 2 * wedge(3, 90, math.tan(math.radians(40)))
+    assert about["volume"]["deposit"] == pytest.approx(3 * 40 * 250, rel=1e-9)
+    assert about["volume"]["remove_on_road"] == pytest.approx(hand[0], rel=1e-9)
+    assert about["volume"]["remove_beside_road"] == pytest.approx(hand[1], rel=1e-9)
+    assert about["volume"]["remove"] == pytest.approx(sum(hand), rel=1e-9)
+    assert about["volume"]["remove_where_cut_below_ground"] == 0
+    assert about["road_area"] == pytest.approx(200 * 17.6, rel=1e-9)
+    assert about["cut_angle"] == 40 and about["mesh"]["size"] == 7
+
+
+def test_round_corners_converge(cleared):
+    """A deposit all over the grid: beside the corners of the road the cut is a cone."""
+    write_run(np.full((80, 80), 3.0), 0.0, 2.5)
+    reach = 3 / TAN30
+    hand = 20 * 60 * 3 + 2 * (20 + 60) * reach * 3 / 2 + math.pi * reach ** 2 * 3 / 3
+    errors = [abs(cleared(rotate(box(90, 70, 110, 130), 27), f"--mesh 10 --samples {k}")["volume"]["remove"] / hand - 1)
+              for k in (2, 4, 8)]
+    assert errors[0] < 5e-4 and errors[1] < 1.5e-4 and errors[2] < 4e-5
+
+
+def test_a_wedge_of_deposit_is_as_good_as_its_raster(cleared):
+    """Thickness 0.2 x beside the road: even in its cells, so that the volume is exact to the square of the cell."""
+    for cell, most in ((2.5, 2e-2), (0.5, 1e-3)):
+        x, _ = centres(int(40 / cell), int(100 / cell), cell)
+        write_run(np.where(x > 20, 0.2 * (x - 20), 0.0), 0.0, cell)
+        got = cleared(box(0, 0, 20, 40))["volume"]["remove"]
+        assert got == pytest.approx(0, abs=most * 10)  # 0.2 (x - 20) never rises above 0.577 (x - 20)
+        got = cleared(box(0, 0, 20, 40), "--mesh 10 --cut-angle 5")["volume"]["remove"]
+        hand = 40 * (0.2 - math.tan(math.radians(5))) * 80 ** 2 / 2
+        assert got == pytest.approx(hand, rel=most)
+
+
+def test_a_deposit_below_the_cut_stays(cleared):
+    write_run(strip(x=(150, 1e9), thickness=20.0), 0.0, 2.5)
+    about = cleared(box(80, 0, 115, 200))
+    assert about["volume"]["remove"] == 0 and about["volume"]["stays"] == about["volume"]["deposit"] > 0
+    assert about["axis"]["blocked_length"] == 0 and about["mesh"]["cells_to_clear"] == 0
+    write_run(np.zeros((80, 80)), 0.0, 2.5)
+    about = cleared(box(80, 0, 115, 200))
+    assert about["volume"]["remove"] == about["volume"]["deposit"] == 0
+
+
+def test_islands_and_several_roads(cleared):
+    """A hole in the road is not road: the cut rises in it, too."""
+    write_run(strip(), 0.0, 2.5)
+    island = box(90, 0, 140, 200).difference(box(110, 50, 120, 150))
+    hole = 40 * 2 * wedge(3, 5, TAN30)  # its middle, 5 m from both sides, is below the cut's height
+    assert cleared(island)["volume"]["remove"] == pytest.approx(40 * (3 * 40 + 2 * wedge(3, 90, TAN30)) + hole, rel=1e-9)
+    two = [box(50, 0, 60, 200), box(150, 0, 170, 200)]
+    assert cleared(two)["volume"]["remove"] == pytest.approx(40 * (3 * 30 + 4 * wedge(3, 40, TAN30)), rel=1e-9)
+
+
+def lmp_run(here, slope_, columns, layers):  # noqa: F811
+    """The deposit of balls of 1 m, placed one by one: a box of columns x 8 x layers, on a plane that rises along x."""
+    rows, width = 16, 40
+    x, _ = centres(rows, width, 1.0)
+    write_asc("terrain.asc", slope_ * x, 1.0)
+    balls = [(i + 0.5, j + 0.5, slope_ * (i + 0.5) + k + 0.5) for i in columns for j in range(4, 12)
+             for k in range(layers)]
+    deck = ["units si", "atom_style sphere", "boundary f f f", "region ground terrain terrain.asc depth 5 headroom 20",
+            "create_box 1 ground", "pair_style none", "comm_modify cutoff 3.0",
+            *(f"create_atoms 1 single {x} {y} {z} units box" for x, y, z in balls),
+            "set group all diameter 1.0 density 2000.0", "timestep 0.001", "fix move all nve/sphere",
+            "fix deposit all deposit/grid 1 0 cell 1.0 terrain ground output run", "run 0"]
+    Path("in.balls").write_text("\n".join(deck) + "\n")
+    done = subprocess.run([LMP, "-in", "in.balls", "-log", "none"], capture_output=True, text=True,
+                          stdin=subprocess.DEVNULL, timeout=120)
+    assert done.returncode == 0, done.stdout[-2000:]
+    return len(balls)
+
+
+@pytest.mark.parametrize("slope_", [0.0, 0.25])
+def test_balls_placed_by_hand(here, cleared, slope_):  # noqa: F811
+    """Through LAMMPS: two layers of balls of 1 m stand for a box 20 x 8 x 2 m; the road lies askew to the cells."""
+    count = lmp_run(here, slope_, range(6, 26), 2)
+    about = cleared(box(8.3, 0, 14.1, 16), "--mesh 3")
+    # in the west the box ends 2.3 m from the road, before the cut is out of it
+    hand = 8 * (2 * 5.8 + wedge(2, 2.3, TAN30 + slope_) + wedge(2, 11.9, TAN30 - slope_))
+    assert about["volume"]["deposit"] == pytest.approx(count, rel=1e-9) == 320
+    assert about["volume"]["remove"] == pytest.approx(hand, rel=1e-8)
+    assert about["volume"]["remove_on_road"] == pytest.approx(8 * 2 * 5.8, rel=1e-8)
+    assert about["axis"]["blocked_length"] == pytest.approx(8)
+    assert about["axis"]["largest_thickness"] == pytest.approx(2)
+
+
+# --- what must hold of any deposit ---
+
+def rough(seed, rows=60, columns=70, cell=2.0):
+    """A rough slope, a ragged deposit on it and a wavy road: Deposit, road."""
+    random = np.random.default_rng(seed)
+    x, y = centres(rows, columns, cell)
+    base = 0.5 * x + 3 * np.sin(x / 9) * np.cos(y / 7) + random.normal(0, 0.2, x.shape)
+    thickness = np.clip(4 * np.sin(x / 23 + 0.5) * np.cos(y / 31 - 1) + random.normal(0, 0.5, x.shape), 0, None)
+    s = np.linspace(10, 110, 200)
+    middle_ = 60 + 8 * np.sin(s / 15)
+    return thickness, base, Polygon([*zip(middle_ - 5, s), *zip((middle_ + 5)[::-1], s[::-1])])
+
+
+@pytest.mark.parametrize("seed, mesh", [(1, 10), (2, 3.7), (3, 0.8), (4, 300)])
+def test_mass_is_conserved_and_every_file_has_the_same_numbers(cleared, seed, mesh):
+    thickness, base, road = rough(seed)
+    write_run(thickness, base, 2.0)
+    about = cleared(road, f"--mesh {mesh} --bulk 2.5")
+    total = about["volume"]
+    with rasterio.open("out/volume.tif") as file:
+        removed = file.read(1)
+    assert (removed >= 0).all() and (removed <= thickness).all()
+    assert removed.max() == pytest.approx(about["largest_removed_thickness"], abs=1e-6)
+    assert 0 < total["remove"] < total["deposit"] == pytest.approx(thickness.sum() * 4, rel=1e-9)
+    assert removed.sum() * 4 == pytest.approx(total["remove"], rel=1e-9)
+    assert total["remove"] + total["stays"] == pytest.approx(total["deposit"], rel=1e-12)
+    assert total["remove_on_road"] + total["remove_beside_road"] == pytest.approx(total["remove"], rel=1e-12)
+    table = read_csv("out/volume.csv")
+    digits = len(str(total["remove"]).split(".")[1])
+    for key in ("deposit", "remove", "remove_on_road", "remove_beside_road"):
+        assert round(math.fsum(row[key] for row in table), digits) == total[key]
+    assert math.fsum(row["road_area"] for row in table) == pytest.approx(road.area, rel=1e-9)
+    assert all(0 <= row["remove_on_road"] <= row["remove"] <= row["deposit"] for row in table)
+    assert all(row["xlo"] / mesh == pytest.approx(round(row["xlo"] / mesh), abs=1e-6) for row in table)
+    with open("out/volume.geojson", encoding="ascii") as file:
+        features = json.load(file)["features"]
+    assert [feature["properties"] for feature in features] == table
+    for feature in features:
+        where = feature["properties"]
+        assert shape(feature["geometry"]).equals(box(where["xlo"], where["ylo"], where["xlo"] + mesh, where["ylo"] + mesh))
+    with rasterio.open("out/volume_mesh.tif") as file:
+        by_mesh, to_place = file.read(1), file.transform
+    for row in table:
+        assert by_mesh[int(row["row"]) - 1, int(row["column"]) - 1] == row["remove"]
+        assert to_place * (row["column"] - 1, row["row"]) == pytest.approx((row["xlo"], row["ylo"]), abs=1e-9)
+    assert math.fsum(by_mesh.ravel()) == pytest.approx(total["remove"], rel=1e-12)
+    assert about["volume_at_other_bulk_factor"]["remove"] == pytest.approx(total["remove"] * 2.5 / BULK, rel=1e-9)
+    assert table[-1]["remove_at_other_bulk_factor"] == pytest.approx(table[-1]["remove"] * 2.5 / BULK, rel=1e-6)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_blocks_are_pruned_only_where_that_changes_nothing(monkeypatch, seed):
+    """Against a single block, all pieces of the edge near everywhere, and no bounds."""
+    thickness, base, road = rough(seed)
+    run = plain_deposit(thickness, base, 2.0)
+    mesh = volume.make_mesh(7, run.raster)
+    pruned = volume.evaluate(run, road, 30, mesh)
+    monkeypatch.setattr(cut, "LEAF", 10 ** 9)
+    monkeypatch.setattr(cut, "HALF_DIAGONAL", 10 ** 9)
+    monkeypatch.setattr(cut.Edge, "candidates", lambda self, which, *box_: which)
+    plain = volume.evaluate(run, road, 30, mesh)
+    assert np.abs(pruned.removed - plain.removed).max() < 1e-12
+    assert np.abs(pruned.volume - plain.volume).max() < 1e-6
+
+
+def test_against_a_sum_over_points():
+    """The definition, point by point: surface - max(ground, cut), with shapely's nearest point."""
+    thickness, base, road = rough(5, 30, 30)
+    road = translate(road, -30, -20).intersection(box(0, 0, 60, 60)).buffer(-0.5)
+    run = plain_deposit(thickness, base, 2.0)
+    got = volume.evaluate(run, road, 30, volume.make_mesh(10, run.raster), 8)
+    ground = cut.Ground(base)
+
+    def height(x, y):
+        return ground.height(*(np.atleast_1d(v) for v in ~run.raster.transform * (x, y)))
+
+    step, total = 0.25, 0.0
+    for x in np.arange(step / 2, 60, step):
+        for y in np.arange(step / 2, 60, step):
+            t = thickness[int((60 - y) / 2), int(x / 2)]
+            if t == 0:
+                continue
+            point = Point(x, y)
+            if road.covers(point):
+                total += t
+                continue
+            foot = road.exterior.interpolate(road.exterior.project(point))
+            h = height(foot.x, foot.y)[0] + TAN30 * point.distance(foot) - height(x, y)[0]
+            total += min(t, max(0, t - max(0, h)))
+    assert got.total(got.volume) == pytest.approx(total * step ** 2, rel=3e-3)
+
+
+def test_coverage_is_shapelys():
+    random = np.random.default_rng(3)
+    x, y = np.sort(random.uniform(0, 10, 9)), np.sort(random.uniform(0, 8, 7))
+    x[0], x[-1], y[0], y[-1] = 0, 10, 0, 8
+    shapes = [box(x[2], y[1], x[5], y[4]), box(1, 1, 9, 7).difference(Point(5, 4).buffer(2)),
+              rotate(box(3, 3, 7, 4), 30), MultiPolygon([box(0, 0, 2, 2), box(7, 5, 10, 8)]),
+              Polygon([(0.5, 0.5), (9, 1), (1, 2), (9.5, 7.9), (0.2, 7)])]
+    for polygon in shapes:
+        area, in_x, in_y = deposit.coverage(polygon, x, y)
+        for j in range(len(y) - 1):
+            for i in range(len(x) - 1):
+                part = polygon.intersection(box(x[i], y[j], x[i + 1], y[j + 1]))
+                assert area[j, i] == pytest.approx(part.area, abs=1e-12)
+                if part.area > 1e-9:
+                    assert (in_x[j, i] / area[j, i], in_y[j, i] / area[j, i]) == pytest.approx(part.centroid.coords[0])
+
+
+def test_integral_over_triangles():
+    """max(0, f) of a linear f, against many points."""
+    random = np.random.default_rng(4)
+    u, v, w = random.normal(0, 1, (3, 40))
+    a, b = random.uniform(0, 1, (2, 200_000))
+    a, b = np.where(a + b > 1, 1 - a, a), np.where(a + b > 1, 1 - b, b)
+    points = np.maximum(0, u[:, None] + a * (v - u)[:, None] + b * (w - u)[:, None]).mean(axis=1)
+    assert np.abs(cut.positive_mean(u, v, w) - points).max() < 5e-3
+    for corners, mean in (((0, 0, 3), 1), ((-1, -1, 0), 0), ((-1, 0, 1), 1 / 6), ((2, 2, 2), 2), ((0, 0, 0), 0)):
+        assert cut.positive_mean(*(np.array([corner]) for corner in corners))[0] == pytest.approx(mean)
+
+
+def test_more_angle_less_volume_and_a_wider_road_more(cleared):
+    thickness, base, road = rough(6)
+    write_run(thickness, base, 2.0)
+    volumes = [cleared(road, f"--mesh 10 --cut-angle {angle}")["volume"]["remove"] for angle in (10, 30, 50, 80)]
+    assert volumes == sorted(volumes, reverse=True)
+    road_only = cleared(road)["volume"]["remove_on_road"]
+    assert volumes[-1] > road_only == pytest.approx(cleared(road, "--mesh 10 --cut-angle 80")["volume"]["remove_on_road"])
+
+
+def test_ground_that_is_not_known(cleared, slope):
+    thickness = strip()
+    base = np.zeros(thickness.shape)
+    base[40:44, 60:64] = np.nan  # 10 m x 10 m beside the road, under the deposit
+    write_run(thickness, base, 2.5)
+    about = cleared(box(120, 0, 149, 200))
+    assert about["volume"]["unknown"] == pytest.approx(10 * 10 * 3) and "without ground" in about["warnings"][-1]
+    with rasterio.open("out/volume.tif") as file:
+        assert file.nodata == -9999 and (file.read(1, masked=True).filled(0) >= 0).all()
+    write_geojson("road.geojson", box(120, 0, 155, 200))
+    status, _, err = slope("run --road road.geojson --local --mesh 10")
+    assert status == 2 and "ground at the edge of the road must have a height, it has none at, got 155.000 " in err
+
+
+# --- the axis ---
+
+def test_blocked_length_and_profile(cleared):
+    thickness = strip(y=(80, 120))
+    x, y = centres(80, 100, 2.5)
+    thickness[(y > 150) & (y < 160)] = 0.1          # not more than the threshold
+    thickness[(y > 170) & (y < 175)] = 0.3
+    thickness[(y > 95) & (y < 97.5) & (x > 98) & (x < 100)] = 5.0
+    write_run(thickness, 12.0, 2.5)
+    axis = cleared(box(91.5, 3, 106.5, 197))["axis"]
+    assert axis["length"] == pytest.approx(194) and axis["source"].startswith("centre line")
+    assert axis["blocked_length"] == pytest.approx(45)
+    assert np.allclose(axis["blocked_stretches"], [[77, 117], [167, 172]])
+    assert axis["largest_thickness"] == 5 and axis["largest_thickness_at"] == [99, 96.25]
+    profile = read_csv("out/axis.csv")
+    assert [row["from"] for row in profile[1:]] == [row["to"] for row in profile[:-1]]
+    assert sum((row["to"] - row["from"]) * row["blocked"] for row in profile) == pytest.approx(45)
+    assert all(row["x"] == 99 and row["ground"] == pytest.approx(12) for row in profile)
+    assert profile[40]["removed"] == profile[40]["thickness"] > 0
+    assert cleared(box(91.5, 3, 106.5, 197), "--mesh 10 --blocked 0.05")["axis"]["blocked_length"] == pytest.approx(55)
+    # a centre line between two columns of cells: the thicker one counts
+    assert cleared(box(90, 0, 110, 200))["axis"]["largest_thickness"] == 5
+
+
+def test_axis_of_a_curved_road(cleared):
+    write_run(np.full((80, 80), 1.0), 0.0, 2.5)
+    arc = LineString([(100 + 80 * math.cos(a), 10 + 80 * math.sin(a)) for a in np.linspace(0.2, math.pi - 0.2, 200)])
+    axis = cleared(arc.buffer(4, cap_style=2))["axis"]
+    assert axis["source"].startswith("middles") and axis["length"] == pytest.approx(arc.length, rel=0.03)
+    assert axis["blocked_length"] == axis["length"]
+    Path("axis.csv").write_text("# a surveyed axis\n" + "\n".join(f"{x},{y}" for x, y in arc.coords))
+    for line in ("axis.csv", write_geojson("axis.geojson", arc)):
+        axis = cleared(arc.buffer(4, cap_style=2), f"--mesh 10 --axis {line}")["axis"]
+        assert axis["source"] == line and axis["length"] == pytest.approx(arc.length, rel=1e-9)
+    Path("axis.wkt").write_text(arc.wkt)
+    assert cleared(arc.buffer(4), "--mesh 10 --axis axis.wkt")["axis"]["length"] == pytest.approx(arc.length, rel=1e-6)
+
+
+# --- place ---
+
+def to_degrees(polygon):
+    lon, lat = rasterio.warp.transform(CRS_M, "EPSG:4326", *zip(*polygon.exterior.coords))
+    return Polygon(zip(lon, lat))
+
+
+def test_every_output_is_in_the_crs_of_the_terrain(slope, no_map):
+    write_sidecar(80, 100, 2.5)
+    write_run(strip(), 0.0, 2.5)
+    road = translate(box(90, 0, 110, 200), EAST, NORTH)
+    write_geojson("metres.geojson", road, crs=CRS_M)
+    write_geojson("degrees.geojson", to_degrees(road))
+    hand = 40 * (3 * 20 + 2 * wedge(3, 90, TAN30))
+    for name, error in (("metres", 1e-9), ("degrees", 1e-6)):
+        status, out, err = slope(f"run --road {name}.geojson --mesh 10 -o {name}")
+        assert (status, err) == (0, "") and "to remove: 3" in out
+        about = yaml.safe_load(Path(f"{name}/volume.yaml").read_text())
+        assert about["volume"]["remove"] == pytest.approx(hand, rel=error)
+        assert about["crs"] == CRS_M and about["origin"] == {"east": EAST, "north": NORTH} and about["warnings"] == []
+    for name, cell, size in (("volume", 2.5, (100, 80)), ("volume_mesh", 10, (25, 20))):
+        with rasterio.open(f"metres/{name}.tif") as file:
+            assert file.crs.to_epsg() == 6677 and file.nodata == -9999 and (file.width, file.height) == size
+            assert (file.transform * (0, file.height)) == (EAST, NORTH) and file.res == (cell, cell)
+        told = json.loads(subprocess.run(["gdalinfo", "-json", f"metres/{name}.tif"], capture_output=True, text=True,
+                                         check=True).stdout)
+        assert told["geoTransform"] == [EAST, cell, 0, NORTH + 200, 0, -cell] and told["bands"][0]["noDataValue"] == -9999
+        assert 'ID["EPSG",6677]' in told["coordinateSystem"]["wkt"]
+    with fiona.open("metres/volume.geojson") as file:
+        assert file.crs_wkt and rasters.CRS.from_wkt(file.crs_wkt).to_epsg() == 6677
+        squares = [(shape(feature["geometry"]), feature["properties"]) for feature in file]
+    assert unary_union([square for square, _ in squares]).bounds == (EAST, NORTH, EAST + 250, NORTH + 200)
+    assert all(square.bounds[:2] == (where["east"], where["north"]) for square, where in squares)
+    assert math.fsum(where["remove"] for _, where in squares) == pytest.approx(hand, rel=1e-9)
+    row = read_csv("metres/axis.csv")[0]
+    assert (row["east"] - row["x"], row["north"] - row["y"]) == (EAST, NORTH)
+
+
+def test_a_crs_without_a_number_gives_degrees(slope, no_map):
+    write_sidecar(80, 100, 2.5, crs="+proj=tmerc +lat_0=36 +lon_0=139.5 +k=0.9999 +ellps=GRS80 +units=m")
+    write_run(strip(), 0.0, 2.5)
+    write_geojson("road.geojson", box(90, 0, 110, 200))
+    status, _, err = slope("run --road road.geojson --mesh 10 --local")
+    assert (status, err) == (0, "")
+    about = json.loads(Path("run.volume/volume.geojson").read_text())
+    assert "crs" not in about
+    (west, south), = [feature["geometry"]["coordinates"][0][0] for feature in about["features"][:1]]
+    assert west == pytest.approx(139.5 + (EAST + 90) / 111320 / math.cos(math.radians(36.3)), abs=1e-3)
+    assert south == pytest.approx(36 + NORTH / 110950, abs=5e-3)
+
+
+def test_without_a_terrain_there_is_a_warning(slope, here):  # noqa: F811
+    write_run(strip(), 0.0, 2.5)
+    write_geojson("road.geojson", box(90, 0, 110, 200))
+    status, _, err = slope("run --road road.geojson --mesh 10 --local")
+    assert status == 0 and err == ("slope volume: warning: no --terrain and no terrain.asc: no CRS, coordinates are the "
+                                   "local metres of the run\n")
+    assert sorted(os.listdir("run.volume")) == ["axis.csv", "volume.csv", "volume.geojson", "volume.png", "volume.tif",
+                                                "volume.yaml", "volume_mesh.tif"]
+    (here / "elsewhere").mkdir()
+    write_sidecar(80, 100, 2.5, "elsewhere/dem.asc")
+    write_geojson("road.geojson", translate(box(90, 0, 110, 200), EAST, NORTH), crs=CRS_M)
+    status, _, err = slope("run --road road.geojson --mesh 10 --terrain elsewhere/dem.asc")
+    assert (status, err) == (0, "")
+
+
+def test_part_of_the_road_outside_is_cut_off_with_a_warning(cleared):
+    write_run(strip(), 0.0, 2.5)
+    about = cleared(box(90, -200, 110, 200))
+    assert about["road_area"] == pytest.approx(20 * 200) and "50 % of the polygon lies outside" in about["warnings"][-1]
+    assert about["volume"]["remove"] == pytest.approx(40 * (3 * 20 + 2 * wedge(3, 90, TAN30)), rel=1e-9)
+
+
+# --- bad input ---
+
+@pytest.mark.parametrize("arguments, message", [
+    ("run --road road.geojson --mesh 10 --cut-angle 0", "--cut-angle: must be > 0 and < 90 degrees, got 0"),
+    ("run --road road.geojson --mesh 10 --cut-angle 90", "--cut-angle: must be > 0 and < 90 degrees, got 90"),
+    ("run --road road.geojson --mesh 0", "--mesh: must be > 0, got 0"),
+    ("run --road road.geojson --mesh nan", "argument --mesh: must be a finite number, got 'nan'"),
+    ("run --road road.geojson --mesh 0.01", "--mesh: must give at most 4000000 mesh cells"),
+    ("run --road road.geojson", "the following arguments are required: --mesh"),
+    ("run --mesh 10", "the following arguments are required: --road"),
+    ("run --road road.geojson --mesh 10 --bulk 0", "--bulk: must be > 0, got 0"),
+    ("run --road road.geojson --mesh 10 --blocked -1", "--blocked: must be >= 0, got -1"),
+    ("run --road road.geojson --mesh 10 --samples 3", "--samples: must be even, 2 to 32, got 3"),
+    ("none --road road.geojson --mesh 10", "none.thickness.asc: must be an existing file; none must be the output of"),
+    ("run --road none.geojson --mesh 10", "none.geojson: must be an existing file"),
+    ("run --road outside.geojson --mesh 10", "outside.geojson: must overlap"),
+    ("run --road crossing.geojson --mesh 10", "crossing.geojson: feature 0: must be polygons that do not cross"),
+    ("run --road nocrs.shp --mesh 10", "nocrs.shp: must have a CRS"),
+    ("run --road road.geojson --mesh 10 --terrain none.asc", "none.asc: must be an existing file"),
+    ("run --road road.geojson --mesh 10 --terrain other.asc", "other.asc: must be the terrain of the run, whose grid"),
+    ("run --road road.geojson --mesh 10 --axis run.summary.yaml", "run.summary.yaml: must be a line"),
+    ("run --road road.geojson --mesh 10 --axis road.geojson", "road.geojson: must hold a line of a length > 0"),
+    ("run --road road.geojson --mesh 10 --axis away.csv", "away.csv: axis of the road must lie in the grid"),
+    ("run --road road.geojson --mesh 10 --axis bad.csv", "bad.csv: must be a line"),
+    ("run --road road.geojson --mesh 10 -o road.geojson", "-o: must be a folder, got road.geojson"),
+    ("run --road road.geojson --mesh 10 -o none/out", "-o: must be in an existing folder, got none/out"),
+    ("run --road road.geojson --mesh ten", "argument --mesh: must be a finite number, got 'ten'"),
+])
+def test_bad_input_is_one_line(slope, no_map, here, arguments, message):  # noqa: F811
+    write_sidecar(80, 100, 2.5)
+    write_sidecar(10, 10, 2.5, "other.asc")
+    write_run(strip(), 0.0, 2.5)
+    write_geojson("road.geojson", translate(box(90, 0, 110, 200), EAST, NORTH), crs=CRS_M)
+    write_geojson("outside.geojson", translate(box(990, 0, 1010, 200), EAST, NORTH), crs=CRS_M)
+    write_geojson("crossing.geojson", translate(Polygon([(90, 0), (110, 200), (110, 0), (90, 200)]), EAST, NORTH),
+                  crs=CRS_M)
+    with fiona.open("nocrs.shp", "w", "ESRI Shapefile", {"geometry": "Polygon", "properties": {"id": "int"}}) as out:
+        out.write({"geometry": {"type": "Polygon", "coordinates": [[(0, 0), (9, 0), (9, 9), (0, 0)]]},
+                   "properties": {"id": 1}})
+    (here / "away.csv").write_text("0,0\n5,5\n")
+    (here / "bad.csv").write_text("0,0\nfive,5\n")
+    before = sorted(here.rglob("*"))
+    status, out, err = slope(arguments)
+    assert (status, out) == (2, "") and err.count("\n") == 1 and "Traceback" not in err
+    assert err.startswith("slope volume: ") and message in err
+    assert sorted(here.rglob("*")) == before
+
+
+def broken(path, change):
+    path = Path(path)
+    path.write_text(change(path.read_text()))
+
+
+@pytest.mark.parametrize("name, change, message", [
+    ("run.summary.yaml", lambda text: "balls: [", "run.summary.yaml: must be a summary that fix deposit/grid wrote"),
+    ("run.summary.yaml", lambda text: text.replace("bulk_factor", "factor"), "must be a summary that fix deposit/grid"),
+    ("run.summary.yaml", lambda text: re.sub("on_grid: .*", "on_grid: 29999.0", text),
+     "run.thickness.asc: must hold the volume that run.summary.yaml tells, 29999 m3: are they of one run?, got 30000 m3"),
+    ("run.thickness.asc", lambda text: text[:2000], "run.thickness.asc: values: must be 80 rows of 100"),
+    ("run.thickness.asc", lambda text: text.replace("3.0", "-3.0", 1), "must be a thickness >= 0, got -3"),
+    ("run.surface.asc", lambda text: text.replace("cellsize 2.5", "cellsize 2.6"),
+     "run.surface.asc: must have the grid of run.thickness.asc"),
+    ("terrain.yaml", lambda text: "crs: 5", "terrain.yaml: must be a sidecar that `slope terrain` wrote"),
+])
+def test_broken_files_of_a_run(slope, no_map, name, change, message):
+    write_sidecar(80, 100, 2.5)
+    write_run(strip(), 0.0, 2.5)
+    write_geojson("road.geojson", box(90, 0, 110, 200))
+    broken(name, change)
+    status, out, err = slope("run --road road.geojson --mesh 10 --local")
+    assert (status, out) == (2, "") and err.count("\n") == 1 and message in err
+    assert not Path("run.volume").exists()
+
+
+def test_a_run_that_still_moved_or_lost_mass_is_warned_of(cleared, slope):
+    write_run(strip(), 0.0, 2.5, moving=True, volume={"released": 30100.0, "on_grid": 30000.0, "off_grid": 60.0,
+                                                      "lost": 40.0})
+    warnings = cleared(box(90, 0, 110, 200))["warnings"]
+    assert "run.summary.yaml: the mass was still moving at 12.5 s: these are not final numbers" in warnings
+    assert "run.summary.yaml: 100 m3 of the mass left the grid or the box and are not counted" in warnings
+    assert slope("run --road road.geojson --local --mesh 10")[2].count("slope volume: warning: ") == 3
+
+
+def test_a_command_that_fails_at_the_end_changes_nothing(cleared, slope, monkeypatch, here):  # noqa: F811
+    write_run(strip(), 0.0, 2.5)
+    cleared(box(90, 0, 110, 200))
+    before = {path: path.read_bytes() for path in here.rglob("*") if path.is_file()}
+
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(deposit, "write_yaml", full)
+    status, out, err = slope("run --road road.geojson --local --mesh 5 -o out")
+    assert (status, out) == (2, "") and err.endswith("slope volume: out: cannot be written: No space left on device\n")
+    assert {path: path.read_bytes() for path in here.rglob("*") if path.is_file()} == before
+
+
+# --- the page ---
+
+def doc_examples():
+    text = (TOP / "doc" / "src" / "tool_volume.rst").read_text(encoding="ascii").replace("\\\n", " ")
+    return re.findall(r"^ +tools/slope volume ((?!PREFIX).*)", text, re.MULTILINE)
+
+
+@pytest.mark.parametrize("command", [*doc_examples(), volume.EPILOG.split("tools/slope volume ")[1].split("\n")[0]])
+def test_every_example_of_the_page_and_the_help_runs(slope, no_map, command):
+    write_sidecar(80, 100, 2.5)
+    write_sidecar(80, 100, 2.5, "dem.asc")
+    write_run(strip(), 0.0, 2.5, "embankment")
+    road = box(90, 0, 110, 200)
+    write_geojson("route4.geojson", translate(road, EAST, NORTH), crs=CRS_M)
+    Path("road.csv").write_text("".join(f"{x},{y}\n" for x, y in road.exterior.coords[:-1]))
+    write_geojson("centre.geojson", translate(LineString([(100, 0), (100, 200)]), EAST, NORTH), crs=CRS_M)
+    status, out, err = slope(command)
+    assert (status, err) == (0, "")
+    assert "--help" in command or "to remove: " in out
