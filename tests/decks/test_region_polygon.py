@@ -1,9 +1,18 @@
 """region polygon: the prism over it, alone and with other regions and commands, and bad input."""
 
+import os
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
+from shapely.geometry import Point, Polygon, box
 
 from deck_helpers import run_deck, write_asc
+
+sys.path.insert(0, os.environ.get("SLOPE_TOOLS", str(Path(__file__).resolve().parents[2] / "tools")))
+
+from slope_tools import polygons, rasters  # noqa: E402  (after the path is set)
 
 SQUARE = "0,0\n10,0\n10,10\n0,10\n"
 HOLE = SQUARE + "\n4,4\n4,7\n7,7\n7,4\n"
@@ -166,3 +175,18 @@ def test_bad_options(tmp_path, options, message):
 def test_missing_file_name(tmp_path):
     run_deck("region road polygon\n", tmp_path,
              expect_error="Region polygon: file name of the rings is missing")
+
+
+def test_what_slope_polygon_writes(tmp_path):
+    """The tool's rings are the tool's polygons: the same area, the same lattice points inside."""
+    x, y = np.meshgrid(np.arange(-5, 25) + 0.0, np.arange(-5, 25) + 0.0)
+    angle = np.linspace(0, 2 * np.pi, 2000, endpoint=False)
+    radius = 7 + 2 * np.sin(9 * angle)
+    star = Polygon(np.transpose([9.3 + radius * np.cos(angle), 8.7 + radius * np.sin(angle)]))
+    whole = star.difference(box(8.5, 6.5, 12.5, 9.5)).union(box(18.5, 18.5, 21.5, 22.5)).union(box(9.5, 7.5, 10.5, 8.5))
+    place = rasters.Place(None, (0.0, 0.0), (30, 30), (-5.0, -5.0, 25.0, 25.0))
+    written = polygons.write(tmp_path / "road.csv", whole, place)
+    log = run_deck(deck(), tmp_path)
+    said = log.split("Region polygon road: ")[1].splitlines()[0]
+    assert said.startswith("4 rings, ") and float(said.split()[-1]) == pytest.approx(written.area, rel=1e-7)
+    assert plan(tmp_path) == {(i, j) for i, j in zip(x.ravel(), y.ravel()) if written.contains(Point(i, j))}

@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from shapely.affinity import translate
 from shapely.geometry import box
+from shapely.ops import triangulate
 
 from .deposit import Lines, coverage, edges, polygons_of
 from .errors import SlopeError
@@ -334,15 +335,9 @@ class _Work:
             mean[open_] = linear_mean(*h, t[open_])
             below[open_] = sum(h) < 0
             mixed = open_ & (on_road > 0)
-            if mixed.any():
-                # beside the road h is linear: its mean is its value at the centre of what is beside
-                j, i = np.nonzero(mixed)
-                rest = (area - on_road)[mixed]
-                cx = np.clip((np.diff(u ** 2) / 2 * np.diff(v)[:, None] - in_x)[mixed] / rest, u[i], u[i + 1])
-                cy = np.clip((np.diff(v ** 2)[:, None] / 2 * np.diff(u) - in_y)[mixed] / rest, v[j], v[j + 1])
-                h = self.above_ground(cx + left, cy + top, near)
-                mean[mixed] = np.clip(t[mixed] - np.maximum(0, h), 0, t[mixed])
-                below[mixed] = h < 0
+            for j, i in np.argwhere(mixed):
+                part = box(x[i], y[j], x[i + 1], y[j + 1]).difference(road)
+                mean[j, i], below[j, i] = self.mean_in(part, t[j, i], near)
 
         beside = (area - on_road) * mean
         bad = np.isnan(beside) | ~self.ground.known[np.ix_(row, column)]
@@ -354,6 +349,18 @@ class _Work:
         self.add(self.cells, on_road + beside, row, column)
         self.add(self.mesh_road, on_road, mesh_row, mesh_column)
         self.add(self.mesh_beside, beside, mesh_row, mesh_column)
+
+    def mean_in(self, part, t, near):
+        """Mean of what is removed in a polygon beside the road, and whether the cut is below the ground there."""
+        triangles = np.array([triangle.exterior.coords[:3] for polygon in polygons_of(part)
+                              for triangle in triangulate(polygon) if polygon.contains(triangle.centroid)])
+        if not len(triangles):
+            return 0.0, False
+        (ax, ay), (bx, by), (cx, cy) = triangles.transpose(1, 2, 0)
+        area = np.abs((bx - ax) * (cy - ay) - (cx - ax) * (by - ay))
+        h = self.above_ground(*triangles.reshape(-1, 2).T, near).reshape(-1, 3)
+        mean = (positive_mean(*(t - h).T) - positive_mean(*-h.T)) @ area / area.sum()
+        return min(max(mean, 0.0), t), h.mean() < 0
 
     def above_ground(self, x, y, near):
         """Height of the cut above the ground at points in index coordinates x, y (1-d arrays)."""

@@ -49,7 +49,7 @@ def read_local(path, raster, local=False, crs=None):
     text = read_text(path)
     if text is None:
         polygons, own = _read_fiona(path)
-    elif WKT.match(text.lstrip()):
+    elif WKT.match(re.sub("#.*", "", text).lstrip()):
         polygons, own = _read_wkt(path, text), raster.crs
     else:
         polygons, own = _read_rings(path, text), raster.crs
@@ -231,8 +231,14 @@ def _even_odd(path, rings):
         depth.append(len(around))
         if depth[i] % 2:
             holes[max(around, key=lambda j: depth[j])].append(polygon)
-    return [part for i, (_, polygon) in enumerate(rings) if depth[i] % 2 == 0
-            for part in polygons_of(polygon.difference(unary_union(holes[i])) if holes[i] else polygon)]
+    shells = [(polygon, holes[i]) for i, (_, polygon) in enumerate(rings) if depth[i] % 2 == 0]
+    return [part for polygon, inner in shells for part in polygons_of(_with_holes(polygon, inner))]
+
+
+def _with_holes(polygon, holes):
+    """A polygon without its holes, which may touch it and each other."""
+    whole = Polygon(polygon.exterior, [hole.exterior for hole in holes])
+    return whole if whole.is_valid else polygon.difference(unary_union(holes))
 
 
 def _is_local(path, text, raster):

@@ -183,6 +183,26 @@ class Page:
         if road:
             from . import polygons
             self.road = polygons.read_local(self.folder / str(road["local"]), self.result.deposit.raster, True)
+        # everything is read before anything is drawn: drawing takes a while
+        self.over_all = {}
+        if len(finished) > 1 and self.study.get("envelope"):
+            for entry in (self.study["envelope"]["max_thickness"], *(self.study.get("exceedance") or ())):
+                self.over_all[entry["file"]] = self._map(entry["file"])
+        self.removed = self._removed() if road else None
+
+    def _removed(self):
+        """What `slope volume` says is to be removed: its thickness in the cells, and a Raster of volumes in a mesh."""
+        found = []
+        raster = self.result.deposit.raster
+        for name in ("volume.tif", "volume_mesh.tif"):
+            one = rasters.read(self.result.folder / "volume" / name, heights=False)
+            east, north = raster.offset     # the files are in the CRS
+            found.append(one._replace(transform=Affine.translation(-east, -north) * one.transform,
+                                      z=np.nan_to_num(one.z)))
+        if found[0].z.shape != raster.z.shape:
+            raise SlopeError(self.result.folder / "volume" / "volume.tif",
+                             f"must have the grid of {self.result.prefix}.thickness.asc")
+        return found[0].z, found[1]
 
     def _load(self, row):
         path = self.folder / row["summary"]
@@ -196,7 +216,7 @@ class Page:
             raise SlopeError(self.folder, "must be the folder of a study, with study.yaml, or of one run, with one "
                              "PREFIX.summary.yaml", f"{len(found)} summaries")
         self.result = Result(self.folder, found[0])
-        self.drawn, self.finished, self.settings, self.road = [self.result], [], {}, None
+        self.drawn, self.finished, self.settings, self.road, self.removed = [self.result], [], {}, None, None
 
     # --- what the maps and the section share ---
 
@@ -216,6 +236,7 @@ class Page:
         with np.errstate(invalid="ignore"):
             self.slip_depth = np.where(self.before - base > 0.01, self.before - base, 0)
         self.arrival, self.max_thickness = one.raster("arrival"), one.raster("max_thickness")
+        self.max_speed = one.raster("max_speed")
         self.release = self.arrival == 0
         touched = self.max_thickness > 0
         for other in self.drawn:
@@ -349,7 +370,7 @@ class Page:
             figures.value_map(layers, self.max_thickness, "Largest thickness in the run", "thickness (m)", bounds,
                               "YlOrBr"),
             "Map of the largest thickness", "Largest thickness that a cell ever had.")
-        speed = one.raster("max_speed")
+        speed = self.max_speed
         found["speed"] = self.picture(
             figures.value_map(layers, speed, "Largest speed", "speed (m/s)", figures.even(speed.max()), "viridis_r",
                               mask=speed > 0),
@@ -363,30 +384,19 @@ class Page:
         return found
 
     def removal(self):
-        """Map of what `slope volume` says is to be removed, as the paper's Figure 15; None without a road."""
-        if self.road is None:
+        """Map of what `slope volume` says is to be removed, as the paper's Figure 15; None if that is nothing."""
+        if self.removed is None or not self.removed[0].max() > 0:
             return None
-        found = []
-        for name in ("volume.tif", "volume_mesh.tif"):
-            raster = rasters.read(self.result.folder / "volume" / name, heights=False)
-            east, north = self.layers.raster.offset     # the files are in the CRS
-            found.append(raster._replace(transform=Affine.translation(-east, -north) * raster.transform,
-                                         z=np.nan_to_num(raster.z)))
-        removed, mesh = found
-        if removed.z.shape != self.layers.raster.z.shape:
-            raise SlopeError(self.result.folder / "volume" / "volume.tif",
-                             f"must have the grid of {self.result.prefix}.thickness.asc")
-        if not removed.z.max() > 0:
-            return None
+        removed, mesh = self.removed
         crs = self.layers.raster.crs
-        box = box_of(self.layers.raster, removed.z > 0)
-        layers = self.layers._replace(shown=self.window(box))
+        layers = self.layers._replace(shown=self.window(box_of(self.layers.raster, removed > 0)))
         road = self.study["study"]["road"]
         return self.picture(
-            self.figures.mesh_map(layers, removed.z, mesh, "Volume to remove", crs_name(crs) if crs is not None else ""),
+            self.figures.mesh_map(layers, removed, mesh, "Volume to remove", crs_name(crs) if crs is not None else ""),
             "Map of the volume to remove", f"Thickness of what lies on the road and above a cut rising at "
             f"{road['cut_angle']:g} degrees from its edges, and its volume in m3 in squares of {mesh.transform.a:g} m; "
-            f"together {self.result.row['remove_m3']:,.0f} m3; run: {self.label(self.result)}. Compare the paper's Figure 15.")
+            f"together {self.result.row['remove_m3']:,.0f} m3; run: {self.label(self.result)}. Compare the paper's "
+            "Figure 15.")
 
     def maps_over_all(self):
         """Maps of a study over all of its runs."""
@@ -405,13 +415,13 @@ class Page:
                 "Final thickness of the runs", "Final thickness of the runs; compare the paper's Figure 14." + some)
         envelope = self.study.get("envelope")
         if envelope:
-            values = self._map(envelope["max_thickness"]["file"])
+            values = self.over_all[envelope["max_thickness"]["file"]]
             found["envelope"] = self.picture(
                 figures.value_map(layers, values, "Envelope of all runs", "thickness (m)",
                                   figures.classes(np.nanmax(values)), "YlOrBr"),
                 "Envelope", f"Largest thickness over all {len(self.finished)} runs and all times.")
         for entry in self.study.get("exceedance") or ():
-            values = self._map(entry["file"])
+            values = self.over_all[entry["file"]]
             found["exceedance"].append(self.picture(
                 figures.value_map(layers, values, f"Thicker than {entry['threshold_m']:g} m", "share of the runs",
                                   [0.0, 0.2, 0.4, 0.6, 0.8, 1.0], "RdPu", mask=values > 0),
@@ -423,7 +433,7 @@ class Page:
     def _map(self, name):
         path = self.folder / str(name)
         raster = rasters.read_asc_local(path)
-        if raster.z.shape != self.layers.raster.z.shape:
+        if raster.z.shape != self.result.thickness.shape:
             raise SlopeError(path, f"must have the grid of {self.result.prefix}.thickness.asc")
         return np.where(np.isfinite(raster.z), raster.z, 0)
 

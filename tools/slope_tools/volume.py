@@ -32,7 +32,7 @@ BLOCKED = 0.1          # m
 SAMPLES = 4            # parts of a cell along a side
 MOST_SAMPLES = 32
 MOST_MESH = 4_000_000  # mesh cells
-EXACT = 1e-11          # of the deposit's volume: volumes are rounded to this once, so that they add up in every output
+EXACT = 1e-13          # of the deposit's volume: volumes are rounded to this once, so that they add up in every output
 STATIONS = 500         # cross sections of a curved road
 STRAIGHT = 0.98        # share of the centre line of a straight road that lies in the road
 LABELS = 150           # mesh cells on a map that get their volume written into them
@@ -355,7 +355,7 @@ def rows(run_, mesh, result, factor):
     """One dict per listed mesh cell, from the north-west on."""
     east, north = run_.raster.offset
     for row, column in result.listed:
-        x, y = mesh.corner(row, column)
+        x, y = (round(corner, 9) for corner in mesh.corner(row, column))  # 71 * 0.8 is 56.800000000000004
         values = {"row": row + 1, "column": column + 1, "xlo": x, "ylo": y, "east": x + east, "north": y + north,
                   "road_area": result.road_area[row, column], "deposit": result.deposit[row, column],
                   "remove_on_road": result.road[row, column], "remove_beside_road": result.beside[row, column],

@@ -1,0 +1,316 @@
+"""tools/slope polygon: polygons of every format to the deck's rings, against shapely and hand-made numbers."""
+import json
+import os
+import shlex
+import sys
+import time
+from pathlib import Path
+
+import fiona
+import numpy as np
+import pytest
+import rasterio.warp
+from affine import Affine
+from rasterio.crs import CRS
+from shapely.geometry import MultiPolygon, Point, Polygon, box, mapping
+
+TOP = Path(__file__).resolve().parents[2]
+TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
+sys.path.insert(0, str(TOOLS))
+
+from slope_tools import cli, polygons, rasters  # noqa: E402  (after the path is set)
+
+CRS_M = "EPSG:6677"
+EAST, NORTH = -12000.0, 34000.0    # local 0 0 of the terrain, which is 100 m x 80 m
+ROAD = Polygon([(10, 10), (60, 12.5), (62.25, 30), (12, 27)], [[(20, 15), (20, 20), (25, 20), (25, 15)]])
+LINE = "# local metres: east = x + -12000.0, north = y + 34000.0, CRS EPSG:6677\n"
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    terrain()
+    return tmp_path
+
+
+@pytest.fixture
+def slope(here, capsys):
+    """Run `slope polygon ARGUMENTS --terrain t.asc`; gives status, stdout, stderr."""
+    def run(arguments, terrain="t.asc"):
+        capsys.readouterr()
+        try:
+            status = cli.main(["polygon", *shlex.split(arguments), "--terrain", terrain])
+        except SystemExit as error:
+            status = error.code
+        return status, *capsys.readouterr()
+    return run
+
+
+@pytest.fixture
+def written(slope):
+    """Run it with -o out.csv, which must succeed; gives the rings of the file, (number, 2) each, and stdout."""
+    def run(arguments):
+        status, out, err = slope(f"{arguments} -o out.csv")
+        assert (status, err) == (0, ""), err
+        return rings("out.csv"), out
+    return run
+
+
+def terrain(path="t.asc", crs=CRS_M, offset=(EAST, NORTH)):
+    raster = rasters.Raster(np.full((16, 20), 5.0), Affine(5, 0, 0, 0, -5, 80), crs and CRS.from_string(crs), offset)
+    rasters.write_asc_local(path, raster, {})
+
+
+def rings(path):
+    """The rings of a file in the deck's format, read by the letter of the format."""
+    blocks = [[]]
+    for line in Path(path).read_text().splitlines():
+        if not line:
+            blocks.append([])
+        elif not line.startswith("#"):
+            blocks[-1].append([float(word) for word in line.split(",")])
+    return [np.array(block) for block in blocks]
+
+
+def inside(found, x, y):
+    """Even-odd rule over all rings, for point arrays."""
+    odd = np.zeros(x.shape, bool)
+    for ring in found:
+        for (ax, ay), (bx, by) in zip(ring, np.roll(ring, -1, axis=0)):
+            if ay != by:
+                odd ^= ((ay > y) != (by > y)) & (x < ax + (bx - ax) * (y - ay) / (by - ay))
+    return odd
+
+
+def moved(geometry, crs=CRS_M, local=False):
+    """Local metres to coordinates of a CRS, as a plain geometry."""
+    def points(ring):
+        x, y = np.array(ring.coords).T
+        if local:
+            return list(zip(x.tolist(), y.tolist()))
+        return list(zip(*rasterio.warp.transform(CRS_M, crs, (x + EAST).tolist(), (y + NORTH).tolist())))
+    parts = [Polygon(points(part.exterior), [points(hole) for hole in part.interiors])
+             for part in polygons.polygons_of(geometry)]
+    return parts[0] if len(parts) == 1 else MultiPolygon(parts)
+
+
+def geojson(path, *geometries, crs=None):
+    features = [{"type": "Feature", "properties": {}, "geometry": g and mapping(g)} for g in geometries]
+    text = {"type": "FeatureCollection", "features": features}
+    if crs:
+        text["crs"] = {"type": "name", "properties": {"name": f"urn:ogc:def:crs:{crs.replace(':', '::')}"}}
+    Path(path).write_text(json.dumps(text))
+
+
+def shapefile(path, *geometries, crs=None):
+    schema = {"geometry": "Polygon", "properties": {"n": "int"}}
+    with fiona.open(path, "w", driver="ESRI Shapefile", schema=schema, crs=crs) as out:
+        for n, geometry in enumerate(geometries):
+            out.write({"geometry": mapping(geometry), "properties": {"n": n}})
+
+
+def assert_is(found, geometry, tolerance=1e-5):
+    """That the rings are the geometry: the same area, and no point of an edge off it."""
+    other = polygons.read_local("out.csv", rasters.read_place("t.asc"))
+    assert other.symmetric_difference(geometry).area < tolerance * geometry.length
+    assert sum(map(len, found)) == sum(map(len, polygons.rings_of(geometry)))
+    rng = np.random.default_rng(1)
+    xlo, ylo, xhi, yhi = geometry.bounds
+    x, y = rng.uniform(xlo, xhi, 500), rng.uniform(ylo, yhi, 500)
+    assert (inside(found, x, y) == [geometry.contains(Point(p)) for p in zip(x, y)]).all()
+
+
+# --- what is written ---
+
+def test_the_file_to_the_letter(slope, here):
+    geojson("road.geojson", moved(Polygon([(1, 2), (11, 2), (11, 7.5), (1, 7.5)], [[(2, 3), (2, 4), (3, 4)]])), crs=CRS_M)
+    assert slope("road.geojson -o road.csv") == (
+        0, "road.csv: 1 polygons, 2 rings (1 holes), 7 vertices, x 1.000 to 11.000, y 2.000 to 7.500, area 54.500 m2\n"
+        "region road polygon road.csv\n", "")
+    assert (here / "road.csv").read_text() == (
+        LINE + "1.0,2.0\n11.0,2.0\n11.0,7.5\n1.0,7.5\n\n2.0,3.0\n2.0,4.0\n3.0,4.0\n")
+    assert not [name for name in os.listdir() if ".new" in name]
+
+
+WGS = "EPSG:4326"
+TEXT_CSV = "\n\n".join("\n".join(f"{x + EAST!r},{y + NORTH!r}" for x, y in ring.coords[:-1])
+                       for ring in (ROAD.exterior, *ROAD.interiors))
+
+
+@pytest.mark.parametrize("name, make, options", [
+    ("a.geojson", lambda path: geojson(path, moved(ROAD), crs=CRS_M), ""),
+    ("a.geojson", lambda path: geojson(path, None, moved(ROAD, WGS)), ""),
+    ("a.geojson", lambda path: geojson(path, moved(ROAD)), "--crs EPSG:6677"),
+    ("a.geojson", lambda path: geojson(path, ROAD), "--local"),
+    ("a.shp", lambda path: shapefile(path, moved(ROAD), crs=CRS_M), ""),
+    ("a.shp", lambda path: shapefile(path, moved(ROAD, "EPSG:6676"), crs="EPSG:6676"), ""),
+    ("a.shp", lambda path: shapefile(path, moved(ROAD, "EPSG:6668"), crs="EPSG:6668"), ""),
+    ("a.shp", lambda path: shapefile(path, moved(ROAD)), "--crs EPSG:6677"),
+    ("a.csv", lambda path: Path(path).write_text(TEXT_CSV), ""),
+    ("a.csv", lambda path: Path(path).write_bytes(("\ufeffeast,north\r\n" + TEXT_CSV.replace("\n", "\r\n")).encode()), ""),
+    ("a.csv", lambda path: Path(path).write_text("\n\n".join("\n".join(f"{x},{y}  # point" for x, y in ring.coords)
+                                                             for ring in (ROAD.exterior, *ROAD.interiors))), "--local"),
+    ("a.wkt", lambda path: Path(path).write_text(moved(ROAD).wkt), ""),
+    ("a.txt", lambda path: Path(path).write_text("# road\n" + moved(ROAD).wkt.replace("), (", "),\n(")), ""),
+    ("a.wkt", lambda path: Path(path).write_text("GEOMETRYCOLLECTION(" + moved(ROAD, WGS).wkt + ")"), f"--crs {WGS}"),
+], ids=lambda value: value if isinstance(value, str) else "")
+def test_every_format(written, name, make, options):
+    make(name)
+    found, out = written(f"{name} {options}")
+    assert_is(found, ROAD)
+    assert f"area {ROAD.area:.3f} m2" in out or f"area {ROAD.area - 0.001:.3f} m2" in out
+
+
+def test_three_dimensions_are_two(written):
+    Path("a.wkt").write_text("POLYGON Z ((10 10 5, 20 10 5, 20 20 7, 10 10 5))")
+    assert_is(written("a.wkt --local")[0], Polygon([(10, 10), (20, 10), (20, 20)]))
+
+
+def test_several_polygons_with_holes_and_islands(written):
+    island = Polygon([(21, 16), (21, 17), (22, 17)])
+    far = box(70, 40, 80, 50).difference(box(72, 42, 74, 44)).difference(box(75, 45, 77, 47))
+    whole = MultiPolygon([ROAD, island, far])
+    for make in (lambda: geojson("a.geojson", moved(whole), crs=CRS_M),
+                 lambda: geojson("a.geojson", *map(moved, (ROAD, island, far)), crs=CRS_M)):
+        make()
+        found, out = written("a.geojson")
+        assert_is(found, whole)
+        assert out.startswith("out.csv: 3 polygons, 6 rings (3 holes)")
+
+
+def test_what_overlaps_or_touches_becomes_one(written):
+    """By the even-odd rule of the deck the overlap would be a hole, and a shared edge would part nothing."""
+    geojson("a.geojson", *map(moved, (box(10, 10, 30, 20), box(20, 10, 40, 30), box(40, 10, 50, 30))), crs=CRS_M)
+    found, _ = written("a.geojson")
+    assert len(found) == 1 and inside(found, np.array([25.0]), np.array([15.0])).all()
+    assert polygons.read_local("out.csv", rasters.read_place("t.asc")).area == pytest.approx(20 * 10 + 20 * 20 + 10 * 20 - 100)
+
+
+def test_a_written_file_is_an_input_again(written, slope):
+    Path("a.wkt").write_text(moved(ROAD).wkt)
+    written("a.wkt")
+    first = Path("out.csv").read_bytes()
+    Path("out.csv").rename("b.csv")
+    written("b.csv")
+    assert Path("out.csv").read_bytes() == first
+    terrain("other.asc", offset=(EAST, NORTH + 10))
+    status, _, err = slope("b.csv -o c.csv", terrain="other.asc")
+    assert status == 2 and err == (
+        "slope polygon: b.csv: must be for this terrain (local metres: east = x + -12000.0, north = y + 34010.0, CRS "
+        "EPSG:6677), got local metres: east = x + -12000.0, north = y + 34000.0, CRS EPSG:6677\n")
+    # a run that does not know where it is
+    nowhere = rasters.Raster(np.full((16, 20), 5.0), Affine(5, 0, 0, 0, -5, 80), None, (0.0, 0.0))
+    assert polygons.read_local("b.csv", nowhere).equals_exact(polygons.read_local("b.csv", rasters.read_place("t.asc")), 0)
+
+
+def test_raster_and_place_are_the_same(here):
+    Path("a.wkt").write_text(moved(ROAD).wkt)
+    found = [polygons.read_local("a.wkt", read("t.asc")) for read in (rasters.read_asc_local, rasters.read_place)]
+    assert found[0].equals_exact(found[1], 0)
+
+
+def test_a_terrain_without_crs(written, slope):
+    """Text has no CRS to disagree with; for other files it is an error."""
+    terrain(crs=None)
+    Path("a.csv").write_text(TEXT_CSV)
+    assert_is(written("a.csv")[0], ROAD)
+    geojson("a.geojson", moved(ROAD), crs=CRS_M)
+    status, _, err = slope("a.geojson -o b.csv")
+    assert status == 2 and err.startswith("slope polygon: --terrain: must have a CRS") and err.count("\n") == 1
+    geojson("a.geojson", ROAD)
+    assert_is(written("a.geojson --local")[0], ROAD)
+
+
+def test_partly_outside_is_a_warning(slope):
+    Path("a.wkt").write_text(moved(box(90, 10, 110, 20)).wkt)
+    status, _, err = slope("a.wkt -o out.csv")
+    assert status == 0 and err == "slope polygon: warning: a.wkt: 50 % of the area lie outside of t.asc\n"
+    assert len(rings("out.csv")[0]) == 4
+
+
+def test_ten_thousand_vertices(written):
+    angle = np.linspace(0, 2 * np.pi, 10000, endpoint=False)
+    radius = 30 + 5 * np.random.default_rng(2).random(len(angle))
+    star = Polygon(np.transpose([50 + radius * np.cos(angle), 40 + radius * np.sin(angle)]))
+    geojson("a.geojson", moved(star, "EPSG:6668"), crs="EPSG:6668")
+    start = time.monotonic()
+    found, out = written("a.geojson")
+    print(f"10000 vertices in {time.monotonic() - start:.2f} s")
+    assert len(found) == 1 and len(found[0]) == 10000 and ", 10000 vertices," in out
+    assert np.abs(found[0] - polygons.rings_of(star)[0]).max() < 1e-4
+
+
+# --- bad input ---
+
+def wkt(text):
+    return lambda path: Path(path).write_text(text)
+
+
+def csv(text):
+    return lambda path: Path(path).write_text(text)
+
+
+BOW = Polygon([(10, 10), (20, 20), (20, 10), (10, 20)])
+SQUARE = "10,10\n20,10\n20,20\n10,20\n"
+
+
+@pytest.mark.parametrize("name, make, options, message", [
+    ("a.csv", lambda path: None, "", "a.csv: must be an existing file"),
+    ("a.csv", csv(""), "", "a.csv: must hold a polygon, it is empty"),
+    ("a.csv", csv("# nothing\n"), "", "a.csv: must hold a polygon, it is empty"),
+    ("a.csv", csv("1,2\n3;4\n"), "", "a.csv: line 2: must be two numbers, x,y, got 3;4"),
+    ("a.csv", csv("1,2\nx,y\n"), "", "a.csv: line 2: must be two numbers, x,y, got x,y"),
+    ("a.csv", csv("1,2,3\n"), "", "a.csv: line 1: must be two numbers, x,y, got 1,2,3"),
+    ("a.csv", csv("1,nan\n"), "", "a.csv: line 1: must be two finite numbers, x,y, got 1,nan"),
+    ("a.csv", csv(SQUARE + "\n1,2\n3,4\n1,2\n"), "--local", "a.csv: line 6: a ring must have at least 3 points, got 2"),
+    ("a.csv", csv("1,1\n2,2\n4,4\n"), "--local", "a.csv: line 1: must have an area > 0"),
+    ("a.csv", csv(SQUARE + "\n30,30\n40,40\n40,30\n30,40\n"), "--local",
+     "a.csv: line 6: must be polygons that do not cross or touch themselves, got Self-intersection at 35 35"),
+    ("a.csv", csv(SQUARE + "\n15,15\n25,15\n25,25\n15,25\n"), "--local",
+     "a.csv: line 6: a ring must not cross another one, line 1, got an overlap at 17.5 17.5"),
+    ("a.csv", csv(SQUARE + "\n" + SQUARE), "--local", "a.csv: must have an area > 0"),
+    ("a.csv", csv(SQUARE), "", "a.csv: must overlap the terrain, local x y 0 0 100 80, got 12010 -33990 12020 -33980"),
+    ("a.csv", lambda path: Path(path).write_bytes(b"1,2\n\xff,3\n"), "", "a.csv: must be text in UTF-8"),
+    ("a.wkt", wkt("POLYGON ((1 1, 2 2"), "", "a.wkt: line 1: must be WKT such as POLYGON"),
+    ("a.wkt", wkt("# road\nPOLYGON ((1 1, 2 1, 2 2, 1 1))\nPOLYGON ((1 1, x))"), "", "a.wkt: line 3: must be WKT"),
+    ("a.wkt", wkt("LINESTRING (1 1, 2 2)"), "", "a.wkt: line 1: must be a polygon, got LineString"),
+    ("a.wkt", wkt("POLYGON EMPTY"), "", "a.wkt: must hold a polygon, it is empty"),
+    ("a.wkt", wkt(BOW.wkt), "--local",
+     "a.wkt: line 1: must be polygons that do not cross or touch themselves, got Self-intersection at 15 15"),
+    ("a.geojson", lambda path: geojson(path), "", "a.geojson: must hold a polygon, it is empty"),
+    ("a.geojson", lambda path: geojson(path, moved(ROAD)), "", "a.geojson: coordinates in EPSG:4326 must be longitude and "
+     "latitude (which a GeoJSON has that names no other CRS), got -11990 34010"),
+    ("a.geojson", lambda path: geojson(path, moved(ROAD), moved(BOW), crs=CRS_M), "", "a.geojson: feature 1: must be "
+     "polygons that do not cross or touch themselves, got Self-intersection at -11985 34015"),
+    ("a.geojson", lambda path: geojson(path, Point(1, 2)), "", "a.geojson: feature 0: must be a polygon, got Point"),
+    ("a.geojson", wkt('{"type": "Polygon", "coordinates": [[[1'), "", "a.geojson: must be polygons that GDAL can read"),
+    ("a.geojson", lambda path: geojson(path, box(139.0, 36.0, 139.1, 36.1)), "", "a.geojson: must overlap the terrain"),
+    ("a.shp", lambda path: shapefile(path, moved(ROAD)), "", "a.shp: must have a CRS, so that polygon and terrain can be "
+     "brought together (a .prj file beside a shapefile, slope terrain --crs for a terrain; --local if"),
+    ("a.shp", wkt("no shapes"), "", "a.shp: must be polygons that GDAL can read"),
+    ("a.wkt", wkt(moved(ROAD).wkt), "--crs EPSG:1", "--crs: must be a CRS such as EPSG:6677, got EPSG:1"),
+    ("a.wkt", wkt(moved(ROAD).wkt), "--crs EPSG:6668", "a.wkt: coordinates in EPSG:6668 must be longitude and latitude"),
+])
+def test_bad_input_is_one_line_and_nothing_is_written(slope, here, name, make, options, message):
+    (here / "out.csv").write_text("from before\n")
+    make(name)
+    status, out, err = slope(f"{name} {options} -o out.csv")
+    assert status == 2 and out == "", (out, err)
+    assert err.startswith(f"slope polygon: {message}") and err.count("\n") == 1, err
+    assert (here / "out.csv").read_text() == "from before\n"
+    assert not [name for name in os.listdir() if ".new" in name]
+
+
+@pytest.mark.parametrize("arguments, terrain, message", [
+    ("a.wkt -o out.txt", "t.asc", "-o: must be a file that ends in .csv, got out.txt"),
+    ("a.wkt -o none/out.csv", "t.asc", "-o: must be in an existing folder, got none/out.csv"),
+    ("b.csv -o b.csv", "t.asc", "-o: must not be the input, got b.csv"),
+    ("a.wkt -o out.csv", "none.asc", "none.asc: must be an existing file"),
+    ("a.wkt -o out.csv", "a.wkt", "a.wkt: must be a raster that GDAL can read"),
+    ("a.wkt -o out.csv --local --crs EPSG:6677", "t.asc", "argument --crs: not allowed with argument --local"),
+])
+def test_bad_arguments(slope, here, arguments, terrain, message):
+    (here / "a.wkt").write_text(moved(ROAD).wkt)
+    (here / "b.csv").write_text(SQUARE)
+    status, _, err = slope(arguments, terrain)
+    assert status == 2 and err.startswith(f"slope polygon: {message}") and err.count("\n") == 1, err
