@@ -6,7 +6,7 @@ import re
 import numpy as np
 import pytest
 
-from deck_helpers import run_deck
+from deck_helpers import doc_examples, run_deck
 
 # Two balls on the x axis, no gravity. kind of the second: ball (moving), frozen (an atom of fix freeze), wall
 PAIR = """
@@ -265,6 +265,19 @@ def test_rolling_spring_defaults_to_the_tangential_one(tmp_path):
     assert np.abs(default - other).max() > 1e-4
 
 
+@pytest.mark.parametrize("kind", ["wall", "frozen"])
+def test_static_overlap(tmp_path, kind):
+    """Pressed and at rest: F/kn with plain; the prediction of the dashpot's velocity softens the contact."""
+    zeta = -math.log(0.3) / math.hypot(math.pi, math.log(0.3))
+    dt = 1e-4
+    softer = 1 + zeta * math.sqrt(1e6 / ball_mass(0.1, 2500)) * dt
+    for scheme, factor in (("plain", 1.0), ("predicted", softer)):
+        _, one, _ = collide(tmp_path, kind, v1=(0, 0), gap=-50e-6, dt=dt, steps=2000, style=f"scheme {scheme}",
+                            coeff="restitution 0.3", extra="fix press moving addforce 50 0 0")
+        assert 0.1 + one[-1, 0] == pytest.approx(50e-6 * factor, rel=1e-3)
+    assert softer > 1.02
+
+
 # --- time step ---
 
 
@@ -326,6 +339,13 @@ def test_coefficients_survive_a_restart(tmp_path):
 
     other, _, _ = collide(tmp_path, coeff=COEFFS, style="mass pair", steps=1)
     assert table(other) != table(first)
+
+
+def test_examples_of_the_page(tmp_path):
+    log = run_deck("units si\natom_style sphere\ncomm_modify vel yes\nregion box block 0 9 0 9 0 9\ncreate_box 3 box\n"
+                   "create_atoms 1 single 2 2 2\ncreate_atoms 1 single 5 5 5\nset type 1 diameter 1.25 density 3411.4\n"
+                   + doc_examples("pair_gran_restitution") + "\ntimestep 1e-4\nrun 0\n", tmp_path)
+    assert table(log)[1, 1][2:6] == pytest.approx([1.19e6, 0.3217, 0.3439, 0.48], rel=1e-3)  # mass ball is the last
 
 
 # --- bad input ---

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from deck_helpers import run_deck
+from deck_helpers import doc_examples, run_deck
 
 D, RHO = 0.1, 2500.0
 MASS = RHO * math.pi * D ** 3 / 6
@@ -435,6 +435,32 @@ def test_force_on_the_ground_is_the_weight(tmp_path, ranks):
     assert float(words[2]) == pytest.approx(-weight, rel=1e-7)
     assert abs(float(words[0])) < 1e-7 * weight and abs(float(words[1])) < 1e-7 * weight
     assert float(words[3]) == len(positions)
+
+
+def test_examples_of_the_pages(tmp_path):
+    (tmp_path / "floor.xyz").write_text("0 0 0\n")
+    deck = """
+units si
+atom_style sphere
+boundary f f f
+comm_modify vel yes
+region ground block -10 10 -10 10 -5 0
+region slip sphere 0 0 2 4
+region box block -12 12 -12 12 -12 12
+create_box 3 box
+region soil block -3 3 -3 3 -1 5
+lattice sc 1.25
+create_atoms 1 region soil
+set type 1 diameter 1.25 density 2500
+group soil type 1
+pair_style gran/restitution
+pair_coeff * * stiffness 1e7 1e7 restitution 0.5
+"""
+    log = run_deck(deck + doc_examples("fix_wall_gran_balls") + "\n" + doc_examples("delete_balls")
+                   + "\ntimestep 1e-4\nrun 1\n", tmp_path)
+    removed = [int(line.split()[1]) for line in log.splitlines() if line.startswith("Delete_balls:")]
+    assert len(removed) == 2 and removed[0] > 0
+    assert (tmp_path / "field.xyz").read_text().count("\n") > 100
 
 
 # --- bad input ---

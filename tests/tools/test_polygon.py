@@ -125,7 +125,7 @@ def assert_is(found, geometry, tolerance=1e-5):
 def test_the_file_to_the_letter(slope, here):
     geojson("road.geojson", moved(Polygon([(1, 2), (11, 2), (11, 7.5), (1, 7.5)], [[(2, 3), (2, 4), (3, 4)]])), crs=CRS_M)
     assert slope("road.geojson -o road.csv") == (
-        0, "road.csv: 1 polygons, 2 rings (1 holes), 7 vertices, x 1.000 to 11.000, y 2.000 to 7.500, area 54.500 m2\n"
+        0, "road.csv: 1 polygon, 2 rings (1 hole), 7 vertices, x 1.000 to 11.000, y 2.000 to 7.500, area 54.500 m2\n"
         "region road polygon road.csv\n", "")
     assert (here / "road.csv").read_text() == (
         LINE + "1.0,2.0\n11.0,2.0\n11.0,7.5\n1.0,7.5\n\n2.0,3.0\n2.0,4.0\n3.0,4.0\n")
@@ -176,6 +176,16 @@ def test_several_polygons_with_holes_and_islands(written):
         found, out = written("a.geojson")
         assert_is(found, whole)
         assert out.startswith("out.csv: 3 polygons, 6 rings (3 holes)")
+
+
+def test_rings_of_text_count_by_the_even_odd_rule(written):
+    """In any order: a field, a hole in it, an island in that with a hole of its own, and a hole that touches the edge."""
+    boxes = [box(10, 10, 50, 50), box(20, 20, 40, 40), box(25, 25, 35, 35), box(28, 28, 32, 32), box(10, 12, 15, 18)]
+    island = boxes[2].difference(boxes[3])
+    whole = boxes[0].difference(boxes[1]).difference(boxes[4]).union(island)
+    for order in ((0, 1, 2, 3, 4), (3, 1, 4, 0, 2), (4, 3, 2, 1, 0)):
+        Path("a.csv").write_text("\n\n".join("\n".join(f"{x},{y}" for x, y in boxes[k].exterior.coords) for k in order))
+        assert_is(written("a.csv --local")[0], whole)
 
 
 def test_what_overlaps_or_touches_becomes_one(written):

@@ -335,9 +335,20 @@ class _Work:
             mean[open_] = linear_mean(*h, t[open_])
             below[open_] = sum(h) < 0
             mixed = open_ & (on_road > 0)
-            for j, i in np.argwhere(mixed):
-                part = box(x[i], y[j], x[i + 1], y[j + 1]).difference(road)
-                mean[j, i], below[j, i] = self.mean_in(part, t[j, i], near)
+            if mixed.any():
+                # where h is linear beside the edge, its mean is its value at the centre of what is beside
+                j, i = np.nonzero(mixed)
+                rest = (area - on_road)[mixed]
+                cx = np.clip((np.diff(u ** 2) / 2 * np.diff(v)[:, None] - in_x)[mixed] / rest, u[i], u[i + 1])
+                cy = np.clip((np.diff(v ** 2)[:, None] / 2 * np.diff(u) - in_y)[mixed] / rest, v[j], v[j + 1])
+                centre = self.above_ground(cx + left, cy + top, near)
+                mean[mixed] = np.clip(t[mixed] - centre, 0, t[mixed])
+                below[mixed] = centre < 0
+                # not so where the cut leaves the deposit, above or below, next to the edge
+                low, high = np.min(h, axis=0)[mixed[open_]], np.max(h, axis=0)[mixed[open_]]
+                bent = (low < 0) | (high > t[mixed])
+                parts = [box(x[a], y[b], x[a + 1], y[b + 1]).difference(road) for a, b in zip(i[bent], j[bent])]
+                mean[j[bent], i[bent]] = self.mean_in(parts, t[j[bent], i[bent]], near)
 
         beside = (area - on_road) * mean
         bad = np.isnan(beside) | ~self.ground.known[np.ix_(row, column)]
@@ -350,17 +361,20 @@ class _Work:
         self.add(self.mesh_road, on_road, mesh_row, mesh_column)
         self.add(self.mesh_beside, beside, mesh_row, mesh_column)
 
-    def mean_in(self, part, t, near):
-        """Mean of what is removed in a polygon beside the road, and whether the cut is below the ground there."""
-        triangles = np.array([triangle.exterior.coords[:3] for polygon in polygons_of(part)
-                              for triangle in triangulate(polygon) if polygon.contains(triangle.centroid)])
-        if not len(triangles):
-            return 0.0, False
-        (ax, ay), (bx, by), (cx, cy) = triangles.transpose(1, 2, 0)
+    def mean_in(self, parts, t, near):
+        """Mean of what is removed in polygons beside the road, in each of which the thickness is even, t."""
+        triangles = [(number, triangle.exterior.coords[:3]) for number, part in enumerate(parts)
+                     for polygon in polygons_of(part) for triangle in triangulate(polygon)
+                     if polygon.contains(triangle.centroid)]
+        if not triangles:
+            return np.zeros(len(parts))
+        number, corners = (np.array(values) for values in zip(*triangles))
+        (ax, ay), (bx, by), (cx, cy) = corners.transpose(1, 2, 0)
         area = np.abs((bx - ax) * (cy - ay) - (cx - ax) * (by - ay))
-        h = self.above_ground(*triangles.reshape(-1, 2).T, near).reshape(-1, 3)
-        mean = (positive_mean(*(t - h).T) - positive_mean(*-h.T)) @ area / area.sum()
-        return min(max(mean, 0.0), t), h.mean() < 0
+        h = self.above_ground(*corners.reshape(-1, 2).T, near).reshape(-1, 3).T
+        volume = (positive_mean(*(t[number] - h)) - positive_mean(*-h)) * area
+        total, area = (np.bincount(number, values, len(parts)) for values in (volume, area))
+        return np.clip(np.divide(total, area, out=np.zeros(len(parts)), where=area > 0), 0, t)
 
     def above_ground(self, x, y, near):
         """Height of the cut above the ground at points in index coordinates x, y (1-d arrays)."""

@@ -68,7 +68,7 @@ def classes(largest):
     """Bounds of the classes of a thickness (m), ascending, the last one at or above the largest."""
     for top, bounds in CLASSES.items():
         if bounds[2] <= largest <= top:
-            return [*(bound for bound in bounds if bound < largest), next(bound for bound in bounds if bound >= largest)]
+            return [*(bound for bound in bounds if bound < largest), min(bound for bound in bounds if bound >= largest)]
     bounds = even(largest)
     return [bounds[1] / 10, *bounds[1:]]    # 0 itself is no deposit
 
@@ -121,7 +121,8 @@ def scale_bar(axes, shown):
 
 def north_arrow(axes):
     axes.annotate("N", xy=(0.965, 0.965), xytext=(0.965, 0.86), xycoords="axes fraction", ha="center", va="center",
-                  fontsize=7, fontweight="bold", zorder=9, arrowprops={"arrowstyle": "-|>", "lw": 0.9, "color": "black"},
+                  fontsize=7, fontweight="bold", zorder=9,
+                  arrowprops={"arrowstyle": "-|>", "lw": 0.9, "color": "black"},
                   bbox={"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.8})
 
 
@@ -323,7 +324,7 @@ def section(s, before, base, runs, road, cut, title):
     """Heights along the section, as the paper's Figure 12.
 
     s: distance (m); before, base: ground before, and slip surface with the ground that stays; runs: list of
-    (name, surface after, thickness), the first of them filled; road: list of (from, to); cut: heights of the cut or None.
+    (name, surface after, thickness), the first of them filled; road: list of (from, to); cut: its heights or None.
     Returns the picture and its vertical exaggeration.
     """
     heights = np.concatenate([values[np.isfinite(values)] for values in (before, base, *(run[1] for run in runs))])

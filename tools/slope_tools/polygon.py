@@ -69,7 +69,11 @@ def summary(path, geometry):
     parts = polygons.polygons_of(geometry)
     xlo, ylo, xhi, yhi = geometry.bounds
     quoted = f'"{path}"' if " " in str(path) else path
-    return (f"{path}: {len(parts)} polygons, {len(rings)} rings ({len(rings) - len(parts)} holes), "
-            f"{sum(map(len, rings))} vertices, x {xlo:.3f} to {xhi:.3f}, y {ylo:.3f} to {yhi:.3f}, "
+    return (f"{path}: {count(len(parts), 'polygon')}, {count(len(rings), 'ring')} "
+            f"({count(len(rings) - len(parts), 'hole')}), {sum(map(len, rings))} vertices, x {xlo:.3f} to {xhi:.3f}, y {ylo:.3f} to {yhi:.3f}, "
             f"area {geometry.area:.3f} m2\n"
             f"region {path.stem if path.stem.isidentifier() else 'road'} polygon {quoted}")
+
+
+def count(number, what):
+    return f"{number} {what}{'s' * (number != 1)}"

@@ -82,8 +82,8 @@ def render(content):
     loader = jinja2.FileSystemLoader(Path(__file__).parent)
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True,
                                      undefined=jinja2.StrictUndefined)
-    environment.filters.update(volume=lambda value: f"{value:,.0f}", fixed=lambda value, digits=1: f"{value:,.{digits}f}",
-                               small=lambda value: f"{value:.1e}", percent=lambda value: f"{100 * value:.1f} %")
+    environment.filters.update(volume=lambda value: f"{value:,.0f}", percent=lambda value: f"{100 * value:.1f} %",
+                               fixed=lambda value, digits=1: f"{value:,.{digits}f}")
     return environment.get_template("report.html.j2").render(content)
 
 
@@ -356,8 +356,8 @@ class Page:
             + ("" if not self.study else f" Run: {self.label(one)}."))
         found["terrain"] = self.picture(
             figures.terrain_map(layers._replace(shown=whole), layers.shown, name), "Map of the terrain before",
-            "Terrain before the collapse, light from the north-west" + (
-                "; the white frame is the part that the other maps show." if tuple(layers.shown) != tuple(whole) else "."))
+            "Terrain before the collapse, light from the north-west"
+            + ("; the white frame is the part that the other maps show." if layers.shown != whole else "."))
         if self.slip_depth.max() > 0:
             found["slip"] = self.picture(
                 figures.value_map(layers._replace(ground=one.deposit.base), self.slip_depth, "Slip surface",
@@ -379,7 +379,8 @@ class Page:
         if known.size and known.max() > 0:
             found["arrival"] = self.picture(
                 figures.value_map(layers, self.arrival, "First arrival", "time (s)",
-                                  figures.even_to_most(known[known > 0]), "YlGnBu", mask=np.isfinite(self.arrival) & ~self.release),
+                                  figures.even_to_most(known[known > 0]), "YlGnBu",
+                                  mask=np.isfinite(self.arrival) & ~self.release),
                 "Map of the first arrival", "Time at which the first ball arrived.")
         return found
 
@@ -427,7 +428,8 @@ class Page:
                                   [0.0, 0.2, 0.4, 0.6, 0.8, 1.0], "RdPu", mask=values > 0),
                 f"Share of the runs thicker than {entry['threshold_m']:g} m",
                 f"Share of the {len(self.finished)} runs with a final thickness > {entry['threshold_m']:g} m: in every "
-                f"run on {entry['area_in_every_run_m2']:,.0f} m2, in any run on {entry['area_in_any_run_m2']:,.0f} m2."))
+                f"run on {entry['area_in_every_run_m2']:,.0f} m2, in any run on "
+                f"{entry['area_in_any_run_m2']:,.0f} m2."))
         return found
 
     def _map(self, name):
@@ -536,9 +538,9 @@ class Page:
         varied = [name for name, several in self.settings.items()
                   if len(several) > 1 and all(is_number(value) for value in several)]
         if not varied:
-            return [self.picture(figures.bars([self.label_of(row) for row in self.finished], [row[key] for row in self.finished],
-                                              label, title), title, f"{title} of every run.")
-                    for key, label, title in wanted]
+            names = [self.label_of(row) for row in self.finished]
+            return [self.picture(figures.bars(names, [row[key] for row in self.finished], label, title), title,
+                                 f"{title} of every run.") for key, label, title in wanted]
         name = "rolling" if "rolling" in varied else varied[0]
         series = {}
         for row in self.finished:

@@ -3,6 +3,7 @@ import datetime
 import os
 import platform
 import re
+import subprocess
 from pathlib import Path
 
 import yaml
@@ -13,6 +14,8 @@ from .errors import SlopeError
 LOG = "log.lammps"
 VARIABLES = "variables.yaml"       # what `slope study` runs, written before the run
 MARKER = "finished.yaml"           # written when the run is complete
+# what our styles and LAMMPS say of what they made
+NOTES = ("Region terrain", "Fix wall/gran/balls", "Fix deposit/grid", "Delete_balls:", "Create_balls:", "Created ")
 WORD = re.compile(r'"""(.*?)"""|"([^"]*)"|\'([^\']*)\'|(\S+)')
 INPUT_PLACE = re.compile(r"\s*\([^()]*\.(?:cpp|h):\d+\)\s*$")     # LAMMPS names its source line at the end of a message
 SUMMARY_KEYS = {"volume": ("released", "on_grid", "off_grid", "lost", "residual"),
@@ -120,7 +123,7 @@ class Log:
             self.table, self.in_table = [line], True
         elif line.startswith("Total wall time:"):
             self.wall = words[-1]
-        elif line.startswith(("Region terrain", "Fix wall/gran/balls", "Fix deposit/grid", "Delete_balls:", "Created ")):
+        elif line.startswith(NOTES):
             self.notes.append(line.strip())
         elif words[0] == "Step":
             self.header, self.thermo = words, 0
@@ -185,6 +188,16 @@ def machine():
         model = None
     return {"name": platform.node(), "system": f"{platform.system()} {platform.release()}",
             "processor": model[1] if model else platform.machine(), "cores": len(os.sched_getaffinity(0))}
+
+
+def package_version():
+    """What `git describe` calls the package, None where it is no git checkout."""
+    try:
+        done = subprocess.run(["git", "-C", Path(__file__).parent, "describe", "--always", "--tags", "--dirty"], text=True, check=False,
+                              stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    except OSError:
+        return None
+    return done.stdout.strip() or None
 
 
 # --- results ---

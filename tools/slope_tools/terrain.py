@@ -194,7 +194,7 @@ def read_fggml(paths, crs, cell, tell):
             raise SlopeError(path, "must be FG-GML as other inputs are: make a terrain of each kind")
         found = fggml.read(path)
         sizes = {f"{z.shape[1]} x {z.shape[0]} cells" for z in (tile.raster.z for tile in found)}
-        tell(f"{path}: FG-GML, {len(found)} tiles of {' or '.join(sorted(sizes))}, "
+        tell(f"{path}: FG-GML, {len(found)} tile{'s' * (len(found) > 1)} of {' or '.join(sorted(sizes))}, "
              f"{' and '.join(sorted({tile.datum for tile in found}))}")
         tiles += found
     tiles = fggml.one_datum(tiles, warn)
@@ -206,7 +206,7 @@ def read_fggml(paths, crs, cell, tell):
     raster = merged[0]
     for group, coarse in zip(groups[1:], merged[1:]):
         raster = enlarge(raster, coarse)
-        tell(f"where there was no height: bilinear from {len(group)} tiles of {seconds(group[0])}")
+        tell(f"where there was no height: bilinear from the tiles of {seconds(group[0])}")
     if crs is None:
         number, crs = fggml.zone(raster, tiles[0].datum)
         tell(f"CRS {crs_name(crs)}, zone {number} of the plane rectangular system, which is the site's; --crs names another")

@@ -1,0 +1,372 @@
+"""The runs of a study: their folders, their processes, and how far they are."""
+import contextlib
+import datetime
+import fcntl
+import hashlib
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Dict, NamedTuple
+
+import yaml
+from rich.console import Console
+from rich.live import Live
+from rich.progress_bar import ProgressBar
+from rich.table import Table
+
+from . import runs
+from .errors import SlopeError
+
+POLL = 0.1              # s between two looks at the runs
+TELL = 30.0             # s between two lines about a run, where there is no terminal
+PATIENCE = 10.0         # s that a run gets to end after SIGTERM
+SCREEN = "screen.txt"
+SAFE = re.compile(r"[^A-Za-z0-9.+-]+")
+
+
+def cores():
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
+def physical_cores():
+    """What mpirun takes as its number of slots."""
+    siblings = {path.read_text(encoding="ascii") for path in
+                Path("/sys/devices/system/cpu").glob("cpu[0-9]*/topology/thread_siblings_list")}
+    return min(len(siblings) or 1, cores())
+
+
+class Run:
+    """One run: its values, its folder, and what became of it."""
+
+    def __init__(self, output, chosen):
+        self.chosen: Dict[str, str] = chosen
+        self.name = "_".join(f"{name}_{SAFE.sub('-', value)}" for name, value in chosen.items())
+        self.folder = Path(output) / self.name
+        self.varied = self.name     # for a narrow terminal: the values that differ
+        self.error = None
+        self.log = runs.Log(self.folder / runs.LOG)
+
+    @property
+    def marker(self):
+        return self.folder / runs.MARKER
+
+    def state(self):
+        if self.marker.exists():
+            return "finished"
+        return "unfinished" if self.folder.exists() else "new"
+
+    def fail(self, status):
+        """Keep why it failed: the ERROR line of its log, else what was last heard of it."""
+        how = f"ended with status {status}" if status >= 0 else f"ended by {signal.Signals(-status).name}"
+        if status == 0:
+            how = "lmp ended with status 0, but left no complete run"
+        error = self.log.update().error
+        screen = self.folder / SCREEN
+        if error is None and screen.exists():       # a rank other than 0 tells its errors there only
+            error = runs.Log(screen).update().error or runs.last_words(screen)
+        self.error = f"{error or 'no word in its log'} ({how}; see {self.folder / runs.LOG})"
+
+
+# --- folders ---
+
+@contextlib.contextmanager
+def copied(files, folder):
+    """Copy the deck and its data: what is edited while the study runs does not reach its later runs.
+
+    Gives {name: digest}.
+    """
+    shutil.rmtree(folder, ignore_errors=True)
+    try:
+        for name, source in files.items():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(source, folder / name)
+        yield {name: sha256(folder / name) for name in files}
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def check_finished(one, deck, digests):
+    """Raise SlopeError if a finished run was made from files that are not the present ones."""
+    if not one.marker.exists():
+        return
+    for name, digest in (runs.load_yaml(one.marker, "what `slope study` wrote").get("inputs") or {}).items():
+        if digests.get(name, digest) != digest:
+            raise SlopeError(one.folder, f"was run with another {name} than that of {deck.parent}: remove the folder "
+                             "to run it again, or give another -o")
+
+
+def sha256(path):
+    """Of a file, in hexadecimal."""
+    digest = hashlib.sha256()
+    with open(path, "rb") as data:
+        for block in iter(lambda: data.read(1 << 20), b""):
+            digest.update(block)
+    return digest.hexdigest()
+
+
+@contextlib.contextmanager
+def alone_in(folder):
+    """No other study works in the folder meanwhile; the lock goes when the process does."""
+    with open(folder / ".lock", "w", encoding="ascii") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise SlopeError(folder, "must not be in use by another study") from None
+        yield
+
+
+# --- processes ---
+
+@contextlib.contextmanager
+def signals_interrupt():
+    """What a batch system or a closed terminal sends ends the study as Ctrl-C does."""
+    def interrupt(*_):
+        raise KeyboardInterrupt
+    before = {name: signal.signal(name, interrupt) for name in (signal.SIGTERM, signal.SIGHUP)
+              if signal.getsignal(name) != signal.SIG_IGN}      # nohup ignores SIGHUP
+    try:
+        yield
+    finally:
+        for name, handler in before.items():
+            signal.signal(name, handler)
+
+
+class Active(NamedTuple):
+    """A run under way."""
+    run: Run
+    process: subprocess.Popen
+    began: float            # time.monotonic()
+
+
+class Work:
+    """Runs the deck in the run folders, some at a time."""
+
+    def __init__(self, deck, digests, inputs, lmp, ranks, jobs):
+        self.deck, self.digests, self.inputs = deck, digests, inputs
+        self.lmp, self.ranks, self.jobs = lmp, ranks, jobs
+        self.package = runs.package_version()
+        self.lmp_digest = sha256(lmp)
+        self.defaults = runs.index_variables(inputs / deck.name)
+        self.active = []
+
+    def do(self, todo):
+        """Run what is not finished. On an interruption, end the runs under way and leave their folders unfinished."""
+        waiting = [one for one in todo if not one.marker.exists()]
+        with Display(todo, waiting, self.jobs) as display:
+            try:
+                while waiting or self.active:
+                    while waiting and len(self.active) < self.jobs:
+                        one = waiting.pop(0)
+                        self._start(one)
+                        display.started(one)
+                    time.sleep(POLL)
+                    for active in list(self.active):
+                        active.run.log.update()
+                        if active.process.poll() is not None:
+                            self.active.remove(active)
+                            self._ended(active)
+                            display.ended(active)
+                    display.update(self.active, len(waiting))
+            except BaseException:
+                self._stop()
+                raise
+
+    def command(self, chosen):
+        """Arguments of lmp."""
+        words = ["-in", self.deck.name, "-log", runs.LOG]
+        for name, value in chosen.items():
+            words += ["-var", name, value]
+        return words
+
+    def _start(self, one):
+        try:
+            self._make_folder(one)
+            environment = {**os.environ, "OMP_NUM_THREADS": "1"}
+            before = []
+            if shutil.which("setpriv"):     # a run does not outlive a study that was killed
+                before += ["setpriv", "--pdeathsig", "TERM"]
+            if self.ranks > 1:
+                before += ["mpirun", "-np", str(self.ranks), "--bind-to", "none"]
+                if self.ranks > physical_cores():
+                    before += ["--oversubscribe"]
+                if os.geteuid() == 0:
+                    environment.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+            with open(one.folder / SCREEN, "wb") as screen:
+                # a session of its own: Ctrl-C reaches the study, which then ends the run
+                process = subprocess.Popen([*before, self.lmp, *self.command(one.chosen)], cwd=one.folder,
+                                           env=environment, stdin=subprocess.DEVNULL, stdout=screen,
+                                           stderr=subprocess.STDOUT, start_new_session=True)
+        except OSError as error:
+            raise SlopeError(one.folder, f"cannot be run: {error.strerror} ({error.filename})") from error
+        self.active.append(Active(one, process, time.monotonic()))
+
+    def _make_folder(self, one):
+        """The folder with all that goes into the run, instead of one of an unfinished run."""
+        new = one.folder.with_name(f".{one.name}.new")
+        old = one.folder.with_name(f".{one.name}.old")
+        for rest in (new, old):
+            shutil.rmtree(rest, ignore_errors=True)
+        shutil.copytree(self.inputs, new)
+        about = {"deck": self.deck.name, "set": one.chosen, "variables": {**self.defaults, **one.chosen},
+                 "command": " ".join([self.lmp.name, *self.command(one.chosen)]), "ranks": self.ranks,
+                 "package": self.package, "lmp_sha256": self.lmp_digest, "started": runs.now()}
+        runs.write(new / runs.VARIABLES, yaml.safe_dump(about, sort_keys=False))
+        if one.folder.exists():
+            one.folder.rename(old)
+        new.rename(one.folder)
+        shutil.rmtree(old, ignore_errors=True)
+
+    def _ended(self, active):
+        """Mark the run as finished, or keep why it is not."""
+        one, status = active.run, active.process.returncode
+        summaries = runs.summaries(one.folder)
+        if status != 0 or len(summaries) != 1:
+            return one.fail(status)
+        try:
+            summary = runs.load_summary(summaries[0])
+            if summary["ranks"] != self.ranks:
+                raise SlopeError(self.lmp, f"must be built with MPI to run on {self.ranks} ranks", summary["ranks"])
+        except SlopeError as error:
+            one.error = str(error)
+            return None
+        one.log.update()
+        # what the run used, and did not overwrite
+        inputs = {name: digest for name, digest in self.digests.items()
+                  if (name == self.deck.name or name in one.log.names) and (one.folder / name).is_file()
+                  and sha256(one.folder / name) == digest}
+        about = {"finished": runs.now(), "wall_seconds": round(time.monotonic() - active.began, 1),
+                 "summary": summaries[0].name, "machine": runs.machine(),
+                 "inputs": inputs}
+        runs.write(one.marker, yaml.safe_dump(about, sort_keys=False))
+        return None
+
+    def _stop(self):
+        """End the runs under way, each by its own process id."""
+        for active in self.active:
+            active.process.terminate()
+        deadline = time.monotonic() + PATIENCE
+        for active in self.active:
+            try:
+                active.process.wait(max(0.1, deadline - time.monotonic()))
+            except subprocess.TimeoutExpired:
+                active.process.kill()
+                active.process.wait()
+        self.active.clear()
+
+
+# --- progress ---
+
+class Display:
+    """Shows how far the runs are: a table that renews itself on a terminal, else a line now and then."""
+
+    def __init__(self, todo, waiting, jobs):
+        self.total, self.waiting, self.jobs = len(todo), len(waiting), jobs
+        self.numbers = {one.name: i for i, one in enumerate(todo, 1)}
+        self.ended_runs = self.failed = 0
+        self.walls = []
+        self.told = {}      # name -> when the last line about it was printed
+        self.live = None
+        if sys.stderr.isatty():
+            # without auto_refresh there is no thread, and the study may fork
+            self.live = Live(console=Console(stderr=True), auto_refresh=False, transient=True)
+        self.done_before = self.total - self.waiting
+
+    def __enter__(self):
+        if self.done_before:
+            self.say(f"{self.done_before} of {self.total} runs are finished already")
+        if self.live:
+            self.live.start()
+        return self
+
+    def __exit__(self, kind, *_):
+        if self.live:
+            self.live.stop()
+        if kind is not None and issubclass(kind, KeyboardInterrupt):
+            done = self.done_before + self.ended_runs - self.failed
+            self.say(f"stopped with {done} of {self.total} runs finished; the same command goes on")
+
+    def say(self, line):
+        if self.live:
+            self.live.console.print(line, markup=False, highlight=False)
+        else:
+            print(line, flush=True)
+
+    def label(self, one):
+        return f"[{self.numbers[one.name]}/{self.total}] {one.name}"
+
+    def started(self, one):
+        self.told[one.name] = time.monotonic()
+        if not self.live:
+            self.say(f"{self.label(one)}: started")
+
+    def ended(self, active):
+        one, wall = active.run, time.monotonic() - active.began
+        self.ended_runs += 1
+        self.walls.append(wall)
+        if one.error:
+            self.failed += 1
+            self.say(f"{self.label(one)}: failed: {one.error}")
+        else:
+            at = f" at {one.log.time:.1f} s" if one.log.time is not None else ""
+            self.say(f"{self.label(one)}: finished{at}, wall time {duration(wall)}")
+
+    def update(self, active, waiting):
+        if self.live:
+            return self.live.update(self._table(active, waiting), refresh=True)
+        for job in active:
+            if time.monotonic() - self.told[job.run.name] > TELL:
+                self.told[job.run.name] = time.monotonic()
+                _, text, end = self._progress(job)
+                self.say(f"{self.label(job.run)}: {text}" + (f", ends by {end}" if end else ""))
+        return None
+
+    @staticmethod
+    def _progress(job):
+        """Share done (None if not known), what to say of it, and when it will have ended at the latest."""
+        log = job.run.log
+        if log.thermo == 0:
+            return None, "setting up", ""
+        text = f"step {log.step}" + (f" of {log.last}" if log.last else "")
+        if log.time is not None:
+            text += f", {log.time:.2f} s"
+        if not log.last or log.last <= log.first:
+            return None, text, ""
+        share = (log.step - log.first) / (log.last - log.first)
+        spent = time.monotonic() - job.began
+        return share, text, clock(spent * (1 - share) / share) if share > 0 else ""
+
+    def _table(self, active, waiting):
+        table = Table(box=None, padding=(0, 2, 0, 0))
+        table.add_column("run", no_wrap=True)
+        table.add_column("", no_wrap=True)
+        for head in ("step", "ends by"):
+            table.add_column(head, no_wrap=True, min_width=8)
+        for job in active:
+            share, text, end = self._progress(job)
+            table.add_row(f"[{self.numbers[job.run.name]}/{self.total}] {job.run.varied}",
+                          ProgressBar(100, 100 * (share or 0), width=12), text, end)
+        ends = ""
+        if self.walls and waiting:
+            ends = clock(sum(self.walls) / len(self.walls) * (waiting + len(active) / 2) / self.jobs)
+        table.add_row(f"{self.done_before + self.ended_runs - self.failed} of {self.total} finished"
+                      + (f", {self.failed} failed" if self.failed else ""), "", f"{waiting} waiting", ends,
+                      style="dim")
+        return table
+
+
+def duration(seconds):
+    """Such as 1:02:03, or 4.5 s."""
+    return f"{seconds:.1f} s" if seconds < 60 else str(datetime.timedelta(seconds=round(seconds)))
+
+
+def clock(seconds):
+    """The time of day in so many seconds, with the date if that is not today."""
+    today = datetime.datetime.now()
+    then = today + datetime.timedelta(seconds=seconds)
+    return then.strftime("%H:%M:%S" if then.date() == today.date() else "%Y-%m-%d %H:%M")
