@@ -380,8 +380,8 @@ def test_a_failing_run_is_told_and_the_others_go_on(slope, here):
     status, out, err = slope("case/in.tiny --set friction=30,95,20 --set steps=20 -o out")
     assert status == 2
     assert err.splitlines()[-1].startswith(
-        "slope study: out: 1 of 3 runs failed: friction_95_steps_20: ERROR: Pair gran/restitution friction must be >= 0 "
-        "and < 90 degrees, got 95 (ended with status 1; see out/friction_95_steps_20/log.lammps)")
+        "slope study: out: 1 of 3 runs failed: friction_95_steps_20: ERROR: Pair gran/restitution friction must be >= "
+        "0 and < 90 degrees, got 95 (ended with status 1; see out/friction_95_steps_20/log.lammps)")
     assert "[2/3] friction_95_steps_20: failed: ERROR: Pair gran/restitution friction" in out
     about, table = load(here / "out")
     assert [line["status"] for line in table] == ["finished", "failed", "finished"]

@@ -193,8 +193,8 @@ def machine():
 def package_version():
     """What `git describe` calls the package, None where it is no git checkout."""
     try:
-        done = subprocess.run(["git", "-C", Path(__file__).parent, "describe", "--always", "--tags", "--dirty"], text=True, check=False,
-                              stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+        done = subprocess.run(["git", "-C", Path(__file__).parent, "describe", "--always", "--tags", "--dirty"],
+                              text=True, check=False, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
     except OSError:
         return None
     return done.stdout.strip() or None
