@@ -23,7 +23,7 @@ class Polygon {
  public:
   Polygon() : xlo(0.0), xhi(0.0), ylo(0.0), yhi(0.0), scale(0.0) {}
 
-  // rings without any check: x,y of all points, and of each ring the number of points
+  // rings that read() would take, without any check: x,y of all points, number of points of each
   Polygon(const std::vector<double> &xy, const std::vector<int> &sizes);
 
   // Read rings: a line "x,y" for each point, a blank line between two rings, # starts a comment.

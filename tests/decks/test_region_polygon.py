@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from shapely.geometry import Point, Polygon, box
 
-from deck_helpers import run_deck, write_asc
+from deck_helpers import doc_examples, run_deck, write_asc
 
 sys.path.insert(0, os.environ.get("SLOPE_TOOLS", str(Path(__file__).resolve().parents[2] / "tools")))
 
@@ -189,3 +189,15 @@ def test_what_slope_polygon_writes(tmp_path):
     said = log.split("Region polygon road: ")[1].splitlines()[0]
     assert said.startswith("4 rings, ") and float(said.split()[-1]) == pytest.approx(written.area, rel=1e-7)
     assert plan(tmp_path) == {(i, j) for i, j in zip(x.ravel(), y.ravel()) if written.contains(Point(i, j))}
+
+
+def test_doc_examples(tmp_path):
+    write_asc(tmp_path / "terrain.asc", np.full((30, 40), 200.0), cell=10.0)
+    for name in ("road.csv", "release.csv"):
+        (tmp_path / name).write_text("90,60\n130,60\n130,100\n90,100\n")
+    log = run_deck("units si\natom_style sphere\nboundary f f f\n" + doc_examples("region_polygon") + """
+create_box 1 mass
+lattice sc 5
+create_atoms 1 region mass
+""", tmp_path)
+    assert "= (90.000000 60.000000 150.00000) to (130.00000 100.00000 250.00000)" in log

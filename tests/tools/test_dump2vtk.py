@@ -7,6 +7,7 @@ import signal
 import subprocess
 import time
 import xml.etree.ElementTree as ET
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -113,7 +114,8 @@ def write_asc(path, z, x=0.0, y=0.0, cell=2.0):
 def test_every_value_of_a_snapshot(here):
     rows = balls(50)
     Path("a.dump").write_text(snapshot(rows, step=900))
-    assert good("a.dump", "-o", "run") == "run.pvd: 1 snapshots, step 900 to 900, time 900 to 900, 50 balls in the last\n"
+    assert good("a.dump", "-o", "run") == ("run.pvd: 1 snapshots, step 900 to 900, time 900 to 900, "
+                                           "50 balls in the last\n")
     points, values, data = read_vtp("run/run_00000900.vtp")
     rows = np.array(rows)
     assert np.array_equal(points, rows[:, 3:6])
@@ -133,7 +135,8 @@ def test_every_value_of_a_snapshot(here):
 
 
 def test_columns_in_any_order_and_others_by_name():
-    Path("a.dump").write_text(snapshot([[3, "Fe", 0.5, 7, -1e-3, 1, 2, 4, "nan"], [6, "O", 1.5, 8, 2e300, 5, 6, 7, 1e-320]],
+    Path("a.dump").write_text(snapshot([[3, "Fe", 0.5, 7, -1e-3, 1, 2, 4, "nan"],
+                                        [6, "O", 1.5, 8, 2e300, 5, 6, 7, 1e-320]],
                                        columns="z element radius id c_stress fx fy fz v_q", box="").replace(
                           "ATOMS z", "ATOMS x y z").replace("\n3 Fe", "\n1 2 3 Fe").replace("\n6 O", "\n4 5 6 O"))
     result = run("a.dump", "-o", "run")
@@ -410,6 +413,11 @@ def test_bad_gz():
                         r"|line \d+: the snapshot of step 2 is cut short, got \d+ of 3000 balls)", message)
     result = run("a.dump.gz", "-o", "run", "--skip-truncated")
     assert result.returncode == 0 and read_pvd("run.pvd") == [(1, "run/run_00000001.vtp")]
+    # cut between two snapshots: only the missing end of the compressed stream tells
+    stream = zlib.compressobj(wbits=31)
+    Path("c.dump.gz").write_bytes(stream.compress(GOOD.encode()) + stream.flush(zlib.Z_FULL_FLUSH))
+    assert bad("c.dump.gz", "-o", "c") == "c.dump.gz, after line 12: the compressed file is cut short"
+    assert run("c.dump.gz", "-o", "c", "--skip-truncated").returncode == 0
     Path("b.dump.gz").write_bytes(data[:2000] + bytes(100) + data[2100:])
     assert re.fullmatch(r"b.dump.gz, .*", bad("b.dump.gz", "-o", "b"))
 

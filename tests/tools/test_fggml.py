@@ -19,7 +19,7 @@ TOP = Path(__file__).resolve().parents[2]
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli, fggml, rasters  # noqa: E402  (after the path is set)
+from slope_tools import cli, fggml, rasters, terrain  # noqa: E402  (after the path is set)
 
 SECOND = 1 / 3600
 GROUND, WATER, MISSING = "\u5730\u8868\u9762", "\u5185\u6c34\u9762", "\u30c7\u30fc\u30bf\u306a\u3057"
@@ -243,7 +243,6 @@ def quarters(shape=(10, 12), spacing=0.2, south=CENTRE[0], west=CENTRE[1]):
 
 
 def merged(paths):
-    from slope_tools import terrain
     raster, crs, cell = terrain.read_fggml(paths, None, None, lambda step: None)
     return raster, crs, cell
 
@@ -371,6 +370,24 @@ def test_zone_of_a_site(lat, lon, number):
     raster = rasters.Raster(np.zeros((2, 2)), Affine(SECOND, 0, lon - SECOND, 0, -SECOND, lat + SECOND), None)
     assert fggml.zone(raster, "JGD2011") == (number, CRS.from_epsg(6668 + number))
     assert fggml.zone(raster, "JGD2000") == (number, CRS.from_epsg(2442 + number))
+
+
+# --- the page ---
+
+def doc_examples():
+    text = (TOP / "doc" / "src" / "tool_terrain.rst").read_text(encoding="ascii").replace("\\\n", " ")
+    return re.findall(r"^ +tools/slope terrain (.*FG-GML.*) -o", text + terrain.EPILOG, re.MULTILINE)
+
+
+@pytest.mark.parametrize("command", doc_examples())
+def test_every_example_of_the_page_and_the_help_runs(slope, command):
+    assert len(doc_examples()) == 3
+    for word in command.split():
+        if word.endswith(".zip"):
+            spacing = 0.4 if "DEM10" in word else 0.2
+            write_zip(word, {"a.xml": xml(slope_tile(spacing=spacing), spacing=spacing)})
+    status, out, err = slope(command)
+    assert (status, err) == (0, "") and out.endswith("\nregion ground terrain out.asc\n")
 
 
 # --- bad input ---

@@ -1,6 +1,7 @@
 """tools/slope polygon: polygons of every format to the deck's rings, against shapely and hand-made numbers."""
 import json
 import os
+import re
 import shlex
 import sys
 import time
@@ -18,7 +19,7 @@ TOP = Path(__file__).resolve().parents[2]
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli, polygons, rasters  # noqa: E402  (after the path is set)
+from slope_tools import cli, polygon, polygons, rasters  # noqa: E402  (after the path is set)
 
 CRS_M = "EPSG:6677"
 EAST, NORTH = -12000.0, 34000.0    # local 0 0 of the terrain, which is 100 m x 80 m
@@ -248,6 +249,31 @@ def test_ten_thousand_vertices(written):
     print(f"10000 vertices in {time.monotonic() - start:.2f} s")
     assert len(found) == 1 and len(found[0]) == 10000 and ", 10000 vertices," in out
     assert np.abs(found[0] - polygons.rings_of(star)[0]).max() < 1e-4
+
+
+# --- the page ---
+
+def doc_examples():
+    text = (TOP / "doc" / "src" / "tool_polygon.rst").read_text(encoding="ascii") + polygon.EPILOG
+    return re.findall(r"^ +tools/slope polygon ((?!IN ).*)", text, re.MULTILINE)
+
+
+@pytest.mark.parametrize("command", doc_examples())
+def test_every_example_of_the_page_and_the_help_runs(here, capsys, command):
+    assert len(doc_examples()) == 6
+    terrain("terrain.asc")
+    geojson("road.geojson", moved(ROAD, WGS))
+    shapefile("release.shp", moved(ROAD, "EPSG:6676"), crs="EPSG:6676")
+    Path("road.wkt").write_text(moved(ROAD, "EPSG:6668").wkt)
+    Path("sketch.csv").write_text(SQUARE)
+    if "--help" in command:
+        with pytest.raises(SystemExit):
+            cli.main(["polygon", "--help"])
+        assert "tools/slope polygon road.geojson" in capsys.readouterr().out
+    else:
+        assert cli.main(["polygon", *shlex.split(command)]) == 0
+        out, err = capsys.readouterr()
+        assert err == "" and re.search(r"\nregion \w+ polygon \w+.csv\n$", out)
 
 
 # --- bad input ---

@@ -183,6 +183,11 @@ TEST_F(PolygonFile, AnEdgeBelongsToItsEastAndNorth)
       count += p.inside(i, j);
     }
   EXPECT_EQ(count, 100);    // as many as the area
+  const Polygon west = read("0,0\n10,10\n0,10\n"), east = read("10,10\n0,0\n10,0\n");
+  for (int i = 0; i < 10; i++) {
+    EXPECT_FALSE(west.inside(i, i)) << i;
+    EXPECT_TRUE(east.inside(i, i)) << i;
+  }
   EXPECT_FALSE(p.inside(std::nan(""), 5.0));
   EXPECT_FALSE(p.inside(5.0, std::nan("")));
   EXPECT_FALSE(p.inside(INFINITY, 5.0));
@@ -220,6 +225,26 @@ TEST_F(PolygonFile, SharedEdgesPartThePlane)
       ASSERT_EQ(count, 1) << x << " " << y;
     }
   }
+}
+
+// edges that meet on the border of two strips, here at y = 5 of 10 strips: in the strip, one of them
+// reaches both farther west and farther east than the other if it is made a little longer
+TEST_F(PolygonFile, TipsOnTheBordersOfStrips)
+{
+  for (const double sign : {1.0, -1.0})
+    for (const double up : {1.0, -1.0}) {
+      std::vector<double> xy = {5, 0, 9, 0, 0, 5};
+      for (int k = 0; k < 4; k++) xy.insert(xy.end(), {20.0 + k, k % 2 ? 10.0 : 8.0});
+      for (int k = 3; k >= 0; k--) xy.insert(xy.end(), {20.0 + k, k % 2 ? 9.0 : 7.0});
+      for (size_t k = 0; k < xy.size(); k += 2) {
+        xy[k] *= sign;
+        xy[k + 1] *= up;
+      }
+      const Polygon p(xy, {3, 8});    // 10 edges that are not along x
+      for (double x = -30.0; x < 30.0; x += 0.0625)
+        for (double y = -9.96875; y < 10.0; y += 0.0625)
+          ASSERT_EQ(p.inside(x, y), plain_inside(p, x, y)) << x << " " << y;
+    }
 }
 
 // stars, combs and roads of many vertices, with points at random and at vertices' heights

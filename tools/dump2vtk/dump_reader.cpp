@@ -69,8 +69,8 @@ bool Slope::to_number(std::string_view word, double &value)
 /* ---------------------------------------------------------------------- */
 
 LineReader::LineReader(const std::string &_path) :
-    path(_path), gz(nullptr), begin(0), end(0), nline(0), ended(true), held(false),
-    finished(false), cut(false)
+    path(_path), gz(nullptr), begin(0), end(0), nline(0), ended(true), held(false), finished(false),
+    cut(false)
 {
   struct stat info;
   errno = 0;
@@ -108,8 +108,8 @@ void LineReader::refill()
   if (code == Z_BUF_ERROR)
     finished = cut = true;
   else if (n < 0)
-    throw std::runtime_error(path + ", after line " + std::to_string(nline) + ": cannot read on: " +
-                             (code == Z_ERRNO ? strerror(errno) : message));
+    throw std::runtime_error(path + ", after line " + std::to_string(nline) +
+                             ": cannot read on: " + (code == Z_ERRNO ? strerror(errno) : message));
   else if (n == 0)
     finished = true;
 }
@@ -200,7 +200,8 @@ int Snapshot::find(std::string_view name) const
 void DumpReader::must_follow(const char *what)
 {
   if (!lines.next() || !lines.complete())
-    throw CutShort(lines.where(std::string("the file ends in the header of a snapshot, at ") + what));
+    throw CutShort(
+        lines.where(std::string("the file ends in the header of a snapshot, at ") + what));
   if (starts_with(lines.line(), "ITEM:")) {
     lines.again();
     throw CutShort(lines.where(std::string("another snapshot begins in a header, at ") + what));
@@ -237,7 +238,8 @@ void DumpReader::read_box(Snapshot &snapshot)
   for (auto &row : rows) {
     must_follow("BOX BOUNDS");
     const auto &words = lines.words();
-    if (words.size() < 2) lines.fail("BOX BOUNDS must be two numbers, got " + printable(lines.line()));
+    if (words.size() < 2)
+      lines.fail("BOX BOUNDS must be two numbers, got " + printable(lines.line()));
     if (words.size() > 3) known = false;
     for (size_t k = 0; k < std::min<size_t>(words.size(), 3); k++)
       if (!to_number(words[k], row[k]))
@@ -324,13 +326,11 @@ bool DumpReader::next(Snapshot &snapshot)
   while (true) {
     const std::string_view line = lines.line();
     if (!starts_with(line, "ITEM: ")) {
-      if (any || snapshot.step >= 0)
-        lines.fail("must be an ITEM line, got " + printable(line));
+      if (any || snapshot.step >= 0) lines.fail("must be an ITEM line, got " + printable(line));
       lines.fail("must begin with ITEM:, as a text dump of LAMMPS does, got " + printable(line));
     }
     const std::string_view item = line.substr(6);
-    if (!lines.complete())
-      throw CutShort(lines.where("the file ends in the header of a snapshot"));
+    if (!lines.complete()) throw CutShort(lines.where("the file ends in the header of a snapshot"));
 
     if (snapshot.step >= 0 && (starts_with(item, "UNITS") || starts_with(item, "TIME"))) {
       lines.again();
@@ -389,7 +389,8 @@ void Slope::positions(const Snapshot &snapshot, const LineReader &file, std::vec
     std::string got;
     for (const auto &name : snapshot.names) got += ' ' + printable(name);
     wrong(snapshot.atoms_line,
-          "there must be columns x y z, xu yu zu, xs ys zs or xsu ysu zsu, got" + got.substr(0, 200));
+          "there must be columns x y z, xu yu zu, xs ys zs or xsu ysu zsu, got" +
+              got.substr(0, 200));
   }
   if (scaled && !snapshot.has_box)
     wrong(snapshot.atoms_line, "scaled positions need ITEM: BOX BOUNDS with lo hi or lo hi tilt");
@@ -402,8 +403,9 @@ void Slope::positions(const Snapshot &snapshot, const LineReader &file, std::vec
     for (int axis = 0; axis < 3; axis++) {
       p[axis] = snapshot.columns[used[axis]][i];
       if (!std::isfinite(p[axis]))
-        wrong(snapshot.atoms_line + 1 + i, "column " + snapshot.names[used[axis]] +
-                  " must be finite, got " + std::to_string(p[axis]));
+        wrong(snapshot.atoms_line + 1 + i,
+              "column " + snapshot.names[used[axis]] + " must be finite, got " +
+                  std::to_string(p[axis]));
     }
     if (scaled) {
       p[0] = snapshot.corner[0] + lx * p[0] + xy * p[1] + xz * p[2];

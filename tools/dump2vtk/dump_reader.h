@@ -18,7 +18,7 @@ struct gzFile_s;
 namespace Slope {
 
 // A snapshot that ends before its last ball: what a killed run leaves behind. Any other error of
-// the classes below is a plain std::runtime_error; each has one line: file, line in it, rule, value.
+// the classes below is a plain std::runtime_error; each has one line: file, line, rule, value.
 class CutShort : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -33,11 +33,11 @@ class LineReader {
   explicit LineReader(const std::string &path);
   ~LineReader();
 
-  bool next();                               // false at the end of the file
+  bool next();    // false at the end of the file
   std::string_view line() const { return text; }
   bool complete() const { return ended; }    // whether the line ends in a line break
   int64_t number() const { return nline; }
-  void again() { held = true; }              // next() gives the same line once more
+  void again() { held = true; }    // next() gives the same line once more
 
   // the words of the line, between blanks and tabs
   const std::vector<std::string_view> &words();
@@ -46,7 +46,7 @@ class LineReader {
   std::string where(const std::string &what) const;
   [[noreturn]] void fail(const std::string &what) const;
 
-  int64_t bytes() const;                     // of the file that have been read
+  int64_t bytes() const;    // of the file that have been read
   const std::string &name() const { return path; }
 
  private:
@@ -70,18 +70,18 @@ struct Snapshot {
   bool has_time;    // ITEM: TIME, in time units
   double time;
   size_t count;
-  std::vector<std::string> names;             // of the columns
-  std::vector<std::vector<double>> columns;   // [column][ball]
-  std::vector<bool> numeric;                  // false: words, such as elements; the column is empty
+  std::vector<std::string> names;              // of the columns
+  std::vector<std::vector<double>> columns;    // [column][ball]
+  std::vector<bool> numeric;    // false: words, such as elements; the column is empty
 
   // Edges of the box: lowest corner, lengths, tilts xy xz yz
   bool has_box;
   std::array<double, 3> corner, length, tilt;
 
-  int64_t first_line;                         // in the file, for messages
+  int64_t first_line;    // in the file, for messages
   int64_t atoms_line;
 
-  int find(std::string_view name) const;      // column, or -1
+  int find(std::string_view name) const;    // column, or -1
 };
 
 // Snapshots of a LAMMPS dump (styles atom and custom, text), one after the other

@@ -109,8 +109,8 @@ std::string reason(const std::error_code &error)
 struct Options {
   std::vector<std::string> dumps, rasters, balls;
   std::string terrain, surface;
-  fs::path out;          // without the ending of any file
-  double dt = 0.0;       // 0: not given
+  fs::path out;       // without the ending of any file
+  double dt = 0.0;    // 0: not given
   double diameter = 0.0;
   bool single = false, skip = false;
 };
@@ -169,8 +169,7 @@ Options parse(const std::vector<std::string> &words)
       return word.empty() || word[0] != '-' || to_number(word, value);
     };
     if (values.empty())
-      while (i + 1 < words.size() && is_value(words[i + 1]) &&
-             (values.empty() || many.count(name)))
+      while (i + 1 < words.size() && is_value(words[i + 1]) && (values.empty() || many.count(name)))
         values.push_back(words[++i]);
     if (values.empty() || values[0].empty()) throw std::runtime_error(name + " must have a value");
 
@@ -353,9 +352,9 @@ template <class Writer, class Data> void write(Data *data, const std::string &pa
   if (tail != ending) {
     const auto code = writer->GetErrorCode();
     throw std::runtime_error("cannot write " + path + ": " +
-                             (code == vtkErrorCode::NoError ?
-                                  "the file is incomplete, is the disk full?" :
-                                  vtkErrorCode::GetStringFromErrorCode(code)));
+                             (code == vtkErrorCode::NoError
+                                  ? "the file is incomplete, is the disk full?"
+                                  : vtkErrorCode::GetStringFromErrorCode(code)));
   }
 }
 
@@ -438,7 +437,9 @@ void convert(const Snapshot &snapshot, const LineReader &file, const Options &op
   const vtkIdType n = snapshot.count;
   std::vector<double>().swap(xyz);
 
-  auto add = [&](vtkSmartPointer<vtkDataArray> array) { data->GetPointData()->AddArray(array); };
+  auto add = [&](vtkSmartPointer<vtkDataArray> array) {
+    data->GetPointData()->AddArray(array);
+  };
   std::vector<bool> done(snapshot.names.size());
   for (const int k : coordinates) done[k] = true;
 
@@ -447,11 +448,13 @@ void convert(const Snapshot &snapshot, const LineReader &file, const Options &op
   const int radius = snapshot.find("radius");
   if (snapshot.find("diameter") < 0 && radius >= 0) {
     const auto &values = snapshot.columns[radius];
-    add(make_array("diameter", n, 1, options.single,
-                   [&](vtkIdType i, int) { return 2.0 * values[i]; }));
+    add(make_array("diameter", n, 1, options.single, [&](vtkIdType i, int) {
+      return 2.0 * values[i];
+    }));
   } else if (snapshot.find("diameter") < 0 && options.diameter > 0.0) {
-    add(make_array("diameter", n, 1, options.single,
-                   [&](vtkIdType, int) { return options.diameter; }));
+    add(make_array("diameter", n, 1, options.single, [&](vtkIdType, int) {
+      return options.diameter;
+    }));
   }
 
   // vectors; a column of the dump goes before an array of ours of the same name
@@ -460,7 +463,9 @@ void convert(const Snapshot &snapshot, const LineReader &file, const Options &op
     int column[3];
     for (int k = 0; k < 3; k++) column[k] = snapshot.find(vector.columns[k]);
     if (*std::min_element(column, column + 3) < 0 || snapshot.find(vector.name) >= 0) continue;
-    auto component = [&](vtkIdType i, int k) { return snapshot.columns[column[k]][i]; };
+    auto component = [&](vtkIdType i, int k) {
+      return snapshot.columns[column[k]][i];
+    };
     add(make_array(vector.name, n, 3, options.single, component));
     for (const int k : column) done[k] = true;
     if (vector.magnitude && snapshot.find(vector.magnitude) < 0)
@@ -476,8 +481,9 @@ void convert(const Snapshot &snapshot, const LineReader &file, const Options &op
     const auto &values = snapshot.columns[k];
     if (done[k] || !snapshot.numeric[k]) continue;
     if (!is_whole(name)) {
-      add(make_array(name.c_str(), n, 1, options.single,
-                     [&](vtkIdType i, int) { return values[i]; }));
+      add(make_array(name.c_str(), n, 1, options.single, [&](vtkIdType i, int) {
+        return values[i];
+      }));
       continue;
     }
     for (vtkIdType i = 0; i < n; i++)
@@ -485,17 +491,21 @@ void convert(const Snapshot &snapshot, const LineReader &file, const Options &op
         throw std::runtime_error(file.name() + ", line " +
                                  std::to_string(snapshot.atoms_line + 1 + i) + ": column " + name +
                                  " must be a whole number, got " + to_text(values[i]));
-    add(make_integers(name.c_str(), n, [&](vtkIdType i) { return (vtkTypeInt64) values[i]; }));
+    add(make_integers(name.c_str(), n, [&](vtkIdType i) {
+      return (vtkTypeInt64) values[i];
+    }));
   }
   data->GetPointData()->SetActiveScalars("speed");
   data->GetPointData()->SetActiveVectors("velocity");
 
   // ParaView takes the time of a file that is opened without the .pvd from here
 
-  data->GetFieldData()->AddArray(
-      make_array("TimeValue", 1, 1, false, [&](vtkIdType, int) { return time; }));
-  data->GetFieldData()->AddArray(
-      make_integers("step", 1, [&](vtkIdType) { return (vtkTypeInt64) snapshot.step; }));
+  data->GetFieldData()->AddArray(make_array("TimeValue", 1, 1, false, [&](vtkIdType, int) {
+    return time;
+  }));
+  data->GetFieldData()->AddArray(make_integers("step", 1, [&](vtkIdType) {
+    return (vtkTypeInt64) snapshot.step;
+  }));
   write<vtkXMLPolyDataWriter>(data.Get(), path);
 }
 
@@ -558,9 +568,9 @@ void convert_dumps(const Options &options, Output &output, Progress &progress, s
       for (size_t k = 0; k < snapshot.names.size() && word.empty(); k++)
         if (!snapshot.numeric[k]) word = snapshot.names[k];
 
-      const double time = options.dt > 0.0 ? snapshot.step * options.dt :
-          snapshot.has_time                ? snapshot.time :
-                                             snapshot.step;
+      const double time = options.dt > 0.0 ? snapshot.step * options.dt
+          : snapshot.has_time              ? snapshot.time
+                                           : snapshot.step;
       const Entry &other = series.empty() ? Entry{} : series.begin()->second;
       if (options.dt == 0.0 && !series.empty() && other.has_time != snapshot.has_time)
         throw std::runtime_error(source + ": ITEM: TIME must be in all snapshots or in none, " +
@@ -569,10 +579,10 @@ void convert_dumps(const Options &options, Output &output, Progress &progress, s
       const fs::path file = output.snapshot(snapshot.step);
       convert(snapshot, reader.file(), options, time, output.path(file));
       series[snapshot.step] = {time, source, snapshot.has_time, snapshot.count};
-      progress.say(std::to_string(100 * (before + reader.file().bytes()) /
-                                  std::max<int64_t>(1, total)) + " %, " +
-                   std::to_string(series.size()) + " snapshots, step " +
-                   std::to_string(snapshot.step));
+      progress.say(
+          std::to_string(100 * (before + reader.file().bytes()) / std::max<int64_t>(1, total)) +
+          " %, " + std::to_string(series.size()) + " snapshots, step " +
+          std::to_string(snapshot.step));
     }
     before += fs::file_size(path);
     if (dropped > 1) first += "; so are " + std::to_string(dropped - 1) + " more of this file";
@@ -589,8 +599,9 @@ void convert_dumps(const Options &options, Output &output, Progress &progress, s
              "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
              "  <Collection>\n");
   for (const auto &[step, entry] : series)
-    file.write("    <DataSet timestep=\"" + to_text(entry.time) + "\" group=\"\" part=\"0\" file=\"" +
-               xml_text(output.snapshot(step).string()) + "\"/>\n");
+    file.write("    <DataSet timestep=\"" + to_text(entry.time) +
+               "\" group=\"\" part=\"0\" file=\"" + xml_text(output.snapshot(step).string()) +
+               "\"/>\n");
   file.write("  </Collection>\n</VTKFile>\n");
   file.commit();
 
@@ -698,7 +709,8 @@ std::string raster_name(const std::string &path)
   return name.substr(1);
 }
 
-void convert_rasters(const Options &options, Output &output, Progress &progress, std::string &report)
+void convert_rasters(const Options &options, Output &output, Progress &progress,
+                     std::string &report)
 {
   const fs::path folder = options.out.parent_path();
   std::map<std::string, std::string> sources;    // of names that are taken
@@ -706,7 +718,8 @@ void convert_rasters(const Options &options, Output &output, Progress &progress,
   for (const auto &path : options.rasters) {
     const std::string name = raster_name(path);
     if (sources.count(name))
-      throw std::runtime_error("--raster: " + sources[name] + " and " + path + " would both become " +
+      throw std::runtime_error("--raster: " + sources[name] + " and " + path +
+                               " would both become " +
                                (folder / output.single(name + ".vts")).string());
     sources[name] = path;
   }
@@ -716,7 +729,9 @@ void convert_rasters(const Options &options, Output &output, Progress &progress,
     progress.say("terrain");
     ground = ElevationGrid::read(options.terrain);
     const fs::path file = output.single("terrain.vts");
-    auto height = [&](int i, int j) { return ground.at(i, j); };
+    auto height = [&](int i, int j) {
+      return ground.at(i, j);
+    };
     const size_t showing = write_grid(ground, "height", height, options.single, output.path(file));
     report += (folder / file).string() + ": " + size_text(ground, showing);
   }
@@ -733,11 +748,13 @@ void convert_rasters(const Options &options, Output &output, Progress &progress,
     // on a NODATA neighbour
 
     auto height = [&](int i, int j) {
-      const double x = raster.xlo + (i + 0.5) * raster.cell, y = raster.ylo + (j + 0.5) * raster.cell;
-      const double u = (x - ground.xlo) / ground.cell - 0.5, v = (y - ground.ylo) / ground.cell - 0.5;
+      const double x = raster.xlo + (i + 0.5) * raster.cell,
+                   y = raster.ylo + (j + 0.5) * raster.cell;
+      const double u = (x - ground.xlo) / ground.cell - 0.5,
+                   v = (y - ground.ylo) / ground.cell - 0.5;
       const double column = std::round(u), row = std::round(v);
-      if (std::fabs(u - column) < 1e-6 && std::fabs(v - row) < 1e-6 && column >= 0.0 && row >= 0.0 &&
-          column < ground.nx && row < ground.ny)
+      if (std::fabs(u - column) < 1e-6 && std::fabs(v - row) < 1e-6 && column >= 0.0 &&
+          row >= 0.0 && column < ground.nx && row < ground.ny)
         return ground.at(column, row);
       return ground.height(x, y);
     };
@@ -761,8 +778,9 @@ void convert_balls(const Options &options, Output &output, Progress &progress, s
     LineReader file(path);
     while (file.next()) {
       auto words = file.words();
-      const auto comment =
-          std::find_if(words.begin(), words.end(), [](auto word) { return word[0] == '#'; });
+      const auto comment = std::find_if(words.begin(), words.end(), [](auto word) {
+        return word[0] == '#';
+      });
       words.erase(comment, words.end());
       if (words.empty()) continue;
       if (words.size() != 3)
@@ -789,7 +807,8 @@ void convert_balls(const Options &options, Output &output, Progress &progress, s
   }));
   const fs::path file = output.single("balls.vtp");
   write<vtkXMLPolyDataWriter>(data.Get(), output.path(file));
-  report += (options.out.parent_path() / file).string() + ": " + std::to_string(n) + " fixed balls\n";
+  report +=
+      (options.out.parent_path() / file).string() + ": " + std::to_string(n) + " fixed balls\n";
 }
 
 int run(const std::vector<std::string> &words)
