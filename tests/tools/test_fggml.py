@@ -48,7 +48,7 @@ def xml(z=None, south=CENTRE[0], west=CENTRE[1], spacing=0.2, list_=None, start=
  xmlns:gml="http://www.opengis.net/gml/3.2" xmlns="http://fgd.gsi.go.jp/spec/2008/FGD_GMLSchema"
  xmlns:xlink="http://www.w3.org/1999/xlink" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" gml:id="Dataset1">
 <gml:description>\u57fa\u76e4\u5730\u56f3\u60c5\u5831\u30e1\u30bf\u30c7\u30fc\u30bf ID=fmdid:15-3101</gml:description>
-<gml:name>\u57fa\u76e4\u5730\u56f3\u60c5\u5831\u30c0\u30a6\u30f3\u30ed\u30fc\u30c9\u30c7\u30fc\u30bf\uff08GML\u7248\uff09</gml:name>
+<gml:name>\u57fa\u76e4\u5730\u56f3\u60c5\u5831\u30c7\u30fc\u30bf\uff08GML\u7248\uff09</gml:name>
 <DEM gml:id="DEM001">
 <fid>fgoid:10-00100-15-60101-54394030</fid>
 <lfSpanFr gml:id="DEM001-1"><gml:timePosition>2016-10-01</gml:timePosition></lfSpanFr>
@@ -164,7 +164,7 @@ def heights(shape=(7, 5), seed=1):
 @pytest.mark.parametrize("spacing", [1 / 30, 0.2, 0.4])
 @pytest.mark.parametrize("corner", ["{:.9f}", "{:.12f}", "{!r}"])
 def test_a_tile_comes_back_exactly(here, spacing, corner):
-    """Heights to the bit, and the grid: its north-west corner and spacing are multiples that the digits only hint at."""
+    """Heights to the bit, and the grid: its corner and spacing are multiples that the digits only hint at."""
     z = heights()
     z[0, 0] = z[3, 1:3] = np.nan
     tile = one(xml(z, spacing=spacing, corner=corner))
@@ -194,6 +194,11 @@ def test_start_point_and_missing_tail(here, x, y, missing):
     z.ravel()[first + len(list_):] = np.nan
     tile = one(xml(list_=list_, shape=z.shape, start=f"{x} {y}"))
     assert np.array_equal(tile.raster.z, z, equal_nan=True)
+
+
+def test_no_start_point_is_the_first_cell(here):
+    z = heights()
+    assert np.array_equal(one(re.sub("<gml:startPoint.*", "", xml(z))).raster.z, z)
 
 
 def test_missing_values_are_those_of_any_kind(here):
@@ -264,8 +269,8 @@ def test_tiles_are_merged_whatever_they_come_in(here):
     for paths in (["all.zip"], ["pack.ZIP"], files, files[::-1]):
         raster, crs, _ = merged(paths)
         assert np.array_equal(raster.z, z, equal_nan=True), paths
-        assert raster.transform.almost_equals(Affine(0.2 * SECOND, 0, CENTRE[1], 0, -0.2 * SECOND, CENTRE[0] + 4 * SECOND),
-                                              1e-12)
+        expected = Affine(0.2 * SECOND, 0, CENTRE[1], 0, -0.2 * SECOND, CENTRE[0] + 4 * SECOND)
+        assert raster.transform.almost_equals(expected, 1e-12)
         assert crs == CRS.from_epsg(6677)
 
 
@@ -294,7 +299,7 @@ def test_names_of_members_are_never_paths(here):
 
 @pytest.mark.parametrize("spacing, cell", [(1 / 30, 1), (0.2, 5), (0.4, 10)])
 def test_terrain_of_a_tile(written, spacing, cell):
-    """Corners are edges of cells in latitude longitude, rows from the north: each error of these is metres in height."""
+    """Corners are edges of cells in latitude longitude, rows from the north: an error of these is metres in height."""
     shape = (60, 45)
     Path("tile.xml").write_text(xml(slope_tile(spacing=spacing, shape=shape), spacing=spacing), encoding="utf-8")
     z, east, north, about, out, err = written("tile.xml")
@@ -304,7 +309,7 @@ def test_terrain_of_a_tile(written, spacing, cell):
     lost = (shape[0] - 1) * (shape[1] - 1) * (spacing * SECOND * 111320) ** 2 * np.cos(np.radians(36.6))
     assert known.sum() * cell ** 2 == pytest.approx(lost, rel=0.1)
     assert "tile.xml: FG-GML, 1 tile of 45 x 60 cells, JGD2011" in out
-    assert "CRS EPSG:6677, zone 9 of the plane rectangular system, which is the site's; --crs names another" in out
+    assert "CRS EPSG:6677, zone 9 of the plane rectangular system, the site's; --crs names another" in out
 
 
 def test_options_go_before_defaults(written):
@@ -392,6 +397,8 @@ def test_every_example_of_the_page_and_the_help_runs(slope, command):
 
 # --- bad input ---
 
+NOT_ONE = "tile.xml: must be a raster or FG-GML elevation data (Dataset with a DEM), got "
+SHORT = "is cut short: the XML ends in the middle"
 GOOD = xml(np.array([[1.0, 2], [3, 4]]))
 
 
@@ -407,22 +414,17 @@ def bad(old, new, message, at=None):
 
 
 @pytest.mark.parametrize("content, message", [
-    ("<?xml version='1.0'?>\n<html><body/></html>", "tile.xml: must be a raster or FG-GML elevation data (Dataset with a "
-     "DEM), got XML with the root html"),
-    (GOOD[:GOOD.index("<DEM")] + "</Dataset>", "tile.xml: must be a raster or FG-GML elevation data (Dataset with a DEM), "
-     "got a Dataset without a DEM"),
-    ("<html><p>\n</body>", "tile.xml: must be a raster or FG-GML elevation data (Dataset with a DEM), got XML with the root "
-     "html"),
+    ("<?xml version='1.0'?>\n<html><body/></html>", NOT_ONE + "XML with the root html"),
+    (GOOD[:GOOD.index("<DEM")] + "</Dataset>", NOT_ONE + "a Dataset without a DEM"),
+    ("<html><p>\n</body>", NOT_ONE + "XML with the root html"),
     ("<\n", "tile.xml: line 1: must be XML (not well-formed (invalid token))"),
-    (GOOD[:GOOD.index(f"{GROUND},3") + 5], f"tile.xml: line {line_of(GOOD, GROUND + ',3')}: is cut short: the XML ends in "
-     "the middle"),
-    (GOOD[:GOOD.index("<gml:startPoint") + 6], f"tile.xml: line {line_of(GOOD, '<gml:startPoint')}: is cut short: the XML "
-     "ends in the middle"),
-    (GOOD[:-4], f"tile.xml: line {GOOD.count(chr(10))}: is cut short: the XML ends in the middle"),
-    bad(f"{GROUND},3.00", f"{GROUND},3.00\n{GROUND},5.00", "tupleList must have at most 4 tuples (2 x 2 cells, startPoint "
-        "0 0), got 5", "<gml:tupleList"),
-    bad("<gml:startPoint>0 0", "<gml:startPoint>1 0", "tupleList must have at most 3 tuples (2 x 2 cells, startPoint 1 0), "
-        "got 4", "<gml:tupleList"),
+    (GOOD[:GOOD.index(f"{GROUND},3") + 5], f"tile.xml: line {line_of(GOOD, GROUND + ',3')}: {SHORT}"),
+    (GOOD[:GOOD.index("<gml:startPoint") + 6], f"tile.xml: line {line_of(GOOD, '<gml:startPoint')}: {SHORT}"),
+    (GOOD[:-4], f"tile.xml: line {GOOD.count(chr(10))}: {SHORT}"),
+    bad(f"{GROUND},3.00", f"{GROUND},3.00\n{GROUND},5.00", "tupleList must have at most 4 tuples (2 x 2 cells, "
+        "startPoint 0 0), got 5", "<gml:tupleList"),
+    bad("<gml:startPoint>0 0", "<gml:startPoint>1 0", "tupleList must have at most 3 tuples (2 x 2 cells, "
+        "startPoint 1 0), got 4", "<gml:tupleList"),
     bad("<gml:startPoint>0 0", "<gml:startPoint>0 2", "startPoint must be in the grid, 0 0 to 1 1, got 0 2",
         "<gml:startPoint"),
     bad(f"{GROUND},3.00", f"{GROUND},3,5", f"must be tuples kind,height, got {GROUND},3,5"),
@@ -440,19 +442,20 @@ def bad(old, new, message, at=None):
     bad("<gml:high>1 1", "<gml:high>1 -2", "high must be 0 to 99999, got 1 -2", "<gml:high"),
     bad("<gml:high>1 1", "<gml:high>999999 1", "high must be 0 to 99999, got 999999 1", "<gml:high"),
     bad("<gml:low>0 0", "<gml:low>1 1", "low must be 0 0, got 1 1", "<gml:low>"),
-    bad("<gml:lowerCorner>36.6", "<gml:lowerCorner>96.6", "corners must be latitude and longitude, the lower one in the "
-        "south-west, got 96.625 139.875 and", "<gml:lowerCorner"),
-    bad("<gml:lowerCorner>36.6", "<gml:lowerCorner>nan 3", "lowerCorner must be two numbers, latitude and longitude, got nan",
-        "<gml:lowerCorner"),
+    bad("<gml:lowerCorner>36.6", "<gml:lowerCorner>96.6", "corners must be latitude and longitude, the lower one "
+        "in the south-west, got 96.625 139.875 and", "<gml:lowerCorner"),
+    bad("<gml:lowerCorner>36.6", "<gml:lowerCorner>nan 3", "lowerCorner must be two numbers, latitude and "
+        "longitude, got nan", "<gml:lowerCorner"),
     bad('order="+x-y"', 'order="+x+y"', "order must be +x-y, got +x+y"),
     (GOOD.replace("UTF-8", "EUC-JP"), "tile.xml: line 1: encoding must be UTF-8 or Shift_JIS, got EUC-JP"),
     (GOOD.encode("cp932"), "tile.xml: line 5: must be XML (not well-formed (invalid token))"),
-    (GOOD.replace("UTF-8", "Shift_JIS").encode(), "tile.xml: line 1 or after: must be in the encoding that it declares"),
+    (GOOD.replace("UTF-8", "Shift_JIS").encode(), "tile.xml: line 1 or after: must be in the encoding that it "
+     "declares"),
     (xml(np.ones((2, 2)), head='<!DOCTYPE a [<!ENTITY b "c"><!ENTITY d "&b;&b;&b;&b;&b;&b;&b;&b;">]>\n'),
      "tile.xml: line 2: must have no DOCTYPE, got a"),
     (xml(np.full((2, 2), np.nan)), "tile.xml: must have a height, all cells are NODATA"),
-    (xml(np.ones((3, 3)), south=10.0, west=10.0), "--crs: must be given: no zone of Japan's plane rectangular system is "
-     "near the site, got latitude 10.0001, longitude 10.0001"),
+    (xml(np.ones((3, 3)), south=10.0, west=10.0), "--crs: must be given: no zone of Japan's plane rectangular system "
+     "is near the site, got latitude 10.0001, longitude 10.0001"),
 ], ids=lambda value: "")
 def test_bad_tiles_are_one_line_and_nothing_is_written(slope, here, content, message):
     (here / "tile.xml").write_bytes(content if isinstance(content, bytes) else content.encode())
@@ -487,17 +490,16 @@ BOMB = zipped({"a.xml": b" " * 50_000_000})
 
 
 @pytest.mark.parametrize("content, message", [
-    (zipped({"readme.txt": "x", "meta.xml": "<a/>"}), "z.zip: must hold FG-GML elevation tiles (.xml), it has none, got 2 "
-     "files"),
+    (zipped({"readme.txt": "x", "meta.xml": "<a/>"}), "z.zip: must hold FG-GML elevation tiles (.xml), it has none, "
+     "got 2 files"),
     (zipped({"inner.zip": zipped({"readme.txt": "x"})}), "z.zip: must hold FG-GML elevation tiles (.xml), it has none"),
     (zipped()[:-30], "z.zip: must be a whole zip file (File is not a zip file)"),
     (b"PK\x03\x04", "z.zip: must be a whole zip file"),
-    (zipped({"a.xml": GOOD[:900]}), f"z.zip: a.xml: line {GOOD[:900].count(chr(10)) + 1}: is cut short: the XML ends in the "
-     "middle"),
+    (zipped({"a.xml": GOOD[:900]}), f"z.zip: a.xml: line {GOOD[:900].count(chr(10)) + 1}: {SHORT}"),
     (zipped(edit=flip, compress=zipfile.ZIP_STORED), "z.zip: a.xml: is damaged (Bad CRC-32 for file 'a.xml')"),
     (zipped(change=encrypted), "z.zip: a.xml: must not be encrypted"),
-    (zipped(change=declare(300_000_000)), "z.zip: must have at most 4000 MB unpacked, and 1100 times its size, got 300 MB "
-     "in 0.00"),
+    (zipped(change=declare(300_000_000)), "z.zip: must have at most 4000 MB unpacked, and 1100 times its size, got "
+     "300 MB in 0.00"),
     (zipped({"a.xml": GOOD, "pad.bin": os.urandom(400_000)}, change=declare(300_000_000)),
      "z.zip: a.xml: must have at most 256 MB unpacked, got 300 MB"),
     (BOMB, "z.zip: a.xml: line 1: must be XML (no element found)"),
@@ -516,4 +518,5 @@ def test_other_rasters_are_not_mixed_with_tiles(slope, here):
     (here / "tile.xml").write_text(GOOD, encoding="utf-8")
     (here / "a.asc").write_text("ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n3 4\n")
     status, _, err = slope("tile.xml a.asc")
-    assert status == 2 and err == ("slope terrain: a.asc: must be FG-GML as other inputs are: make a terrain of each kind\n")
+    assert status == 2 and err == (
+        "slope terrain: a.asc: must be FG-GML as other inputs are: make a terrain of each kind\n")

@@ -124,7 +124,8 @@ def assert_is(found, geometry, tolerance=1e-5):
 # --- what is written ---
 
 def test_the_file_to_the_letter(slope, here):
-    geojson("road.geojson", moved(Polygon([(1, 2), (11, 2), (11, 7.5), (1, 7.5)], [[(2, 3), (2, 4), (3, 4)]])), crs=CRS_M)
+    road = Polygon([(1, 2), (11, 2), (11, 7.5), (1, 7.5)], [[(2, 3), (2, 4), (3, 4)]])
+    geojson("road.geojson", moved(road), crs=CRS_M)
     assert slope("road.geojson -o road.csv") == (
         0, "road.csv: 1 polygon, 2 rings (1 hole), 7 vertices, x 1.000 to 11.000, y 2.000 to 7.500, area 54.500 m2\n"
         "region road polygon road.csv\n", "")
@@ -148,7 +149,7 @@ TEXT_CSV = "\n\n".join("\n".join(f"{x + EAST!r},{y + NORTH!r}" for x, y in ring.
     ("a.shp", lambda path: shapefile(path, moved(ROAD, "EPSG:6668"), crs="EPSG:6668"), ""),
     ("a.shp", lambda path: shapefile(path, moved(ROAD)), "--crs EPSG:6677"),
     ("a.csv", lambda path: Path(path).write_text(TEXT_CSV), ""),
-    ("a.csv", lambda path: Path(path).write_bytes(("\ufeffeast,north\r\n" + TEXT_CSV.replace("\n", "\r\n")).encode()), ""),
+    ("a.csv", lambda path: Path(path).write_bytes(f"\ufeffeast,north\n{TEXT_CSV}".replace("\n", "\r\n").encode()), ""),
     ("a.csv", lambda path: Path(path).write_text("\n\n".join("\n".join(f"{x},{y}  # point" for x, y in ring.coords)
                                                              for ring in (ROAD.exterior, *ROAD.interiors))), "--local"),
     ("a.wkt", lambda path: Path(path).write_text(moved(ROAD).wkt), ""),
@@ -180,7 +181,7 @@ def test_several_polygons_with_holes_and_islands(written):
 
 
 def test_rings_of_text_count_by_the_even_odd_rule(written):
-    """In any order: a field, a hole in it, an island in that with a hole of its own, and a hole that touches the edge."""
+    """In any order: a field, a hole in it, an island in that with a hole of its own, a hole that touches the edge."""
     boxes = [box(10, 10, 50, 50), box(20, 20, 40, 40), box(25, 25, 35, 35), box(28, 28, 32, 32), box(10, 12, 15, 18)]
     island = boxes[2].difference(boxes[3])
     whole = boxes[0].difference(boxes[1]).difference(boxes[4]).union(island)
@@ -194,7 +195,8 @@ def test_what_overlaps_or_touches_becomes_one(written):
     geojson("a.geojson", *map(moved, (box(10, 10, 30, 20), box(20, 10, 40, 30), box(40, 10, 50, 30))), crs=CRS_M)
     found, _ = written("a.geojson")
     assert len(found) == 1 and inside(found, np.array([25.0]), np.array([15.0])).all()
-    assert polygons.read_local("out.csv", rasters.read_place("t.asc")).area == pytest.approx(20 * 10 + 20 * 20 + 10 * 20 - 100)
+    area = polygons.read_local("out.csv", rasters.read_place("t.asc")).area
+    assert area == pytest.approx(20 * 10 + 20 * 20 - 10 * 10 + 10 * 20)
 
 
 def test_a_written_file_is_an_input_again(written, slope):
@@ -211,7 +213,8 @@ def test_a_written_file_is_an_input_again(written, slope):
         "EPSG:6677), got local metres: east = x + -12000.0, north = y + 34000.0, CRS EPSG:6677\n")
     # a run that does not know where it is
     nowhere = rasters.Raster(np.full((16, 20), 5.0), Affine(5, 0, 0, 0, -5, 80), None, (0.0, 0.0))
-    assert polygons.read_local("b.csv", nowhere).equals_exact(polygons.read_local("b.csv", rasters.read_place("t.asc")), 0)
+    here_ = polygons.read_local("b.csv", rasters.read_place("t.asc"))
+    assert polygons.read_local("b.csv", nowhere).equals_exact(here_, 0)
 
 
 def test_raster_and_place_are_the_same(here):
@@ -314,18 +317,19 @@ SQUARE = "10,10\n20,10\n20,20\n10,20\n"
     ("a.wkt", wkt(BOW.wkt), "--local",
      "a.wkt: line 1: must be polygons that do not cross or touch themselves, got Self-intersection at 15 15"),
     ("a.geojson", lambda path: geojson(path), "", "a.geojson: must hold a polygon, it is empty"),
-    ("a.geojson", lambda path: geojson(path, moved(ROAD)), "", "a.geojson: coordinates in EPSG:4326 must be longitude and "
-     "latitude (which a GeoJSON has that names no other CRS), got -11990 34010"),
+    ("a.geojson", lambda path: geojson(path, moved(ROAD)), "", "a.geojson: coordinates in EPSG:4326 must be longitude "
+     "and latitude (which a GeoJSON has that names no other CRS), got -11990 34010"),
     ("a.geojson", lambda path: geojson(path, moved(ROAD), moved(BOW), crs=CRS_M), "", "a.geojson: feature 1: must be "
      "polygons that do not cross or touch themselves, got Self-intersection at -11985 34015"),
     ("a.geojson", lambda path: geojson(path, Point(1, 2)), "", "a.geojson: feature 0: must be a polygon, got Point"),
     ("a.geojson", wkt('{"type": "Polygon", "coordinates": [[[1'), "", "a.geojson: must be polygons that GDAL can read"),
     ("a.geojson", lambda path: geojson(path, box(139.0, 36.0, 139.1, 36.1)), "", "a.geojson: must overlap the terrain"),
-    ("a.shp", lambda path: shapefile(path, moved(ROAD)), "", "a.shp: must have a CRS, so that polygon and terrain can be "
-     "brought together (a .prj file beside a shapefile, slope terrain --crs for a terrain; --local if"),
+    ("a.shp", lambda path: shapefile(path, moved(ROAD)), "", "a.shp: must have a CRS, so that polygon and terrain can "
+     "be brought together (a .prj file beside a shapefile, slope terrain --crs for a terrain; --local if"),
     ("a.shp", wkt("no shapes"), "", "a.shp: must be polygons that GDAL can read"),
     ("a.wkt", wkt(moved(ROAD).wkt), "--crs EPSG:1", "--crs: must be a CRS such as EPSG:6677, got EPSG:1"),
-    ("a.wkt", wkt(moved(ROAD).wkt), "--crs EPSG:6668", "a.wkt: coordinates in EPSG:6668 must be longitude and latitude"),
+    ("a.wkt", wkt(moved(ROAD).wkt), "--crs EPSG:6668", "a.wkt: coordinates in EPSG:6668 must be longitude and "
+     "latitude"),
 ])
 def test_bad_input_is_one_line_and_nothing_is_written(slope, here, name, make, options, message):
     (here / "out.csv").write_text("from before\n")

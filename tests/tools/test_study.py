@@ -290,7 +290,7 @@ def test_a_raster_that_lost_mass_is_told(slope, here):
 
 # --- interruptions ---
 
-LONG = ["study", "case/in.tiny", "--set", "steps=1500", "--set", "rolling=0,0.1,0.2", "-o", "out", "--jobs", "1"]
+LONG = ["study", "case/in.tiny", "--set", "steps=2000", "--set", "rolling=0,0.1,0.2", "-o", "out", "--jobs", "1"]
 
 
 def start_long(here):
@@ -307,7 +307,7 @@ def print_of(folder):
 def test_resume_after_a_kill(slope, here, how, status):
     out = here / "out"
     process = start_long(here)
-    second = out / "steps_1500_rolling_0.1"
+    second = out / "steps_2000_rolling_0.1"
     wait_for((second / "log.lammps").exists, "the second run")
     wait_for(lambda: "Step" in (second / "log.lammps").read_text(), "its steps")
     assert processes_in(second)
@@ -315,12 +315,13 @@ def test_resume_after_a_kill(slope, here, how, status):
     told, complaint = process.communicate(timeout=20)
     assert process.returncode == status
     wait_for(lambda: not processes_in(out), "the end of the run that was under way", 10)
+    assert "Loop time" not in (second / "log.lammps").read_text()       # it did not just come to its end
     if how != signal.SIGKILL:
         assert "stopped with 1 of 3 runs finished; the same command goes on" in told
         assert complaint == "slope study: interrupted\n"
-    assert (out / "steps_1500_rolling_0" / "finished.yaml").exists()
+    assert (out / "steps_2000_rolling_0" / "finished.yaml").exists()
     assert not (second / "finished.yaml").exists() and not (out / "study.yaml").exists()
-    before = print_of(out / "steps_1500_rolling_0")
+    before = print_of(out / "steps_2000_rolling_0")
 
     state, listed, _ = slope(shlex.join(LONG[1:]) + " --dry-run")
     assert [line.rsplit(", ", 1)[1] for line in listed.splitlines()[:3]] == ["finished", "unfinished", "new"]
@@ -330,7 +331,7 @@ def test_resume_after_a_kill(slope, here, how, status):
     assert state == 0, complaint
     assert "1 of 3 runs are finished already" in told
     assert "[1/3]" not in told and "[2/3]" in told and "[3/3]" in told
-    assert print_of(out / "steps_1500_rolling_0") == before
+    assert print_of(out / "steps_2000_rolling_0") == before
     assert not (second / "rubbish").exists()
     assert load(out)[0]["study"]["finished"] == 3
     assert not list(out.glob(".*.old")) and not list(out.glob(".*.new"))
@@ -410,6 +411,15 @@ def test_how_a_run_failed(slope, here, body, message):
         f"slope study: out: 1 of 1 runs failed: rolling_0: {message}")
     assert not (here / "out" / "rolling_0" / "finished.yaml").exists()
     assert [line["status"] for line in load(here / "out")[1]] == ["failed"]
+
+
+def test_a_run_that_fails_at_its_very_end_is_not_finished(slope, here):
+    deck = here / "case" / "in.tiny"
+    deck.write_text(deck.read_text() + "nonsense\n")
+    status, _, err = slope("case/in.tiny --set steps=20 -o out")
+    assert status == 2 and "steps_20: ERROR: Unknown command: nonsense (ended with status 1" in err
+    assert (here / "out" / "steps_20" / "tiny.summary.yaml").exists()
+    assert not (here / "out" / "steps_20" / "finished.yaml").exists()
 
 
 def test_warnings_of_the_logs_are_kept(slope, here):

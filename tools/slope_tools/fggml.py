@@ -13,7 +13,6 @@ import re
 import warnings
 import zipfile
 import zlib
-from pathlib import Path
 from typing import NamedTuple
 from xml.parsers import expat
 
@@ -282,8 +281,8 @@ def _tile(dem, where):
     south, west = pair("lowerCorner", float, "numbers, latitude and longitude")
     north, east = pair("upperCorner", float, "numbers, latitude and longitude")
     if not (-90 <= south < north <= 90 and -360 <= west < east <= 360):
-        raise SlopeError(f"{where}: line {dem['lowerCorner'][0]}", "corners must be latitude and longitude, the lower one "
-                         "in the south-west", f"{south:.10g} {west:.10g} and {north:.10g} {east:.10g}")
+        raise SlopeError(f"{where}: line {dem['lowerCorner'][0]}", "corners must be latitude and longitude, the lower "
+                         "one in the south-west", f"{south:.10g} {west:.10g} and {north:.10g} {east:.10g}")
     if pair("low", int, "whole numbers") != (0, 0):
         raise SlopeError(f"{where}: line {dem['low'][0]}", "low must be 0 0", dem["low"][1].strip()[:60])
     columns, rows = (last + 1 for last in pair("high", int, "whole numbers, x and y"))
@@ -292,7 +291,7 @@ def _tile(dem, where):
     if dem.get("order", (0, "+x-y"))[1] != "+x-y":
         raise SlopeError(f"{where}: line {dem['order'][0]}", "order must be +x-y", dem["order"][1][:60])
     rasters.check_memory(rows, columns, where)
-    x, y = pair("startPoint", int, "whole numbers, x and y")
+    x, y = pair("startPoint", int, "whole numbers, x and y") if "startPoint" in dem else (0, 0)  # GML: the first cell
     if not (0 <= x < columns and 0 <= y < rows):
         raise SlopeError(f"{where}: line {dem['startPoint'][0]}", f"startPoint must be in the grid, 0 0 to "
                          f"{columns - 1} {rows - 1}", f"{x} {y}")
@@ -301,8 +300,8 @@ def _tile(dem, where):
     heights = _heights(where, line, text)
     start, room = y * columns + x, rows * columns - (y * columns + x)
     if len(heights) > room:
-        raise SlopeError(f"{where}: line {line}", f"tupleList must have at most {room} tuples ({columns} x {rows} cells, "
-                         f"startPoint {x} {y})", len(heights))
+        raise SlopeError(f"{where}: line {line}", f"tupleList must have at most {room} tuples ({columns} x {rows} "
+                         f"cells, startPoint {x} {y})", len(heights))
     z = np.full(rows * columns, np.nan)
     z[start:start + len(heights)] = heights
     dx, west = _on_grid((east - west) / columns, west)

@@ -17,8 +17,8 @@ IN: GeoJSON, shapefile, or another format of GDAL with one layer; or text (.csv,
   if it is inside an odd number of rings, so that a ring inside of another one is a hole
   WKT such as POLYGON ((x y, x y, x y, x y))
 coordinates: of a file with a CRS, in that one (GeoJSON that names none: longitude, latitude), reprojected to the
-  terrain's; of text, in the terrain's CRS (east, north), but of a file that this command wrote, local; --crs and --local
-  say otherwise. OUT.csv is in the terrain's local metres.
+  terrain's; of text (CSV, WKT), in the terrain's CRS (east, north), but of a file that this command wrote, local;
+  --crs and --local say otherwise. OUT.csv is in the terrain's local metres.
 
 example:
   tools/slope polygon road.geojson -o road.csv --terrain terrain.asc
@@ -31,7 +31,8 @@ def add_parser(commands, **kwargs):
         "polygon", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
         description="Polygons (GeoJSON, shapefile, CSV, WKT) to the .csv in local metres that decks read.", **kwargs)
     parser.add_argument("input", metavar="IN", help="polygons, also several and with holes; what overlaps becomes one")
-    parser.add_argument("-o", dest="output", metavar="OUT.csv", required=True, type=Path, help="rings for region polygon")
+    parser.add_argument("-o", dest="output", metavar="OUT.csv", required=True, type=Path,
+                        help="rings for region polygon")
     parser.add_argument("--terrain", metavar="TERRAIN.asc", required=True,
                         help="terrain that `slope terrain` wrote; its sidecar TERRAIN.yaml has CRS and origin")
     place = parser.add_mutually_exclusive_group()
@@ -70,8 +71,8 @@ def summary(path, geometry):
     xlo, ylo, xhi, yhi = geometry.bounds
     quoted = f'"{path}"' if " " in str(path) else path
     return (f"{path}: {count(len(parts), 'polygon')}, {count(len(rings), 'ring')} "
-            f"({count(len(rings) - len(parts), 'hole')}), {sum(map(len, rings))} vertices, x {xlo:.3f} to {xhi:.3f}, y {ylo:.3f} to {yhi:.3f}, "
-            f"area {geometry.area:.3f} m2\n"
+            f"({count(len(rings) - len(parts), 'hole')}), {sum(map(len, rings))} vertices, "
+            f"x {xlo:.3f} to {xhi:.3f}, y {ylo:.3f} to {yhi:.3f}, area {geometry.area:.3f} m2\n"
             f"region {path.stem if path.stem.isidentifier() else 'road'} polygon {quoted}")
 
 

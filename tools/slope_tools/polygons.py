@@ -42,7 +42,8 @@ def read_local(path, raster, local=False, crs=None):
     suffix: the deck's format (.csv), text with WKT, else what fiona opens. Coordinates of a file with a CRS are
     reprojected to the terrain's; those of CSV and WKT are taken to be in the terrain's CRS, but of a file that write()
     wrote, which are local already. local=True: the file's coordinates are local, whatever CRS it names. crs: the CRS of
-    the file, whatever it names. Polygons that overlap or touch become one. Raises SlopeError, which names file and place.
+    the file, whatever it names. Polygons that overlap or touch become one. Raises SlopeError, which names file and
+    place.
     """
     if not Path(path).is_file():
         raise SlopeError(path, "must be an existing file")
@@ -263,7 +264,7 @@ def _place_line(raster):
 # --- coordinates ---
 
 def _to_local(path, geometry, crs, raster, plain):
-    """A geometry in a CRS to the local metres of the terrain. plain: the file has no CRS, that of the terrain is meant."""
+    """A geometry in a CRS to the local metres of the terrain. plain: text, which is in the terrain's CRS."""
     if not plain:
         for where, missing in ((path, crs), ("--terrain", raster.crs)):
             if missing is None:
@@ -273,8 +274,8 @@ def _to_local(path, geometry, crs, raster, plain):
         if crs.is_geographic:
             west, south, east, north = geometry.bounds
             if max(-west, east) > 360 or max(-south, north) > 90:
-                raise SlopeError(path, f"coordinates in {crs_name(crs)} must be longitude and latitude (which a GeoJSON "
-                                 "has that names no other CRS)", numbers(geometry.bounds))
+                raise SlopeError(path, f"coordinates in {crs_name(crs)} must be longitude and latitude (which a "
+                                 "GeoJSON has that names no other CRS)", numbers(geometry.bounds))
     if not (plain or same_crs(crs, raster.crs)):
         geometry = _reproject(path, geometry, crs, raster.crs)
     return map_points(geometry, lambda points: points - raster.offset)
@@ -284,7 +285,7 @@ def _reproject(path, geometry, crs, target):
     def points_in_target(points):
         try:
             points = np.transpose(rasterio.warp.transform(crs, target, *points.T))
-        except Exception as error:  # GDAL's, of a class that rasterio keeps private
+        except Exception:  # GDAL's, of a class that rasterio keeps private
             points = np.array([[np.nan, np.nan]])
         if not np.isfinite(points).all():
             raise SlopeError(path, f"must lie where {crs_name(target)}, the CRS of the terrain, covers it",

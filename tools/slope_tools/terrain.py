@@ -44,10 +44,11 @@ def add_parser(commands, **kwargs):
     """Add `terrain` and its arguments to argparse's commands; return its parser."""
     parser = commands.add_parser(
         "terrain", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
-        description="Survey rasters (GeoTIFF, ESRI ASCII grid, FG-GML) to the plain terrain.asc that decks read.", **kwargs)
+        description="Survey rasters (GeoTIFF, ESRI ASCII grid, FG-GML) to the plain terrain.asc that decks read.",
+        **kwargs)
     parser.add_argument("inputs", metavar="IN", nargs="+",
-                        help="raster of heights in metres, or FG-GML (.xml, or .zip of them); several are merged, which "
-                             "needs one CRS and one grid")
+                        help="raster of heights in metres, or FG-GML (.xml, or .zip of them); several are merged, "
+                             "which needs one CRS and one grid")
     parser.add_argument("-o", dest="output", metavar="OUT.asc", required=True, type=Path,
                         help="the terrain; OUT.yaml beside it is its sidecar")
     parser.add_argument("--crs", metavar="EPSG:n",
@@ -209,7 +210,7 @@ def read_fggml(paths, crs, cell, tell):
         tell(f"where there was no height: bilinear from the tiles of {seconds(group[0])}")
     if crs is None:
         number, crs = fggml.zone(raster, tiles[0].datum)
-        tell(f"CRS {crs_name(crs)}, zone {number} of the plane rectangular system, which is the site's; --crs names another")
+        tell(f"CRS {crs_name(crs)}, zone {number} of the plane rectangular system, the site's; --crs names another")
     return raster, crs, cell or fggml.nominal_cell(min(footprint(raster, crs)[1]))
 
 
