@@ -40,8 +40,7 @@ using Slope::ElevationGrid;
 static constexpr double PI = 3.14159265358979323846;
 static constexpr double SIMPLE_CUBIC = 6.0 / PI;    // bulk volume / volume of a ball
 static constexpr double MOTION = 0.1;               // m/s, default of keyword motion
-static constexpr double MOVING_SHARE = 0.05;        // of the volume: more is a mass in motion ...
-static constexpr double MOVING_CHANGE = 0.005;      // 1/s: ... unless it only jitters on the spot
+static constexpr double MOVING_SHARE = 0.1;         // of the volume: more is a mass in motion
 static constexpr double BALANCE = 1.0e-9;           // of the released volume
 static constexpr double MAXCELLS = 4.0e8;
 static constexpr double BYTES_PER_CELL = 72.0;    // eight rasters, one more to write a file
@@ -1062,7 +1061,7 @@ std::string FixDepositGrid::summary(const std::string &reason, const Motion &bal
   line("  moving_share", real(balls.share));
   line("change_rate",
        real(result[CHANGE]) + "  # share of the volume that changes cell, per second");
-  line("moving", balls.share > MOVING_SHARE && change > MOVING_CHANGE ? "true" : "false");
+  line("moving", balls.share > MOVING_SHARE ? "true" : "false");
   s += "stop:\n";
   line("  step", fmt::format("{}", update->ntimestep));
   line("  time", real(now()));

@@ -37,10 +37,8 @@ def write_asc(path, z, cell, xlo=0.0, ylo=0.0):
 
 
 def write_run(thickness, base, cell, prefix="run", xlo=0.0, ylo=0.0, **summary):
-    """What fix deposit/grid writes: thickness and ground are functions of x, y, or arrays from the north-west on."""
-    x, y = centres(*thickness.shape, cell, xlo, ylo) if isinstance(thickness, np.ndarray) else (None, None)
-    z = base(x, y) if callable(base) else base
-    z = z * np.ones_like(thickness)
+    """What fix deposit/grid writes: thickness an array, rows from the north; ground another one, or a height."""
+    z = base * np.ones_like(thickness)
     write_asc(f"{prefix}.thickness.asc", thickness, cell, xlo, ylo)
     write_asc(f"{prefix}.surface.asc", z + thickness, cell, xlo, ylo)
     volume = float(thickness.sum()) * cell ** 2
@@ -48,7 +46,6 @@ def write_run(thickness, base, cell, prefix="run", xlo=0.0, ylo=0.0, **summary):
              "volume": {"released": volume, "on_grid": volume, "off_grid": 0.0, "lost": 0.0, "residual": 0.0}}
     about.update(summary)
     Path(f"{prefix}.summary.yaml").write_text(yaml.safe_dump(about))
-    return thickness
 
 
 def write_sidecar(rows, columns, cell, path="terrain.asc", xlo=0.0, ylo=0.0, crs=CRS_M):

@@ -179,8 +179,8 @@ def test_what_stands_on_the_page(slope, here):
     assert len(rows) == 3
     for row, cells in zip(about["runs"], rows[1:]):
         assert cells[0] == row["set"]["rolling"]
-        assert [f"{row['remove_m3']:,.0f}", f"{row['front_m']:,.1f}"] == [cells[-3], cells[4]]
-        assert cells[-4] == ("moving" if row["moving"] else "at rest")
+        assert [f"{row['remove_m3']:,.0f}", f"{row['front_m']:,.1f}"] == [cells[-4], cells[4]]
+        assert cells[-5] == ("moving" if row["moving"] else "at rest")
     # the paper's
     paper = next(table for table in reader.tables if table[0][-1] == "company I")
     assert paper[1:] == [["0.00", "24,048", "22,114"], ["0.05", "26,009", "18,262"], ["0.10", "22,340", "14,490"],
@@ -318,10 +318,21 @@ def test_nice(length, expected):
     assert figures.nice(length) == pytest.approx(expected)
 
 
+def test_gaps_of_a_mask_are_closed():
+    mask = np.zeros((9, 12), bool)
+    mask[2:7:2, 1:8:2] = True
+    filled = np.zeros((9, 12), bool)
+    filled[2:7, 1:8] = True
+    assert np.array_equal(report.closed(mask, 1), filled)
+    mask = np.zeros((5, 12), bool)
+    mask[2, [0, 3, 11]] = True      # gaps of 2 and of 7
+    assert np.flatnonzero(report.closed(mask, 1)[2]).tolist() == [0, 1, 2, 3, 11]
+
+
 def test_shade_of_planes():
     x, y = np.meshgrid(np.arange(9.0), np.arange(9.0))      # y to the south
     flat = figures.shade(0 * x, 1.0)
-    assert flat == pytest.approx(np.sin(np.radians(40)))
+    assert flat == pytest.approx(np.sqrt(0.5))
     to_the_light = figures.shade(0.3 * (x + y), 1.0)        # falls to the north-west
     away = figures.shade(-0.3 * (x + y), 1.0)
     assert to_the_light.min() > flat.max() > away.max()
@@ -396,6 +407,16 @@ def test_a_run_by_hand_without_terrain_in_reach(slope, here):
     assert (status, err) == (0, "")
     page, _ = read("one/report.html")
     assert "Slope collapse: run of tiny" in page and "Map of the slip surface" not in page
+
+
+def test_cells_that_reach_beyond_the_terrain(slope, here):
+    write_case(here / "case")
+    subprocess.run([LMP, "-in", "in.tiny", "-var", "cell", "0.7", "-var", "steps", "20", "-screen", "none"],
+                   cwd=here / "case", check=True)
+    about = yaml.safe_load((here / "case" / "tiny.summary.yaml").read_text())
+    assert about["grid"]["extent"] == pytest.approx([0, 40.6, 0, 24.5])       # the terrain: 40 x 24
+    status, _, err = slope("case")
+    assert (status, err) == (0, "")
 
 
 def test_help_has_units_and_an_example(slope):

@@ -14,13 +14,14 @@ import numpy as np
 import pytest
 import rasterio
 import yaml
+from shapely.geometry import Polygon
 
 from tiny_collapse import LMP, TOP, read_asc, write_case
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli, jobs, rasters, runs, study  # noqa: E402  (after the path is set)
+from slope_tools import cli, jobs, rasters, results, runs, study  # noqa: E402  (after the path is set)
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 MM = 0.0005 + 1e-9          # .asc maps are in whole mm
@@ -203,6 +204,28 @@ def test_table_yaml_and_summaries_have_the_same_numbers(finished):
         assert row["wall_s"] > 0 and row["variables"]["cell"] == "1.0"
         assert f"{row['remove_m3']:,.0f}" in out
     assert any(row["off_grid_m3"] > 0.1 for row in about["runs"])
+
+
+def test_volume_beyond_the_road_by_hand(finished):
+    folder, _, _ = finished
+    about, table = load(folder)
+    for row, line in zip(about["runs"], table):
+        thickness = read_asc(folder / row["run"] / "tiny.thickness.asc")     # x from 12; road 13 to 17
+        assert float(line["beyond_road_m3"]) == pytest.approx(thickness[:, 0].sum(), abs=1e-9)
+    assert max(row["beyond_road_m3"] for row in about["runs"]) > 0.1
+
+
+@pytest.mark.parametrize("ring, expected", [
+    ([(3, -1), (5.5, -1), (5.5, 7), (3, 7)], 3 * 6 * 4.0),                  # whole columns, and beyond the grid
+    ([(3, 0), (4, 0), (7, 6), (6, 6)], (3 + 6) / 2 * 6 * 4.0),              # oblique: a trapezium is cut off
+    ([(3, 0), (5, 0), (5, 3), (3, 3)], None),                               # it does not go through
+])
+def test_what_lies_beyond_a_road(ring, expected):
+    raster = rasters.Raster(np.full((3, 10), 4.0), rasters.Affine(2, 0, 0, 0, -2, 6), None)
+    released = np.zeros((3, 10), bool)
+    released[1, 8:] = True
+    road = Polygon(ring)
+    assert results.beyond(raster, released, road) == (expected and pytest.approx(expected))
 
 
 def test_the_conservative_volume_is_the_largest(finished):

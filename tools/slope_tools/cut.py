@@ -20,7 +20,6 @@ from shapely.geometry import box
 from shapely.ops import triangulate
 
 from .deposit import Lines, coverage, edges, polygons_of
-from .errors import SlopeError
 from .rasters import progress
 
 LEAF = 16           # cells along a side of a block that is not divided further
@@ -290,7 +289,7 @@ class _Work:
         return found
 
     def add(self, total, volume, rows, columns):
-        """Add the volumes of parts to the cells (of the grid, of the mesh) that they are in: rows, columns, ascending."""
+        """Add the volumes of parts to the cells, of the grid or the mesh, that they are in: rows, columns."""
         for axis, index in ((0, rows), (1, columns)):
             volume = np.add.reduceat(volume, np.flatnonzero(np.diff(index, prepend=-1)), axis)
         total[rows[0]:rows[-1] + 1, columns[0]:columns[-1] + 1] += volume

@@ -106,8 +106,9 @@ def find_terrain(prefix, terrain, raster, warn):
         return None, None
     place = rasters.read_place(found)
     grid, slack = extent(raster), 1e-6 * raster.transform.a
-    # fix deposit/grid covers its extent with whole cells: the last ones may reach beyond the terrain
-    slack = np.array([slack, raster.transform.a, raster.transform.a, slack])
+    # fix deposit/grid covers its extent with whole cells from the south-west corner on: the last ones, in the east and
+    # in the north, may reach beyond the terrain
+    slack = np.array([slack, slack, raster.transform.a, raster.transform.a])
     outside = np.subtract(place.extent, grid) * [1, 1, -1, -1] > slack
     if outside.any():
         raise SlopeError(found, f"must be the terrain of the run, whose grid is {box(grid)}; --terrain names another",
@@ -277,9 +278,10 @@ class Mesh:
 
 @contextmanager
 def complete(folder):
-    """A folder to write results into; they move to `folder`, by renames, when all are there, else nothing is changed."""
-    folder = Path(folder)
-    new = folder.with_name(f".{folder.name}.{os.getpid()}.new")
+    """A folder to write results into; when all are there they move to `folder`, by renames, else nothing changes."""
+    told, folder = folder, Path(folder).resolve()
+    # on the disk of the folder, so that renames do
+    new = (folder if folder.is_dir() else folder.parent) / f".{folder.name}.{os.getpid()}.new"
     try:
         new.mkdir()
         yield new
@@ -287,7 +289,7 @@ def complete(folder):
         for path in sorted(new.iterdir()):
             os.replace(path, folder / path.name)
     except OSError as error:
-        raise SlopeError(folder, f"cannot be written: {error.strerror or error}") from error
+        raise SlopeError(told, f"cannot be written: {error.strerror or error}") from error
     finally:
         shutil.rmtree(new, ignore_errors=True)
 

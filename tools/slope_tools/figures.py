@@ -13,6 +13,7 @@ from matplotlib import pyplot as plt  # noqa: E402  (after the backend is set)
 from matplotlib.colors import BoundaryNorm, ListedColormap  # noqa: E402
 from matplotlib.patches import Rectangle  # noqa: E402
 from matplotlib.ticker import MaxNLocator  # noqa: E402
+from matplotlib.transforms import Bbox  # noqa: E402
 
 from .deposit import polygons_of  # noqa: E402
 from .maps import outline, part  # noqa: E402
@@ -42,10 +43,16 @@ class Layers(NamedTuple):
 
 
 def data_uri(figure, kind="png"):
-    """The figure as a data URI; closes it."""
+    """The figure as a data URI; closes it. Empty room above and below is cut off; the width, and so the size of the
+
+    letters on the page, stays.
+    """
     out = io.BytesIO()
-    figure.savefig(out, format=kind, dpi=DPI, bbox_inches="tight", pad_inches=0.03,
-                   metadata={"Date": None} if kind == "svg" else {"Software": None})
+    figure.draw_without_rendering()
+    used = figure.get_tightbbox(figure.canvas.get_renderer())
+    width = figure.get_size_inches()[0]
+    figure.savefig(out, format=kind, dpi=DPI, metadata={"Date": None} if kind == "svg" else {"Software": None},
+                   bbox_inches=Bbox([[min(0, used.x0), used.y0 - 0.03], [max(width, used.x1), used.y1 + 0.03]]))
     plt.close(figure)
     mime = {"png": "image/png", "svg": "image/svg+xml"}[kind]
     return f"data:{mime};base64,{base64.b64encode(out.getvalue()).decode('ascii')}"
@@ -88,13 +95,13 @@ def even_to_most(values):
     return bounds
 
 
-def shade(z, step, exaggeration=1.5):
-    """Shaded relief, light from the north-west at 40 degrees; flat ground is 0.64 whatever else is on the map.
+def shade(z, step):
+    """Shaded relief, light from the north-west at 45 degrees; flat ground is 0.71 whatever else is on the map.
 
     matplotlib's stretches what it finds to 0 to 1, so that a map of nearly flat ground looks like mountains.
     """
-    south, east = np.gradient(z * exaggeration, step)
-    azimuth, altitude = math.radians(315), math.radians(40)
+    south, east = np.gradient(z, step)
+    azimuth, altitude = math.radians(315), math.radians(45)
     light = math.sin(azimuth) * math.cos(altitude), math.cos(azimuth) * math.cos(altitude), math.sin(altitude)
     return np.clip((-east * light[0] + south * light[1] + light[2]) / np.sqrt(1 + east ** 2 + south ** 2), 0, 1)
 

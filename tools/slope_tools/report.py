@@ -3,6 +3,7 @@
 Order of the work: find the runs, read their results, draw the pictures, fill the template, write.
 """
 import argparse
+import base64
 import csv
 import io
 import math
@@ -52,6 +53,8 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--no-paper", action="store_true",
                         help="leave out the numbers of the paper's second Table 5, which stand beside a study over "
                              "rolling")
+    parser.add_argument("--pictures", action="store_true",
+                        help="write the pictures as files too: REPORT.1.png, REPORT.2.png, ... in the page's order")
     return parser
 
 
@@ -72,8 +75,18 @@ def run(args):
     table = output.with_suffix(".section.csv")
     runs.write(table, page.section_table())
     print(f"{output}: {len(html) / 1e6:.1f} MB, {page.pictures} pictures; {table}")
+    if args.pictures:
+        write_pictures(output, html)
     for level, text in page.warnings:
         print(f"{'WARNING' if level == 'red' else 'note'}: {text}")
+
+
+def write_pictures(output, html):
+    """The page's PNG pictures as files beside it."""
+    pictures = re.findall(r"data:image/png;base64,([A-Za-z0-9+/=]+)", html)
+    for place, picture in enumerate(pictures, 1):
+        runs.write(output.with_suffix(f".{place}.png"), base64.b64decode(picture))
+    print(f"{output.with_suffix('.1.png')} to {len(pictures)}: its pictures")
 
 
 def render(content):
@@ -237,7 +250,9 @@ class Page:
             self.slip_depth = np.where(self.before - base > 0.01, self.before - base, 0)
         self.arrival, self.max_thickness = one.raster("arrival"), one.raster("max_thickness")
         self.max_speed = one.raster("max_speed")
-        self.release = self.arrival == 0
+        # balls larger than the cells leave holes between them
+        side = (one.summary["volume"]["released"] / one.summary["balls"]["released"]) ** (1 / 3)
+        self.release = closed(self.arrival == 0, math.ceil(side / one.deposit.cell / 2))
         touched = self.max_thickness > 0
         for other in self.drawn:
             touched |= other.thickness > 0
@@ -457,23 +472,27 @@ class Page:
         start, end = self.section
         length = np.hypot(*(end - start))
         count = min(max(int(math.ceil(2 * length / cell)), 50), 2000) + 1
+        s = np.linspace(0, length, count)
         x, y = (start[:, None] + (end - start)[:, None] * np.linspace(0, 1, count))
 
         def along(values):
             return sample(raster._replace(z=values), x, y)
 
         base = along(self.result.deposit.base)
+        known = np.flatnonzero(np.isfinite(base))
+        if not len(known):
+            raise SlopeError("--section", "must cross cells whose ground is known")
+        part = slice(known[0], known[-1] + 1)       # ends without ground are left out
+        s, x, y, base = s[part], x[part], y[part], base[part]
         drawn = sorted(self.drawn, key=lambda one: one is not self.result)
         lines = []
         for one in drawn:
             thickness = np.nan_to_num(along(one.thickness))
             lines.append((self.label(one), along(one.deposit.base) + thickness, thickness))
-        return np.linspace(0, length, count), x, y, along(self.before), base, lines
+        return s, x, y, along(self.before), base, lines
 
     def section_picture(self):
         s, x, y, before, base, lines = self.lines = self.profile()
-        if not np.isfinite(base).any():
-            raise SlopeError("--section", "must cross cells whose ground is known")
         road, cut = [], None
         if self.road is not None:
             road, cut = self._road_on(s, x, y)
@@ -571,8 +590,9 @@ class Page:
 
     @property
     def paper(self):
-        """Whether the paper's numbers belong beside this study."""
-        return bool(self.study and not self.args.no_paper and len(self.settings.get("rolling") or ()) > 1)
+        """Whether the paper's numbers belong beside this study: volumes to remove against the rolling resistance."""
+        return bool(self.study and self.study["conservative"] and not self.args.no_paper
+                    and len(self.settings.get("rolling") or ()) > 1)
 
     # --- the page ---
 
@@ -634,6 +654,18 @@ def is_number(text):
         return math.isfinite(float(text))
     except ValueError:
         return False
+
+
+def closed(mask, cells):
+    """The mask with gaps of up to 2 x cells filled: grown by so many cells, and shrunk again."""
+    mask = np.pad(mask, cells)
+    for _ in range(2):
+        grown = mask.copy()
+        for down in range(-cells, cells + 1):
+            for right in range(-cells, cells + 1):
+                grown |= np.roll(mask, (down, right), (0, 1))
+        mask = ~grown
+    return mask[cells:-cells, cells:-cells]
 
 
 def same_grid(one, other):

@@ -37,9 +37,9 @@ def collect(args, settings, todo, work, thresholds):
         if one.error:
             rows.append({**row, "error": one.error, "log_warnings": one.log.warnings})
             continue
-        row = result(one, row, maps)
+        row, thickness = result(one, row, maps)
         if args.road:
-            row.update(on_road(one, args, output / row["summary"]))
+            row.update(on_road(one, args, output / row["summary"], thickness))
         rows.append(row)
     for row in rows:
         if row["status"] == "failed":
@@ -68,8 +68,8 @@ def collect(args, settings, todo, work, thresholds):
                             + ", ".join(sorted({str(row[what]) for row in finished})))
     if maps.problem:
         warnings.append(maps.problem)
-    place = terrain_place(next(one for one in todo if not one.error)) if finished else None
-    written = maps.write(output, place)
+    first = next((one for one in todo if not one.error), None)
+    written = maps.write(output, terrain_place(first) if first else None)
     about = {
         "study": {"deck": deck.name, "set": settings, "runs": len(rows), "finished": len(finished),
                   "ranks": work.ranks, "jobs": work.jobs, "package": work.package, "collected": runs.now(),
@@ -78,7 +78,7 @@ def collect(args, settings, todo, work, thresholds):
                                                             "max_speed_m_s") if finished},
         "conservative": None, **written, "warnings": warnings, "runs": rows}
     if args.road and finished:
-        about["study"]["road"] = write_road(args, finished[0], place)
+        about["study"]["road"] = write_road(args, first, thickness)
         about["conservative"] = conservative(settings, rows, finished)
     for text in warnings:
         warn(text)
@@ -94,7 +94,7 @@ def collect(args, settings, todo, work, thresholds):
 
 
 def result(one, row, maps):
-    """The row of a finished run; adds its rasters to the maps."""
+    """The row of a finished run, and its final thickness; adds its rasters to the maps."""
     marker = runs.load_yaml(one.marker, "what `slope study` wrote")
     path = one.folder / str(marker.get("summary"))
     about = runs.load_yaml(one.folder / runs.VARIABLES, "what `slope study` wrote")
@@ -106,7 +106,7 @@ def result(one, row, maps):
     volume, travel = summary["volume"], summary["travel"]
     stays = volume["released"] - volume["off_grid"] - volume["lost"]
     on_grid = float(np.nansum(thickness.z)) * thickness.transform.a ** 2
-    return {**row, "variables": about.get("variables"), "ranks": about.get("ranks"), "package": about.get("package"),
+    row = {**row, "variables": about.get("variables"), "ranks": about.get("ranks"), "package": about.get("package"),
             "released_m3": volume["released"],
             "on_grid_m3": volume["on_grid"], "off_grid_m3": volume["off_grid"], "lost_m3": volume["lost"],
             "residual_m3": volume["residual"], "mass_error": (on_grid - stays) / volume["released"],
@@ -118,11 +118,12 @@ def result(one, row, maps):
             "wall_s": marker.get("wall_seconds"), "summary": f"{one.name}/{path.name}",
             "slope_version": summary["slope_version"], "lammps_version": summary["lammps_version"],
             "lmp_sha256": about.get("lmp_sha256"), "log_warnings": one.log.warnings}
+    return row, thickness
 
 
-def on_road(one, args, summary):
-    """What `slope volume` says of a run; all it writes goes to the folder volume of the run."""
-    from . import volume
+def on_road(one, args, summary, thickness):
+    """What `slope volume` says of a run, all of which goes to the folder volume of the run; and what lies beyond."""
+    from . import polygons, volume
     parser = argparse.ArgumentParser()
     volume.add_parser(parser.add_subparsers())
     words = ["volume", str(runs.prefix_of(summary)), "--road", str(args.road), "--cut-angle", str(args.cut_angle),
@@ -134,18 +135,42 @@ def on_road(one, args, summary):
     about = runs.load_yaml(one.folder / "volume" / "volume.yaml", "what `slope volume` wrote")
     return {"remove_m3": about["volume"]["remove"], "remove_on_road_m3": about["volume"]["remove_on_road"],
             "remove_beside_road_m3": about["volume"]["remove_beside_road"],
+            "beyond_road_m3": beyond(thickness, runs.load_raster(runs.prefix_of(summary), "arrival").z == 0,
+                                     polygons.read_local(args.road, placed(thickness, one), args.local)),
             "blocked_m": about["axis"]["blocked_length"], "axis_thickness_m": about["axis"]["largest_thickness"],
             # what it says of the summary is in the table
             "road_warnings": [text.replace(f"{one.folder}/", "") for text in about["warnings"]
                               if not text.startswith(f"{summary}:")]}
 
 
-def write_road(args, row, place):
+def beyond(thickness, released, road):
+    """Volume (m3) on those parts of the grid that the road (local metres) cuts off from the released mass (a mask).
+
+    None if the road does not divide the grid.
+    """
+    from shapely.geometry import box
+    from . import deposit
+    rows, columns = thickness.z.shape
+    lines = np.arange(columns + 1.0), np.arange(rows + 1.0)
+    parts = deposit.polygons_of(box(0, 0, columns, rows).difference(deposit.to_index(road, thickness)))
+    shares = [deposit.coverage(part, *lines)[0] for part in parts]
+    shares = [share for share in shares if share.sum() > 1e-6]
+    if len(shares) < 2:
+        return None
+    shares.sort(key=lambda share: (share * released).sum())     # the last one is where the mass comes from
+    return float(sum((share * thickness.z).sum() for share in shares[:-1]) * thickness.transform.a ** 2)
+
+
+def placed(raster, one):
+    """The raster with the CRS and the offset of the run's terrain."""
+    place = terrain_place(one)
+    return raster._replace(crs=place.crs, offset=place.offset) if place else raster
+
+
+def write_road(args, one, thickness):
     """Keep the road, in local metres, with the study; what study.yaml says of it."""
     from . import polygons
-    raster = runs.load_raster(runs.prefix_of(args.output / row["summary"]), "thickness")
-    if place:
-        raster = raster._replace(crs=place.crs, offset=place.offset)
+    raster = placed(thickness, one)
     polygons.write(args.output / "road.csv", polygons.read_local(args.road, raster, args.local), raster)
     return {"file": args.road.name, "local": "road.csv", "cut_angle": args.cut_angle, "mesh": args.mesh}
 
@@ -253,7 +278,8 @@ class Maps:
 COLUMNS = ("released_m3", "on_grid_m3", "off_grid_m3", "lost_m3", "residual_m3", "front_m", "reach_angle_deg",
            "centroid_m", "thickness_m", "max_thickness_m", "max_speed_m_s", "stop_time_s", "stop_reason", "moving",
            "wall_s")
-ROAD_COLUMNS = ("remove_m3", "remove_on_road_m3", "remove_beside_road_m3", "blocked_m", "axis_thickness_m")
+ROAD_COLUMNS = ("remove_m3", "remove_on_road_m3", "remove_beside_road_m3", "beyond_road_m3", "blocked_m",
+                "axis_thickness_m")
 
 
 def table(settings, rows):
@@ -274,7 +300,7 @@ SHOWN = {"released_m3": ("released", "{:,.0f}"), "on_grid_m3": ("on grid", "{:,.
          "stop_time_s": ("stop s", "{:.1f}"), "stop_reason": ("reason", "{}"), "moving": ("moving", "{}"),
          "wall_s": ("wall s", "{:.0f}")}
 SHOWN_ROAD = {"remove_m3": ("to remove", "{:,.0f}"), "remove_on_road_m3": ("on the road", "{:,.0f}"),
-              "blocked_m": ("blocked m", "{:.0f}")}
+              "beyond_road_m3": ("beyond it", "{:,.0f}"), "blocked_m": ("blocked m", "{:.0f}")}
 
 
 def print_table(settings, rows, title):
@@ -291,7 +317,8 @@ def print_table(settings, rows, title):
         if row["status"] == "failed":
             cells += ["failed"]
         else:
-            cells += [form.format({True: "YES", False: "no"}.get(row[key], row[key]) if key == "moving" else row[key])
+            cells += ["-" if row[key] is None else
+                      form.format({True: "YES", False: "no"}[row[key]] if key == "moving" else row[key])
                       for key, (_, form) in columns.items()]
         shown.add_row(*cells)
     console = Console() if sys.stdout.isatty() else Console(width=160)

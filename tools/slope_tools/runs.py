@@ -212,12 +212,12 @@ def prefix_of(summary):
     return Path(str(summary).removesuffix(".summary.yaml"))
 
 
-def write(path, text):
-    """Write a text file: complete, or not touched."""
+def write(path, content):
+    """Write a file of text or bytes: complete, or not touched."""
     path = Path(path)
     new = path.with_name(f".{path.name}.{os.getpid()}.new")
     try:
-        new.write_text(text, encoding="utf-8")
+        new.write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
         os.replace(new, path)
     except OSError as error:
         raise SlopeError(path, f"cannot be written: {error.strerror}") from error

@@ -160,9 +160,7 @@ def from_raster(path, mapped, raster, threshold, local):
     cell = raster.transform.a ** 2
     mean = spread(thickness, x, y, shape)
     mean[mean < FULL * mean.max(initial=0)] = 0
-    row, column = np.nonzero(edge_cells(thick))
-    corners = [there * (column + i, row + j) for i in (0, 1) for j in (0, 1)]
-    points = np.concatenate([np.transpose(corner) for corner in corners])
+    points = corners(there, thick)
     outside = thick.sum() * area - share.sum() * cell
     volume_outside = thickness.sum() * area - mean.sum() * cell
     return Observed(share, mean, points, None, *(value if value > 1e-9 * total * area else 0.0 for value, total in
@@ -182,11 +180,12 @@ def spread(values, x, y, shape):
     return np.maximum(values, 0)
 
 
-def edge_cells(mask):
-    """The cells of a mask that have a neighbour outside of it."""
+def corners(transform, mask):
+    """Local x, y of the corners of the cells of a mask that have a neighbour outside of it."""
     padded = np.pad(mask, 1)
     inner = padded[:-2, 1:-1] & padded[2:, 1:-1] & padded[1:-1, :-2] & padded[1:-1, 2:]
-    return mask & ~inner
+    row, column = np.nonzero(mask & ~inner)
+    return np.concatenate([np.transpose(transform * (column + i, row + j)) for i in (0, 1) for j in (0, 1)])
 
 
 # --- scores ---
@@ -210,8 +209,7 @@ def overlap(simulated, observed, cell):
 def runout(run_, simulated, observed):
     """Distances in plan of the farthest points of both from the highest released point, and along the fall line (m)."""
     (x, y), source = top(run_)
-    row, column = np.nonzero(edge_cells(simulated))
-    points = np.concatenate([np.transpose(run_.raster.transform * (column + i, row + j)) for i in (0, 1) for j in (0, 1)])
+    points = corners(run_.raster.transform, simulated)
     found = {"from": [round(x, 9), round(y, 9)], "from_source": source}
     if not len(points) or not len(observed.points):
         return {**found, "simulated": None, "observed": None, "difference": None}
@@ -315,7 +313,8 @@ def draw(path, run_, simulated, observed, about):
                        t.f + row.min() * t.e))
     if observed.polygon is not None:
         bounds.append(deposit.as_multi(observed.polygon.intersection(deposit.box_of(raster))).bounds)
-    shown = maps.window(raster, *(bounds or [extent(raster)]))
+    bounds.append((*about["runout"]["from"], *about["runout"]["from"]))
+    shown = maps.window(raster, *bounds)
     area = about["area"]
     jaccard = "none" if area["jaccard"] is None else f"{area['jaccard']:.3f}"
     figure, axes = maps.relief(raster, run_.base, shown, f"{about['prefix']}: Jaccard {jaccard}, thicker than "

@@ -140,7 +140,8 @@ def make_mesh(size, raster):
     xlo, ylo, xhi, yhi = deposit.extent(raster)
     count = ((xhi - xlo) / size + 1) * ((yhi - ylo) / size + 1)
     if count > MOST_MESH:
-        raise SlopeError("--mesh", f"must give at most {MOST_MESH} mesh cells, {count:.3g} are needed for the grid", f"{size:g}")
+        raise SlopeError("--mesh", f"must give at most {MOST_MESH} mesh cells, the grid would need {count:.3g}",
+                         f"{size:g}")
     return Mesh(size, raster)
 
 
@@ -392,7 +393,8 @@ def write_geojson(path, run_, mesh, result, factor):
         ring = [(x, y), (x + mesh.size, y), (x + mesh.size, y + mesh.size), (x, y + mesh.size), (x, y)]
         if crs is not None and not known:
             ring = list(zip(*rasterio.warp.transform(crs, WGS84, *zip(*ring))))
-        features.append({"type": "Feature", "properties": values, "geometry": {"type": "Polygon", "coordinates": [ring]}})
+        features.append({"type": "Feature", "properties": values,
+                         "geometry": {"type": "Polygon", "coordinates": [ring]}})
     collection = {"type": "FeatureCollection", "name": "volume"}
     if known:
         collection["crs"] = {"type": "name", "properties": {"name": f"urn:ogc:def:crs:EPSG::{known}"}}
@@ -429,17 +431,20 @@ def draw(path, run_, road, axis, mesh, result, about):
     if (thickness > 0).any() and min(thickness.shape) >= 2:
         axes.contour((thickness > 0).astype(float), [0.5], colors="black", linewidths=0.6, linestyles="dotted",
                      extent=where, origin="upper")
+        axes.plot([], [], color="black", linewidth=0.8, linestyle="dotted", label="deposit")
     maps.outline(axes, road, color="tab:blue", linewidth=1.4, label="road")
-    for line in axis.geoms:
-        axes.plot(*np.asarray(line.coords).T, color="tab:blue", linewidth=0.8, linestyle="dashdot")
+    for number_, line in enumerate(axis.geoms):
+        axes.plot(*np.asarray(line.coords).T, color="tab:blue", linewidth=0.8, linestyle="dashdot",
+                  label=None if number_ else "axis")
     cleared = np.argwhere(result.volume > 0)
     if 0 < len(cleared) <= LABELS:
-        largest = result.volume.max()
+        digits = 0 if result.volume.max() >= 10 else 2
         for row, column in cleared:
             x, y = mesh.corner(row, column)
             axes.add_patch(maps.plt.Rectangle((x, y), mesh.size, mesh.size, fill=False, linewidth=0.4))
-            axes.text(x + mesh.size / 2, y + mesh.size / 2, f"{result.volume[row, column]:.{0 if largest >= 10 else 2}f}", fontsize=5,
-                      ha="center", va="center", clip_on=True)
+            axes.text(x + mesh.size / 2, y + mesh.size / 2, f"{result.volume[row, column]:.{digits}f}",
+                      fontsize=5, ha="center", va="center", clip_on=True)
+        axes.plot([], [], color="black", linewidth=0.4, label=f"mesh of {mesh.size:g} m, m3 to remove")
     axes.legend(loc="upper right", fontsize=8)
     maps.save(figure, path)
 
@@ -447,8 +452,9 @@ def draw(path, run_, road, axis, mesh, result, about):
 def summary(about, folder):
     """What the user needs to know."""
     volume, axis = about["volume"], about["axis"]
-    lines = [f"to remove: {volume['remove']:.1f} m3 of {volume['deposit']:.1f} m3: {volume['remove_on_road']:.1f} m3 on "
-             f"the road, {volume['remove_beside_road']:.1f} m3 beside it above a cut of {about['cut_angle']:g} degrees",
+    lines = [f"to remove: {volume['remove']:.1f} m3 of {volume['deposit']:.1f} m3: {volume['remove_on_road']:.1f} m3 "
+             f"on the road, {volume['remove_beside_road']:.1f} m3 beside it above a cut of "
+             f"{about['cut_angle']:g} degrees",
              f"bulk factor {about['bulk_factor']:.6g}, the run's"]
     if "other_bulk_factor" in about:
         lines[-1] += (f"; at {about['other_bulk_factor']:.6g}: {about['volume_at_other_bulk_factor']['remove']:.1f} m3 "
