@@ -350,7 +350,7 @@ def test_resume_after_a_kill(slope, here, how, status):
     assert [line.rsplit(", ", 1)[1] for line in listed.splitlines()[:3]] == ["finished", "unfinished", "new"]
     (second / "rubbish").write_text("of the run that was cut\n")
     edit(second / "terrain.asc", "ncols", "broken")
-    state, told, complaint = slope(shlex.join(LONG[1:]))
+    state, told, complaint = slope(shlex.join(LONG[1:-1]) + " 2")       # two at a time
     assert state == 0, complaint
     assert "1 of 3 runs are finished already" in told
     assert "[1/3]" not in told and "[2/3]" in told and "[3/3]" in told

@@ -49,6 +49,7 @@ def data_uri(figure, kind="png"):
     """
     out = io.BytesIO()
     figure.draw_without_rendering()
+    figure.set_layout_engine("none")    # once more, and it would not be what was measured
     used = figure.get_tightbbox(figure.canvas.get_renderer())
     width = figure.get_size_inches()[0]
     figure.savefig(out, format=kind, dpi=DPI, metadata={"Date": None} if kind == "svg" else {"Software": None},
@@ -342,8 +343,11 @@ def section(s, before, base, runs, road, cut, title):
     while (high - low) * exaggeration < 0.16 * np.ptp(s) and exaggeration < 10:
         exaggeration = {1.0: 2.0, 2.0: 5.0, 5.0: 10.0}[exaggeration]
     with plt.rc_context(STYLE):
-        height = min(max((FULL - 0.6) * (high - low) * exaggeration / np.ptp(s), 1.1), 4.5) + 0.75
-        figure, axes = plt.subplots(figsize=(FULL, height))
+        tall = min(max((FULL - 0.6) * (high - low) * exaggeration / np.ptp(s), 1.1), 4.5)
+        longest = max(len(name) for name, *_ in runs) + 9
+        columns = max(2, 88 // (8 + longest))
+        rows = math.ceil((len(runs) + 4) / columns)
+        figure, axes = plt.subplots(figsize=(FULL, tall + 0.65 + 0.16 * rows))
         for start, end in road:
             axes.axvspan(start, end, color=ROAD, alpha=0.13, lw=0)
             axes.annotate("road", ((start + end) / 2, high), xytext=(0, -3), textcoords="offset points", ha="center",
@@ -369,8 +373,8 @@ def section(s, before, base, runs, road, cut, title):
             axes.text(x, 0.94, text, transform=axes.transAxes, ha="center", va="top", fontsize=7.5, fontweight="bold",
                       zorder=9, bbox={"boxstyle": "circle,pad=0.15", "fc": "white", "ec": SECTION, "lw": 0.5})
         handles, labels = axes.get_legend_handles_labels()
-        axes.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, -0.42 / (height - 0.75)), frameon=False,
-                    ncol=min(len(labels), max(2, 88 // (8 + max(map(len, labels))))))
+        axes.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, -0.4 / tall), frameon=False,
+                    ncol=min(len(labels), columns))
         return data_uri(figure, "svg"), exaggeration
 
 

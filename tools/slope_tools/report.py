@@ -332,7 +332,8 @@ class Page:
         if self.study:
             for doubt in (self.study["conservative"] or {}).get("doubts") or ():
                 add(("amber", f"The conservative volume may be exceeded: {doubt}"))
-            told = (" failed: ", "still moves", "left the grid or the box")
+            # what stands in other words here, or beside the maps
+            told = (" failed: ", "still moves", "left the grid or the box", "has no CRS")
             for text in self.study.get("warnings") or ():
                 if not any(known in text for known in told):
                     add(("amber", text))
