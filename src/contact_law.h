@@ -14,11 +14,13 @@
 #ifndef SLOPE_CONTACT_LAW_H
 #define SLOPE_CONTACT_LAW_H
 
+#include <algorithm>
 #include <cmath>
 
 namespace Slope {
 
 static constexpr double PI = 3.14159265358979323846;
+static constexpr double TINY = 1.0e-100;    // keeps a quotient finite that is not used
 
 // ----------------------------------------------------------------------
 // coefficients
@@ -59,7 +61,7 @@ struct ContactLaw {
   double mass_factor;                   // 1: reduced mass, 2: mass of one of two equal balls
   double rolling_factor;                // 2: harmonic mean radius, 1: reduced radius
   double fn_least;                      // smallest normal force: -HUGE_VAL, or 0 when it must not pull
-  double predicted;                     // 1: scheme predicted, 0: plain (see contact_force)
+  double exact;                         // 1: scheme exact, 0: plain (see ContactStep)
 
   // mass (kg) in c = 2 zeta sqrt(k m): two moving balls, or a ball on a fixed one
   double mass(double mi, double mj) const { return mass_factor * mi * mj / (mi + mj); }
@@ -69,12 +71,126 @@ struct ContactLaw {
 };
 
 // ----------------------------------------------------------------------
-// one contact
+// what a contact remembers
 // ----------------------------------------------------------------------
 
 // Values carried from step to step: tangential spring (m), rolling spring (m).
 // Seen from the partner both change sign, as LAMMPS' neighbor history assumes.
+//
+// The tangential spring lies in the tangent plane. Its normal component, the same from both
+// sides, is therefore free to say where in its life the contact is, in units of the rolling
+// radius: it survives what the history survives.
 static constexpr int HISTORY = 6;
+enum Phase {
+  NEW = -2,      // touches for the first time: set by who finds it
+  FIRST = -1,    // had its first step
+  INSIDE = 0,
+  LAST = 1,      // has got the speed with which it parts
+  GONE = 2       // is still parting
+};
+
+// value of a new contact's tangential spring along the normal n
+inline double new_contact(double rolling_radius) { return NEW * rolling_radius; }
+
+// ----------------------------------------------------------------------
+// the law for balls of one mass and one time step
+// ----------------------------------------------------------------------
+
+// Velocity Verlet hands over the overlap d at the end of a step and the path V by which it grew
+// in it (V = -vn dt), and the force F acts for a whole step: V becomes V - F dt^2/m. With the
+// law's own F = kn d - cn vn (scheme plain) the restitution comes out too low, and scatters with
+// where in the step the contact begins. Scheme exact takes the force that puts the next overlap
+// where the law's own motion, a damped oscillation with w = sqrt(kn/m) and h = cn dt/(2 m), has
+// it, whatever the step:
+//
+//   inside a contact   d_next = C d - D (d - V),  D = exp(-2 h),  C = 2 exp(-h) cos(sqrt(w^2 dt^2 - h^2))
+//   first step         V as it would be, had the oscillation that has now d begun earlier,
+//                      with the speed of the impact
+//   last step          the speed with which the oscillation comes through d = 0
+//
+// Both agree as dt goes to 0. Derivation: doc/src/theory.rst.
+struct ContactStep {
+  double dt, grow;              // s; grow: what the springs grow by, 0 at set-up
+  double force;                 // m / dt^2: N per m
+  double stiffness, decay;      // 1 + D - C, D
+  double back_d, back_v;        // overlap a step ago = back_d d - back_v (rate of d) dt
+  double per_back_v;            // 1 / back_v
+  double a, h;                  // w^2 dt^2, cn dt / (2 m)
+  double kt, ct, kr, cr;
+  double friction, rolling, fn_least;
+  double first_below, gone_above;    // phases before this step with which it is the first, or none
+  double last_above;                 // outgoing path with which it may be the last
+};
+
+// Dashpots of the tangent plane act on the spin too, and those of all contacts of a ball at once:
+// with a step near the rule their sum would overshoot, and a heap tremble for ever. Each is
+// reduced to c / (1 + CROWD c dt / (2 m)), which is c for small steps.
+static constexpr double CROWD = 12.0;
+
+// exp(-x) to 1e-12 for 0 <= x <= 1; no call, so that loops with it vectorise
+inline double decay_factor(double x)
+{
+  const double y = 0.125 * x;    // Pade approximant, to the eighth power
+  const double even = 1.0 + 0.1 * y * y, odd = y * (0.5 + y * y / 120.0);
+  double e = (even - odd) / (even + odd);
+  e *= e;
+  e *= e;
+  return e * e;
+}
+
+// What depends on the mass: inverse_mass (1/kg) = 1/m_i + 1/m_j, where a fixed ball has none;
+// mass_dashpot (kg): that of the conversion restitution -> dashpot.
+inline void set_mass(ContactStep &s, const ContactLaw &law, double inverse_mass, double mass_dashpot)
+{
+  const double root = std::sqrt(mass_dashpot);
+  const double half = 0.5 * inverse_mass * s.dt;
+  s.force = 0.5 / (half * s.dt);
+  s.a = law.kn / s.force;
+  s.h = (law.cn_given + law.cn_root * root) * half;
+
+  // cos and sin(x)/x of the root of q, which is negative for an overdamped contact
+
+  const double q = s.a - s.h * s.h;
+  const double cosine =
+      1.0 - q / 2.0 * (1.0 - q / 12.0 * (1.0 - q / 30.0 * (1.0 - q / 56.0 * (1.0 - q / 90.0))));
+  const double sinc =
+      1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0 * (1.0 - q / 72.0 * (1.0 - q / 110.0))));
+  const double e = decay_factor(s.h), plain = 1.0 - law.exact;
+  s.decay = law.exact * e * e + plain * (1.0 - 2.0 * s.h);
+  s.stiffness = law.exact * (1.0 + e * e - 2.0 * e * cosine) + plain * s.a;
+  s.back_d = (cosine - s.h * sinc) / e;
+  s.back_v = sinc / e;
+  s.per_back_v = e / sinc;
+
+  const double ct = law.ct_given + law.ct_root * root;
+  const double cr = law.cr_given + law.cr_root * root;
+  s.ct = ct / (1.0 + law.exact * CROWD * half * ct);
+  s.cr = cr / (1.0 + law.exact * CROWD * half * cr);
+}
+
+// dt (s) > 0; again: for the forces of the step that has just ended once more (set-up of a run)
+inline ContactStep contact_step(const ContactLaw &law, double inverse_mass, double mass_dashpot,
+                                double dt, bool again)
+{
+  const bool exact = law.exact > 0.0;
+  ContactStep s;
+  s.dt = dt;
+  s.grow = again ? 0.0 : dt;
+  s.kt = law.kt;
+  s.kr = law.kr;
+  s.friction = law.friction;
+  s.rolling = law.rolling;
+  s.fn_least = law.fn_least;
+  s.first_below = !exact ? -HUGE_VAL : again ? 0.5 * (FIRST + INSIDE) : 0.5 * (NEW + FIRST);
+  s.gone_above = !exact ? HUGE_VAL : again ? 0.5 * (LAST + GONE) : 0.5 * (INSIDE + LAST);
+  s.last_above = exact ? 0.0 : HUGE_VAL;
+  set_mass(s, law, inverse_mass, mass_dashpot);
+  return s;
+}
+
+// ----------------------------------------------------------------------
+// one contact
+// ----------------------------------------------------------------------
 
 struct Contact {
   double n[3];       // unit normal, partner to ball
@@ -83,9 +199,6 @@ struct Contact {
   double rw[3];      // R_i w_i + R_j w_j, m/s
   double w[3];       // w_i - w_j, rad/s
   double rolling_radius;    // m
-  double mass;              // kg, in the conversion restitution -> dashpot
-  double inverse_mass;      // 1/kg, 1/m_i + 1/m_j; a fixed partner has none
-  double fresh;             // 1: did not touch a step ago, else 0
 };
 
 struct ContactForce {
@@ -94,12 +207,47 @@ struct ContactForce {
   double m[3];      // rolling torque on the ball, N m
 };
 
+// Normal force (N) at overlap d that grew by V in the step that ends. phase: a Phase, that of the
+// step before (at set-up, of this step); becomes that of this step.
+inline double normal_force(const ContactStep &s, double d, double V, double &phase)
+{
+  double F = s.stiffness * d + (1.0 - s.decay) * V;    // in m: times m/dt^2
+
+  // distance and rate near d = 0, for an oscillation that has the path U per step at d = 0:
+  // series in r = d / U; coming in, U is V; going out, U follows from the rate
+
+  const double rate = (d - V - s.back_d * d) * s.per_back_v;    // of -d, now
+  const double guess = rate - 2.0 * s.h * d;
+  const double r2 = 0.5 * s.a, r3 = 2.0 / 3.0 * s.h * s.a;
+  const double r4 = s.h * s.h * s.a + 0.125 * s.a * s.a;
+  const bool in = V > 0.0;
+  const double path = std::max(in ? V : guess, TINY);
+  const double r = std::min(d * path / (path * path + (in ? 0.0 : r2 * d * d)), 1.0);
+  const double rate_in = V - d * (2.0 * s.h + r * (r2 + r * (r3 + r * r4)));
+  const double V_in = d - (s.back_d * d - s.back_v * rate_in);
+  const double F_in = s.stiffness * d + V - s.decay * V_in;
+  const double F_out = V + guess + d * r * (r2 - r * (r3 - r * r4));
+
+  // selects, not branches, so that the compiler can vectorise a loop over contacts
+
+  const bool first = (phase < s.first_below) & in;
+  const bool gone = (phase > s.gone_above) & !in;
+  const bool last = (guess > s.last_above) & (d + V <= F) & !in;
+  phase = last ? LAST : INSIDE;
+  F = last ? F_out : F;
+  phase = gone ? GONE : phase;
+  F = gone ? 0.0 : F;
+  phase = first ? FIRST : phase;
+  F = first ? F_in : F;
+  F *= s.force;
+  return F > s.fn_least ? F : s.fn_least;
+}
+
 // Spring and dashpot in the tangent plane with a limit, for sliding and for rolling alike:
-// s += u dt, kept in the plane of n; F = -k s - c (u + yield F); if |F| exceeds the limit, F is
-// cut to it and s is cut back to what gives the cut force. u must lie in the plane of n.
-// yield: what half a step of unit force adds to u, so that the dashpot sees u at its end.
+// s += u dt, kept in the plane of n; F = -k s - c u; if |F| exceeds the limit, F is cut to it and
+// s is cut back to what gives the cut force. u must lie in the plane of n.
 inline void limited_spring(double k, double c, double limit, const double *n, const double *u,
-                           double dt, double yield, double *s, double *f)
+                           double dt, double *s, double *f)
 {
   double sx = s[0] + u[0] * dt;
   double sy = s[1] + u[1] * dt;
@@ -109,65 +257,45 @@ inline void limited_spring(double k, double c, double limit, const double *n, co
   sy -= sn * n[1];
   sz -= sn * n[2];
 
-  const double stiffer = 1.0 + c * yield;
-  const double implicit = 1.0 / stiffer;
-  const double fx = -implicit * (k * sx + c * u[0]);
-  const double fy = -implicit * (k * sy + c * u[1]);
-  const double fz = -implicit * (k * sz + c * u[2]);
+  const double fx = -(k * sx + c * u[0]);
+  const double fy = -(k * sy + c * u[1]);
+  const double fz = -(k * sz + c * u[2]);
   const double f2 = fx * fx + fy * fy + fz * fz;
-
-  // selects, not branches, so that the compiler can vectorise a loop over contacts
-
   const bool cut = f2 > limit * limit;
   const double scale = cut ? limit / std::sqrt(cut ? f2 : 1.0) : 1.0;
   const double kinv = (cut && k > 0.0) ? 1.0 / k : 0.0;
   f[0] = scale * fx;
   f[1] = scale * fy;
   f[2] = scale * fz;
-  s[0] = cut ? -(stiffer * f[0] + c * u[0]) * kinv : sx;
-  s[1] = cut ? -(stiffer * f[1] + c * u[1]) * kinv : sy;
-  s[2] = cut ? -(stiffer * f[2] + c * u[2]) * kinv : sz;
+  s[0] = cut ? -(f[0] + c * u[0]) * kinv : sx;
+  s[1] = cut ? -(f[1] + c * u[1]) * kinv : sy;
+  s[2] = cut ? -(f[2] + c * u[2]) * kinv : sz;
 }
 
-// Force of one touching contact. dt: the step by which the springs grow; 0 leaves their
-// length as it is (set-up). history: HISTORY values, updated. ROLLING = false leaves out the
-// rolling resistance, for laws that have none.
-//
-// Velocity Verlet hands over positions at the end of the step and velocities half a step
-// earlier, and the force acts for a whole step. Used as they are (scheme plain), restitution
-// comes out too low and scatters with where in the step the contact begins. Scheme predicted
-// (a) takes the velocity of the dashpot half a step on, from the contact's own force:
-//     F = (k d - c v) / (1 + c dt / (2 m)), solved in closed form, and
-// (b) in the first and the last step of a contact applies the impulse of the part of the step
-//     in which the balls touch: tau = d / |vn| is the time since (until) first (last) touch.
+// Force of one touching contact. history: HISTORY values, updated. ROLLING = false leaves out
+// the rolling resistance, for laws that have none.
 template <bool ROLLING = true>
-inline void contact_force(const ContactLaw &law, const Contact &c, double dt, double *history,
+inline void contact_force(const ContactStep &step, const Contact &c, double *history,
                           ContactForce &out)
 {
   const double *n = c.n;
-  const double root = std::sqrt(c.mass);
-  const double half = 0.5 * dt * law.predicted * c.inverse_mass;    // velocity per unit force
 
-  // normal: Fn = kn d - cn vn
+  // normal
 
+  const double rr = c.rolling_radius;
+  double phase = (history[0] * n[0] + history[1] * n[1] + history[2] * n[2]) / rr;
   const double vn = c.v[0] * n[0] + c.v[1] * n[1] + c.v[2] * n[2];
-  const double cn = law.cn_given + law.cn_root * root;
-  const double swept = std::fabs(vn) * dt * law.predicted;    // path of a step
-  const bool part = c.overlap < swept && (vn > 0.0 || c.fresh > 0.0);
-  const double share = part ? 0.5 + c.overlap / (part ? swept : 1.0) : 1.0;    // of the step
-  const double spring = law.kn * (part ? 0.5 * swept * share * share : c.overlap);
-  double fn = (spring - share * cn * vn) / (1.0 + share * cn * half);
-  fn = fn > law.fn_least ? fn : law.fn_least;
+  const double fn = normal_force(step, c.overlap, -vn * step.dt, phase);
   const double pressing = fn > 0.0 ? fn : 0.0;
 
-  // tangential: vt = v - vn n - (Ri wi + Rj wj) x n; a solid ball yields 3.5 times as easily
+  // tangential: vt = v - vn n - (Ri wi + Rj wj) x n
 
   const double vt[3] = {c.v[0] - vn * n[0] - (c.rw[1] * n[2] - c.rw[2] * n[1]),
                         c.v[1] - vn * n[1] - (c.rw[2] * n[0] - c.rw[0] * n[2]),
                         c.v[2] - vn * n[2] - (c.rw[0] * n[1] - c.rw[1] * n[0])};
   double ft[3];
-  limited_spring(law.kt, law.ct_given + law.ct_root * root, law.friction * pressing, n, vt, dt,
-                 3.5 * half, history, ft);
+  limited_spring(step.kt, step.ct, step.friction * pressing, n, vt, step.grow, history, ft);
+  for (int d = 0; d < 3; d++) history[d] += phase * rr * n[d];
 
   out.f[0] = fn * n[0] + ft[0];
   out.f[1] = fn * n[1] + ft[1];
@@ -181,12 +309,10 @@ inline void contact_force(const ContactLaw &law, const Contact &c, double dt, do
   // rolling: the same construction on Rr (wi - wj) in the tangent plane, with torque arm Rr
 
   const double wn = c.w[0] * n[0] + c.w[1] * n[1] + c.w[2] * n[2];
-  const double rr = c.rolling_radius;
   const double vr[3] = {rr * (c.w[0] - wn * n[0]), rr * (c.w[1] - wn * n[1]),
                         rr * (c.w[2] - wn * n[2])};
   double fr[3];
-  limited_spring(law.kr, law.cr_given + law.cr_root * root, law.rolling * pressing, n, vr, dt,
-                 2.5 * half, history + 3, fr);
+  limited_spring(step.kr, step.cr, step.rolling * pressing, n, vr, step.grow, history + 3, fr);
   out.m[0] = rr * fr[0];
   out.m[1] = rr * fr[1];
   out.m[2] = rr * fr[2];

@@ -210,24 +210,25 @@ void FixWallGranBalls::store_contacts()
   dpage.reset();
   std::fill(npartner, npartner + atom->nlocal, 0);
   int most = 0;
-  for (size_t a = 0; a < near.size(); a++) {
-    const int i = near[a];
-    int n = 0;
-    for (int k = offset[a]; k < offset[a + 1]; k++) n += touch[k];
-    if (n == 0) continue;
-    if (n > MAX_PARTNERS)
-      error->one(FLERR, "{}: ball {} touches {} fixed balls, the most is {}", caller,
-                 atom->tag[i], n, MAX_PARTNERS);
-    partner[i] = ipage.get(n);
-    values[i] = dpage.get(n * HISTORY);
-    for (int k = offset[a]; k < offset[a + 1]; k++)
-      if (touch[k]) {
-        partner[i][npartner[i]] = wall[k];
-        memcpy(&values[i][npartner[i]++ * HISTORY], &history[static_cast<size_t>(k) * HISTORY],
-               HISTORY * sizeof(double));
-      }
-    most = std::max(most, n);
-  }
+  for (const ContactList &l : lists)
+    for (size_t k = 0, end; k < l.entries.size(); k = end) {
+      const int i = l.entries[k].i;    // its entries follow one another
+      int n = 0;
+      for (end = k; end < l.entries.size() && l.entries[end].i == i; end++) n += l.touching[end];
+      if (n == 0) continue;
+      if (n > MAX_PARTNERS)
+        error->one(FLERR, "{}: ball {} touches {} fixed balls, the most is {}", caller,
+                   atom->tag[i], n, MAX_PARTNERS);
+      partner[i] = ipage.get(n);
+      values[i] = dpage.get(n * HISTORY);
+      for (; k < end; k++)
+        if (l.touching[k]) {
+          partner[i][npartner[i]] = l.entries[k].j;
+          memcpy(&values[i][npartner[i]++ * HISTORY], l.entries[k].history,
+                 HISTORY * sizeof(double));
+        }
+      most = std::max(most, n);
+    }
   maxexchange = 1 + (1 + HISTORY) * most;
 }
 
@@ -253,36 +254,37 @@ void FixWallGranBalls::setup_post_neighbor()
 
 void FixWallGranBalls::post_neighbor()
 {
-  near.clear();
-  offset.clear();
-  wall.clear();
+  lists.resize(atom->ntypes + 1);
+  for (ContactList &l : lists) l.clear(true, false);
 
   double **x = atom->x;
   const double *r = atom->radius;
-  const int *mask = atom->mask;
+  const int *mask = atom->mask, *type = atom->type;
   const double beyond = radius + 0.5 * neighbor->skin;
+  size_t total = 0;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(mask[i] & groupbit)) continue;
-    const size_t before = wall.size();
-    visit_near(x[i], r[i] + beyond, [&](int k, double) { wall.push_back(k); });
-    if (wall.size() > before) {
-      near.push_back(i);
-      offset.push_back(before);
-    }
+    ContactList &l = lists[type[i]];
+    const size_t before = l.entries.size();
+    visit_near(x[i], r[i] + beyond, [&](int k, double) {
+      l.add(i, k, nullptr, false, r[i], radius, atom->rmass[i], 1.0);
+    });
+    total += l.entries.size() - before;
   }
-  offset.push_back(wall.size());
 
-  touch.assign(wall.size(), 0);
-  history.assign(wall.size() * HISTORY, 0.0);
-  for (size_t a = 0; a < near.size(); a++) {
-    const int i = near[a];
-    for (int p = 0; p < npartner[i]; p++)
-      for (int k = offset[a]; k < offset[a + 1]; k++)
-        if (wall[k] == partner[i][p]) {
-          touch[k] = 1;
-          memcpy(&history[static_cast<size_t>(k) * HISTORY], &values[i][p * HISTORY],
-                 HISTORY * sizeof(double));
+  history.assign(total * HISTORY, 0.0);
+  double *next = history.data();
+  for (ContactList &l : lists) {
+    for (size_t k = 0; k < l.entries.size(); k++, next += HISTORY) {
+      ContactList::Entry &e = l.entries[k];
+      e.history = next;
+      for (int p = 0; p < npartner[e.i]; p++)
+        if (partner[e.i][p] == e.j) {
+          l.touching[k] = 1;
+          memcpy(next, &values[e.i][p * HISTORY], HISTORY * sizeof(double));
         }
+    }
+    if (pair->sizes_vary) l.equal = false;
   }
 }
 
@@ -299,105 +301,43 @@ void FixWallGranBalls::post_force(int)
 }
 
 /* ----------------------------------------------------------------------
-   contact forces of the fixed balls on the moving ones: touching contacts are gathered into a
-   block per type of the moving ball, as in the pair style
+   contact forces of the fixed balls on the moving ones
 ------------------------------------------------------------------------- */
 
 void FixWallGranBalls::apply(bool starting)
 {
+  const MovingBalls moving = pair->moving_balls();
+  const FixedPartners fixed(balls.data(), radius);
+  Vector force = {0.0, 0.0, 0.0};
   InitialOverlap initial(lmp);
-  double **x = atom->x;
-  double **v = atom->v;
-  double **omega = atom->omega;
-  const double *r = atom->radius;
-  const int *type = atom->type;
 
-  force_mine[0] = force_mine[1] = force_mine[2] = 0.0;
-  force_ready = 0;
-  blocks.resize(atom->ntypes + 1);
-
-  for (size_t a = 0; a < near.size(); a++) {
-    const int i = near[a];
-    const double radsum = r[i] + radius;
-
-    for (int k = offset[a]; k < offset[a + 1]; k++) {
-      const Ball &ball = balls[wall[k]];
-      double *values = &history[static_cast<size_t>(k) * HISTORY];
-      const double delx = x[i][0] - ball.x;
-      const double dely = x[i][1] - ball.y;
-      const double delz = x[i][2] - ball.z;
-      const double rsq = delx * delx + dely * dely + delz * delz;
-      if (rsq >= radsum * radsum) {
-        if (touch[k]) {
-          touch[k] = 0;
-          memset(values, 0, HISTORY * sizeof(double));
-        }
-        continue;
-      }
-
-      const double distance = std::sqrt(rsq);
-      const bool fresh = !touch[k] && !starting;
-      if (starting && !touch[k])
-        initial.look(radsum - distance, std::min(r[i], radius), atom->tag[i], x[i],
+  for (int type = 1; type <= atom->ntypes; type++) {
+    ContactList &l = lists[type];
+    if (l.entries.empty()) continue;
+    const ContactLaw *law = pair->law(type, wall_type);
+    if (!law)    // a type that came after init(), by fix pour or fix deposit
+      error->one(FLERR, "{}: pair_coeff {} {} is not set (moving type {}, wall type {})", caller,
+                 std::min(type, wall_type), std::max(type, wall_type), type, wall_type);
+    if (starting)
+      l.start(moving, fixed, [&](const ContactList::Entry &e, double overlap) {
+        const Vector &ball = balls[e.j];
+        initial.look(overlap, std::min(atom->radius[e.i], radius), atom->tag[e.i], atom->x[e.i],
                      fmt::format("the fixed ball at {:.6g} {:.6g} {:.6g},", ball.x, ball.y, ball.z));
-      touch[k] = 1;
-
-      const ContactLaw *found = pair->law(type[i], wall_type);
-      if (!found)    // a type that came after init(), by fix pour or fix deposit
-        error->one(FLERR, "{}: pair_coeff {} {} is not set (moving type {}, wall type {})", caller,
-                   std::min(type[i], wall_type), std::max(type[i], wall_type), type[i], wall_type);
-      const ContactLaw &law = *found;
-      if (!blocks[type[i]]) blocks[type[i]].reset(new ContactBlock);
-      ContactBlock &b = *blocks[type[i]];
-      const int c = b.count++;
-      const double rinv = 1.0 / distance;
-      b.i[c] = i;
-      b.radius_i[c] = r[i];
-      b.n[0][c] = delx * rinv;
-      b.n[1][c] = dely * rinv;
-      b.n[2][c] = delz * rinv;
-      b.overlap[c] = radsum - distance;
-      for (int d = 0; d < 3; d++) {
-        b.v[d][c] = v[i][d];
-        b.rw[d][c] = r[i] * omega[i][d];
-        b.w[d][c] = omega[i][d];
-      }
-      b.rolling_radius[c] = law.rolling_factor * r[i] * radius / radsum;
-      b.mass[c] = law.mass_fixed(atom->rmass[i]);
-      b.inverse_mass[c] = 1.0 / atom->rmass[i];
-      b.fresh[c] = fresh;
-      b.history_of[c] = values;
-      for (int h = 0; h < HISTORY; h++) b.history[h][c] = values[h];
-      if (b.count == ContactBlock::SIZE) finish(b, law, starting);
-    }
+      });
+    l.apply<true>(*law, update->dt, starting, moving, fixed,
+                  [&](int, int, const Vector &f, const Vector &) {
+                    force.x -= f.x;
+                    force.y -= f.y;
+                    force.z -= f.z;
+                  });
   }
-  for (int t = 1; t <= atom->ntypes; t++)
-    if (blocks[t] && blocks[t]->count) finish(*blocks[t], *pair->law(t, wall_type), starting);
 
+  force_mine[0] = force.x;
+  force_mine[1] = force.y;
+  force_mine[2] = force.z;
+  force_ready = 0;
   lists_newer = true;
   if (starting) initial.check(caller);
-}
-
-/* ----------------------------------------------------------------------
-   evaluate a block, add its forces to the balls, empty it
-------------------------------------------------------------------------- */
-
-void FixWallGranBalls::finish(ContactBlock &b, const ContactLaw &law, bool starting)
-{
-  // at set-up the springs keep their length: the step that ends here has grown them already
-
-  b.evaluate(law, starting ? 0.0 : update->dt);
-  if (!starting) b.store_history();
-
-  for (int c = 0; c < b.count; c++) {
-    double *f = atom->f[b.i[c]], *torque = atom->torque[b.i[c]];
-    for (int d = 0; d < 3; d++) {
-      f[d] += b.f[d][c];
-      torque[d] += b.m[d][c] - b.radius_i[c] * b.t[d][c];
-      force_mine[d] -= b.f[d][c];
-    }
-  }
-  b.count = 0;
 }
 
 /* ----------------------------------------------------------------------
@@ -422,10 +362,9 @@ double FixWallGranBalls::compute_vector(int n)
 
 double FixWallGranBalls::memory_usage()
 {
-  double bytes = balls.capacity() * sizeof(Ball) + first.capacity() * sizeof(int) +
-      top.capacity() * sizeof(float);
-  bytes += (near.capacity() + offset.capacity() + wall.capacity()) * sizeof(int);
-  bytes += touch.capacity() + history.capacity() * sizeof(double);
+  double bytes = balls.capacity() * sizeof(Vector) + first.capacity() * sizeof(int) +
+      top.capacity() * sizeof(float) + history.capacity() * sizeof(double);
+  for (const ContactList &l : lists) bytes += l.memory_usage();
   bytes += static_cast<double>(atom->nmax) * (sizeof(int) + sizeof(int *) + sizeof(double *));
   bytes += ipage.size() + dpage.size();
   return bytes;

@@ -14,10 +14,9 @@ FixStyle(wall/gran/balls,FixWallGranBalls);
 
 #include "fix.h"
 
-#include "contact_block.h"
+#include "contact_list.h"
 #include "my_page.h"
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -62,23 +61,17 @@ class FixWallGranBalls : public Fix {
 
   // the fixed balls, sorted by plan cell (x fastest): cell c holds first[c] .. first[c+1]-1
 
-  struct Ball {
-    double x, y, z;
-  };
-  std::vector<Ball> balls;
+  std::vector<Slope::Vector> balls;
   std::vector<int> first;
   std::vector<float> top;    // highest ball centre of a cell
   double xlo, ylo, cell_inv;
   int ncx, ncy;
   double checksum;           // of all positions: a restart must find the same balls
 
-  // contacts of the current neighbor list: near[k] is an atom close to the ground, its
-  // listed fixed balls are wall[offset[k]] .. wall[offset[k+1]-1]
+  // what may touch until the next neighbor list, by type of the moving ball
 
-  std::vector<int> near, offset, wall;
-  std::vector<char> touch;
+  std::vector<Slope::ContactList> lists;
   std::vector<double> history;
-  std::vector<std::unique_ptr<Slope::ContactBlock>> blocks;    // by type of the moving ball
   bool lists_newer;    // contacts have been updated since they were last stored by atom
 
   // the same contacts stored by atom, touching ones only: what exchange and restart carry
@@ -96,7 +89,6 @@ class FixWallGranBalls : public Fix {
   template <typename Visit> void visit_near(const double *, double, Visit) const;
   void store_contacts();
   void apply(bool);
-  void finish(Slope::ContactBlock &, const Slope::ContactLaw &, bool);
 };
 
 }    // namespace LAMMPS_NS

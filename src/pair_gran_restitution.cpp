@@ -8,8 +8,8 @@
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
+#include "fix_contact_history.h"
 #include "fix_dummy.h"
-#include "fix_neigh_history.h"
 #include "force.h"
 #include "initial_overlap.h"
 #include "lammps_compat.h"
@@ -18,6 +18,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <climits>
 #include <cmath>
 #include <cstring>
 
@@ -28,10 +29,6 @@ static constexpr double STEP_RULE = 0.25;    // dt <= STEP_RULE sqrt(m/kn)
 static constexpr double DEGREE = PI / 180.0;
 
 // LAMMPS keeps the rows of these arrays one after the other
-
-struct Vector {
-  double x, y, z;
-};
 
 static inline Vector *vectors(double **array)
 {
@@ -104,7 +101,6 @@ void PairGranRestitution::allocate()
   memset(&none, 0, sizeof(Coeff));
   coeffs.assign(n * n, none);
   laws.assign(n * n, ContactLaw());
-  blocks.resize(n * n);
   wall_type.assign(n, 0);
 }
 
@@ -145,7 +141,7 @@ void PairGranRestitution::settings(int narg, char **arg)
       on = "reduced";
     } else if (keyword == "scheme") {
       setting = &plain;
-      off = "predicted";
+      off = "exact";
       on = "plain";
     } else {
       error->all(FLERR,
@@ -285,7 +281,7 @@ void PairGranRestitution::make_laws()
     law.mass_factor = mass_ball ? 2.0 : 1.0;
     law.rolling_factor = rolling_reduced ? 1.0 : 2.0;
     law.fn_least = limit_damping ? 0.0 : -HUGE_VAL;
-    law.predicted = plain ? 0.0 : 1.0;
+    law.exact = plain ? 0.0 : 1.0;
     laws[k] = law;
   }
 }
@@ -315,13 +311,15 @@ void PairGranRestitution::init_style()
   dt = update->dt;
 
   if (!fix_history) {
-    fix_history = static_cast<FixNeighHistory *>(modify->replace_fix(
-        dummy_id, fmt::format("{} all NEIGH_HISTORY {}", history_id, HISTORY), 1));
+    fix_history = static_cast<FixContactHistory *>(modify->replace_fix(
+        dummy_id, fmt::format("{} all CONTACT_HISTORY {}", history_id, HISTORY), 1));
     fix_history->pair = this;
   }
 
   const int ifreeze = modify->find_fix_by_style("^freeze$");
   freeze_group_bit = ifreeze < 0 ? 0 : modify->fix[ifreeze]->groupbit;
+
+  sizes_vary = !compat::fixes_of_style(lmp, "adapt").empty();
 
   find_ranges();
   std::fill(wall_type.begin(), wall_type.end(), 0);    // wall fixes announce themselves after
@@ -513,151 +511,129 @@ void PairGranRestitution::check_timestep()
 }
 
 /* ----------------------------------------------------------------------
-   touching contacts are gathered into a block per law; a full block is evaluated and its
-   forces handed out
+   lists of what may touch, by law, from a new neighbor list
 ------------------------------------------------------------------------- */
+
+void PairGranRestitution::build_lists()
+{
+  const int n = atom->ntypes + 1;
+  lists.resize(3 * n * n);
+  for (size_t k = 0; k < lists.size(); k++) lists[k].clear(k % 3 != 1, k % 3 != 2);
+
+  const double *const radius = atom->radius;
+  const double *const rmass = atom->rmass;
+  const int *const mask = atom->mask;
+  const int *const type = atom->type;
+  for (int ii = 0; ii < list->inum; ii++) {
+    const int i = list->ilist[ii];
+    const bool frozen_i = mask[i] & freeze_group_bit;
+    const int *const jlist = list->firstneigh[i];
+    int *const flags = fix_history->firstflag[i];
+    double *const values = fix_history->firstvalue[i];
+
+    for (int jj = 0; jj < list->numneigh[i]; jj++) {
+      const int j = jlist[jj] & NEIGHMASK;
+      const bool frozen_j = mask[j] & freeze_group_bit;
+      if (frozen_i && frozen_j) continue;
+      ContactList &l = lists[3 * (type[i] * n + type[j]) + (frozen_i ? 1 : frozen_j ? 2 : 0)];
+      l.add(i, j, &values[HISTORY * jj], flags[jj], radius[i], radius[j], rmass[i], rmass[j]);
+      l.flags.push_back(&flags[jj]);
+    }
+  }
+  if (sizes_vary)
+    for (ContactList &l : lists) l.equal = false;
+  fix_history->lists_new = false;
+}
+
+/* ----------------------------------------------------------------------
+   which contacts touch, to the history that is to be stored
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::store_flags() const
+{
+  for (const ContactList &l : lists) l.store_flags();
+}
+
+/* ----------------------------------------------------------------------
+   At set-up velocities are those of the end of a step, while a step's forces are made with
+   those of its middle. A run that goes on, from a restart file too, gets these back: then its
+   first forces are the ones that the last step had.
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::find_half_step()
+{
+  half_v.clear();
+  half_omega.clear();
+  if (!fix_history->kicks_known()) return;
+
+  const int nlocal = atom->nlocal, nall = nlocal + atom->nghost;
+  Vector *const v = vectors(atom->v), *const omega = vectors(atom->omega);
+  half_v.assign(v, v + nall);
+  half_omega.assign(omega, omega + nall);
+  for (int i = 0; i < nlocal; i++) {
+    const double *kick = fix_history->kick[i];
+    v[i] = {v[i].x - kick[0], v[i].y - kick[1], v[i].z - kick[2]};
+    omega[i] = {omega[i].x - kick[3], omega[i].y - kick[4], omega[i].z - kick[5]};
+  }
+  comm->forward_comm();    // to the ghosts
+  std::swap_ranges(v, v + nall, half_v.begin());
+  std::swap_ranges(omega, omega + nall, half_omega.begin());
+}
+
+/* ---------------------------------------------------------------------- */
+
+MovingBalls PairGranRestitution::moving_balls() const
+{
+  const bool half = !half_v.empty();
+  return {vectors(atom->x),
+          half ? half_v.data() : vectors(atom->v),
+          half ? half_omega.data() : vectors(atom->omega),
+          atom->radius,
+          atom->rmass,
+          vectors(atom->f),
+          vectors(atom->torque)};
+}
+
+/* ---------------------------------------------------------------------- */
 
 void PairGranRestitution::compute(int eflag, int vflag)
 {
   ev_init(eflag, vflag);
   starting = update->setupflag;
-  InitialOverlap initial(lmp);
-
-  const Vector *const x = vectors(atom->x);
-  const Vector *const v = vectors(atom->v);
-  const Vector *const omega = vectors(atom->omega);
-  const double *const radius = atom->radius;
-  const double *const rmass = atom->rmass;
-  const int *const mask = atom->mask;
-  const int *const type = atom->type;
-  const int nlaw = atom->ntypes + 1;
-
-  const int inum = list->inum;
-  const int *ilist = list->ilist;
-  const int *numneigh = list->numneigh;
-
-  for (int ii = 0; ii < inum; ii++) {
-    const int i = ilist[ii];
-    const Vector xi = x[i];
-    const double radi = radius[i];
-    const bool frozen_i = mask[i] & freeze_group_bit;
-    int *touch = fix_history->firstflag[i];
-    double *values = fix_history->firstvalue[i];
-    const int *jlist = list->firstneigh[i];
-    const int jnum = numneigh[i];
-
-    for (int jj = 0; jj < jnum; jj++) {
-      const int j = jlist[jj] & NEIGHMASK;
-      const double delx = xi.x - x[j].x;
-      const double dely = xi.y - x[j].y;
-      const double delz = xi.z - x[j].z;
-      const double rsq = delx * delx + dely * dely + delz * delz;
-      const double radj = radius[j];
-      const double radsum = radi + radj;
-      const bool frozen_j = mask[j] & freeze_group_bit;
-      double *history = &values[HISTORY * jj];
-
-      if (rsq >= radsum * radsum || (frozen_i && frozen_j)) {
-        if (touch[jj]) {
-          touch[jj] = 0;
-          memset(history, 0, HISTORY * sizeof(double));
-        }
-        continue;
-      }
-
-      const double r = sqrt(rsq);
-      const bool fresh = !touch[jj] && !starting;
-      if (starting && !touch[jj])
-        initial.look(radsum - r, std::min(radi, radj), atom->tag[i], atom->x[i],
-                     fmt::format("ball {}", atom->tag[j]));
-      touch[jj] = 1;
-
-      const int ilaw = type[i] * nlaw + type[j];
-      const ContactLaw &law = laws[ilaw];
-      if (!blocks[ilaw]) blocks[ilaw].reset(new ContactBlock);
-      ContactBlock &b = *blocks[ilaw];
-      const int k = b.count++;
-      const double rinv = 1.0 / r;
-      const Vector vi = v[i], vj = v[j], wi = omega[i], wj = omega[j];
-      b.i[k] = i;
-      b.j[k] = j;
-      b.radius_i[k] = radi;
-      b.radius_j[k] = radj;
-      b.n[0][k] = delx * rinv;
-      b.n[1][k] = dely * rinv;
-      b.n[2][k] = delz * rinv;
-      b.overlap[k] = radsum - r;
-      b.v[0][k] = vi.x - vj.x;
-      b.v[1][k] = vi.y - vj.y;
-      b.v[2][k] = vi.z - vj.z;
-      b.rw[0][k] = radi * wi.x + radj * wj.x;
-      b.rw[1][k] = radi * wi.y + radj * wj.y;
-      b.rw[2][k] = radi * wi.z + radj * wj.z;
-      b.w[0][k] = wi.x - wj.x;
-      b.w[1][k] = wi.y - wj.y;
-      b.w[2][k] = wi.z - wj.z;
-      b.rolling_radius[k] = law.rolling_factor * radi * radj / radsum;
-
-      // a frozen ball is one of infinite mass
-
-      const double mi = rmass[i], mj = rmass[j];
-      b.mass[k] = frozen_i ? law.mass_fixed(mj)
-          : frozen_j       ? law.mass_fixed(mi)
-                           : law.mass(mi, mj);
-      b.inverse_mass[k] = frozen_i ? 1.0 / mj : frozen_j ? 1.0 / mi : (mi + mj) / (mi * mj);
-      b.fresh[k] = fresh;
-      b.history_of[k] = history;
-      for (int h = 0; h < HISTORY; h++) b.history[h][k] = history[h];
-      if (b.count == ContactBlock::SIZE) finish(b, law);
-    }
+  if (starting) find_half_step();
+  else if (!half_v.empty()) {
+    half_v.clear();
+    half_omega.clear();
   }
-  for (size_t k = 0; k < blocks.size(); k++)
-    if (blocks[k] && blocks[k]->count) finish(*blocks[k], laws[k]);
+  if (starting || fix_history->lists_new) build_lists();
 
-  if (starting) initial.check("Pair gran/restitution");
-}
+  const int nlocal = atom->nlocal, newton_pair = force->newton_pair;
+  const MovingBalls balls = moving_balls();
+  const MovingPartners partners = {balls, newton_pair ? INT_MAX : nlocal};
 
-/* ----------------------------------------------------------------------
-   evaluate a block, add its forces to the balls, empty it
-------------------------------------------------------------------------- */
-
-void PairGranRestitution::finish(ContactBlock &b, const ContactLaw &law)
-{
-  // at set-up the springs keep their length: the step that ends here has grown them already
-
-  b.evaluate(law, starting ? 0.0 : dt);
-  if (!starting) b.store_history();
-
-  Vector *const f = vectors(atom->f);
-  Vector *const torque = vectors(atom->torque);
-  const int nlocal = atom->nlocal;
-  const int newton_pair = force->newton_pair;
-
-  for (int k = 0; k < b.count; k++) {
-    const int i = b.i[k], j = b.j[k];
-    const double radi = b.radius_i[k], radj = b.radius_j[k];
-    const double fx = b.f[0][k], fy = b.f[1][k], fz = b.f[2][k];
-    f[i].x += fx;
-    f[i].y += fy;
-    f[i].z += fz;
-    torque[i].x += b.m[0][k] - radi * b.t[0][k];
-    torque[i].y += b.m[1][k] - radi * b.t[1][k];
-    torque[i].z += b.m[2][k] - radi * b.t[2][k];
-    if (newton_pair || j < nlocal) {
-      f[j].x -= fx;
-      f[j].y -= fy;
-      f[j].z -= fz;
-      torque[j].x -= b.m[0][k] + radj * b.t[0][k];
-      torque[j].y -= b.m[1][k] + radj * b.t[1][k];
-      torque[j].z -= b.m[2][k] + radj * b.t[2][k];
-    }
-    if (evflag) {
-      const double r = radi + radj - b.overlap[k];
-      ev_tally_xyz(i, j, nlocal, newton_pair, 0.0, 0.0, fx, fy, fz, r * b.n[0][k], r * b.n[1][k],
-                   r * b.n[2][k]);
-    }
+  if (starting) {
+    InitialOverlap initial(lmp);
+    for (ContactList &l : lists)
+      l.start(balls, partners, [&](const ContactList::Entry &e, double overlap) {
+        initial.look(overlap, std::min(atom->radius[e.i], atom->radius[e.j]), atom->tag[e.i],
+                     atom->x[e.i], fmt::format("ball {}", atom->tag[e.j]));
+      });
+    initial.check("Pair gran/restitution");
   }
-  b.count = 0;
+
+  for (size_t k = 0; k < lists.size(); k++) {
+    const ContactLaw &law = laws[k / 3];
+    if (evflag)
+      lists[k].apply<true>(law, dt, starting, balls, partners,
+                           [&](int i, int j, const Vector &f, const Vector &d) {
+                             ev_tally_xyz(i, j, nlocal, newton_pair, 0.0, 0.0, f.x, f.y, f.z, d.x,
+                                          d.y, d.z);
+                           });
+    else
+      lists[k].apply<false>(law, dt, starting, balls, partners,
+                            [](int, int, const Vector &, const Vector &) {});
+  }
+  fix_history->lists_used = true;
 }
 
 /* ----------------------------------------------------------------------
@@ -680,9 +656,16 @@ double PairGranRestitution::single(int i, int j, int itype, int jtype, double rs
     if ((jlist[jj] & NEIGHMASK) == j)
       memcpy(history, &fix_history->firstvalue[i][HISTORY * jj], sizeof(history));
 
-  const ContactLaw &law = laws[index(itype, jtype)];
-  const double radi = atom->radius[i], radj = atom->radius[j];
+  // as the law has it: velocities and overlap of the same time
+
+  ContactLaw law = laws[index(itype, jtype)];
+  law.exact = 0.0;
   const double mi = atom->rmass[i], mj = atom->rmass[j];
+  const bool frozen_i = atom->mask[i] & freeze_group_bit;
+  const bool frozen_j = atom->mask[j] & freeze_group_bit;
+  const double inverse = (frozen_i ? 0.0 : 1.0 / mi) + (frozen_j ? 0.0 : 1.0 / mj);
+  const double mass = (frozen_i || frozen_j ? 1.0 : law.mass_factor) / inverse;
+  const double radi = atom->radius[i], radj = atom->radius[j];
   const double r = sqrt(rsq);
   Contact contact;
   for (int k = 0; k < 3; k++) {
@@ -693,12 +676,8 @@ double PairGranRestitution::single(int i, int j, int itype, int jtype, double rs
   }
   contact.overlap = radsum - r;
   contact.rolling_radius = law.rolling_factor * radi * radj / radsum;
-  contact.mass = (atom->mask[i] & freeze_group_bit) ? law.mass_fixed(mj)
-      : (atom->mask[j] & freeze_group_bit)          ? law.mass_fixed(mi)
-                                                    : law.mass(mi, mj);
-  contact.inverse_mass = contact.fresh = 0.0;    // dt = 0: nothing is predicted
   ContactForce c;
-  contact_force(law, contact, 0.0, history, c);
+  contact_force(contact_step(law, inverse, mass, dt, true), contact, history, c);
 
   const double *n = contact.n;
   const double fn = c.f[0] * n[0] + c.f[1] * n[1] + c.f[2] * n[2];
@@ -770,8 +749,7 @@ void *PairGranRestitution::extract(const char *name, int &dim)
 double PairGranRestitution::memory_usage()
 {
   double bytes = coeffs.size() * (sizeof(Coeff) + sizeof(ContactLaw));
-  for (const auto &block : blocks)
-    if (block) bytes += sizeof(ContactBlock);
+  for (const ContactList &l : lists) bytes += l.memory_usage();
   return bytes;
 }
 

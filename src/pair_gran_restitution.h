@@ -14,10 +14,9 @@ PairStyle(gran/restitution,PairGranRestitution);
 
 #include "pair.h"
 
-#include "contact_block.h"
 #include "contact_law.h"
+#include "contact_list.h"
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -51,6 +50,9 @@ class PairGranRestitution : public Pair {
   // set it, and a line in the start-up table for every type that the wall meets
   const Slope::ContactLaw *law(int itype, int jtype) const;
   void announce_wall(int wall_type, int groupbit);
+  Slope::MovingBalls moving_balls() const;
+  void store_flags() const;
+  bool sizes_vary;    // between two neighbor lists, by fix adapt
 
  protected:
   // what pair_coeff was given for a type pair; the laws are made from it
@@ -75,13 +77,14 @@ class PairGranRestitution : public Pair {
   std::vector<Coeff> coeffs;              // (ntypes+1) x (ntypes+1), both triangles filled
   std::vector<Slope::ContactLaw> laws;    // same layout
   std::vector<TypeRange> ranges;          // by type
-  std::vector<std::unique_ptr<Slope::ContactBlock>> blocks;    // by type pair, where needed
   std::vector<char> wall_type;            // by type: 1 if a wall fix uses it
 
   double dt;
   bool starting;    // at set-up
   int freeze_group_bit;
-  class FixNeighHistory *fix_history;
+  class FixContactHistory *fix_history;
+  std::vector<Slope::ContactList> lists;    // by type pair and by which side is frozen
+  std::vector<Slope::Vector> half_v, half_omega;    // at set-up, where they are known
   std::string history_id, dummy_id;
   std::string table;    // start-up table as last printed
 
@@ -92,7 +95,8 @@ class PairGranRestitution : public Pair {
   void print_table();
   void check_timestep();
   double bound_on_step(int, int) const;
-  void finish(Slope::ContactBlock &, const Slope::ContactLaw &);
+  void build_lists();
+  void find_half_step();
 };
 
 }    // namespace LAMMPS_NS

@@ -78,7 +78,7 @@ def on_a_sphere(time, phi=30.0, spin=False, mu=0.0, mu_r=0.0):
 
 @pytest.mark.parametrize("variables, observed", [
     ({"e": 0.25}, 0.249), ({"cn": 1.45e4}, 0.249), ({"e": 0.445}, 0.445), ({"cn": 8.96e3}, 0.445)])
-@pytest.mark.parametrize("scheme, g", [("predicted", 9.81), ("plain", 9.81), ("plain", 9.80665)])  # plain: two phases
+@pytest.mark.parametrize("scheme, g", [("exact", 9.81), ("plain", 9.81), ("plain", 9.80665)])  # plain: two phases
 def test_table_2(tmp_path, variables, observed, scheme, g):
     log = run_case("01_restitution", tmp_path, tend=0.45, scheme=scheme, g=g, **variables)
     line, = printed(log, "restitution:")
@@ -108,7 +108,7 @@ def test_curve_of_figure_5(tmp_path):
 
 
 @pytest.mark.parametrize("scheme, tolerances", [
-    ("plain", (0.002, 0.004, 0.025, 0.04)), ("predicted", (0.002, 0.002, 0.015, 0.025))])
+    ("plain", (0.002, 0.004, 0.025, 0.04)), ("exact", (0.0012, 0.0012, 0.0012, 0.0015))])
 def test_time_step(tmp_path, scheme, tolerances):
     log = run_case("02_timestep", tmp_path, tend=0.7, scheme=scheme)
     lines = printed(log, "timestep:")
@@ -121,7 +121,8 @@ def test_time_step(tmp_path, scheme, tolerances):
     for k, tolerance in enumerate(tolerances):
         assert 0.445 - tolerance < low[k] <= high[k] < 0.445 + tolerance, lines[k]
     assert high[4] > 0.445 * 1.5, lines[4]
-    assert number("observed", lines[4]) > 0.445 * 1.1, lines[4]
+    if scheme == "plain":
+        assert number("observed", lines[4]) > 0.445 * 1.1, lines[4]
 
     # and the warning: not in the log before the last run
 
@@ -134,7 +135,7 @@ def test_time_step(tmp_path, scheme, tolerances):
     bounce = extreme["time"] > 0.39
     right = curve(tmp_path, "timestep.5.0e-6.csv")
     assert right["height"][right["time"] > 0.39].max() == pytest.approx(0.147, abs=0.002)
-    assert extreme["height"][bounce].max() > 1.2 * 0.147
+    assert extreme["height"][bounce].max() > (1.2 if scheme == "plain" else 1.05) * 0.147
     assert extreme["highest"][bounce].max() > 2.5 * 0.147
 
 

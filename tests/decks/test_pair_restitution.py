@@ -271,7 +271,7 @@ def test_static_overlap(tmp_path, kind):
     zeta = -math.log(0.3) / math.hypot(math.pi, math.log(0.3))
     dt = 1e-4
     softer = 1 + zeta * math.sqrt(1e6 / ball_mass(0.1, 2500)) * dt
-    for scheme, factor in (("plain", 1.0), ("predicted", softer)):
+    for scheme, factor in (("plain", 1.0), ("exact", softer)):
         _, one, _ = collide(tmp_path, kind, v1=(0, 0), gap=-50e-6, dt=dt, steps=2000, style=f"scheme {scheme}",
                             coeff="restitution 0.3", extra="fix press moving addforce 50 0 0")
         assert 0.1 + one[-1, 0] == pytest.approx(50e-6 * factor, rel=1e-3)
@@ -390,7 +390,7 @@ def test_bad_pair_coeff(tmp_path, coeff, message):
     ("limit_damping maybe", "limit_damping must be no or yes, got maybe"),
     ("rolling_radius half", "rolling_radius must be ball or reduced, got half"),
     ("gamma 3", "unknown keyword gamma, must be mass, limit_damping"),
-    ("scheme euler", "scheme must be predicted or plain, got euler"),
+    ("scheme euler", "scheme must be exact or plain, got euler"),
     ("mass", "mass: value missing"),
 ])
 def test_bad_pair_style(tmp_path, style, message):

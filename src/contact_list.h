@@ -1,0 +1,338 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+/* Contacts of one law: what may touch until the next neighbor list, and the forces of what
+   does. Per block of listed contacts: distances; the touching ones gathered side by side; the
+   contact law for several of them at a time (SIMD); forces handed out. Gathering first keeps
+   the branch out of the arithmetic, and a block stays within the first-level cache.
+   Pair gran/restitution and fix wall/gran/balls both use it. No LAMMPS in here. */
+
+#ifndef SLOPE_CONTACT_LIST_H
+#define SLOPE_CONTACT_LIST_H
+
+#include "contact_law.h"
+
+#include <algorithm>
+#include <cstring>
+#include <vector>
+
+namespace Slope {
+
+struct Vector {
+  double x, y, z;
+};
+
+// all that moves; positions in m, velocities at the middle of the step in m/s and rad/s
+struct MovingBalls {
+  const Vector *x, *v, *omega;
+  const double *radius, *mass;
+  Vector *f, *torque;
+};
+
+// The partners of the moving balls: other moving balls ...
+struct MovingPartners {
+  static constexpr bool MOVE = true;
+  const MovingBalls &balls;
+  int nforce;    // partners below this number get their force
+
+  const Vector &x(int j) const { return balls.x[j]; }
+  void prefetch_force(int j) const { __builtin_prefetch(&balls.f[j],1); __builtin_prefetch(&balls.torque[j],1); }
+  const Vector &v(int j) const { return balls.v[j]; }
+  const Vector &omega(int j) const { return balls.omega[j]; }
+  double radius(int j) const { return balls.radius[j]; }
+  double mass(int j) const { return balls.mass[j]; }
+};
+
+// ... or fixed ones of one radius (m)
+struct FixedPartners {
+  static constexpr bool MOVE = false;
+  const Vector *position;
+  double radius_all;
+  Vector still = {0.0, 0.0, 0.0};
+
+  FixedPartners(const Vector *positions, double radius) : position(positions), radius_all(radius) {}
+
+  const Vector &x(int j) const { return position[j]; }
+  void prefetch_force(int) const {}
+  const Vector &v(int) const { return still; }
+  const Vector &omega(int) const { return still; }
+  double radius(int) const { return radius_all; }
+  double mass(int) const { return 1.0; }
+};
+
+class ContactList {
+ public:
+  struct Entry {
+    int i, j;           // moving ball, partner
+    double *history;    // HISTORY values
+  };
+
+  std::vector<Entry> entries;
+  std::vector<char> touching;    // a step ago
+  std::vector<int *> flags;      // where LAMMPS wants to know about touching: store_flags()
+
+  // 1 for a side that moves, 0 for one that is fixed and as good as infinitely heavy
+  double move_i, move_j;
+
+  // if so, radii (m) and masses (kg) are these for all contacts; otherwise each looks up its own
+  bool equal;
+  double radius_i, radius_j, mass_i, mass_j;
+
+  ContactList() { clear(); }
+
+  void clear(bool i_moves = true, bool j_moves = true)
+  {
+    move_i = i_moves;
+    move_j = j_moves;
+    radius_i = radius_j = mass_i = mass_j = 1.0;
+    entries.clear();
+    touching.clear();
+    flags.clear();
+    equal = true;
+  }
+
+  void add(int i, int j, double *history, bool touch, double ri, double rj, double mi, double mj)
+  {
+    if (entries.empty()) {
+      radius_i = ri;
+      radius_j = rj;
+      mass_i = mi;
+      mass_j = mj;
+    }
+    equal = equal && ri == radius_i && rj == radius_j && mi == mass_i && mj == mass_j;
+    entries.push_back({i, j, history});
+    touching.push_back(touch);
+  }
+
+  double memory_usage() const
+  {
+    return entries.capacity() * sizeof(Entry) + touching.capacity() +
+        flags.capacity() * sizeof(int *);
+  }
+
+  // Contacts that overlap although they did not touch a step ago, before the first step:
+  // visit(entry, overlap). They count as old ones.
+  template <class Partners, class Visit>
+  void start(const MovingBalls &balls, const Partners &partners, Visit visit)
+  {
+    for (size_t k = 0; k < entries.size(); k++) {
+      const Entry &e = entries[k];
+      const double overlap = balls.radius[e.i] + partners.radius(e.j) - distance(balls, partners, e);
+      if (touching[k] || overlap <= 0.0) continue;
+      visit(e, overlap);
+      touching[k] = 1;
+    }
+  }
+
+  void store_flags() const
+  {
+    for (size_t k = 0; k < flags.size(); k++) *flags[k] = touching[k];
+  }
+
+  // Adds the forces of all contacts to the balls. again: those of the step that has just ended
+  // once more (see contact_force). tally(i, j, force on i, vector j -> i) is called for every
+  // contact if TALLY.
+  template <bool TALLY, class Partners, class Tally>
+  void apply(const ContactLaw &law, double dt, bool again, const MovingBalls &balls,
+             const Partners &partners, Tally tally)
+  {
+    if (entries.empty()) return;
+    if (law.rolling > 0.0) {
+      if (equal) apply<true, true, TALLY>(law, dt, again, balls, partners, tally);
+      else apply<true, false, TALLY>(law, dt, again, balls, partners, tally);
+    } else {
+      if (equal) apply<false, true, TALLY>(law, dt, again, balls, partners, tally);
+      else apply<false, false, TALLY>(law, dt, again, balls, partners, tally);
+    }
+  }
+
+ private:
+  static constexpr int BLOCK = 64;
+
+  // touching contacts side by side: fields of Contact and ContactForce
+
+  struct Block {
+    int from[BLOCK];    // which of the listed contacts
+    double delta[3][BLOCK], rsq[BLOCK];
+    double v[3][BLOCK], rw[3][BLOCK], w[3][BLOCK];
+    double radius_i[BLOCK], radius_j[BLOCK], mass_i[BLOCK], mass_j[BLOCK];    // unless equal
+    double history[HISTORY][BLOCK];
+    double f[3][BLOCK], torque_i[3][BLOCK], torque_j[3][BLOCK];
+  };
+
+  template <class Partners>
+  static double distance(const MovingBalls &balls, const Partners &partners, const Entry &e)
+  {
+    const Vector &a = balls.x[e.i], &b = partners.x(e.j);
+    const double dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
+    return std::sqrt(dx * dx + dy * dy + dz * dz);
+  }
+
+  template <bool ROLLING, bool EQUAL, bool TALLY, class Partners, class Tally>
+  void apply(const ContactLaw &law_in, double dt, bool again, const MovingBalls &balls,
+             const Partners &partners, Tally tally)
+  {
+    const ContactLaw law = law_in;    // a copy: no store below can change it
+    const double mass_factor = move_i * move_j > 0.0 ? law.mass_factor : 1.0;
+    const double inverse = move_i / mass_i + move_j / mass_j;
+    const ContactStep step = contact_step(law, inverse, mass_factor / inverse, dt, again);
+    const double radsum = radius_i + radius_j, radsumsq = radsum * radsum;
+    Block b;
+
+    for (size_t start = 0; start < entries.size(); start += BLOCK) {
+      const int listed = static_cast<int>(std::min<size_t>(BLOCK, entries.size() - start));
+      const Entry *const e = &entries[start];
+      char *const was = &touching[start];
+
+      // distances
+
+      double delta[3][BLOCK], rsq[BLOCK], limit[BLOCK];
+      for (int k = 0; k < listed; k++) {
+        const Vector &a = balls.x[e[k].i], &c = partners.x(e[k].j);
+        delta[0][k] = a.x - c.x;
+        delta[1][k] = a.y - c.y;
+        delta[2][k] = a.z - c.z;
+        __builtin_prefetch(e[k].history, 1);
+        if (Partners::MOVE) {
+          __builtin_prefetch(&partners.v(e[k].j));
+          __builtin_prefetch(&partners.omega(e[k].j));
+        }
+        if (!EQUAL) {
+          const double sum = balls.radius[e[k].i] + partners.radius(e[k].j);
+          limit[k] = sum * sum;
+        }
+      }
+      for (int k = 0; k < listed; k++)
+        rsq[k] = delta[0][k] * delta[0][k] + delta[1][k] * delta[1][k] + delta[2][k] * delta[2][k];
+
+      // who touches
+
+      int count = 0, changed = 0;
+      for (int k = 0; k < listed; k++) {
+        const int now = rsq[k] < (EQUAL ? radsumsq : limit[k]);
+        b.from[count] = k;
+        count += now;
+        changed |= now ^ was[k];
+      }
+      if (changed)
+        for (int k = 0; k < listed; k++) {
+          const bool now = rsq[k] < (EQUAL ? radsumsq : limit[k]);
+          if (now == static_cast<bool>(was[k])) continue;
+          was[k] = now;
+          double *history = e[k].history;
+          memset(history, 0, HISTORY * sizeof(double));
+          if (!now) continue;
+          const double ri = balls.radius[e[k].i], rj = partners.radius(e[k].j);
+          const double mark = new_contact(law.rolling_factor * ri * rj / (ri + rj)) / std::sqrt(rsq[k]);
+          for (int d = 0; d < 3; d++) history[d] = mark * delta[d][k];
+        }
+
+      // gather
+
+      for (int c = 0; c < count; c++) {
+        const int k = b.from[c], i = e[k].i, j = e[k].j;
+        for (int d = 0; d < 3; d++) b.delta[d][c] = delta[d][k];
+        partners.prefetch_force(j);
+        b.rsq[c] = rsq[k];
+        const double ri = EQUAL ? radius_i : balls.radius[i];
+        const double rj = EQUAL ? radius_j : partners.radius(j);
+        if (!EQUAL) {
+          b.radius_i[c] = ri;
+          b.radius_j[c] = rj;
+          b.mass_i[c] = balls.mass[i];
+          b.mass_j[c] = partners.mass(j);
+        }
+        const Vector &vi = balls.v[i], &vj = partners.v(j);
+        const Vector &wi = balls.omega[i], &wj = partners.omega(j);
+        b.v[0][c] = vi.x - vj.x;
+        b.v[1][c] = vi.y - vj.y;
+        b.v[2][c] = vi.z - vj.z;
+        b.rw[0][c] = ri * wi.x + rj * wj.x;
+        b.rw[1][c] = ri * wi.y + rj * wj.y;
+        b.rw[2][c] = ri * wi.z + rj * wj.z;
+        b.w[0][c] = wi.x - wj.x;
+        b.w[1][c] = wi.y - wj.y;
+        b.w[2][c] = wi.z - wj.z;
+        const double *history = e[k].history;
+        for (int h = 0; h < HISTORY; h++) b.history[h][c] = history[h];
+      }
+
+      evaluate<ROLLING, EQUAL>(b, count, law, step, mass_factor);
+
+      // hand out
+
+      for (int c = 0; c < count; c++) {
+        const int k = b.from[c], i = e[k].i, j = e[k].j;
+        double *history = e[k].history;
+        for (int h = 0; h < HISTORY; h++) history[h] = b.history[h][c];
+        Vector &f = balls.f[i], &t = balls.torque[i];
+        f.x += b.f[0][c];
+        f.y += b.f[1][c];
+        f.z += b.f[2][c];
+        t.x += b.torque_i[0][c];
+        t.y += b.torque_i[1][c];
+        t.z += b.torque_i[2][c];
+        give(partners, j, b, c);
+        if (TALLY)
+          tally(i, j, Vector{b.f[0][c], b.f[1][c], b.f[2][c]},
+                Vector{b.delta[0][c], b.delta[1][c], b.delta[2][c]});
+      }
+    }
+  }
+
+  static void give(const FixedPartners &, int, const Block &, int) {}
+  static void give(const MovingPartners &partners, int j, const Block &b, int c)
+  {
+    if (j >= partners.nforce) return;
+    Vector &f = partners.balls.f[j], &t = partners.balls.torque[j];
+    f.x -= b.f[0][c];
+    f.y -= b.f[1][c];
+    f.z -= b.f[2][c];
+    t.x += b.torque_j[0][c];
+    t.y += b.torque_j[1][c];
+    t.z += b.torque_j[2][c];
+  }
+
+  template <bool ROLLING, bool EQUAL>
+  void evaluate(Block &b, int count, const ContactLaw &law, const ContactStep &same,
+                double mass_factor) const
+  {
+    const double of_i = move_i, of_j = move_j;
+#pragma GCC ivdep
+    for (int k = 0; k < count; k++) {
+      const double ri = EQUAL ? radius_i : b.radius_i[k];
+      const double rj = EQUAL ? radius_j : b.radius_j[k];
+      ContactStep step = same;
+      if (!EQUAL) {
+        const double inverse = of_i / b.mass_i[k] + of_j / b.mass_j[k];
+        set_mass(step, law, inverse, mass_factor / inverse);
+      }
+      Contact c;
+      ContactForce out;
+      double history[HISTORY];
+      const double r = std::sqrt(b.rsq[k]), rinv = 1.0 / r;
+      for (int d = 0; d < 3; d++) {
+        c.n[d] = b.delta[d][k] * rinv;
+        c.v[d] = b.v[d][k];
+        c.rw[d] = b.rw[d][k];
+        c.w[d] = b.w[d][k];
+      }
+      c.overlap = ri + rj - r;
+      c.rolling_radius = law.rolling_factor * ri * rj / (ri + rj);
+      for (int h = 0; h < HISTORY; h++) history[h] = b.history[h][k];
+      contact_force<ROLLING>(step, c, history, out);
+      for (int h = 0; h < HISTORY; h++) b.history[h][k] = history[h];
+      for (int d = 0; d < 3; d++) {
+        b.f[d][k] = out.f[d];
+        b.torque_i[d][k] = out.m[d] - ri * out.t[d];
+        b.torque_j[d][k] = -out.m[d] - rj * out.t[d];
+      }
+    }
+  }
+};
+
+}    // namespace Slope
+
+#endif

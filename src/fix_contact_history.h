@@ -1,0 +1,57 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(CONTACT_HISTORY,FixContactHistory);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_CONTACT_HISTORY_H
+#define LMP_FIX_CONTACT_HISTORY_H
+
+#include "fix_neigh_history.h"
+
+namespace LAMMPS_NS {
+
+class FixContactHistory : public FixNeighHistory {
+ public:
+  FixContactHistory(class LAMMPS *, int, char **);
+  ~FixContactHistory() override;
+  void pre_exchange() override;
+  void post_neighbor() override;
+  void post_run() override;
+
+  double memory_usage() override;
+  void grow_arrays(int) override;
+  void copy_arrays(int, int, int) override;
+  void set_arrays(int) override;
+  int pack_exchange(int, double *) override;
+  int unpack_exchange(int, double *) override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+  int pack_restart(int, double *) override;
+  void unpack_restart(int, int) override;
+  int size_restart(int) override;
+  int maxsize_restart() override;
+
+  bool lists_new;     // the neighbor list has been built anew
+  bool lists_used;    // its histories are newer than those stored by atom
+
+  // what the second half of the last step added to velocity (3) and spin (3) of each ball
+  static constexpr int KICK = 6;
+  double **kick;
+  bool kicks_known() const;
+
+ private:
+  bigint kick_step;    // the step that they belong to
+
+  void find_kicks();
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif
