@@ -283,7 +283,8 @@ inline void contact_force(const ContactStep &step, const Contact &c, double *his
   // normal
 
   const double rr = c.rolling_radius;
-  double phase = (history[0] * n[0] + history[1] * n[1] + history[2] * n[2]) / rr;
+  const double per_rr = 1.0 / rr;    // the same for equal balls: leaves the loop
+  double phase = (history[0] * n[0] + history[1] * n[1] + history[2] * n[2]) * per_rr;
   const double vn = c.v[0] * n[0] + c.v[1] * n[1] + c.v[2] * n[2];
   const double fn = normal_force(step, c.overlap, -vn * step.dt, phase);
   const double pressing = fn > 0.0 ? fn : 0.0;

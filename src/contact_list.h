@@ -13,6 +13,7 @@
 #define SLOPE_CONTACT_LIST_H
 
 #include "contact_law.h"
+#include "simd4.h"
 
 #include <algorithm>
 #include <cstring>
@@ -151,11 +152,12 @@ class ContactList {
  private:
   static constexpr int BLOCK = 64;
 
-  // touching contacts side by side: fields of Contact and ContactForce
+  // a block of listed contacts and, side by side, the touching ones: Contact and ContactForce
 
   struct Block {
-    int from[BLOCK];    // which of the listed contacts
-    double delta[3][BLOCK], rsq[BLOCK];
+    double apart[BLOCK][4], rsq[BLOCK];    // of all listed contacts; the fourth is idle
+    int from[BLOCK + 4];                   // the touching ones among them
+    double delta[3][BLOCK];
     double v[3][BLOCK], rw[3][BLOCK], w[3][BLOCK];
     double radius_i[BLOCK], radius_j[BLOCK], mass_i[BLOCK], mass_j[BLOCK];    // unless equal
     double history[HISTORY][BLOCK];
@@ -178,94 +180,24 @@ class ContactList {
     const double mass_factor = move_i * move_j > 0.0 ? law.mass_factor : 1.0;
     const double inverse = move_i / mass_i + move_j / mass_j;
     const ContactStep step = contact_step(law, inverse, mass_factor / inverse, dt, again);
-    const double radsum = radius_i + radius_j, radsumsq = radsum * radsum;
     Block b;
 
     for (size_t start = 0; start < entries.size(); start += BLOCK) {
       const int listed = static_cast<int>(std::min<size_t>(BLOCK, entries.size() - start));
-      const Entry *const e = &entries[start];
-      char *const was = &touching[start];
-
-      // distances
-
-      double delta[3][BLOCK], rsq[BLOCK], limit[BLOCK];
-      for (int k = 0; k < listed; k++) {
-        const Vector &a = balls.x[e[k].i], &c = partners.x(e[k].j);
-        delta[0][k] = a.x - c.x;
-        delta[1][k] = a.y - c.y;
-        delta[2][k] = a.z - c.z;
-        __builtin_prefetch(e[k].history, 1);
-        if (Partners::MOVE) {
-          __builtin_prefetch(&partners.v(e[k].j));
-          __builtin_prefetch(&partners.omega(e[k].j));
-        }
-        if (!EQUAL) {
-          const double sum = balls.radius[e[k].i] + partners.radius(e[k].j);
-          limit[k] = sum * sum;
-        }
+      const Entry *e = &entries[start];
+      Entry padded[BLOCK];
+      if (listed < BLOCK) {    // four at a time: the last one stands for those that are missing
+        std::fill(std::copy(e, e + listed, padded), padded + BLOCK, e[listed - 1]);
+        e = padded;
       }
-      for (int k = 0; k < listed; k++)
-        rsq[k] = delta[0][k] * delta[0][k] + delta[1][k] * delta[1][k] + delta[2][k] * delta[2][k];
-
-      // who touches
-
-      int count = 0, changed = 0;
-      for (int k = 0; k < listed; k++) {
-        const int now = rsq[k] < (EQUAL ? radsumsq : limit[k]);
-        b.from[count] = k;
-        count += now;
-        changed |= now ^ was[k];
-      }
-      if (changed)
-        for (int k = 0; k < listed; k++) {
-          const bool now = rsq[k] < (EQUAL ? radsumsq : limit[k]);
-          if (now == static_cast<bool>(was[k])) continue;
-          was[k] = now;
-          double *history = e[k].history;
-          memset(history, 0, HISTORY * sizeof(double));
-          if (!now) continue;
-          const double ri = balls.radius[e[k].i], rj = partners.radius(e[k].j);
-          const double mark = new_contact(law.rolling_factor * ri * rj / (ri + rj)) / std::sqrt(rsq[k]);
-          for (int d = 0; d < 3; d++) history[d] = mark * delta[d][k];
-        }
-
-      // gather
-
-      for (int c = 0; c < count; c++) {
-        const int k = b.from[c], i = e[k].i, j = e[k].j;
-        for (int d = 0; d < 3; d++) b.delta[d][c] = delta[d][k];
-        partners.prefetch_force(j);
-        b.rsq[c] = rsq[k];
-        const double ri = EQUAL ? radius_i : balls.radius[i];
-        const double rj = EQUAL ? radius_j : partners.radius(j);
-        if (!EQUAL) {
-          b.radius_i[c] = ri;
-          b.radius_j[c] = rj;
-          b.mass_i[c] = balls.mass[i];
-          b.mass_j[c] = partners.mass(j);
-        }
-        const Vector &vi = balls.v[i], &vj = partners.v(j);
-        const Vector &wi = balls.omega[i], &wj = partners.omega(j);
-        b.v[0][c] = vi.x - vj.x;
-        b.v[1][c] = vi.y - vj.y;
-        b.v[2][c] = vi.z - vj.z;
-        b.rw[0][c] = ri * wi.x + rj * wj.x;
-        b.rw[1][c] = ri * wi.y + rj * wj.y;
-        b.rw[2][c] = ri * wi.z + rj * wj.z;
-        b.w[0][c] = wi.x - wj.x;
-        b.w[1][c] = wi.y - wj.y;
-        b.w[2][c] = wi.z - wj.z;
-        const double *history = e[k].history;
-        for (int h = 0; h < HISTORY; h++) b.history[h][c] = history[h];
-      }
-
+      find_distances(b, e, listed, balls, partners);
+      const int count = find_touching<EQUAL>(b, e, &touching[start], listed, law, balls, partners);
+      gather<EQUAL>(b, e, count, balls, partners);
       evaluate<ROLLING, EQUAL>(b, count, law, step, mass_factor);
 
-      // hand out
-
       for (int c = 0; c < count; c++) {
-        const int k = b.from[c], i = e[k].i, j = e[k].j;
-        double *history = e[k].history;
+        const int i = e[b.from[c]].i, j = e[b.from[c]].j;
+        double *history = e[b.from[c]].history;
         for (int h = 0; h < HISTORY; h++) history[h] = b.history[h][c];
         Vector &f = balls.f[i], &t = balls.torque[i];
         f.x += b.f[0][c];
@@ -280,6 +212,112 @@ class ContactList {
                 Vector{b.delta[0][c], b.delta[1][c], b.delta[2][c]});
       }
     }
+  }
+
+  template <class Partners>
+  static void find_distances(Block &b, const Entry *e, int listed, const MovingBalls &balls,
+                             const Partners &partners)
+  {
+    for (int k = 0; k < listed; k += 4) {
+      for (int m = k; m < k + 4; m++) {
+        four(b.apart[m]) = four(&balls.x[e[m].i].x) - four(&partners.x(e[m].j).x);
+        __builtin_prefetch(e[m].history, 1);
+        if (Partners::MOVE) {
+          __builtin_prefetch(&partners.v(e[m].j));
+          __builtin_prefetch(&partners.omega(e[m].j));
+        }
+      }
+      const Columns d(four(b.apart[k]), four(b.apart[k + 1]), four(b.apart[k + 2]),
+                      four(b.apart[k + 3]));
+      four(&b.rsq[k]) = d.x * d.x + d.y * d.y + d.z * d.z;
+    }
+  }
+
+  // which of the listed contacts touch: from, and their number; those that begin get a history
+  template <bool EQUAL, class Partners>
+  int find_touching(Block &b, const Entry *e, char *was, int listed, const ContactLaw &law,
+                    const MovingBalls &balls, const Partners &partners) const
+  {
+    const double sum = radius_i + radius_j;
+    double reach[BLOCK];
+    if (!EQUAL)
+      for (int k = 0; k < listed; k++) {
+        const double different = balls.radius[e[k].i] + partners.radius(e[k].j);
+        reach[k] = different * different;
+      }
+    int count = 0, changes = 0, changed[BLOCK];
+    for (int k = 0; k < listed; k++) {
+      const int now = b.rsq[k] < (EQUAL ? sum * sum : reach[k]);
+      b.from[count] = k;
+      count += now;
+      changed[changes] = k;
+      changes += now ^ was[k];
+    }
+    for (int c = 0; c < changes; c++) {
+      const int k = changed[c];
+      was[k] ^= 1;
+      double *history = e[k].history;
+      memset(history, 0, HISTORY * sizeof(double));
+      if (!was[k]) continue;
+      const double ri = balls.radius[e[k].i], rj = partners.radius(e[k].j);
+      const double mark =
+          new_contact(law.rolling_factor * ri * rj / (ri + rj)) / std::sqrt(b.rsq[k]);
+      for (int d = 0; d < 3; d++) history[d] = mark * b.apart[k][d];
+    }
+    return count;
+  }
+
+  template <bool EQUAL, class Partners>
+  void gather(Block &b, const Entry *e, int count, const MovingBalls &balls,
+              const Partners &partners) const
+  {
+    if (count == 0) return;
+    for (int c = count; c % 4; c++) b.from[c] = b.from[count - 1];
+
+    for (int c = 0; c < count; c += 4) {
+      Four v[4], rw[4], w[4];
+      for (int m = 0; m < 4; m++) {
+        const Entry &entry = e[b.from[c + m]];
+        const int i = entry.i, j = entry.j;
+        const double ri = EQUAL ? radius_i : balls.radius[i];
+        const double rj = EQUAL ? radius_j : partners.radius(j);
+        v[m] = four(&balls.v[i].x);
+        w[m] = four(&balls.omega[i].x);
+        rw[m] = ri * w[m];
+        if (Partners::MOVE) {
+          v[m] -= four(&partners.v(j).x);
+          rw[m] += rj * four(&partners.omega(j).x);
+          w[m] -= four(&partners.omega(j).x);
+          partners.prefetch_force(j);
+        }
+        if (!EQUAL) {
+          b.radius_i[c + m] = ri;
+          b.radius_j[c + m] = rj;
+          b.mass_i[c + m] = balls.mass[i];
+          b.mass_j[c + m] = partners.mass(j);
+        }
+      }
+      const int *from = &b.from[c];
+      put(b.delta, c, Columns(four(b.apart[from[0]]), four(b.apart[from[1]]),
+                              four(b.apart[from[2]]), four(b.apart[from[3]])));
+      put(b.v, c, Columns(v[0], v[1], v[2], v[3]));
+      put(b.rw, c, Columns(rw[0], rw[1], rw[2], rw[3]));
+      put(b.w, c, Columns(w[0], w[1], w[2], w[3]));
+      const double *const h[4] = {e[from[0]].history, e[from[1]].history, e[from[2]].history,
+                                  e[from[3]].history};
+      put(b.history, c, Columns(four(h[0]), four(h[1]), four(h[2]), four(h[3])));
+      const Columns rest(four(h[0] + 2), four(h[1] + 2), four(h[2] + 2), four(h[3] + 2));
+      four(&b.history[3][c]) = rest.y;
+      four(&b.history[4][c]) = rest.z;
+      four(&b.history[5][c]) = rest.w;
+    }
+  }
+
+  static void put(double (*rows)[BLOCK], int c, const Columns &columns)
+  {
+    four(&rows[0][c]) = columns.x;
+    four(&rows[1][c]) = columns.y;
+    four(&rows[2][c]) = columns.z;
   }
 
   static void give(const FixedPartners &, int, const Block &, int) {}
@@ -300,8 +338,9 @@ class ContactList {
                 double mass_factor) const
   {
     const double of_i = move_i, of_j = move_j;
+    const int end = (count + 3) & ~3;    // what gather() has filled
 #pragma GCC ivdep
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < end; k++) {
       const double ri = EQUAL ? radius_i : b.radius_i[k];
       const double rj = EQUAL ? radius_j : b.radius_j[k];
       ContactStep step = same;
@@ -312,7 +351,8 @@ class ContactList {
       Contact c;
       ContactForce out;
       double history[HISTORY];
-      const double r = std::sqrt(b.rsq[k]), rinv = 1.0 / r;
+      const double dx = b.delta[0][k], dy = b.delta[1][k], dz = b.delta[2][k];
+      const double r = std::sqrt(dx * dx + dy * dy + dz * dz), rinv = 1.0 / r;
       for (int d = 0; d < 3; d++) {
         c.n[d] = b.delta[d][k] * rinv;
         c.v[d] = b.v[d][k];

@@ -20,7 +20,10 @@ COMMANDS = {
     "volume": "what must be removed from a road, per mesh cell and in total, above a cut surface",
     "score": "a run's deposit against a mapped one: overlap, run-out, volume",
     "study": "one deck over lists of its variables, several runs at a time: table, envelope, exceedance",
+    "bench": "how fast a collapse runs: against other codes, on larger terrains, on ranks, with more balls",
+    "crosscheck": "the same scenes in other codes: bounce, slide, roll, rolling resistance, a collapse",
     "report": "one self-contained HTML page on a study or a run: maps, section, tables, warnings",
+    "travel": "where balls come to rest: cumulative distributions along and across the slope, over several runs",
 }
 
 

@@ -1,0 +1,137 @@
+"""tools/slope crosscheck: a deck's final numbers, and the comparisons; codes that are not installed are skipped."""
+import csv
+import math
+import os
+import re
+import shlex
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from run_helpers import TOP, here, run_command  # noqa: F401
+from tiny_collapse import LMP
+
+from slope_tools import crosscheck, peers
+from slope_tools.errors import SlopeError
+
+
+@pytest.fixture
+def slope(here, capsys, monkeypatch):  # noqa: F811
+    """Run `slope crosscheck ARGUMENTS` in the test's folder; gives status, stdout, stderr."""
+    monkeypatch.setenv("LMP", LMP)
+    return lambda arguments: run_command("crosscheck", arguments, capsys)
+
+
+def checks():
+    return yaml.safe_load(Path("crosscheck/crosscheck.yaml").read_text())["checks"]
+
+
+def test_codes_agree_on_bounce_and_slide(slope):
+    """All installed codes; the peers' bounces at the rule's step are those of scheme plain, drop by drop."""
+    status, out, err = slope("--quick --only bounce,slide_roll")
+    assert status == 0, err
+    installed = [code for code in crosscheck.PEERS if not code(LMP).missing()]
+    for code in crosscheck.PEERS:
+        assert (code in installed) or f"{code.title}: skipped" in out
+    found = checks()
+    assert {check["code"] for check in found} == {code.name for code in (*crosscheck.OURS, *installed)}
+    assert all(check["passed"] in (True, None) for check in found)
+    assert sum(check["passed"] is True for check in found) == 5 * (3 + len(installed)) + 2 * len(installed)
+    mean = {check["code"]: check["value"] for check in found if check["quantity"].endswith("rule, mean")}
+    spread = {check["code"]: check["value"] for check in found if check["quantity"].endswith("rule, spread")}
+    assert mean["slope"] == pytest.approx(0.25, abs=0.01)       # the deck's target
+    assert mean["plain"] < 0.235 and spread["plain"] > 3 * spread["slope"]      # what the default scheme is for
+    rows = list(csv.DictReader(open("crosscheck/crosscheck.csv", encoding="ascii")))
+    assert [row["code"] for row in rows] == [check["code"] for check in found]
+
+
+def test_a_disagreement_is_exit_status_2(slope, monkeypatch):
+    """Negative control: pair granular with the mu_r of the deck, not twice as much, does not stand still."""
+    law = peers.Granular.law
+
+    def half(self, scene):
+        return law(self, scene._replace(contacts={kind: c._replace(rolling=c.rolling / 2)
+                                                  for kind, c in scene.contacts.items()}))
+
+    monkeypatch.setattr(peers.Granular, "law", half)
+    monkeypatch.setattr(crosscheck, "OURS", (peers.Slope,))
+    status, out, err = slope("--only rolling --peers granular")
+    assert status == 2 and err.splitlines()[-1] == (
+        "slope crosscheck: crosscheck: 3 of 6 comparisons are outside of their tolerance: rolling, "
+        "friction 31 degrees, mu_r 0.58, granular")
+    assert {check["value"] for check in checks() if check["code"] == "slope"} == {
+        "stays still", "slides without rotating", "rotates without sliding"}
+
+
+def test_final_numbers_of_a_deck(here):  # noqa: F811
+    """Positions, velocities and coefficients of inputs/20 with coarse balls."""
+    deck = TOP / "inputs" / "20_embankment" / "in.embankment"
+    scene = crosscheck.scene_of(Path(LMP), deck, {"d": 6, "rolling": 0.05}, here / "deck")
+    share = 6 / 1.25
+    assert scene.diameter == 6 and scene.density == pytest.approx(3411.4) and scene.gravity == 9.80665
+    assert scene.contacts[1][:6] == pytest.approx((1.96e9 * share, 1.96e9 * share, 1.19e6 * share ** 2,
+                                                   1.19e6 * share ** 2, 30, 0.05))
+    assert scene.contacts[2].friction == 0 and scene.contacts[3].cn == pytest.approx(3.09e6 * share ** 2)
+    assert scene.dt == pytest.approx(0.25 * math.sqrt(scene.mass / scene.contacts[1].kn))
+    assert len(scene.moving) > 50 and not scene.moving[:, 3:].any()
+    told = re.findall(r"(\d+) (?:fixed )?balls", (here / "deck" / "log.scene").read_text())
+    assert str(len(scene.fixed[2])) in told and str(len(scene.fixed[3])) in told
+    apart = np.linalg.norm(scene.moving[:, None, :3] - scene.ground[None], axis=2)
+    assert apart.min() > 0.999 * 6     # delete_balls: no ball starts inside a fixed one
+
+
+def test_dashpots_are_those_of_the_style():
+    """From a restitution: e of the closed form comes back; Table 4's dashpot is 0.48 for the mass of one ball."""
+    mass = 3411.4 * math.pi / 6 * 1.25 ** 3
+    law = crosscheck.contact("stiffness 1.96e9 1.96e9 restitution 0.48 friction 30 rolling 0.05".split(), mass)
+    assert law.cn == pytest.approx(1.19e6, rel=2e-3) and law[4:] == (30, 0.05, None, None)
+    zeta = law.cn / (2 * math.sqrt(law.kn * mass))
+    assert crosscheck.restitution(zeta, True) == pytest.approx(0.48, rel=1e-12)
+    assert crosscheck.restitution(zeta, False) > 0.53     # a force that never pulls
+    assert crosscheck.restitution(1e-9, False) == pytest.approx(1)
+    with pytest.raises(SlopeError, match="must print kn, kt, cn of types 1 2"):
+        crosscheck.check_printed("log", "  1   2    1.96e+09 1.96e+09 1.00e+06 x", {2: law})
+
+
+def test_deposit_by_hand():
+    moving = np.zeros((3, 9))
+    moving[:, :3] = [[150, 80, 40], [120, 80, 20], [110, 80, 10]]
+    final = moving.copy()
+    final[:, 0] = [90, 70, 61]
+    scene = peers.Scene(2.0, 1.0, moving, {2: np.zeros((1, 3))}, {}, 1.0, 0.1)
+    found = crosscheck.deposit(scene, final)
+    assert found["volume on the road m3"] == pytest.approx(2 * 8)
+    assert found["way of the centroid m"] == pytest.approx((150 + 120 + 110 - 90 - 70 - 61) / 3)
+    assert found["run-out m"] == pytest.approx(89, abs=0.3)
+    edges, values = crosscheck.profile(scene, final)
+    assert sum(values) * 5 == pytest.approx(3 * 8) and values[edges.index(60)] == pytest.approx(8 / 5)
+
+
+@pytest.mark.parametrize("arguments, message", [
+    ("--only fall", "--only: must be of bounce, slide_roll, rolling, collapse, got fall"),
+    ("--peers pfc", "--peers: must be of granular, liggghts, yade, got pfc"),
+    ("--lmp none", "--lmp: must lead to the LAMMPS program"),
+    ("-o file", "-o: must be a folder, got file"),
+])
+def test_bad_input_is_one_line(slope, arguments, message):
+    Path("file").touch()
+    status, out, err = slope(arguments)
+    assert (status, out) == (2, "") and err.count("\n") == 1 and err.startswith("slope crosscheck: ") and message in err
+    assert os.listdir() == ["file"]
+
+
+def examples():
+    text = (TOP / "doc" / "src" / "tool_crosscheck.rst").read_text(encoding="ascii")
+    return [*re.findall(r"^ +tools/slope crosscheck ((?!keyword).*)", text, re.MULTILINE),
+            *re.findall("tools/slope crosscheck (.*)", crosscheck.EPILOG)]
+
+
+@pytest.mark.parametrize("command", examples())
+def test_every_example_of_the_page_and_the_help_is_understood(slope, monkeypatch, command):
+    """They would take minutes: here no case is run."""
+    done = []
+    monkeypatch.setattr(crosscheck, "CASES", {name: lambda work, case: done.append(case) for name in crosscheck.CASES})
+    status, out, err = slope(command)
+    assert (status, err) == (0, "") and (done or "--help" in shlex.split(command))

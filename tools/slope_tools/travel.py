@@ -1,0 +1,291 @@
+"""slope travel: where balls come to rest, as cumulative distributions along and across the slope, over several runs."""
+import argparse
+import csv
+import math
+from pathlib import Path
+from typing import NamedTuple, Optional
+
+import numpy as np
+
+from . import deposit, dumps, figures, rasters
+from .cli import number
+from .errors import SlopeError
+from .figures import plt
+
+SHARES = {"min": 0, "p1": 1, "p5": 5, "p10": 10, "p25": 25, "p50": 50, "p75": 75, "p90": 90, "p95": 95, "p99": 99,
+          "max": 100}        # percentiles
+DIRECTIONS = "along", "across"
+MOVING = 0.1                 # m/s; a ball that is faster has not arrived
+POINTS = 200                 # about as many positions in travel.csv per direction
+
+EPILOG = """\
+units: metres, degrees. A dump is text as LAMMPS' dump custom writes it, with the columns id x y z in any place; its
+last snapshot counts. Name DUMPs before other options.
+
+example: ten runs with other seeds, on an axis from -5 to 3 m along and -4 to 4 m across the slope:
+  tools/slope travel rest.*.dump --axis x --along -5 3 --across -4 4 -o travel
+run-out and reach angle, from where the balls were at the start; downhill is 30 degrees from x to y:
+  tools/slope travel rest.1.dump rest.2.dump --start start.1.dump start.2.dump --axis 30
+
+Writes travel.yaml (percentiles), travel.csv (distributions), balls.csv (one row per ball) and travel.png.
+"""
+
+
+class Arrival(NamedTuple):
+    """The balls of one run at rest."""
+    name: str
+    step: int
+    id: np.ndarray
+    place: np.ndarray               # x y z
+    at: dict                        # direction: coordinate, m
+    moving: Optional[int]           # balls faster than MOVING, None without velocities
+    start: Optional[np.ndarray]     # x y z of each ball at the start, None without
+    top: Optional[np.ndarray]       # x y z of the highest ball at the start
+    missing: int                    # balls of the start that are not there now
+
+
+def add_parser(commands, **kwargs):
+    """Add `travel` and its arguments to argparse's commands; return its parser."""
+    parser = commands.add_parser(
+        "travel", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
+        description="Where balls come to rest: cumulative distributions along and across the slope.", **kwargs)
+    parser.add_argument("dumps", metavar="DUMP", nargs="+", help="dump of the final state, one for each run")
+    parser.add_argument("--axis", metavar="x|y|DEG", type=axis, default=0.0,
+                        help="direction along the slope, in plan: x, y, or degrees from x towards y; across is 90 "
+                             "degrees more (default x)")
+    parser.add_argument("--origin", metavar=("X", "Y"), nargs=2, type=number, default=[0.0, 0.0],
+                        help="where both coordinates are 0, m (default 0 0)")
+    parser.add_argument("--along", metavar=("LO", "HI"), nargs=2, type=number,
+                        help="limits of the axis along the slope, m (default: all balls)")
+    parser.add_argument("--across", metavar=("LO", "HI"), nargs=2, type=number,
+                        help="limits of the axis across the slope, m (default: all balls)")
+    parser.add_argument("--type", metavar="N", nargs="+", type=int,
+                        help="only balls of these atom types (default: all)")
+    parser.add_argument("--start", metavar="DUMP", nargs="+",
+                        help="dump of the start, one for all runs or one for each: adds travelled distances, run-out "
+                             "and reach angle, and tells how many balls are missing at the end")
+    parser.add_argument("-o", dest="output", metavar="DIR", type=Path, default=Path("travel"),
+                        help="folder for the results (default travel)")
+    return parser
+
+
+def axis(text):
+    """argparse type: degrees from x towards y."""
+    try:
+        return {"x": 0.0, "y": 90.0}[text] if text in ("x", "y") else number(text)
+    except argparse.ArgumentTypeError:
+        raise argparse.ArgumentTypeError(f"must be x, y or degrees, got {text!r}") from None
+
+
+def run(args):
+    """Do the command; raises SlopeError on bad input. Prints the percentiles."""
+    for name in DIRECTIONS:
+        limits = getattr(args, name)
+        if limits and not limits[0] < limits[1]:
+            raise SlopeError(f"--{name}", "LO must be < HI", f"{limits[0]:g} {limits[1]:g}")
+    if args.start and len(args.start) not in (1, len(args.dumps)):
+        raise SlopeError("--start", f"must be one dump, or one for each of the {len(args.dumps)} runs", len(args.start))
+    if len(set(args.dumps)) < len(args.dumps):
+        raise SlopeError("DUMP", "must be another one for each run")
+    deposit.check_folder(args.output)
+    starts = args.start or [None]
+    starts *= len(args.dumps) // len(starts)
+    arrivals = [read(path, start, args) for path, start in
+                rasters.progress(list(zip(args.dumps, starts)), "reading the dumps")]
+    warnings = []
+    warn = deposit.warner("travel", warnings)
+    for one in arrivals:
+        if one.moving:
+            warn(f"{one.name}: {one.moving} of {len(one.id)} balls are faster than {MOVING:g} m/s: they have not "
+                 f"arrived")
+        if one.missing:
+            warn(f"{one.name}: {one.missing} of {one.missing + len(one.id)} balls of the start are not there: left out")
+    tables = {name: distribution(arrivals, name, getattr(args, name), warn) for name in DIRECTIONS}
+    about = {"axis": {"along": args.axis, "across": args.axis + 90, "origin": args.origin}, "types": args.type,
+             "balls": sum(len(one.id) for one in arrivals), "runs": len(arrivals),
+             **{name: statistics([one.at[name] for one in arrivals]) for name in DIRECTIONS}}
+    single = [each(one) for one in arrivals]
+    if args.start:
+        about["travel"] = statistics([plan(one.place - one.start) for one in arrivals])
+        about["runout"] = {key: spread([one["runout"][key] for one in single]) for key in
+                           ("distance", "drop", "reach_angle")}
+    about["each_run"] = single
+    about["warnings"] = warnings
+    with deposit.complete(args.output) as new:
+        write_csv(new / "travel.csv", arrivals, tables)
+        write_balls(new / "balls.csv", arrivals)
+        draw(new / "travel.png", arrivals, tables, args)
+        about["files"] = ["travel.csv", "balls.csv", "travel.png", "travel.yaml"]
+        deposit.write_yaml(new / "travel.yaml", about, "slope travel: arrival positions; m, degrees")
+    print(summary(about, args.output))
+
+
+# --- the balls ---
+
+def read(path, start, args):
+    """The Arrival of a run."""
+    rest = chosen(dumps.last(path, ("type", "vx", "vy", "vz")), args.type)
+    place = rest.place
+    turn = math.radians(args.axis)
+    way = np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
+    way[np.abs(way) < 1e-15] = 0                     # along y is along y
+    along, across = way @ (place[:, :2] - args.origin).T
+    moving = None
+    if all(key in rest.of for key in ("vx", "vy", "vz")):
+        moving = int((np.hypot(np.hypot(rest.of["vx"], rest.of["vy"]), rest.of["vz"]) > MOVING).sum())
+    before, top, missing = None, None, 0
+    if start:
+        first = chosen(dumps.last(start, ("type",)), args.type)
+        ids, order = first.of["id"], np.argsort(first.of["id"])
+        same = order[np.minimum(np.searchsorted(ids, rest.of["id"], sorter=order), len(ids) - 1)]
+        other = rest.of["id"][ids[same] != rest.of["id"]]
+        if len(other):
+            raise SlopeError(start, f"must have the balls of {path}", f"none with id {other[0]:g}")
+        before, top, missing = first.place[same], first.place[first.of["z"].argmax()], len(ids) - len(same)
+    return Arrival(str(path), rest.step, rest.of["id"].astype(int), place, {"along": along, "across": across}, moving,
+                   before, top, missing)
+
+
+def chosen(snapshot, types):
+    """The balls of some types, None: all."""
+    if not types:
+        return snapshot
+    if "type" not in snapshot.of:
+        raise SlopeError(snapshot.path, "must have the column type, for --type")
+    keep = np.isin(snapshot.of["type"], types)
+    if not keep.any():
+        raise SlopeError(snapshot.path, f"must have balls of type {' '.join(map(str, types))} (--type)",
+                         "type " + " ".join(f"{value:g}" for value in np.unique(snapshot.of["type"])))
+    return snapshot._replace(of={name: values[keep] for name, values in snapshot.of.items()})
+
+
+# --- numbers ---
+
+def distribution(arrivals, name, limits, warn):
+    """Positions (m), the share of the balls at or below them in each run (runs, positions), and of all balls."""
+    balls = np.concatenate([one.at[name] for one in arrivals])
+    lo, hi = limits or (balls.min(), balls.max())
+    outside = ((balls < lo) | (balls > hi)).sum()
+    if outside:
+        warn(f"--{name} {lo:g} {hi:g}: {outside} of {len(balls)} balls lie beyond these limits")
+    step = step_of(hi - lo)
+    first = math.floor(lo / step + 1e-9) if limits else math.ceil(lo / step - 1e-9) - 1    # where the share is still 0
+    at = (step * np.arange(first, math.ceil(hi / step - 1e-9) + 1)).round(12)
+    shares = np.array([np.searchsorted(np.sort(one.at[name]), at, "right") / len(one.id) for one in arrivals])
+    return at, shares, np.searchsorted(np.sort(balls), at, "right") / len(balls)
+
+
+def step_of(length):
+    """The smallest of 1, 2, 5 x 10^n with at most POINTS steps in a length (m)."""
+    least = max(length, 1e-3) / POINTS
+    power = 10.0 ** math.floor(math.log10(least))
+    return next(step * power for step in (1, 2, 5, 10) if step * power >= least * (1 - 1e-9))
+
+
+def percentiles(values):
+    return {**{key: round(float(np.percentile(values, share)), 9) for key, share in SHARES.items()},
+            "mean": round(float(values.mean()), 9), "sd": round(float(values.std()), 9)}
+
+
+def spread(values):
+    """A number of each run, over the runs."""
+    return {"lowest": round(float(min(values)), 9), "median": round(float(np.median(values)), 9),
+            "highest": round(float(max(values)), 9)}
+
+
+def statistics(runs):
+    """Percentiles of the balls of all runs, and how each differs from run to run."""
+    single = [percentiles(values) for values in runs]
+    return {"all": percentiles(np.concatenate(runs)),
+            "over_runs": {key: spread([one[key] for one in single]) for key in single[0]}}
+
+
+def plan(difference):
+    """Length of vectors in plan."""
+    return np.hypot(difference[..., 0], difference[..., 1])
+
+
+def runout(one):
+    """From the highest ball at the start to the farthest one now: distance in plan (m), drop (m), angle (degrees)."""
+    distance = plan(one.place - one.top)
+    far = distance.argmax()
+    drop = one.top[2] - one.place[far, 2]
+    return {"distance": round(float(distance[far]), 9), "drop": round(float(drop), 9),
+            "reach_angle": round(math.degrees(math.atan2(drop, distance[far])), 9), "ball": int(one.id[far])}
+
+
+def each(one):
+    """What travel.yaml tells of one run."""
+    about = {"dump": one.name, "step": one.step, "balls": len(one.id), "moving": one.moving,
+             **{name: percentiles(values) for name, values in one.at.items()}}
+    if one.start is not None:
+        about.update(missing=one.missing, travel=percentiles(plan(one.place - one.start)), runout=runout(one))
+    return about
+
+
+# --- output ---
+
+def write_csv(path, arrivals, tables):
+    with open(path, "w", encoding="utf-8", newline="") as out:
+        writer = csv.writer(out, lineterminator="\n")
+        writer.writerow(["direction", "position", "lowest", "median", "highest", "all",
+                         *(one.name for one in arrivals)])
+        for name, (at, shares, together) in tables.items():
+            rows = np.column_stack([at, shares.min(axis=0), np.median(shares, axis=0), shares.max(axis=0), together,
+                                    shares.T])
+            writer.writerows([name, *(f"{value:.9g}" for value in row)] for row in rows)
+
+
+def write_balls(path, arrivals):
+    """Where each ball is, and how far, how deep and at which angle it came from its start."""
+    moved = arrivals[0].start is not None
+    with open(path, "w", encoding="utf-8", newline="") as out:
+        writer = csv.writer(out, lineterminator="\n")
+        writer.writerow(["run", "id", "along", "across", "z", *(("travel", "drop", "angle") if moved else ())])
+        for one in arrivals:
+            columns = [one.at["along"], one.at["across"], one.place[:, 2]]
+            if moved:
+                distance, drop = plan(one.place - one.start), one.start[:, 2] - one.place[:, 2]
+                columns += [distance, drop, np.degrees(np.arctan2(drop, distance))]
+            writer.writerows([one.name, ball, *(f"{value:.9g}" for value in row)] for ball, row in
+                             sorted(zip(one.id.tolist(), np.column_stack(columns))))
+
+
+def draw(path, arrivals, tables, args):
+    """The distributions, as the paper's Figure 3: a line for the median of the runs, a band from lowest to highest."""
+    several = len(arrivals) > 1
+    with plt.rc_context(figures.STYLE):
+        figure, panels = plt.subplots(1, 2, figsize=(figures.FULL, 2.9), sharey=True)
+        for axes, (name, (at, shares, _)), colour in zip(panels, tables.items(), figures.COLOURS):
+            if several:
+                axes.fill_between(at, shares.min(axis=0), shares.max(axis=0), step="post", color=colour, alpha=0.25,
+                                  lw=0, label=f"lowest to highest of {len(arrivals)} runs")
+            axes.step(at, np.median(shares, axis=0), where="post", color=colour, lw=1.4,
+                      label="median of the runs" if several else f"{len(arrivals[0].id)} balls")
+            turn = (args.axis + (90 if name == "across" else 0)) % 360
+            towards = {0: "x", 90: "y", 180: "-x", 270: "-y"}.get(turn, f"{turn:g} degrees from x to y")
+            axes.set(xlim=getattr(args, name) or (at[0], at[-1]), ylim=(0, 1),
+                     xlabel=f"{name} the slope, towards {towards} (m)")
+            axes.grid(color="#dddddd", lw=0.5)
+            axes.legend(loc="upper left")
+        panels[0].set_ylabel("cumulative share of the balls")
+        figure.savefig(path, dpi=figures.DPI)
+        plt.close(figure)
+
+
+def summary(about, folder):
+    """What the user needs to know."""
+    lines = [f"{about['balls']} balls of {about['runs']} run{'s' if about['runs'] > 1 else ''}"]
+    for name in ("along", "across", "travel"):
+        if name in about:
+            of = about[name]["all"]
+            between = about[name]["over_runs"]["p50"]
+            band = f" ({between['lowest']:.3f} to {between['highest']:.3f} in the runs)" if about["runs"] > 1 else ""
+            lines.append(f"{name}: median {of['p50']:.3f} m{band}, 5 to 95 % {of['p5']:.3f} to {of['p95']:.3f} m, "
+                         f"all {of['min']:.3f} to {of['max']:.3f} m")
+    if "runout" in about:
+        far, flat = about["runout"]["distance"]["highest"], about["runout"]["reach_angle"]["lowest"]
+        lines.append(f"run-out: {far:.3f} m, reach angle {flat:.1f} degrees"
+                     + (" (the farthest and the flattest of the runs)" if about["runs"] > 1 else ""))
+    lines.append(f"written to {folder}: {' '.join(about['files'])}")
+    return "\n".join(lines)
