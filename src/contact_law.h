@@ -20,7 +20,6 @@
 namespace Slope {
 
 static constexpr double PI = 3.14159265358979323846;
-static constexpr double TINY = 1.0e-100;    // keeps a quotient finite that is not used
 
 // ----------------------------------------------------------------------
 // coefficients
@@ -114,12 +113,11 @@ struct ContactStep {
   double force;                 // m / dt^2: N per m
   double stiffness, decay;      // 1 + D - C, D
   double back_d, back_v;        // overlap a step ago = back_d d - back_v (rate of d) dt
-  double per_back_v;            // 1 / back_v
   double a, h;                  // w^2 dt^2, cn dt / (2 m)
   double kt, ct, kr, cr;
   double friction, rolling, fn_least;
   double first_below, gone_above;    // phases before this step with which it is the first, or none
-  double last_above;                 // outgoing path with which it may be the last
+  double last_below;                 // V with which it may be the last
 };
 
 // Dashpots of the tangent plane act on the spin too, and those of all contacts of a ball at once:
@@ -160,7 +158,6 @@ inline void set_mass(ContactStep &s, const ContactLaw &law, double inverse_mass,
   s.stiffness = law.exact * (1.0 + e * e - 2.0 * e * cosine) + plain * s.a;
   s.back_d = (cosine - s.h * sinc) / e;
   s.back_v = sinc / e;
-  s.per_back_v = e / sinc;
 
   const double ct = law.ct_given + law.ct_root * root;
   const double cr = law.cr_given + law.cr_root * root;
@@ -183,7 +180,7 @@ inline ContactStep contact_step(const ContactLaw &law, double inverse_mass, doub
   s.fn_least = law.fn_least;
   s.first_below = !exact ? -HUGE_VAL : again ? 0.5 * (FIRST + INSIDE) : 0.5 * (NEW + FIRST);
   s.gone_above = !exact ? HUGE_VAL : again ? 0.5 * (LAST + GONE) : 0.5 * (INSIDE + LAST);
-  s.last_above = exact ? 0.0 : HUGE_VAL;
+  s.last_below = exact ? 0.0 : -HUGE_VAL;
   set_mass(s, law, inverse_mass, mass_dashpot);
   return s;
 }
@@ -207,40 +204,52 @@ struct ContactForce {
   double m[3];      // rolling torque on the ball, N m
 };
 
-// Normal force (N) at overlap d that grew by V in the step that ends. phase: a Phase, that of the
-// step before (at set-up, of this step); becomes that of this step.
+// Normal force in m (times ContactStep::force: N) at overlap d that grew by V in the step that
+// ends, inside a contact, as most are.
+inline double inside_force(const ContactStep &s, double d, double V)
+{
+  return s.stiffness * d + (1.0 - s.decay) * V;
+}
+
+// whether that is not all: the first, the last or no step of the contact
+inline bool begins_or_ends(const ContactStep &s, double d, double V, double phase, double inside)
+{
+  return ((phase < s.first_below) & (V > 0.0)) | ((phase > s.gone_above) & (V <= 0.0)) |
+      ((d + V <= inside) & (V <= s.last_below));
+}
+
+// Then this. phase: a Phase, that of the step before (at set-up, of this step); becomes that of
+// this step.
 inline double normal_force(const ContactStep &s, double d, double V, double &phase)
 {
-  double F = s.stiffness * d + (1.0 - s.decay) * V;    // in m: times m/dt^2
+  // rate of an oscillation that has the path U per step at d = 0: series in r = d / U
 
-  // distance and rate near d = 0, for an oscillation that has the path U per step at d = 0:
-  // series in r = d / U; coming in, U is V; going out, U follows from the rate
-
-  const double rate = (d - V - s.back_d * d) * s.per_back_v;    // of -d, now
-  const double guess = rate - 2.0 * s.h * d;
   const double r2 = 0.5 * s.a, r3 = 2.0 / 3.0 * s.h * s.a;
   const double r4 = s.h * s.h * s.a + 0.125 * s.a * s.a;
-  const bool in = V > 0.0;
-  const double path = std::max(in ? V : guess, TINY);
-  const double r = std::min(d * path / (path * path + (in ? 0.0 : r2 * d * d)), 1.0);
-  const double rate_in = V - d * (2.0 * s.h + r * (r2 + r * (r3 + r * r4)));
-  const double V_in = d - (s.back_d * d - s.back_v * rate_in);
-  const double F_in = s.stiffness * d + V - s.decay * V_in;
-  const double F_out = V + guess + d * r * (r2 - r * (r3 - r * r4));
+  const double inside = inside_force(s, d, V);
 
-  // selects, not branches, so that the compiler can vectorise a loop over contacts
-
-  const bool first = (phase < s.first_below) & in;
-  const bool gone = (phase > s.gone_above) & !in;
-  const bool last = (guess > s.last_above) & (d + V <= F) & !in;
-  phase = last ? LAST : INSIDE;
-  F = last ? F_out : F;
-  phase = gone ? GONE : phase;
-  F = gone ? 0.0 : F;
-  phase = first ? FIRST : phase;
-  F = first ? F_in : F;
-  F *= s.force;
-  return F > s.fn_least ? F : s.fn_least;
+  if (phase < s.first_below && V > 0.0) {    // U = V, coming in
+    phase = FIRST;
+    const double r = std::min(d / V, 1.0);
+    const double rate = V - d * (2.0 * s.h + r * (r2 + r * (r3 + r * r4)));
+    const double V_inside = d - (s.back_d * d - s.back_v * rate);
+    return s.stiffness * d + V - s.decay * V_inside;
+  }
+  if (phase > s.gone_above && V <= 0.0) {
+    phase = GONE;
+    return 0.0;
+  }
+  if (d + V <= inside && V <= s.last_below) {    // U from the rate, going out
+    const double rate = (d - V - s.back_d * d) / s.back_v;
+    const double guess = rate - 2.0 * s.h * d;
+    if (guess > 0.0) {
+      phase = LAST;
+      const double r = d / (guess + r2 * d * d / guess);
+      return V + guess + d * r * (r2 - r * (r3 - r * r4));
+    }
+  }
+  phase = INSIDE;
+  return inside;
 }
 
 // Spring and dashpot in the tangent plane with a limit, for sliding and for rolling alike:
@@ -261,6 +270,8 @@ inline void limited_spring(double k, double c, double limit, const double *n, co
   const double fy = -(k * sy + c * u[1]);
   const double fz = -(k * sz + c * u[2]);
   const double f2 = fx * fx + fy * fy + fz * fz;
+  // selects, not branches, so that the compiler can vectorise a loop over contacts
+
   const bool cut = f2 > limit * limit;
   const double scale = cut ? limit / std::sqrt(cut ? f2 : 1.0) : 1.0;
   const double kinv = (cut && k > 0.0) ? 1.0 / k : 0.0;
@@ -272,22 +283,30 @@ inline void limited_spring(double k, double c, double limit, const double *n, co
   s[2] = cut ? -(f[2] + c * u[2]) * kinv : sz;
 }
 
-// Force of one touching contact. history: HISTORY values, updated. ROLLING = false leaves out
-// the rolling resistance, for laws that have none.
-template <bool ROLLING = true>
-inline void contact_force(const ContactStep &step, const Contact &c, double *history,
-                          ContactForce &out)
+// Force of one touching contact, in two parts, so that a loop over contacts can look after those
+// that begin or end in between. history: HISTORY values, updated.
+
+// where in its life the contact is, and V
+inline void contact_motion(const ContactStep &step, const Contact &c, const double *history,
+                           double &V, double &phase)
 {
   const double *n = c.n;
+  const double per_rr = 1.0 / c.rolling_radius;    // the same for equal balls: leaves the loop
+  phase = (history[0] * n[0] + history[1] * n[1] + history[2] * n[2]) * per_rr;
+  V = -(c.v[0] * n[0] + c.v[1] * n[1] + c.v[2] * n[2]) * step.dt;
+}
 
-  // normal
-
+// The rest, with the normal force F (m) and the phase. ROLLING = false leaves out the rolling
+// resistance, for laws that have none.
+template <bool ROLLING>
+inline void contact_force(const ContactStep &step, const Contact &c, double F, double phase,
+                          double *history, ContactForce &out)
+{
+  const double *n = c.n;
   const double rr = c.rolling_radius;
-  const double per_rr = 1.0 / rr;    // the same for equal balls: leaves the loop
-  double phase = (history[0] * n[0] + history[1] * n[1] + history[2] * n[2]) * per_rr;
   const double vn = c.v[0] * n[0] + c.v[1] * n[1] + c.v[2] * n[2];
-  const double fn = normal_force(step, c.overlap, -vn * step.dt, phase);
-  const double pressing = fn > 0.0 ? fn : 0.0;
+  const double fn = std::max(F * step.force, step.fn_least);
+  const double pressing = std::max(fn, 0.0);
 
   // tangential: vt = v - vn n - (Ri wi + Rj wj) x n
 
@@ -317,6 +336,17 @@ inline void contact_force(const ContactStep &step, const Contact &c, double *his
   out.m[0] = rr * fr[0];
   out.m[1] = rr * fr[1];
   out.m[2] = rr * fr[2];
+}
+
+// both parts
+template <bool ROLLING = true>
+inline void contact_force(const ContactStep &step, const Contact &c, double *history,
+                          ContactForce &out)
+{
+  double V, phase;
+  contact_motion(step, c, history, V, phase);
+  const double F = normal_force(step, c.overlap, V, phase);
+  contact_force<ROLLING>(step, c, F, phase, history, out);
 }
 
 }    // namespace Slope

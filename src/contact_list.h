@@ -161,6 +161,7 @@ class ContactList {
     double v[3][BLOCK], rw[3][BLOCK], w[3][BLOCK];
     double radius_i[BLOCK], radius_j[BLOCK], mass_i[BLOCK], mass_j[BLOCK];    // unless equal
     double history[HISTORY][BLOCK];
+    double n[3][BLOCK], overlap[BLOCK], growth[BLOCK], normal[BLOCK], phase[BLOCK], special[BLOCK];
     double f[3][BLOCK], torque_i[3][BLOCK], torque_j[3][BLOCK];
   };
 
@@ -221,11 +222,6 @@ class ContactList {
     for (int k = 0; k < listed; k += 4) {
       for (int m = k; m < k + 4; m++) {
         four(b.apart[m]) = four(&balls.x[e[m].i].x) - four(&partners.x(e[m].j).x);
-        __builtin_prefetch(e[m].history, 1);
-        if (Partners::MOVE) {
-          __builtin_prefetch(&partners.v(e[m].j));
-          __builtin_prefetch(&partners.omega(e[m].j));
-        }
       }
       const Columns d(four(b.apart[k]), four(b.apart[k + 1]), four(b.apart[k + 2]),
                       four(b.apart[k + 3]));
@@ -263,6 +259,14 @@ class ContactList {
       const double mark =
           new_contact(law.rolling_factor * ri * rj / (ri + rj)) / std::sqrt(b.rsq[k]);
       for (int d = 0; d < 3; d++) history[d] = mark * b.apart[k][d];
+    }
+    for (int c = 0; c < count; c++) {    // ahead of gather()
+      const Entry &touching_one = e[b.from[c]];
+      __builtin_prefetch(touching_one.history, 1);
+      if (Partners::MOVE) {
+        __builtin_prefetch(&partners.v(touching_one.j));
+        __builtin_prefetch(&partners.omega(touching_one.j));
+      }
     }
     return count;
   }
@@ -333,16 +337,65 @@ class ContactList {
     t.z += b.torque_j[2][c];
   }
 
+  // where contact k of the touching ones is, and how fast
+  static void contact_of(const Block &b, int k, double ri, double rj, const ContactLaw &law, Contact &c)
+  {
+    const double dx = b.delta[0][k], dy = b.delta[1][k], dz = b.delta[2][k];
+    const double r = std::sqrt(dx * dx + dy * dy + dz * dz), rinv = 1.0 / r;
+    c.overlap = ri + rj - r;
+    c.rolling_radius = law.rolling_factor * ri * rj / (ri + rj);
+    for (int d = 0; d < 3; d++) {
+      c.n[d] = b.delta[d][k] * rinv;
+      c.v[d] = b.v[d][k];
+    }
+  }
+
+  // forces of the touching contacts
   template <bool ROLLING, bool EQUAL>
   void evaluate(Block &b, int count, const ContactLaw &law, const ContactStep &same,
                 double mass_factor) const
   {
-    const double of_i = move_i, of_j = move_j;
     const int end = (count + 3) & ~3;    // what gather() has filled
+    const double of_i = move_i, of_j = move_j;    // locals: no store can change them
+    const double same_ri = radius_i, same_rj = radius_j;
 #pragma GCC ivdep
     for (int k = 0; k < end; k++) {
-      const double ri = EQUAL ? radius_i : b.radius_i[k];
-      const double rj = EQUAL ? radius_j : b.radius_j[k];
+      ContactStep step = same;
+      if (!EQUAL) {
+        const double inverse = of_i / b.mass_i[k] + of_j / b.mass_j[k];
+        set_mass(step, law, inverse, mass_factor / inverse);
+      }
+      Contact c;
+      contact_of(b, k, EQUAL ? same_ri : b.radius_i[k], EQUAL ? same_rj : b.radius_j[k], law, c);
+      const double history[3] = {b.history[0][k], b.history[1][k], b.history[2][k]};
+      double V, phase;
+      contact_motion(step, c, history, V, phase);
+      const double F = inside_force(step, c.overlap, V);
+      for (int d = 0; d < 3; d++) b.n[d][k] = c.n[d];
+      b.normal[k] = F;
+      b.growth[k] = V;
+      b.overlap[k] = c.overlap;
+      b.phase[k] = begins_or_ends(step, c.overlap, V, phase, F) ? phase : INSIDE;
+      b.special[k] = begins_or_ends(step, c.overlap, V, phase, F) ? 1.0 : 0.0;
+    }
+    int specials = 0, which[BLOCK];
+    for (int k = 0; k < count; k++) {
+      which[specials] = k;
+      specials += b.special[k] > 0.0;
+    }
+    for (int s = 0; s < specials; s++) {
+      const int k = which[s];
+      ContactStep step = same;
+      if (!EQUAL) {
+        const double inverse = of_i / b.mass_i[k] + of_j / b.mass_j[k];
+        set_mass(step, law, inverse, mass_factor / inverse);
+      }
+      b.normal[k] = normal_force(step, b.overlap[k], b.growth[k], b.phase[k]);
+    }
+#pragma GCC ivdep
+    for (int k = 0; k < end; k++) {
+      const double ri = EQUAL ? same_ri : b.radius_i[k];
+      const double rj = EQUAL ? same_rj : b.radius_j[k];
       ContactStep step = same;
       if (!EQUAL) {
         const double inverse = of_i / b.mass_i[k] + of_j / b.mass_j[k];
@@ -351,18 +404,15 @@ class ContactList {
       Contact c;
       ContactForce out;
       double history[HISTORY];
-      const double dx = b.delta[0][k], dy = b.delta[1][k], dz = b.delta[2][k];
-      const double r = std::sqrt(dx * dx + dy * dy + dz * dz), rinv = 1.0 / r;
+      c.rolling_radius = law.rolling_factor * ri * rj / (ri + rj);
       for (int d = 0; d < 3; d++) {
-        c.n[d] = b.delta[d][k] * rinv;
+        c.n[d] = b.n[d][k];
         c.v[d] = b.v[d][k];
         c.rw[d] = b.rw[d][k];
         c.w[d] = b.w[d][k];
       }
-      c.overlap = ri + rj - r;
-      c.rolling_radius = law.rolling_factor * ri * rj / (ri + rj);
       for (int h = 0; h < HISTORY; h++) history[h] = b.history[h][k];
-      contact_force<ROLLING>(step, c, history, out);
+      contact_force<ROLLING>(step, c, b.normal[k], b.phase[k], history, out);
       for (int h = 0; h < HISTORY; h++) b.history[h][k] = history[h];
       for (int d = 0; d < 3; d++) {
         b.f[d][k] = out.f[d];

@@ -58,6 +58,7 @@ void FixContactHistory::post_run()
 {
   FixNeighHistory::post_run();
   find_kicks();
+  static_cast<PairGranRestitution *>(pair)->report_overlaps();
 }
 
 /* ----------------------------------------------------------------------

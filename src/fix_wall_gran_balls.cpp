@@ -121,6 +121,7 @@ void FixWallGranBalls::sort_balls(const std::vector<double> &xyz)
   top.assign(ncell, -HUGE_VALF);
   for (size_t k = 0; k < n; k++) first[cell_of(k) + 1]++;
   for (size_t c = 0; c < ncell; c++) first[c + 1] += first[c];
+  balls.reserve(n + 1);    // contacts are read 32 bytes at a time, 8 beyond a vector
   balls.resize(n);
   std::vector<int> next(first.begin(), first.end() - 1);
   for (size_t k = 0; k < n; k++) {

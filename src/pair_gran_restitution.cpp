@@ -6,6 +6,7 @@
 #include "pair_gran_restitution.h"
 
 #include "atom.h"
+#include "atom_vec.h"
 #include "comm.h"
 #include "error.h"
 #include "fix_contact_history.h"
@@ -15,6 +16,7 @@
 #include "lammps_compat.h"
 #include "memory.h"
 #include "neigh_list.h"
+#include "neighbor.h"
 #include "update.h"
 
 #include <algorithm>
@@ -25,7 +27,9 @@
 using namespace LAMMPS_NS;
 using namespace Slope;
 
-static constexpr double STEP_RULE = 0.25;    // dt <= STEP_RULE sqrt(m/kn)
+static constexpr double STEP_RULE = 0.25;     // dt <= STEP_RULE sqrt(m/kn)
+static constexpr double DASHPOT_RULE = 0.15;    // scheme plain: dt <= DASHPOT_RULE m/cn
+static constexpr double DEEP = 0.1;             // overlap, of the smaller radius, that is not sensible
 static constexpr double DEGREE = PI / 180.0;
 
 // LAMMPS keeps the rows of these arrays one after the other
@@ -51,6 +55,7 @@ PairGranRestitution::PairGranRestitution(LAMMPS *lmp) : Pair(lmp)
   rolling_reduced = 0;
   plain = 0;
   freeze_group_bit = 0;
+  overlaps = {0.0, 0, 0, 0};
   dt = update->dt;
 
   // a placeholder holds the history's place in the order of the fixes
@@ -418,6 +423,8 @@ void PairGranRestitution::setup()
   dt = update->dt;
   print_table();
   check_timestep();
+  check_neighbor_lists();
+  overlaps = {0.0, 0, 0, 0};
 }
 
 /* ---------------------------------------------------------------------- */
@@ -428,7 +435,20 @@ void PairGranRestitution::reset_dt()
 }
 
 /* ----------------------------------------------------------------------
-   largest step of the rule for a type pair: that of its lightest moving ball
+   type pairs that can touch: one side moves, the other one does too, is frozen or a wall
+------------------------------------------------------------------------- */
+
+bool PairGranRestitution::can_touch(int i, int j) const
+{
+  const TypeRange &a = ranges[i], &b = ranges[j];
+  if (!coeffs[index(i, j)].set) return false;
+  return (a.moving && (b.moving || b.frozen || wall_type[j])) ||
+      (b.moving && (a.frozen || wall_type[i]));
+}
+
+/* ----------------------------------------------------------------------
+   largest step for a type pair: that of its lightest moving ball. Scheme exact follows any
+   dashpot; the plain one needs small steps, for the dashpots of several contacts add up.
 ------------------------------------------------------------------------- */
 
 double PairGranRestitution::bound_on_step(int i, int j) const
@@ -436,7 +456,9 @@ double PairGranRestitution::bound_on_step(int i, int j) const
   double m = HUGE_VAL;
   if (ranges[i].moving) m = std::min(m, ranges[i].mass_min);
   if (ranges[j].moving) m = std::min(m, ranges[j].mass_min);
-  return STEP_RULE * sqrt(m / coeffs[index(i, j)].kn);
+  const double spring = STEP_RULE * sqrt(m / coeffs[index(i, j)].kn);
+  const double cn = laws[index(i, j)].cn(m);
+  return plain && cn > 0.0 ? std::min(spring, DASHPOT_RULE * m / cn) : spring;
 }
 
 /* ----------------------------------------------------------------------
@@ -455,11 +477,9 @@ void PairGranRestitution::print_table()
     for (int j = i; j <= atom->ntypes; j++) {
       const Coeff &c = coeffs[index(i, j)];
       const TypeRange &a = ranges[i], &b = ranges[j];
-      if (!c.set || !(a.moving || b.moving)) continue;
+      if (!can_touch(i, j)) continue;
       const ContactLaw &law = laws[index(i, j)];
       const bool both = a.moving && b.moving;
-      const bool fixed = a.frozen || b.frozen || wall_type[i] || wall_type[j];
-      if (!both && !fixed) continue;
 
       // a ball on a fixed one: the lighter of the moving types
 
@@ -495,7 +515,7 @@ void PairGranRestitution::check_timestep()
   int iworst = 0, jworst = 0;
   for (int i = 1; i <= atom->ntypes; i++)
     for (int j = i; j <= atom->ntypes; j++) {
-      if (!coeffs[index(i, j)].set || !(ranges[i].moving || ranges[j].moving)) continue;
+      if (!can_touch(i, j)) continue;
       const double b = bound_on_step(i, j);
       if (b < bound) {
         bound = b;
@@ -503,11 +523,57 @@ void PairGranRestitution::check_timestep()
         jworst = j;
       }
     }
-  if (dt > bound * (1.0 + 1.0e-12) && comm->me == 0)
+  if (dt <= bound * (1.0 + 1.0e-12) || comm->me > 0) return;
+  const bool spring = coeffs[index(iworst, jworst)].kn * bound * bound >=
+      0.999 * STEP_RULE * STEP_RULE * std::min(ranges[iworst].mass_min, ranges[jworst].mass_min);
+  if (spring || !plain)
     error->warning(FLERR,
                    "Pair gran/restitution: time step {:.4g} s is {:.3g} times the largest that "
                    "holds the restitution, 0.25 sqrt(m_min/kn) = {:.4g} s (types {} {})",
                    dt, dt / bound, bound, iworst, jworst);
+  else
+    error->warning(FLERR,
+                   "Pair gran/restitution: time step {:.4g} s is {:.3g} times the largest with which "
+                   "the dashpots of scheme plain let a heap come to rest, 0.15 m_min/cn = {:.4g} s "
+                   "(types {} {})",
+                   dt, dt / bound, bound, iworst, jworst);
+}
+
+/* ----------------------------------------------------------------------
+   warn when contacts can begin before the neighbor list has them
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::check_neighbor_lists()
+{
+  if (neighbor->delay == 0 && neighbor->every == 1 && neighbor->dist_check) return;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Pair gran/restitution: with neigh_modify every {} delay {} check {} contacts may "
+                   "be found late and rebound too fast; every 1 delay 0 check yes finds them in time",
+                   neighbor->every, neighbor->delay, neighbor->dist_check ? "yes" : "no");
+}
+
+/* ----------------------------------------------------------------------
+   warn, once per run and with a count, of contacts that were deeper than is sensible
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::report_overlaps()
+{
+  struct {
+    double most;
+    int rank;
+  } mine = {overlaps.most, comm->me}, all;
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
+  bigint count;
+  MPI_Allreduce(&overlaps.count, &count, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  bigint where[2] = {overlaps.ball, overlaps.step};
+  MPI_Bcast(where, 2, MPI_LMP_BIGINT, all.rank, world);
+  if (count && comm->me == 0)
+    error->warning(FLERR,
+                   "Pair gran/restitution: {} contacts were seen deeper than {:g} % of the smaller "
+                   "radius, the deepest {:.3g} % (ball {}, step {}): the stiffness is too small for "
+                   "the speeds, or the time step too large",
+                   count, 100.0 * DEEP, 100.0 * all.most, where[0], where[1]);
 }
 
 /* ----------------------------------------------------------------------
@@ -516,10 +582,15 @@ void PairGranRestitution::check_timestep()
 
 void PairGranRestitution::build_lists()
 {
+  // contacts are read 32 bytes at a time, 8 beyond a vector: there must be something beyond the last
+
+  if (atom->nlocal + atom->nghost >= atom->nmax) atom->avec->grow(0);
+
   const int n = atom->ntypes + 1;
   lists.resize(3 * n * n);
   for (size_t k = 0; k < lists.size(); k++) lists[k].clear(k % 3 != 1, k % 3 != 2);
 
+  const Vector *const x = vectors(atom->x);
   const double *const radius = atom->radius;
   const double *const rmass = atom->rmass;
   const int *const mask = atom->mask;
@@ -538,6 +609,14 @@ void PairGranRestitution::build_lists()
       ContactList &l = lists[3 * (type[i] * n + type[j]) + (frozen_i ? 1 : frozen_j ? 2 : 0)];
       l.add(i, j, &values[HISTORY * jj], flags[jj], radius[i], radius[j], rmass[i], rmass[j]);
       l.flags.push_back(&flags[jj]);
+
+      if (!flags[jj]) continue;
+      const Vector a = x[i], b = x[j];
+      const double r = sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y) +
+                            (a.z - b.z) * (a.z - b.z));
+      const double overlap = (radius[i] + radius[j] - r) / std::min(radius[i], radius[j]);
+      if (overlap > DEEP) overlaps.count++;
+      if (overlap > overlaps.most) overlaps = {overlap, atom->tag[i], update->ntimestep, overlaps.count};
     }
   }
   if (sizes_vary)
@@ -568,6 +647,8 @@ void PairGranRestitution::find_half_step()
 
   const int nlocal = atom->nlocal, nall = nlocal + atom->nghost;
   Vector *const v = vectors(atom->v), *const omega = vectors(atom->omega);
+  half_v.reserve(nall + 1);    // see build_lists()
+  half_omega.reserve(nall + 1);
   half_v.assign(v, v + nall);
   half_omega.assign(omega, omega + nall);
   for (int i = 0; i < nlocal; i++) {
@@ -600,12 +681,12 @@ void PairGranRestitution::compute(int eflag, int vflag)
 {
   ev_init(eflag, vflag);
   starting = update->setupflag;
+  if (starting || fix_history->lists_new) build_lists();
   if (starting) find_half_step();
   else if (!half_v.empty()) {
     half_v.clear();
     half_omega.clear();
   }
-  if (starting || fix_history->lists_new) build_lists();
 
   const int nlocal = atom->nlocal, newton_pair = force->newton_pair;
   const MovingBalls balls = moving_balls();

@@ -52,6 +52,7 @@ class PairGranRestitution : public Pair {
   void announce_wall(int wall_type, int groupbit);
   Slope::MovingBalls moving_balls() const;
   void store_flags() const;
+  void report_overlaps();    // at the end of a run
   bool sizes_vary;    // between two neighbor lists, by fix adapt
 
  protected:
@@ -84,6 +85,13 @@ class PairGranRestitution : public Pair {
   int freeze_group_bit;
   class FixContactHistory *fix_history;
   std::vector<Slope::ContactList> lists;    // by type pair and by which side is frozen
+  // contacts that were seen deeper than is sensible, looked for with every neighbor list
+  struct Overlaps {
+    double most;    // of the smaller radius
+    tagint ball;
+    bigint step, count;
+  } overlaps;
+
   std::vector<Slope::Vector> half_v, half_omega;    // at set-up, where they are known
   std::string history_id, dummy_id;
   std::string table;    // start-up table as last printed
@@ -94,7 +102,9 @@ class PairGranRestitution : public Pair {
   void find_ranges();
   void print_table();
   void check_timestep();
+  bool can_touch(int, int) const;
   double bound_on_step(int, int) const;
+  void check_neighbor_lists();
   void build_lists();
   void find_half_step();
 };

@@ -1,8 +1,12 @@
-"""The decks inputs/01 to 04 against the paper's tables and closed forms (REFERENCE: Tables 1 to 3, Figures 5 to 9)."""
+"""The decks inputs/01 to 04: their curves, warnings and other schemes.
+
+What they claim of the paper's tables and closed forms is in slope_tools.verification; test_verification.py runs it.
+"""
 
 import math
-import re
+import os
 import shutil
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -10,31 +14,20 @@ import pytest
 
 from deck_helpers import run_deck
 
-INPUTS = Path(__file__).resolve().parents[2] / "inputs"
-G, D = 9.81, 0.06  # m/s2, m: the decks' defaults
+TOP = Path(__file__).resolve().parents[2]
+INPUTS = TOP / "inputs"
+sys.path.insert(0, os.environ.get("SLOPE_TOOLS", str(TOP / "tools")))
+
+from slope_tools.verification.claims import number  # noqa: E402  (after the path is set)
+from slope_tools.verification.slide_roll import D, G, on_a_sphere  # noqa: E402
 
 
-def run_case(folder, tmp_path, change=lambda deck: deck, **variables):
+def run_case(folder, tmp_path, **variables):
     """Run an input folder's deck in tmp_path; return its log."""
     source = INPUTS / folder
     for file in source.glob("*.xyz"):
         shutil.copy(file, tmp_path)
-    deck = next(source.glob("in.*")).read_text()
-    changed = change(deck)
-    return run_deck(changed, tmp_path, vars=variables)
-
-
-def swap(old, new):
-    """A change to a deck's text that must find what it replaces."""
-    def change(deck):
-        assert old in deck
-        return deck.replace(old, new)
-    return change
-
-
-def number(name, line):
-    """The number after a name in a line that a deck printed."""
-    return float(re.search(rf"\b{name} (\S+)", line).group(1).rstrip(":"))
+    return run_deck(next(source.glob("in.*")).read_text(), tmp_path, vars=variables)
 
 
 def printed(log, start):
@@ -46,50 +39,17 @@ def curve(tmp_path, name):
     return np.genfromtxt(tmp_path / name, delimiter=",", names=True)
 
 
-def on_a_sphere(time, phi=30.0, spin=False, mu=0.0, mu_r=0.0):
-    """Path of a ball from rest on a fixed one, by Runge-Kutta on d psi'' = f (g sin psi - mu N/m).
-
-    N/m = g cos psi - d psi'^2; sliding: f = 1, mu the friction; rolling: f = 5/7, mu the rolling
-    resistance. Returns the path d (psi - phi), psi in degrees, and F/N at the end, all at time.
-    """
-    factor, brake = (5 / 7, mu_r) if spin else (1.0, mu)
-
-    def rate(state):
-        psi, w = state
-        normal = G * math.cos(psi) - D * w * w
-        return np.array([w, factor * (G * math.sin(psi) - brake * normal) / D])
-
-    state = np.array([math.radians(phi), 0.0])
-    steps = 2000
-    h = time / steps
-    for _ in range(steps):
-        a = rate(state)
-        b = rate(state + h / 2 * a)
-        c = rate(state + h / 2 * b)
-        d = rate(state + h * c)
-        state = state + h / 6 * (a + 2 * b + 2 * c + d)
-    psi, w = state
-    force = G * math.sin(psi) - D * rate(state)[1]
-    return D * (psi - math.radians(phi)), math.degrees(psi), force / (G * math.cos(psi) - D * w * w)
-
-
 # --- 01_restitution ---
 
 
 @pytest.mark.parametrize("variables, observed", [
     ({"e": 0.25}, 0.249), ({"cn": 1.45e4}, 0.249), ({"e": 0.445}, 0.445), ({"cn": 8.96e3}, 0.445)])
-@pytest.mark.parametrize("scheme, g", [("exact", 9.81), ("plain", 9.81), ("plain", 9.80665)])  # plain: two phases
-def test_table_2(tmp_path, variables, observed, scheme, g):
-    log = run_case("01_restitution", tmp_path, tend=0.45, scheme=scheme, g=g, **variables)
+@pytest.mark.parametrize("g", [9.81, 9.80665])  # two phases of the step in which the contact begins
+def test_table_2_with_scheme_plain(tmp_path, variables, observed, g):
+    log = run_case("01_restitution", tmp_path, tend=0.45, scheme="plain", g=g, **variables)
     line, = printed(log, "restitution:")
     assert number("observed", line) == pytest.approx(observed, abs=0.003)
     assert math.sqrt(number("h2", line) / 0.741) == pytest.approx(observed, abs=0.003)
-
-
-def test_table_2_would_see_a_wrong_mass(tmp_path):
-    """A dashpot with half the mass under the root, right between two moving balls, fails on a fixed one."""
-    log = run_case("01_restitution", tmp_path, tend=0.45, cn=1.45e4 / math.sqrt(2))
-    assert number("observed", printed(log, "restitution:")[0]) > 0.249 + 0.1
 
 
 def test_curve_of_figure_5(tmp_path):
@@ -159,18 +119,6 @@ def test_slide_and_roll(tmp_path, theta, theory):
         assert np.abs(path["sliding"]).max() < 1e-4 * path["path"][-1]
 
 
-@pytest.mark.parametrize("theta, spin", [(0, False), (60, True)])
-def test_a_sphere_on_a_sphere(tmp_path, theta, spin):
-    """For longer than 0.02 s the slope of the contact grows: the equation of motion, not its first term."""
-    run_case("03_slide_roll", tmp_path, theta=theta, tend=0.08)
-    path = curve(tmp_path, "slide_roll.csv")
-    for time in (0.04, 0.06, 0.08):
-        row = np.argmin(np.abs(path["time"] - time))
-        theory, _, _ = on_a_sphere(time, spin=spin)
-        assert path["path"][row] == pytest.approx(theory, rel=2e-3)
-    assert theory / path["roll_theory" if spin else "slide_theory"][row] > 1.05
-
-
 def test_threshold_of_rolling(tmp_path):
     """3.5 tan(theta) = tan(30 deg) at theta 9.37 deg; sliding below it gains speed by the closed form."""
     slip = {}
@@ -184,14 +132,6 @@ def test_threshold_of_rolling(tmp_path):
     for theta in (9.5, 9.7):
         assert abs(slip[theta][0.005]) < 1e-6 and abs(slip[theta][0.01]) < 1e-6
     assert slip[9.2][0.01] > 500 * abs(slip[9.5][0.01])
-
-
-def test_not_the_threshold_of_a_disc(tmp_path):
-    """3 tan(theta) = tan(30 deg), as the paper prints it, would be 10.89 deg: 9.7 deg rolls all the same."""
-    log = run_case("03_slide_roll", tmp_path, theta=9.7, tend=0.01)
-    line, = printed(log, "slide_roll:")
-    assert 3 * math.tan(math.radians(9.7)) < math.tan(math.pi / 6)
-    assert number("of roll theory", line) == pytest.approx(1.0, abs=0.01)
 
 
 # --- 04_rolling_resistance ---
@@ -216,14 +156,6 @@ def test_table_3(tmp_path, friction, rolling, verdict):
         assert rotation == pytest.approx(theory / (0.5 * D), rel=0.03) and abs(sliding) < 1e-6
 
 
-@pytest.mark.parametrize("friction, rolling", [(29, 0.58), (31, 0.56)])
-def test_table_3_without_the_first_jerk(tmp_path, friction, rolling):
-    """With dashpots far above critical the load comes on softly and the closed forms hold within 1 %."""
-    log = run_case("04_rolling_resistance", tmp_path, friction=friction, rolling=rolling, zeta=8, dt=2e-7)
-    theory, _, _ = on_a_sphere(0.2, spin=friction == 31, mu=math.tan(math.radians(friction)), mu_r=rolling)
-    assert number("path", printed(log, "rolling_resistance:")[0]) == pytest.approx(theory, rel=0.01)
-
-
 def test_case_3_slides_in_the_end(tmp_path):
     """Beyond 0.232 s the contact is so steep that 31 degrees of friction no longer hold the rolling ball."""
     mu = math.tan(math.radians(31))
@@ -232,17 +164,3 @@ def test_case_3_slides_in_the_end(tmp_path):
     path = curve(tmp_path, "rolling_resistance.csv")
     start = path["time"][np.argmax(path["sliding"] > 1e-6)]
     assert 0.225 < start < 0.24
-
-
-def test_table_3_needs_the_whole_radius(tmp_path):
-    """With half the torque arm, as sds and epsd2 have it, the ball of case 1 rolls off."""
-    log = run_case("04_rolling_resistance", tmp_path, rolling=0.58,
-                   change=swap("gran/restitution\n", "gran/restitution rolling_radius reduced\n"))
-    assert "rotates" in printed(log, "rolling_resistance:")[0]
-
-
-def test_table_3_needs_the_rolling_spring(tmp_path):
-    """A resistance without a spring cannot stand still."""
-    log = run_case("04_rolling_resistance", tmp_path, rolling=0.58,
-                   change=swap("rolling_spring $k $c", "rolling_spring 0 $(v_c/100)"))
-    assert "rotates" in printed(log, "rolling_resistance:")[0]

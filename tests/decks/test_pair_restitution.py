@@ -290,6 +290,48 @@ def test_time_step_warning(tmp_path, kind):
     assert f"is 1.01 times the largest that holds the restitution, 0.25 sqrt(m_min/kn) = {rule:.4g} s" in log
 
 
+def test_dashpots_count_in_the_rule_of_the_plain_scheme(tmp_path):
+    """Scheme exact follows any dashpot; with plain those of several contacts add up."""
+    m = ball_mass(0.1, 2500)
+    cn = 2 * 0.59 * math.sqrt(1e6 * m)  # e 0.1
+    dt = 0.9 * 0.25 * math.sqrt(m / 1e6)
+    assert 0.15 * m / cn < dt
+    for style, warned in (("scheme plain", True), ("", False)):
+        log, _, _ = collide(tmp_path, "wall", coeff=f"damping {cn} {cn}", style=style, dt=dt, steps=1)
+        assert (f"the dashpots of scheme plain let a heap come to rest, 0.15 m_min/cn = {0.15 * m / cn:.4g} s" in log) \
+            == warned
+    log, _, _ = collide(tmp_path, "wall", coeff=f"damping {cn / 10} 0", style="scheme plain", dt=dt, steps=1)
+    assert "WARNING" not in log
+
+
+def test_stiff_pair_that_cannot_touch_does_not_count(tmp_path):
+    dt = 0.99 * 0.25 * math.sqrt(ball_mass(0.1, 2500) / 1e6)
+    coeff = "pair_coeff * * stiffness 1e6 1e6 restitution 0.5\npair_coeff {} stiffness 1e9 1e9 restitution 0.5"
+    for pair, warned in (("1 2", False), ("1 3", True)):  # of type 2 there is no ball, 3 is the wall
+        log, _, _ = collide(tmp_path, "wall", coeff=coeff.format(pair), dt=dt, steps=1)
+        assert ("WARNING: Pair gran/restitution: time step" in log) == warned
+
+
+def test_late_neighbor_lists_are_warned_of(tmp_path):
+    for extra, warned in (("neigh_modify delay 10", True), ("neigh_modify delay 0 check no", True),
+                          ("neigh_modify delay 0 every 1 check yes", False)):
+        log, _, _ = collide(tmp_path, steps=1, extra=extra)
+        assert ("contacts may be found late and rebound too fast" in log) == warned
+
+
+def test_deep_overlaps_are_reported_once_with_a_count(tmp_path):
+    every = "neigh_modify every 1 delay 0 check no"
+    deep, _, _ = collide(tmp_path, k=2e4, steps=6000, extra=every)
+    sane, _, _ = collide(tmp_path, k=1e6, steps=3000, extra=every)
+    line, = (line for line in deep.splitlines() if "contacts were seen deeper than 10 % of the smaller radius" in line)
+    count, most = re.search(r"(\d+) contacts were seen .* the deepest (\S+) % \(ball [12], step \d+\)", line).groups()
+    m = ball_mass(0.1, 2500) / 2
+    zeta = -math.log(0.5) / math.hypot(math.pi, math.log(0.5))
+    largest = 2 * math.sqrt(m / 2e4) * math.exp(-zeta / math.sqrt(1 - zeta ** 2) * math.acos(zeta))
+    assert float(most) == pytest.approx(100 * largest / 0.05, rel=0.02) and int(count) > 100
+    assert "were seen deeper" not in sane
+
+
 # --- start-up table and restart ---
 
 
