@@ -22,6 +22,7 @@ COMMANDS = {
     "study": "one deck over lists of its variables, several runs at a time: table, envelope, exceedance",
     "bench": "how fast a collapse runs: against other codes, on larger terrains, on ranks, with more balls",
     "crosscheck": "the same scenes in other codes: bounce, slide, roll, rolling resistance, a collapse",
+    "verify": "every case against closed forms and published numbers: a report to file",
     "report": "one self-contained HTML page on a study or a run: maps, section, tables, warnings",
     "travel": "where balls come to rest: cumulative distributions along and across the slope, over several runs",
 }

@@ -1,0 +1,43 @@
+"""The quick claims of `slope verify`: each must hold, and its control, something broken on purpose, must fail."""
+
+import os
+import sys
+from pathlib import Path
+
+import pytest
+
+from deck_helpers import LMP
+
+TOOLS = Path(os.environ.get("SLOPE_TOOLS", Path(__file__).resolve().parents[2] / "tools"))
+sys.path.insert(0, str(TOOLS))
+
+from slope_tools import verification, verify  # noqa: E402  (after the path is set)
+
+CLAIMS = [claim for claim in verification.all_claims() if claim.quick]
+
+
+@pytest.fixture(scope="module")
+def runner(tmp_path_factory):
+    """Runs decks; what several claims need, once."""
+    return verify.Runner(tmp_path_factory.mktemp("verification"), LMP)
+
+
+@pytest.mark.parametrize("claim", CLAIMS, ids=[claim.name for claim in CLAIMS])
+def test_claim(runner, claim):
+    got = verify.value(claim, claim.runs, runner)
+    assert claim.bound.holds(got), f"{claim.text}: got {got}, expected {claim.bound.texts()}"
+
+
+@pytest.mark.parametrize("claim", CLAIMS, ids=[claim.name for claim in CLAIMS])
+def test_control_fails(runner, claim):
+    got = verify.value(claim, claim.control.runs, runner)
+    assert not claim.bound.holds(got), f"{claim.control.broken}: got {got}, which passes {claim.bound.texts()}"
+
+
+def test_every_case_is_told_of():
+    names = [claim.name for claim in verification.all_claims()]
+    assert len(names) == len(set(names))
+    for case in verification.cases():
+        title, blank, *_ = case.__doc__.splitlines()
+        assert title and not blank
+        assert case.CLAIMS and all(claim.case == case.CASE for claim in case.CLAIMS)

@@ -1,0 +1,170 @@
+"""tools/slope verify: what it judges, writes and says; on claims made up here and a program that stands for lmp."""
+import csv
+import re
+import types
+from pathlib import Path
+
+import pytest
+import yaml
+
+from run_helpers import TOP, here, run_command  # noqa: F401
+
+from slope_tools import verification, verify
+from slope_tools.errors import SlopeError
+from slope_tools.verification import claims
+from slope_tools.verification.claims import AtLeast, AtMost, Between, Claim, Control, Near, Run, Verdict
+from slope_tools.verification.restitution import observed
+
+LMP = """#!/bin/sh
+# prints what -var e says; fails on e none
+while [ $# -gt 1 ]; do [ "$1" = -var ] && [ "$2" = e ] && e=$3; shift; done
+echo "LAMMPS (29 Sep 2021)" > log.lammps
+[ $e = none ] && { echo "ERROR: there is no e (src/input.cpp:1)" >> log.lammps; exit 1; }
+echo x >> ../../../count
+echo "restitution: observed $e" >> log.lammps
+"""
+DROP = Run("01_restitution/in.restitution")
+
+
+def claim(name="bounce", e=0.25, broken=0.3, **more):
+    return Claim(name, "A ball <bounces>", "m", "paper, Table 2", (DROP(e=e),), observed, Near(0.25, 0.003),
+                 Control("another e", (DROP(e=broken),)), **more)
+
+
+@pytest.fixture
+def slope(here, capsys, monkeypatch):  # noqa: F811
+    """Run `slope verify ARGUMENTS` on claims; gives status, stdout, stderr."""
+    lmp = here / "lmp"
+    lmp.write_text(LMP)
+    lmp.chmod(0o755)
+    monkeypatch.setenv("LMP", str(lmp))
+
+    def run(arguments, *made):
+        doc = "A ball rebounds\n\nIt falls on\nanother one."
+        case = types.SimpleNamespace(CASE="01_restitution", CLAIMS=made or (claim(),), __doc__=doc)
+        monkeypatch.setattr(verification, "cases", lambda: [case])
+        return run_command("verify", arguments, capsys)
+    return run
+
+
+def told():
+    return yaml.safe_load(Path("verification/verification.yaml").read_text())
+
+
+def test_all_is_well(slope):
+    status, out, err = slope("")
+    assert status == 0 and "all 1 claims hold" in out and "FAIL" not in out, err
+    about = told()
+    assert (about["claims"], about["passed"], about["controls_that_fail"], about["runs"]) == (1, 1, 1, 2)
+    assert about["lammps"] == "LAMMPS (29 Sep 2021)" and len(about["lmp_sha256"]) == 64 and about["processor"]
+    row, = about["results"]
+    assert (row["got"], row["control_got"], row["passed"], row["control_fails"]) == (0.25, 0.3, True, True)
+    assert (row["expected"], row["tolerance"], row["source"]) == ("0.25", "0.003", "paper, Table 2")
+    assert row["commands"] == ["lmp -in in.restitution -var e 0.25"]
+    with open("verification/verification.csv", newline="", encoding="ascii") as lines:
+        line, = csv.DictReader(lines)
+    assert float(line["got"]) == 0.25 and line["passed"] == "True" and line["claim"] == "A ball <bounces>"
+    assert Path("verification/runs/01_restitution.restitution_e_0.25/in.restitution").is_file()
+
+
+def test_the_pages(slope):
+    assert slope("", claim(remark="Seen & noted."))[0] == 0
+    html, rst = (Path(f"verification/verification.{kind}").read_text() for kind in ("html", "rst"))
+    assert "A ball &lt;bounces&gt;" in html and "Seen &amp; noted." in html and "FAIL" not in html
+    assert "<h2>01_restitution: A ball rebounds</h2>" in html and "It falls on another one." in html
+    assert rst.isascii() and "A ball rebounds\n---------------\n" in rst and "* A ball <bounces>: Seen & noted." in rst
+    for page in (html, rst):
+        assert "0.344" in page and "8.41e+05" in page and "3.5 tan(10) = 0.617" in page and "1.19e+06 N s/m" in page
+        assert "lmp -in in.restitution -var e 0.25" in page
+
+
+@pytest.mark.parametrize("wrong", [claim(e=0.26), claim(broken=0.251), claim(broken="nan")],
+                         ids=["the claim", "its control passes", "its control gives nothing"])
+def test_what_does_not_hold_is_status_2(slope, wrong):
+    status, out, err = slope("", claim("good"), wrong._replace(name="bad"))
+    assert status == 2
+    assert err.splitlines()[-1].endswith("1 of 2 claims do not hold or have a control that does not fail: bad")
+    assert "FAIL 01_restitution bad" in out and "pass 01_restitution good" in out
+    assert "fail" in Path("verification/verification.html").read_text()
+    assert [row["passed"] and row["control_fails"] for row in told()["results"]] == [True, False]
+
+
+def test_a_run_of_several_claims_is_run_once(slope):
+    assert slope("--jobs 3", claim("a"), claim("b"), claim("c", broken=0.4))[0] == 0
+    assert Path("count").read_text() == "x\n" * 3
+
+
+def test_quick_leaves_out_what_takes_minutes(slope):
+    assert slope("--quick", claim("a"), claim("b", quick=False))[0] == 0
+    assert [row["name"] for row in told()["results"]] == ["a"]
+    assert told()["command"] == "tools/slope verify --quick"
+
+
+def test_a_run_that_fails_is_one_line(slope):
+    status, out, err = slope("--jobs 1", claim(e="none"))
+    assert (status, out) == (2, "") and err.splitlines()[-1].startswith(
+        "slope verify: verification/runs/01_restitution.restitution_e_none/log.lammps: must end well: "
+        "ERROR: there is no e, got status 1")
+    assert not Path("verification/verification.yaml").exists()
+
+
+@pytest.mark.parametrize("arguments, message", [
+    ("--only 99_none", "--only: must be of 01_restitution, got 99_none"),
+    ("--jobs 0", "argument --jobs: must be a whole number >= 1"),
+    ("--lmp none", "--lmp: must lead to the LAMMPS program"),
+    ("-o lmp", "-o: must be a folder, got lmp"),
+    ("--quick --only 01_restitution", "--only: has no claims that are quick, got 01_restitution"),
+])
+def test_bad_input_is_one_line(slope, arguments, message):
+    status, out, err = slope(arguments, claim(quick=False))
+    assert (status, out) == (2, "") and err.count("\n") == 1 and message in err
+    assert not Path("verification").exists()
+
+
+# --- claims ---
+
+@pytest.mark.parametrize("bound, good, bad, texts", [
+    (Near(2.0, 0.1), (1.91, 2.09), (1.89, 2.11, float("nan")), ("2", "0.1")),
+    (Near(-2.0, 0.1, True), (-1.81, -2.19), (-1.79, -2.21), ("-2", "10 %")),
+    (Between(2.0, 4.0), (2.0, 4.0), (1.99, 4.01), ("2 to 4", "in the range")),
+    (Between(2.0, 4.0, 0.1), (1.8, 4.4), (1.79, 4.41), ("2 to 4", "10 %")),
+    (AtMost(1e-3), (0.0, 1e-3), (2e-3, float("nan")), ("0", "0.001")),
+    (AtLeast(2.0), (2.0, 3.0), (1.9, float("nan")), (">= 2", "one-sided")),
+    (Verdict("stays"), ("stays",), ("rolls",), ("stays", "the same")),
+])
+def test_bounds(bound, good, bad, texts):
+    assert all(bound.holds(got) for got in good) and not any(bound.holds(got) for got in bad)
+    assert bound.texts() == texts
+
+
+def test_a_run(tmp_path):
+    one = DROP(("timestep        ${dt}", "timestep 1e-6"), e=0.3)(g=1)
+    assert one.options == ["-var", "e", "0.3", "-var", "g", "1"]
+    assert one.command == "lmp -in in.restitution -var e 0.3 -var g 1   # timestep        ${dt} -> timestep 1e-6"
+    assert one.name.startswith("01_restitution.restitution_e_0.3_g_1_changed_")
+    one.write(tmp_path / "run")
+    assert sorted(path.name for path in (tmp_path / "run").iterdir()) == ["fixed_ball.xyz", "in.restitution"]
+    assert "\ntimestep 1e-6\n" in (tmp_path / "run" / "in.restitution").read_text()
+    with pytest.raises(SlopeError, match="in.restitution: must have what a control replaces, got 'none of it'"):
+        DROP(("none of it", "")).write(tmp_path / "other")
+
+
+def test_frames(tmp_path):
+    (tmp_path / "a.dump").write_text("".join(
+        f"ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS ff ff ff\n0 1\n0 1\n0 1\n"
+        f"ITEM: ATOMS id x\n1 {step}\n2 7\n" for step in (0, 5)))
+    assert claims.read_frames(tmp_path / "a.dump")["x"].tolist() == [[0, 7], [5, 7]]
+
+
+# --- the page ---
+
+def doc_examples():
+    text = (TOP / "doc" / "src" / "tool_verify.rst").read_text(encoding="ascii")
+    return re.findall(r"^ +tools/slope verify ((?!keyword).*)", text, re.MULTILINE)
+
+
+@pytest.mark.parametrize("command", [*doc_examples(), *re.findall("tools/slope verify (.*)", verify.EPILOG)])
+def test_every_example_of_the_page_and_the_help_runs(slope, command):
+    command = command.replace("11_column_collapse", "01_restitution")
+    status, _, err = slope(command)
+    assert status == 0, err

@@ -1,0 +1,19 @@
+"""The claims that the package is held to: one module per case, each with its runs, closed forms, tolerances, controls.
+
+`slope verify` runs them all, tests/decks/test_verification.py the quick ones. A module has a docstring, whose first
+line is its title, CASE, the folder in inputs/ that it is about, and CLAIMS. A new one is one more name in MODULES.
+"""
+import importlib
+
+MODULES = ("restitution", "timestep", "slide_roll", "rolling_resistance", "oblique_impact", "rolling", "collisions",
+           "column_collapse", "heap")
+
+
+def cases():
+    """The modules of all cases, in the order of the report."""
+    return [importlib.import_module(f"{__name__}.{name}") for name in MODULES]
+
+
+def all_claims():
+    """All claims, in the order of the report."""
+    return [claim for case in cases() for claim in case.CLAIMS]
