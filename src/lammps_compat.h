@@ -28,9 +28,13 @@ namespace compat {
   inline Region *find_region(LAMMPS *lmp, const std::string &id)
   {
     Domain *domain = lmp->domain;
+#if SLOPE_LAMMPS_VERSION >= 20220504
+    return domain->get_region_by_id(id);
+#else
     for (int i = 0; i < domain->nregion; i++)
       if (id == domain->regions[i]->id) return domain->regions[i];
     return nullptr;
+#endif
   }
 
   // fixes of one style, in the order of the deck
@@ -46,9 +50,14 @@ namespace compat {
   // half neighbor list of touching spheres with contact history
   inline void request_history_list(Neighbor *neighbor, Pair *pair, int instance)
   {
+#if SLOPE_LAMMPS_VERSION >= 20220324
+    (void) instance;
+    neighbor->add_request(pair, NeighConst::REQ_SIZE | NeighConst::REQ_HISTORY);
+#else
     int irequest = neighbor->request(pair, instance);
     neighbor->requests[irequest]->size = 1;
     neighbor->requests[irequest]->history = 1;
+#endif
   }
 
 }    // namespace compat

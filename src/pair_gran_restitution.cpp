@@ -321,8 +321,8 @@ void PairGranRestitution::init_style()
     fix_history->pair = this;
   }
 
-  const int ifreeze = modify->find_fix_by_style("^freeze$");
-  freeze_group_bit = ifreeze < 0 ? 0 : modify->fix[ifreeze]->groupbit;
+  const auto freezes = compat::fixes_of_style(lmp, "freeze");
+  freeze_group_bit = freezes.empty() ? 0 : freezes[0]->groupbit;
 
   sizes_vary = !compat::fixes_of_style(lmp, "adapt").empty();
 

@@ -146,12 +146,12 @@ region          ball sphere 0 0 6 5 units box
 fix             store all store/state 0 mass
 create_balls    1 0.5 2000 surface ball lower spacing 0.5
 create_balls    1 0.5 2000 surface ball upper spacing 0.5
-compute         s all reduce max f_store
+group           one id 700
+compute         s one reduce sum f_store
 thermo_style    custom step c_s
 run             0
 variable        z equal z[700]
-variable        stored equal f_store[700]
-print           "z $z stored ${stored}"
+print           "z $z stored $(c_s)"
 """, tmp_path, np=2)
     z, stored = next(line for line in log.splitlines() if line.startswith("z ")).split()[1::2]
     assert float(z) > 6      # of the second lot

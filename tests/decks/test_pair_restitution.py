@@ -31,7 +31,7 @@ fix move moving nve/sphere
 velocity all set 0 0 0
 velocity moving set {v1[0]} {v1[1]} 0
 {extra}
-fix print all print 1 "$(step) $(x[1]) $(y[1]) $(vx[1]) $(vy[1]) $(c_w[1][3])" file one.txt screen no
+fix print all print 1 "$(step) $(x[1]) $(y[1]) $(vx[1]) $(vy[1]) $(c_spin1)" file one.txt screen no
 fix print2 all print 1 "$(step) {two}" file two.txt screen no
 thermo {steps}
 run {steps}
@@ -48,7 +48,7 @@ def collide(tmp_path, kind="ball", coeff="restitution 0.5", style="", k=1e6, kt=
     if kind in ("ball", "frozen"):
         second = (f"create_atoms 2 single 0 0 0\nset atom 2 diameter {d2} density {rho2}\n"
                   "group second id 2\n")
-        two = "$(x[2]) $(y[2]) $(vx[2]) $(vy[2]) $(c_w[2][3])"
+        two = "$(x[2]) $(y[2]) $(vx[2]) $(vy[2]) $(c_spin2)"
     if kind == "ball":
         second += "group moving union all"
         extra = f"velocity second set {v2[0]} {v2[1]} 0\n" + extra
@@ -61,7 +61,11 @@ def collide(tmp_path, kind="ball", coeff="restitution 0.5", style="", k=1e6, kt=
         wall = f"fix wall moving wall/gran/balls 3 {d2} file wall.xyz"
     if "pair_coeff" not in coeff:
         coeff = f"pair_coeff * * stiffness {k} {kt or k} {coeff}"
-    extra = "compute w all property/atom omegax omegay omegaz\n" + extra
+    # c_w[1] is the first ball's in some LAMMPS only
+    spins = "group first id 1\ncompute w all property/atom omegaz\ncompute spin1 first reduce sum c_w\n"
+    if "group second" in second:
+        spins += "compute spin2 second reduce sum c_w\n"
+    extra = spins + extra
     deck = PAIR.format(**{**locals(), "second": second})
     log = run_deck(deck, tmp_path, np=np, expect_error=expect_error)
     if expect_error:

@@ -10,7 +10,9 @@ Only the module that is asked for is imported: a subcommand starts fast, and nee
 import argparse
 import importlib
 import math
+import re
 import sys
+from pathlib import Path
 
 from .errors import SlopeError
 
@@ -46,11 +48,18 @@ def number(text):
     return value
 
 
+def version():
+    """The version of the package, from the one place that has it."""
+    header = Path(__file__).resolve().parents[2] / "src" / "slope_version.h"
+    return re.search(r'SLOPE_VERSION "(.*)"', header.read_text(encoding="ascii"))[1]
+
+
 def main(argv=None):
     """Run one subcommand on argv (default: the command line); return the status: 0, 2 bad input, 130 interrupted."""
     argv = sys.argv[1:] if argv is None else argv
     parser = Parser(prog="slope", description="Tools of the SLOPE package: what goes into a deck and what comes out.",
                     epilog="`slope COMMAND --help` explains a command, with units and an example.")
+    parser.add_argument("--version", action="version", version=f"SLOPE {version()}")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
     for name, summary in COMMANDS.items():
         if argv[:1] == [name]:

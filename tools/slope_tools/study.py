@@ -17,6 +17,8 @@ from .errors import SlopeError
 from .results import as_number
 
 TOOLS = Path(__file__).resolve().parents[1]
+# the program that belongs to these tools: of a checkout's build, or of an installation
+BESIDE = (TOOLS.parent / "build" if (TOOLS.parent / "CMakeLists.txt").exists() else TOOLS.parents[2] / "bin") / "lmp"
 MOST_RUNS = 10_000
 MOST_LETTERS = 200      # of a folder's name; file systems take 255
 # what runs, and the tools after them, leave in the deck's folder; a file that the deck names is copied all the same
@@ -273,7 +275,7 @@ def data_files(deck, settings):
 def find_lmp(option):
     """Absolute path of the LAMMPS program."""
     for where, path in (("--lmp", option), ("LMP in the environment", os.environ.get("LMP")),
-                        ("--lmp is not given, LMP is not set", TOOLS.parent / "build" / "lmp")):
+                        ("--lmp is not given, LMP is not set", BESIDE)):
         if path:
             path = Path(shutil.which(path) or path).absolute()
             if not (path.is_file() and os.access(path, os.X_OK)):
