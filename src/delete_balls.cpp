@@ -13,6 +13,7 @@
 #include "group.h"
 #include "input.h"
 #include "lammps_compat.h"
+#include "style_argument.h"
 
 #include <cmath>
 #include <cstring>
@@ -31,12 +32,14 @@ static constexpr const char *MARKED = "delete_balls_marked";
 void DeleteBalls::command(int narg, char **arg)
 {
   if (!domain->box_exist) error->all(FLERR, "Delete_balls before the simulation box is defined");
-  if (narg != 3 || strcmp(arg[1], "overlap") != 0)
+  if (narg != 3)
     error->all(FLERR, "Delete_balls needs GROUP overlap FRACTION, got {} arguments", narg);
+  if (strcmp(arg[1], "overlap") != 0)
+    error->all(FLERR, "Delete_balls keyword must be overlap, got {}", arg[1]);
   const int igroup = group->find(arg[0]);
   if (igroup < 0) error->all(FLERR, "Delete_balls group must exist, got {}", arg[0]);
   const std::string name = arg[0];    // arg does not outlive the commands that we issue
-  const double fraction = utils::numeric(FLERR, arg[2], false, lmp);
+  const double fraction = number_argument(lmp, "Delete_balls overlap", arg[2]);
   if (!(fraction >= 0.0 && fraction < 1.0))
     error->all(FLERR, "Delete_balls overlap must be >= 0 and < 1 (of the radius), got {}", arg[2]);
   if (!atom->radius_flag)

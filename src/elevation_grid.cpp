@@ -14,6 +14,8 @@
 #include <limits>
 #include <map>
 #include <new>
+#include <sys/stat.h>
+#include <unistd.h>
 
 using namespace Slope;
 
@@ -41,6 +43,23 @@ std::string exact(double value)
   snprintf(text, sizeof(text), "%.15g", value);
   if (strtod(text, nullptr) != value) snprintf(text, sizeof(text), "%.17g", value);
   return text;
+}
+
+std::string gigabytes(double bytes)
+{
+  char text[32];
+  snprintf(text, sizeof(text), "%.3g GB", 1e-9 * bytes);
+  return text;
+}
+
+// Linux gives more memory than there is, and kills who uses it: what cannot fit is refused before
+
+void check_memory(const std::string &what, double need)
+{
+  const double have = (double) sysconf(_SC_PHYS_PAGES) * sysconf(_SC_PAGESIZE);
+  if (need > have)
+    throw std::runtime_error(what + " need " + gigabytes(need) + " of memory, this machine has " +
+                             gigabytes(have));
 }
 
 bool ends_word(char c)
@@ -77,13 +96,26 @@ class GridText {
   {
     FILE *fp = fopen(path.c_str(), "rb");
     if (!fp) throw std::runtime_error("cannot read " + path + ": " + strerror(errno));
-    std::vector<char> chunk(1 << 22);
-    size_t n;
-    while ((n = fread(chunk.data(), 1, chunk.size(), fp)) > 0) text.append(chunk.data(), n);
-    const std::string reason = ferror(fp) ? strerror(errno) : "";
+    struct stat info;
+    const double size = fstat(fileno(fp), &info) == 0 && S_ISREG(info.st_mode) ? info.st_size : 0;
+    std::string reason;
+    try {
+      check_memory(path + ": its text would", size);
+      text.reserve(size);
+      std::vector<char> chunk(1 << 16);
+      size_t n;
+      while ((n = fread(chunk.data(), 1, chunk.size(), fp)) > 0) text.append(chunk.data(), n);
+      if (ferror(fp)) reason = std::string("cannot read ") + path + ": " + strerror(errno);
+    } catch (std::bad_alloc &) {
+      reason = path + ": its text needs " + gigabytes(size) + " of memory, more than is free";
+    } catch (std::runtime_error &e) {
+      reason = e.what();
+    }
     fclose(fp);
-    if (!reason.empty()) throw std::runtime_error("cannot read " + path + ": " + reason);
+    if (!reason.empty()) throw std::runtime_error(reason);
   }
+
+  size_t size() const { return text.size(); }
 
   bool at_end()
   {
@@ -259,11 +291,20 @@ ElevationGrid ElevationGrid::read(const std::string &path)
   const std::string size =
       std::to_string(header.ny) + " rows x " + std::to_string(header.nx) + " columns";
   const size_t ncells = (size_t) header.nx * header.ny;
-  ElevationGrid grid;
+  ElevationGrid grid(0, 0, header.xlo, header.ylo, header.cell, NaN);
+  grid.nx = header.nx;
+  grid.ny = header.ny;
+
+  // a value and what separates it are two bytes: a short file cannot ask for a lot of memory
+
+  const size_t most = std::min(ncells, text.size() / 2 + 1);
+  const double need = text.size() + 8.0 * most;
+  check_memory(path + ": " + size, need);
   try {
-    grid = ElevationGrid(header.nx, header.ny, header.xlo, header.ylo, header.cell, NaN);
+    grid.z.reserve(most);
   } catch (std::bad_alloc &) {
-    throw text.error(size + " need " + to_text(8e-9 * ncells) + " GB of memory");
+    throw std::runtime_error(path + ": " + size + " need " + gigabytes(need) +
+                             " of memory, more than is free");
   }
 
   // a NODATA value beyond any height may have been rounded, as in -3.40282e+38
@@ -272,24 +313,24 @@ ElevationGrid ElevationGrid::read(const std::string &path)
   const double tolerance = std::fabs(nodata) > 1e30 ? 1e-5 * std::fabs(nodata) : 0.0;
 
   bool any = false;
-  size_t count = 0;
-  for (int j = header.ny - 1; j >= 0; j--)
-    for (int i = 0; i < header.nx; i++, count++) {
-      double value;
-      if (!text.number(value)) {
-        if (text.at_end())
-          throw text.error("only " + std::to_string(count) + " of " + std::to_string(ncells) +
-                           " values (" + size + ")");
-        const std::string word = text.word();
-        throw text.error("height must be a number, got " + word);
-      }
-      if (value == nodata || std::fabs(value - nodata) <= tolerance ||
-          (std::isnan(value) && std::isnan(nodata)))
-        continue;
-      if (!std::isfinite(value)) throw text.error("height must be finite, got " + to_text(value));
-      grid.at(i, j) = value;
-      any = true;
+  while (grid.z.size() < ncells) {
+    double value;
+    if (!text.number(value)) {
+      if (text.at_end())
+        throw text.error("only " + std::to_string(grid.z.size()) + " of " +
+                         std::to_string(ncells) + " values (" + size + ")");
+      const std::string word = text.word();
+      throw text.error("height must be a number, got " + word);
     }
+    if (value == nodata || std::fabs(value - nodata) <= tolerance ||
+        (std::isnan(value) && std::isnan(nodata)))
+      value = NaN;
+    else if (!std::isfinite(value))
+      throw text.error("height must be finite, got " + to_text(value));
+    else
+      any = true;
+    grid.z.push_back(value);
+  }
 
   if (!text.at_end()) {
     const std::string word = text.word();
@@ -298,6 +339,12 @@ ElevationGrid ElevationGrid::read(const std::string &path)
   }
   if (!any)
     throw std::runtime_error(path + ": all " + std::to_string(ncells) + " values are NODATA");
+
+  // the file begins in the north
+
+  const auto row = [&](int j) { return grid.z.begin() + (size_t) j * grid.nx; };
+  for (int j = 0; j < grid.ny / 2; j++)
+    std::swap_ranges(row(j), row(j + 1), row(grid.ny - 1 - j));
   return grid;
 }
 
@@ -362,10 +409,13 @@ bool ElevationGrid::nodata_within(double x, double y, double r) const
   const double v = (y - ylo) / cell - 0.5;
   const double reach = r / cell;
 
-  const int ilo = std::max(0.0, std::floor(u - reach - 1.5));
-  const int ihi = std::min(nx - 1.0, std::ceil(u + reach + 1.5));
-  const int jlo = std::max(0.0, std::floor(v - reach - 1.5));
-  const int jhi = std::min(ny - 1.0, std::ceil(v + reach + 1.5));
+  // as a double up to here: far from the raster it is more than an int holds
+
+  auto within = [](double at, int n) { return (int) std::max(-1.0, std::min((double) n, at)); };
+  const int ilo = std::max(0, within(std::floor(u - reach - 1.5), nx));
+  const int ihi = std::min(nx - 1, within(std::ceil(u + reach + 1.5), nx));
+  const int jlo = std::max(0, within(std::floor(v - reach - 1.5), ny));
+  const int jhi = std::min(ny - 1, within(std::ceil(v + reach + 1.5), ny));
 
   // distance from a coordinate to what one NODATA centre spoils
 

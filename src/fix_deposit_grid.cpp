@@ -16,6 +16,7 @@
 #include "region_surface.h"
 #include "region_terrain.h"
 #include "slope_version.h"
+#include "style_argument.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -80,9 +81,9 @@ FixDepositGrid::FixDepositGrid(LAMMPS *lmp, int narg, char **arg) :
   if (domain->dimension != 3)
     error->all(FLERR, "Fix deposit/grid requires a simulation in 3 dimensions, got 2");
 
-  nevery = utils::inumeric(FLERR, arg[3], false, lmp);
+  nevery = whole_number_argument(lmp, "Fix deposit/grid Nevery", arg[3]);
   if (nevery < 1) error->all(FLERR, "Fix deposit/grid Nevery must be >= 1, got {}", nevery);
-  nfreq = utils::inumeric(FLERR, arg[4], false, lmp);
+  nfreq = whole_number_argument(lmp, "Fix deposit/grid Nfreq", arg[4]);
   if (nfreq < 0 || nfreq % nevery)
     error->all(FLERR, "Fix deposit/grid Nfreq must be 0 or a multiple of Nevery {}, got {}", nevery,
                nfreq);
@@ -102,8 +103,8 @@ FixDepositGrid::FixDepositGrid(LAMMPS *lmp, int narg, char **arg) :
       return arg[iarg + k];
     };
     auto positive = [&]() {
-      const double value = utils::numeric(FLERR, text(1), false, lmp);
-      if (!(value > 0.0 && std::isfinite(value)))
+      const double value = number_argument(lmp, "Fix deposit/grid " + keyword, text(1));
+      if (!(value > 0.0))
         error->all(FLERR, "Fix deposit/grid {} must be > 0, got {}", keyword, arg[iarg + 1]);
       return value;
     };
@@ -123,7 +124,7 @@ FixDepositGrid::FixDepositGrid(LAMMPS *lmp, int narg, char **arg) :
       motion = positive();
       iarg += 2;
     } else if (keyword == "window") {
-      window = utils::inumeric(FLERR, text(1), false, lmp);
+      window = whole_number_argument(lmp, "Fix deposit/grid window", text(1));
       if (window < 1 || window % nevery)
         error->all(FLERR, "Fix deposit/grid window must be a multiple of Nevery {}, got {}", nevery,
                    window);
@@ -134,7 +135,8 @@ FixDepositGrid::FixDepositGrid(LAMMPS *lmp, int narg, char **arg) :
       series = strcmp(text(1), "yes") == 0;
       iarg += 2;
     } else if (keyword == "extent") {
-      for (int k = 0; k < 4; k++) extent[k] = utils::numeric(FLERR, text(k + 1), false, lmp);
+      for (int k = 0; k < 4; k++)
+        extent[k] = number_argument(lmp, "Fix deposit/grid extent", text(k + 1));
       extent_set = true;
       iarg += 5;
     } else
@@ -949,7 +951,7 @@ FixDepositGrid::Motion FixDepositGrid::motion_of_balls() const
   }
   MPI_Reduce(&moving, &all_moving, 1, MPI_DOUBLE, MPI_SUM, 0, world);
 
-  const int count = mine.size();
+  int count = mine.size();    // not const: LAMMPS' stand-in for MPI has no const
   std::vector<int> counts(comm->nprocs), starts(comm->nprocs, 0);
   MPI_Gather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, world);
   for (int k = 1; k < comm->nprocs; k++) starts[k] = starts[k - 1] + counts[k - 1];

@@ -82,7 +82,7 @@ std::string text_of(const std::string &path)
   FILE *fp = fopen(path.c_str(), "rb");
   if (!fp) throw std::runtime_error("cannot read " + path + ": " + strerror(errno));
   std::string text;
-  std::vector<char> chunk(1 << 20);
+  std::vector<char> chunk(1 << 16);
   size_t n;
   while ((n = fread(chunk.data(), 1, chunk.size(), fp)) > 0) text.append(chunk.data(), n);
   const std::string reason = ferror(fp) ? strerror(errno) : "";
@@ -102,7 +102,7 @@ bool parse(const std::string &text, Point &p)
   if (*end != ',') return false;
   const char *second = end + 1;
   p.y = strtod(second, &end);
-  return end != second && *end == '\0';
+  return end != second && end == text.c_str() + text.size();    // no NUL in it
 }
 
 Rings read_rings(const std::string &path)
@@ -234,7 +234,7 @@ struct Cells {
 
   int column(double x) const { return clamped((x - xlo) / dx); }
   int row(double y) const { return clamped((y - ylo) / dy); }
-  int clamped(double at) const { return at > 0.0 ? std::min(n - 1, (int) at) : 0; }
+  int clamped(double at) const { return at > 0.0 ? (int) std::min(n - 1.0, at) : 0; }    // NaN: 0
 
   template <class Work> void along(const Segment &s, Work work) const
   {
@@ -339,7 +339,8 @@ Polygon::Polygon(const std::vector<double> &_xy, const std::vector<int> &_sizes)
 
 int Polygon::strip(double y) const
 {
-  return std::min((int) first_ending.size() - 2, (int) ((y - ylo) * scale));
+  const double at = (y - ylo) * scale;    // of a height that is next to none, scale is infinite
+  return at > 0.0 ? (int) std::min(first_ending.size() - 2.0, at) : 0;
 }
 
 void Polygon::cut_into_strips()

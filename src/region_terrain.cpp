@@ -8,10 +8,12 @@
 #include "comm.h"
 #include "error.h"
 #include "rank_zero.h"
+#include "style_argument.h"
 
 #include <cmath>
 #include <cstring>
 #include <exception>
+#include <new>
 #include <vector>
 
 using namespace LAMMPS_NS;
@@ -34,8 +36,8 @@ RegTerrain::RegTerrain(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
     const std::string keyword = arg[iarg];
     if (keyword == "depth" || keyword == "headroom") {
       if (iarg + 1 >= narg) error->all(FLERR, "Region terrain {}: value is missing", keyword);
-      const double value = utils::numeric(FLERR, arg[++iarg], false, lmp);
-      if (!(value > 0.0 && std::isfinite(value)))
+      const double value = number_argument(lmp, "Region terrain " + keyword, arg[++iarg]);
+      if (!(value > 0.0))
         error->all(FLERR, "Region terrain {} must be > 0, got {:.15g}", keyword, value);
       (keyword == "depth" ? depth : headroom) = value;
     } else if (keyword == "units" && iarg + 1 < narg) {
@@ -89,8 +91,19 @@ void RegTerrain::read(const char *path)
   double place[3] = {elevation.xlo, elevation.ylo, elevation.cell};
   MPI_Bcast(size, 2, MPI_INT, 0, world);
   MPI_Bcast(place, 3, MPI_DOUBLE, 0, world);
-  if (comm->me != 0)
-    elevation = Slope::ElevationGrid(size[0], size[1], place[0], place[1], place[2], 0.0);
+  int lacking = 0, any = 0;
+  try {
+    if (comm->me != 0)
+      elevation = Slope::ElevationGrid(size[0], size[1], place[0], place[1], place[2], 0.0);
+  } catch (std::bad_alloc &) {
+    lacking = 1;
+  }
+  MPI_Allreduce(&lacking, &any, 1, MPI_INT, MPI_MAX, world);
+  if (any)
+    error->all(FLERR,
+               "Region terrain: {}: {} x {} cells need {:.3g} GB of memory on each rank, more than "
+               "is free",
+               path, size[0], size[1], 8.0e-9 * size[0] * size[1]);
   MPI_Bcast(elevation.z.data(), (int) elevation.z.size(), MPI_DOUBLE, 0, world);
 }
 

@@ -11,6 +11,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <set>
 #include <sys/stat.h>
 #include <zlib.h>
 
@@ -90,7 +91,7 @@ LineReader::~LineReader()
 
 void LineReader::refill()
 {
-  std::memmove(buffer.data(), &buffer[begin], end - begin);
+  std::memmove(buffer.data(), buffer.data() + begin, end - begin);
   end -= begin;
   begin = 0;
   if (end > MAXLINE) {
@@ -262,9 +263,10 @@ void DumpReader::read_names(Snapshot &snapshot)
   const auto &words = lines.words();
   const std::vector<std::string_view> names(words.begin() + 2, words.end());    // after ITEM: ATOMS
   if (names.empty()) lines.fail("ITEM: ATOMS must name the columns, got none");
-  for (size_t k = 0; k < names.size(); k++)
-    if (std::find(names.begin(), names.begin() + k, names[k]) != names.begin() + k)
-      lines.fail("columns must have different names, got twice " + printable(names[k]));
+  std::set<std::string_view> different;
+  for (const auto &name : names)
+    if (!different.insert(name).second)
+      lines.fail("columns must have different names, got twice " + printable(name));
 
   snapshot.names.assign(names.begin(), names.end());
   snapshot.columns.resize(names.size());

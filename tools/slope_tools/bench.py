@@ -39,7 +39,7 @@ BALLS = 21000
 TOE, SHOULDER, RISE, DEPTH, MIDDLE = 84.0, 156.0, 36.0, 18.0, 80.0      # m; see its deck
 WEST, EAST, SOUTH, NORTH = 22.0, 222.0, 5.0, 155.0      # edges of the terrain, m
 PREPARED = 2.0          # s of collapse before the clock starts
-SKIN = 0.1              # of the neighbour lists, diameters
+SKIN = 0.2              # of the neighbour lists, diameters
 LARGER = 10.0           # terrain of the part terrain
 MANY = 1_000_000        # moving balls of the part weak
 

@@ -18,7 +18,7 @@ from shapely.affinity import affine_transform
 from shapely.geometry import MultiPolygon
 from shapely.geometry.polygon import orient
 
-from . import rasters
+from . import rasters, runs
 from .errors import SlopeError
 from .rasters import Raster
 
@@ -85,16 +85,17 @@ def read(prefix, terrain, warn):
 
 
 def read_summary(path):
+    what = "a summary that fix deposit/grid wrote"
+    summary = runs.parse_yaml(path, what)
     try:
-        summary = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
         for value in (summary["bulk_factor"], summary["time"], *(summary["volume"][key] for key in
                                                                   ("on_grid", "off_grid", "lost"))):
-            if not math.isfinite(value):
-                raise ValueError(value)
+            if not runs.is_number(value):
+                raise ValueError(str(value)[:60])
         if not (isinstance(summary["moving"], bool) and summary["bulk_factor"] > 0):
             raise ValueError("moving, bulk_factor")
-    except (OSError, ValueError, KeyError, TypeError, yaml.YAMLError) as error:
-        raise SlopeError(path, f"must be a summary that fix deposit/grid wrote ({error!r})") from error
+    except (ValueError, KeyError, TypeError) as error:
+        raise SlopeError(path, f"must be {what} ({error!r})") from error
     return summary
 
 

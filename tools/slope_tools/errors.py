@@ -5,9 +5,15 @@ class SlopeError(Exception):
     """Bad input, told in one line: `where: rule, got value`.
 
     where is the file and the place in it (`dem.asc: line 8`) or the option (`--cell`); rule says what must hold;
-    got is the offending value, if there is one to show. cli.main prints the line and exits with status 2.
+    got is the offending value, if there is one to show. cli.main prints the line and exits with status 2. What files
+    hold may be in any of them: a character that moves the cursor becomes a ?, and a long value is cut.
     """
 
+    LONGEST = 500     # characters of a value
+
     def __init__(self, where, rule, got=None):
-        line = f"{where}: {rule}" if got is None else f"{where}: {rule}, got {got}"
-        super().__init__(" ".join(line.split()))
+        line = f"{where}: {rule}"
+        if got is not None:
+            got = str(got)
+            line += f", got {got[:self.LONGEST]}{'...' * (len(got) > self.LONGEST)}"
+        super().__init__("".join(c if c.isprintable() else "?" for c in " ".join(line.split())))

@@ -156,7 +156,8 @@ def _read_zip(source, where, room=None):
                     tiles += _read_zip(io.BytesIO(inner.read()), name, room)
         except NotTiles:
             continue  # metadata, or roads and buildings
-        except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, OSError) as error:
+        except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, ValueError,
+                OSError) as error:     # ValueError: a member that begins before the file does
             raise SlopeError(name, f"is damaged ({error})") from error
     if outer and not tiles:
         raise SlopeError(where, "must hold FG-GML elevation tiles (.xml), it has none",

@@ -137,10 +137,8 @@ class Slope(Code):
 
     @staticmethod
     def tuned(scene):
-        """As in inputs/20_embankment: contacts that do not touch cost little here, so rebuild lists less often."""
-        skin = 2 * scene.skin
-        yield f"neighbor {skin!r} bin"
-        yield f"neigh_modify binsize {scene.diameter + skin!r}"
+        """As in inputs/20_embankment."""
+        yield f"neigh_modify binsize {scene.diameter + scene.skin!r}"
         yield "fix spread all balance 1000 1.05 shift xy 10 1.05"
 
 

@@ -13,7 +13,6 @@ import fiona
 import numpy as np
 import rasterio
 import rasterio.warp
-from fiona.errors import FionaError
 from rasterio.crs import CRS
 from rasterio.errors import CRSError
 from shapely import wkt
@@ -102,7 +101,9 @@ def _read_fiona(path):
             with fiona.open(path) as source:
                 features = [(feature["id"], feature["geometry"]) for feature in source]
                 crs = CRS.from_wkt(source.crs_wkt) if source.crs_wkt else None
-    except (FionaError, OSError, ValueError, AttributeError, CRSError) as error:
+    except SlopeError:
+        raise
+    except Exception as error:  # GDAL's too, of classes that fiona keeps private
         raise SlopeError(path, "must be polygons that GDAL can read: GeoJSON, shapefile, or another format of it "
                          f"({error})") from error
     polygons = []
@@ -200,6 +201,8 @@ def _read_rings(path, text):
             continue
         header = False
         try:
+            if "_" in content:     # Python's float takes 1_5 for 15
+                raise ValueError
             x, y = map(float, words)
         except ValueError:
             raise SlopeError(f"{path}: line {number}", "must be two numbers, x,y", content[:60]) from None

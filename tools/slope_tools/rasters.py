@@ -129,6 +129,8 @@ def _read_ascii_heights(path, rows, columns):
             if number <= header_lines or not words:
                 continue
             try:
+                if "_" in line:     # Python's float takes 1_5 for 15
+                    raise ValueError(f"no number: {next(word for word in words if '_' in word)!r}")
                 values = [float(word) for word in words]
             except ValueError as error:
                 raise SlopeError(f"{path}: line {number}", "must hold numbers with a decimal point",
@@ -207,7 +209,8 @@ def read_sidecar(path):
                      (float(about["origin"]["east"]), float(about["origin"]["north"])),
                      (about["size"]["rows"], about["size"]["columns"]),
                      tuple(float(about["extent"][side]) for side in ("xlo", "ylo", "xhi", "yhi")))
-    except (OSError, ValueError, KeyError, TypeError, yaml.YAMLError, CRSError) as error:
+    except (OSError, ValueError, KeyError, TypeError, OverflowError, RecursionError, yaml.YAMLError,
+            CRSError) as error:
         raise SlopeError(sidecar, f"must be a sidecar that `slope terrain` wrote ({error!r})") from error
 
 

@@ -166,19 +166,14 @@ class Page:
     # --- reading ---
 
     def _read_study(self):
+        from . import results
         path = self.folder / "study.yaml"
-        what = "what `slope study` wrote"
-        self.study = runs.load_yaml(path, what)
-        try:
-            self.rows = self.study["runs"]
-            finished = [row for row in self.rows if row["status"] == "finished"]
-            best = self.study["conservative"] or (self.study["largest"].get("front_m") if finished else None)
-            self.settings = self.study["study"]["set"]
-            road = self.study["study"].get("road")
-        except (KeyError, TypeError, AttributeError) as error:
-            raise SlopeError(path, f"must be {what} ({error!r})") from error
-        if not finished:
-            raise SlopeError(path, "must have a finished run", f"{len(self.rows)} that failed")
+        self.study = results.read_study(path)
+        self.rows = self.study["runs"]
+        finished = [row for row in self.rows if row["status"] == "finished"]
+        best = self.study["conservative"] or self.study["largest"]["front_m"]
+        self.settings = self.study["study"]["set"]
+        road = self.study["study"].get("road")
         names = [row["run"] for row in finished]
         shown = self.args.shown or best["run"]
         if shown not in names:

@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.table import Table
 
 from . import rasters, runs
+from .errors import SlopeError
 
 BALANCE = 1e-9          # of the released volume
 
@@ -175,6 +176,55 @@ def write_road(args, one, thickness):
     return {"file": args.road.name, "local": "road.csv", "cut_angle": args.cut_angle, "mesh": args.mesh}
 
 
+def read_study(path):
+    """study.yaml as a dict, with all that its readers take from it; SlopeError if something is missing."""
+    what = "what `slope study` wrote"
+    study = runs.load_yaml(path, what)
+    try:
+        rows, about, best = study["runs"], study["study"], study["conservative"]
+        if not all(isinstance(several, list) for several in about["set"].values()):
+            raise ValueError("set")
+        if not any(row["status"] == "finished" for row in rows):
+            raise SlopeError(path, "must have a finished run", f"{len(rows)} that failed")
+        for row in rows:
+            if not (isinstance(row["run"], str) and row["set"].keys() == about["set"].keys()):
+                raise ValueError("runs")
+            if row["status"] == "finished":
+                check_row(f"{path}: run {row['run']}", row, best)
+        names = [row["run"] for row in rows if row["status"] == "finished"]
+        if not all(one is None or one["run"] in names for one in (best, study["largest"]["front_m"])):
+            raise ValueError("conservative, largest")
+        if best and not (runs.is_number(best["remove_m3"]) and about.get("road")):
+            raise ValueError("conservative")
+        if about.get("road") and not all(runs.is_number(about["road"][key]) for key in ("cut_angle", "mesh")):
+            raise ValueError("road")
+        for entry in study.get("exceedance") or ():
+            if not all(runs.is_number(entry[key]) for key in EXCEEDANCE):
+                raise ValueError("exceedance")
+        if study.get("envelope"):
+            study["envelope"]["max_thickness"]["file"]
+        str(about["deck"]), int(about["runs"]), int(about["finished"])
+    except (KeyError, TypeError, AttributeError, ValueError, OverflowError) as error:
+        raise SlopeError(path, f"must be {what} ({error!r})") from error
+    return study
+
+
+def check_row(where, row, road):
+    """SlopeError if the row of a finished run lacks a column, or has no number there."""
+    for key in (*COLUMNS, "moving_share", *(ROAD_COLUMNS if road else ())):
+        if key not in row:
+            raise SlopeError(where, f"must have {key}: it is of another version; `slope study` with the same "
+                             "arguments writes it anew, and keeps the runs")
+        if key in ("moving", "stop_reason") or (key in ("wall_s", "beyond_road_m3") and row[key] is None):
+            continue
+        if not runs.is_number(row[key]):
+            raise SlopeError(where, f"{key} must be a finite number", repr(row[key])[:60])
+    if not isinstance(row["moving"], bool):
+        raise SlopeError(where, "moving must be true or false", repr(row["moving"])[:60])
+    if not isinstance(row["summary"], str):
+        raise SlopeError(where, "summary must be the name of a file", repr(row["summary"])[:60])
+
+
 def conservative(settings, rows, finished):
     """The largest volume to remove, which run gave it, and what speaks against taking it as the largest."""
     best = max(finished, key=lambda row: row["remove_m3"])
@@ -293,6 +343,8 @@ def table(settings, rows):
         writer.writerow([row["run"], *row["set"].values(), *(cells.get(key) for key in columns)])
     return text.getvalue()
 
+
+EXCEEDANCE = ("threshold_m", "area_in_any_run_m2", "area_in_every_run_m2")
 
 SHOWN = {"released_m3": ("released", "{:,.0f}"), "on_grid_m3": ("on grid", "{:,.0f}"), "lost_m3": ("lost", "{:,.0f}"),
          "residual_m3": ("residual", "{:.0e}"), "front_m": ("front m", "{:.1f}"),

@@ -1,5 +1,6 @@
 """Decks, and the folders in which they ran: what a deck asks for, what its log says, what fix deposit/grid wrote."""
 import datetime
+import math
 import os
 import platform
 import re
@@ -20,10 +21,12 @@ WORD = re.compile(r'"""(.*?)"""|"([^"]*)"|\'([^\']*)\'|(\S+)')
 INPUT_PLACE = re.compile(r"\s*\([^()]*\.(?:cpp|h):\d+\)\s*$")     # LAMMPS names its source line at the end of a message
 SUMMARY_KEYS = {"volume": ("released", "on_grid", "off_grid", "lost", "residual"),
                 "travel": ("front", "front_at_release", "centroid", "reach_angle"),
-                "largest": ("thickness", "max_thickness", "max_speed"),
+                "largest": ("thickness", "max_thickness", "max_speed", "max_energy"),
                 "stop": ("step", "time", "reason"), "grid": ("cell", "extent"), "balls": ("released", "lost"),
-                "motion": ("moving_share",), "moving": (), "ranks": (), "dt": (), "bulk_factor": (),
+                "motion": ("moving_share", "threshold"), "moving": (), "ranks": (), "dt": (), "bulk_factor": (),
                 "slope_version": (), "lammps_version": ()}
+NO_NUMBERS = {"reason", "extent", "moving", "slope_version", "lammps_version"}    # among them
+ABOVE_ZERO = {("volume", "released"), ("balls", "released"), ("grid", "cell"), ("dt", None), ("bulk_factor", None)}
 
 
 # --- decks ---
@@ -225,12 +228,28 @@ def write(path, content):
         new.unlink(missing_ok=True)
 
 
-def load_yaml(path, what):
-    """A YAML file that holds a mapping; what says what it must be."""
+def parse_yaml(path, what):
+    """What is in a YAML file, of whatever type."""
     try:
-        about = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+        # safe_load makes no objects, and what an alias stands for is there once
+        return yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+    except RecursionError:
+        raise SlopeError(path, f"must be {what} (its nesting is too deep)") from None
     except (OSError, ValueError, yaml.YAMLError) as error:
         raise SlopeError(path, f"must be {what} ({getattr(error, 'strerror', None) or error})") from error
+
+
+def is_number(value):
+    """Whether it is a finite number, as YAML has them."""
+    try:
+        return not isinstance(value, bool) and math.isfinite(value)
+    except (TypeError, OverflowError):
+        return False
+
+
+def load_yaml(path, what):
+    """A YAML file that holds a mapping; what says what it must be."""
+    about = parse_yaml(path, what)
     if not isinstance(about, dict):
         raise SlopeError(path, f"must be {what}")
     return about
@@ -244,6 +263,14 @@ def load_summary(path):
             if key not in about or (entry and (not isinstance(about[key], dict) or entry not in about[key])):
                 raise SlopeError(path, "must be a summary that fix deposit/grid wrote, with "
                                  + (f"{key}: {entry}" if entry else key))
+            value = about[key][entry] if entry else about[key]
+            name = f"{key}: {entry}" if entry else key
+            if (entry or key) not in NO_NUMBERS and not is_number(value):
+                raise SlopeError(path, f"{name} must be a finite number", repr(value)[:60])
+            if (key, entry) in ABOVE_ZERO and not value > 0:
+                raise SlopeError(path, f"{name} must be > 0", value)
+    if not isinstance(about["moving"], bool):
+        raise SlopeError(path, "moving must be true or false", repr(about["moving"])[:60])
     return about
 
 

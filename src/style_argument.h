@@ -1,0 +1,43 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#ifndef SLOPE_STYLE_ARGUMENT_H
+#define SLOPE_STYLE_ARGUMENT_H
+
+#include "error.h"
+#include "lammps.h"
+#include "utils.h"
+
+#include <cerrno>
+#include <climits>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+namespace LAMMPS_NS {
+
+// Numbers among the arguments of a style. LAMMPS' own errors do not say which argument it was; here
+// what names style and argument: "Fix deposit/grid cell".
+
+inline double number_argument(LAMMPS *lmp, const std::string &what, const char *text)
+{
+  const double value = utils::is_double(text) ? strtod(text, nullptr) : HUGE_VAL;
+  if (!std::isfinite(value))    // 1e999, too
+    lmp->error->all(FLERR, "{} must be a finite number, got {}", what, text);
+  return value;
+}
+
+inline int whole_number_argument(LAMMPS *lmp, const std::string &what, const char *text)
+{
+  errno = 0;
+  const long value = utils::is_integer(text) ? strtol(text, nullptr, 10) : LONG_MAX;
+  if (errno != 0 || value > INT_MAX || value < INT_MIN)
+    lmp->error->all(FLERR, "{} must be a whole number below 2^31, got {}", what, text);
+  return (int) value;
+}
+
+}    // namespace LAMMPS_NS
+
+#endif
