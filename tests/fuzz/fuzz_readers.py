@@ -4,7 +4,8 @@
     tests/fuzz/fuzz_readers.py [TARGET ...] [--seconds 600] [--seed 1] [--keep found]
 
 A finding is any exception but SlopeError (MemoryError, too), a message that is not one printable line, a case of more
-than SLOW seconds, or the death of the process. What a case is made of stays in --keep, in a folder of its own, which
+than SLOW seconds, or words of a library on standard error,
+or the death of the process. What a case is made of stays in --keep, in a folder of its own, which
 tests/tools/test_fuzz.py replays when it is moved to tests/fuzz/found/TARGET.
 
 A case that fails at a new place, or the first that is read, joins the files that are mutated: the mutations find their
@@ -293,8 +294,33 @@ TARGETS = {
 def check(read, folder):
     """Read a case; what is wrong as text, or None; and where it ended."""
     began = time.monotonic()
+    with tempfile.TemporaryFile() as told:
+        with standard_error_to(told):
+            wrong, where = _check(read, folder)
+        if wrong is None and told.tell() > 0:
+            told.seek(0)
+            wrong = f"on standard error: {told.read(300)}"
+    if wrong is None and time.monotonic() - began > SLOW:
+        wrong = f"took {time.monotonic() - began:.1f} s"
+    return wrong, where
+
+
+@contextlib.contextmanager
+def standard_error_to(file):
+    """Standard error goes there, that of the libraries, too."""
+    before = os.dup(2)
+    os.dup2(file.fileno(), 2)
     try:
-        with warnings.catch_warnings(), contextlib.redirect_stderr(io.StringIO()):
+        yield
+    finally:
+        sys.stderr.flush()
+        os.dup2(before, 2)
+        os.close(before)
+
+
+def _check(read, folder):
+    try:
+        with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             read(folder)
         where = "read"
@@ -305,8 +331,6 @@ def check(read, folder):
             return f"not one printable line: {str(error)[:300]!r}", where
     except Exception:
         return traceback.format_exc(), "bad"
-    if time.monotonic() - began > SLOW:
-        return f"took {time.monotonic() - began:.1f} s", where
     return None, where
 
 

@@ -148,6 +148,9 @@ def _read_zip(source, where, room=None):
                              f"{member.file_size / 1e6:.0f} MB")
         if member.flag_bits & 1:
             raise SlopeError(name, "must not be encrypted")
+        if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):   # lzma asks for memory as it likes
+            raise SlopeError(name, "must be packed by deflate, or not at all",
+                             zipfile.compressor_names.get(member.compress_type, member.compress_type))
         try:
             with archive.open(member) as inner:
                 if name.lower().endswith(".xml"):

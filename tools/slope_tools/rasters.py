@@ -205,10 +205,13 @@ def read_sidecar(path):
         return None
     try:
         about = yaml.safe_load(sidecar.read_text(encoding="utf-8"))
-        return Place(about["crs"] and CRS.from_wkt(about["crs"]["wkt"]),
-                     (float(about["origin"]["east"]), float(about["origin"]["north"])),
-                     (about["size"]["rows"], about["size"]["columns"]),
-                     tuple(float(about["extent"][side]) for side in ("xlo", "ylo", "xhi", "yhi")))
+        offset = float(about["origin"]["east"]), float(about["origin"]["north"])
+        place = tuple(float(about["extent"][side]) for side in ("xlo", "ylo", "xhi", "yhi"))
+        if not np.isfinite((*offset, *place)).all():
+            raise ValueError("origin and extent must be finite")
+        with rasterio.Env():  # GDAL's own messages are not for stderr
+            crs = about["crs"] and CRS.from_wkt(about["crs"]["wkt"])
+        return Place(crs, offset, (about["size"]["rows"], about["size"]["columns"]), place)
     except (OSError, ValueError, KeyError, TypeError, OverflowError, RecursionError, yaml.YAMLError,
             CRSError) as error:
         raise SlopeError(sidecar, f"must be a sidecar that `slope terrain` wrote ({error!r})") from error
