@@ -16,13 +16,14 @@ namespace Slope {
 
 // A text file that appears under its name only when it is complete: it is written beside, as
 // PATH.tmp, and commit() renames it. Without commit(), or after an error, nothing is left
-// behind and an older file of that name stays as it was. Errors are std::runtime_error with
-// one line that names the path.
+// behind and an older file of that name stays as it was. Of several files that belong together,
+// close() all, which is the last that a full disk can refuse, before the first commit().
+// Errors are std::runtime_error with one line that names the path.
 class AtomicFile {
  public:
-  explicit AtomicFile(const std::string &_path) : path(_path), beside(_path + ".tmp"), fp(nullptr)
+  explicit AtomicFile(const std::string &_path) :
+      path(_path), beside(_path + ".tmp"), fp(fopen(beside.c_str(), "w")), there(fp != nullptr)
   {
-    fp = fopen(beside.c_str(), "w");
     if (!fp) fail();
   }
 
@@ -35,34 +36,40 @@ class AtomicFile {
 
   void write(const std::string &text) { write(text.data(), text.size()); }
 
-  void commit()
+  void close()
   {
     FILE *closing = fp;
     fp = nullptr;
-    if (fclose(closing) != 0 || rename(beside.c_str(), path.c_str()) != 0) fail();
+    if (closing && fclose(closing) != 0) fail();
+  }
+
+  void commit()
+  {
+    close();
+    if (rename(beside.c_str(), path.c_str()) != 0) fail();
+    there = false;
   }
 
  private:
   std::string path, beside;
   FILE *fp;
+  bool there;    // beside, and not complete or without its name yet
 
   AtomicFile(const AtomicFile &) = delete;
   AtomicFile &operator=(const AtomicFile &) = delete;
 
   void discard()
   {
-    if (!fp) return;
-    fclose(fp);
-    remove(beside.c_str());
+    if (fp) fclose(fp);
     fp = nullptr;
+    if (there) remove(beside.c_str());
+    there = false;
   }
 
   void fail()
   {
     const std::string reason = strerror(errno);
-    if (fp) fclose(fp);
-    fp = nullptr;
-    remove(beside.c_str());
+    discard();
     throw std::runtime_error("cannot write " + path + ": " + reason);
   }
 };

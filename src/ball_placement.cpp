@@ -10,6 +10,7 @@
 #include "error.h"
 #include "rank_zero.h"
 #include "region_surface.h"
+#include "style_argument.h"
 #include "surface_sampler.h"
 #include "tokenizer.h"
 #include "update.h"
@@ -68,16 +69,6 @@ BallPlacement::~BallPlacement() = default;
    arguments
 ------------------------------------------------------------------------- */
 
-double BallPlacement::number(const std::string &what, const char *text) const
-{
-  if (!utils::is_double(text))
-    error->all(FLERR, "{} {} must be a number, got {}", caller, what, text);
-  const double value = utils::numeric(FLERR, text, false, lmp);
-  if (!std::isfinite(value))
-    error->all(FLERR, "{} {} must be a finite number, got {}", caller, what, text);
-  return value;
-}
-
 void BallPlacement::parse(int narg, char **arg, bool may_write)
 {
   auto need = [&](int iarg, int n, const char *values) {
@@ -109,14 +100,19 @@ void BallPlacement::parse(int narg, char **arg, bool may_write)
   while (iarg < narg) {
     if (strcmp(arg[iarg], "spacing") == 0 && !region.empty()) {
       need(iarg, 1, "S");
-      spacing = number("spacing", arg[iarg + 1]);
+      spacing = number_argument(lmp, caller + " spacing", arg[iarg + 1]);
       if (spacing <= 0.0)
         error->all(FLERR, "{} spacing must be > 0, got {}", caller, arg[iarg + 1]);
       iarg += 2;
     } else if (strcmp(arg[iarg], "origin") == 0 && !region.empty()) {
       need(iarg, 2, "x y");
-      origin[0] = number("origin x", arg[iarg + 1]);
-      origin[1] = number("origin y", arg[iarg + 2]);
+      for (int d = 0; d < 2; d++) {
+        const char *text = arg[iarg + 1 + d];
+        origin[d] = number_argument(lmp, fmt::format("{} origin {}", caller, "xy"[d]), text);
+        if (std::fabs(origin[d]) > FARTHEST)
+          error->all(FLERR, "{} origin {} must be within +-{:g}, got {}", caller, "xy"[d], FARTHEST,
+                     text);
+      }
       iarg += 3;
     } else if (strcmp(arg[iarg], "inside") == 0 || strcmp(arg[iarg], "outside") == 0) {
       need(iarg, 1, "REGION");
@@ -131,9 +127,9 @@ void BallPlacement::parse(int narg, char **arg, bool may_write)
       write = arg[iarg + 1];
       iarg += 2;
     } else {
-      error->all(FLERR, "{} keyword must be {}inside, outside{}, got {}", caller,
-                 region.empty() ? "" : "spacing, origin, ", may_write ? " or write" : "",
-                 arg[iarg]);
+      error->all(FLERR, "{} keyword must be {}inside{}, got {}", caller,
+                 region.empty() ? "" : "spacing, origin, ",
+                 may_write ? ", outside or write" : " or outside", arg[iarg]);
     }
   }
   if (!region.empty() && spacing == 0.0)
@@ -242,6 +238,9 @@ void BallPlacement::read_file()
       if (!std::isfinite(x[d]))
         throw std::runtime_error(
             fmt::format("{}{} must be a finite number, got {}", where, "xyz"[d], words[d]));
+      if (std::fabs(x[d]) > FARTHEST)
+        throw std::runtime_error(
+            fmt::format("{}{} must be within +-{:g}, got {}", where, "xyz"[d], FARTHEST, words[d]));
     }
     if (keep(x[0], x[1]))
       xyz.insert(xyz.end(), x, x + 3);

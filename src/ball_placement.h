@@ -46,7 +46,6 @@ class BallPlacement : protected Pointers {
   std::string summary;                                      // rank 0
 
   void parse(int, char **, bool);
-  double number(const std::string &what, const char *text) const;
   bool keep(double x, double y) const;
   void place_on_surface();
   void read_file();

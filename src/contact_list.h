@@ -39,6 +39,7 @@ struct MovingPartners {
   int nforce;    // partners below this number get their force
 
   const Vector &x(int j) const { return balls.x[j]; }
+  double share(int j) const { return j < nforce ? 1.0 : 0.5; }    // of the contact that is this rank's
   void prefetch_force(int j) const { __builtin_prefetch(&balls.f[j],1); __builtin_prefetch(&balls.torque[j],1); }
   const Vector &v(int j) const { return balls.v[j]; }
   const Vector &omega(int j) const { return balls.omega[j]; }
@@ -56,6 +57,7 @@ struct FixedPartners {
   FixedPartners(const Vector *positions, double radius) : position(positions), radius_all(radius) {}
 
   const Vector &x(int j) const { return position[j]; }
+  double share(int) const { return 1.0; }
   void prefetch_force(int) const {}
   const Vector &v(int) const { return still; }
   const Vector &omega(int) const { return still; }
@@ -125,6 +127,30 @@ class ContactList {
       visit(e, overlap);
       touching[k] = 1;
     }
+  }
+
+  // what the springs of the touching contacts hold, J; see(entry, overlap) is told of each
+  template <class Partners, class See>
+  double elastic_energy(const ContactLaw &law, const MovingBalls &balls, const Partners &partners,
+                        See see) const
+  {
+    double energy = 0.0;
+    for (size_t k = 0; k < entries.size(); k++) {
+      const Entry &e = entries[k];
+      const Vector &a = balls.x[e.i], &b = partners.x(e.j);
+      const double n[3] = {a.x - b.x, a.y - b.y, a.z - b.z}, *h = e.history;
+      const double rsq = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+      const double sum = balls.radius[e.i] + partners.radius(e.j);
+      if (rsq >= sum * sum) continue;
+      const double overlap = sum - std::sqrt(rsq);
+      see(e, overlap);
+      const double along = h[0] * n[0] + h[1] * n[1] + h[2] * n[2];    // the phase, no spring
+      const double sliding = h[0] * h[0] + h[1] * h[1] + h[2] * h[2] - along * along / rsq;
+      const double rolling = h[3] * h[3] + h[4] * h[4] + h[5] * h[5];
+      energy += partners.share(e.j) * 0.5 *
+          (law.kn * overlap * overlap + law.kt * sliding + law.kr * rolling);
+    }
+    return energy;
   }
 
   void store_flags() const
@@ -199,7 +225,8 @@ class ContactList {
       for (int c = 0; c < count; c++) {
         const int i = e[b.from[c]].i, j = e[b.from[c]].j;
         double *history = e[b.from[c]].history;
-        for (int h = 0; h < HISTORY; h++) history[h] = b.history[h][c];
+        if (!again)    // otherwise it is what the step has left
+          for (int h = 0; h < HISTORY; h++) history[h] = b.history[h][c];
         Vector &f = balls.f[i], &t = balls.torque[i];
         f.x += b.f[0][c];
         f.y += b.f[1][c];

@@ -15,8 +15,7 @@
 #include "error.h"
 #include "math_const.h"
 #include "modify.h"
-
-#include <cmath>
+#include "style_argument.h"
 
 using namespace LAMMPS_NS;
 
@@ -44,21 +43,15 @@ void CreateBalls::command(int narg, char **arg)
                "Create_balls needs TYPE DIAMETER DENSITY and surface or file, got {} "
                "arguments",
                narg);
-  if (!utils::is_integer(arg[0]))
-    error->all(FLERR, "Create_balls type must be a whole number, got {}", arg[0]);
-  if (!utils::is_double(arg[1]))
-    error->all(FLERR, "Create_balls diameter must be a number, got {}", arg[1]);
-  if (!utils::is_double(arg[2]))
-    error->all(FLERR, "Create_balls density must be a number, got {}", arg[2]);
-  const int type = utils::inumeric(FLERR, arg[0], false, lmp);
-  const double diameter = utils::numeric(FLERR, arg[1], false, lmp);
-  const double density = utils::numeric(FLERR, arg[2], false, lmp);
+  const int type = whole_number_argument(lmp, "Create_balls type", arg[0]);
+  const double diameter = number_argument(lmp, "Create_balls diameter", arg[1]);
+  const double density = number_argument(lmp, "Create_balls density", arg[2]);
   if (type < 1 || type > atom->ntypes)
     error->all(FLERR, "Create_balls type must be 1 to {} (the atom types of the box), got {}",
                atom->ntypes, arg[0]);
-  if (!(diameter > 0.0) || !std::isfinite(diameter))
+  if (!(diameter > 0.0))
     error->all(FLERR, "Create_balls diameter must be > 0, got {}", arg[1]);
-  if (!(density > 0.0) || !std::isfinite(density))
+  if (!(density > 0.0))
     error->all(FLERR, "Create_balls density must be > 0, got {}", arg[2]);
 
   BallPlacement placement(lmp, "Create_balls", diameter, narg - 3, &arg[3]);

@@ -353,6 +353,14 @@ ElevationGrid ElevationGrid::read(const std::string &path)
 void ElevationGrid::write(const std::string &path, int digits) const
 {
   AtomicFile file(path);
+  write(file, digits);
+  file.commit();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void ElevationGrid::write(AtomicFile &file, int digits) const
+{
   file.write("ncols " + std::to_string(nx) + "\nnrows " + std::to_string(ny) + "\nxllcorner " +
              exact(xlo) + "\nyllcorner " + exact(ylo) + "\ncellsize " + exact(cell) +
              "\nNODATA_value -9999\n");
@@ -372,7 +380,6 @@ void ElevationGrid::write(const std::string &path, int digits) const
     }
     file.write(row);
   }
-  file.commit();
 }
 
 /* ---------------------------------------------------------------------- */

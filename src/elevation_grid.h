@@ -12,6 +12,8 @@
 
 namespace Slope {
 
+class AtomicFile;
+
 // A raster of square cells with one value at each cell's centre: heights of the ground (m), or
 // any other quantity. The only C++ code that reads and writes the ESRI ASCII grid format.
 //
@@ -35,6 +37,7 @@ class ElevationGrid {
   // digits (17 keep every bit). The file appears under its name only when it is complete; an
   // error leaves nothing behind.
   void write(const std::string &path, int digits = 9) const;
+  void write(AtomicFile &, int digits = 9) const;    // which the caller commits
 
   // Height at a point, bilinear between the four cell centres around it; in the half cell along
   // the raster's edge the same plane goes on, so that a plane is exact up to the edge. NaN outside

@@ -4,8 +4,8 @@
 ------------------------------------------------------------------------- */
 
 /* What pair gran/restitution remembers: LAMMPS' own neighbor history for the contacts and, for
-   each ball, the velocities of the last half step, so that a run that goes on starts from the
-   forces with which the one before ended. Made by the pair style, not by users. */
+   each ball, force and torque of the last step, so that a run that goes on starts from those, and
+   from the half-step velocities, with which the one before ended. Made by the pair style. */
 
 #include "fix_contact_history.h"
 
@@ -15,23 +15,29 @@
 #include "pair_gran_restitution.h"
 #include "update.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 
 using namespace LAMMPS_NS;
+using namespace FixConst;
+
+static constexpr double ROUNDING = 1.0e-10;    // of the largest force
 
 /* ---------------------------------------------------------------------- */
 
 FixContactHistory::FixContactHistory(LAMMPS *lmp, int narg, char **arg) :
-    FixNeighHistory(lmp, narg, arg), lists_new(true), lists_used(false), kick(nullptr),
-    kick_step(-1)
+    FixNeighHistory(lmp, narg, arg), lists_new(true), lists_used(false), force(nullptr),
+    force_step(-1), force_dt(0.0)
 {
+  nevery = EnergyGuard::EVERY;
   FixContactHistory::grow_arrays(atom->nmax);
   for (int i = 0; i < atom->nlocal; i++) FixContactHistory::set_arrays(i);
 }
 
 FixContactHistory::~FixContactHistory()
 {
-  memory->destroy(kick);
+  memory->destroy(force);
 }
 
 /* ----------------------------------------------------------------------
@@ -45,7 +51,7 @@ void FixContactHistory::pre_exchange()
   lists_used = false;
   static_cast<PairGranRestitution *>(pair)->store_flags();
   FixNeighHistory::pre_exchange();
-  maxexchange += KICK;
+  maxexchange += FORCE;
 }
 
 void FixContactHistory::post_neighbor()
@@ -54,34 +60,76 @@ void FixContactHistory::post_neighbor()
   lists_new = true;
 }
 
+/* ----------------------------------------------------------------------
+   guards
+------------------------------------------------------------------------- */
+
+int FixContactHistory::setmask()
+{
+  return FixNeighHistory::setmask() | INITIAL_INTEGRATE | END_OF_STEP;
+}
+
+void FixContactHistory::setup(int)
+{
+  static_cast<PairGranRestitution *>(pair)->watch_energy();
+}
+
+void FixContactHistory::end_of_step()
+{
+  static_cast<PairGranRestitution *>(pair)->watch_energy();
+}
+
 void FixContactHistory::post_run()
 {
   FixNeighHistory::post_run();
-  find_kicks();
-  static_cast<PairGranRestitution *>(pair)->report_overlaps();
+  keep_forces();
+  auto law = static_cast<PairGranRestitution *>(pair);
+  if (update->ntimestep % nevery) law->watch_energy();
+  law->report_guards();
 }
 
 /* ----------------------------------------------------------------------
-   velocity Verlet's second half step, for solid balls
+   forces of a step that ends a run or goes into a restart file
 ------------------------------------------------------------------------- */
 
-void FixContactHistory::find_kicks()
+void FixContactHistory::keep_forces()
 {
-  const double half = 0.5 * update->dt;
   for (int i = 0; i < atom->nlocal; i++) {
-    const double per_mass = half / atom->rmass[i];
-    const double per_inertia = per_mass / (0.4 * atom->radius[i] * atom->radius[i]);
-    for (int d = 0; d < 3; d++) {
-      kick[i][d] = per_mass * atom->f[i][d];
-      kick[i][3 + d] = per_inertia * atom->torque[i][d];
-    }
+    memcpy(force[i], atom->f[i], 3 * sizeof(double));
+    memcpy(&force[i][3], atom->torque[i], 3 * sizeof(double));
   }
-  kick_step = update->ntimestep;
+  force_step = update->ntimestep;
+  force_dt = update->dt;
 }
 
-bool FixContactHistory::kicks_known() const
+/* ----------------------------------------------------------------------
+   Before the first step of a run that goes on: the set-up has found the forces of the last step
+   once more, to rounding. With the very same ones the run is the uncut one to the bit. If they
+   differ by more, something has been changed in between, and those of the set-up stand.
+------------------------------------------------------------------------- */
+
+void FixContactHistory::initial_integrate(int)
 {
-  return kick_step == update->ntimestep;
+  if (force_step != update->ntimestep - 1 || force_step != update->firststep) return;
+  double mine[4] = {0.0, 0.0, 0.0, 0.0}, most[4];    // largest force, torque; differences
+  for (int i = 0; i < atom->nlocal; i++)
+    for (int d = 0; d < 3; d++) {
+      mine[0] = std::max(mine[0], std::fabs(force[i][d]));
+      mine[1] = std::max(mine[1], std::fabs(force[i][3 + d]));
+      mine[2] = std::max(mine[2], std::fabs(force[i][d] - atom->f[i][d]));
+      mine[3] = std::max(mine[3], std::fabs(force[i][3 + d] - atom->torque[i][d]));
+    }
+  MPI_Allreduce(mine, most, 4, MPI_DOUBLE, MPI_MAX, world);
+  if (most[2] > ROUNDING * most[0] || most[3] > ROUNDING * most[1]) return;
+  for (int i = 0; i < atom->nlocal; i++) {
+    memcpy(atom->f[i], force[i], 3 * sizeof(double));
+    memcpy(atom->torque[i], &force[i][3], 3 * sizeof(double));
+  }
+}
+
+bool FixContactHistory::forces_known() const
+{
+  return force_step == update->ntimestep && force_dt == update->dt;
 }
 
 /* ----------------------------------------------------------------------
@@ -90,41 +138,41 @@ bool FixContactHistory::kicks_known() const
 
 double FixContactHistory::memory_usage()
 {
-  return FixNeighHistory::memory_usage() + static_cast<double>(atom->nmax) * KICK * sizeof(double);
+  return FixNeighHistory::memory_usage() + static_cast<double>(atom->nmax) * FORCE * sizeof(double);
 }
 
 void FixContactHistory::grow_arrays(int nmax)
 {
   FixNeighHistory::grow_arrays(nmax);
-  memory->grow(kick, nmax, KICK, "contact_history:kick");
+  memory->grow(force, nmax, FORCE, "contact_history:force");
 }
 
 void FixContactHistory::copy_arrays(int i, int j, int delflag)
 {
   FixNeighHistory::copy_arrays(i, j, delflag);
-  memcpy(kick[j], kick[i], KICK * sizeof(double));
+  memcpy(force[j], force[i], FORCE * sizeof(double));
 }
 
 void FixContactHistory::set_arrays(int i)
 {
   FixNeighHistory::set_arrays(i);
-  memset(kick[i], 0, KICK * sizeof(double));
+  memset(force[i], 0, FORCE * sizeof(double));
 }
 
 int FixContactHistory::pack_exchange(int i, double *buf)
 {
   const int m = FixNeighHistory::pack_exchange(i, buf);
-  if (!kicks_known()) return m;
-  memcpy(&buf[m], kick[i], KICK * sizeof(double));
-  return m + KICK;
+  if (!forces_known()) return m;
+  memcpy(&buf[m], force[i], FORCE * sizeof(double));
+  return m + FORCE;
 }
 
 int FixContactHistory::unpack_exchange(int i, double *buf)
 {
   const int m = FixNeighHistory::unpack_exchange(i, buf);
-  if (!kicks_known()) return m;
-  memcpy(kick[i], &buf[m], KICK * sizeof(double));
-  return m + KICK;
+  if (!forces_known()) return m;
+  memcpy(force[i], &buf[m], FORCE * sizeof(double));
+  return m + FORCE;
 }
 
 /* ----------------------------------------------------------------------
@@ -134,27 +182,28 @@ int FixContactHistory::unpack_exchange(int i, double *buf)
 void FixContactHistory::write_restart(FILE *fp)
 {
   pre_exchange();
-  if (!kicks_known() && update->whichflag == 1) find_kicks();    // in a run: forces are known
+  if (!forces_known() && update->whichflag == 1) keep_forces();    // in a run: forces are known
   if (comm->me == 0) {
-    const double step = kick_step;
-    const int size = sizeof(step);
+    const double list[2] = {static_cast<double>(force_step), force_dt};
+    const int size = sizeof(list);
     fwrite(&size, sizeof(int), 1, fp);
-    fwrite(&step, sizeof(step), 1, fp);
+    fwrite(list, sizeof(double), 2, fp);
   }
 }
 
 void FixContactHistory::restart(char *buf)
 {
-  double step;
-  memcpy(&step, buf, sizeof(step));
-  kick_step = static_cast<bigint>(step);
+  double list[2];
+  memcpy(list, buf, sizeof(list));
+  force_step = static_cast<bigint>(list[0]);
+  force_dt = list[1];
 }
 
 int FixContactHistory::pack_restart(int i, double *buf)
 {
   int m = FixNeighHistory::pack_restart(i, buf);
-  memcpy(&buf[m], kick[i], KICK * sizeof(double));
-  m += KICK;
+  memcpy(&buf[m], force[i], FORCE * sizeof(double));
+  m += FORCE;
   buf[0] = m;
   return m;
 }
@@ -165,16 +214,16 @@ void FixContactHistory::unpack_restart(int i, int nth)
   const double *extra = atom->extra[i];
   int m = 0;
   for (int k = 0; k < nth; k++) m += static_cast<int>(extra[m]);
-  m += static_cast<int>(extra[m]) - KICK;
-  memcpy(kick[i], &extra[m], KICK * sizeof(double));
+  m += static_cast<int>(extra[m]) - FORCE;
+  memcpy(force[i], &extra[m], FORCE * sizeof(double));
 }
 
 int FixContactHistory::size_restart(int i)
 {
-  return FixNeighHistory::size_restart(i) + KICK;
+  return FixNeighHistory::size_restart(i) + FORCE;
 }
 
 int FixContactHistory::maxsize_restart()
 {
-  return FixNeighHistory::maxsize_restart() + KICK;
+  return FixNeighHistory::maxsize_restart() + FORCE;
 }

@@ -20,8 +20,12 @@ class FixContactHistory : public FixNeighHistory {
  public:
   FixContactHistory(class LAMMPS *, int, char **);
   ~FixContactHistory() override;
+  int setmask() override;
+  void setup(int) override;
+  void initial_integrate(int) override;
   void pre_exchange() override;
   void post_neighbor() override;
+  void end_of_step() override;
   void post_run() override;
 
   double memory_usage() override;
@@ -40,15 +44,16 @@ class FixContactHistory : public FixNeighHistory {
   bool lists_new;     // the neighbor list has been built anew
   bool lists_used;    // its histories are newer than those stored by atom
 
-  // what the second half of the last step added to velocity (3) and spin (3) of each ball
-  static constexpr int KICK = 6;
-  double **kick;
-  bool kicks_known() const;
+  // force (3) and torque (3) on each ball in the last step of a run, or when a restart file is written
+  static constexpr int FORCE = 6;
+  double **force;
+  bool forces_known() const;
 
  private:
-  bigint kick_step;    // the step that they belong to
+  bigint force_step;    // the step that they belong to
+  double force_dt;      // and its length
 
-  void find_kicks();
+  void keep_forces();
 };
 
 }    // namespace LAMMPS_NS

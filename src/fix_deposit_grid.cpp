@@ -12,6 +12,7 @@
 
 #include "atomic_file.h"
 #include "lammps_compat.h"
+#include "pair_gran_restitution.h"
 #include "rank_zero.h"
 #include "region_surface.h"
 #include "region_terrain.h"
@@ -22,6 +23,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "force.h"
 #include "timer.h"
 #include "update.h"
 
@@ -32,6 +34,8 @@
 #include <exception>
 #include <limits>
 #include <new>
+#include <stdexcept>
+#include <unistd.h>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -44,6 +48,8 @@ static constexpr double MOTION = 0.1;               // m/s, default of keyword m
 static constexpr double MOVING_SHARE = 0.1;         // of the volume: more is a mass in motion
 static constexpr double BALANCE = 1.0e-9;           // of the released volume
 static constexpr double MAXCELLS = 4.0e8;
+static constexpr double MAXBULK = 1.0e3;          // a ball's square must not be cut by countless cells
+static constexpr double MAXCELL = 1.0e12;         // the area of a cell must be finite
 static constexpr double BYTES_PER_CELL = 72.0;    // eight rasters, one more to write a file
 static constexpr int MAXLOGGED = 5;               // lost balls that get a line in the log
 static constexpr double RESTART_FORMAT = 1.0;     // first number of what a restart file holds
@@ -110,6 +116,8 @@ FixDepositGrid::FixDepositGrid(LAMMPS *lmp, int narg, char **arg) :
     };
     if (keyword == "cell") {
       cell = positive();
+      if (cell > MAXCELL)
+        error->all(FLERR, "Fix deposit/grid cell must be at most {:g}, got {}", MAXCELL, arg[iarg + 1]);
       iarg += 2;
     } else if (keyword == "terrain") {
       region_id = text(1);
@@ -119,6 +127,8 @@ FixDepositGrid::FixDepositGrid(LAMMPS *lmp, int narg, char **arg) :
       iarg += 2;
     } else if (keyword == "bulk") {
       bulk = positive();
+      if (bulk > MAXBULK)
+        error->all(FLERR, "Fix deposit/grid bulk must be at most {:g}, got {}", MAXBULK, arg[iarg + 1]);
       iarg += 2;
     } else if (keyword == "motion") {
       motion = positive();
@@ -188,6 +198,10 @@ FixDepositGrid::FixDepositGrid(LAMMPS *lmp, int narg, char **arg) :
     error->all(FLERR, "Fix deposit/grid cell must give at most {:g} cells, got {}", MAXCELLS, need);
 
   on_rank_zero(lmp, "Fix deposit/grid: " + need, [&]() {
+    // Linux gives more than there is, and kills who uses it
+    const double have = (double) sysconf(_SC_PHYS_PAGES) * sysconf(_SC_PAGESIZE);
+    if (ncells * BYTES_PER_CELL > have)
+      throw std::runtime_error(fmt::format("this machine has {:.3g} GB", 1.0e-9 * have));
     const ElevationGrid zero(n[X], n[Y], lo[X], lo[Y], cell, 0.0);
     thickness = snapshot = max_thickness = max_speed = max_energy = zero;
     base = arrival = last_motion = ElevationGrid(n[X], n[Y], lo[X], lo[Y], cell, NaN);
@@ -542,12 +556,9 @@ void FixDepositGrid::sample(bool record)
 
   if (std::fabs(result[RESIDUAL]) > BALANCE * released.volume && !warned) {
     warned = true;
-    if (comm->me == 0)
-      error->warning(FLERR,
-                     "Fix deposit/grid {}: the volume balance does not close at step {}: released "
-                     "{:.10g}, on the grid {:.10g}, off the grid {:.10g}, lost {:.10g}, residual "
-                     "{:.3g}: balls came or went other than by leaving the box",
-                     id, sampled, released.volume, on_grid, all[1], lost.volume, result[RESIDUAL]);
+    warn("the volume balance does not close at step {}: released {:.10g}, on the grid {:.10g}, off the "
+         "grid {:.10g}, lost {:.10g}, residual {:.3g}: balls came or went other than by leaving the box",
+         sampled, released.volume, on_grid, all[1], lost.volume, result[RESIDUAL]);
   }
 }
 
@@ -581,6 +592,18 @@ bool FixDepositGrid::farthest(double &distance, double &z) const
 }
 
 /* ----------------------------------------------------------------------
+   by all ranks: to the screen, the log and the summary
+------------------------------------------------------------------------- */
+
+template <typename... Args>
+void FixDepositGrid::warn(const char *format, const Args &...args)
+{
+  if (comm->me > 0) return;
+  warnings.push_back(fmt::format("Fix deposit/grid {}: ", id) + fmt::format(format, args...));
+  error->warning(FLERR, warnings.back());
+}
+
+/* ----------------------------------------------------------------------
    the first balls that were lost, one line each; before: number lost until the last sample
 ------------------------------------------------------------------------- */
 
@@ -602,12 +625,9 @@ void FixDepositGrid::log_losses(double before)
   for (const Loss &loss : all) {
     if (nlogged == MAXLOGGED) break;
     nlogged++;
-    if (comm->me == 0)
-      error->warning(FLERR,
-                     "Fix deposit/grid {}: ball {:.0f} left the box at {:.8g} {:.8g} {:.8g}, "
-                     "step {:.0f}, lost so far: {:.0f}{}",
-                     id, loss.tag, loss.x[X], loss.x[Y], loss.x[Z], loss.step, ++before,
-                     nlogged == MAXLOGGED ? ", more are only counted" : "");
+    warn("ball {:.0f} left the box at {:.8g} {:.8g} {:.8g}, step {:.0f}, lost so far: {:.0f}{}",
+         loss.tag, loss.x[X], loss.x[Y], loss.x[Z], loss.step, ++before,
+         nlogged == MAXLOGGED ? ", more are only counted" : "");
   }
 }
 
@@ -926,12 +946,17 @@ void FixDepositGrid::write_files(const std::string &reason)
   if (sampled != update->ntimestep) sample(false);
 
   const Motion balls = motion_of_balls();
+  const std::string guarded = guards();
   on_rank_zero(lmp, "Fix deposit/grid", [&]() {
-    std::vector<std::string> files;
-    write_rasters(files);
-    AtomicFile file(prefix + ".summary.yaml");
-    file.write(summary(reason, balls, files));
-    file.commit();
+    Files files;
+    std::vector<std::string> names;
+    write_rasters(files, names);
+    add_file(files, prefix + ".summary.yaml").write(summary(reason, balls, guarded, names));
+
+    // on a full disk either all of them are new, or none
+
+    for (auto &file : files) file->close();
+    for (auto &file : files) file->commit();
   });
 }
 
@@ -971,7 +996,15 @@ FixDepositGrid::Motion FixDepositGrid::motion_of_balls() const
 
 /* ---------------------------------------------------------------------- */
 
-void FixDepositGrid::write_rasters(std::vector<std::string> &files) const
+AtomicFile &FixDepositGrid::add_file(Files &files, const std::string &path)
+{
+  files.emplace_back(new AtomicFile(path));
+  return *files.back();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixDepositGrid::write_rasters(Files &files, std::vector<std::string> &names) const
 {
   ElevationGrid surface = base;
   for (size_t k = 0; k < surface.z.size(); k++) surface.z[k] += thickness.z[k];
@@ -979,8 +1012,8 @@ void FixDepositGrid::write_rasters(std::vector<std::string> &files) const
   // the sum of the thickness as written is the volume on the grid to 1e-9
 
   auto write = [&](const std::string &name, const ElevationGrid &grid, int digits) {
-    grid.write(name, digits);
-    files.push_back(name.substr(name.rfind('/') + 1));
+    grid.write(add_file(files, name), digits);
+    names.push_back(name.substr(name.rfind('/') + 1));
   };
   if (series) {
     const std::string numbered = fmt::format("{}.{}", prefix, update->ntimestep);
@@ -999,20 +1032,50 @@ void FixDepositGrid::write_rasters(std::vector<std::string> &files) const
    YAML; a number that is no count has a point in it, or YAML would read 1e-05 as text
 ------------------------------------------------------------------------- */
 
+static std::string real(double value)
+{
+  std::string text = fmt::format("{:.15g}", value);
+  if (text.find('.') != std::string::npos) return text;
+  return text.insert(std::min(text.find('e'), text.size()), ".0");
+}
+
+static std::string quoted(const std::string &text)
+{
+  std::string inner;
+  for (const char c : text) inner += c == '\'' ? "''" : std::string(1, c);
+  return "'" + inner + "'";
+}
+
+/* ----------------------------------------------------------------------
+   what the guards of the contacts found in this run, and all warnings so far
+------------------------------------------------------------------------- */
+
+std::string FixDepositGrid::guards() const
+{
+  std::string s;
+  std::vector<std::string> all;
+  auto law = dynamic_cast<PairGranRestitution *>(force->pair_match("gran/restitution", 1));
+  if (law) {
+    const PairGranRestitution::Guards found = law->guards();
+    s += "guards:  # overlap: of the smaller radius; growth: of the largest energy of motion\n";
+    s += "  largest_overlap: " + real(found.deepest) + "\n";
+    s += fmt::format("  deep_contacts: {}\n", found.deep);
+    s += "  energy_growth: " + real(found.energy_growth) + "\n";
+    s += fmt::format("  dangerous_builds: {}\n", found.dangerous_builds);
+    all = law->warnings;
+  }
+  all.insert(all.end(), warnings.begin(), warnings.end());
+  s += all.empty() ? "warnings: []\n" : "warnings:\n";
+  for (const std::string &warning : all) s += "  - " + quoted(warning) + "\n";
+  return s;
+}
+
+/* ---------------------------------------------------------------------- */
+
 std::string FixDepositGrid::summary(const std::string &reason, const Motion &balls,
+                                    const std::string &guarded,
                                     const std::vector<std::string> &files) const
 {
-  auto real = [](double value) {
-    std::string text = fmt::format("{:.15g}", value);
-    if (text.find('.') != std::string::npos) return text;
-    return text.insert(std::min(text.find('e'), text.size()), ".0");
-  };
-  auto quoted = [](const std::string &text) {
-    std::string inner;
-    for (const char c : text) inner += c == '\'' ? "''" : std::string(1, c);
-    return "'" + inner + "'";
-  };
-
   std::string s;
   auto line = [&](const std::string &key, const std::string &value) {
     s += key + ": " + value + "\n";
@@ -1064,6 +1127,7 @@ std::string FixDepositGrid::summary(const std::string &reason, const Motion &bal
   line("change_rate",
        real(result[CHANGE]) + "  # share of the volume that changes cell, per second");
   line("moving", balls.share > MOVING_SHARE ? "true" : "false");
+  s += guarded;
   s += "stop:\n";
   line("  step", fmt::format("{}", update->ntimestep));
   line("  time", real(now()));

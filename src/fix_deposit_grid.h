@@ -16,8 +16,13 @@ FixStyle(deposit/grid,FixDepositGrid);
 
 #include "elevation_grid.h"
 
+#include <memory>
 #include <string>
 #include <vector>
+
+namespace Slope {
+class AtomicFile;
+}
 
 namespace LAMMPS_NS {
 
@@ -149,11 +154,16 @@ class FixDepositGrid : public Fix {
     double largest, median, share;
   };
 
+  std::vector<std::string> warnings;    // so far, on rank 0
+  template <typename... Args> void warn(const char *format, const Args &...args);
   void check_folder();
   void write_files(const std::string &reason);
   Motion motion_of_balls() const;
-  void write_rasters(std::vector<std::string> &files) const;
-  std::string summary(const std::string &reason, const Motion &,
+  typedef std::vector<std::unique_ptr<Slope::AtomicFile>> Files;
+  static Slope::AtomicFile &add_file(Files &, const std::string &path);
+  void write_rasters(Files &, std::vector<std::string> &names) const;
+  std::string guards() const;
+  std::string summary(const std::string &reason, const Motion &, const std::string &guards,
                       const std::vector<std::string> &files) const;
 
   // --- restart: this, and the cells that the mass touched ---

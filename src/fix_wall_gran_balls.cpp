@@ -19,6 +19,7 @@
 #include "modify.h"
 #include "neighbor.h"
 #include "pair_gran_restitution.h"
+#include "style_argument.h"
 #include "update.h"
 
 #include <algorithm>
@@ -44,12 +45,12 @@ FixWallGranBalls::FixWallGranBalls(LAMMPS *lmp, int narg, char **arg) :
     error->all(FLERR, "{}: needs TYPE DIAMETER and surface or file, got {} arguments", caller,
                narg - 3);
 
-  wall_type = utils::inumeric(FLERR, arg[3], false, lmp);
+  wall_type = whole_number_argument(lmp, caller + " type", arg[3]);
   if (wall_type < 1 || wall_type > atom->ntypes)
     error->all(FLERR, "{} type must be 1 to {} (the atom types of the box), got {}", caller,
                atom->ntypes, wall_type);
-  diameter = utils::numeric(FLERR, arg[4], false, lmp);
-  if (!(diameter > 0.0) || !std::isfinite(diameter))
+  diameter = number_argument(lmp, caller + " diameter", arg[4]);
+  if (!(diameter > 0.0))
     error->all(FLERR, "{} diameter must be > 0, got {}", caller, arg[4]);
   radius = 0.5 * diameter;
 
@@ -104,10 +105,12 @@ void FixWallGranBalls::sort_balls(const std::vector<double> &xyz)
     checksum += xyz[3 * k] + 3.0 * xyz[3 * k + 1] + 7.0 * xyz[3 * k + 2];
   }
 
-  // larger cells where the balls are so sparse that empty cells would outnumber them
+  // larger cells where the balls are so sparse that empty cells would outnumber them, in plan or in
+  // a long row
 
   const double area = (xhi - xlo + diameter) * (yhi - ylo + diameter);
-  const double cell = std::max(diameter, std::sqrt(area / (2.0 * n)));
+  const double longest = std::max(xhi - xlo, yhi - ylo);
+  const double cell = std::max({diameter, std::sqrt(area / (2.0 * n)), longest / n});
   cell_inv = 1.0 / cell;
   ncx = static_cast<int>((xhi - xlo) * cell_inv) + 1;
   ncy = static_cast<int>((yhi - ylo) * cell_inv) + 1;
@@ -339,6 +342,23 @@ void FixWallGranBalls::apply(bool starting)
   force_ready = 0;
   lists_newer = true;
   if (starting) initial.check(caller);
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixWallGranBalls::elastic_energy() const
+{
+  const MovingBalls moving = pair->moving_balls();
+  const FixedPartners fixed(balls.data(), radius);
+  double energy = 0.0;
+  for (size_t type = 1; type < lists.size(); type++)
+    if (!lists[type].entries.empty())
+      energy += lists[type].elastic_energy(
+          *pair->law(type, wall_type), moving, fixed,
+          [this](const ContactList::Entry &e, double overlap) {
+            pair->see_overlap(e.i, overlap, std::min(atom->radius[e.i], radius));
+          });
+  return energy;
 }
 
 /* ----------------------------------------------------------------------

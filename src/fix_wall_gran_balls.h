@@ -50,6 +50,8 @@ class FixWallGranBalls : public Fix {
   int size_restart(int) override;
   int maxsize_restart() override;
 
+  double elastic_energy() const;    // of this rank's contacts, J
+
   // largest overlap (m) of a ball at x with any fixed ball, <= 0 if it touches none
   double deepest_overlap(const double *x, double radius) const;
 

@@ -11,6 +11,7 @@
 #include "error.h"
 #include "fix_contact_history.h"
 #include "fix_dummy.h"
+#include "fix_wall_gran_balls.h"
 #include "force.h"
 #include "initial_overlap.h"
 #include "lammps_compat.h"
@@ -41,7 +42,7 @@ static inline Vector *vectors(double **array)
 
 /* ---------------------------------------------------------------------- */
 
-PairGranRestitution::PairGranRestitution(LAMMPS *lmp) : Pair(lmp)
+PairGranRestitution::PairGranRestitution(LAMMPS *lmp) : Pair(lmp), energy(lmp)
 {
   single_enable = 1;
   no_virial_fdotr_compute = 1;
@@ -174,8 +175,16 @@ void PairGranRestitution::coeff(int narg, char **arg)
   if (!allocated) allocate();
 
   int ilo, ihi, jlo, jhi;
-  utils::bounds(FLERR, arg[0], 1, atom->ntypes, ilo, ihi, error);
-  utils::bounds(FLERR, arg[1], 1, atom->ntypes, jlo, jhi, error);
+  auto types = [&](const char *text, int &lo, int &hi) {
+    utils::bounds(FLERR, text, 1, atom->ntypes, lo, hi, nullptr);
+    if (!(lo >= 1 && lo <= hi && hi <= atom->ntypes))
+      error->all(FLERR,
+                 "Pair gran/restitution pair_coeff {} {}: types must be 1 to {}, or a range of them with "
+                 "*, got {}",
+                 arg[0], arg[1], atom->ntypes, text);
+  };
+  types(arg[0], ilo, ihi);
+  types(arg[1], jlo, jhi);
 
   Coeff c;
   memset(&c, 0, sizeof(Coeff));
@@ -311,6 +320,8 @@ void PairGranRestitution::init_style()
                atom->atom_style);
   if (!comm->ghost_velocity)
     error->all(FLERR, "Pair gran/restitution requires ghost velocities: comm_modify vel yes");
+  if (comm->style == 1 && force->newton_pair)    // CommTiled cannot send the histories of ghosts back
+    error->all(FLERR, "Pair gran/restitution with comm_style tiled requires newton off");
 
   compat::request_history_list(neighbor, this, instance_me);
   dt = update->dt;
@@ -415,6 +426,19 @@ void PairGranRestitution::announce_wall(int type, int groupbit)
 }
 
 /* ----------------------------------------------------------------------
+   by rank 0, or by all: to the screen, the log and the summaries
+------------------------------------------------------------------------- */
+
+template <typename... Args>
+void PairGranRestitution::warn(const char *format, const Args &...args)
+{
+  if (comm->me > 0) return;
+  const std::string text = "Pair gran/restitution: " + fmt::format(format, args...);
+  error->warning(FLERR, text);
+  if (std::find(warnings.begin(), warnings.end(), text) == warnings.end()) warnings.push_back(text);
+}
+
+/* ----------------------------------------------------------------------
    once per run, when masses, coefficients and step are final
 ------------------------------------------------------------------------- */
 
@@ -424,7 +448,9 @@ void PairGranRestitution::setup()
   print_table();
   check_timestep();
   check_neighbor_lists();
+  check_fixed_balls();
   overlaps = {0.0, 0, 0, 0};
+  energy.start();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -527,16 +553,13 @@ void PairGranRestitution::check_timestep()
   const bool spring = coeffs[index(iworst, jworst)].kn * bound * bound >=
       0.999 * STEP_RULE * STEP_RULE * std::min(ranges[iworst].mass_min, ranges[jworst].mass_min);
   if (spring || !plain)
-    error->warning(FLERR,
-                   "Pair gran/restitution: time step {:.4g} s is {:.3g} times the largest that "
-                   "holds the restitution, 0.25 sqrt(m_min/kn) = {:.4g} s (types {} {})",
-                   dt, dt / bound, bound, iworst, jworst);
+    warn("time step {:.4g} s is {:.3g} times the largest that holds the restitution, "
+         "0.25 sqrt(m_min/kn) = {:.4g} s (types {} {})",
+         dt, dt / bound, bound, iworst, jworst);
   else
-    error->warning(FLERR,
-                   "Pair gran/restitution: time step {:.4g} s is {:.3g} times the largest with which "
-                   "the dashpots of scheme plain let a heap come to rest, 0.15 m_min/cn = {:.4g} s "
-                   "(types {} {})",
-                   dt, dt / bound, bound, iworst, jworst);
+    warn("time step {:.4g} s is {:.3g} times the largest with which the dashpots of scheme plain let "
+         "a heap come to rest, 0.15 m_min/cn = {:.4g} s (types {} {})",
+         dt, dt / bound, bound, iworst, jworst);
 }
 
 /* ----------------------------------------------------------------------
@@ -546,34 +569,104 @@ void PairGranRestitution::check_timestep()
 void PairGranRestitution::check_neighbor_lists()
 {
   if (neighbor->delay == 0 && neighbor->every == 1 && neighbor->dist_check) return;
-  if (comm->me == 0)
-    error->warning(FLERR,
-                   "Pair gran/restitution: with neigh_modify every {} delay {} check {} contacts may "
-                   "be found late and rebound too fast; every 1 delay 0 check yes finds them in time",
-                   neighbor->every, neighbor->delay, neighbor->dist_check ? "yes" : "no");
+  warn("with neigh_modify every {} delay {} check {} contacts may be found late and rebound too fast; "
+       "every 1 delay 0 check yes finds them in time",
+       neighbor->every, neighbor->delay, neighbor->dist_check ? "yes" : "no");
 }
 
 /* ----------------------------------------------------------------------
-   warn, once per run and with a count, of contacts that were deeper than is sensible
+   warn of balls that nothing moves but that are not frozen: the law would take them for moving
 ------------------------------------------------------------------------- */
 
-void PairGranRestitution::report_overlaps()
+void PairGranRestitution::check_fixed_balls()
 {
-  struct {
-    double most;
-    int rank;
-  } mine = {overlaps.most, comm->me}, all;
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
-  bigint count;
-  MPI_Allreduce(&overlaps.count, &count, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  bigint where[2] = {overlaps.ball, overlaps.step};
-  MPI_Bcast(where, 2, MPI_LMP_BIGINT, all.rank, world);
-  if (count && comm->me == 0)
-    error->warning(FLERR,
-                   "Pair gran/restitution: {} contacts were seen deeper than {:g} % of the smaller "
-                   "radius, the deepest {:.3g} % (ball {}, step {}): the stiffness is too small for "
-                   "the speeds, or the time step too large",
-                   count, 100.0 * DEEP, 100.0 * all.most, where[0], where[1]);
+  int moved = 0;    // group bits
+  for (int k = 0; k < modify->nfix; k++)
+    if (modify->fix[k]->time_integrate) moved |= modify->fix[k]->groupbit;
+  if (!moved) return;
+
+  bigint mine = 0, all;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (!(atom->mask[i] & (moved | freeze_group_bit))) mine++;
+  MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all)
+    warn("no integrator moves {} balls and no fix freeze holds them: without it a fixed ball has the "
+         "dashpots of a moving one",
+         all);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairGranRestitution::see_overlap(int i, double overlap, double radius)
+{
+  const double share = overlap / radius;
+  if (share > DEEP) overlaps.count++;
+  if (share > overlaps.most) overlaps = {share, atom->tag[i], update->ntimestep, overlaps.count};
+}
+
+/* ----------------------------------------------------------------------
+   the energy must not grow
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::watch_energy()
+{
+  const MovingBalls balls = moving_balls();
+  const MovingPartners partners = {balls, force->newton_pair ? INT_MAX : atom->nlocal};
+  double elastic = 0.0;
+  for (size_t k = 0; k < lists.size(); k++)
+    elastic += lists[k].elastic_energy(
+        laws[k / 3], balls, partners, [this](const ContactList::Entry &e, double overlap) {
+          see_overlap(e.i, overlap, std::min(atom->radius[e.i], atom->radius[e.j]));
+        });
+  for (Fix *fix : compat::fixes_of_style(lmp, "wall/gran/balls"))
+    elastic += static_cast<FixWallGranBalls *>(fix)->elastic_energy();
+  if (energy.look(elastic))
+    warn("the energy of the balls grew by {:.3g} % of the largest energy of motion until step {}, with "
+         "nothing but contacts and gravity at work: the time step is too large, or contacts were found "
+         "late",
+         100.0 * energy.growth(), update->ntimestep);
+}
+
+/* ---------------------------------------------------------------------- */
+
+PairGranRestitution::Guards PairGranRestitution::guards() const
+{
+  Guards found;
+  MPI_Allreduce(&overlaps.most, &found.deepest, 1, MPI_DOUBLE, MPI_MAX, world);
+  MPI_Allreduce(&overlaps.count, &found.deep, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  found.energy_growth = energy.growth();
+  found.energy_grew = energy.seen();
+  found.dangerous_builds = neighbor->ndanger;
+  return found;
+}
+
+/* ----------------------------------------------------------------------
+   warn, once per run and with a count, of what was not sensible
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::report_guards()
+{
+  const Guards found = guards();
+  if (found.deep) {
+    struct {
+      double most;
+      int rank;
+    } mine = {overlaps.most, comm->me}, all;
+    MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
+    bigint where[2] = {overlaps.ball, overlaps.step};
+    MPI_Bcast(where, 2, MPI_LMP_BIGINT, all.rank, world);
+    warn("{} contacts were seen deeper than {:g} % of the smaller radius, the deepest {:.3g} % (ball {}, "
+         "step {}): the stiffness is too small for the speeds, or the time step too large",
+         found.deep, 100.0 * DEEP, 100.0 * all.most, where[0], where[1]);
+  }
+  if (found.energy_grew > 1)
+    warn("the energy of the balls had grown at {} of the looks every {} steps, by {:.3g} % of the largest "
+         "energy of motion",
+         found.energy_grew, fix_history->nevery, 100.0 * found.energy_growth);
+  if (found.dangerous_builds)
+    warn("{} neighbor lists came late (dangerous builds): balls went farther than half the skin {:g} in "
+         "one step, and contacts may have begun too deep",
+         found.dangerous_builds, neighbor->skin);
 }
 
 /* ----------------------------------------------------------------------
@@ -614,9 +707,7 @@ void PairGranRestitution::build_lists()
       const Vector a = x[i], b = x[j];
       const double r = sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y) +
                             (a.z - b.z) * (a.z - b.z));
-      const double overlap = (radius[i] + radius[j] - r) / std::min(radius[i], radius[j]);
-      if (overlap > DEEP) overlaps.count++;
-      if (overlap > overlaps.most) overlaps = {overlap, atom->tag[i], update->ntimestep, overlaps.count};
+      see_overlap(i, radius[i] + radius[j] - r, std::min(radius[i], radius[j]));
     }
   }
   if (sizes_vary)
@@ -643,7 +734,7 @@ void PairGranRestitution::find_half_step()
 {
   half_v.clear();
   half_omega.clear();
-  if (!fix_history->kicks_known()) return;
+  if (!fix_history->forces_known()) return;
 
   const int nlocal = atom->nlocal, nall = nlocal + atom->nghost;
   Vector *const v = vectors(atom->v), *const omega = vectors(atom->omega);
@@ -652,9 +743,11 @@ void PairGranRestitution::find_half_step()
   half_v.assign(v, v + nall);
   half_omega.assign(omega, omega + nall);
   for (int i = 0; i < nlocal; i++) {
-    const double *kick = fix_history->kick[i];
-    v[i] = {v[i].x - kick[0], v[i].y - kick[1], v[i].z - kick[2]};
-    omega[i] = {omega[i].x - kick[3], omega[i].y - kick[4], omega[i].z - kick[5]};
+    const double *f = fix_history->force[i];    // velocity Verlet's second half step, for solid balls
+    const double a = 0.5 * dt / atom->rmass[i];
+    const double b = a / (0.4 * atom->radius[i] * atom->radius[i]);
+    v[i] = {v[i].x - a * f[0], v[i].y - a * f[1], v[i].z - a * f[2]};
+    omega[i] = {omega[i].x - b * f[3], omega[i].y - b * f[4], omega[i].z - b * f[5]};
   }
   comm->forward_comm();    // to the ghosts
   std::swap_ranges(v, v + nall, half_v.begin());

@@ -16,6 +16,7 @@ PairStyle(gran/restitution,PairGranRestitution);
 
 #include "contact_law.h"
 #include "contact_list.h"
+#include "energy_guard.h"
 
 #include <string>
 #include <vector>
@@ -52,8 +53,19 @@ class PairGranRestitution : public Pair {
   void announce_wall(int wall_type, int groupbit);
   Slope::MovingBalls moving_balls() const;
   void store_flags() const;
-  void report_overlaps();    // at the end of a run
   bool sizes_vary;    // between two neighbor lists, by fix adapt
+
+  // guards; what they found, for summaries
+  void watch_energy();     // every EnergyGuard::EVERY steps and at the end of a run
+  void see_overlap(int i, double overlap, double radius);    // radius: the smaller one
+  void report_guards();    // at the end of a run
+  struct Guards {
+    double deepest;        // overlap, of the smaller radius
+    double energy_growth;
+    bigint deep, energy_grew, dangerous_builds;
+  };
+  Guards guards() const;    // collective
+  std::vector<std::string> warnings;    // so far, each once
 
  protected:
   // what pair_coeff was given for a type pair; the laws are made from it
@@ -85,13 +97,14 @@ class PairGranRestitution : public Pair {
   int freeze_group_bit;
   class FixContactHistory *fix_history;
   std::vector<Slope::ContactList> lists;    // by type pair and by which side is frozen
-  // contacts that were seen deeper than is sensible, looked for with every neighbor list
+  // contacts that were seen deeper than is sensible: with every neighbor list and by watch_energy()
   struct Overlaps {
     double most;    // of the smaller radius
     tagint ball;
     bigint step, count;
   } overlaps;
 
+  EnergyGuard energy;
   std::vector<Slope::Vector> half_v, half_omega;    // at set-up, where they are known
   std::string history_id, dummy_id;
   std::string table;    // start-up table as last printed
@@ -105,6 +118,8 @@ class PairGranRestitution : public Pair {
   bool can_touch(int, int) const;
   double bound_on_step(int, int) const;
   void check_neighbor_lists();
+  void check_fixed_balls();
+  template <typename... Args> void warn(const char *format, const Args &...args);
   void build_lists();
   void find_half_step();
 };

@@ -466,72 +466,40 @@ bool Polygon::inside(double x, double y) const
 }
 
 /* ----------------------------------------------------------------------
-   Rings do not cross: a ring is all in a larger one if a point of its inside is. It counts + in
-   an even number of others, and - in an odd one.
+   Between two neighbouring heights of points no edges cross: there the inside is trapezoids. Rings
+   that only touch may still cross each other in a point, so that they cannot be told apart. A
+   single ring cannot, and may have very many points.
 ------------------------------------------------------------------------- */
 
 double Polygon::area() const
 {
-  struct Ring {
-    Polygon alone;
-    double area;
-    Point middle;
-  };
-  std::vector<Ring> rings;
-  size_t start = 0;
-  for (const int size : sizes) {
-    Ring ring;
-    const auto begin = xy.begin() + 2 * start;
-    ring.alone = Polygon(std::vector<double>(begin, begin + 2 * size), {size});
-    ring.area = 0.0;
-    for (int k = 0; k < size; k++) {
-      const double *p = &xy[2 * (start + k)], *q = &xy[2 * (start + (k + 1) % size)];
-      ring.area += 0.5 * ((p[0] - xlo) * (q[1] - p[1]) - (p[1] - ylo) * (q[0] - p[0]));
-    }
-    ring.area = std::fabs(ring.area);
-    ring.alone.middle(ring.middle.x, ring.middle.y);
-    rings.push_back(ring);
-    start += size;
-  }
-
   double total = 0.0;
-  for (size_t r = 0; r < rings.size(); r++) {
-    int depth = 0;
-    for (size_t s = 0; s < rings.size(); s++) {
-      const bool larger = rings[s].area > rings[r].area || (rings[s].area == rings[r].area && s < r);
-      if (larger && rings[s].alone.inside(rings[r].middle.x, rings[r].middle.y)) depth++;
+  if (sizes.size() == 1) {
+    for (size_t k = 0; k < xy.size(); k += 2) {
+      const double *p = &xy[k], *q = &xy[(k + 2) % xy.size()];
+      total += 0.5 * ((p[0] - xlo) * (q[1] - p[1]) - (p[1] - ylo) * (q[0] - p[0]));
     }
-    total += depth % 2 ? -rings[r].area : rings[r].area;
+    return std::fabs(total);
   }
-  return total;
-}
 
-/* ----------------------------------------------------------------------
-   A point inside and not near to an edge: in the middle of the widest part of several heights
-------------------------------------------------------------------------- */
-
-void Polygon::middle(double &x, double &y) const
-{
-  std::vector<double> heights;
+  std::vector<double> heights, cuts;
   for (size_t k = 1; k < xy.size(); k += 2) heights.push_back(xy[k]);
   std::sort(heights.begin(), heights.end());
   heights.erase(std::unique(heights.begin(), heights.end()), heights.end());
+  std::vector<Edge> from_south = edges, here;
+  std::sort(from_south.begin(), from_south.end(),
+            [](const Edge &a, const Edge &b) { return a.y0 < b.y0; });
 
-  double widest = -1.0;
-  x = xlo;
-  y = ylo;
-  const size_t n = heights.size() - 1, step = 1 + n / 16;
-  for (size_t k = 0; k < n; k += step) {
-    const double height = heights[k] + 0.5 * (heights[k + 1] - heights[k]);
-    std::vector<double> cuts;
-    for (const Edge &e : edges)
-      if (e.y0 <= height && height < e.y1) cuts.push_back(e.xat(height));
+  auto next = from_south.begin();
+  for (size_t k = 0; k + 1 < heights.size(); k++) {
+    const double south = heights[k], height = heights[k + 1] - south;
+    here.erase(std::remove_if(here.begin(), here.end(),
+                              [=](const Edge &e) { return e.y1 <= south; }), here.end());
+    for (; next != from_south.end() && next->y0 <= south; ++next) here.push_back(*next);
+    cuts.clear();
+    for (const Edge &e : here) cuts.push_back(e.xat(south + 0.5 * height));
     std::sort(cuts.begin(), cuts.end());
-    for (size_t i = 0; i + 1 < cuts.size(); i += 2)
-      if (cuts[i + 1] - cuts[i] > widest) {
-        widest = cuts[i + 1] - cuts[i];
-        x = cuts[i] + 0.5 * widest;
-        y = height;
-      }
+    for (size_t i = 0; i + 1 < cuts.size(); i += 2) total += height * (cuts[i + 1] - cuts[i]);
   }
+  return total;
 }

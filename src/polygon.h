@@ -63,7 +63,6 @@ class Polygon {
 
   int strip(double y) const;
   void cut_into_strips();
-  void middle(double &x, double &y) const;
 };
 
 }    // namespace Slope

@@ -9,6 +9,7 @@
 #include "domain.h"
 #include "error.h"
 #include "rank_zero.h"
+#include "style_argument.h"
 
 #include <cstring>
 #include <exception>
@@ -26,22 +27,16 @@ RegPolygon::RegPolygon(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
 {
   if (narg < 3) error->all(FLERR, "Region polygon: file name of the rings is missing");
 
-  // coordinates are in distance units, a lattice does not scale them
-
   std::vector<char *> rest;
-  for (int iarg = 3; iarg < narg; iarg++) {
-    if (strcmp(arg[iarg], "units") == 0 && iarg + 1 < narg) {
-      if (strcmp(arg[++iarg], "box") != 0)
-        error->all(FLERR, "Region polygon units must be box, got {}", arg[iarg]);
-    } else
-      rest.push_back(arg[iarg]);
+  for (int iarg = 3, n; iarg < narg; iarg += n) {
+    n = region_keyword(lmp, "Region polygon", "", narg - iarg, &arg[iarg]);
+    if (strcmp(arg[iarg], "units") != 0) rest.insert(rest.end(), &arg[iarg], &arg[iarg] + n);
   }
 
   std::string units = "units", box = "box";
   rest.push_back(&units[0]);
   rest.push_back(&box[0]);
   options((int) rest.size(), rest.data());
-  if (openflag) error->all(FLERR, "Region polygon cannot have open faces");
 
   read(arg[2]);
 

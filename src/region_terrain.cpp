@@ -28,30 +28,31 @@ RegTerrain::RegTerrain(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
 {
   if (narg < 3) error->all(FLERR, "Region terrain: file name of the elevation grid is missing");
 
-  // own keywords are taken here, those of every region are passed on
+  // own keywords are taken here, those of every region are checked and passed on
 
   double depth = -1.0, headroom = -1.0;
   std::vector<char *> rest;
-  for (int iarg = 3; iarg < narg; iarg++) {
+  for (int iarg = 3; iarg < narg;) {
     const std::string keyword = arg[iarg];
     if (keyword == "depth" || keyword == "headroom") {
       if (iarg + 1 >= narg) error->all(FLERR, "Region terrain {}: value is missing", keyword);
-      const double value = number_argument(lmp, "Region terrain " + keyword, arg[++iarg]);
+      const double value = number_argument(lmp, "Region terrain " + keyword, arg[iarg + 1]);
       if (!(value > 0.0))
         error->all(FLERR, "Region terrain {} must be > 0, got {:.15g}", keyword, value);
       (keyword == "depth" ? depth : headroom) = value;
-    } else if (keyword == "units" && iarg + 1 < narg) {
-      if (strcmp(arg[++iarg], "box") != 0)
-        error->all(FLERR, "Region terrain units must be box, got {}", arg[iarg]);
-    } else
-      rest.push_back(arg[iarg]);
+      iarg += 2;
+    } else {
+      const int n =
+          region_keyword(lmp, "Region terrain", "depth, headroom, ", narg - iarg, &arg[iarg]);
+      if (keyword != "units") rest.insert(rest.end(), &arg[iarg], &arg[iarg] + n);
+      iarg += n;
+    }
   }
 
   std::string units = "units", box = "box";
   rest.push_back(&units[0]);
   rest.push_back(&box[0]);
   options((int) rest.size(), rest.data());
-  if (openflag) error->all(FLERR, "Region terrain cannot have open faces");
 
   read(arg[2]);
 
@@ -68,6 +69,15 @@ RegTerrain::RegTerrain(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
   extent_yhi = elevation.yhi();
   extent_zlo = bottom;
   extent_zhi = zmax + headroom;
+
+  if (!(extent_xlo >= -FARTHEST && extent_xlo < extent_xhi && extent_xhi <= FARTHEST &&
+        extent_ylo >= -FARTHEST && extent_ylo < extent_yhi && extent_yhi <= FARTHEST &&
+        extent_zlo >= -FARTHEST && extent_zlo < extent_zhi && extent_zhi <= FARTHEST))
+    error->all(FLERR,
+               "Region terrain: {} with depth and headroom must have an extent within +-{:g}, got x "
+               "{:.8g} to {:.8g}, y {:.8g} to {:.8g}, z {:.8g} to {:.8g}",
+               arg[2], FARTHEST, extent_xlo, extent_xhi, extent_ylo, extent_yhi, extent_zlo,
+               extent_zhi);
 
   cmax = tmax = 0;
 

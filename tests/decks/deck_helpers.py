@@ -86,3 +86,94 @@ def doc_examples(page):
     text = (folder / f"{page}.rst").read_text()
     block = re.search(r'Examples\n"+\n\n\.\. code-block:: LAMMPS\n\n((?:   .*\n|\n)+)', text)
     return "\n".join(line[3:] for line in block.group(1).splitlines())
+
+
+# --- a dense collapse: balls that let go above a rough slope of 32 degrees, in motion from the start ---
+
+COLLAPSE = """
+units si
+newton {newton}
+processors {processors}
+atom_style sphere
+atom_modify map array {sort}
+boundary {boundary}
+comm_style {comm}
+comm_modify vel yes
+{begin}
+region ground terrain ground.asc depth 8 headroom 20
+neighbor {skin} bin
+neigh_modify {neigh}
+pair_style gran/restitution scheme {scheme}
+pair_coeff * * stiffness 2e7 2e7 restitution 0.4 friction 30 rolling 0.05
+pair_coeff * 3 stiffness 2e7 2e7 restitution 0.3 friction 30 rolling 0.05
+timestep 0.0015
+group soil type 1 2
+{ground}
+{balance}
+fix move soil nve/sphere
+fix weight soil gravity 9.80665 vector 0 0 -1
+fix deposit soil deposit/grid 10 0 cell 1.0 terrain ground output {out}
+thermo 1000
+thermo_modify lost ignore
+dump path soil custom {every} {out}.dump id x y z vx vy vz omegax omegay omegaz fx fy fz tqx tqy tqz
+dump_modify path sort id format float %.17g
+{run}
+"""
+WALL_GROUND = "fix field soil wall/gran/balls 3 1.0 surface ground upper spacing 1.0"
+DEFAULTS = dict(newton="on", processors="* * *", sort="", boundary="f f f", comm="brick", begin="read_data balls.data",
+                skin=0.2, neigh="every 1 delay 0 check yes", scheme="exact", ground=WALL_GROUND, balance="", out="out",
+                every=10)
+
+
+def collapse_deck(run, **settings):
+    """The deck of the collapse; settings replace what stands in DEFAULTS."""
+    return COLLAPSE.format(**{**DEFAULTS, **settings, "run": run})
+
+
+def write_collapse(tmp_path, balls=400, seed=1, mixed=False, fast=False, box=((-11, 33), (-15, 23), (-3, 25))):
+    """ground.asc and balls.data of the collapse: that many balls of 1 m; mixed: three in ten are of type 2, 0.8 m.
+
+    They move 1 m/s down the slope, or 3 m/s: then they cross more ranks, and rounding grows faster."""
+    def height(x):
+        return numpy.interp(x, [8, 26], [0, 18 * numpy.tan(numpy.radians(32))])
+
+    write_asc(Path(tmp_path) / "ground.asc", numpy.tile(height(numpy.arange(-10, 32) + 0.5), (36, 1)), -10.0, -14.0)
+    axes = [numpy.arange(low, high, 1.05) for low, high in ((9, 22), (0.7, 7.5), (0, 22))]
+    x = numpy.stack(numpy.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    above = x[:, 2] - height(x[:, 0])
+    x = x[numpy.argsort(numpy.where(above > 1.3, above, 1e9), kind="stable")][:balls]    # the lowest
+    assert balls <= (above > 1.3).sum(), "more balls than places"
+    rng = numpy.random.default_rng(seed)
+    x = x + rng.uniform(-0.02, 0.02, x.shape)
+    drift, spread = ([-3.0, 0.5, -2.0], 0.5) if fast else ([-1.0, 0.2, -0.5], 0.1)
+    v = drift + rng.normal(0, spread, x.shape)
+    kind = numpy.where(mixed & (rng.uniform(size=len(x)) < 0.3), 2, 1)
+    lines = ["balls", "", f"{len(x)} atoms", "3 atom types", ""]
+    lines += [f"{low} {high} {axis}lo {axis}hi" for (low, high), axis in zip(box, "xyz")]
+    lines += ["", "Atoms # sphere", ""]
+    lines += [f"{k} {t} {(1.0, 0.8)[t - 1]} 3411.4 {p[0]!r} {p[1]!r} {p[2]!r}"
+              for k, (t, p) in enumerate(zip(kind, x.tolist()), 1)]
+    lines += ["", "Velocities", ""]
+    lines += [f"{k} {p[0]!r} {p[1]!r} {p[2]!r} 0 0 0" for k, p in enumerate(v.tolist(), 1)]
+    (Path(tmp_path) / "balls.data").write_text("\n".join(lines) + "\n")
+
+
+def read_dump(path):
+    """Step -> rows of a text dump."""
+    frames = {}
+    lines = iter(Path(path).read_text().splitlines())
+    for line in lines:
+        if line == "ITEM: TIMESTEP":
+            step = int(next(lines))
+        elif line == "ITEM: NUMBER OF ATOMS":
+            count = int(next(lines))
+        elif line.startswith("ITEM: ATOMS"):
+            frames[step] = numpy.array([next(lines).split() for _ in range(count)], float)
+    return frames
+
+
+def dump_difference(a, b):
+    """Largest difference of rows "id x y z vx vy vz ...", each vector relative to the largest of its kind."""
+    assert a.shape == b.shape and (a[:, 0] == b[:, 0]).all(), "other balls"
+    vectors = [(a[:, k:k + 3], b[:, k:k + 3]) for k in range(1, a.shape[1], 3)]
+    return [numpy.abs(p - q).max() / max(numpy.abs(p).max(), 1e-300) for p, q in vectors]

@@ -134,7 +134,7 @@ run             0
 
 
 def test_fixes_and_the_atom_map_know_the_new_atoms(tmp_path):
-    # a fix that stores a value per atom gets told of each; x[700] asks the atom map
+    # displace/atom gets told of each, or its displacement from the origin would count; z[700] asks the atom map
 
     log = run_deck("""
 units           si
@@ -143,19 +143,19 @@ atom_modify     map hash
 region          box block -6 6 -6 6 0 12 units box
 create_box      1 box
 region          ball sphere 0 0 6 5 units box
-fix             store all store/state 0 mass
+compute         moved all displace/atom
 create_balls    1 0.5 2000 surface ball lower spacing 0.5
 create_balls    1 0.5 2000 surface ball upper spacing 0.5
 group           one id 700
-compute         s one reduce sum f_store
+compute         s one reduce sum c_moved[4]
 thermo_style    custom step c_s
 run             0
 variable        z equal z[700]
-print           "z $z stored $(c_s)"
+print           "z $z moved $(c_s)"
 """, tmp_path, np=2)
-    z, stored = next(line for line in log.splitlines() if line.startswith("z ")).split()[1::2]
+    z, moved = next(line for line in log.splitlines() if line.startswith("z ")).split()[1::2]
     assert float(z) > 6      # of the second lot
-    assert float(stored) == 0      # as for atoms of create_atoms
+    assert float(moved) == 0      # as for atoms of create_atoms
 
 
 def test_positions_from_a_file(tmp_path):
@@ -187,16 +187,16 @@ region          soil intersect 2 ground ball units box
 BAD = [
     ("2 0.5 2000", "0 0.5 2000", "type must be 1 to 2 (the atom types of the box), got 0"),
     ("2 0.5 2000", "3 0.5 2000", "type must be 1 to 2 (the atom types of the box), got 3"),
-    ("2 0.5 2000", "x 0.5 2000", "Create_balls type must be a whole number, got x"),
+    ("2 0.5 2000", "x 0.5 2000", "Create_balls type must be a whole number below 2^31, got x"),
     ("2 0.5 2000", "2 -1 2000", "Create_balls diameter must be > 0, got -1"),
     ("2 0.5 2000", "2 0 2000", "Create_balls diameter must be > 0, got 0"),
-    ("2 0.5 2000", "2 thick 2000", "Create_balls diameter must be a number, got thick"),
+    ("2 0.5 2000", "2 thick 2000", "Create_balls diameter must be a finite number, got thick"),
     ("2 0.5 2000", "2 0.5 0", "Create_balls density must be > 0, got 0"),
-    ("2 0.5 2000", "2 0.5 heavy", "Create_balls density must be a number, got heavy"),
+    ("2 0.5 2000", "2 0.5 heavy", "Create_balls density must be a finite number, got heavy"),
     ("2 0.5 2000 surface ball lower spacing 0.5", "2 0.5",
      "Create_balls needs TYPE DIAMETER DENSITY and surface or file, got 2 arguments"),
     ("spacing 0.5", "spacing 0.5 write out.txt",
-     "Create_balls keyword must be spacing, origin, inside, outside, got write"),
+     "Create_balls keyword must be spacing, origin, inside or outside, got write"),
     ("atom_style      sphere", "atom_style      atomic",
      "Create_balls atom_style must have radius and mass per atom, as sphere has, got atomic"),
     ("create_box      2 box", "", "Create_balls before the simulation box is defined"),

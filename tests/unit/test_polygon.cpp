@@ -154,6 +154,8 @@ TEST_F(PolygonFile, RingsMayTouch)
   EXPECT_EQ(read(s + "\n0,0\n5,0\n5,5\n0,5\n").area(), 75.0);    // a hole at the edge
   EXPECT_EQ(read(s + "\n0,0\n10,0\n10,5\n0,5\n\n0,5\n10,5\n10,10\n0,10\n\n20,0\n21,0\n21,1\n").area(),
             0.5);
+  // rings that cross each other in the points 0,1 and 4,1, and share an edge
+  EXPECT_NEAR(read("0,0\n4,1\n4,5\n2,1\n0,4\n\n4,1\n4,5\n0,4\n0,1\n").area(), 9.0, 1e-14);
 }
 
 // slivers thinner than rounding: what exact arithmetic takes for valid is valid here, too

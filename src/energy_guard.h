@@ -1,0 +1,48 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+/* Energy of the balls during a run: motion, height and what the springs hold. Contacts take
+   from it and give nothing, so it only falls; if it grows, the time step is too large or contacts
+   were found late. And it is a number, or the run ends. */
+
+#ifndef SLOPE_ENERGY_GUARD_H
+#define SLOPE_ENERGY_GUARD_H
+
+#include "pointers.h"
+
+namespace LAMMPS_NS {
+
+class EnergyGuard : protected Pointers {
+ public:
+  static constexpr int EVERY = 50;           // steps between two looks
+  static constexpr double GROWTH = 0.1;      // of the largest energy of motion, that is not sensible
+
+  explicit EnergyGuard(LAMMPS *);
+
+  // at the set-up of a run: whether anything but contacts and gravity does work
+  void start();
+
+  // Collective; elastic: energy of this rank's springs (J). Returns true when the energy has
+  // grown more than is sensible for the first time in this run.
+  bool look(double elastic);
+
+  double growth() const { return grown; }    // most so far, of the largest energy of motion
+  bigint seen() const { return count; }      // looks at which it was not sensible
+
+ private:
+  bool known;             // all that does work
+  bool begun;
+  double lowest, motion;  // energy so far, J; largest energy of motion and springs
+  double grown;
+  bigint count;
+  bigint number;          // of balls, when lowest began
+  double pull[3];         // gravity then
+
+  void check_finite() const;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,126 @@
+"""Guards in a run: what is not sensible is told once, with a number, and stands in the summary of fix deposit/grid."""
+import re
+
+import pytest
+import yaml
+
+from deck_helpers import run_deck
+
+# one ball falls on a floor of fixed balls, in a box of 10 m
+DECK = """
+units       si
+atom_style  sphere
+boundary    f f f
+comm_modify vel yes
+region      box block 0 10 0 10 -2 10
+create_box  2 box
+create_atoms 1 single 5.2 5.1 {z}
+{atoms}
+set         type 1 diameter 1.0 density 2500
+group       ball type 1
+region      ground terrain flat.asc depth 2 headroom 8
+pair_style  gran/restitution {style}
+pair_coeff  {types} stiffness {k} {k} restitution {e} friction 30
+{floor}
+neighbor    {skin} bin
+neigh_modify every 1 delay 0 check yes
+{neigh}
+timestep    {dt}
+fix         move ball nve/sphere
+fix         weight ball gravity 9.80665 vector 0 0 -1
+fix         deposit ball deposit/grid 10 0 cell 1 terrain ground output out
+{extra}
+thermo      1000
+thermo_modify lost ignore
+run         {steps}
+"""
+WALL = "fix floor ball wall/gran/balls 2 1.0 surface ground upper spacing 0.5"
+
+
+def run(tmp_path, expect_error=None, np=1, **settings):
+    (tmp_path / "flat.asc").write_text("ncols 10\nnrows 10\nxllcorner 0\nyllcorner 0\ncellsize 1\n" + "0 " * 99 + "0\n")
+    deck = {"z": 2.0, "atoms": "", "style": "", "types": "* *", "e": 0.5, "k": 1e7, "floor": WALL, "skin": 0.3, "neigh": "", "dt": 2e-3, "extra": "",
+            "steps": 1000, **settings}
+    log = run_deck(DECK.format(**deck), tmp_path, np=np, expect_error=expect_error)
+    if expect_error:
+        return log, None
+    return warnings_of(log), yaml.safe_load((tmp_path / "out.summary.yaml").read_text())
+
+
+def warnings_of(log):
+    return [re.sub(r" \(\S+:\d+\)$", "", line.removeprefix("WARNING: ")) for line in log.splitlines()
+            if line.startswith("WARNING: ")]
+
+
+@pytest.mark.parametrize("np", [1, 2])
+def test_a_sound_run_has_nothing_to_tell(tmp_path, np):
+    warnings, summary = run(tmp_path, np=np)
+    assert warnings == [] and summary["warnings"] == []
+    assert 0.0 < summary["guards"]["largest_overlap"] < 0.1
+    assert summary["guards"]["energy_growth"] < 1e-3 and summary["guards"]["dangerous_builds"] == 0
+
+
+def test_energy_of_an_undamped_ball_does_not_grow(tmp_path):
+    _, summary = run(tmp_path, e=1.0, z=3.0, steps=5000)
+    assert summary["guards"]["energy_growth"] < 0.02
+
+
+def test_growing_energy(tmp_path):
+    """Contacts that are found late begin deep, and give back what nobody put in."""
+    warnings, summary = run(tmp_path, e=1.0, z=4.0, skin=0.0, neigh="neigh_modify every 8 delay 8 check no", dt=1.5e-3,
+                            steps=3000)
+    told, = (w for w in warnings if "the energy of the balls grew by" in w)
+    assert float(re.search(r"grew by (\S+) % of the largest energy of motion until step \d+", told)[1]) > 10
+    assert summary["guards"]["energy_growth"] > 0.1
+    assert told in summary["warnings"]
+
+
+def test_work_of_other_fixes_is_their_own(tmp_path):
+    warnings, summary = run(tmp_path, extra="fix push ball addforce 0 0 1e5", steps=400)
+    assert not any("energy" in w for w in warnings)
+    assert summary["guards"]["energy_growth"] == 0.0
+
+
+def test_time_step_and_overlap(tmp_path):
+    warnings, summary = run(tmp_path, k=5e4, dt=0.06, z=1.0, steps=200)
+    step, deep = (next(w for w in warnings if text in w) for text in ("time step 0.06 s is", "deeper than 10 %"))
+    assert {step, deep} <= set(summary["warnings"])
+    most = float(re.search(r"the deepest (\S+) %", deep)[1])
+    assert summary["guards"]["largest_overlap"] == pytest.approx(most / 100, rel=0.01)
+    assert summary["guards"]["deep_contacts"] == int(re.search(r": (\d+) contacts", deep)[1])
+
+
+def test_dangerous_builds(tmp_path):
+    warnings, summary = run(tmp_path, z=9.0, skin=0.001, steps=800)
+    told, = (w for w in warnings if "(dangerous builds)" in w)
+    assert int(re.search(r": (\d+) neighbor lists came late", told)[1]) == summary["guards"]["dangerous_builds"] > 0
+    assert told in summary["warnings"]
+
+
+FIXED = "create_atoms 2 single 5 5 0\nset type 2 diameter 1.0 density 2500"
+
+
+@pytest.mark.parametrize("frozen", [False, True])
+def test_missing_freeze(tmp_path, frozen):
+    extra = "group stay type 2\nfix stay stay freeze" if frozen else ""
+    warnings, summary = run(tmp_path, atoms=FIXED, floor="", extra=extra, steps=10)
+    told = [w for w in warnings if "no integrator moves 1 balls and no fix freeze holds them" in w]
+    assert len(told) == (0 if frozen else 1)
+    assert summary["warnings"] == told
+
+
+def test_wall_type_without_coefficients(tmp_path):
+    run(tmp_path, expect_error="Fix wall/gran/balls: pair_coeff 1 2 is not set (moving type 1, wall type 2)",
+        types="1 1")
+
+
+def test_force_that_is_no_number(tmp_path):
+    run(tmp_path, expect_error="ball 1 has a place, velocity or force that is not finite at step 50", steps=100,
+        extra="variable huge equal 1e308*(step==50)\nfix push ball addforce v_huge v_huge 0\nfix push2 ball addforce v_huge 0 0")
+
+
+def test_a_ball_that_leaves(tmp_path):
+    warnings, summary = run(tmp_path, floor="", steps=1000)
+    told, = (w for w in warnings if "ball 1 left the box at 5.2 5.1" in w)
+    assert told in summary["warnings"] and summary["balls"]["lost"] == 1
+    assert summary["volume"]["lost"] == pytest.approx(summary["volume"]["released"])
