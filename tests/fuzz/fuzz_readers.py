@@ -4,9 +4,8 @@
     tests/fuzz/fuzz_readers.py [TARGET ...] [--seconds 600] [--seed 1] [--keep found]
 
 A finding is any exception but SlopeError (MemoryError, too), a message that is not one printable line, a case of more
-than SLOW seconds, or words of a library on standard error,
-or the death of the process. What a case is made of stays in --keep, in a folder of its own, which
-tests/tools/test_fuzz.py replays when it is moved to tests/fuzz/found/TARGET.
+than SLOW seconds, words of a library on standard error, or the death of the process. What a case is made of stays in
+--keep, in a folder of its own, which tests/tools/test_fuzz.py replays when it is moved to tests/fuzz/found/TARGET.
 
 A case that fails at a new place, or the first that is read, joins the files that are mutated: the mutations find their
 way past one rule after the other.
@@ -249,8 +248,7 @@ def read_page(folder):
     for name in ("value_map", "terrain_map", "mesh_map", "small_maps", "bars", "chart"):
         setattr(figures, name, lambda *_, **__: "")
     figures.section = lambda *_, **__: ("", 1)
-    page = report.Page(SimpleNamespace(folder=folder, shown=None, section=None, no_paper=False))
-    report.render(page.content())
+    page, _ = report.make(SimpleNamespace(folder=folder, shown=None, section=None, no_paper=False))
     page.section_table()
 
 

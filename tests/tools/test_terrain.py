@@ -1,6 +1,7 @@
 """tools/slope terrain: survey rasters to terrain.asc, against planes, whose heights are known everywhere."""
 import os
 import re
+import resource
 import shlex
 import subprocess
 import sys
@@ -568,6 +569,19 @@ def test_output_too_large_says_how_much_memory(slope, monkeypatch):
     status, _, err = slope("ok.tif -o out.asc --cell 0.5")
     assert (status, err) == (2, "slope terrain: output: must fit in the 0.00102 GB of memory of this machine, "
                                 "got 200 x 160 cells, which need 0.00128 GB\n")
+
+
+@pytest.mark.parametrize("cells", [20_000, 100_000])
+def test_input_too_large_is_one_line(here, cells):
+    """What the machine does not have, 16 or 400 GB, and what it has, but not for a process of 2 GB."""
+    Path("huge.asc").write_text(f"ncols {cells}\nnrows {cells}\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3\n")
+    done = subprocess.run([sys.executable, TOOLS / "slope", "terrain", "huge.asc", "-o", "out.asc"], text=True, check=False,
+                          capture_output=True, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (2 ** 31, 2 ** 31)),
+                          env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert done.stderr.startswith(("slope terrain: huge.asc: must fit in the ",
+                                   "slope terrain: not enough memory: Unable to allocate 2.98 GiB")), done.stderr
+    assert os.listdir() == ["huge.asc"]
 
 
 def test_a_sidecar_of_another_grid_is_refused(written, slope, here):

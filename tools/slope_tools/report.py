@@ -69,8 +69,7 @@ def run(args):
         raise SlopeError("-o", "must be in an existing folder", output)
     if args.section and args.section[:2] == args.section[2:]:
         raise SlopeError("--section", "must have two different ends", " ".join(f"{value:g}" for value in args.section))
-    page = Page(args)
-    html = render(page.content())
+    page, html = make(args)
     runs.write(output, html)
     table = output.with_suffix(".section.csv")
     runs.write(table, page.section_table())
@@ -87,6 +86,17 @@ def write_pictures(output, html):
     for place, picture in enumerate(pictures, 1):
         runs.write(output.with_suffix(f".{place}.png"), base64.b64decode(picture))
     print(f"{output.with_suffix('.1.png')} to {len(pictures)}: its pictures")
+
+
+def make(args):
+    """The Page and its HTML. What `slope study` wrote is trusted to be of the right kind: if it is not, one line."""
+    import jinja2
+    try:
+        page = Page(args)
+        return page, render(page.content())
+    except (jinja2.TemplateError, ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+        raise SlopeError(args.folder, "must hold what a run or `slope study` wrote, unchanged",
+                         f"{type(error).__name__}: {error}"[:200]) from error
 
 
 def render(content):

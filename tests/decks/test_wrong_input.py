@@ -1,0 +1,436 @@
+"""Wrong arguments of every style, wrong orders of commands, set-ups that do not fit together: each ends the run with
+one line that names style, argument, rule and value."""
+
+import os
+import resource
+import subprocess
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy
+import pytest
+from deck_helpers import ENVIRONMENT, LMP, run_deck, write_asc
+
+# every style of the package once; a row of the tables below replaces a line
+DECK = {
+    "units": "units si",
+    "dimension": "dimension 3",
+    "atom_style": "atom_style sphere",
+    "boundary": "boundary f f f",
+    "comm": "comm_modify vel yes",
+    "neighbor": "neigh_modify every 1 delay 0 check yes",
+    "terrain": "region ground terrain ground.asc depth 1 headroom 4",
+    "polygon": "region road polygon road.csv",
+    "regions": "region block block 2 5 2 5 1 3 units box\nregion space plane 0 0 0 0 0 1 units box",
+    "box": "create_box 3 ground",
+    "atoms": "lattice sc 1.0\ncreate_atoms 1 region block",
+    "group": "group soil type 1",
+    "set": "set group soil diameter 0.9 density 2000",
+    "pair": "pair_style gran/restitution",
+    "coeff": "pair_coeff 1 1 stiffness 1e6 1e6 restitution 0.5 friction 30 rolling 0.1",
+    "coeff wall": "pair_coeff 1 2 stiffness 1e6 1e6 restitution 0.5",
+    "coeff frozen": "pair_coeff 1 3 stiffness 1e6 1e6 damping 10 0 rolling_spring 1e6 10",
+    "wall": "fix wall soil wall/gran/balls 2 1.0 surface ground upper spacing 1.0 origin 0.5 0.5 outside road",
+    "more walls": "fix more soil wall/gran/balls 2 1.0 file balls.txt",
+    "create": "create_balls 3 1.0 2000 file balls.txt",
+    "freeze": "group frozen type 3\nfix freeze frozen freeze",
+    "delete": "delete_balls soil overlap 0.0",
+    "move": "fix move soil nve/sphere",
+    "deposit": "fix deposit soil deposit/grid 10 20 cell 1.0 terrain ground output out",
+    "output": "thermo_style custom step atoms ke f_wall[3] f_deposit[10]",
+    "run": "run 1",
+}
+FILES = {
+    "road.csv": "6,0\n8,0\n8,8\n6,8\n", "line.csv": "0,0\n1,1\n", "bow.csv": "0,0\n1,1\n0,1\n1,0\n",
+    "word.csv": "0,0\nx\n", "far.csv": "0,0\n1e13,0\n0,1\n", "empty.csv": "",
+    "balls.txt": "# x y z\n1 1 0\n7 7 0.5\n", "two.txt": "1 2 3\n1 2\n", "word.txt": "1 2 x\n", "nan.txt": "1 nan 3\n",
+    "far.txt": "1e13 1 0\n", "none.txt": "# nothing\n", "outside.txt": "9 9 0\n",
+    "short.asc": "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n3\n",
+    "far.asc": "ncols 2\nnrows 1\nxllcorner 1e300\nyllcorner 0\ncellsize 1\n1 2\n",
+    "deep.asc": "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 -1e300\n",
+    "huge.asc": "ncols 20000\nnrows 20000\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3\n",
+}
+
+# line of the deck, its command, how messages begin: the arguments -> the rest of the message, or its beginning
+TABLE = {
+    ("pair", "pair_style gran/restitution", "Pair gran/restitution"): """
+        mass -> mass: value missing or unknown keyword
+        mass reduced -> mass must be pair or ball, got reduced
+        limit_damping maybe -> limit_damping must be no or yes, got maybe
+        rolling_radius 2 -> rolling_radius must be ball or reduced, got 2
+        scheme euler -> scheme must be exact or plain, got euler
+        scheme exact color red -> : unknown keyword color, must be mass, limit_damping, rolling_radius or scheme
+        color -> color: value missing or unknown keyword
+        """,
+    ("coeff", "pair_coeff", "Pair gran/restitution"): """
+        1 4 stiffness 1 1 restitution 0.5 -> pair_coeff 1 4: types must be 1 to 3, or a range of them with *, got 4
+        0 1 stiffness 1 1 restitution 0.5 -> pair_coeff 0 1: types must be 1 to 3, or a range of them with *, got 0
+        a 1 stiffness 1 1 restitution 0.5 -> pair_coeff a 1: types must be 1 to 3, or a range of them with *, got a
+        1 1.5 stiffness 1 1 restitution 0.5 -> pair_coeff 1 1.5: types must be 1 to 3, or a range of them with *, got 1.5
+        1 2*1 stiffness 1 1 restitution 0.5 -> pair_coeff 1 2*1: types must be 1 to 3, or a range of them with *, got 2*1
+        nan 1 stiffness 1 1 restitution 0.5 -> pair_coeff nan 1: types must be 1 to 3, or a range of them with *, got nan
+        2 1 stiffness 1 1 restitution 0.5 -> pair_coeff 2 1: no pair I <= J of 3 types
+        1 1 -> pair_coeff 1 1: stiffness kn kt is required
+        1 1 stiffness -> stiffness: value 1 is missing
+        1 1 stiffness 1e6 -> stiffness: value 2 is missing
+        1 1 stiffness 1e6 restitution 0.5 -> stiffness: value 2 must be a number, got restitution
+        1 1 stiffness nan 1e6 restitution 0.5 -> stiffness: value 1 must be a number, got nan
+        1 1 stiffness 1e6 inf restitution 0.5 -> stiffness: value 2 must be a number, got inf
+        1 1 stiffness 1e999 1e6 restitution 0.5 -> stiffness must be > 0 (kn), got inf
+        1 1 stiffness 0 1e6 restitution 0.5 -> stiffness must be > 0 (kn), got 0
+        1 1 stiffness 1e6 -1 restitution 0.5 -> stiffness must be >= 0 (kt), got -1
+        1 1 stiffness 1e6 1e6 -> pair_coeff 1 1: exactly one of restitution and damping is required, got neither
+        1 1 restitution 0.5 -> pair_coeff 1 1: stiffness kn kt is required
+        1 1 stiffness 1e6 1e6 restitution -> restitution: value 1 is missing
+        1 1 stiffness 1e6 1e6 restitution 0 -> restitution must be > 0 and <= 1, got 0
+        1 1 stiffness 1e6 1e6 restitution 1.2 -> restitution must be > 0 and <= 1, got 1.2
+        1 1 stiffness 1e6 1e6 restitution nan -> restitution: value 1 must be a number, got nan
+        1 1 stiffness 1e6 1e6 restitution 0.5 damping 1 1 -> pair_coeff 1 1: exactly one of restitution and damping is
+        1 1 stiffness 1e6 1e6 damping 1 -> damping: value 2 is missing
+        1 1 stiffness 1e6 1e6 damping -1 0 -> damping must be >= 0 (cn), got -1
+        1 1 stiffness 1e6 1e6 damping 1 -1 -> damping must be >= 0 (ct), got -1
+        1 1 stiffness 1e6 1e6 damping 1 inf -> damping: value 2 must be a number, got inf
+        1 1 stiffness 1e6 1e6 restitution 0.5 friction 90 -> friction must be >= 0 and < 90 degrees, got 90
+        1 1 stiffness 1e6 1e6 restitution 0.5 friction -1 -> friction must be >= 0 and < 90 degrees, got -1
+        1 1 stiffness 1e6 1e6 restitution 0.5 friction steep -> friction: value 1 must be a number, got steep
+        1 1 stiffness 1e6 1e6 restitution 0.5 rolling -0.1 -> rolling must be >= 0, got -0.1
+        1 1 stiffness 1e6 1e6 restitution 0.5 rolling inf -> rolling: value 1 must be a number, got inf
+        1 1 stiffness 1e6 1e6 restitution 0.5 rolling_spring 1 -> rolling_spring: value 2 is missing
+        1 1 stiffness 1e6 1e6 restitution 0.5 rolling_spring -1 1 -> rolling_spring must be >= 0 (kr), got -1
+        1 1 stiffness 1e6 1e6 restitution 0.5 rolling_spring 1 -1 -> rolling_spring must be >= 0 (cr), got -1
+        1 1 stiffness 1e6 1e6 restitution 0.5 7 -> pair_coeff: unknown keyword 7, must be stiffness, restitution
+        1 1 stiffness 1e6 1e6 restitution 0.5 color red -> pair_coeff: unknown keyword color, must be stiffness
+        """,
+    ("wall", "fix wall soil wall/gran/balls", "Fix wall/gran/balls wall"): """
+        -> : needs TYPE DIAMETER and surface or file, got 0 arguments
+        2 1.0 -> : needs TYPE DIAMETER and surface or file, got 2 arguments
+        0 1.0 file balls.txt -> type must be 1 to 3 (the atom types of the box), got 0
+        4 1.0 file balls.txt -> type must be 1 to 3 (the atom types of the box), got 4
+        a 1.0 file balls.txt -> type must be a whole number below 2^31, got a
+        1.5 1.0 file balls.txt -> type must be a whole number below 2^31, got 1.5
+        4294967298 1.0 file balls.txt -> type must be a whole number below 2^31, got 4294967298
+        2 x file balls.txt -> diameter must be a finite number, got x
+        2 nan file balls.txt -> diameter must be a finite number, got nan
+        2 inf file balls.txt -> diameter must be a finite number, got inf
+        2 1e999 file balls.txt -> diameter must be a finite number, got 1e999
+        2 0 file balls.txt -> diameter must be > 0, got 0
+        2 -1 file balls.txt -> diameter must be > 0, got -1
+        2 1.0 plane ground -> needs surface or file, got plane
+        2 1.0 surface -> surface must be followed by REGION upper|lower, got 0 of 2 values
+        2 1.0 surface ground upper -> surface needs a spacing, got none
+        2 1.0 surface ground spacing 1.0 -> surface side must be upper or lower, got spacing
+        2 1.0 surface ground middle spacing 1.0 -> surface side must be upper or lower, got middle
+        2 1.0 surface nowhere upper spacing 1.0 -> region nowhere does not exist
+        2 1.0 surface road upper spacing 1.0 -> region road must have an upper boundary, got INF
+        2 1.0 surface space upper spacing 1.0 -> region space must have a bounding box, style plane has none here
+        2 1.0 surface ground upper spacing -> spacing must be followed by S, got 0 of 1 values
+        2 1.0 surface ground upper spacing 0 -> spacing must be > 0, got 0
+        2 1.0 surface ground upper spacing -1 -> spacing must be > 0, got -1
+        2 1.0 surface ground upper spacing x -> spacing must be a finite number, got x
+        2 1.0 surface ground upper spacing nan -> spacing must be a finite number, got nan
+        2 1.0 surface ground upper spacing inf -> spacing must be a finite number, got inf
+        2 1.0 surface ground upper spacing 1e-9 -> : spacing must give fewer than 2^31 balls, got 6.4e+19 with 1e-09
+        2 1.0 surface ground upper spacing 1 origin 1 -> origin must be followed by x y, got 1 of 2 values
+        2 1.0 surface ground upper spacing 1 origin 1 x -> origin y must be a finite number, got x
+        2 1.0 surface ground upper spacing 1 origin nan 1 -> origin x must be a finite number, got nan
+        2 1.0 surface ground upper spacing 1 origin 0 1e300 -> origin y must be within +-1e+12, got 1e300
+        2 1.0 surface ground upper spacing 1 inside -> inside must be followed by REGION, got 0 of 1 values
+        2 1.0 surface ground upper spacing 1 inside nowhere -> region nowhere does not exist
+        2 1.0 surface ground upper spacing 1 inside road outside road -> can have one filter (inside or outside), got
+        2 1.0 surface ground upper spacing 1 color red -> keyword must be spacing, origin, inside, outside or write
+        2 1.0 surface ground upper spacing 1 write -> write must be followed by FILE, got 0 of 1 values
+        2 1.0 surface ground upper spacing 1 write none/a.txt -> : cannot write none/a.txt: No such file or directory
+        2 1.0 file -> file must be followed by FILE, got 0 of 1 values
+        2 1.0 file missing.txt -> : cannot open file missing.txt: No such file or directory
+        2 1.0 file . -> : cannot read file .: Is a directory
+        2 1.0 file two.txt -> : file two.txt line 2: must hold x y z, got 2 values
+        2 1.0 file word.txt -> : file word.txt line 1: z must be a finite number, got x
+        2 1.0 file nan.txt -> : file nan.txt line 1: y must be a finite number, got nan
+        2 1.0 file far.txt -> : file far.txt line 1: x must be within +-1e+12, got 1e13
+        2 1.0 file none.txt -> : file none.txt holds no balls
+        2 1.0 file balls.txt spacing 1.0 -> keyword must be inside, outside or write, got spacing
+        2 1.0 file balls.txt inside nowhere -> region nowhere does not exist
+        """,
+    ("terrain", "region ground terrain", "Region terrain"): """
+        -> : file name of the elevation grid is missing
+        missing.asc -> : cannot read missing.asc: No such file or directory
+        . -> : cannot read .: Is a directory
+        short.asc -> : short.asc, line 7: only 3 of 4 values (2 rows x 2 columns)
+        huge.asc -> : huge.asc, line 6: only 3 of 400000000 values (20000 rows x 20000 columns)
+        road.csv -> : road.csv, line 1: must be a header key of an ESRI ASCII grid or a number, got 6,0
+        far.asc -> : far.asc with depth and headroom must have an extent within +-1e+12, got x 1e+300 to 1e+300, y 0
+        deep.asc -> : deep.asc with depth and headroom must have an extent within +-1e+12, got x 0 to 2, y 0 to 1, z
+        ground.asc depth -> depth: value is missing
+        ground.asc depth x -> depth must be a finite number, got x
+        ground.asc depth 0 -> depth must be > 0, got 0
+        ground.asc depth -1 -> depth must be > 0, got -1
+        ground.asc depth nan -> depth must be a finite number, got nan
+        ground.asc depth inf -> depth must be a finite number, got inf
+        ground.asc depth 1e300 -> : ground.asc with depth and headroom must have an extent within +-1e+12, got x 0 to
+        ground.asc headroom 0 -> headroom must be > 0, got 0
+        ground.asc headroom 1e999 -> headroom must be a finite number, got 1e999
+        ground.asc color red -> : unknown keyword color, must be depth, headroom, side, units, move or rotate
+        ground.asc more.asc -> : unknown keyword more.asc, must be depth, headroom, side, units, move or rotate
+        ground.asc units -> units must be followed by 1 value, got 0
+        ground.asc units lattice -> units must be box, got lattice
+        ground.asc side -> side must be followed by 1 value, got 0
+        ground.asc side up -> side must be in or out, got up
+        ground.asc open 1 -> cannot have open faces
+        ground.asc move v_x NULL -> move must be followed by 3 values, got 2
+        ground.asc move x NULL NULL -> move must be v_name or NULL, got x
+        ground.asc rotate NULL 0 0 0 0 0 1 -> rotate must be v_name, got NULL
+        ground.asc rotate v_a 0 0 0 0 0 up -> rotate must be a finite number, got up
+        """,
+    ("polygon", "region road polygon", "Region polygon"): """
+        -> : file name of the rings is missing
+        missing.csv -> : cannot read missing.csv: No such file or directory
+        . -> : cannot read .: Is a directory
+        empty.csv -> : empty.csv: must hold a ring of points x,y, it has none
+        line.csv -> : line.csv, line 1: a ring must have at least 3 points, got 2
+        bow.csv -> : bow.csv, line 1: a ring must not cross or touch itself, the edges from lines 1 and 3 meet at
+        word.csv -> : word.csv, line 2: must be two numbers, x,y, got x
+        far.csv -> : far.csv, line 2: x and y must be numbers within +-1e+12, got 1e13,0
+        ground.asc -> : ground.asc, line 1: must be two numbers, x,y, got ncols 8
+        road.csv color red -> : unknown keyword color, must be side, units, move or rotate
+        road.csv 5 -> : unknown keyword 5, must be side, units, move or rotate
+        road.csv units -> units must be followed by 1 value, got 0
+        road.csv units lattice -> units must be box, got lattice
+        road.csv side -> side must be followed by 1 value, got 0
+        road.csv side up -> side must be in or out, got up
+        road.csv open 1 -> cannot have open faces
+        road.csv move x NULL NULL -> move must be v_name or NULL, got x
+        """,
+    ("create", "create_balls", "Create_balls"): """
+        -> needs TYPE DIAMETER DENSITY and surface or file, got 0 arguments
+        3 1.0 2000 -> needs TYPE DIAMETER DENSITY and surface or file, got 3 arguments
+        x 1.0 2000 file balls.txt -> type must be a whole number below 2^31, got x
+        1.5 1.0 2000 file balls.txt -> type must be a whole number below 2^31, got 1.5
+        0 1.0 2000 file balls.txt -> type must be 1 to 3 (the atom types of the box), got 0
+        4 1.0 2000 file balls.txt -> type must be 1 to 3 (the atom types of the box), got 4
+        4294967297 1.0 2000 file balls.txt -> type must be a whole number below 2^31, got 4294967297
+        3 x 2000 file balls.txt -> diameter must be a finite number, got x
+        3 0 2000 file balls.txt -> diameter must be > 0, got 0
+        3 nan 2000 file balls.txt -> diameter must be a finite number, got nan
+        3 1e999 2000 file balls.txt -> diameter must be a finite number, got 1e999
+        3 1.0 x file balls.txt -> density must be a finite number, got x
+        3 1.0 -1 file balls.txt -> density must be > 0, got -1
+        3 1.0 inf file balls.txt -> density must be a finite number, got inf
+        3 1.0 2000 lattice sc -> needs surface or file, got lattice
+        3 1.0 2000 file missing.txt -> : cannot open file missing.txt: No such file or directory
+        3 1.0 2000 file outside.txt -> balls must lie in the simulation box (below its upper faces), got 1 of 1
+        3 1.0 2000 file two.txt -> : file two.txt line 2: must hold x y z, got 2 values
+        3 1.0 2000 file balls.txt write a.txt -> keyword must be inside or outside, got write
+        3 1.0 2000 surface ground upper -> surface needs a spacing, got none
+        3 1.0 2000 surface ground upper spacing 0 -> spacing must be > 0, got 0
+        3 1.0 2000 surface nowhere upper spacing 1 -> region nowhere does not exist
+        """,
+    ("delete", "delete_balls", "Delete_balls"): """
+        -> needs GROUP overlap FRACTION, got 0 arguments
+        soil overlap -> needs GROUP overlap FRACTION, got 2 arguments
+        soil overlap 0.0 0.1 -> needs GROUP overlap FRACTION, got 4 arguments
+        nobody overlap 0.0 -> group must exist, got nobody
+        soil touching 0.0 -> keyword must be overlap, got touching
+        soil overlap x -> overlap must be a finite number, got x
+        soil overlap -0.1 -> overlap must be >= 0 and < 1 (of the radius), got -0.1
+        soil overlap 1 -> overlap must be >= 0 and < 1 (of the radius), got 1
+        soil overlap nan -> overlap must be a finite number, got nan
+        soil overlap inf -> overlap must be a finite number, got inf
+        """,
+    ("deposit", "fix deposit soil deposit/grid", "Fix deposit/grid"): """
+        -> needs Nevery Nfreq cell S terrain REGION output PREFIX
+        10 -> needs Nevery Nfreq cell S terrain REGION output PREFIX
+        10 20 -> keyword cell is missing
+        x 20 cell 1 -> Nevery must be a whole number below 2^31, got x
+        1.5 20 cell 1 -> Nevery must be a whole number below 2^31, got 1.5
+        0 20 cell 1 -> Nevery must be >= 1, got 0
+        -1 20 cell 1 -> Nevery must be >= 1, got -1
+        4294967297 20 cell 1 -> Nevery must be a whole number below 2^31, got 4294967297
+        10 15 cell 1 -> Nfreq must be 0 or a multiple of Nevery 10, got 15
+        10 -10 cell 1 -> Nfreq must be 0 or a multiple of Nevery 10, got -10
+        10 x cell 1 -> Nfreq must be a whole number below 2^31, got x
+        10 20 terrain ground output out -> keyword cell is missing
+        10 20 cell 1.0 output out -> keyword terrain is missing
+        10 20 cell 1.0 terrain ground -> keyword output is missing
+        10 20 cell -> cell: value 1 is missing
+        10 20 cell x -> cell must be a finite number, got x
+        10 20 cell 0 -> cell must be > 0, got 0
+        10 20 cell nan -> cell must be a finite number, got nan
+        10 20 cell inf -> cell must be a finite number, got inf
+        10 20 cell 1e-4 terrain ground output out -> cell must give at most 4e+08 cells, got 6400000000 cells, they
+        10 20 cell 1 terrain nowhere output out -> terrain region nowhere does not exist
+        10 20 cell 1 terrain road output out -> terrain region road must have an upper boundary, got INF
+        10 20 cell 1 terrain space output out -> terrain region space must have a bounding box, style plane has none
+        10 20 cell 1 terrain ground output none/out -> : cannot write none/out.summary.yaml: No such file or directory
+        10 20 cell 1e300 -> cell must be at most 1e+12, got 1e300
+        10 20 bulk 1e300 -> bulk must be at most 1000, got 1e300
+        10 20 bulk 0 -> bulk must be > 0, got 0
+        10 20 bulk nan -> bulk must be a finite number, got nan
+        10 20 motion -1 -> motion must be > 0, got -1
+        10 20 motion x -> motion must be a finite number, got x
+        10 20 window 15 -> window must be a multiple of Nevery 10, got 15
+        10 20 window 0 -> window must be a multiple of Nevery 10, got 0
+        10 20 window x -> window must be a whole number below 2^31, got x
+        10 20 series -> series: value 1 is missing
+        10 20 series maybe -> series must be yes or no, got maybe
+        10 20 extent 0 8 0 -> extent: value 4 is missing
+        10 20 extent 0 8 0 x -> extent must be a finite number, got x
+        10 20 extent nan 8 0 8 -> extent must be a finite number, got nan
+        10 20 cell 1 terrain ground output out extent 8 0 0 8 -> extent must have xlo < xhi and ylo < yhi, got 8 0 0 8
+        10 20 cell 1 terrain ground output out extent 0 9 0 8 -> extent must lie in that of region ground, 0 8 0 8
+        10 20 color red -> : unknown keyword color, must be cell, terrain, output, bulk, extent, motion, window or
+        10 20 red -> : unknown keyword red, must be cell, terrain, output, bulk, extent, motion, window or series
+        """,
+}
+
+# lines of the deck that are changed, the message
+NO_BALLS = {"atom_style": "atom_style atomic", "set": "mass * 1.0", "comm": "", "move": "", "freeze": "", "output": ""}
+FLAT = {"dimension": "dimension 2", "boundary": "boundary f f p", "terrain": "region ground block 0 8 0 8 -0.1 0.1",
+        "atoms": "create_atoms 1 single 1 1 0", "move": "", "freeze": "", "output": ""}
+ONLY = dict.fromkeys(("pair", "coeff", "coeff wall", "coeff frozen", "wall", "more walls", "create", "delete",
+                      "deposit"), "")
+SETUPS = [
+    # the order of commands
+    ({"units": "create_balls 3 1.0 2000 file balls.txt"}, "Create_balls before the simulation box is defined"),
+    ({"units": "delete_balls soil overlap 0.0"}, "Delete_balls before the simulation box is defined"),
+    ({"set": "delete_balls soil overlap 0.0"}, "Delete_balls requires a fix wall/gran/balls before it, there is none"),
+    ({"set": "fix early all deposit/grid 10 20 cell 1.0 terrain late output out\nregion late terrain ground.asc"},
+     "Fix deposit/grid terrain region late does not exist"),
+    ({"wall": "fix even all balance 10 1.1 shift xyz 5 1.1\n" + DECK["wall"]},
+     "Fix wall/gran/balls wall: must come before fix even balance, which moves atoms between ranks"),
+    ({"atoms": "", "set": "", "delete": ""}, "Fix deposit/grid group must hold balls when the run starts, got none"),
+
+    # what a style needs and the deck does not have
+    ({"comm": ""}, "Pair gran/restitution requires ghost velocities: comm_modify vel yes"),
+    ({"coeff": ""}, "Pair gran/restitution: pair_coeff 1 1 is not set, and balls of both types exist"),
+    ({"coeff wall": ""}, "Fix wall/gran/balls: pair_coeff 1 2 is not set (moving type 1, wall type 2)"),
+    ({"coeff frozen": ""}, "Pair gran/restitution: pair_coeff 1 3 is not set, and balls of both types exist"),
+    ({"freeze": ""}, "Pair gran/restitution: pair_coeff 3 3 is not set, and balls of both types exist"),
+    ({"pair": "pair_style zero 2.0", "coeff": "pair_coeff * *", "coeff wall": "", "coeff frozen": ""},
+     "Fix wall/gran/balls wall: requires pair_style gran/restitution, which holds its coefficients"),
+    ({**NO_BALLS, **ONLY, "pair": DECK["pair"], "coeff": DECK["coeff"]},
+     "Pair gran/restitution requires balls: atom_style must be sphere, got atomic"),
+    ({**NO_BALLS, **ONLY, "create": DECK["create"]},
+     "Create_balls atom_style must have radius and mass per atom, as sphere has, got atomic"),
+    ({**NO_BALLS, **ONLY, "delete": DECK["delete"]}, "Delete_balls requires balls: atom_style must be sphere, got atomic"),
+    ({**NO_BALLS, **ONLY, "deposit": DECK["deposit"]},
+     "Fix deposit/grid requires balls: atom_style must be sphere, got atomic"),
+
+    # what does not fit together
+    ({**FLAT, **ONLY, "create": DECK["create"]},
+     "Create_balls dimension must be 3, got 2"),
+    ({**FLAT, **ONLY, "deposit": DECK["deposit"]},
+     "Fix deposit/grid requires a simulation in 3 dimensions, got 2"),
+    ({"set": "set group soil diameter 1.5 density 2000", "delete": ""},
+     "Pair gran/restitution: 254 pairs overlap at the start by more than 5 % of the radius, worst 66.67 % between ball 1"),
+    ({"more walls": "fix more soil wall/gran/balls 2 5.0 file balls.txt", "delete": ""},
+     "Fix wall/gran/balls more: 5 pairs overlap at the start by more than 5 % of the radius, worst 270.7 % between ball 1"),
+    ({"more walls": "fix more soil wall/gran/balls 2 500.0 file balls.txt"}, "Delete_balls: no ball of group soil is left"),
+    ({"terrain": "variable up equal 0.1\n" + DECK["terrain"] + " move NULL NULL v_up"},
+     "Fix wall/gran/balls wall region ground must stand still, got one that moves or varies"),
+    ({"box": "region big block 0 8 0 8 -1e20 1e20\ncreate_box 3 big"},
+     "Region polygon road has no end in z: the simulation box needs one"),
+    ({"deposit": "region high sphere 4 4 9 3 units box\n" + DECK["deposit"].replace("terrain ground", "terrain high")},
+     "Fix deposit/grid terrain region high must have a height within one "),
+]
+
+# what LAMMPS itself says when our styles are asked for what they do not have
+OF_LAMMPS = [
+    ({"wall": "fix wall nobody wall/gran/balls 2 1.0 file balls.txt"}, "Could not find fix group ID"),
+    ({"deposit": "fix deposit nobody deposit/grid 10 20 cell 1"}, "Could not find fix group ID"),
+    ({"units": "fix wall all wall/gran/balls 2 1.0 file balls.txt"}, "Fix command before simulation box is defined"),
+    ({"pair": ""}, "Pair_coeff command before pair_style is defined"),
+    ({"polygon": DECK["polygon"] + "\n" + DECK["polygon"]}, "Reuse of region ID"),
+    ({"terrain": DECK["terrain"] + " side out"}, "Create_box region does not support a bounding box"),
+    ({"terrain": DECK["terrain"] + " move v_no NULL NULL"}, "Variable name for region does not exist"),
+    ({"output": "fix_modify wall virial yes"}, "Illegal fix_modify command"),
+    ({"output": "fix_modify deposit energy yes"}, "Illegal fix_modify command"),
+    ({"output": "thermo_style custom step f_wall[4]"}, "Thermo fix vector is accessed out-of-range"),
+    ({"output": "thermo_style custom step f_deposit[11]"}, "Thermo fix vector is accessed out-of-range"),
+    ({"output": "compute sum all reduce sum f_wall"}, "Compute reduce fix calculates global values"),
+    ({"output": "compute c all pair/local p11\ndump d all local 1 out.txt index c_c"},
+     "Pair style does not have extra field requested by compute pair/local"),
+]
+
+
+def rows():
+    for (line, command, style), text in TABLE.items():
+        for row in text.strip().splitlines():
+            arguments, message = row.strip().split("-> ")
+            yield {line: f"{command} {arguments}"}, style + ("" if message[0] == ":" else " ") + message
+    yield from SETUPS
+    if "29 Sep 2021" in lammps():     # others put it in other words
+        yield from OF_LAMMPS
+
+
+def lammps():
+    return subprocess.run([LMP, "-h"], env=ENVIRONMENT, stdin=subprocess.DEVNULL, capture_output=True, text=True).stdout
+
+
+ROWS = list(rows())
+
+
+@pytest.fixture(scope="module")
+def said(tmp_path_factory):
+    """What LAMMPS says of each row: exit status, output."""
+    rows_folder = tmp_path_factory.mktemp("rows")
+
+    def run(number):
+        folder = rows_folder / str(number)
+        folder.mkdir()
+        for name, text in FILES.items():
+            (folder / name).write_text(text)
+        write_asc(folder / "ground.asc", numpy.zeros((8, 8)))
+        deck = "\n".join({**DECK, **(ROWS[number][0] if number >= 0 else {})}.values()) + "\n"
+        done = subprocess.run([LMP, "-log", "none"], input=deck, cwd=folder, env=ENVIRONMENT, timeout=60, text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        return done.returncode, done.stdout
+    with ThreadPoolExecutor(2) as pool:
+        return dict(zip(range(-1, len(ROWS)), pool.map(run, range(-1, len(ROWS)))))
+
+
+def test_the_deck_without_a_change_runs(said):
+    status, text = said[-1]
+    assert status == 0 and "ERROR" not in text and "WARNING" not in text, text[-2000:]
+
+
+@pytest.mark.parametrize("number", range(len(ROWS)), ids=lambda number: "; ".join(ROWS[number][0].values())[:70])
+def test_one_clear_line(said, number):
+    status, text = said[number]
+    errors = [line for line in text.splitlines() if line.startswith("ERROR")]
+    assert status == 1 and len(errors) == 1, text[-2000:]
+    assert errors[0].startswith("ERROR: " + ROWS[number][1]) and errors[0].isprintable(), errors[0]
+
+
+# --- rasters larger than the memory ---
+
+HEAD = "ncols {0}\nnrows {0}\nxllcorner 0\nyllcorner 0\ncellsize 1\n"
+
+
+@pytest.mark.skipif("ASAN_OPTIONS" in os.environ, reason="a sanitizer reserves more address space than there is memory")
+@pytest.mark.parametrize("cells, written, size, message", [
+    (20_000, 0, 800_000_000, "its text needs 0.8 GB of memory, more than is free"),
+    (6_400, 40_000_000, None, "6400 rows x 6400 columns need 0.4 GB of memory, more than is free"),
+])
+def test_a_raster_beyond_the_memory_is_refused(tmp_path, monkeypatch, cells, written, size, message):
+    """Without room for the text, of which the disk has only the first bytes, and for the heights: of 500 MB."""
+    with open(tmp_path / "large.asc", "w") as out:
+        out.write(HEAD.format(cells) + "1 " * written)
+        out.flush()
+        if size:
+            out.truncate(size)
+    monkeypatch.setattr(subprocess, "run", limited(subprocess.run, 500_000_000))
+    run_deck("region ground terrain large.asc\n", tmp_path, expect_error=f"Region terrain: large.asc: {message}")
+
+
+def limited(run, limit):
+    def run_limited(*args, **options):
+        return run(*args, **options, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+    return run_limited
+
+
+def test_a_raster_of_a_billion_cells_of_a_short_file(tmp_path):
+    """The memory is that of the file, not of what its head promises."""
+    (tmp_path / "short.asc").write_text(HEAD.format(30_000) + "1 2 3\n")
+    run_deck("region ground terrain short.asc\n", tmp_path, expect_error="only 3 of 900000000 values")
+    (tmp_path / "many.asc").write_text(HEAD.format(50_000) + "1 2 3\n")
+    run_deck("region ground terrain many.asc\n", tmp_path,
+             expect_error="50000 x 50000 cells would need 20 GB of memory, at most 2147483647 cells are possible")
