@@ -1,5 +1,7 @@
 """A collapse of 350 balls that runs in a second: deck, terrain and road for the tests of study and report."""
+import functools
 import os
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -54,6 +56,13 @@ thermo_style custom step time atoms ke
 thermo_modify lost ignore flush yes
 run         ${steps}
 """
+
+
+@functools.lru_cache
+def serial():
+    """Whether LMP was built with LAMMPS' stand-in for MPI, which knows one rank."""
+    help = subprocess.run([LMP, "-h"], stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
+    return "LAMMPS MPI STUBS" in help.stdout
 
 
 def height(x):

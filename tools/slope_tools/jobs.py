@@ -26,6 +26,8 @@ POLL = 0.1              # s between two looks at the runs
 TELL = 30.0             # s between two lines about a run, where there is no terminal
 PATIENCE = 10.0         # s that a run gets to end after SIGTERM
 SCREEN = "screen.txt"
+KILLED = {base for code in (signal.SIGKILL, signal.SIGTERM) for base in (-code, 128 + code)}     # lmp, or mpirun of it
+CONTINUES = "read_restart ${restart}"      # what a deck that can be continued has in it
 SAFE = re.compile(r"[^A-Za-z0-9.+-]+")
 
 
@@ -46,11 +48,13 @@ class Run:
 
     def __init__(self, output, chosen):
         self.chosen: Dict[str, str] = chosen
-        self.name = "_".join(f"{name}_{SAFE.sub('-', value)}" for name, value in chosen.items())
+        self.name = "_".join(f"{name}_{SAFE.sub('-', value)}" for name, value in chosen.items()) or "base"
         self.folder = Path(output) / self.name
         self.varied = self.name     # for a narrow terminal: the values that differ
         self.error = None
         self.log = runs.Log(self.folder / runs.LOG)
+        self.restart = None         # step and path of the restart file that it goes on from
+        self.refused = set()        # restart files that LAMMPS could not read
 
     @property
     def marker(self):
@@ -153,6 +157,8 @@ class Work:
         self.package = runs.package_version()
         self.lmp_digest = sha256(lmp)
         self.defaults = runs.index_variables(inputs / deck.name)
+        self.continues = any(CONTINUES in word for words in runs.commands(inputs / deck.name)
+                             for word in (*words, " ".join(words)))
         self.active = []
 
     def do(self, todo):
@@ -163,13 +169,15 @@ class Work:
                 while waiting or self.active:
                     while waiting and len(self.active) < self.jobs:
                         one = waiting.pop(0)
-                        self._start(one)
-                        display.started(one)
+                        display.started(one, self._start(one))
                     time.sleep(POLL)
                     for active in list(self.active):
                         active.run.log.update()
                         if active.process.poll() is not None:
                             self.active.remove(active)
+                            if self._refused(active.run, active.process.returncode):
+                                waiting.insert(0, active.run)
+                                continue
                             self._ended(active)
                             display.ended(active)
                     display.update(self.active, len(waiting))
@@ -177,16 +185,28 @@ class Work:
                 self._stop()
                 raise
 
-    def command(self, chosen):
+    def command(self, one):
         """Arguments of lmp."""
         words = ["-in", self.deck.name, "-log", runs.LOG]
-        for name, value in chosen.items():
+        for name, value in one.chosen.items():
             words += ["-var", name, value]
+        if one.restart:
+            words += ["-var", "restart", str(one.restart[1].relative_to(one.folder))]
         return words
 
     def _start(self, one):
+        """Start a run, from its last restart file if there is one; returns what to say of it."""
         try:
-            self._make_folder(one)
+            said = "started"
+            if one.folder.exists():
+                one.restart, why = self._last_restart(one)
+                said = f"starts anew: {why}"
+            if one.restart:
+                step, path = one.restart
+                said = f"continues at step {step}, from {path}"
+                self._reopen_folder(one)
+            else:
+                self._make_folder(one)
             environment = {**os.environ, "OMP_NUM_THREADS": "1"}
             before = []
             if shutil.which("setpriv"):     # a run does not outlive a study that was killed
@@ -197,14 +217,63 @@ class Work:
                     before += ["--oversubscribe"]
                 if os.geteuid() == 0:
                     environment.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-            with open(one.folder / SCREEN, "wb") as screen:
+            with open(one.folder / SCREEN, "ab" if one.restart else "wb") as screen:
                 # a session of its own: Ctrl-C reaches the study, which then ends the run
-                process = subprocess.Popen([*before, self.lmp, *self.command(one.chosen)], cwd=one.folder,
+                process = subprocess.Popen([*before, self.lmp, *self.command(one)], cwd=one.folder,
                                            env=environment, stdin=subprocess.DEVNULL, stdout=screen,
                                            stderr=subprocess.STDOUT, start_new_session=True)
         except OSError as error:
             raise SlopeError(one.folder, f"cannot be run: {error.strerror} ({error.filename})") from error
         self.active.append(Active(one, process, time.monotonic()))
+        return said
+
+    def _last_restart(self, one):
+        """Step and path of the restart file from which an unfinished run can go on, or None; and why it cannot."""
+        if not self.continues:
+            return None, f"{self.deck.name} has no {CONTINUES}"
+        about = runs.load_yaml(one.folder / runs.VARIABLES, "what `slope study` wrote")
+        for key, now, what in (("lmp_sha256", self.lmp_digest, "another LAMMPS program"),
+                               ("package", self.package, "another version of the package")):
+            if about.get(key) != now:
+                return None, f"it was begun with {what}"
+        one.log.update()
+        for name in self._inputs_of(one):
+            if not (one.folder / name).is_file() or sha256(one.folder / name) != self.digests[name]:
+                return None, f"it was begun with another {name}"
+        for step, path in runs.restarts(one.folder):
+            # at a restart file of the end, or after it, LAMMPS would go on and not know that it had halted
+            if (path not in one.refused and str(path.relative_to(one.folder)) not in self.digests
+                    and (one.log.halted is None or step < one.log.halted)):
+                return (step, path), None
+        return None, "it left no complete restart file"
+
+    def _inputs_of(self, one):
+        """Names of the deck and of the data files that it named, as far as its log goes."""
+        return [name for name in self.digests if name == self.deck.name or name in one.log.names]
+
+    def _reopen_folder(self, one):
+        """Make the folder of a run that was cut ready to go on."""
+        about = runs.load_yaml(one.folder / runs.VARIABLES, "what `slope study` wrote")
+        about["ranks"] = self.ranks
+        step, path = one.restart
+        about.setdefault("continued", []).append({"step": step, "restart": str(path.relative_to(one.folder)),
+                                                  "ranks": self.ranks, "started": runs.now()})
+        runs.write(one.folder / runs.VARIABLES, yaml.safe_dump(about, sort_keys=False))
+        if one.log.path.exists():
+            runs.part(one.log.path)
+        one.log = runs.Log(one.log.path)
+
+    @staticmethod
+    def _refused(one, status):
+        """Whether LAMMPS could not read the restart file, complete as it looked: then it is not tried again."""
+        if status == 0 or status in KILLED or not one.restart:
+            return False
+        one.log.update()
+        crashed = status < 0 or status > 128        # then LAMMPS' last words are lost
+        if not (one.log.reading or (crashed and one.log.thermo == 0)):
+            return False
+        one.refused.add(one.restart[1])
+        return True
 
     def _make_folder(self, one):
         """The folder with all that goes into the run, instead of one of an unfinished run."""
@@ -214,7 +283,7 @@ class Work:
             shutil.rmtree(rest, ignore_errors=True)
         shutil.copytree(self.inputs, new)
         about = {"deck": self.deck.name, "set": one.chosen, "variables": {**self.defaults, **one.chosen},
-                 "command": " ".join([self.lmp.name, *self.command(one.chosen)]), "ranks": self.ranks,
+                 "command": " ".join([self.lmp.name, *self.command(one)]), "ranks": self.ranks,
                  "package": self.package, "lmp_sha256": self.lmp_digest, "started": runs.now()}
         runs.write(new / runs.VARIABLES, yaml.safe_dump(about, sort_keys=False))
         if one.folder.exists():
@@ -237,9 +306,8 @@ class Work:
             return None
         one.log.update()
         # what the run used, and did not overwrite
-        inputs = {name: digest for name, digest in self.digests.items()
-                  if (name == self.deck.name or name in one.log.names) and (one.folder / name).is_file()
-                  and sha256(one.folder / name) == digest}
+        inputs = {name: self.digests[name] for name in self._inputs_of(one)
+                  if (one.folder / name).is_file() and sha256(one.folder / name) == self.digests[name]}
         about = {"finished": runs.now(), "wall_seconds": round(time.monotonic() - active.began, 1),
                  "summary": summaries[0].name, "machine": runs.machine(),
                  "inputs": inputs}
@@ -300,10 +368,10 @@ class Display:
     def label(self, one):
         return f"[{self.numbers[one.name]}/{self.total}] {one.name}"
 
-    def started(self, one):
+    def started(self, one, said):
         self.told[one.name] = time.monotonic()
-        if not self.live:
-            self.say(f"{self.label(one)}: started")
+        if not self.live or said != "started":
+            self.say(f"{self.label(one)}: {said}")
 
     def ended(self, active):
         one, wall = active.run, time.monotonic() - active.began
@@ -314,7 +382,8 @@ class Display:
             self.say(f"{self.label(one)}: failed: {one.error}")
         else:
             at = f" at {one.log.time:.1f} s" if one.log.time is not None else ""
-            self.say(f"{self.label(one)}: finished{at}, wall time {duration(wall)}")
+            since = f" since step {one.restart[0]}" if one.restart else ""
+            self.say(f"{self.label(one)}: finished{at}, wall time {duration(wall)}{since}")
 
     def update(self, active, waiting):
         if self.live:

@@ -4,6 +4,7 @@ import math
 import os
 import platform
 import re
+import struct
 import subprocess
 from pathlib import Path
 
@@ -17,6 +18,8 @@ VARIABLES = "variables.yaml"       # what `slope study` runs, written before the
 MARKER = "finished.yaml"           # written when the run is complete
 # what our styles and LAMMPS say of what they made
 NOTES = ("Region terrain", "Fix wall/gran/balls", "Fix deposit/grid", "Delete_balls:", "Create_balls:", "Created ")
+TIMES = ("Time", "v_time")             # thermo columns; LAMMPS' own time begins anew after read_restart
+MAGIC = b"LammpS RestartT\0"           # the first and the last bytes of a restart file
 WORD = re.compile(r'"""(.*?)"""|"([^"]*)"|\'([^\']*)\'|(\S+)')
 INPUT_PLACE = re.compile(r"\s*\([^()]*\.(?:cpp|h):\d+\)\s*$")     # LAMMPS names its source line at the end of a message
 SUMMARY_KEYS = {"volume": ("released", "on_grid", "off_grid", "lost", "residual"),
@@ -24,7 +27,9 @@ SUMMARY_KEYS = {"volume": ("released", "on_grid", "off_grid", "lost", "residual"
                 "largest": ("thickness", "max_thickness", "max_speed", "max_energy"),
                 "stop": ("step", "time", "reason"), "grid": ("cell", "extent"), "balls": ("released", "lost"),
                 "motion": ("moving_share", "threshold"), "moving": (), "ranks": (), "dt": (), "bulk_factor": (),
-                "slope_version": (), "lammps_version": ()}
+                "slope_version": (), "lammps_version": (), "change_rate": (),
+                "guards": ("largest_overlap", "deep_contacts", "energy_growth", "dangerous_builds")}
+OPTIONAL = {"change_rate", "guards"}        # among them: older summaries, and other pair styles, have none
 NO_NUMBERS = {"reason", "extent", "moving", "slope_version", "lammps_version"}    # among them
 ABOVE_ZERO = {("volume", "released"), ("balls", "released"), ("grid", "cell"), ("dt", None), ("bulk_factor", None)}
 
@@ -77,13 +82,17 @@ def index_variables(deck):
 class Log:
     """What the log of a run says; update() reads what LAMMPS has added since.
 
-    step, time, first, last: of the run command under way; time (s) is None without a thermo column of that name, last
-    None before a run. thermo: number of lines of output since the command began.
+    step, time, first, last: of the run command under way; time (s) is None without a thermo column time or v_time,
+    last None before a run. thermo: number of lines of output since the command began. halted: the step at which fix
+    halt ended a run. reading: a restart file was begun and not read to its end. The logs of a run that was cut and
+    continued, see part(), are read as one.
     """
 
     def __init__(self, path):
         self.path = Path(path)
         self.place, self.rest = 0, ""
+        self.parts = None         # logs of the parts before this one, as long as they are not read
+        self.halted, self.reading = None, False
         self.lammps = self.wall = self.error = self.step = self.time = self.last = self.terrain = None
         self.first, self.steps, self.thermo, self.header = 0, None, 0, None
         self.warnings, self.settings, self.notes, self.table = [], [], [], []
@@ -92,17 +101,31 @@ class Log:
 
     def update(self):
         """Read on; a log that is not there yet is an empty one."""
+        if self.parts is None:
+            self.parts = parts(self.path)
+            for path in self.parts:
+                self._read(path)
+                self.place, self.rest = 0, ""
+                self._new_part()
+        self._read(self.path)
+        return self
+
+    def _read(self, path):
         try:
-            with open(self.path, "rb") as log:
+            with open(path, "rb") as log:
                 log.seek(self.place)
                 new = log.read()
         except OSError:
-            return self
+            return
         self.place += len(new)
         *lines, self.rest = (self.rest + new.decode("utf-8", "replace")).split("\n")
         for line in lines:
             self._line(line)
-        return self
+
+    def _new_part(self):
+        """Forget what counts only if it is the last that was heard."""
+        self.error = self.header = self.steps = self.last = None
+        self.thermo, self.reading = 0, False
 
     def _line(self, line):
         words = line.split()
@@ -114,20 +137,21 @@ class Log:
         self.in_table = False
         if self.header and self._is_output(words):
             return
-        if words[0] == "LAMMPS" and self.lammps is None:
-            self.lammps = line.strip()
+        if line.startswith("LAMMPS ("):
+            self.lammps = self.lammps or line.strip()
+            self._new_part()
         elif words[0] == "ERROR:" or line.startswith("ERROR on proc"):
             self.error = self.error or told(line)
         elif words[0] == "WARNING:":
-            text = told(line).removeprefix("WARNING: ")
-            if text not in self.warnings:
-                self.warnings.append(text)
+            add(self.warnings, told(line).removeprefix("WARNING: "))
         elif line.startswith("Pair gran/restitution: contact coefficients"):
             self.table, self.in_table = [line], True
         elif line.startswith("Total wall time:"):
             self.wall = words[-1]
+        elif line.startswith("Fix halt condition") and (match := re.search(r" on step (\d+)", line)):
+            self.halted = int(match[1])
         elif line.startswith(NOTES):
-            self.notes.append(line.strip())
+            add(self.notes, line.strip())
         elif words[0] == "Step":
             self.header, self.thermo = words, 0
         elif words[0] == "Loop":
@@ -140,8 +164,9 @@ class Log:
         if len(words) != len(self.header) or not re.fullmatch(r"\d+", words[0]):
             return False
         self.step = int(words[0])
-        if "Time" in self.header:
-            self.time = float(words[self.header.index("Time")])
+        for name in TIMES:
+            if name in self.header:
+                self.time = float(words[self.header.index(name)])
         if self.thermo == 0:
             self.first = self.step
             if self.steps is not None:
@@ -156,11 +181,33 @@ class Log:
             return
         if words[0] == "run" and len(words) > 1 and words[1].isdigit():
             self.steps = int(words[1]), "upto" in words
+        elif words[0] == "read_restart":
+            self.reading = words[1] != "CPU"       # LAMMPS says last how long it took
         elif words[0] == "region" and words[2:3] == ["terrain"] and len(words) > 3 and self.terrain is None:
             self.terrain = words[3].strip("\"'")
         if (words[0] in ("pair_style", "pair_coeff", "timestep", "units", "lattice", "neighbor")
                 or (words[0] == "fix" and len(words) > 3)):
-            self.settings.append(" ".join(line.split("#")[0].split()))
+            add(self.settings, " ".join(line.split("#")[0].split()))
+
+
+def add(lines, line):
+    """Append a line that is not among them."""
+    if line not in lines:
+        lines.append(line)
+
+
+def parts(path):
+    """The logs that part() put aside for a log, the oldest first."""
+    path = Path(path)
+    name = re.compile(rf"{re.escape(path.stem)}\.(\d+){re.escape(path.suffix)}")
+    found = [(int(match[1]), other) for other in path.parent.glob("*") if (match := name.fullmatch(other.name))]
+    return [other for _, other in sorted(found)]
+
+
+def part(path):
+    """Put a log aside, log.lammps as log.1.lammps and so on: the run goes on with a new one."""
+    path = Path(path)
+    path.rename(path.with_name(f"{path.stem}.{len(parts(path)) + 1}{path.suffix}"))
 
 
 def told(line):
@@ -175,6 +222,35 @@ def last_words(path):
     except OSError:
         return ""
     return next((line.strip() for line in reversed(lines) if line.strip(" -\t")), "")
+
+
+# --- restart files ---
+
+def restarts(folder):
+    """(step, path) of the complete restart files of LAMMPS in a folder and below, the latest step first."""
+    found = [(restart_step(path), path) for path in sorted(Path(folder).rglob("*")) if path.is_file()]
+    return sorted(((step, path) for step, path in found if step is not None), reverse=True)
+
+
+def restart_step(path):
+    """The step of a restart file of LAMMPS; None for another file, and for one that was cut while it was written."""
+    try:
+        with open(path, "rb") as file:
+            head = file.read(4096)
+            if not head.startswith(MAGIC) or len(head) < 2 * len(MAGIC):
+                return None
+            file.seek(-len(MAGIC), os.SEEK_END)
+            if file.read() != MAGIC:
+                return None
+        # byte order and format; then numbered entries (lmprestart.h): 0 and 4 are texts, 3 is the size of a step
+        at, entry, size = len(MAGIC) + 8, None, 8
+        while entry != 5:
+            entry, value = struct.unpack_from("=ii", head, at)
+            at += 8 + max(0, value) * (entry in (0, 4))
+            size = value if entry == 3 else size
+        return max(0, struct.unpack_from("=q" if size == 8 else "=i", head, at - 4)[0])
+    except (OSError, struct.error):
+        return None
 
 
 # --- provenance ---
@@ -259,6 +335,8 @@ def load_summary(path):
     """The summary of fix deposit/grid as a dict, with all that the tools need of it."""
     about = load_yaml(path, "a summary that fix deposit/grid wrote")
     for key, entries in SUMMARY_KEYS.items():
+        if key in OPTIONAL and key not in about:
+            continue
         for entry in entries or (None,):
             if key not in about or (entry and (not isinstance(about[key], dict) or entry not in about[key])):
                 raise SlopeError(path, "must be a summary that fix deposit/grid wrote, with "

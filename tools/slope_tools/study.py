@@ -6,6 +6,7 @@ Order of the work: check the deck and the settings, make the run folders and run
 import argparse
 import decimal
 import itertools
+import math
 import os
 import re
 import shutil
@@ -48,17 +49,27 @@ def add_parser(commands, **kwargs):
     parser = commands.add_parser(
         "study", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
         description="Run one deck over the product of lists of its variables.", **kwargs)
-    parser.add_argument("deck", metavar="DECK", type=Path,
-                        help="LAMMPS input deck with one fix deposit/grid; the plain files beside it are its data")
+    add_deck(parser)
     parser.add_argument("--set", metavar="NAME=V1,V2,...", action="append", default=[], required=True,
                         help="values of an index variable of the deck; A:B:STEP stands for A, A + STEP, ... up to B")
+    parser.add_argument("--exceed", default="0.1,0.5,1", metavar="T1,T2,...",
+                        help="thicknesses of the maps of exceedance, m (default 0.1,0.5,1)")
+    add_runs(parser)
+    return parser
+
+
+def add_deck(parser):
+    parser.add_argument("deck", metavar="DECK", type=Path,
+                        help="LAMMPS input deck with one fix deposit/grid; the plain files beside it are its data")
+
+
+def add_runs(parser, road=False):
+    """Arguments of how the runs are made and what is measured; road: it must be given."""
     parser.add_argument("-o", dest="output", metavar="DIR", required=True, type=Path, help="the study's folder")
     parser.add_argument("--np", type=count, default=1, metavar="N", help="MPI ranks of each run (default 1)")
     parser.add_argument("--jobs", type=count, metavar="J",
                         help="runs at a time (default: as many as the cores of this machine allow)")
-    parser.add_argument("--exceed", default="0.1,0.5,1", metavar="T1,T2,...",
-                        help="thicknesses of the maps of exceedance, m (default 0.1,0.5,1)")
-    parser.add_argument("--road", metavar="POLYGON", type=Path,
+    parser.add_argument("--road", metavar="POLYGON", type=Path, required=road,
                         help="tell the volume to remove from this road too: GeoJSON, shapefile, CSV or WKT")
     parser.add_argument("--cut-angle", metavar="DEG", type=number, default=30.0,
                         help="rise of the cut surface from the road's edges, degrees (default 30); see `slope volume`")
@@ -68,17 +79,21 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--lmp", metavar="FILE", help="the LAMMPS program (default: LMP of the environment, then "
                         "build/lmp beside tools/)")
     parser.add_argument("--dry-run", action="store_true", help="only list the runs")
-    return parser
 
 
 def run(args):
     """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
     settings = check_settings(args.set, args.deck)
     thresholds = check_thresholds(args.exceed)
+    perform(args, settings, plan(args.output, settings),
+            lambda todo, work: results.collect(args, settings, todo, work, thresholds))
+
+
+def perform(args, settings, todo, collect):
+    """Run what is not finished of todo, then collect(todo, work); SlopeError after that if a run failed."""
     files = data_files(args.deck, settings)
     if args.road:
         check_road(args, settings)
-    todo = plan(args.output, settings)
     check_folder(args, todo)
     if args.dry_run:
         return list_runs(todo)
@@ -98,9 +113,10 @@ def run(args):
                 jobs.check_finished(one, args.deck, digests)
             work = jobs.Work(args.deck, digests, inputs, lmp, args.np, most)
             work.do(todo)
-            results.collect(args, settings, todo, work, thresholds)
+            collect(todo, work)
     except OSError as error:
-        raise SlopeError(error.filename or args.output, f"cannot be used: {error.strerror}") from error
+        place = error.filename2 or error.filename or args.output        # of a copy, the second is where it goes
+        raise SlopeError(place, f"cannot be used: {error.strerror}") from error
     failed = [one for one in todo if one.error]
     if failed:
         more = f" and {len(failed) - 1} more" if len(failed) > 1 else ""
@@ -110,40 +126,35 @@ def run(args):
 
 # --- what is to be run ---
 
-def check_settings(options, deck):
-    """{name: [values]} of the --set options, in their order; every name must be an index variable of the deck."""
+def check_settings(options, deck, option="--set"):
+    """{name: [values]} of the options NAME=VALUES, in their order; every name must be an index variable of the deck."""
     found = runs.variables(deck)
     known = {name for name, (style, _) in found.items() if style == "index"}
     fixes = [words for words in runs.commands(deck) if words[0] == "fix" and words[3:4] == ["deposit/grid"]]
     if len(fixes) != 1:
         raise SlopeError(deck, "must have one fix deposit/grid, which gives the deposit", len(fixes))
     settings = {}
-    for option in options:
-        name, equals, text = option.partition("=")
+    for words in options:
+        name, equals, text = words.partition("=")
         if not (equals and name):
-            raise SlopeError("--set", "must be NAME=V1,V2,... or NAME=A:B:STEP", option)
+            raise SlopeError(option, "must be NAME=V1,V2,... or NAME=A:B:STEP", words)
         if name not in known:
             style = f"{name} of style {found[name][0]}" if name in found else name
-            raise SlopeError("--set", f"must name an index variable of {deck} ({', '.join(sorted(known)) or 'none'})",
+            raise SlopeError(option, f"must name an index variable of {deck} ({', '.join(sorted(known)) or 'none'})",
                              style)
         if name in settings:
-            raise SlopeError("--set", "must name a variable once", f"{name} twice")
-        settings[name] = values(option, text)
-    total = 1
-    for several in settings.values():
-        total *= len(several)
-    if total > MOST_RUNS:
-        raise SlopeError("--set", f"must make at most {MOST_RUNS} runs", total)
+            raise SlopeError(option, "must name a variable once", f"{name} twice")
+        settings[name] = values(words, text, option)
     return settings
 
 
-def values(option, text):
-    """The values that the right side of a --set option stands for, as text."""
+def values(words, text, option="--set"):
+    """The values that the right side of an option NAME=VALUES stands for, as text; words: all of it."""
     found = []
     for part in text.split(","):
         ends = part.split(":")
         if not part.strip():
-            raise SlopeError("--set", "must have no empty value", option)
+            raise SlopeError(option, "must have no empty value", words)
         try:
             numbers = [decimal.Decimal(end) for end in ends] if len(ends) == 3 else None
         except decimal.InvalidOperation:
@@ -153,14 +164,14 @@ def values(option, text):
             continue
         start, stop, step = numbers
         if not all(end.is_finite() for end in numbers) or step == 0 or (stop - start) / step < 0:
-            raise SlopeError("--set", "A:B:STEP must have a STEP that leads from A to B", option)
+            raise SlopeError(option, "A:B:STEP must have a STEP that leads from A to B", words)
         if (stop - start) / step >= MOST_RUNS:
-            raise SlopeError("--set", f"must make at most {MOST_RUNS} runs", option)
+            raise SlopeError(option, f"must make at most {MOST_RUNS} runs", words)
         found += [plain(start + i * step) for i in range(int((stop - start) / step) + 1)]
     keys = [as_number(value) for value in found]
     for i, key in enumerate(keys):
         if key in keys[:i]:
-            raise SlopeError("--set", "must have every value once", f"{option} with {found[i]} twice")
+            raise SlopeError(option, "must have every value once", f"{words} with {found[i]} twice")
     return found
 
 
@@ -204,7 +215,19 @@ def check_road(args, settings):
 
 def plan(output, settings):
     """The runs of the product of all settings, the last one varying fastest."""
+    total = math.prod(len(several) for several in settings.values())
+    if total > MOST_RUNS:
+        raise SlopeError("--set", f"must make at most {MOST_RUNS} runs", total)
     todo = [jobs.Run(output, dict(zip(settings, chosen))) for chosen in itertools.product(*settings.values())]
+    for one in todo:
+        one.varied = ", ".join(f"{name} {one.chosen[name]}" for name, several in settings.items()
+                               if len(several) > 1) or one.name
+    check_names(todo)
+    return todo
+
+
+def check_names(todo):
+    """Raise SlopeError unless each run has a folder of its own."""
     names = {}
     for one in todo:
         if len(one.name) > MOST_LETTERS:
@@ -213,9 +236,6 @@ def plan(output, settings):
             raise SlopeError("--set", f"must not give two runs the folder {one.name}",
                              f"{list(names[one.name].values())} and {list(one.chosen.values())}")
         names[one.name] = one.chosen
-        one.varied = ", ".join(f"{name} {one.chosen[name]}" for name, several in settings.items()
-                               if len(several) > 1) or one.name
-    return todo
 
 
 def check_folder(args, todo):

@@ -1,0 +1,310 @@
+"""A full disk, a folder that cannot be written, a kill while files are written: what was complete stays so.
+
+Three ways to make a disk full: a limit on the size of files (RLIMIT_FSIZE, for everybody), a small file system of its
+own (tmpfs, for root; else skipped), and no folder at all.
+"""
+import contextlib
+import os
+import random
+import re
+import resource
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tiny_collapse import DECK, LMP, TOP, read_asc, write_case
+
+TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
+sys.path.insert(0, str(TOOLS))
+
+from slope_tools import cli, deposit, figures, maps, rasters, runs, travel  # noqa: E402,F401  (before any limit)
+
+WRITES = ("restart     50 ${out}.1.restart ${out}.2.restart\n"
+          "dump all all custom 50 ${out}.dump id type diameter x y z\n"
+          "run         ${steps}\n")
+KILLS = 8
+
+
+@pytest.fixture(scope="module")
+def case(tmp_path_factory):
+    """A case, a finished study of it in out, and in run what a run of its own left."""
+    folder = tmp_path_factory.mktemp("case")
+    deck = write_case(folder / "case")
+    deck.write_text(DECK.replace("run         ${steps}\n", WRITES))
+    environment = {**os.environ, "LMP": LMP}
+    subprocess.run([sys.executable, TOOLS / "slope", "study", "case/in.tiny", "--set", "rolling=0,0.1", "-o", "out",
+                    "--road", "case/road.csv", "--local"], cwd=folder, env=environment, check=True, capture_output=True)
+    (folder / "mapped.csv").write_text("5,2\n30,2\n30,20\n5,20\n")
+    return folder
+
+
+@pytest.fixture
+def here(case, tmp_path, monkeypatch):
+    """The test's folder, with the case and the run in it."""
+    for path in case.iterdir():
+        (tmp_path / path.name).symlink_to(path)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("LMP", LMP)
+    return tmp_path
+
+
+def contents(folder):
+    """{path: bytes} of the files in and below a folder, without hidden ones, and without the times in them."""
+    return {str(path.relative_to(folder)): re.sub(rb"\d{4}-\d\d-\d\d[ T]\d\d:\d\d(:\d\d)?([+-]\d\d:\d\d)?", b"then",
+                                                  path.read_bytes())
+            for path in sorted(Path(folder).rglob("*"))
+            if path.is_file() and "/." not in f"/{path.relative_to(folder)}"}
+
+
+@contextlib.contextmanager
+def file_limit(size):
+    """No file may grow beyond so many bytes; what is beyond is refused as on a full disk."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+@pytest.fixture
+def small_disk(tmp_path):
+    """mount(kB): a file system of its own of that size, at the folder that it gives."""
+    mounted = []
+
+    def mount(kilobytes):
+        folder = tmp_path / "disk"
+        folder.mkdir()
+        done = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={kilobytes}k", "none", folder], check=False,
+                              capture_output=True, text=True)
+        if done.returncode != 0:
+            pytest.skip(f"needs a file system of its own, which only root may mount: {done.stderr.strip()}")
+        mounted.append(folder)
+        return folder
+    yield mount
+    for folder in mounted:
+        subprocess.run(["umount", "-l", folder], check=True)
+
+
+def fill(folder, leave):
+    """Leave so many kB in a file system."""
+    free = os.statvfs(folder)
+    size = free.f_bavail * free.f_bsize - 1024 * leave
+    (folder / "filler").write_bytes(b"\0" * max(0, size))
+
+
+# --- the tools ---
+
+# a command, its other form, which gives other files; the first must leave the largest file that the second writes
+TOOLS_OUTPUTS = {
+    "terrain": ["terrain case/terrain.asc -o {0}/terrain.asc", "--bounds 1 1 39 23"],
+    "polygon": ["polygon mapped.csv --local --terrain case/terrain.asc -o {0}/mapped.csv", ""],
+    "volume": ["volume out/rolling_0/tiny --road case/road.csv --local --mesh 4 -o {0}", "--cut-angle 20"],
+    "score": ["score out/rolling_0/tiny --observed mapped.csv --local -o {0}", "--threshold 0.3"],
+    "travel": ["travel out/rolling_0/tiny.dump -o {0}", "--axis 30"],
+    "report": ["report out/rolling_0 --pictures -o {0}/report.html", "--section 2 12 38 12"],
+    "study": ["study case/in.tiny --set rolling=0,0.1 --road case/road.csv --local -o {0}", "--cut-angle 20"],
+}
+
+
+def slope(command, folder, more=""):
+    """Status of `slope COMMAND`."""
+    return cli.main(f"{command.format(folder)} {more}".split())
+
+
+@pytest.fixture
+def before(here):
+    """before(name, folder): what the command leaves in the folder, undisturbed."""
+    def make(name, folder):
+        if name == "study":
+            subprocess.run(["cp", "-a", f"{(here / 'out').resolve()}/.", folder], check=True)
+        assert slope(TOOLS_OUTPUTS[name][0], folder) == 0
+        return contents(folder)
+    return make
+
+
+@pytest.mark.parametrize("name", TOOLS_OUTPUTS)
+def test_a_tool_and_a_file_that_does_not_fit(before, here, capsys, name):
+    (here / "results").mkdir()
+    whole = before(name, "results")
+    largest = max(len(data) for path, data in whole.items() if "rolling_" not in path or "volume/" in path)
+    capsys.readouterr()
+    with file_limit(largest // 2):
+        status = slope(TOOLS_OUTPUTS[name][0], "results", TOOLS_OUTPUTS[name][1])
+    err = capsys.readouterr().err.splitlines()
+    assert status == 2
+    assert re.fullmatch(rf"slope {name}: results\S*: cannot be (written|used): .*File too large.*", err[-1]), err
+    assert contents("results") == whole or (name in ("study", "report") and whole.keys() == contents("results").keys())
+    # and all is well when there is room again
+    assert slope(TOOLS_OUTPUTS[name][0], "results") == 0 and contents("results") == whole
+
+
+@pytest.mark.parametrize("name", TOOLS_OUTPUTS)
+def test_a_tool_on_a_full_disk(before, small_disk, here, capsys, name):
+    disk = small_disk(8000)
+    whole = before(name, disk)
+    fill(disk, 0)
+    capsys.readouterr()
+    assert slope(TOOLS_OUTPUTS[name][0], disk, TOOLS_OUTPUTS[name][1]) == 2
+    err = capsys.readouterr().err.splitlines()
+    assert re.fullmatch(rf"slope {name}: {disk}\S*: cannot be (written|used): .*No space left.*", err[-1]), err
+    (disk / "filler").unlink()
+    assert contents(disk) == whole
+
+
+@pytest.mark.parametrize("name", TOOLS_OUTPUTS)
+def test_a_tool_and_no_folder(here, capsys, name):
+    """Where the folder should be is a file."""
+    Path("results").write_text("not a folder\n")
+    assert slope(TOOLS_OUTPUTS[name][0], "results", TOOLS_OUTPUTS[name][1]) == 2
+    err = capsys.readouterr().err.splitlines()
+    assert "results" in err[-1] and not any("Traceback" in line for line in err)
+    assert Path("results").read_text() == "not a folder\n"
+
+
+@pytest.mark.parametrize("name", sorted(TOOLS_OUTPUTS.keys() - {"report"}))      # slow, and written as study's
+def test_a_tool_that_is_killed(before, here, name):
+    """At any moment: every file is the one before or the one after, and no file is half of it."""
+    (here / "results").mkdir()
+    (here / "resultz").mkdir()
+    one = before(name, "results")
+    before(name, "resultz")
+    began = time.monotonic()
+    assert slope(TOOLS_OUTPUTS[name][0], "resultz", TOOLS_OUTPUTS[name][1]) == 0
+    lasts = time.monotonic() - began
+    other = {path: data.replace(b"resultz", b"results") for path, data in contents("resultz").items()}
+    chance = random.Random(f"{name} 1")
+    for _ in range(KILLS):
+        child = os.fork()
+        if child == 0:
+            with contextlib.suppress(BaseException):
+                os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+                os.dup2(1, 2)
+                slope(TOOLS_OUTPUTS[name][0], "results", TOOLS_OUTPUTS[name][1])
+            os._exit(0)
+        time.sleep(chance.uniform(0, lasts))
+        os.kill(child, signal.SIGKILL)
+        os.waitpid(child, 0)
+        found = contents("results")
+        assert found.keys() >= one.keys()
+        for path, data in found.items():
+            if path.endswith((".png", ".html", "study.yaml")):      # with times or sizes that differ
+                assert data[-8:] in (one[path][-8:], other[path][-8:]), path
+            else:
+                assert data in (one.get(path), other[path]), path
+
+
+# --- runs ---
+
+def lmp(*words, limit=None):
+    """Run the deck in the present folder."""
+    def begin():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)       # a write that is refused, not a signal
+        if limit is not None:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+    # Open MPI would have large files of its own, for ranks that talk to each other
+    environment = {**os.environ, "PMIX_MCA_gds": "hash", "OMPI_MCA_btl": "self"}
+    return subprocess.run([LMP, "-in", "in.tiny", "-log", "none", *words], env=environment, preexec_fn=begin,
+                          restore_signals=False, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          check=False)
+
+
+@pytest.fixture
+def run_folder(here, monkeypatch):
+    """make(folder): a run of 100 steps there; gives what it left, without the dump and the restart files."""
+    def make(folder):
+        for name in ("in.tiny", "terrain.asc"):
+            (folder / name).write_bytes((here / "case" / name).read_bytes())
+        monkeypatch.chdir(folder)
+        done = lmp("-var", "steps", "100")
+        assert done.returncode == 0, done.stdout
+        return outputs(folder)
+    return make
+
+
+def outputs(folder):
+    """The rasters and the summary of a run, with all that is beside them of that kind."""
+    return {path: data for path, data in contents(folder).items() if re.search(r"\.(asc|yaml)(\.|$)", path)}
+
+
+def test_a_run_whose_rasters_do_not_fit(run_folder, tmp_path):
+    (tmp_path / "work").mkdir()
+    whole = run_folder(tmp_path / "work")
+    largest = max((len(data), path) for path, data in whole.items() if path.startswith("tiny"))
+    done = lmp("-var", "steps", "200", "-var", "rolling", "0.2", limit=largest[0] - 100)
+    errors = [line for line in done.stdout.splitlines() if line.startswith("ERROR")]
+    assert done.returncode != 0 and len(errors) == 1
+    assert re.match(r"ERROR( on proc 0)?: Fix deposit/grid: cannot write tiny\.\w+\.asc: File too large", errors[0])
+    assert outputs(".") == whole                # all of them, not only the one that did not fit
+
+
+def test_a_run_on_a_full_disk(run_folder, small_disk):
+    disk = small_disk(4000)
+    whole = run_folder(disk)
+    fill(disk, 8)
+    done = lmp("-var", "steps", "200", "-var", "rolling", "0.2")
+    errors = [line for line in done.stdout.splitlines() if line.startswith("ERROR")]
+    assert done.returncode != 0 and len(errors) == 1
+    assert "cannot write tiny." in errors[0] and "No space left on device" in errors[0]
+    (disk / "filler").unlink()
+    assert outputs(disk) == whole
+    assert lmp("-var", "steps", "100").returncode == 0 and outputs(disk) == whole
+
+
+def test_a_run_without_a_folder_ends_before_it_begins(run_folder, tmp_path):
+    (tmp_path / "work").mkdir()
+    run_folder(tmp_path / "work")
+    Path("file").write_text("not a folder\n")
+    for out, why in (("none/tiny", "No such file or directory"), ("file/tiny", "Not a directory")):
+        done = lmp("-var", "steps", "200", "-var", "out", out)
+        errors = [line for line in done.stdout.splitlines() if line.startswith("ERROR")]
+        assert done.returncode != 0 and len(errors) == 1
+        assert f"Fix deposit/grid: cannot write {out}.summary.yaml: {why}" in errors[0]
+        assert "Loop time" not in done.stdout
+
+
+def test_a_restart_file_that_does_not_fit_leaves_the_one_before(run_folder, tmp_path):
+    (tmp_path / "work").mkdir()
+    run_folder(tmp_path / "work")
+    assert [step for step, _ in runs.restarts(".")] == [100, 50]
+    size = os.path.getsize("tiny.1.restart")
+    done = lmp("-var", "steps", "200", limit=size // 2)     # step 50 goes to tiny.1.restart again
+    assert [step for step, _ in runs.restarts(".")] == [100]
+    assert done.returncode != 0 and "ERROR: I/O error while writing restart" in done.stdout
+
+
+def test_a_run_that_is_killed(run_folder, tmp_path):
+    """At any moment: rasters and summary can be read, and one of the two restart files is complete."""
+    (tmp_path / "work").mkdir()
+    whole = run_folder(tmp_path / "work")
+    Path("in.tiny").write_text(Path("in.tiny").read_text().replace("deposit/grid 10 50", "deposit/grid 5 5")
+                               .replace("restart     50", "restart     5"))
+    chance = random.Random(2)
+    seen = set()
+    for _ in range(KILLS):
+        for path in Path(".").glob("*.restart"):
+            path.unlink()
+        process = subprocess.Popen([LMP, "-in", "in.tiny", "-log", "none", "-var", "steps", "100000"],
+                                   stdout=subprocess.DEVNULL)
+        while not Path("tiny.2.restart").exists():
+            assert process.poll() is None
+            time.sleep(0.01)
+        time.sleep(chance.uniform(0, 0.3))
+        process.kill()
+        process.wait()
+        for path in whole:
+            if path.startswith("tiny") and path.endswith(".asc"):
+                assert read_asc(path).shape == (24, 40), path
+        about = runs.load_summary("tiny.summary.yaml")
+        restarts = runs.restarts(".")
+        assert restarts and abs(restarts[0][0] - about["step"]) <= 5
+        # thickness and summary are of one output, unless the kill fell between two renames
+        held = np.nansum(read_asc("tiny.thickness.asc"))
+        assert held == pytest.approx(about["volume"]["on_grid"], rel=1e-3)
+        seen.add(about["step"])
+    assert len(seen) > 1
