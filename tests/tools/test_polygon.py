@@ -300,7 +300,7 @@ SQUARE = "10,10\n20,10\n20,20\n10,20\n"
     ("a.csv", csv("1,2\n3;4\n"), "", "a.csv: line 2: must be two numbers, x,y, got 3;4"),
     ("a.csv", csv("1,2\nx,y\n"), "", "a.csv: line 2: must be two numbers, x,y, got x,y"),
     ("a.csv", csv("1,2,3\n"), "", "a.csv: line 1: must be two numbers, x,y, got 1,2,3"),
-    ("a.csv", csv("1,nan\n"), "", "a.csv: line 1: must be two finite numbers, x,y, got 1,nan"),
+    ("a.csv", csv("1,nan\n"), "", "a.csv: line 1: must be two finite numbers within +-1e+12, x,y, got 1,nan"),
     ("a.csv", csv(SQUARE + "\n1,2\n3,4\n1,2\n"), "--local", "a.csv: line 6: a ring must have at least 3 points, got 2"),
     ("a.csv", csv("1,1\n2,2\n4,4\n"), "--local", "a.csv: line 1: must have an area > 0"),
     ("a.csv", csv(SQUARE + "\n30,30\n40,40\n40,30\n30,40\n"), "--local",

@@ -10,6 +10,7 @@ Only the module that is asked for is imported: a subcommand starts fast, and nee
 import argparse
 import importlib
 import math
+import os
 import re
 import sys
 from pathlib import Path
@@ -22,6 +23,7 @@ COMMANDS = {
     "volume": "what must be removed from a road, per mesh cell and in total, above a cut surface",
     "score": "a run's deposit against a mapped one: overlap, run-out, volume",
     "study": "one deck over lists of its variables, several runs at a time: table, envelope, exceedance",
+    "sensitivity": "one variable of a deck at a time: what it does to the volumes, how far one run can be trusted",
     "bench": "how fast a collapse runs: against other codes, on larger terrains, on ranks, with more balls",
     "crosscheck": "the same scenes in other codes: bounce, slide, roll, rolling resistance, a collapse",
     "verify": "every case against closed forms and published numbers: a report to file",
@@ -79,4 +81,7 @@ def main(argv=None):
     except KeyboardInterrupt:
         print(f"slope {args.command}: interrupted", file=sys.stderr)
         return 130
+    except BrokenPipeError:         # `slope ... | head`: nobody reads on
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 141
     return 0

@@ -30,6 +30,7 @@ LARGEST_XML = 256_000_000      # bytes; a tile of 1125 x 750 has 18 million
 LARGEST_ZIP = 4_000_000_000    # bytes, of all tiles in it, unpacked
 DEFLATE = 1100                 # deflate packs at most 1032 to 1: more means members that overlap
 CHUNK = 1 << 20                # bytes
+LONGEST = 200                  # characters of a file's own words in a message
 UNIT = 1 / 30 / 3600           # degrees; spacings are whole multiples of it: 1 (DEM1), 6 (DEM5), 12 (DEM10)
 ON_UNIT = 0.01                 # of a cell: corners have nine decimals or fewer, and belong to a multiple of the spacing
 MISSING = "\u30c7\u30fc\u30bf\u306a\u3057"  # "no data"
@@ -132,7 +133,7 @@ def _read_zip(source, where, room=None):
     try:
         archive = zipfile.ZipFile(source)
     except (zipfile.BadZipFile, NotImplementedError, ValueError) as error:
-        raise SlopeError(where, f"must be a whole zip file ({error})") from error
+        raise SlopeError(where, f"must be a whole zip file ({str(error)[:LONGEST]})") from error
     wanted = (".xml", ".zip") if outer else (".xml",)
     members = [member for member in archive.infolist() if member.filename.lower().endswith(wanted)]
     total = sum(member.file_size for member in members)
@@ -142,7 +143,8 @@ def _read_zip(source, where, room=None):
                          f"{total / 1e6:.0f} MB in {size / 1e6:.3g} MB")
     tiles = []
     for member in rasters.progress(members, f"reading {where}"):
-        name = f"{where}: {''.join(c if c.isprintable() else '?' for c in member.filename)}"
+        kind = member.filename[-4:].lower()
+        name = f"{where}: {''.join(c if c.isprintable() else '?' for c in member.filename[:LONGEST])}"
         if member.file_size > LARGEST_XML:
             raise SlopeError(name, f"must have at most {LARGEST_XML / 1e6:g} MB unpacked",
                              f"{member.file_size / 1e6:.0f} MB")
@@ -153,7 +155,7 @@ def _read_zip(source, where, room=None):
                              zipfile.compressor_names.get(member.compress_type, member.compress_type))
         try:
             with archive.open(member) as inner:
-                if name.lower().endswith(".xml"):
+                if kind == ".xml":
                     tiles += _tiles(inner, name)
                 else:
                     tiles += _read_zip(io.BytesIO(inner.read()), name, room)
@@ -161,7 +163,7 @@ def _read_zip(source, where, room=None):
             continue  # metadata, or roads and buildings
         except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, ValueError,
                 OSError) as error:     # ValueError: a member that begins before the file does
-            raise SlopeError(name, f"is damaged ({error})") from error
+            raise SlopeError(name, f"is damaged ({str(error)[:LONGEST]})") from error
     if outer and not tiles:
         raise SlopeError(where, "must hold FG-GML elevation tiles (.xml), it has none",
                          f"{len(archive.infolist())} files")

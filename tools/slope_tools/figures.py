@@ -420,3 +420,55 @@ def bars(names, values, y_label, title):
         axes.set_title(title, loc="left")
         axes.spines[["top", "right"]].set_visible(False)
         return data_uri(figure, "svg")
+
+
+def tornado(path, panels, variables, title):
+    """What each variable does, largest first, around the mean of the equivalent runs; written to a PNG.
+
+    panels: list of (name, unit, scatter, {variable: [(value, result), ...]}), scatter with mean and standard_deviation;
+    variables: {variable: (kind, base value)}, those of kind repeat are drawn in grey.
+    """
+    _, _, about, first = panels[0]
+    order = sorted(variables, key=lambda name: (variables[name][0] != "repeat",
+                                                max(abs(value - about["mean"]) for _, value in first[name])))
+    with plt.rc_context(STYLE):
+        figure, axes = plt.subplots(1, len(panels), figsize=(FULL, 0.9 + 0.26 * len(order)), sharey=True, squeeze=False)
+        for axis, (name, unit, scatter, found) in zip(axes[0], panels):
+            mean, deviation = scatter["mean"], scatter["standard_deviation"]
+            if deviation is not None:
+                axis.axvspan(mean - 2 * deviation, mean + 2 * deviation, color="#e8e8e8", lw=0, zorder=0)
+            axis.axvline(mean, color=GRAY, lw=0.8, zorder=1)
+            for y, variable in enumerate(order):
+                values = [result for _, result in found[variable]]
+                low, high = min(mean, *values), max(mean, *values)
+                grey = variables[variable][0] == "repeat"
+                axis.barh(y, high - low, left=low, height=0.5, color="#b5b5b5" if grey else COLOURS[0], alpha=0.85,
+                          zorder=2)
+                axis.plot(values, [y] * len(values), "|", color="black", ms=7, mew=0.8, zorder=3)
+                if not grey:
+                    label_ends(axis, y, mean, found[variable])
+            axis.set_title(f"{name} ({unit})", loc="left")
+            axis.use_sticky_edges = False       # bars have them: no room for the labels
+            axis.margins(x=0.12, y=0.02)
+            axis.autoscale_view()
+            axis.xaxis.set_major_locator(MaxNLocator(5))
+            axis.xaxis.set_major_formatter(matplotlib.ticker.StrMethodFormatter("{x:,.6g}"))
+            axis.grid(axis="x", color="#dddddd", lw=0.5, zorder=0)
+            axis.set_axisbelow(True)
+            axis.spines[["top", "right"]].set_visible(False)
+        axes[0][0].set_yticks(range(len(order)), [f"{name} (base {variables[name][1]})" for name in order], fontsize=7)
+        if panels[0][2]["standard_deviation"] is not None:
+            title += "; grey: runs that are equally good, and two of their standard deviations"
+        figure.suptitle(title, fontsize=7.5, x=0.01, ha="left")
+        figure.savefig(path, dpi=150, metadata={"Software": None})
+        plt.close(figure)
+
+
+def label_ends(axis, y, mean, found):
+    """Write the values of a variable beside the two ends of its bar."""
+    for side, ha in ((-1, "right"), (1, "left")):
+        beyond = [(value, result) for value, result in found if side * (result - mean) > 0]
+        if beyond:
+            value, result = max(beyond, key=lambda pair: side * pair[1])
+            axis.annotate(value, (result, y), xytext=(3 * side, 0), textcoords="offset points", ha=ha, va="center",
+                          fontsize=6)

@@ -3,8 +3,9 @@
 The deck's own format, which `region polygon` reads and write() writes: rings of lines `x,y`, a blank line between two
 rings, # starts a comment. A point is inside if it is inside an odd number of rings, so that holes are rings, too.
 """
+import contextlib
+import io
 import logging
-import math
 import os
 import re
 from pathlib import Path
@@ -26,6 +27,7 @@ from .errors import SlopeError
 from .rasters import crs_name
 from .terrain import same_crs
 
+FARTHEST = 1e12    # m or degrees: larger coordinates are mistakes, region polygon refuses them, too
 DIGITS = 6     # decimals of a written coordinate, m: beyond them is the noise of origins and projections
 PLACE = re.compile(r"^# local metres: .+", re.MULTILINE)
 WKT = re.compile(r"[A-Za-z]+\s*(?:Z|M|ZM)?\s*(?:\(|EMPTY)", re.IGNORECASE)
@@ -46,6 +48,13 @@ def read_local(path, raster, local=False, crs=None):
     """
     if not Path(path).is_file():
         raise SlopeError(path, "must be an existing file")
+    try:
+        return _read_local(path, raster, local, crs)
+    except ShapelyError as error:     # GEOS gives up on coordinates such as 1e-320 among others
+        raise SlopeError(path, "must be polygons whose points differ by more than rounding") from error
+
+
+def _read_local(path, raster, local, crs):
     text = read_text(path)
     if text is None:
         polygons, own = _read_fiona(path)
@@ -94,7 +103,8 @@ def read_text(path):
 def _read_fiona(path):
     """Polygons of a file that fiona opens, and its CRS or None."""
     try:
-        with fiona.Env():
+        # fiona prints what it cannot decode of GDAL's messages
+        with contextlib.redirect_stderr(io.StringIO()), fiona.Env():
             layers = fiona.listlayers(path)
             if len(layers) != 1:
                 raise SlopeError(path, "must have one layer of polygons", f"{len(layers)} layers")
@@ -156,8 +166,8 @@ def _parts(where, geometry):
     geometry = map_points(geometry, lambda points: points)
     for part in polygons_of(geometry):
         for ring in (part.exterior, *part.interiors):
-            if not np.isfinite(ring.coords).all():
-                raise SlopeError(where, "coordinates must be finite numbers")
+            if not (np.abs(ring.coords) <= FARTHEST).all():    # NaN, too
+                raise SlopeError(where, f"coordinates must be finite numbers within +-{FARTHEST:g}")
     return polygons_of(_checked(where, geometry))
 
 
@@ -206,8 +216,9 @@ def _read_rings(path, text):
             x, y = map(float, words)
         except ValueError:
             raise SlopeError(f"{path}: line {number}", "must be two numbers, x,y", content[:60]) from None
-        if not (math.isfinite(x) and math.isfinite(y)):
-            raise SlopeError(f"{path}: line {number}", "must be two finite numbers, x,y", content[:60])
+        if not (abs(x) <= FARTHEST and abs(y) <= FARTHEST):    # NaN, too
+            raise SlopeError(f"{path}: line {number}", f"must be two finite numbers within +-{FARTHEST:g}, x,y",
+                             content[:60])
         if not points:
             first = number
         points.append((x, y))

@@ -5,7 +5,8 @@ line is its title, CASE, the folder in inputs/ that it is about, and CLAIMS. A n
 """
 import importlib
 
-MODULES = ("restitution", "timestep", "slide_roll", "rolling_resistance", "oblique_impact", "rolling", "collisions",
+MODULES = ("restitution", "timestep", "slide_roll", "rolling_resistance", "apparent_restitution", "oblique_impact",
+           "rolling", "collisions", "tochigi",
            "column_collapse", "heap")
 
 

@@ -1,0 +1,125 @@
+"""tools/slope sensitivity: one variable at a time; scatter, effects and the sentence against numbers by hand."""
+import csv
+import math
+import os
+import shlex
+import statistics
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+from tiny_collapse import LMP, TOP, write_case
+
+TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
+sys.path.insert(0, str(TOOLS))
+
+from slope_tools import cli, sensitivity  # noqa: E402  (after the path is set)
+
+pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
+ROAD = "--road case/road.csv --local"
+
+
+@pytest.fixture
+def slope(tmp_path, monkeypatch, capsys):
+    """Run `slope sensitivity case/in.tiny ARGUMENTS` in the test's folder; gives status, stdout, stderr."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("LMP", LMP)
+    deck = write_case(tmp_path / "case")
+    text = deck.read_text().replace("variable  steps    index 150", "variable  steps    index 900\n"
+                                    "variable  xoffset  index 0.0")
+    deck.write_text(text.replace("lattice     sc 1.0", "lattice     sc 1.0 origin ${xoffset} 0 0"))
+
+    def run(arguments):
+        capsys.readouterr()
+        try:
+            status = cli.main(["sensitivity", "case/in.tiny", *shlex.split(arguments)])
+        except SystemExit as error:
+            status = error.code
+        return status, *capsys.readouterr()
+    return run
+
+
+def rows():
+    with open("out/sensitivity.csv", encoding="ascii") as table:
+        return list(csv.DictReader(table))
+
+
+def test_one_variable_at_a_time_against_the_scatter_of_equivalent_runs(slope):
+    words = f"--vary friction=10,30,50 --vary cell=0.5 --repeat xoffset=0.0,0.25,0.5 --set rolling=0.05 {ROAD} -o out"
+    status, out, err = slope(words)
+    assert status == 0, err
+    # the values of the base run are not run again
+    names = ["rolling_0.05", "rolling_0.05_friction_10", "rolling_0.05_friction_50", "rolling_0.05_cell_0.5",
+             "rolling_0.05_xoffset_0.25", "rolling_0.05_xoffset_0.5"]
+    found = rows()
+    assert [row["run"] for row in found] == names
+    assert [row["kind"] for row in found] == ["base"] + 3 * ["vary"] + 2 * ["repeat"]
+    assert found[1]["base_value"] == "30" and found[1]["value"] == "10"
+
+    about = yaml.safe_load(Path("out/sensitivity.yaml").read_text())
+    assert about["study"]["base"]["rolling"] == "0.05" and about["study"]["base"]["friction"] == "30"
+    for i, name in enumerate(("remove_m3", "remove_on_road_m3")):
+        runs = {row["run"]: yaml.safe_load(Path(f"out/{row['run']}/volume/volume.yaml").read_text())["volume"]
+                for row in found}
+        values = {run: volume[name.removesuffix("_m3")] for run, volume in runs.items()}
+        equal = [values[run] for run in (names[0], names[4], names[5])]
+        mean, deviation = statistics.fmean(equal), statistics.stdev(equal)
+        scatter = about["scatter"][name]
+        assert scatter == {"runs": 3, "mean": pytest.approx(mean), "smallest": min(equal), "largest": max(equal),
+                           "standard_deviation": pytest.approx(deviation)}
+        assert deviation > 0 and values[names[1]] != values[names[2]]
+        for row in found:
+            assert float(row[name]) == pytest.approx(values[row["run"]])
+            assert float(row[f"effect_of_{name}"]) == pytest.approx(values[row["run"]] - mean)
+            beyond = abs(values[row["run"]] - mean) > 2 * deviation * math.sqrt(4 / 3)
+            assert row[f"clear_of_{name}"] == ("yes" if beyond else "no")
+        most = max(names[1:4], key=lambda run: abs(values[run] - mean))
+        text = about["trust"][i]
+        assert text in out
+        assert f"trust one run to +- {sensitivity.number(2 * deviation)} m3" in text
+        assert f"{most.split('_', 2)[2].replace('_', ' ')} changes it most" in text
+    assert Path("out/sensitivity.png").read_bytes()[:4] == b"\x89PNG"
+
+    # what is finished is kept, and a value may be added; the base is a row, too
+    before = Path(f"out/{names[0]}/finished.yaml").read_bytes()
+    status, out, err = slope(words.replace("--vary cell=0.5", "--vary cell=0.5 --vary steps=100"))
+    assert status == 0 and "6 of 7 runs are finished already" in out, err
+    assert Path(f"out/{names[0]}/finished.yaml").read_bytes() == before
+    status, out, err = slope(words + " --of front_m")
+    assert status == 0 and out.count("started") == 0 and "effect_of_front_m" in rows()[0], err
+
+
+def test_without_repeats_the_scatter_is_said_to_be_unknown(slope):
+    status, out, err = slope(f"--vary rolling=0.2 --set steps=100 {ROAD} -o out")
+    assert status == 0, err
+    assert "without --repeat its scatter is not known" in out
+    assert [row["clear_of_remove_m3"] for row in rows()] == ["", ""]
+
+
+def test_a_failed_run_is_told_and_the_others_are_collected(slope):
+    status, _, err = slope(f"--vary friction=20,95 --set steps=100 {ROAD} -o out")
+    assert status == 2 and "steps_100_friction_95: ERROR: Pair gran/restitution friction" in err
+    assert [row["value"] for row in rows()] == ["", "20"]
+
+
+@pytest.mark.parametrize("arguments, message", [
+    ("--vary colour=1", "--vary: must name an index variable of case/in.tiny"),
+    ("--vary friction=20 --repeat friction=30", "--repeat: must not name a variable of --vary, got friction"),
+    ("--vary friction=20,20.0", "--vary: must have every value once"),
+    ("--set friction=20,25", "--set: must give one value"),
+    ("--vary friction=30", "--vary, --repeat: must give a value that is not the base's"),
+    ("--vary friction=20 --of colour", "--of: must be different ones of remove_m3, "),
+    ("--vary out=../x,..-x", "must not give two runs the folder out_..-x"),
+])
+def test_wrong_input_is_one_line(slope, arguments, message):
+    status, _, err = slope(f"{arguments} {ROAD} -o out")
+    assert status == 2 and err.startswith("slope sensitivity: ") and err.count("\n") == 1
+    assert message in err
+    assert not Path("out").exists()
+
+
+def test_the_road_is_required(slope):
+    status, _, err = slope("--vary friction=20 -o out")
+    assert status == 2 and "--road" in err and err.count("\n") == 1

@@ -1,0 +1,254 @@
+"""slope sensitivity: one variable of a deck at a time; what it does to the volumes, how far one run can be trusted.
+
+Order of the work: plan the base run and those that differ from it by one variable, run them as `slope study` does
+(study.py, jobs.py), hold each against the mean of the equivalent runs.
+"""
+import argparse
+import csv
+import io
+import math
+import statistics
+import sys
+
+import yaml
+from rich.console import Console
+from rich.table import Table
+
+from . import jobs, results, runs, study
+from .errors import SlopeError
+from .results import as_number
+
+NAMES = {"remove_m3": ("to remove", "m3"), "remove_on_road_m3": ("on the road", "m3"),
+         "remove_beside_road_m3": ("beside the road", "m3"), "beyond_road_m3": ("beyond the road", "m3"),
+         "blocked_m": ("blocked length", "m"), "axis_thickness_m": ("thickness on the road's axis", "m"),
+         "released_m3": ("released", "m3"), "front_m": ("front", "m"), "reach_angle_deg": ("reach angle", "degrees"),
+         "centroid_m": ("way of the centroid", "m"), "thickness_m": ("largest thickness", "m")}
+TWO_SIDED = 2       # standard deviations that are called the scatter of a run: 19 of 20 runs, if they are normal
+
+EPILOG = """\
+units: metres, seconds, m3 of ground (bulk).
+
+example: what the size of the balls and the time step do, against the scatter over offsets of the lattice:
+  tools/slope sensitivity inputs/20_embankment/in.embankment --road inputs/20_embankment/road.csv --local \\
+      --set d=2.5 --vary d=1.25 --vary step=0.5 --repeat xoffset=0.25,0.5,0.75 -o out
+
+Runs are kept and reused as those of `slope study`. Writes DIR/sensitivity.csv, DIR/sensitivity.yaml and the tornado
+chart DIR/sensitivity.png.
+"""
+
+
+def add_parser(commands, **kwargs):
+    """Add `sensitivity` and its arguments to argparse's commands; return its parser."""
+    parser = commands.add_parser(
+        "sensitivity", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
+        description="One variable of a deck at a time: what it does to the volumes, and how far one run can be "
+                    "trusted.", **kwargs)
+    study.add_deck(parser)
+    parser.add_argument("--vary", metavar="NAME=V1,V2,...", action="append", default=[],
+                        help="values of an index variable of the deck that are a choice, each in a run of its own; "
+                             "A:B:STEP stands for A, A + STEP, ... up to B")
+    parser.add_argument("--repeat", metavar="NAME=V1,V2,...", action="append", default=[],
+                        help="the same, of a variable whose values are equally good, such as a seed: the scatter")
+    parser.add_argument("--set", metavar="NAME=VALUE", action="append", default=[],
+                        help="value of an index variable in the base run (default: the deck's)")
+    parser.add_argument("--of", metavar="NAME,...", default="remove_m3,remove_on_road_m3",
+                        help=f"what is looked at (default remove_m3,remove_on_road_m3), of {', '.join(NAMES)}")
+    study.add_runs(parser, road=True)
+    return parser
+
+
+def run(args):
+    """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
+    base = study.check_settings(args.set, args.deck)
+    for name, several in base.items():
+        if len(several) > 1:
+            raise SlopeError("--set", "must give one value (--vary and --repeat take several)",
+                             f"{name}={','.join(several)}")
+    base = {name: several[0] for name, several in base.items()}
+    kinds = {"vary": study.check_settings(args.vary, args.deck, "--vary"),
+             "repeat": study.check_settings(args.repeat, args.deck, "--repeat")}
+    for name in kinds["vary"].keys() & kinds["repeat"].keys():
+        raise SlopeError("--repeat", "must not name a variable of --vary", name)
+    of = args.of.split(",")
+    for name in of:
+        if name not in NAMES or of.count(name) > 1:
+            raise SlopeError("--of", f"must be different ones of {', '.join(NAMES)}", args.of)
+    todo = plan(args, base, kinds)
+    settings = {name: list(dict.fromkeys(one.chosen[name] for one in todo if name in one.chosen))
+                for name in (*base, *kinds["vary"], *kinds["repeat"])}
+    study.perform(args, settings, todo, lambda todo, work: collect(args, base, of, todo, work))
+
+
+def plan(args, base, kinds):
+    """The base run, and one for each value of each variable that is not the base's."""
+    first = jobs.Run(args.output, base)
+    first.kind, first.variable = "base", None
+    defaults = {**runs.index_variables(args.deck), **base}
+    todo = [first]
+    for kind, variables in kinds.items():
+        for name, several in variables.items():
+            for value in several:
+                if as_number(value) == as_number(defaults[name]):
+                    continue
+                one = jobs.Run(args.output, {**base, name: value})
+                one.kind, one.variable, one.varied = kind, name, f"{name} {value}"
+                todo.append(one)
+    if len(todo) == 1:
+        raise SlopeError("--vary, --repeat", "must give a value that is not the base's")
+    study.check_names(todo)
+    return todo
+
+
+def collect(args, base, of, todo, work):
+    """Table, chart and sensitivity.yaml over all runs that finished."""
+    defaults = {**work.defaults, **base}
+    maps = results.Maps(())
+    rows, warnings = [], []
+    for one in todo:
+        row = {"run": one.name, "kind": one.kind, "variable": one.variable,
+               "value": one.chosen[one.variable] if one.variable else None}
+        if one.error:
+            warnings.append(f"{one.name}: failed: {one.error}")
+            continue
+        found, thickness = results.result(one, row, maps)
+        rows.append({**found, **results.on_road(one, args, args.output / found["summary"], thickness)})
+    if not rows or rows[0]["kind"] != "base":
+        return      # nothing to hold the others against; which run failed is told
+    for name in of:
+        for row in rows:
+            if row[name] is None:
+                raise SlopeError("--of", f"must be known of every run; {name} is not of {row['run']}")
+    moving = sum(row["moving"] for row in rows)
+    if moving:
+        warnings.append(f"{moving} of {len(rows)} deposits still move at the end")
+    scatter = {name: spread(rows, name) for name in of}
+    about = {"study": {"deck": args.deck.name, "base": defaults, "runs": len(todo), "finished": len(rows),
+                       "ranks": work.ranks, "package": work.package, "collected": runs.now(),
+                       "machine": runs.machine(),
+                       "road": {"file": args.road.name, "cut_angle": args.cut_angle, "mesh": args.mesh}},
+             "scatter": scatter, "trust": [trust(rows, name, scatter[name]) for name in of], "warnings": warnings}
+    for text in warnings:
+        print(f"slope sensitivity: warning: {text}", flush=True)
+    runs.write(args.output / "sensitivity.csv", table(rows, of, scatter, defaults))
+    runs.write(args.output / "sensitivity.yaml", "# slope sensitivity: volumes in m3 of ground (bulk), lengths in m, "
+               "angles in degrees\n" + yaml.safe_dump(about, sort_keys=False))
+    from . import figures
+    figures.tornado(args.output / "sensitivity.png", panels(rows, of, scatter), bars(rows, defaults),
+                    f"{args.deck.name}: one variable at a time, {len(rows)} runs")
+    show(rows, of, scatter, defaults, args.deck.name)
+    print(f"{args.output / 'sensitivity.csv'}, {args.output / 'sensitivity.yaml'}, "
+          f"{args.output / 'sensitivity.png'}: all numbers, and the chart")
+    print("\n".join(about["trust"]))
+
+
+# --- numbers ---
+
+def spread(rows, name):
+    """Mean, standard deviation and range of the base run and its repeats; the deviation is None without repeats."""
+    values = [row[name] for row in rows if row["kind"] != "vary"]
+    return {"runs": len(values), "mean": statistics.fmean(values), "smallest": min(values), "largest": max(values),
+            "standard_deviation": statistics.stdev(values) if len(values) > 1 else None}
+
+
+def effect(row, name, about):
+    """Difference of a run from the mean of the equivalent ones."""
+    return row[name] - about["mean"]
+
+
+def is_clear(row, name, about):
+    """Whether a run differs from the mean by more than two such runs do by chance; None without repeats."""
+    deviation = about["standard_deviation"]
+    if deviation is None:
+        return None
+    # the mean has a scatter of its own
+    return abs(effect(row, name, about)) > TWO_SIDED * deviation * math.sqrt(1 + 1 / about["runs"])
+
+
+def trust(rows, name, about):
+    """In plain words: how much a number of one run is worth."""
+    what, unit = NAMES[name]
+    mean, deviation = about["mean"], about["standard_deviation"]
+    if deviation is None:
+        text = f"{what}: {number(mean)} {unit} in the base run; without --repeat its scatter is not known"
+    else:
+        text = (f"{what}: {about['runs']} equivalent runs give {number(about['smallest'])} to "
+                f"{number(about['largest'])} {unit}, mean {number(mean)}, standard deviation {number(deviation)}"
+                f"{share(deviation, mean)}: trust one run to +- {number(TWO_SIDED * deviation)} {unit}"
+                f"{share(TWO_SIDED * deviation, mean)}, and take two runs for different only if they differ by more "
+                f"than {number(TWO_SIDED * math.sqrt(2) * deviation)} {unit}")
+    varied = [row for row in rows if row["kind"] == "vary"]
+    if varied:
+        most = max(varied, key=lambda row: abs(effect(row, name, about)))
+        by = effect(most, name, about)
+        text += (f". Of the choices, {most['variable']} {most['value']} changes it most, by {number(by, '+')} {unit}"
+                 f"{share(by, mean, '+')}")
+        if deviation is not None:
+            clear = sum(is_clear(row, name, about) for row in varied)
+            text += f"; {clear} of {len(varied)} changes are larger than chance"
+    return text
+
+
+def number(value, sign=""):
+    """Whole numbers from 100 on, else three digits."""
+    return f"{value:{sign},.0f}" if abs(value) >= 100 else f"{value:{sign}.3g}"
+
+
+def share(value, mean, sign=""):
+    return f" ({100 * value / mean:{sign}.1f} %)" if mean else ""
+
+
+# --- output ---
+
+def table(rows, of, scatter, defaults):
+    """The CSV over all runs."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    columns = (*results.COLUMNS, *results.ROAD_COLUMNS)
+    writer.writerow(["run", "kind", "variable", "value", "base_value",
+                     *(f"{what}_of_{name}" for name in of for what in ("effect", "clear")), *columns])
+    for row in rows:
+        cells = {**row, "moving": answer(row["moving"])}
+        mine = [cell for name in of for cell in (effect(row, name, scatter[name]),
+                                                 answer(is_clear(row, name, scatter[name])))]
+        writer.writerow([row["run"], row["kind"], row["variable"], row["value"], defaults.get(row["variable"]), *mine,
+                         *(cells.get(key) for key in columns)])
+    return text.getvalue()
+
+
+def answer(value):
+    return {True: "yes", False: "no", None: None}[value]
+
+
+def bars(rows, defaults):
+    """{variable: (kind, base value)} in the order of the command."""
+    return {row["variable"]: (row["kind"], defaults[row["variable"]]) for row in rows if row["variable"]}
+
+
+def panels(rows, of, scatter):
+    """For the chart: (title, unit, scatter, {variable: [(value of the variable, what came out), ...]})."""
+    found = []
+    for name in of:
+        values = {}
+        for row in rows:
+            if row["variable"]:
+                values.setdefault(row["variable"], []).append((row["value"], row[name]))
+        found.append((*NAMES[name], scatter[name], values))
+    return found
+
+
+def show(rows, of, scatter, defaults, deck):
+    shown = Table(title=f"{deck}: one variable at a time; * more than chance")
+    for head in ("variable", "base", "value", "released m3"):
+        shown.add_column(head, justify="right")
+    for name in of:
+        shown.add_column(f"{NAMES[name][0]} {NAMES[name][1]}", justify="right")
+        shown.add_column("against the mean", justify="right")
+    for row in rows:
+        cells = [row["variable"] or "base", defaults.get(row["variable"], ""), row["value"] or "",
+                 number(row["released_m3"])]
+        for name in of:
+            by = effect(row, name, scatter[name])
+            star = "*" if row["kind"] == "vary" and is_clear(row, name, scatter[name]) else " "
+            cells += [number(row[name]), f"{number(by, '+')}{share(by, scatter[name]['mean'], '+')}{star}"]
+        shown.add_row(*cells, style="dim" if row["kind"] == "repeat" else None)
+    (Console() if sys.stdout.isatty() else Console(width=160)).print(shown)
