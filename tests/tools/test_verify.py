@@ -78,6 +78,33 @@ def test_the_pages(slope):
         assert "lmp -in in.restitution -var e 0.25" in page
 
 
+PEERS = """\
+crosscheck: {finished: today, package: v1, versions: {granular: LAMMPS 1, slope: SLOPE 1}, compared: 1, failed: 1}
+checks:
+- {case: bounce, quantity: "rebound of <two>", code: granular, value: 0.51234, against: plain, expected: 0.48, tolerance: 0.01, passed: false}
+- {case: roll, quantity: threshold, code: slope, value: rolls, against: plain, expected: rolls, tolerance: null, passed: null}
+differs: {granular: [in the dashpots]}
+"""
+
+
+def test_comparisons_with_other_codes_go_into_the_report(slope):
+    Path("peers.yaml").write_text(PEERS)
+    status, _, err = slope("--crosscheck peers.yaml")
+    assert status == 0, err
+    for name, wrong in (("verification.rst", "**NO**"), ("verification.html", "FAIL")):
+        page = Path("verification", name).read_text()
+        assert "0 of 1 comparisons are within their tolerance" in page and wrong in page
+        assert "0.51234" in page and "granular: in the dashpots" in page and "granular: LAMMPS 1" in page
+    assert "rebound of &lt;two&gt;" in page
+
+
+def test_a_broken_comparison_is_one_line(slope):
+    Path("peers.yaml").write_text("crosscheck: {}\nchecks: 3\n")
+    status, _, err = slope("--crosscheck peers.yaml")
+    assert status == 2 and err.startswith("slope verify: peers.yaml: must be what `slope crosscheck` wrote")
+    assert len(err.splitlines()) == 1 and not Path("verification").exists()
+
+
 @pytest.mark.parametrize("wrong", [claim(e=0.26), claim(broken=0.251), claim(broken="nan")],
                          ids=["the claim", "its control passes", "its control gives nothing"])
 def test_what_does_not_hold_is_status_2(slope, wrong):

@@ -54,6 +54,8 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--jobs", type=count, metavar="J", help="runs at a time (default: the cores of the machine)")
     parser.add_argument("--lmp", metavar="FILE", help="the LAMMPS program (default: LMP of the environment, then "
                         "build/lmp beside tools/)")
+    parser.add_argument("--crosscheck", metavar="FILE", type=Path,
+                        help="crosscheck.yaml of `slope crosscheck`: its comparisons with other codes go into the report")
     parser.add_argument("-o", dest="output", metavar="DIR", type=Path, default=Path(NAME),
                         help=f"folder of the report and of the runs (default {NAME})")
     return parser
@@ -64,6 +66,7 @@ def run(args):
     claims = chosen(args)
     if args.output.exists() and not args.output.is_dir():
         raise SlopeError("-o", "must be a folder", args.output)
+    peers = compared(args.crosscheck) if args.crosscheck else None
     lmp = find_lmp(args.lmp)
     began = time.monotonic()
     try:
@@ -75,7 +78,7 @@ def run(args):
             runner.do(wanted, args.jobs or jobs.cores())
             outcomes = [judge(claim, runner) for claim in claims]
             about = provenance(args, lmp, runner, outcomes, time.monotonic() - began)
-            write(args.output, outcomes, about)
+            write(args.output, outcomes, about, peers)
     except OSError as error:
         raise SlopeError(error.filename or args.output, f"cannot be used: {error.strerror}") from error
     for outcome in outcomes:
@@ -248,7 +251,22 @@ def row(outcome):
         [one.command for one in claim.runs])))
 
 
-def write(output, outcomes, about):
+def compared(path):
+    """What `slope crosscheck` wrote, for the report."""
+    what = "what `slope crosscheck` wrote"
+    found = runs.load_yaml(path, what)
+    try:
+        about = found["crosscheck"]
+        rows = [{**one, "value": text(one["value"]), "expected": text(one["expected"]),
+                 "tolerance": "for information" if one["tolerance"] is None else text(one["tolerance"])}
+                for one in found["checks"]]
+        return {"rows": rows, "differs": found["differs"], "versions": about["versions"], "package": about["package"],
+                "date": about["finished"], "compared": about["compared"], "failed": about["failed"]}
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
+        raise SlopeError(path, f"must be {what}", repr(error)) from error
+
+
+def write(output, outcomes, about, peers=None):
     """The report in its four forms."""
     rows = [row(outcome) for outcome in outcomes]
     table = io.StringIO()
@@ -262,7 +280,7 @@ def write(output, outcomes, about):
               "commands": list(dict.fromkeys(command for one in rows if one["case"] == case.CASE
                                              for command in one["commands"]))}
              for case in verification.cases()]
-    content = {"about": about, "cases": [case for case in cases if case["rows"]],
+    content = {"about": about, "peers": peers, "cases": [case for case in cases if case["rows"]],
                "errata": [{**one._asdict(), "rows": [other for case in cases for other in case["rows"]
                                                      if other["name"] in one.claims]} for one in errata()]}
     whole = yaml.safe_dump({**about, "results": rows}, sort_keys=False)
