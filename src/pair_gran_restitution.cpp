@@ -23,6 +23,7 @@
 #include <algorithm>
 #include <climits>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 
 using namespace LAMMPS_NS;
@@ -200,7 +201,7 @@ void PairGranRestitution::coeff(int narg, char **arg)
       if (!utils::is_double(arg[iarg + k]))
         error->all(FLERR, "Pair gran/restitution {}: value {} must be a number, got {}", keyword, k,
                    arg[iarg + k]);
-      return utils::numeric(FLERR, arg[iarg + k], false, lmp);
+      return strtod(arg[iarg + k], nullptr);    // numeric() has words of its own for 1e999, in some versions
     };
     auto rule = [&](bool holds, const char *text, double got) {
       if (!holds || !std::isfinite(got))

@@ -68,7 +68,6 @@ TABLE = {
         1 1.5 stiffness 1 1 restitution 0.5 -> pair_coeff 1 1.5: types must be 1 to 3, or a range of them with *, got 1.5
         1 2*1 stiffness 1 1 restitution 0.5 -> pair_coeff 1 2*1: types must be 1 to 3, or a range of them with *, got 2*1
         nan 1 stiffness 1 1 restitution 0.5 -> pair_coeff nan 1: types must be 1 to 3, or a range of them with *, got nan
-        2 1 stiffness 1 1 restitution 0.5 -> pair_coeff 2 1: no pair I <= J of 3 types
         1 1 -> pair_coeff 1 1: stiffness kn kt is required
         1 1 stiffness -> stiffness: value 1 is missing
         1 1 stiffness 1e6 -> stiffness: value 2 is missing
