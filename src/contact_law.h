@@ -8,11 +8,17 @@
    no LAMMPS. Pair gran/restitution and fix wall/gran/balls both call it; nothing
    else computes a contact force. Derivations: doc/src/theory.rst.
 
+   T is double, for one contact, or Four, for four at a time (SIMD): what differs
+   between contacts is chosen, never branched on. N is the same, or double if all
+   contacts share it.
+
    Units are SI: m, kg, s, N, rad. The normal n points from the partner to the ball.
 */
 
 #ifndef SLOPE_CONTACT_LAW_H
 #define SLOPE_CONTACT_LAW_H
+
+#include "simd4.h"
 
 #include <algorithm>
 #include <cmath>
@@ -108,29 +114,31 @@ inline double new_contact(double rolling_radius) { return NEW * rolling_radius; 
 //   last step          the speed with which the oscillation comes through d = 0
 //
 // Both agree as dt goes to 0. Derivation: doc/src/theory.rst.
-struct ContactStep {
+template <class N> struct ContactStepOf {
   double dt, grow;              // s; grow: what the springs grow by, 0 at set-up
-  double force;                 // m / dt^2: N per m
-  double stiffness, decay;      // 1 + D - C, D
-  double back_d, back_v;        // overlap a step ago = back_d d - back_v (rate of d) dt
-  double a, h;                  // w^2 dt^2, cn dt / (2 m)
-  double kt, ct, kr, cr;
+  N force;                      // m / dt^2: N per m
+  N stiffness, decay;           // 1 + D - C, D
+  N back_d, back_v;             // overlap a step ago = back_d d - back_v (rate of d) dt
+  N a, h;                       // w^2 dt^2, cn dt / (2 m)
+  double kt, kr;
+  N ct, cr, relax_t, relax_r;   // relax: dashpot over spring, s
   double friction, rolling, fn_least;
   double first_below, gone_above;    // phases before this step with which it is the first, or none
   double last_below;                 // V with which it may be the last
 };
+using ContactStep = ContactStepOf<double>;
 
 // Dashpots of the tangent plane act on the spin too, and those of all contacts of a ball at once:
 // with a step near the rule their sum would overshoot, and a heap tremble for ever. Each is
 // reduced to c / (1 + CROWD c dt / (2 m)), which is c for small steps.
 static constexpr double CROWD = 12.0;
 
-// exp(-x) to 1e-12 for 0 <= x <= 1; no call, so that loops with it vectorise
-inline double decay_factor(double x)
+// exp(-x) to 1e-12 for 0 <= x <= 1; no call, so that it takes four at a time
+template <class N> SLOPE_INLINE N decay_factor(N x)
 {
-  const double y = 0.125 * x;    // Pade approximant, to the eighth power
-  const double even = 1.0 + 0.1 * y * y, odd = y * (0.5 + y * y / 120.0);
-  double e = (even - odd) / (even + odd);
+  const N y = 0.125 * x;    // Pade approximant, to the eighth power
+  const N even = 1.0 + 0.1 * y * y, odd = y * (0.5 + y * y / 120.0);
+  N e = (even - odd) / (even + odd);
   e *= e;
   e *= e;
   return e * e;
@@ -138,39 +146,44 @@ inline double decay_factor(double x)
 
 // What depends on the mass: inverse_mass (1/kg) = 1/m_i + 1/m_j, where a fixed ball has none;
 // mass_dashpot (kg): that of the conversion restitution -> dashpot.
-inline void set_mass(ContactStep &s, const ContactLaw &law, double inverse_mass, double mass_dashpot)
+template <class N>
+SLOPE_INLINE void set_mass(ContactStepOf<N> &s, const ContactLaw &law, N inverse_mass, N mass_dashpot)
 {
-  const double root = std::sqrt(mass_dashpot);
-  const double half = 0.5 * inverse_mass * s.dt;
+  const N root_mass = root(mass_dashpot);
+  const N half = 0.5 * inverse_mass * s.dt;
   s.force = 0.5 / (half * s.dt);
   s.a = law.kn / s.force;
-  s.h = (law.cn_given + law.cn_root * root) * half;
+  s.h = (law.cn_given + law.cn_root * root_mass) * half;
 
   // cos and sin(x)/x of the root of q, which is negative for an overdamped contact
 
-  const double q = s.a - s.h * s.h;
-  const double cosine =
+  const N q = s.a - s.h * s.h;
+  const N cosine =
       1.0 - q / 2.0 * (1.0 - q / 12.0 * (1.0 - q / 30.0 * (1.0 - q / 56.0 * (1.0 - q / 90.0))));
-  const double sinc =
+  const N sinc =
       1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0 * (1.0 - q / 72.0 * (1.0 - q / 110.0))));
-  const double e = decay_factor(s.h), plain = 1.0 - law.exact;
+  const N e = decay_factor(s.h);
+  const double plain = 1.0 - law.exact;
   s.decay = law.exact * e * e + plain * (1.0 - 2.0 * s.h);
   s.stiffness = law.exact * (1.0 + e * e - 2.0 * e * cosine) + plain * s.a;
   s.back_d = (cosine - s.h * sinc) / e;
   s.back_v = sinc / e;
 
-  const double ct = law.ct_given + law.ct_root * root;
-  const double cr = law.cr_given + law.cr_root * root;
+  const N ct = law.ct_given + law.ct_root * root_mass;
+  const N cr = law.cr_given + law.cr_root * root_mass;
   s.ct = ct / (1.0 + law.exact * CROWD * half * ct);
   s.cr = cr / (1.0 + law.exact * CROWD * half * cr);
+  s.relax_t = s.ct * (law.kt > 0.0 ? 1.0 / law.kt : 0.0);
+  s.relax_r = s.cr * (law.kr > 0.0 ? 1.0 / law.kr : 0.0);
 }
 
 // dt (s) > 0; again: for the forces of the step that has just ended once more (set-up of a run)
-inline ContactStep contact_step(const ContactLaw &law, double inverse_mass, double mass_dashpot,
-                                double dt, bool again)
+template <class N>
+SLOPE_INLINE ContactStepOf<N> contact_step(const ContactLaw &law, N inverse_mass, N mass_dashpot,
+                                           double dt, bool again)
 {
   const bool exact = law.exact > 0.0;
-  ContactStep s;
+  ContactStepOf<N> s;
   s.dt = dt;
   s.grow = again ? 0.0 : dt;
   s.kt = law.kt;
@@ -189,133 +202,118 @@ inline ContactStep contact_step(const ContactLaw &law, double inverse_mass, doub
 // one contact
 // ----------------------------------------------------------------------
 
-struct Contact {
-  double n[3];       // unit normal, partner to ball
-  double overlap;    // m, > 0
-  double v[3];       // velocity of the ball minus that of the partner, m/s
-  double rw[3];      // R_i w_i + R_j w_j, m/s
-  double w[3];       // w_i - w_j, rad/s
-  double rolling_radius;    // m
+template <class T, class N = T> struct ContactOf {
+  T n[3];              // unit normal, partner to ball
+  T overlap;           // m, > 0
+  T v[3];              // velocity of the ball minus that of the partner, m/s
+  T rw[3];             // R_i w_i + R_j w_j, m/s
+  T w[3];              // w_i - w_j, rad/s
+  N rolling_radius;    // m
 };
+using Contact = ContactOf<double>;
 
-struct ContactForce {
-  double f[3];      // on the ball, N; the partner gets the opposite
-  double t[3];      // n x Ft, N: torque on the ball is -R_i t + m, on the partner -R_j t - m
-  double m[3];      // rolling torque on the ball, N m
+template <class T> struct ContactForceOf {
+  T f[3];    // on the ball, N; the partner gets the opposite
+  T t[3];    // n x Ft, N: torque on the ball is -R_i t + m, on the partner -R_j t - m
+  T m[3];    // rolling torque on the ball, N m
 };
+using ContactForce = ContactForceOf<double>;
 
 // Normal force in m (times ContactStep::force: N) at overlap d that grew by V in the step that
-// ends, inside a contact, as most are.
-inline double inside_force(const ContactStep &s, double d, double V)
+// ends. phase: a Phase, that of the step before (at set-up, of this step); becomes that of this
+// step.
+template <class T, class N>
+SLOPE_INLINE T normal_force(const ContactStepOf<N> &s, T d, T V, T &phase)
 {
-  return s.stiffness * d + (1.0 - s.decay) * V;
-}
+  const T inside = s.stiffness * d + (1.0 - s.decay) * V;
+  const auto begins = (phase < s.first_below) & (V > 0.0);
+  const auto parts = (phase > s.gone_above) & (V <= 0.0);
+  const auto may_end = (d + V <= inside) & (V <= s.last_below);
+  const T before = phase;
+  phase = choose(begins | parts | may_end, before, all<T>(INSIDE));
+  if (!bits(begins | parts | may_end)) return inside;    // as most are
 
-// whether that is not all: the first, the last or no step of the contact
-inline bool begins_or_ends(const ContactStep &s, double d, double V, double phase, double inside)
-{
-  return ((phase < s.first_below) & (V > 0.0)) | ((phase > s.gone_above) & (V <= 0.0)) |
-      ((d + V <= inside) & (V <= s.last_below));
-}
-
-// Then this. phase: a Phase, that of the step before (at set-up, of this step); becomes that of
-// this step.
-inline double normal_force(const ContactStep &s, double d, double V, double &phase)
-{
   // rate of an oscillation that has the path U per step at d = 0: series in r = d / U
 
-  const double r2 = 0.5 * s.a, r3 = 2.0 / 3.0 * s.h * s.a;
-  const double r4 = s.h * s.h * s.a + 0.125 * s.a * s.a;
-  const double inside = inside_force(s, d, V);
+  const N r2 = 0.5 * s.a, r3 = 2.0 / 3.0 * s.h * s.a;
+  const N r4 = s.h * s.h * s.a + 0.125 * s.a * s.a;
 
-  if (phase < s.first_below && V > 0.0) {    // U = V, coming in
-    phase = FIRST;
-    const double r = std::min(d / V, 1.0);
-    const double rate = V - d * (2.0 * s.h + r * (r2 + r * (r3 + r * r4)));
-    const double V_inside = d - (s.back_d * d - s.back_v * rate);
-    return s.stiffness * d + V - s.decay * V_inside;
-  }
-  if (phase > s.gone_above && V <= 0.0) {
-    phase = GONE;
-    return 0.0;
-  }
-  if (d + V <= inside && V <= s.last_below) {    // U from the rate, going out
-    const double rate = (d - V - s.back_d * d) / s.back_v;
-    const double guess = rate - 2.0 * s.h * d;
-    if (guess > 0.0) {
-      phase = LAST;
-      const double r = d / (guess + r2 * d * d / guess);
-      return V + guess + d * r * (r2 - r * (r3 - r * r4));
-    }
-  }
-  phase = INSIDE;
-  return inside;
+  // first step: U = V, coming in
+
+  const T r_in = smaller(d / V, all<T>(1.0));
+  const T rate_in = V - d * (2.0 * s.h + r_in * (r2 + r_in * (r3 + r_in * r4)));
+  const T V_inside = d - (s.back_d * d - s.back_v * rate_in);
+  const T first = s.stiffness * d + V - s.decay * V_inside;
+
+  // last step: U from the rate, going out
+
+  const T rate_out = (d - V - s.back_d * d) / s.back_v;
+  const T guess = rate_out - 2.0 * s.h * d;
+  const T r_out = d / (guess + r2 * d * d / guess);
+  const T last = V + guess + d * r_out * (r2 - r_out * (r3 - r_out * r4));
+  const auto ends = may_end & (guess > 0.0);
+
+  phase = choose(ends, all<T>(LAST), all<T>(INSIDE));
+  phase = choose(parts, all<T>(GONE), phase);
+  phase = choose(begins, all<T>(FIRST), phase);
+  return choose(begins, first, choose(parts, T(), choose(ends, last, inside)));
 }
 
 // Spring and dashpot in the tangent plane with a limit, for sliding and for rolling alike:
 // s += u dt, kept in the plane of n; F = -k s - c u; if |F| exceeds the limit, F is cut to it and
-// s is cut back to what gives the cut force. u must lie in the plane of n.
-inline void limited_spring(double k, double c, double limit, const double *n, const double *u,
-                           double dt, double *s, double *f)
+// s is cut back to what gives the cut force: with F' = a F, s' = a s - (1 - a) c/k u. u must lie in
+// the plane of n. relax: c / k, 0 without a spring.
+template <class T, class N>
+SLOPE_INLINE void limited_spring(double k, N c, N relax, T limit, const T *n, const T *u, double dt,
+                                 T *s, T *f)
 {
-  double sx = s[0] + u[0] * dt;
-  double sy = s[1] + u[1] * dt;
-  double sz = s[2] + u[2] * dt;
-  const double sn = sx * n[0] + sy * n[1] + sz * n[2];
+  T sx = s[0] + u[0] * dt;
+  T sy = s[1] + u[1] * dt;
+  T sz = s[2] + u[2] * dt;
+  const T sn = sx * n[0] + sy * n[1] + sz * n[2];
   sx -= sn * n[0];
   sy -= sn * n[1];
   sz -= sn * n[2];
 
-  const double fx = -(k * sx + c * u[0]);
-  const double fy = -(k * sy + c * u[1]);
-  const double fz = -(k * sz + c * u[2]);
-  const double f2 = fx * fx + fy * fy + fz * fz;
-  // selects, not branches, so that the compiler can vectorise a loop over contacts
-
-  const bool cut = f2 > limit * limit;
-  const double scale = cut ? limit / std::sqrt(cut ? f2 : 1.0) : 1.0;
-  const double kinv = (cut && k > 0.0) ? 1.0 / k : 0.0;
-  f[0] = scale * fx;
-  f[1] = scale * fy;
-  f[2] = scale * fz;
-  s[0] = cut ? -(f[0] + c * u[0]) * kinv : sx;
-  s[1] = cut ? -(f[1] + c * u[1]) * kinv : sy;
-  s[2] = cut ? -(f[2] + c * u[2]) * kinv : sz;
+  const T fx = k * sx + c * u[0];
+  const T fy = k * sy + c * u[1];
+  const T fz = k * sz + c * u[2];
+  const T f2 = fx * fx + fy * fy + fz * fz;
+  const T a = smaller(T(limit / f2 * root(f2)), all<T>(1.0));    // 1, too, if f2 = 0
+  const T back = (1.0 - a) * relax;
+  f[0] = -a * fx;
+  f[1] = -a * fy;
+  f[2] = -a * fz;
+  s[0] = a * sx - back * u[0];
+  s[1] = a * sy - back * u[1];
+  s[2] = a * sz - back * u[2];
 }
 
-// Force of one touching contact, in two parts, so that a loop over contacts can look after those
-// that begin or end in between. history: HISTORY values, updated.
-
-// where in its life the contact is, and V
-inline void contact_motion(const ContactStep &step, const Contact &c, const double *history,
-                           double &V, double &phase)
+// Force of one touching contact. history: HISTORY values, updated. ROLLING = false leaves out the
+// rolling resistance, for laws that have none.
+template <bool ROLLING = true, class T, class N>
+SLOPE_INLINE void contact_force(const ContactStepOf<N> &step, const ContactOf<T, N> &c, T *history,
+                                ContactForceOf<T> &out)
 {
-  const double *n = c.n;
-  const double per_rr = 1.0 / c.rolling_radius;    // the same for equal balls: leaves the loop
-  phase = (history[0] * n[0] + history[1] * n[1] + history[2] * n[2]) * per_rr;
-  V = -(c.v[0] * n[0] + c.v[1] * n[1] + c.v[2] * n[2]) * step.dt;
-}
-
-// The rest, with the normal force F (m) and the phase. ROLLING = false leaves out the rolling
-// resistance, for laws that have none.
-template <bool ROLLING>
-inline void contact_force(const ContactStep &step, const Contact &c, double F, double phase,
-                          double *history, ContactForce &out)
-{
-  const double *n = c.n;
-  const double rr = c.rolling_radius;
-  const double vn = c.v[0] * n[0] + c.v[1] * n[1] + c.v[2] * n[2];
-  const double fn = std::max(F * step.force, step.fn_least);
-  const double pressing = std::max(fn, 0.0);
+  const T *n = c.n;
+  const N rr = c.rolling_radius;
+  const T vn = c.v[0] * n[0] + c.v[1] * n[1] + c.v[2] * n[2];
+  const N per_rr = 1.0 / rr;
+  T phase = (history[0] * n[0] + history[1] * n[1] + history[2] * n[2]) * per_rr;
+  const T F = normal_force(step, c.overlap, T(-vn * step.dt), phase);
+  const T fn = larger(T(F * step.force), all<T>(step.fn_least));
+  const T pressing = larger(fn, T());
 
   // tangential: vt = v - vn n - (Ri wi + Rj wj) x n
 
-  const double vt[3] = {c.v[0] - vn * n[0] - (c.rw[1] * n[2] - c.rw[2] * n[1]),
-                        c.v[1] - vn * n[1] - (c.rw[2] * n[0] - c.rw[0] * n[2]),
-                        c.v[2] - vn * n[2] - (c.rw[0] * n[1] - c.rw[1] * n[0])};
-  double ft[3];
-  limited_spring(step.kt, step.ct, step.friction * pressing, n, vt, step.grow, history, ft);
-  for (int d = 0; d < 3; d++) history[d] += phase * rr * n[d];
+  const T vt[3] = {c.v[0] - vn * n[0] - (c.rw[1] * n[2] - c.rw[2] * n[1]),
+                   c.v[1] - vn * n[1] - (c.rw[2] * n[0] - c.rw[0] * n[2]),
+                   c.v[2] - vn * n[2] - (c.rw[0] * n[1] - c.rw[1] * n[0])};
+  T ft[3];
+  limited_spring(step.kt, step.ct, step.relax_t, T(step.friction * pressing), n, vt, step.grow, history,
+                 ft);
+  const T mark = phase * rr;
+  for (int d = 0; d < 3; d++) history[d] += mark * n[d];
 
   out.f[0] = fn * n[0] + ft[0];
   out.f[1] = fn * n[1] + ft[1];
@@ -323,30 +321,19 @@ inline void contact_force(const ContactStep &step, const Contact &c, double F, d
   out.t[0] = n[1] * ft[2] - n[2] * ft[1];
   out.t[1] = n[2] * ft[0] - n[0] * ft[2];
   out.t[2] = n[0] * ft[1] - n[1] * ft[0];
-  out.m[0] = out.m[1] = out.m[2] = 0.0;
+  out.m[0] = out.m[1] = out.m[2] = T();
   if (!ROLLING) return;
 
   // rolling: the same construction on Rr (wi - wj) in the tangent plane, with torque arm Rr
 
-  const double wn = c.w[0] * n[0] + c.w[1] * n[1] + c.w[2] * n[2];
-  const double vr[3] = {rr * (c.w[0] - wn * n[0]), rr * (c.w[1] - wn * n[1]),
-                        rr * (c.w[2] - wn * n[2])};
-  double fr[3];
-  limited_spring(step.kr, step.cr, step.rolling * pressing, n, vr, step.grow, history + 3, fr);
+  const T wn = c.w[0] * n[0] + c.w[1] * n[1] + c.w[2] * n[2];
+  const T vr[3] = {rr * (c.w[0] - wn * n[0]), rr * (c.w[1] - wn * n[1]), rr * (c.w[2] - wn * n[2])};
+  T fr[3];
+  limited_spring(step.kr, step.cr, step.relax_r, T(step.rolling * pressing), n, vr, step.grow,
+                 history + 3, fr);
   out.m[0] = rr * fr[0];
   out.m[1] = rr * fr[1];
   out.m[2] = rr * fr[2];
-}
-
-// both parts
-template <bool ROLLING = true>
-inline void contact_force(const ContactStep &step, const Contact &c, double *history,
-                          ContactForce &out)
-{
-  double V, phase;
-  contact_motion(step, c, history, V, phase);
-  const double F = normal_force(step, c.overlap, V, phase);
-  contact_force<ROLLING>(step, c, F, phase, history, out);
 }
 
 }    // namespace Slope

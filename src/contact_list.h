@@ -4,9 +4,8 @@
 ------------------------------------------------------------------------- */
 
 /* Contacts of one law: what may touch until the next neighbor list, and the forces of what
-   does. Per block of listed contacts: distances; the touching ones gathered side by side; the
-   contact law for several of them at a time (SIMD); forces handed out. Gathering first keeps
-   the branch out of the arithmetic, and a block stays within the first-level cache.
+   does. Per block of listed contacts: the distances say which ones touch; of these, four at a
+   time are loaded, their law is evaluated (SIMD), and their forces are handed out.
    Pair gran/restitution and fix wall/gran/balls both use it. No LAMMPS in here. */
 
 #ifndef SLOPE_CONTACT_LIST_H
@@ -16,6 +15,7 @@
 #include "simd4.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <vector>
 
@@ -40,7 +40,7 @@ struct MovingPartners {
 
   const Vector &x(int j) const { return balls.x[j]; }
   double share(int j) const { return j < nforce ? 1.0 : 0.5; }    // of the contact that is this rank's
-  void prefetch_force(int j) const { __builtin_prefetch(&balls.f[j],1); __builtin_prefetch(&balls.torque[j],1); }
+  bool gets_force(int j) const { return j < nforce; }
   const Vector &v(int j) const { return balls.v[j]; }
   const Vector &omega(int j) const { return balls.omega[j]; }
   double radius(int j) const { return balls.radius[j]; }
@@ -58,7 +58,7 @@ struct FixedPartners {
 
   const Vector &x(int j) const { return position[j]; }
   double share(int) const { return 1.0; }
-  void prefetch_force(int) const {}
+  bool gets_force(int) const { return false; }
   const Vector &v(int) const { return still; }
   const Vector &omega(int) const { return still; }
   double radius(int) const { return radius_all; }
@@ -68,13 +68,12 @@ struct FixedPartners {
 class ContactList {
  public:
   struct Entry {
-    int i, j;           // moving ball, partner
-    double *history;    // HISTORY values
+    int i, j;    // moving ball, partner
   };
 
   std::vector<Entry> entries;
-  std::vector<char> touching;    // a step ago
-  std::vector<int *> flags;      // where LAMMPS wants to know about touching: store_flags()
+  std::vector<double *> histories;    // HISTORY values of each
+  std::vector<int *> flags;           // where LAMMPS wants to know about touching: store_flags()
 
   // 1 for a side that moves, 0 for one that is fixed and as good as infinitely heavy
   double move_i, move_j;
@@ -91,6 +90,7 @@ class ContactList {
     move_j = j_moves;
     radius_i = radius_j = mass_i = mass_j = 1.0;
     entries.clear();
+    histories.clear();
     touching.clear();
     flags.clear();
     equal = true;
@@ -105,14 +105,20 @@ class ContactList {
       mass_j = mj;
     }
     equal = equal && ri == radius_i && rj == radius_j && mi == mass_i && mj == mass_j;
-    entries.push_back({i, j, history});
-    touching.push_back(touch);
+    if (entries.size() % BLOCK == 0) touching.push_back(0);
+    entries.push_back({i, j});
+    histories.push_back(history);
+    if (touch) set_touches(entries.size() - 1);
   }
+
+  // whether contact k touched a step ago
+  bool touches(size_t k) const { return touching[k / BLOCK] >> (k % BLOCK) & 1; }
+  void set_touches(size_t k) { touching[k / BLOCK] |= std::uint64_t(1) << (k % BLOCK); }
 
   double memory_usage() const
   {
-    return entries.capacity() * sizeof(Entry) + touching.capacity() +
-        flags.capacity() * sizeof(int *);
+    return entries.capacity() * sizeof(Entry) + histories.capacity() * sizeof(double *) +
+        touching.capacity() * sizeof(std::uint64_t) + flags.capacity() * sizeof(int *);
   }
 
   // Contacts that overlap although they did not touch a step ago, before the first step:
@@ -123,9 +129,9 @@ class ContactList {
     for (size_t k = 0; k < entries.size(); k++) {
       const Entry &e = entries[k];
       const double overlap = balls.radius[e.i] + partners.radius(e.j) - distance(balls, partners, e);
-      if (touching[k] || overlap <= 0.0) continue;
+      if (touches(k) || overlap <= 0.0) continue;
       visit(e, overlap);
-      touching[k] = 1;
+      set_touches(k);
     }
   }
 
@@ -138,7 +144,7 @@ class ContactList {
     for (size_t k = 0; k < entries.size(); k++) {
       const Entry &e = entries[k];
       const Vector &a = balls.x[e.i], &b = partners.x(e.j);
-      const double n[3] = {a.x - b.x, a.y - b.y, a.z - b.z}, *h = e.history;
+      const double n[3] = {a.x - b.x, a.y - b.y, a.z - b.z}, *h = histories[k];
       const double rsq = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
       const double sum = balls.radius[e.i] + partners.radius(e.j);
       if (rsq >= sum * sum) continue;
@@ -155,7 +161,7 @@ class ContactList {
 
   void store_flags() const
   {
-    for (size_t k = 0; k < flags.size(); k++) *flags[k] = touching[k];
+    for (size_t k = 0; k < flags.size(); k++) *flags[k] = touches(k);
   }
 
   // Adds the forces of all contacts to the balls. again: those of the step that has just ended
@@ -167,29 +173,17 @@ class ContactList {
   {
     if (entries.empty()) return;
     if (law.rolling > 0.0) {
-      if (equal) apply<true, true, TALLY>(law, dt, again, balls, partners, tally);
-      else apply<true, false, TALLY>(law, dt, again, balls, partners, tally);
+      if (equal) apply<true, double, TALLY>(law, dt, again, balls, partners, tally);
+      else apply<true, Four, TALLY>(law, dt, again, balls, partners, tally);
     } else {
-      if (equal) apply<false, true, TALLY>(law, dt, again, balls, partners, tally);
-      else apply<false, false, TALLY>(law, dt, again, balls, partners, tally);
+      if (equal) apply<false, double, TALLY>(law, dt, again, balls, partners, tally);
+      else apply<false, Four, TALLY>(law, dt, again, balls, partners, tally);
     }
   }
 
  private:
   static constexpr int BLOCK = 64;
-
-  // a block of listed contacts and, side by side, the touching ones: Contact and ContactForce
-
-  struct Block {
-    double apart[BLOCK][4], rsq[BLOCK];    // of all listed contacts; the fourth is idle
-    int from[BLOCK + 4];                   // the touching ones among them
-    double delta[3][BLOCK];
-    double v[3][BLOCK], rw[3][BLOCK], w[3][BLOCK];
-    double radius_i[BLOCK], radius_j[BLOCK], mass_i[BLOCK], mass_j[BLOCK];    // unless equal
-    double history[HISTORY][BLOCK];
-    double n[3][BLOCK], overlap[BLOCK], growth[BLOCK], normal[BLOCK], phase[BLOCK], special[BLOCK];
-    double f[3][BLOCK], torque_i[3][BLOCK], torque_j[3][BLOCK];
-  };
+  std::vector<std::uint64_t> touching;    // a step ago: a bit of each contact, a number of each block
 
   template <class Partners>
   static double distance(const MovingBalls &balls, const Partners &partners, const Entry &e)
@@ -199,254 +193,231 @@ class ContactList {
     return std::sqrt(dx * dx + dy * dy + dz * dz);
   }
 
-  template <bool ROLLING, bool EQUAL, bool TALLY, class Partners, class Tally>
-  void apply(const ContactLaw &law_in, double dt, bool again, const MovingBalls &balls,
-             const Partners &partners, Tally tally)
+  // what depends on the sizes of four contacts: N = double if they are equal, otherwise Four
+  template <class N> struct Sizes {
+    N radius_i, radius_j;
+    ContactStepOf<N> step;
+  };
+
+  template <bool ROLLING, class N, bool TALLY, class Partners, class Tally>
+  void apply(const ContactLaw &law_in, double dt, bool again, const MovingBalls &balls_in,
+             const Partners &partners_in, Tally tally)
   {
-    const ContactLaw law = law_in;    // a copy: no store below can change it
+    const ContactLaw law = law_in;    // copies: no store below can change them
+    const MovingBalls balls = balls_in;
+    const Partners partners = partners_in;
     const double mass_factor = move_i * move_j > 0.0 ? law.mass_factor : 1.0;
     const double inverse = move_i / mass_i + move_j / mass_j;
-    const ContactStep step = contact_step(law, inverse, mass_factor / inverse, dt, again);
-    Block b;
+    const Sizes<double> same = {radius_i, radius_j,
+                                contact_step(law, inverse, mass_factor / inverse, dt, again)};
 
-    for (size_t start = 0; start < entries.size(); start += BLOCK) {
-      const int listed = static_cast<int>(std::min<size_t>(BLOCK, entries.size() - start));
-      const Entry *e = &entries[start];
-      Entry padded[BLOCK];
-      if (listed < BLOCK) {    // four at a time: the last one stands for those that are missing
-        std::fill(std::copy(e, e + listed, padded), padded + BLOCK, e[listed - 1]);
-        e = padded;
-      }
-      find_distances(b, e, listed, balls, partners);
-      const int count = find_touching<EQUAL>(b, e, &touching[start], listed, law, balls, partners);
-      gather<EQUAL>(b, e, count, balls, partners);
-      evaluate<ROLLING, EQUAL>(b, count, law, step, mass_factor);
-
-      for (int c = 0; c < count; c++) {
-        const int i = e[b.from[c]].i, j = e[b.from[c]].j;
-        double *history = e[b.from[c]].history;
-        if (!again)    // otherwise it is what the step has left
-          for (int h = 0; h < HISTORY; h++) history[h] = b.history[h][c];
-        Vector &f = balls.f[i], &t = balls.torque[i];
-        f.x += b.f[0][c];
-        f.y += b.f[1][c];
-        f.z += b.f[2][c];
-        t.x += b.torque_i[0][c];
-        t.y += b.torque_i[1][c];
-        t.z += b.torque_i[2][c];
-        give(partners, j, b, c);
-        if (TALLY)
-          tally(i, j, Vector{b.f[0][c], b.f[1][c], b.f[2][c]},
-                Vector{b.delta[0][c], b.delta[1][c], b.delta[2][c]});
-      }
+    int found[BLOCK + 3], count = 0;
+    for (size_t block = 0; block < touching.size(); block++) {
+      count = find_touching<N>(block, law, balls, partners, found, count);
+      int c = 0;
+      for (; c + 4 <= count; c += 4)
+        apply_four<ROLLING, N, TALLY>(&found[c], 4, law, same, mass_factor, again, balls, partners,
+                                      tally);
+      count -= c;    // those left over wait for the next block
+      std::copy(found + c, found + c + count, found);
     }
+    if (count == 0) return;
+    std::fill(found + count, found + 4, found[count - 1]);    // idle
+    apply_four<ROLLING, N, TALLY>(found, count, law, same, mass_factor, again, balls, partners, tally);
   }
 
-  template <class Partners>
-  static void find_distances(Block &b, const Entry *e, int listed, const MovingBalls &balls,
-                             const Partners &partners)
+  // adds the contacts of a block that touch to those found; those that begin get a history
+  template <class N, class Partners>
+  SLOPE_INLINE int find_touching(size_t block, const ContactLaw &law, const MovingBalls &balls,
+                                 const Partners &partners, int *found, int count)
   {
-    for (int k = 0; k < listed; k += 4) {
-      for (int m = k; m < k + 4; m++) {
-        four(b.apart[m]) = four(&balls.x[e[m].i].x) - four(&partners.x(e[m].j).x);
-      }
-      const Columns d(four(b.apart[k]), four(b.apart[k + 1]), four(b.apart[k + 2]),
-                      four(b.apart[k + 3]));
-      four(&b.rsq[k]) = d.x * d.x + d.y * d.y + d.z * d.z;
-    }
-  }
-
-  // which of the listed contacts touch: from, and their number; those that begin get a history
-  template <bool EQUAL, class Partners>
-  int find_touching(Block &b, const Entry *e, char *was, int listed, const ContactLaw &law,
-                    const MovingBalls &balls, const Partners &partners) const
-  {
+    const size_t start = block * BLOCK;
+    const int listed = static_cast<int>(std::min<size_t>(BLOCK, entries.size() - start));
     const double sum = radius_i + radius_j;
-    double reach[BLOCK];
-    if (!EQUAL)
-      for (int k = 0; k < listed; k++) {
-        const double different = balls.radius[e[k].i] + partners.radius(e[k].j);
-        reach[k] = different * different;
-      }
-    int count = 0, changes = 0, changed[BLOCK];
-    for (int k = 0; k < listed; k++) {
-      const int now = b.rsq[k] < (EQUAL ? sum * sum : reach[k]);
-      b.from[count] = k;
-      count += now;
-      changed[changes] = k;
-      changes += now ^ was[k];
+    std::uint64_t now = 0;
+    const Entry *e = &entries[start];
+    Entry padded[BLOCK];
+    if (listed < BLOCK) {    // the last one stands for those that are missing
+      std::fill(std::copy(e, e + listed, padded), padded + BLOCK, e[listed - 1]);
+      e = padded;
     }
-    for (int c = 0; c < changes; c++) {
-      const int k = changed[c];
-      was[k] ^= 1;
-      double *history = e[k].history;
+    for (int k = 0; k < BLOCK; k += 4) {
+      N reach = all<N>(sum);
+      find_reach(&e[k], balls, partners, reach);
+      const Columns d = distances(&e[k], balls, partners);
+      const Four rsq = d.x * d.x + d.y * d.y + d.z * d.z;
+      now |= static_cast<std::uint64_t>(bits(rsq < reach * reach)) << k;
+    }
+    if (listed < BLOCK) now &= (std::uint64_t(1) << listed) - 1;
+
+    for (std::uint64_t changed = now ^ touching[block]; changed; changed &= changed - 1) {
+      const size_t k = start + __builtin_ctzll(changed);
+      double *history = histories[k];
       memset(history, 0, HISTORY * sizeof(double));
-      if (!was[k]) continue;
-      const double ri = balls.radius[e[k].i], rj = partners.radius(e[k].j);
-      const double mark =
-          new_contact(law.rolling_factor * ri * rj / (ri + rj)) / std::sqrt(b.rsq[k]);
-      for (int d = 0; d < 3; d++) history[d] = mark * b.apart[k][d];
+      if (touches(k)) continue;
+      const Entry &e = entries[k];
+      const Vector &a = balls.x[e.i], &b = partners.x(e.j);
+      const double ri = balls.radius[e.i], rj = partners.radius(e.j);
+      const double mark = new_contact(law.rolling_factor * ri * rj / (ri + rj)) /
+          distance(balls, partners, e);
+      history[0] = mark * (a.x - b.x);
+      history[1] = mark * (a.y - b.y);
+      history[2] = mark * (a.z - b.z);
     }
-    for (int c = 0; c < count; c++) {    // ahead of gather()
-      const Entry &touching_one = e[b.from[c]];
-      __builtin_prefetch(touching_one.history, 1);
-      if (Partners::MOVE) {
-        __builtin_prefetch(&partners.v(touching_one.j));
-        __builtin_prefetch(&partners.omega(touching_one.j));
-      }
+    touching[block] = now;
+
+    for (; now; now &= now - 1) {
+      const size_t k = start + __builtin_ctzll(now);
+      found[count++] = static_cast<int>(k);
     }
     return count;
   }
 
-  template <bool EQUAL, class Partners>
-  void gather(Block &b, const Entry *e, int count, const MovingBalls &balls,
-              const Partners &partners) const
+  template <class Partners>
+  static void find_reach(const Entry *, const MovingBalls &, const Partners &, double &) {}
+  template <class Partners>
+  SLOPE_INLINE static void find_reach(const Entry *e, const MovingBalls &balls, const Partners &partners,
+                                      Four &reach)
   {
-    if (count == 0) return;
-    for (int c = count; c % 4; c++) b.from[c] = b.from[count - 1];
-
-    for (int c = 0; c < count; c += 4) {
-      Four v[4], rw[4], w[4];
-      for (int m = 0; m < 4; m++) {
-        const Entry &entry = e[b.from[c + m]];
-        const int i = entry.i, j = entry.j;
-        const double ri = EQUAL ? radius_i : balls.radius[i];
-        const double rj = EQUAL ? radius_j : partners.radius(j);
-        v[m] = four(&balls.v[i].x);
-        w[m] = four(&balls.omega[i].x);
-        rw[m] = ri * w[m];
-        if (Partners::MOVE) {
-          v[m] -= four(&partners.v(j).x);
-          rw[m] += rj * four(&partners.omega(j).x);
-          w[m] -= four(&partners.omega(j).x);
-          partners.prefetch_force(j);
-        }
-        if (!EQUAL) {
-          b.radius_i[c + m] = ri;
-          b.radius_j[c + m] = rj;
-          b.mass_i[c + m] = balls.mass[i];
-          b.mass_j[c + m] = partners.mass(j);
-        }
-      }
-      const int *from = &b.from[c];
-      put(b.delta, c, Columns(four(b.apart[from[0]]), four(b.apart[from[1]]),
-                              four(b.apart[from[2]]), four(b.apart[from[3]])));
-      put(b.v, c, Columns(v[0], v[1], v[2], v[3]));
-      put(b.rw, c, Columns(rw[0], rw[1], rw[2], rw[3]));
-      put(b.w, c, Columns(w[0], w[1], w[2], w[3]));
-      const double *const h[4] = {e[from[0]].history, e[from[1]].history, e[from[2]].history,
-                                  e[from[3]].history};
-      put(b.history, c, Columns(four(h[0]), four(h[1]), four(h[2]), four(h[3])));
-      const Columns rest(four(h[0] + 2), four(h[1] + 2), four(h[2] + 2), four(h[3] + 2));
-      four(&b.history[3][c]) = rest.y;
-      four(&b.history[4][c]) = rest.z;
-      four(&b.history[5][c]) = rest.w;
-    }
+    for (int m = 0; m < 4; m++) reach[m] = balls.radius[e[m].i] + partners.radius(e[m].j);
   }
 
-  static void put(double (*rows)[BLOCK], int c, const Columns &columns)
+  template <class Partners>
+  SLOPE_INLINE static Columns distances(const Entry *e, const MovingBalls &balls,
+                                        const Partners &partners)
   {
-    four(&rows[0][c]) = columns.x;
-    four(&rows[1][c]) = columns.y;
-    four(&rows[2][c]) = columns.z;
+    Four d[4];
+    for (int m = 0; m < 4; m++) d[m] = four(&balls.x[e[m].i].x) - four(&partners.x(e[m].j).x);
+    return Columns(d[0], d[1], d[2], d[3]);
   }
 
-  static void give(const FixedPartners &, int, const Block &, int) {}
-  static void give(const MovingPartners &partners, int j, const Block &b, int c)
+  // the contacts k of which count, of four, are not idle
+  template <bool ROLLING, class N, bool TALLY, class Partners, class Tally>
+  SLOPE_INLINE void apply_four(const int *k, int count, const ContactLaw &law,
+                               const Sizes<double> &same, double mass_factor, bool again,
+                               const MovingBalls &balls, const Partners &partners, Tally tally)
   {
-    if (j >= partners.nforce) return;
-    Vector &f = partners.balls.f[j], &t = partners.balls.torque[j];
-    f.x -= b.f[0][c];
-    f.y -= b.f[1][c];
-    f.z -= b.f[2][c];
-    t.x += b.torque_j[0][c];
-    t.y += b.torque_j[1][c];
-    t.z += b.torque_j[2][c];
-  }
+    const Entry e[4] = {entries[k[0]], entries[k[1]], entries[k[2]], entries[k[3]]};
+    double *const h[4] = {histories[k[0]], histories[k[1]], histories[k[2]], histories[k[3]]};
+    Sizes<N> sizes;
+    find_sizes(e, law, same, mass_factor, again, balls, partners, sizes);
+    const N ri = sizes.radius_i, rj = sizes.radius_j;
 
-  // where contact k of the touching ones is, and how fast
-  static void contact_of(const Block &b, int k, double ri, double rj, const ContactLaw &law, Contact &c)
-  {
-    const double dx = b.delta[0][k], dy = b.delta[1][k], dz = b.delta[2][k];
-    const double r = std::sqrt(dx * dx + dy * dy + dz * dz), rinv = 1.0 / r;
-    c.overlap = ri + rj - r;
+    ContactOf<Four, N> c;
     c.rolling_radius = law.rolling_factor * ri * rj / (ri + rj);
-    for (int d = 0; d < 3; d++) {
-      c.n[d] = b.delta[d][k] * rinv;
-      c.v[d] = b.v[d][k];
+
+    const Columns delta = distances(e, balls, partners);
+    const Four rsq = delta.x * delta.x + delta.y * delta.y + delta.z * delta.z;
+    const Four r = root(rsq), rinv = 1.0 / rsq * r;
+    c.overlap = ri + rj - r;
+    c.n[0] = delta.x * rinv;
+    c.n[1] = delta.y * rinv;
+    c.n[2] = delta.z * rinv;
+
+    Four v[4], rw[4], w[4];
+    for (int m = 0; m < 4; m++) {
+      v[m] = four(&balls.v[e[m].i].x);
+      w[m] = four(&balls.omega[e[m].i].x);
+      rw[m] = one(ri, m) * w[m];
+      if (Partners::MOVE) {
+        v[m] -= four(&partners.v(e[m].j).x);
+        rw[m] += one(rj, m) * four(&partners.omega(e[m].j).x);
+        w[m] -= four(&partners.omega(e[m].j).x);
+      }
+    }
+    put(Columns(v[0], v[1], v[2], v[3]), c.v);
+    put(Columns(rw[0], rw[1], rw[2], rw[3]), c.rw);
+    put(Columns(w[0], w[1], w[2], w[3]), c.w);
+
+    Four history[HISTORY];
+    const Columns begin(four(h[0]), four(h[1]), four(h[2]), four(h[3]));
+    const Columns end(four(h[0] + 2), four(h[1] + 2), four(h[2] + 2), four(h[3] + 2));
+    put(begin, history);
+    history[3] = begin.w;
+    history[4] = end.z;
+    history[5] = end.w;
+
+    ContactForceOf<Four> out;
+    contact_force<ROLLING>(sizes.step, c, history, out);
+
+    if (!again) {    // otherwise it is what the step has left
+      const Columns rows(history[0], history[1], history[2], history[3]);
+      four(h[0]) = rows.x;
+      four(h[1]) = rows.y;
+      four(h[2]) = rows.z;
+      four(h[3]) = rows.w;
+      if (ROLLING)
+        for (int m = 0; m < 4; m++) {
+          h[m][4] = history[4][m];
+          h[m][5] = history[5][m];
+        }
+    }
+    const Four none = Four();
+    const Columns f(out.f[0], out.f[1], out.f[2], none);
+    const Columns ti(out.m[0] - ri * out.t[0], out.m[1] - ri * out.t[1], out.m[2] - ri * out.t[2], none);
+    const Columns tj(out.m[0] + rj * out.t[0], out.m[1] + rj * out.t[1], out.m[2] + rj * out.t[2], none);
+    give(e[0], f.x, ti.x, tj.x, balls, partners);
+    if (count > 1) give(e[1], f.y, ti.y, tj.y, balls, partners);
+    if (count > 2) give(e[2], f.z, ti.z, tj.z, balls, partners);
+    if (count > 3) give(e[3], f.w, ti.w, tj.w, balls, partners);
+    if (TALLY)
+      for (int m = 0; m < count; m++)
+        tally(e[m].i, e[m].j, Vector{out.f[0][m], out.f[1][m], out.f[2][m]},
+              Vector{delta.x[m], delta.y[m], delta.z[m]});
+  }
+
+  template <class Partners>
+  SLOPE_INLINE void find_sizes(const Entry *, const ContactLaw &, const Sizes<double> &same, double,
+                               bool, const MovingBalls &, const Partners &, Sizes<double> &sizes) const
+  {
+    sizes = same;
+  }
+  template <class Partners>
+  SLOPE_INLINE void find_sizes(const Entry *e, const ContactLaw &law, const Sizes<double> &same,
+                               double mass_factor, bool again, const MovingBalls &balls,
+                               const Partners &partners, Sizes<Four> &sizes) const
+  {
+    Four inverse;
+    for (int m = 0; m < 4; m++) {
+      sizes.radius_i[m] = balls.radius[e[m].i];
+      sizes.radius_j[m] = partners.radius(e[m].j);
+      inverse[m] = move_i / balls.mass[e[m].i] + move_j / partners.mass(e[m].j);
+    }
+    sizes.step = contact_step(law, inverse, Four(mass_factor / inverse), same.step.dt, again);
+  }
+
+  static double one(double same, int) { return same; }
+  SLOPE_INLINE static double one(Four several, int m) { return several[m]; }
+
+  SLOPE_INLINE static void put(const Columns &columns, Four *rows)
+  {
+    rows[0] = columns.x;
+    rows[1] = columns.y;
+    rows[2] = columns.z;
+  }
+
+  // force f on i, minus f on j; torque ti on i, minus tj on j
+  template <class Partners>
+  SLOPE_INLINE static void give(const Entry &e, Four f, Four ti, Four tj, const MovingBalls &balls,
+                                const Partners &partners)
+  {
+    add(balls.f[e.i], f);
+    add(balls.torque[e.i], ti);
+    if (partners.gets_force(e.j)) {
+      subtract(balls.f[e.j], f);
+      subtract(balls.torque[e.j], tj);
     }
   }
 
-  // forces of the touching contacts
-  template <bool ROLLING, bool EQUAL>
-  void evaluate(Block &b, int count, const ContactLaw &law, const ContactStep &same,
-                double mass_factor) const
+  SLOPE_INLINE static void add(Vector &sum, Four f)
   {
-    const int end = (count + 3) & ~3;    // what gather() has filled
-    const double of_i = move_i, of_j = move_j;    // locals: no store can change them
-    const double same_ri = radius_i, same_rj = radius_j;
-#pragma GCC ivdep
-    for (int k = 0; k < end; k++) {
-      ContactStep step = same;
-      if (!EQUAL) {
-        const double inverse = of_i / b.mass_i[k] + of_j / b.mass_j[k];
-        set_mass(step, law, inverse, mass_factor / inverse);
-      }
-      Contact c;
-      contact_of(b, k, EQUAL ? same_ri : b.radius_i[k], EQUAL ? same_rj : b.radius_j[k], law, c);
-      const double history[3] = {b.history[0][k], b.history[1][k], b.history[2][k]};
-      double V, phase;
-      contact_motion(step, c, history, V, phase);
-      const double F = inside_force(step, c.overlap, V);
-      for (int d = 0; d < 3; d++) b.n[d][k] = c.n[d];
-      b.normal[k] = F;
-      b.growth[k] = V;
-      b.overlap[k] = c.overlap;
-      b.phase[k] = begins_or_ends(step, c.overlap, V, phase, F) ? phase : INSIDE;
-      b.special[k] = begins_or_ends(step, c.overlap, V, phase, F) ? 1.0 : 0.0;
-    }
-    int specials = 0, which[BLOCK];
-    for (int k = 0; k < count; k++) {
-      which[specials] = k;
-      specials += b.special[k] > 0.0;
-    }
-    for (int s = 0; s < specials; s++) {
-      const int k = which[s];
-      ContactStep step = same;
-      if (!EQUAL) {
-        const double inverse = of_i / b.mass_i[k] + of_j / b.mass_j[k];
-        set_mass(step, law, inverse, mass_factor / inverse);
-      }
-      b.normal[k] = normal_force(step, b.overlap[k], b.growth[k], b.phase[k]);
-    }
-#pragma GCC ivdep
-    for (int k = 0; k < end; k++) {
-      const double ri = EQUAL ? same_ri : b.radius_i[k];
-      const double rj = EQUAL ? same_rj : b.radius_j[k];
-      ContactStep step = same;
-      if (!EQUAL) {
-        const double inverse = of_i / b.mass_i[k] + of_j / b.mass_j[k];
-        set_mass(step, law, inverse, mass_factor / inverse);
-      }
-      Contact c;
-      ContactForce out;
-      double history[HISTORY];
-      c.rolling_radius = law.rolling_factor * ri * rj / (ri + rj);
-      for (int d = 0; d < 3; d++) {
-        c.n[d] = b.n[d][k];
-        c.v[d] = b.v[d][k];
-        c.rw[d] = b.rw[d][k];
-        c.w[d] = b.w[d][k];
-      }
-      for (int h = 0; h < HISTORY; h++) history[h] = b.history[h][k];
-      contact_force<ROLLING>(step, c, b.normal[k], b.phase[k], history, out);
-      for (int h = 0; h < HISTORY; h++) b.history[h][k] = history[h];
-      for (int d = 0; d < 3; d++) {
-        b.f[d][k] = out.f[d];
-        b.torque_i[d][k] = out.m[d] - ri * out.t[d];
-        b.torque_j[d][k] = -out.m[d] - rj * out.t[d];
-      }
-    }
+    two(&sum.x) += TwoThere{f[0], f[1]};
+    sum.z += f[2];
+  }
+  SLOPE_INLINE static void subtract(Vector &sum, Four f)
+  {
+    two(&sum.x) -= TwoThere{f[0], f[1]};
+    sum.z -= f[2];
   }
 };
 

@@ -218,7 +218,7 @@ void FixWallGranBalls::store_contacts()
     for (size_t k = 0, end; k < l.entries.size(); k = end) {
       const int i = l.entries[k].i;    // its entries follow one another
       int n = 0;
-      for (end = k; end < l.entries.size() && l.entries[end].i == i; end++) n += l.touching[end];
+      for (end = k; end < l.entries.size() && l.entries[end].i == i; end++) n += l.touches(end);
       if (n == 0) continue;
       if (n > MAX_PARTNERS)
         error->one(FLERR, "{}: ball {} touches {} fixed balls, the most is {}", caller,
@@ -226,9 +226,9 @@ void FixWallGranBalls::store_contacts()
       partner[i] = ipage.get(n);
       values[i] = dpage.get(n * HISTORY);
       for (; k < end; k++)
-        if (l.touching[k]) {
+        if (l.touches(k)) {
           partner[i][npartner[i]] = l.entries[k].j;
-          memcpy(&values[i][npartner[i]++ * HISTORY], l.entries[k].history,
+          memcpy(&values[i][npartner[i]++ * HISTORY], l.histories[k],
                  HISTORY * sizeof(double));
         }
       most = std::max(most, n);
@@ -280,11 +280,11 @@ void FixWallGranBalls::post_neighbor()
   double *next = history.data();
   for (ContactList &l : lists) {
     for (size_t k = 0; k < l.entries.size(); k++, next += HISTORY) {
-      ContactList::Entry &e = l.entries[k];
-      e.history = next;
+      const ContactList::Entry &e = l.entries[k];
+      l.histories[k] = next;
       for (int p = 0; p < npartner[e.i]; p++)
         if (partner[e.i][p] == e.j) {
-          l.touching[k] = 1;
+          l.set_touches(k);
           memcpy(next, &values[e.i][p * HISTORY], HISTORY * sizeof(double));
         }
     }

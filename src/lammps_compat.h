@@ -37,13 +37,14 @@ namespace compat {
 #endif
   }
 
-  // fixes of one style, in the order of the deck
+  // fixes of one style, or of our variant of it, in the order of the deck
   inline std::vector<Fix *> fixes_of_style(LAMMPS *lmp, const std::string &style)
   {
     std::vector<Fix *> found;
     Modify *modify = lmp->modify;
     for (int i = 0; i < modify->nfix; i++)
-      if (style == modify->fix[i]->style) found.push_back(modify->fix[i]);
+      if (style == modify->fix[i]->style || style + "/slope" == modify->fix[i]->style)
+        found.push_back(modify->fix[i]);
     return found;
   }
 

@@ -3,37 +3,57 @@
    Distributed under the GNU General Public License, version 2
 ------------------------------------------------------------------------- */
 
-/* Four doubles at a time, by the vector extensions that GCC and Clang have for any processor */
+/* Four doubles at a time, by the vector extensions that GCC and Clang have for any processor, and
+   the functions that the contact law needs of one double and of four alike */
 
 #ifndef SLOPE_SIMD4_H
 #define SLOPE_SIMD4_H
 
+#include <cmath>
+#ifdef __AVX__
+#include <immintrin.h>
+#endif
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpsabi"    // all of this is inlined
+
+#define SLOPE_INLINE inline __attribute__((always_inline))
+
 namespace Slope {
 
-typedef double Four __attribute__((vector_size(32), aligned(8), may_alias));
-typedef long long FourIndices __attribute__((vector_size(32)));
+typedef double Four __attribute__((vector_size(32)));
+typedef decltype(Four() < Four()) FourFlags;    // 0 or -1 each
+
+// in memory, at any double
+typedef double FourThere __attribute__((vector_size(32), aligned(8), may_alias));
+typedef double TwoThere __attribute__((vector_size(16), aligned(8), may_alias));
+
+SLOPE_INLINE const FourThere &four(const double *p)
+{
+  return *reinterpret_cast<const FourThere *>(p);
+}
+
+SLOPE_INLINE FourThere &four(double *p)
+{
+  return *reinterpret_cast<FourThere *>(p);
+}
+
+SLOPE_INLINE TwoThere &two(double *p)
+{
+  return *reinterpret_cast<TwoThere *>(p);
+}
 
 #if defined(__clang__) || __GNUC__ >= 12
 #define SLOPE_SHUFFLE(a, b, i, j, k, l) __builtin_shufflevector(a, b, i, j, k, l)
 #else
-#define SLOPE_SHUFFLE(a, b, i, j, k, l) __builtin_shuffle(a, b, FourIndices{i, j, k, l})
+#define SLOPE_SHUFFLE(a, b, i, j, k, l) __builtin_shuffle(a, b, FourFlags{i, j, k, l})
 #endif
-
-inline const Four &four(const double *p)
-{
-  return *reinterpret_cast<const Four *>(p);
-}
-
-inline Four &four(double *p)
-{
-  return *reinterpret_cast<Four *>(p);
-}
 
 // rows a, b, c, d to columns: x = a[0] b[0] c[0] d[0] and so on
 struct Columns {
   Four x, y, z, w;
 
-  Columns(const Four &a, const Four &b, const Four &c, const Four &d)
+  SLOPE_INLINE Columns(Four a, Four b, Four c, Four d)
   {
     const Four ab_even = SLOPE_SHUFFLE(a, b, 0, 4, 2, 6), ab_odd = SLOPE_SHUFFLE(a, b, 1, 5, 3, 7);
     const Four cd_even = SLOPE_SHUFFLE(c, d, 0, 4, 2, 6), cd_odd = SLOPE_SHUFFLE(c, d, 1, 5, 3, 7);
@@ -44,6 +64,63 @@ struct Columns {
   }
 };
 
+// a everywhere
+template <class T> SLOPE_INLINE T all(double a)
+{
+  return T() + a;
+}
+
+// bit k: whether flag k is set
+SLOPE_INLINE int bits(FourFlags a)
+{
+#ifdef __AVX__
+  return _mm256_movemask_pd(reinterpret_cast<__m256d>(a));
+#else
+  return (a[0] & 1) | (a[1] & 2) | (a[2] & 4) | (a[3] & 8);
+#endif
+}
+
+SLOPE_INLINE int bits(bool a)
+{
+  return a;
+}
+
+SLOPE_INLINE Four root(Four a)
+{
+#ifdef __AVX__
+  return _mm256_sqrt_pd(a);
+#else
+  return Four{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
+#endif
+}
+
+SLOPE_INLINE double root(double a)
+{
+  return std::sqrt(a);
+}
+
+SLOPE_INLINE Four choose(FourFlags which, Four a, Four b)
+{
+  return which ? a : b;
+}
+
+SLOPE_INLINE double choose(bool which, double a, double b)
+{
+  return which ? a : b;
+}
+
+// the second one if one of them is not a number
+template <class T> SLOPE_INLINE T larger(T a, T b)
+{
+  return choose(a > b, a, b);
+}
+
+template <class T> SLOPE_INLINE T smaller(T a, T b)
+{
+  return choose(a < b, a, b);
+}
+
 }    // namespace Slope
 
+#pragma GCC diagnostic pop
 #endif

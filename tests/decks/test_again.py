@@ -82,4 +82,5 @@ def test_no_memory_is_lost(site, monkeypatch):
     run_deck(deck, site)
     memory = [int(line.split()[1]) for line in (site / "memory.txt").read_text().splitlines()]
     assert len(memory) == 60
-    assert memory[-1] - memory[9] < 50, f"kB after each clear: {memory}"
+    # the smallest of ten: where the heap ends varies from clear to clear
+    assert min(memory[-10:]) - min(memory[10:20]) < 50, f"kB after each clear: {memory}"

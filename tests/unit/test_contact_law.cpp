@@ -413,7 +413,7 @@ TEST(ContactList, SameAsOneContactAtATime)
         }
         for (int h = 0; h < (rolling > 0.0 ? HISTORY : 3); h++)
           EXPECT_NEAR(cloud.history[k][h], history[h], 1e-13) << k;
-        EXPECT_EQ(cloud.list.touching[k], k % 3 != 0) << k;
+        EXPECT_EQ(cloud.list.touches(k), k % 3 != 0) << k;
       }
     }
 }

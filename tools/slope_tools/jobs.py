@@ -43,6 +43,16 @@ def physical_cores():
     return min(len(siblings) or 1, cores())
 
 
+def environment():
+    """Of a program that may be run by mpirun."""
+    values = {**os.environ, "OMP_NUM_THREADS": "1"}
+    # Open MPI on one machine: what a rank sends each step goes at once, without a handshake
+    values.setdefault("OMPI_MCA_btl_vader_eager_limit", "131072")
+    if os.geteuid() == 0:
+        values.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+    return values
+
+
 class Run:
     """One run: its values, its folder, and what became of it."""
 
@@ -207,7 +217,6 @@ class Work:
                 self._reopen_folder(one)
             else:
                 self._make_folder(one)
-            environment = {**os.environ, "OMP_NUM_THREADS": "1"}
             before = []
             if shutil.which("setpriv"):     # a run does not outlive a study that was killed
                 before += ["setpriv", "--pdeathsig", "TERM"]
@@ -215,12 +224,10 @@ class Work:
                 before += ["mpirun", "-np", str(self.ranks), "--bind-to", "none"]
                 if self.ranks > physical_cores():
                     before += ["--oversubscribe"]
-                if os.geteuid() == 0:
-                    environment.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
             with open(one.folder / SCREEN, "ab" if one.restart else "wb") as screen:
                 # a session of its own: Ctrl-C reaches the study, which then ends the run
                 process = subprocess.Popen([*before, self.lmp, *self.command(one)], cwd=one.folder,
-                                           env=environment, stdin=subprocess.DEVNULL, stdout=screen,
+                                           env=environment(), stdin=subprocess.DEVNULL, stdout=screen,
                                            stderr=subprocess.STDOUT, start_new_session=True)
         except OSError as error:
             raise SlopeError(one.folder, f"cannot be run: {error.strerror} ({error.filename})") from error

@@ -14,7 +14,7 @@ from typing import Dict, NamedTuple, Optional
 
 import numpy as np
 
-from . import runs
+from . import jobs, runs
 from .errors import SlopeError
 
 DATA, DECK, LOG, SCREEN, FINAL, SERIES = "balls.data", "in.scene", "log.scene", "screen.txt", "final.txt", "series.txt"
@@ -122,7 +122,7 @@ class Slope(Code):
 
     def write(self, scene, folder, steps, every=0):
         write_data(folder / DATA, scene, {})
-        lines = [*head(scene, "s s fs" if len(scene.moving) > MANY else "f f f"),
+        lines = ["suffix slope", *head(scene, "s s fs" if len(scene.moving) > MANY else "f f f"),
                  f"pair_style gran/restitution {self.keywords}"]
         for kind, c in scene.contacts.items():
             lines.append(f"pair_coeff 1 {kind} stiffness {c.kn!r} {c.kt!r} damping {c.cn!r} {c.ct!r} "
@@ -388,20 +388,13 @@ def chosen(option, text, known):
     return words
 
 
-def environment():
-    values = {**os.environ, "OMP_NUM_THREADS": "1"}
-    if os.geteuid() == 0:
-        values.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-    return values
-
-
 def launch(words, folder, ranks):
     """Start a program in a folder; what it says goes to SCREEN."""
     if ranks > 1:
         words = ["mpirun", "-np", str(ranks), "--bind-to", "none", "--oversubscribe", *words]
     try:
         with open(folder / SCREEN, "wb") as screen:
-            return subprocess.Popen(words, cwd=folder, env=environment(), stdin=subprocess.DEVNULL, stdout=screen,
+            return subprocess.Popen(words, cwd=folder, env=jobs.environment(), stdin=subprocess.DEVNULL, stdout=screen,
                                     stderr=subprocess.STDOUT, start_new_session=True)
     except OSError as error:
         raise SlopeError(words[0], f"cannot be run: {error.strerror}") from error
