@@ -41,6 +41,13 @@ struct MovingPartners {
   const Vector &x(int j) const { return balls.x[j]; }
   double share(int j) const { return j < nforce ? 1.0 : 0.5; }    // of the contact that is this rank's
   bool gets_force(int j) const { return j < nforce; }
+  void prefetch(int j) const
+  {
+    __builtin_prefetch(&balls.v[j]);
+    __builtin_prefetch(&balls.omega[j]);
+    __builtin_prefetch(&balls.f[j], 1);
+    __builtin_prefetch(&balls.torque[j], 1);
+  }
   const Vector &v(int j) const { return balls.v[j]; }
   const Vector &omega(int j) const { return balls.omega[j]; }
   double radius(int j) const { return balls.radius[j]; }
@@ -59,6 +66,7 @@ struct FixedPartners {
   const Vector &x(int j) const { return position[j]; }
   double share(int) const { return 1.0; }
   bool gets_force(int) const { return false; }
+  void prefetch(int) const {}
   const Vector &v(int) const { return still; }
   const Vector &omega(int) const { return still; }
   double radius(int) const { return radius_all; }
@@ -183,6 +191,7 @@ class ContactList {
 
  private:
   static constexpr int BLOCK = 64;
+  static constexpr int AHEAD = 16;    // contacts found, and fetched from memory, before their turn
   std::vector<std::uint64_t> touching;    // a step ago: a bit of each contact, a number of each block
 
   template <class Partners>
@@ -211,19 +220,20 @@ class ContactList {
     const Sizes<double> same = {radius_i, radius_j,
                                 contact_step(law, inverse, mass_factor / inverse, dt, again)};
 
-    int found[BLOCK + 3], count = 0;
+    int found[BLOCK + AHEAD + 3], count = 0;
     for (size_t block = 0; block < touching.size(); block++) {
       count = find_touching<N>(block, law, balls, partners, found, count);
       int c = 0;
-      for (; c + 4 <= count; c += 4)
+      for (; c + 4 + AHEAD <= count; c += 4)
         apply_four<ROLLING, N, TALLY>(&found[c], 4, law, same, mass_factor, again, balls, partners,
                                       tally);
-      count -= c;    // those left over wait for the next block
+      count -= c;
       std::copy(found + c, found + c + count, found);
     }
-    if (count == 0) return;
-    std::fill(found + count, found + 4, found[count - 1]);    // idle
-    apply_four<ROLLING, N, TALLY>(found, count, law, same, mass_factor, again, balls, partners, tally);
+    for (int c = count; c % 4; c++) found[c] = found[count - 1];    // idle
+    for (int c = 0; c < count; c += 4)
+      apply_four<ROLLING, N, TALLY>(&found[c], std::min(4, count - c), law, same, mass_factor, again,
+                                    balls, partners, tally);
   }
 
   // adds the contacts of a block that touch to those found; those that begin get a history
@@ -269,6 +279,9 @@ class ContactList {
     for (; now; now &= now - 1) {
       const size_t k = start + __builtin_ctzll(now);
       found[count++] = static_cast<int>(k);
+      __builtin_prefetch(histories[k], 1);
+      __builtin_prefetch(histories[k] + HISTORY - 1, 1);    // may be on the next cache line
+      partners.prefetch(entries[k].j);
     }
     return count;
   }

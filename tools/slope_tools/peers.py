@@ -122,7 +122,7 @@ class Slope(Code):
 
     def write(self, scene, folder, steps, every=0):
         write_data(folder / DATA, scene, {})
-        lines = ["suffix slope", *head(scene, "s s fs" if len(scene.moving) > MANY else "f f f"),
+        lines = ["suffix slope", "processors 1 * 1", *head(scene, "s s fs" if len(scene.moving) > MANY else "f f f"),
                  f"pair_style gran/restitution {self.keywords}"]
         for kind, c in scene.contacts.items():
             lines.append(f"pair_coeff 1 {kind} stiffness {c.kn!r} {c.kt!r} damping {c.cn!r} {c.ct!r} "
@@ -139,7 +139,8 @@ class Slope(Code):
     def tuned(scene):
         """As in inputs/20_embankment."""
         yield f"neigh_modify binsize {scene.diameter + scene.skin!r}"
-        yield "fix spread all balance 1000 1.05 shift xy 10 1.05"
+        yield f"atom_modify sort 1000 {20 * scene.diameter!r}"
+        yield "fix spread all balance 1000 1.01 shift xy 10 1.01"
 
 
 class Frozen(Code):
