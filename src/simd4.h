@@ -14,9 +14,6 @@
 #include <immintrin.h>
 #endif
 
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wpsabi"    // all of this is inlined
-
 #define SLOPE_INLINE inline __attribute__((always_inline))
 
 namespace Slope {
@@ -122,5 +119,4 @@ template <class T> SLOPE_INLINE T smaller(T a, T b)
 
 }    // namespace Slope
 
-#pragma GCC diagnostic pop
 #endif
