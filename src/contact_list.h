@@ -224,9 +224,11 @@ class ContactList {
     for (size_t block = 0; block < touching.size(); block++) {
       count = find_touching<N>(block, law, balls, partners, found, count);
       int c = 0;
-      for (; c + 4 + AHEAD <= count; c += 4)
+      for (; c + 4 + AHEAD <= count; c += 4) {
+        for (int m = 0; m < 4; m++) prefetch(found[c + AHEAD + m], partners);
         apply_four<ROLLING, N, TALLY>(&found[c], 4, law, same, mass_factor, again, balls, partners,
                                       tally);
+      }
       count -= c;
       std::copy(found + c, found + c + count, found);
     }
@@ -251,7 +253,9 @@ class ContactList {
       std::fill(std::copy(e, e + listed, padded), padded + BLOCK, e[listed - 1]);
       e = padded;
     }
+    const Entry *next = start + 2 * BLOCK <= entries.size() ? e + BLOCK : e;
     for (int k = 0; k < BLOCK; k += 4) {
+      for (int m = 0; m < 4; m++) __builtin_prefetch(&partners.x(next[k + m].j));
       N reach = all<N>(sum);
       find_reach(&e[k], balls, partners, reach);
       const Columns d = distances(&e[k], balls, partners);
@@ -276,14 +280,15 @@ class ContactList {
     }
     touching[block] = now;
 
-    for (; now; now &= now - 1) {
-      const size_t k = start + __builtin_ctzll(now);
-      found[count++] = static_cast<int>(k);
-      __builtin_prefetch(histories[k], 1);
-      __builtin_prefetch(histories[k] + HISTORY - 1, 1);    // may be on the next cache line
-      partners.prefetch(entries[k].j);
-    }
+    for (; now; now &= now - 1) found[count++] = static_cast<int>(start + __builtin_ctzll(now));
     return count;
+  }
+
+  template <class Partners> SLOPE_INLINE void prefetch(int k, const Partners &partners) const
+  {
+    __builtin_prefetch(histories[k], 1);
+    __builtin_prefetch(histories[k] + HISTORY - 1, 1);    // may be on the next cache line
+    partners.prefetch(entries[k].j);
   }
 
   template <class Partners>

@@ -267,7 +267,7 @@ class Plan:
         """Number of timed runs, at most."""
         each = {"peers": 2 * len(names) * self.repeat, "terrain": 4 * self.repeat, "throughput": 3 * self.repeat,
                 "ranks": len(ranks) * (2 * self.repeat + (0 if self.quick else 2)),
-                "weak": 0 if self.quick else 2 * max(1, self.repeat // 2)}
+                "weak": 0 if self.quick else 2 * self.repeat}
         return sum(each[part] for part in parts)
 
     def prepare(self, name, factor, steps):
@@ -397,7 +397,7 @@ class Plan:
         here = self.write(self.ours, "slope_short", self.scene, steps)
         there = self.write(self.ours, "slope_many", many, steps)
         ratios, extra, told = [], [], []
-        for _ in range(max(1, self.repeat // 2)):
+        for _ in range(self.repeat):
             one = self.measure("weak", self.ours, here, self.scene, steps)
             other = self.measure("weak", self.ours, there, many, steps)
             ratios.append(other.per_ball / one.per_ball)
