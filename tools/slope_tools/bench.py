@@ -266,7 +266,7 @@ class Plan:
     def expected(self, parts, names, ranks):
         """Number of timed runs, at most."""
         each = {"peers": 2 * len(names) * self.repeat, "terrain": 4 * self.repeat, "throughput": 3 * self.repeat,
-                "ranks": len(ranks) * (2 * self.repeat + (0 if self.quick else 2)),
+                "ranks": len(ranks) * self.repeat * (2 if self.quick else 4),
                 "weak": 0 if self.quick else 2 * self.repeat}
         return sum(each[part] for part in parts)
 
@@ -362,7 +362,7 @@ class Plan:
             self.set(f"ranks_{ranks}", f"speed-up of {ranks} ranks, the moving mass", ratios)
             if not self.quick:
                 self.set(f"rest_{ranks}", f"speed-up of {ranks} ranks, {CASE.parent.name} from start to rest",
-                         [self.case(1) / self.case(ranks)])
+                         [self.case(1) / self.case(ranks) for _ in range(self.repeat)])
 
     def case(self, ranks):
         """s per step of case 20 from start to rest."""
