@@ -75,6 +75,22 @@ def test_terrain_and_throughput(slope):
     assert len(inner) > 20 and all(point in there for point in inner)
 
 
+def test_more_balls_on_one_rank_and_on_two(slope, monkeypatch):
+    monkeypatch.setattr(bench, "MANY", 1000)
+    status, _, err = slope("--only weak --balls 300 --steps 40 --repeat 1 --np 2")
+    assert status == 0, err
+    measures = yaml.safe_load(Path("bench/bench.yaml").read_text())["measures"]
+    assert set(measures) == {"weak_time", "weak_time_2", "weak_bytes", "weak_bytes_told"}
+    assert all(measures[name]["target"] == "<= 1.3" for name in ("weak_time", "weak_time_2"))
+    rows = [row for row in csv.DictReader(open("bench/bench.csv", encoding="ascii")) if row["part"] == "weak"]
+    few, many = int(rows[0]["moving"]), int(rows[1]["moving"])
+    assert many >= 1000 and many % few == 0
+    assert [(int(row["ranks"]), int(row["moving"])) for row in rows] == [(1, few), (1, many), (2, few), (2, many)]
+    times = [float(row["ns_per_ball_step"]) for row in rows]
+    assert measures["weak_time"]["value"] == pytest.approx(times[1] / times[0], rel=1e-4)
+    assert measures["weak_time_2"]["value"] == pytest.approx(times[3] / times[2], rel=1e-4)
+
+
 def test_copies_do_not_touch_each_other():
     moving = np.zeros((2, 9))
     moving[:, :3] = [[0, 0, 5], [0, 3, 5]]
