@@ -22,6 +22,7 @@ using namespace LAMMPS_NS;
 
 static constexpr double PI = 3.14159265358979323846;
 static constexpr const char *MARKED = "delete_balls_marked";
+static constexpr double MUCH = 0.2;    // share of the volume, to be warned of
 
 /* ----------------------------------------------------------------------
    delete_balls GROUP overlap FRACTION
@@ -54,7 +55,7 @@ void DeleteBalls::command(int narg, char **arg)
 
   const int marked = group->bitmask[group->find_or_create(MARKED)];
   const int groupbit = group->bitmask[igroup];
-  double mine[3] = {0.0, 0.0, 0.0}, all[3];    // marked, their volume, left
+  double mine[4] = {0.0, 0.0, 0.0, 0.0}, all[4];    // marked, left, their volumes
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
     const double r = atom->radius[i];
@@ -65,12 +66,13 @@ void DeleteBalls::command(int narg, char **arg)
     if (deepest > fraction * r) {
       atom->mask[i] |= marked;
       mine[0] += 1.0;
-      mine[1] += 4.0 / 3.0 * PI * r * r * r;
+      mine[2] += 4.0 / 3.0 * PI * r * r * r;
     } else {
-      mine[2] += 1.0;
+      mine[1] += 1.0;
+      mine[3] += 4.0 / 3.0 * PI * r * r * r;
     }
   }
-  MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(mine, all, 4, MPI_DOUBLE, MPI_SUM, world);
 
   if (all[0] > 0.0) input->one(fmt::format("delete_atoms group {} compress no", MARKED));
   input->one(fmt::format("group {} delete", MARKED));
@@ -80,6 +82,12 @@ void DeleteBalls::command(int narg, char **arg)
                    "Delete_balls: {:.0f} balls of group {} removed that overlapped fixed balls by "
                    "more than {:g} of their radius: {:.6g} m3 of balls, {:.6g} m3 of ground at "
                    "6/pi; {:.0f} balls left\n",
-                   all[0], name, fraction, all[1], all[1] * 6.0 / PI, all[2]);
-  if (all[2] == 0.0) error->all(FLERR, "Delete_balls: no ball of group {} is left", name);
+                   all[0], name, fraction, all[2], all[2] * 6.0 / PI, all[1]);
+  if (all[1] == 0.0) error->all(FLERR, "Delete_balls: no ball of group {} is left", name);
+  const double share = all[2] / (all[2] + all[3]);
+  if (share > MUCH && comm->me == 0)
+    error->warning(FLERR,
+                   "Delete_balls: {:.0f} % of the volume of group {} is removed, of smaller balls it "
+                   "would be less",
+                   100.0 * share, name);
 }

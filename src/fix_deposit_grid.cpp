@@ -272,6 +272,10 @@ void FixDepositGrid::read_base()
 
 void FixDepositGrid::init()
 {
+  for (Fix *fix : compat::fixes_of_style(lmp, "deposit/grid"))
+    if (fix != this && static_cast<FixDepositGrid *>(fix)->prefix == prefix)
+      error->all(FLERR, "Fix deposit/grid output must be another than that of fix {}, got {}",
+                 fix->id, prefix);
   check_folder();
   sampled = -1;
 
@@ -454,8 +458,8 @@ void FixDepositGrid::check_ground()
   if (worst[0] < HUGE_VAL)
     error->all(FLERR,
                "Fix deposit/grid terrain region {} must have a height within one diameter {:g} of "
-               "every released ball, got none at ball {:.0f}, {:.8g} {:.8g} {:.8g} (small holes: "
-               "tools/slope terrain --fill)",
+               "every released ball, got none at ball {:.0f}, {:.8g} {:.8g} {:.8g} (too deep: "
+               "larger depth of region terrain; a small hole: tools/slope terrain --fill)",
                region_id, worst[4], worst[0], worst[1], worst[2], worst[3]);
 }
 

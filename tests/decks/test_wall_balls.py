@@ -385,6 +385,13 @@ def test_delete_balls(tmp_path):
                         f"{fraction:g} of their radius: {removed * volume:.6g} m3 of balls, {removed * D ** 3:.6g} m3 of "
                         f"ground at 6/pi; {4 - removed} balls left")
         assert f"left {4 - removed}" in log.splitlines()
+        share = removed * D ** 3 / (3 * D ** 3 + 0.2 ** 3)
+        assert (f"Delete_balls: {100 * share:.0f} % of the volume of group moving is removed" in log) == (share > 0.2)
+    # a sixth of the volume: no warning
+    several = [dict(x=-1.1 + 0.15 * k, y=0.25, z=0.5, d=D, v=(0, 0, 0)) for k in range(5)]
+    log = run_deck(make_deck(tmp_path, **{**settings, "balls": several + [{**balls[2], "y": 0.0}]},
+                             before="delete_balls moving overlap 0.05"), tmp_path)
+    assert "Delete_balls: 1 balls" in log and "WARNING: Delete_balls" not in log
     run_deck(make_deck(tmp_path, **settings, before="delete_balls moving overlap 0.05") + "run 1\n", tmp_path, np=2)
 
 

@@ -327,6 +327,8 @@ SETUPS = [
      "Fix wall/gran/balls wall region ground must stand still, got one that moves or varies"),
     ({"box": "region big block 0 8 0 8 -1e20 1e20\ncreate_box 3 big"},
      "Region polygon road has no end in z: the simulation box needs one"),
+    ({"deposit": DECK["deposit"] + "\n" + DECK["deposit"].replace("deposit soil", "other soil").replace("cell 1.0", "cell 2")},
+     "Fix deposit/grid output must be another than that of fix other, got out"),
     ({"deposit": "region high sphere 4 4 9 3 units box\n" + DECK["deposit"].replace("terrain ground", "terrain high")},
      "Fix deposit/grid terrain region high must have a height within one "),
 ]

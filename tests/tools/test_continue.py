@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 import yaml
 
-from tiny_collapse import DECK, LMP, TOP, read_asc, serial, write_case
+from tiny_collapse import DECK, LMP, TOP, processes_in, read_asc, serial, write_case
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
@@ -170,8 +170,7 @@ def test_a_study_that_was_killed(slope, here):
             time.sleep(0.01)
         process.send_signal(signal.SIGKILL)
         process.communicate(timeout=20)
-        while any(os.path.realpath(link).startswith(str(here)) for link in Path("/proc").glob("[0-9]*/cwd")
-                  if link.parent.name != str(os.getpid())):
+        while processes_in(folder):
             assert time.monotonic() < end
             time.sleep(0.02)
         last = runs.restarts(folder)[0][0]

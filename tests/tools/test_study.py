@@ -16,7 +16,7 @@ import rasterio
 import yaml
 from shapely.geometry import Polygon
 
-from tiny_collapse import LMP, TOP, read_asc, serial, write_case
+from tiny_collapse import LMP, TOP, processes_in, read_asc, serial, write_case
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
@@ -73,18 +73,6 @@ def kept(here, slope):
     """Outputs of one real run in the folder kept, for fake_lmp."""
     assert slope("case/in.tiny --set rolling=0 -o first")[0] == 0
     os.rename("first/rolling_0", "kept")
-
-
-def processes_in(folder):
-    """Process ids whose working folder is below a folder."""
-    found = []
-    for link in Path("/proc").glob("[0-9]*/cwd"):
-        try:
-            if os.readlink(link).startswith(str(folder)):
-                found.append(int(link.parent.name))
-        except OSError:
-            continue
-    return found
 
 
 def wait_for(condition, what, seconds=30):
@@ -382,6 +370,39 @@ def test_finished_runs_of_another_deck_are_not_taken(slope, here):
            "run it again, or give another -o\n")
 
 
+def test_what_the_deck_writes_is_no_data(slope, here):
+    """A trial run in the deck's folder leaves it there; the runs begin without it, and go on though it changes."""
+    with open("case/in.tiny", "a", encoding="ascii") as deck:
+        deck.write("write_restart ${out}.last\nwrite_data end.txt\nprint hello append said.txt\n")
+    edit("case/in.tiny", "group       soil", "restart 10 a.1.restart b\ngroup       soil")
+    names = ["a.1.restart", "b", "tiny.last", "end.txt", "said.txt"]
+    for text in ("trial", "another trial"):
+        for name in names:
+            (here / "case" / name).write_text(text)
+        status, _, err = slope("case/in.tiny --set rolling=0 --set steps=20 -o out")
+        assert status == 0, err
+    folder = here / "out" / "rolling_0_steps_20"
+    assert set(yaml.safe_load((folder / "finished.yaml").read_text())["inputs"]) == {"in.tiny", "terrain.asc"}
+    assert (folder / "said.txt").read_text() == "hello\n"
+
+
+def test_files_that_a_deck_reads_and_writes(here):
+    Path("in.files").write_text("""variable out index heap
+        fix a all wall/gran/balls 2 1 file slip.xyz
+        fix b all wall/gran/balls 3 1 surface ground upper write field.xyz
+        fix c all wall/gran/balls 3 1 file both.xyz write both.xyz
+        fix d all ave/time 1 1 1 v_x file ave.txt
+        fix e all print 10 "step" file steps.txt
+        restart 100 ${out}.1 $out.2    # a $ with several letters is $o and more
+        read_restart first.restart
+        dump d all custom 10 ${out}.*.dump id
+        write_dump all custom last.txt id\n""")
+    read, written = runs.named_files(Path("in.files"))
+    assert {"slip.xyz", "both.xyz", "first.restart"} <= read
+    assert written == {"field.xyz", "both.xyz", "ave.txt", "steps.txt", "${out}.1", "heap.1", "$out.2", "heap.*.dump",
+                       "${out}.*.dump", "last.txt"}
+
+
 def test_an_edit_while_the_study_runs_does_not_reach_later_runs(slope, here, kept):
     lmp = fake_lmp("lmp.sh", f"echo '# edited' >> {here}/case/in.tiny")
     deck = (here / "case" / "in.tiny").read_bytes()
@@ -451,8 +472,9 @@ def test_warnings_of_the_logs_are_kept(slope, here):
     edit("case/in.tiny", "timestep    0.002", "timestep    0.004")
     assert slope("case/in.tiny --set steps=20 -o out")[0] == 0
     row = load(here / "out")[0]["runs"][0]
-    assert len(row["log_warnings"]) == 1
-    assert row["log_warnings"][0].startswith("Pair gran/restitution: time step 0.004 s is ")
+    removed, step = row["log_warnings"]
+    assert removed.startswith("Delete_balls: 46 % of the volume ")
+    assert step.startswith("Pair gran/restitution: time step 0.004 s is ")
 
 
 # --- progress ---

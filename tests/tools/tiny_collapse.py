@@ -88,3 +88,15 @@ def read_asc(path):
     lines = Path(path).read_text().splitlines()
     values = np.array([line.split() for line in lines[6:]], float)
     return np.where(values == -9999, np.nan, values)
+
+
+def processes_in(folder):
+    """Process ids whose working folder is below a folder."""
+    found = []
+    for link in Path("/proc").glob("[0-9]*/cwd"):
+        try:
+            if os.readlink(link).startswith(str(folder)):
+                found.append(int(link.parent.name))
+        except OSError:
+            continue
+    return found

@@ -54,7 +54,8 @@ def add_parser(commands, **kwargs):
                         help="leave out the numbers of the paper's second Table 5, which stand beside a study over "
                              "rolling")
     parser.add_argument("--pictures", action="store_true",
-                        help="write the pictures as files too: REPORT.1.png, REPORT.2.png, ... in the page's order")
+                        help="write the maps as files too, REPORT.1.png, REPORT.2.png, ... in the page's order; charts, "
+                        "drawn as lines, stay in the page")
     return parser
 
 
@@ -81,11 +82,11 @@ def run(args):
 
 
 def write_pictures(output, html):
-    """The page's PNG pictures as files beside it."""
+    """The page's PNG pictures, its maps, as files beside it."""
     pictures = re.findall(r"data:image/png;base64,([A-Za-z0-9+/=]+)", html)
     for place, picture in enumerate(pictures, 1):
         runs.write(output.with_suffix(f".{place}.png"), base64.b64decode(picture))
-    print(f"{output.with_suffix('.1.png')} to {len(pictures)}: its pictures")
+    print(f"{output.with_suffix('.1.png')} to {len(pictures)}: its maps")
 
 
 def make(args):

@@ -229,6 +229,8 @@ def conservative(settings, rows, finished):
     """The largest volume to remove, which run gave it, and what speaks against taking it as the largest."""
     best = max(finished, key=lambda row: row["remove_m3"])
     doubts = []
+    if len(rows) == 1:
+        doubts.append("nothing was varied, it is of one run")
     if len(finished) < len(rows):
         doubts.append(f"{len(rows) - len(finished)} of {len(rows)} runs failed")
     moving = sum(row["moving"] for row in finished)

@@ -22,7 +22,7 @@ TOOLS = Path(__file__).resolve().parents[1]
 BESIDE = (TOOLS.parent / "build" if (TOOLS.parent / "CMakeLists.txt").exists() else TOOLS.parents[2] / "bin") / "lmp"
 MOST_RUNS = 10_000
 MOST_LETTERS = 200      # of a folder's name; file systems take 255
-# what runs, and the tools after them, leave in the deck's folder; a file that the deck names is copied all the same
+# what runs, and the tools after them, leave in the deck's folder; a file that the deck reads is copied all the same
 OUTPUTS = re.compile(r"^\.|^core|^log\.|\.(restart|dump|lammpstrj|vtp|vts|pvd)(\.gz)?$|\.(yaml|csv|tif)\.new$"
                      r"|\.summary\.yaml$|\.(png|jpe?g|svg|pdf|html|tif)$|~$", re.IGNORECASE)
 
@@ -270,14 +270,14 @@ def data_files(deck, settings):
     deck or a value names.
     """
     folder = deck.parent
-    words = {word for command in runs.commands(deck) for word in command}
+    words, written = runs.named_files(deck)
     words.update(value for several in settings.values() for value in several)
     left = set()
     for summary in runs.summaries(folder):
         left.update(map(str, runs.load_yaml(summary, "a summary of fix deposit/grid").get("files") or ()))
     found = {}
     for path in sorted(folder.iterdir()):
-        output = OUTPUTS.search(path.name) or path.name in left
+        output = OUTPUTS.search(path.name) or path.name in left or path.name in written
         if path.is_file() and (path.name in words or not output):
             found[path.name] = path
     found[deck.name] = deck
