@@ -236,6 +236,13 @@ def test_the_conservative_volume_is_the_largest(finished):
         assert about["largest"][key]["value"] == max(float(line[column]) for line in table)
 
 
+def test_one_run_is_no_study():
+    row = {"run": "rolling_0", "remove_m3": 5.0, "moving": False, "set": {"rolling": "0"}}
+    other = {"run": "rolling_1", "remove_m3": 4.0, "moving": False, "set": {"rolling": "1"}}
+    assert results.conservative({"rolling": ["0"]}, [row], [row])["doubts"] == ["nothing was varied, it is of one run"]
+    assert results.conservative({"rolling": ["0", "1"]}, [row, other], [row, other])["doubts"] == []
+
+
 def test_envelope_and_exceedance_by_hand(finished):
     folder, _, _ = finished
     about, table = load(folder)
