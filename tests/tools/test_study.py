@@ -448,7 +448,8 @@ def test_a_failing_run_is_told_and_the_others_go_on(slope, here):
 
 
 @pytest.mark.parametrize("body, message", [
-    ("exit 3", "no word in its log (ended with status 3; see out/rolling_0/log.lammps)"),
+    ("exit 3", "no word in its log (ended with status 3; see out/rolling_0/screen.txt)"),
+    ("touch log.lammps; exit 3", "no word in its log (ended with status 3; see out/rolling_0/log.lammps)"),
     ("echo 'mpirun was unable to launch'; exit 1", "mpirun was unable to launch (ended with status 1"),
     ("echo 'ERROR on proc 1: lost (src/pair.cpp:12)'; exit 1", "ERROR on proc 1: lost (ended with status 1"),
     ("echo 'ERROR: bad (src/a/pair.cpp:12)' > log.lammps; kill -SEGV $$", "ERROR: bad (ended by SIGSEGV"),

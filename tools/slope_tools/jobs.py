@@ -84,7 +84,8 @@ class Run:
         screen = self.folder / SCREEN
         if error is None and screen.exists():       # a rank other than 0 tells its errors there only
             error = runs.Log(screen).update().error or runs.last_words(screen)
-        self.error = f"{error or 'no word in its log'} ({how}; see {self.folder / runs.LOG})"
+        where = self.folder / runs.LOG
+        self.error = f"{error or 'no word in its log'} ({how}; see {where if where.exists() else screen})"
 
 
 # --- folders ---
