@@ -198,6 +198,18 @@ def test_a_step_that_comes_twice_is_dropped_with_a_word():
     assert len(read_vtp("run/run_00000100.vtp")[0]) == 2 and len(read_pvd("run.pvd")) == 2
 
 
+def test_snapshots_of_a_longer_run_before_are_noticed():
+    for step, written in ((100, 5000), (200, 5010), (300, 4000)):
+        Path(f"a.{step}.dump").write_text(snapshot(balls(2), step))
+        os.utime(f"a.{step}.dump", (written, written))
+    result = run("a.100.dump", "a.200.dump", "a.300.dump", "-o", "run")
+    assert result.returncode == 0 and len(read_pvd("run.pvd")) == 3
+    assert result.stderr == ("dump2vtk: warning: a.300.dump, line 1: step 300 was written before step 200 of a.200.dump, "
+                             "line 1: is it of another run?\n")
+    os.utime("a.300.dump", (5010, 5010))
+    assert run("a.100.dump", "a.200.dump", "a.300.dump", "-o", "again").stderr == ""
+
+
 def test_time_of_the_dump():
     head = "ITEM: UNITS\nsi\nITEM: TIME\n"
     Path("a.dump").write_text(snapshot(balls(1), 7, head=head + "0.25\n") +

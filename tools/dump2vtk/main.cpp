@@ -532,6 +532,7 @@ struct Entry {
   std::string source;    // file and line of the snapshot
   bool has_time;
   size_t count;
+  fs::file_time_type written;    // the file
 };
 
 void convert_dumps(const Options &options, Output &output, Progress &progress, std::string &report)
@@ -578,7 +579,8 @@ void convert_dumps(const Options &options, Output &output, Progress &progress, s
 
       const fs::path file = output.snapshot(snapshot.step);
       convert(snapshot, reader.file(), options, time, output.path(file));
-      series[snapshot.step] = {time, source, snapshot.has_time, snapshot.count};
+      series[snapshot.step] = {time, source, snapshot.has_time, snapshot.count,
+                               fs::last_write_time(path)};
       progress.say(
           std::to_string(100 * (before + reader.file().bytes()) / std::max<int64_t>(1, total)) +
           " %, " + std::to_string(series.size()) + " snapshots, step " +
@@ -590,6 +592,17 @@ void convert_dumps(const Options &options, Output &output, Progress &progress, s
     if (!word.empty()) progress.warn(path + ": column " + word + " holds words and is left out");
   }
   if (series.empty()) throw std::runtime_error("the dumps have no complete snapshot");
+
+  // what a longer run before left in the folder comes after the last step of this one
+
+  auto other = series.begin();
+  for (auto one = std::next(other); one != series.end(); other = one++)
+    if (other->second.written - one->second.written > std::chrono::seconds(1)) {
+      progress.warn(one->second.source + ": step " + std::to_string(one->first) +
+                    " was written before step " + std::to_string(other->first) + " of " +
+                    other->second.source + ": is it of another run?");
+      break;
+    }
 
   // after the snapshots, so that it gets its name last
 
