@@ -394,7 +394,7 @@ def test_what_the_deck_writes_is_no_data(slope, here):
 
 
 def test_files_that_a_deck_reads_and_writes(here):
-    Path("in.files").write_text("""variable out index heap
+    Path("in.files").write_text("""variable out index heap pile
         fix a all wall/gran/balls 2 1 file slip.xyz
         fix b all wall/gran/balls 3 1 surface ground upper write field.xyz
         fix c all wall/gran/balls 3 1 file both.xyz write both.xyz

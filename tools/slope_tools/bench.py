@@ -92,7 +92,8 @@ def add_parser(commands, **kwargs):
                         help="area of the terrain, times that of the scene (default 1: about 27,000 fixed balls)")
     parser.add_argument("--steps", type=count, metavar="N", help="timed steps of a run (default 1000; --quick 300)")
     parser.add_argument("--repeat", type=count, metavar="N", help="runs of each kind (default 5; --quick 3)")
-    parser.add_argument("--np", default="2", metavar="N1,N2,...", help="ranks of the parts ranks and weak, besides one (default 2)")
+    parser.add_argument("--np", default="2", metavar="N1,N2,...",
+                        help="ranks of the parts ranks and weak, besides one (default 2)")
     parser.add_argument("--only", metavar="PART,...", help=f"these parts: {', '.join(PARTS)} (default all)")
     parser.add_argument("--peers", metavar="CODE,...",
                         help="these codes: " + ", ".join(code.name for code in peers.ALL[1:]) + " (default all)")

@@ -64,13 +64,14 @@ def _read_local(path, raster, local, crs):
         polygons, own = _read_rings(path, text), raster.crs
         local = local or _is_local(path, text, raster)
     geometry = polygons[0] if len(polygons) == 1 else unary_union(polygons)
+    plain = not local and text is not None and crs is None      # numbers of which no file says what they are
     as_it_stands = geometry.envelope
     if not local:
-        geometry = _to_local(path, geometry, crs or own, raster, text is not None and crs is None)
+        geometry = _to_local(path, geometry, crs or own, raster, plain)
     geometry = _checked(path, geometry)
     bounds = getattr(raster, "extent", None) or extent(raster)
     if geometry.intersection(box(*bounds)).area == 0:
-        hint = " (with --local it would)" if not local and as_it_stands.intersects(box(*bounds)) else ""
+        hint = " (with --local it would)" if plain and as_it_stands.intersection(box(*bounds)).area > 0 else ""
         raise SlopeError(path, f"must overlap the terrain{hint}, local x y {numbers(bounds)}", numbers(geometry.bounds))
     return geometry
 
