@@ -209,7 +209,7 @@ def one_impact(case, tolerance=1e-11):
         found = solve_ivp(lambda t, y: rates(t, y, sliding), (t, last), y, method="DOP853", rtol=tolerance,
                           atol=tolerance, events=events, max_step=last / 50)
         t, y = found.t[-1], found.y[:, -1]
-        if found.status == 0:
+        if found.status == 0 or t > (1 - 1e-9) * last:
             return m.outcome(y[0], y[4], y[5])
         for i in range(2):
             if len(found.t_events[i]):

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .claims import Run
+from .claims import AtMost, Claim, Control, Run
 
 CASE = "12_heap"
 HEAP, REST = Run("12_heap/in.resting_heap"), Run("12_heap/in.rest")
@@ -38,3 +38,46 @@ def moved(result):
 def overlaps(result):
     """Of a run of in.rest: overlap over m g/kn, for each of ZETAS."""
     return result.frames("rest.dump")["v_overlap"][0]
+
+
+def farthest(*results):
+    """Way of the ball that moved most between the looks, over its radius; a lost ball is infinitely far."""
+    return max(np.inf if one.lost else one.most for one in map(moved, results))
+
+
+def centroid(*results):
+    """Way of the centroid between the looks, over the mean radius."""
+    return max(moved(result).centroid for result in results)
+
+
+def softening(result):
+    """Largest error of the overlap at rest, over m g/kn."""
+    return np.abs(overlaps(result) - 1).max()
+
+
+AT_REST = "what rests stays"
+
+
+def _heaps(name, title, which, broken, **more):
+    plain = Control("scheme plain", (broken(scheme="plain"),))
+    yield Claim(f"heap_stays_{name}", f"{title}: farthest way of a ball over its radius", "", AT_REST, tuple(which),
+                farthest, AtMost(1e-3), plain, **more)
+    yield Claim(f"heap_centroid_{name}", f"{title}: way of the centroid over the radius", "", AT_REST, tuple(which),
+                centroid, AtMost(1e-5), plain, **more)
+
+
+def _five_heaps(large, e):
+    name, balls = (f"{e}", "heaps") if large == 1 else (f"mixed_{e}", f"heaps of diameters 1:{large}")
+    heap = HEAP(e=e, large=large)
+    return _heaps(name, f"Five {balls}, e {e}, from 10 to 60 s", [heap(seed=seed) for seed in FILLINGS], heap(end=12),
+                  quick=False)
+
+
+SHORT = HEAP(begin=6, end=8)
+CLAIMS = [
+    Claim("rest_overlap", "A ball at rest on a fixed ball, damping ratios 0.05 to 69: largest error of the overlap "
+          "over m g/kn", "", "balance of forces", (REST,), softening, AtMost(0.01),
+          Control("2 % more weight", (REST(("gravity $g vector", "gravity $(1.02*v_g) vector")),))),
+    *_heaps("short", "A heap of 504 balls, e 0.1, from 6 to 8 s", [SHORT], SHORT),
+    *(claim for large in (1, 3) for e in RESTITUTIONS for claim in _five_heaps(large, e)),
+]
