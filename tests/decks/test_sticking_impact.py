@@ -48,11 +48,13 @@ def test_continuous_law(tmp_path, partner, more):
     assert errors.gain.max() <= 0.002
 
 
-def test_the_law_is_right_in_small_steps(tmp_path):
+@pytest.mark.parametrize("partner", sticking_impact.PARTNERS)
+def test_the_law_is_right_in_small_steps(tmp_path, partner):
     """The control of the solution in continuous time: scheme plain at a hundredth, and not at the rule's step."""
     def error(name, **values):
-        result = run(tmp_path / name, scheme="plain", **values, **ROUGH)
-        return sticking_impact.Errors(result).largest["beta"].max()
+        result = run(tmp_path / name, scheme="plain", partner=partner, **values, **ROUGH)
+        largest = sticking_impact.Errors(result).largest
+        return max(largest[name].max() for name in ("beta", "spin", "partner_spin"))
 
     assert error("fine", part=0.01) < 0.005
     assert error("coarse") > 0.1

@@ -81,6 +81,24 @@ def test_energy_and_restitution(mass, radius):
     assert whole.energy == pytest.approx(1, abs=1e-4) and whole.beta == pytest.approx(-1, abs=1e-4)
 
 
+@pytest.mark.parametrize("mass, radius", PARTNERS)
+def test_rolling_resistance_is_a_torque(mass, radius):
+    """Without friction it changes the spins alone, by opposite angular momenta, and stops what rolls."""
+    case = Case(30, 0, 1, 0.3, mass, radius, 0.2, 1e4)
+    got = impacts(case)
+    before = math.sin(math.radians(30)) - 0.2
+    spin, partner_spin = before * got.spin, before * got.partner_spin       # R w / v
+    assert got.beta * before == pytest.approx(before + 0.2 - spin - partner_spin, abs=1e-9)
+    given, taken = 0.2 - spin, 0.0 if math.isinf(mass) else mass * radius * partner_spin
+    assert abs(given) > 0.01
+    if not math.isinf(mass):
+        assert given == pytest.approx(taken, abs=1e-9)
+    # an oscillator as the one of friction: (w_i - w_j) R_r swings with its own share of the mass
+    share = 2.5 * (1 + (0 if math.isinf(mass) else 1 / mass / radius ** 2)) * (2 * radius / (1 + radius)) ** 2
+    share *= 1 if math.isinf(mass) else mass / (1 + mass)
+    assert spin - partner_spin / radius == pytest.approx(0.2 * math.cos(math.pi * math.sqrt(0.3 * share)), abs=1e-4)
+
+
 def test_smaller_steps_change_little():
     case = Case(np.array([5, 30, 60, 85])[:, None], np.array([5, 30, 80]), 0.1, 1.0, 8.0, 2.0, 0.0, 0.1)
     for coarse, fine in zip(impacts(case), impacts(case, 5000)):

@@ -59,7 +59,7 @@ AT_REST = "what rests stays"
 
 
 def _heaps(name, title, which, broken, **more):
-    plain = Control("scheme plain", (broken(scheme="plain"),))
+    plain = Control("scheme plain, twice the rule's step", (broken(scheme="plain", part=2),))
     yield Claim(f"heap_stays_{name}", f"{title}: farthest way of a ball over its radius", "", AT_REST, tuple(which),
                 farthest, AtMost(1e-3), plain, **more)
     yield Claim(f"heap_centroid_{name}", f"{title}: way of the centroid over the radius", "", AT_REST, tuple(which),
