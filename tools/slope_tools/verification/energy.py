@@ -31,6 +31,14 @@ def gas(result):
     return total / total[0]
 
 
+def gaps(result):
+    """Of the balls of a run of in.slot, over the overlap at which an impact of their speed ends."""
+    balls = result.frames("slot.dump")
+    line, = result.printed("slot:")
+    kn = float(re.search(r"kn (\S+)", line)[1])
+    return 2 * balls["v_half"][0] / (balls["vx"][0] * np.sqrt(balls["mass"][0] / kn))
+
+
 def slot(result):
     """Of a run of in.slot: frames by balls, motion and springs together, over that at the start."""
     balls = result.frames("slot.dump")
