@@ -48,11 +48,10 @@ def test_continuous_law(tmp_path, partner, more):
     assert errors.gain.max() <= 0.002
 
 
-@pytest.mark.parametrize("partner", sticking_impact.PARTNERS)
-def test_the_law_is_right_in_small_steps(tmp_path, partner):
+def test_the_law_is_right_in_small_steps(tmp_path):
     """The control of the solution in continuous time: scheme plain at a hundredth, and not at the rule's step."""
     def error(name, **values):
-        result = run(tmp_path / name, scheme="plain", partner=partner, **values, **ROUGH)
+        result = run(tmp_path / name, scheme="plain", partner="heavy", **values, **ROUGH)
         largest = sticking_impact.Errors(result).largest
         return max(largest[name].max() for name in ("beta", "spin", "partner_spin"))
 
@@ -73,14 +72,18 @@ def numbers(result):
     return np.stack([got[name] for name in ("beta", "spin", "partner_spin", "restitution")])
 
 
-@pytest.mark.parametrize("partner", ["fixed", "heavy"])
+@pytest.mark.parametrize("partner", sticking_impact.PARTNERS)
 @pytest.mark.parametrize("way", ["roles", "pieces", "ranks", "each a step later"])
 def test_in_other_ways(tmp_path, partner, way):
     deck = {"roles": swapped(*ROLES), "pieces": swapped(*PIECES),
             "each a step later": swapped(("dt*(2+", "dt*(3+"))}.get(way, DECK)
     one = numbers(run(tmp_path / "one", partner=partner, **ROUGH))
     other = numbers(run(tmp_path / "other", deck, np=2 if way == "ranks" else 1, partner=partner, **ROUGH))
-    assert np.abs(one - other).max() < 1e-5
+    off = np.abs(one - other)
+    if way == "each a step later":      # rounded otherwise: what is about to slip may do so a step later
+        assert off.max() < 0.02 and (off < 1e-5).mean() > 0.995
+    else:
+        assert off.max() < 1e-5
     assert np.ptp(one[0]) > 0.5
 
 
