@@ -28,10 +28,10 @@ def moved(result):
     before, after = (result.frames(f"resting_heap.{when}.dump") for when in (1, 2))
     same = np.isin(before["id"][0], after["id"][0])
     radius = before["radius"][0][same]
-    way = np.stack([after[axis][0] - before[axis][0][same] for axis in "xyz"], axis=1)
-    each = np.linalg.norm(way, axis=1) / radius
+    shift = np.stack([after[axis][0] - before[axis][0][same] for axis in "xyz"], axis=1)
+    each = np.linalg.norm(shift, axis=1) / radius
     mass = radius ** 3
-    centroid = np.linalg.norm((way * mass[:, None]).sum(axis=0) / mass.sum()) / radius.mean()
+    centroid = np.linalg.norm((shift * mass[:, None]).sum(axis=0) / mass.sum()) / radius.mean()
     return Moved(each.max(), centroid, int((each > 1e-3).sum()), int((~same).sum()))
 
 
@@ -41,12 +41,12 @@ def overlaps(result):
 
 
 def farthest(*results):
-    """Way of the ball that moved most between the looks, over its radius; a lost ball is infinitely far."""
+    """Displacement of the ball that moved most between the looks, over its radius; a lost ball is infinitely far."""
     return max(np.inf if one.lost else one.most for one in map(moved, results))
 
 
 def centroid(*results):
-    """Way of the centroid between the looks, over the mean radius."""
+    """Displacement of the centroid between the looks, over the mean radius."""
     return max(moved(result).centroid for result in results)
 
 
@@ -60,9 +60,9 @@ AT_REST = "what rests stays"
 
 def _heaps(name, title, which, broken, **more):
     plain = Control("scheme plain, twice the rule's step", (broken(scheme="plain", part=2),))
-    yield Claim(f"heap_stays_{name}", f"{title}: farthest way of a ball over its radius", "", AT_REST, tuple(which),
+    yield Claim(f"heap_stays_{name}", f"{title}: largest displacement of a ball over its radius", "", AT_REST, tuple(which),
                 farthest, AtMost(1e-3), plain, **more)
-    yield Claim(f"heap_centroid_{name}", f"{title}: way of the centroid over the radius", "", AT_REST, tuple(which),
+    yield Claim(f"heap_centroid_{name}", f"{title}: displacement of the centroid over the radius", "", AT_REST, tuple(which),
                 centroid, AtMost(1e-5), plain, **more)
 
 
