@@ -60,10 +60,10 @@ AT_REST = "what rests stays"
 
 def _heaps(name, title, which, broken, **more):
     plain = Control("scheme plain, twice the rule's step", (broken(scheme="plain", part=2),))
-    yield Claim(f"heap_stays_{name}", f"{title}: largest displacement of a ball over its radius", "", AT_REST, tuple(which),
-                farthest, AtMost(1e-3), plain, **more)
-    yield Claim(f"heap_centroid_{name}", f"{title}: displacement of the centroid over the radius", "", AT_REST, tuple(which),
-                centroid, AtMost(1e-5), plain, **more)
+    yield Claim(f"heap_stays_{name}", f"{title}: largest displacement of a ball over its radius", "", AT_REST,
+                tuple(which), farthest, AtMost(1e-3), plain, **more)
+    yield Claim(f"heap_centroid_{name}", f"{title}: displacement of the centroid over the radius", "", AT_REST,
+                tuple(which), centroid, AtMost(1e-5), plain, **more)
 
 
 def _five_heaps(large, e):
