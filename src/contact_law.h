@@ -180,14 +180,22 @@ SLOPE_INLINE ContactStepOf<N> contact_step(const ContactLaw &law, N inverse_mass
   return s;
 }
 
-// the oscillators of a lone contact
-inline LoneContact lone_contact(const ContactLaw &law, double inverse_mass, double mass_dashpot, double dt)
+// The oscillators of a lone contact; masses as for contact_step(). across (1/kg):
+// 2.5 Rr (1/(m_i R_i) - 1/(m_j R_j)), how sliding and rolling act on each other
+inline LoneContact lone_contact(const ContactLaw &law, double inverse_mass, double mass_dashpot,
+                                double inverse_rolling, double across, double dt)
 {
   const double root_mass = std::sqrt(mass_dashpot);
-  const double half = 0.5 * dt * inverse_mass, square = dt * dt * inverse_mass;
-  return LoneContact({(law.cn_given + law.cn_root * root_mass) * half, law.kn * square},
-                     {POINT * (law.ct_given + law.ct_root * root_mass) * half, POINT * law.kt * square},
-                     law.friction);
+  const double half = 0.5 * dt, square = dt * dt;
+  return LoneContact({(law.cn_given + law.cn_root * root_mass) * half * inverse_mass, law.kn * square * inverse_mass},
+                     {POINT * (law.ct_given + law.ct_root * root_mass) * half * inverse_mass,
+                      POINT * law.kt * square * inverse_mass},
+                     law.friction,
+                     {{(law.cr_given + law.cr_root * root_mass) * half * inverse_rolling,
+                       law.kr * square * inverse_rolling},
+                      law.rolling,
+                      inverse_rolling / inverse_mass,
+                      across / inverse_mass});
 }
 
 // ----------------------------------------------------------------------
@@ -310,6 +318,21 @@ SLOPE_INLINE void contact_force(const ContactStepOf<N> &step, const ContactOf<T,
   if (ROLLING) add_rolling(step, c, others, pressing, history + 3, out);
 }
 
+// a x b
+inline void turn(const double *a, const double *b, double *out)
+{
+  out[0] = a[1] * b[2] - a[2] * b[1];
+  out[1] = a[2] * b[0] - a[0] * b[2];
+  out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+// v without its part along n
+inline void flatten(const double *n, const double *v, double *out)
+{
+  const double along = v[0] * n[0] + v[1] * n[1] + v[2] * n[2];
+  for (int d = 0; d < 3; d++) out[d] = v[d] - along * n[d];
+}
+
 // The same of a contact whose balls touch nothing else (in the step that it ends in they touch
 // nothing at all). again: see contact_step. history: HISTORY values, updated. Returns false if again
 // could only estimate the force.
@@ -324,19 +347,36 @@ inline bool lone_contact_force(const ContactStep &step, const LoneContact &lone,
     history[PHASE] = BEGAN_IN_CROWD;
     return true;
   }
-  double vt[3], U[3], kick_t[3], ft[3], kick_n;
+  const double rr = c.rolling_radius;
+  double vt[3], U[3], w[3], Y[3];
   sliding_velocity(c, vn, vt);
-  const double along = history[0] * n[0] + history[1] * n[1] + history[2] * n[2];
+  const double wn = c.w[0] * n[0] + c.w[1] * n[1] + c.w[2] * n[2];
   for (int d = 0; d < 3; d++) {
     U[d] = vt[d] * step.dt;
-    history[d] -= along * n[d];
+    w[d] = rr * step.dt * (c.w[d] - wn * n[d]);
   }
-  const bool slid = lone.kick(life, again, history[PHASE] == SLID, c.overlap, -vn * step.dt, U, history,
-                              kick_n, kick_t);
-  const double fn = std::max(kick_n * step.force, step.fn_least);
-  for (int d = 0; d < 3; d++) ft[d] = -kick_t[d] * step.force;
+  turn(n, w, Y);
+  LoneContact::Springs springs;
+  LoneContact::Kick kick;
+  flatten(n, history, springs.slide);
+  double rho[3];
+  flatten(n, history + 3, rho);
+  turn(n, rho, springs.roll);
+  const bool slid = lone.kick(life, again, history[PHASE] == SLID, c.overlap, -vn * step.dt, U, Y, springs, kick);
+
+  const double fn = std::max(kick.n * step.force, step.fn_least);
+  double ft[3], fr[3];
+  for (int d = 0; d < 3; d++) {
+    history[d] = springs.slide[d];
+    ft[d] = -kick.slide[d] * step.force;
+    fr[d] = -kick.roll[d] * step.force;
+  }
   set_force(c, fn, ft, out);
-  if (ROLLING && life != ENDS) add_rolling(step, c, 0.0, std::max(fn, 0.0), history + 3, out);
+  if (ROLLING) {
+    turn(fr, n, out.m);    // back: n x (n x v) = -v
+    turn(springs.roll, n, history + 3);
+    for (int d = 0; d < 3; d++) out.m[d] *= rr;
+  }
   history[PHASE] = life == ENDS ? ENDED : life == BEGINS ? BEGAN : slid ? SLID : INSIDE;
   return !(again && slid);
 }

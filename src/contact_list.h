@@ -312,10 +312,12 @@ class ContactList {
 
   double mass_factor(const ContactLaw &law) const { return move_i * move_j > 0.0 ? law.mass_factor : 1.0; }
 
-  LoneContact lone_of(const ContactLaw &law, double dt, double mi, double mj) const
+  LoneContact lone_of(const ContactLaw &law, double dt, double ri, double rj, double mi, double mj) const
   {
     const double inverse = move_i / mi + move_j / mj;
-    return lone_contact(law, inverse, mass_factor(law) / inverse, dt);
+    const double rr = law.rolling_factor * ri * rj / (ri + rj);
+    return lone_contact(law, inverse, mass_factor(law) / inverse, inverse_rolling(law, ri, rj, mi, mj),
+                        2.5 * rr * (move_i / (mi * ri) - move_j / (mj * rj)), dt);
   }
 
   template <bool ROLLING, class N, bool TALLY, class Partners, class Tally>
@@ -327,7 +329,7 @@ class ContactList {
     const Partners partners = partners_in;
     const Sizes<double> same = {radius_i, radius_j,
                                 step_of(law, dt, again, radius_i, radius_j, mass_i, mass_j)};
-    const LoneContact lone = lone_of(law, dt, mass_i, mass_j);
+    const LoneContact lone = lone_of(law, dt, radius_i, radius_j, mass_i, mass_j);
     auto one = [&](int k, Life life) {
       apply_lone<ROLLING, TALLY>(k, life, law, same, lone, again, balls, partners, tally);
     };
@@ -583,7 +585,7 @@ class ContactList {
       rj = partners.radius(e.j);
       const double mi = balls.mass[e.i], mj = partners.mass(e.j);
       known = lone_contact_force<ROLLING>(step_of(law, same.step.dt, again, ri, rj, mi, mj),
-                                          lone_of(law, same.step.dt, mi, mj), life, again, c, history, out);
+                                          lone_of(law, same.step.dt, ri, rj, mi, mj), life, again, c, history, out);
     }
     if (!again) std::memcpy(histories[k], history, sizeof(history));
     else if (!known) {

@@ -53,6 +53,7 @@ PairGranRestitution::PairGranRestitution(LAMMPS *lmp) : Pair(lmp), energy(lmp)
   centroidstressflag = CENTROID_NOTAVAIL;
   finitecutflag = 1;
   nondefault_history_transfer = 1;    // the phase is the same from both sides
+  beyond_contact = 1;                 // a contact that has ended keeps its history for a step
   comm_forward = comm_reverse = 2;    // numbers of contacts
   single_extra = 10;
   svector = new double[single_extra];
