@@ -35,7 +35,7 @@ struct Rolling {
 };
 
 struct LoneContact {
-  static constexpr int PARTS = 4;    // of a step, where sliding begins or ends
+  int parts;    // of a step: sliding begins and ends at one; more where rolling acts on sliding
 
   double friction, resistance;
   Oscillator normal, sliding, rolling;
@@ -60,6 +60,7 @@ struct LoneContact {
     fast = 1.0 + normal.stiffness() / 12.0;
     friction = tan_friction / fast;
     resistance = law_r.limit / fast;
+    parts = resistance > 0.0 && law_r.across != 0.0 ? 12 : 4;
 
     // sliding and rolling keep step with the normal motion
 
@@ -70,9 +71,9 @@ struct LoneContact {
     }
     step_n = normal.after(1.0);
     step_t = sliding.after(1.0);
-    part_n = normal.after(1.0 / PARTS);
-    part_t = sliding.after(1.0 / PARTS);
-    part_r = rolling.after(1.0 / PARTS);
+    part_n = normal.after(1.0 / parts);
+    part_t = sliding.after(1.0 / parts);
+    part_r = rolling.after(1.0 / parts);
     left_t = std::exp(-2.0 * sliding.h);
     inverse_r = law_r.inverse;
     across = law_r.across;
@@ -105,7 +106,7 @@ struct LoneContact {
       s = {0.0, fast * V, {0.0, 0.0, 0.0}, {U[0], U[1], U[2]}, {0.0, 0.0, 0.0}, {Y[0], Y[1], Y[2]}};
       cut_spring(kt, ct, limit(s, friction), s.u, s.xi);    // the dashpot may slide at once
       cut_spring(kr, cr, limit(s, resistance), s.y, s.rho);
-      follow(s, normal.after(t / PARTS), sliding.after(t / PARTS), rolling.after(t / PARTS), out);
+      follow(s, normal.after(t / parts), sliding.after(t / parts), rolling.after(t / parts), out);
       s.d = d;
     } else {
       const double d0 = d - V, r0 = (d - step_n.xx * d0) / step_n.xr;
@@ -115,7 +116,7 @@ struct LoneContact {
       } else {
         s = start(d0, r0, V, U, Y, springs, before.slide);
         if (life == ENDS) {
-          const double t = std::min(normal.until_zero(d0, r0), 1.0) / PARTS;
+          const double t = std::min(normal.until_zero(d0, r0), 1.0) / parts;
           follow(s, normal.after(t), sliding.after(t), rolling.after(t), out);
           out.n = V - s.r / fast;
           for (int k = 0; k < 3; k++) out.slide[k] -= before.slide[k];
@@ -267,10 +268,10 @@ struct LoneContact {
     }
   }
 
-  // the law over PARTS times the time of the motions; adds the impulses to out
+  // the law over parts times the time of the motions; adds the impulses to out
   void follow(State &s, const Motion &n, const Motion &t, const Motion &r, Kick &out) const
   {
-    for (int k = 0; k < PARTS; k++) {
+    for (int k = 0; k < parts; k++) {
       const double rate = s.r;
       s.r = n.rate(s.d, rate);
       s.d = n.x(s.d, rate);
