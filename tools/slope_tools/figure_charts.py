@@ -1,15 +1,16 @@
 """The section and the charts of a report, as data URIs."""
 from typing import NamedTuple, Optional, Sequence, Tuple
 
-import matplotlib
 import numpy as np
 
-from .figures import (COLOURS, FULL, HALF, LINE, ROAD, SECTION, STYLE, data_uri, plt, shortened, text_width, ticks)
-from .sheets import LABEL, TICK, Box, Entry, Sheet, keep_in, label, place_entries
+from . import figures
+from .figures import (COLOURS, FULL, HALF, LINE, ROAD, SECTION, STYLE, plt, shortened, text_width, ticks)
+from .sheets import EDGE, LABEL, OUT, TICK, Box, Entry, Sheet, keep_in, label, place_entries, widest
 
 VISIBLE = 0.055     # inches: a deposit of this thickness can be seen
 LEAST, MOST = 0.9, 3.6      # inches: height of the section, but for a low one on level ground
 STEPS = (1, 2, 5, 10)       # how many times heights may be exaggerated
+TICKS = 0.2         # inches: room of the labels below an axis
 THICK = {"lw": 5, "solid_capstyle": "butt"}     # of an area, in a legend
 
 
@@ -57,7 +58,7 @@ def section(s, before, base, runs, road, cut, title, bends=()):
     low, high = known.min() - room, known.max() + room
     deposit = runs[0][2][runs[0][2] > 0.05 * max(runs[0][2].max(), 1e-9)]
     typical = float(np.percentile(deposit, 75)) if deposit.size else 0.0
-    left = 0.08 + max(text_width(label(round(value)), TICK) for value in (low, high)) + 0.08
+    left = EDGE + OUT + widest(low, high) + 0.02
     scale = scale_of(np.ptp(s), high - low, typical, FULL - left - 0.12)
     with plt.rc_context(STYLE):
         sheet = Sheet(FULL)
@@ -80,12 +81,12 @@ def section(s, before, base, runs, road, cut, title, bends=()):
                             (0, top), road, bends, corners=False)
             draw_thickness(axes, s, runs)
         else:
-            sheet.bottom += TICK * LINE / 72 + 0.06
+            sheet.bottom += TICKS
         if factor is not None:
-            sheet.bottom += TICK * LINE / 72 + 0.06
+            sheet.bottom += TICKS
         sheet.write("distance from A (m)", left, sheet.bottom, LABEL)
         place_entries(sheet, found, left, left, sheet.bottom + 0.06)
-        return data_uri(sheet.finish(), "svg"), scale.factor, factor
+        return figures.data_uri(sheet.finish(), "svg"), scale.factor, factor
 
 
 def panel(sheet, left, size, name, s, limits, road, bends, corners=True):
@@ -173,7 +174,7 @@ def chart(series, x_label, y_label, title, others=(), levels=(), mark: Optional[
                                                              for one in series)]).astype(float)
         low, high = 1.08 * min(0.0, every.min()), 1.08 * max(every.max(), 1e-9)
         grid = ticks(low, high, 6)
-        left = 0.1 + max(text_width(f"{value:,.6g}", TICK) for value in grid) + 0.06
+        left = EDGE + OUT + max(text_width(f"{value:,.6g}", TICK) for value in grid) + 0.02
         sheet.title(title, left)
         sheet.write(y_label, left, sheet.bottom + 0.02, LABEL)
         size = width - left - 0.12, 2.2 if width > HALF else 1.6
@@ -183,7 +184,7 @@ def chart(series, x_label, y_label, title, others=(), levels=(), mark: Optional[
         for one, style in zip(others, ("s--", "D:", "^-.", "v--") * len(others)):
             axes.plot(one.x, one.y, style, color="#999999", mfc="white", ms=5, lw=1.0)
             found.append(Entry(one.name, {"color": "#999999", "marker": style[0], "ls": style[1:], "mfc": "white",
-                                          "ms": 4, "lw": 1.0, "markevery": [0]}))
+                                          "ms": 4, "lw": 1.0}))
         for k, (text, y) in enumerate(levels):
             style = {"color": "#777777", "lw": 0.9, "ls": (0, (1, 1 + k))}
             axes.axhline(y, **style)
@@ -193,7 +194,7 @@ def chart(series, x_label, y_label, title, others=(), levels=(), mark: Optional[
         if mark:
             ring = {"marker": "o", "ms": 10, "mfc": "none", "mec": "#c1121f", "mew": 1.2, "ls": ""}
             axes.plot(*mark[:2], **ring)
-            found.append(Entry(mark[2], {**ring, "ms": 6, "markevery": [0]}))
+            found.append(Entry(mark[2], {**ring, "ms": 6}))
         axes.margins(x=0.08)
         xlo, xhi = axes.get_xlim()
         wide = max(text_width(label(value), TICK) for value in ticks(xlo, xhi, 6)) + 0.2
@@ -203,32 +204,78 @@ def chart(series, x_label, y_label, title, others=(), levels=(), mark: Optional[
         axes.tick_params(labelsize=TICK)
         axes.grid(axis="y", color="#dddddd", lw=0.5)
         axes.spines[["top", "right"]].set_visible(False)
-        sheet.bottom += TICK * LINE / 72 + 0.06
+        sheet.bottom += TICKS
         sheet.write(x_label, left, sheet.bottom, LABEL)
         if found:
             place_entries(sheet, found, left, left, sheet.bottom + 0.05)
-        return data_uri(sheet.finish(), "svg")
+        return figures.data_uri(sheet.finish(), "svg")
 
 
 def draw_series(axes, one, colour, named):
     """The runs as dots, their means with the scatter of a run, and a line only where the differences are a trend."""
     x, y = means(one)
     several = len(x) < len(one.x)
-    found = []
+    line = {"color": colour, "lw": 1.6 if one.joined else 0, "marker": "o"}
     if several:
         axes.plot(one.x, one.y, "o", color=colour, ms=2.6, alpha=0.6, mew=0)
-        found.append(Entry("runs", {"color": colour, "marker": "o", "ms": 2.6, "alpha": 0.6, "ls": "", "mew": 0,
-                                    "markevery": [0]}))
-    axes.plot(x, y, color=colour, lw=1.6 if one.joined else 0, marker="o", ms=5)
+    axes.plot(x, y, ms=5, **line)
     if one.scatter:
         axes.errorbar(x, y, one.scatter, fmt="none", ecolor=colour, elinewidth=0.9, capsize=2.5)
-    text = one.name + (" (means)" if several and one.name else "means" if several else "")
-    if one.scatter:
-        text += ", bars: one standard deviation of a run"
-    if (named or several) and text:
-        found.append(Entry(text, {"color": colour, "lw": 1.6 if one.joined else 0, "marker": "o", "ms": 4,
-                                  "markevery": [0]}))
-    return found
+    return [Entry(one.name, {**line, "ms": 4})] if named and one.name else []
+
+
+class Convergence(NamedTuple):
+    """Means over sizes, and the line through them; the value at size 0 with its 95 % interval (None: unknown)."""
+    sizes: Sequence[float]
+    means: Sequence[float]
+    scatter: Sequence[Optional[float]]      # standard deviation of a run of each size
+    small: float
+    slope: float
+    low: Optional[float]
+    high: Optional[float]
+    supported: Optional[bool]
+
+
+def convergence(found, x_label, y_label, title, width=HALF):
+    """Means against the size of the balls, the line through them and its end."""
+    with plt.rc_context(STYLE):
+        sheet = Sheet(width)
+        deviations = np.array([one or 0.0 for one in found.scatter])
+        means_ = np.asarray(found.means, float)
+        every = np.concatenate([[0.0], means_ + deviations, means_ - deviations, [found.small],
+                                [value for value in (found.low, found.high) if value is not None]])
+        low, high = 1.08 * min(0.0, every.min()), 1.08 * max(every.max(), 1e-9)
+        grid = ticks(low, high, 6)
+        left = EDGE + OUT + max(text_width(f"{value:,.6g}", TICK) for value in grid) + 0.02
+        sheet.title(title, left)
+        sheet.write(y_label, left, sheet.bottom + 0.02, LABEL)
+        size = width - left - 0.12, 1.7
+        axes = sheet.axes(Box(left, sheet.bottom + 0.05, *size))
+        end = 1.05 * max(found.sizes)
+        line = {"color": COLOURS[0], "lw": 1.2, "ls": "-" if found.supported is not False else ":"}
+        axes.plot([0, end], [found.small, found.small + end * found.slope], **line)
+        dots = {"color": COLOURS[1], "marker": "o", "ms": 4.5, "ls": ""}
+        axes.errorbar(found.sizes, means_, deviations, fmt="none", ecolor=COLOURS[1], elinewidth=0.9, capsize=2.5)
+        axes.plot(found.sizes, means_, **dots)
+        square = {"color": COLOURS[0], "marker": "s", "ms": 5, "ls": ""}
+        axes.plot([0], [found.small], clip_on=False, zorder=5, **square)
+        if found.low is not None:
+            axes.errorbar([0], [found.small], [[found.small - found.low], [found.high - found.small]], fmt="none",
+                          ecolor=COLOURS[0], elinewidth=1.1, capsize=3, zorder=5)[2][0].set_clip_on(False)
+        axes.set(xlim=(0, end), ylim=(low, high))
+        axes.set_xticks(at := ticks(0, end, 6), [label(value) for value in at])
+        axes.set_yticks(grid, [f"{value:,.6g}" for value in grid])
+        axes.tick_params(labelsize=TICK)
+        axes.grid(axis="y", color="#dddddd", lw=0.5)
+        axes.spines[["top", "right"]].set_visible(False)
+        sheet.bottom += TICKS
+        sheet.write(x_label, left, sheet.bottom, LABEL)
+        entries = [Entry("means", dots),
+                   Entry("line" if found.supported is not False else "line, not supported by the runs", line),
+                   Entry("small balls" + (", 95 % interval" if found.low is not None else ""),
+                         square)]
+        place_entries(sheet, entries, left, left, sheet.bottom + 0.05)
+        return figures.data_uri(sheet.finish(), "svg")
 
 
 def bars(names, values, y_label, title):
@@ -236,17 +283,19 @@ def bars(names, values, y_label, title):
     with plt.rc_context(STYLE):
         sheet = Sheet(FULL)
         names = [shortened(name, 2.6, TICK) for name in names]
-        left = 0.1 + max(text_width(name, TICK) for name in names) + 0.06
+        left = EDGE + OUT + max(text_width(name, TICK) for name in names) + 0.02
         sheet.title(title, left)
-        axes = sheet.axes(Box(left, sheet.bottom + 0.05, FULL - left - 0.12, 0.15 + 0.2 * len(names)))
+        width = FULL - left - 0.12
+        axes = sheet.axes(Box(left, sheet.bottom + 0.05, width, 0.15 + 0.2 * len(names)))
         axes.barh(range(len(names)), values, color=COLOURS[0], height=0.7)
         axes.set_yticks(range(len(names)), names)
         axes.set_ylim(len(names) - 0.4, -0.6)
-        axes.xaxis.set_major_locator(matplotlib.ticker.MaxNLocator(6))
-        axes.xaxis.set_major_formatter(matplotlib.ticker.StrMethodFormatter("{x:,.6g}"))
+        low, high = min(0.0, *values) * 1.05, max(1e-9, *values) * 1.05
+        axes.set_xlim(low, high)
+        axes.set_xticks(at := ticks(low, high, 6), [f"{value:,.6g}" for value in at])
+        keep_in(axes.get_xticklabels(), at, low, high, width)
         axes.tick_params(labelsize=TICK)
         axes.spines[["top", "right"]].set_visible(False)
-        sheet.bottom += TICK * LINE / 72 + 0.06
+        sheet.bottom += TICKS
         sheet.write(y_label, left, sheet.bottom, LABEL)
-        return data_uri(sheet.finish(), "svg")
-
+        return figures.data_uri(sheet.finish(), "svg")

@@ -6,9 +6,9 @@ import numpy as np
 from matplotlib.colors import BoundaryNorm, LinearSegmentedColormap, ListedColormap
 from matplotlib.patches import Rectangle
 
-from . import sheets
+from . import figures, sheets
 from .deposit import polygons_of
-from .figures import (FULL, HALF, RELEASE, ROAD, SECTION, STYLE, TITLE, classes_of, data_uri, plt, text_width,
+from .figures import (FULL, HALF, RELEASE, ROAD, SECTION, STYLE, TITLE, classes_of, plt, text_width,
                       wrapped)
 from .maps import outline, part
 from .sheets import Box, Entry, Frame
@@ -129,7 +129,7 @@ def finish(sheet, layers, size, left):
     width = layers.shown[2] - layers.shown[0]
     sheets.scale_and_legend(sheet, left, size[0] / width, min(width, 2.5 / (size[0] / width)), entries(layers),
                             layers.raster.crs is not None)
-    return data_uri(sheet.finish())
+    return figures.data_uri(sheet.finish())
 
 
 # --- maps ---
@@ -183,7 +183,7 @@ def terrain_map(layers, detail, crs_name):
                             interpolation="bilinear")
         if tuple(detail) != tuple(layers.shown):
             axes.add_patch(Rectangle(detail[:2], detail[2] - detail[0], detail[3] - detail[1], fill=False, lw=0.9,
-                                     edgecolor="white", zorder=6))
+                                     edgecolor="black", zorder=6))
         draw_section_line(axes, layers, size)
         sheets.draw_axes(axes, frame, size)
         sheets.colour_bar(sheet, image, None, "height (m)", beside, below)
@@ -196,7 +196,7 @@ def small_maps(layers, panels, bar, bounds, colours):
         sheet, frame = sheets.Sheet(FULL), frame_of(layers, False)
         left, _, right, bottom = sheets.margins(frame)
         beside = sheets.bar_room(bounds)
-        columns, size = sheets.layout(len(panels), frame, FULL - left - right - beside, 2 * TALL[FULL])
+        columns, size = sheets.layout(len(panels), frame, FULL - left - right - beside, 1.5 * TALL[FULL])
         rows = math.ceil(len(panels) / columns)
         step = max(size[0], sheets.NARROW) + 0.1
         top, image = sheet.bottom, None
@@ -223,4 +223,3 @@ def small_maps(layers, panels, bar, bounds, colours):
                               min(sheets.MOST_BAR, top - bottom - sheets.EDGE - 0.2)) if upright else None,
                           Box(left, top + 0.04, 3.5, sheets.BAR))
         return finish(sheet, layers, size, left)
-

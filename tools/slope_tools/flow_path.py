@@ -1,9 +1,11 @@
-"""The line that the mass took, in plan: the path of its centroid, continued to the head of the scar and to the front.
+"""The line that the mass took, in plan: the path of its centroid, continued to the front.
 
-The dumps of a run tell where the centroid was. Before and beyond, and where there are no dumps, the line goes through
-the middles of bands across the flow: cells at the same distance from the highest released ones, measured within the
-cells that the mass touched, so that it follows a valley around its bends.
+The dumps of a run tell where the centroid was. Beyond the last one, and where there are no dumps, the line goes through
+the middles of bands across the flow: cells at the same distance from the release, measured within the cells that the
+mass touched, so that it follows a valley around its bends. It ends where next to nothing lies farther on, or where the
+middles no longer follow each other, as among stray balls.
 """
+import math
 import re
 from typing import List, NamedTuple, Optional
 
@@ -16,77 +18,110 @@ from . import dumps
 from .errors import SlopeError
 
 MOST_CELLS = 90_000     # cells that distances are measured on; finer grids are thinned out
-HIGHEST = 5             # percent of the released cells that are the head
 BANDS = 30
+WITHIN = 0.99           # share of the mass within the distance to which the line goes
+SHARPEST = 60           # degrees; bands that turn more do not follow each other
 MOST_BYTES = 2e8        # of dumps that are read
 MOST_DUMPS = 24
 
 
 class Path(NamedTuple):
-    """Points of a line, rows of local x y, from the head of the scar on; dumped: whether dumps told the centroid."""
+    """Points of a line, rows of local x y, the way of the mass; dumped: whether dumps told the centroid."""
     points: np.ndarray
     dumped: bool
 
 
 def path(result, ground):
     """The Path of a run's mass; None where it has none: it did not move, or touched next to nothing."""
-    bands = through_bands(ground)
-    if bands is None:
-        return None
-    points, at, distance = bands
     track = centroids(result)
-    if track is not None:
-        ends = [distance(*track[k]) for k in (0, -1)]
-        room = (at[-1] - at[0]) / BANDS
-        if None not in ends and ends[0] < ends[1]:
-            points = np.concatenate([points[at < ends[0] - room], track, points[at > ends[1] + room]])
-        else:
-            track = None
+    bands = Bands(ground, result.thickness)
+    if track is None:
+        start = bands.start
+        points = followed(start[None, :], bands.points) if start is not None else np.empty((0, 2))
+    else:
+        track = smooth(track)
+        at = bands.distance(*track[-1])
+        beyond = bands.points[bands.at > at + bands.width] if at is not None else np.empty((0, 2))
+        points = followed(track, beyond)
+    if len(points) < 2:
+        return None
     line = LineString(smooth(points)).simplify(ground.cell / 2)
     if line.length < 3 * ground.cell:
         return None
     return Path(np.asarray(line.coords)[:, :2], track is not None)
 
 
+def followed(points, others):
+    """Points, and as many of the others as go on in about the same direction."""
+    found = list(points)
+    for point in others:
+        step = point - found[-1]
+        if not np.hypot(*step) > 0:
+            continue
+        if len(found) > 1:
+            # over some length: the last points of a centroid that comes to rest are close to each other
+            back = next((one for one in found[-2::-1] if np.hypot(*(found[-1] - one)) >= np.hypot(*step) / 2), found[0])
+            way = found[-1] - back
+            turn = math.atan2(way[0] * step[1] - way[1] * step[0], way @ step)
+            if np.hypot(*way) > 0 and abs(turn) > math.radians(SHARPEST):
+                break
+        found.append(point)
+    return np.array(found)
+
+
 # --- bands across the flow ---
 
-def through_bands(ground):
-    """Middles of the bands, their distances from the head, and the distance at a point (None where nothing was)."""
-    step = max(1, int(np.ceil(np.sqrt(ground.touched.size / MOST_CELLS))))
-    touched, before, weight, release = (thinned(values, step) for values in (
-        ground.touched, ground.before, ground.max_thickness, ground.release))
-    x, y = ground.x[::step, ::step], ground.y[::step, ::step]
-    start = release & touched & np.isfinite(before)
-    if not start.any():
-        start = touched & np.isfinite(before)
-    if not start.any():
-        return None
-    head = start & (before >= np.percentile(before[start], 100 - HIGHEST))
-    distance = distances(touched, head, ground.cell * step)
-    reached = np.isfinite(distance)
-    longest = distance[reached].max()
-    if longest < 4 * ground.cell * step:
-        return None
-    bands = min(BANDS, int(longest / (2 * ground.cell * step)))
-    of = np.minimum((distance[reached] / longest * bands).astype(int), bands - 1)
-    band = np.full(distance.shape, -1)
-    band[reached] = of
-    weight = np.where(reached, np.maximum(weight, 1e-6), 0)
-    points, at = [], []
-    for k in range(bands):
-        mask = largest_part(band == k, weight)
-        if mask.any():
-            total = weight[mask].sum()
-            points.append(((x[mask] * weight[mask]).sum() / total, (y[mask] * weight[mask]).sum() / total))
-            at.append((distance[mask] * weight[mask]).sum() / total)
+class Bands:
+    """Bands of the cells that the mass touched, by their distance from the release.
 
-    def distance_at(px, py):
-        column, row = ~ground.raster.transform * (px, py)
-        row, column = int(row // step), int(column // step)
-        if not (0 <= row < distance.shape[0] and 0 <= column < distance.shape[1]):
-            return None
-        return float(distance[row, column]) if np.isfinite(distance[row, column]) else None
-    return np.array(points), np.array(at), distance_at
+    points: their middles, weighted with the largest thickness, as far as the deposit lies; at: their distances (m);
+    width (m); start: the middle of the release, None without one.
+    """
+
+    def __init__(self, ground, deposit):
+        self.step = step = max(1, int(np.ceil(np.sqrt(ground.touched.size / MOST_CELLS))))
+        self.inverse = ~ground.raster.transform
+        touched, release = (thinned(mask, step) for mask in (ground.touched, ground.release))
+        weight, mass, deep = (np.nan_to_num(values[::step, ::step]) for values in (
+            ground.max_thickness, deposit, ground.slip_depth))
+        self.x, self.y = ground.x[::step, ::step], ground.y[::step, ::step]
+        release &= touched
+        self.points, self.at, self.width, self.start = np.empty((0, 2)), np.empty(0), 0.0, None
+        self.distances = np.full(touched.shape, np.inf)
+        if not release.any():
+            return
+        self.start = self.middle(release, np.maximum(deep, 1e-3))
+        self.distances = distances(touched, release, ground.cell * step)
+        reached = np.isfinite(self.distances)
+        beyond = reached & (self.distances > 0) & (weight > 0)
+        if not (beyond.any() and mass[reached].sum() > 0):
+            return
+        order = np.argsort(self.distances[reached])
+        within = np.cumsum(mass[reached][order])
+        longest = self.distances[reached][order][np.searchsorted(within, WITHIN * within[-1])]
+        bands = min(BANDS, int(longest / (2 * ground.cell * step)))
+        if bands < 2:
+            return
+        self.width = longest / bands
+        points, at = [], []
+        for k in range(bands):
+            mask = largest_part(beyond & (self.distances > k * self.width)
+                                & (self.distances <= (k + 1) * self.width), weight)
+            if mask.any():
+                points.append(self.middle(mask, weight))
+                at.append((k + 0.5) * self.width)
+        self.points, self.at = np.reshape(points, (-1, 2)), np.array(at)
+
+    def middle(self, mask, weight):
+        total = weight[mask].sum()
+        return np.array([(self.x[mask] * weight[mask]).sum(), (self.y[mask] * weight[mask]).sum()]) / total
+
+    def distance(self, x, y):
+        """Distance (m) from the release at a point; None where the mass never was."""
+        column, row = (int(value // self.step) for value in self.inverse * (x, y))
+        rows, columns = self.distances.shape
+        inside = 0 <= row < rows and 0 <= column < columns
+        return float(self.distances[row, column]) if inside and np.isfinite(self.distances[row, column]) else None
 
 
 def thinned(values, step):

@@ -1,14 +1,25 @@
 """What a report is made of: the finished runs of a study, or one run, read back."""
 import math
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from affine import Affine
 
-from . import deposit, rasters, runs
+from . import deposit, rasters, rest, runs
 from .errors import SlopeError
+from .report_release import release
 
 MOST_SHOWN = 9          # runs that get a map and a line in the section
+
+
+class End(NamedTuple):
+    """How a run ended; name: None of a single run."""
+    name: str
+    at_rest: bool
+    text: str
+    moving: bool        # more than 10 % of the volume
+    time: float         # s
 
 
 class Result:
@@ -67,15 +78,15 @@ class Data:
     """A study or a run, with everything that a page needs of its files.
 
     study: study.yaml, None of a single run; rows: its runs, finished: those that finished; settings: its variables;
-    repeats: the names of those that are chance; result: the run of the maps, drawn: those beside it on maps and
+    repeats: the variables that are chance; result: the run of the maps, drawn: those beside it on maps and
     section, the same one among them; road: a polygon or None; removed: what is to be removed in the shown run, its
     thickness in the cells and a Raster of volumes in a mesh; over_all: {file: values} of the maps over all runs.
     """
 
     def __init__(self, folder, shown=None):
         self.folder, self.study = folder, None
-        self.rows, self.finished, self.settings, self.repeats = [], [], {}, ()
-        self.road = self.removed = None
+        self.rows, self.finished, self.settings, self.repeats = [], [], {}, {}
+        self.road = self.removed = self._connected = None
         self.over_all = {}
         if (folder / "study.yaml").is_file():
             self._read_study(shown)
@@ -89,7 +100,7 @@ class Data:
         self.rows = self.study["runs"]
         self.finished = [row for row in self.rows if row["status"] == "finished"]
         about = self.study["study"]
-        self.settings, self.repeats = about["set"], tuple(about.get("repeat") or ())
+        self.settings, self.repeats = about["set"], dict(about.get("repeat") or {})
         names = [row["run"] for row in self.finished]
         shown = shown or self.governing()
         if shown not in names:
@@ -142,28 +153,56 @@ class Data:
             raise SlopeError(path, f"must have the grid of {self.result.prefix}.thickness.asc")
         return np.where(np.isfinite(raster.z), raster.z, 0)
 
+    # --- how the runs began and ended ---
+
+    def ends(self):
+        """The End of each finished run."""
+        if self.study:
+            return [End(self.label_of(row), row["at_rest"], row["end"], row["moving"], row["stop_time_s"])
+                    for row in self.finished]
+        one = self.result
+        state = rest.state(one.summary, one.path)
+        return [End(None, state.at_rest, state.text, one.summary["moving"], one.summary["stop"]["time"])]
+
+    def releases(self):
+        """(name, Release) of each finished run whose summary is in reach."""
+        if not self.study:
+            return [(None, release(self.result.summary, [*self.result.log.notes, *self.result.log.warnings]))]
+        loaded = {one.row["run"]: one for one in self.drawn}
+        found = []
+        for row in self.finished:
+            one = loaded.get(row["run"])
+            path = self.folder / row["summary"]
+            if one or path.is_file():
+                summary = one.summary if one else runs.load_summary(path)
+                texts = [*(one.log.notes if one else ()), *(row.get("log_warnings") or ())]
+                found.append((self.label_of(row), release(summary, texts)))
+        return found
+
+    def connected(self):
+        """The connected deposit of the shown run; None where it is nowhere thick enough."""
+        if self._connected is None:
+            from .connected import connected
+            self._connected = connected(self.result.deposit), True
+        return self._connected[0]
+
     # --- runs and their names ---
 
-    def combination(self, row):
-        """What was chosen for a run, without what is chance."""
-        return tuple((name, value) for name, value in row["set"].items() if name not in self.repeats)
-
     def combinations(self):
-        """{combination: its finished runs}, in their order."""
+        """{values of what was chosen: the finished runs}, which differ by what is repeated; in their order."""
         found = {}
         for row in self.finished:
-            found.setdefault(self.combination(row), []).append(row)
+            found.setdefault(tuple(row["set"].items()), []).append(row)
         return found
 
     def governing(self):
-        """The run that the headline is made of: of its combination, the one with the largest volume to remove."""
+        """The run that stands for the headline, else the one of which 99 % of the volume goes farthest."""
         best = self.study["conservative"]
         if not best:
             from .travel_shares import DISTANCE
             key = DISTANCE if all(row.get(DISTANCE) is not None for row in self.finished) else "front_m"
             return max(self.finished, key=lambda row: row[key])["run"]
-        of = next(row for row in self.finished if row["run"] == best["run"])
-        return max(self.combinations()[self.combination(of)], key=lambda row: row["remove_m3"])["run"]
+        return best["run"]
 
     def _beside(self, shown):
         """Names of the runs that are drawn: one of each combination, evenly spread if there are many."""
@@ -182,13 +221,15 @@ class Data:
         return self.label_of(one.row) if self.study else one.name
 
     def label_of(self, row):
-        varied = [f"{name} {value}" for name, value in row["set"].items() if len(self.settings.get(name) or ()) > 1]
-        return ", ".join(varied) or row["run"]
+        repeat = [f"{name} {value}" for name, value in (row.get("repeat") or {}).items()]
+        return ", ".join(self.varied(row) + repeat) or row["run"]
 
     def label_of_combination(self, row):
         """The same without what is chance."""
-        varied = [f"{name} {value}" for name, value in self.combination(row) if len(self.settings.get(name) or ()) > 1]
-        return ", ".join(varied) or ("all runs" if self.repeats else row["run"])
+        return ", ".join(self.varied(row)) or ("all runs" if self.repeats else row["run"])
+
+    def varied(self, row):
+        return [f"{name} {value}" for name, value in row["set"].items() if len(self.settings.get(name) or ()) > 1]
 
 
 def is_number(text):

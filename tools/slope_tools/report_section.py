@@ -78,17 +78,22 @@ class Section:
         if self._westward(points[-1] - points[0]):
             points = points[::-1]
         how = "along the path of the centroid, " if path.dumped else "along the middle of the flow, "
-        return points, how + "continued to the head of the scar and to the front"
+        return points, how + "straight on to the head of the scar, and as far as the mass lies"
 
     def _westward(self, way):
         return way[np.argmax(np.abs(way))] < 0
 
     def _continued(self, points, room):
-        """The line, straight on at both ends as far as the grid goes."""
+        """The line, straight on at both ends through what the release holds there, and some room."""
         ends = []
         for point, before in ((points[0], points[1]), (points[-1], points[-2])):
             way = (point - before) / np.hypot(*(point - before))
-            ends.append(point + min(room, max(0.0, inside(point, way, self.ground.extent)[1])) * way)
+            most = max(0.0, inside(point, way, self.ground.extent)[1])
+            steps = np.arange(0, most, self.ground.cell / 2)
+            places = point[:, None] + way[:, None] * steps
+            held = np.nan_to_num(self.ground.along(self.ground.source.astype(float), *places)) > 0.5
+            far = steps[np.argmin(held)] if held.any() and not held.all() and held[0] else 0.0
+            ends.append(point + min(far + room, most) * way)
         return np.concatenate([ends[:1], points, ends[1:]])
 
     def _fall_line(self):

@@ -11,11 +11,14 @@ from matplotlib.patches import Rectangle
 from .figures import LINE, TITLE, nice, plt, text_width, ticks, wrapped
 
 EDGE, GAP = 0.05, 0.09      # around a sheet, between two things on it
+OUT = 0.09                  # from an axis to its labels
+MOST_TICKS = 7
 TICK, LABEL = 6.3, 7.0      # points
 BAR = 0.12                  # width of a colour bar
 LEAST_BAR, MOST_BAR = 1.3, 3.2      # height of a map that has room for a colour bar beside it; the tallest bar
 ROW = 0.17                  # height of a row of a legend
 NARROW = 1.1                # the least room for the title of a small map
+ENOUGH = 2.5                # square inches of a small map
 SAMPLE = 0.32               # of a legend's entry: the line before the text
 
 
@@ -55,10 +58,8 @@ def label(value):
 
 
 def widest(low, high):
-    """Inches that the coordinates on an axis take."""
-    values = [*ticks(low, high, 6), low, high]
-    step = nice(max(high - low, 1e-9) / 6)
-    return max(text_width(label(round(value / step) * step), TICK) for value in values)
+    """Inches that the coordinates on an axis take, whatever their number."""
+    return max(text_width(label(value), TICK) for most in range(1, MOST_TICKS + 1) for value in ticks(low, high, most))
 
 
 def map_size(frame, width, height):
@@ -112,11 +113,11 @@ class Sheet:
 
 def margins(frame):
     """Room for the labels of a map's axes: left, top, right, bottom."""
-    left = 0.06 + widest(frame.shown[1], frame.shown[3]) + (LABEL * LINE / 72 + 0.03 if frame.names else 0)
-    bottom = 0.06 + TICK * LINE / 72 + (LABEL * LINE / 72 if frame.names else 0)
+    left = EDGE + OUT + widest(frame.shown[1], frame.shown[3]) + (LABEL * LINE / 72 + 0.03 if frame.names else 0)
+    bottom = OUT + TICK * LINE / 72 + (LABEL * LINE / 72 + 0.02 if frame.names else 0)
     if frame.offset is None:
         return left, 0.02, 0.06, bottom
-    more = 0.06 + (TICK + LABEL) * LINE / 72 + 0.03
+    more = OUT + (TICK + LABEL) * LINE / 72 + 0.02
     return left, more, more, bottom
 
 
@@ -127,9 +128,10 @@ def draw_axes(axes, frame, size, left=True, bottom=True):
     axes.set_aspect("auto")     # the box has the map's shape already
     axes.tick_params(direction="out", labelsize=TICK, labelleft=left, labelbottom=bottom)
     apart = widest(xlo, xhi) + 0.16
-    axes.set_xticks(at := ticks(xlo, xhi, max(1, min(7, int(size[0] / apart)))), [label(value) for value in at])
+    most = [max(1, min(MOST_TICKS, int(inches / room))) for inches, room in zip(size, (apart, 0.28))]
+    axes.set_xticks(at := ticks(xlo, xhi, most[0]), [label(value) for value in at])
     keep_in(axes.get_xticklabels(), at, xlo, xhi, size[0])
-    axes.set_yticks(at := ticks(ylo, yhi, max(1, min(7, int(size[1] / 0.28)))), [label(value) for value in at])
+    axes.set_yticks(at := ticks(ylo, yhi, most[1]), [label(value) for value in at])
     if frame.names:
         axes.set_xlabel("local x (m)", fontsize=LABEL, labelpad=2)
         axes.set_ylabel("local y (m)", fontsize=LABEL, labelpad=2)
@@ -149,23 +151,21 @@ def keep_in(labels, places, low, high, inches):
 def crs_axes(axes, frame, size):
     """Coordinates of the CRS on the upper and the right side, where the map is large enough."""
     (xlo, ylo, xhi, yhi), (east, north) = frame.shown, frame.offset
-    width = widest(xlo + east, xhi + east) + 0.2
-    top = axes.secondary_xaxis("top", functions=(lambda x: x + east, lambda x: x - east))
-    top.set_xticks(at := ticks(xlo + east, xhi + east, max(1, min(5, int(size[0] / width)))),
-                   [label(value) for value in at])
-    keep_in(top.get_xticklabels(), [value - east for value in at], xlo, xhi, size[0])
-    top.set_xlabel(f"east (m), {frame.crs}", fontsize=LABEL, labelpad=2)
-    width = widest(ylo + north, yhi + north) + 0.15
-    right = axes.secondary_yaxis("right", functions=(lambda y: y + north, lambda y: y - north))
-    fits = int(size[1] / width)
-    right.set_yticks(at := ticks(ylo + north, yhi + north, min(5, fits)), [label(value) for value in at])
-    if size[1] > 0.7:
+    fit = int(size[0] / (widest(xlo + east, xhi + east) + 0.2))
+    if fit:
+        top = axes.secondary_xaxis("top", functions=(lambda x: x + east, lambda x: x - east))
+        top.set_xticks(at := ticks(xlo + east, xhi + east, min(5, fit)), [label(value) for value in at])
+        keep_in(top.get_xticklabels(), [value - east for value in at], xlo, xhi, size[0])
+        top.set_xlabel(f"east (m), {frame.crs}", fontsize=LABEL, labelpad=2)
+        top.tick_params(labelsize=TICK, size=2)
+    fit = int(size[1] / (widest(ylo + north, yhi + north) + 0.15))
+    if fit:
+        right = axes.secondary_yaxis("right", functions=(lambda y: y + north, lambda y: y - north))
+        right.set_yticks(at := ticks(ylo + north, yhi + north, min(5, fit)), [label(value) for value in at])
         right.set_ylabel("north (m)", fontsize=LABEL, labelpad=2)
-    for side in (top, right):
-        side.tick_params(labelsize=TICK, size=2)
-    right.tick_params(labelrotation=90)
-    for text in right.get_yticklabels():
-        text.set_va("center")
+        right.tick_params(labelsize=TICK, size=2, labelrotation=90)
+        for text in right.get_yticklabels():
+            text.set_va("center")
 
 
 def bar_room(bounds):
@@ -188,7 +188,7 @@ def colour_bar(sheet, image, bounds, text, beside, below):
     else:
         axis.set_major_locator(plt.MaxNLocator(4 if not upright or beside.height < 2 else 7))
     axes.tick_params(labelsize=TICK, size=2, width=0.5)
-    bar.set_label(text, fontsize=LABEL, labelpad=2)
+    bar.set_label(text, fontsize=LABEL, labelpad=3)
     bar.outline.set_linewidth(0.5)
     if not upright:
         sheet.bottom += 0.05 + (TICK + LABEL) * LINE / 72 + 0.03
@@ -237,7 +237,7 @@ def place_entries(sheet, entries, left, first, top):
         line = sheet.axes(Box(x, top, SAMPLE, ROW))
         line.set(xlim=(0, 1), ylim=(0, 1))
         line.axis("off")
-        line.plot([0, 1], [0.5, 0.5], clip_on=False, **entry.style)
+        line.plot([0, 0.5, 1], [0.5, 0.5, 0.5], clip_on=False, markevery=[1], **entry.style)
         room = right - x - SAMPLE - 0.06
         sheet.write(wrapped(entry.text, room, TICK + 0.3, most=1)[0], x + SAMPLE + 0.06, top + 0.025, TICK + 0.3)
         x += width + 0.16
@@ -258,7 +258,7 @@ def single(width, frame, title, tallest, bar=None):
     if flat:
         size = map_size(frame, width - left - right - EDGE, min(tallest, LEAST_BAR))
     sheet.title(title, left)
-    box = Box(left, sheet.bottom + 0.03 + top, *size)
+    box = Box(left, sheet.bottom + 0.07 + top, *size)
     axes = sheet.axes(box)
     beside = below = None
     if bar and flat:
@@ -270,9 +270,10 @@ def single(width, frame, title, tallest, bar=None):
 
 
 def layout(count, frame, width, tallest):
-    """Columns and size of several maps of one frame, as large as they can be in width x tallest."""
+    """Columns and size of several maps of one frame in width x tallest: large enough to read, and then low."""
     found = []
     for columns in range(1, min(count, int(width / (NARROW + 0.1)), 4) + 1):
-        size = map_size(frame, width / columns - 0.1, tallest / math.ceil(count / columns))
-        found.append((size[0] * size[1], columns, size))
-    return max(found)[1:]
+        rows = math.ceil(count / columns)
+        size = map_size(frame, width / columns - 0.1, tallest / rows)
+        found.append((min(size[0] * size[1], ENOUGH), -rows * size[1], columns, size))
+    return max(found)[2:]
