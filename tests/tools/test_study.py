@@ -21,7 +21,7 @@ from tiny_collapse import LMP, TOP, processes_in, read_asc, serial, write_case
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli, jobs, rasters, results, runs, study  # noqa: E402  (after the path is set)
+from slope_tools import cli, jobs, rasters, results, runs, settings, study  # noqa: E402  (after the path is set)
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 MM = 0.0005 + 1e-9          # .asc maps are in whole mm
@@ -97,7 +97,7 @@ def wait_for(condition, what, seconds=30):
     ("a:b:c", ["a:b:c"]),
 ])
 def test_values(text, expected):
-    assert study.values(f"x={text}", text) == expected
+    assert settings.values(f"x={text}", text) == expected
 
 
 def test_the_product_has_a_folder_per_run_with_all_that_it_needs(slope, here):

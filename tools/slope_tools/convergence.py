@@ -147,8 +147,8 @@ def fit(runs: Sequence[Tuple[float, Sequence[float]]]) -> Convergence:
     spread = d ** (2 * p)
     weights = counts / spread
     found, unit, influence, residuals = least_squares(d, means, weights, 1)
-    repeats = sum(float(np.sum((np.array(values) - mean) ** 2)) / one
-                  for (_, values), mean, one in zip(runs, means, spread))
+    repeats = math.fsum((value - mean) ** 2 / one
+                        for (_, values), mean, one in zip(runs, means, spread) for value in values)
     about = float(np.sum(weights * residuals ** 2))
     if about < 1e-24 * float(np.sum(weights * means ** 2)):
         about = 0.0         # but for rounding
@@ -165,10 +165,11 @@ def fit(runs: Sequence[Tuple[float, Sequence[float]]]) -> Convergence:
     deviations = [None, None] if variance is None else [float(one) for one in np.sqrt(variance * np.diag(unit))]
     small = Estimate(float(found[0]), deviations[0])
     result = Convergence(
-        small, Estimate(float(found[1]), deviations[1]), None if variance is None else float(variance * unit[0, 1]), total,
-        p, None if variance is None else math.sqrt(variance), lack, *parabola(d, means, weights, repeats, free), ())
-    sizes = [size_of(result, *each, None if variance is None else variance) for each in zip(
-        runs, means, means - residuals, spread / counts, influence[0])]
+        small, Estimate(float(found[1]), deviations[1]), None if variance is None else float(variance * unit[0, 1]),
+        total, p, None if variance is None else math.sqrt(variance), lack,
+        *parabola(d, means, weights, repeats, free), ())
+    sizes = [size_of(result, *each, variance) for each in zip(
+        runs, *(one.tolist() for one in (means, means - residuals, spread / counts, influence[0])))]
     return Convergence(**{**result.__dict__, "sizes": tuple(sizes)})
 
 
@@ -178,13 +179,13 @@ def size_of(result: Convergence, run, mean: float, fitted: float, unit: float, i
     d, values = run
     scatter = float(np.std(values, ddof=1)) if len(values) > 1 else None
     if not result.known:
-        return Size(d, len(values), float(mean), scatter, float(fitted), None, None)
-    small, ratio, deviation = result.small.value, float(mean) / result.small.value, None
+        return Size(d, len(values), mean, scatter, fitted, None, None)
+    small, ratio, deviation = result.small.value, mean / result.small.value, None
     if variance is not None and result.small.standard_error is not None:
         of_mean = variance * unit
         deviation = math.sqrt(max(0.0, of_mean + (ratio * result.small.standard_error) ** 2
                                   - 2 * ratio * influence * of_mean)) / small
-    return Size(d, len(values), float(mean), scatter, float(fitted), ratio - 1, deviation)
+    return Size(d, len(values), mean, scatter, fitted, ratio - 1, deviation)
 
 
 def parabola(d, means, weights, repeats: float, free: int):
@@ -199,7 +200,8 @@ def parabola(d, means, weights, repeats: float, free: int):
     variance = (repeats + float(np.sum(weights * residuals ** 2))) / total
     deviations = np.sqrt(variance * np.diag(unit))
     clear = abs(found[2]) > stats.t.ppf(CONFIDENCE, total) * deviations[2]
-    return (Estimate(float(found[2]), float(deviations[2])), Estimate(float(found[0]), float(deviations[0])), bool(clear))
+    small, _, curve = (Estimate(float(value), float(deviation)) for value, deviation in zip(found, deviations))
+    return curve, small, bool(clear)
 
 
 # --- in words ---
@@ -222,12 +224,12 @@ def words(result: Convergence, name: str, what: str, unit: str, number) -> List[
     else:
         found.append(f"{what}: the value for small {name} is not clearly above 0, so errors cannot be shares of it")
     if result.supported is False:
-        found.append(f"{what}: the line is not supported: the means of the sizes lie {math.sqrt(result.lack[0]):.2g} times "
-                     f"as far from it as the scatter of the repeats makes them (probability {result.lack[1]:.2g}); "
-                     "standard errors are from these residuals")
+        found.append(f"{what}: the line is not supported: the means of the sizes lie {math.sqrt(result.lack[0]):.2g} "
+                     f"times as far from it as the scatter of the repeats makes them (probability {result.lack[1]:.2g}"
+                     "); standard errors are from these residuals")
     elif result.supported is None:
         found.append(f"{what}: whether a line holds is not known: that takes three sizes, and repeats")
     if result.curve_is_clear:
-        found.append(f"{what}: a parabola fits clearly better, and gives {number(result.curved_small.value)} {unit} for "
-                     f"small {name}")
+        found.append(f"{what}: a parabola fits clearly better, and gives {number(result.curved_small.value)} {unit} "
+                     f"for small {name}")
     return found

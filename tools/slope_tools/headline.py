@@ -137,8 +137,8 @@ def shared(combinations: Sequence[Combination]) -> float:
     """The share of the degrees of freedom that is left where repeats have a part in common: 1/K to 1 of K combinations.
 
     Satterthwaite's approximation (Biometrics Bulletin 2, 1946, 110), of s2 = MB/K + MR (K - 1)/K with the mean squares
-    between the repeats (n - 1) and of the rest, (n - 1)(K - 1). Repeats that a combination lacks are left out of it; with
-    fewer than two in common nothing is known, and the smallest number of any combination counts.
+    between the repeats (n - 1) and of the rest, (n - 1)(K - 1). Repeats that a combination lacks are left out of it;
+    with fewer than two in common nothing is known, and the smallest number of any combination counts.
     """
     several = [one for one in combinations if one.runs > 1]
     free = sum(one.runs - 1 for one in several)
@@ -163,9 +163,9 @@ def shared(combinations: Sequence[Combination]) -> float:
 
 
 def odd_one(combinations: Sequence[Combination], name: str) -> Optional[Tuple[float, float]]:
-    """s (m3) of a combination and that of the others, if its own is larger than chance makes it (F test, one of twenty).
+    """s (m3) of a combination and that of the others, if its own is larger than chance makes it.
 
-    A common scatter is then too small for it.
+    A common scatter is then too small for it. F test, one of twenty.
     """
     mine = next(one for one in combinations if one.name == name)
     free = sum(one.runs - 1 for one in combinations if one.name != name)
@@ -182,7 +182,8 @@ def size_part(mean: float, chance: Optional[float], error: SizeError) -> float:
     """What must be added (m3) for the size of the balls, 0 if they make the volume too large.
 
     The volume of small balls is mean/(1 + e): the difference is added as it is. What that is uncertain by (its 95 %
-    interval) has nothing to do with chance: the two are added as squares, and what the sum exceeds the chance by counts.
+    interval) has nothing to do with chance: the two are added as squares, and by what the sum exceeds the chance, that
+    counts.
     """
     lacking = mean / (1 + error.share) - mean
     half = 0.0 if error.half is None else abs(mean) * error.half / (1 + error.share) ** 2

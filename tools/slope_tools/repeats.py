@@ -6,12 +6,11 @@ from typing import Dict, List, Mapping, Optional, Sequence
 
 from . import jobs
 from .errors import SlopeError
-from .results import as_number
+from .settings import MOST_RUNS, as_number
 
 CHANCE = re.compile(r"seed|\w*offset")      # names of variables whose values nobody can prefer
 OFFSET = re.compile(r"\w*offset")
 FIRST = "base"                              # the repeat that has the deck's values
-MOST_RUNS = 10_000
 
 Settings = Mapping[str, Sequence[str]]
 
@@ -37,14 +36,14 @@ def key_of(repeat: Mapping[str, str]) -> str:
 def add_arguments(parser):
     """--repeat and --equally-good, of the commands that make runs."""
     parser.add_argument("--repeat", metavar="NAME=V1,V2,...", action="append", default=[],
-                        help="values of a variable that nobody can prefer, called seed or ...offset: one more run each, "
-                             "which shows the scatter by chance; A:B:STEP stands for A, A + STEP, ... up to B")
+                        help="values of a variable that nobody can prefer, called seed or ...offset: one more run "
+                             "each, which shows the scatter by chance; A:B:STEP stands for A, A + STEP, ... up to B")
     parser.add_argument("--equally-good", metavar="NAME,...", default="",
                         help="variables of another name whose values are equally good, so that --repeat takes them")
 
 
 def check(names: Sequence[str], equally_good: str) -> None:
-    """Raise SlopeError unless the variables of --repeat are chance, by their names or because --equally-good says so."""
+    """Raise SlopeError unless the variables of --repeat are chance, by name or because --equally-good says so."""
     also = [name for name in equally_good.split(",") if name]
     for name in names:
         if not (CHANCE.fullmatch(name) or name in also):
@@ -58,8 +57,8 @@ def check(names: Sequence[str], equally_good: str) -> None:
 def plan(output, settings: Settings, repeated: Settings, defaults: Mapping[str, str]) -> List[Repeat]:
     """The runs of the product of all settings, the last one varying fastest, each followed by its repeats.
 
-    A combination's first run has the deck's values of what is repeated, or the single one of settings; each of the other
-    values is a run of its own, one variable at a time. defaults: of the deck's index variables.
+    A combination's first run has the deck's values of what is repeated, or the single one of settings; each of the
+    other values is a run of its own, one variable at a time. defaults: of the deck's index variables.
     """
     for name in repeated:
         if len(settings.get(name, ())) > 1:

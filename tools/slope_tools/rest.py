@@ -40,7 +40,7 @@ class Rest:
         """For a narrow table."""
         if self.at_rest:
             return "at rest"
-        return ("" if self.halted else "duration, ") + f"{percent(self.share)} moves"
+        return "moves" if self.halted else "duration"
 
 
 def percent(share: float) -> str:
