@@ -218,7 +218,7 @@ def draw_series(axes, one, colour, named):
     line = {"color": colour, "lw": 1.6 if one.joined else 0, "marker": "o"}
     if several:
         axes.plot(one.x, one.y, "o", color=colour, ms=2.6, alpha=0.6, mew=0)
-    axes.plot(x, y, ms=5, **line)
+    axes.plot(x, y, ms=4 if several else 5, **line)
     if one.scatter:
         axes.errorbar(x, y, one.scatter, fmt="none", ecolor=colour, elinewidth=0.9, capsize=2.5)
     return [Entry(one.name, {**line, "ms": 4})] if named and one.name else []

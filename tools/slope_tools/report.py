@@ -96,7 +96,7 @@ def make(args):
     try:
         page = Page(args)
         return page, render(page.content())
-    except () if __import__("os").environ.get("DEV") else (jinja2.TemplateError, ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+    except (jinja2.TemplateError, ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
         raise SlopeError(args.folder, "must hold what a run or `slope study` wrote, unchanged",
                          f"{type(error).__name__}: {error}"[:200]) from error
 

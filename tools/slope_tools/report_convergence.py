@@ -8,6 +8,7 @@ from .report_charts import AXIS
 
 WHAT = "a converge.yaml of `slope sensitivity --converge`"
 FILE = "converge.yaml"
+PLUS = "\N{PLUS-MINUS SIGN}"
 
 
 def find(asked, data):
@@ -63,10 +64,10 @@ class Sizes:
             what, unit = self.about[name]
             half = None if one.low is None else (one.high - one.low) / 2
             step = headline.place(half / 2) if half else headline.place_of_digits(one.small)
-            small = headline.text(one.small, step) + (f" +- {headline.text(half, step)}" if half else "")
+            small = headline.text(one.small, step) + (f" {PLUS} {headline.text(half, step)}" if half else "")
             numbers.rows.append((f"small balls: {what}", unit, "", headline.text(one.small, step), one.small))
             errors = [f"{size:g}: " + ("unknown" if error is None else f"{error:+.1f} %" + (
-                f" +- {deviation:.1f}" if deviation is not None else "")) for size, error, deviation in
+                f" {PLUS} {deviation:.1f}" if deviation is not None else "")) for size, error, deviation in
                 self.errors[name]]
             note = "" if one.supported is not False else "the line is not supported by its runs"
             found.append({"what": what, "unit": unit, "small": small, "errors": errors, "note": note})

@@ -1,7 +1,7 @@
 """What a report is made of: the finished runs of a study, or one run, read back."""
 import math
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, Optional
 
 import numpy as np
 from affine import Affine
@@ -11,14 +11,17 @@ from .errors import SlopeError
 from .report_release import release
 
 MOST_SHOWN = 9          # runs that get a map and a line in the section
+CUT = "run completed"   # what a summary calls the end of a run that no criterion ended
 
 
 class End(NamedTuple):
     """How a run ended; name: None of a single run."""
-    name: str
+    name: Optional[str]
     at_rest: bool
+    cut: bool           # it stopped at its duration
     text: str
-    moving: bool        # more than 10 % of the volume
+    share: float        # of the volume that moves
+    moving: bool        # more than 10 % of it
     time: float         # s
 
 
@@ -158,11 +161,14 @@ class Data:
     def ends(self):
         """The End of each finished run."""
         if self.study:
-            return [End(self.label_of(row), row["at_rest"], row["end"], row["moving"], row["stop_time_s"])
-                    for row in self.finished]
+            return [End(self.label_of(row), row["at_rest"], row["stop_reason"] == CUT, row["end"],
+                        row["moving_share"] if row.get("fast_share") is None else row["fast_share"], row["moving"],
+                        row["stop_time_s"]) for row in self.finished]
         one = self.result
         state = rest.state(one.summary, one.path)
-        return [End(None, state.at_rest, state.text, one.summary["moving"], one.summary["stop"]["time"])]
+        stop = one.summary["stop"]
+        return [End(None, state.at_rest, stop["reason"] == CUT, state.text, state.share, one.summary["moving"],
+                    stop["time"])]
 
     def releases(self):
         """(name, Release) of each finished run whose summary is in reach."""

@@ -108,8 +108,8 @@ def released_card(data, numbers):
     about = list(dict.fromkeys(release.text for _, release in releases))
     note = about[0] if about else "body unknown"
     if len(about) > 1:
-        worst = max(releases, key=lambda one: abs(one[1].from_cubic))
-        note = f"not the same in all runs; farthest from 6/pi: {worst[0]}: {worst[1].text}"
+        name, worst = max(releases, key=lambda one: (abs(one[1].from_cubic), one[1].removed or 0))
+        note = f"not the same in all runs; of {name}: {worst.text}"
     for name, release in releases:
         if release.body is not None:
             numbers.whole("body", "m3", release.body, name or "")

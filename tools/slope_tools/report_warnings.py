@@ -6,6 +6,7 @@ NAMED = 4               # runs that a line names
 NUMBER = re.compile(r"\d[\d.,]*(?:[eE][+-]?\d+)?")
 # what stands in words of our own here, or beside the maps
 SAID = (" failed: ", "still moves", "not at rest at the end", "left the grid or the box", "has no CRS")
+SAID_TOO = re.compile(r"runs failed$|deposits are not at rest$")
 RED, AMBER = "red", "amber"
 
 
@@ -17,7 +18,8 @@ def warnings(data):
     found += releases(data)
     if data.study:
         for text in (data.study["conservative"] or {}).get("doubts") or ():
-            found.append((AMBER, f"The volume to remove: {text}"))
+            if not SAID_TOO.search(text):
+                found.append((AMBER, f"The volume to remove: {text}"))
         names = {row["run"]: data.label_of(row) for row in data.rows}
         entries = []
         for text in data.study.get("warnings") or ():
@@ -37,17 +39,22 @@ def failures(data):
 
 def not_at_rest(data):
     """Deposits that move when their runs end, or whose runs were cut."""
-    found = []
-    ends = data.ends()
-    for level, moving, note in ((RED, True, ". More than 10 % of the volume is in motion: these are no numbers of a "
-                                            "deposit"), (AMBER, False, "")):
+    found, ends = [], data.ends()
+    for level, moving, note in ((RED, True, " More than 10 % of the volume is in motion: these are no numbers of a "
+                                            "deposit."), (AMBER, False, "")):
         mine = [end for end in ends if not end.at_rest and end.moving == moving]
-        if mine:
-            told = [(f"{end.name}: " if end.name else "") + f"{end.text}, at {end.time:.1f} s" for end in mine]
-            more = f"; and {len(told) - NAMED} more" if len(told) > NAMED else ""
-            who = f"{len(told)} of {plural(len(ends), 'deposit')} not at rest" if data.study else \
-                "The deposit is not at rest"
-            found.append((level, f"{who}: {'; '.join(told[:NAMED])}{more}{note}"))
+        if not mine:
+            continue
+        worst = max(mine, key=lambda end: end.share)
+        told = f"{worst.text}, at {worst.time:.1f} s."
+        if not data.study:
+            found.append((level, f"The deposit is not at rest: {told}{note}"))
+            continue
+        cut = sum(end.cut for end in mine)
+        who = f"{len(mine)} of {plural(len(ends), 'deposit')} not at rest at the end"
+        who += f", {cut} of them stopped at their duration" if cut and len(mine) > 1 else ""
+        found.append((level, f"{who}{of_runs([end.name for end in mine], None) if len(mine) < len(ends) else ''}: "
+                             f"{'most moves in ' * (len(mine) > 1)}{worst.name}: {told}{note}"))
     return found
 
 

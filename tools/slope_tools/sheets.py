@@ -6,7 +6,7 @@ gets what is left of the width, and the sheet is as tall as that makes it.
 import math
 from typing import NamedTuple, Tuple
 
-from matplotlib.patches import Rectangle
+from matplotlib.lines import Line2D
 
 from .figures import LINE, TITLE, nice, plt, text_width, ticks, wrapped
 
@@ -18,7 +18,7 @@ BAR = 0.12                  # width of a colour bar
 LEAST_BAR, MOST_BAR = 1.3, 3.2      # height of a map that has room for a colour bar beside it; the tallest bar
 ROW = 0.17                  # height of a row of a legend
 NARROW = 1.1                # the least room for the title of a small map
-ENOUGH = 2.5                # square inches of a small map
+ENOUGH = 2.0                # square inches of a small map
 SAMPLE = 0.32               # of a legend's entry: the line before the text
 
 
@@ -77,6 +77,7 @@ class Sheet:
         self.figure.set_layout_engine("none")
         self.boxes = []     # (axes, Box)
         self.texts = []     # (text, from the left, from the top)
+        self.lines = []     # (line, places from the left, from the top)
 
     def axes(self, box):
         """New axes in a Box."""
@@ -90,6 +91,11 @@ class Sheet:
         artist = self.figure.text(0, 0, text, fontsize=size, va="top", parse_math=False, **style)
         self.texts.append((artist, left, top))
         self.bottom = max(self.bottom, top + size * LINE / 72)
+
+    def line(self, left, right, top, **style):
+        """A level line, with a marker in its middle if the style has one."""
+        artist = self.figure.add_artist(Line2D([], [], markevery=[1], transform=self.figure.transFigure, **style))
+        self.lines.append((artist, (left, (left + right) / 2, right), top))
 
     def title(self, text, left=EDGE, width=None, size=TITLE, lines=3):
         """A title, over several lines if it is long; below it goes on at self.bottom."""
@@ -106,6 +112,8 @@ class Sheet:
             axes.set_position([left / self.width, 1 - (top + tall) / height, width / self.width, tall / height])
         for artist, left, top in self.texts:
             artist.set_position((left / self.width, 1 - top / height))
+        for artist, places, top in self.lines:
+            artist.set_data([place / self.width for place in places], [1 - top / height] * 3)
         return self.figure
 
 
@@ -210,20 +218,14 @@ def scale_and_legend(sheet, left, inches_per_metre, most, entries, north):
     inches = length * inches_per_metre
     text = f"{length:g} m"
     end = left + inches + 0.08 + text_width(text, TICK)
-    axes = sheet.axes(Box(left, top, inches, ROW))
-    axes.set(xlim=(0, 2), ylim=(0, 1))
-    axes.axis("off")
-    for k, colour in enumerate(("black", "white")):
-        axes.add_patch(Rectangle((k, 0.35), 1, 0.3, facecolor=colour, edgecolor="black", lw=0.6, clip_on=False))
+    middle = top + ROW / 2
+    sheet.line(left, left + inches, middle, color="black", lw=4.2, solid_capstyle="butt")
+    sheet.line(left + inches / 2, left + inches - 0.006, middle, color="white", lw=3.2, solid_capstyle="butt")
     sheet.write(text, left + inches + 0.06, top + 0.03, TICK)
     if north:
-        arrow = sheet.axes(Box(end + 0.12, top, 0.1, ROW))
-        arrow.set(xlim=(0, 1), ylim=(0, 1))
-        arrow.axis("off")
-        arrow.annotate("", (0.5, 1.05), (0.5, -0.05), annotation_clip=False,
-                       arrowprops={"arrowstyle": "-|>", "lw": 0.9, "color": "black", "shrinkA": 0, "shrinkB": 0})
-        sheet.write("N", end + 0.25, top + 0.02, TICK + 0.7, fontweight="bold")
-        end += 0.25 + text_width("N", TICK + 0.7, True)
+        sheet.line(end + 0.15, end + 0.25, middle, color="black", lw=0, marker=r"$\uparrow$", ms=9, mew=0)
+        sheet.write("N", end + 0.28, top + 0.02, TICK + 0.7, fontweight="bold")
+        end += 0.28 + text_width("N", TICK + 0.7, True)
     place_entries(sheet, entries, left, end + 0.25, top)
 
 
@@ -234,10 +236,7 @@ def place_entries(sheet, entries, left, first, top):
         width = SAMPLE + 0.06 + text_width(entry.text, TICK + 0.3)
         if x > left and x + width > right:
             x, top = left, top + ROW
-        line = sheet.axes(Box(x, top, SAMPLE, ROW))
-        line.set(xlim=(0, 1), ylim=(0, 1))
-        line.axis("off")
-        line.plot([0, 0.5, 1], [0.5, 0.5, 0.5], clip_on=False, markevery=[1], **entry.style)
+        sheet.line(x, x + SAMPLE, top + ROW / 2, **entry.style)
         room = right - x - SAMPLE - 0.06
         sheet.write(wrapped(entry.text, room, TICK + 0.3, most=1)[0], x + SAMPLE + 0.06, top + 0.025, TICK + 0.3)
         x += width + 0.16
