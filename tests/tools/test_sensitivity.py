@@ -92,6 +92,14 @@ def test_one_variable_at_a_time_against_the_scatter_of_equivalent_runs(slope):
     assert status == 0 and out.count("started") == 0 and "effect_of_front_m" in rows()[0], err
 
 
+def test_what_is_clear_depends_on_the_number_of_equivalent_runs():
+    """t(0.975) sqrt(1 + 1/n): 4.97 of three runs, 2.37 of ten."""
+    for count, most in ((3, 4.303 * math.sqrt(4 / 3)), (10, 2.2622 * math.sqrt(1.1))):
+        about = {"runs": count, "mean": 100.0, "standard_deviation": 2.0}
+        assert sensitivity.is_clear({"a": 100 - 2 * most * 1.001}, "a", about) is True
+        assert sensitivity.is_clear({"a": 100 + 2 * most * 0.999}, "a", about) is False
+
+
 def test_without_repeats_the_scatter_is_said_to_be_unknown(slope):
     status, out, err = slope(f"--vary rolling=0.2 --set steps=100 {ROAD} -o out")
     assert status == 0, err
