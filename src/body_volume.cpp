@@ -24,7 +24,7 @@ static constexpr int LEVELS = 24;
 static constexpr double STEEPEST = 2.0;         // slope of the body's surface beyond the columns around
 static constexpr double SAME = 3.0e-4;          // two sums; the finer one is a third as wrong
 static constexpr size_t ENOUGH_FILLED = 20000;    // columns: fewer may agree by chance
-static constexpr size_t MOST_FILLED = 4000000;
+static constexpr size_t MOST_FILLED = 500000;
 
 enum { X, Y, Z };
 
