@@ -250,6 +250,18 @@ def test_a_run_that_is_cut_is_not_at_rest_and_the_study_says_so(slope):
     assert "2 of 2 deposits are not at rest" in about["conservative"]["doubts"]
 
 
+@pytest.mark.parametrize("step, at_rest, end", [
+    (2, "yes", "at rest"), (50, "no", "ended by its rest criterion; 99 %")])
+def test_a_run_that_its_deck_halts_is_at_rest_unless_it_moves(slope, step, at_rest, end):
+    deck = Path("case/in.tiny")
+    halt = f"variable s equal step\nfix rest soil halt 2 v_s >= {step} error continue\n"
+    deck.write_text(deck.read_text().replace("run         ", f"{halt}run         "))
+    assert slope("--set rolling=0 -o out")[0] == 0
+    [row] = load()[1]
+    assert (row["stop_reason"], row["at_rest"]) == ("halted", at_rest) and row["end"].startswith(end)
+    assert float(row["stop_time_s"]) == pytest.approx(0.002 * step)
+
+
 def test_shares_of_travel_come_from_the_summary():
     about = summary()
     assert travel_shares.columns(about, "a") == dict.fromkeys(travel_shares.COLUMNS)

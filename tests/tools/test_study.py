@@ -183,6 +183,10 @@ def test_table_yaml_and_summaries_have_the_same_numbers(finished):
                     "centroid_m": travel["centroid"], "thickness_m": summary["largest"]["thickness"],
                     "max_thickness_m": summary["largest"]["max_thickness"],
                     "max_speed_m_s": summary["largest"]["max_speed"], "stop_time_s": summary["stop"]["time"]}
+        for entry in travel["quantiles"]:
+            expected[f"distance_{100 * entry['share']:.0f}_m"] = entry["distance"]
+            expected[f"reach_{100 * entry['share']:.0f}_deg"] = entry["reach_angle"]
+        assert expected["distance_50_m"] < expected["distance_99_m"] <= travel["farthest"]["distance"] == row["front_m"]
         removal = yaml.safe_load((folder / row["run"] / "volume" / "volume.yaml").read_text())
         expected.update(remove_m3=removal["volume"]["remove"], remove_on_road_m3=removal["volume"]["remove_on_road"],
                         blocked_m=removal["axis"]["blocked_length"])
@@ -239,8 +243,8 @@ def test_without_repeats_the_largest_volume_is_called_that(finished):
     assert set(re.findall(r"at the end of the range of (\w+)", doubt)) == ends
     still = sum(line["at_rest"] == "no" for line in table)
     assert still == 4 and "4 of 4 deposits are not at rest" in " ".join(best["doubts"])
-    for key, column in (("front_m", "front_m"), ("thickness_m", "thickness_m")):
-        assert about["largest"][key]["value"] == max(float(line[column]) for line in table)
+    for key in ("distance_99_m", "front_m", "thickness_m"):
+        assert about["largest"][key]["value"] == max(float(line[key]) for line in table)
 
 
 def test_envelope_and_exceedance_by_hand(finished):
