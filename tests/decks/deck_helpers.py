@@ -80,6 +80,22 @@ def read_asc(path):
     return values[::-1], header
 
 
+def flat_numbers(summary, groups=("release", "volume", "travel", "largest")):
+    """The numbers in some groups of a summary of fix deposit/grid, by their path: {"travel.top.0": 3.0}."""
+    found = {}
+
+    def add(path, value):
+        if isinstance(value, (dict, list)):
+            for key, inner in value.items() if isinstance(value, dict) else enumerate(value):
+                add(f"{path}.{key}", inner)
+        elif isinstance(value, (int, float)):
+            found[path] = value
+
+    for group in groups:
+        add(group, summary[group])
+    return found
+
+
 def doc_examples(page):
     """The commands in the Examples section of doc/src/PAGE.rst, without the indentation."""
     folder = Path(__file__).resolve().parents[2] / "doc" / "src"

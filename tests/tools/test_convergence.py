@@ -87,6 +87,19 @@ def test_intervals_and_errors_cover_the_truth():
         assert 0.92 <= held / 600 <= 0.98 and 0.92 <= kept / 600 <= 0.985 and 0.02 <= given_up / 600 <= 0.09
 
 
+def test_the_standard_error_of_an_error_is_that_of_all_means_together():
+    """First-order propagation, with derivatives by shifting the runs of one size after the other."""
+    runs = runs_of(np.random.default_rng(7), lambda d: 17500 - 500 * d, lambda d: 150 * d ** 1.5)
+    fit = convergence.fit(runs)
+    for k, size in enumerate(fit.sizes):
+        variance = 0.0
+        for i, (d, values) in enumerate(runs):
+            moved = convergence.fit([*runs[:i], (d, [value + 1e-2 for value in values]), *runs[i + 1:]])
+            derivative = (moved.sizes[k].error - size.error) / 1e-2
+            variance += (derivative * fit.scatter * d ** fit.exponent) ** 2 / len(values)
+        assert size.standard_error == pytest.approx(math.sqrt(variance), rel=1e-3)
+
+
 def test_a_line_that_the_runs_do_not_support_is_said_so():
     random = np.random.default_rng(2)
     fit = convergence.fit(runs_of(random, lambda d: 17500 - 300 * d ** 2, lambda d: 40))

@@ -166,7 +166,7 @@ def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline, dif
     parts = [group.of("remove_m3") for group in groups]
     odd = headline.odd_one(parts, best.combination)
     if odd:
-        mine, others = (headline.text(one, headline.place(odd[0])) for one in odd)
+        mine, others = (headline.text(one, headline.place(odd[1] or odd[0])) for one in odd)
         found.append(f"its runs scatter more than the others, by {mine} instead of {others} m3: the common scatter may "
                      "be too small for it")
     return found

@@ -60,7 +60,9 @@ def print_runs(settings, rows, scatters, title):
     finished = [row for row in rows if row["status"] == "finished"]
     columns = {key: column for key, column in columns.items() if any(row[key] is not None for row in finished)}
     repeated = any(row["repeat"] for row in rows)
-    for head in (*names, *(["repeat"] * repeated), *(head for head, _ in columns.values())):
+    for head in (*names, *(["repeat"] * repeated)):
+        shown.add_column(head, justify="right", no_wrap=True)
+    for head, _ in columns.values():
         shown.add_column(head, justify="right")
     for row in rows:
         cells = [row["set"][name] for name in names] + [combinations.key_of(row["repeat"])] * repeated
