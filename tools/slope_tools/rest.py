@@ -7,7 +7,8 @@ from .errors import SlopeError
 
 FAST = 0.1              # m/s: what is slower creeps or jitters (motion: fast_... of fix deposit/grid)
 MOST_FAST = 0.01        # share of the released volume that may be faster in a deposit at rest
-ENDS = {"halted": "ended by its rest criterion", "run completed": "stopped at its duration"}
+ENDS = {"halted": "ended by its rest criterion", "run completed": "stopped at its duration",
+        "time limit": "cut by a limit of computing time"}
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,7 @@ class Rest:
         """For a narrow table."""
         if self.at_rest:
             return "at rest"
-        return "moves" if self.halted else "duration"
+        return "moves" if self.halted else "duration" if self.ended == ENDS["run completed"] else "cut"
 
 
 def percent(share: float) -> str:
