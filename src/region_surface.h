@@ -27,6 +27,15 @@ class RegionSurface : protected Pointers {
   // No communication: any rank may ask for any column.
   bool height(double x, double y, double &z) const;
 
+  // The same, found sooner where the height of a column close by is known (else NaN). It tells z to a
+  // thousandth of the step only, and may miss a second part of the region beyond the first.
+  bool height_near(double x, double y, double near, double &z) const;
+
+  // whether height() is known for any column of the rectangle: what the constructor asks for, said
+  // without an error
+  static bool is_fit(const class Region *, int side, double xlo, double xhi, double ylo,
+                     double yhi);
+
   // false if the region goes on beyond any box on this side (INF): no boundary there
   bool has_boundary() const { return bounded; }
 
@@ -38,6 +47,8 @@ class RegionSurface : protected Pointers {
   const class RegTerrain *terrain;    // set if its grid is the boundary
   double start, direction, step;      // of the search along z
   bool bounded;
+
+  bool inside(double x, double y, double walked) const;
 };
 
 }    // namespace LAMMPS_NS
