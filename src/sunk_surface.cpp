@@ -17,7 +17,7 @@ static constexpr double INFINITE = std::numeric_limits<double>::infinity();
 static constexpr double UNKNOWN = std::numeric_limits<double>::quiet_NaN();
 
 static constexpr double RISE = 0.2;     // beyond the rim the surface rises over the ground by this
-static constexpr double REACH = 6.0;    // in sinks: so it has met the ground there
+static constexpr double REACH = 6.5;    // in sinks: so it has met the ground there
 static constexpr double WALL = 2.0;    // in pitches: what ends so deep in the ground ends at a wall
 static constexpr int STRIDE = 4;       // every so manyeth column is searched without a hint
 static constexpr int AROUND = 4;       // columns around a rim that tell the slope there
@@ -282,8 +282,9 @@ void SunkSurface::go_on(const Bed &bed, const std::vector<Edge> &found)
       if (nearest[k] <= 0 || !bed.ground(column_x(i), column_y(j), UNKNOWN, top)) continue;
       const Ramp &ramp = ramps[nearest[k]];
       const double dx = (i - ramp.i) * px, dy = (j - ramp.j) * py;
+      const double away = std::max(0.0, std::sqrt(dx * dx + dy * dy) - 2.0 * pitch);
       z[k] = std::max(z[at(ramp.i, ramp.j)] + dx * ramp.gx + dy * ramp.gy,
-                      top - ramp.under + RISE * std::sqrt(dx * dx + dy * dy));
+                      top - ramp.under + RISE * away);
     }
 }
 
