@@ -112,27 +112,26 @@ bool RegionSurface::inside(double x, double y, double walked) const
   return region->match(x, y, start + direction * walked);
 }
 
-/* ----------------------------------------------------------------------
-   the boundary is most often within a step or two of where it is close by
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 bool RegionSurface::height_near(double x, double y, double near, double &z) const
 {
   if (terrain || std::isnan(near)) return height(x, y, z);
   if (x < xlo || x > xhi || y < ylo || y > yhi) return false;
 
-  const double expected = direction * (near - start), length = zhi - zlo;
-  if (!(expected >= 0.0 && expected <= length)) return height(x, y, z);
-  const bool above = inside(x, y, expected);
-  double here = expected, next = here;
+  // from the known height walk out of the region or into it
+
+  const double length = zhi - zlo;
+  double here = 0.0, next = std::min(std::max(direction * (near - start), 0.0), length);
+  const bool above = inside(x, y, next);
   bool passed = false;
   for (int k = 0; k < NEAR_STEPS && !passed; k++) {
     here = next;
     next += above ? -step : step;
-    if (next < 0.0 || next > length) break;
+    if (next < 0.0 || next > length) return height(x, y, z);
     passed = inside(x, y, next) != above;
   }
-  if (!passed) return height(x, y, z);
+  if (!passed) return false;
 
   double out = above ? next : here, in = above ? here : next;
   while (in - out > ROUGHLY * step) {

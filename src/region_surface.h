@@ -27,8 +27,8 @@ class RegionSurface : protected Pointers {
   // No communication: any rank may ask for any column.
   bool height(double x, double y, double &z) const;
 
-  // The same, found sooner where the height of a column close by is known (else NaN). It tells z to a
-  // thousandth of the step only, and may miss a second part of the region beyond the first.
+  // The same, but the boundary is looked for only where it is near the height of a column close by
+  // (NaN: anywhere), found to a thousandth of the step. Far sooner, and it may be another part's.
   bool height_near(double x, double y, double near, double &z) const;
 
   // whether height() is known for any column of the rectangle: what the constructor asks for, said

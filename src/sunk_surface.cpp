@@ -75,15 +75,17 @@ bool SunkSurface::has(int i, int j) const
 }
 
 /* ----------------------------------------------------------------------
-   the surface in its columns: every few are searched from scratch, those between start from a
-   neighbor; where none of the four around has the surface, there is none between
+   the surface in its columns: every few are searched from scratch, those between near the heights
+   of the neighbors and of the four around; where none of these has the surface, there is none between
 ------------------------------------------------------------------------- */
 
-void SunkSurface::look_at(const Bed &bed, int i, int j, double near)
+bool SunkSurface::look_at(const Bed &bed, int i, int j, double near)
 {
   const double x = std::min(column_x(i), bed.xhi), y = std::min(column_y(j), bed.yhi);
   double height;
-  if (bed.height(x, y, near, height) && std::isfinite(height)) z[at(i, j)] = height;
+  const bool there = bed.height(x, y, near, height) && std::isfinite(height);
+  if (there) z[at(i, j)] = height;
+  return there;
 }
 
 void SunkSurface::look(const Bed &bed)
@@ -102,14 +104,12 @@ void SunkSurface::look(const Bed &bed)
       const int west = i - (i - mx) % STRIDE, east = std::min(west + STRIDE, iend);
       const int south = j - (j - my) % STRIDE, north = std::min(south + STRIDE, jend);
       if ((i == west || i == iend) && (j == south || j == jend)) continue;
-      double near = UNKNOWN;
-      for (int b : {north, south})
-        for (int a : {east, west})
-          if (has(a, b)) near = z[at(a, b)];
-      if (std::isnan(near)) continue;
-      if (j > my && has(i, j - 1)) near = z[at(i, j - 1)];
-      if (i > mx && has(i - 1, j)) near = z[at(i - 1, j)];
-      look_at(bed, i, j, near);
+      const int close[6][2] = {{i - 1, j},    {i, j - 1},    {west, south},
+                               {east, south}, {west, north}, {east, north}};
+      bool there = false;
+      for (int k = 0; k < 6 && !there; k++)
+        if (has(close[k][0], close[k][1]))
+          there = look_at(bed, i, j, z[at(close[k][0], close[k][1])]);
     }
 }
 
@@ -222,7 +222,9 @@ void SunkSurface::add_rim(const Bed &bed, const Point &from, const Point &to)
   const double length = std::max(std::fabs(to.x - from.x), std::fabs(to.y - from.y));
   if (std::fabs(to.z - from.z) < pitch || length * (1 << CHAIN_STEPS) < pitch) return;
   Point middle = {0.5 * (from.x + to.x), 0.5 * (from.y + to.y), 0.0};
-  if (!bed.height(middle.x, middle.y, to.z, middle.z)) return;
+  if (!bed.height(middle.x, middle.y, to.z, middle.z) &&
+      !bed.height(middle.x, middle.y, from.z, middle.z))
+    return;
   rims.push_back(middle);
   add_rim(bed, from, middle);
   add_rim(bed, middle, to);

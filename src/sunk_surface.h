@@ -24,8 +24,8 @@ namespace Slope {
 struct Bed {
   double xlo, xhi, ylo, yhi;    // it has no column beyond them
 
-  // height of the surface at x,y, false where it has none; near: its height in a column close by, NaN
-  // if that is not known
+  // height of the surface at x,y, false where it has none; near: where it is to be looked for, the
+  // height of a column close by; NaN: anywhere
   typedef std::function<bool(double x, double y, double near, double &z)> Height;
   Height height;
 
@@ -73,7 +73,7 @@ class SunkSurface {
   double column_y(int j) const { return ylo + j * py; }
 
   void look(const Bed &);
-  void look_at(const Bed &, int i, int j, double near);
+  bool look_at(const Bed &, int i, int j, double near);
   void trim(const Bed &);
   std::vector<Edge> edges() const;
   bool plane(int i, int j, double &gx, double &gy) const;
