@@ -47,10 +47,10 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--converge", metavar="DIR", type=Path,
                         help="what the size of the balls does: the folder of `slope sensitivity --converge`, or its "
                              "converge.yaml (default: the one that the study took its size error from)")
-    parser.add_argument("--no-paper", action="store_true", help=argparse.SUPPRESS)    # of older scripts: it is so now
+    parser.add_argument("--no-paper", action="store_true", help=argparse.SUPPRESS)    # in older scripts
     parser.add_argument("--pictures", action="store_true",
-                        help="write the maps as files too, REPORT.1.png, REPORT.2.png, ... in the page's order; charts, "
-                        "drawn as lines, stay in the page")
+                        help="write the maps as files too, REPORT.1.png, REPORT.2.png, ... in the page's order; "
+                             "charts, drawn as lines, stay in the page")
     return parser
 
 

@@ -38,7 +38,7 @@ class Sizes:
             self.errors = {str(name): [(size["value"], size["error_percent"], size["standard_error_percent"])
                                        for size in entry["sizes"]] for name, entry in about["quantities"].items()}
             numbers = [one for several in self.errors.values() for size in several for one in size if one is not None]
-            if not (self.fits and all(map(runs.is_number, numbers))):
+            if not (self.fits and all(map(runs.is_number, numbers)) and all(what for what, _ in self.about.values())):
                 raise ValueError("quantities")
         except (KeyError, TypeError, AttributeError, ValueError, OverflowError) as error:
             raise SlopeError(path, f"must be {WHAT} ({error!r})") from error
@@ -84,4 +84,7 @@ def fit(entry):
     known += [one for one in (*found.scatter, found.low, found.high) if one is not None]
     if not sizes or not all(map(runs.is_number, known)) or not max(found.sizes) > 0:
         raise ValueError("sizes")
+    low, high = (found.small if end is None else end for end in (found.low, found.high))
+    if (found.low is None) != (found.high is None) or not low <= found.small <= high:
+        raise ValueError("small_balls")
     return found

@@ -3,9 +3,10 @@ import csv
 import io
 
 from . import headline, rest, runs, travel_shares
+from .report_release import over_runs
 
 UNKNOWN = "unknown"
-OLD = "unknown: the run is of an older version"
+EXACT = 1e-9            # of a value: a smaller scatter is rounding
 
 
 class Numbers:
@@ -25,7 +26,7 @@ class Numbers:
     def place(self, value, key=None):
         """The power of ten that a number is rounded to."""
         deviation = (self.scatter.get(key) or {}).get("deviation")
-        if runs.is_number(deviation) and deviation > 0:
+        if runs.is_number(deviation) and deviation > EXACT * abs(value):
             return headline.place(deviation)
         return headline.place_of_digits(value)
 
@@ -105,15 +106,11 @@ def released_card(data, numbers):
     values = sorted({round(row["released_m3"], 3) for row in data.finished}
                     or {data.result.summary["volume"]["released"]})
     texts = list(dict.fromkeys(numbers.whole("released", "m3", value) for value in (values[0], values[-1])))
-    about = list(dict.fromkeys(release.text for _, release in releases))
-    note = about[0] if about else "body unknown"
-    if len(about) > 1:
-        name, worst = max(releases, key=lambda one: (abs(one[1].from_cubic), one[1].removed or 0))
-        note = f"not the same in all runs; of {name}: {worst.text}"
     for name, release in releases:
         if release.body is not None:
             numbers.whole("body", "m3", release.body, name or "")
-    return {"what": "Released", "number": " - ".join(texts), "unit": "m3", "note": note}
+    return {"what": "Released", "number": " - ".join(texts), "unit": "m3",
+            "note": over_runs([release for _, release in releases])}
 
 
 def travel_card(data, numbers):
@@ -123,8 +120,8 @@ def travel_card(data, numbers):
         largest = data.study["largest"]
         far = largest["front_m"]
         names = {row["run"]: row for row in data.finished}
-        farthest = (f"; farthest ball {numbers('farthest ball', unit, far['value'], 'front_m', far['run'])} m, "
-                    f"{data.label_of(names[far['run']])}")
+        who = data.label_of(names[far["run"]])
+        farthest = f"; farthest ball {numbers('farthest ball', unit, far['value'], 'front_m', who)} m, {who}"
         if key not in largest:
             return {"what": what, "number": UNKNOWN, "unit": "", "note": f"runs of an older version{farthest}"}
         row = names[largest[key]["run"]]

@@ -13,8 +13,8 @@ from .report_warnings import warnings
 
 # columns of a study's table: head, unit, key
 COLUMNS = (("released", "m3", "released_m3"), ("99 % within", "m", "distance_99_m"),
-           ("reach angle", "deg", "reach_99_deg"), ("connected deposit", "m", "connected_m"), ("farthest ball", "m", "front_m"),
-           ("centroid moved", "m", "centroid_m"), ("thickness", "m", "thickness_m"), ("ended at", "s", "stop_time_s"))
+           ("reach angle", "deg", "reach_99_deg"), ("connected deposit", "m", "connected_m"),
+           ("farthest ball", "m", "front_m"), ("thickness", "m", "thickness_m"), ("ended at", "s", "stop_time_s"))
 ROAD_COLUMNS = (("to remove", "m3", "remove_m3"), ("on the road", "m3", "remove_on_road_m3"),
                 ("beyond it", "m3", "beyond_road_m3"), ("road blocked", "m", "blocked_m"))
 MEANS = (("to remove", "m3", "remove_m3"), ("on the road", "m3", "remove_on_road_m3"),
@@ -71,8 +71,9 @@ class Page:
         """Heads of the study's table: those of which anything is known."""
         data = self.data
         wanted = COLUMNS + (ROAD_COLUMNS if data.study and data.study["conservative"] else ())
+        same = len({round(row["released_m3"], 3) for row in data.finished}) == 1
         return [(head, unit, key) for head, unit, key in wanted
-                if any(row.get(key) is not None for row in data.finished)]
+                if any(row.get(key) is not None for row in data.finished) and not (same and key == "released_m3")]
 
     def rows(self):
         """The study's table: of each run its variables, its cells, or why it failed, and whether it is in doubt."""

@@ -27,14 +27,7 @@ class Release(NamedTuple):
     @property
     def text(self):
         """What stands beside the released volume."""
-        about = [f"body {self.body:,.0f} m3, {percent(self.left_out)} of it left out" if self.body is not None
-                 else "body unknown"]
-        if self.removed is not None:
-            about.append(f"{percent(self.removed)} of the balls removed at the start")
-        side = "above" if self.from_cubic > 0 else "below"
-        about.append(f"bulk factor {self.factor:.4g}" + (", 6/pi" if abs(self.from_cubic) < 5e-4 else
-                                                         f", {percent(abs(self.from_cubic))} {side} 6/pi"))
-        return "; ".join(about)
+        return over_runs([self])
 
     @property
     def doubt(self):
@@ -53,6 +46,28 @@ class Release(NamedTuple):
             return (f"The released mass is doubtful: {percent(self.removed)} of the balls were removed at the start, "
                     "and no body is known that the others stand for (fix deposit/grid ... bulk region)")
         return None
+
+
+def over_runs(releases):
+    """The same for several runs: body, share left out, balls removed and bulk factor, the range of each."""
+    bodies = [f"body {one.body:,.0f} m3, {percent(one.left_out)} of it left out" for one in releases
+              if one.body is not None]
+    about = [span(bodies)] if bodies and len(bodies) == len(releases) else ["body unknown"]
+    removed = sorted(one.removed for one in releases if one.removed is not None)
+    if removed:
+        about.append(f"{span([percent(removed[0]), percent(removed[-1])])} of the balls removed at the start")
+    if releases:
+        factors = sorted(one.factor for one in releases)
+        farthest = max(releases, key=lambda one: abs(one.from_cubic)).from_cubic
+        side = f"{percent(abs(farthest))} {'above' if farthest > 0 else 'below'} 6/pi"
+        most = "at most " if factors[0] < factors[-1] else ""
+        about.append(f"bulk factor {span([f'{factors[0]:.4g}', f'{factors[-1]:.4g}'])}, "
+                     + ("6/pi" if abs(farthest) < 5e-4 else most + side))
+    return "; ".join(about)
+
+
+def span(texts):
+    return texts[0] if texts[0] == texts[-1] else f"{texts[0]} to {texts[-1]}"
 
 
 def percent(share):
