@@ -7,7 +7,8 @@ from .errors import SlopeError
 
 FAST = 0.1              # m/s: what is slower creeps or jitters (motion: fast_... of fix deposit/grid)
 MOST_FAST = 0.01        # share of the released volume that may be faster in a deposit at rest
-ENDS = {"halted": "ended by its rest criterion", "run completed": "stopped at its duration"}
+ENDS = {"halted": "ended by its rest criterion", "run completed": "stopped at its duration",
+        "time limit": "cut by a limit of computing time"}
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,7 @@ class Rest:
         """For a narrow table."""
         if self.at_rest:
             return "at rest"
-        return "moves" if self.halted else "duration"
+        return "moves" if self.halted else "duration" if self.ended == ENDS["run completed"] else "cut"
 
 
 def percent(share: float) -> str:
@@ -54,13 +55,13 @@ def state(summary: Mapping[str, Any], where: Any) -> Rest:
     """The state of a run by its summary (runs.load_summary); where: the file, for messages.
 
     At rest is a deposit whose run ended by the deck's criterion of rest, and of which less than 1 % is faster than
-    0.1 m/s; a summary without fast_share says only whether more than 10 % moves.
+    0.1 m/s; a summary without fast_share has only the share that is faster than a threshold of the deck's.
     """
     reason, motion = str(summary["stop"]["reason"]), summary["motion"]
     halted, ended = reason == "halted", ENDS.get(reason, f"was written in the run ({reason})")
     if "fast_share" not in motion:
-        moving = bool(summary["moving"])
-        return Rest(halted, ended, halted and not moving, motion["moving_share"], motion["threshold"])
+        still = motion["moving_share"] < MOST_FAST and motion["threshold"] <= FAST and not summary["moving"]
+        return Rest(halted, ended, halted and still, motion["moving_share"], motion["threshold"])
     for key in ("fast_share", "fast_volume", "fast_speed"):
         if not runs.is_number(motion.get(key)):
             raise SlopeError(where, f"motion: {key} must be a finite number", repr(motion.get(key))[:60])
