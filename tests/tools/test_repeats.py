@@ -233,7 +233,8 @@ def fast(share, volume=940.0, speed=30.0):
     # older summaries have no more than the share that is faster than a threshold of the deck's
     (summary(moving_share=0.009), True, "at rest"),
     (summary(), False, "ended by its rest criterion; 2 % of the volume is faster than 0.1 m/s"),
-    (summary(moving_share=0.0, threshold=0.5), False, "ended by its rest criterion; 0 % of the volume is faster than 0.5"),
+    (summary(moving_share=0.0, threshold=0.5), False, "ended by its rest criterion; 0 % of the volume is faster than "
+     "0.5 m/s"),
     (summary("time limit", **fast(0.0)), False, "cut by a limit of computing time; 0 %"),
     (summary("run completed"), False, "stopped at its duration; 2 % of the volume is faster than 0.1 m/s"),
     (summary(moving=True), False, "ended by its rest criterion; 2 % of the volume is faster than 0.1 m/s"),
