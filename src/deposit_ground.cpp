@@ -13,6 +13,7 @@
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
+#include "region.h"
 
 #include <algorithm>
 #include <cmath>
@@ -56,18 +57,28 @@ void DepositGround::check(const DepositBalls &balls)
 {
   const RegionSurface ground(lmp, "Fix deposit/grid terrain", region.c_str(),
                              RegionSurface::UPPER);
-  const auto *terrain = dynamic_cast<const RegTerrain *>(compat::find_region(lmp, region));
+  Region *solid = compat::find_region(lmp, region);
+  const auto *terrain = dynamic_cast<const RegTerrain *>(solid);
   if (terrain && (!terrain->interior || terrain->grid().count_nodata() == 0)) terrain = nullptr;
 
-  auto hole = [&](const double *x, double diameter) {
+  // what was solid below the last place that was searched mostly is so below the next one
+
+  double guess = ground.zlo;
+  auto found = [&](double x, double y) {
+    if (solid->match(x, y, guess)) return true;
     double z;
-    if (!ground.height(x[0], x[1], z)) return true;
+    if (!ground.height(x, y, z)) return false;
+    guess = 0.5 * (z + ground.zlo);
+    return true;
+  };
+  auto hole = [&](const double *x, double diameter) {
+    if (!found(x[0], x[1])) return true;
     if (terrain) return terrain->grid().nodata_within(x[0], x[1], diameter);
     for (int k = 0; k < 8; k++) {
       const double px = x[0] + diameter * cos(0.25 * PI * k);
       const double py = x[1] + diameter * sin(0.25 * PI * k);
       if (px < ground.xlo || px > ground.xhi || py < ground.ylo || py > ground.yhi) continue;
-      if (!ground.height(px, py, z)) return true;
+      if (!found(px, py)) return true;
     }
     return false;
   };

@@ -6,54 +6,12 @@ closed form: the tests compute it with numpy from the balls that they themselves
 
 import math
 import struct
-from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
 
-from deck_helpers import doc_examples, flat_numbers, read_asc, run_deck, write_asc
-
-HEAD = """
-units si
-atom_style sphere
-atom_modify map array
-boundary {boundary}
-newton {newton}
-comm_style {comm}
-region ground terrain ground.asc
-{regions}
-read_data balls.data
-neighbor 0.5 bin
-neigh_modify every 1 delay 0 check no
-comm_modify cutoff 3.0
-pair_style none
-timestep {dt}
-fix move all nve/sphere
-thermo_modify lost ignore
-thermo 1000000
-"""
-
-
-def head(boundary="f f f", newton="on", comm="brick", regions="", dt=0.001):
-    return HEAD.format(boundary=boundary, newton=newton, comm=comm, regions=regions, dt=dt)
-
-
-def write_balls(path, x, d, v=None, box=None, omega=None, density=1000.0):
-    """A data file of balls: places x, diameters d, velocities v, spins omega."""
-    x = np.atleast_2d(np.asarray(x, float))
-    d = np.broadcast_to(np.asarray(d, float), len(x))
-    v = np.zeros_like(x) if v is None else np.atleast_2d(v)
-    omega = np.zeros_like(x) if omega is None else np.atleast_2d(omega)
-    lines = ["balls", "", f"{len(x)} atoms", "1 atom types", ""]
-    lines += [f"{lo!r} {hi!r} {a}lo {a}hi" for (lo, hi), a in zip(box, "xyz")]
-    lines += ["", "Atoms # sphere", ""]
-    lines += [f"{k + 1} 1 {float(d[k])!r} {density} " + " ".join(repr(float(c)) for c in x[k])
-              for k in range(len(x))]
-    lines += ["", "Velocities", ""]
-    lines += [f"{k + 1} " + " ".join(repr(float(c)) for c in (*v[k], *omega[k]))
-              for k in range(len(x))]
-    Path(path).write_text("\n".join(lines) + "\n")
+from deck_helpers import doc_examples, flat_numbers, flight_head as head, read_asc, run_deck, write_asc, write_balls
 
 
 def thickness_of(x, d, lo, n, cell, bulk=6 / math.pi):
@@ -102,7 +60,7 @@ def cloud(tmp_path, shift=0.0):
     d = rng.choice([0.3, 0.7, 1.25], 300)
     v = rng.normal(0, 8, (300, 3))
     flat(tmp_path, xlo=lo[0], ylo=lo[1], z=7.0)
-    box = [(float(l), float(l) + 20.0) for l in lo]
+    box = [(float(low), float(low) + 20.0) for low in lo]
     write_balls(tmp_path / "balls.data", x, d, v, box)
     return x, d, v, lo
 

@@ -215,7 +215,7 @@ def test_other_doubts():
 
 def summary(reason="halted", moving=False, **motion):
     return {"stop": {"reason": reason, "step": 5, "time": 9.0}, "moving": moving,
-            "motion": {"moving_share": 0.02, "threshold": 0.1, **motion}, "travel": {}}
+            "motion": {**{"moving_share": 0.02, "threshold": 0.1}, **motion}, "travel": {}}
 
 
 def fast(share, volume=940.0, speed=30.0):
@@ -230,7 +230,12 @@ def fast(share, volume=940.0, speed=30.0):
     (summary("run completed", **fast(0.0)), False, "stopped at its duration; 0 % of the volume (940 m3)"),
     (summary("run completed", **fast(0.042)), False, "stopped at its duration; 4.2 % of the volume (940 m3) is faster"),
     (summary("running", **fast(0.3)), False, "was written in the run (running); 30 % of the volume"),
-    (summary(), True, "at rest"),                                   # older summaries: 10 % by their own threshold
+    # older summaries have no more than the share that is faster than a threshold of the deck's
+    (summary(moving_share=0.009), True, "at rest"),
+    (summary(), False, "ended by its rest criterion; 2 % of the volume is faster than 0.1 m/s"),
+    (summary(moving_share=0.0, threshold=0.5), False, "ended by its rest criterion; 0 % of the volume is faster than "
+     "0.5 m/s"),
+    (summary("time limit", **fast(0.0)), False, "cut by a limit of computing time; 0 %"),
     (summary("run completed"), False, "stopped at its duration; 2 % of the volume is faster than 0.1 m/s"),
     (summary(moving=True), False, "ended by its rest criterion; 2 % of the volume is faster than 0.1 m/s"),
 ])

@@ -43,7 +43,7 @@ def collect(args, settings, repeated, variable, of, names, todo, work):
     finished = [row for row in rows if row["status"] == "finished"]
     groups = combinations.grouped(rows)
     if len(groups) < 2:
-        return      # no line; which run failed is told
+        return      # no line; perform() names the run that failed
     for name in of:
         for row in finished:
             if row[name] is None:
