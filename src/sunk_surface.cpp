@@ -367,12 +367,15 @@ bool SunkSurface::height(double x, double y, double &lowest) const
     }
   if (!(lowest < INFINITE)) return false;
 
-  double top, gx, gy, ax = cx, ay = cy;
-  for (int step = 0; step < CONTACT_STEPS && patch(ax, ay, top, gx, gy); step++) {
-    touch(ax, ay, top);
-    const double length = std::sqrt(1.0 + gx * gx + gy * gy);
-    ax = x - sink * gx / length;
-    ay = y - sink * gy / length;
+  const double vx = cx, vy = cy;
+  for (int side = 0; side < 4; side++) {
+    double top, gx, gy, ax = vx + (side % 2 - 0.5) * px, ay = vy + (side / 2 - 0.5) * py;
+    for (int step = 0; step < CONTACT_STEPS && patch(ax, ay, top, gx, gy); step++) {
+      touch(ax, ay, top);
+      const double length = std::sqrt(1.0 + gx * gx + gy * gy);
+      ax = x - sink * gx / length;
+      ay = y - sink * gy / length;
+    }
   }
   return true;
 }
