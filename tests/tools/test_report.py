@@ -703,6 +703,36 @@ def test_the_section_follows_a_line(slope, here, name, text):
     assert slope(f"--section {name} one")[0] == 0 and slope("--section 4 12 38 12 one")[0] == 0
 
 
+def test_the_base_raster_is_the_ground_without_the_body(slope, here):
+    """It counts, not the surface without the deposit, where the run wrote it."""
+    write_asc(here / "one" / "tiny.base.asc", lambda rows: [[row[0]] * len(row) for row in rows])
+    assert slope("one --section 6.5 12.5 38.5 12.5")[0] == 0
+    line = section("one/report.section.csv")
+    assert np.ptp(line["base"]) == pytest.approx(0, abs=1e-3)
+    os.remove("one/tiny.base.asc")      # of an older version
+    assert slope("one --section 6.5 12.5 38.5 12.5")[0] == 0
+    assert np.ptp(section("one/report.section.csv")["base"]) > 2
+
+
+def write_asc(path, change):
+    """The base raster of the run in one, changed row by row."""
+    lines = (path.parent / "tiny.surface.asc").read_text().splitlines()
+    rows = change([line.split() for line in lines[6:]])
+    path.write_text("\n".join([*lines[:6], *(" ".join(row) for row in rows)]) + "\n")
+
+
+def test_one_map_for_each_combination(slope, here, monkeypatch):
+    drawn = []
+    monkeypatch.setattr(figure_maps, "small_maps", lambda layers, panels, *_: drawn.append(panels) or "data:,")
+    assert slope("repeated")[0] == 0
+    best = yaml.safe_load(Path("repeated/study.yaml").read_text())["conservative"]["run"]
+    names = [name for name, _ in drawn[0]]
+    assert len(names) == 2 and sorted(name.split(",")[0] for name in names) == ["rolling 0", "rolling 0.3"]
+    # the run of the other maps stands for its own combination
+    assert best.replace("_steps_1200", "").replace("_seed_", ", seed ").replace("rolling_", "rolling ") in names
+    assert "2 of the 6 runs are shown" in Path("repeated/report.html").read_text()
+
+
 def test_the_section_along_the_fall_line_and_by_its_ends(slope, here):
     assert slope("one --section fall")[0] == 0
     line = section("one/report.section.csv")
@@ -735,6 +765,8 @@ BAD = {
                       "or of one run, with one PREFIX.summary.yaml, got 2 summaries"),
     "no thickness": (without("one/tiny.thickness.asc"), "one", "one/tiny.thickness.asc: must be"),
     "no surface": (without("one/tiny.surface.asc"), "one", "one/tiny.surface.asc: must be"),
+    "another base": (text_of("one/tiny.base.asc", "ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n3\n"),
+                     "one", "one/tiny.base.asc: must have the grid of one/tiny.thickness.asc"),
     "no speed": (without("one/tiny.max_speed.asc"), "one", "one/tiny.max_speed.asc: must be there: fix deposit/grid"),
     "no arrival": (without("one/tiny.arrival.asc"), "one", "one/tiny.arrival.asc: must be there: fix deposit/grid"),
     "no summary": (without("one/tiny.summary.yaml"), "one", "one: must be the folder of a study"),
