@@ -13,6 +13,7 @@
 #include "ball_placement.h"
 #include "domain.h"
 #include "error.h"
+#include "group.h"
 #include "math_const.h"
 #include "modify.h"
 #include "style_argument.h"
@@ -54,7 +55,8 @@ void CreateBalls::command(int narg, char **arg)
   if (!(density > 0.0))
     error->all(FLERR, "Create_balls density must be > 0, got {}", arg[2]);
 
-  BallPlacement placement(lmp, "Create_balls", diameter, narg - 3, &arg[3]);
+  const double smallest = BallPlacement::smallest_ball(lmp, group->bitmask[0]);
+  BallPlacement placement(lmp, "Create_balls", diameter, smallest, narg - 3, &arg[3]);
   std::vector<double> &xyz = placement.xyz;
   into_box(xyz);
 

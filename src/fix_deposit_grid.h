@@ -14,15 +14,16 @@ FixStyle(deposit/grid,FixDepositGrid);
 
 #include "fix.h"
 
-#include "elevation_grid.h"
+#include "deposit_balls.h"
+#include "deposit_bins.h"
+#include "deposit_options.h"
+#include "deposit_rasters.h"
+#include "deposit_release.h"
+#include "deposit_summary.h"
+#include "mass_ledger.h"
 
-#include <memory>
 #include <string>
 #include <vector>
-
-namespace Slope {
-class AtomicFile;
-}
 
 namespace LAMMPS_NS {
 
@@ -45,101 +46,44 @@ class FixDepositGrid : public Fix {
   double memory_usage() override;
 
  private:
-  // --- settings ---
+  static constexpr int NRESULT = 11;
 
-  std::string region_id, prefix;
-  int nfreq, window;
-  bool series;
-  double cell, bulk, motion;
-  double cell_inv, side_factor;    // 1/cell; side of the cube of ground / diameter
-  int n[2];                        // cells along x and y
-  double lo[2], hi[2];             // their south-west and north-east corner
-
-  double side_of(int i) const;
-  double volume_of(int i) const;
+  const DepositOptions options;
+  DepositBalls balls;
 
   // --- what was released: the group at the first set-up ---
 
   struct Released {
-    double number, volume, x, y;    // x y: centre of mass
-    double top[3];                  // place of the highest ball
-    double front;                   // plan distance of the farthest ball from there
+    DepositRelease::Mass mass;
+    double volume;         // bulk
+    double body;           // volume of the region that the balls stand for; 0 without
+    double front;          // plan distance of the farthest ball from the top
   };
   Released released;
   bool started, fresh;    // fresh: nothing was sampled yet
 
   void start();
-  void check_ground();
+  void log_release() const;
 
   // --- balls that LAMMPS deletes because they left the box ---
 
-  struct Lost {
-    double number, volume;
-  };
-  struct Loss {
-    double tag, x[3], step;
-  };
-  Lost lost;                   // as of the last sample, all ranks
-  Lost lost_here;              // since then, on this rank
-  std::vector<Loss> losses;    // the first ones of them, for the log
-  int nlogged;
-  Lost outside;    // of the box, when the last command began
-  bool outside_known;
+  Slope::MassLedger ledger;
 
-  Lost count_outside(bool note);
   void settle_outside();
   void log_losses(double before);
 
-  // --- sampling: every rank bins its balls in the window of cells that they occupy ---
+  // --- sampling: every rank bins its balls, rank 0 adds up ---
 
-  struct Window {
-    int first[2], size[2];
-    std::vector<double> values;
-
-    Window() : first{0, 0}, size{0, 0} {}
-    size_t index(int i, int j) const { return (size_t) j * size[0] + i; }
-    size_t ncells() const { return (size_t) size[0] * size[1]; }
-    double &volume(int i, int j) { return values[index(i, j)]; }
-    double &speed(int i, int j) { return values[ncells() + index(i, j)]; }
-    double &energy(int i, int j) { return values[2 * ncells() + index(i, j)]; }
-    void clear();
-    void cover(const Window &);
-  };
-  struct Shares {    // of one ball's square in the cells along one axis
-    std::vector<int> cell;
-    std::vector<double> part;
-    int count;
-  };
-  Window bins;
-  Shares shares[2];
-
-  void sample(bool record);
-  void place_window();
-  double bin(int i);
-  void cut(int dim, double centre, double side, Shares &, double &beyond) const;
-  void cut_piece(int dim, double a, double b, double side, Shares &, double &beyond) const;
-  void unwrap(int i, double *x) const;
-  double wrap(int dim, double x) const;
-  bool periodic(int dim) const;
-  int cell_of(int dim, double x) const;
-  bool farthest(double &distance, double &z) const;
-
-  bigint sampled;       // step of the last sample
-  double result[10];    // the fix's vector
-  double present;       // number of balls
+  Slope::DepositBins bins;
+  Slope::DepositRasters rasters;    // on rank 0 only, but for times and change
+  bigint sampled;                   // step of the last sample
+  double result[NRESULT];           // the fix's vector
+  double present;                   // number of balls
   bool warned;
 
-  // --- rasters, on rank 0 only ---
-
-  Slope::ElevationGrid base, thickness, max_thickness, max_speed, max_energy, arrival, last_motion;
-  Slope::ElevationGrid snapshot;    // thickness when the window began
-  Window filled;                    // cells of thickness that may not be 0
-  bigint snapshot_step;
-  double snapshot_time, change;
-
-  void read_base();
+  void sample(bool record);
+  void tell_balance();
   double add_windows(bool record);
-  void add_window(Window &, bool record);
   void take_snapshot();
 
   // --- time since the first set-up, whatever the deck does to steps and time step ---
@@ -150,21 +94,15 @@ class FixDepositGrid : public Fix {
 
   // --- files ---
 
-  struct Motion {
-    double largest, median, share;
-  };
-
+  double limit, limit_set;              // wall time that the run has, when that was known; s
   std::vector<std::string> warnings;    // so far, on rank 0
+
   template <typename... Args> void warn(const char *format, const Args &...args);
   void check_folder();
+  std::string reason() const;
   void write_files(const std::string &reason);
-  Motion motion_of_balls() const;
-  typedef std::vector<std::unique_ptr<Slope::AtomicFile>> Files;
-  static Slope::AtomicFile &add_file(Files &, const std::string &path);
-  void write_rasters(Files &, std::vector<std::string> &names) const;
-  std::string guards() const;
-  std::string summary(const std::string &reason, const Motion &, const std::string &guards,
-                      const std::vector<std::string> &files) const;
+  Slope::DepositSummary summary(const std::string &reason) const;
+  void add_guards(Slope::DepositSummary &) const;
 
   // --- restart: this, and the cells that the mass touched ---
 
@@ -174,10 +112,12 @@ class FixDepositGrid : public Fix {
   struct Saved {
     double started;
     Released released;
-    Lost lost;
+    double bulk;
+    Slope::MassLedger::Mass lost;
     double nlogged, elapsed, snapshot_step, snapshot_time, change;
   };
   Key restart_key() const;
+  void check_key(const Key &) const;
 };
 
 }    // namespace LAMMPS_NS

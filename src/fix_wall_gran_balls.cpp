@@ -20,6 +20,7 @@
 #include "neighbor.h"
 #include "pair_gran_restitution.h"
 #include "style_argument.h"
+#include "sunk_region.h"
 #include "update.h"
 
 #include <algorithm>
@@ -31,14 +32,15 @@ using namespace FixConst;
 using namespace Slope;
 
 static constexpr int MAX_PARTNERS = 1024;    // fixed balls that one ball can touch
+static constexpr double SAME_SIZE = 1.0e-9;
 
 /* ----------------------------------------------------------------------
    fix ID group wall/gran/balls TYPE DIAMETER surface|file ...
 ------------------------------------------------------------------------- */
 
 FixWallGranBalls::FixWallGranBalls(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), pair(nullptr), lists_newer(false), npartner(nullptr), partner(nullptr),
-    values(nullptr)
+    Fix(lmp, narg, arg), pair(nullptr), sunk_released(false), smallest(0.0), lists_newer(false),
+    npartner(nullptr), partner(nullptr), values(nullptr)
 {
   caller = fmt::format("Fix wall/gran/balls {}", id);
   if (narg < 6)
@@ -54,8 +56,12 @@ FixWallGranBalls::FixWallGranBalls(LAMMPS *lmp, int narg, char **arg) :
     error->all(FLERR, "{} diameter must be > 0, got {}", caller, arg[4]);
   radius = 0.5 * diameter;
 
-  BallPlacement placement(lmp, caller, diameter, narg - 5, &arg[5], true);
+  const double moving = BallPlacement::smallest_ball(lmp, groupbit);
+  BallPlacement placement(lmp, caller, diameter, moving, narg - 5, &arg[5], true);
   sort_balls(placement.xyz);
+  sunk = placement.sunk;
+  outside = placement.outside;
+  smallest = placement.smallest;
 
   scalar_flag = vector_flag = 1;
   size_vector = 3;
@@ -198,6 +204,37 @@ void FixWallGranBalls::init()
       error->all(FLERR, "{}: must come before fix {} {}, which moves atoms between ranks", caller,
                  modify->fix[i]->id, modify->fix[i]->style);
   }
+
+  check_sizes();
+  if (sunk) sunk->release();    // its memory
+  sunk_released = true;
+}
+
+/* ----------------------------------------------------------------------
+   were the balls that this ground was made for the smallest?
+------------------------------------------------------------------------- */
+
+void FixWallGranBalls::check_sizes()
+{
+  if (smallest == 0.0) return;
+  const double moving = BallPlacement::smallest_ball(lmp, groupbit);
+  if (moving == 0.0 || moving > smallest * (1.0 - SAME_SIZE)) return;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "{}: balls of diameter {} may pass between these, placed for {} and larger, on steep "
+                   "ground: define the fix after the balls, or with smallest {}",
+                   caller, moving, smallest, moving);
+  smallest = 0.0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::shared_ptr<SunkRegion> FixWallGranBalls::body() const
+{
+  if (!sunk || sunk->side == RegionSurface::UPPER) return nullptr;
+  if (!sunk_released) return sunk;
+  return std::make_shared<SunkRegion>(lmp, caller, sunk->region, sunk->side, sunk->sink,
+                                      sunk->diameter);
 }
 
 /* ----------------------------------------------------------------------

@@ -18,6 +18,7 @@ FixStyle(wall/gran/balls,FixWallGranBalls);
 #include "contact_list.h"
 #include "my_page.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -57,11 +58,22 @@ class FixWallGranBalls : public Fix, public ContactHolder {
   // largest overlap (m) of a ball at x with any fixed ball, <= 0 if it touches none
   double deepest_overlap(const double *x, double radius) const;
 
+  // the body that the balls lie sunk below, nullptr if they do not; all ranks ask
+  std::shared_ptr<class SunkRegion> body() const;
+
+  // the region outside of which the balls are, without knowing whether it is sunk; or empty
+  const std::string &left_out() const { return outside; }
+
  private:
   std::string caller;    // style and ID, for messages
   int wall_type;
   double diameter, radius;
   class PairGranRestitution *pair;
+
+  std::shared_ptr<class SunkRegion> sunk;
+  bool sunk_released;
+  std::string outside;
+  double smallest;    // diameter of the smallest ball that finds no way through; 0: unknown
 
   // the fixed balls, sorted by plan cell (x fastest): cell c holds first[c] .. first[c+1]-1
 
@@ -91,6 +103,7 @@ class FixWallGranBalls : public Fix, public ContactHolder {
 
   void sort_balls(const std::vector<double> &);
   template <typename Visit> void visit_near(const double *, double, Visit) const;
+  void check_sizes();
   void store_contacts();
   void apply(bool);
 };

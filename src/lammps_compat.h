@@ -38,13 +38,25 @@ namespace compat {
 #endif
   }
 
-  // fixes of one style, or of our variant of it, in the order of the deck
+  // all regions, in any order
+  inline std::vector<Region *> regions(LAMMPS *lmp)
+  {
+#if SLOPE_LAMMPS_VERSION >= 20220504
+    return lmp->domain->get_region_list();
+#else
+    return std::vector<Region *>(lmp->domain->regions, lmp->domain->regions + lmp->domain->nregion);
+#endif
+  }
+
+  // fixes of one style, or of our variant of it, in the order of the deck; without one that is just
+  // being replaced
   inline std::vector<Fix *> fixes_of_style(LAMMPS *lmp, const std::string &style)
   {
     std::vector<Fix *> found;
     Modify *modify = lmp->modify;
     for (int i = 0; i < modify->nfix; i++)
-      if (style == modify->fix[i]->style || style + "/slope" == modify->fix[i]->style)
+      if (modify->fix[i] &&
+          (style == modify->fix[i]->style || style + "/slope" == modify->fix[i]->style))
         found.push_back(modify->fix[i]);
     return found;
   }

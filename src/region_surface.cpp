@@ -19,6 +19,8 @@ using namespace LAMMPS_NS;
 static constexpr double UNBOUNDED = 1.0e19;     // LAMMPS writes INF as 1e20
 static constexpr double PRECISION = 1.0e-12;    // of the region's height
 static constexpr double DEFAULT_STEPS = 1000.0;
+static constexpr double ROUGHLY = 1.0e-3;    // of a step
+static constexpr int NEAR_STEPS = 16;
 
 /* ---------------------------------------------------------------------- */
 
@@ -85,7 +87,7 @@ bool RegionSurface::height(double x, double y, double &z) const
 
   const double length = zhi - zlo;
   double out = 0.0, in = 0.0;    // distance walked
-  while (!region->match(x, y, start + direction * in)) {
+  while (!inside(x, y, in)) {
     if (in >= length) return false;
     out = in;
     in = std::min(in + step, length);
@@ -94,11 +96,62 @@ bool RegionSurface::height(double x, double y, double &z) const
   while (in - out > PRECISION * length) {
     const double middle = 0.5 * (in + out);
     if (middle <= out || middle >= in) break;
-    if (region->match(x, y, start + direction * middle))
+    if (inside(x, y, middle))
       in = middle;
     else
       out = middle;
   }
   z = start + direction * in;
   return true;
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool RegionSurface::inside(double x, double y, double walked) const
+{
+  return region->match(x, y, start + direction * walked);
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool RegionSurface::height_near(double x, double y, double near, double &z) const
+{
+  if (terrain || std::isnan(near)) return height(x, y, z);
+  if (x < xlo || x > xhi || y < ylo || y > yhi) return false;
+
+  // from the known height walk out of the region or into it
+
+  const double length = zhi - zlo;
+  double here = 0.0, next = std::min(std::max(direction * (near - start), 0.0), length);
+  const bool above = inside(x, y, next);
+  bool passed = false;
+  for (int k = 0; k < NEAR_STEPS && !passed; k++) {
+    here = next;
+    next += above ? -step : step;
+    if (next < 0.0 || next > length) return height(x, y, z);
+    passed = inside(x, y, next) != above;
+  }
+  if (!passed) return false;
+
+  double out = above ? next : here, in = above ? here : next;
+  while (in - out > ROUGHLY * step) {
+    const double middle = 0.5 * (in + out);
+    if (inside(x, y, middle))
+      in = middle;
+    else
+      out = middle;
+  }
+  z = start + direction * in;
+  return true;
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool RegionSurface::is_fit(const Region *r, int side, double xlo, double xhi, double ylo,
+                           double yhi)
+{
+  if (r->dynamic || r->varshape || r->openflag || !r->bboxflag) return false;
+  if (side == LOWER ? r->extent_zlo <= -UNBOUNDED : r->extent_zhi >= UNBOUNDED) return false;
+  return r->extent_xlo <= xlo && r->extent_xhi >= xhi && r->extent_ylo <= ylo &&
+      r->extent_yhi >= yhi;
 }

@@ -27,6 +27,15 @@ class RegionSurface : protected Pointers {
   // No communication: any rank may ask for any column.
   bool height(double x, double y, double &z) const;
 
+  // The same, but the boundary is looked for only where it is near the height of a column close by
+  // (NaN: anywhere), found to a thousandth of the step. Far sooner, and it may be another part's.
+  bool height_near(double x, double y, double near, double &z) const;
+
+  // whether height() is known for any column of the rectangle: what the constructor asks for, said
+  // without an error
+  static bool is_fit(const class Region *, int side, double xlo, double xhi, double ylo,
+                     double yhi);
+
   // false if the region goes on beyond any box on this side (INF): no boundary there
   bool has_boundary() const { return bounded; }
 
@@ -38,6 +47,8 @@ class RegionSurface : protected Pointers {
   const class RegTerrain *terrain;    // set if its grid is the boundary
   double start, direction, step;      // of the search along z
   bool bounded;
+
+  bool inside(double x, double y, double walked) const;
 };
 
 }    // namespace LAMMPS_NS

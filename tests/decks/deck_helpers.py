@@ -80,12 +80,73 @@ def read_asc(path):
     return values[::-1], header
 
 
+def flat_numbers(summary, groups=("release", "volume", "travel", "largest")):
+    """The numbers in some groups of a summary of fix deposit/grid, by their path: {"travel.top.0": 3.0}."""
+    found = {}
+
+    def add(path, value):
+        if isinstance(value, (dict, list)):
+            for key, inner in value.items() if isinstance(value, dict) else enumerate(value):
+                add(f"{path}.{key}", inner)
+        elif isinstance(value, (int, float)):
+            found[path] = value
+
+    for group in groups:
+        add(group, summary[group])
+    return found
+
+
 def doc_examples(page):
     """The commands in the Examples section of doc/src/PAGE.rst, without the indentation."""
     folder = Path(__file__).resolve().parents[2] / "doc" / "src"
     text = (folder / f"{page}.rst").read_text()
     block = re.search(r'Examples\n"+\n\n\.\. code-block:: LAMMPS\n\n((?:   .*\n|\n)+)', text)
     return "\n".join(line[3:] for line in block.group(1).splitlines())
+
+
+# --- balls that fly freely ---
+
+FLIGHT = """
+units si
+atom_style sphere
+atom_modify map array
+boundary {boundary}
+newton {newton}
+comm_style {comm}
+region ground terrain ground.asc
+{regions}
+read_data balls.data
+neighbor 0.5 bin
+neigh_modify every 1 delay 0 check no
+comm_modify cutoff 3.0
+pair_style none
+timestep {dt}
+fix move all nve/sphere
+thermo_modify lost ignore
+thermo 1000000
+"""
+
+
+def flight_head(boundary="f f f", newton="on", comm="brick", regions="", dt=0.001):
+    """The head of a deck of balls that fly freely: no pair style, no wall; closed forms for everything."""
+    return FLIGHT.format(boundary=boundary, newton=newton, comm=comm, regions=regions, dt=dt)
+
+
+def write_balls(path, x, d, v=None, box=None, omega=None, density=1000.0):
+    """A data file of balls: places x, diameters d, velocities v, spins omega."""
+    x = numpy.atleast_2d(numpy.asarray(x, float))
+    d = numpy.broadcast_to(numpy.asarray(d, float), len(x))
+    v = numpy.zeros_like(x) if v is None else numpy.atleast_2d(v)
+    omega = numpy.zeros_like(x) if omega is None else numpy.atleast_2d(omega)
+    lines = ["balls", "", f"{len(x)} atoms", "1 atom types", ""]
+    lines += [f"{lo!r} {hi!r} {a}lo {a}hi" for (lo, hi), a in zip(box, "xyz")]
+    lines += ["", "Atoms # sphere", ""]
+    lines += [f"{k + 1} 1 {float(d[k])!r} {density} " + " ".join(repr(float(c)) for c in x[k])
+              for k in range(len(x))]
+    lines += ["", "Velocities", ""]
+    lines += [f"{k + 1} " + " ".join(repr(float(c)) for c in (*v[k], *omega[k]))
+              for k in range(len(x))]
+    Path(path).write_text("\n".join(lines) + "\n")
 
 
 # --- a dense collapse: balls that let go above a rough slope of 32 degrees, in motion from the start ---

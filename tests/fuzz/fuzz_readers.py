@@ -231,25 +231,31 @@ def sidecar():
 
 
 def study():
-    """The files of a study of two runs, a second of work."""
+    """The files of a study of two combinations with a repeat, some seconds of work."""
     from tiny_collapse import LMP, write_case
     with tempfile.TemporaryDirectory() as folder:
         deck = write_case(Path(folder, "case"))
-        subprocess.run([sys.executable, TOOLS / "slope", "study", deck, "--set", "rolling=0,0.3", "-o", f"{folder}/out",
-                        "--road", deck.with_name("road.csv"), "--mesh", "4"], env={**os.environ, "LMP": LMP},
-                       capture_output=True, check=True)
+        deck.write_text(deck.read_text().replace("sc 1.0", "sc 1.0 origin ${xoffset} 0 0").replace(
+            "variable  kn", "variable  xoffset index 0\nvariable  kn"))
+        subprocess.run([sys.executable, TOOLS / "slope", "study", deck, "--set", "rolling=0,0.3", "--repeat",
+                        "xoffset=0.4", "-o", f"{folder}/out", "--road", deck.with_name("road.csv"), "--mesh", "4"],
+                       env={**os.environ, "LMP": LMP}, capture_output=True, check=True)
         return {str(path.relative_to(f"{folder}/out")): path.read_bytes()
                 for path in Path(folder, "out").rglob("*") if path.is_file()}
 
 
 def read_page(folder):
     """The report on a study, all but the drawing."""
-    from slope_tools import figures, report
-    for name in ("value_map", "terrain_map", "mesh_map", "small_maps", "bars", "chart"):
-        setattr(figures, name, lambda *_, **__: "")
-    figures.section = lambda *_, **__: ("", 1)
-    page, _ = report.make(SimpleNamespace(folder=folder, shown=None, section=None, no_paper=False))
-    page.section_table()
+    from slope_tools import figure_charts, figure_maps, report
+    for name in ("value_map", "terrain_map", "mesh_map", "small_maps"):
+        setattr(figure_maps, name, lambda *_, **__: "")
+    for name in ("bars", "chart", "convergence"):
+        setattr(figure_charts, name, lambda *_, **__: "")
+    figure_charts.section = lambda *_, **__: ("", 1, None)
+    page, _ = report.make(SimpleNamespace(folder=folder, shown=None, section=None, local=False, reference=None,
+                                          converge=None))
+    page.section.table()
+    page.numbers.table()
 
 
 def one(name, *contents):
@@ -264,6 +270,34 @@ def of(name, read):
 
 def polygon(path):
     polygons.read_local(path, TERRAIN, local=True)
+
+
+REFERENCE = {"title": "Measured", "remark": "elsewhere", "quantities": {
+    "remove_m3": {"variable": "rolling", "series": {"theirs": {0.0: 4711, 0.3: 12.5}}, "levels": {"measured": 1234}},
+    "front_m": {"levels": {"mapped": 33.5}}}}
+CONVERGE = {"study": {"variable": "d", "deck": "in.tiny", "finished": 4, "base": {"rolling": "0"}, "road": None},
+            "quantities": {"remove_m3": {
+                "name": "to remove", "unit": "m3", "slope": {"value": -1200.0, "standard_error": 90.0},
+                "small_balls": {"value": 17400.0, "standard_error": 200.0, "low": 16900.0, "high": 17900.0},
+                "supported": True, "covariance": -3.0, "quantile": 2.4, "errors_known": True,
+                "sizes": [{"value": 4.0, "runs": 2, "mean": 12600.0, "scatter": 300.0, "fitted": 12600.0,
+                           "error_percent": -27.6, "standard_error_percent": 2.0},
+                          {"value": 2.5, "runs": 1, "mean": 14400.0, "scatter": None, "fitted": 14400.0,
+                           "error_percent": -17.2, "standard_error_percent": None}]}}}
+
+
+def sizes(path):
+    """converge.yaml, as the report takes it."""
+    from slope_tools import figure_charts, report_convergence, report_numbers
+    found = report_convergence.Sizes(path)
+    figure_charts.convergence = lambda *_: ""
+    found.rows(report_numbers.Numbers(None))
+    found.pictures(lambda *_: None)
+
+
+def reference_of(path):
+    from slope_tools import reference
+    reference.read(path, {"remove_m3": "to remove", "front_m": "farthest ball"})
 
 
 # name: seeds, how a file is changed, which files are (None: all), reader
@@ -282,6 +316,8 @@ TARGETS = {
     "dump_gz": (one("a.gz", lambda: gzip.compress(DUMP)), mutate_gz, None, of("a.gz", dumps.last)),
     "summary": (one("a.summary.yaml", yaml.safe_dump(SUMMARY).encode()), mutate_yaml, None,
                 of("a.summary.yaml", lambda path: (deposit.read_summary(path), runs.load_summary(path)))),
+    "reference": (one("r.yaml", yaml.safe_dump(REFERENCE).encode()), mutate_yaml, None, of("r.yaml", reference_of)),
+    "converge": (one("c.yaml", yaml.safe_dump(CONVERGE).encode()), mutate_yaml, None, of("c.yaml", sizes)),
     "study": (lambda: [study()], mutate_yaml, ("study.yaml", "tiny.summary.yaml", "variables.yaml", "finished.yaml",
                                                "log.lammps", "in.tiny", "road.csv"), read_page),
 }
@@ -365,7 +401,7 @@ def fuzz(target, seconds, seed, keep, most=None):
                 findings[place] = wrong
                 shutil.copytree(work / "case", keep / target / f"{seed}.{count}")
                 print(f"{target}: case {count}: {wrong}", flush=True)
-        elif where not in places and sum(map(len, case.values())) < 200_000:
+        elif where not in places and sum(map(len, case.values())) < 1_000_000:
             places.add(where)
             pool.append(case)
     shutil.rmtree(work)

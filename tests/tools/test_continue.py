@@ -104,6 +104,13 @@ def numbers(folder):
     about = yaml.safe_load((folder / "tiny.summary.yaml").read_text())
     found = {f"{key}: {entry}": value for key in ("volume", "balls", "travel", "largest", "motion", "stop")
              for entry, value in about[key].items() if entry not in ("reason", "residual")}
+    # shares of travel are a list of mappings, the farthest ball is one
+    for name in [name for name, value in found.items() if isinstance(value, (dict, list))]:
+        value = found.pop(name)
+        parts = enumerate(value) if isinstance(value, list) else [("", value)]
+        for k, part in parts:
+            found.update({f"{name} {k} {entry}": one for entry, one in part.items()} if isinstance(part, dict)
+                         else {f"{name} {k}": part})
     found["change_rate"] = about["change_rate"]
     for name in about["files"]:
         found[name] = read_asc(folder / name)

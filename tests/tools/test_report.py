@@ -1,4 +1,4 @@
-"""tools/slope report: one page with everything in it, red on a deposit that moves, and the section by hand."""
+"""tools/slope report: one page with everything in it, the answer and its doubts, the section by hand."""
 import base64
 import csv
 import html
@@ -21,29 +21,37 @@ from tiny_collapse import LMP, TOP, height, read_asc, write_case
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli, figures, report  # noqa: E402  (after the path is set)
+from slope_tools import (cli, figure_charts, figure_maps, figures, report, report_data, report_ground,  # noqa: E402
+                         report_section, results)
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
-    """A study of two runs, one of them at rest, with a road; its folder."""
+    """A study of two combinations with a road, in out, and the same with a repeat, in repeated; their folder."""
     folder = tmp_path_factory.mktemp("made")
     deck = write_case(folder / "case")
+    text = deck.read_text()
     # a step above the rule's: a warning in the log
-    deck.write_text(deck.read_text().replace("timestep    0.002", "timestep    0.0025"))
-    done = subprocess.run([sys.executable, str(TOOLS / "slope"), "study", "case/in.tiny", "--set", "rolling=0,0.3",
-                           "--set", "steps=1200", "-o", "out", "--road", "case/road.csv", "--mesh", "4"],
-                          cwd=folder, env={**os.environ, "LMP": LMP}, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
+    text = text.replace("timestep    0.002", "timestep    0.0025")
+    text = text.replace("variable  kn", "variable  seed index 0\nvariable  kn")
+    text = text.replace("neighbor    0.2", "if \"${seed} > 0\" then &\n  \"displace_atoms soil random 0.01 0.01 0.01 "
+                        "${seed} units box\"\nneighbor    0.2")
+    deck.write_text(text)
+    for name, more in (("out", []), ("repeated", ["--repeat", "seed=1,2"])):
+        done = subprocess.run([sys.executable, str(TOOLS / "slope"), "study", "case/in.tiny", "--set", "rolling=0,0.3",
+                               "--set", "steps=1200", "-o", name, "--road", "case/road.csv", "--mesh", "4", *more],
+                              cwd=folder, env={**os.environ, "LMP": LMP}, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
     return folder
 
 
 @pytest.fixture
 def here(made, tmp_path, monkeypatch):
-    """A copy of the study in out, and of one of its runs as a single run in one; the test's folder."""
-    shutil.copytree(made / "out", tmp_path / "out")
+    """A copy of the studies in out and repeated, and of a run as a single run in one; the test's folder."""
+    for name in ("out", "repeated"):
+        shutil.copytree(made / name, tmp_path / name)
     shutil.copytree(made / "out" / "rolling_0.3_steps_1200", tmp_path / "one")
     for name in ("variables.yaml", "finished.yaml"):
         (tmp_path / "one" / name).unlink()
@@ -53,11 +61,12 @@ def here(made, tmp_path, monkeypatch):
 
 @pytest.fixture
 def slope(capsys, monkeypatch):
-    """Run `slope report ARGUMENTS`; gives status, stdout, stderr. Pictures are blank, as rendering takes its time."""
-    def blank(figure, kind="png"):
-        figures.plt.close(figure)
-        return f"data:image/{kind};base64,AAAA"
-    monkeypatch.setattr(figures, "data_uri", blank)
+    """Run `slope report ARGUMENTS`; gives status, stdout, stderr. Pictures are blank, as drawing takes its time."""
+    for name in ("value_map", "terrain_map", "mesh_map", "small_maps"):
+        monkeypatch.setattr(figure_maps, name, lambda *_, **__: "data:image/png;base64,AAAA")
+    for name in ("chart", "bars", "convergence"):
+        monkeypatch.setattr(figure_charts, name, lambda *_, **__: "data:image/svg+xml;base64,AAAA")
+    monkeypatch.setattr(figure_charts, "section", lambda *_: ("data:image/svg+xml;base64,AAAA", 1, None))
     return real_slope(capsys)
 
 
@@ -120,21 +129,84 @@ def read(path):
     return page, Reader(page)
 
 
-def set_moving(folder, moving, share):
-    """Say in summary and study that a run's deposit moves, or not."""
-    for path in folder.rglob("*.summary.yaml"):
-        text = re.sub(r"^moving: \w+", f"moving: {moving}", path.read_text(), flags=re.MULTILINE)
-        path.write_text(re.sub(r"moving_share: \S+", f"moving_share: {share}", text))
-    if (folder / "study.yaml").exists():
-        about = yaml.safe_load((folder / "study.yaml").read_text())
-        for row in about["runs"]:
-            row.update(moving=moving == "true", moving_share=share)
+def change(folder, function):
+    """Change every summary in a folder, and the rows of its study.yaml as `slope study` would write them then."""
+    about = yaml.safe_load((folder / "study.yaml").read_text()) if (folder / "study.yaml").exists() else None
+    for path in sorted(folder.rglob("*.summary.yaml")):
+        summary = yaml.safe_load(path.read_text())
+        function(summary)
+        path.write_text(yaml.safe_dump(summary))
+        for row in about["runs"] if about else ():
+            if row["status"] == "finished" and row["summary"] == str(path.relative_to(folder)):
+                state = results.rest.state(summary, path)
+                motion, far = summary["motion"], results.travel_shares.columns(summary, path)
+                row.update(moving=summary["moving"], moving_share=motion["moving_share"], at_rest=state.at_rest,
+                           fast_share=motion.get("fast_share"), fast_volume_m3=motion.get("fast_volume"),
+                           fast_speed_m_s=motion.get("fast_speed"), stop_reason=summary["stop"]["reason"],
+                           end=state.text, end_short=state.short, front_m=summary["travel"]["front"], **far)
+                key = results.travel_shares.DISTANCE
+                about["largest"].pop(key, None)
+    if about:
+        finished = [row for row in about["runs"] if row["status"] == "finished"]
+        about["largest"]["front_m"] = results.largest(finished, "front_m")
+        if all(row[key] is not None for row in finished):
+            about["largest"][key] = results.largest(finished, key)
         (folder / "study.yaml").write_text(yaml.safe_dump(about))
+
+
+def set_moving(folder, share, reason="halted", speed=2.5):
+    """Say that so much of the volume moves at the end, and how the run ended."""
+    def set_it(summary):
+        summary["moving"] = share > 0.1
+        summary["stop"]["reason"] = reason
+        summary["motion"].update(moving_share=share, fast_share=share, fast_speed=speed,
+                                 fast_volume=share * summary["volume"]["released"])
+    change(folder, set_it)
+
+
+def of_an_older_version(summary):
+    """Take away what older versions did not write."""
+    summary.pop("release", None)
+    for key in ("quantiles", "farthest", "top"):
+        summary["travel"].pop(key, None)
+    for key in ("fast_share", "fast_volume", "fast_speed"):
+        summary["motion"].pop(key, None)
+
+
+def with_travel(summary):
+    """Distances by hand: 10, 20, 30, 31.25 m, and a ball at 99."""
+    summary["travel"]["quantiles"] = [{"share": share, "distance": distance, "reach_angle": angle} for
+                                      share, distance, angle in ((0.5, 10.0, 40.0), (0.9, 20.0, 30.0),
+                                                                 (0.95, 30.0, 25.0), (0.99, 31.25, 22.5))]
+    summary["travel"]["farthest"] = {"distance": 99.0, "reach_angle": 11.5}
+    summary["travel"]["front"] = 99.0
+
+
+def with_release(body, factor):
+    """A function that says of a summary that its balls stand for a body (m3, or None)."""
+    def set_it(summary):
+        summary["bulk_factor"] = factor
+        summary["release"] = {"region": "body" if body else None, "body_volume": body, "ball_volume": 10.0, "balls": 9,
+                              "bulk_factor": factor, "from_cubic": factor / (6 / np.pi) - 1}
+    return set_it
+
+
+def cards(page):
+    """{what: (number, note)} of the cards on top of a page."""
+    found = re.findall(r'<div class="what">([^<]*)</div><div class="number[^"]*">(.*?)</div>'
+                       r'<div class="note">(.*?)</div>', page)
+    return {what: (re.sub("<[^>]*>", "", number).strip(), html.unescape(note)) for what, number, note in found}
+
+
+def numbers(path):
+    """Rows of a report's numbers.csv."""
+    with open(path, newline="", encoding="utf-8") as lines:
+        return list(csv.DictReader(lines))
 
 
 # --- one file ---
 
-@pytest.mark.parametrize("folder, least", [("out", 14), ("one", 7)])
+@pytest.mark.parametrize("folder, least", [("out", 14), ("repeated", 14), ("one", 7)])
 def test_the_page_needs_nothing_else(drawing_slope, here, folder, least):
     status, out, err = drawing_slope(folder)
     assert (status, err) == (0, "")
@@ -170,80 +242,298 @@ def test_what_stands_on_the_page(slope, here):
     assert table.strip() in text
     assert "A small collapse for tests; second line of the head." in text
     assert "Nothing in particular" not in text.split("<h2")[0]
-    for value in (summary["slope_version"], summary["lammps_version"], f"{summary['volume']['released']:.3f} m3",
-                  f"{summary['travel']['reach_angle']:.2f} degrees"):
+    for value in (summary["slope_version"], summary["lammps_version"], f"{summary['volume']['released']:,.1f} m3"):
         assert value in text
-    assert f"{about['conservative']['remove_m3']:,.0f}" in text
-    # the study's table
+    # the study's table: its numbers are those of study.csv, rounded; all digits are in numbers.csv
     rows = next(table for table in reader.tables if any("to remove" in cell for cell in table[0]))
     assert len(rows) == 3
+    kept = {(row["what"], row["of"]): row for row in numbers("out/report.numbers.csv")}
     for row, cells in zip(about["runs"], rows[1:]):
         assert cells[0] == row["set"]["rolling"]
-        assert [f"{row['remove_m3']:,.0f}", f"{row['front_m']:,.1f}"] == [cells[-4], cells[4]]
-        assert cells[-5] == ("moving" if row["moving"] else "at rest")
-    # the paper's
-    paper = next(table for table in reader.tables if table[0][-1] == "company I")
-    assert paper[1:] == [["0.00", "24,048", "22,114"], ["0.05", "26,009", "18,262"], ["0.10", "22,340", "14,490"],
-                         ["actual", "14,225"]]
-    assert slope("out --no-paper -o other.html")[0] == 0
-    assert "26,009" not in Path("other.html").read_text()
-    assert slope("one")[0] == 0 and "26,009" not in Path("one/report.html").read_text()
+        for head, key in (("to remove", "remove_m3"), ("farthest ball", "front_m")):
+            cell = cells[next(k for k, name in enumerate(rows[0]) if name.startswith(head))]
+            assert float(cell.replace(",", "")) == pytest.approx(row[key], rel=6e-3)    # three digits
+            entry = kept[head, f"rolling {row['set']['rolling']}"]
+            assert float(entry["value"]) == row[key] and entry["shown"] == cell.replace(",", "")
+        assert cells[-1] == row["end_short"]
+    # nothing of other sites, nothing of the paper's figures
+    for word in ("company", "24,048", "14,225", "Table 5", "Figure 1", "Nakadori"):
+        assert word not in text.replace((run / "in.tiny").read_text(), "")
 
 
-def test_the_shown_run(slope, here):
-    names = [row["run"] for row in yaml.safe_load(Path("out/study.yaml").read_text())["runs"]]
-    for name in names:
-        assert slope(f"out --run {name} -o page.html")[0] == 0
-        assert f"Volume balance of the run {name.split('_steps')[0].replace('_', ' ')}" in Path("page.html").read_text()
+def test_the_shown_run_is_the_one_that_the_volume_rests_on(slope, here):
+    about = yaml.safe_load(Path("repeated/study.yaml").read_text())
+    names = [row["run"] for row in about["runs"]]
+    assert slope("repeated -o page.html")[0] == 0
+    best = max((row for row in about["runs"] if row["set"] == about["conservative"]["set"]),
+               key=lambda row: row["remove_m3"])
+    label = f"rolling {best['set']['rolling']}" + "".join(f", {name} {value}" for name, value in best["repeat"].items())
+    assert f"Maps of the run {label}</h2>" in Path("page.html").read_text()
+    for name in names[:2]:
+        assert slope(f"repeated --run {name} -o page.html")[0] == 0
+        label = name.split("_steps")[0].replace("_", " ") + "".join(f", seed {k}" for k in name.split("_seed_")[1:])
+        assert f"travel of the run {label}</h2>" in Path("page.html").read_text()
     status, _, err = slope("out --run nothing")
     assert (status, err) == (2, f"slope report: --run: must be a finished run of out/study.yaml, such as {names[0]}, "
                                 "got nothing\n")
+
+
+# --- the answer ---
+
+def test_the_headline_and_its_parts(slope, here):
+    best = yaml.safe_load(Path("repeated/study.yaml").read_text())["conservative"]
+    assert best["chance_m3"] > 0 and best["kind"] == "prediction"
+    assert slope("repeated")[0] == 0
+    page = Path("repeated/report.html").read_text()
+    top = page[page.index('<div class="card main'):page.index('<div class="card">')]
+    assert '"card main"' in top and "Conservative volume to remove from the road" in top
+    parts = re.findall(r'<div class="sum">([+ ]*)([\d,.]+|unknown)[^<]*</div><div class="name">([^<]*)</div>', top)
+    assert [(sign.strip(), name) for sign, _, name in parts] == [("", "mean"), ("+", "chance"),
+                                                                 ("+", "size of the balls")]
+    values = [value for _, value, _ in parts]
+    assert values[2] == "unknown"
+    total = re.search(r'<div class="number">([\d,.]+)', top)[1]
+    added = sum(float(value.replace(",", "")) for value in values[:2])
+    assert float(total.replace(",", "")) == pytest.approx(added)        # the rounded parts add up
+    # rounded to what is known, not below what was computed
+    assert 0 <= added - best["volume_m3"] < 2 * best["place_m3"]
+    rows = {row["what"]: row for row in numbers("repeated/report.numbers.csv")}
+    assert float(rows["conservative: volume_m3"]["value"]) == best["volume_m3"]
+    assert f"t {best['quantile']:.3g}" in top and "rolling" in top
+    # the table over the combinations
+    assert "&plusmn;" in page or "\N{PLUS-MINUS SIGN}" in page
+
+
+def test_without_repeats_nothing_is_called_conservative(slope, here):
+    assert slope("out")[0] == 0
+    page = Path("out/report.html").read_text()
+    top = page[page.index('<div class="card main'):page.index('<div class="card">')]
+    assert "unsure" in top and "largest of 2 runs; chance unknown" in top and "onservative" not in page.split("<h2")[0]
+    assert "chance unknown" in page.split("id=\"study\"")[1]       # the difference over rolling is no trend
+
+
+def test_the_size_part(slope, here):
+    about = yaml.safe_load(Path("repeated/study.yaml").read_text())
+    best = about["conservative"]
+    best.update(size_m3=40.0, volume_m3=best["volume_m3"] + 40,
+                size={"file": "sizes/converge.yaml", "variable": "d", "value": "1.0", "error_percent": -12.5,
+                      "half_percent": 3.0})
+    best["rounded"].update(size_m3=40.0, volume_m3=best["rounded"]["volume_m3"] + 40)
+    Path("repeated/study.yaml").write_text(yaml.safe_dump(about))
+    assert slope("repeated")[0] == 0
+    page = Path("repeated/report.html").read_text()
+    assert "at d 1.0 the volume is 12 % too small, known to 3 %" in page
+    assert re.search(r'<div class="sum">\+ 40[.0]* m3</div><div class="name">size of the balls', page)
+
+
+@pytest.mark.parametrize("by, chance, clear, told", [
+    (30.0, 100.0, False, "no more than chance makes"), (300.0, 100.0, True, "more than the 100"),
+    (30.0, None, None, "chance unknown")])
+def test_differences_are_told_against_chance(slope, here, by, chance, clear, told):
+    about = yaml.safe_load(Path("repeated/study.yaml").read_text())
+    [entry] = about["conservative"]["differences"]
+    entry.update(by_m3=by, chance_m3=chance, clear=clear)
+    Path("repeated/study.yaml").write_text(yaml.safe_dump(about))
+    assert slope("repeated")[0] == 0
+    [line] = [text for _, text in read("repeated/report.html")[1].warnings if text.startswith("rolling: ")]
+    assert told in line and ("no trend" in line) == (clear is False)
+
+
+def test_a_chart_joins_what_differs_by_more_than_chance(here, slope, monkeypatch):
+    drawn = []
+    monkeypatch.setattr(figure_charts, "chart", lambda series, *_: drawn.append(series) or "data:,")
+    about = yaml.safe_load(Path("repeated/study.yaml").read_text())
+    for far, joined in ((0.0, False), (1e4, True)):
+        drawn.clear()
+        for k, row in enumerate(about["runs"]):
+            row["remove_m3"] = 1000 + (k % 3) + far * (row["set"]["rolling"] != "0")
+        about["scatter"]["remove_m3"] = {"deviation": 1.0, "degrees_of_freedom": 4.0}
+        Path("repeated/study.yaml").write_text(yaml.safe_dump(about))
+        assert slope("repeated")[0] == 0
+        assert [one.joined for one in drawn[0]] == [joined]
+    assert slope("out")[0] == 0 and not any(one.joined for one in drawn[-1])     # one run each
+
+
+def test_travel_is_what_99_percent_stay_within(slope, here):
+    change(here / "one", with_travel)
+    assert slope("one")[0] == 0
+    page, reader = read("one/report.html")
+    number, note = cards(page)["99 % of the volume stays within"]
+    assert number == "31.2 m" and "reach angle 22.5 degrees" in note and "farthest ball 99.0 m" in note
+    table = next(table for table in reader.tables if table[0][0] == "of the deposit")
+    assert [row[:3] for row in table[1:5]] == [
+        ["50 % of the volume", "10.0", "40.0"], ["90 % of the volume", "20.0", "30.0"],
+        ["95 % of the volume", "30.0", "25.0"], ["99 % of the volume", "31.2", "22.5"]]
+    assert any(row[0].startswith("connected deposit") for row in table)
+    assert ["the one farthest ball", "99.0", "11.5"] in table
+    values = {row["what"]: row["value"] for row in numbers("one/report.numbers.csv")}
+    assert float(values["99 %: distance"]) == 31.25
+    change(here / "out", with_travel)
+    assert slope("out")[0] == 0
+    number, note = cards(read("out/report.html")[0])["99 % of the volume stays within"]
+    assert number == "31.2 m" and "farthest ball 99.0 m" in note
+
+
+@pytest.mark.parametrize("folder", ["one", "out"])
+def test_what_an_older_run_does_not_tell_is_unknown(slope, here, folder):
+    change(here / folder, of_an_older_version)
+    status, _, err = slope(folder)
+    assert (status, err) == (0, "")
+    page, reader = read(f"{folder}/report.html")
+    number, note = cards(page)["99 % of the volume stays within"]
+    assert number == "unknown" and "farthest ball" in note and "older version" in note
+    assert "body unknown" in cards(page)["Released"][1]
+    table = next(table for table in reader.tables if table[0][0] == "of the deposit")
+    assert table[1][1:] == ["unknown", "unknown"]
+
+
+def test_a_study_of_an_older_version_is_one_line(slope, here):
+    about = yaml.safe_load(Path("out/study.yaml").read_text())
+    for row in about["runs"]:
+        del row["at_rest"]
+    Path("out/study.yaml").write_text(yaml.safe_dump(about))
+    status, out, err = slope("out")
+    assert (status, out) == (2, "") and "of another version; `slope study` with the same arguments" in err
+    assert err.count("\n") == 1
+
+
+@pytest.mark.parametrize("body, factor, words, doubt", [
+    (1000.0, 6 / np.pi, ("body 1,000 m3", "bulk factor 1.91, 6/pi"), False),
+    (1000.0, 1.14 * 6 / np.pi, ("14 % above 6/pi",), False),
+    (1000.0, 1.16 * 6 / np.pi, ("16 % above 6/pi",), True), (1000.0, 0.8 * 6 / np.pi, ("20 % below 6/pi",), True),
+    (None, 6 / np.pi, ("body unknown",), False)])
+def test_the_released_mass_and_its_body(slope, here, body, factor, words, doubt):
+    def set_it(summary):
+        with_release(body, factor)(summary)
+        if body:        # what is released is the body
+            summary["release"]["body_volume"] = summary["volume"]["released"]
+    change(here / "one", set_it)
+    log = here / "one" / "log.lammps"
+    log.write_text("".join(line for line in log.read_text().splitlines(True) if "Delete_balls" not in line))
+    assert slope("one")[0] == 0
+    page, reader = read("one/report.html")
+    note = cards(page)["Released"][1]
+    for word in words:
+        assert word.replace("1,000", cards(page)["Released"][0].split()[0]) in note
+    assert any("released mass is doubtful" in text for _, text in reader.warnings) == doubt
+    assert ("0 % of it left out" in note) == (body is not None)
+
+
+def test_many_balls_removed_without_a_body_are_doubted(slope, here):
+    change(here / "one", of_an_older_version)
+    log = here / "one" / "log.lammps"
+    text = "".join(line for line in log.read_text().splitlines(True) if "Delete_balls" not in line)
+    for gone, doubt in ((10, False), (30, True)):
+        told = (f"Delete_balls: {gone} balls of group soil removed that overlapped fixed balls by more than 0 of their "
+                f"radius: 9 m3 of balls, 9 m3 of ground at 6/pi; {100 - gone} balls left")
+        log.write_text(text.replace("Fix deposit/grid", f"{told}\nFix deposit/grid", 1))
+        assert slope("one")[0] == 0
+        page, reader = read("one/report.html")
+        assert f"{gone} % of the balls removed at the start" in cards(page)["Released"][1]
+        assert any("released mass is doubtful" in text for _, text in reader.warnings) == doubt
 
 
 # --- warnings ---
 
 @pytest.mark.parametrize("folder", ["out", "one"])
 def test_red_on_a_deposit_that_moves(slope, here, folder):
-    set_moving(here / folder, "true", 0.42)
+    set_moving(here / folder, 0.42)
     status, out, _ = slope(folder)
     page, reader = read(f"{folder}/report.html")
     red = [text for level, text in reader.warnings if level == "red"]
-    assert status == 0 and len(red) == 1 and "still move" in red[0] and "42 % of the volume" in red[0]
-    assert "WARNING: " in out and "still move" in out
+    assert status == 0 and len(red) == 1 and "not at rest" in red[0] and "42 % of the volume" in red[0]
+    assert "WARNING: " in out and "not at rest" in out
     # before everything else, and really red
     assert page.index(red[0][:20]) < page.index("<figure")
     assert re.search(r"\.warnings \.red \{[^}]*color: #7d0c12", page) and '--red: #b3131b' in page
     assert not [level for level, _ in reader.warnings if level == "green"]
 
 
+def without_log_warnings(folder):
+    for log in folder.rglob("log.lammps"):
+        log.write_text(re.sub(r"^WARNING.*\n|^Delete_balls.*\n", "", log.read_text(), flags=re.MULTILINE))
+    if (folder / "study.yaml").exists():
+        about = yaml.safe_load((folder / "study.yaml").read_text())
+        about["warnings"], about["conservative"]["doubts"] = [], []
+        for row in about["runs"]:
+            row["log_warnings"] = []
+        (folder / "study.yaml").write_text(yaml.safe_dump(about))
+
+
+@pytest.mark.parametrize("share, reason, level", [
+    (0.009, "halted", "green"), (0.0, "halted", "green"), (0.01, "halted", "amber"), (0.042, "halted", "amber"),
+    (0.009, "run completed", "amber"), (0.0, "run completed", "amber"), (0.0, "running", "amber"),
+    (0.2, "halted", "red")])
 @pytest.mark.parametrize("folder", ["out", "one"])
-def test_no_red_on_a_deposit_at_rest(slope, here, folder):
-    set_moving(here / folder, "false", 0.01)
+def test_green_only_at_rest(slope, here, folder, share, reason, level):
+    """Ended by its rest criterion, and less than 1 % of the volume faster than 0.1 m/s; nothing else is green."""
+    set_moving(here / folder, share, reason, 12.5)
+    without_log_warnings(here / folder)
     assert slope(folder)[0] == 0
-    _, reader = read(f"{folder}/report.html")
-    assert not [text for level, text in reader.warnings if level == "red"]
-    assert ["amber"] == sorted({level for level, _ in reader.warnings} - {"green"})   # the log's
+    page, reader = read(f"{folder}/report.html")
+    [found] = [(level, text) for level, text in reader.warnings if level]
+    assert found[0] == level
+    card = re.search(r'number status (\w+)', page)[1]
+    assert card == {"green": "rest", "amber": "doubt", "red": "moving"}[level]
+    if level != "green":
+        volume = share * yaml.safe_load(next((here / folder).rglob("*.summary.yaml")).read_text())["volume"]["released"]
+        assert f"{volume:,.3g} m3" in found[1] and "up to 12 m/s" in found[1]
+        assert ("stopped at its duration" in found[1] or "stopped at their duration" in found[1]) == (
+            reason == "run completed")
+        assert "At rest at the end" not in page or "0 of 2" in page
 
 
-def test_green_without_any_warning(slope, here):
-    set_moving(here / "one", "false", 0.01)
-    log = here / "one" / "log.lammps"
-    log.write_text(re.sub(r"^WARNING.*\n", "", log.read_text(), flags=re.MULTILINE))
-    assert slope("one")[0] == 0
-    assert [level for level, _ in read("one/report.html")[1].warnings] == ["green"]
+def test_an_older_summary_is_green_below_1_percent_of_the_deck_s_threshold(slope, here):
+    for share, threshold, level in ((0.009, 0.1, "green"), (0.03, 0.1, "amber"), (0.0, 0.5, "amber")):
+        def set_it(summary, share=share, threshold=threshold):
+            of_an_older_version(summary)
+            summary["moving"], summary["stop"]["reason"] = False, "halted"
+            summary["motion"].update(moving_share=share, threshold=threshold)
+        change(here / "one", set_it)
+        without_log_warnings(here / "one")
+        assert slope("one")[0] == 0
+        assert [level for level, _ in read("one/report.html")[1].warnings if level] == [level]
 
 
 def test_warnings_of_the_logs_and_failed_runs_are_on_top(slope, here):
     about = yaml.safe_load(Path("out/study.yaml").read_text())
     about["runs"].append({"run": "rolling_9", "status": "failed", "set": {"rolling": "9", "steps": "1200"},
-                          "error": "ERROR: lost <b>all</b> atoms", "log_warnings": []})
+                          "repeat": {}, "error": "ERROR: lost <b>all</b> atoms", "log_warnings": []})
     Path("out/study.yaml").write_text(yaml.safe_dump(about))
     assert slope("out")[0] == 0
     page, reader = read("out/report.html")
     texts = [text for _, text in reader.warnings]
     assert any(text.startswith("LAMMPS: Pair gran/restitution: time step 0.0025 s is") for text in texts)
-    assert ["red", "Run rolling_9 failed: ERROR: lost <b>all</b> atoms"] in reader.warnings
+    assert ["red", "1 run failed: ERROR: lost <b>all</b> atoms (rolling 9)"] in reader.warnings
     assert "<b>all</b>" not in page
+
+
+def test_one_line_for_each_kind_of_warning(slope, here):
+    about = yaml.safe_load(Path("repeated/study.yaml").read_text())
+    for k, row in enumerate(about["runs"]):
+        row["log_warnings"] = [f"Pair gran/restitution: {k + 3} contacts were seen deeper than 10 %", "Neighbor lists"]
+    about["runs"][0]["log_warnings"] += ["Pair gran/restitution: 99 contacts were seen deeper than 10 %"]
+    about["runs"][4]["log_warnings"] = ["Only here"]
+    about["warnings"] += ["the road ends in the grid", f"{about['runs'][1]['run']}: the volume differs by 1e-5",
+                          f"{about['runs'][2]['run']}: the volume differs by 3e-5"]
+    for name in ("a", "b", "c"):
+        about["runs"].append({"run": name, "status": "failed", "set": {"rolling": name, "steps": "1200"}, "repeat": {},
+                              "error": f"ERROR: 1{len(about['runs'])} atoms lost", "log_warnings": []})
+    Path("repeated/study.yaml").write_text(yaml.safe_dump(about))
+    assert slope("repeated")[0] == 0
+    texts = [text for level, text in read("repeated/report.html")[1].warnings if level]
+    assert sum("contacts were seen" in text for text in texts) == 1
+    [deep] = [text for text in texts if "contacts were seen" in text]
+    assert "5 of 9 runs: " in deep and "and 1 more" in deep and "other numbers in some" in deep
+    [neighbor] = [text for text in texts if "Neighbor lists" in text]
+    assert "5 of 9 runs" in neighbor and "other numbers" not in neighbor
+    [only] = [text for text in texts if "Only here" in text]
+    assert only.endswith("(1 of 9 runs: rolling 0.3, seed 1)")
+    assert "the road ends in the grid" in texts
+    [differ] = [text for text in texts if "the volume differs by" in text]
+    assert "2 of 6 runs: rolling 0, seed 1; rolling 0, seed 2" in differ
+    [failed] = [text for text in texts if "atoms lost" in text]
+    assert failed.startswith("3 runs failed: ERROR: ") and "(rolling a; rolling b; rolling c)" in failed
 
 
 def test_lost_mass_is_told(slope, here):
@@ -252,6 +542,92 @@ def test_lost_mass_is_told(slope, here):
     assert slope("one")[0] == 0
     assert any("12.5 m3" in text and "left the grid or the box" in text
                for _, text in read("one/report.html")[1].warnings)
+    about = yaml.safe_load(Path("out/study.yaml").read_text())
+    for row, lost in zip(about["runs"], (1.5, 2.5)):
+        row["lost_m3"] = lost
+    Path("out/study.yaml").write_text(yaml.safe_dump(about))
+    assert slope("out")[0] == 0
+    [text] = [text for _, text in read("out/report.html")[1].warnings if "left the grid or the box" in text]
+    assert text.startswith("up to 2.5 m3") and text.endswith("(all 2 runs)")
+
+
+# --- numbers from elsewhere ---
+
+REFERENCE = """\
+title: Somebody's measurements
+remark: Of another slope.
+quantities:
+  remove_m3:
+    variable: rolling
+    series: {theirs: {0.3: 120.5, 0: 4711}}
+    levels: {measured: 1234}
+  front_m:
+    levels: {mapped: 33.5}
+"""
+
+
+def test_numbers_from_elsewhere_stand_beside(slope, here):
+    Path("ref.yaml").write_text(REFERENCE)
+    assert slope("out --reference ref.yaml")[0] == 0
+    page, reader = read("out/report.html")
+    assert "Somebody&#39;s measurements" in page and "Of another slope." in page
+    assert ["rolling", "0", "0.3"] in [row for table in reader.tables for row in table]
+    assert ["theirs", "4,711", "120.5"] in [row for table in reader.tables for row in table]
+    assert ["measured", "1,234"] in [row for table in reader.tables for row in table]
+    assert ["mapped", "33.5"] in [row for table in reader.tables for row in table]
+    # a single run has no road, but a front
+    Path("ref.yaml").write_text("title: T\nquantities: {front_m: {levels: {mapped: 33.5}}}\n")
+    assert slope("one --reference ref.yaml")[0] == 0
+    assert ["mapped", "33.5"] in [row for table in read("one/report.html")[1].tables for row in table]
+
+
+def test_the_paper_s_numbers_ship_with_inputs_20(slope, here):
+    shutil.copy(TOP / "inputs" / "20_embankment" / "reference.yaml", "paper.yaml")
+    assert slope("out --reference paper.yaml")[0] == 0
+    tables = [row for table in read("out/report.html")[1].tables for row in table]
+    assert ["company J", "24,048", "26,009", "22,340"] in tables
+    assert ["company I", "22,114", "18,262", "14,490"] in tables and ["actual damage", "14,225"] in tables
+
+
+def test_no_paper_is_still_taken(slope, here):
+    status, out, err = slope("out --no-paper")
+    assert (status, err) == (0, "") and "--no-paper is the default now" in out
+
+
+# --- the size of the balls ---
+
+def write_converge(path, **changed):
+    entry = {"name": "to remove", "unit": "m3",
+             "small_balls": {"value": 17400.0, "standard_error": 200.0, "low": 16900.0, "high": 17900.0},
+             "slope": {"value": -1200.0, "standard_error": 90.0}, "supported": False,
+             "sizes": [{"value": 4.0, "mean": 12600.0, "scatter": 300.0, "error_percent": -27.6,
+                        "standard_error_percent": 2.0},
+                       {"value": 2.5, "mean": 14400.0, "scatter": None, "error_percent": -17.2,
+                        "standard_error_percent": None}], **changed}
+    Path(path).write_text(yaml.safe_dump({"study": {"variable": "d", "deck": "in.other", "finished": 7},
+                                          "quantities": {"remove_m3": entry}}))
+
+
+def test_the_report_takes_the_convergence_in(slope, here):
+    Path("sizes").mkdir()
+    write_converge("sizes/converge.yaml")
+    pages = []
+    for name in ("sizes", "sizes/converge.yaml"):
+        assert slope(f"out --converge {name}")[0] == 0
+        page, reader = read("out/report.html")
+        row = next(row for table in reader.tables for row in table if row[0] == "to remove m3")
+        assert row[1] == "17,400 \N{PLUS-MINUS SIGN} 500"
+        assert row[2].startswith("4: -27.6 % \N{PLUS-MINUS SIGN} 2.0; 2.5: -17.2 %; ") and "not supported" in row[2]
+        assert "To remove against d" in reader.alt and "7 runs of in.other" in page
+        pages.append(len(reader.pictures))
+    assert slope("out")[0] == 0
+    _, reader = read("out/report.html")
+    assert len(reader.pictures) == pages[0] - 1 and "To remove against d" not in reader.alt
+    # the file that the study took its size error from is found
+    about = yaml.safe_load(Path("out/study.yaml").read_text())
+    about["conservative"]["size"] = {"file": "sizes/converge.yaml", "variable": "d", "value": "1"}
+    Path("out/study.yaml").write_text(yaml.safe_dump(about))
+    assert slope("out")[0] == 0 and "To remove against d" in read("out/report.html")[1].alt
 
 
 # --- the section ---
@@ -290,52 +666,77 @@ def test_heights_of_a_section_by_hand(slope, here):
 
 
 def test_the_cut_and_the_road_on_the_section(here):
-    class Args:
-        folder, shown, no_paper, section = Path("out"), None, False, [2.0, 12.5, 38.0, 12.5]
-    page = report.Page(Args)
-    s, x, y, *_ = page.profile()
-    spans, cut = page._road_on(s, x, y)
+    data = report_data.Data(Path("out"))
+    line = report_section.Section(data, report_ground.Ground(data), ["2.0", "12.5", "38.0", "12.5"], False)
+    spans, cut = line.road()
+    x = line.xy[:, 0]
     assert spans == [[pytest.approx(6.0), pytest.approx(11.0)]]      # x 8 to 13, from 2
     beyond = x > 13
-    base = (read_asc(page.result.prefix.with_suffix(".surface.asc")) - page.result.thickness)[11]
+    base = (read_asc(data.result.prefix.with_suffix(".surface.asc")) - data.result.thickness)[11]
     edge = np.interp(13, np.arange(40) + 0.5, base)
     assert cut[beyond] == pytest.approx(edge + (x[beyond] - 13) * np.tan(np.radians(30)), abs=1e-9)
     assert np.isnan(cut[(x > 8) & (x < 13)]).all()
 
 
-# --- pictures ---
-
-@pytest.mark.parametrize("largest", [0.004, 0.03, 0.3, 0.9, 1.9, 2.0, 4.9, 7, 19, 20, 33, 120, 1e4])
-def test_classes_hold_the_largest(largest):
-    bounds = figures.classes(largest)
-    assert bounds == sorted(set(bounds)) and 3 <= len(bounds) <= 12
-    assert bounds[-1] >= largest > bounds[-2] or len(bounds) <= 9
-    assert 0 < bounds[0] <= largest / 2
+BENT = [[4.5, 4.5], [20.5, 4.5], [20.5, 20.5], [36.5, 20.5]]
 
 
-@pytest.mark.parametrize("length, expected", [(1, 1), (1.99, 1), (2, 2), (60, 50), (0.37, 0.2), (5000, 5000)])
-def test_nice(length, expected):
-    assert figures.nice(length) == pytest.approx(expected)
+@pytest.mark.parametrize("name, text", [
+    ("line.geojson", '{"type": "LineString", "coordinates": %s}' % BENT),
+    ("line.wkt", "LINESTRING (" + ", ".join(f"{x} {y}" for x, y in BENT) + ")"),
+    ("line.csv", "".join(f"{x},{y}\n" for x, y in BENT))])
+def test_the_section_follows_a_line(slope, here, name, text):
+    Path(name).write_text(text)
+    assert slope(f"one --section {name}")[0] == 0
+    line = section("one/report.section.csv")
+    assert line["distance"][-1] == pytest.approx(48, abs=1e-3) and line["distance"][0] == 0
+    # every point lies on the line, at its distance
+    along = line["distance"]
+    x = np.interp(along, [0, 16, 32, 48], [4.5, 20.5, 20.5, 36.5])
+    y = np.interp(along, [0, 16, 32, 48], [4.5, 4.5, 20.5, 20.5])
+    assert line["x"] == pytest.approx(x, abs=1e-3) and line["y"] == pytest.approx(y, abs=1e-3)
+    centres = np.arange(40) + 0.5
+    assert line["ground_before"] == pytest.approx(np.interp(x, centres, height(centres)), abs=1e-3)
+    assert f"along the line of {name}" in Path("one/report.html").read_text()
+    # the folder may stand behind
+    shutil.copy("one/report.section.csv", "before.csv")
+    assert slope(f"--section {name} one")[0] == 0 and slope("--section 4 12 38 12 one")[0] == 0
 
 
-def test_gaps_of_a_mask_are_closed():
-    mask = np.zeros((9, 12), bool)
-    mask[2:7:2, 1:8:2] = True
-    filled = np.zeros((9, 12), bool)
-    filled[2:7, 1:8] = True
-    assert np.array_equal(report.closed(mask, 1), filled)
-    mask = np.zeros((5, 12), bool)
-    mask[2, [0, 3, 11]] = True      # gaps of 2 and of 7
-    assert np.flatnonzero(report.closed(mask, 1)[2]).tolist() == [0, 1, 2, 3, 11]
+def test_the_base_raster_is_the_ground_without_the_body(slope, here):
+    """It counts, not the surface without the deposit, where the run wrote it."""
+    write_asc(here / "one" / "tiny.base.asc", lambda rows: [[row[0]] * len(row) for row in rows])
+    assert slope("one --section 6.5 12.5 38.5 12.5")[0] == 0
+    line = section("one/report.section.csv")
+    assert np.ptp(line["base"]) == pytest.approx(0, abs=1e-3)
+    os.remove("one/tiny.base.asc")      # of an older version
+    assert slope("one --section 6.5 12.5 38.5 12.5")[0] == 0
+    assert np.ptp(section("one/report.section.csv")["base"]) > 2
 
 
-def test_shade_of_planes():
-    x, y = np.meshgrid(np.arange(9.0), np.arange(9.0))      # y to the south
-    flat = figures.shade(0 * x, 1.0)
-    assert flat == pytest.approx(np.sqrt(0.5))
-    to_the_light = figures.shade(0.3 * (x + y), 1.0)        # falls to the north-west
-    away = figures.shade(-0.3 * (x + y), 1.0)
-    assert to_the_light.min() > flat.max() > away.max()
+def write_asc(path, change):
+    """The base raster of the run in one, changed row by row."""
+    lines = (path.parent / "tiny.surface.asc").read_text().splitlines()
+    rows = change([line.split() for line in lines[6:]])
+    path.write_text("\n".join([*lines[:6], *(" ".join(row) for row in rows)]) + "\n")
+
+
+def test_one_map_for_each_combination(slope, here, monkeypatch):
+    drawn = []
+    monkeypatch.setattr(figure_maps, "small_maps", lambda layers, panels, *_: drawn.append(panels) or "data:,")
+    assert slope("repeated")[0] == 0
+    best = yaml.safe_load(Path("repeated/study.yaml").read_text())["conservative"]["run"]
+    names = [name for name, _ in drawn[0]]
+    assert len(names) == 2 and sorted(name.split(",")[0] for name in names) == ["rolling 0", "rolling 0.3"]
+    # the run of the other maps stands for its own combination
+    assert best.replace("_steps_1200", "").replace("_seed_", ", seed ").replace("rolling_", "rolling ") in names
+    assert "2 of the 6 runs are shown" in Path("repeated/report.html").read_text()
+
+
+def test_the_section_along_the_fall_line_and_by_its_ends(slope, here):
+    assert slope("one --section fall")[0] == 0
+    line = section("one/report.section.csv")
+    assert np.ptp(line["y"]) < 0.5 and "along its mean fall line" in Path("one/report.html").read_text()
 
 
 # --- bad input: one line, status 2, nothing written ---
@@ -364,6 +765,8 @@ BAD = {
                       "or of one run, with one PREFIX.summary.yaml, got 2 summaries"),
     "no thickness": (without("one/tiny.thickness.asc"), "one", "one/tiny.thickness.asc: must be"),
     "no surface": (without("one/tiny.surface.asc"), "one", "one/tiny.surface.asc: must be"),
+    "another base": (text_of("one/tiny.base.asc", "ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n3\n"),
+                     "one", "one/tiny.base.asc: must have the grid of one/tiny.thickness.asc"),
     "no speed": (without("one/tiny.max_speed.asc"), "one", "one/tiny.max_speed.asc: must be there: fix deposit/grid"),
     "no arrival": (without("one/tiny.arrival.asc"), "one", "one/tiny.arrival.asc: must be there: fix deposit/grid"),
     "no summary": (without("one/tiny.summary.yaml"), "one", "one: must be the folder of a study"),
@@ -384,8 +787,38 @@ BAD = {
     "output suffix": (lambda: None, "one -o page.pdf", "-o: must be a file that ends in .html, got page.pdf"),
     "output folder": (lambda: None, "one -o none/page.html", "-o: must be in an existing folder, got none/page.html"),
     "section of a point": (lambda: None, "one --section 3 4 3 4", "--section: must have two different ends, got 3 4"),
+    "section of three numbers": (lambda: None, "one --section 3 4 3", "--section: must be X1 Y1 X2 Y2, the file of a "),
+    "section of no file": (lambda: None, "one --section none.geojson", "none.geojson: must be an existing file"),
+    "section of a polygon": (text_of("p.wkt", "POLYGON ((0 0, 1 0, 1 1, 0 0))"), "one --section p.wkt", "p.wkt: must "
+                             "hold a line of a length > 0"),
+    "section of two lines": (text_of("p.wkt", "MULTILINESTRING ((0 0, 1 0), (3 3, 9 9))"), "one --section p.wkt",
+                             "p.wkt: must hold one line, for --section, got 2 lines"),
+    "section line elsewhere": (text_of("p.wkt", "LINESTRING (100 0, 110 0, 120 9)"), "one --section p.wkt", "p.wkt: "
+                               "must cross the grid of the run, 0 0 40 24 (local metres), got 100 0 120 9"),
+    "no folder at all": (lambda: None, "--section 1 2 3 4", "DIR: must be given"),
+    "no reference": (lambda: None, "out --reference none.yaml", "none.yaml: must be a file of reference values"),
+    "reference without quantities": (text_of("r.yaml", "title: T\n"), "out --reference r.yaml", "r.yaml: must have "
+                                     "quantities"),
+    "reference without a title": (text_of("r.yaml", "quantities: {front_m: {levels: {a: 1}}}"),
+                                  "out --reference r.yaml", "r.yaml: must have a title"),
+    "unknown quantity": (text_of("r.yaml", "title: T\nquantities: {volume: {levels: {a: 1}}}"),
+                         "out --reference r.yaml", "r.yaml: quantities: must be of what the runs have a number of, "),
+    "quantity of a road, without one": (text_of("r.yaml", "title: T\nquantities: {remove_m3: {levels: {a: 1}}}"),
+                                        "one --reference r.yaml", "r.yaml: quantities: must be of what the runs have"),
+    "reference level of words": (text_of("r.yaml", "title: T\nquantities: {front_m: {levels: {a: b}}}"),
+                                 "out --reference r.yaml", "r.yaml: quantities: front_m: levels: must be NAME: finite"),
+    "reference without variable": (text_of("r.yaml", "title: T\nquantities: {front_m: {series: {a: {0: 1}}}}"),
+                                   "out --reference r.yaml", "r.yaml: quantities: front_m: must name the variable of"),
+    "reference of more": (text_of("r.yaml", "title: T\nquantities: {front_m: {levels: {a: 1}}}\nmore: 1"),
+                          "out --reference r.yaml", "r.yaml: must have title, remark and quantities, nothing else, "
+                          "got more"),
+    "reference that is no mapping": (text_of("r.yaml", "- 1\n"), "out --reference r.yaml", "r.yaml: must be a file"),
+    "no convergence": (lambda: None, "out --converge none", "--converge: must be a converge.yaml of `slope "),
+    "broken convergence": (text_of("c.yaml", "study: {variable: d}"), "out --converge c.yaml", "c.yaml: must be a "
+                           "converge.yaml of `slope sensitivity --converge`"),
     "section elsewhere": (lambda: None, "one --section 100 4 120 4", "--section: must cross the grid of the run, 0 0 "),
-    "section of words": (lambda: None, "one --section 1 2 3 x", "argument --section: must be a finite number, got 'x'"),
+    "section of words": (lambda: None, "one --section 1 2 3 x", "--section: must be X1 Y1 X2 Y2 (finite numbers, "),
+    "section of nan": (lambda: None, "one --section 1 2 3 nan", "--section: must be X1 Y1 X2 Y2 (finite numbers, "),
     "run of a single run": (lambda: None, "one --run a", "--run: needs a study, with study.yaml, in one, got a"),
 }
 
@@ -432,7 +865,11 @@ def doc_examples():
             if " DIR " not in command]
 
 
-@pytest.mark.parametrize("command", [*doc_examples(), report.EPILOG.split("tools/slope ")[1].split("\n")[0]])
+@pytest.mark.parametrize("command", [*doc_examples(), *re.findall("tools/slope (report .*)", report.EPILOG)])
 def test_every_example_of_the_page_and_the_help_runs(slope, here, command):
+    Path("thalweg.geojson").write_text('{"type": "LineString", "coordinates": %s}' % BENT)
+    Path("sizes").mkdir()
+    write_converge("sizes/converge.yaml")
+    Path("reference.yaml").write_text(REFERENCE)
     status, _, err = slope(command.removeprefix("report "))
     assert (status, err) == (0, "")

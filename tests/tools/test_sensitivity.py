@@ -18,6 +18,7 @@ sys.path.insert(0, str(TOOLS))
 from slope_tools import cli, sensitivity  # noqa: E402  (after the path is set)
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
+T = 4.302652729911275       # t(0.975) of three runs
 ROAD = "--road case/road.csv --local"
 
 
@@ -73,12 +74,12 @@ def test_one_variable_at_a_time_against_the_scatter_of_equivalent_runs(slope):
         for row in found:
             assert float(row[name]) == pytest.approx(values[row["run"]])
             assert float(row[f"effect_of_{name}"]) == pytest.approx(values[row["run"]] - mean)
-            beyond = abs(values[row["run"]] - mean) > 2 * deviation * math.sqrt(4 / 3)
+            beyond = abs(values[row["run"]] - mean) > T * deviation * math.sqrt(4 / 3)
             assert row[f"clear_of_{name}"] == ("yes" if beyond else "no")
         most = max(names[1:4], key=lambda run: abs(values[run] - mean))
         text = about["trust"][i]
         assert text in out
-        assert f"trust one run to +- {sensitivity.number(2 * deviation)} m3" in text
+        assert f"trust one run to +- {sensitivity.number(T * deviation)} m3" in text
         assert f"{most.split('_', 2)[2].replace('_', ' ')} changes it most" in text
     assert Path("out/sensitivity.png").read_bytes()[:4] == b"\x89PNG"
 
@@ -89,6 +90,14 @@ def test_one_variable_at_a_time_against_the_scatter_of_equivalent_runs(slope):
     assert Path(f"out/{names[0]}/finished.yaml").read_bytes() == before
     status, out, err = slope(words + " --of front_m")
     assert status == 0 and out.count("started") == 0 and "effect_of_front_m" in rows()[0], err
+
+
+def test_what_is_clear_depends_on_the_number_of_equivalent_runs():
+    """t(0.975) sqrt(1 + 1/n): 4.97 of three runs, 2.37 of ten."""
+    for count, most in ((3, 4.303 * math.sqrt(4 / 3)), (10, 2.2622 * math.sqrt(1.1))):
+        about = {"runs": count, "mean": 100.0, "standard_deviation": 2.0}
+        assert sensitivity.is_clear({"a": 100 - 2 * most * 1.001}, "a", about) is True
+        assert sensitivity.is_clear({"a": 100 + 2 * most * 0.999}, "a", about) is False
 
 
 def test_without_repeats_the_scatter_is_said_to_be_unknown(slope):

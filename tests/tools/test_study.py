@@ -21,7 +21,8 @@ from tiny_collapse import LMP, TOP, processes_in, read_asc, serial, write_case
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli, jobs, rasters, results, runs, study  # noqa: E402  (after the path is set)
+from slope_tools import (  # noqa: E402  (after the path is set)
+    cli, convergence, headline, jobs, rasters, results, runs, settings, size_study, study)
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 MM = 0.0005 + 1e-9          # .asc maps are in whole mm
@@ -97,7 +98,7 @@ def wait_for(condition, what, seconds=30):
     ("a:b:c", ["a:b:c"]),
 ])
 def test_values(text, expected):
-    assert study.values(f"x={text}", text) == expected
+    assert settings.values(f"x={text}", text) == expected
 
 
 def test_the_product_has_a_folder_per_run_with_all_that_it_needs(slope, here):
@@ -182,6 +183,10 @@ def test_table_yaml_and_summaries_have_the_same_numbers(finished):
                     "centroid_m": travel["centroid"], "thickness_m": summary["largest"]["thickness"],
                     "max_thickness_m": summary["largest"]["max_thickness"],
                     "max_speed_m_s": summary["largest"]["max_speed"], "stop_time_s": summary["stop"]["time"]}
+        for entry in travel["quantiles"]:
+            expected[f"distance_{100 * entry['share']:.0f}_m"] = entry["distance"]
+            expected[f"reach_{100 * entry['share']:.0f}_deg"] = entry["reach_angle"]
+        assert expected["distance_50_m"] < expected["distance_99_m"] <= travel["farthest"]["distance"] == row["front_m"]
         removal = yaml.safe_load((folder / row["run"] / "volume" / "volume.yaml").read_text())
         expected.update(remove_m3=removal["volume"]["remove"], remove_on_road_m3=removal["volume"]["remove_on_road"],
                         blocked_m=removal["axis"]["blocked_length"])
@@ -189,10 +194,11 @@ def test_table_yaml_and_summaries_have_the_same_numbers(finished):
             assert row[key] == value and float(line[key]) == value, key
         assert (row["stop_reason"], line["stop_reason"]) == (summary["stop"]["reason"],) * 2
         assert row["moving"] is summary["moving"] and line["moving"] == {True: "yes", False: "no"}[summary["moving"]]
+        assert line["at_rest"] == "no" and line["end"].startswith("stopped at its duration; ")
         assert (row["status"], line["status"], line["error"]) == ("finished", "finished", "")
         assert [line[name] for name in ("rolling", "friction", "steps")] == list(row["set"].values())
         assert row["wall_s"] > 0 and row["variables"]["cell"] == "1.0"
-        assert f"{row['remove_m3']:,.0f}" in out
+        assert headline.text(row["remove_m3"], headline.place_of_digits(row["remove_m3"])) in out
     assert any(row["off_grid_m3"] > 0.1 for row in about["runs"])
 
 
@@ -218,29 +224,27 @@ def test_what_lies_beyond_a_road(ring, expected):
     assert results.beyond(raster, released, road) == (expected and pytest.approx(expected))
 
 
-def test_the_conservative_volume_is_the_largest(finished):
+def test_without_repeats_the_largest_volume_is_called_that(finished):
     folder, out, _ = finished
     about, table = load(folder)
     largest = max(float(line["remove_m3"]) for line in table)
     assert largest > 1
     best = about["conservative"]
-    assert best["remove_m3"] == largest
+    assert best["volume_m3"] == best["mean_m3"] == best["remove_m3"] == largest
+    assert [best[key] for key in ("chance_m3", "size_m3", "scatter_m3", "degrees_of_freedom")] == [None] * 4
+    assert best["kind"] == "largest of 4 runs; chance unknown" and best["repeats"] == 1
     assert [line["run"] for line in table if float(line["remove_m3"]) == largest] == [best["run"]]
-    assert f"conservative volume to remove: {largest:,.0f} m3, run {best['run']}" in out
-    moving = sum(line["moving"] == "yes" for line in table)
-    assert any("still move" in doubt for doubt in best["doubts"]) == (moving > 0)
-    ends = {name for name in ("rolling", "friction")
-            if float(next(line[name] for line in table if line["run"] == best["run"])) != 0}
-    assert {doubt.split("range of ")[1].split(",")[0] for doubt in best["doubts"] if "range of" in doubt} == ends
-    for key, column in (("front_m", "front_m"), ("thickness_m", "thickness_m")):
-        assert about["largest"][key]["value"] == max(float(line[column]) for line in table)
-
-
-def test_one_run_is_no_study():
-    row = {"run": "rolling_0", "remove_m3": 5.0, "moving": False, "set": {"rolling": "0"}}
-    other = {"run": "rolling_1", "remove_m3": 4.0, "moving": False, "set": {"rolling": "1"}}
-    assert results.conservative({"rolling": ["0"]}, [row], [row])["doubts"] == ["nothing was varied, it is of one run"]
-    assert results.conservative({"rolling": ["0", "1"]}, [row, other], [row, other])["doubts"] == []
+    assert f"{best['kind']}: {largest:,.0f} m3 to remove; run {best['run']}" in out     # of three digits
+    assert "conservative volume" not in out
+    [doubt] = [text for text in best["doubts"] if "by chance" in text]
+    assert doubt.startswith("without repeats nobody knows by how much runs differ by chance")
+    ends = {name for name in ("rolling", "friction") if best["set"][name] != "0" and all(
+        float(line["remove_m3"]) <= largest for line in table)}
+    assert set(re.findall(r"at the end of the range of (\w+)", doubt)) == ends
+    still = sum(line["at_rest"] == "no" for line in table)
+    assert still == 4 and "4 of 4 deposits are not at rest" in " ".join(best["doubts"])
+    for key in ("distance_99_m", "front_m", "thickness_m"):
+        assert about["largest"][key]["value"] == max(float(line[key]) for line in table)
 
 
 def test_envelope_and_exceedance_by_hand(finished):
@@ -656,5 +660,10 @@ def test_every_example_of_the_page_and_the_help_runs(slope, here, command):
     edit(folder / "in.embankment", "index 150", "index 20")
     edit(folder / "in.embankment", "variable  kn", "variable  d index 1\nvariable  xoffset index 0\nvariable  kn")
     (here / "road.csv").write_text((folder / "road.csv").read_text())
+    fit = convergence.fit([(4.0, [12.0, 13.0]), (1.0, [18.0, 18.4]), (0.5, [19.0, 19.2])])
+    (here / "sizes").mkdir()
+    (here / "sizes" / "converge.yaml").write_text(yaml.safe_dump({
+        "study": {"deck": "in.embankment", "variable": "d", "base": {}, "road": None},
+        "quantities": {"remove_m3": size_study.entry(fit, ("to remove", "m3"), [])}}))
     status, _, err = slope(command.removeprefix("study "))
     assert status == 0, err

@@ -10,6 +10,8 @@
 
 #include "surface_sampler.h"
 
+#include "ball_flood.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -90,58 +92,6 @@ double worst_gap(const Surface &surface, const Nearest &nearest, double xlo, dou
       worst = std::max(worst, nearest(x, y, z));
     }
   return worst;
-}
-
-// Can a ball of the same size get from the top of a box to its bottom between fixed balls? The
-// box is filled from its top, voxel by voxel, wherever the centre of a ball touches none.
-
-bool ball_gets_through(const std::vector<double> &xyz, const std::array<double, 3> &lo,
-                       const std::array<double, 3> &hi)
-{
-  const double reach = 0.98 * 2.0 * R, voxel = 0.15 * R;
-  int n[3];
-  for (int d = 0; d < 3; d++) n[d] = static_cast<int>((hi[d] - lo[d]) / voxel);
-  std::vector<char> full(static_cast<size_t>(n[0]) * n[1] * n[2], 0);
-  auto index = [&](int i, int j, int k) {
-    return (static_cast<size_t>(k) * n[1] + j) * n[0] + i;
-  };
-
-  for (size_t b = 0; b < xyz.size(); b += 3) {
-    int first[3], last[3];
-    for (int d = 0; d < 3; d++) {
-      first[d] = std::max(0, static_cast<int>((xyz[b + d] - reach - lo[d]) / voxel));
-      last[d] = std::min(n[d] - 1, static_cast<int>((xyz[b + d] + reach - lo[d]) / voxel));
-    }
-    for (int k = first[2]; k <= last[2]; k++)
-      for (int j = first[1]; j <= last[1]; j++)
-        for (int i = first[0]; i <= last[0]; i++) {
-          const double dx = lo[0] + (i + 0.5) * voxel - xyz[b];
-          const double dy = lo[1] + (j + 0.5) * voxel - xyz[b + 1];
-          const double dz = lo[2] + (k + 0.5) * voxel - xyz[b + 2];
-          if (dx * dx + dy * dy + dz * dz < reach * reach) full[index(i, j, k)] = 1;
-        }
-  }
-
-  std::vector<std::array<int, 3>> todo;
-  auto enter = [&](int i, int j, int k) {
-    if (i < 0 || j < 0 || k < 0 || i >= n[0] || j >= n[1] || k >= n[2]) return;
-    if (full[index(i, j, k)]) return;
-    full[index(i, j, k)] = 1;
-    todo.push_back({{i, j, k}});
-  };
-  for (int j = 0; j < n[1]; j++)
-    for (int i = 0; i < n[0]; i++) enter(i, j, n[2] - 1);
-  while (!todo.empty()) {
-    const int i = todo.back()[0], j = todo.back()[1], k = todo.back()[2];
-    if (k == 0) return true;
-    todo.pop_back();
-    for (int step : {-1, 1}) {
-      enter(i + step, j, k);
-      enter(i, j + step, k);
-      enter(i, j, k + step);
-    }
-  }
-  return false;
 }
 
 Surface plane(double degrees, double azimuth)
@@ -572,11 +522,11 @@ static void expect_closed(const std::function<double(double, double)> &ground,
   const std::array<double, 3> lo = {{0.0, 0.0, zlo}}, hi = {{side, side, zhi}};
   for (double slip_spacing : {S, 0.5 * S}) {
     std::vector<double> xyz = sample_surface(square(side), R, field).xyz;
-    EXPECT_TRUE(ball_gets_through(xyz, lo, hi));
+    EXPECT_TRUE(ball_gets_through(xyz, 2.0 * R, lo, hi));
     const SurfaceBalls slip_balls =
         sample_surface({0.0, side, 0.0, side, slip_spacing, 0.3, 0.1}, R, bottom);
     xyz.insert(xyz.end(), slip_balls.xyz.begin(), slip_balls.xyz.end());
-    EXPECT_FALSE(ball_gets_through(xyz, lo, hi));
+    EXPECT_FALSE(ball_gets_through(xyz, 2.0 * R, lo, hi));
   }
 
   if (!needs_scarp) return;
@@ -584,7 +534,7 @@ static void expect_closed(const std::function<double(double, double)> &ground,
   std::vector<double> xyz = sample_surface(square(side), R, field).xyz;
   const SurfaceBalls slip_balls = sample_surface(square(side), R, bottom);
   xyz.insert(xyz.end(), slip_balls.xyz.begin(), slip_balls.xyz.end());
-  EXPECT_TRUE(ball_gets_through(xyz, lo, hi));
+  EXPECT_TRUE(ball_gets_through(xyz, 2.0 * R, lo, hi));
 }
 
 TEST(SurfaceSampler, no_way_under_the_ground_past_a_slip_sphere)
@@ -617,4 +567,28 @@ TEST(SurfaceSampler, no_way_under_the_ground_past_a_vertical_wall)
         return in_polygon(corner, x, y);
       },
       -5.0, 11.0, true);
+}
+
+/* ----------------------------------------------------------------------
+   balls that are smaller than the fixed ones: half the distance of contact in place of the radius
+------------------------------------------------------------------------- */
+
+TEST(SurfaceSampler, ground_for_smaller_balls_leaves_them_no_way)
+{
+  const double small = 0.55 * R, contact = small + R, side = 5.0;
+  for (double degrees : {45.0, 52.0, 60.0, 72.0})
+    for (double azimuth : {0.0, 30.0, 45.0}) {
+      const Surface s = plane(degrees, azimuth);
+      double middle;
+      s.height(0.5 * side, 0.5 * side, middle);
+      const double high = side * std::tan(degrees * PI / 180.0);
+      const std::array<double, 3> lo = {{0.5, 0.5, middle - high}};
+      const std::array<double, 3> hi = {{side - 0.5, side - 0.5, middle + high}};
+      const PlanGrid grid = square(side, 0.9 * S);
+      EXPECT_FALSE(ball_gets_through(sample_surface(grid, 0.5 * contact, s).xyz, contact, lo, hi))
+          << degrees << " degrees, azimuth " << azimuth;
+      if (degrees > 50.0 && azimuth == 0.0)
+        EXPECT_TRUE(ball_gets_through(sample_surface(grid, R, s).xyz, contact, lo, hi))
+            << degrees << " degrees";
+    }
 }

@@ -71,7 +71,7 @@ def read(prefix, terrain, warn):
                          f"{thickness.z[row, column]:g}")
     terrain, place = find_terrain(prefix, terrain, thickness, warn)
     raster = thickness._replace(crs=place.crs, offset=place.offset) if place else thickness
-    deposit = Deposit(str(prefix), raster, surface.z - thickness.z, summary, terrain)
+    deposit = Deposit(str(prefix), raster, base_of(prefix, thickness, surface), summary, terrain)
     told = summary["volume"]["on_grid"]
     if abs(deposit.volume - told) > SAME_BALANCE * max(told, 1e-30):
         raise SlopeError(names[0], f"must hold the volume that {names[2]} tells, {told:.10g} m3: are they of one run?",
@@ -82,6 +82,17 @@ def read(prefix, terrain, warn):
     if lost > SAME_BALANCE * deposit.volume:
         warn(f"{names[2]}: {lost:.6g} m3 of the mass left the grid or the box and are not counted")
     return deposit
+
+
+def base_of(prefix, thickness, surface):
+    """Heights of the ground without the body: PREFIX.base.asc, else what is left of the surface without the deposit."""
+    name = f"{prefix}.base.asc"
+    if not Path(name).is_file():    # of an older version
+        return surface.z - thickness.z
+    base = rasters.read(name, heights=False)
+    if base.z.shape != thickness.z.shape or base.transform != thickness.transform:
+        raise SlopeError(name, f"must have the grid of {prefix}.thickness.asc")
+    return base.z
 
 
 def read_summary(path):

@@ -14,6 +14,7 @@ from affine import Affine
 
 from . import deposit, maps, polygons, rasters
 from .cli import number
+from .connected import top
 from .deposit import coverage, extent
 from .errors import SlopeError
 from .rasters import Raster, crs_name
@@ -208,7 +209,7 @@ def overlap(simulated, observed, cell):
 
 def runout(run_, simulated, observed):
     """Distances in plan of the farthest points of both from the highest released point, and along the fall line (m)."""
-    (x, y), source = top(run_)
+    x, y, _, source = top(run_)
     points = corners(run_.raster.transform, simulated)
     found = {"from": [round(x, 9), round(y, 9)], "from_source": source}
     if not len(points) or not len(observed.points):
@@ -230,22 +231,6 @@ def runout(run_, simulated, observed):
         else:
             found.update(numbers)
     return found
-
-
-def top(run_):
-    """Local x, y of the highest released point, and where that is known from."""
-    told = (run_.summary.get("travel") or {}).get("top")
-    if isinstance(told, list) and len(told) == 3 and all(isinstance(v, (int, float)) for v in told):
-        return (float(told[0]), float(told[1])), "summary: highest released ball"
-    name = f"{run_.prefix}.max_thickness.asc"
-    source, thickness = "highest cell of the deposit", run_.raster.z
-    if Path(name).is_file():
-        largest = rasters.read(name, heights=False)
-        if largest.z.shape == thickness.shape and largest.transform == run_.raster.transform:
-            source, thickness = "highest cell that the mass was in", largest.z
-    surface = np.where((thickness > 0) & np.isfinite(run_.base), run_.base + thickness, -np.inf)
-    row, column = np.unravel_index(surface.argmax(), surface.shape)
-    return tuple(float(v) for v in run_.raster.transform * (column + 0.5, row + 0.5)), source
 
 
 def centroid(observed, raster):

@@ -1,7 +1,7 @@
 """slope sensitivity: one variable of a deck at a time; what it does to the volumes, how far one run can be trusted.
 
 Order of the work: plan the base run and those that differ from it by one variable, run them as `slope study` does
-(study.py, jobs.py), hold each against the mean of the equivalent runs.
+(study.py, jobs.py), hold each against the mean of the equivalent runs. With --converge: size_study.py.
 """
 import argparse
 import csv
@@ -14,16 +14,23 @@ import yaml
 from rich.console import Console
 from rich.table import Table
 
-from . import jobs, results, runs, study
+from . import jobs, repeats, results, runs, study, study_table, travel_shares
 from .errors import SlopeError
-from .results import as_number
+from .headline import Scatter
+from .settings import as_number, check_settings, one_value_each
 
 NAMES = {"remove_m3": ("to remove", "m3"), "remove_on_road_m3": ("on the road", "m3"),
          "remove_beside_road_m3": ("beside the road", "m3"), "beyond_road_m3": ("beyond the road", "m3"),
          "blocked_m": ("blocked length", "m"), "axis_thickness_m": ("thickness on the road's axis", "m"),
-         "released_m3": ("released", "m3"), "front_m": ("front", "m"), "reach_angle_deg": ("reach angle", "degrees"),
-         "centroid_m": ("way of the centroid", "m"), "thickness_m": ("largest thickness", "m")}
-TWO_SIDED = 2       # standard deviations that are called the scatter of a run: 19 of 20 runs, if they are normal
+         "released_m3": ("released", "m3"),
+         **{f"distance_{share}_m": (f"{share} % within", "m") for share in travel_shares.SHARES},
+         **{f"reach_{share}_deg": (f"reach angle of {share} %", "degrees") for share in travel_shares.SHARES},
+         "connected_m": ("connected deposit", "m"),
+         "connected_deg": ("reach angle of the connected deposit", "degrees"),
+         "front_m": ("farthest ball", "m"), "reach_angle_deg": ("reach angle of the farthest ball", "degrees"),
+         "centroid_m": ("travel of the centroid", "m"), "thickness_m": ("largest thickness", "m")}
+OF_ROAD = "remove_m3,remove_on_road_m3"
+OF_TRAVEL = f"{travel_shares.DISTANCE},centroid_m"      # without a road
 
 EPILOG = """\
 units: metres, seconds, m3 of ground (bulk).
@@ -32,8 +39,12 @@ example: what the size of the balls and the time step do, against the scatter ov
   tools/slope sensitivity inputs/20_embankment/in.embankment --road inputs/20_embankment/road.csv --local \\
       --set d=2.5 --vary d=1.25 --vary step=0.5 --repeat xoffset=0.25,0.5,0.75 -o out
 
+what the size of the balls does, with field balls that keep theirs: the value for small balls, the error of each size:
+  tools/slope sensitivity inputs/20_embankment/in.embankment --road inputs/20_embankment/road.csv --local \\
+      --converge d=4,2.5,1.25 --set field_d=1.25 --repeat xoffset=0.25,0.5 -o sizes
+
 Runs are kept and reused as those of `slope study`. Writes DIR/sensitivity.csv, DIR/sensitivity.yaml and the tornado
-chart DIR/sensitivity.png.
+chart DIR/sensitivity.png; with --converge DIR/converge.csv, DIR/converge_runs.csv, DIR/converge.yaml, DIR/converge.png.
 """
 
 
@@ -47,36 +58,46 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--vary", metavar="NAME=V1,V2,...", action="append", default=[],
                         help="values of an index variable of the deck that are a choice, each in a run of its own; "
                              "A:B:STEP stands for A, A + STEP, ... up to B")
-    parser.add_argument("--repeat", metavar="NAME=V1,V2,...", action="append", default=[],
-                        help="the same, of a variable whose values are equally good, such as a seed: the scatter")
+    parser.add_argument("--converge", metavar="NAME=V1,V2,...",
+                        help="sizes of the balls, or of what else shall be small: a line through the results, and its "
+                             "end at 0; with --repeat at each size, without --vary")
+    repeats.add_arguments(parser)
     parser.add_argument("--set", metavar="NAME=VALUE", action="append", default=[],
                         help="value of an index variable in the base run (default: the deck's)")
-    parser.add_argument("--of", metavar="NAME,...", default="remove_m3,remove_on_road_m3",
-                        help=f"what is looked at (default remove_m3,remove_on_road_m3), of {', '.join(NAMES)}")
-    study.add_runs(parser, road=True)
+    parser.add_argument("--of", metavar="NAME,...",
+                        help=f"what is looked at (default {OF_ROAD}; {OF_TRAVEL} of --converge without a road), of "
+                             f"{', '.join(NAMES)}")
+    study.add_runs(parser)
     return parser
 
 
 def run(args):
     """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
-    base = study.check_settings(args.set, args.deck)
-    for name, several in base.items():
-        if len(several) > 1:
-            raise SlopeError("--set", "must give one value (--vary and --repeat take several)",
-                             f"{name}={','.join(several)}")
-    base = {name: several[0] for name, several in base.items()}
-    kinds = {"vary": study.check_settings(args.vary, args.deck, "--vary"),
-             "repeat": study.check_settings(args.repeat, args.deck, "--repeat")}
-    for name in kinds["vary"].keys() & kinds["repeat"].keys():
+    base = one_value_each(check_settings(args.set, args.deck), "--set", "--vary, --repeat and --converge")
+    repeated = check_settings(args.repeat, args.deck, "--repeat")
+    kinds = {"vary": check_settings(args.vary, args.deck, "--vary"), "repeat": repeated}
+    for name in kinds["vary"].keys() & repeated.keys():
         raise SlopeError("--repeat", "must not name a variable of --vary", name)
-    of = args.of.split(",")
-    for name in of:
-        if name not in NAMES or of.count(name) > 1:
-            raise SlopeError("--of", f"must be different ones of {', '.join(NAMES)}", args.of)
+    repeats.check(list(repeated), args.equally_good)
+    of = quantities(args)
+    if args.converge:
+        from . import size_study
+        return size_study.run(args, base, repeated, of, {name: NAMES[name] for name in of})
     todo = plan(args, base, kinds)
     settings = {name: list(dict.fromkeys(one.chosen[name] for one in todo if name in one.chosen))
                 for name in (*base, *kinds["vary"], *kinds["repeat"])}
     study.perform(args, settings, todo, lambda todo, work: collect(args, base, of, todo, work))
+
+
+def quantities(args):
+    """The columns of --of, those of a road only if there is one."""
+    of = (args.of or (OF_ROAD if args.road or not args.converge else OF_TRAVEL)).split(",")
+    for name in of:
+        if name not in NAMES or of.count(name) > 1:
+            raise SlopeError("--of", f"must be different ones of {', '.join(NAMES)}", args.of)
+        if name in study_table.ROAD_COLUMNS and not args.road:
+            raise SlopeError("--road", f"must be given for {name} (--of takes others)")
+    return of
 
 
 def plan(args, base, kinds):
@@ -111,21 +132,22 @@ def collect(args, base, of, todo, work):
             warnings.append(f"{one.name}: failed: {one.error}")
             continue
         found, thickness = results.result(one, row, maps)
-        rows.append({**found, **results.on_road(one, args, args.output / found["summary"], thickness)})
+        if args.road:
+            found.update(results.on_road(one, args, args.output / found["summary"], thickness))
+        rows.append(found)
     if not rows or rows[0]["kind"] != "base":
         return      # nothing to hold the others against; which run failed is told
     for name in of:
         for row in rows:
             if row[name] is None:
                 raise SlopeError("--of", f"must be known of every run; {name} is not of {row['run']}")
-    moving = sum(row["moving"] for row in rows)
-    if moving:
-        warnings.append(f"{moving} of {len(rows)} deposits still move at the end")
+    warnings += results.moving_told(rows)
     scatter = {name: spread(rows, name) for name in of}
     about = {"study": {"deck": args.deck.name, "base": defaults, "runs": len(todo), "finished": len(rows),
                        "ranks": work.ranks, "package": work.package, "collected": runs.now(),
                        "machine": runs.machine(),
-                       "road": {"file": args.road.name, "cut_angle": args.cut_angle, "mesh": args.mesh}},
+                       "road": {"file": args.road.name, "cut_angle": args.cut_angle, "mesh": args.mesh}
+                       if args.road else None},
              "scatter": scatter, "trust": [trust(rows, name, scatter[name]) for name in of], "warnings": warnings}
     for text in warnings:
         print(f"slope sensitivity: warning: {text}", flush=True)
@@ -155,13 +177,17 @@ def effect(row, name, about):
     return row[name] - about["mean"]
 
 
+def scatter_of(about):
+    """The scatter of the equivalent runs, with t for their number."""
+    return Scatter(about["standard_deviation"], about["runs"] - 1)
+
+
 def is_clear(row, name, about):
-    """Whether a run differs from the mean by more than two such runs do by chance; None without repeats."""
-    deviation = about["standard_deviation"]
-    if deviation is None:
+    """Whether a run differs from the mean by more than such a run does by chance; None without repeats."""
+    if about["standard_deviation"] is None:
         return None
     # the mean has a scatter of its own
-    return abs(effect(row, name, about)) > TWO_SIDED * deviation * math.sqrt(1 + 1 / about["runs"])
+    return abs(effect(row, name, about)) > scatter_of(about).chance(about["runs"])
 
 
 def trust(rows, name, about):
@@ -171,11 +197,12 @@ def trust(rows, name, about):
     if deviation is None:
         text = f"{what}: {number(mean)} {unit} in the base run; without --repeat its scatter is not known"
     else:
+        one = scatter_of(about).quantile * deviation
         text = (f"{what}: {about['runs']} equivalent runs give {number(about['smallest'])} to "
                 f"{number(about['largest'])} {unit}, mean {number(mean)}, standard deviation {number(deviation)}"
-                f"{share(deviation, mean)}: trust one run to +- {number(TWO_SIDED * deviation)} {unit}"
-                f"{share(TWO_SIDED * deviation, mean)}, and take two runs for different only if they differ by more "
-                f"than {number(TWO_SIDED * math.sqrt(2) * deviation)} {unit}")
+                f"{share(deviation, mean)}: trust one run to +- {number(one)} {unit}"
+                f"{share(one, mean)}, and take two runs for different only if they differ by more "
+                f"than {number(math.sqrt(2) * one)} {unit}")
     varied = [row for row in rows if row["kind"] == "vary"]
     if varied:
         most = max(varied, key=lambda row: abs(effect(row, name, about)))
@@ -203,11 +230,11 @@ def table(rows, of, scatter, defaults):
     """The CSV over all runs."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    columns = (*results.COLUMNS, *results.ROAD_COLUMNS)
+    columns = (*study_table.COLUMNS, *(study_table.ROAD_COLUMNS if any("remove_m3" in row for row in rows) else ()))
     writer.writerow(["run", "kind", "variable", "value", "base_value",
                      *(f"{what}_of_{name}" for name in of for what in ("effect", "clear")), *columns])
     for row in rows:
-        cells = {**row, "moving": answer(row["moving"])}
+        cells = {**row, "moving": answer(row["moving"]), "at_rest": answer(row["at_rest"])}
         mine = [cell for name in of for cell in (effect(row, name, scatter[name]),
                                                  answer(is_clear(row, name, scatter[name])))]
         writer.writerow([row["run"], row["kind"], row["variable"], row["value"], defaults.get(row["variable"]), *mine,

@@ -1,26 +1,23 @@
 """slope study: one deck over the product of lists of its variables, several runs at a time; a table and maps over all.
 
-Order of the work: check the deck and the settings, make the run folders and run what is not finished (jobs.py), collect
-(results.py).
+Order of the work: check the deck and the settings, plan the runs (repeats.py), make their folders and run what is not
+finished (jobs.py), collect (results.py), combine (combinations.py, headline.py).
 """
 import argparse
-import decimal
-import itertools
-import math
 import os
 import re
 import shutil
 from pathlib import Path
 
-from . import jobs, rasters, results, runs
+from . import jobs, rasters, repeats, results, runs
 from .cli import number
 from .errors import SlopeError
-from .results import as_number
+from .settings import check_settings
+from .size_error import SizeErrors
 
 TOOLS = Path(__file__).resolve().parents[1]
 # the program that belongs to these tools: of a checkout's build, or of an installation
 BESIDE = (TOOLS.parent / "build" if (TOOLS.parent / "CMakeLists.txt").exists() else TOOLS.parents[2] / "bin") / "lmp"
-MOST_RUNS = 10_000
 MOST_LETTERS = 200      # of a folder's name; file systems take 255
 # what runs, and the tools after them, leave in the deck's folder; a file that the deck reads is copied all the same
 OUTPUTS = re.compile(r"^\.|^core|^log\.|\.(restart|dump|lammpstrj|vtp|vts|pvd)(\.gz)?$|\.(yaml|csv|tif)\.new$"
@@ -32,8 +29,12 @@ units: metres, seconds, m3 of ground (bulk); thresholds of --exceed in metres.
 example: six runs, as many at a time as there are cores; the same command goes on after an interruption:
   tools/slope study inputs/20_embankment/in.embankment --set rolling=0:0.1:0.05 --set friction=25,30 -o out
 
+with a conservative volume that counts the chance: every combination three times, from other offsets of the lattice:
+  tools/slope study in.collapse --set rolling=0,0.1 --repeat xoffset=0.25,0.5 --road road.geojson -o out
+
 Every run has a folder of its own in DIR, and is not repeated once it is finished. Over all runs: DIR/study.csv,
-DIR/study.yaml, and the maps envelope_* (largest thickness) and exceedance_* (share of the runs above a thickness).
+DIR/combinations.csv (mean and scatter), DIR/study.yaml, and the maps envelope_* (largest thickness) and exceedance_*
+(share of the runs above a thickness).
 """
 
 
@@ -52,6 +53,10 @@ def add_parser(commands, **kwargs):
     add_deck(parser)
     parser.add_argument("--set", metavar="NAME=V1,V2,...", action="append", default=[], required=True,
                         help="values of an index variable of the deck; A:B:STEP stands for A, A + STEP, ... up to B")
+    repeats.add_arguments(parser)
+    parser.add_argument("--size-error", metavar="FILE", type=Path,
+                        help="converge.yaml of `slope sensitivity --converge`: its error at the size of these balls "
+                             "counts in the conservative volume")
     parser.add_argument("--exceed", default="0.1,0.5,1", metavar="T1,T2,...",
                         help="thicknesses of the maps of exceedance, m (default 0.1,0.5,1)")
     add_runs(parser)
@@ -84,9 +89,20 @@ def add_runs(parser, road=False):
 def run(args):
     """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
     settings = check_settings(args.set, args.deck)
+    repeated = check_settings(args.repeat, args.deck, "--repeat")
+    repeats.check(list(repeated), args.equally_good)
     thresholds = check_thresholds(args.exceed)
-    perform(args, settings, plan(args.output, settings),
-            lambda todo, work: results.collect(args, settings, todo, work, thresholds))
+    defaults = runs.index_variables(args.deck)
+    todo = repeats.plan(args.output, settings, repeated, defaults)
+    check_names(todo)
+    errors = None
+    if args.size_error:
+        if not args.road:
+            raise SlopeError("--size-error", "needs --road: it is the error of the volume to remove", args.size_error)
+        errors = SizeErrors(args.size_error, "remove_m3")
+        errors.check(settings, defaults)
+    perform(args, {**settings, **repeated}, todo,
+            lambda todo, work: results.collect(args, settings, repeated, errors, todo, work, thresholds))
 
 
 def perform(args, settings, todo, collect):
@@ -126,61 +142,6 @@ def perform(args, settings, todo, collect):
 
 # --- what is to be run ---
 
-def check_settings(options, deck, option="--set"):
-    """{name: [values]} of the options NAME=VALUES, in their order; every name must be an index variable of the deck."""
-    found = runs.variables(deck)
-    known = {name for name, (style, _) in found.items() if style == "index"}
-    fixes = [words for words in runs.commands(deck) if words[0] == "fix" and words[3:4] == ["deposit/grid"]]
-    if len(fixes) != 1:
-        raise SlopeError(deck, "must have one fix deposit/grid, which gives the deposit", len(fixes))
-    settings = {}
-    for words in options:
-        name, equals, text = words.partition("=")
-        if not (equals and name):
-            raise SlopeError(option, "must be NAME=V1,V2,... or NAME=A:B:STEP", words)
-        if name not in known:
-            style = f"{name} of style {found[name][0]}" if name in found else name
-            raise SlopeError(option, f"must name an index variable of {deck} ({', '.join(sorted(known)) or 'none'})",
-                             style)
-        if name in settings:
-            raise SlopeError(option, "must name a variable once", f"{name} twice")
-        settings[name] = values(words, text, option)
-    return settings
-
-
-def values(words, text, option="--set"):
-    """The values that the right side of an option NAME=VALUES stands for, as text; words: all of it."""
-    found = []
-    for part in text.split(","):
-        ends = part.split(":")
-        if not part.strip():
-            raise SlopeError(option, "must have no empty value", words)
-        try:
-            numbers = [decimal.Decimal(end) for end in ends] if len(ends) == 3 else None
-        except decimal.InvalidOperation:
-            numbers = None
-        if numbers is None:
-            found.append(part)
-            continue
-        start, stop, step = numbers
-        if not all(end.is_finite() for end in numbers) or step == 0 or (stop - start) / step < 0:
-            raise SlopeError(option, "A:B:STEP must have a STEP that leads from A to B", words)
-        if (stop - start) / step >= MOST_RUNS:
-            raise SlopeError(option, f"must make at most {MOST_RUNS} runs", words)
-        found += [plain(start + i * step) for i in range(int((stop - start) / step) + 1)]
-    keys = [as_number(value) for value in found]
-    for i, key in enumerate(keys):
-        if key in keys[:i]:
-            raise SlopeError(option, "must have every value once", f"{words} with {found[i]} twice")
-    return found
-
-
-def plain(value):
-    """A decimal as text, without trailing zeros and, if it is short, without an exponent."""
-    value = value.normalize() + 0
-    return f"{value:f}" if -12 < value.adjusted() < 12 else str(value)
-
-
 def check_thresholds(text):
     """The thicknesses of --exceed, m."""
     found = []
@@ -211,19 +172,6 @@ def check_road(args, settings):
             if path.is_file():
                 polygons.read_local(args.road, rasters.read_place(path), args.local)
             return
-
-
-def plan(output, settings):
-    """The runs of the product of all settings, the last one varying fastest."""
-    total = math.prod(len(several) for several in settings.values())
-    if total > MOST_RUNS:
-        raise SlopeError("--set", f"must make at most {MOST_RUNS} runs", total)
-    todo = [jobs.Run(output, dict(zip(settings, chosen))) for chosen in itertools.product(*settings.values())]
-    for one in todo:
-        one.varied = ", ".join(f"{name} {one.chosen[name]}" for name, several in settings.items()
-                               if len(several) > 1) or one.name
-    check_names(todo)
-    return todo
 
 
 def check_names(todo):

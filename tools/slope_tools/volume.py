@@ -8,24 +8,17 @@ import json
 import math
 from pathlib import Path
 
-import fiona
 import numpy as np
 import rasterio.warp
-from fiona.errors import FionaError
-from rasterio.crs import CRS
-from rasterio.errors import CRSError
-from shapely import wkt
 from shapely.affinity import rotate
-from shapely.errors import ShapelyError
-from shapely.geometry import GeometryCollection, LineString, MultiLineString, shape
-from shapely.ops import linemerge
+from shapely.geometry import LineString, MultiLineString
 
 from . import cut, deposit, maps, polygons, rasters
 from .cli import number
 from .deposit import Mesh
 from .errors import SlopeError
+from .lines import lines_of, read_local
 from .rasters import crs_name, epsg
-from .terrain import same_crs, transform
 
 CUT_ANGLE = 30.0       # degrees
 BLOCKED = 0.1          # m
@@ -218,17 +211,6 @@ def middle(road):
     return eastward(rotate(lines_of(LineString(points)), angle, origin=(0, 0))), "middles of the road's cross sections"
 
 
-def lines_of(geometry):
-    """The lines in a geometry as a MultiLineString, joined where they touch."""
-    if geometry.geom_type in ("LineString", "LinearRing"):
-        return MultiLineString([geometry] if not geometry.is_empty else [])
-    lines = [line for part in getattr(geometry, "geoms", ()) for line in lines_of(part).geoms]
-    if len(lines) > 1:
-        merged = linemerge(lines)
-        lines = list(getattr(merged, "geoms", [merged]))
-    return MultiLineString(lines)
-
-
 def eastward(lines):
     """The lines, each and all of them from west to east (from south to north if they run more that way)."""
     west, south, east, north = lines.bounds
@@ -271,41 +253,8 @@ def stretches(profile):
 
 
 def read_axis(path, raster, local):
-    """The line in a file (GeoJSON, shapefile, CSV with x,y in its lines, WKT), in local metres.
-
-    As for polygons: a CSV or WKT without a CRS is in that of the terrain; --local: all of them are in local metres.
-    """
-    if not path.is_file():
-        raise SlopeError(path, "must be an existing file")
-    text_ = polygons.read_text(path)
-    crs = raster.crs
-    try:
-        if text_ is None:
-            with fiona.Env(), fiona.open(path) as source:
-                crs = CRS.from_wkt(source.crs_wkt) if source.crs_wkt else None
-                lines = lines_of(GeometryCollection([shape(feature["geometry"]) for feature in source
-                                                     if feature["geometry"]]))
-        elif polygons.WKT.match(text_.lstrip()):
-            lines = lines_of(wkt.loads(text_))
-        else:
-            content = [line.split("#")[0].strip() for line in text_.splitlines()]
-            lines = lines_of(LineString([tuple(map(float, line.split(","))) for line in content if line]))
-    except (FionaError, ShapelyError, OSError, ValueError, TypeError, AttributeError, CRSError) as error:
-        raise SlopeError(path, "must be a line: GeoJSON, shapefile, WKT, or CSV with x,y in its lines "
-                         f"({error})") from error
-    if lines.is_empty or not all(np.isfinite(line.coords).all() for line in lines.geoms) or lines.length == 0:
-        raise SlopeError(path, "must hold a line of a length > 0")
-    points = [np.asarray(line.coords)[:, :2] for line in lines.geoms]
-    if not local:
-        if text_ is None and (crs is None or raster.crs is None):
-            raise SlopeError(path if crs is None else "--terrain", "must have a CRS, so that axis and deposit can be "
-                             "brought together (--local if the axis is in the run's local metres)", "none")
-        if not same_crs(crs, raster.crs):
-            points = [np.transpose(transform(crs, raster.crs, *line.T)) for line in points]
-            if not all(np.isfinite(line).all() for line in points):
-                raise SlopeError(path, f"must lie where {crs_name(raster.crs)}, the CRS of the terrain, covers it")
-        points = [line - raster.offset for line in points]
-    return eastward(MultiLineString(points))
+    """The line in a file, in local metres, from west to east; see lines.read_local."""
+    return eastward(read_local(path, raster, local, "axis"))
 
 
 # --- output ---

@@ -1,0 +1,69 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#ifndef SLOPE_DEPOSIT_BALLS_H
+#define SLOPE_DEPOSIT_BALLS_H
+
+#include "deposit_bins.h"
+#include "deposit_summary.h"
+#include "mass_ledger.h"
+#include "pointers.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// The balls of the group of fix deposit/grid, where they are now. A ball stands for a cube of
+// ground, whose volume is that of the ball times the bulk factor.
+class DepositBalls : protected Pointers {
+ public:
+  DepositBalls(class LAMMPS *, int groupbit, double bulk);
+
+  void set_bulk(double);
+  double bulk() const { return factor; }    // 0: not known yet, the balls have no volume
+
+  // --- of this rank ---
+
+  bool selected(int i) const;               // whether an atom is in the group
+  void unwrap(int i, double *x) const;      // its place, which does not jump at periodic sides
+
+  // into the cells of a grid; what they add up to
+  struct Sums {
+    double number, off_grid, mass, mass_x, mass_y, fast;    // fast: volume of the fast ones
+  };
+  Sums bin(Slope::DepositBins &) const;
+
+  // those that are outside of the box; with a ledger, which gets a note of each
+  Slope::MassLedger::Mass outside(Slope::MassLedger *) const;
+
+  // --- of all ranks; collective ---
+
+  double volume() const;    // bulk
+
+  // plan distance of the ball that is farthest from a place, and its height; false, and 0, if
+  // there is no ball
+  bool farthest(const double *place, double &distance, double &z) const;
+
+  // distance and reach angle, seen from a place, that shares of the volume stay within
+  std::vector<Slope::DepositSummary::Quantile> quantiles(const double *place) const;
+
+  // all but the shares, of whose volumes: moving: of the balls faster than threshold
+  Slope::DepositSummary::Motion motion(double threshold, double &moving) const;
+
+ private:
+  int groupbit;
+  double factor;         // bulk
+  double side_factor;    // side of a cube / diameter
+
+  double side_of(int i) const;
+  double volume_of(int i) const;
+  double speed_of(int i) const;
+  void seen_from(const double *place, int i, double &distance, double &angle) const;
+  void add_up(std::vector<double> &) const;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,171 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#include "deposit_release.h"
+
+#include "body_volume.h"
+#include "deposit_balls.h"
+#include "lammps_compat.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "region.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+using namespace LAMMPS_NS;
+using Slope::BodyVolume;
+
+static constexpr double PI = 3.14159265358979323846;
+static constexpr double UNBOUNDED = 1.0e19;    // LAMMPS writes INF as 1e20
+static constexpr double ASTRAY = 0.05;         // of the balls may be farther than a diameter from the body
+static constexpr double LEAST = 1.0, MOST = 10.0;    // bulk factor: volume of a body / of its balls
+
+enum { X, Y, Z };
+
+/* ---------------------------------------------------------------------- */
+
+DepositRelease::DepositRelease(LAMMPS *lmp, const DepositBalls &balls_in) :
+    Pointers(lmp), balls(balls_in)
+{
+}
+
+/* ---------------------------------------------------------------------- */
+
+DepositRelease::Mass DepositRelease::find() const
+{
+  struct Top {
+    double x[3], tag;
+    bool below(const Top &other) const
+    {
+      return x[Z] < other.x[Z] || (x[Z] == other.x[Z] && tag > other.tag);
+    }
+  } top = {{0.0, 0.0, -HUGE_VAL}, 0.0};
+
+  double mine[5] = {0.0, 0.0, 0.0, 0.0, 0.0}, all[5];
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!balls.selected(i)) continue;
+    Top ball;
+    balls.unwrap(i, ball.x);
+    ball.tag = atom->tag[i];
+    if (top.below(ball)) top = ball;
+    const double m = atom->rmass[i], d = 2.0 * atom->radius[i];
+    const double add[5] = {1.0, PI / 6.0 * d * d * d, m, m * ball.x[X], m * ball.x[Y]};
+    for (int k = 0; k < 5; k++) mine[k] += add[k];
+  }
+  MPI_Allreduce(mine, all, 5, MPI_DOUBLE, MPI_SUM, world);
+  if (all[0] == 0.0)
+    error->all(FLERR,
+               "Fix deposit/grid group must hold balls when the run starts, got none: its region "
+               "or lattice made no ball");
+
+  std::vector<Top> tops(comm->nprocs);
+  MPI_Allgather(&top, 4, MPI_DOUBLE, tops.data(), 4, MPI_DOUBLE, world);
+  for (const Top &other : tops)
+    if (top.below(other)) top = other;
+  return {all[0], all[1], all[3] / all[2], all[4] / all[2], {top.x[X], top.x[Y], top.x[Z]}};
+}
+
+/* ---------------------------------------------------------------------- */
+
+double DepositRelease::body_volume(const std::string &id, const Mass &mass) const
+{
+  Region *region = body(id);
+  double volume = 0.0;
+  std::string problem;
+  try {
+    volume = integrate(region);
+  } catch (std::runtime_error &e) {    // the same on all ranks
+    problem = e.what();
+  }
+  if (!problem.empty()) error->all(FLERR, "Fix deposit/grid bulk region {}: {}", id, problem);
+  if (volume == 0.0)
+    error->all(FLERR, "Fix deposit/grid bulk region {} must have a volume > 0, got 0: it is empty",
+               id);
+  check_balls(region, mass);
+  if (!(volume >= LEAST * mass.solid && volume <= MOST * mass.solid))
+    error->all(FLERR,
+               "Fix deposit/grid bulk region {} must be the body that the balls fill, of {:g} to {:g} "
+               "times their volume {:.6g}, got {:.6g}",
+               id, LEAST, MOST, mass.solid, volume);
+  return volume;
+}
+
+/* ---------------------------------------------------------------------- */
+
+Region *DepositRelease::body(const std::string &id) const
+{
+  Region *region = compat::find_region(lmp, id);
+  if (!region) error->all(FLERR, "Fix deposit/grid bulk region {} does not exist", id);
+  region->init();
+  if (region->dynamic_check())
+    error->all(FLERR,
+               "Fix deposit/grid bulk region {} must stand still, got one that moves or varies", id);
+  if (region->openflag)
+    error->all(FLERR, "Fix deposit/grid bulk region {} must have no open faces, got some", id);
+
+  const double ends[6] = {region->extent_xlo, region->extent_xhi, region->extent_ylo,
+                          region->extent_yhi, region->extent_zlo, region->extent_zhi};
+  bool bounded = region->bboxflag;
+  for (const double end : ends) bounded = bounded && std::fabs(end) < UNBOUNDED;
+  if (!bounded)
+    error->all(FLERR,
+               "Fix deposit/grid bulk region {} must be bounded on all sides, got one without an end "
+               "(the body is the intersection of ground and slip surface)",
+               id);
+  return region;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double DepositRelease::integrate(Region *region) const
+{
+  const BodyVolume::Box box = {{region->extent_xlo, region->extent_ylo, region->extent_zlo},
+                               {region->extent_xhi, region->extent_yhi, region->extent_zhi}};
+  auto inside = [region](double x, double y, double z) { return region->match(x, y, z) != 0; };
+  auto sum = [this](std::vector<double> &values) {
+    std::vector<double> mine = values;
+    MPI_Allreduce(mine.data(), values.data(), (int) values.size(), MPI_DOUBLE, MPI_SUM, world);
+  };
+  BodyVolume body(box, inside, {comm->me, comm->nprocs, sum});
+  for (int i = 0; i < atom->nlocal; i++)
+    if (balls.selected(i)) body.mark(atom->x[i][X], atom->x[i][Y]);
+  return body.volume();
+}
+
+/* ----------------------------------------------------------------------
+   the balls lie in the region, or not farther from it than a diameter
+------------------------------------------------------------------------- */
+
+void DepositRelease::check_balls(Region *region, const Mass &mass) const
+{
+  auto near = [&](const double *x, double reach) {
+    if (region->match(x[X], x[Y], x[Z])) return true;
+    for (int k = 0; k < 27; k++) {
+      double way[3] = {k % 3 - 1.0, k / 3 % 3 - 1.0, k / 9 - 1.0};
+      const double length = sqrt(way[X] * way[X] + way[Y] * way[Y] + way[Z] * way[Z]);
+      if (length == 0.0) continue;
+      for (const double part : {0.5, 1.0}) {
+        const double far = part * reach / length;
+        if (region->match(x[X] + far * way[X], x[Y] + far * way[Y], x[Z] + far * way[Z])) return true;
+      }
+    }
+    return false;
+  };
+
+  double mine = 0.0, all;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (balls.selected(i) && !near(atom->x[i], 2.0 * atom->radius[i])) mine += 1.0;
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  if (all > ASTRAY * mass.number)
+    error->all(FLERR,
+               "Fix deposit/grid bulk region {} must be the body that the balls fill: at most {:g} % "
+               "of them may lie farther than a diameter from it, got {:.0f} of {:.0f}",
+               region->id, 100.0 * ASTRAY, all, mass.number);
+}

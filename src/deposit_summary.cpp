@@ -1,0 +1,177 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#include "deposit_summary.h"
+
+#include <algorithm>
+#include <cstdio>
+
+using namespace Slope;
+
+static constexpr double PI = 3.14159265358979323846;
+static constexpr double SIMPLE_CUBIC = 6.0 / PI;
+
+/* ----------------------------------------------------------------------
+   YAML; a number that is no count has a point in it, or YAML would read 1e-05 as text
+------------------------------------------------------------------------- */
+
+static std::string real(double value)
+{
+  char number[40];
+  snprintf(number, sizeof(number), "%.15g", value);
+  std::string text = number;
+  if (text.find('.') != std::string::npos) return text;
+  return text.insert(std::min(text.find('e'), text.size()), ".0");
+}
+
+static std::string count(double value)
+{
+  char number[40];
+  snprintf(number, sizeof(number), "%.0f", value);
+  return number;
+}
+
+static std::string quoted(const std::string &text)
+{
+  std::string inner;
+  for (const char c : text) inner += c == '\'' ? "''" : std::string(1, c);
+  return "'" + inner + "'";
+}
+
+static void line(std::string &s, const std::string &key, const std::string &value)
+{
+  s += key + ": " + value + "\n";
+}
+
+/* ---------------------------------------------------------------------- */
+
+double DepositSummary::Release::from_cubic() const
+{
+  return bulk_factor / SIMPLE_CUBIC - 1.0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::string DepositSummary::text() const
+{
+  std::string s;
+  write_run(s);
+  write_release(s);
+  write_travel(s);
+  write_motion(s);
+  write_findings(s);
+  return s;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DepositSummary::write_run(std::string &s) const
+{
+  s += "# fix deposit/grid of the SLOPE package for LAMMPS; units of the run, angles in degrees\n";
+  line(s, "slope_version", quoted(slope_version));
+  line(s, "lammps_version", quoted(lammps_version));
+  line(s, "fix", quoted(fix));
+  line(s, "step", std::to_string(step));
+  line(s, "time", real(time));
+  line(s, "dt", real(dt));
+  line(s, "ranks", std::to_string(ranks));
+  line(s, "bulk_factor", real(release.bulk_factor));
+  s += "grid:\n";
+  line(s, "  cell", real(grid.cell));
+  line(s, "  columns", std::to_string(grid.n[0]));
+  line(s, "  rows", std::to_string(grid.n[1]));
+  line(s, "  extent",
+       "[" + real(grid.lo[0]) + ", " + real(grid.hi[0]) + ", " + real(grid.lo[1]) + ", " +
+           real(grid.hi[1]) + "]");
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DepositSummary::write_release(std::string &s) const
+{
+  const bool body = !release.region.empty();
+  s += "release:  # from_cubic: bulk_factor / (6/pi) - 1; ball_volume: solid\n";
+  line(s, "  region", body ? quoted(release.region) : "null");
+  line(s, "  body_volume", body ? real(release.body_volume) : "null");
+  line(s, "  ball_volume", real(release.ball_volume));
+  line(s, "  balls", count(release.balls));
+  line(s, "  bulk_factor", real(release.bulk_factor));
+  line(s, "  from_cubic", real(release.from_cubic()));
+  s += "balls:\n";
+  line(s, "  released", count(release.balls));
+  line(s, "  present", count(present));
+  line(s, "  lost", count(lost));
+  s += "volume:  # bulk; released = on_grid + off_grid + lost + residual\n";
+  line(s, "  released", real(volume.released));
+  line(s, "  on_grid", real(volume.on_grid));
+  line(s, "  off_grid", real(volume.off_grid));
+  line(s, "  lost", real(volume.lost));
+  line(s, "  residual", real(volume.residual));
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DepositSummary::write_travel(std::string &s) const
+{
+  s += "travel:  # in plan, from top, the highest released ball; front: of the farthest ball\n";
+  line(s, "  top", "[" + real(travel.top[0]) + ", " + real(travel.top[1]) + ", " +
+           real(travel.top[2]) + "]");
+  line(s, "  front", real(travel.farthest.distance));
+  line(s, "  front_at_release", real(travel.front_at_release));
+  line(s, "  centroid", real(travel.centroid));
+  line(s, "  reach_angle", real(travel.farthest.angle));
+  line(s, "  farthest", "{distance: " + real(travel.farthest.distance) + ", reach_angle: " +
+           real(travel.farthest.angle) + "}");
+  s += travel.quantiles.empty() ? "  quantiles: []\n"
+                                : "  quantiles:  # this share of the volume stays within\n";
+  for (const Quantile &q : travel.quantiles)
+    s += "    - {share: " + real(q.share) + ", distance: " + real(q.reach.distance) +
+        ", reach_angle: " + real(q.reach.angle) + "}\n";
+  s += "largest:\n";
+  line(s, "  thickness", real(largest.thickness));
+  line(s, "  max_thickness", real(largest.max_thickness));
+  line(s, "  max_speed", real(largest.max_speed));
+  line(s, "  max_energy", real(largest.max_energy));
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DepositSummary::write_motion(std::string &s) const
+{
+  s += "motion:  # of the balls now; moving_share: of the volume, faster than threshold; fast: than " +
+      real(FAST) + "\n";
+  line(s, "  threshold", real(motion.threshold));
+  line(s, "  largest_speed", real(motion.largest));
+  line(s, "  median_speed", real(motion.median));
+  line(s, "  moving_share", real(motion.moving_share));
+  line(s, "  fast_share", real(motion.fast_share) + "  # of the released volume");
+  line(s, "  fast_volume", real(motion.fast_volume));
+  line(s, "  fast_speed", real(motion.largest));
+  line(s, "change_rate", real(change_rate) + "  # share of the volume that changes cell, per second");
+  line(s, "moving", motion.moving_share > MOVING_SHARE ? "true" : "false");
+  line(s, "at_rest", std::string(at_rest() ? "true" : "false") +
+           "  # ended by its halt, and fast_share < " + real(REST_SHARE));
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DepositSummary::write_findings(std::string &s) const
+{
+  if (guards.known) {
+    s += "guards:  # overlap: of the smaller radius; growth: of the largest energy of motion\n";
+    line(s, "  largest_overlap", real(guards.deepest));
+    line(s, "  deep_contacts", std::to_string(guards.deep));
+    line(s, "  energy_growth", real(guards.energy_growth));
+    line(s, "  dangerous_builds", std::to_string(guards.dangerous_builds));
+  }
+  s += warnings.empty() ? "warnings: []\n" : "warnings:\n";
+  for (const std::string &warning : warnings) s += "  - " + quoted(warning) + "\n";
+  s += "stop:\n";
+  line(s, "  step", std::to_string(step));
+  line(s, "  time", real(time));
+  line(s, "  reason", quoted(reason));
+  s += "files:\n";
+  for (const std::string &file : files) s += "  - " + quoted(file) + "\n";
+}

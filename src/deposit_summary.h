@@ -1,0 +1,98 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#ifndef SLOPE_DEPOSIT_SUMMARY_H
+#define SLOPE_DEPOSIT_SUMMARY_H
+
+#include "deposit_bins.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace Slope {
+
+// What PREFIX.summary.yaml says of a deposit. Units are those of the run, angles in degrees,
+// volumes bulk where nothing else is said.
+struct DepositSummary {
+  static constexpr double MOVING_SHARE = 0.1;    // of the volume: more is a mass in motion
+  static constexpr double REST_SHARE = 0.01;     // of the volume: less may be fast in one at rest
+  static constexpr double FAST = 0.1;            // m/s: faster than this is fast
+
+  // --- versions, the run ---
+
+  std::string slope_version, lammps_version, fix;
+  int64_t step;
+  double time, dt;
+  int ranks;
+  std::string reason;    // why the run ended: "halted", "time limit", "run completed"; "running"
+  PlanGrid grid;
+
+  // --- what was released ---
+
+  struct Release {
+    double balls, ball_volume;    // ball_volume: solid
+    std::string region;           // empty: the bulk factor was given
+    double body_volume, bulk_factor;
+    double from_cubic() const;    // bulk_factor / (6/pi) - 1
+  } release;
+
+  // --- where it is ---
+
+  double present, lost;    // numbers of balls
+  struct Volume {
+    double released, on_grid, off_grid, lost, residual;
+  } volume;
+
+  struct Reach {
+    double distance, angle;
+  };
+  struct Quantile {    // this share of the volume stays within
+    double share;
+    Reach reach;
+  };
+  struct Travel {
+    double top[3], front_at_release, centroid;
+    Reach farthest;
+    std::vector<Quantile> quantiles;
+  } travel;
+
+  struct Largest {
+    double thickness, max_thickness, max_speed, max_energy;
+  } largest;
+
+  // --- how it moves now ---
+
+  struct Motion {
+    double threshold, largest, median, moving_share, fast_volume;
+    double fast_share;    // of the released volume
+  } motion;
+  double change_rate;
+
+  // the run ended by its criterion of rest and little is fast; a run that was cut never is at rest
+  bool at_rest() const { return reason == "halted" && motion.fast_share < REST_SHARE; }
+
+  // --- what was found wrong ---
+
+  struct Guards {
+    bool known;
+    double deepest, energy_growth;
+    int64_t deep, dangerous_builds;
+  } guards;
+  std::vector<std::string> warnings, files;
+
+  std::string text() const;    // YAML
+
+ private:
+  void write_run(std::string &) const;
+  void write_release(std::string &) const;
+  void write_travel(std::string &) const;
+  void write_motion(std::string &) const;
+  void write_findings(std::string &) const;
+};
+
+}    // namespace Slope
+
+#endif

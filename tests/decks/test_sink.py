@@ -1,0 +1,255 @@
+"""sink H of fix wall/gran/balls and create_balls: centres H below a surface; beyond the rim of a body they go on to the
+ground, and balls outside of the body leave room for them."""
+
+import math
+import re
+
+import numpy
+import pytest
+
+from deck_helpers import run_deck, write_asc
+
+SLOPE = math.tan(math.radians(28))      # of the ground, up along x; it is level beyond the toe at x = 14
+CENTRE, RADIUS = numpy.array([26.0, 20.0, 12.0]), 12.0
+
+# a slip sphere in that ground, 6 m deep, and a pit with walls
+DECK = """
+units       si
+atom_style  sphere
+boundary    s s fs
+comm_modify vel yes
+region      ground terrain ground.asc depth 12 headroom 10
+region      sphere sphere 26 20 12 12 units box
+region      slip intersect 2 ground sphere
+region      prism polygon release.csv
+region      bed terrain bed.asc depth 12 side out
+region      pit intersect 3 ground prism bed
+region      both union 2 slip pit
+create_box  3 ground
+lattice     sc {d}
+create_atoms 1 region {body}
+group       soil type 1
+set         group soil diameter {d} density 2500
+pair_style  gran/restitution
+pair_coeff  * * stiffness 1e7 1e7 restitution 0.4 friction 25
+{fixes}
+"""
+SLIP = "fix slip soil wall/gran/balls 2 {d} surface slip lower spacing {half} sink {sink} write slip.xyz\n"
+FIELD = ("fix field soil wall/gran/balls 3 {field} surface ground upper spacing {field} outside {outside} "
+         "write field.xyz\n")
+DELETE = "delete_balls soil overlap 0.0\n"
+
+
+def ground(x):
+    return numpy.maximum(0.0, (x - 14.0) * SLOPE)
+
+
+def prepare(tmp_path):
+    x = numpy.arange(100) * 0.5 + 0.25
+    heights = numpy.tile(ground(x), (120, 1))
+    write_asc(tmp_path / "ground.asc", heights, cell=0.5)
+    write_asc(tmp_path / "bed.asc", heights - 3.0, cell=0.5)
+    (tmp_path / "release.csv").write_text("30.3,42.2\n40,40.1\n41.2,48\n33,49.2\n")
+
+
+def place(tmp_path, fixes=SLIP + FIELD + DELETE, body="slip", d=2.0, sink=None, field=None, outside="slip", np=1):
+    """Log and fixed balls (of slip, of field) of a deck that sets up and does not run."""
+    values = {"d": d, "half": d / 2, "sink": d if sink is None else sink, "field": field or d, "outside": outside}
+    prepare(tmp_path)
+    log = run_deck(DECK.format(fixes=fixes.format(**values), body=body, **values), tmp_path, np=np)
+    return log, read(tmp_path / "slip.xyz"), read(tmp_path / "field.xyz")
+
+
+def read(path):
+    return numpy.loadtxt(path, ndmin=2) if path.exists() else None
+
+
+def removed(log):
+    """Share of the soil that delete_balls left out."""
+    gone, left = map(int, re.search(r"Delete_balls: (\d+) balls .* (\d+) balls left", log).groups())
+    return gone / (gone + left)
+
+
+def on_nodes(log, balls):
+    """The balls on the plan grid, which come first."""
+    return balls[:int(re.search(r"balls slip: \d+ fixed balls of diameter \S+ \((\d+) on the plan grid", log)[1])]
+
+
+def columns(pitch=0.2):
+    """Columns of the sphere's body: x, y, bottom, top."""
+    x, y = (a.ravel() for a in numpy.meshgrid(numpy.arange(0, 50, pitch), numpy.arange(0, 40, pitch)))
+    under = RADIUS**2 - (x - CENTRE[0]) ** 2 - (y - CENTRE[1]) ** 2
+    bottom = CENTRE[2] - numpy.sqrt(numpy.maximum(under, 0.0))
+    inside = (under > 0) & (bottom < ground(x))
+    return x[inside], y[inside], bottom[inside], ground(x)[inside]
+
+
+def closest(balls):
+    """The smallest distance of a fixed centre to a point of the sphere's body."""
+    x, y, bottom, top = columns()
+    nearest = math.inf
+    for share in numpy.linspace(0, 1, 12):
+        body = numpy.column_stack([x, y, bottom + share * (top - bottom)])
+        for part in numpy.array_split(balls, 1 + len(balls) // 200):
+            nearest = min(nearest, ((body[:, None] - part[None]) ** 2).sum(-1).min())
+    return math.sqrt(nearest)
+
+
+def test_a_ground_that_is_sunk_moves_along_its_normal(tmp_path):
+    fixes = "fix floor soil wall/gran/balls 2 1.0 surface ground upper spacing 1.0 sink 0.8 write slip.xyz\n"
+    log, floor, _ = place(tmp_path, fixes)
+    assert "sunk by 0.8)" in log
+    slope = floor[(floor[:, 0] > 16) & (floor[:, 0] < 47)]
+    assert len(slope) > 1000
+    assert slope[:, 2] == pytest.approx(ground(slope[:, 0]) - 0.8 * math.sqrt(1 + SLOPE**2), abs=1e-6)
+    level = floor[floor[:, 0] < 12]
+    assert level[:, 2] == pytest.approx(-0.8, abs=1e-9)
+    # at the toe, below a hollow, a ball that touches the ground at x = 14 only would be 0.8 away from it
+    toe = floor[numpy.abs(floor[:, 0] - 14) < 0.01]
+    assert toe[:, 2] == pytest.approx(-0.8, abs=0.05)
+
+
+@pytest.mark.parametrize("d", [3.0, 2.0, 1.3])
+def test_nothing_is_left_out_of_a_body_on_sunk_balls(tmp_path, d):
+    log, slip, field = place(tmp_path, d=d)
+    assert removed(log) == 0
+    assert f"sunk by {d:g} and continued up to region ground)" in log
+    assert f"plan nodes not outside region slip sunk by {d:g})" in log
+    assert closest(field) > 0.99 * d
+    assert closest(slip) > 0.9 * d      # extra balls lie on the chords between the others, where it is steep
+    slip = on_nodes(log, slip)
+    assert closest(slip) == pytest.approx(d, rel=0.02)
+
+    # below the body the centres lie on the sphere that is d larger; beyond its rim they reach the ground
+    far = numpy.linalg.norm(slip - CENTRE, axis=1)
+    assert (far > RADIUS + 0.98 * d).all()
+    toward = CENTRE + (slip - CENTRE) * (RADIUS / far)[:, None]       # where a ball of radius d touches
+    below = toward[:, 2] < ground(toward[:, 0]) - 0.5 * d
+    assert below.sum() > 50
+    assert far[below] == pytest.approx(RADIUS + d, abs=0.02 * d)
+    assert (slip[:, 2] < ground(slip[:, 0]) + 1e-6).all()
+    assert (ground(slip[:, 0]) - slip[:, 2]).min() < 0.25 * d
+
+
+def test_on_the_surface_itself_many_are(tmp_path):
+    log, slip, _ = place(tmp_path, sink=0)
+    assert removed(log) > 0.15
+    assert "sunk" not in log
+    first = slip
+    log, slip, _ = place(tmp_path, (SLIP + FIELD + DELETE).replace(" sink {sink}", ""))
+    assert removed(log) > 0.15 and numpy.array_equal(first, slip)
+
+
+@pytest.mark.parametrize("field", [0.7, 3.0])
+def test_field_balls_of_another_size_leave_room_too(tmp_path, field):
+    log, _, balls = place(tmp_path, field=field)
+    assert removed(log) < 0.01
+    assert closest(balls) > 0.99 * 2.0
+    assert ("tight for balls of diameter 2" in log) == (field > 2.0)
+
+
+def test_no_lip_stands_before_the_toe(tmp_path):
+    """A ball that slides on along the slip sphere, out of the body and over its rim, meets no ball of the field."""
+    _, _, field = place(tmp_path)
+    _, _, lip = place(tmp_path, outside="slip sunk 0")
+    angles = numpy.radians(numpy.arange(-60, 61, 2))
+    out = numpy.radians(numpy.arange(0, 80, 0.5))           # below the horizon of the sphere's centre
+    a, b = (values.ravel() for values in numpy.meshgrid(angles, out))
+    away = [-numpy.cos(a) * numpy.cos(b), numpy.sin(a) * numpy.cos(b), -numpy.sin(b)]
+    path = CENTRE + RADIUS * numpy.column_stack(away)
+    nearest = [min(numpy.linalg.norm(path - ball, axis=1).min() for ball in balls) for balls in (field, lip)]
+    assert nearest[0] > 0.99 * 2.0
+    assert nearest[1] < 0.5 * 2.0
+
+
+# --- bodies of other kinds ---
+
+def test_a_pit_with_walls(tmp_path):
+    fixes = SLIP.replace("surface slip", "surface pit") + FIELD + DELETE
+    for d in (1.5, 1.0):
+        log, bottom, field = place(tmp_path, fixes, body="pit", d=d, outside="pit")
+        assert removed(log) < 0.01
+        inside = bottom[(bottom[:, 0] > 34) & (bottom[:, 0] < 38) & (bottom[:, 1] > 43) & (bottom[:, 1] < 46)]
+        assert inside[:, 2] == pytest.approx(ground(inside[:, 0]) - 3.0 - d * math.sqrt(1 + SLOPE**2), abs=1e-3)
+        # the walls are balls of the field, d outside of the polygon, from the ground to the bottom
+        wall = field[field[:, 2] < ground(field[:, 0]) - 0.5 * d]
+        assert len(wall) > 20
+        assert (wall[:, 2] > ground(wall[:, 0]) - 3.0 - 1.5 * d).all()
+
+
+def test_outside_may_name_more_than_the_body(tmp_path):
+    """Two bodies and their union; a prism without a bottom around a body."""
+    pit = SLIP.replace("fix slip", "fix bottom").replace("surface slip", "surface pit").replace("slip.xyz", "pit.xyz")
+    log, _, field = place(tmp_path, SLIP + pit + FIELD + DELETE, body="both", outside="both")
+    assert removed(log) < 0.01
+    assert "plan nodes not outside region both sunk by 2, sunk by 2)" in log
+    assert closest(field) > 0.99 * 2.0
+    around = "region around block 4 48 2 38 INF INF units box\n"
+    log, _, field = place(tmp_path, around + SLIP + FIELD + DELETE, outside="around")
+    assert "not outside region around sunk by 2)" in log
+    log, _, field = place(tmp_path, around.replace("4 48", "48 49") + SLIP + FIELD, outside="around")
+    assert "not outside region around)" in log        # not the body's
+
+
+def test_without_a_ground_it_ends_a_sink_beyond_the_rim(tmp_path):
+    fixes = "fix slip soil wall/gran/balls 2 1.0 surface sphere lower spacing 0.5 sink 1.5 write slip.xyz\n"
+    log, ball, _ = place(tmp_path, fixes)
+    assert "sunk by 1.5)" in log
+    far = numpy.linalg.norm(ball - CENTRE, axis=1)
+    assert far == pytest.approx(RADIUS + 1.5, abs=0.15)
+    assert far[:len(on_nodes(log, ball))] == pytest.approx(RADIUS + 1.5, abs=0.045)
+    assert numpy.hypot(ball[:, 0] - CENTRE[0], ball[:, 1] - CENTRE[1]).max() > RADIUS + 1.4
+
+
+# --- the same balls in every way ---
+
+def test_create_balls_makes_the_same(tmp_path):
+    _, slip, field = place(tmp_path, d=2.0)
+    atoms = """
+create_balls 2 2 2500 surface slip lower spacing 1 sink 2
+create_balls 3 2 2500 surface ground upper spacing 2 outside slip sunk 2
+group fixed type 2 3
+write_dump fixed custom atoms.dump type x y z modify format float %.15g
+"""
+    # the plan ends before the box does
+    _, _, _ = place(tmp_path, atoms.replace("spacing 2 ", "spacing 2 origin 1 1 "), d=2.0)
+    rows = [line.split() for line in (tmp_path / "atoms.dump").read_text().splitlines()]
+    made = numpy.array([row for row in rows if len(row) == 4 and row[0] in "23"], float)
+    assert sorted(map(tuple, made[made[:, 0] == 2][:, 1:].round(9))) == sorted(map(tuple, slip.round(9)))
+    _, _, shifted = place(tmp_path, SLIP + FIELD.replace(" outside", " origin 1 1 outside"), d=2.0)
+    assert sorted(map(tuple, made[made[:, 0] == 3][:, 1:].round(9))) == sorted(map(tuple, shifted.round(9)))
+    assert len(field) > 100
+
+
+def test_same_balls_on_any_number_of_ranks_and_after_a_run(tmp_path):
+    found = []
+    run = "neighbor 0.3 bin\ntimestep 1e-4\nfix move soil nve/sphere\nrun 1\n"
+    for name, fixes, np in (("1", SLIP + FIELD, 1), ("2", SLIP + FIELD, 2), ("run", SLIP + DELETE + run + FIELD, 1)):
+        folder = tmp_path / name
+        folder.mkdir()
+        found.append(place(folder, fixes, np=np)[1:])
+    for slip, field in found[1:]:
+        assert numpy.array_equal(slip, found[0][0]) and numpy.array_equal(field, found[0][1])
+
+
+def test_the_balls_below_come_first(tmp_path):
+    prepare(tmp_path)
+    values = {"d": 2.0, "half": 1.0, "sink": 2.0, "field": 2.0, "outside": "slip"}
+    fixes = FIELD + SLIP
+    run_deck(DECK.format(fixes=fixes.format(**values), body="slip", **values), tmp_path,
+             expect_error="Fix wall/gran/balls slip sink must come before fix field, which is outside region slip")
+    assert not (tmp_path / "slip.xyz").exists()
+
+
+# --- balls that are smaller than the fixed ones ---
+
+def test_smaller_balls_that_come_later_are_warned_of(tmp_path):
+    run = "neighbor 0.3 bin\ntimestep 1e-4\nfix move soil nve/sphere\nrun 0\n"
+    shrink = "set group soil diameter 1.0\n"
+    log, _, _ = place(tmp_path, FIELD + DELETE + shrink + run, d=2.0)
+    assert ("WARNING: Fix wall/gran/balls field: balls of diameter 1 may pass between these, placed for 2 and "
+            "larger, on steep ground: define the fix after the balls, or with smallest 1") in log
+    log, _, _ = place(tmp_path, FIELD.replace(" outside", " smallest 1.0 outside") + DELETE + shrink + run, d=2.0)
+    assert "may pass" not in log and "tight for balls of diameter 1)" in log
+    log, _, _ = place(tmp_path, shrink + FIELD + DELETE + run, d=2.0)
+    assert "may pass" not in log and "tight for balls of diameter 1)" in log

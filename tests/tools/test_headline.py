@@ -1,0 +1,229 @@
+"""The headline volume: that the next run stays below it, its parts against numbers by hand, and how it is rounded."""
+import math
+import os
+import statistics
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy import stats
+
+TOP = Path(__file__).resolve().parents[2]
+sys.path.insert(0, os.environ.get("SLOPE_TOOLS", str(TOP / "tools")))
+
+from slope_tools import headline  # noqa: E402  (after the path is set)
+from slope_tools.headline import Combination, Headline, Scatter, SizeError  # noqa: E402
+
+STUDIES = 400
+REPEATS = 3
+DEVIATION = 250.0           # m3, of a run by chance
+EQUAL, TREND, ONE = (15000.0,) * 3, (14200.0, 14600.0, 15000.0), (9000.0, 12000.0, 15000.0)
+
+
+def study(random, means, common):
+    """Three repeats of each combination; common: the share of the variance that a repeat has in all combinations alike,
+
+    as runs have whose lattice of balls begins at the same place.
+    """
+    lattice = random.normal(0, DEVIATION * math.sqrt(common), REPEATS)
+    own = random.normal(0, DEVIATION * math.sqrt(1 - common), (len(means), REPEATS))
+    return [Combination(f"rolling {k}", {f"xoffset {i}": mean + lattice[i] + own[k, i] for i in range(REPEATS)})
+            for k, mean in enumerate(means)]
+
+
+def covered(means, common, seed, studies=STUDIES, volume=lambda best: best.volume):
+    """The share of studies whose next run, of the combination that governs, lies below the headline."""
+    random = np.random.default_rng(seed)
+    below = 0
+    for _ in range(studies):
+        best = headline.headline(study(random, means, common))
+        truth = means[int(best.combination.split()[1])]
+        below += random.normal(truth, DEVIATION) < volume(best)
+    return below / studies
+
+
+# --- the model: V = mean of the combination + what the repeats have in common + what is each run's own, all normal ---
+
+@pytest.mark.parametrize("means, common", [(TREND, 0), (ONE, 0), (TREND, 0.5), (ONE, 0.5), (ONE, 1)])
+def test_the_next_run_lies_below_the_headline_in_97_percent(means, common):
+    assert 0.95 <= covered(means, common, seed=1) <= 0.99
+
+
+@pytest.mark.parametrize("common", [0, 0.5])
+def test_equal_means_are_on_the_safe_side(common):
+    """The largest of equal means is one that chance has lifted: up to 99.5 %, which is more than asked for."""
+    assert 0.975 <= covered(EQUAL, common, seed=2) <= 1
+
+
+def test_what_the_headline_would_be_worth_without_its_parts():
+    """Negative controls: each of them leaves the band of 95 to 99 % that the headline keeps."""
+    def volume_without(change):
+        return lambda best: best.mean + change(best)
+
+    def nominal(best):      # the degrees of freedom of runs that have nothing in common
+        return stats.t.ppf(0.975, 6) * best.scatter.deviation * math.sqrt(1 + 1 / REPEATS)
+
+    assert covered(ONE, 0, 3, volume=volume_without(lambda best: 0)) < 0.6
+    assert covered(ONE, 0, 3, volume=volume_without(lambda best: best.chance / 2)) < 0.9
+    assert covered(ONE, 1, 3, 2000, volume_without(nominal)) < 0.945
+    assert covered(ONE, 1, 3, 2000) > 0.96
+
+
+# --- by hand ---
+
+def test_parts_by_hand():
+    a = Combination("a", {"base": 100.0, "seed 1": 110.0, "seed 2": 105.0})
+    b = Combination("b", {"base": 120.0, "seed 1": 118.0, "seed 2": 125.0})
+    best = headline.headline([a, b])
+    deviation = math.sqrt((statistics.variance(a.volumes.values()) + statistics.variance(b.volumes.values())) / 2)
+    assert (best.combination, best.repeats, best.runs, best.kind) == ("b", 3, 6, "prediction")
+    assert best.mean == pytest.approx(121) and best.size is None
+    assert best.scatter.deviation == pytest.approx(deviation)
+    # mean squares of the two-way table, and Satterthwaite of their sum
+    table = np.array([list(a.volumes.values()), list(b.volumes.values())])
+    between = 2 * np.var(table.mean(axis=0), ddof=1)
+    left = table - table.mean(axis=0) - table.mean(axis=1)[:, None] + table.mean()
+    rest = (left ** 2).sum() / 2
+    assert (between + rest) / 2 == pytest.approx(deviation ** 2)
+    free = (between / 2 + rest / 2) ** 2 / ((between / 2) ** 2 / 2 + (rest / 2) ** 2 / 2)
+    assert best.scatter.degrees_of_freedom == pytest.approx(free) and 2 < free < 4
+    assert best.chance == pytest.approx(stats.t.ppf(0.975, free) * deviation * math.sqrt(4 / 3))
+    assert best.volume == best.mean + best.chance
+
+
+def test_one_combination_has_its_own_degrees_of_freedom():
+    best = headline.headline([Combination("a", {"base": 10.0, "seed 1": 12.0, "seed 2": 17.0})])
+    assert best.scatter == Scatter(pytest.approx(math.sqrt(13)), 2)
+    assert best.volume == pytest.approx(13 + 4.302652729911275 * math.sqrt(13 * 4 / 3))
+
+
+def combinations(*several):
+    """Combinations a, b, ... of volumes; a value of None is a run that failed."""
+    return [Combination(name, {str(i): float(value) for i, value in enumerate(values) if value is not None})
+            for name, values in zip("abcdef", several)]
+
+
+@pytest.mark.parametrize("several, expected", [
+    (((1, 2, 6), (11, 12, 16)), 2),                 # all in common: no more than one combination would have
+    (((1, 2, 6), (11, 12, 16), (1, 2, 6)), 2),
+    (((0, 1), (1, 0)), 1),                          # nothing in common: (0 + MR/2)2 / (MR/2)2
+    (((1, 2, 6), (7,)), 2),                         # a single run tells nothing of the scatter
+    (((1, 2, None), (None, 3, 9)), 1),              # one repeat in common: as of the one with the fewest
+])
+def test_what_repeats_have_in_common_takes_degrees_of_freedom(several, expected):
+    assert headline.pooled(combinations(*several)).degrees_of_freedom == pytest.approx(expected)
+
+
+def test_repeats_that_failed_are_left_out_of_what_is_in_common():
+    whole = headline.shared(combinations((1, 4, 2), (6, 5, 9)))
+    assert headline.shared(combinations((1, 4, 2, None), (6, 5, 9, 40))) == pytest.approx(whole)
+    assert headline.pooled(combinations((1, 4, 2, None), (6, 5, 9, 40))).degrees_of_freedom == pytest.approx(5 * whole)
+
+
+def test_without_repeats_chance_is_unknown():
+    best = headline.headline(combinations((5,), (7,), (6,)))
+    assert best == Headline(7.0, 7.0, None, None, "b", 1, 3, None)
+    assert best.kind == "largest of 3 runs; chance unknown"
+    assert headline.headline(combinations((5,))).kind == "largest of 1 run; chance unknown"
+
+
+def test_with_unequal_numbers_of_runs_the_least_known_may_govern():
+    best = headline.headline(combinations((100, 104, 96, 103, 97), (99, None, None, None, None)))
+    assert best.combination == "b" and best.mean == 99
+    assert best.chance == pytest.approx(best.scatter.chance(1)) and best.scatter.degrees_of_freedom == 4
+
+
+# --- the size of the balls ---
+
+def test_the_size_part_leads_to_the_value_for_small_balls():
+    """Runs at -10 % of the value for small balls, without any scatter: the headline is that value."""
+    best = headline.headline(combinations((90, 90)), {"a": SizeError(-0.1, 0.0)})
+    assert (best.mean, best.chance) == (90, 0) and best.volume == pytest.approx(100)
+    assert headline.headline(combinations((90,)), {"a": SizeError(-0.1)}).volume == pytest.approx(100)
+    # too large: nothing is taken off
+    assert headline.headline(combinations((110, 110)), {"a": SizeError(0.1, 0.0)}).volume == 110
+
+
+def test_the_uncertainty_of_the_size_error_adds_to_chance_as_squares():
+    found = headline.size_part(mean=80.0, chance=3.0, error=SizeError(-0.2, half=0.032))
+    assert found == pytest.approx(20 + 5 - 3)           # half is 80 x 0.032/0.64 = 4, and 3, 4, 5 is a right triangle
+    assert headline.size_part(80.0, None, SizeError(-0.2, half=0.032)) == pytest.approx(20 + 4)
+    assert headline.size_part(120.0, 3.0, SizeError(0.2, half=0.048)) == 0
+
+
+def test_a_coarse_combination_may_govern_by_its_size_error():
+    best = headline.headline(combinations((100,), (95,)), {"a": SizeError(-0.01), "b": SizeError(-0.2)})
+    assert best.combination == "b" and best.volume == pytest.approx(95 / 0.8)
+
+
+def test_a_prediction_with_its_size_error_covers_small_balls():
+    """The next run with small balls lies below all parts together, although the error is known with its own scatter."""
+    random = np.random.default_rng(4)
+    below, small, share, uncertain = 0, 16000.0, -0.08, 0.02
+    for _ in range(1000):
+        coarse = study(random, [mean * (1 + share) / EQUAL[0] * small for mean in ONE], 0)
+        error = SizeError(random.normal(share, uncertain), 1.96 * uncertain)
+        best = headline.headline(coarse, {one.name: error for one in coarse})
+        below += random.normal(small, DEVIATION) < best.volume
+    assert 0.95 <= below / 1000 <= 0.995
+
+
+# --- differences ---
+
+def test_differences_of_equal_means_are_called_chance():
+    random = np.random.default_rng(5)
+    clear = 0
+    for _ in range(100):        # the studentized range takes its time
+        line = study(random, EQUAL, 0)
+        clear += headline.difference(line, headline.pooled(line)).clear
+    assert clear <= 10          # five, and chance
+
+    line = study(random, ONE, 0)
+    found = headline.difference(line, headline.pooled(line))
+    assert found.clear and (found.largest, found.smallest) == ("rolling 2", "rolling 0")
+    assert headline.difference(line, None).clear is None
+
+
+def test_a_difference_by_hand():
+    """Tukey's table: q(0.95; 3 means, 6 degrees of freedom) = 4.339."""
+    a, b, c = combinations((1, 2, 3), (1, 4, 4), (8, 9, 10))
+    found = headline.difference([a, b, c], Scatter(2.0, 6.0))
+    assert found.by == 7 and found.chance == pytest.approx(4.339 * 2 / math.sqrt(3), rel=1e-4)
+
+
+def test_a_combination_that_scatters_more_than_the_others():
+    quiet, loud = (100, 101, 102), (90, 120, 150)
+    parts = combinations(quiet, quiet, loud)
+    assert headline.odd_one(parts, "c") == (pytest.approx(30), pytest.approx(1))
+    assert headline.odd_one(parts, "a") is None and headline.odd_one(combinations(loud), "a") is None
+    # s2 ratio against F(0.95; 2, 4) = 6.944
+    assert headline.odd_one(combinations((0, 1, 2), (0, 1, 2), (0, 2.6, 5.2)), "c") is None
+    assert headline.odd_one(combinations((0, 1, 2), (0, 1, 2), (0, 2.7, 5.4)), "c") is not None
+
+
+# --- rounding ---
+
+@pytest.mark.parametrize("deviation, expected", [(351, 10), (511, 100), (124, 10), (49.9, 1), (50, 10), (0.3, 0.01)])
+def test_to_what_a_volume_is_known(deviation, expected):
+    assert headline.place(deviation) == pytest.approx(expected)
+
+
+def test_rounded_parts_add_up_and_are_never_too_small():
+    random = np.random.default_rng(6)
+    for _ in range(200):
+        best = headline.headline(study(random, random.uniform(0, 20000, 3), 0.3),
+                                 {f"rolling {k}": SizeError(-0.05, 0.02) for k in range(3)})
+        parts = best.rounded()
+        assert parts["volume"] == pytest.approx(parts["mean"] + parts["chance"] + parts["size"], abs=1e-6)
+        assert best.volume - 1e-9 <= parts["volume"] <= best.volume + 3 * best.place + 1e-9
+        assert parts["volume"] / best.place == pytest.approx(round(parts["volume"] / best.place))
+
+
+def test_without_a_scatter_three_digits_are_shown():
+    best = headline.headline(combinations((14758.2,), (14486,)))
+    assert best.place == 100 and best.rounded()["volume"] == 14800
+    assert headline.headline(combinations((0,))).rounded()["volume"] == 0
+    assert headline.headline(combinations((1000,))).rounded()["volume"] == 1000
+    assert (headline.text(14758.2, 10), headline.text(14758.2, 0.1), headline.text(0.0149, 0.01)) == (
+        "14,760", "14,758.2", "0.01")

@@ -1,0 +1,299 @@
+"""tools/slope study --repeat: which runs are made, the headline over them, what is called a trend, rest and travel."""
+import csv
+import os
+import shlex
+import statistics
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+from tiny_collapse import LMP, TOP, write_case
+
+TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
+sys.path.insert(0, str(TOOLS))
+
+from slope_tools import cli, combinations, headline, repeats, rest, results, study_file, travel_shares  # noqa: E402
+from slope_tools.errors import SlopeError  # noqa: E402
+
+pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
+ROAD = "--road case/road.csv --local"
+
+
+@pytest.fixture
+def slope(tmp_path, monkeypatch, capsys):
+    """Run `slope study case/in.tiny ARGUMENTS` in the test's folder; gives status, stdout, stderr."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("LMP", LMP)
+    deck = write_case(tmp_path / "case")
+    text = deck.read_text()
+    for old, new in (("index 150", "index 150\nvariable  xoffset index 0.0\nvariable  seed index 0\n"
+                      "variable  unused index 1"), ("sc 1.0", "sc 1.0 origin ${xoffset} 0 0"),
+                     ("overlap 0.0", 'overlap 0.0\nif "${seed} > 0" then "displace_atoms soil random 1e-6 1e-6 1e-6 '
+                      '${seed} units box"')):
+        assert old in text
+        text = text.replace(old, new)
+    deck.write_text(text)
+    Path("case/road.csv").write_text("13,0\n18,0\n18,24\n13,24\n")
+
+    def run(arguments):
+        capsys.readouterr()
+        try:
+            status = cli.main(["study", "case/in.tiny", *shlex.split(arguments)])
+        except SystemExit as error:
+            status = error.code
+        return status, *capsys.readouterr()
+    return run
+
+
+def load():
+    with open("out/study.csv", encoding="ascii") as lines:
+        return yaml.safe_load(Path("out/study.yaml").read_text()), list(csv.DictReader(lines))
+
+
+def test_repeats_are_made_for_each_combination_and_the_headline_is_theirs(slope):
+    words = f"--set rolling=0,0.3 --set steps=700 --repeat xoffset=0.0,0.3 {ROAD} -o out"
+    assert slope(words)[0] == 0
+    # one more repeat: what is finished is kept
+    status, out, err = slope(words + " --repeat seed=7")
+    assert status == 0 and "4 of 6 runs are finished already" in out, err
+    about, table = load()
+    assert [row["run"] for row in table] == [f"rolling_{rolling}_steps_700{more}" for rolling in ("0", "0.3")
+                                             for more in ("", "_xoffset_0.3", "_seed_7")]
+    assert [(row["rolling"], row["xoffset"], row["seed"]) for row in table[3:]] == [
+        ("0.3", "0.0", "0"), ("0.3", "0.3", "0"), ("0.3", "0.0", "7")]
+    assert [row["repeat"] for row in about["runs"][:3]] == [{}, {"xoffset": "0.3"}, {"seed": "7"}]
+    assert all(row["set"] == {"rolling": "0", "steps": "700"} for row in about["runs"][:3])
+    assert about["study"]["repeat"] == {"xoffset": ["0.0", "0.3"], "seed": ["7"]}
+
+    volumes = [[float(row["remove_m3"]) for row in table if row["rolling"] == rolling] for rolling in ("0", "0.3")]
+    means = [statistics.fmean(several) for several in volumes]
+    best, larger = about["conservative"], means.index(max(means))
+    assert min(means) > 1 and best["kind"] == "prediction"
+    assert best["mean_m3"] == pytest.approx(max(means)) and best["set"]["rolling"] == ("0", "0.3")[larger]
+    deviation = ((statistics.variance(volumes[0]) + statistics.variance(volumes[1])) / 2) ** 0.5
+    assert best["scatter_m3"] == pytest.approx(deviation) and 2 <= best["degrees_of_freedom"] <= 4
+    assert best["chance_m3"] == pytest.approx(best["quantile"] * deviation * (4 / 3) ** 0.5)
+    assert best["volume_m3"] == best["mean_m3"] + best["chance_m3"] and best["repeats"] == 3 and best["size_m3"] is None
+    assert best["remove_m3"] == max(volumes[larger])
+    assert [row["run"] for row in table if float(row["remove_m3"]) == best["remove_m3"]] == [best["run"]]
+    rounded = best["rounded"]
+    assert rounded["volume_m3"] == pytest.approx(rounded["mean_m3"] + rounded["chance_m3"])
+    assert f"conservative volume to remove: {headline.text(rounded['volume_m3'], best['place_m3'])} m3 = " in out
+
+    assert [entry["combination"] for entry in about["combinations"]] == ["rolling_0_steps_700", "rolling_0.3_steps_700"]
+    with open("out/combinations.csv", encoding="ascii") as lines:
+        cells = list(csv.DictReader(lines))
+    for entry, line, several, mean in zip(about["combinations"], cells, volumes, means):
+        assert entry["repeats"] == 3 and entry["remove_m3"]["mean"] == pytest.approx(mean)
+        assert entry["remove_m3"]["scatter"] == pytest.approx(statistics.stdev(several))
+        assert float(line["remove_m3_mean"]) == entry["remove_m3"]["mean"]
+        assert float(line["remove_m3_scatter"]) == entry["remove_m3"]["scatter"]
+    # one of the readers of study.yaml
+    assert study_file.read_study(Path("out/study.yaml"))["conservative"] == best
+
+
+def test_what_a_repeat_does_not_change_counts_once(slope):
+    """A variable that the deck does not use: the runs are one, and chance is not known."""
+    status, out, err = slope(f"--set rolling=0,0.3 --repeat unused=2,3 --equally-good unused {ROAD} -o out")
+    assert status == 0, err
+    best = load()[0]["conservative"]
+    assert best["kind"] == "largest of 2 runs; chance unknown" and best["repeats"] == 1
+    assert any(text.startswith("what was repeated changes nothing: rolling_0_unused_2, ") for text in best["doubts"])
+
+
+def test_a_failed_repeat_leaves_the_others(slope):
+    deck = Path("case/in.tiny")
+    deck.write_text(deck.read_text().replace("group       soil", 'if "${seed} == 2" then "nonsense"\ngroup       soil'))
+    status, _, err = slope(f"--set rolling=0,0.3 --repeat seed=1,2,3 {ROAD} -o out")
+    assert status == 2 and "2 of 8 runs failed: rolling_0_seed_2" in err
+    about, _ = load()
+    assert [entry["repeats"] for entry in about["combinations"]] == [3, 3]
+    assert "2 of 8 runs failed" in about["conservative"]["doubts"]
+    # seeds alone were repeated, although the deck has a lattice to move
+    assert "the chance of seed alone is known: xoffset of the deck was not repeated" in about["conservative"]["doubts"]
+
+
+def test_without_a_road_there_are_means_and_no_headline(slope):
+    status, out, err = slope("--set rolling=0 --repeat xoffset=0.3 -o out")
+    assert status == 0, err
+    about, _ = load()
+    assert about["conservative"] is None and about["combinations"][0]["centroid_m"]["scatter"] > 0
+    assert "remove_m3" not in about["combinations"][0] and "mean and scatter" in out
+
+
+@pytest.mark.parametrize("arguments, message", [
+    ("--set rolling=0 --repeat friction=20,30", "--repeat: must name what is chance, a variable called seed or "
+     "...offset; if the values of friction are equally good, say --equally-good friction, got friction"),
+    ("--set rolling=0 --repeat colour=1", "--repeat: must name an index variable of case/in.tiny"),
+    ("--set rolling=0 --equally-good friction", "--equally-good: must name variables of --repeat, got friction"),
+    ("--set seed=1,2 --repeat seed=3", "--repeat: must not name a variable of several values of --set, got seed"),
+    ("--set rolling=0 --repeat seed=0 --repeat xoffset=0", "--repeat: must give a value that the first run does not "
+     "have, got seed=0, xoffset=0"),
+    ("--set seed=5 --repeat seed=5.0", "--repeat: must give a value that the first run does not have, got seed=5.0"),
+    ("--set rolling=0 --repeat seed=1,1", "--repeat: must have every value once"),
+    ("--set rolling=0 --repeat seed", "--repeat: must be NAME=V1,V2,... or NAME=A:B:STEP, got seed"),
+    ("--set rolling=0:1:0.001 --repeat seed=1:10:1", "--set: must make at most 10000 runs, got 11011"),
+])
+def test_wrong_repeats_are_one_line(slope, arguments, message):
+    status, out, err = slope(f"{arguments} -o out")
+    assert (status, out) == (2, "") and err.count("\n") == 1 and err.startswith(f"slope study: {message}")
+    assert not Path("out").exists()
+
+
+def test_the_first_run_may_have_a_value_of_set():
+    todo = repeats.plan("out", {"seed": ["5"], "rolling": ["0", "1"]}, {"seed": ["5", "6"]}, {"seed": "0"})
+    assert [one.name for one in todo] == [f"seed_{seed}_rolling_{rolling}" for rolling in "01" for seed in "56"]
+    assert [one.key for one in todo] == ["base", "seed 6"] * 2
+    assert [one.combination["rolling"] for one in todo] == ["0", "0", "1", "1"]
+
+
+# --- the conservative volume ---
+
+def rows(*several, names=("rolling",), rest=True):
+    """Rows of finished runs: (values of the variables, volumes of the repeats)."""
+    found = []
+    for chosen, volumes in several:
+        for i, volume in enumerate(volumes):
+            found.append({"run": f"{'_'.join(chosen)}_{i}", "status": "finished", "set": dict(zip(names, chosen)),
+                          "repeat": {"seed": str(i)} if i else {}, "remove_m3": volume, "at_rest": rest,
+                          "released_m3": 100.0, "centroid_m": 5 + volume / 7, "front_m": 50.0, "max_speed_m_s": 9.0})
+    return found
+
+
+def conservative(settings, several):
+    return combinations.conservative(settings, several, combinations.grouped(several))
+
+
+SMALL = (("0",), (100.0, 110, 90)), (("1",), (104.0, 114, 94))
+LARGE = (("0",), (10.0, 12, 11)), (("1",), (90.0, 92, 91))
+
+
+def test_a_difference_below_chance_is_no_trend_and_no_doubt():
+    best = conservative({"rolling": ["0", "1"]}, rows(*SMALL))
+    [entry] = best["differences"]
+    assert (entry["largest_at"], entry["smallest_at"], entry["clear"]) == ("1", "0", False) and entry["by_m3"] == 4
+    assert best["doubts"] == []
+    assert any("no more than chance makes" in line for line in combinations.told(best))
+
+
+def test_a_difference_larger_than_chance_at_the_end_of_a_range_is_a_doubt():
+    best = conservative({"rolling": ["0", "1"]}, rows(*LARGE))
+    assert best["differences"][0]["clear"] is True
+    assert best["doubts"] == ["it lies at the end of the range of rolling, 0 to 1"]
+    # a value of 0, which cannot be less, is no end; neither is one in the middle, or a name
+    assert conservative({"rolling": ["0", "1"]}, rows((("0",), (90.0, 92)), (("1",), (10.0, 12))))["doubts"] == []
+    middle = rows((("1",), (10.0, 12)), (("2",), (90.0, 92)), (("3",), (10.0, 12)))
+    assert conservative({"rolling": ["1", "2", "3"]}, middle)["doubts"] == []
+    assert conservative({"rolling": ["a", "b"]}, rows((("a",), (10.0, 12)), (("b",), (90.0, 92))))["doubts"] == []
+
+
+def test_differences_are_those_of_the_governing_line():
+    several = rows((("0", "20"), (10.0, 11)), (("1", "20"), (50.0, 51)), (("0", "30"), (70.0, 71)),
+                   (("1", "30"), (90.0, 91)), names=("rolling", "friction"))
+    best = conservative({"rolling": ["0", "1"], "friction": ["20", "30"]}, several)
+    assert [(entry["variable"], entry["by_m3"]) for entry in best["differences"]] == [("rolling", 20), ("friction", 40)]
+    assert best["label"] == "rolling 1, friction 30"
+
+
+def test_other_doubts():
+    alone = rows((("0",), (5.0,)))
+    assert conservative({"rolling": ["0"]}, alone)["doubts"] == ["nothing was varied, it is of one run"]
+    still = rows(*SMALL, rest=False)
+    assert conservative({"rolling": ["0", "1"]}, still)["doubts"] == ["6 of 6 deposits are not at rest"]
+    above = rows((("0",), [100.0] * 7 + [101.0] * 7 + [120.0]), (("1",), [100.0 + i / 100 for i in range(30)]))
+    for i, row in enumerate(above):
+        row["front_m"] = i          # no two are the same run
+    assert "0_14 gave more, 120.0 m3" in conservative({"rolling": ["0", "1"]}, above)["doubts"]
+    loud = rows((("1",), (90.0, 120, 150)), (("0",), (100.0, 101, 102)))
+    assert any(text.startswith("its runs scatter more than the others, by 30.0 instead of 1.0 m3")
+               for text in conservative({"rolling": ["1", "0"]}, loud)["doubts"])
+
+
+# --- rest and travel ---
+
+def summary(reason="halted", moving=False, **motion):
+    return {"stop": {"reason": reason, "step": 5, "time": 9.0}, "moving": moving,
+            "motion": {**{"moving_share": 0.02, "threshold": 0.1}, **motion}, "travel": {}}
+
+
+def fast(share, volume=940.0, speed=30.0):
+    return {"fast_share": share, "fast_volume": volume, "fast_speed": speed}
+
+
+@pytest.mark.parametrize("about, at_rest, text", [
+    (summary(**fast(0.0)), True, "at rest"),
+    (summary(**fast(0.0099)), True, "at rest"),
+    (summary(**fast(0.01)), False, "ended by its rest criterion; 1 % of the volume (940 m3) is faster than 0.1 m/s, up "
+     "to 30 m/s"),
+    (summary("run completed", **fast(0.0)), False, "stopped at its duration; 0 % of the volume (940 m3)"),
+    (summary("run completed", **fast(0.042)), False, "stopped at its duration; 4.2 % of the volume (940 m3) is faster"),
+    (summary("running", **fast(0.3)), False, "was written in the run (running); 30 % of the volume"),
+    # older summaries have no more than the share that is faster than a threshold of the deck's
+    (summary(moving_share=0.009), True, "at rest"),
+    (summary(), False, "ended by its rest criterion; 2 % of the volume is faster than 0.1 m/s"),
+    (summary(moving_share=0.0, threshold=0.5), False, "ended by its rest criterion; 0 % of the volume is faster than "
+     "0.5 m/s"),
+    (summary("time limit", **fast(0.0)), False, "cut by a limit of computing time; 0 %"),
+    (summary("run completed"), False, "stopped at its duration; 2 % of the volume is faster than 0.1 m/s"),
+    (summary(moving=True), False, "ended by its rest criterion; 2 % of the volume is faster than 0.1 m/s"),
+])
+def test_at_rest_is_what_ended_by_its_criterion_and_does_not_move(about, at_rest, text):
+    found = rest.state(about, "a.summary.yaml")
+    assert found.at_rest is at_rest and found.text.startswith(text)
+
+
+def test_a_run_that_is_cut_is_not_at_rest_and_the_study_says_so(slope):
+    """After two steps nothing is fast yet: the end at the duration counts alone."""
+    status, _, err = slope(f"--set rolling=0,0.3 --set steps=2 {ROAD} -o out")
+    assert status == 0
+    about, table = load()
+    assert [(row["at_rest"], row["moving"]) for row in table] == [("no", "no")] * 2
+    assert table[0]["end"].startswith("stopped at its duration; 0 % of the volume")
+    assert "2 of 2 deposits are not at rest at the end: rolling_0_steps_2 at 0.0 s (stopped at its duration; " in err
+    assert "2 of 2 deposits are not at rest" in about["conservative"]["doubts"]
+
+
+@pytest.mark.parametrize("step, at_rest, end", [
+    (2, "yes", "at rest"), (50, "no", "ended by its rest criterion; 99 %")])
+def test_a_run_that_its_deck_halts_is_at_rest_unless_it_moves(slope, step, at_rest, end):
+    deck = Path("case/in.tiny")
+    halt = f"variable s equal step\nfix rest soil halt 2 v_s >= {step} error continue\n"
+    deck.write_text(deck.read_text().replace("run         ", f"{halt}run         "))
+    assert slope("--set rolling=0 -o out")[0] == 0
+    [row] = load()[1]
+    assert (row["stop_reason"], row["at_rest"]) == ("halted", at_rest) and row["end"].startswith(end)
+    assert float(row["stop_time_s"]) == pytest.approx(0.002 * step)
+
+
+def test_shares_of_travel_come_from_the_summary():
+    about = summary()
+    assert travel_shares.columns(about, "a") == dict.fromkeys(travel_shares.COLUMNS)
+    about["travel"]["quantiles"] = [{"share": share, "distance": 100 * share, "reach_angle": 30 - share}
+                                    for share in (0.5, 0.9, 0.95, 0.99, 0.999)]
+    found = travel_shares.columns(about, "a")
+    assert [found[f"distance_{share}_m"] for share in (50, 90, 95, 99)] == pytest.approx([50, 90, 95, 99])
+    assert found["reach_99_deg"] == pytest.approx(29.01)
+
+
+@pytest.mark.parametrize("quantiles", [5, [5], [{"share": 0.5}], [{"share": 0.5, "distance": "x", "reach_angle": 1}],
+                                       [{"share": 0.5, "distance": float("nan"), "reach_angle": 1}]])
+def test_wrong_shares_of_travel_are_one_line(quantiles):
+    about = summary()
+    about["travel"]["quantiles"] = quantiles
+    with pytest.raises(SlopeError, match="a.yaml: travel: quantiles must be a list of share, distance"):
+        travel_shares.columns(about, "a.yaml")
+
+
+def test_wrong_motion_is_one_line():
+    with pytest.raises(SlopeError, match="a.yaml: motion: fast_volume must be a finite number, got None"):
+        rest.state(summary(fast_share=0.1), "a.yaml")
+
+
+def test_few_of_many_deposits_that_move_are_named():
+    several = [{"run": f"a{i}", "at_rest": i == 0, "stop_time_s": 2.0, "end": "stopped"} for i in range(9)]
+    [text] = results.moving_told(several)
+    assert text.startswith("8 of 9 deposits are not at rest at the end: a1 at 2.0 s (stopped); ")
+    assert text.endswith("a3 at 2.0 s (stopped); and 5 more")
+    assert results.moving_told(several[:1]) == []

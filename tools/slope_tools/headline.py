@@ -1,0 +1,249 @@
+"""The one number that is signed: a volume that the next run stays below, from runs that differ by choice and by chance.
+
+The runs of a study are combinations of choices (rolling resistance, friction), each of them run several times with what
+nobody can prefer (a seed, where the lattice begins). The model of the scatter: run i of combination k gives
+V = M_k + L_i + e, a mean of the combination, a part L_i that the runs i of all combinations have in common because they
+begin from the same lattice (it may be 0), and a part of each run's own; both are normal, with the same standard
+deviations in all combinations. All volumes are in m3 of ground (bulk); every function is pure.
+"""
+import math
+from dataclasses import dataclass
+from typing import Dict, List, Optional, Sequence, Tuple
+
+from scipy import stats
+
+CONFIDENCE = 0.975      # of the next single run: it is below the headline in 39 of 40 studies
+DIFFERENT = 0.95        # a difference is called one if chance makes it in fewer than one of twenty studies
+DIGITS = 3              # of a volume whose scatter is not known
+
+
+@dataclass(frozen=True)
+class Combination:
+    """The runs of one combination of choices: {which repeat: volume in m3}; the key is the same in all combinations."""
+    name: str
+    volumes: Dict[str, float]
+
+    @property
+    def runs(self) -> int:
+        return len(self.volumes)
+
+    @property
+    def mean(self) -> float:
+        return math.fsum(self.volumes.values()) / self.runs
+
+    @property
+    def squares(self) -> float:
+        """Sum of the squares of the deviations from the mean, m6."""
+        return math.fsum((volume - self.mean) ** 2 for volume in self.volumes.values())
+
+    @property
+    def scatter(self) -> Optional[float]:
+        """Standard deviation (m3) of its own runs; None of a single one."""
+        return math.sqrt(self.squares / (self.runs - 1)) if self.runs > 1 else None
+
+
+@dataclass(frozen=True)
+class Scatter:
+    """Standard deviation (m3) of a run by chance, and the degrees of freedom that it is known with."""
+    deviation: float
+    degrees_of_freedom: float
+
+    @property
+    def quantile(self) -> float:
+        """t(0.975) of these degrees of freedom."""
+        return float(stats.t.ppf(CONFIDENCE, self.degrees_of_freedom))
+
+    def chance(self, runs: int) -> float:
+        """How far (m3) the next run may lie above the mean of so many: t s sqrt(1 + 1/n), a prediction limit.
+
+        Hahn and Meeker, Statistical Intervals, 1991, section 4.7.
+        """
+        return self.quantile * self.deviation * math.sqrt(1 + 1 / runs)
+
+
+@dataclass(frozen=True)
+class SizeError:
+    """What balls of one size make of a volume: (V(d) - V0)/V0, V0 that of small balls.
+
+    half: half the width of its 95 % interval, a share of V0 too; None if it is not known.
+    """
+    share: float
+    half: Optional[float] = None
+
+
+@dataclass(frozen=True)
+class Headline:
+    """volume = mean + chance + size (m3); chance is None without repeats, size None if nothing is known of it."""
+    volume: float
+    mean: float
+    chance: Optional[float]
+    size: Optional[float]
+    combination: str
+    repeats: int                    # runs of that combination
+    runs: int                       # of all
+    scatter: Optional[Scatter]
+
+    @property
+    def kind(self) -> str:
+        """What the volume may be called."""
+        if self.chance is not None:
+            return "prediction"
+        return f"largest of {self.runs} run{'s' * (self.runs > 1)}; chance unknown"
+
+    @property
+    def place(self) -> float:
+        """To which power of ten (m3) the volume is known."""
+        if self.scatter is None:
+            return place_of_digits(self.volume)
+        return place(self.scatter.deviation) if self.scatter.deviation > 0 else place_of_digits(self.volume)
+
+    def rounded(self) -> Dict[str, Optional[float]]:
+        """volume, mean, chance and size, each rounded up to what is known, so that the rounded parts add up."""
+        parts = {name: None if value is None else up(value, self.place)
+                 for name, value in (("mean", self.mean), ("chance", self.chance), ("size", self.size))}
+        total = math.fsum(part for part in parts.values() if part is not None)
+        return {"volume": nearest(total, self.place), **parts}
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Between the largest and the smallest mean (m3) of several combinations, and what chance makes of so many."""
+    largest: str
+    smallest: str
+    by: float
+    chance: Optional[float]         # None: not known
+
+    @property
+    def clear(self) -> Optional[bool]:
+        return None if self.chance is None else self.by > self.chance
+
+
+# --- scatter ---
+
+def pooled(combinations: Sequence[Combination]) -> Optional[Scatter]:
+    """The scatter of a run over all combinations; None if none of them has two runs.
+
+    s2 is the sum of squares within the combinations over their degrees of freedom, sum (n_k - 1). As runs with the same
+    repeat may have a part in common, s2 may be known less well than that: see shared().
+    """
+    free = sum(one.runs - 1 for one in combinations)
+    if free == 0:
+        return None
+    deviation = math.sqrt(math.fsum(one.squares for one in combinations) / free)
+    return Scatter(deviation, free * shared(combinations))
+
+
+def shared(combinations: Sequence[Combination]) -> float:
+    """The share of the degrees of freedom that is left where repeats have a part in common: 1/K to 1 of K combinations.
+
+    Satterthwaite's approximation (Biometrics Bulletin 2, 1946, 110), of s2 = MB/K + MR (K - 1)/K with the mean squares
+    between the repeats (n - 1) and of the rest, (n - 1)(K - 1). Repeats that a combination lacks are left out of it;
+    with fewer than two in common nothing is known, and the smallest number of any combination counts.
+    """
+    several = [one for one in combinations if one.runs > 1]
+    free = sum(one.runs - 1 for one in several)
+    if len(several) < 2:
+        return 1.0
+    keys = [key for key in several[0].volumes if all(key in one.volumes for one in several)]
+    count, repeats = len(several), len(keys)
+    if repeats < 2:
+        return min(one.runs - 1 for one in several) / free
+    table = [[one.volumes[key] for key in keys] for one in several]
+    rows = [math.fsum(row) / repeats for row in table]
+    columns = [math.fsum(column) / count for column in zip(*table)]
+    mean = math.fsum(rows) / count
+    within = math.fsum((value - rows[k]) ** 2 for k, row in enumerate(table) for value in row)
+    between = min(within, count * math.fsum((column - mean) ** 2 for column in columns))
+    if within == 0:
+        return 1.0
+    one = between / (repeats - 1) / count
+    rest = (within - between) / (repeats - 1) / count
+    effective = (one + rest) ** 2 / (one ** 2 + rest ** 2 / (count - 1))        # over (repeats - 1)
+    return effective / count
+
+
+def odd_one(combinations: Sequence[Combination], name: str) -> Optional[Tuple[float, float]]:
+    """s (m3) of a combination and that of the others, if its own is larger than chance makes it.
+
+    A common scatter is then too small for it. F test, one of twenty.
+    """
+    mine = next(one for one in combinations if one.name == name)
+    free = sum(one.runs - 1 for one in combinations if one.name != name)
+    if mine.scatter is None or free == 0:
+        return None
+    others = math.sqrt(math.fsum(one.squares for one in combinations if one.name != name) / free)
+    most = others * math.sqrt(float(stats.f.ppf(DIFFERENT, mine.runs - 1, free)))
+    return (mine.scatter, others) if mine.scatter > most else None
+
+
+# --- the headline ---
+
+def size_part(mean: float, chance: Optional[float], error: SizeError) -> float:
+    """What must be added (m3) for the size of the balls, 0 if they make the volume too large.
+
+    The volume of small balls is mean/(1 + e): the difference is added as it is. What that is uncertain by (its 95 %
+    interval) has nothing to do with chance: the two are added as squares, and by what the sum exceeds the chance, that
+    counts.
+    """
+    lacking = mean / (1 + error.share) - mean
+    half = 0.0 if error.half is None else abs(mean) * error.half / (1 + error.share) ** 2
+    alone = chance or 0.0
+    return max(0.0, lacking + math.hypot(alone, half) - alone)
+
+
+def headline(combinations: Sequence[Combination], errors: Optional[Dict[str, SizeError]] = None) -> Headline:
+    """The volume that the next run stays below, and of what it is made; errors: {combination: error of its size}.
+
+    Of all combinations the one counts whose mean, chance and size are largest together; with as many runs in each, and
+    balls of one size, that is the one with the largest mean. If several means are about the same, the largest is one
+    that chance has lifted: the headline is then the safer (see the page on `slope study`).
+    """
+    scatter = pooled(combinations)
+    found: List[Headline] = []
+    for one in combinations:
+        chance = scatter.chance(one.runs) if scatter else None
+        size = size_part(one.mean, chance, errors[one.name]) if errors else None
+        found.append(Headline(one.mean + (chance or 0.0) + (size or 0.0), one.mean, chance, size, one.name, one.runs,
+                              sum(other.runs for other in combinations), scatter))
+    return max(found, key=lambda each: each.volume)
+
+
+def difference(line: Sequence[Combination], scatter: Optional[Scatter]) -> Difference:
+    """Of the largest and the smallest mean of a line of combinations, against the range of as many means by chance.
+
+    The studentized range (Tukey and Kramer; Hochberg and Tamhane, Multiple Comparison Procedures, 1987, section 3.3).
+    """
+    top, low = max(line, key=lambda one: one.mean), min(line, key=lambda one: one.mean)
+    chance = None
+    if scatter is not None:
+        quantile = float(stats.studentized_range.ppf(DIFFERENT, len(line), scatter.degrees_of_freedom))
+        chance = quantile * scatter.deviation * math.sqrt((1 / top.runs + 1 / low.runs) / 2)
+    return Difference(top.name, low.name, top.mean - low.mean, chance)
+
+
+# --- what is known of a number ---
+
+def place(uncertainty: float) -> float:
+    """The power of ten that a number with this standard deviation (> 0) is rounded to: a 5th to a 50th of it."""
+    return 10.0 ** math.floor(math.log10(uncertainty / 5) + 1e-9)
+
+
+def place_of_digits(value: float) -> float:
+    """The power of ten that leaves three digits of a value; 1 of 0."""
+    return 10.0 ** (math.floor(math.log10(abs(value)) + 1e-9) - DIGITS + 1) if value else 1.0
+
+
+def up(value: float, step: float) -> float:
+    """A value rounded up to a multiple of a power of ten; what is one but for rounding stays."""
+    return nearest(math.ceil(value / step - 1e-9) * step, step)
+
+
+def nearest(value: float, step: float) -> float:
+    """A value rounded to a multiple of a power of ten."""
+    return round(value, -math.floor(math.log10(step) + 0.5))
+
+
+def text(value: float, step: float) -> str:
+    """A value rounded to a power of ten, with commas: 14,760 of 14757.3 and 10."""
+    digits = max(0, -math.floor(math.log10(step) + 0.5))
+    return f"{nearest(value, step):,.{digits}f}"

@@ -1,0 +1,134 @@
+"""What speaks against the numbers of a report: one line for each kind of warning, with the runs that it is of."""
+import re
+
+SMALL = 1e-6            # of the released volume
+NAMED = 4               # runs that a line names
+NUMBER = re.compile(r"\d[\d.,]*(?:[eE][+-]?\d+)?")
+# what stands in words of our own here, or beside the maps
+SAID = (" failed: ", "still moves", "not at rest at the end", "left the grid or the box", "has no CRS")
+SAID_TOO = re.compile(r"runs failed$|deposits are not at rest$")
+RED, AMBER = "red", "amber"
+
+
+def warnings(data):
+    """(red or amber, text) of a report.Data, the gravest first."""
+    found = failures(data)
+    found += not_at_rest(data)
+    found += lost(data)
+    found += releases(data)
+    if data.study:
+        for text in (data.study["conservative"] or {}).get("doubts") or ():
+            if not SAID_TOO.search(text):
+                found.append((AMBER, f"The volume to remove: {text}"))
+        names = {row["run"]: data.label_of(row) for row in data.rows}
+        entries = []
+        for text in data.study.get("warnings") or ():
+            if not any(said in text for said in SAID):
+                who, colon, rest = text.partition(": ")
+                entries.append((rest, names[who]) if colon and who in names else (text, None))
+        found += by_kind(entries, len(data.finished))
+    return found + from_logs(data, any("released mass" in text for _, text in found))
+
+
+def failures(data):
+    """Runs that failed, by what they failed of."""
+    failed = [(str(row.get("error")), data.label_of(row)) for row in data.rows if row["status"] != "finished"]
+    return [(RED, f"{plural(len(names), 'run')} failed: {text}" + of_runs(names, None))
+            for text, names in kinds(failed).values()]
+
+
+def not_at_rest(data):
+    """Deposits that move when their runs end, or whose runs were cut."""
+    found, ends = [], data.ends()
+    for level, moving, note in ((RED, True, " More than 10 % of the volume is in motion: these are no numbers of a "
+                                            "deposit."), (AMBER, False, "")):
+        mine = [end for end in ends if not end.at_rest and end.moving == moving]
+        if not mine:
+            continue
+        worst = max(mine, key=lambda end: end.share)
+        told = f"{worst.text}, at {worst.time:.1f} s."
+        if not data.study:
+            found.append((level, f"The deposit is not at rest: {told}{note}"))
+            continue
+        cut = sum(end.cut for end in mine)
+        who = f"{len(mine)} of {plural(len(ends), 'deposit')} not at rest at the end"
+        who += f", {cut} of them stopped at their duration" if cut and len(mine) > 1 else ""
+        found.append((level, f"{who}{of_runs([end.name for end in mine], None) if len(mine) < len(ends) else ''}: "
+                             f"{'most moves in ' * (len(mine) > 1)}{worst.name}: {told}{note}"))
+    return found
+
+
+def lost(data):
+    """Mass that is in no map."""
+    rows = [(row["off_grid_m3"] + row["lost_m3"], row["released_m3"], data.label_of(row)) for row in data.finished]
+    if not data.study:
+        volume = data.result.summary["volume"]
+        rows = [(volume["off_grid"] + volume["lost"], volume["released"], None)]
+    gone = [row for row in rows if row[0] > SMALL * row[1]]
+    if not gone:
+        return []
+    left, released, _ = max(gone)
+    text = (f"{'up to ' * (len(gone) > 1)}{left:,.1f} m3 ({100 * left / released:.2g} % of the released volume) left "
+            "the grid or the box and are in no map")
+    return [(AMBER, text + of_runs([name for *_, name in gone], len(rows)) if data.study else text)]
+
+
+def releases(data):
+    """Doubts about the released mass."""
+    entries = [(release.doubt, name) for name, release in data.releases() if release.doubt]
+    return by_kind(entries, len(data.finished))
+
+
+def from_logs(data, released):
+    """The warnings of LAMMPS and its styles; released: whether the released mass is doubted already."""
+    entries = []
+    if data.study:
+        for row in data.rows:
+            entries += [(f"LAMMPS: {text}", data.label_of(row)) for text in row.get("log_warnings") or ()]
+    else:
+        entries = [(f"LAMMPS: {text}", None) for text in data.result.log.warnings]
+    told = "LAMMPS: Delete_balls" if released else None
+    return by_kind([(text, name) for text, name in entries if not (told and text.startswith(told))], len(data.rows))
+
+
+# --- kinds ---
+
+def kinds(entries):
+    """{kind: (its first text, names of the runs that it is of)} of (text, name or None); texts that differ in numbers
+
+    only are of one kind.
+    """
+    found = {}
+    for text, name in entries:
+        found.setdefault(NUMBER.sub("#", text), (text, []))[1].append(name)
+    return found
+
+
+def by_kind(entries, runs):
+    """A line for each kind; runs: how many there are."""
+    texts = {}
+    for text, _ in entries:
+        texts.setdefault(NUMBER.sub("#", text), set()).add(text)
+    found = []
+    for kind, (text, names) in kinds(entries).items():
+        several = len(texts[kind]) > 1
+        known = list(dict.fromkeys(name for name in names if name is not None))
+        if known:
+            text += of_runs(known, runs, "; other numbers in some" if several else "")
+        elif len(names) > 1:
+            text += f" ({len(names)} times, with other numbers)" if several else f" ({len(names)} times)"
+        found.append((AMBER, text))
+    return found
+
+
+def of_runs(names, runs, more=""):
+    """Which runs, in brackets; runs: how many there are, None if the number stands before."""
+    if runs is not None and len(names) == runs:
+        return f" (all {runs} runs{more})" if runs > 1 else ""
+    told = "; ".join(names[:NAMED]) + (f"; and {len(names) - NAMED} more" if len(names) > NAMED else "")
+    count = "" if runs is None else f"{len(names)} of {plural(runs, 'run')}: "
+    return f" ({count}{told}{more})"
+
+
+def plural(number, what):
+    return f"{number} {what}{'s' * (number != 1)}"
