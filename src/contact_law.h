@@ -85,14 +85,23 @@ struct ContactLaw {
 static constexpr int HISTORY = 7;
 static constexpr int PHASE = 6;
 
-// what the contact did in its last step
+// What the contact is: an impact that began alone has its age in steps, and a half more if it slid in the
+// last one. A contact that lasts longer than an impact does has been laid down, and counts as one of several.
 enum Phase {
-  BEGAN_IN_CROWD = -2,    // touched for the first time, while a ball of it touched others
-  BEGAN = -1,             // touched for the first time, alone
-  INSIDE = 0,
-  SLID = 1,               // alone, slid in the step
-  ENDED = 2               // alone, came apart in the step
+  BEGAN_IN_CROWD = -2,    // while a ball of it touched others
+  ENDED = -1,             // an impact that came apart in the last step
+  LASTING = 0             // no impact
 };
+static constexpr double SLID = 0.5;
+
+inline bool is_impact(double phase)
+{
+  return phase > 0.75;
+}
+inline bool is_new_impact(double phase)
+{
+  return phase > 0.75 && phase < 1.25;
+}
 
 // ----------------------------------------------------------------------
 // the law for balls of one mass and one time step
@@ -342,9 +351,11 @@ inline bool lone_contact_force(const ContactStep &step, const LoneContact &lone,
 {
   const double *n = c.n;
   const double vn = normal_velocity(c);
-  if (life == BEGINS && !(vn < 0.0)) {    // grazed within the step, and parts already
+  const double age = std::floor(history[PHASE] + 0.25);
+  const bool grazes = life == BEGINS && !(vn < 0.0);    // and parts already
+  if (grazes || (life == LASTS && age >= lone.longest)) {
     contact_force<ROLLING>(step, c, 0.0, history, out);
-    history[PHASE] = BEGAN_IN_CROWD;
+    history[PHASE] = grazes ? BEGAN_IN_CROWD : LASTING;
     return true;
   }
   const double rr = c.rolling_radius;
@@ -362,7 +373,7 @@ inline bool lone_contact_force(const ContactStep &step, const LoneContact &lone,
   double rho[3];
   flatten(n, history + 3, rho);
   turn(n, rho, springs.roll);
-  const bool slid = lone.kick(life, again, history[PHASE] == SLID, c.overlap, -vn * step.dt, U, Y, springs, kick);
+  const bool slid = lone.kick(life, again, history[PHASE] > age + 0.25, c.overlap, -vn * step.dt, U, Y, springs, kick);
 
   const double fn = std::max(kick.n * step.force, step.fn_least);
   double ft[3], fr[3];
@@ -377,8 +388,9 @@ inline bool lone_contact_force(const ContactStep &step, const LoneContact &lone,
     turn(springs.roll, n, history + 3);
     for (int d = 0; d < 3; d++) out.m[d] *= rr;
   }
-  history[PHASE] = life == ENDS ? ENDED : life == BEGINS ? BEGAN : slid ? SLID : INSIDE;
-  return !(again && slid);
+  if (again) return !slid;
+  history[PHASE] = life == ENDS ? ENDED : (life == BEGINS ? 1.0 : age + 1.0) + (slid ? SLID : 0.0);
+  return true;
 }
 
 }    // namespace Slope

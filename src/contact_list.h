@@ -368,7 +368,7 @@ class ContactList {
     for (std::uint64_t bits = now & was; bits; bits &= bits - 1) {
       const int k = start + __builtin_ctzll(bits);
       const int n = larger_count<Partners>(entries[k], balls.count);
-      if (n == 1 && exact) one(k, LASTS);
+      if (n == 1 && exact && is_impact(histories[k][PHASE])) one(k, LASTS);
       else batch.push(k, n - 1);
     }
     for (std::uint64_t bits = now & ~was; bits; bits &= bits - 1) {
@@ -388,7 +388,8 @@ class ContactList {
     for (std::uint64_t bits = was & ~now; bits; bits &= bits - 1) {
       const int k = start + __builtin_ctzll(bits);
       const Entry &e = entries[k];
-      if (larger_count<Partners>(e, balls.count) == 0 && larger_count<Partners>(e, balls.count_before) == 1) {
+      if (larger_count<Partners>(e, balls.count) == 0 && larger_count<Partners>(e, balls.count_before) == 1 &&
+          is_impact(histories[k][PHASE])) {
         one(k, ENDS);
         set(ended, k);
       }
@@ -406,8 +407,8 @@ class ContactList {
       const Entry &e = entries[k];
       const double phase = histories[k][PHASE];
       const int n = larger_count<Partners>(e, balls.count);
-      if (!exact || phase == BEGAN_IN_CROWD || n > 1) batch.push(k, n - 1);
-      else one(k, phase == BEGAN ? BEGINS : LASTS);
+      if (!exact || n > 1 || !is_impact(phase)) batch.push(k, n - 1);
+      else one(k, is_new_impact(phase) ? BEGINS : LASTS);
     }
     for (std::uint64_t bits = ended[block]; bits; bits &= bits - 1)
       one(start + __builtin_ctzll(bits), ENDS);

@@ -35,6 +35,8 @@ struct Rolling {
 };
 
 struct LoneContact {
+  static constexpr double MOST = 100.0;
+
   int parts;    // of a step: sliding begins and ends at one; more where rolling acts on sliding
 
   double friction, resistance;
@@ -44,6 +46,7 @@ struct LoneContact {
   double cn, kt, ct, kr, cr;    // law: fn = a d + cn d', ft = kt xi + ct xi', fr alike
   double inverse_r, across;
   double fast;                  // see kick()
+  double longest;               // steps that an impact lasts at most
 
   // what a kick needs and changes
   struct Springs {
@@ -75,6 +78,8 @@ struct LoneContact {
     part_t = sliding.after(1.0 / parts);
     part_r = rolling.after(1.0 / parts);
     left_t = std::exp(-2.0 * sliding.h);
+    const double q2 = normal.a - normal.h * normal.h;
+    longest = 2.0 + std::min(std::acos(-1.0) / std::sqrt(std::max(q2, 1.0e-6)), MOST);
     inverse_r = law_r.inverse;
     across = law_r.across;
     cn = 2.0 * normal.h;
