@@ -388,8 +388,7 @@ class ContactList {
     for (std::uint64_t bits = was & ~now; bits; bits &= bits - 1) {
       const int k = start + __builtin_ctzll(bits);
       const Entry &e = entries[k];
-      if (larger_count<Partners>(e, balls.count) == 0 && larger_count<Partners>(e, balls.count_before) == 1 &&
-          is_impact(histories[k][PHASE])) {
+      if (larger_count<Partners>(e, balls.count) == 0 && larger_count<Partners>(e, balls.count_before) == 1) {
         one(k, ENDS);
         set(ended, k);
       }
