@@ -349,7 +349,7 @@ class ContactList {
     const int count = batch.count;
     for (int c = count; c % 4; c++) {    // idle
       batch.found[c] = batch.found[count - 1];
-      batch.crowd[c] = 0.0;
+      batch.crowd[c] = batch.crowd[count - 1];    // they write the same springs
     }
     for (int c = 0; c < count; c += 4)
       apply_four<ROLLING, N, TALLY>(&batch.found[c], &batch.crowd[c], std::min(4, count - c), law, same,

@@ -88,6 +88,7 @@ TABLE = {
         1 1 stiffness 1e6 1e6 damping -1 0 -> damping must be >= 0 (cn), got -1
         1 1 stiffness 1e6 1e6 damping 1 -1 -> damping must be >= 0 (ct), got -1
         1 1 stiffness 1e6 1e6 damping 1 inf -> damping: value 2 must be a number, got inf
+        1 1 stiffness 1e6 0 damping 1 2.5 -> pair_coeff 1 1: ct must be 0 where kt is 0, got 2.5: give the contact a
         1 1 stiffness 1e6 1e6 restitution 0.5 friction 90 -> friction must be >= 0 and < 90 degrees, got 90
         1 1 stiffness 1e6 1e6 restitution 0.5 friction -1 -> friction must be >= 0 and < 90 degrees, got -1
         1 1 stiffness 1e6 1e6 restitution 0.5 friction steep -> friction: value 1 must be a number, got steep
