@@ -122,18 +122,31 @@ def test_balls_that_leave_before_the_first_run_is_over(plane):
     assert abs(found["volume"]["residual"]) < 1e-9 * VOLUME
 
 
+def test_a_ball_outside_of_the_box_when_the_first_run_begins(plane):
+    """Its volume is not known before; it is lost at once."""
+    run_deck(deck("set atom 1 z 30\nrun 1", small=1.0), plane)
+    found = summary(plane)
+    assert found["balls"]["lost"] == 1
+    share = found["volume"]["released"] / found["balls"]["released"]
+    assert found["volume"]["lost"] == pytest.approx(share, rel=1e-9)
+    assert abs(found["volume"]["residual"]) < 1e-9 * VOLUME
+
+
 def test_a_small_body_in_a_wide_box(tmp_path):
-    """A scar raster as wide as the terrain: 60 m of 2 km, which no search on 32 x 32 columns would find."""
-    ground = np.zeros((100, 100))
+    """A scar raster as wide as the terrain: 30 m of 4 km, which a search on 32 x 32 columns would miss."""
+    ground = np.zeros((400, 400))
     scar = ground.copy()
-    scar[50:53, 40:43] = -8.0     # between centres bilinear: the volume is that of the cells
+    scar[250:253, 140:143] = -8.0     # between centres bilinear: the volume is that of the cells
     for name, heights in (("ground", ground), ("scar", scar)):
-        write_asc(tmp_path / f"{name}.asc", heights, cell=20.0)
-    text = deck(d=2.0, small=2.0, regions="region above terrain scar.asc depth 20 side out\n"
-                "region pit intersect 2 ground above", filled="pit", bulk="region pit").replace("depth 5", "depth 20")
-    text = re.sub(r"^region (ball|above block|body|small) .*\n|^set region small .*\n", "", text, flags=re.M)
+        write_asc(tmp_path / f"{name}.asc", heights, cell=10.0)
+    text = deck(d=1.0, small=1.0, regions="region above terrain scar.asc depth 20 side out\n"
+                "region pit intersect 2 ground above\nregion box block 1350 1500 2450 2600 -20 20 units box\n"
+                "create_box 2 box", filled="pit", bulk="region pit")
+    text = text.replace("depth 5", "depth 20").replace("cell 1 ", "cell 20 ")
+    text = re.sub(r"^region (ball|above block|body|small) .*\n|^set region small .*\n|^create_box 2 ground\n", "", text,
+                  flags=re.M)
     run_deck(text, tmp_path, np=2)
-    assert summary(tmp_path)["volume"]["released"] == pytest.approx(9 * 8 * 400, rel=1e-3)
+    assert summary(tmp_path)["volume"]["released"] == pytest.approx(9 * 8 * 100, rel=1e-3)
 
 
 # --- the cases of the issue: within 0.2 % for any size of ball ---
