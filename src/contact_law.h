@@ -98,9 +98,13 @@ inline bool is_impact(double phase)
 {
   return phase > 0.75;
 }
+inline bool has_slid(double phase)
+{
+  return is_impact(phase) && phase - std::floor(phase) > 0.5 * SLID;
+}
 inline bool is_new_impact(double phase)
 {
-  return phase > 0.75 && phase < 1.25;
+  return is_impact(phase) && phase < 2.0;
 }
 
 // ----------------------------------------------------------------------
@@ -351,7 +355,7 @@ inline bool lone_contact_force(const ContactStep &step, const LoneContact &lone,
 {
   const double *n = c.n;
   const double vn = normal_velocity(c);
-  const double age = std::floor(history[PHASE] + 0.25);
+  const double age = std::floor(history[PHASE]);
   const bool grazes = life == BEGINS && !(vn < 0.0);    // and parts already
   if (grazes || (life == LASTS && age >= lone.longest)) {
     contact_force<ROLLING>(step, c, 0.0, history, out);
@@ -373,7 +377,7 @@ inline bool lone_contact_force(const ContactStep &step, const LoneContact &lone,
   double rho[3];
   flatten(n, history + 3, rho);
   turn(n, rho, springs.roll);
-  const bool slid = lone.kick(life, again, history[PHASE] > age + 0.25, c.overlap, -vn * step.dt, U, Y, springs, kick);
+  const bool slid = lone.kick(life, again, has_slid(history[PHASE]), c.overlap, -vn * step.dt, U, Y, springs, kick);
 
   const double fn = std::max(kick.n * step.force, step.fn_least);
   double ft[3], fr[3];
