@@ -261,6 +261,21 @@ def test_what_stands_on_the_page(slope, here):
         assert word not in text.replace((run / "in.tiny").read_text(), "")
 
 
+@pytest.mark.parametrize("deviation, step", [(4000.0, 100), (370.0, 10), (37.0, 1), (3.0, 0.1), (1e-11, None)])
+def test_numbers_are_rounded_to_what_is_known(slope, here, deviation, step):
+    """By the standard deviation of a run; to three digits where there is none but rounding."""
+    about = yaml.safe_load(Path("repeated/study.yaml").read_text())
+    about["scatter"]["remove_m3"] = {"deviation": deviation, "degrees_of_freedom": 4.0}
+    for k, row in enumerate(about["runs"]):
+        row["remove_m3"] = 12345.678 + k
+    Path("repeated/study.yaml").write_text(yaml.safe_dump(about))
+    assert slope("repeated")[0] == 0
+    kept = [row for row in numbers("repeated/report.numbers.csv")
+            if (row["what"], row["of"]) == ("to remove", "rolling 0")]
+    expected = {100: "12300", 10: "12350", 1: "12346", 0.1: "12345.7", None: "12300"}[step]
+    assert {(row["shown"], row["value"]) for row in kept} == {(expected, "12345.678")}
+
+
 def test_the_shown_run_is_the_one_that_the_volume_rests_on(slope, here):
     about = yaml.safe_load(Path("repeated/study.yaml").read_text())
     names = [row["run"] for row in about["runs"]]

@@ -71,6 +71,17 @@ def test_stray_balls_do_not_lead_the_line_astray():
     assert ground.touched[:, 95].any()
 
 
+def test_the_line_ends_where_next_to_nothing_lies():
+    """As far as 99 % of the deposit goes, although the mass touched, and a little of it lies, farther on."""
+    line = LineString([(10, 100), (190, 100)])
+    ground, result = site(line)
+    along = ground.x - 10
+    result.thickness = np.where(ground.touched & (along > 50), np.where(along < 110, 1.0, 0.003), 0)
+    assert flow_path.path(result, ground).points[-1][0] == pytest.approx(118, abs=8)
+    result.thickness = np.where(ground.touched & (along > 50), 1.0, 0)
+    assert flow_path.path(result, ground).points[-1][0] > 175
+
+
 def test_bands_that_turn_back_are_left_out():
     points = np.array([[0.0, 0.0], [10.0, 0.0]])
     on, back = np.array([20.0, 3.0]), np.array([12.0, 14.0])
