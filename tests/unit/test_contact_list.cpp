@@ -54,7 +54,7 @@ struct Cloud {
     history.resize(contacts);
     for (auto &h : history) {
       for (double &value : h) value = 1e-5 * u(random);
-      h[PHASE] = LASTING;
+      h[PHASE] = 3.0;    // an impact
     }
     f.assign(x.size(), {0.0, 0.0, 0.0});
     torque = f;
