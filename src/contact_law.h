@@ -355,7 +355,7 @@ inline bool lone_contact_force(const ContactStep &step, const LoneContact &lone,
 {
   const double *n = c.n;
   const double vn = normal_velocity(c);
-  const double age = std::floor(history[PHASE]);
+  const double age = std::floor(history[PHASE]) - (again ? 1.0 : 0.0);    // before this step
   const bool grazes = life == BEGINS && !(vn < 0.0);    // and parts already
   if (grazes || (life == LASTS && age >= lone.longest)) {
     contact_force<ROLLING>(step, c, 0.0, history, out);
