@@ -18,6 +18,7 @@
 #ifndef SLOPE_CONTACT_LAW_H
 #define SLOPE_CONTACT_LAW_H
 
+#include "lone_contact.h"
 #include "simd4.h"
 
 #include <algorithm>
@@ -79,23 +80,32 @@ struct ContactLaw {
 // what a contact remembers
 // ----------------------------------------------------------------------
 
-// Values carried from step to step: tangential spring (m), rolling spring (m).
-// Seen from the partner both change sign, as LAMMPS' neighbor history assumes.
-//
-// The tangential spring lies in the tangent plane. Its normal component, the same from both
-// sides, is therefore free to say where in its life the contact is, in units of the rolling
-// radius: it survives what the history survives.
-static constexpr int HISTORY = 6;
-enum Phase {
-  NEW = -2,      // touches for the first time: set by who finds it
-  FIRST = -1,    // had its first step
-  INSIDE = 0,
-  LAST = 1,      // has got the speed with which it parts
-  GONE = 2       // is still parting
-};
+// Values carried from step to step: sliding spring (3, m), rolling spring (3, m), phase. Seen from
+// the partner the springs change sign, the phase does not.
+static constexpr int HISTORY = 7;
+static constexpr int PHASE = 6;
 
-// value of a new contact's tangential spring along the normal n
-inline double new_contact(double rolling_radius) { return NEW * rolling_radius; }
+// What the contact is: an impact that began alone has its age in steps, and a half more if it slid in the
+// last one. A contact that lasts longer than an impact does has been laid down, and counts as one of several.
+enum Phase {
+  BEGAN_IN_CROWD = -2,    // while a ball of it touched others
+  ENDED = -1,             // an impact that came apart in the last step
+  LASTING = 0             // no impact
+};
+static constexpr double SLID = 0.5;
+
+inline bool is_impact(double phase)
+{
+  return phase > 0.75;
+}
+inline bool has_slid(double phase)
+{
+  return is_impact(phase) && phase - std::floor(phase) > 0.5 * SLID;
+}
+inline bool is_new_impact(double phase)
+{
+  return is_impact(phase) && phase < 2.0;
+}
 
 // ----------------------------------------------------------------------
 // the law for balls of one mass and one time step
@@ -104,39 +114,29 @@ inline double new_contact(double rolling_radius) { return NEW * rolling_radius; 
 // Velocity Verlet hands over the overlap d at the end of a step and the path V by which it grew
 // in it (V = -vn dt), and the force F acts for a whole step: V becomes V - F dt^2/m. With the
 // law's own F = kn d - cn vn (scheme plain) the restitution comes out too low, and scatters with
-// where in the step the contact begins. Scheme exact takes the force that puts the next overlap
-// where the law's own motion, a damped oscillation with w = sqrt(kn/m) and h = cn dt/(2 m), has
-// it, whatever the step:
+// where in the step the contact begins. Scheme exact takes
 //
-//   inside a contact   d_next = C d - D (d - V),  D = exp(-2 h),  C = 2 exp(-h) cos(sqrt(w^2 dt^2 - h^2))
-//   first step         V as it would be, had the oscillation that has now d begun earlier,
-//                      with the speed of the impact
-//   last step          the speed with which the oscillation comes through d = 0
+//   F = m/dt^2 [ w^2 dt^2 d + (1 - exp(-2 h)) V ],   w = sqrt(kn/m), h = cn dt/(2 m)
 //
-// Both agree as dt goes to 0. Derivation: doc/src/theory.rst.
+// and, for two balls that touch nothing else, follows the law's motion in closed form
+// (lone_contact.h). With several contacts the dashpots are shared out: see crowd below.
+// Derivation: doc/src/theory.rst.
 template <class N> struct ContactStepOf {
-  double dt, grow;              // s; grow: what the springs grow by, 0 at set-up
-  N force;                      // m / dt^2: N per m
-  N stiffness, decay;           // 1 + D - C, D
-  N back_d, back_v;             // overlap a step ago = back_d d - back_v (rate of d) dt
-  N a, h;                       // w^2 dt^2, cn dt / (2 m)
-  double kt, kr;
-  N ct, cr, relax_t, relax_r;   // relax: dashpot over spring, s
+  double dt, grow;           // s; grow: what the springs grow by, 0 at set-up
+  N force;                   // m / dt^2: N per m
+  N stiffness, damping;      // normal force in m: stiffness d + damping V
+  N kt, ct, kr, cr;          // N/m, N s/m: as velocity Verlet needs them
+  N taken_t, taken_r;        // share of the sliding and rolling motion that a dashpot takes in a step
+  N per_kt, per_kr;          // 1 / kt, 1 / kr; 0 without a spring
+  double shared;             // 1: dashpots of several contacts share what they take; 0: plain
   double friction, rolling, fn_least;
-  double first_below, gone_above;    // phases before this step with which it is the first, or none
-  double last_below;                 // V with which it may be the last
 };
 using ContactStep = ContactStepOf<double>;
 
-// Dashpots of the tangent plane act on the spin too, and those of all contacts of a ball at once:
-// with a step near the rule their sum would overshoot, and a heap tremble for ever. Each is
-// reduced to c / (1 + CROWD c dt / (2 m)), which is c for small steps.
-static constexpr double CROWD = 12.0;
-
-// exp(-x) to 1e-12 for 0 <= x <= 1; no call, so that it takes four at a time
+// exp(-x), x >= 0, to 1e-9; no call, so that it takes four at a time
 template <class N> SLOPE_INLINE N decay_factor(N x)
 {
-  const N y = 0.125 * x;    // Pade approximant, to the eighth power
+  const N y = 0.125 * smaller(x, all<N>(24.0));    // Pade approximant, to the eighth power
   const N even = 1.0 + 0.1 * y * y, odd = y * (0.5 + y * y / 120.0);
   N e = (even - odd) / (even + odd);
   e *= e;
@@ -144,58 +144,71 @@ template <class N> SLOPE_INLINE N decay_factor(N x)
   return e * e;
 }
 
-// What depends on the mass: inverse_mass (1/kg) = 1/m_i + 1/m_j, where a fixed ball has none;
-// mass_dashpot (kg): that of the conversion restitution -> dashpot.
-template <class N>
-SLOPE_INLINE void set_mass(ContactStepOf<N> &s, const ContactLaw &law, N inverse_mass, N mass_dashpot)
+// Stiffness over mass, k dt^2/m, that velocity Verlet needs to oscillate with the frequency of k:
+// 2 - 2 cos(sqrt(a)) to a^3/240, and bounded
+template <class N> SLOPE_INLINE N discrete(N a)
 {
-  const N root_mass = root(mass_dashpot);
-  const N half = 0.5 * inverse_mass * s.dt;
-  s.force = 0.5 / (half * s.dt);
-  s.a = law.kn / s.force;
-  s.h = (law.cn_given + law.cn_root * root_mass) * half;
-
-  // cos and sin(x)/x of the root of q, which is negative for an overdamped contact
-
-  const N q = s.a - s.h * s.h;
-  const N cosine =
-      1.0 - q / 2.0 * (1.0 - q / 12.0 * (1.0 - q / 30.0 * (1.0 - q / 56.0 * (1.0 - q / 90.0))));
-  const N sinc =
-      1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0 * (1.0 - q / 72.0 * (1.0 - q / 110.0))));
-  const N e = decay_factor(s.h);
-  const double plain = 1.0 - law.exact;
-  s.decay = law.exact * e * e + plain * (1.0 - 2.0 * s.h);
-  s.stiffness = law.exact * (1.0 + e * e - 2.0 * e * cosine) + plain * s.a;
-  s.back_d = (cosine - s.h * sinc) / e;
-  s.back_v = sinc / e;
-
-  const N ct = law.ct_given + law.ct_root * root_mass;
-  const N cr = law.cr_given + law.cr_root * root_mass;
-  s.ct = ct / (1.0 + law.exact * CROWD * half * ct);
-  s.cr = cr / (1.0 + law.exact * CROWD * half * cr);
-  s.relax_t = s.ct * (law.kt > 0.0 ? 1.0 / law.kt : 0.0);
-  s.relax_r = s.cr * (law.kr > 0.0 ? 1.0 / law.kr : 0.0);
+  return a / (1.0 + a / 12.0);
 }
 
-// dt (s) > 0; again: for the forces of the step that has just ended once more (set-up of a run)
+// inverse_mass (1/kg): 1/m_i + 1/m_j, where a fixed ball has none. mass_dashpot (kg): that of the
+// conversion restitution -> dashpot. inverse_rolling (1/kg): 2.5 Rr^2 (1/(m_i R_i^2) + 1/(m_j R_j^2)),
+// of solid spheres. dt (s) > 0; again: for the forces of the step that has just ended once more.
 template <class N>
 SLOPE_INLINE ContactStepOf<N> contact_step(const ContactLaw &law, N inverse_mass, N mass_dashpot,
-                                           double dt, bool again)
+                                           N inverse_rolling, double dt, bool again)
 {
-  const bool exact = law.exact > 0.0;
+  const N root_mass = root(mass_dashpot);
+  const N point = POINT * inverse_mass;
+  const N cn = law.cn_given + law.cn_root * root_mass;
+  const N ct = law.ct_given + law.ct_root * root_mass;
+  const N cr = law.cr_given + law.cr_root * root_mass;
   ContactStepOf<N> s;
   s.dt = dt;
   s.grow = again ? 0.0 : dt;
-  s.kt = law.kt;
-  s.kr = law.kr;
   s.friction = law.friction;
   s.rolling = law.rolling;
   s.fn_least = law.fn_least;
-  s.first_below = !exact ? -HUGE_VAL : again ? 0.5 * (FIRST + INSIDE) : 0.5 * (NEW + FIRST);
-  s.gone_above = !exact ? HUGE_VAL : again ? 0.5 * (LAST + GONE) : 0.5 * (INSIDE + LAST);
-  s.last_below = exact ? 0.0 : -HUGE_VAL;
-  set_mass(s, law, inverse_mass, mass_dashpot);
+  s.shared = law.exact;
+  s.force = 1.0 / (inverse_mass * dt * dt);
+  s.stiffness = law.kn / s.force;
+  if (law.exact > 0.0) {
+    s.damping = 1.0 - decay_factor(N(cn * dt * inverse_mass));
+    s.taken_t = 1.0 - decay_factor(N(ct * dt * point));
+    s.taken_r = 1.0 - decay_factor(N(cr * dt * inverse_rolling));
+    s.kt = discrete(N(law.kt * dt * dt * point)) / (dt * dt * point);
+    s.kr = discrete(N(law.kr * dt * dt * inverse_rolling)) / (dt * dt * inverse_rolling);
+    s.ct = s.taken_t / (dt * point);
+    s.cr = s.taken_r / (dt * inverse_rolling);
+  } else {
+    s.damping = cn * dt * inverse_mass;
+    s.taken_t = s.taken_r = N();
+    s.kt = N() + law.kt;
+    s.kr = N() + law.kr;
+    s.ct = ct;
+    s.cr = cr;
+  }
+  s.per_kt = law.kt > 0.0 ? N(1.0 / s.kt) : N();
+  s.per_kr = law.kr > 0.0 ? N(1.0 / s.kr) : N();
   return s;
+}
+
+// The oscillators of a lone contact; masses as for contact_step(). across (1/kg):
+// 2.5 Rr (1/(m_i R_i) - 1/(m_j R_j)), how sliding and rolling act on each other
+inline LoneContact lone_contact(const ContactLaw &law, double inverse_mass, double mass_dashpot,
+                                double inverse_rolling, double across, double dt)
+{
+  const double root_mass = std::sqrt(mass_dashpot);
+  const double half = 0.5 * dt, square = dt * dt;
+  return LoneContact({(law.cn_given + law.cn_root * root_mass) * half * inverse_mass, law.kn * square * inverse_mass},
+                     {POINT * (law.ct_given + law.ct_root * root_mass) * half * inverse_mass,
+                      POINT * law.kt * square * inverse_mass},
+                     law.friction,
+                     {{(law.cr_given + law.cr_root * root_mass) * half * inverse_rolling,
+                       law.kr * square * inverse_rolling},
+                      law.rolling,
+                      inverse_rolling / inverse_mass,
+                      across / inverse_mass});
 }
 
 // ----------------------------------------------------------------------
@@ -219,52 +232,12 @@ template <class T> struct ContactForceOf {
 };
 using ContactForce = ContactForceOf<double>;
 
-// Normal force in m (times ContactStep::force: N) at overlap d that grew by V in the step that
-// ends. phase: a Phase, that of the step before (at set-up, of this step); becomes that of this
-// step.
-template <class T, class N>
-SLOPE_INLINE T normal_force(const ContactStepOf<N> &s, T d, T V, T &phase)
-{
-  const T inside = s.stiffness * d + (1.0 - s.decay) * V;
-  const auto begins = (phase < s.first_below) & (V > 0.0);
-  const auto parts = (phase > s.gone_above) & (V <= 0.0);
-  const auto may_end = (d + V <= inside) & (V <= s.last_below);
-  const T before = phase;
-  phase = choose(begins | parts | may_end, before, all<T>(INSIDE));
-  if (!bits(begins | parts | may_end)) return inside;    // as most are
-
-  // rate of an oscillation that has the path U per step at d = 0: series in r = d / U
-
-  const N r2 = 0.5 * s.a, r3 = 2.0 / 3.0 * s.h * s.a;
-  const N r4 = s.h * s.h * s.a + 0.125 * s.a * s.a;
-
-  // first step: U = V, coming in
-
-  const T r_in = smaller(d / V, all<T>(1.0));
-  const T rate_in = V - d * (2.0 * s.h + r_in * (r2 + r_in * (r3 + r_in * r4)));
-  const T V_inside = d - (s.back_d * d - s.back_v * rate_in);
-  const T first = s.stiffness * d + V - s.decay * V_inside;
-
-  // last step: U from the rate, going out
-
-  const T rate_out = (d - V - s.back_d * d) / s.back_v;
-  const T guess = rate_out - 2.0 * s.h * d;
-  const T r_out = d / (guess + r2 * d * d / guess);
-  const T last = V + guess + d * r_out * (r2 - r_out * (r3 - r_out * r4));
-  const auto ends = may_end & (guess > 0.0);
-
-  phase = choose(ends, all<T>(LAST), all<T>(INSIDE));
-  phase = choose(parts, all<T>(GONE), phase);
-  phase = choose(begins, all<T>(FIRST), phase);
-  return choose(begins, first, choose(parts, T(), choose(ends, last, inside)));
-}
-
 // Spring and dashpot in the tangent plane with a limit, for sliding and for rolling alike:
 // s += u dt, kept in the plane of n; F = -k s - c u; if |F| exceeds the limit, F is cut to it and
 // s is cut back to what gives the cut force: with F' = a F, s' = a s - (1 - a) c/k u. u must lie in
 // the plane of n. relax: c / k, 0 without a spring.
 template <class T, class N>
-SLOPE_INLINE void limited_spring(double k, N c, N relax, T limit, const T *n, const T *u, double dt,
+SLOPE_INLINE void limited_spring(N k, T c, T relax, T limit, const T *n, const T *u, double dt,
                                  T *s, T *f)
 {
   T sx = s[0] + u[0] * dt;
@@ -289,51 +262,139 @@ SLOPE_INLINE void limited_spring(double k, N c, N relax, T limit, const T *n, co
   s[2] = a * sz - back * u[2];
 }
 
-// Force of one touching contact. history: HISTORY values, updated. ROLLING = false leaves out the
-// rolling resistance, for laws that have none.
-template <bool ROLLING = true, class T, class N>
-SLOPE_INLINE void contact_force(const ContactStepOf<N> &step, const ContactOf<T, N> &c, T *history,
-                                ContactForceOf<T> &out)
+// the part of c.v along n, m/s
+template <class T, class N> SLOPE_INLINE T normal_velocity(const ContactOf<T, N> &c)
+{
+  return c.v[0] * c.n[0] + c.v[1] * c.n[1] + c.v[2] * c.n[2];
+}
+
+// velocity of the contact point in the tangent plane, m/s: v - vn n - (Ri wi + Rj wj) x n
+template <class T, class N> SLOPE_INLINE void sliding_velocity(const ContactOf<T, N> &c, T vn, T *vt)
 {
   const T *n = c.n;
-  const N rr = c.rolling_radius;
-  const T vn = c.v[0] * n[0] + c.v[1] * n[1] + c.v[2] * n[2];
-  const N per_rr = 1.0 / rr;
-  T phase = (history[0] * n[0] + history[1] * n[1] + history[2] * n[2]) * per_rr;
-  const T F = normal_force(step, c.overlap, T(-vn * step.dt), phase);
-  const T fn = larger(T(F * step.force), all<T>(step.fn_least));
-  const T pressing = larger(fn, T());
+  vt[0] = c.v[0] - vn * n[0] - (c.rw[1] * n[2] - c.rw[2] * n[1]);
+  vt[1] = c.v[1] - vn * n[1] - (c.rw[2] * n[0] - c.rw[0] * n[2]);
+  vt[2] = c.v[2] - vn * n[2] - (c.rw[0] * n[1] - c.rw[1] * n[0]);
+}
 
-  // tangential: vt = v - vn n - (Ri wi + Rj wj) x n
-
-  const T vt[3] = {c.v[0] - vn * n[0] - (c.rw[1] * n[2] - c.rw[2] * n[1]),
-                   c.v[1] - vn * n[1] - (c.rw[2] * n[0] - c.rw[0] * n[2]),
-                   c.v[2] - vn * n[2] - (c.rw[0] * n[1] - c.rw[1] * n[0])};
-  T ft[3];
-  limited_spring(step.kt, step.ct, step.relax_t, T(step.friction * pressing), n, vt, step.grow, history,
-                 ft);
-  const T mark = phase * rr;
-  for (int d = 0; d < 3; d++) history[d] += mark * n[d];
-
-  out.f[0] = fn * n[0] + ft[0];
-  out.f[1] = fn * n[1] + ft[1];
-  out.f[2] = fn * n[2] + ft[2];
+// force on the ball from its parts: fn along n, ft in the tangent plane
+template <class T, class N>
+SLOPE_INLINE void set_force(const ContactOf<T, N> &c, T fn, const T *ft, ContactForceOf<T> &out)
+{
+  const T *n = c.n;
+  for (int d = 0; d < 3; d++) {
+    out.f[d] = fn * n[d] + ft[d];
+    out.m[d] = T();
+  }
   out.t[0] = n[1] * ft[2] - n[2] * ft[1];
   out.t[1] = n[2] * ft[0] - n[0] * ft[2];
   out.t[2] = n[0] * ft[1] - n[1] * ft[0];
-  out.m[0] = out.m[1] = out.m[2] = T();
-  if (!ROLLING) return;
+}
 
-  // rolling: the same construction on Rr (wi - wj) in the tangent plane, with torque arm Rr
-
+// Rolling: the same construction as sliding on Rr (wi - wj) in the tangent plane, torque arm Rr.
+// The dashpots of sliding and of rolling act on the same spin: one more than those of sliding.
+template <class T, class N>
+SLOPE_INLINE void add_rolling(const ContactStepOf<N> &step, const ContactOf<T, N> &c, T crowd, T pressing,
+                              T *spring, ContactForceOf<T> &out)
+{
+  const T *n = c.n;
+  const N rr = c.rolling_radius;
   const T wn = c.w[0] * n[0] + c.w[1] * n[1] + c.w[2] * n[2];
   const T vr[3] = {rr * (c.w[0] - wn * n[0]), rr * (c.w[1] - wn * n[1]), rr * (c.w[2] - wn * n[2])};
+  const T cr = step.cr / (1.0 + (2.0 * crowd + step.shared) * step.taken_r);
   T fr[3];
-  limited_spring(step.kr, step.cr, step.relax_r, T(step.rolling * pressing), n, vr, step.grow,
-                 history + 3, fr);
-  out.m[0] = rr * fr[0];
-  out.m[1] = rr * fr[1];
-  out.m[2] = rr * fr[2];
+  limited_spring(step.kr, cr, T(cr * step.per_kr), T(step.rolling * pressing), n, vr, step.grow, spring, fr);
+  for (int d = 0; d < 3; d++) out.m[d] = rr * fr[d];
+}
+
+// Force of one touching contact. crowd: contacts that its balls have beside it, the larger number
+// of the two; their dashpots together take no more of a motion in a step than one alone may: each
+// is reduced by 1 / (1 + crowd * what it takes). history: the springs, updated.
+// ROLLING = false leaves out the rolling resistance, for laws that have none.
+template <bool ROLLING = true, class T, class N>
+SLOPE_INLINE void contact_force(const ContactStepOf<N> &step, const ContactOf<T, N> &c, T crowd, T *history,
+                                ContactForceOf<T> &out)
+{
+  const T *n = c.n;
+  const T vn = normal_velocity(c);
+  const T others = step.shared * crowd;
+  const T F = step.stiffness * c.overlap - step.damping / (1.0 + others * step.damping) * vn * step.dt;
+  const T fn = larger(T(F * step.force), all<T>(step.fn_least));
+  const T pressing = larger(fn, T());
+
+  T vt[3], ft[3];
+  sliding_velocity(c, vn, vt);
+  const T ct = step.ct / (1.0 + others * step.taken_t);
+  limited_spring(step.kt, ct, T(ct * step.per_kt), T(step.friction * pressing), n, vt, step.grow, history, ft);
+
+  set_force(c, fn, ft, out);
+  if (ROLLING) add_rolling(step, c, others, pressing, history + 3, out);
+}
+
+// a x b
+inline void turn(const double *a, const double *b, double *out)
+{
+  out[0] = a[1] * b[2] - a[2] * b[1];
+  out[1] = a[2] * b[0] - a[0] * b[2];
+  out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+// v without its part along n
+inline void flatten(const double *n, const double *v, double *out)
+{
+  const double along = v[0] * n[0] + v[1] * n[1] + v[2] * n[2];
+  for (int d = 0; d < 3; d++) out[d] = v[d] - along * n[d];
+}
+
+// The same of a contact whose balls touch nothing else (in the step that it ends in they touch
+// nothing at all). again: see contact_step. history: HISTORY values, updated. Returns false if again
+// could only estimate the force.
+template <bool ROLLING = true>
+inline bool lone_contact_force(const ContactStep &step, const LoneContact &lone, Life life, bool again,
+                               const Contact &c, double *history, ContactForce &out)
+{
+  const double *n = c.n;
+  const double vn = normal_velocity(c);
+  const double age = std::floor(history[PHASE]);
+  const bool grazes = life == BEGINS && !(vn < 0.0);    // and parts already
+  if (grazes || (life == LASTS && age >= lone.longest)) {
+    contact_force<ROLLING>(step, c, 0.0, history, out);
+    history[PHASE] = grazes ? BEGAN_IN_CROWD : LASTING;
+    return true;
+  }
+  const double rr = c.rolling_radius;
+  double vt[3], U[3], w[3], Y[3];
+  sliding_velocity(c, vn, vt);
+  const double wn = c.w[0] * n[0] + c.w[1] * n[1] + c.w[2] * n[2];
+  for (int d = 0; d < 3; d++) {
+    U[d] = vt[d] * step.dt;
+    w[d] = rr * step.dt * (c.w[d] - wn * n[d]);
+  }
+  turn(n, w, Y);
+  LoneContact::Springs springs;
+  LoneContact::Kick kick;
+  flatten(n, history, springs.slide);
+  double rho[3];
+  flatten(n, history + 3, rho);
+  turn(n, rho, springs.roll);
+  const bool slid = lone.kick(life, again, has_slid(history[PHASE]), c.overlap, -vn * step.dt, U, Y, springs, kick);
+
+  const double fn = std::max(kick.n * step.force, step.fn_least);
+  double ft[3], fr[3];
+  for (int d = 0; d < 3; d++) {
+    history[d] = springs.slide[d];
+    ft[d] = -kick.slide[d] * step.force;
+    fr[d] = -kick.roll[d] * step.force;
+  }
+  set_force(c, fn, ft, out);
+  if (ROLLING) {
+    turn(fr, n, out.m);    // back: n x (n x v) = -v
+    turn(springs.roll, n, history + 3);
+    for (int d = 0; d < 3; d++) out.m[d] *= rr;
+  }
+  if (again) return !slid;
+  history[PHASE] = life == ENDS ? ENDED : (life == BEGINS ? 1.0 : age + 1.0) + (slid ? SLID : 0.0);
+  return true;
 }
 
 }    // namespace Slope

@@ -4,8 +4,9 @@
 ------------------------------------------------------------------------- */
 
 /* Contacts of one law: what may touch until the next neighbor list, and the forces of what
-   does. Per block of listed contacts: the distances say which ones touch; of these, four at a
-   time are loaded, their law is evaluated (SIMD), and their forces are handed out.
+   does. A step has two passes, each over the lists of all styles: find() tells from the distances
+   which contacts touch and counts those of each ball; apply() evaluates the law, four contacts at a
+   time (SIMD), or one at a time where two balls touch nothing else, and hands out the forces.
    Pair gran/restitution and fix wall/gran/balls both use it. No LAMMPS in here. */
 
 #ifndef SLOPE_CONTACT_LIST_H
@@ -30,13 +31,15 @@ struct MovingBalls {
   const Vector *x, *v, *omega;
   const double *radius, *mass;
   Vector *f, *torque;
+  unsigned char *count, *count_before;    // contacts of each ball now, a step ago; up to 255
+  unsigned char *estimated;               // at set-up: 1 where a force could only be estimated
 };
 
 // The partners of the moving balls: other moving balls ...
 struct MovingPartners {
   static constexpr bool MOVE = true;
   const MovingBalls &balls;
-  int nforce;    // partners below this number get their force
+  int nforce;    // partners below this number get their force, and count their contacts
 
   const Vector &x(int j) const { return balls.x[j]; }
   double share(int j) const { return j < nforce ? 1.0 : 0.5; }    // of the contact that is this rank's
@@ -81,7 +84,7 @@ class ContactList {
 
   std::vector<Entry> entries;
   std::vector<double *> histories;    // HISTORY values of each
-  std::vector<int *> flags;           // where LAMMPS wants to know about touching: store_flags()
+  std::vector<int *> flags;           // where LAMMPS wants to know what has a history: store_flags()
 
   // 1 for a side that moves, 0 for one that is fixed and as good as infinitely heavy
   double move_i, move_j;
@@ -100,11 +103,14 @@ class ContactList {
     entries.clear();
     histories.clear();
     touching.clear();
+    before.clear();
+    ended.clear();
     flags.clear();
     equal = true;
   }
 
-  void add(int i, int j, double *history, bool touch, double ri, double rj, double mi, double mj)
+  // has_history: the contact touched a step ago, or ended in it; then its history is there
+  void add(int i, int j, double *history, bool has_history, double ri, double rj, double mi, double mj)
   {
     if (entries.empty()) {
       radius_i = ri;
@@ -113,20 +119,23 @@ class ContactList {
       mass_j = mj;
     }
     equal = equal && ri == radius_i && rj == radius_j && mi == mass_i && mj == mass_j;
-    if (entries.size() % BLOCK == 0) touching.push_back(0);
+    if (entries.size() % BLOCK == 0)
+      for (std::vector<std::uint64_t> *bits : {&touching, &before, &ended}) bits->push_back(0);
     entries.push_back({i, j});
     histories.push_back(history);
-    if (touch) set_touches(entries.size() - 1);
+    if (has_history) set_history(entries.size() - 1);
   }
 
-  // whether contact k touched a step ago
-  bool touches(size_t k) const { return touching[k / BLOCK] >> (k % BLOCK) & 1; }
-  void set_touches(size_t k) { touching[k / BLOCK] |= std::uint64_t(1) << (k % BLOCK); }
+  // contact k has a history
+  void set_history(size_t k) { set(histories[k][PHASE] == ENDED ? ended : touching, k); }
+
+  bool touches(size_t k) const { return is_set(touching, k); }    // in the last step
+  bool has_history(size_t k) const { return touches(k) || is_set(ended, k); }
 
   double memory_usage() const
   {
     return entries.capacity() * sizeof(Entry) + histories.capacity() * sizeof(double *) +
-        touching.capacity() * sizeof(std::uint64_t) + flags.capacity() * sizeof(int *);
+        3 * touching.capacity() * sizeof(std::uint64_t) + flags.capacity() * sizeof(int *);
   }
 
   // Contacts that overlap although they did not touch a step ago, before the first step:
@@ -139,11 +148,32 @@ class ContactList {
       const double overlap = balls.radius[e.i] + partners.radius(e.j) - distance(balls, partners, e);
       if (touches(k) || overlap <= 0.0) continue;
       visit(e, overlap);
-      set_touches(k);
+      std::memset(histories[k], 0, HISTORY * sizeof(double));
+      set(touching, k);
+      ended[k / BLOCK] &= ~bit(k);
     }
   }
 
-  // what the springs of the touching contacts hold, J; see(entry, overlap) is told of each
+  // First pass of a step: what touches. again: what touched in the step that has just ended. first: the
+  // list is new. Adds to the balls' numbers of contacts, to those of the step before if the list is new.
+  template <class Partners>
+  void find(bool again, bool first, const MovingBalls &balls, const Partners &partners)
+  {
+    for (size_t block = 0; block < touching.size(); block++) {
+      if (again) before[block] = touching[block];
+      else {
+        before[block] = touching[block];
+        touching[block] = equal ? look<double>(block, balls, partners) : look<Four>(block, balls, partners);
+        ended[block] = 0;
+      }
+      if (first) count(block, before[block], balls.count_before, partners);
+      count(block, touching[block], balls.count, partners);
+    }
+  }
+
+  // What the springs of the touching contacts can give back, J: no more than friction lets through.
+  // A sliding contact's spring also holds what balances its dashpot; that is no stored energy.
+  // see(entry, overlap) is called for each.
   template <class Partners, class See>
   double elastic_energy(const ContactLaw &law, const MovingBalls &balls, const Partners &partners,
                         See see) const
@@ -158,23 +188,23 @@ class ContactList {
       if (rsq >= sum * sum) continue;
       const double overlap = sum - std::sqrt(rsq);
       see(e, overlap);
-      const double along = h[0] * n[0] + h[1] * n[1] + h[2] * n[2];    // the phase, no spring
-      const double sliding = h[0] * h[0] + h[1] * h[1] + h[2] * h[2] - along * along / rsq;
+      const double sliding = h[0] * h[0] + h[1] * h[1] + h[2] * h[2];
       const double rolling = h[3] * h[3] + h[4] * h[4] + h[5] * h[5];
       energy += partners.share(e.j) * 0.5 *
-          (law.kn * overlap * overlap + law.kt * sliding + law.kr * rolling);
+          (law.kn * overlap * overlap + held(law.kt, sliding, law.friction * law.kn * overlap) +
+           held(law.kr, rolling, law.rolling * law.kn * overlap));
     }
     return energy;
   }
 
   void store_flags() const
   {
-    for (size_t k = 0; k < flags.size(); k++) *flags[k] = touches(k);
+    for (size_t k = 0; k < flags.size(); k++) *flags[k] = has_history(k);
   }
 
-  // Adds the forces of all contacts to the balls. again: those of the step that has just ended
-  // once more (see contact_force). tally(i, j, force on i, vector j -> i) is called for every
-  // contact if TALLY.
+  // Second pass: adds the forces of all contacts to the balls, whose numbers of contacts are complete.
+  // again: those of the step that has just ended once more. tally(i, j, force on i, vector j -> i) is
+  // called for every contact if TALLY.
   template <bool TALLY, class Partners, class Tally>
   void apply(const ContactLaw &law, double dt, bool again, const MovingBalls &balls,
              const Partners &partners, Tally tally)
@@ -192,7 +222,22 @@ class ContactList {
  private:
   static constexpr int BLOCK = 64;
   static constexpr int AHEAD = 16;    // contacts found, and fetched from memory, before their turn
-  std::vector<std::uint64_t> touching;    // a step ago: a bit of each contact, a number of each block
+
+  // a bit of each contact, a number of each block
+  std::vector<std::uint64_t> touching;    // in the last step
+  std::vector<std::uint64_t> before;      // in the one before, in the second pass
+  std::vector<std::uint64_t> ended;       // came apart in the last step, and was treated then
+
+  static std::uint64_t bit(size_t k) { return std::uint64_t(1) << (k % BLOCK); }
+  static bool is_set(const std::vector<std::uint64_t> &bits, size_t k) { return bits[k / BLOCK] & bit(k); }
+  static void set(std::vector<std::uint64_t> &bits, size_t k) { bits[k / BLOCK] |= bit(k); }
+
+  // twice the energy (J) of a spring k (N/m) of squared length s2 (m2) that slides at a force (N)
+  static double held(double k, double s2, double limit)
+  {
+    if (!(k > 0.0)) return 0.0;
+    return std::min(k * s2, limit * limit / k);
+  }
 
   template <class Partners>
   static double distance(const MovingBalls &balls, const Partners &partners, const Entry &e)
@@ -202,11 +247,78 @@ class ContactList {
     return std::sqrt(dx * dx + dy * dy + dz * dz);
   }
 
+  template <class Partners>
+  static double rolling_radius(const ContactLaw &law, const MovingBalls &balls, const Partners &partners,
+                               const Entry &e)
+  {
+    const double ri = balls.radius[e.i], rj = partners.radius(e.j);
+    return law.rolling_factor * ri * rj / (ri + rj);
+  }
+
+  static void add_one(unsigned char &n) { n += n < 255; }
+
+  template <class Partners>
+  SLOPE_INLINE void count(size_t block, std::uint64_t bits, unsigned char *counts,
+                          const Partners &partners) const
+  {
+    const Entry *e = &entries[block * BLOCK];
+    for (; bits; bits &= bits - 1) {
+      const Entry &one = e[__builtin_ctzll(bits)];
+      add_one(counts[one.i]);
+      if (Partners::MOVE && partners.gets_force(one.j)) add_one(counts[one.j]);
+    }
+  }
+
+  // the larger number of contacts of the two balls; a fixed one has none
+  template <class Partners>
+  SLOPE_INLINE int larger_count(const Entry &e, const unsigned char *counts) const
+  {
+    const int i = move_i > 0.0 ? counts[e.i] : 0;
+    return Partners::MOVE && move_j > 0.0 ? std::max<int>(i, counts[e.j]) : i;
+  }
+
   // what depends on the sizes of four contacts: N = double if they are equal, otherwise Four
   template <class N> struct Sizes {
     N radius_i, radius_j;
     ContactStepOf<N> step;
   };
+
+  // the contacts found to be evaluated four at a time, and how many others their balls have
+  struct Batch {
+    int found[BLOCK + AHEAD + 3];
+    double crowd[BLOCK + AHEAD + 3];
+    int count;
+
+    void push(int k, int others)
+    {
+      found[count] = k;
+      crowd[count++] = others;
+    }
+    void drop(int done)
+    {
+      count -= done;
+      std::copy(found + done, found + done + count, found);
+      std::copy(crowd + done, crowd + done + count, crowd);
+    }
+  };
+
+  // 2.5 Rr^2 (1/(m_i R_i^2) + 1/(m_j R_j^2)), 1/kg: how a rolling torque turns two solid spheres
+  template <class N>
+  SLOPE_INLINE N inverse_rolling(const ContactLaw &law, N ri, N rj, N mi, N mj) const
+  {
+    const N rr = law.rolling_factor * ri * rj / (ri + rj);
+    return 2.5 * rr * rr * (move_i / (mi * ri * ri) + move_j / (mj * rj * rj));
+  }
+
+  double mass_factor(const ContactLaw &law) const { return move_i * move_j > 0.0 ? law.mass_factor : 1.0; }
+
+  LoneContact lone_of(const ContactLaw &law, double dt, double ri, double rj, double mi, double mj) const
+  {
+    const double inverse = move_i / mi + move_j / mj;
+    const double rr = law.rolling_factor * ri * rj / (ri + rj);
+    return lone_contact(law, inverse, mass_factor(law) / inverse, inverse_rolling(law, ri, rj, mi, mj),
+                        2.5 * rr * (move_i / (mi * ri) - move_j / (mj * rj)), dt);
+  }
 
   template <bool ROLLING, class N, bool TALLY, class Partners, class Tally>
   void apply(const ContactLaw &law_in, double dt, bool again, const MovingBalls &balls_in,
@@ -215,33 +327,95 @@ class ContactList {
     const ContactLaw law = law_in;    // copies: no store below can change them
     const MovingBalls balls = balls_in;
     const Partners partners = partners_in;
-    const double mass_factor = move_i * move_j > 0.0 ? law.mass_factor : 1.0;
-    const double inverse = move_i / mass_i + move_j / mass_j;
     const Sizes<double> same = {radius_i, radius_j,
-                                contact_step(law, inverse, mass_factor / inverse, dt, again)};
-
-    int found[BLOCK + AHEAD + 3], count = 0;
+                                step_of(law, dt, again, radius_i, radius_j, mass_i, mass_j)};
+    const LoneContact lone = lone_of(law, dt, radius_i, radius_j, mass_i, mass_j);
+    auto one = [&](int k, Life life) {
+      apply_lone<ROLLING, TALLY>(k, life, law, same, lone, again, balls, partners, tally);
+    };
+    Batch batch;
+    batch.count = 0;
     for (size_t block = 0; block < touching.size(); block++) {
-      count = find_touching<N>(block, law, balls, partners, found, count);
+      if (again) sort_again<Partners>(block, law, balls, batch, one);
+      else sort<Partners>(block, law, balls, batch, one);
       int c = 0;
-      for (; c + 4 + AHEAD <= count; c += 4) {
-        for (int m = 0; m < 4; m++) prefetch(found[c + AHEAD + m], partners);
-        apply_four<ROLLING, N, TALLY>(&found[c], 4, law, same, mass_factor, again, balls, partners,
+      for (; c + 4 + AHEAD <= batch.count; c += 4) {
+        for (int m = 0; m < 4; m++) prefetch(batch.found[c + AHEAD + m], partners);
+        apply_four<ROLLING, N, TALLY>(&batch.found[c], &batch.crowd[c], 4, law, same, again, balls, partners,
                                       tally);
       }
-      count -= c;
-      std::copy(found + c, found + c + count, found);
+      batch.drop(c);
     }
-    for (int c = count; c % 4; c++) found[c] = found[count - 1];    // idle
+    const int count = batch.count;
+    for (int c = count; c % 4; c++) {    // idle
+      batch.found[c] = batch.found[count - 1];
+      batch.crowd[c] = batch.crowd[count - 1];    // they write the same springs
+    }
     for (int c = 0; c < count; c += 4)
-      apply_four<ROLLING, N, TALLY>(&found[c], std::min(4, count - c), law, same, mass_factor, again,
-                                    balls, partners, tally);
+      apply_four<ROLLING, N, TALLY>(&batch.found[c], &batch.crowd[c], std::min(4, count - c), law, same,
+                                    again, balls, partners, tally);
   }
 
-  // adds the contacts of a block that touch to those found; those that begin get a history
+  // Contacts of a block that touch: those with company go into the batch, the others to one(). A
+  // contact begins or ends alone if its balls touch nothing else before and after the step.
+  template <class Partners, class One>
+  SLOPE_INLINE void sort(size_t block, const ContactLaw &law, const MovingBalls &balls, Batch &batch,
+                         One one)
+  {
+    const bool exact = law.exact > 0.0;
+    const int start = static_cast<int>(block) * BLOCK;
+    const std::uint64_t now = touching[block], was = before[block];
+    for (std::uint64_t bits = now & was; bits; bits &= bits - 1) {
+      const int k = start + __builtin_ctzll(bits);
+      const int n = larger_count<Partners>(entries[k], balls.count);
+      if (n == 1 && exact && is_impact(histories[k][PHASE])) one(k, LASTS);
+      else batch.push(k, n - 1);
+    }
+    for (std::uint64_t bits = now & ~was; bits; bits &= bits - 1) {
+      const int k = start + __builtin_ctzll(bits);
+      const Entry &e = entries[k];
+      const int n = larger_count<Partners>(e, balls.count);
+      double *history = histories[k];
+      std::memset(history, 0, HISTORY * sizeof(double));
+      if (exact && n == 1 && larger_count<Partners>(e, balls.count_before) == 0) {
+        one(k, BEGINS);
+        continue;
+      }
+      history[PHASE] = BEGAN_IN_CROWD;
+      batch.push(k, n - 1);
+    }
+    if (!exact) return;
+    for (std::uint64_t bits = was & ~now; bits; bits &= bits - 1) {
+      const int k = start + __builtin_ctzll(bits);
+      const Entry &e = entries[k];
+      if (larger_count<Partners>(e, balls.count) == 0 && larger_count<Partners>(e, balls.count_before) == 1) {
+        one(k, ENDS);
+        set(ended, k);
+      }
+    }
+  }
+
+  // the same for the step that has just ended, from the phases in the histories
+  template <class Partners, class One>
+  void sort_again(size_t block, const ContactLaw &law, const MovingBalls &balls, Batch &batch, One one)
+  {
+    const bool exact = law.exact > 0.0;
+    const int start = static_cast<int>(block) * BLOCK;
+    for (std::uint64_t bits = touching[block]; bits; bits &= bits - 1) {
+      const int k = start + __builtin_ctzll(bits);
+      const Entry &e = entries[k];
+      const double phase = histories[k][PHASE];
+      const int n = larger_count<Partners>(e, balls.count);
+      if (!exact || n > 1 || !is_impact(phase)) batch.push(k, n - 1);
+      else one(k, is_new_impact(phase) ? BEGINS : LASTS);
+    }
+    for (std::uint64_t bits = ended[block]; bits; bits &= bits - 1)
+      one(start + __builtin_ctzll(bits), ENDS);
+  }
+
+  // a bit of each contact of a block that touches
   template <class N, class Partners>
-  SLOPE_INLINE int find_touching(size_t block, const ContactLaw &law, const MovingBalls &balls,
-                                 const Partners &partners, int *found, int count)
+  SLOPE_INLINE std::uint64_t look(size_t block, const MovingBalls &balls, const Partners &partners) const
   {
     const size_t start = block * BLOCK;
     const int listed = static_cast<int>(std::min<size_t>(BLOCK, entries.size() - start));
@@ -263,25 +437,7 @@ class ContactList {
       now |= static_cast<std::uint64_t>(bits(rsq < reach * reach)) << k;
     }
     if (listed < BLOCK) now &= (std::uint64_t(1) << listed) - 1;
-
-    for (std::uint64_t changed = now ^ touching[block]; changed; changed &= changed - 1) {
-      const size_t k = start + __builtin_ctzll(changed);
-      double *history = histories[k];
-      memset(history, 0, HISTORY * sizeof(double));
-      if (touches(k)) continue;
-      const Entry &e = entries[k];
-      const Vector &a = balls.x[e.i], &b = partners.x(e.j);
-      const double ri = balls.radius[e.i], rj = partners.radius(e.j);
-      const double mark = new_contact(law.rolling_factor * ri * rj / (ri + rj)) /
-          distance(balls, partners, e);
-      history[0] = mark * (a.x - b.x);
-      history[1] = mark * (a.y - b.y);
-      history[2] = mark * (a.z - b.z);
-    }
-    touching[block] = now;
-
-    for (; now; now &= now - 1) found[count++] = static_cast<int>(start + __builtin_ctzll(now));
-    return count;
+    return now;
   }
 
   template <class Partners> SLOPE_INLINE void prefetch(int k, const Partners &partners) const
@@ -311,14 +467,14 @@ class ContactList {
 
   // the contacts k of which count, of four, are not idle
   template <bool ROLLING, class N, bool TALLY, class Partners, class Tally>
-  SLOPE_INLINE void apply_four(const int *k, int count, const ContactLaw &law,
-                               const Sizes<double> &same, double mass_factor, bool again,
-                               const MovingBalls &balls, const Partners &partners, Tally tally)
+  SLOPE_INLINE void apply_four(const int *k, const double *crowd, int count, const ContactLaw &law,
+                               const Sizes<double> &same, bool again, const MovingBalls &balls,
+                               const Partners &partners, Tally tally)
   {
     const Entry e[4] = {entries[k[0]], entries[k[1]], entries[k[2]], entries[k[3]]};
     double *const h[4] = {histories[k[0]], histories[k[1]], histories[k[2]], histories[k[3]]};
     Sizes<N> sizes;
-    find_sizes(e, law, same, mass_factor, again, balls, partners, sizes);
+    find_sizes(e, law, same, again, balls, partners, sizes);
     const N ri = sizes.radius_i, rj = sizes.radius_j;
 
     ContactOf<Four, N> c;
@@ -347,7 +503,7 @@ class ContactList {
     put(Columns(rw[0], rw[1], rw[2], rw[3]), c.rw);
     put(Columns(w[0], w[1], w[2], w[3]), c.w);
 
-    Four history[HISTORY];
+    Four history[6];    // in company no step asks for the phase
     const Columns begin(four(h[0]), four(h[1]), four(h[2]), four(h[3]));
     const Columns end(four(h[0] + 2), four(h[1] + 2), four(h[2] + 2), four(h[3] + 2));
     put(begin, history);
@@ -356,7 +512,7 @@ class ContactList {
     history[5] = end.w;
 
     ContactForceOf<Four> out;
-    contact_force<ROLLING>(sizes.step, c, history, out);
+    contact_force<ROLLING>(sizes.step, c, Four(four(crowd)), history, out);
 
     if (!again) {    // otherwise it is what the step has left
       const Columns rows(history[0], history[1], history[2], history[3]);
@@ -385,25 +541,100 @@ class ContactList {
   }
 
   template <class Partners>
-  SLOPE_INLINE void find_sizes(const Entry *, const ContactLaw &, const Sizes<double> &same, double,
-                               bool, const MovingBalls &, const Partners &, Sizes<double> &sizes) const
+  SLOPE_INLINE void find_sizes(const Entry *, const ContactLaw &, const Sizes<double> &same, bool,
+                               const MovingBalls &, const Partners &, Sizes<double> &sizes) const
   {
     sizes = same;
   }
   template <class Partners>
   SLOPE_INLINE void find_sizes(const Entry *e, const ContactLaw &law, const Sizes<double> &same,
-                               double mass_factor, bool again, const MovingBalls &balls,
-                               const Partners &partners, Sizes<Four> &sizes) const
+                               bool again, const MovingBalls &balls, const Partners &partners,
+                               Sizes<Four> &sizes) const
   {
-    Four inverse;
+    Four mi, mj;
     for (int m = 0; m < 4; m++) {
       sizes.radius_i[m] = balls.radius[e[m].i];
       sizes.radius_j[m] = partners.radius(e[m].j);
-      inverse[m] = move_i / balls.mass[e[m].i] + move_j / partners.mass(e[m].j);
+      mi[m] = balls.mass[e[m].i];
+      mj[m] = partners.mass(e[m].j);
     }
-    sizes.step = contact_step(law, inverse, Four(mass_factor / inverse), same.step.dt, again);
+    const Four inverse = move_i / mi + move_j / mj;
+    sizes.step = contact_step(law, inverse, Four(mass_factor(law) / inverse),
+                              inverse_rolling(law, sizes.radius_i, sizes.radius_j, mi, mj), same.step.dt, again);
   }
 
+  // a contact whose balls touch nothing else
+  template <bool ROLLING, bool TALLY, class Partners, class Tally>
+  void apply_lone(int k, Life life, const ContactLaw &law, const Sizes<double> &same,
+                  const LoneContact &lone, bool again, const MovingBalls &balls, const Partners &partners,
+                  Tally tally)
+  {
+    const Entry e = entries[k];
+    Contact c;
+    Vector delta;
+    set_contact(law, balls, partners, e, c, delta);
+    double history[HISTORY];
+    std::memcpy(history, histories[k], sizeof(history));
+    ContactForce out;
+    double ri = same.radius_i, rj = same.radius_j;
+    bool known;
+    if (equal) {
+      known = lone_contact_force<ROLLING>(same.step, lone, life, again, c, history, out);
+    } else {
+      ri = balls.radius[e.i];
+      rj = partners.radius(e.j);
+      const double mi = balls.mass[e.i], mj = partners.mass(e.j);
+      known = lone_contact_force<ROLLING>(step_of(law, same.step.dt, again, ri, rj, mi, mj),
+                                          lone_of(law, same.step.dt, ri, rj, mi, mj), life, again, c, history, out);
+    }
+    if (!again) std::memcpy(histories[k], history, sizeof(history));
+    else if (!known) {
+      balls.estimated[e.i] = 1;
+      if (Partners::MOVE) balls.estimated[e.j] = 1;
+    }
+    Four f, ti, tj;
+    for (int d = 0; d < 3; d++) {
+      f[d] = out.f[d];
+      ti[d] = out.m[d] - ri * out.t[d];
+      tj[d] = out.m[d] + rj * out.t[d];
+    }
+    f[3] = ti[3] = tj[3] = 0.0;
+    give(e, f, ti, tj, balls, partners);
+    if (TALLY) tally(e.i, e.j, Vector{out.f[0], out.f[1], out.f[2]}, delta);
+  }
+
+ public:
+  // the law for two balls of these radii (m) and masses (kg)
+  ContactStep step_of(const ContactLaw &law, double dt, bool again, double ri, double rj, double mi,
+                      double mj) const
+  {
+    const double inverse = move_i / mi + move_j / mj;
+    return contact_step(law, inverse, mass_factor(law) / inverse, inverse_rolling(law, ri, rj, mi, mj), dt,
+                        again);
+  }
+
+  // geometry and velocities of contact e; delta: vector from the partner to the ball, m
+  template <class Partners>
+  static void set_contact(const ContactLaw &law, const MovingBalls &balls, const Partners &partners,
+                          const Entry &e, Contact &c, Vector &delta)
+  {
+    const double ri = balls.radius[e.i], rj = partners.radius(e.j);
+    const double *xi = &balls.x[e.i].x, *xj = &partners.x(e.j).x;
+    const double *vi = &balls.v[e.i].x, *vj = &partners.v(e.j).x;
+    const double *wi = &balls.omega[e.i].x, *wj = &partners.omega(e.j).x;
+    delta = {xi[0] - xj[0], xi[1] - xj[1], xi[2] - xj[2]};
+    const double r = distance(balls, partners, e);
+    c.overlap = ri + rj - r;
+    c.rolling_radius = rolling_radius(law, balls, partners, e);
+    for (int d = 0; d < 3; d++) {
+      c.n[d] = (xi[d] - xj[d]) / r;
+      c.v[d] = vi[d] - vj[d];
+      c.rw[d] = ri * wi[d] + rj * wj[d];
+      c.w[d] = wi[d] - wj[d];
+    }
+  }
+
+ private:
   static double one(double same, int) { return same; }
   SLOPE_INLINE static double one(Four several, int m) { return several[m]; }
 

@@ -104,16 +104,18 @@ void FixContactHistory::keep_forces()
 
 /* ----------------------------------------------------------------------
    Before the first step of a run that goes on: the set-up has found the forces of the last step
-   once more, to rounding. With the very same ones the run is the uncut one to the bit. If they
-   differ by more, something has been changed in between, and those of the set-up stand.
+   once more, to rounding, or has said that it could only estimate them. With the very same ones
+   the run is the uncut one to the bit. If they differ by more, something has been changed in
+   between, and those of the set-up stand.
 ------------------------------------------------------------------------- */
 
 void FixContactHistory::initial_integrate(int)
 {
   if (force_step != update->ntimestep - 1 || force_step != update->firststep) return;
   double mine[4] = {0.0, 0.0, 0.0, 0.0}, most[4];    // largest force, torque; differences
+  const auto law = static_cast<PairGranRestitution *>(pair);
   for (int i = 0; i < atom->nlocal; i++)
-    for (int d = 0; d < 3; d++) {
+    for (int d = 0; d < 3 && !law->force_estimated(i); d++) {
       mine[0] = std::max(mine[0], std::fabs(force[i][d]));
       mine[1] = std::max(mine[1], std::fabs(force[i][3 + d]));
       mine[2] = std::max(mine[2], std::fabs(force[i][d] - atom->f[i][d]));

@@ -194,7 +194,7 @@ void FixWallGranBalls::init()
   if (!pair)
     error->all(FLERR, "{}: requires pair_style gran/restitution, which holds its coefficients",
                caller);
-  pair->announce_wall(wall_type, groupbit);
+  pair->announce_wall(this, wall_type, groupbit);
 
   // contacts must be stored by atom before any fix migrates atoms
 
@@ -255,7 +255,7 @@ void FixWallGranBalls::store_contacts()
     for (size_t k = 0, end; k < l.entries.size(); k = end) {
       const int i = l.entries[k].i;    // its entries follow one another
       int n = 0;
-      for (end = k; end < l.entries.size() && l.entries[end].i == i; end++) n += l.touches(end);
+      for (end = k; end < l.entries.size() && l.entries[end].i == i; end++) n += l.has_history(end);
       if (n == 0) continue;
       if (n > MAX_PARTNERS)
         error->one(FLERR, "{}: ball {} touches {} fixed balls, the most is {}", caller,
@@ -263,7 +263,7 @@ void FixWallGranBalls::store_contacts()
       partner[i] = ipage.get(n);
       values[i] = dpage.get(n * HISTORY);
       for (; k < end; k++)
-        if (l.touches(k)) {
+        if (l.has_history(k)) {
           partner[i][npartner[i]] = l.entries[k].j;
           memcpy(&values[i][npartner[i]++ * HISTORY], l.histories[k],
                  HISTORY * sizeof(double));
@@ -321,8 +321,8 @@ void FixWallGranBalls::post_neighbor()
       l.histories[k] = next;
       for (int p = 0; p < npartner[e.i]; p++)
         if (partner[e.i][p] == e.j) {
-          l.set_touches(k);
           memcpy(next, &values[e.i][p * HISTORY], HISTORY * sizeof(double));
+          l.set_history(k);
         }
     }
     if (pair->sizes_vary) l.equal = false;
@@ -342,6 +342,27 @@ void FixWallGranBalls::post_force(int)
 }
 
 /* ----------------------------------------------------------------------
+   called by the pair style before it computes forces
+------------------------------------------------------------------------- */
+
+void FixWallGranBalls::find_contacts(bool starting, bool lists_new)
+{
+  const MovingBalls moving = pair->moving_balls();
+  const FixedPartners fixed(balls.data(), radius);
+  InitialOverlap initial(lmp);
+  for (ContactList &l : lists) {
+    if (starting)
+      l.start(moving, fixed, [&](const ContactList::Entry &e, double overlap) {
+        const Vector &ball = balls[e.j];
+        initial.look(overlap, std::min(atom->radius[e.i], radius), atom->tag[e.i], atom->x[e.i],
+                     fmt::format("the fixed ball at {:.6g} {:.6g} {:.6g},", ball.x, ball.y, ball.z));
+      });
+    l.find(starting, lists_new, moving, fixed);
+  }
+  if (starting) initial.check(caller);
+}
+
+/* ----------------------------------------------------------------------
    contact forces of the fixed balls on the moving ones
 ------------------------------------------------------------------------- */
 
@@ -350,7 +371,6 @@ void FixWallGranBalls::apply(bool starting)
   const MovingBalls moving = pair->moving_balls();
   const FixedPartners fixed(balls.data(), radius);
   Vector force = {0.0, 0.0, 0.0};
-  InitialOverlap initial(lmp);
 
   for (int type = 1; type <= atom->ntypes; type++) {
     ContactList &l = lists[type];
@@ -359,12 +379,6 @@ void FixWallGranBalls::apply(bool starting)
     if (!law)    // a type that came after init(), by fix pour or fix deposit
       error->one(FLERR, "{}: pair_coeff {} {} is not set (moving type {}, wall type {})", caller,
                  std::min(type, wall_type), std::max(type, wall_type), type, wall_type);
-    if (starting)
-      l.start(moving, fixed, [&](const ContactList::Entry &e, double overlap) {
-        const Vector &ball = balls[e.j];
-        initial.look(overlap, std::min(atom->radius[e.i], radius), atom->tag[e.i], atom->x[e.i],
-                     fmt::format("the fixed ball at {:.6g} {:.6g} {:.6g},", ball.x, ball.y, ball.z));
-      });
     l.apply<true>(*law, update->dt, starting, moving, fixed,
                   [&](int, int, const Vector &f, const Vector &) {
                     force.x -= f.x;
@@ -378,7 +392,6 @@ void FixWallGranBalls::apply(bool starting)
   force_mine[2] = force.z;
   force_ready = 0;
   lists_newer = true;
-  if (starting) initial.check(caller);
 }
 
 /* ---------------------------------------------------------------------- */

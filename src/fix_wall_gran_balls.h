@@ -14,6 +14,7 @@ FixStyle(wall/gran/balls,FixWallGranBalls);
 
 #include "fix.h"
 
+#include "contact_holder.h"
 #include "contact_list.h"
 #include "my_page.h"
 
@@ -23,7 +24,7 @@ FixStyle(wall/gran/balls,FixWallGranBalls);
 
 namespace LAMMPS_NS {
 
-class FixWallGranBalls : public Fix {
+class FixWallGranBalls : public Fix, public ContactHolder {
  public:
   FixWallGranBalls(class LAMMPS *, int, char **);
   ~FixWallGranBalls() override;
@@ -51,7 +52,8 @@ class FixWallGranBalls : public Fix {
   int size_restart(int) override;
   int maxsize_restart() override;
 
-  double elastic_energy() const;    // of this rank's contacts, J
+  void find_contacts(bool starting, bool lists_new) override;
+  double elastic_energy() const override;
 
   // largest overlap (m) of a ball at x with any fixed ball, <= 0 if it touches none
   double deepest_overlap(const double *x, double radius) const;

@@ -9,6 +9,7 @@
 #ifndef SLOPE_LAMMPS_COMPAT_H
 #define SLOPE_LAMMPS_COMPAT_H
 
+#include "comm.h"
 #include "domain.h"
 #include "fix.h"
 #include "modify.h"
@@ -70,6 +71,25 @@ namespace compat {
     int irequest = neighbor->request(pair, instance);
     neighbor->requests[irequest]->size = 1;
     neighbor->requests[irequest]->history = 1;
+#endif
+  }
+
+  // values of ghost atoms from, and to, those that own them, by a pair style's pack and unpack
+  inline void forward_comm(Comm *comm, Pair *pair)
+  {
+#if SLOPE_LAMMPS_VERSION >= 20220324
+    comm->forward_comm(pair);
+#else
+    comm->forward_comm_pair(pair);
+#endif
+  }
+
+  inline void reverse_comm(Comm *comm, Pair *pair)
+  {
+#if SLOPE_LAMMPS_VERSION >= 20220324
+    comm->reverse_comm(pair);
+#else
+    comm->reverse_comm_pair(pair);
 #endif
   }
 

@@ -8,10 +8,10 @@
 #include "atom.h"
 #include "atom_vec.h"
 #include "comm.h"
+#include "contact_holder.h"
 #include "error.h"
 #include "fix_contact_history.h"
 #include "fix_dummy.h"
-#include "fix_wall_gran_balls.h"
 #include "force.h"
 #include "initial_overlap.h"
 #include "lammps_compat.h"
@@ -31,6 +31,9 @@ using namespace Slope;
 
 static constexpr double STEP_RULE = 0.25;     // dt <= STEP_RULE sqrt(m/kn)
 static constexpr double DASHPOT_RULE = 0.15;    // scheme plain: dt <= DASHPOT_RULE m/cn
+static constexpr int FORMAT = 20261122;    // of what restart files hold, histories of walls included
+static constexpr double ZETA_FOLLOWED = 2.0;    // damping ratio up to which the law is followed
+static constexpr double MASS_RATIO_TESTED = 1000.0;    // of two balls that touch
 static constexpr double DEEP = 0.1;             // overlap, of the smaller radius, that is not sensible
 static constexpr double DEGREE = PI / 180.0;
 
@@ -49,6 +52,9 @@ PairGranRestitution::PairGranRestitution(LAMMPS *lmp) : Pair(lmp), energy(lmp)
   no_virial_fdotr_compute = 1;
   centroidstressflag = CENTROID_NOTAVAIL;
   finitecutflag = 1;
+  nondefault_history_transfer = 1;    // the phase is the same from both sides
+  beyond_contact = 1;                 // a contact that has ended keeps its history for a step
+  comm_forward = comm_reverse = 2;    // numbers of contacts
   single_extra = 10;
   svector = new double[single_extra];
 
@@ -57,6 +63,7 @@ PairGranRestitution::PairGranRestitution(LAMMPS *lmp) : Pair(lmp), energy(lmp)
   rolling_reduced = 0;
   plain = 0;
   freeze_group_bit = 0;
+  shared = COUNTS;
   overlaps = {0.0, 0, 0, 0};
   dt = update->dt;
 
@@ -252,6 +259,11 @@ void PairGranRestitution::coeff(int narg, char **arg)
   if (!stiffness)
     error->all(FLERR, "Pair gran/restitution pair_coeff {} {}: stiffness kn kt is required",
                arg[0], arg[1]);
+  if (c.kt == 0.0 && c.ct > 0.0)
+    error->all(FLERR,
+               "Pair gran/restitution pair_coeff {} {}: ct must be 0 where kt is 0, got {:.15g}: give the "
+               "contact a tangential stiffness",
+               arg[0], arg[1], c.ct);
   if (damping == (c.restitution_set == 1))
     error->all(FLERR,
                "Pair gran/restitution pair_coeff {} {}: exactly one of restitution and damping is "
@@ -340,6 +352,7 @@ void PairGranRestitution::init_style()
 
   find_ranges();
   std::fill(wall_type.begin(), wall_type.end(), 0);    // wall fixes announce themselves after
+  walls.clear();
 }
 
 /* ----------------------------------------------------------------------
@@ -411,8 +424,9 @@ double PairGranRestitution::init_one(int i, int j)
 
 /* ---------------------------------------------------------------------- */
 
-void PairGranRestitution::announce_wall(int type, int groupbit)
+void PairGranRestitution::announce_wall(ContactHolder *wall, int type, int groupbit)
 {
+  walls.push_back(wall);
   for (int itype = 1; itype <= atom->ntypes; itype++) {
     int mine = 0, any;
     for (int i = 0; i < atom->nlocal && !mine; i++)
@@ -448,6 +462,7 @@ void PairGranRestitution::setup()
   dt = update->dt;
   print_table();
   check_timestep();
+  check_dashpots();
   check_neighbor_lists();
   check_fixed_balls();
   overlaps = {0.0, 0, 0, 0};
@@ -564,6 +579,35 @@ void PairGranRestitution::check_timestep()
 }
 
 /* ----------------------------------------------------------------------
+   warn of dashpots and mass ratios beyond what the law follows
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::check_dashpots()
+{
+  for (int i = 1; i <= atom->ntypes; i++)
+    for (int j = i; j <= atom->ntypes; j++) {
+      if (!can_touch(i, j)) continue;
+      const TypeRange &a = ranges[i], &b = ranges[j];
+      double lightest = HUGE_VAL, heaviest = 0.0;
+      for (const TypeRange *range : {&a, &b})
+        if (range->moving) {
+          lightest = std::min(lightest, range->mass_min);
+          heaviest = std::max(heaviest, range->mass_max);
+        }
+      if (heaviest > MASS_RATIO_TESTED * lightest && a.moving && b.moving)
+        warn("the masses of balls of types {} and {} that can touch are tested up to a ratio of {:g}, got {:.4g}",
+             i, j, MASS_RATIO_TESTED, heaviest / lightest);
+      const double cn = laws[index(i, j)].cn(lightest);
+      const double zeta = cn / (2.0 * sqrt(coeffs[index(i, j)].kn * lightest));
+      if (zeta > ZETA_FOLLOWED && !plain)
+        warn("damping ratio of types {} and {} must be <= {:g} to be followed in time, got {:.4g} (cn {:.4g} N s/m, "
+             "lightest ball {:.4g} kg): these contacts do not rebound and rest at the right overlap, but reach it "
+             "too fast",
+             i, j, ZETA_FOLLOWED, zeta, cn, lightest);
+    }
+}
+
+/* ----------------------------------------------------------------------
    warn when contacts can begin before the neighbor list has them
 ------------------------------------------------------------------------- */
 
@@ -619,8 +663,7 @@ void PairGranRestitution::watch_energy()
         laws[k / 3], balls, partners, [this](const ContactList::Entry &e, double overlap) {
           see_overlap(e.i, overlap, std::min(atom->radius[e.i], atom->radius[e.j]));
         });
-  for (Fix *fix : compat::fixes_of_style(lmp, "wall/gran/balls"))
-    elastic += static_cast<FixWallGranBalls *>(fix)->elastic_energy();
+  for (const ContactHolder *wall : walls) elastic += wall->elastic_energy();
   if (energy.look(elastic))
     warn("the energy of the balls grew by {:.3g} % of the largest energy of motion until step {}, with "
          "nothing but contacts and gravity at work: the time step is too large, or contacts were found "
@@ -757,7 +800,7 @@ void PairGranRestitution::find_half_step()
 
 /* ---------------------------------------------------------------------- */
 
-MovingBalls PairGranRestitution::moving_balls() const
+MovingBalls PairGranRestitution::moving_balls()
 {
   const bool half = !half_v.empty();
   return {vectors(atom->x),
@@ -766,26 +809,26 @@ MovingBalls PairGranRestitution::moving_balls() const
           atom->radius,
           atom->rmass,
           vectors(atom->f),
-          vectors(atom->torque)};
+          vectors(atom->torque),
+          counts.data(),
+          counts_before.data(),
+          estimated.data()};
 }
 
-/* ---------------------------------------------------------------------- */
+/* ----------------------------------------------------------------------
+   what touches, here and at the walls, and the number of contacts of each ball
+------------------------------------------------------------------------- */
 
-void PairGranRestitution::compute(int eflag, int vflag)
+void PairGranRestitution::find_contacts(bool lists_new)
 {
-  ev_init(eflag, vflag);
-  starting = update->setupflag;
-  if (starting || fix_history->lists_new) build_lists();
-  if (starting) find_half_step();
-  else if (!half_v.empty()) {
-    half_v.clear();
-    half_omega.clear();
-  }
+  const int nall = atom->nlocal + atom->nghost;
+  if (lists_new) counts_before.assign(nall, 0);
+  else counts_before.swap(counts);
+  counts.assign(nall, 0);
+  if (starting) estimated.assign(nall, 0);
 
-  const int nlocal = atom->nlocal, newton_pair = force->newton_pair;
   const MovingBalls balls = moving_balls();
-  const MovingPartners partners = {balls, newton_pair ? INT_MAX : nlocal};
-
+  const MovingPartners partners = {balls, force->newton_pair ? INT_MAX : atom->nlocal};
   if (starting) {
     InitialOverlap initial(lmp);
     for (ContactList &l : lists)
@@ -795,7 +838,107 @@ void PairGranRestitution::compute(int eflag, int vflag)
       });
     initial.check("Pair gran/restitution");
   }
+  for (ContactList &l : lists) l.find(starting, lists_new, balls, partners);
+  for (ContactHolder *wall : walls) wall->find_contacts(starting, lists_new);
+  shared = lists_new ? BOTH_COUNTS : COUNTS;
+  share();
+}
 
+/* ----------------------------------------------------------------------
+   numbers of balls that several ranks know: see what. Those of a step ago are complete already,
+   unless they have been counted anew.
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::share()
+{
+  if (force->newton_pair) compat::reverse_comm(comm, this);
+  compat::forward_comm(comm, this);
+}
+
+int PairGranRestitution::pack_forward_comm(int n, int *list, double *buf, int, int *)
+{
+  const auto &first = shared == ESTIMATED ? estimated : counts;
+  int m = 0;
+  for (int k = 0; k < n; k++) {
+    buf[m++] = first[list[k]];
+    if (shared == BOTH_COUNTS) buf[m++] = counts_before[list[k]];
+  }
+  return m;
+}
+
+void PairGranRestitution::unpack_forward_comm(int n, int begin, double *buf)
+{
+  auto &first = shared == ESTIMATED ? estimated : counts;
+  int m = 0;
+  for (int i = begin; i < begin + n; i++) {
+    first[i] = static_cast<unsigned char>(buf[m++]);
+    if (shared == BOTH_COUNTS) counts_before[i] = static_cast<unsigned char>(buf[m++]);
+  }
+}
+
+int PairGranRestitution::pack_reverse_comm(int n, int begin, double *buf)
+{
+  const auto &first = shared == ESTIMATED ? estimated : counts;
+  int m = 0;
+  for (int i = begin; i < begin + n; i++) {
+    buf[m++] = first[i];
+    if (shared == BOTH_COUNTS) buf[m++] = counts_before[i];
+  }
+  return m;
+}
+
+void PairGranRestitution::unpack_reverse_comm(int n, int *list, double *buf)
+{
+  auto add = [](unsigned char &sum, double more) {
+    sum = static_cast<unsigned char>(std::min(255.0, sum + more));
+  };
+  auto &first = shared == ESTIMATED ? estimated : counts;
+  int m = 0;
+  for (int k = 0; k < n; k++) {
+    add(first[list[k]], buf[m++]);
+    if (shared == BOTH_COUNTS) add(counts_before[list[k]], buf[m++]);
+  }
+}
+
+bool PairGranRestitution::force_estimated(int i) const
+{
+  return i < static_cast<int>(estimated.size()) && estimated[i];
+}
+
+/* ----------------------------------------------------------------------
+   history of a contact as its partner sees it
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::transfer_history(double *source, double *target)
+{
+  for (int k = 0; k < HISTORY; k++) target[k] = -source[k];
+  target[PHASE] = source[PHASE];
+}
+
+void PairGranRestitution::transfer_history(double *source, double *target, int, int)
+{
+  transfer_history(source, target);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairGranRestitution::compute(int eflag, int vflag)
+{
+  ev_init(eflag, vflag);
+  starting = update->setupflag;
+  const bool lists_new = starting || fix_history->lists_new;
+  if (lists_new) build_lists();
+  if (starting) find_half_step();
+  else if (!half_v.empty()) {
+    half_v.clear();
+    half_omega.clear();
+  }
+
+  find_contacts(lists_new);
+
+  const int nlocal = atom->nlocal, newton_pair = force->newton_pair;
+  const MovingBalls balls = moving_balls();
+  const MovingPartners partners = {balls, newton_pair ? INT_MAX : nlocal};
   for (size_t k = 0; k < lists.size(); k++) {
     const ContactLaw &law = laws[k / 3];
     if (evflag)
@@ -809,6 +952,10 @@ void PairGranRestitution::compute(int eflag, int vflag)
                             [](int, int, const Vector &, const Vector &) {});
   }
   fix_history->lists_used = true;
+  if (starting) {
+    shared = ESTIMATED;
+    share();
+  }
 }
 
 /* ----------------------------------------------------------------------
@@ -835,29 +982,24 @@ double PairGranRestitution::single(int i, int j, int itype, int jtype, double rs
 
   ContactLaw law = laws[index(itype, jtype)];
   law.exact = 0.0;
-  const double mi = atom->rmass[i], mj = atom->rmass[j];
-  const bool frozen_i = atom->mask[i] & freeze_group_bit;
-  const bool frozen_j = atom->mask[j] & freeze_group_bit;
-  const double inverse = (frozen_i ? 0.0 : 1.0 / mi) + (frozen_j ? 0.0 : 1.0 / mj);
-  const double mass = (frozen_i || frozen_j ? 1.0 : law.mass_factor) / inverse;
-  const double radi = atom->radius[i], radj = atom->radius[j];
-  const double r = sqrt(rsq);
+  MovingBalls balls = moving_balls();
+  balls.v = vectors(atom->v);
+  balls.omega = vectors(atom->omega);
+  ContactList pair_of_balls;
+  pair_of_balls.clear(!(atom->mask[i] & freeze_group_bit), !(atom->mask[j] & freeze_group_bit));
   Contact contact;
-  for (int k = 0; k < 3; k++) {
-    contact.n[k] = (atom->x[i][k] - atom->x[j][k]) / r;
-    contact.v[k] = atom->v[i][k] - atom->v[j][k];
-    contact.rw[k] = radi * atom->omega[i][k] + radj * atom->omega[j][k];
-    contact.w[k] = atom->omega[i][k] - atom->omega[j][k];
-  }
-  contact.overlap = radsum - r;
-  contact.rolling_radius = law.rolling_factor * radi * radj / radsum;
+  Vector delta;
+  const MovingPartners partners = {balls, INT_MAX};
+  ContactList::set_contact(law, balls, partners, {i, j}, contact, delta);
+  const ContactStep step = pair_of_balls.step_of(law, dt, true, atom->radius[i], atom->radius[j],
+                                                 atom->rmass[i], atom->rmass[j]);
   ContactForce c;
-  contact_force(contact_step(law, inverse, mass, dt, true), contact, history, c);
+  contact_force(step, contact, 0.0, history, c);
 
   const double *n = contact.n;
   const double fn = c.f[0] * n[0] + c.f[1] * n[1] + c.f[2] * n[2];
   const double vn = contact.v[0] * n[0] + contact.v[1] * n[1] + contact.v[2] * n[2];
-  fforce = fn / r;
+  fforce = fn / sqrt(rsq);
   for (int k = 0; k < 3; k++) {
     svector[k] = c.f[k] - fn * n[k];
     svector[4 + k] = vn * n[k];
@@ -892,19 +1034,24 @@ void PairGranRestitution::read_restart(FILE *fp)
 
 void PairGranRestitution::write_restart_settings(FILE *fp)
 {
-  const int values[4] = {mass_ball, limit_damping, rolling_reduced, plain};
-  fwrite(values, sizeof(int), 4, fp);
+  const int values[5] = {FORMAT, mass_ball, limit_damping, rolling_reduced, plain};
+  fwrite(values, sizeof(int), 5, fp);
 }
 
 void PairGranRestitution::read_restart_settings(FILE *fp)
 {
-  int values[4] = {0, 0, 0, 0};
-  if (comm->me == 0) utils::sfread(FLERR, values, sizeof(int), 4, fp, nullptr, error);
-  MPI_Bcast(values, 4, MPI_INT, 0, world);
-  mass_ball = values[0];
-  limit_damping = values[1];
-  rolling_reduced = values[2];
-  plain = values[3];
+  int values[5] = {0, 0, 0, 0, 0};
+  if (comm->me == 0) utils::sfread(FLERR, values, sizeof(int), 5, fp, nullptr, error);
+  MPI_Bcast(values, 5, MPI_INT, 0, world);
+  if (values[0] != FORMAT)
+    error->all(FLERR,
+               "Pair gran/restitution: restart file must have contacts of format {}, got {}: begin anew, or "
+               "go on with the version of the package that wrote it",
+               FORMAT, values[0] > 1 ? std::to_string(values[0]) : "one of an earlier version");
+  mass_ball = values[1];
+  limit_damping = values[2];
+  rolling_reduced = values[3];
+  plain = values[4];
 }
 
 /* ---------------------------------------------------------------------- */
@@ -925,6 +1072,8 @@ double PairGranRestitution::memory_usage()
 {
   double bytes = coeffs.size() * (sizeof(Coeff) + sizeof(ContactLaw));
   for (const ContactList &l : lists) bytes += l.memory_usage();
+  bytes += counts.capacity() + counts_before.capacity() + estimated.capacity();
+  bytes += (half_v.capacity() + half_omega.capacity()) * sizeof(Vector);
   return bytes;
 }
 

@@ -41,6 +41,14 @@ class PairGranRestitution : public Pair {
   void read_restart_settings(FILE *) override;
   void *extract(const char *, int &) override;
   double memory_usage() override;
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
+  int pack_reverse_comm(int, int, double *) override;
+  void unpack_reverse_comm(int, int *, double *) override;
+
+  // not marked override: the arguments differ between versions
+  void transfer_history(double *, double *);
+  void transfer_history(double *, double *, int, int);
 
   // size of a ball against another, for computes and for balancing by cost;
   // not marked override: they moved between classes in later LAMMPS
@@ -50,9 +58,10 @@ class PairGranRestitution : public Pair {
   // for fix wall/gran/balls: the contact law of a type pair, nullptr where no pair_coeff
   // set it, and a line in the start-up table for every type that the wall meets
   const Slope::ContactLaw *law(int itype, int jtype) const;
-  void announce_wall(int wall_type, int groupbit);
-  Slope::MovingBalls moving_balls() const;
+  void announce_wall(class ContactHolder *wall, int wall_type, int groupbit);
+  Slope::MovingBalls moving_balls();
   void store_flags() const;
+  bool force_estimated(int i) const;    // of a ball at set-up: contacts that slid alone, see contact_law.h
   bool sizes_vary;    // between two neighbor lists, by fix adapt
 
   // guards; what they found, for summaries
@@ -104,6 +113,9 @@ class PairGranRestitution : public Pair {
     bigint step, count;
   } overlaps;
 
+  std::vector<class ContactHolder *> walls;
+  std::vector<unsigned char> counts, counts_before, estimated;    // see MovingBalls
+  enum { COUNTS, BOTH_COUNTS, ESTIMATED } shared;    // what is communicated of them
   EnergyGuard energy;
   std::vector<Slope::Vector> half_v, half_omega;    // at set-up, where they are known
   std::string history_id, dummy_id;
@@ -121,6 +133,9 @@ class PairGranRestitution : public Pair {
   void check_fixed_balls();
   template <typename... Args> void warn(const char *format, const Args &...args);
   void build_lists();
+  void find_contacts(bool lists_new);
+  void share();
+  void check_dashpots();
   void find_half_step();
 };
 

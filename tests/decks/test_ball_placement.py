@@ -176,7 +176,7 @@ BAD = [
     ("surface ball upper spacing 1 origin 2", "w origin must be followed by x y, got 1 of 2 values"),
     ("surface ball upper spacing 1 origin 2 y", "w origin y must be a finite number, got y"),
     ("surface ball upper spacing 1 within slab",
-     "w keyword must be spacing, origin, inside, outside or write, got within"),
+     "w keyword must be spacing, origin, sink, sunk, smallest, inside, outside or write, got within"),
     ("surface ball upper spacing 1 inside slab outside column",
      "w can have one filter (inside or outside), got outside column as well"),
     ("surface ball upper spacing 1 inside gone", "w region gone does not exist"),

@@ -122,6 +122,33 @@ def test_balls_that_leave_before_the_first_run_is_over(plane):
     assert abs(found["volume"]["residual"]) < 1e-9 * VOLUME
 
 
+def test_a_ball_outside_of_the_box_when_the_first_run_begins(plane):
+    """Its volume is not known before; it is lost at once."""
+    run_deck(deck("set atom 1 z 30\nrun 1", small=1.0), plane)
+    found = summary(plane)
+    assert found["balls"]["lost"] == 1
+    share = found["volume"]["released"] / found["balls"]["released"]
+    assert found["volume"]["lost"] == pytest.approx(share, rel=1e-9)
+    assert abs(found["volume"]["residual"]) < 1e-9 * VOLUME
+
+
+def test_a_small_body_in_a_wide_box(tmp_path):
+    """A scar raster as wide as the terrain: 30 m of 4 km, which a search on 32 x 32 columns would miss."""
+    ground = np.zeros((400, 400))
+    scar = ground.copy()
+    scar[250:253, 140:143] = -8.0     # between centres bilinear: the volume is that of the cells
+    for name, heights in (("ground", ground), ("scar", scar)):
+        write_asc(tmp_path / f"{name}.asc", heights, cell=10.0)
+    text = deck(d=1.0, small=1.0, regions="region above terrain scar.asc depth 20 side out\n"
+                "region pit intersect 2 ground above\nregion box block 1350 1500 2450 2600 -20 20 units box\n"
+                "create_box 2 box", filled="pit", bulk="region pit")
+    text = text.replace("depth 5", "depth 20").replace("cell 1 ", "cell 20 ")
+    text = re.sub(r"^region (ball|above block|body|small) .*\n|^set region small .*\n|^create_box 2 ground\n", "", text,
+                  flags=re.M)
+    run_deck(text, tmp_path, np=2)
+    assert summary(tmp_path)["volume"]["released"] == pytest.approx(9 * 8 * 100, rel=1e-3)
+
+
 # --- the cases of the issue: within 0.2 % for any size of ball ---
 
 
@@ -214,6 +241,10 @@ def read_asc_centred(path):
     ({"bulk": "region huge"}, "Fix deposit/grid bulk region huge must be the body that the balls fill, of 1 to 10 "
                               "times their volume 252.329, got 72"),
     ({"bulk": "region small", "filled": "small"}, None),
+    ({"bulk": "region slab", "filled": "layer", "small": 1.0}, None),    # 0.9 diameters above it
+    ({"bulk": "region thin", "filled": "layer", "small": 1.0},           # 1.1 diameters
+     "Fix deposit/grid bulk region thin must be the body that the balls fill: at most 5 % of them may lie farther than "
+     "a diameter from it, got 121 of 121"),
     ({"bulk": "region small", "filled": "small", "small": 3.0},    # one ball through the other
      "Fix deposit/grid bulk region small must be the body that the balls fill, of 1 to 10 times their volume 1738.87, "
      "got 113.1"),
@@ -231,6 +262,9 @@ region opened block -6 6 -6 6 0 6 units box open 1
 region beside block 8 9 8 9 0 9 units box
 region lower block -6 6 -6 6 0 0.9 units box
 region huge sphere 0 0 0 12 units box
+region layer block -5 5 -5 5 1.9 2.1 units box
+region slab block -5 5 -5 5 0 1.1 units box
+region thin block -5 5 -5 5 0 0.9 units box
 """
     if message is None:
         run_deck(deck(regions=regions, **settings), plane, np=np_)

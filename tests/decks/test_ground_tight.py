@@ -43,10 +43,10 @@ def slope_grid(angle):
     return numpy.tile((15.0 - x) * math.tan(math.radians(angle)), (20, 1))
 
 
-def write_balls(path, places):
+def write_balls(path, places, radius=R):
     lines = ["balls", "", f"{len(places)} atoms", "2 atom types", "", "-10 40 xlo xhi",
              "-10 20 ylo yhi", "-400 400 zlo zhi", "", "Atoms # sphere", ""]
-    lines += [f"{k + 1} 1 {2 * R} 2500 {x} {y} {z}" for k, (x, y, z) in enumerate(places)]
+    lines += [f"{k + 1} 1 {2 * radius} 2500 {x} {y} {z}" for k, (x, y, z) in enumerate(places)]
     path.write_text("\n".join(lines) + "\n")
 
 
@@ -62,7 +62,7 @@ def last_places(tmp_path):
     return numpy.array([[float(word) for word in line.split()[1:]] for line in lines[start:]])
 
 
-def depth_below_slope(tmp_path, angle, balls):
+def depth_below_slope(tmp_path, angle, balls, radius=R):
     """Deepest place of a ball centre behind the plane, after two seconds of pressing; radii."""
     a = math.radians(angle)
     normal = numpy.array([math.sin(a), 0.0, math.cos(a)])
@@ -75,7 +75,7 @@ def depth_below_slope(tmp_path, angle, balls):
             along = 1.5 * (column - 4.0) + 0.3 * rng.random()
             start = numpy.array([15.0, 0.0, 0.0]) + along * down + 1.6 * normal
             places.append((start[0], 0.8 + 1.1 * row + 0.08 * rng.random(), start[2]))
-    write_balls(tmp_path / "balls.data", places)
+    write_balls(tmp_path / "balls.data", places, radius)
     pull = -normal + 0.3 * down
     deck = DECK.format(balls=balls, gx=pull[0], gz=pull[2])
     run_deck(deck, tmp_path)
@@ -92,6 +92,22 @@ SURFACE = "surface ground upper spacing 1.0"
 @pytest.mark.parametrize("angle", [30, 45, 54, 60, 70, 80, 85])
 def test_slope_is_tight(tmp_path, angle):
     assert depth_below_slope(tmp_path, angle, SURFACE) < 0.1
+
+
+SMALL = 0.55 * R
+FOR_SMALL = "surface ground upper spacing 0.9"
+
+
+@pytest.mark.parametrize("angle", [45, 60, 75])
+def test_slope_is_tight_for_balls_smaller_than_its_own(tmp_path, angle):
+    """The fix looks at the balls that there are."""
+    assert depth_below_slope(tmp_path, angle, FOR_SMALL, SMALL) < 0.1
+    assert "WARNING: Fix wall/gran/balls" not in (tmp_path / "log.deck").read_text()
+
+
+def test_slope_for_equal_balls_leaks_smaller_ones_and_says_so(tmp_path):
+    assert depth_below_slope(tmp_path, 60, FOR_SMALL + f" smallest {2 * R}", SMALL) > 2.0
+    assert "balls of diameter 0.55 may pass between these" in (tmp_path / "log.deck").read_text()
 
 
 @pytest.mark.parametrize("angle", [65, 80])

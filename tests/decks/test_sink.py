@@ -88,10 +88,9 @@ def closest(balls):
     """The smallest distance of a fixed centre to a point of the sphere's body."""
     x, y, bottom, top = columns()
     nearest = math.inf
-    for share in numpy.linspace(0, 1, 12):
-        body = numpy.column_stack([x, y, bottom + share * (top - bottom)])
-        for part in numpy.array_split(balls, 1 + len(balls) // 200):
-            nearest = min(nearest, ((body[:, None] - part[None]) ** 2).sum(-1).min())
+    for ball in balls:
+        dz = ball[2] - numpy.clip(ball[2], bottom, top)
+        nearest = min(nearest, ((x - ball[0]) ** 2 + (y - ball[1]) ** 2 + dz**2).min())
     return math.sqrt(nearest)
 
 

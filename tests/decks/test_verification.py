@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from deck_helpers import LMP
+from test_energy_guard import alarms
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", Path(__file__).resolve().parents[2] / "tools"))
 sys.path.insert(0, str(TOOLS))
@@ -32,6 +33,21 @@ def test_claim(runner, claim):
 def test_control_fails(runner, claim):
     got = verify.value(claim, claim.control.runs, runner)
     assert not claim.bound.holds(got), f"{claim.control.broken}: got {got}, which passes {claim.bound.texts()}"
+
+
+@pytest.mark.parametrize("claim", CLAIMS, ids=[claim.name for claim in CLAIMS])
+def test_no_false_alarm(runner, claim):
+    """In no run of a claim does the energy rise, so the guard must not say so."""
+    for run in claim.runs:
+        assert alarms(runner.result(run).log) == []
+
+
+@pytest.mark.parametrize("name", ["rough_gas_1", "dense_gas_gain"])
+def test_alarm(runner, name):
+    """In these controls it does."""
+    claim, = (claim for claim in CLAIMS if claim.name == name)
+    for run in claim.control.runs:
+        assert alarms(runner.result(run).log)
 
 
 def test_every_case_is_told_of():

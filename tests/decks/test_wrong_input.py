@@ -20,7 +20,8 @@ DECK = {
     "neighbor": "neigh_modify every 1 delay 0 check yes",
     "terrain": "region ground terrain ground.asc depth 1 headroom 4",
     "polygon": "region road polygon road.csv",
-    "regions": "region block block 2 5 2 5 1 3 units box\nregion space plane 0 0 0 0 0 1 units box",
+    "regions": "region block block 2 5 2 5 1 3 units box\nregion space plane 0 0 0 0 0 1 units box\n"
+               "region hole block 5 6.5 5 6.5 -0.5 2 units box\nregion pit intersect 2 ground hole",
     "box": "create_box 3 ground",
     "atoms": "lattice sc 1.0\ncreate_atoms 1 region block",
     "group": "group soil type 1",
@@ -88,6 +89,7 @@ TABLE = {
         1 1 stiffness 1e6 1e6 damping -1 0 -> damping must be >= 0 (cn), got -1
         1 1 stiffness 1e6 1e6 damping 1 -1 -> damping must be >= 0 (ct), got -1
         1 1 stiffness 1e6 1e6 damping 1 inf -> damping: value 2 must be a number, got inf
+        1 1 stiffness 1e6 0 damping 1 2.5 -> pair_coeff 1 1: ct must be 0 where kt is 0, got 2.5: give the contact a
         1 1 stiffness 1e6 1e6 restitution 0.5 friction 90 -> friction must be >= 0 and < 90 degrees, got 90
         1 1 stiffness 1e6 1e6 restitution 0.5 friction -1 -> friction must be >= 0 and < 90 degrees, got -1
         1 1 stiffness 1e6 1e6 restitution 0.5 friction steep -> friction: value 1 must be a number, got steep
@@ -132,10 +134,30 @@ TABLE = {
         2 1.0 surface ground upper spacing 1 origin 1 x -> origin y must be a finite number, got x
         2 1.0 surface ground upper spacing 1 origin nan 1 -> origin x must be a finite number, got nan
         2 1.0 surface ground upper spacing 1 origin 0 1e300 -> origin y must be within +-1e+12, got 1e300
+        2 1.0 surface ground upper spacing 1 sink -> sink must be followed by H, got 0 of 1 values
+        2 1.0 surface ground upper spacing 1 sink -0.5 -> sink must be 0 or at least 0.05 (0.05 diameters), got -0.5
+        2 1.0 surface ground upper spacing 1 sink 0.04 -> sink must be 0 or at least 0.05 (0.05 diameters), got 0.04
+        2 1.0 surface ground upper spacing 1 sink x -> sink must be a finite number, got x
+        2 1.0 surface ground upper spacing 1 sink nan -> sink must be a finite number, got nan
+        2 1.0 surface ground upper spacing 1 sink inf -> sink must be a finite number, got inf
+        2 1.0 surface ground upper spacing 1 sink 1 -> : sink must be < 1, so that the balls lie above the bottom of reg
+        2 1.0 surface ground upper spacing 1 sink 1e99 -> : sink must be < 1, so that the balls lie above the bottom of
+        2 1.0 surface block lower spacing 1 sink 2.5 -> : sink must be < 2, so that the balls lie above the bottom of th
+        2 1.0 surface pit lower spacing 1 sink 0.6 -> : sink must be < 0.5, so that the balls lie above the bottom of re
+        2 1.0 surface ground upper spacing 1 outside block sunk -> sunk must be followed by H, got 0 of 1 values
+        2 1.0 surface ground upper spacing 1 outside block sunk -1 -> sunk must be 0 or at least 0.05 (0.05 diameters),
+        2 1.0 surface ground upper spacing 1 outside block sunk x -> sunk must be a finite number, got x
+        2 1.0 surface ground upper spacing 1 sunk 1 -> sunk needs outside REGION, got none
+        2 1.0 surface ground upper spacing 1 inside block sunk 1 -> sunk needs outside REGION, got none
+        2 1.0 surface ground upper spacing 1 outside road sunk 1 -> sunk region road must have a lower boundary, got INF
+        2 1.0 surface ground upper spacing 1 smallest -> smallest must be followed by D, got 0 of 1 values
+        2 1.0 surface ground upper spacing 1 smallest 0 -> smallest must be > 0, got 0
+        2 1.0 surface ground upper spacing 1 smallest x -> smallest must be a finite number, got x
+        2 1.0 file balls.txt sink 0.5 -> keyword must be inside, outside or write, got sink
         2 1.0 surface ground upper spacing 1 inside -> inside must be followed by REGION, got 0 of 1 values
         2 1.0 surface ground upper spacing 1 inside nowhere -> region nowhere does not exist
         2 1.0 surface ground upper spacing 1 inside road outside road -> can have one filter (inside or outside), got
-        2 1.0 surface ground upper spacing 1 color red -> keyword must be spacing, origin, inside, outside or write
+        2 1.0 surface ground upper spacing 1 color red -> keyword must be spacing, origin, sink, sunk, smallest, inside,
         2 1.0 surface ground upper spacing 1 write -> write must be followed by FILE, got 0 of 1 values
         2 1.0 surface ground upper spacing 1 write none/a.txt -> : cannot write none/a.txt: No such file or directory
         2 1.0 file -> file must be followed by FILE, got 0 of 1 values
@@ -220,6 +242,8 @@ TABLE = {
         3 1.0 2000 file balls.txt write a.txt -> keyword must be inside or outside, got write
         3 1.0 2000 surface ground upper -> surface needs a spacing, got none
         3 1.0 2000 surface ground upper spacing 0 -> spacing must be > 0, got 0
+        3 1.0 2000 surface ground upper spacing 1 sink -1 -> sink must be 0 or at least 0.05 (0.05 diameters), got -1
+        3 1.0 2000 surface ground upper spacing 1 sink 3 -> : sink must be < 1, so that the balls lie above the bottom o
         3 1.0 2000 surface nowhere upper spacing 1 -> region nowhere does not exist
         """,
     ("delete", "delete_balls", "Delete_balls"): """
@@ -290,6 +314,9 @@ SETUPS = [
     # the order of commands
     ({"units": "create_balls 3 1.0 2000 file balls.txt"}, "Create_balls before the simulation box is defined"),
     ({"units": "delete_balls soil overlap 0.0"}, "Delete_balls before the simulation box is defined"),
+    ({"wall": "fix field soil wall/gran/balls 2 1.0 surface ground upper spacing 1 outside pit\n"
+              "fix wall soil wall/gran/balls 2 1.0 surface pit lower spacing 0.5 sink 0.4"},
+     "Fix wall/gran/balls wall sink must come before fix field, which is outside region pit: define that after this"),
     ({"set": "delete_balls soil overlap 0.0"}, "Delete_balls requires a fix wall/gran/balls before it, there is none"),
     ({"set": "fix early all deposit/grid 10 20 cell 1.0 terrain late output out\nregion late terrain ground.asc"},
      "Fix deposit/grid terrain region late does not exist"),

@@ -72,6 +72,14 @@ def test_scatter_that_grows_with_the_size_is_weighted():
     assert fit.small.value == pytest.approx(small) and fit.slope.value == pytest.approx(slope)
 
 
+def test_what_differs_by_rounding_does_not_differ():
+    """The released volume that is the body's, whatever the size: neither repeats nor sizes scatter."""
+    fit = convergence.fit([(d, [48859.2179 + k * 7e-12 + d * 1e-11 for k in range(3)]) for d in SIZES])
+    assert fit.small.value == pytest.approx(48859.2179) and fit.small.standard_error == 0
+    assert fit.supported and fit.exponent == convergence.COUNTING and not fit.curve_is_clear
+    assert all(abs(size.error) < 1e-9 for size in fit.sizes)
+
+
 def test_intervals_and_errors_cover_the_truth():
     """95 of 100 intervals hold the value for small balls, and the error of a size; the line is given up in 5."""
     random = np.random.default_rng(1)

@@ -323,6 +323,37 @@ def test_a_raster_is_laid_on_the_terrain_or_on_the_surface(here):
     assert np.array_equal(shows, ~np.isnan(surface)) and np.all(points[..., 2] == 7.125)
 
 
+def test_the_deposit_of_a_run(here):
+    """Its base is the ground, where the scar shows, and its time step gives the time of dumps that have none."""
+    terrain = np.full((5, 6), 20.0)
+    base = terrain.copy()
+    base[1:4, 2:5] = 12.5                             # the scar
+    thickness = np.where(np.arange(6) < 2, 1.5, 0.0) * np.ones((5, 1))
+    write_asc("terrain.asc", terrain)
+    for name, values in (("base", base), ("thickness", thickness), ("surface", base + thickness)):
+        write_asc(f"p.{name}.asc", values)
+    Path("p.summary.yaml").write_text("# of the fix\nfix: 'deposit'\ntime: 7.5\ndt: 0.0025\nranks: 1\n")
+    Path("a.dump").write_text(snapshot(balls(3), 0) + snapshot(balls(3), 3000))
+    good("a.dump", "--deposit", "p", "-o", "run")
+    points, values, _, _ = read_vts("run.terrain.vts")
+    assert np.array_equal(points[..., 2], base) and np.array_equal(values["height"], base)
+    points, values, _, _ = read_vts("run.thickness.vts")
+    assert np.array_equal(points[..., 2], base + thickness) and np.array_equal(values["thickness"], thickness)
+    assert [time for time, _ in read_pvd("run.pvd")] == [0, 7.5]
+
+    # --terrain takes it by its name, and goes before it; so do a time step and the dump's own times
+    good("--terrain", "p.base.asc", "-o", "other")
+    assert np.array_equal(read_vts("other.terrain.vts")[0][..., 2], base)
+    good("a.dump", "--deposit", "p", "--terrain", "terrain.asc", "--surface", "terrain.asc", "--dt", "1", "-o", "run")
+    assert np.array_equal(read_vts("run.terrain.vts")[0][..., 2], terrain)
+    assert np.array_equal(read_vts("run.thickness.vts")[0][..., 2], terrain)
+    assert [time for time, _ in read_pvd("run.pvd")] == [0, 3000]
+    timed = "".join(f"ITEM: TIME\n{time}\n" + snapshot(balls(3), step) for step, time in ((0, 1.5), (3000, 9.0)))
+    Path("b.dump").write_text(timed)
+    good("b.dump", "--deposit", "p", "-o", "timed")
+    assert [time for time, _ in read_pvd("timed.pvd")] == [1.5, 9]
+
+
 def test_fixed_balls(here):
     Path("slip.xyz").write_text("# x y z\n1 2 3\n\n4.5 -5e-1 6 # last\n")
     Path("field.xyz").write_text("7 8 9\n")
@@ -438,7 +469,7 @@ def test_bad_gz():
     ("missing.dump -o run", "cannot read missing.dump: No such file or directory"),
     ("folder -o run", "cannot read folder: Is a directory"),
     ("a.dump", "-o OUT is missing; see --help"),
-    ("-o run", "no input: give dumps, --terrain, --raster or --balls; see --help"),
+    ("-o run", "no input: give dumps, --deposit, --terrain, --raster or --balls; see --help"),
     ("a.dump -o", "-o must have a value"),
     ("a.dump -o folder/", "-o must end in a name, got folder/"),
     ("a.dump -o run -o other", "-o is given twice"),
@@ -450,6 +481,10 @@ def test_bad_gz():
     ("--balls b.xyz -o run", "--balls needs --diameter"),
     ("--raster t.asc -o run", "--raster needs --terrain or --surface to lie on"),
     ("a.dump --surface t.asc -o run", "--surface needs --raster"),
+    ("--deposit none -o run", "cannot read none.base.asc: No such file or directory"),
+    ("a.dump --deposit none -o run", "cannot read none.summary.yaml: No such file or directory"),
+    ("a.dump --deposit p -o run", "p.summary.yaml, line 2: dt must be a number > 0, got -1"),
+    ("a.dump --deposit q -o run", "q.summary.yaml must be a summary of fix deposit/grid, with a line dt:, got none"),
     ("--terrain no.asc -o run", "cannot read no.asc: No such file or directory"),
     ("--terrain a.dump -o run", "a.dump, line 1: must be a header key of an ESRI ASCII grid or a number, got ITEM:"),
     ("--terrain t.asc --raster t.asc far.asc -o run",
@@ -470,6 +505,8 @@ def test_bad_command(words, message, here):
     Path("b.xyz").write_text("1 2 3\n")
     Path("bad.xyz").write_text("1 2 3\n1 2 z\n")
     Path("none.xyz").write_text("# x y z\n")
+    Path("p.summary.yaml").write_text("time: 0.5\ndt: -1\n")
+    Path("q.summary.yaml").write_text("time: 0.5\n")
     for path in ("t.asc", "p.h.asc", "folder/q.h.asc"):
         write_asc(path, np.ones((2, 3)))
     write_asc("far.asc", np.ones((2, 3)), x=6.0)

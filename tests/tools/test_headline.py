@@ -121,6 +121,13 @@ def test_repeats_that_failed_are_left_out_of_what_is_in_common():
     assert headline.pooled(combinations((1, 4, 2, None), (6, 5, 9, 40))).degrees_of_freedom == pytest.approx(5 * whole)
 
 
+def test_what_differs_by_rounding_does_not_differ():
+    same = 48859.2179267
+    found = headline.pooled(combinations((same, same + 7e-12, same - 7e-12), (same, 48860)))
+    assert found.deviation == pytest.approx(math.sqrt(0.7820733 ** 2 / 2 / 3))
+    assert headline.pooled(combinations((1e5, 1e5 + 3e-11), (1e5 + 1e-11, 1e5))) == Scatter(0.0, 2.0)
+
+
 def test_without_repeats_chance_is_unknown():
     best = headline.headline(combinations((5,), (7,), (6,)))
     assert best == Headline(7.0, 7.0, None, None, "b", 1, 3, None)

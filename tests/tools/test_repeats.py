@@ -14,7 +14,8 @@ from tiny_collapse import LMP, TOP, write_case
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli, combinations, headline, repeats, rest, results, study_file, travel_shares  # noqa: E402
+from slope_tools import (  # noqa: E402  (after the path is set)
+    cli, combinations, headline, repeats, rest, results, study_file, study_table, travel_shares)
 from slope_tools.errors import SlopeError  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
@@ -209,6 +210,16 @@ def test_other_doubts():
     loud = rows((("1",), (90.0, 120, 150)), (("0",), (100.0, 101, 102)))
     assert any(text.startswith("its runs scatter more than the others, by 30.0 instead of 1.0 m3")
                for text in conservative({"rolling": ["1", "0"]}, loud)["doubts"])
+
+
+@pytest.mark.parametrize("value, scatter, expected", [
+    (14757.3, None, "14,800"),                              # a run alone: three digits
+    (14757.3, headline.Scatter(351.0, 4), "14,760"), (0.0, headline.Scatter(0.0, 4), "0"),
+    (48859.2179, headline.Scatter(0.0, 4), "48,859"),       # repeats agree
+    (1.25, headline.Scatter(0.0, 4), "1.25"),
+])
+def test_volumes_are_shown_to_what_is_known(value, scatter, expected):
+    assert study_table.volume(value, scatter) == expected
 
 
 # --- rest and travel ---

@@ -189,6 +189,45 @@ def test_where_the_top_is_known_from(scored):
     assert out["from"][0] == 78.75 and out["from_source"] == "highest cell of the deposit"
 
 
+def test_the_connected_deposit_and_a_stray_ball(scored):
+    """The bar goes 40 m from the top, a ball in a cell of its own 130 m; the mapped deposit 45 m."""
+    thickness = np.zeros((40, 60))
+    thickness[20, 4:16] = 1.0
+    thickness[20, 50] = 0.5
+    quantiles = [{"share": 0.99, "distance": 39.0, "reach_angle": 22.5}]
+    write_run(thickness, 5.0, 2.5, travel={"top": [0.0, 48.75, 26.0], "quantiles": quantiles})
+    out = scored(box(10, 47.5, 45, 50))["runout"]
+    assert out["simulated"] == pytest.approx(math.hypot(127.5, 1.25)) and out["difference"] > 80
+    part = out["connected"]
+    assert (part["parts"], part["area"], part["volume"]) == (2, 75, 75)
+    assert part["share_of_volume"] == pytest.approx(12 / 12.5)
+    assert part["distance"] == pytest.approx(math.hypot(40, 1.25))
+    assert part["reach_angle"] == pytest.approx(math.degrees(math.atan2(20, part["distance"])))
+    assert part["observed"] == pytest.approx(math.hypot(45, 1.25))
+    assert part["difference"] == pytest.approx(part["distance"] - part["observed"])
+    assert out["balls"] == quantiles
+    assert scored(box(10, 47.5, 45, 50), "--threshold 2")["runout"]["connected"] is None
+
+
+def test_shares_within(scored):
+    """By area against an outline; by volume against a thickness, where the thin far half hardly counts."""
+    thickness = np.zeros((40, 60))
+    thickness[20, :10], thickness[20, 10:20] = 9.0, 1.0
+    write_run(thickness, 5.0, 2.5, travel={"top": [0.0, 48.75, 26.0]})
+    out = scored(box(0, 47.5, 25, 50))["runout"]
+    assert out["quantiles_of"] == "area" and out["balls"] is None
+    middle = 1.25 + 2.5 * np.arange(20)      # centres of the cells of the bar
+    assert [one["simulated"] for one in out["quantiles"]] == pytest.approx(middle[[9, 17, 18, 19]])
+    assert [one["observed"] for one in out["quantiles"]] == pytest.approx(middle[[4, 8, 9, 9]])
+    write_asc("mapped.asc", thickness[:, ::-1].copy(), 2.5)
+    out = scored("mapped.asc")["runout"]
+    assert out["quantiles_of"] == "volume"
+    assert [one["simulated"] for one in out["quantiles"]] == pytest.approx(middle[[5, 9, 14, 18]])
+    for one in out["quantiles"]:
+        assert one["difference"] == pytest.approx(one["simulated"] - one["observed"])
+    assert out["quantiles"][0]["observed"] > 100
+
+
 # --- files, bad input ---
 
 def test_files_and_warnings(slope):

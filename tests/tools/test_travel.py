@@ -155,7 +155,9 @@ def test_travel_and_run_out(travelled):
     assert float(rows("out/balls.csv")[1]["angle"]) == pytest.approx(math.degrees(math.atan2(6, 8)))
     assert about["travel"]["all"]["max"] == 8
     # the highest ball was the one that is gone, at 9 9 9; ball 1, at 0 1 2, is farthest from there
+    assert [one["share"] for one in run["runout"].pop("quantiles")] == [0.5, 0.9, 0.95, 0.99]
     assert run["runout"] == {"distance": pytest.approx(math.hypot(9, 8)), "drop": 7, "ball": 1,
+                             "quantiles_of": "volume",
                              "reach_angle": pytest.approx(math.degrees(math.atan2(7, math.hypot(9, 8))))}
 
 
@@ -177,6 +179,33 @@ def test_each_run_from_its_own_start(travelled):
     write("b.dump", [(4, 0, 0)])
     about = travelled("a.dump b.dump --start start.1.dump start.2.dump")
     assert [one["runout"]["distance"] for one in about["each_run"]] == [4, 3]
+
+
+def test_shares_that_stay_within(travelled, slope):
+    """100 balls at 1 to 100 m; the front is one ball's, 99 % are within 99 m. By volume, where the dump has it."""
+    start = [(0, 0, 60), *[(0, 0, 0)] * 99]
+    write("start.dump", start)
+    places = [(k + 1, 0, 30) for k in range(100)]
+    write("a.dump", places)
+    about = travelled("a.dump --start start.dump")["each_run"][0]["runout"]
+    assert about["distance"] == 100 and about["quantiles_of"] == "volume"
+    assert [(one["share"], one["distance"]) for one in about["quantiles"]] == [(0.5, 50), (0.9, 90), (0.95, 95),
+                                                                               (0.99, 99)]
+    assert [one["reach_angle"] for one in about["quantiles"]] == pytest.approx(
+        [math.degrees(math.atan(30 / far)) for far in (50, 90, 95, 99)])
+
+    # the last ball has 3 of 102 parts of the volume
+    write("b.dump", places, radius=[1] * 99 + [3 ** (1 / 3)], columns="id x y z radius")
+    write("c.dump", places, columns="id x y z")
+    every = travelled("b.dump --start start.dump")["each_run"][0]["runout"]
+    assert [one["distance"] for one in every["quantiles"]] == [51, 92, 97, 100]
+    plain = travelled("c.dump --start start.dump")["each_run"][0]["runout"]
+    assert plain["quantiles_of"] == "balls" and plain["quantiles"] == about["quantiles"]
+    runs = travelled("a.dump b.dump --start start.dump")["runout"]["quantiles"]
+    assert runs[1]["share"] == 0.9 and runs[1]["distance"] == {"lowest": 90, "median": 91, "highest": 92}
+    status, out, _ = slope("a.dump --start start.dump")
+    assert status == 0 and "run-out: 99 % within 99.000 m, reach angle 16.9 degrees\n" in out
+    assert "farthest ball: 100.000 m, reach angle 16.7 degrees\n" in out
 
 
 # --- dumps ---

@@ -121,6 +121,16 @@ def test_a_run_of_several_claims_is_run_once(slope):
     assert Path("count").read_text() == "x\n" * 3
 
 
+def test_two_modules_of_one_folder(slope, capsys, monkeypatch):
+    cases = [types.SimpleNamespace(CASE="01_restitution", CLAIMS=(claim(name),), __doc__=f"Title {name}\n\nIt falls.")
+             for name in "ab"]
+    monkeypatch.setattr(verification, "cases", lambda: cases)
+    assert run_command("verify", "", capsys)[0] == 0
+    assert [row["name"] for row in told()["results"]] == ["a", "b"]
+    html = Path("verification/verification.html").read_text()
+    assert html.count("A ball &lt;bounces&gt;") == 2 and html.index("Title a") < html.index("Title b")
+
+
 def test_quick_leaves_out_what_takes_minutes(slope):
     assert slope("--quick", claim("a"), claim("b", quick=False))[0] == 0
     assert [row["name"] for row in told()["results"]] == ["a"]

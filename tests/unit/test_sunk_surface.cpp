@@ -126,8 +126,7 @@ TEST(SunkSurface, sphere_becomes_a_larger_one)
       const bool there = sunk.height(x, y, z);
       if (plan < r + H - 0.02 * H) ASSERT_TRUE(there) << x << " " << y;
       if (plan > r + H + 0.001 * H) ASSERT_FALSE(there) << x << " " << y;
-      const double within = plan < 0.86 * (r + H) ? 0.003
-                                                  : 0.03;    // slopes up to 60 degrees: 0.003
+      const double within = plan < 0.86 * (r + H) ? 0.003 : 0.02;    // on slopes up to 60 degrees
       if (there)
         EXPECT_NEAR(std::sqrt(plan * plan + z * z), r + H, within * H) << x << " " << y << " " << z;
     }
@@ -259,7 +258,7 @@ TEST(SunkSurface, a_slip_surface_that_fades_out_still_meets_the_ground)
       end = x;
     }
   EXPECT_GT(end, 3.0 * H);
-  EXPECT_LT(end, 6.0 * H);
+  EXPECT_LT(end, 4.5 * H);    // in its plane it would not come up before 19 H
 }
 
 TEST(SunkSurface, a_body_with_walls_is_enlarged_by_H)
@@ -366,9 +365,9 @@ bool leaks(const Ground &balls, double half, double zlo, double zhi, double d, d
   return flood.gets_through();
 }
 
-// how close centres of soil in the body come to fixed ones, at least that many to tell
+// how close centres of soil in the body come to fixed ones, over columns of it that are a pitch apart
 
-double closest(const std::vector<double> &xyz, const Bed &bed, double half, double pitch)
+double closest(const std::vector<double> &xyz, const Bed &bed, double half, double pitch = 0.06)
 {
   double nearest2 = std::numeric_limits<double>::infinity();
   for (double y = -half; y <= half; y += pitch)
@@ -376,11 +375,11 @@ double closest(const std::vector<double> &xyz, const Bed &bed, double half, doub
       double bottom, top;
       if (!bed.height(x, y, 0.0, bottom)) continue;
       bed.ground(x, y, 0.0, top);
-      for (double z = bottom; z <= top; z += pitch)
-        for (size_t k = 0; k < xyz.size(); k += 3) {
-          const double dx = xyz[k] - x, dy = xyz[k + 1] - y, dz = xyz[k + 2] - z;
-          nearest2 = std::min(nearest2, dx * dx + dy * dy + dz * dz);
-        }
+      for (size_t k = 0; k < xyz.size(); k += 3) {
+        const double dx = xyz[k] - x, dy = xyz[k + 1] - y;
+        const double dz = xyz[k + 2] - std::min(std::max(xyz[k + 2], bottom), top);
+        nearest2 = std::min(nearest2, dx * dx + dy * dy + dz * dz);
+      }
     }
   return std::sqrt(nearest2);
 }
@@ -407,8 +406,8 @@ TEST(SunkSurface, soil_on_a_sunk_slip_sphere_finds_no_way_through)
       const Ground balls = place(bed, ground, half, d, field, d);
       EXPECT_FALSE(leaks(balls, half, -high - 3.0, high, d, field))
           << degrees << " field " << field;
-      EXPECT_GT(closest(balls.slip, bed, half, 0.25), 0.99 * d);
-      EXPECT_GT(closest(balls.field, bed, half, 0.25), 0.99 * d);
+      EXPECT_GT(closest(balls.slip, bed, half), 0.97 * d);    // the crown is vertical
+      EXPECT_GT(closest(balls.field, bed, half), 0.99 * d);
     }
 
     // slip balls below the body alone leave a ring open
@@ -434,7 +433,7 @@ TEST(SunkSurface, soil_in_a_sunk_pit_with_walls_finds_no_way_through)
   for (double d : {0.7, 1.0, 1.7}) {
     const Ground balls = place(bed, ground, half, d, d, d);
     EXPECT_FALSE(leaks(balls, half, -10.0, 5.0, d, d)) << d;
-    EXPECT_GT(closest(balls.slip, bed, half, 0.2), 0.95 * d);    // the corners are sharp
-    EXPECT_GT(closest(balls.field, bed, half, 0.2), 0.95 * d);
+    EXPECT_GT(closest(balls.slip, bed, half), 0.95 * d);    // the corners are sharp
+    EXPECT_GT(closest(balls.field, bed, half), 0.95 * d);
   }
 }

@@ -60,6 +60,9 @@ and speeds m/s where the run is in units si; the values are not converted.
   DUMP...             dumps, with one or several snapshots each, in any order
   -o OUT              begin of the names of all files, may contain a folder that exists
 
+  --deposit PREFIX    what fix deposit/grid wrote: as --terrain PREFIX.base.asc (the ground without
+                      the body: the scar shows) --raster PREFIX.thickness.asc
+                      --surface PREFIX.surface.asc, and the time step of PREFIX.summary.yaml
   --dt DT             time = step * DT; without it the dump's ITEM: TIME, or else the step number
   --terrain FILE.asc  the ground, at its cell centres
   --raster FILE.asc...  rasters, such as PREFIX.thickness.asc, laid on the ground
@@ -74,8 +77,7 @@ Writes OUT.pvd (the time series: open this one), OUT/OUT_STEP.vtp, OUT.terrain.v
 for each raster, OUT.balls.vtp. Either all files are written or none.
 
 Example:
-  dump2vtk embankment.*.dump --dt 0.00112 --terrain terrain.asc \
-      --raster embankment.thickness.asc --surface embankment.surface.asc -o embankment
+  dump2vtk embankment.*.dump --deposit embankment -o embankment
 )";
 
 namespace {
@@ -108,9 +110,10 @@ std::string reason(const std::error_code &error)
 
 struct Options {
   std::vector<std::string> dumps, rasters, balls;
-  std::string terrain, surface;
-  fs::path out;       // without the ending of any file
-  double dt = 0.0;    // 0: not given
+  std::string terrain, surface, deposit;
+  fs::path out;            // without the ending of any file
+  double dt = 0.0;         // 0: not given
+  double run_dt = 0.0;     // of the deposit's summary, for dumps without a time
   double diameter = 0.0;
   bool single = false, skip = false;
 };
@@ -123,12 +126,40 @@ double positive(const std::string &name, const std::string &word)
   return value;
 }
 
+// time step in the summary that fix deposit/grid wrote
+
+double time_step_of(const std::string &path)
+{
+  LineReader file(path);
+  while (file.next()) {
+    const auto &words = file.words();
+    double value;
+    if (words.size() < 2 || words[0] != "dt:") continue;
+    if (!to_number(words[1], value) || !(value > 0.0) || !std::isfinite(value))
+      file.fail("dt must be a number > 0, got " + std::string(words[1].substr(0, 40)));
+    return value;
+  }
+  throw std::runtime_error(path + " must be a summary of fix deposit/grid, with a line dt:, got none");
+}
+
+// what --deposit stands for, where the command line does not say it otherwise
+
+void add_deposit(Options &options)
+{
+  if (options.terrain.empty()) options.terrain = options.deposit + ".base.asc";
+  if (options.surface.empty()) options.surface = options.deposit + ".surface.asc";
+  options.rasters.insert(options.rasters.begin(), options.deposit + ".thickness.asc");
+  if (!options.dumps.empty() && options.dt == 0.0)
+    options.run_dt = time_step_of(options.deposit + ".summary.yaml");
+}
+
 Options parse(const std::vector<std::string> &words)
 {
   Options options;
   std::string out;
   std::map<std::string, std::string *> one = {
-      {"--terrain", &options.terrain}, {"--surface", &options.surface}, {"-o", &out}};
+      {"--terrain", &options.terrain}, {"--surface", &options.surface},
+      {"--deposit", &options.deposit}, {"-o", &out}};
   std::map<std::string, std::vector<std::string> *> many = {{"--raster", &options.rasters},
                                                             {"--balls", &options.balls}};
   std::map<std::string, double *> numbers = {{"--dt", &options.dt},
@@ -184,9 +215,11 @@ Options parse(const std::vector<std::string> &words)
     }
   }
 
+  if (!options.deposit.empty()) add_deposit(options);
   if (options.dumps.empty() && options.terrain.empty() && options.rasters.empty() &&
       options.balls.empty())
-    throw std::runtime_error("no input: give dumps, --terrain, --raster or --balls; see --help");
+    throw std::runtime_error(
+        "no input: give dumps, --deposit, --terrain, --raster or --balls; see --help");
   if (out.empty()) throw std::runtime_error("-o OUT is missing; see --help");
   if (!options.balls.empty() && options.diameter == 0.0)
     throw std::runtime_error("--balls needs --diameter");
@@ -571,6 +604,7 @@ void convert_dumps(const Options &options, Output &output, Progress &progress, s
 
       const double time = options.dt > 0.0 ? snapshot.step * options.dt
           : snapshot.has_time              ? snapshot.time
+          : options.run_dt > 0.0           ? snapshot.step * options.run_dt
                                            : snapshot.step;
       const Entry &other = series.empty() ? Entry{} : series.begin()->second;
       if (options.dt == 0.0 && !series.empty() && other.has_time != snapshot.has_time)

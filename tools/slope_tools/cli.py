@@ -21,6 +21,7 @@ COMMANDS = {
     "terrain": "survey rasters (GeoTIFF, ESRI ASCII) to the plain terrain.asc that decks read",
     "polygon": "polygons (GeoJSON, shapefile, CSV, WKT) to the .csv in local metres that decks read",
     "volume": "what must be removed from a road, per mesh cell and in total, above a cut surface",
+    "export": "every raster of a run as a GeoTIFF in the survey's coordinates, for a GIS",
     "score": "a run's deposit against a mapped one: overlap, run-out, volume",
     "study": "one deck over lists of its variables, several runs at a time: table, envelope, exceedance",
     "sensitivity": "one variable of a deck at a time: what it does to the volumes, how far one run can be trusted",

@@ -193,6 +193,8 @@ def told(best: Mapping[str, Any]) -> List[str]:
     for entry in best["differences"]:
         if entry["clear"] is not None:
             word = "more than" if entry["clear"] else "no more than"
-            lines.append(f"{entry['variable']}: {number(entry['by_m3'])} m3 between {entry['smallest_at']} and "
-                         f"{entry['largest_at']} are {word} chance makes, {number(entry['chance_m3'])}")
+            by, chance = (headline.text(entry[key], headline.place_of_digits(entry["chance_m3"]))
+                          for key in ("by_m3", "chance_m3"))
+            lines.append(f"{entry['variable']}: {by} m3 between {entry['smallest_at']} and {entry['largest_at']} are "
+                         f"{word} chance makes, {chance}")
     return lines + [f"it may be exceeded: {doubt}" for doubt in best["doubts"]]

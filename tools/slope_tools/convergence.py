@@ -13,7 +13,7 @@ from typing import List, Optional, Sequence, Tuple
 import numpy as np
 from scipy import stats
 
-from .headline import CONFIDENCE, SizeError
+from .headline import CONFIDENCE, ROUNDING, SizeError
 
 # exponents of s(d) = c d^p: by the number of balls in a volume, which goes as d^-3; and none
 COUNTING, EVEN = 1.5, 0.0
@@ -139,7 +139,7 @@ def fit(runs: Sequence[Tuple[float, Sequence[float]]]) -> Convergence:
     else from the residuals alone, which are larger (F test of the lack of fit; Draper and Smith, Applied Regression
     Analysis, 1998, section 2.1).
     """
-    runs = sorted(runs, key=lambda one: -one[0])
+    runs = [(size, without_rounding(values)) for size, values in sorted(runs, key=lambda one: -one[0])]
     d = np.array([size for size, _ in runs], float)
     counts = np.array([len(values) for _, values in runs], float)
     means = np.array([math.fsum(values) / len(values) for _, values in runs])
@@ -150,8 +150,8 @@ def fit(runs: Sequence[Tuple[float, Sequence[float]]]) -> Convergence:
     repeats = math.fsum((value - mean) ** 2 / one
                         for (_, values), mean, one in zip(runs, means, spread) for value in values)
     about = float(np.sum(weights * residuals ** 2))
-    if about < 1e-24 * float(np.sum(weights * means ** 2)):
-        about = 0.0         # but for rounding
+    if about < ROUNDING ** 2 * float(np.sum(weights * means ** 2)):
+        about = 0.0
     free, of_line = int(counts.sum()) - len(runs), len(runs) - 2
     lack = None
     if free and of_line:
@@ -171,6 +171,12 @@ def fit(runs: Sequence[Tuple[float, Sequence[float]]]) -> Convergence:
     sizes = [size_of(result, *each, variance) for each in zip(
         runs, *(one.tolist() for one in (means, means - residuals, spread / counts, influence[0])))]
     return Convergence(**{**result.__dict__, "sizes": tuple(sizes)})
+
+
+def without_rounding(values: Sequence[float]) -> Sequence[float]:
+    """Values that differ by rounding only are one value, so that their scatter is 0."""
+    mean = math.fsum(values) / len(values)
+    return [mean] * len(values) if np.ptp(values) <= ROUNDING * abs(mean) else values
 
 
 def size_of(result: Convergence, run, mean: float, fitted: float, unit: float, influence: float,
@@ -199,7 +205,8 @@ def parabola(d, means, weights, repeats: float, free: int):
     total = free + len(d) - 3
     variance = (repeats + float(np.sum(weights * residuals ** 2))) / total
     deviations = np.sqrt(variance * np.diag(unit))
-    clear = abs(found[2]) > stats.t.ppf(CONFIDENCE, total) * deviations[2]
+    clear = abs(found[2]) > max(stats.t.ppf(CONFIDENCE, total) * deviations[2],
+                                ROUNDING * np.abs(means).max() / d.max() ** 2)
     small, _, curve = (Estimate(float(value), float(deviation)) for value, deviation in zip(found, deviations))
     return curve, small, bool(clear)
 

@@ -23,6 +23,7 @@ from .errors import SlopeError
 from .rasters import Raster
 
 SAME_BALANCE = 1e-6    # relative; volume of the raster and in the summary
+SAME_HEIGHT = 1e-7     # of the largest height; two rasters of nine digits
 ON_LINE = 1e-9         # cells; lines that are closer to each other are one
 
 
@@ -71,7 +72,7 @@ def read(prefix, terrain, warn):
                          f"{thickness.z[row, column]:g}")
     terrain, place = find_terrain(prefix, terrain, thickness, warn)
     raster = thickness._replace(crs=place.crs, offset=place.offset) if place else thickness
-    deposit = Deposit(str(prefix), raster, base_of(prefix, thickness, surface), summary, terrain)
+    deposit = Deposit(str(prefix), raster, read_base(prefix, thickness, surface), summary, terrain)
     told = summary["volume"]["on_grid"]
     if abs(deposit.volume - told) > SAME_BALANCE * max(told, 1e-30):
         raise SlopeError(names[0], f"must hold the volume that {names[2]} tells, {told:.10g} m3: are they of one run?",
@@ -84,14 +85,23 @@ def read(prefix, terrain, warn):
     return deposit
 
 
-def base_of(prefix, thickness, surface):
-    """Heights of the ground without the body: PREFIX.base.asc, else what is left of the surface without the deposit."""
+def read_base(prefix, thickness, surface):
+    """The ground without the body (m): PREFIX.base.asc; of an older run, which wrote none, surface - thickness."""
     name = f"{prefix}.base.asc"
-    if not Path(name).is_file():    # of an older version
-        return surface.z - thickness.z
+    difference = surface.z - thickness.z
+    if not Path(name).is_file():
+        return difference
     base = rasters.read(name, heights=False)
     if base.z.shape != thickness.z.shape or base.transform != thickness.transform:
         raise SlopeError(name, f"must have the grid of {prefix}.thickness.asc")
+    largest = np.nanmax(np.abs(surface.z), initial=1.0)
+    wrong = np.argwhere((np.isnan(base.z) != np.isnan(difference))
+                        | (np.abs(base.z - difference) > SAME_HEIGHT * largest))
+    if len(wrong):
+        row, column = wrong[0]
+        raise SlopeError(f"{name}: row {row + 1} column {column + 1}",
+                         f"must be {prefix}.surface.asc less the thickness, {difference[row, column]:.9g}: are they of "
+                         "one run?", f"{base.z[row, column]:.9g}")
     return base.z
 
 

@@ -15,6 +15,7 @@ from scipy import stats
 CONFIDENCE = 0.975      # of the next single run: it is below the headline in 39 of 40 studies
 DIFFERENT = 0.95        # a difference is called one if chance makes it in fewer than one of twenty studies
 DIGITS = 3              # of a volume whose scatter is not known
+ROUNDING = 1e-9         # of a volume: what differs by less does not differ
 
 
 @dataclass(frozen=True)
@@ -34,7 +35,9 @@ class Combination:
     @property
     def squares(self) -> float:
         """Sum of the squares of the deviations from the mean, m6."""
-        return math.fsum((volume - self.mean) ** 2 for volume in self.volumes.values())
+        mean = self.mean
+        deviations = [volume - mean for volume in self.volumes.values()]
+        return math.fsum(one ** 2 for one in deviations if abs(one) > ROUNDING * abs(mean))
 
     @property
     def scatter(self) -> Optional[float]:
@@ -154,7 +157,7 @@ def shared(combinations: Sequence[Combination]) -> float:
     mean = math.fsum(rows) / count
     within = math.fsum((value - rows[k]) ** 2 for k, row in enumerate(table) for value in row)
     between = min(within, count * math.fsum((column - mean) ** 2 for column in columns))
-    if within == 0:
+    if within <= (ROUNDING * mean) ** 2:
         return 1.0
     one = between / (repeats - 1) / count
     rest = (within - between) / (repeats - 1) / count

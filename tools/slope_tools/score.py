@@ -12,9 +12,9 @@ from typing import NamedTuple, Optional
 import numpy as np
 from affine import Affine
 
-from . import deposit, maps, polygons, rasters
+from . import deposit, maps, polygons, rasters, reach
 from .cli import number
-from .connected import top
+from .connected import connected, top
 from .deposit import coverage, extent
 from .errors import SlopeError
 from .rasters import Raster, crs_name
@@ -92,7 +92,8 @@ def run(args):
                      "moving": run_.summary["moving"]},
              "threshold": args.threshold, "cell": run_.cell, "mesh": mesh.size,
              "area": overlap(simulated, observed, run_.cell),
-             "runout": runout(run_, simulated, observed)}
+             "runout": {**runout(run_, simulated, observed), "balls": balls(run_),
+                        "connected": connected_runout(run_, args.threshold, observed)}}
     table = mesh_table(run_, simulated, observed, mesh)
     if observed.thickness is not None:
         about["bulk_factor"] = run_.bulk
@@ -230,7 +231,46 @@ def runout(run_, simulated, observed):
             found[name] = {"azimuth": round(math.degrees(math.atan2(*way)) % 360, 9), **numbers}
         else:
             found.update(numbers)
+    found["quantiles_of"] = "area" if observed.thickness is None else "volume"
+    found["quantiles"] = quantiles(run_, simulated, observed, (x, y))
     return found
+
+
+def quantiles(run_, simulated, observed, place):
+    """Distances (m) of cell centres from a place that shares of both deposits stay within.
+
+    Shares of the volume where both have a thickness; of the area where the mapped deposit is an outline.
+    """
+    ours, theirs = (simulated, observed.share) if observed.thickness is None else (run_.raster.z, observed.thickness)
+    rows, columns = np.indices(ours.shape)
+    x, y = run_.raster.transform * (columns + 0.5, rows + 0.5)
+    distance = np.hypot(x - place[0], y - place[1])
+    found = []
+    for share in reach.SHARES:
+        near, far = (round(reach.within(distance[of > 0], of[of > 0], share), 9) for of in (ours, theirs))
+        found.append({"share": share, "simulated": near, "observed": far, "difference": round(near - far, 9)})
+    return found
+
+
+def connected_runout(run_, threshold, observed):
+    """Of the largest connected part of the simulated deposit; its distance against the farthest mapped point (m)."""
+    part = connected(run_, threshold)
+    if part is None:
+        return None
+    found = {"parts": part.parts, "area": round(part.area, 9), "volume": round(part.volume, 9),
+             "share_of_volume": round(part.share, 9), "distance": round(part.distance, 9),
+             "reach_angle": None if part.reach_angle is None else round(part.reach_angle, 9)}
+    if len(observed.points):
+        x, y = top(run_)[:2]
+        far = round(float(np.hypot(*(observed.points - (x, y)).T).max()), 9)
+        found.update(observed=far, difference=round(found["distance"] - far, 9))
+    return found
+
+
+def balls(run_):
+    """Distance (m) and reach angle (degrees) that shares of the balls' volume stay within; None of an older run."""
+    told = (run_.summary.get("travel") or {}).get("quantiles")
+    return told if isinstance(told, list) else None
 
 
 def centroid(observed, raster):
@@ -328,6 +368,14 @@ def summary(about, folder):
     if out["difference"] is not None:
         lines.append(f"run-out: {out['simulated']:.1f} m simulated, {out['observed']:.1f} m mapped: "
                      f"{out['difference']:+.1f} m")
+    if out["connected"] is not None and "difference" in out["connected"]:
+        part = out["connected"]
+        lines.append(f"connected deposit, {100 * part['share_of_volume']:.1f} % of the volume: "
+                     f"{part['distance']:.1f} m, {part['difference']:+.1f} m")
+    if out.get("quantiles"):
+        most = out["quantiles"][-1]
+        lines.append(f"{100 * most['share']:g} % of the {out['quantiles_of']}: within {most['simulated']:.1f} m "
+                     f"simulated, {most['observed']:.1f} m mapped: {most['difference']:+.1f} m")
     if "volume" in about:
         volume = about["volume"]
         lines.append(f"volume: {volume['simulated']:.1f} m3 simulated (bulk factor {about['bulk_factor']:.6g}), "

@@ -41,9 +41,11 @@ def table(settings, repeated, rows, defaults):
 
 
 def volume(value, scatter):
-    """A volume rounded to what is known: by its scatter, else to three digits."""
-    known = scatter is not None and scatter.deviation > 0
-    return headline.text(value, headline.place(scatter.deviation) if known else headline.place_of_digits(value))
+    """A volume rounded to what is known: by its scatter, else to three digits; if repeats agree, to whole m3."""
+    if scatter is not None and scatter.deviation > 0:
+        return headline.text(value, headline.place(scatter.deviation))
+    place = headline.place_of_digits(value)
+    return headline.text(value, min(1.0, place) if scatter else place)
 
 
 def varied(settings):

@@ -7,7 +7,7 @@ from typing import NamedTuple, Optional
 
 import numpy as np
 
-from . import deposit, dumps, figures, rasters
+from . import deposit, dumps, figures, rasters, reach
 from .cli import number
 from .errors import SlopeError
 from .figures import plt
@@ -37,6 +37,7 @@ class Arrival(NamedTuple):
     step: int
     id: np.ndarray
     place: np.ndarray               # x y z
+    volume: Optional[np.ndarray]    # of the balls, m3; None: the dump has no diameter, all count the same
     at: dict                        # direction: coordinate, m
     moving: Optional[int]           # balls faster than MOVING, None without velocities
     start: Optional[np.ndarray]     # x y z of each ball at the start, None without
@@ -109,6 +110,9 @@ def run(args):
         about["travel"] = statistics([plan(one.place - one.start) for one in arrivals])
         about["runout"] = {key: spread([one["runout"][key] for one in single]) for key in
                            ("distance", "drop", "reach_angle")}
+        about["runout"]["quantiles"] = [
+            {"share": share, **{key: spread([one["runout"]["quantiles"][k][key] for one in single])
+                                for key in ("distance", "reach_angle")}} for k, share in enumerate(reach.SHARES)]
     about["each_run"] = single
     about["warnings"] = warnings
     with deposit.complete(args.output) as new:
@@ -124,7 +128,7 @@ def run(args):
 
 def read(path, start, args):
     """The Arrival of a run."""
-    rest = chosen(dumps.last(path, ("type", "vx", "vy", "vz")), args.type)
+    rest = chosen(dumps.last(path, ("type", "vx", "vy", "vz", "diameter", "radius")), args.type)
     place = rest.place
     turn = math.radians(args.axis)
     way = np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
@@ -142,8 +146,15 @@ def read(path, start, args):
         if len(other):
             raise SlopeError(start, f"must have the balls of {path}", f"none with id {other[0]:g}")
         before, top, missing = first.place[same], first.place[first.of["z"].argmax()], len(ids) - len(same)
-    return Arrival(str(path), rest.step, rest.of["id"].astype(int), place, {"along": along, "across": across}, moving,
-                   before, top, missing)
+    return Arrival(str(path), rest.step, rest.of["id"].astype(int), place, volume_of(rest),
+                   {"along": along, "across": across}, moving, before, top, missing)
+
+
+def volume_of(snapshot):
+    """Volume of each ball, m3; None where the dump has neither diameter nor radius."""
+    if "diameter" in snapshot.of:
+        return math.pi / 6 * snapshot.of["diameter"] ** 3
+    return math.pi / 6 * (2 * snapshot.of["radius"]) ** 3 if "radius" in snapshot.of else None
 
 
 def chosen(snapshot, types):
@@ -206,12 +217,19 @@ def plan(difference):
 
 
 def runout(one):
-    """From the highest ball at the start to the farthest one now: distance in plan (m), drop (m), angle (degrees)."""
+    """From the highest ball at the start to the farthest one now: distance in plan (m), drop (m), angle (degrees).
+
+    And quantiles: what shares of the volume (of the balls, where the dump has no diameter) stay within.
+    """
     distance = plan(one.place - one.top)
     far = distance.argmax()
     drop = one.top[2] - one.place[far, 2]
+    volume = np.ones(len(distance)) if one.volume is None else one.volume
+    shares = [{"share": share, "distance": round(within, 9), "reach_angle": round(angle, 9)}
+              for share, within, angle in reach.quantiles(one.place, one.top, volume)]
     return {"distance": round(float(distance[far]), 9), "drop": round(float(drop), 9),
-            "reach_angle": round(math.degrees(math.atan2(drop, distance[far])), 9), "ball": int(one.id[far])}
+            "reach_angle": round(math.degrees(math.atan2(drop, distance[far])), 9), "ball": int(one.id[far]),
+            "quantiles_of": "balls" if one.volume is None else "volume", "quantiles": shares}
 
 
 def each(one):
@@ -284,8 +302,11 @@ def summary(about, folder):
             lines.append(f"{name}: median {of['p50']:.3f} m{band}, 5 to 95 % {of['p5']:.3f} to {of['p95']:.3f} m, "
                          f"all {of['min']:.3f} to {of['max']:.3f} m")
     if "runout" in about:
+        most = about["runout"]["quantiles"][-1]
+        of_runs = " (the farthest and the flattest of the runs)" if about["runs"] > 1 else ""
+        lines.append(f"run-out: {100 * most['share']:g} % within {most['distance']['highest']:.3f} m, reach angle "
+                     f"{most['reach_angle']['lowest']:.1f} degrees{of_runs}")
         far, flat = about["runout"]["distance"]["highest"], about["runout"]["reach_angle"]["lowest"]
-        lines.append(f"run-out: {far:.3f} m, reach angle {flat:.1f} degrees"
-                     + (" (the farthest and the flattest of the runs)" if about["runs"] > 1 else ""))
+        lines.append(f"farthest ball: {far:.3f} m, reach angle {flat:.1f} degrees")
     lines.append(f"written to {folder}: {' '.join(about['files'])}")
     return "\n".join(lines)

@@ -273,12 +273,16 @@ def write(output, outcomes, about, peers=None):
     out = csv.DictWriter(table, COLUMNS, lineterminator="\n")
     out.writeheader()
     out.writerows({**one, "commands": "; ".join(one["commands"])} for one in rows)
+
+    def of_module(case):        # several modules may be about one folder
+        names = {claim.name for claim in case.CLAIMS}
+        return [one for one in rows if one["name"] in names]
+
     cases = [{"folder": case.CASE, "title": case.__doc__.splitlines()[0],
               "intro": " ".join(case.__doc__.split("\n", 1)[1].split()),
               "rows": [{**one, "got": text(one["got"]), "control_got": text(one["control_got"])}
-                       for one in rows if one["case"] == case.CASE],
-              "commands": list(dict.fromkeys(command for one in rows if one["case"] == case.CASE
-                                             for command in one["commands"]))}
+                       for one in of_module(case)],
+              "commands": list(dict.fromkeys(command for one in of_module(case) for command in one["commands"]))}
              for case in verification.cases()]
     content = {"about": about, "peers": peers, "cases": [case for case in cases if case["rows"]],
                "errata": [{**one._asdict(), "rows": [other for case in cases for other in case["rows"]

@@ -1,4 +1,4 @@
-"""The claims that the package is held to: one module per case, each with its runs, closed forms, tolerances, controls.
+"""The claims that the package is held to: one module per case or question, each with its runs, closed forms, tolerances, controls.
 
 `slope verify` runs them all, tests/decks/test_verification.py the quick ones. A module has a docstring, whose first
 line is its title, CASE, the folder in inputs/ that it is about, and CLAIMS. A new one is one more name in MODULES.
@@ -6,8 +6,8 @@ line is its title, CASE, the folder in inputs/ that it is about, and CLAIMS. A n
 import importlib
 
 MODULES = ("restitution", "timestep", "slide_roll", "rolling_resistance", "apparent_restitution", "oblique_impact",
-           "rolling", "collisions", "tochigi",
-           "column_collapse", "heap")
+           "sticking_impact", "rolling", "collisions", "rough_gas", "tochigi", "column_collapse", "heap",
+           "resting_heap")
 
 
 def cases():

@@ -1,0 +1,27 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#ifndef SLOPE_CONTACT_HOLDER_H
+#define SLOPE_CONTACT_HOLDER_H
+
+namespace LAMMPS_NS {
+
+// Who holds contacts of the balls beside the pair style: the walls. Each announces itself in its
+// init(); the pair style asks all of them for their contacts before any force is computed.
+class ContactHolder {
+ public:
+  virtual ~ContactHolder() {}
+
+  // which contacts touch now (starting: in the step that has just ended), counted with each ball;
+  // lists_new: the neighbor list, and so those made with it, has been built since the last step
+  virtual void find_contacts(bool starting, bool lists_new) = 0;
+
+  // of the springs of this rank's contacts, J
+  virtual double elastic_energy() const = 0;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

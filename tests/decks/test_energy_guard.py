@@ -1,0 +1,100 @@
+"""The energy guard warns where the energy rises, and only there: springs of sliding contacts hold no energy."""
+import pytest
+
+from deck_helpers import run_deck
+
+START = """
+units        si
+atom_style   sphere
+boundary     f f f
+comm_modify  vel yes
+variable     mass equal 2500*PI*0.02^3/6
+"""
+
+# a ball of 2 cm grazes a frozen one of its size without friction: the springs of its contact slide at all times
+GRAZE = START + """
+region       box block -1 1 -1 1 -1 1
+create_box   2 box
+create_atoms 1 single 0 0 0.02002
+create_atoms 2 single 0 0 0
+set          type * diameter 0.02 density 2500
+group        ball type 1
+group        held type 2
+pair_style   gran/restitution
+pair_coeff   * * stiffness 1e6 1e6 restitution {e} friction 0
+timestep     $({part}*0.25*sqrt(v_mass/1e6))
+neighbor     0.005 bin
+neigh_modify every 1 delay 0 check yes
+velocity     all set 0 0 0
+velocity     ball set 3 0 -1
+fix          hold held freeze
+fix          move ball nve/sphere
+compute      motion ball ke
+thermo_style custom step c_motion
+thermo       10
+run          $(round(40/{part}))
+"""
+
+# a ball lands on a frozen ball of 200 m, at 2 m/s along it, and slides with a friction of 5 degrees until it rolls
+LAND = START + """
+region       box block -120 120 -120 120 -220 10
+create_box   2 box
+create_atoms 1 single 0 0 0.0101
+create_atoms 2 single 0 0 -100
+set          type 1 diameter 0.02 density 2500
+set          type 2 diameter 200 density 2500
+group        ball type 1
+group        held type 2
+pair_style   gran/restitution
+pair_coeff   * * stiffness 1e5 1e5 restitution {e} friction 5
+timestep     $({part}*0.25*sqrt(v_mass/1e5))
+neighbor     0.01 bin
+neigh_modify every 1 delay 0 check yes
+velocity     all set 0 0 0
+velocity     ball set 2 0 0
+fix          weight ball gravity 9.81 vector 0 0 -1
+fix          hold held freeze
+fix          move ball nve/sphere
+compute      motion ball ke
+compute      spin ball erotate/sphere
+thermo_style custom step c_motion c_spin
+thermo       $(round(20/{part}))
+run          $(round(4000/{part}))
+"""
+
+# a ball is put on a frozen one; the dashpot is 69 times the critical one, which scheme plain does not follow
+BURST = START + """
+region       box block -1 1 -1 1 -1 1
+create_box   2 box
+create_atoms 1 single 0 0 0.02
+create_atoms 2 single 0 0 0
+set          type * diameter 0.02 density 2500
+group        ball type 1
+group        held type 2
+pair_style   gran/restitution scheme plain
+pair_coeff   * * stiffness 1e6 1e6 damping $(138*sqrt(1e6*v_mass)) 0
+timestep     $(0.25*sqrt(v_mass/1e6))
+neighbor     0.005 bin
+neigh_modify every 1 delay 0 check yes
+velocity     all set 0 0 0
+fix          weight ball gravity 9.81 vector 0 0 -1
+fix          hold held freeze
+fix          move ball nve/sphere
+thermo_modify lost ignore
+run          600
+"""
+
+
+def alarms(log):
+    return [line for line in log.splitlines() if line.startswith("WARNING") and "the energy of the balls" in line]
+
+
+@pytest.mark.parametrize("part", [1, 0.1])
+@pytest.mark.parametrize("e", [0.05, 0.1, 0.5])
+@pytest.mark.parametrize("deck", [GRAZE, LAND], ids=["graze", "land"])
+def test_sliding_is_no_alarm(tmp_path, deck, e, part):
+    assert alarms(run_deck(deck.format(e=e, part=part), tmp_path)) == []
+
+
+def test_growing_energy_is_one(tmp_path):
+    assert alarms(run_deck(BURST, tmp_path))

@@ -1,0 +1,166 @@
+"""tools/slope export: every raster of a run, with its values, place and CRS; and the base of a run that has one."""
+import os
+import re
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+import rasterio
+import yaml
+
+from run_helpers import (CRS_M, EAST, NORTH, TOP, here, run_command, write_asc, write_run,  # noqa: F401
+                         write_sidecar)
+from tiny_collapse import LMP, read_asc, write_case
+
+from slope_tools import deposit, export
+from slope_tools.errors import SlopeError
+
+pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
+
+
+@pytest.fixture
+def slope(here, capsys):  # noqa: F811
+    """Run `slope export ARGUMENTS`, in the test's folder; gives status, stdout, stderr."""
+    return lambda arguments: run_command("export", arguments, capsys)
+
+
+def write_rasters(prefix="run", cell=2.5):
+    """A run of 40 x 60 cells with all its rasters, each with other values; the values by kind."""
+    random = np.random.default_rng(2)
+    thickness = np.clip(random.normal(0, 1, (40, 60)), 0, None)
+    base = 50 + random.normal(0, 5, (40, 60))
+    base[3, 4] = np.nan
+    write_run(thickness, base, cell, prefix)
+    values = {"base": base, "surface": base + thickness, "thickness": thickness}
+    for kind in ("max_thickness", "max_speed", "max_energy", "arrival", "last_motion"):
+        values[kind] = random.gamma(2.0, 1e3 if kind == "max_energy" else 5.0, (40, 60))
+    values["arrival"][:, :10] = np.nan
+    for kind in set(values) - {"surface", "thickness"}:
+        write_asc(f"{prefix}.{kind}.asc", values[kind], cell)
+    return values
+
+
+def test_every_raster_in_the_coordinates_of_the_survey(slope):
+    write_sidecar(40, 60, 2.5)
+    values = write_rasters()
+    write_asc("run.900.thickness.asc", values["thickness"] / 2, 2.5)
+    write_asc("run.other.thickness.asc", values["thickness"], 2.5)     # the prefix run.other
+    write_asc("rerun.thickness.asc", values["thickness"], 2.5)
+    status, out, err = slope("run -o gis")
+    assert (status, err) == (0, "") and out.startswith("9 rasters, EPSG:6677, cells of 2.5 m\n")
+    expected = {**{f"run.{kind}": of for kind, of in values.items()}, "run.900.thickness": values["thickness"] / 2}
+    assert sorted(os.listdir("gis")) == sorted([f"{name}.tif" for name in expected] + ["export.yaml"])
+    about = yaml.safe_load(Path("gis/export.yaml").read_text())
+    assert about["crs"] == CRS_M and about["origin"] == {"east": EAST, "north": NORTH} and about["warnings"] == []
+    told = {one["file"]: one for one in about["rasters"]}
+    for name, of in expected.items():
+        with rasterio.open(f"gis/{name}.tif") as tif:
+            assert tif.crs == rasterio.crs.CRS.from_user_input(CRS_M)
+            assert tuple(tif.bounds) == (EAST, NORTH, EAST + 150, NORTH + 100) and tif.res == (2.5, 2.5)
+            found = tif.read(1, masked=True).filled(np.nan)
+            assert np.array_equal(found, of, equal_nan=True), name
+            one = told[f"{name}.tif"]
+            assert tif.descriptions == (f"{one['quantity']} ({one['unit']})",)
+        assert (one["min"], one["max"]) == (np.nanmin(of), np.nanmax(of))
+        assert one["nodata_cells"] == np.isnan(of).sum()
+        assert one.get("step") == (900 if "900" in name else None)
+    assert [one["file"] for one in about["rasters"]][0] == "run.base.tif"
+    assert told["run.max_energy.tif"]["unit"] == "J" and told["run.arrival.tif"]["unit"] == "s"
+
+
+def test_without_a_terrain_in_local_metres(slope):
+    write_rasters()
+    status, out, err = slope("run")
+    assert status == 0 and "local metres, no CRS" in out
+    assert err.count("\n") == 1 and "no --terrain and no terrain.asc: no CRS" in err
+    with rasterio.open("run.export/run.base.tif") as tif:
+        assert tif.crs is None and tuple(tif.bounds) == (0, 0, 150, 100)
+
+
+def test_an_older_run_has_no_base(slope):
+    write_sidecar(40, 60, 2.5)
+    write_rasters()
+    os.remove("run.base.asc")
+    status, out, err = slope("run")
+    assert status == 0 and out.startswith("7 rasters") and "no run.base.asc, as of a run by an older version" in err
+    assert not Path("run.export/run.base.tif").exists()
+
+
+def test_a_run_of_the_deck(slope, here):  # noqa: F811
+    """What fix deposit/grid writes is what is exported; the base is the ground with the scar."""
+    write_case(here)
+    subprocess.run([LMP, "-in", "in.tiny", "-var", "steps", "50"], check=True, stdout=subprocess.DEVNULL)
+    status, out, _ = slope("tiny")
+    assert status == 0 and out.startswith(f"{len(export.KINDS)} rasters")
+    listed = yaml.safe_load(Path("tiny.summary.yaml").read_text())["files"]
+    assert {name.replace(".asc", ".tif") for name in listed} | {"export.yaml"} == set(os.listdir("tiny.export"))
+    for name in listed:
+        with rasterio.open(f"tiny.export/{name.replace('.asc', '.tif')}") as tif:
+            assert np.array_equal(tif.read(1, masked=True).filled(np.nan), read_asc(name), equal_nan=True), name
+    terrain, base = read_asc("terrain.asc"), read_asc("tiny.base.asc")
+    assert base.shape == terrain.shape and (terrain - base).max() > 2 and (base - terrain).max() < 1e-6
+
+
+@pytest.mark.parametrize("arguments, message", [
+    ("", "the following arguments are required: PREFIX"),
+    ("none", "none.thickness.asc: must be an existing file"),
+    ("run -o run.base.asc", "-o: must be a folder, got run.base.asc"),
+    ("run --terrain none.asc", "none.asc: must be an existing file"),
+    ("finer", "finer.max_speed.asc: must have the grid of the run's thickness"),
+    ("broken", "broken.arrival.asc: line 7: must hold numbers with a decimal point, got 'never'"),
+])
+def test_bad_input_is_one_line(slope, here, arguments, message):  # noqa: F811
+    write_sidecar(40, 60, 2.5)
+    for prefix in ("run", "finer", "broken"):
+        write_rasters(prefix)
+    write_asc("finer.max_speed.asc", np.zeros((80, 120)), 1.25)
+    lines = Path("broken.arrival.asc").read_text().splitlines()
+    Path("broken.arrival.asc").write_text("\n".join([*lines[:6], lines[6] + " never", *lines[7:]]) + "\n")
+    before = sorted(here.rglob("*"))
+    status, out, err = slope(arguments)
+    assert (status, out) == (2, "") and err.count("\n") == 1 and err.startswith("slope export: ") and message in err
+    assert sorted(here.rglob("*")) == before
+
+
+# --- the base, of all commands that read a run ---
+
+def test_the_base_of_a_run(here):  # noqa: F811
+    values = write_rasters()
+    found = deposit.read("run", None, lambda text: None)
+    assert np.array_equal(found.base, values["base"], equal_nan=True)
+    os.remove("run.base.asc")
+    found = deposit.read("run", None, lambda text: None)
+    assert found.base == pytest.approx(values["base"], nan_ok=True, abs=1e-9)
+
+
+@pytest.mark.parametrize("change, message", [
+    (lambda base: base + 1e-4, "run.base.asc: row 1 column 1: must be run.surface.asc less the thickness, "),
+    (lambda base: np.where(np.isnan(base), 50, base), "run.base.asc: row 4 column 5: must be run.surface.asc less "),
+    (lambda base: base[1:], "run.base.asc: must have the grid of run.thickness.asc"),
+])
+def test_a_base_of_another_run(here, change, message):  # noqa: F811
+    values = write_rasters()
+    write_asc("run.base.asc", change(values["base"]), 2.5)
+    with pytest.raises(SlopeError) as error:
+        deposit.read("run", None, lambda text: None)
+    assert message in str(error.value)
+
+
+# --- the page ---
+
+def doc_examples():
+    text = (TOP / "doc" / "src" / "tool_export.rst").read_text(encoding="ascii").replace("\\\n", " ")
+    return re.findall(r"^ +tools/slope export ((?!PREFIX).*)", text, re.MULTILINE)
+
+
+@pytest.mark.parametrize("command", [*doc_examples(), *re.findall("tools/slope export (.*)", export.EPILOG)])
+def test_every_example_of_the_page_and_the_help_runs(slope, here, command):  # noqa: F811
+    write_sidecar(40, 60, 2.5)
+    write_rasters("embankment")
+    Path("study/runs/001").mkdir(parents=True)
+    os.chdir("study/runs/001")
+    write_rasters("embankment")
+    os.chdir(here)
+    status, out, err = slope(command)
+    assert (status, err) == (0, "") and ("--help" in command or "8 rasters, EPSG:6677" in out)

@@ -1,0 +1,68 @@
+"""Nothing gains energy in collisions: rough gases, a dense gas, a ball in a slot
+
+inputs/08_collisions: in.rough_gas, 500 balls in a periodic box; in.slot, a ball in 40 gaps between two fixed balls. The
+energy is that of motion, spin and normal springs; what tangential springs hold is left out.
+"""
+import numpy as np
+
+from . import energy
+from .claims import AtMost, Claim, Control, Run
+from .collisions import NEWTON
+
+CASE = "08_collisions"
+GAS, SLOT = Run("08_collisions/in.rough_gas"), Run("08_collisions/in.slot")
+DENSE = GAS(friction=0, fraction=0.6, steps=100000)
+PLAIN = (SLOT(scheme="plain"),)
+THRICE = dict(scheme="plain", part=3, steps=3333)
+
+
+def rise(*results):
+    """Largest gain over the start."""
+    return max(energy.gas(result).max() for result in results) - 1
+
+
+def loss(result):
+    """In the end."""
+    return 1 - energy.gas(result)[-1]
+
+
+def slot_change(result):
+    """Largest change of the energy at any moment, of the balls that fly between impacts."""
+    return np.abs(energy.slot(result)[:, energy.gaps(result) >= 0.5] - 1).max()
+
+
+def slot_gain(result):
+    """Largest gain at any moment, of all."""
+    return energy.slot(result).max() - 1
+
+
+def slot_drift(result):
+    """Largest difference between the first and another tenth of the run, of the mean energy of any ball.
+
+    Where a ball leaves one wall while it touches the other, its energy swings: velocity Verlet gives the speed as the
+    mean of two half steps, and at the rule's step the ball has few steps between the walls. It must come back."""
+    tenths = np.array([part.mean(axis=0) for part in np.array_split(energy.slot(result)[1:], 10)])
+    return np.abs(tenths / tenths[0] - 1).max()
+
+
+def _rough(e):
+    which = tuple(GAS(e=e, ktkn=ratio) for ratio in (2 / 7, 0.5, 1.0))
+    return Claim(f"rough_gas_{e}", f"Rough gas, e {e}, friction 80, kt/kn 2/7, 0.5 and 1, 10,000 steps of the rule: "
+                 "largest gain of energy over that at the start", "", NEWTON, which, rise, AtMost(0.02),
+                 Control("scheme plain, three times the rule's step", (GAS(e=e, **THRICE),)))
+
+
+CLAIMS = [
+    *(_rough(e) for e in (1, 0.99, 0.95)),
+    Claim("dense_gas", "Elastic smooth gas of fraction 0.6, 1e5 steps of the rule: loss of energy", "", NEWTON,
+          (DENSE,), loss, AtMost(0.03), Control("restitution 0.9999", (DENSE(e=0.9999),))),
+    Claim("dense_gas_gain", "The same: largest gain of energy over that at the start", "", NEWTON, (DENSE,), rise,
+          AtMost(0.02), Control("scheme plain, three times the rule's step", (DENSE(**THRICE),))),
+    Claim("slot", "An undamped ball flies to and fro in a slot, gaps of 0.5 to 3 overlaps, 60,000 steps of the rule: "
+          "largest change of energy", "", NEWTON, (SLOT,), slot_change, AtMost(0.05), Control("scheme plain", PLAIN)),
+    Claim("slot_gain", "The same with gaps that squeeze the ball by up to an overlap: largest gain of energy", "",
+          NEWTON, (SLOT,), slot_gain, AtMost(0.05),
+          Control("scheme plain, twice the rule's step", (SLOT(scheme="plain", part=2),))),
+    Claim("slot_drift", "The same: largest change of the mean energy of a tenth of the run", "", NEWTON, (SLOT,),
+          slot_drift, AtMost(0.05), Control("restitution 0.9999", (SLOT(e=0.9999),))),
+]
