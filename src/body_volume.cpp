@@ -21,8 +21,8 @@ static constexpr int BISECTIONS = 10;           // of a step
 static constexpr size_t ENOUGH_MARKED = 200;    // cells: the body is no longer smaller than a cell
 static constexpr int MARKED_LEVELS = 5;
 static constexpr int LEVELS = 24;
-static constexpr double STEEPEST = 2.0;         // slope of the body's surface beyond the columns around
-static constexpr double SAME = 3.0e-4;          // two sums; the finer one is a third as wrong
+static constexpr double STEEPEST = 2.0;    // slope of the body's surface beyond the columns around
+static constexpr double SAME = 3.0e-4;     // two sums; the finer one is a third as wrong
 static constexpr size_t ENOUGH_FILLED = 20000;    // columns: fewer may agree by chance
 static constexpr size_t MOST_FILLED = 500000;
 
@@ -35,7 +35,8 @@ enum { X, Y, Z };
 namespace {
 class Chance {
  public:
-  Chance(int level, int i, int j) : state(((uint64_t) level << 58) ^ ((uint64_t) i << 29) ^ (uint64_t) j)
+  Chance(int level, int i, int j) :
+      state(((uint64_t) level << 58) ^ ((uint64_t) i << 29) ^ (uint64_t) j)
   {
     next();
   }
@@ -207,7 +208,8 @@ void BodyVolume::split()
     const double zlo = std::max(box.lo[Z], parent.zlo - margin);
     const double zhi = std::min(box.hi[Z], parent.zhi + margin);
     const double most = STEPS_IN_BODY * (zhi - zlo) / (parent.zhi - parent.zlo);
-    const int steps = std::min(FIRST_STEPS, std::max(STEPS, (int) std::min(most, 1.0 * FIRST_STEPS)));
+    const int steps =
+        std::min(FIRST_STEPS, std::max(STEPS, (int) std::min(most, 1.0 * FIRST_STEPS)));
     for (int j = std::max(0, 2 * parent.j - 2); j < std::min(n[Y], 2 * parent.j + 4); j++)
       for (int i = std::max(0, 2 * parent.i - 2); i < std::min(n[X], 2 * parent.i + 4); i++) {
         const auto known = place.insert({key(i, j), cells.size()});

@@ -55,7 +55,7 @@ class BodyVolume {
   double cell;                  // size
   int n[2], level;
   std::vector<Cell> cells;
-  size_t filled;                // columns with a part of the body
+  size_t filled;    // columns with a part of the body
 
   int64_t key(int i, int j) const { return (int64_t) j * n[0] + i; }
   bool there(double x, double y, double z) const

@@ -23,7 +23,7 @@ using Slope::MassLedger;
 
 static constexpr double PI = 3.14159265358979323846;
 static constexpr double DEGREE = PI / 180.0;
-static constexpr double SLOWEST = 1.0e-9;    // of the largest speed: the median is told down to here
+static constexpr double SLOWEST = 1.0e-9;    // of the largest speed: slower is 0 in the median
 static constexpr double SHARES[] = {0.5, 0.9, 0.95, 0.99};
 
 enum { X, Y, Z };

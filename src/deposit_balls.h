@@ -26,8 +26,8 @@ class DepositBalls : protected Pointers {
 
   // --- of this rank ---
 
-  bool selected(int i) const;               // whether an atom is in the group
-  void unwrap(int i, double *x) const;      // its place, which does not jump at periodic sides
+  bool selected(int i) const;             // whether an atom is in the group
+  void unwrap(int i, double *x) const;    // its place, which does not jump at periodic sides
 
   // into the cells of a grid; what they add up to
   struct Sums {

@@ -15,9 +15,9 @@ namespace Slope {
 
 // Square cells in plan, from a south-west corner on; columns along x (0), rows along y (1).
 struct PlanGrid {
-  int n[2];                  // cells along x and y
-  double lo[2], hi[2];       // south-west and north-east corner
-  double cell, cell_inv;     // size, 1/size
+  int n[2];                 // cells along x and y
+  double lo[2], hi[2];      // south-west and north-east corner
+  double cell, cell_inv;    // size, 1/size
 
   PlanGrid() : n{0, 0}, lo{0.0, 0.0}, hi{0.0, 0.0}, cell(1.0), cell_inv(1.0) {}
 

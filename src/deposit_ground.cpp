@@ -55,8 +55,7 @@ void DepositGround::read(const PlanGrid &grid, ElevationGrid &base)
 
 void DepositGround::check(const DepositBalls &balls)
 {
-  const RegionSurface ground(lmp, "Fix deposit/grid terrain", region.c_str(),
-                             RegionSurface::UPPER);
+  const RegionSurface ground(lmp, "Fix deposit/grid terrain", region.c_str(), RegionSurface::UPPER);
   Region *solid = compat::find_region(lmp, region);
   const auto *terrain = dynamic_cast<const RegTerrain *>(solid);
   if (terrain && (!terrain->interior || terrain->grid().count_nodata() == 0)) terrain = nullptr;

@@ -17,7 +17,9 @@ namespace LAMMPS_NS {
 // The ground of fix deposit/grid: the upper boundary of a region. Methods are collective.
 class DepositGround : protected Pointers {
  public:
-  DepositGround(class LAMMPS *lmp, const std::string &region_id) : Pointers(lmp), region(region_id) {}
+  DepositGround(class LAMMPS *lmp, const std::string &region_id) : Pointers(lmp), region(region_id)
+  {
+  }
 
   // heights at the cell centres, NaN where there is none, into the raster of rank 0
   void read(const Slope::PlanGrid &, Slope::ElevationGrid &);

@@ -5,6 +5,7 @@
 
 #include "deposit_options.h"
 
+#include "deposit_rasters.h"
 #include "lammps_compat.h"
 #include "region_surface.h"
 #include "style_argument.h"
@@ -18,15 +19,15 @@
 #include <cstring>
 
 using namespace LAMMPS_NS;
+using Slope::DepositRasters;
 using Slope::PlanGrid;
 
 static constexpr double PI = 3.14159265358979323846;
 static constexpr double SIMPLE_CUBIC = 6.0 / PI;
-static constexpr double MOTION = 0.1;      // m/s
-static constexpr double MAXBULK = 1.0e3;   // a ball's square must not be cut by countless cells
+static constexpr double MOTION = 0.1;        // m/s
+static constexpr double MAXBULK = 1.0e3;     // a ball's square must not be cut by countless cells
 static constexpr double MAXCELL = 1.0e12;    // the area of a cell must be finite
 static constexpr double MAXCELLS = 4.0e8;
-static constexpr double BYTES_PER_CELL = 72.0;
 
 /* ----------------------------------------------------------------------
    fix ID group deposit/grid Nevery Nfreq cell S terrain REGION output PREFIX keyword value ...
@@ -63,8 +64,7 @@ DepositOptions::DepositOptions(LAMMPS *lmp, int narg_in, char **arg_in) :
 
 const char *DepositOptions::text(int k) const
 {
-  if (iarg + k >= narg)
-    error->all(FLERR, "Fix deposit/grid {}: value {} is missing", arg[iarg], k);
+  if (iarg + k >= narg) error->all(FLERR, "Fix deposit/grid {}: value {} is missing", arg[iarg], k);
   return arg[iarg + k];
 }
 
@@ -178,7 +178,8 @@ void DepositOptions::check() const
 
 void DepositOptions::make_grid()
 {
-  const RegionSurface ground(lmp, "Fix deposit/grid terrain", terrain.c_str(), RegionSurface::UPPER);
+  const RegionSurface ground(lmp, "Fix deposit/grid terrain", terrain.c_str(),
+                             RegionSurface::UPPER);
   if (!ground.has_boundary())
     error->all(FLERR, "Fix deposit/grid terrain region {} must have an upper boundary, got INF",
                terrain);
@@ -203,6 +204,6 @@ void DepositOptions::make_grid()
     error->all(FLERR,
                "Fix deposit/grid cell must give at most {:g} cells, got {:.0f} cells, they need "
                "{:.3g} GB of memory on one rank",
-               MAXCELLS, ncells, 1.0e-9 * ncells * BYTES_PER_CELL);
+               MAXCELLS, ncells, 1.0e-9 * ncells * DepositRasters::BYTES_PER_CELL);
   grid = PlanGrid(extent, cell);
 }

@@ -21,8 +21,8 @@ class DepositOptions : protected Pointers {
   int nevery, nfreq, window;
   std::string terrain, prefix;    // region of the ground; begins all names of files
   double cell, motion;
-  double bulk;                // volume of the ground / volume of the balls; 0: from body
-  std::string body;           // region of the released ground; empty: bulk was given
+  double bulk;         // volume of the ground / volume of the balls; 0: from body
+  std::string body;    // region of the released ground; empty: bulk was given
   bool series;
   Slope::PlanGrid grid;
 

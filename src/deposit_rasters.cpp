@@ -125,8 +125,7 @@ void DepositRasters::write(FileSet &files, const std::string &prefix,
   ElevationGrid surface = base;
   for (size_t k = 0; k < surface.z.size(); k++) surface.z[k] += thickness.z[k];
 
-  if (!number.empty())
-    thickness.write(files.add(prefix + "." + number + ".thickness.asc"), 12);
+  if (!number.empty()) thickness.write(files.add(prefix + "." + number + ".thickness.asc"), 12);
   thickness.write(files.add(prefix + ".thickness.asc"), 12);
   surface.write(files.add(prefix + ".surface.asc"), 9);
   base.write(files.add(prefix + ".base.asc"), 9);

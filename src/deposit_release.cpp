@@ -23,8 +23,8 @@ using namespace LAMMPS_NS;
 using Slope::BodyVolume;
 
 static constexpr double PI = 3.14159265358979323846;
-static constexpr double UNBOUNDED = 1.0e19;    // LAMMPS writes INF as 1e20
-static constexpr double ASTRAY = 0.05;         // of the balls may be farther than a diameter from the body
+static constexpr double UNBOUNDED = 1.0e19;          // LAMMPS writes INF as 1e20
+static constexpr double ASTRAY = 0.05;               // of the balls may lie far from the body
 static constexpr double LEAST = 1.0, MOST = 10.0;    // bulk factor: volume of a body / of its balls
 
 enum { X, Y, Z };
@@ -90,10 +90,11 @@ double DepositRelease::body_volume(const std::string &id, const Mass &mass) cons
                id);
   check_balls(region, mass);
   if (!(volume >= LEAST * mass.solid && volume <= MOST * mass.solid))
-    error->all(FLERR,
-               "Fix deposit/grid bulk region {} must be the body that the balls fill, of {:g} to {:g} "
-               "times their volume {:.6g}, got {:.6g}",
-               id, LEAST, MOST, mass.solid, volume);
+    error->all(
+        FLERR,
+        "Fix deposit/grid bulk region {} must be the body that the balls fill, of {:g} to {:g} "
+        "times their volume {:.6g}, got {:.6g}",
+        id, LEAST, MOST, mass.solid, volume);
   return volume;
 }
 
@@ -106,7 +107,8 @@ Region *DepositRelease::body(const std::string &id) const
   region->init();
   if (region->dynamic_check())
     error->all(FLERR,
-               "Fix deposit/grid bulk region {} must stand still, got one that moves or varies", id);
+               "Fix deposit/grid bulk region {} must stand still, got one that moves or varies",
+               id);
   if (region->openflag)
     error->all(FLERR, "Fix deposit/grid bulk region {} must have no open faces, got some", id);
 
@@ -115,10 +117,11 @@ Region *DepositRelease::body(const std::string &id) const
   bool bounded = region->bboxflag;
   for (const double end : ends) bounded = bounded && std::fabs(end) < UNBOUNDED;
   if (!bounded)
-    error->all(FLERR,
-               "Fix deposit/grid bulk region {} must be bounded on all sides, got one without an end "
-               "(the body is the intersection of ground and slip surface)",
-               id);
+    error->all(
+        FLERR,
+        "Fix deposit/grid bulk region {} must be bounded on all sides, got one without an end "
+        "(the body is the intersection of ground and slip surface)",
+        id);
   return region;
 }
 
@@ -128,7 +131,9 @@ double DepositRelease::integrate(Region *region) const
 {
   const BodyVolume::Box box = {{region->extent_xlo, region->extent_ylo, region->extent_zlo},
                                {region->extent_xhi, region->extent_yhi, region->extent_zhi}};
-  auto inside = [region](double x, double y, double z) { return region->match(x, y, z) != 0; };
+  auto inside = [region](double x, double y, double z) {
+    return region->match(x, y, z) != 0;
+  };
   auto sum = [this](std::vector<double> &values) {
     std::vector<double> mine = values;
     MPI_Allreduce(mine.data(), values.data(), (int) values.size(), MPI_DOUBLE, MPI_SUM, world);
@@ -153,7 +158,8 @@ void DepositRelease::check_balls(Region *region, const Mass &mass) const
       if (length == 0.0) continue;
       for (const double part : {0.5, 1.0}) {
         const double far = part * reach / length;
-        if (region->match(x[X] + far * way[X], x[Y] + far * way[Y], x[Z] + far * way[Z])) return true;
+        if (region->match(x[X] + far * way[X], x[Y] + far * way[Y], x[Z] + far * way[Z]))
+          return true;
       }
     }
     return false;
@@ -164,8 +170,9 @@ void DepositRelease::check_balls(Region *region, const Mass &mass) const
     if (balls.selected(i) && !near(atom->x[i], 2.0 * atom->radius[i])) mine += 1.0;
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   if (all > ASTRAY * mass.number)
-    error->all(FLERR,
-               "Fix deposit/grid bulk region {} must be the body that the balls fill: at most {:g} % "
-               "of them may lie farther than a diameter from it, got {:.0f} of {:.0f}",
-               region->id, 100.0 * ASTRAY, all, mass.number);
+    error->all(
+        FLERR,
+        "Fix deposit/grid bulk region {} must be the body that the balls fill: at most {:g} % "
+        "of them may lie farther than a diameter from it, got {:.0f} of {:.0f}",
+        region->id, 100.0 * ASTRAY, all, mass.number);
 }

@@ -116,14 +116,15 @@ void DepositSummary::write_release(std::string &s) const
 void DepositSummary::write_travel(std::string &s) const
 {
   s += "travel:  # in plan, from top, the highest released ball; front: of the farthest ball\n";
-  line(s, "  top", "[" + real(travel.top[0]) + ", " + real(travel.top[1]) + ", " +
-           real(travel.top[2]) + "]");
+  line(s, "  top",
+       "[" + real(travel.top[0]) + ", " + real(travel.top[1]) + ", " + real(travel.top[2]) + "]");
   line(s, "  front", real(travel.farthest.distance));
   line(s, "  front_at_release", real(travel.front_at_release));
   line(s, "  centroid", real(travel.centroid));
   line(s, "  reach_angle", real(travel.farthest.angle));
-  line(s, "  farthest", "{distance: " + real(travel.farthest.distance) + ", reach_angle: " +
-           real(travel.farthest.angle) + "}");
+  line(s, "  farthest",
+       "{distance: " + real(travel.farthest.distance) +
+           ", reach_angle: " + real(travel.farthest.angle) + "}");
   s += travel.quantiles.empty() ? "  quantiles: []\n"
                                 : "  quantiles:  # this share of the volume stays within\n";
   for (const Quantile &q : travel.quantiles)
@@ -140,7 +141,8 @@ void DepositSummary::write_travel(std::string &s) const
 
 void DepositSummary::write_motion(std::string &s) const
 {
-  s += "motion:  # of the balls now; moving_share: of the volume, faster than threshold; fast: than " +
+  s += "motion:  # of the balls now; moving_share: of the volume, faster than threshold; fast: "
+       "than " +
       real(FAST) + "\n";
   line(s, "  threshold", real(motion.threshold));
   line(s, "  largest_speed", real(motion.largest));
@@ -149,10 +151,12 @@ void DepositSummary::write_motion(std::string &s) const
   line(s, "  fast_share", real(motion.fast_share) + "  # of the released volume");
   line(s, "  fast_volume", real(motion.fast_volume));
   line(s, "  fast_speed", real(motion.largest));
-  line(s, "change_rate", real(change_rate) + "  # share of the volume that changes cell, per second");
+  line(s, "change_rate",
+       real(change_rate) + "  # share of the volume that changes cell, per second");
   line(s, "moving", motion.moving_share > MOVING_SHARE ? "true" : "false");
-  line(s, "at_rest", std::string(at_rest() ? "true" : "false") +
-           "  # ended by its halt, and fast_share < " + real(REST_SHARE));
+  line(s, "at_rest",
+       std::string(at_rest() ? "true" : "false") + "  # ended by its halt, and fast_share < " +
+           real(REST_SHARE));
 }
 
 /* ---------------------------------------------------------------------- */

@@ -39,7 +39,7 @@ using Slope::PlanGrid;
 static constexpr double PI = 3.14159265358979323846;
 static constexpr double SIMPLE_CUBIC = 6.0 / PI;    // bulk volume / volume of a ball
 static constexpr double DEGREE = PI / 180.0;
-static constexpr double RESTART_FORMAT = 2.0;       // first number of what a restart file holds
+static constexpr double RESTART_FORMAT = 2.0;    // first number of what a restart file holds
 
 enum {
   RELEASED,
@@ -69,8 +69,8 @@ FixDepositGrid::FixDepositGrid(LAMMPS *lmp, int narg, char **arg) :
   const double ncells = (double) options.grid.n[X] * options.grid.n[Y];
   const double need = ncells * DepositRasters::BYTES_PER_CELL;
   const std::string caller =
-      fmt::format("Fix deposit/grid: {:.0f} cells, they need {:.3g} GB of memory on one rank", ncells,
-                  1.0e-9 * need);
+      fmt::format("Fix deposit/grid: {:.0f} cells, they need {:.3g} GB of memory on one rank",
+                  ncells, 1.0e-9 * need);
   on_rank_zero(lmp, caller, [&]() {
     // Linux gives more than there is, and kills who uses it
     const double have = (double) sysconf(_SC_PHYS_PAGES) * sysconf(_SC_PAGESIZE);
@@ -184,7 +184,8 @@ void FixDepositGrid::log_release() const
   std::string factor = fmt::format("{:.6g}", balls.bulk());
   if (!options.body.empty())
     factor += fmt::format(" = region {} {:.10g} / balls {:.10g}, {:+.1f} % from 6/pi", options.body,
-                          released.body, released.mass.solid, 100.0 * (balls.bulk() / SIMPLE_CUBIC - 1.0));
+                          released.body, released.mass.solid,
+                          100.0 * (balls.bulk() / SIMPLE_CUBIC - 1.0));
   utils::logmesg(lmp,
                  "Fix deposit/grid {}: {:.0f} balls released, bulk volume {:.10g}; {} x {} cells "
                  "of {:g}\n"
@@ -259,8 +260,14 @@ double FixDepositGrid::compute_vector(int k)
 void FixDepositGrid::sample(bool record)
 {
   const DepositBalls::Sums here = balls.bin(bins);
-  double mine[8] = {here.number, here.off_grid, here.mass, here.mass_x, here.mass_y, here.fast,
-                    ledger.lost_here().number, ledger.lost_here().volume};
+  double mine[8] = {here.number,
+                    here.off_grid,
+                    here.mass,
+                    here.mass_x,
+                    here.mass_y,
+                    here.fast,
+                    ledger.lost_here().number,
+                    ledger.lost_here().volume};
   double all[8];
   MPI_Allreduce(mine, all, 8, MPI_DOUBLE, MPI_SUM, world);
   const DepositBalls::Sums sums = {all[0], all[1], all[2], all[3], all[4], all[5]};
@@ -302,17 +309,19 @@ void FixDepositGrid::sample(bool record)
 void FixDepositGrid::tell_balance()
 {
   warned = true;
-  warn("the volume balance does not close at step {}: released {:.10g}, on the grid {:.10g}, off the "
-       "grid {:.10g}, lost {:.10g}, residual {:.3g}: balls came or went other than by leaving the box",
-       sampled, result[RELEASED], result[ON_GRID], result[OFF_GRID], result[LOST], result[RESIDUAL]);
+  warn("the volume balance does not close at step {}: released {:.10g}, on the grid {:.10g}, off "
+       "the "
+       "grid {:.10g}, lost {:.10g}, residual {:.3g}: balls came or went other than by leaving the "
+       "box",
+       sampled, result[RELEASED], result[ON_GRID], result[OFF_GRID], result[LOST],
+       result[RESIDUAL]);
 }
 
 /* ----------------------------------------------------------------------
    by all ranks: to the screen, the log and the summary
 ------------------------------------------------------------------------- */
 
-template <typename... Args>
-void FixDepositGrid::warn(const char *format, const Args &...args)
+template <typename... Args> void FixDepositGrid::warn(const char *format, const Args &...args)
 {
   if (comm->me > 0) return;
   warnings.push_back(fmt::format("Fix deposit/grid {}: ", id) + fmt::format(format, args...));
@@ -544,10 +553,11 @@ void FixDepositGrid::check_key(const Key &key) const
 {
   const Key mine = restart_key();
   if (key.format != mine.format)
-    error->all(FLERR,
-               "Fix deposit/grid {} must have restart data of format {:.0f}, got {:.0f}: the file is "
-               "of another version of SLOPE, which must continue it, or the run begins anew",
-               id, mine.format, key.format);
+    error->all(
+        FLERR,
+        "Fix deposit/grid {} must have restart data of format {:.0f}, got {:.0f}: the file is "
+        "of another version of SLOPE, which must continue it, or the run begins anew",
+        id, mine.format, key.format);
   if (memcmp(&key, &mine, sizeof(Key)) == 0) return;
   auto text = [](const Key &k) {
     return fmt::format("cell {:.10g}, {:.0f} x {:.0f} cells from {:.10g} {:.10g}, bulk {}", k.cell,

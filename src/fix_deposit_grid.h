@@ -55,9 +55,9 @@ class FixDepositGrid : public Fix {
 
   struct Released {
     DepositRelease::Mass mass;
-    double volume;         // bulk
-    double body;           // volume of the region that the balls stand for; 0 without
-    double front;          // plan distance of the farthest ball from the top
+    double volume;    // bulk
+    double body;      // volume of the region that the balls stand for; 0 without
+    double front;     // plan distance of the farthest ball from the top
   };
   Released released;
   bool started, fresh;    // fresh: nothing was sampled yet

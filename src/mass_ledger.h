@@ -22,8 +22,8 @@ class MassLedger {
   struct Loss {    // of one ball; numbers only, so that ranks can send them
     double tag, x[3], step;
   };
-  static constexpr int MAXLOGGED = 5;         // lost balls that get a line in the log
-  static constexpr double BALANCE = 1.0e-9;   // of the released volume
+  static constexpr int MAXLOGGED = 5;          // lost balls that get a line in the log
+  static constexpr double BALANCE = 1.0e-9;    // of the released volume
 
   MassLedger() : nlogged(0), outside_known(false) {}
 

@@ -577,6 +577,7 @@ def test_doc_examples(tmp_path):
     regions = """
 region out sphere 30 30 0 5 side out units box
 region stays intersect 2 ground out
+region body sphere 5 5 5 0.4 units box
 """
     run_deck(head(regions=regions) + "group soil type 1\n" + doc_examples("fix_deposit_grid") +
              "\nrun 30000\n", tmp_path)

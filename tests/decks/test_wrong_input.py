@@ -287,6 +287,11 @@ TABLE = {
         10 20 bulk 1e300 -> bulk must be at most 1000, got 1e300
         10 20 bulk 0 -> bulk must be > 0, got 0
         10 20 bulk nan -> bulk must be a finite number, got nan
+        10 20 bulk region -> bulk: value 2 is missing
+        10 20 cell 1 terrain ground output out bulk region nowhere -> bulk region nowhere does not exist
+        10 20 cell 1 terrain ground output out bulk region road -> bulk region road must be bounded on all sides, got one
+        10 20 cell 1 terrain ground output out bulk region space -> bulk region space must be bounded on all sides, got
+        10 20 cell 1 terrain ground output out bulk region ground -> bulk region ground must be the body that the balls
         10 20 motion -1 -> motion must be > 0, got -1
         10 20 motion x -> motion must be a finite number, got x
         10 20 window 15 -> window must be a multiple of Nevery 10, got 15
@@ -372,7 +377,7 @@ OF_LAMMPS = [
     ({"output": "fix_modify wall virial yes"}, "Illegal fix_modify command"),
     ({"output": "fix_modify deposit energy yes"}, "Illegal fix_modify command"),
     ({"output": "thermo_style custom step f_wall[4]"}, "Thermo fix vector is accessed out-of-range"),
-    ({"output": "thermo_style custom step f_deposit[11]"}, "Thermo fix vector is accessed out-of-range"),
+    ({"output": "thermo_style custom step f_deposit[12]"}, "Thermo fix vector is accessed out-of-range"),
     ({"output": "compute sum all reduce sum f_wall"}, "Compute reduce fix calculates global values"),
     ({"output": "compute c all pair/local p11\ndump d all local 1 out.txt index c_c"},
      "Pair style does not have extra field requested by compute pair/local"),

@@ -192,6 +192,17 @@ def test_differences_of_equal_means_are_called_chance():
     assert headline.difference(line, None).clear is None
 
 
+@pytest.mark.parametrize("factor, clear", [(0.98, False), (1.02, True)])
+def test_what_is_clear_is_so_without_the_chance_too(factor, clear):
+    def line(by):
+        return [Combination(str(k), {str(i): 0.0 if k else by for i in range(n)}) for k, n in enumerate(runs)]
+    for runs, df in (((3, 3, 3), 6.0), ((1, 4), 3.3), ((2, 5, 3, 2), 1.7)):
+        scatter = Scatter(40.0, df)
+        by = factor * headline.difference(line(1.0), scatter).chance
+        assert headline.is_clear(line(by), scatter) == headline.difference(line(by), scatter).clear == clear
+        assert headline.is_clear(line(1.0), Scatter(0.0, df)) and not headline.is_clear(line(0.0), Scatter(0.0, df))
+
+
 def test_a_difference_by_hand():
     """Tukey's table: q(0.95; 3 means, 6 degrees of freedom) = 4.339."""
     a, b, c = combinations((1, 2, 3), (1, 4, 4), (8, 9, 10))

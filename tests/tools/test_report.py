@@ -2,6 +2,7 @@
 import base64
 import csv
 import html
+import json
 import os
 import re
 import shlex
@@ -15,6 +16,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from rasterio.crs import CRS
+from rasterio.warp import transform
 
 from tiny_collapse import LMP, TOP, height, read_asc, write_case
 
@@ -716,6 +719,28 @@ def test_the_section_follows_a_line(slope, here, name, text):
     # the folder may stand behind
     shutil.copy("one/report.section.csv", "before.csv")
     assert slope(f"--section {name} one")[0] == 0 and slope("--section 4 12 38 12 one")[0] == 0
+
+
+def test_a_line_in_degrees_comes_to_the_run(slope, here):
+    """A GeoJSON is in longitude and latitude; the sidecar of the terrain tells where the run's metres lie."""
+    crs, east, north = CRS.from_epsg(6677), -12000.0, 34000.0
+    Path("one/terrain.yaml").write_text(yaml.safe_dump({
+        "crs": {"epsg": 6677, "wkt": crs.to_wkt()}, "origin": {"east": east, "north": north}, "cell": 1.0,
+        "size": {"columns": 40, "rows": 24}, "extent": {"xlo": 0.0, "xhi": 40.0, "ylo": 0.0, "yhi": 24.0}}))
+    x, y = np.transpose(BENT)
+    points = np.transpose(transform(crs, CRS.from_epsg(4326), x + east, y + north)).tolist()
+    Path("line.geojson").write_text(json.dumps({"type": "LineString", "coordinates": points}))
+    assert slope("one --section line.geojson")[0] == 0
+    line = section("one/report.section.csv")
+    assert (line["x"][0], line["y"][0]) == pytest.approx(BENT[0], abs=1e-3)
+    assert (line["x"][-1], line["y"][-1]) == pytest.approx(BENT[-1], abs=1e-3)
+    assert line["east"] == pytest.approx(line["x"] + east) and line["north"] == pytest.approx(line["y"] + north)
+    # the same numbers as local metres, on demand
+    Path("line.csv").write_text("".join(f"{x},{y}\n" for x, y in BENT))
+    assert slope("one --section line.csv --local")[0] == 0
+    assert section("one/report.section.csv")["x"][0] == pytest.approx(BENT[0][0], abs=1e-3)
+    status, _, err = slope("one --section line.csv")
+    assert status == 2 and err.startswith("slope report: line.csv: must cross the grid of the run")
 
 
 def test_the_base_raster_is_the_ground_without_the_body(slope, here):

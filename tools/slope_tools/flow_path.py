@@ -26,7 +26,7 @@ MOST_DUMPS = 24
 
 
 class Path(NamedTuple):
-    """Points of a line, rows of local x y, the way of the mass; dumped: whether dumps told the centroid."""
+    """Points of a line, rows of local x y, down the slope; dumped: whether dumps told the centroid."""
     points: np.ndarray
     dumped: bool
 

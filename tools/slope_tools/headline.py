@@ -216,12 +216,28 @@ def difference(line: Sequence[Combination], scatter: Optional[Scatter]) -> Diffe
 
     The studentized range (Tukey and Kramer; Hochberg and Tamhane, Multiple Comparison Procedures, 1987, section 3.3).
     """
-    top, low = max(line, key=lambda one: one.mean), min(line, key=lambda one: one.mean)
+    top, low, unit = ends(line)
     chance = None
     if scatter is not None:
         quantile = float(stats.studentized_range.ppf(DIFFERENT, len(line), scatter.degrees_of_freedom))
-        chance = quantile * scatter.deviation * math.sqrt((1 / top.runs + 1 / low.runs) / 2)
+        chance = quantile * scatter.deviation * unit
     return Difference(top.name, low.name, top.mean - low.mean, chance)
+
+
+def is_clear(line: Sequence[Combination], scatter: Scatter) -> bool:
+    """What difference() says of it, without its chance: many times as fast."""
+    top, low, unit = ends(line)
+    by = top.mean - low.mean
+    if by == 0 or scatter.deviation == 0:
+        return by > 0
+    return float(stats.studentized_range.cdf(by / (scatter.deviation * unit), len(line),
+                                             scatter.degrees_of_freedom)) > DIFFERENT
+
+
+def ends(line: Sequence[Combination]) -> Tuple[Combination, Combination, float]:
+    """The combinations of the largest and the smallest mean, and the unit of their range in standard deviations."""
+    top, low = max(line, key=lambda one: one.mean), min(line, key=lambda one: one.mean)
+    return top, low, math.sqrt((1 / top.runs + 1 / low.runs) / 2)
 
 
 # --- what is known of a number ---

@@ -126,9 +126,7 @@ class Charts:
         line = list(combinations(rows, key).values())
         if scatter is None or len(line) < 2:
             return None
-        if scatter.deviation == 0:
-            return headline.difference(line, scatter).by > 0
-        return headline.difference(line, scatter).clear
+        return headline.is_clear(line, scatter)
 
 
 def combinations(rows, key):

@@ -89,7 +89,7 @@ class Data:
     def __init__(self, folder, shown=None):
         self.folder, self.study = folder, None
         self.rows, self.finished, self.settings, self.repeats = [], [], {}, {}
-        self.road = self.removed = self._connected = None
+        self.road = self.removed = self._connected = self._releases = None
         self.over_all = {}
         if (folder / "study.yaml").is_file():
             self._read_study(shown)
@@ -172,6 +172,11 @@ class Data:
 
     def releases(self):
         """(name, Release) of each finished run whose summary is in reach."""
+        if self._releases is None:
+            self._releases = self._read_releases()
+        return self._releases
+
+    def _read_releases(self):
         if not self.study:
             return [(None, release(self.result.summary, [*self.result.log.notes, *self.result.log.warnings]))]
         loaded = {one.row["run"]: one for one in self.drawn}
