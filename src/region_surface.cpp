@@ -133,7 +133,25 @@ bool RegionSurface::height_near(double x, double y, double near, double &z) cons
   }
   if (!passed) return false;
 
-  double out = above ? next : here, in = above ? here : next;
+  return above ? between(x, y, next, here, z) : between(x, y, here, next, z);
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool RegionSurface::height_below(double x, double y, double top, double &z) const
+{
+  if (x < xlo || x > xhi || y < ylo || y > yhi) return false;
+  double in = top - zlo - 0.5 * step;
+  if (in < 0.0 || !inside(x, y, in)) return false;
+  for (double out = in - step; out >= 0.0; in = out, out -= step)
+    if (!inside(x, y, out)) return between(x, y, out, in, z);
+  return height(x, y, z);
+}
+
+// the boundary between a point outside and one inside
+
+bool RegionSurface::between(double x, double y, double out, double in, double &z) const
+{
   while (in - out > ROUGHLY * step) {
     const double middle = 0.5 * (in + out);
     if (inside(x, y, middle))

@@ -31,6 +31,10 @@ class RegionSurface : protected Pointers {
   // (NaN: anywhere), found to a thousandth of the step. Far sooner, and it may be another part's.
   bool height_near(double x, double y, double near, double &z) const;
 
+  // The lower boundary of what is right below a height, by a walk down from there: false if the region
+  // is not there, or thinner than a step.
+  bool height_below(double x, double y, double top, double &z) const;
+
   // whether height() is known for any column of the rectangle: what the constructor asks for, said
   // without an error
   static bool is_fit(const class Region *, int side, double xlo, double xhi, double ylo,
@@ -49,6 +53,7 @@ class RegionSurface : protected Pointers {
   bool bounded;
 
   bool inside(double x, double y, double walked) const;
+  bool between(double x, double y, double out, double in, double &z) const;
 };
 
 }    // namespace LAMMPS_NS

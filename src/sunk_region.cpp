@@ -17,8 +17,9 @@
 using namespace LAMMPS_NS;
 
 static constexpr double PITCH = 0.125;    // between columns, in diameters or sinks
-static constexpr int LOOKS = 32;       // columns along each side of the body that tell its ground
-static constexpr double MOST = 0.9;    // of these must end at it
+static constexpr int LOOKS = 32;    // columns along each side of the body that tell its ground
+static constexpr int ROUNDS = 3;
+static constexpr double MOST = 0.9;       // of these must end at it
 static constexpr double SAME = 1.0e-6;    // heights, in diameters
 
 /* ---------------------------------------------------------------------- */
@@ -26,7 +27,7 @@ static constexpr double SAME = 1.0e-6;    // heights, in diameters
 SunkRegion::SunkRegion(LAMMPS *lmp, const std::string &caller, const std::string &region_in,
                        int side_in, double sink_in, double diameter_in) :
     Pointers(lmp),
-    region(region_in), side(side_in), sink(sink_in), diameter(diameter_in)
+    region(region_in), side(side_in), sink(sink_in), diameter(diameter_in), flush(false)
 {
   boundary.reset(new RegionSurface(lmp, caller, region.c_str(), side, PITCH * diameter));
   if (side == RegionSurface::UPPER || !boundary->has_boundary()) return;
@@ -40,18 +41,33 @@ SunkRegion::SunkRegion(LAMMPS *lmp, const std::string &caller, const std::string
 SunkRegion::~SunkRegion() = default;
 
 /* ----------------------------------------------------------------------
-   some of the columns of the body, spread over its plan
+   some of the columns of the body, spread over its plan; where few are found they are looked for
+   again, around those
 ------------------------------------------------------------------------- */
 
 void SunkRegion::find_columns()
 {
-  for (int j = 0; j < LOOKS; j++)
-    for (int i = 0; i < LOOKS; i++) {
-      const double x = boundary->xlo + (i + 0.5) / LOOKS * (boundary->xhi - boundary->xlo);
-      const double y = boundary->ylo + (j + 0.5) / LOOKS * (boundary->yhi - boundary->ylo);
-      double z;
-      if (boundary->height(x, y, z)) columns.insert(columns.end(), {x, y});
-    }
+  double lo[2] = {boundary->xlo, boundary->ylo}, hi[2] = {boundary->xhi, boundary->yhi};
+  for (int round = 0; round < ROUNDS; round++) {
+    const double dx = (hi[0] - lo[0]) / LOOKS, dy = (hi[1] - lo[1]) / LOOKS;
+    columns.clear();
+    double found[4] = {HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL}, z;
+    for (int j = 0; j < LOOKS; j++)
+      for (int i = 0; i < LOOKS; i++) {
+        const double x = lo[0] + (i + 0.5) * dx, y = lo[1] + (j + 0.5) * dy;
+        if (!boundary->height(x, y, z)) continue;
+        columns.insert(columns.end(), {x, y});
+        found[0] = std::min(found[0], x);
+        found[1] = std::max(found[1], x);
+        found[2] = std::min(found[2], y);
+        found[3] = std::max(found[3], y);
+      }
+    if (columns.empty() || columns.size() > 4 * LOOKS) return;
+    lo[0] = std::max(lo[0], found[0] - dx);
+    hi[0] = std::min(hi[0], found[1] + dx);
+    lo[1] = std::max(lo[1], found[2] - dy);
+    hi[1] = std::min(hi[1], found[3] + dy);
+  }
 }
 
 /* ----------------------------------------------------------------------
@@ -85,6 +101,7 @@ void SunkRegion::find_ground(const std::string &caller)
     if (known == 0 || same < MOST * known) continue;
     widest = area;
     ground = candidate->id;
+    flush = same == known && known >= LOOKS;
   }
 }
 
@@ -124,6 +141,9 @@ void SunkRegion::build()
                     nullptr,
                     side == RegionSurface::LOWER};
   bed.height = [this](double x, double y, double near, double &z) {
+    double end;    // a search of the column from its bottom takes long
+    if (flush && std::isnan(near) && top->height(x, y, end))
+      return boundary->height_below(x, y, end, z);
     return boundary->height_near(x, y, near, z);
   };
   if (top)

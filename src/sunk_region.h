@@ -52,6 +52,7 @@ class SunkRegion : protected Pointers {
   std::unique_ptr<RegionSurface> boundary, top;    // top: of the ground
   std::unique_ptr<Slope::SunkSurface> surface;
   std::vector<double> columns;    // x y of some of the body's columns
+  bool flush;                     // all of them end at the ground
 
   void find_columns();
   void find_ground(const std::string &caller);

@@ -142,7 +142,7 @@ def test_on_the_surface_itself_many_are(tmp_path):
 @pytest.mark.parametrize("field", [0.7, 3.0])
 def test_field_balls_of_another_size_leave_room_too(tmp_path, field):
     log, _, balls = place(tmp_path, field=field)
-    assert removed(log) < 0.01
+    assert removed(log) < 0.03      # larger ones reach a few balls on the rim
     assert closest(balls) > 0.99 * 2.0
     assert ("tight for balls of diameter 2" in log) == (field > 2.0)
 
