@@ -171,9 +171,9 @@ class ContactList {
     }
   }
 
-  // What the springs of the touching contacts can give back, J: no more than friction lets through.
-  // A sliding contact's spring also holds what balances its dashpot; that is no stored energy.
-  // see(entry, overlap) is called for each.
+  // What the springs of the touching contacts can give back, J: no more than friction lets through, and
+  // nothing where a sliding contact's spring only balances its dashpot. see(entry, overlap) is called for
+  // each.
   template <class Partners, class See>
   double elastic_energy(const ContactLaw &law, const MovingBalls &balls, const Partners &partners,
                         See see) const
@@ -181,18 +181,25 @@ class ContactList {
     double energy = 0.0;
     for (size_t k = 0; k < entries.size(); k++) {
       const Entry &e = entries[k];
-      const Vector &a = balls.x[e.i], &b = partners.x(e.j);
-      const double n[3] = {a.x - b.x, a.y - b.y, a.z - b.z}, *h = histories[k];
-      const double rsq = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
-      const double sum = balls.radius[e.i] + partners.radius(e.j);
-      if (rsq >= sum * sum) continue;
-      const double overlap = sum - std::sqrt(rsq);
-      see(e, overlap);
-      const double sliding = h[0] * h[0] + h[1] * h[1] + h[2] * h[2];
-      const double rolling = h[3] * h[3] + h[4] * h[4] + h[5] * h[5];
+      if (!(distance(balls, partners, e) < balls.radius[e.i] + partners.radius(e.j))) continue;
+      Contact c;
+      Vector delta;
+      set_contact(law, balls, partners, e, c, delta);
+      see(e, c.overlap);
+      const double mi = balls.mass[e.i], mj = partners.mass(e.j);
+      const double root_mass = std::sqrt(mass_factor(law) / (move_i / mi + move_j / mj));
+      const double vn = normal_velocity(c), *n = c.n;
+      const double pressing = law.kn * c.overlap - (law.cn_given + law.cn_root * root_mass) * vn;
+      double vt[3], w[3];
+      sliding_velocity(c, vn, vt);
+      flatten(n, c.w, w);
+      for (double &x : w) x *= c.rolling_radius;
       energy += partners.share(e.j) * 0.5 *
-          (law.kn * overlap * overlap + held(law.kt, sliding, law.friction * law.kn * overlap) +
-           held(law.kr, rolling, law.rolling * law.kn * overlap));
+          (law.kn * c.overlap * c.overlap +
+           held({law.kt, law.ct_given + law.ct_root * root_mass}, law.friction * law.kn * c.overlap,
+                law.friction * pressing, histories[k], vt) +
+           held({law.kr, law.cr_given + law.cr_root * root_mass}, law.rolling * law.kn * c.overlap,
+                law.rolling * pressing, histories[k] + 3, w));
     }
     return energy;
   }
@@ -221,6 +228,7 @@ class ContactList {
 
  private:
   static constexpr int BLOCK = 64;
+  static constexpr double NEARLY = 0.8;    // of the square of a force: the velocities may be half a step old
   static constexpr int AHEAD = 16;    // contacts found, and fetched from memory, before their turn
 
   // a bit of each contact, a number of each block
@@ -232,11 +240,24 @@ class ContactList {
   static bool is_set(const std::vector<std::uint64_t> &bits, size_t k) { return bits[k / BLOCK] & bit(k); }
   static void set(std::vector<std::uint64_t> &bits, size_t k) { bits[k / BLOCK] |= bit(k); }
 
-  // twice the energy (J) of a spring k (N/m) of squared length s2 (m2) that slides at a force (N)
-  static double held(double k, double s2, double limit)
+  struct SpringDashpot {
+    double k, c;    // N/m, N s/m
+  };
+
+  // twice the energy (J) that a spring of stretch s (m) can give back, its ends moving at u (m/s): at a
+  // force of most (N) it slides. limit: the same for spring and dashpot together, now
+  static double held(const SpringDashpot &law, double most, double limit, const double *s, const double *u)
   {
-    if (!(k > 0.0)) return 0.0;
-    return std::min(k * s2, limit * limit / k);
+    if (!(law.k > 0.0)) return 0.0;
+    double s2 = 0.0, f2 = 0.0, along = 0.0;
+    for (int d = 0; d < 3; d++) {
+      const double f = law.k * s[d] + law.c * u[d];
+      s2 += s[d] * s[d];
+      f2 += f * f;
+      along += f * s[d];
+    }
+    const bool slides = f2 >= NEARLY * limit * limit;
+    return slides && along < 0.0 ? 0.0 : std::min(law.k * s2, most * most / law.k);
   }
 
   template <class Partners>

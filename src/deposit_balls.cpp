@@ -88,9 +88,8 @@ double DepositBalls::speed_of(int i) const
 
 void DepositBalls::add_up(std::vector<double> &values) const
 {
-  const std::vector<double> mine = values;
-  MPI_Allreduce(const_cast<double *>(mine.data()), values.data(), (int) values.size(), MPI_DOUBLE,
-                MPI_SUM, world);
+  std::vector<double> mine = values;
+  MPI_Allreduce(mine.data(), values.data(), (int) values.size(), MPI_DOUBLE, MPI_SUM, world);
 }
 
 /* ---------------------------------------------------------------------- */

@@ -334,7 +334,7 @@ template <typename... Args> void FixDepositGrid::warn(const char *format, const 
 
 void FixDepositGrid::log_losses(double before)
 {
-  const std::vector<MassLedger::Loss> notes = ledger.take_notes();
+  std::vector<MassLedger::Loss> notes = ledger.take_notes();
   const int width = sizeof(MassLedger::Loss) / sizeof(double);
   int mine = width * (int) notes.size();
   std::vector<int> counts(comm->nprocs), starts(comm->nprocs, 0);

@@ -78,6 +78,8 @@ def _sweep(e):
                  if e < 1 else Control("e 0.98", (IMPACT(e=0.98, part=1),)))
 
 
+FASTER = ("At this step the contact is 0.5 % faster than the continuous one, so that the overlap at rest is m g/kn "
+          "(theory, Time step).")
 CLAIMS = [
     *(_sweep(e) for e in (0.2, 0.4, 0.6, 0.8, 1.0)),
     Claim("impact_tangential", "Impacts at 40 to 85 degrees slide: largest error of the tangential restitution "
@@ -88,9 +90,9 @@ CLAIMS = [
     Claim("impact_tangential_rule", "Tangential restitution at the rule's time step: largest error", "", TEST_4,
           (IMPACT(part=1),), tangential, AtMost(0.005), Control("friction coefficient 0.1", (IMPACT(part=1, mu=0.1),))),
     Claim("impact_time", "Restitution 0.25: contact time over pi sqrt(m/k), 1/sqrt(1-z^2)", "", OSCILLATION,
-          (IMPACT(e=0.25),), contact_time, Near(1 / math.sqrt(1 - damping_ratio(0.25) ** 2), 0.005, True),
-          Control("restitution 0.445", (IMPACT(e=0.445),))),
+          (IMPACT(e=0.25),), contact_time, Near(1 / math.sqrt(1 - damping_ratio(0.25) ** 2), 0.01, True),
+          Control("restitution 0.445", (IMPACT(e=0.445),)), remark=FASTER),
     Claim("impact_overlap", "Restitution 0.25: largest overlap over v sqrt(m/k), exp(-z/sqrt(1-z^2) acos z)", "",
-          OSCILLATION, (IMPACT(e=0.25),), overlap, Near(largest_overlap(0.25), 0.005, True),
-          Control("restitution 0.445", (IMPACT(e=0.445),))),
+          OSCILLATION, (IMPACT(e=0.25),), overlap, Near(largest_overlap(0.25), 0.01, True),
+          Control("restitution 0.445", (IMPACT(e=0.445),)), remark=FASTER),
 ]
