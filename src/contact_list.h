@@ -12,6 +12,7 @@
 #ifndef SLOPE_CONTACT_LIST_H
 #define SLOPE_CONTACT_LIST_H
 
+#include "contact_balls.h"
 #include "contact_law.h"
 #include "simd4.h"
 
@@ -21,60 +22,6 @@
 #include <vector>
 
 namespace Slope {
-
-struct Vector {
-  double x, y, z;
-};
-
-// all that moves; positions in m, velocities at the middle of the step in m/s and rad/s
-struct MovingBalls {
-  const Vector *x, *v, *omega;
-  const double *radius, *mass;
-  Vector *f, *torque;
-  unsigned char *count, *count_before;    // contacts of each ball now, a step ago; up to 255
-  unsigned char *estimated;               // at set-up: 1 where a force could only be estimated
-};
-
-// The partners of the moving balls: other moving balls ...
-struct MovingPartners {
-  static constexpr bool MOVE = true;
-  const MovingBalls &balls;
-  int nforce;    // partners below this number get their force, and count their contacts
-
-  const Vector &x(int j) const { return balls.x[j]; }
-  double share(int j) const { return j < nforce ? 1.0 : 0.5; }    // of the contact that is this rank's
-  bool gets_force(int j) const { return j < nforce; }
-  void prefetch(int j) const
-  {
-    __builtin_prefetch(&balls.v[j]);
-    __builtin_prefetch(&balls.omega[j]);
-    __builtin_prefetch(&balls.f[j], 1);
-    __builtin_prefetch(&balls.torque[j], 1);
-  }
-  const Vector &v(int j) const { return balls.v[j]; }
-  const Vector &omega(int j) const { return balls.omega[j]; }
-  double radius(int j) const { return balls.radius[j]; }
-  double mass(int j) const { return balls.mass[j]; }
-};
-
-// ... or fixed ones of one radius (m)
-struct FixedPartners {
-  static constexpr bool MOVE = false;
-  const Vector *position;
-  double radius_all;
-  Vector still = {0.0, 0.0, 0.0};
-
-  FixedPartners(const Vector *positions, double radius) : position(positions), radius_all(radius) {}
-
-  const Vector &x(int j) const { return position[j]; }
-  double share(int) const { return 1.0; }
-  bool gets_force(int) const { return false; }
-  void prefetch(int) const {}
-  const Vector &v(int) const { return still; }
-  const Vector &omega(int) const { return still; }
-  double radius(int) const { return radius_all; }
-  double mass(int) const { return 1.0; }
-};
 
 class ContactList {
  public:
@@ -171,39 +118,6 @@ class ContactList {
     }
   }
 
-  // What the springs of the touching contacts can give back, J: no more than friction lets through, and
-  // nothing where a sliding contact's spring only balances its dashpot. see(entry, overlap) is called for
-  // each.
-  template <class Partners, class See>
-  double elastic_energy(const ContactLaw &law, const MovingBalls &balls, const Partners &partners,
-                        See see) const
-  {
-    double energy = 0.0;
-    for (size_t k = 0; k < entries.size(); k++) {
-      const Entry &e = entries[k];
-      if (!(distance(balls, partners, e) < balls.radius[e.i] + partners.radius(e.j))) continue;
-      Contact c;
-      Vector delta;
-      set_contact(law, balls, partners, e, c, delta);
-      see(e, c.overlap);
-      const double mi = balls.mass[e.i], mj = partners.mass(e.j);
-      const double root_mass = std::sqrt(mass_factor(law) / (move_i / mi + move_j / mj));
-      const double vn = normal_velocity(c), *n = c.n;
-      const double pressing = law.kn * c.overlap - (law.cn_given + law.cn_root * root_mass) * vn;
-      double vt[3], w[3];
-      sliding_velocity(c, vn, vt);
-      flatten(n, c.w, w);
-      for (double &x : w) x *= c.rolling_radius;
-      energy += partners.share(e.j) * 0.5 *
-          (law.kn * c.overlap * c.overlap +
-           held({law.kt, law.ct_given + law.ct_root * root_mass}, law.friction * law.kn * c.overlap,
-                law.friction * pressing, histories[k], vt) +
-           held({law.kr, law.cr_given + law.cr_root * root_mass}, law.rolling * law.kn * c.overlap,
-                law.rolling * pressing, histories[k] + 3, w));
-    }
-    return energy;
-  }
-
   void store_flags() const
   {
     for (size_t k = 0; k < flags.size(); k++) *flags[k] = has_history(k);
@@ -228,7 +142,6 @@ class ContactList {
 
  private:
   static constexpr int BLOCK = 64;
-  static constexpr double NEARLY = 0.8;    // of the square of a force: the velocities may be half a step old
   static constexpr int AHEAD = 16;    // contacts found, and fetched from memory, before their turn
 
   // a bit of each contact, a number of each block
@@ -239,34 +152,6 @@ class ContactList {
   static std::uint64_t bit(size_t k) { return std::uint64_t(1) << (k % BLOCK); }
   static bool is_set(const std::vector<std::uint64_t> &bits, size_t k) { return bits[k / BLOCK] & bit(k); }
   static void set(std::vector<std::uint64_t> &bits, size_t k) { bits[k / BLOCK] |= bit(k); }
-
-  struct SpringDashpot {
-    double k, c;    // N/m, N s/m
-  };
-
-  // twice the energy (J) that a spring of stretch s (m) can give back, its ends moving at u (m/s): at a
-  // force of most (N) it slides. limit: the same for spring and dashpot together, now
-  static double held(const SpringDashpot &law, double most, double limit, const double *s, const double *u)
-  {
-    if (!(law.k > 0.0)) return 0.0;
-    double s2 = 0.0, f2 = 0.0, along = 0.0;
-    for (int d = 0; d < 3; d++) {
-      const double f = law.k * s[d] + law.c * u[d];
-      s2 += s[d] * s[d];
-      f2 += f * f;
-      along += f * s[d];
-    }
-    const bool slides = f2 >= NEARLY * limit * limit;
-    return slides && along < 0.0 ? 0.0 : std::min(law.k * s2, most * most / law.k);
-  }
-
-  template <class Partners>
-  static double distance(const MovingBalls &balls, const Partners &partners, const Entry &e)
-  {
-    const Vector &a = balls.x[e.i], &b = partners.x(e.j);
-    const double dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
-    return std::sqrt(dx * dx + dy * dy + dz * dz);
-  }
 
   template <class Partners>
   static double rolling_radius(const ContactLaw &law, const MovingBalls &balls, const Partners &partners,
@@ -330,8 +215,6 @@ class ContactList {
     const N rr = law.rolling_factor * ri * rj / (ri + rj);
     return 2.5 * rr * rr * (move_i / (mi * ri * ri) + move_j / (mj * rj * rj));
   }
-
-  double mass_factor(const ContactLaw &law) const { return move_i * move_j > 0.0 ? law.mass_factor : 1.0; }
 
   LoneContact lone_of(const ContactLaw &law, double dt, double ri, double rj, double mi, double mj) const
   {
@@ -625,6 +508,9 @@ class ContactList {
   }
 
  public:
+  // of the contact's mass, in the dashpots that follow from a restitution
+  double mass_factor(const ContactLaw &law) const { return move_i * move_j > 0.0 ? law.mass_factor : 1.0; }
+
   // the law for two balls of these radii (m) and masses (kg)
   ContactStep step_of(const ContactLaw &law, double dt, bool again, double ri, double rj, double mi,
                       double mj) const
@@ -632,6 +518,14 @@ class ContactList {
     const double inverse = move_i / mi + move_j / mj;
     return contact_step(law, inverse, mass_factor(law) / inverse, inverse_rolling(law, ri, rj, mi, mj), dt,
                         again);
+  }
+
+  template <class Partners>
+  static double distance(const MovingBalls &balls, const Partners &partners, const Entry &e)
+  {
+    const Vector &a = balls.x[e.i], &b = partners.x(e.j);
+    const double dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
+    return std::sqrt(dx * dx + dy * dy + dz * dz);
   }
 
   // geometry and velocities of contact e; delta: vector from the partner to the ball, m

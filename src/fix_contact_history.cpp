@@ -30,7 +30,7 @@ FixContactHistory::FixContactHistory(LAMMPS *lmp, int narg, char **arg) :
     FixNeighHistory(lmp, narg, arg), lists_new(true), lists_used(false), force(nullptr),
     force_step(-1), force_dt(0.0)
 {
-  nevery = EnergyGuard::EVERY;
+  nevery = ContactGuards::EVERY;
   FixContactHistory::grow_arrays(atom->nmax);
   for (int i = 0; i < atom->nlocal; i++) FixContactHistory::set_arrays(i);
 }
@@ -85,7 +85,7 @@ void FixContactHistory::post_run()
   keep_forces();
   auto law = static_cast<PairGranRestitution *>(pair);
   if (update->ntimestep % nevery) law->watch_energy();
-  law->report_guards();
+  law->guards.report();
 }
 
 /* ----------------------------------------------------------------------

@@ -471,9 +471,9 @@ void FixDepositGrid::add_guards(DepositSummary &s) const
 {
   auto law = dynamic_cast<PairGranRestitution *>(force->pair_match("gran/restitution", 1));
   if (law) {
-    const PairGranRestitution::Guards found = law->guards();
+    const ContactGuards::Found found = law->guards.found();
     s.guards = {true, found.deepest, found.energy_growth, found.deep, found.dangerous_builds};
-    s.warnings = law->warnings;
+    s.warnings = law->guards.warnings;
   }
   s.warnings.insert(s.warnings.end(), warnings.begin(), warnings.end());
 }

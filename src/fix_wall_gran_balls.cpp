@@ -12,6 +12,7 @@
 #include "atom.h"
 #include "ball_placement.h"
 #include "comm.h"
+#include "contact_energy.h"
 #include "error.h"
 #include "force.h"
 #include "initial_overlap.h"
@@ -403,10 +404,10 @@ double FixWallGranBalls::elastic_energy() const
   double energy = 0.0;
   for (size_t type = 1; type < lists.size(); type++)
     if (!lists[type].entries.empty())
-      energy += lists[type].elastic_energy(
-          *pair->law(type, wall_type), moving, fixed,
+      energy += Slope::elastic_energy(
+          lists[type], *pair->law(type, wall_type), moving, fixed,
           [this](const ContactList::Entry &e, double overlap) {
-            pair->see_overlap(e.i, overlap, std::min(atom->radius[e.i], radius));
+            pair->guards.see_overlap(e.i, overlap, std::min(atom->radius[e.i], radius));
           });
   return energy;
 }

@@ -8,6 +8,7 @@
 #include "atom.h"
 #include "atom_vec.h"
 #include "comm.h"
+#include "contact_energy.h"
 #include "contact_holder.h"
 #include "error.h"
 #include "fix_contact_history.h"
@@ -29,14 +30,6 @@
 using namespace LAMMPS_NS;
 using namespace Slope;
 
-static constexpr double STEP_RULE = 0.25;     // dt <= STEP_RULE sqrt(m/kn)
-static constexpr double DASHPOT_RULE = 0.15;    // scheme plain: dt <= DASHPOT_RULE m/cn
-static constexpr int FORMAT = 20261122;    // of what restart files hold, histories of walls included
-static constexpr double ZETA_FOLLOWED = 2.0;    // damping ratio up to which the law is followed
-static constexpr double MASS_RATIO_TESTED = 1000.0;    // of two balls that touch
-static constexpr double DEEP = 0.1;             // overlap, of the smaller radius, that is not sensible
-static constexpr double DEGREE = PI / 180.0;
-
 // LAMMPS keeps the rows of these arrays one after the other
 
 static inline Vector *vectors(double **array)
@@ -46,7 +39,7 @@ static inline Vector *vectors(double **array)
 
 /* ---------------------------------------------------------------------- */
 
-PairGranRestitution::PairGranRestitution(LAMMPS *lmp) : Pair(lmp), energy(lmp)
+PairGranRestitution::PairGranRestitution(LAMMPS *lmp) : Pair(lmp), guards(lmp, table), table(lmp)
 {
   single_enable = 1;
   no_virial_fdotr_compute = 1;
@@ -58,13 +51,7 @@ PairGranRestitution::PairGranRestitution(LAMMPS *lmp) : Pair(lmp), energy(lmp)
   single_extra = 10;
   svector = new double[single_extra];
 
-  mass_ball = 0;
-  limit_damping = 0;
-  rolling_reduced = 0;
-  plain = 0;
   freeze_group_bit = 0;
-  shared = COUNTS;
-  overlaps = {0.0, 0, 0, 0};
   dt = update->dt;
 
   // a placeholder holds the history's place in the order of the fixes
@@ -110,19 +97,7 @@ void PairGranRestitution::allocate()
 
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++) setflag[i][j] = (i == j);
-
-  Coeff none;
-  memset(&none, 0, sizeof(Coeff));
-  coeffs.assign(n * n, none);
-  laws.assign(n * n, ContactLaw());
-  wall_type.assign(n, 0);
-}
-
-/* ---------------------------------------------------------------------- */
-
-int PairGranRestitution::index(int i, int j) const
-{
-  return i * (atom->ntypes + 1) + j;
+  table.allocate();
 }
 
 /* ----------------------------------------------------------------------
@@ -131,46 +106,7 @@ int PairGranRestitution::index(int i, int j) const
 
 void PairGranRestitution::settings(int narg, char **arg)
 {
-  mass_ball = limit_damping = rolling_reduced = plain = 0;
-
-  int iarg = 0;
-  while (iarg < narg) {
-    const std::string keyword = arg[iarg];
-    if (iarg + 2 > narg)
-      error->all(FLERR, "Pair gran/restitution {}: value missing or unknown keyword", keyword);
-    const std::string value = arg[iarg + 1];
-    int *setting;
-    const char *off, *on;
-    if (keyword == "mass") {
-      setting = &mass_ball;
-      off = "pair";
-      on = "ball";
-    } else if (keyword == "limit_damping") {
-      setting = &limit_damping;
-      off = "no";
-      on = "yes";
-    } else if (keyword == "rolling_radius") {
-      setting = &rolling_reduced;
-      off = "ball";
-      on = "reduced";
-    } else if (keyword == "scheme") {
-      setting = &plain;
-      off = "exact";
-      on = "plain";
-    } else {
-      error->all(FLERR,
-                 "Pair gran/restitution: unknown keyword {}, must be mass, limit_damping, "
-                 "rolling_radius or scheme",
-                 keyword);
-      return;
-    }
-    if (value != off && value != on)
-      error->all(FLERR, "Pair gran/restitution {} must be {} or {}, got {}", keyword, off, on,
-                 value);
-    *setting = (value == on);
-    iarg += 2;
-  }
-  if (allocated) make_laws();
+  table.read_settings(narg, arg);
 }
 
 /* ----------------------------------------------------------------------
@@ -194,131 +130,27 @@ void PairGranRestitution::coeff(int narg, char **arg)
   types(arg[0], ilo, ihi);
   types(arg[1], jlo, jhi);
 
-  Coeff c;
-  memset(&c, 0, sizeof(Coeff));
-  c.set = 1;
-  bool stiffness = false, damping = false;
-
-  int iarg = 2;
-  while (iarg < narg) {
-    const std::string keyword = arg[iarg];
-    auto value = [&](int k) {
-      if (iarg + k >= narg)
-        error->all(FLERR, "Pair gran/restitution {}: value {} is missing", keyword, k);
-      if (!utils::is_double(arg[iarg + k]))
-        error->all(FLERR, "Pair gran/restitution {}: value {} must be a number, got {}", keyword, k,
-                   arg[iarg + k]);
-      return strtod(arg[iarg + k], nullptr);    // numeric() has words of its own for 1e999, in some versions
-    };
-    auto rule = [&](bool holds, const char *text, double got) {
-      if (!holds || !std::isfinite(got))
-        error->all(FLERR, "Pair gran/restitution {} must be {}, got {:.15g}", keyword, text, got);
-    };
-    if (keyword == "stiffness") {
-      c.kn = value(1);
-      c.kt = value(2);
-      rule(c.kn > 0.0, "> 0 (kn)", c.kn);
-      rule(c.kt >= 0.0, ">= 0 (kt)", c.kt);
-      stiffness = true;
-      iarg += 3;
-    } else if (keyword == "restitution") {
-      c.e = value(1);
-      rule(c.e > 0.0 && c.e <= 1.0, "> 0 and <= 1", c.e);
-      c.restitution_set = 1;
-      iarg += 2;
-    } else if (keyword == "damping") {
-      c.cn = value(1);
-      c.ct = value(2);
-      rule(c.cn >= 0.0, ">= 0 (cn)", c.cn);
-      rule(c.ct >= 0.0, ">= 0 (ct)", c.ct);
-      damping = true;
-      iarg += 3;
-    } else if (keyword == "friction") {
-      c.phi = value(1);
-      rule(c.phi >= 0.0 && c.phi < 90.0, ">= 0 and < 90 degrees", c.phi);
-      iarg += 2;
-    } else if (keyword == "rolling") {
-      c.rolling = value(1);
-      rule(c.rolling >= 0.0, ">= 0", c.rolling);
-      iarg += 2;
-    } else if (keyword == "rolling_spring") {
-      c.kr = value(1);
-      c.cr = value(2);
-      rule(c.kr >= 0.0, ">= 0 (kr)", c.kr);
-      rule(c.cr >= 0.0, ">= 0 (cr)", c.cr);
-      c.spring_set = 1;
-      iarg += 3;
-    } else {
-      error->all(FLERR,
-                 "Pair gran/restitution pair_coeff: unknown keyword {}, must be stiffness, "
-                 "restitution, damping, friction, rolling or rolling_spring",
-                 keyword);
-    }
-  }
-
-  if (!stiffness)
-    error->all(FLERR, "Pair gran/restitution pair_coeff {} {}: stiffness kn kt is required",
-               arg[0], arg[1]);
-  if (c.kt == 0.0 && c.ct > 0.0)
-    error->all(FLERR,
-               "Pair gran/restitution pair_coeff {} {}: ct must be 0 where kt is 0, got {:.15g}: give the "
-               "contact a tangential stiffness",
-               arg[0], arg[1], c.ct);
-  if (damping == (c.restitution_set == 1))
-    error->all(FLERR,
-               "Pair gran/restitution pair_coeff {} {}: exactly one of restitution and damping is "
-               "required, got {}",
-               arg[0], arg[1], damping ? "both" : "neither");
+  const ContactTable::Coeff c =
+      table.read_coeff(fmt::format("{} {}", arg[0], arg[1]), narg - 2, arg + 2);
 
   int count = 0;
   for (int i = ilo; i <= ihi; i++)
     for (int j = std::max(jlo, i); j <= jhi; j++) {
-      coeffs[index(i, j)] = coeffs[index(j, i)] = c;
+      table.set(i, j, c);
       setflag[i][j] = 1;
       count++;
     }
   if (count == 0)
     error->all(FLERR, "Pair gran/restitution pair_coeff {} {}: no pair I <= J of {} types",
                arg[0], arg[1], atom->ntypes);
-  make_laws();
-}
-
-/* ----------------------------------------------------------------------
-   contact laws from the coefficients: c = 2 zeta sqrt(k m) in both directions
-------------------------------------------------------------------------- */
-
-void PairGranRestitution::make_laws()
-{
-  for (size_t k = 0; k < coeffs.size(); k++) {
-    const Coeff &c = coeffs[k];
-    if (!c.set) continue;
-    ContactLaw law = ContactLaw();
-    const double zeta = c.restitution_set ? damping_ratio(c.e) : 0.0;
-    law.kn = c.kn;
-    law.kt = c.kt;
-    law.cn_given = c.cn;
-    law.ct_given = c.ct;
-    law.cn_root = 2.0 * zeta * sqrt(c.kn);
-    law.ct_root = 2.0 * zeta * sqrt(c.kt);
-    law.kr = c.spring_set ? c.kr : law.kt;
-    law.cr_given = c.spring_set ? c.cr : law.ct_given;
-    law.cr_root = c.spring_set ? 0.0 : law.ct_root;
-    law.friction = tan(c.phi * DEGREE);
-    law.rolling = c.rolling;
-    law.mass_factor = mass_ball ? 2.0 : 1.0;
-    law.rolling_factor = rolling_reduced ? 1.0 : 2.0;
-    law.fn_least = limit_damping ? 0.0 : -HUGE_VAL;
-    law.exact = plain ? 0.0 : 1.0;
-    laws[k] = law;
-  }
+  table.make_laws();
 }
 
 /* ---------------------------------------------------------------------- */
 
 const ContactLaw *PairGranRestitution::law(int itype, int jtype) const
 {
-  if (!allocated || !coeffs[index(itype, jtype)].set) return nullptr;
-  return &laws[index(itype, jtype)];
+  return allocated && table.is_set(itype, jtype) ? &table.law(itype, jtype) : nullptr;
 }
 
 /* ----------------------------------------------------------------------
@@ -350,55 +182,8 @@ void PairGranRestitution::init_style()
 
   sizes_vary = !compat::fixes_of_style(lmp, "adapt").empty();
 
-  find_ranges();
-  std::fill(wall_type.begin(), wall_type.end(), 0);    // wall fixes announce themselves after
+  table.find_ranges(freeze_group_bit);    // wall fixes announce themselves after
   walls.clear();
-}
-
-/* ----------------------------------------------------------------------
-   masses and radii of the atoms of each type
-------------------------------------------------------------------------- */
-
-void PairGranRestitution::find_ranges()
-{
-  const int n = atom->ntypes + 1;
-  enum { MASS_MIN, MASS_MAX, DYNAMIC, FROZEN, NVALUE };
-  std::vector<double> mine(n * NVALUE, 0.0), all(n * NVALUE);
-  for (int t = 0; t < n; t++) mine[t * NVALUE + MASS_MIN] = -HUGE_VAL;    // as -mass: one MPI_MAX
-
-  for (int i = 0; i < atom->nlocal; i++) {
-    double *value = &mine[atom->type[i] * NVALUE];
-    const double r = atom->radius[i], m = atom->rmass[i];
-    if (atom->mask[i] & freeze_group_bit) {
-      value[FROZEN] = std::max(value[FROZEN], r);
-    } else {
-      value[MASS_MIN] = std::max(value[MASS_MIN], -m);
-      value[MASS_MAX] = std::max(value[MASS_MAX], m);
-      value[DYNAMIC] = std::max(value[DYNAMIC], r);
-    }
-  }
-  MPI_Allreduce(mine.data(), all.data(), n * NVALUE, MPI_DOUBLE, MPI_MAX, world);
-
-  ranges.assign(n, TypeRange());
-  for (int t = 1; t < n; t++) {
-    const double *value = &all[t * NVALUE];
-    TypeRange &range = ranges[t];
-    range.moving = value[MASS_MAX] > 0.0;
-    range.frozen = value[FROZEN] > 0.0;
-    range.mass_min = -value[MASS_MIN];
-    range.mass_max = value[MASS_MAX];
-    range.radius_dynamic = value[DYNAMIC];
-    range.radius_frozen = value[FROZEN];
-
-    // balls that fix pour or fix deposit will add later count as moving
-
-    for (const char *style : {"pour", "deposit"})
-      for (Fix *fix : compat::fixes_of_style(lmp, style)) {
-        int itype = t;
-        const double *radius = static_cast<double *>(fix->extract("radius", itype));
-        if (radius) range.radius_dynamic = std::max(range.radius_dynamic, *radius);
-      }
-  }
 }
 
 /* ----------------------------------------------------------------------
@@ -407,19 +192,13 @@ void PairGranRestitution::find_ranges()
 
 double PairGranRestitution::init_one(int i, int j)
 {
-  const TypeRange &a = ranges[i], &b = ranges[j];
+  const ContactTable::TypeRange &a = table.range(i), &b = table.range(j);
   const bool amoves = a.radius_dynamic > 0.0, bmoves = b.radius_dynamic > 0.0;
   const bool can_touch = (amoves && (bmoves || b.frozen)) || (bmoves && (amoves || a.frozen));
-  if (can_touch && !coeffs[index(i, j)].set)
+  if (can_touch && !table.is_set(i, j))
     error->all(FLERR, "Pair gran/restitution: pair_coeff {} {} is not set, and balls of both types "
                       "exist", i, j);
-
-  // no contact between two frozen balls
-
-  double cutoff = a.radius_dynamic + b.radius_dynamic;
-  cutoff = std::max(cutoff, a.radius_frozen + b.radius_dynamic);
-  cutoff = std::max(cutoff, a.radius_dynamic + b.radius_frozen);
-  return cutoff;
+  return table.cutoff(i, j);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -437,20 +216,7 @@ void PairGranRestitution::announce_wall(ContactHolder *wall, int type, int group
                  "Fix wall/gran/balls: pair_coeff {} {} is not set (moving type {}, wall type {})",
                  std::min(itype, type), std::max(itype, type), itype, type);
   }
-  if (allocated) wall_type[type] = 1;
-}
-
-/* ----------------------------------------------------------------------
-   by rank 0, or by all: to the screen, the log and the summaries
-------------------------------------------------------------------------- */
-
-template <typename... Args>
-void PairGranRestitution::warn(const char *format, const Args &...args)
-{
-  if (comm->me > 0) return;
-  const std::string text = "Pair gran/restitution: " + fmt::format(format, args...);
-  error->warning(FLERR, text);
-  if (std::find(warnings.begin(), warnings.end(), text) == warnings.end()) warnings.push_back(text);
+  if (allocated) table.add_wall_type(type);
 }
 
 /* ----------------------------------------------------------------------
@@ -460,13 +226,7 @@ void PairGranRestitution::warn(const char *format, const Args &...args)
 void PairGranRestitution::setup()
 {
   dt = update->dt;
-  print_table();
-  check_timestep();
-  check_dashpots();
-  check_neighbor_lists();
-  check_fixed_balls();
-  overlaps = {0.0, 0, 0, 0};
-  energy.start();
+  guards.start(freeze_group_bit);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -474,179 +234,6 @@ void PairGranRestitution::setup()
 void PairGranRestitution::reset_dt()
 {
   dt = update->dt;
-}
-
-/* ----------------------------------------------------------------------
-   type pairs that can touch: one side moves, the other one does too, is frozen or a wall
-------------------------------------------------------------------------- */
-
-bool PairGranRestitution::can_touch(int i, int j) const
-{
-  const TypeRange &a = ranges[i], &b = ranges[j];
-  if (!coeffs[index(i, j)].set) return false;
-  return (a.moving && (b.moving || b.frozen || wall_type[j])) ||
-      (b.moving && (a.frozen || wall_type[i]));
-}
-
-/* ----------------------------------------------------------------------
-   largest step for a type pair: that of its lightest moving ball. Scheme exact follows any
-   dashpot; the plain one needs small steps, for the dashpots of several contacts add up.
-------------------------------------------------------------------------- */
-
-double PairGranRestitution::bound_on_step(int i, int j) const
-{
-  double m = HUGE_VAL;
-  if (ranges[i].moving) m = std::min(m, ranges[i].mass_min);
-  if (ranges[j].moving) m = std::min(m, ranges[j].mass_min);
-  const double spring = STEP_RULE * sqrt(m / coeffs[index(i, j)].kn);
-  const double cn = laws[index(i, j)].cn(m);
-  return plain && cn > 0.0 ? std::min(spring, DASHPOT_RULE * m / cn) : spring;
-}
-
-/* ----------------------------------------------------------------------
-   table of the coefficients, for the lightest balls of each type pair
-------------------------------------------------------------------------- */
-
-void PairGranRestitution::print_table()
-{
-  std::string text =
-      "Pair gran/restitution: contact coefficients (lightest balls of each type pair)\n"
-      "  types    kn N/m       kt N/m       cn N s/m     zeta     e moving e fixed  friction "
-      "rolling  contact/dt\n";
-  auto number = [](double x) { return std::isfinite(x) ? fmt::format("{:.4g}", x) : "inf"; };
-
-  for (int i = 1; i <= atom->ntypes; i++)
-    for (int j = i; j <= atom->ntypes; j++) {
-      const Coeff &c = coeffs[index(i, j)];
-      const TypeRange &a = ranges[i], &b = ranges[j];
-      if (!can_touch(i, j)) continue;
-      const ContactLaw &law = laws[index(i, j)];
-      const bool both = a.moving && b.moving;
-
-      // a ball on a fixed one: the lighter of the moving types
-
-      const double single = std::min(a.moving ? a.mass_min : HUGE_VAL,
-                                     b.moving ? b.mass_min : HUGE_VAL);
-      const double zeta_fixed = law.cn(law.mass_fixed(single)) / (2.0 * sqrt(c.kn * single));
-      double m = single, cn = law.cn(law.mass_fixed(single)), zeta = zeta_fixed;
-      std::string e_moving = "-";
-      if (both) {
-        m = a.mass_min * b.mass_min / (a.mass_min + b.mass_min);
-        cn = law.cn(law.mass(a.mass_min, b.mass_min));
-        zeta = cn / (2.0 * sqrt(c.kn * m));
-        e_moving = fmt::format("{:.4f}", restitution(zeta));
-      }
-      text += fmt::format("  {:<3} {:<3}  {:<12.4g} {:<12.4g} {:<12.4g} {:<8.4f} {:<8} {:<8.4f} "
-                          "{:<8.4g} {:<8.4g} {}\n",
-                          i, j, c.kn, c.kt, cn, zeta, e_moving, restitution(zeta_fixed), c.phi,
-                          atan(c.rolling) / DEGREE, number(contact_time(c.kn, m, zeta) / dt));
-    }
-  text += "  e fixed: against a fixed ball. friction, rolling: angles in degrees.\n";
-
-  if (text != table && comm->me == 0) utils::logmesg(lmp, text);
-  table = text;
-}
-
-/* ----------------------------------------------------------------------
-   warn when the step breaks dt <= 0.25 sqrt(m_min/kn)
-------------------------------------------------------------------------- */
-
-void PairGranRestitution::check_timestep()
-{
-  double bound = HUGE_VAL;
-  int iworst = 0, jworst = 0;
-  for (int i = 1; i <= atom->ntypes; i++)
-    for (int j = i; j <= atom->ntypes; j++) {
-      if (!can_touch(i, j)) continue;
-      const double b = bound_on_step(i, j);
-      if (b < bound) {
-        bound = b;
-        iworst = i;
-        jworst = j;
-      }
-    }
-  if (dt <= bound * (1.0 + 1.0e-12) || comm->me > 0) return;
-  const bool spring = coeffs[index(iworst, jworst)].kn * bound * bound >=
-      0.999 * STEP_RULE * STEP_RULE * std::min(ranges[iworst].mass_min, ranges[jworst].mass_min);
-  if (spring || !plain)
-    warn("time step {:.4g} s is {:.3g} times the largest that holds the restitution, "
-         "0.25 sqrt(m_min/kn) = {:.4g} s (types {} {})",
-         dt, dt / bound, bound, iworst, jworst);
-  else
-    warn("time step {:.4g} s is {:.3g} times the largest with which the dashpots of scheme plain let "
-         "a heap come to rest, 0.15 m_min/cn = {:.4g} s (types {} {})",
-         dt, dt / bound, bound, iworst, jworst);
-}
-
-/* ----------------------------------------------------------------------
-   warn of dashpots and mass ratios beyond what the law follows
-------------------------------------------------------------------------- */
-
-void PairGranRestitution::check_dashpots()
-{
-  for (int i = 1; i <= atom->ntypes; i++)
-    for (int j = i; j <= atom->ntypes; j++) {
-      if (!can_touch(i, j)) continue;
-      const TypeRange &a = ranges[i], &b = ranges[j];
-      double lightest = HUGE_VAL, heaviest = 0.0;
-      for (const TypeRange *range : {&a, &b})
-        if (range->moving) {
-          lightest = std::min(lightest, range->mass_min);
-          heaviest = std::max(heaviest, range->mass_max);
-        }
-      if (heaviest > MASS_RATIO_TESTED * lightest && a.moving && b.moving)
-        warn("the masses of balls of types {} and {} that can touch are tested up to a ratio of {:g}, got {:.4g}",
-             i, j, MASS_RATIO_TESTED, heaviest / lightest);
-      const double cn = laws[index(i, j)].cn(lightest);
-      const double zeta = cn / (2.0 * sqrt(coeffs[index(i, j)].kn * lightest));
-      if (zeta > ZETA_FOLLOWED && !plain)
-        warn("damping ratio of types {} and {} must be <= {:g} to be followed in time, got {:.4g} (cn {:.4g} N s/m, "
-             "lightest ball {:.4g} kg): these contacts do not rebound and rest at the right overlap, but reach it "
-             "too fast",
-             i, j, ZETA_FOLLOWED, zeta, cn, lightest);
-    }
-}
-
-/* ----------------------------------------------------------------------
-   warn when contacts can begin before the neighbor list has them
-------------------------------------------------------------------------- */
-
-void PairGranRestitution::check_neighbor_lists()
-{
-  if (neighbor->delay == 0 && neighbor->every == 1 && neighbor->dist_check) return;
-  warn("with neigh_modify every {} delay {} check {} contacts may be found late and rebound too fast; "
-       "every 1 delay 0 check yes finds them in time",
-       neighbor->every, neighbor->delay, neighbor->dist_check ? "yes" : "no");
-}
-
-/* ----------------------------------------------------------------------
-   warn of balls that nothing moves but that are not frozen: the law would take them for moving
-------------------------------------------------------------------------- */
-
-void PairGranRestitution::check_fixed_balls()
-{
-  int moved = 0;    // group bits
-  for (int k = 0; k < modify->nfix; k++)
-    if (modify->fix[k]->time_integrate) moved |= modify->fix[k]->groupbit;
-  if (!moved) return;
-
-  bigint mine = 0, all;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (!(atom->mask[i] & (moved | freeze_group_bit))) mine++;
-  MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (all)
-    warn("no integrator moves {} balls and no fix freeze holds them: without it a fixed ball has the "
-         "dashpots of a moving one",
-         all);
-}
-
-/* ---------------------------------------------------------------------- */
-
-void PairGranRestitution::see_overlap(int i, double overlap, double radius)
-{
-  const double share = overlap / radius;
-  if (share > DEEP) overlaps.count++;
-  if (share > overlaps.most) overlaps = {share, atom->tag[i], update->ntimestep, overlaps.count};
 }
 
 /* ----------------------------------------------------------------------
@@ -659,58 +246,12 @@ void PairGranRestitution::watch_energy()
   const MovingPartners partners = {balls, force->newton_pair ? INT_MAX : atom->nlocal};
   double elastic = 0.0;
   for (size_t k = 0; k < lists.size(); k++)
-    elastic += lists[k].elastic_energy(
-        laws[k / 3], balls, partners, [this](const ContactList::Entry &e, double overlap) {
-          see_overlap(e.i, overlap, std::min(atom->radius[e.i], atom->radius[e.j]));
+    elastic += elastic_energy(
+        lists[k], table.law(k / 3), balls, partners, [this](const ContactList::Entry &e, double overlap) {
+          guards.see_overlap(e.i, overlap, std::min(atom->radius[e.i], atom->radius[e.j]));
         });
   for (const ContactHolder *wall : walls) elastic += wall->elastic_energy();
-  if (energy.look(elastic))
-    warn("the energy of the balls grew by {:.3g} % of the largest energy of motion until step {}, with "
-         "nothing but contacts and gravity at work: the time step is too large, or contacts were found "
-         "late",
-         100.0 * energy.growth(), update->ntimestep);
-}
-
-/* ---------------------------------------------------------------------- */
-
-PairGranRestitution::Guards PairGranRestitution::guards() const
-{
-  Guards found;
-  MPI_Allreduce(&overlaps.most, &found.deepest, 1, MPI_DOUBLE, MPI_MAX, world);
-  MPI_Allreduce(&overlaps.count, &found.deep, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  found.energy_growth = energy.growth();
-  found.energy_grew = energy.seen();
-  found.dangerous_builds = neighbor->ndanger;
-  return found;
-}
-
-/* ----------------------------------------------------------------------
-   warn, once per run and with a count, of what was not sensible
-------------------------------------------------------------------------- */
-
-void PairGranRestitution::report_guards()
-{
-  const Guards found = guards();
-  if (found.deep) {
-    struct {
-      double most;
-      int rank;
-    } mine = {overlaps.most, comm->me}, all;
-    MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
-    bigint where[2] = {overlaps.ball, overlaps.step};
-    MPI_Bcast(where, 2, MPI_LMP_BIGINT, all.rank, world);
-    warn("{} contacts were seen deeper than {:g} % of the smaller radius, the deepest {:.3g} % (ball {}, "
-         "step {}): the stiffness is too small for the speeds, or the time step too large",
-         found.deep, 100.0 * DEEP, 100.0 * all.most, where[0], where[1]);
-  }
-  if (found.energy_grew > 1)
-    warn("the energy of the balls had grown at {} of the looks every {} steps, by {:.3g} % of the largest "
-         "energy of motion",
-         found.energy_grew, fix_history->nevery, 100.0 * found.energy_growth);
-  if (found.dangerous_builds)
-    warn("{} neighbor lists came late (dangerous builds): balls went farther than half the skin {:g} in "
-         "one step, and contacts may have begun too deep",
-         found.dangerous_builds, neighbor->skin);
+  guards.watch_energy(elastic);
 }
 
 /* ----------------------------------------------------------------------
@@ -751,7 +292,7 @@ void PairGranRestitution::build_lists()
       const Vector a = x[i], b = x[j];
       const double r = sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y) +
                             (a.z - b.z) * (a.z - b.z));
-      see_overlap(i, radius[i] + radius[j] - r, std::min(radius[i], radius[j]));
+      guards.see_overlap(i, radius[i] + radius[j] - r, std::min(radius[i], radius[j]));
     }
   }
   if (sizes_vary)
@@ -810,9 +351,9 @@ MovingBalls PairGranRestitution::moving_balls()
           atom->rmass,
           vectors(atom->f),
           vectors(atom->torque),
-          counts.data(),
-          counts_before.data(),
-          estimated.data()};
+          counts.now.data(),
+          counts.before.data(),
+          counts.estimated.data()};
 }
 
 /* ----------------------------------------------------------------------
@@ -821,12 +362,7 @@ MovingBalls PairGranRestitution::moving_balls()
 
 void PairGranRestitution::find_contacts(bool lists_new)
 {
-  const int nall = atom->nlocal + atom->nghost;
-  if (lists_new) counts_before.assign(nall, 0);
-  else counts_before.swap(counts);
-  counts.assign(nall, 0);
-  if (starting) estimated.assign(nall, 0);
-
+  counts.clear(atom->nlocal + atom->nghost, lists_new, starting);
   const MovingBalls balls = moving_balls();
   const MovingPartners partners = {balls, force->newton_pair ? INT_MAX : atom->nlocal};
   if (starting) {
@@ -840,69 +376,43 @@ void PairGranRestitution::find_contacts(bool lists_new)
   }
   for (ContactList &l : lists) l.find(starting, lists_new, balls, partners);
   for (ContactHolder *wall : walls) wall->find_contacts(starting, lists_new);
-  shared = lists_new ? BOTH_COUNTS : COUNTS;
-  share();
+  share(lists_new ? ContactCounts::BOTH : ContactCounts::NOW);
 }
 
 /* ----------------------------------------------------------------------
-   numbers of balls that several ranks know: see what. Those of a step ago are complete already,
-   unless they have been counted anew.
+   counts of balls that several ranks know
 ------------------------------------------------------------------------- */
 
-void PairGranRestitution::share()
+void PairGranRestitution::share(ContactCounts::Which which)
 {
+  counts.shared = which;
   if (force->newton_pair) compat::reverse_comm(comm, this);
   compat::forward_comm(comm, this);
 }
 
 int PairGranRestitution::pack_forward_comm(int n, int *list, double *buf, int, int *)
 {
-  const auto &first = shared == ESTIMATED ? estimated : counts;
-  int m = 0;
-  for (int k = 0; k < n; k++) {
-    buf[m++] = first[list[k]];
-    if (shared == BOTH_COUNTS) buf[m++] = counts_before[list[k]];
-  }
-  return m;
+  return counts.pack_forward(n, list, buf);
 }
 
 void PairGranRestitution::unpack_forward_comm(int n, int begin, double *buf)
 {
-  auto &first = shared == ESTIMATED ? estimated : counts;
-  int m = 0;
-  for (int i = begin; i < begin + n; i++) {
-    first[i] = static_cast<unsigned char>(buf[m++]);
-    if (shared == BOTH_COUNTS) counts_before[i] = static_cast<unsigned char>(buf[m++]);
-  }
+  counts.unpack_forward(n, begin, buf);
 }
 
 int PairGranRestitution::pack_reverse_comm(int n, int begin, double *buf)
 {
-  const auto &first = shared == ESTIMATED ? estimated : counts;
-  int m = 0;
-  for (int i = begin; i < begin + n; i++) {
-    buf[m++] = first[i];
-    if (shared == BOTH_COUNTS) buf[m++] = counts_before[i];
-  }
-  return m;
+  return counts.pack_reverse(n, begin, buf);
 }
 
 void PairGranRestitution::unpack_reverse_comm(int n, int *list, double *buf)
 {
-  auto add = [](unsigned char &sum, double more) {
-    sum = static_cast<unsigned char>(std::min(255.0, sum + more));
-  };
-  auto &first = shared == ESTIMATED ? estimated : counts;
-  int m = 0;
-  for (int k = 0; k < n; k++) {
-    add(first[list[k]], buf[m++]);
-    if (shared == BOTH_COUNTS) add(counts_before[list[k]], buf[m++]);
-  }
+  counts.unpack_reverse(n, list, buf);
 }
 
 bool PairGranRestitution::force_estimated(int i) const
 {
-  return i < static_cast<int>(estimated.size()) && estimated[i];
+  return counts.is_estimated(i);
 }
 
 /* ----------------------------------------------------------------------
@@ -940,7 +450,7 @@ void PairGranRestitution::compute(int eflag, int vflag)
   const MovingBalls balls = moving_balls();
   const MovingPartners partners = {balls, newton_pair ? INT_MAX : nlocal};
   for (size_t k = 0; k < lists.size(); k++) {
-    const ContactLaw &law = laws[k / 3];
+    const ContactLaw &law = table.law(k / 3);
     if (evflag)
       lists[k].apply<true>(law, dt, starting, balls, partners,
                            [&](int i, int j, const Vector &f, const Vector &d) {
@@ -953,8 +463,7 @@ void PairGranRestitution::compute(int eflag, int vflag)
   }
   fix_history->lists_used = true;
   if (starting) {
-    shared = ESTIMATED;
-    share();
+    share(ContactCounts::ESTIMATED);
   }
 }
 
@@ -980,7 +489,7 @@ double PairGranRestitution::single(int i, int j, int itype, int jtype, double rs
 
   // as the law has it: velocities and overlap of the same time
 
-  ContactLaw law = laws[index(itype, jtype)];
+  ContactLaw law = table.law(itype, jtype);
   law.exact = 0.0;
   MovingBalls balls = moving_balls();
   balls.v = vectors(atom->v);
@@ -1015,43 +524,28 @@ double PairGranRestitution::single(int i, int j, int itype, int jtype, double rs
 
 void PairGranRestitution::write_restart(FILE *fp)
 {
-  write_restart_settings(fp);
-  fwrite(coeffs.data(), sizeof(Coeff), coeffs.size(), fp);
+  table.write_settings(fp);
+  table.write_coeffs(fp);
 }
 
 void PairGranRestitution::read_restart(FILE *fp)
 {
-  read_restart_settings(fp);
+  table.read_settings(fp);
   allocate();
-  if (comm->me == 0)
-    utils::sfread(FLERR, coeffs.data(), sizeof(Coeff), coeffs.size(), fp, nullptr, error);
-  MPI_Bcast(coeffs.data(), sizeof(Coeff) * coeffs.size(), MPI_BYTE, 0, world);
+  table.read_coeffs(fp);
   for (int i = 1; i <= atom->ntypes; i++)
     for (int j = i; j <= atom->ntypes; j++)
-      if (coeffs[index(i, j)].set) setflag[i][j] = 1;
-  make_laws();
+      if (table.is_set(i, j)) setflag[i][j] = 1;
 }
 
 void PairGranRestitution::write_restart_settings(FILE *fp)
 {
-  const int values[5] = {FORMAT, mass_ball, limit_damping, rolling_reduced, plain};
-  fwrite(values, sizeof(int), 5, fp);
+  table.write_settings(fp);
 }
 
 void PairGranRestitution::read_restart_settings(FILE *fp)
 {
-  int values[5] = {0, 0, 0, 0, 0};
-  if (comm->me == 0) utils::sfread(FLERR, values, sizeof(int), 5, fp, nullptr, error);
-  MPI_Bcast(values, 5, MPI_INT, 0, world);
-  if (values[0] != FORMAT)
-    error->all(FLERR,
-               "Pair gran/restitution: restart file must have contacts of format {}, got {}: begin anew, or "
-               "go on with the version of the package that wrote it",
-               FORMAT, values[0] > 1 ? std::to_string(values[0]) : "one of an earlier version");
-  mass_ball = values[1];
-  limit_damping = values[2];
-  rolling_reduced = values[3];
-  plain = values[4];
+  table.read_settings(fp);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -1070,9 +564,9 @@ void *PairGranRestitution::extract(const char *name, int &dim)
 
 double PairGranRestitution::memory_usage()
 {
-  double bytes = coeffs.size() * (sizeof(Coeff) + sizeof(ContactLaw));
+  double bytes = table.memory_usage();
   for (const ContactList &l : lists) bytes += l.memory_usage();
-  bytes += counts.capacity() + counts_before.capacity() + estimated.capacity();
+  bytes += counts.memory_usage();
   bytes += (half_v.capacity() + half_omega.capacity()) * sizeof(Vector);
   return bytes;
 }

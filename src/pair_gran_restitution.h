@@ -14,9 +14,11 @@ PairStyle(gran/restitution,PairGranRestitution);
 
 #include "pair.h"
 
+#include "contact_counts.h"
+#include "contact_guards.h"
 #include "contact_law.h"
 #include "contact_list.h"
-#include "energy_guard.h"
+#include "contact_table.h"
 
 #include <string>
 #include <vector>
@@ -64,78 +66,26 @@ class PairGranRestitution : public Pair {
   bool force_estimated(int i) const;    // of a ball at set-up: contacts that slid alone, see contact_law.h
   bool sizes_vary;    // between two neighbor lists, by fix adapt
 
-  // guards; what they found, for summaries
-  void watch_energy();     // every EnergyGuard::EVERY steps and at the end of a run
-  void see_overlap(int i, double overlap, double radius);    // radius: the smaller one
-  void report_guards();    // at the end of a run
-  struct Guards {
-    double deepest;        // overlap, of the smaller radius
-    double energy_growth;
-    bigint deep, energy_grew, dangerous_builds;
-  };
-  Guards guards() const;    // collective
-  std::vector<std::string> warnings;    // so far, each once
+  void watch_energy();    // every ContactGuards::EVERY steps and at the end of a run
+  ContactGuards guards;
 
  protected:
-  // what pair_coeff was given for a type pair; the laws are made from it
-  struct Coeff {
-    int set;
-    int restitution_set;    // 1: dashpots from e, 0: cn and ct as given
-    int spring_set;         // 1: kr and cr as given
-    double kn, kt, e, cn, ct, phi, rolling, kr, cr;
-  };
-
-  // what the masses and radii of a type's atoms are, over all ranks
-  struct TypeRange {
-    double mass_min, mass_max, radius_dynamic, radius_frozen;
-    bool moving, frozen;
-  };
-
-  int mass_ball;         // mass ball instead of mass pair
-  int limit_damping;     // the normal force never pulls
-  int rolling_reduced;   // rolling radius RiRj/(Ri+Rj) instead of its double
-  int plain;             // velocities of the dashpots as velocity Verlet has them
-
-  std::vector<Coeff> coeffs;              // (ntypes+1) x (ntypes+1), both triangles filled
-  std::vector<Slope::ContactLaw> laws;    // same layout
-  std::vector<TypeRange> ranges;          // by type
-  std::vector<char> wall_type;            // by type: 1 if a wall fix uses it
+  ContactTable table;
 
   double dt;
   bool starting;    // at set-up
   int freeze_group_bit;
   class FixContactHistory *fix_history;
   std::vector<Slope::ContactList> lists;    // by type pair and by which side is frozen
-  // contacts that were seen deeper than is sensible: with every neighbor list and by watch_energy()
-  struct Overlaps {
-    double most;    // of the smaller radius
-    tagint ball;
-    bigint step, count;
-  } overlaps;
-
   std::vector<class ContactHolder *> walls;
-  std::vector<unsigned char> counts, counts_before, estimated;    // see MovingBalls
-  enum { COUNTS, BOTH_COUNTS, ESTIMATED } shared;    // what is communicated of them
-  EnergyGuard energy;
+  Slope::ContactCounts counts;
   std::vector<Slope::Vector> half_v, half_omega;    // at set-up, where they are known
   std::string history_id, dummy_id;
-  std::string table;    // start-up table as last printed
 
   void allocate();
-  int index(int i, int j) const;
-  void make_laws();
-  void find_ranges();
-  void print_table();
-  void check_timestep();
-  bool can_touch(int, int) const;
-  double bound_on_step(int, int) const;
-  void check_neighbor_lists();
-  void check_fixed_balls();
-  template <typename... Args> void warn(const char *format, const Args &...args);
   void build_lists();
   void find_contacts(bool lists_new);
-  void share();
-  void check_dashpots();
+  void share(Slope::ContactCounts::Which);
   void find_half_step();
 };
 

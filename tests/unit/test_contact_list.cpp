@@ -406,19 +406,3 @@ TEST(ContactList, StartTakesOverlapsForOldContacts)
   EXPECT_EQ(trio.before[0], 1);
   EXPECT_EQ(trio.before[2], 0);
 }
-
-// a sliding contact's spring balances its dashpot: it gives back no more than friction holds
-TEST(ContactList, StoredEnergyIsWhatFrictionHolds)
-{
-  Trio trio(0.5);
-  trio.x[1].z = 0.2 - 1e-4;
-  const MovingBalls balls = trio.balls();
-  auto see = [](const ContactList::Entry &, double) {};
-  auto energy = [&] { return trio.list.elastic_energy(trio.law, balls, MovingPartners{balls, 3}, see); };
-  const double normal = 0.5 * KN * 1e-8, limit = 0.5 * KN * 1e-4;
-  EXPECT_NEAR(energy() / normal, 1.0, 1e-9);
-  trio.history[0][0] = 2e-5;
-  EXPECT_NEAR(energy() / (normal + 0.5 * KN * 4e-10), 1.0, 1e-9);
-  trio.history[0][0] = -9e-4;
-  EXPECT_NEAR(energy() / (normal + 0.5 * limit * limit / KN), 1.0, 1e-9);
-}
