@@ -51,6 +51,37 @@ def told():
     return yaml.safe_load(Path("verification/verification.yaml").read_text())
 
 
+def lines_of(path):
+    return Path(path).read_text().count("x") if Path(path).exists() else 0
+
+
+def test_what_is_finished_is_kept(slope):
+    """The same runs are not made again; those of another program, deck or value are."""
+    slope("")
+    assert lines_of("count") == 2 and told()["kept"] == 0
+    slope("")
+    assert lines_of("count") == 2 and told()["kept"] == 2 and told()["passed"] == 1
+    slope("", claim(broken=0.35))
+    assert lines_of("count") == 3 and told()["kept"] == 1
+    slope("", Claim("bounce", "A ball", "m", "paper", (DROP(("0.25", "0.250"), e=0.25),), observed, Near(0.25, 0.003),
+                    Control("another e", (DROP(e=0.3),))))
+    assert lines_of("count") == 4       # its folder has another name
+    program = Path("lmp")
+    program.write_text(program.read_text() + "# another one\n")
+    slope("")
+    assert lines_of("count") == 6 and told()["kept"] == 0
+
+
+def test_a_run_that_failed_is_made_again(slope):
+    status, _, err = slope("", claim(broken="none"))
+    assert status == 2 and "there is no e" in err
+    finished = {path.parent.name for path in Path("verification/runs").glob("*/finished")}
+    assert finished == {"01_restitution.restitution_e_0.25"}
+    Path("verification/runs/01_restitution.restitution_e_0.25/finished").write_text("of another program\n")
+    slope("")
+    assert lines_of("count") == 3
+
+
 def test_all_is_well(slope):
     status, out, err = slope("")
     assert status == 0 and "all 1 claims hold" in out and "FAIL" not in out, err

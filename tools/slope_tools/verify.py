@@ -26,6 +26,7 @@ from .verification.claims import Result
 from .verification.errata import errata
 
 NAME = "verification"       # of the files
+FINISHED = "finished"       # in the folder of a run that ended well: checksums of the program and of the run
 COLUMNS = ("case", "claim", "name", "source", "unit", "expected", "tolerance", "got", "passed", "control",
            "control_got", "control_fails", "remark", "commands")
 
@@ -37,7 +38,8 @@ example: what takes seconds; all of it; one case:
   tools/slope verify -o verification
   tools/slope verify --only 11_column_collapse --jobs 1
 
-Writes DIR/verification.csv, .yaml, .rst and .html; every run stays in DIR/runs. The exit status is 0 when every claim
+Writes DIR/verification.csv, .yaml, .rst and .html; every run stays in DIR/runs, and is made anew only if its deck, its
+data or the program has changed. The exit status is 0 when every claim
 holds and every control fails, as it must, else 2.
 """
 
@@ -72,7 +74,6 @@ def run(args):
     try:
         args.output.mkdir(parents=True, exist_ok=True)
         with jobs.alone_in(args.output), jobs.signals_interrupt():
-            shutil.rmtree(args.output / "runs", ignore_errors=True)
             runner = Runner(args.output / "runs", lmp)
             wanted = [one for claim in claims for one in (*claim.runs, *claim.control.runs)]
             runner.do(wanted, args.jobs or jobs.cores())
@@ -108,11 +109,14 @@ def chosen(args):
 # --- runs ---
 
 class Runner:
-    """Runs decks, each once, in a folder of its own."""
+    """Runs decks, each once, in a folder of its own. What an earlier runner finished there with the same program,
+    deck and data is kept."""
 
     def __init__(self, folder, lmp):
         self.folder, self.lmp = Path(folder), lmp
         self.results = {}
+        self.kept = 0
+        self.program = jobs.sha256(lmp)
 
     def result(self, one):
         """The Result of a run; it is run now if it was not before."""
@@ -122,6 +126,10 @@ class Runner:
 
     def do(self, wanted, most):
         """Run what has not been run, some at a time. On an interruption, end the runs under way."""
+        for one in dict.fromkeys(wanted):
+            if one not in self.results and self.is_finished(one):
+                self.results[one] = Result(self.folder / one.name)
+                self.kept += 1
         waiting = [one for one in dict.fromkeys(wanted) if one not in self.results]
         active = {}
         with Bar(len(waiting)) as bar:
@@ -144,6 +152,7 @@ class Runner:
 
     def start(self, one):
         folder = self.folder / one.name
+        shutil.rmtree(folder, ignore_errors=True)
         one.write(folder)
         guard = ["setpriv", "--pdeathsig", "TERM"] if shutil.which("setpriv") else []   # does not outlive us
         with open(folder / jobs.SCREEN, "wb") as screen:
@@ -156,7 +165,17 @@ class Runner:
         if status:
             error = runs.Log(folder / runs.LOG).update().error or runs.last_words(folder / jobs.SCREEN)
             raise SlopeError(folder / runs.LOG, f"must end well: {error or 'no word'}", f"status {status}")
+        (folder / FINISHED).write_text(self.identity(one))
         return Result(folder)
+
+    def identity(self, one):
+        return f"{self.program} {one.identity}\n"
+
+    def is_finished(self, one):
+        try:
+            return (self.folder / one.name / FINISHED).read_text() == self.identity(one)
+        except OSError:
+            return False
 
 
 class Bar:
@@ -237,7 +256,7 @@ def provenance(args, lmp, runner, outcomes, seconds):
     return {"date": runs.now(), "command": " ".join(words), "package": runs.package_version(), "lammps": log.lammps,
             "lmp_sha256": jobs.sha256(lmp), "python": platform.python_version(), "numpy": np.__version__,
             "processor": machine["processor"], "cores": machine["cores"], "system": platform.system(),
-            "runs": len(runner.results), "seconds": round(seconds, 1), "claims": len(outcomes),
+            "runs": len(runner.results), "kept": runner.kept, "seconds": round(seconds, 1), "claims": len(outcomes),
             "passed": sum(outcome.passed for outcome in outcomes),
             "controls_that_fail": sum(outcome.control_fails for outcome in outcomes)}
 

@@ -53,15 +53,33 @@ class Run(NamedTuple):
     def write(self, folder):
         """Put the deck and its data into a new folder."""
         folder.mkdir(parents=True)
-        for path in self.source.parent.iterdir():
-            if path.is_file() and path.suffix not in NO_DATA and not path.name.startswith("in."):
-                shutil.copy(path, folder)
+        for path in self.data:
+            shutil.copy(path, folder)
+        (folder / self.source.name).write_text(self.text, encoding="ascii")
+
+    @property
+    def data(self):
+        """The files that the deck may read, sorted."""
+        return sorted(path for path in self.source.parent.iterdir()
+                      if path.is_file() and path.suffix not in NO_DATA and not path.name.startswith("in."))
+
+    @property
+    def text(self):
+        """Of the deck, with what a control replaces."""
         text = self.source.read_text(encoding="ascii")
         for old, new in self.swaps:
             if old not in text:
                 raise SlopeError(self.source, "must have what a control replaces", repr(old))
             text = text.replace(old, new)
-        (folder / self.source.name).write_text(text, encoding="ascii")
+        return text
+
+    @property
+    def identity(self):
+        """Checksum of all that the run is made of, but for the program."""
+        digest = hashlib.sha256(repr((self.text, self.options)).encode())
+        for path in self.data:
+            digest.update(path.name.encode() + path.read_bytes())
+        return digest.hexdigest()
 
 
 class Result:
