@@ -5,45 +5,13 @@
 
 #include "deposit_summary.h"
 
-#include <algorithm>
-#include <cstdio>
+#include "yaml_text.h"
 
 using namespace Slope;
+using namespace Slope::yaml;
 
 static constexpr double PI = 3.14159265358979323846;
 static constexpr double SIMPLE_CUBIC = 6.0 / PI;
-
-/* ----------------------------------------------------------------------
-   YAML; a number that is no count has a point in it, or YAML would read 1e-05 as text
-------------------------------------------------------------------------- */
-
-static std::string real(double value)
-{
-  char number[40];
-  snprintf(number, sizeof(number), "%.15g", value);
-  std::string text = number;
-  if (text.find('.') != std::string::npos) return text;
-  return text.insert(std::min(text.find('e'), text.size()), ".0");
-}
-
-static std::string count(double value)
-{
-  char number[40];
-  snprintf(number, sizeof(number), "%.0f", value);
-  return number;
-}
-
-static std::string quoted(const std::string &text)
-{
-  std::string inner;
-  for (const char c : text) inner += c == '\'' ? "''" : std::string(1, c);
-  return "'" + inner + "'";
-}
-
-static void line(std::string &s, const std::string &key, const std::string &value)
-{
-  s += key + ": " + value + "\n";
-}
 
 /* ---------------------------------------------------------------------- */
 

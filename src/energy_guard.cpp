@@ -36,7 +36,8 @@ void EnergyGuard::start()
   motion = grown = 0.0;
   count = 0;
 
-  // a fix that moves balls or adds forces does work that is its own business
+  // a fix that moves balls or adds forces does work that is its own business; fix ground/motion
+  // does neither, and its work is counted: see look()
 
   known = true;
   for (int k = 0; k < modify->nfix; k++) {
@@ -92,10 +93,18 @@ bool EnergyGuard::look(double elastic)
     }
     for (int d = 0; d < 3; d++) gravity[d] += g[d];
   }
-  const double mine[2] = {moving, height};
-  double all[2];
-  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
-  const double energy = all[0] + all[1];
+
+  // what the motion of the ground has put in is counted, and taken out again
+
+  double given = 0.0;
+  for (Fix *fix : compat::fixes_of_style(lmp, "ground/motion")) {
+    int dim;
+    given += *static_cast<double *>(fix->extract("work", dim));
+  }
+  const double mine[3] = {moving, height, given};
+  double all[3];
+  MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_SUM, world);
+  const double energy = all[0] + all[1] - all[2];
 
   // balls that came or went and gravity that turns change the energy: begin anew
 
@@ -106,10 +115,10 @@ bool EnergyGuard::look(double elastic)
   lowest = std::min(lowest, energy);
   motion = std::max(motion, all[0]);
 
-  // rounding of large heights is no growth
+  // rounding of large heights and of much work is no growth
 
   const double growth = energy - lowest;
-  if (!known || growth <= 1.0e-9 * std::fabs(all[1])) return false;
+  if (!known || growth <= 1.0e-9 * (std::fabs(all[1]) + std::fabs(all[2]))) return false;
   grown = std::max(grown, growth / motion);
   return growth > GROWTH * motion && count++ == 0;
 }

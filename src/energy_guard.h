@@ -4,8 +4,9 @@
 ------------------------------------------------------------------------- */
 
 /* Energy of the balls during a run: motion, height and what the springs hold. Contacts take
-   from it and give nothing, so it only falls; if it grows, the time step is too large or contacts
-   were found late. And it is a number, or the run ends. */
+   from it and give nothing, so it only falls, but for what a motion of the ground puts in, which
+   is counted and taken out; if it grows, the time step is too large or contacts were found late.
+   And it is a number, or the run ends. */
 
 #ifndef SLOPE_ENERGY_GUARD_H
 #define SLOPE_ENERGY_GUARD_H

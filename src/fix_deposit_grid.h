@@ -45,6 +45,10 @@ class FixDepositGrid : public Fix {
   void *extract(const char *, int &) override;
   double memory_usage() override;
 
+  // for fix control/line
+  double bulk() const { return balls.bulk(); }    // bulk volume / volume of a ball; 0: not known yet
+  const std::string &terrain() const { return options.terrain; }    // region of the ground
+
  private:
   static constexpr int NRESULT = 11;
 

@@ -37,12 +37,17 @@ DECK = {
     "delete": "delete_balls soil overlap 0.0",
     "move": "fix move soil nve/sphere",
     "deposit": "fix deposit soil deposit/grid 10 20 cell 1.0 terrain ground output out",
+    "motion": "fix shake soil ground/motion motion.txt scale 1 start 0",
+    "line": "fix line soil control/line fence.csv deposit deposit output out",
     "output": "thermo_style custom step atoms ke f_wall[3] f_deposit[10]",
     "run": "run 1",
 }
 FILES = {
     "road.csv": "6,0\n8,0\n8,8\n6,8\n", "line.csv": "0,0\n1,1\n", "bow.csv": "0,0\n1,1\n0,1\n1,0\n",
     "word.csv": "0,0\nx\n", "far.csv": "0,0\n1e13,0\n0,1\n", "empty.csv": "",
+    "motion.txt": "# t ax ay az\n0 0 0 0\n0.5 1 0 0\n", "gap.txt": "0 0 0 0\n0.1 1 0\n",
+    "falling.txt": "0 0 0 0\n1 0 0 0\n0.5 0 0 0\n",
+    "fence.csv": "1,7\n7 7\n", "one.csv": "1,7\n", "twice.csv": "1,7\n1,7\n", "off.csv": "1,7\n9,7\n",
     "balls.txt": "# x y z\n1 1 0\n7 7 0.5\n", "two.txt": "1 2 3\n1 2\n", "word.txt": "1 2 x\n", "nan.txt": "1 nan 3\n",
     "far.txt": "1e13 1 0\n", "none.txt": "# nothing\n", "outside.txt": "9 9 0\n",
     "short.asc": "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n3\n",
@@ -307,6 +312,32 @@ TABLE = {
         10 20 color red -> : unknown keyword color, must be cell, terrain, output, bulk, extent, motion, window or
         10 20 red -> : unknown keyword red, must be cell, terrain, output, bulk, extent, motion, window or series
         """,
+    ("motion", "fix shake soil ground/motion", "Fix ground/motion"): """
+        -> needs FILE with lines t ax ay az
+        no.txt -> : cannot read no.txt: No such file or directory
+        gap.txt -> : gap.txt, line 2: must be 4 numbers, t ax ay az, got 0.1 1 0
+        falling.txt -> : falling.txt, line 3: times must not fall, got 0.5 after 1
+        none.txt -> : none.txt: must hold at least 2 lines t ax ay az, got 0
+        motion.txt scale -> scale: value is missing
+        motion.txt scale x -> scale must be a finite number, got x
+        motion.txt start inf -> start must be a finite number, got inf
+        motion.txt color red -> : unknown keyword color, must be scale or start
+        """,
+    ("line", "fix line soil control/line", "Fix control/line"): """
+        -> needs FILE deposit ID output PREFIX
+        fence.csv deposit deposit -> keyword output is missing
+        fence.csv output -> output: value is missing
+        fence.csv output out color red -> : unknown keyword color, must be deposit or output
+        no.csv output out -> : cannot read no.csv: No such file or directory
+        word.csv output out -> : word.csv, line 2: must be 2 numbers, x y or x,y, got x
+        far.csv output out -> : far.csv, line 2: x and y must be within +-1e+12, got 1e+13 0
+        one.csv output out -> : one.csv: must hold at least 2 points x y of a line, got 1
+        twice.csv output out -> : twice.csv, line 2: two points in a row must differ, got 1 7 twice
+        off.csv output out -> line: points of off.csv must lie in the terrain, x 0 to 8, y 0 to 8, got 9 7
+        fence.csv deposit wall output out -> line deposit must be the ID of a fix deposit/grid, got wall
+        fence.csv deposit no output out -> line deposit must be the ID of a fix deposit/grid, got no
+        fence.csv deposit deposit output no/out -> : cannot write no/out.line.csv: No such file or directory
+        """,
 }
 
 # lines of the deck that are changed, the message
@@ -314,7 +345,7 @@ NO_BALLS = {"atom_style": "atom_style atomic", "set": "mass * 1.0", "comm": "", 
 FLAT = {"dimension": "dimension 2", "boundary": "boundary f f p", "terrain": "region ground block 0 8 0 8 -0.1 0.1",
         "atoms": "create_atoms 1 single 1 1 0", "move": "", "freeze": "", "output": ""}
 ONLY = dict.fromkeys(("pair", "coeff", "coeff wall", "coeff frozen", "wall", "more walls", "create", "delete",
-                      "deposit"), "")
+                      "deposit", "motion", "line"), "")
 SETUPS = [
     # the order of commands
     ({"units": "create_balls 3 1.0 2000 file balls.txt"}, "Create_balls before the simulation box is defined"),
@@ -344,6 +375,7 @@ SETUPS = [
     ({**NO_BALLS, **ONLY, "delete": DECK["delete"]}, "Delete_balls requires balls: atom_style must be sphere, got atomic"),
     ({**NO_BALLS, **ONLY, "deposit": DECK["deposit"]},
      "Fix deposit/grid requires balls: atom_style must be sphere, got atomic"),
+    ({**NO_BALLS, **ONLY, "line": DECK["line"]}, "Fix control/line requires balls: atom_style must be sphere, got atomic"),
 
     # what does not fit together
     ({**FLAT, **ONLY, "create": DECK["create"]},
@@ -361,6 +393,12 @@ SETUPS = [
      "Region polygon road has no end in z: the simulation box needs one"),
     ({"deposit": DECK["deposit"] + "\n" + DECK["deposit"].replace("deposit soil", "other soil").replace("cell 1.0", "cell 2")},
      "Fix deposit/grid output must be another than that of fix other, got out"),
+    ({"line": DECK["line"] + "\n" + DECK["line"].replace("line soil", "other soil")},
+     "Fix control/line output must be another than that of fix other, got out"),
+    ({"line": "fix line soil control/line fence.csv output out",
+      "deposit": DECK["deposit"] + "\n" + DECK["deposit"].replace("deposit soil", "other soil") + "2"},
+     "Fix control/line line needs deposit ID, the fix deposit/grid that has the bulk factor, where there is not exactly one, got 2"),
+    ({"motion": DECK["motion"] + "\nrun_style respa 2 2"}, "Fix ground/motion needs run_style verlet, got respa"),
     ({"deposit": "region high sphere 4 4 9 3 units box\n" + DECK["deposit"].replace("terrain ground", "terrain high")},
      "Fix deposit/grid terrain region high must have a height within one "),
 ]

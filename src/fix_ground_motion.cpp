@@ -1,0 +1,324 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+/* The frame of the run moves with the ground: every ball of the group gets the ground's acceleration
+   with the opposite sign. The velocities are kicked at both half steps of velocity Verlet by the
+   integral over that half step, so that they add up to the ground's velocity whatever the step. */
+
+#include "fix_ground_motion.h"
+
+#include "lammps_compat.h"
+#include "rank_zero.h"
+#include "style_argument.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "force.h"
+#include "modify.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using Slope::MotionRecord;
+
+static constexpr double DOUBTED = 50.0;    // m/s2, more than any ground has moved with
+
+/* ----------------------------------------------------------------------
+   fix ID group ground/motion FILE keyword value ...
+------------------------------------------------------------------------- */
+
+FixGroundMotion::FixGroundMotion(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), scale(1.0), start(0.0), kicked(0), placed(0), frozen(0),
+    ground{0.0, 0.0, 0.0}, last_kick{0.0, 0.0, 0.0}, work(0.0)
+{
+  if (narg < 4) error->all(FLERR, "Fix ground/motion needs FILE with lines t ax ay az");
+  file = arg[3];
+  read_keywords(narg, arg);
+  read_record();
+  announce();
+
+  vector_flag = 1;
+  size_vector = 9;
+  global_freq = 1;
+  extvector = 0;
+  restart_global = 1;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixGroundMotion::read_keywords(int narg, char **arg)
+{
+  for (int iarg = 4; iarg < narg; iarg += 2) {
+    const std::string keyword = arg[iarg];
+    if (keyword != "scale" && keyword != "start")
+      error->all(FLERR, "Fix ground/motion: unknown keyword {}, must be scale or start", keyword);
+    if (iarg + 1 == narg) error->all(FLERR, "Fix ground/motion {}: value is missing", keyword);
+    (keyword == "scale" ? scale : start) =
+        number_argument(lmp, "Fix ground/motion " + keyword, arg[iarg + 1]);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   one rank reads; what went wrong there ends the run on all of them
+------------------------------------------------------------------------- */
+
+void FixGroundMotion::read_record()
+{
+  std::vector<MotionRecord::Point> points;
+  on_rank_zero(lmp, "Fix ground/motion", [&]() { points = MotionRecord::read(file, scale).list(); });
+  int n = (int) points.size();
+  MPI_Bcast(&n, 1, MPI_INT, 0, world);
+  points.resize(n);
+  const int width = sizeof(MotionRecord::Point) / sizeof(double);
+  MPI_Bcast(points.data(), n * width, MPI_DOUBLE, 0, world);
+  record = MotionRecord(points, scale);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixGroundMotion::announce() const
+{
+  if (comm->me > 0) return;
+  double v[3], d[3];
+  record.velocity(record.end(), v);
+  record.displacement(record.end(), d);
+  utils::logmesg(lmp,
+                 "Fix ground/motion {}: {} points from {:g} to {:g}, largest acceleration {:.6g}; the "
+                 "ground ends with velocity {:.4g} {:.4g} {:.4g}, displacement {:.4g} {:.4g} {:.4g}\n",
+                 id, record.list().size(), record.begin(), record.end(), record.peak(), v[0], v[1],
+                 v[2], d[0], d[1], d[2]);
+  if (record.peak() > DOUBTED && strcmp(update->unit_style, "si") == 0)
+    error->warning(FLERR,
+                   "Fix ground/motion {}: a largest acceleration of at most {:g} m/s2 is believed, got "
+                   "{:.6g} from {}: numbers in gal need scale 0.01",
+                   id, DOUBTED, record.peak(), file);
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixGroundMotion::setmask()
+{
+  // PRE_FORCE for setup_pre_force() alone
+  return INITIAL_INTEGRATE | POST_INTEGRATE | FINAL_INTEGRATE | PRE_FORCE;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixGroundMotion::init()
+{
+  if (utils::strmatch(update->integrate_style, "^respa"))
+    error->all(FLERR, "Fix ground/motion needs run_style verlet, got {}", update->integrate_style);
+
+  kicked = placed = frozen = 0;
+  bool before = true;
+  for (int k = 0; k < modify->nfix; k++) {
+    const Fix *fix = modify->fix[k];
+    if (fix == this) before = false;
+    if (utils::strmatch(fix->style, "^freeze")) frozen |= fix->groupbit;
+    if (!fix->time_integrate || !utils::strmatch(fix->style, "^nve")) continue;
+    kicked |= fix->groupbit;
+    if (before) placed |= fix->groupbit;
+  }
+  if (update->whichflag == 1) check_integrators();
+}
+
+/* ----------------------------------------------------------------------
+   rigid bodies and balls on a prescribed path do not feel a kick: better said than found out later
+------------------------------------------------------------------------- */
+
+void FixGroundMotion::check_integrators()
+{
+  bigint mine[2] = {0, 0}, all[2];
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    mine[0]++;
+    if (!follows(atom->mask[i]) && !(atom->mask[i] & frozen)) mine[1]++;
+  }
+  MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all[1] > 0 && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix ground/motion {}: only balls that fix nve/sphere integrates feel the ground's "
+                   "motion, {} of {} balls of the group are not and do not",
+                   id, all[1], all[0]);
+}
+
+/* ----------------------------------------------------------------------
+   The forces of a set-up are those of the last step, and pair gran/restitution finds them from the
+   velocities in its middle: what the force changed since it takes back itself, and the kick since is
+   taken back here.
+------------------------------------------------------------------------- */
+
+void FixGroundMotion::setup_pre_force(int)
+{
+  kept.clear();
+  if (update->whichflag != 1) return;
+  const bool goes_on = clock.begin(update->ntimestep, update->dt);
+  record.velocity(clock.now() - start, ground);
+  if (!goes_on) std::fill(last_kick, last_kick + 3, 0.0);
+  if (!goes_on || !force->pair_match("gran/restitution", 1)) return;
+
+  double **const v = atom->v;
+  const int n = atom->nlocal;
+  if (n > 0) kept.assign(v[0], v[0] + 3 * n);
+  for (int i = 0; i < n; i++)
+    for (int c = 0; c < 3 && follows(atom->mask[i]); c++) v[i][c] -= last_kick[c];
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixGroundMotion::setup(int)
+{
+  if (!kept.empty()) std::copy(kept.begin(), kept.end(), atom->v[0]);
+  std::vector<double>().swap(kept);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixGroundMotion::initial_integrate(int)
+{
+  kick_until(clock.at(update->ntimestep - 1) + 0.5 * clock.dt(), true);
+}
+
+/* ----------------------------------------------------------------------
+   Work of the motion in this step, for the energy guard: both its kicks on the velocities in its
+   middle, with which the balls move, and what the kicks put into a free ball on top of that. What
+   each kick changes in the energy of motion is something else: on a ball that friction holds these
+   changes add up, although nothing moves.
+------------------------------------------------------------------------- */
+
+void FixGroundMotion::post_integrate()
+{
+  double next[3], k[3], rest = 0.0;
+  record.velocity(clock.at(update->ntimestep) - start, next);
+  for (int c = 0; c < 3; c++) {
+    const double second = ground[c] - next[c];
+    k[c] = last_kick[c] + second;
+    rest += 0.5 * (second * second - last_kick[c] * last_kick[c]);
+  }
+  if (k[0] == 0.0 && k[1] == 0.0 && k[2] == 0.0) return;
+
+  double done = 0.0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!follows(atom->mask[i])) continue;
+    const double *v = atom->v[i];
+    const double mass = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
+    done += mass * (v[0] * k[0] + v[1] * k[1] + v[2] * k[2] + rest);
+  }
+  work += done * force->mvv2e;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixGroundMotion::final_integrate()
+{
+  kick_until(clock.at(update->ntimestep), false);
+  clock.pass(update->ntimestep);
+}
+
+/* ----------------------------------------------------------------------
+   First half: balls that an integrator earlier in the deck has moved already are moved by what the
+   kick adds, so that the order of the fixes does not matter.
+------------------------------------------------------------------------- */
+
+void FixGroundMotion::kick_until(double time, bool first_half)
+{
+  double now[3];
+  record.velocity(time - start, now);
+  for (int c = 0; c < 3; c++) last_kick[c] = ground[c] - now[c];
+  std::copy(now, now + 3, ground);
+  const double *k = last_kick;
+  if (k[0] == 0.0 && k[1] == 0.0 && k[2] == 0.0) return;
+
+  double **const x = atom->x, **const v = atom->v;
+  const double dt = update->dt;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!follows(atom->mask[i])) continue;
+    for (int c = 0; c < 3; c++) v[i][c] += k[c];
+    if (!first_half || !(atom->mask[i] & placed)) continue;
+    for (int c = 0; c < 3; c++) x[i][c] += dt * k[c];
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixGroundMotion::reset_dt()
+{
+  clock.change_step_size(update->ntimestep, update->dt);
+}
+
+/* ----------------------------------------------------------------------
+   acceleration, velocity and displacement of the ground
+------------------------------------------------------------------------- */
+
+double FixGroundMotion::compute_vector(int k)
+{
+  const bool running = update->whichflag == 1 && clock.started();
+  const double t = (running ? clock.at(update->ntimestep) : clock.now()) - start;
+  double values[3];
+  if (k < 3) record.acceleration(t, values);
+  else if (k < 6) record.velocity(t, values);
+  else record.displacement(t, values);
+  return values[k % 3];
+}
+
+/* ----------------------------------------------------------------------
+   for the energy guard of the pair style: J, on this rank
+------------------------------------------------------------------------- */
+
+void *FixGroundMotion::extract(const char *name, int &dim)
+{
+  dim = 0;
+  return strcmp(name, "work") == 0 ? &work : nullptr;
+}
+
+/* ---------------------------------------------------------------------- */
+
+FixGroundMotion::Key FixGroundMotion::restart_key() const
+{
+  return {(double) record.list().size(), record.begin(), record.end(), record.checksum(), scale, start};
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixGroundMotion::write_restart(FILE *fp)
+{
+  if (comm->me != 0) return;
+  Saved saved = {restart_key(), clock.state(), {last_kick[0], last_kick[1], last_kick[2]}};
+  const int size = sizeof(Saved);
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(&saved, sizeof(Saved), 1, fp);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixGroundMotion::restart(char *buffer)
+{
+  Saved saved;
+  memcpy(&saved, buffer, sizeof(Saved));
+  const Key mine = restart_key();
+  if (memcmp(&saved.key, &mine, sizeof(Key)) != 0) {
+    auto text = [](const Key &k) {
+      return fmt::format("{:.0f} points from {:g} to {:g} (sum {:.10g}), scale {:g}, start {:g}", k.points,
+                         k.begin, k.end, k.checksum, k.scale, k.start);
+    };
+    error->all(FLERR,
+               "Fix ground/motion {} must have the motion of the restart file, {}; got {}: another motion "
+               "needs another fix ID",
+               id, text(saved.key), text(mine));
+  }
+  clock.set_state(saved.clock);
+  std::copy(saved.last_kick, saved.last_kick + 3, last_kick);
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixGroundMotion::memory_usage()
+{
+  return 3.0 * record.list().size() * sizeof(MotionRecord::Point);
+}

@@ -1,0 +1,106 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#include "plan_line.h"
+
+#include "number_rows.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace Slope;
+
+static constexpr double LARGEST = 1.0e12;    // coordinates; their products must be finite
+
+/* ---------------------------------------------------------------------- */
+
+PlanLine::PlanLine(const std::vector<double> &_xy) :
+    xy(_xy), xlo(HUGE_VAL), xhi(-HUGE_VAL), ylo(HUGE_VAL), yhi(-HUGE_VAL)
+{
+  for (size_t k = 0; k < xy.size(); k += 2) {
+    start.push_back(k == 0 ? 0.0 : start.back() + std::hypot(xy[k] - xy[k - 2], xy[k + 1] - xy[k - 1]));
+    xlo = std::min(xlo, xy[k]);
+    xhi = std::max(xhi, xy[k]);
+    ylo = std::min(ylo, xy[k + 1]);
+    yhi = std::max(yhi, xy[k + 1]);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+PlanLine PlanLine::read(const std::string &path)
+{
+  std::vector<double> points;
+  for (const NumberRow &row : read_number_rows(path, 2, "x y or x,y")) {
+    const double x = row.values[0], y = row.values[1];
+    if (!(std::fabs(x) <= LARGEST && std::fabs(y) <= LARGEST))
+      throw row_error(path, row.line,
+                      "x and y must be within +-" + number_text(LARGEST) + ", got " + number_text(x) +
+                          " " + number_text(y));
+    const size_t n = points.size();
+    if (n > 0 && x == points[n - 2] && y == points[n - 1])
+      throw row_error(path, row.line,
+                      "two points in a row must differ, got " + number_text(x) + " " + number_text(y) +
+                          " twice");
+    points.push_back(x);
+    points.push_back(y);
+  }
+  if (points.size() < 4)
+    throw std::runtime_error(path + ": must hold at least 2 points x y of a line, got " +
+                             std::to_string(points.size() / 2));
+  return PlanLine(points);
+}
+
+/* ----------------------------------------------------------------------
+   twice the area of the triangle a b c: > 0 if c is to the left of the line from a to b
+------------------------------------------------------------------------- */
+
+static double left_of(const double *a, const double *b, const double *c)
+{
+  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+/* ----------------------------------------------------------------------
+   All places are shifted to the east by next to nothing, and to the north by even less: then none is
+   on a line. Whether they were is known exactly for lines along x and y, and elsewhere to rounding.
+   Each question has the same answer whenever it is asked of the same points: of the end of one path
+   and the begin of the next, and of a corner for both pieces that meet there.
+------------------------------------------------------------------------- */
+
+static bool place_is_left(double area, const double *p, const double *q)
+{
+  if (area != 0.0) return area > 0.0;
+  return q[1] != p[1] ? q[1] < p[1] : q[0] > p[0];
+}
+
+static bool corner_is_left(double area, const double *from, const double *to)
+{
+  if (area != 0.0) return area > 0.0;
+  return to[1] != from[1] ? to[1] > from[1] : to[0] < from[0];
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PlanLine::cross(const double *from, const double *to, std::vector<Crossing> &found) const
+{
+  if (std::max(from[0], to[0]) < xlo || std::min(from[0], to[0]) > xhi ||
+      std::max(from[1], to[1]) < ylo || std::min(from[1], to[1]) > yhi)
+    return;
+
+  const size_t before = found.size();
+  for (size_t k = 0; k + 1 < start.size(); k++) {
+    const double *p = &xy[2 * k], *q = p + 2;
+    const double a = left_of(p, q, from), b = left_of(p, q, to);
+    const bool left = place_is_left(a, p, q);
+    if (left == place_is_left(b, p, q)) continue;
+    const double c = left_of(from, to, p), d = left_of(from, to, q);
+    if (corner_is_left(c, from, to) == corner_is_left(d, from, to)) continue;
+    const double part = c / (c - d);
+    found.push_back({a / (a - b), start[k] + part * (start[k + 1] - start[k]), p[0] + part * (q[0] - p[0]),
+                     p[1] + part * (q[1] - p[1]), left ? 1 : -1});
+  }
+  std::sort(found.begin() + before, found.end(),
+            [](const Crossing &one, const Crossing &two) { return one.share < two.share; });
+}

@@ -1,0 +1,391 @@
+"""tools/slope quake: formats round-trip fixtures with their traps; what is written integrates back to what is said."""
+import math
+import re
+import shlex
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from run_helpers import TOP
+
+from slope_tools import cli, quake, quake_motion, quake_records  # noqa: E402  (run_helpers sets the path)
+
+DT = 0.01
+T = DT * np.arange(2000)
+GAL, G = 0.01, 9.80665
+
+
+def wave(frequency, amplitude, phase=0.0):
+    """A pulse of some seconds, m/s2."""
+    return amplitude * np.sin(2 * np.pi * frequency * T + phase) * np.exp(-((T - 8) / 3) ** 2)
+
+
+EW, NS, UD = wave(1.5, 3.0), wave(2.3, 2.0, 1.0), wave(4.0, 1.0, 2.0)
+
+
+@pytest.fixture
+def slope(tmp_path, monkeypatch, capsys):
+    """Run `slope quake ARGUMENTS` in a folder of its own; gives status, stdout, stderr."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(arguments):
+        capsys.readouterr()
+        try:
+            status = cli.main(["quake", *shlex.split(arguments)])
+        except SystemExit as error:
+            status = error.code
+        return status, *capsys.readouterr()
+    return run
+
+
+def refused(slope, arguments, *parts):
+    """One line that has all parts, status 2, and no file but those that were there."""
+    before = sorted(Path().iterdir())
+    status, out, err = slope(arguments)
+    assert status == 2 and out == "" and err.count("\n") == 1, err
+    for part in parts:
+        assert part in err, err
+    assert sorted(Path().iterdir()) == before
+
+
+def read_motion(path="motion.txt"):
+    return np.loadtxt(path)
+
+
+# --- fixtures ---
+
+
+def knet(path, values, direction, factor=(3920, 6182761), rate=100, width=8, offset=1234, end="\n", most=None, **head):
+    """NIED's ASCII; values in m/s2; offset: counts of the instrument's zero."""
+    counts = np.round(values / GAL * factor[1] / factor[0]).astype(int) + offset
+    real = (counts - counts.mean()) * factor[0] / factor[1]
+    lines = {"Origin Time": "2011/03/11 14:46:00", "Lat.": "38.103", "Long.": "142.860", "Depth. (km)": "024",
+             "Mag.": "9.0", "Station Code": "FKS005", "Station Lat.": "37.6", "Station Long.": "141.0",
+             "Station Height(m)": "40", "Record Time": "2011/03/11 14:46:36", "Sampling Freq(Hz)": f"{rate}Hz",
+             "Duration Time(s)": f"{len(values) / rate:g}", "Dir.": direction,
+             "Scale Factor": f"{factor[0]}(gal)/{factor[1]}",
+             "Max. Acc. (gal)": f"{np.abs(real).max() if most is None else most:.3f}",
+             "Last Correction": "2011/03/11 14:46:21", "Memo.": ""}
+    lines.update(head)
+    text = [f"{key:<18}{value}" for key, value in lines.items()]
+    text += ["".join(f"{count:9d}" for count in counts[k:k + width]) for k in range(0, len(counts), width)]
+    Path(path).write_bytes((end.join(text) + end).encode("ascii"))
+
+
+def three_knet(**settings):
+    knet("a.EW", EW, "E-W", **settings)
+    knet("a.NS", NS, "N-S", **settings)
+    knet("a.UD", UD, "U-D", **settings)
+
+
+def at2(path, values, direction, unit="G", width=5, size=None, form="{:15.7E}"):
+    size = size or f"NPTS= {len(values):6d}, DT= {DT:.5f} SEC,"
+    numbers = [form.format(value / (G if unit == "G" else GAL)) for value in values]
+    lines = ["PEER NGA STRONG MOTION DATABASE RECORD", f"Tohoku, 3/11/2011, Station 5, {direction}",
+             f"ACCELERATION TIME SERIES IN UNITS OF {unit}", size]
+    lines += ["".join(numbers[k:k + width]) for k in range(0, len(numbers), width)]
+    Path(path).write_text("\n".join(lines) + "\n")
+
+
+# --- K-NET, KiK-net ---
+
+
+@pytest.mark.parametrize("settings", [{}, {"factor": (2000, 8388608)}, {"width": 5}, {"end": "\r\n"},
+                                      {"offset": -70000}, {"Memo.": "sensor changed"}, {"Lat.": ""}])
+def test_knet(slope, settings):
+    three_knet(**settings)
+    status, out, err = slope("a.EW a.NS a.UD --baseline mean -o motion.txt")
+    assert status == 0 and err == "" and out.endswith("\nfix shake soil ground/motion motion.txt\n")
+    motion = read_motion()
+    assert motion[:, 0] == pytest.approx(T, abs=1e-9)
+    step = GAL * settings.get("factor", (3920, 6182761))[0] / settings.get("factor", (3920, 6182761))[1]
+    for k, values in enumerate((EW, NS, UD), 1):
+        assert motion[:, k] == pytest.approx(values - values.mean(), abs=0.51 * step + 1e-9)
+
+
+def test_kiknet_surface_and_borehole(slope):
+    knet("a.NS2", NS[:1000], "4", rate=200)
+    knet("a.EW2", EW[:1000], "5", rate=200)
+    knet("a.UD2", UD[:1000], "6", rate=200)
+    knet("a.EW1", EW[:1000], "2", rate=200)
+    assert slope("a.NS2 a.EW2 a.UD2 --baseline none -o motion.txt")[0] == 0
+    motion = read_motion()
+    assert motion[-1, 0] == pytest.approx(999 * 0.005)
+    assert motion[:, 1] - motion[:, 1].mean() == pytest.approx(EW[:1000] - EW[:1000].mean(), abs=1e-5)
+    refused(slope, "a.NS2 a.EW2 a.EW1 -o x.txt", "a.EW1: at most two horizontal components")
+
+
+@pytest.mark.parametrize("change, message", [
+    (lambda text: text[:-200], "a.EW: must hold the 2000 values that its head promises, it is cut short, got 19"),
+    (lambda text: text + "12 13\n", "it has too many, got 2002"),
+    (lambda text: text.replace("3920(gal)", "3920"), "head must have a line Scale Factor such as 3920(gal)/6182761"),
+    (lambda text: text.replace("3920(gal)", "392(gal)"), "the largest acceleration must be the head's Max. Acc."),
+    (lambda text: text.replace("100Hz", "fast"), "must have a line Sampling Freq(Hz) such as 100Hz, got 'fast'"),
+    (lambda text: text.replace("E-W", "E"), "the head must have a line Dir. with N-S, E-W, U-D or 1 to 6, got 'E'"),
+    (lambda text: text[:2000] + "x" + text[2001:], "must hold numbers only"),
+    (lambda text: "\n".join(text.splitlines()[:12]), "the head must have a line Scale Factor"),
+    (lambda text: "", "a.EW: must hold a record, it is empty"),
+])
+def test_a_knet_file_that_is_wrong(slope, change, message):
+    knet("a.EW", EW, "E-W")
+    text = Path("a.EW").read_text()
+    assert change(text) != text
+    Path("a.EW").write_text(change(text))
+    refused(slope, "a.EW -o motion.txt", message)
+
+
+def test_components_of_different_records(slope):
+    knet("a.EW", EW, "E-W")
+    knet("b.NS", NS, "N-S", **{"Record Time": "2011/03/11 14:46:40"})
+    refused(slope, "a.EW b.NS -o motion.txt", "b.NS: must begin when a.EW does, 2011/03/11 14:46:36, got",
+            "14:46:40")
+    knet("c.NS", NS, "N-S", rate=200)
+    refused(slope, "a.EW c.NS -o motion.txt", "c.NS: must have the time step of a.EW, 0.01 s, got 0.005 s")
+
+
+# --- PEER AT2 ---
+
+
+@pytest.mark.parametrize("settings", [{}, {"width": 8}, {"width": 1}, {"size": f"  2000    {DT:.4f}    NPTS, DT"},
+                                      {"size": "NPTS=2000, DT=.01 SEC"}, {"unit": "CM/S/S"},
+                                      {"form": "{:+.7E}"}])    # nothing between two numbers
+def test_at2(slope, settings):
+    at2("a.AT2", EW, "090", **settings)
+    at2("b.AT2", NS[:1990], "000", **{**settings, **({} if "size" not in settings else
+                                                     {"size": settings["size"].replace("2000", "1990")})})
+    at2("c.AT2", UD, "UP", **settings)
+    assert slope("a.AT2 b.AT2 c.AT2 --baseline none -o motion.txt")[0] == 0
+    motion = read_motion()
+    assert len(motion) == 1990    # of the shortest one
+    for k, values in enumerate((EW, NS, UD), 1):
+        assert motion[:, k] == pytest.approx(values[:1990], abs=2e-6)
+
+
+def test_at2_turned(slope):
+    """Components towards 120 and 210 degrees; x towards 120: the first one is x, the second one runs to the right."""
+    at2("a.AT2", EW, "120")
+    at2("b.AT2", NS, "210")
+    at2("c.AT2", UD, "DWN")
+    assert slope("a.AT2 b.AT2 c.AT2 --azimuth 120 --baseline none -o motion.txt")[0] == 0
+    assert read_motion()[:, 1:] == pytest.approx(np.column_stack([EW, -NS, -UD]), abs=2e-6)
+
+
+@pytest.mark.parametrize("change, parts", [
+    (lambda text: text[:-100], ["must hold the 2000 values that its head promises, it is cut short"]),
+    (lambda text: text.replace("UNITS OF G", "UNITS OF FURLONGS"), ["a.AT2, line 3: must end in UNITS OF G"]),
+    (lambda text: text.replace("UNITS OF G", "UNITS OF M/S2").replace("E", "E+03"), []),
+    (lambda text: text.replace("NPTS=", "POINTS="), ["a.AT2, line 4: must be NPTS= n, DT= s SEC"]),
+    (lambda text: text.replace("DT= 0.01", "DT= 0.00.01"), ["a.AT2, line 4: must be NPTS= n, DT= s SEC"]),
+    (lambda text: text.replace(", 090", ", somewhere"), ["a.AT2, line 2: must end in the direction, an azimuth or UP"]),
+    (lambda text: text.replace(", 090", ", 400"), ["a.AT2, line 2: must end in the direction"]),
+    (lambda text: "\n".join(text.splitlines()[:4]), ["must have four lines of head and values (cut short), got 4"]),
+])
+def test_an_at2_file_that_is_wrong(slope, change, parts):
+    at2("a.AT2", EW, "090")
+    text = Path("a.AT2").read_text()
+    assert change(text) != text
+    Path("a.AT2").write_text(change(text))
+    refused(slope, "a.AT2 -o motion.txt", "a.AT2", *parts)
+
+
+def test_not_at_right_angles(slope):
+    at2("a.AT2", EW, "090")
+    at2("b.AT2", NS, "030")
+    refused(slope, "a.AT2 b.AT2 -o motion.txt", "b.AT2: two horizontal components must be at right angles",
+            "got 90 degrees and 30 degrees")
+
+
+# --- CSV ---
+
+
+@pytest.mark.parametrize("head, unit, option", [
+    ("time,EW (gal),NS (gal),UD (gal)", GAL, ""), ("t;e [g];n [g];up [g]", G, ""),
+    ("time\tew\tns\tud", 1.0, "--unit m/s2"),
+    ("Time (s) , East ( m/s2 ) , North (m/s2), Vertical (m/s2)", 1.0, "--unit gal")])
+def test_csv(slope, head, unit, option):
+    mark = next(mark for mark in ",;\t" if mark in head)
+    rows = [f"{a:.6f}{mark}{b:.9g}{mark}{c:.9g}{mark}{d:.9g}" for a, b, c, d in
+            zip(T + 5, EW / unit, NS / unit, UD / unit)]
+    Path("a.csv").write_text("# a record\n" + head + "\n" + "\n".join(rows) + "\n")
+    assert slope(f"a.csv {option} --baseline none -o motion.txt")[0] == 0
+    assert read_motion() == pytest.approx(np.column_stack([T, EW, NS, UD]), abs=1e-7)
+
+
+LINES = ["0,1", "0.01,2", "0.02,1", "0.03,0", "0.04,1"]
+
+
+@pytest.mark.parametrize("head, lines, message", [
+    ("time,EW (gal)", LINES[:3] + LINES[4:], "line 5: times must be evenly spaced, 0.01 s here: the record has a gap"),
+    ("time,EW (gal)", LINES[:3] + ["0.015,1"], "a.csv, line 5: times must rise, got 0.015 after 0.02"),
+    ("time,EW (gal)", LINES[:3] + ["0.02,1"], "a.csv, line 5: times must rise, got 0.02 after 0.02"),
+    ("time,EW (gal)", LINES[:3] + ["0.03"], "a.csv, line 5: must be 2 numbers, got '0.03'"),
+    ("time,EW (gal)", LINES[:3] + ["0.03,nan"], "a.csv, line 5: must be 2 numbers, got '0.03,nan'"),
+    ("time,EW (gal)", LINES[:3] + ["0.03,"], "a.csv, line 5: must be 2 numbers, got '0.03,'"),
+    ("time,EW", LINES, "a.csv, line 1: column ew needs a unit, gal, g or m/s2, in brackets or by --unit, got none"),
+    ("time,EW (mm)", LINES, "line 1: column ew needs a unit, gal, g or m/s2, in brackets or by --unit, got 'mm'"),
+    ("time,size (gal)", LINES, "a.csv, line 1: columns must be time and EW, NS or UD, got 'size'"),
+    ("0,1", LINES, "a.csv, line 1: the first line must name the columns, such as time,EW (gal),NS (gal), got '0,1'"),
+    ("time,EW (gal)", LINES[:1], "a.csv: must hold at least two lines of values, got 1"),
+    ("time,EW (m/s2)", ["0,0", "0.01,300", "0.02,-300"], "at most 50 m/s2 is believed: the unit (--unit) or"),
+    ("time,EW (gal)", ["0,3", "0.01,3", "0.02,3"], "a.csv: must hold a motion, the acceleration is constant"),
+])
+def test_a_csv_that_is_wrong(slope, head, lines, message):
+    Path("a.csv").write_text(head + "\n" + "\n".join(lines) + "\n")
+    refused(slope, "a.csv -o motion.txt", message)
+
+
+# --- processing ---
+
+
+def exact(motion):
+    """Velocity and displacement of straight lines between points, by quadrature of each piece with 3 Gauss points."""
+    t, a = motion[:, 0], motion[:, 1:]
+    v, d = np.zeros_like(a), np.zeros_like(a)
+    for k in range(len(t) - 1):
+        h = t[k + 1] - t[k]
+        v[k + 1] = v[k] + h * (a[k] + a[k + 1]) / 2
+        s = h * (0.5 + np.sqrt(0.6) * np.array([-0.5, 0, 0.5]))
+        inside = v[k] + np.outer(s, a[k]) + np.outer(s ** 2 / 2 / h, a[k + 1] - a[k])
+        d[k + 1] = d[k] + h * np.array([5, 8, 5]) / 18 @ inside
+    return v, d
+
+
+def test_what_is_written_integrates_back(slope):
+    three_knet()
+    status, out, _ = slope("a.EW a.NS a.UD --peak 300 --band 0.2 20 --azimuth 135 -o motion.txt")
+    motion, about = read_motion(), yaml.safe_load(Path("motion.yaml").read_text())
+    v, d = exact(motion)
+    assert status == 0 and np.hypot(motion[:, 1], motion[:, 2]).max() == pytest.approx(3.0, rel=1e-9)
+    assert about["peak_gal"] == pytest.approx(300, rel=1e-9) and "300 gal" in out
+    for k, axis in enumerate("xyz"):
+        said = about["axes"][axis]
+        assert said["velocity"] == pytest.approx(np.abs(v[:, k]).max(), rel=1e-6)
+        assert said["displacement"] == pytest.approx(np.abs(d[:, k]).max(), rel=1e-5)
+        assert abs(v[-1, k]) < 1e-7 * said["velocity"] and abs(d[-1, k]) < 1e-6 * said["displacement"]
+        assert said["acceleration_gal"] == pytest.approx(np.abs(motion[:, 1 + k]).max() / GAL, rel=1e-9)
+    assert not list(Path().glob("*.tmp")) and Path("motion.png").stat().st_size > 20_000
+
+
+def test_scale_is_a_factor(slope):
+    three_knet()
+    assert slope("a.EW a.NS --baseline none -o one.txt")[0] == 0
+    assert slope("a.EW a.NS --baseline none --scale -2 -o two.txt")[0] == 0
+    assert read_motion("two.txt")[:, 1:] == pytest.approx(-2 * read_motion("one.txt")[:, 1:], rel=1e-10)
+
+
+def test_azimuth_turns_and_keeps_the_size():
+    parts = [quake_records.Component("a", 90.0, DT, EW), quake_records.Component("b", 0.0, DT, NS)]
+    one, two = (quake_motion.combine(parts, azimuth) for azimuth in (90, 120))
+    assert one.a[:, :2] == pytest.approx(np.column_stack([EW, NS]), abs=1e-12)
+    assert np.hypot(*two.a[:, :2].T) == pytest.approx(np.hypot(EW, NS), rel=1e-12)
+    assert quake_motion.combine(parts, 0).a[:, :2] == pytest.approx(np.column_stack([NS, -EW]), abs=1e-12)
+
+
+def test_band_pass_keeps_what_is_within_and_no_delay():
+    a = np.column_stack([wave(2.0, 1.0), wave(0.05, 1.0), wave(40.0, 1.0)])
+    out = quake_motion.band_pass(quake_motion.Motion(DT, a), 0.5, 10).a
+    assert out[:, 0] == pytest.approx(a[:, 0], abs=0.02)
+    assert np.abs(out[:, 1:]).max() < 0.02
+
+
+def test_window(slope):
+    three_knet()
+    assert slope("a.EW --window 5 12.5 --baseline none -o motion.txt")[0] == 0
+    motion = read_motion()
+    assert motion[0, 0] == 0 and motion[-1, 0] == pytest.approx(7.5) and len(motion) == 751
+    assert motion[:, 1] - motion[0, 1] == pytest.approx(EW[500:1251] - EW[500], abs=2e-5)
+
+
+@pytest.mark.parametrize("options, message", [
+    ("--window 5 30", "--window: must be within the record, 0 to 19.99 s, and three points long, got 5 30"),
+    ("--window 6 5", "--window: must be within"), ("--band 0.1 60", "--band: must be 0 < LOW < HIGH < 50 Hz"),
+    ("--band 5 1", "--band: must be 0 < LOW < HIGH"), ("--peak 0", "--peak: must be > 0, got 0"),
+    ("--scale 0", "--scale: must not be 0, got 0"),
+    ("--peak 6000", "--peak: a largest acceleration of at most 5000 gal"),
+    ("--scale 100", "--scale: a largest acceleration of at most 5000 gal is believed"),
+    ("--peak x", "must be a finite number, got 'x'")])
+def test_options_that_are_wrong(slope, options, message):
+    knet("a.EW", EW, "E-W")
+    refused(slope, f"a.EW {options} -o motion.txt", message)
+
+
+def test_output_that_is_wrong(slope):
+    knet("a.EW", EW, "E-W")
+    Path("a.txt").write_text(Path("a.EW").read_text())
+    refused(slope, "a.EW -o motion.csv", "-o: must be a file that ends in .txt, got motion.csv")
+    refused(slope, "a.EW -o no/motion.txt", "-o: must be in an existing folder, got no/motion.txt")
+    refused(slope, "a.txt -o a.txt", "-o: must not be a record, got a.txt")
+    refused(slope, "no.EW -o a.txt", "no.EW: cannot be read: No such file or directory")
+
+
+# --- the numbers that describe a motion ---
+
+
+def test_arias_and_duration_of_a_constant_acceleration():
+    """Intensity pi/(2g) a2 t rises evenly: 5 to 95 % takes 90 % of the time."""
+    about = quake_motion.measures(quake_motion.Motion(DT, np.tile([2.0, 0.0, 1.0], (1001, 1))))
+    assert about["axes"]["x"]["arias"] == pytest.approx(np.pi / (2 * G) * 4 * 10, rel=1e-12)
+    assert about["axes"]["z"]["duration_5_95"] == pytest.approx(9.0, rel=1e-9)
+    assert about["arias_horizontal"] == about["axes"]["x"]["arias"] and about["axes"]["y"]["duration_5_95"] == 0
+
+
+def test_arias_of_a_sine():
+    t = 0.01 * np.arange(1001)
+    a = np.column_stack([np.sin(2 * np.pi * t), 0 * t, 0 * t])
+    assert quake_motion.measures(quake_motion.Motion(0.01, a))["axes"]["x"]["arias"] == pytest.approx(
+        np.pi / (2 * G) * 5, rel=1e-3)
+
+
+def test_spectrum_at_resonance():
+    """An oscillator that a sine of its own period drives for long: sqrt(1 + 1/(4 z2)) times the sine, z the damping."""
+    t = 0.01 * np.arange(6000)
+    motion = quake_motion.Motion(0.01, np.column_stack([np.sin(2 * np.pi * t), 2 * np.sin(2 * np.pi * t), 0 * t]))
+    found = quake_motion.spectrum(motion, 0.05, np.array([1.0]))[0]
+    assert found == pytest.approx(np.array([1, 2, 0]) * math.sqrt(1 + 1 / (4 * 0.05 ** 2)), rel=2e-3)
+
+
+def test_spectrum_of_a_step_in_closed_form():
+    """A step: absolute acceleration 1 + exp(-z pi/sqrt(1-z2)) for any period; stiff ones follow the ground."""
+    motion = quake_motion.Motion(0.002, np.vstack([np.zeros((1, 3)), np.ones((20000, 3))]))
+    found = quake_motion.spectrum(motion, 0.02, np.array([0.5, 1.0, 5.0]))[:, 0]
+    # the dashpot works on the absolute velocity, too: 2 z w s in the numerator
+    z, w = 0.02, 2 * np.pi
+    s = np.linspace(0, 1, 200001)
+    wd = w * np.sqrt(1 - z * z)
+    step = 1 - np.exp(-z * w * s) * (np.cos(wd * s) - z * w / wd * np.sin(wd * s))
+    assert found == pytest.approx(np.full(3, step.max()), rel=3e-3)
+
+
+def test_spectrum_file_has_what_is_drawn(slope):
+    three_knet()
+    slope("a.EW a.NS a.UD -o motion.txt")
+    rows = np.loadtxt("motion.spectrum.csv", delimiter=",", skiprows=1)
+    motion = quake_motion.Motion(DT, read_motion()[:, 1:])
+    assert rows[:, 1:] == pytest.approx(quake_motion.spectrum(motion) / GAL, rel=1e-4)
+
+
+# --- the page ---
+
+
+def doc_examples():
+    text = (TOP / "doc" / "src" / "tool_quake.rst").read_text(encoding="ascii") + quake.EPILOG
+    return re.findall(r"^ +tools/slope quake ((?!RECORD).*)", text, re.MULTILINE)
+
+
+@pytest.mark.parametrize("command", doc_examples())
+def test_every_example_of_the_page_and_the_help_runs(slope, command):
+    assert len(doc_examples()) >= 6
+    three_knet()
+    for suffix in ("EW", "NS", "UD"):
+        Path(f"a.{suffix}").rename(f"FKS005.{suffix}")
+    at2("RSN1_090.AT2", EW, "090")
+    at2("RSN1_000.AT2", NS, "000")
+    rows = "\n".join(f"{t:.2f},{a:.6f}" for t, a in zip(T, EW / GAL))
+    Path("shake.csv").write_text("time,EW\n" + rows + "\n")
+    status, out, err = slope(command)
+    if "--help" in command:
+        assert "tools/slope quake FKS005.EW" in out
+    else:
+        assert status == 0 and err == "" and "fix shake soil ground/motion" in out
