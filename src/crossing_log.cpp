@@ -72,18 +72,19 @@ CrossingLog::Largest CrossingLog::quantile(double share) const
 
 std::string CrossingLog::csv() const
 {
-  std::string s = "time,step,ball,direction,along,x,y,z,height,vx,vy,vz,speed,energy,volume,diameter\n";
+  std::string s =
+      "time,step,ball,direction,along,x,y,z,height,vx,vy,vz,speed,energy,volume,diameter\n";
   for (const Event &e : events) {
     char text[512];
-    snprintf(text, sizeof(text), "%.10g,%.0f,%.0f,%.0f,%.10g,%.10g,%.10g,%.10g,", e.time, e.step, e.tag,
-             e.direction, e.along, e.x[0], e.x[1], e.x[2]);
+    snprintf(text, sizeof(text), "%.10g,%.0f,%.0f,%.0f,%.10g,%.10g,%.10g,%.10g,", e.time, e.step,
+             e.tag, e.direction, e.along, e.x[0], e.x[1], e.x[2]);
     s += text;
     if (std::isfinite(e.height)) {
       snprintf(text, sizeof(text), "%.10g", e.height);
       s += text;
     }
-    snprintf(text, sizeof(text), ",%.10g,%.10g,%.10g,%.10g,%.10g,%.15g,%.10g\n", e.v[0], e.v[1], e.v[2],
-             e.speed, e.energy, e.volume, e.diameter);
+    snprintf(text, sizeof(text), ",%.10g,%.10g,%.10g,%.10g,%.10g,%.15g,%.10g\n", e.v[0], e.v[1],
+             e.v[2], e.speed, e.energy, e.volume, e.diameter);
     s += text;
   }
   return s;
@@ -114,8 +115,9 @@ std::string CrossingLog::yaml() const
     }
   line(s, "first_time", real(first));
   line(s, "last_time", real(last));
-  s += "# of the forward crossings: speed, height of the ball's centre above the ground, energy of\n"
-       "# motion and spin; quantiles: this share of the crossings stays at or below\n";
+  s +=
+      "# of the forward crossings: speed, height of the ball's centre above the ground, energy of\n"
+      "# motion and spin; quantiles: this share of the crossings stays at or below\n";
   s += "largest: {" + three(quantile(1.0));
   s += ways[0].crossings > 0.0 ? "quantiles:\n" : "quantiles: []\n";
   for (const double share : SHARES)

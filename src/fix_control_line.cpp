@@ -93,7 +93,9 @@ void FixControlLine::read_keywords(int narg, char **arg)
 void FixControlLine::read_line()
 {
   std::vector<double> xy;
-  on_rank_zero(lmp, "Fix control/line", [&]() { xy = PlanLine::read(file).xy; });
+  on_rank_zero(lmp, "Fix control/line", [&]() {
+    xy = PlanLine::read(file).xy;
+  });
   int n = (int) xy.size();
   MPI_Bcast(&n, 1, MPI_INT, 0, world);
   xy.resize(n);
@@ -114,13 +116,13 @@ void FixControlLine::init()
 {
   for (Fix *fix : compat::fixes_of_style(lmp, "control/line"))
     if (fix != this && static_cast<FixControlLine *>(fix)->prefix == prefix)
-      error->all(FLERR, "Fix control/line output must be another than that of fix {}, got {}", fix->id,
-                 prefix);
+      error->all(FLERR, "Fix control/line output must be another than that of fix {}, got {}",
+                 fix->id, prefix);
   if (utils::strmatch(update->integrate_style, "^respa"))
     error->all(FLERR, "Fix control/line needs run_style verlet, got {}", update->integrate_style);
   find_deposit();
-  ground.reset(new RegionSurface(lmp, "Fix control/line", deposit->terrain().c_str(),
-                                 RegionSurface::UPPER));
+  ground.reset(
+      new RegionSurface(lmp, "Fix control/line", deposit->terrain().c_str(), RegionSurface::UPPER));
   check_line();
   on_rank_zero(lmp, "Fix control/line", [this]() {
     Slope::AtomicFile(prefix + ".line.csv");    // opened beside, and removed
@@ -140,12 +142,13 @@ void FixControlLine::find_deposit()
   deposit = static_cast<FixDepositGrid *>(found);
   if (!found && deposit_id.empty())
     error->all(FLERR,
-               "Fix control/line {} needs deposit ID, the fix deposit/grid that has the bulk factor, where "
+               "Fix control/line {} needs deposit ID, the fix deposit/grid that has the bulk "
+               "factor, where "
                "there is not exactly one, got {}",
                id, all.size());
   if (!found)
-    error->all(FLERR, "Fix control/line {} deposit must be the ID of a fix deposit/grid, got {}", id,
-               deposit_id);
+    error->all(FLERR, "Fix control/line {} deposit must be the ID of a fix deposit/grid, got {}",
+               id, deposit_id);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -155,10 +158,11 @@ void FixControlLine::check_line() const
   for (size_t k = 0; k < line.xy.size(); k += 2) {
     const double x = line.xy[k], y = line.xy[k + 1];
     if (x < ground->xlo || x > ground->xhi || y < ground->ylo || y > ground->yhi)
-      error->all(FLERR,
-                 "Fix control/line {}: points of {} must lie in the terrain, x {:.8g} to {:.8g}, y {:.8g} "
-                 "to {:.8g}, got {:.8g} {:.8g}",
-                 id, file, ground->xlo, ground->xhi, ground->ylo, ground->yhi, x, y);
+      error->all(
+          FLERR,
+          "Fix control/line {}: points of {} must lie in the terrain, x {:.8g} to {:.8g}, y {:.8g} "
+          "to {:.8g}, got {:.8g} {:.8g}",
+          id, file, ground->xlo, ground->xhi, ground->ylo, ground->yhi, x, y);
   }
 }
 
@@ -250,8 +254,8 @@ void FixControlLine::collect()
   if (total == 0) return;
 
   std::vector<CrossingLog::Event> all(comm->me == 0 ? total / CrossingLog::NUMBERS : 0);
-  MPI_Gatherv(fresh.data(), mine, MPI_DOUBLE, all.data(), counts.data(), starts.data(), MPI_DOUBLE, 0,
-              world);
+  MPI_Gatherv(fresh.data(), mine, MPI_DOUBLE, all.data(), counts.data(), starts.data(), MPI_DOUBLE,
+              0, world);
   fresh.clear();
   if (comm->me == 0) {
     log.events.insert(log.events.end(), all.begin(), all.end());
@@ -319,9 +323,16 @@ void FixControlLine::write_restart(FILE *fp)
   collect();
   if (comm->me != 0) return;
   const Slope::RunClock::State at = clock.state();
-  std::vector<double> list = {(double) line.xy.size(), line.length(), line.xlo,  line.ylo,
-                              at.base,                 at.base_step,  at.last,   at.step_size,
-                              at.on,                   (double) log.events.size()};
+  std::vector<double> list = {(double) line.xy.size(),
+                              line.length(),
+                              line.xlo,
+                              line.ylo,
+                              at.base,
+                              at.base_step,
+                              at.last,
+                              at.step_size,
+                              at.on,
+                              (double) log.events.size()};
   const double bytes = sizeof(double) * (list.size() + CrossingLog::NUMBERS * log.events.size());
   if (bytes > MAXSMALLINT)
     error->one(FLERR, "Fix control/line must have at most {} bytes in a restart file, got {:.0f}",
@@ -341,7 +352,8 @@ void FixControlLine::restart(char *buffer)
   const double mine[4] = {(double) line.xy.size(), line.length(), line.xlo, line.ylo};
   if (!std::equal(mine, mine + 4, list))
     error->all(FLERR,
-               "Fix control/line {} must have the line of the restart file, {:.0f} points, length {:.8g}; got "
+               "Fix control/line {} must have the line of the restart file, {:.0f} points, length "
+               "{:.8g}; got "
                "{:.0f} points, length {:.8g}: another line needs another fix ID",
                id, 0.5 * list[0], list[1], 0.5 * mine[0], mine[1]);
   clock.set_state({list[4], list[5], list[6], list[7], list[8]});

@@ -34,8 +34,8 @@ static constexpr double DOUBTED = 50.0;    // m/s2, more than any ground has mov
 ------------------------------------------------------------------------- */
 
 FixGroundMotion::FixGroundMotion(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), scale(1.0), start(0.0), kicked(0), placed(0), frozen(0),
-    ground{0.0, 0.0, 0.0}, last_kick{0.0, 0.0, 0.0}, work(0.0)
+    Fix(lmp, narg, arg), scale(1.0), start(0.0), kicked(0), placed(0),
+    frozen(0), ground{0.0, 0.0, 0.0}, last_kick{0.0, 0.0, 0.0}, work(0.0)
 {
   if (narg < 4) error->all(FLERR, "Fix ground/motion needs FILE with lines t ax ay az");
   file = arg[3];
@@ -71,7 +71,9 @@ void FixGroundMotion::read_keywords(int narg, char **arg)
 void FixGroundMotion::read_record()
 {
   std::vector<MotionRecord::Point> points;
-  on_rank_zero(lmp, "Fix ground/motion", [&]() { points = MotionRecord::read(file, scale).list(); });
+  on_rank_zero(lmp, "Fix ground/motion", [&]() {
+    points = MotionRecord::read(file, scale).list();
+  });
   int n = (int) points.size();
   MPI_Bcast(&n, 1, MPI_INT, 0, world);
   points.resize(n);
@@ -88,16 +90,18 @@ void FixGroundMotion::announce() const
   double v[3], d[3];
   record.velocity(record.end(), v);
   record.displacement(record.end(), d);
-  utils::logmesg(lmp,
-                 "Fix ground/motion {}: {} points from {:g} to {:g}, largest acceleration {:.6g}; the "
-                 "ground ends with velocity {:.4g} {:.4g} {:.4g}, displacement {:.4g} {:.4g} {:.4g}\n",
-                 id, record.list().size(), record.begin(), record.end(), record.peak(), v[0], v[1],
-                 v[2], d[0], d[1], d[2]);
+  utils::logmesg(
+      lmp,
+      "Fix ground/motion {}: {} points from {:g} to {:g}, largest acceleration {:.6g}; the "
+      "ground ends with velocity {:.4g} {:.4g} {:.4g}, displacement {:.4g} {:.4g} {:.4g}\n",
+      id, record.list().size(), record.begin(), record.end(), record.peak(), v[0], v[1], v[2], d[0],
+      d[1], d[2]);
   if (record.peak() > DOUBTED && strcmp(update->unit_style, "si") == 0)
-    error->warning(FLERR,
-                   "Fix ground/motion {}: a largest acceleration of at most {:g} m/s2 is believed, got "
-                   "{:.6g} from {}: numbers in gal need scale 0.01",
-                   id, DOUBTED, record.peak(), file);
+    error->warning(
+        FLERR,
+        "Fix ground/motion {}: a largest acceleration of at most {:g} m/s2 is believed, got "
+        "{:.6g} from {}: numbers in gal need scale 0.01",
+        id, DOUBTED, record.peak(), file);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -142,10 +146,11 @@ void FixGroundMotion::check_integrators()
   }
   MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
   if (all[1] > 0 && comm->me == 0)
-    error->warning(FLERR,
-                   "Fix ground/motion {}: only balls that fix nve/sphere integrates feel the ground's "
-                   "motion, {} of {} balls of the group are not and do not",
-                   id, all[1], all[0]);
+    error->warning(
+        FLERR,
+        "Fix ground/motion {}: only balls that fix nve/sphere integrates feel the ground's "
+        "motion, {} of {} balls of the group are not and do not",
+        id, all[1], all[0]);
 }
 
 /* ----------------------------------------------------------------------
@@ -261,9 +266,12 @@ double FixGroundMotion::compute_vector(int k)
   const bool running = update->whichflag == 1 && clock.started();
   const double t = (running ? clock.at(update->ntimestep) : clock.now()) - start;
   double values[3];
-  if (k < 3) record.acceleration(t, values);
-  else if (k < 6) record.velocity(t, values);
-  else record.displacement(t, values);
+  if (k < 3)
+    record.acceleration(t, values);
+  else if (k < 6)
+    record.velocity(t, values);
+  else
+    record.displacement(t, values);
   return values[k % 3];
 }
 
@@ -281,7 +289,8 @@ void *FixGroundMotion::extract(const char *name, int &dim)
 
 FixGroundMotion::Key FixGroundMotion::restart_key() const
 {
-  return {(double) record.list().size(), record.begin(), record.end(), record.checksum(), scale, start};
+  return {
+      (double) record.list().size(), record.begin(), record.end(), record.checksum(), scale, start};
 }
 
 /* ---------------------------------------------------------------------- */
@@ -304,13 +313,14 @@ void FixGroundMotion::restart(char *buffer)
   const Key mine = restart_key();
   if (memcmp(&saved.key, &mine, sizeof(Key)) != 0) {
     auto text = [](const Key &k) {
-      return fmt::format("{:.0f} points from {:g} to {:g} (sum {:.10g}), scale {:g}, start {:g}", k.points,
-                         k.begin, k.end, k.checksum, k.scale, k.start);
+      return fmt::format("{:.0f} points from {:g} to {:g} (sum {:.10g}), scale {:g}, start {:g}",
+                         k.points, k.begin, k.end, k.checksum, k.scale, k.start);
     };
-    error->all(FLERR,
-               "Fix ground/motion {} must have the motion of the restart file, {}; got {}: another motion "
-               "needs another fix ID",
-               id, text(saved.key), text(mine));
+    error->all(
+        FLERR,
+        "Fix ground/motion {} must have the motion of the restart file, {}; got {}: another motion "
+        "needs another fix ID",
+        id, text(saved.key), text(mine));
   }
   clock.set_state(saved.clock);
   std::copy(saved.last_kick, saved.last_kick + 3, last_kick);

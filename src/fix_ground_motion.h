@@ -45,13 +45,13 @@ class FixGroundMotion : public Fix {
   Slope::MotionRecord record;
   Slope::RunClock clock;
 
-  int kicked;     // group bits of the balls that follow: nve integrates them
-  int placed;     // of those that have been moved already when this fix has its turn
-  int frozen;     // of fix freeze
+  int kicked;    // group bits of the balls that follow: nve integrates them
+  int placed;    // of those that have been moved already when this fix has its turn
+  int frozen;    // of fix freeze
 
-  double ground[3];       // velocity up to which the balls have been kicked
-  double last_kick[3];    // over the second half of the last step
-  double work;            // of the motion on balls of this rank, J
+  double ground[3];            // velocity up to which the balls have been kicked
+  double last_kick[3];         // over the second half of the last step
+  double work;                 // of the motion on balls of this rank, J
   std::vector<double> kept;    // velocities during a set-up
 
   void read_keywords(int, char **);

@@ -68,8 +68,10 @@ MotionRecord MotionRecord::read(const std::string &path, double scale)
 
 int MotionRecord::find(double t, double &passed, double &share) const
 {
-  const auto next = std::upper_bound(points.begin(), points.end(), t,
-                                     [](double time, const Point &p) { return time < p.t; });
+  const auto next =
+      std::upper_bound(points.begin(), points.end(), t, [](double time, const Point &p) {
+        return time < p.t;
+      });
   const int k = (int) (next - points.begin()) - 1;
   passed = share = 0.0;
   if (k < 0) return k;

@@ -21,7 +21,8 @@ struct NumberRow {
 // Lines of count numbers each, with blanks, tabs or one comma between two of them; # starts a
 // comment, empty lines do not count. names: what the numbers are, for messages: "t ax ay az".
 // Errors are std::runtime_error with one line: file, line in it, rule, value.
-std::vector<NumberRow> read_number_rows(const std::string &path, int count, const std::string &names);
+std::vector<NumberRow> read_number_rows(const std::string &path, int count,
+                                        const std::string &names);
 
 // such an error: "PATH, line 7: what"
 std::runtime_error row_error(const std::string &path, int line, const std::string &what);

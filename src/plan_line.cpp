@@ -20,7 +20,8 @@ PlanLine::PlanLine(const std::vector<double> &_xy) :
     xy(_xy), xlo(HUGE_VAL), xhi(-HUGE_VAL), ylo(HUGE_VAL), yhi(-HUGE_VAL)
 {
   for (size_t k = 0; k < xy.size(); k += 2) {
-    start.push_back(k == 0 ? 0.0 : start.back() + std::hypot(xy[k] - xy[k - 2], xy[k + 1] - xy[k - 1]));
+    start.push_back(k == 0 ? 0.0
+                           : start.back() + std::hypot(xy[k] - xy[k - 2], xy[k + 1] - xy[k - 1]));
     xlo = std::min(xlo, xy[k]);
     xhi = std::max(xhi, xy[k]);
     ylo = std::min(ylo, xy[k + 1]);
@@ -37,13 +38,13 @@ PlanLine PlanLine::read(const std::string &path)
     const double x = row.values[0], y = row.values[1];
     if (!(std::fabs(x) <= LARGEST && std::fabs(y) <= LARGEST))
       throw row_error(path, row.line,
-                      "x and y must be within +-" + number_text(LARGEST) + ", got " + number_text(x) +
-                          " " + number_text(y));
+                      "x and y must be within +-" + number_text(LARGEST) + ", got " +
+                          number_text(x) + " " + number_text(y));
     const size_t n = points.size();
     if (n > 0 && x == points[n - 2] && y == points[n - 1])
       throw row_error(path, row.line,
-                      "two points in a row must differ, got " + number_text(x) + " " + number_text(y) +
-                          " twice");
+                      "two points in a row must differ, got " + number_text(x) + " " +
+                          number_text(y) + " twice");
     points.push_back(x);
     points.push_back(y);
   }
@@ -63,7 +64,7 @@ static double left_of(const double *a, const double *b, const double *c)
 }
 
 /* ----------------------------------------------------------------------
-   All places are shifted to the east by next to nothing, and to the north by even less: then none is
+   All places are shifted to the east by next to nothing, and to the north by even less: none is then
    on a line. Whether they were is known exactly for lines along x and y, and elsewhere to rounding.
    Each question has the same answer whenever it is asked of the same points: of the end of one path
    and the begin of the next, and of a corner for both pieces that meet there.
@@ -98,9 +99,10 @@ void PlanLine::cross(const double *from, const double *to, std::vector<Crossing>
     const double c = left_of(from, to, p), d = left_of(from, to, q);
     if (corner_is_left(c, from, to) == corner_is_left(d, from, to)) continue;
     const double part = c / (c - d);
-    found.push_back({a / (a - b), start[k] + part * (start[k + 1] - start[k]), p[0] + part * (q[0] - p[0]),
-                     p[1] + part * (q[1] - p[1]), left ? 1 : -1});
+    found.push_back({a / (a - b), start[k] + part * (start[k + 1] - start[k]),
+                     p[0] + part * (q[0] - p[0]), p[1] + part * (q[1] - p[1]), left ? 1 : -1});
   }
-  std::sort(found.begin() + before, found.end(),
-            [](const Crossing &one, const Crossing &two) { return one.share < two.share; });
+  std::sort(found.begin() + before, found.end(), [](const Crossing &one, const Crossing &two) {
+    return one.share < two.share;
+  });
 }

@@ -114,7 +114,7 @@ def test_balance_with_the_ledger(tmp_path, np_, boundary):
 
 
 def test_lost_in_the_step_in_which_it_crosses(tmp_path):
-    log = fly(tmp_path, [[8, 0, 8], [8, 0.001, 6]], [[100, 0, 0], [-1, 0, 0]], "9.995 -9\n9.995 9\n", "run 100\n")
+    log = fly(tmp_path, [[8.05, 0, 8], [8, 0.001, 6]], [[100, 0, 0], [-1, 0, 0]], "9.995 -9\n9.995 9\n", "run 100\n")
     assert "ball 1 left the box" in log
     assert [row["ball"] for row in crossings(tmp_path)] == [1]
 
