@@ -21,6 +21,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <new>
@@ -387,8 +388,8 @@ void BallPlacement::read_file()
 
     double x[3];
     for (int d = 0; d < 3; d++) {
-      const bool good = utils::is_double(words[d]);
-      x[d] = good ? utils::numeric(FLERR, words[d].c_str(), false, lmp) : NAN;
+      // not LAMMPS' own, which ends all ranks and is called by one here
+      x[d] = utils::is_double(words[d]) ? strtod(words[d].c_str(), nullptr) : NAN;
       if (!std::isfinite(x[d]))
         throw std::runtime_error(
             fmt::format("{}{} must be a finite number, got {}", where, "xyz"[d], words[d]));

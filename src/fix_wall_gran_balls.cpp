@@ -34,6 +34,9 @@ using namespace Slope;
 
 static constexpr int MAX_PARTNERS = 1024;    // fixed balls that one ball can touch
 static constexpr double SAME_SIZE = 1.0e-9;
+static constexpr double SAME_PLACE = 1.0e-8;    // in diameters, in the mean
+static constexpr int RESTART_SIZE = 6;
+static constexpr double RESTART_FORMAT = -2.0;    // in place of the number of balls of the first one
 
 /* ----------------------------------------------------------------------
    fix ID group wall/gran/balls TYPE DIAMETER surface|file ...
@@ -95,6 +98,21 @@ FixWallGranBalls::~FixWallGranBalls()
 }
 
 /* ----------------------------------------------------------------------
+   sums of the coordinates with a weight of -1 to 1 that each ball's number decides on: two balls that
+   change places change them
+------------------------------------------------------------------------- */
+
+void FixWallGranBalls::add_up(const std::vector<double> &xyz)
+{
+  long double sum[3] = {0.0, 0.0, 0.0};
+  for (size_t k = 0; k < xyz.size(); k++) {
+    const double turns = 0.6180339887498949 * static_cast<double>(k / 3 + 1);
+    sum[k % 3] += (2.0 * (turns - std::floor(turns)) - 1.0) * xyz[k];
+  }
+  for (int d = 0; d < 3; d++) checksum[d] = static_cast<double>(sum[d]);
+}
+
+/* ----------------------------------------------------------------------
    counting sort into plan cells of one diameter
 ------------------------------------------------------------------------- */
 
@@ -103,13 +121,12 @@ void FixWallGranBalls::sort_balls(const std::vector<double> &xyz)
   const size_t n = xyz.size() / 3;
   double xhi = -HUGE_VAL, yhi = -HUGE_VAL;
   xlo = ylo = HUGE_VAL;
-  checksum = 0.0;
+  add_up(xyz);
   for (size_t k = 0; k < n; k++) {
     xlo = std::min(xlo, xyz[3 * k]);
     xhi = std::max(xhi, xyz[3 * k]);
     ylo = std::min(ylo, xyz[3 * k + 1]);
     yhi = std::max(yhi, xyz[3 * k + 1]);
-    checksum += xyz[3 * k] + 3.0 * xyz[3 * k + 1] + 7.0 * xyz[3 * k + 2];
   }
 
   // larger cells where the balls are so sparse that empty cells would outnumber them, in plan or in
@@ -133,9 +150,11 @@ void FixWallGranBalls::sort_balls(const std::vector<double> &xyz)
   for (size_t c = 0; c < ncell; c++) first[c + 1] += first[c];
   balls.reserve(n + 1);    // contacts are read 32 bytes at a time, 8 beyond a vector
   balls.resize(n);
+  number.resize(n);
   std::vector<int> next(first.begin(), first.end() - 1);
   for (size_t k = 0; k < n; k++) {
     const size_t c = cell_of(k);
+    number[next[c]] = static_cast<int>(k);
     balls[next[c]++] = {xyz[3 * k], xyz[3 * k + 1], xyz[3 * k + 2]};
     top[c] = std::max(top[c], std::nextafter(static_cast<float>(xyz[3 * k + 2]), HUGE_VALF));
   }
@@ -257,7 +276,7 @@ void FixWallGranBalls::store_contacts()
       const int i = l.entries[k].i;    // its entries follow one another
       int n = 0;
       for (end = k; end < l.entries.size() && l.entries[end].i == i; end++) n += l.has_history(end);
-      if (n == 0) continue;
+      if (n == 0 || i >= atom->nlocal) continue;    // the last ones may have been deleted
       if (n > MAX_PARTNERS)
         error->one(FLERR, "{}: ball {} touches {} fixed balls, the most is {}", caller,
                    atom->tag[i], n, MAX_PARTNERS);
@@ -265,7 +284,7 @@ void FixWallGranBalls::store_contacts()
       values[i] = dpage.get(n * HISTORY);
       for (; k < end; k++)
         if (l.has_history(k)) {
-          partner[i][npartner[i]] = l.entries[k].j;
+          partner[i][npartner[i]] = number[l.entries[k].j];
           memcpy(&values[i][npartner[i]++ * HISTORY], l.histories[k],
                  HISTORY * sizeof(double));
         }
@@ -321,7 +340,7 @@ void FixWallGranBalls::post_neighbor()
       const ContactList::Entry &e = l.entries[k];
       l.histories[k] = next;
       for (int p = 0; p < npartner[e.i]; p++)
-        if (partner[e.i][p] == e.j) {
+        if (partner[e.i][p] == number[e.j]) {
           memcpy(next, &values[e.i][p * HISTORY], HISTORY * sizeof(double));
           l.set_history(k);
         }
@@ -434,8 +453,9 @@ double FixWallGranBalls::compute_vector(int n)
 
 double FixWallGranBalls::memory_usage()
 {
-  double bytes = balls.capacity() * sizeof(Vector) + first.capacity() * sizeof(int) +
-      top.capacity() * sizeof(float) + history.capacity() * sizeof(double);
+  double bytes = balls.capacity() * sizeof(Vector) +
+      (first.capacity() + number.capacity()) * sizeof(int) + top.capacity() * sizeof(float) +
+      history.capacity() * sizeof(double);
   for (const ContactList &l : lists) bytes += l.memory_usage();
   bytes += static_cast<double>(atom->nmax) * (sizeof(int) + sizeof(int *) + sizeof(double *));
   bytes += ipage.size() + dpage.size();
@@ -455,6 +475,10 @@ void FixWallGranBalls::grow_arrays(int nmax)
 
 void FixWallGranBalls::copy_arrays(int i, int j, int /*delflag*/)
 {
+  // a fix before this one deletes atoms before they migrate: the lists still hold the old indices
+
+  store_contacts();
+
   // the chunks stay where they are until the next store_contacts()
 
   npartner[j] = npartner[i];
@@ -505,21 +529,38 @@ void FixWallGranBalls::write_restart(FILE *fp)
   store_contacts();
   lists_newer = in_use;    // the run goes on with the lists
   if (comm->me == 0) {
-    const double list[2] = {static_cast<double>(balls.size()), checksum};
+    const double list[RESTART_SIZE] = {RESTART_FORMAT, static_cast<double>(balls.size()),
+                                       diameter,       checksum[0],
+                                       checksum[1],    checksum[2]};
     const int size = sizeof(list);
     fwrite(&size, sizeof(int), 1, fp);
-    fwrite(list, sizeof(double), 2, fp);
+    fwrite(list, sizeof(double), RESTART_SIZE, fp);
   }
 }
 
 void FixWallGranBalls::restart(char *buf)
 {
   const double *list = reinterpret_cast<double *>(buf);
-  if (list[0] != static_cast<double>(balls.size()) ||
-      std::fabs(list[1] - checksum) > 1.0e-9 * std::fabs(checksum))
+  if (list[0] != RESTART_FORMAT)
+    error->all(FLERR,
+               "{}: the restart file must be of this version of the fix, got one of an older version, "
+               "whose contacts may be those of other balls: run from the start again",
+               caller);
+  if (list[1] != static_cast<double>(balls.size()))
     error->all(FLERR,
                "{}: the restart file was written with other fixed balls ({:.0f} there, {} here)",
-               caller, list[0], balls.size());
+               caller, list[1], balls.size());
+  if (std::fabs(list[2] - diameter) > SAME_SIZE * diameter)
+    error->all(FLERR,
+               "{}: the restart file was written with other fixed balls (diameter {:.15g} there, "
+               "{:.15g} here)",
+               caller, list[2], diameter);
+  for (int d = 0; d < 3; d++)
+    if (!(std::fabs(list[3 + d] - checksum[d]) <= SAME_PLACE * diameter * balls.size()))
+      error->all(FLERR,
+                 "{}: the restart file was written with other fixed balls (other places, or another "
+                 "order, of {})",
+                 caller, balls.size());
 }
 
 int FixWallGranBalls::pack_restart(int i, double *buf)

@@ -79,10 +79,11 @@ class FixWallGranBalls : public Fix, public ContactHolder {
 
   std::vector<Slope::Vector> balls;
   std::vector<int> first;
-  std::vector<float> top;    // highest ball centre of a cell
+  std::vector<int> number;    // of each ball in the placement, which rounding does not change
+  std::vector<float> top;     // highest ball centre of a cell
   double xlo, ylo, cell_inv;
   int ncx, ncy;
-  double checksum;           // of all positions: a restart must find the same balls
+  double checksum[3];    // of the places in their order: a restart must find the same balls
 
   // what may touch until the next neighbor list, by type of the moving ball
 
@@ -102,6 +103,7 @@ class FixWallGranBalls : public Fix, public ContactHolder {
   int force_ready;
 
   void sort_balls(const std::vector<double> &);
+  void add_up(const std::vector<double> &);
   template <typename Visit> void visit_near(const double *, double, Visit) const;
   void check_sizes();
   void store_contacts();

@@ -9,6 +9,7 @@
 #include "error.h"
 #include "lammps_compat.h"
 #include "region.h"
+#include "region_columns.h"
 #include "region_terrain.h"
 
 #include <algorithm>
@@ -21,6 +22,7 @@ static constexpr double PRECISION = 1.0e-12;    // of the region's height
 static constexpr double DEFAULT_STEPS = 1000.0;
 static constexpr double ROUGHLY = 1.0e-3;    // of a step
 static constexpr int NEAR_STEPS = 16;
+static constexpr double THIN = 0.008;    // of a step: no part of a region, but two surfaces in one place
 
 /* ---------------------------------------------------------------------- */
 
@@ -70,7 +72,10 @@ RegionSurface::RegionSurface(LAMMPS *lmp, const std::string &caller, const char 
   // the upper boundary of a terrain is its elevation grid: no search
 
   if (side == UPPER && region->interior) terrain = dynamic_cast<RegTerrain *>(region);
+  if (!terrain) columns = RegionColumns::of(lmp, region);
 }
+
+RegionSurface::~RegionSurface() = default;
 
 /* ---------------------------------------------------------------------- */
 
@@ -83,6 +88,27 @@ bool RegionSurface::height(double x, double y, double &z) const
     return !std::isnan(z);
   }
 
+  if (!columns) return search(x, y, z);
+  if (!column(x, y)) return false;
+  z = direction > 0.0 ? parts.lowest().lo : parts.topmost().hi;
+  return true;
+}
+
+// what is in the bounding box; false if that is nothing
+
+bool RegionSurface::column(double x, double y) const
+{
+  columns->column(x, y, parts);
+  if (parts.empty()) return false;
+  parts.intersect(Slope::Interval{zlo, zhi});
+  parts.ignore(THIN * step);
+  return !parts.empty();
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool RegionSurface::search(double x, double y, double &z) const
+{
   // the first point inside, walking into the region
 
   const double length = zhi - zlo;
@@ -112,13 +138,33 @@ bool RegionSurface::inside(double x, double y, double walked) const
   return region->match(x, y, start + direction * walked);
 }
 
-/* ---------------------------------------------------------------------- */
+/* ----------------------------------------------------------------------
+   of the part at the known height, or of the next one on the way into the region, not too far away
+------------------------------------------------------------------------- */
 
 bool RegionSurface::height_near(double x, double y, double near, double &z) const
 {
   if (terrain || std::isnan(near)) return height(x, y, z);
   if (x < xlo || x > xhi || y < ylo || y > yhi) return false;
+  if (!columns) return search_near(x, y, near, z);
 
+  if (!column(x, y)) return false;
+  near = std::min(std::max(near, zlo), zhi);
+  const double reach = NEAR_STEPS * step;
+  const bool lower = direction > 0.0;
+  for (size_t k = 0; k < parts.size(); k++) {
+    const Slope::Interval &part = parts[lower ? k : parts.size() - 1 - k];
+    const double end = lower ? part.lo : part.hi;
+    if (lower ? part.hi < near : part.lo > near) continue;
+    if (std::fabs(end - near) > reach) return false;
+    z = end;
+    return true;
+  }
+  return false;
+}
+
+bool RegionSurface::search_near(double x, double y, double near, double &z) const
+{
   // from the known height walk out of the region or into it
 
   const double length = zhi - zlo;
@@ -141,6 +187,20 @@ bool RegionSurface::height_near(double x, double y, double near, double &z) cons
 bool RegionSurface::height_below(double x, double y, double top, double &z) const
 {
   if (x < xlo || x > xhi || y < ylo || y > yhi) return false;
+  if (!columns) return search_below(x, y, top, z);
+
+  if (!column(x, y)) return false;
+  for (size_t k = parts.size(); k > 0; k--) {
+    const Slope::Interval &part = parts[k - 1];
+    if (part.lo >= top) continue;
+    z = part.lo;
+    return part.hi >= top - step;
+  }
+  return false;
+}
+
+bool RegionSurface::search_below(double x, double y, double top, double &z) const
+{
   double in = top - zlo - 0.5 * step;
   if (in < 0.0 || !inside(x, y, in)) return false;
   for (double out = in - step; out >= 0.0; in = out, out -= step)

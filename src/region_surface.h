@@ -8,20 +8,26 @@
 
 #include "pointers.h"
 
+#include "intervals.h"
+
+#include <memory>
 #include <string>
 
 namespace LAMMPS_NS {
 
 // The lower or upper boundary of any region that stands still, as a height over the plan.
-// Only Region::match() is asked, so intersections and unions of whatever regions do.
+// Columns of known styles are intervals; of others only Region::match() is asked, so intersections
+// and unions of whatever regions do.
 class RegionSurface : protected Pointers {
  public:
   enum { LOWER, UPPER };
 
-  // A column is searched in steps: a part of the region thinner than the step may be missed.
-  // step 0: a thousandth of the region's height. Errors start with caller.
+  // A column of an unknown style is searched in steps: a part of the region thinner than the step may
+  // be missed. Of a known one parts thinner than a small part of the step count as rounding. step 0: a
+  // thousandth of the region's height. Errors start with caller.
   RegionSurface(class LAMMPS *, const std::string &caller, const char *region_id, int side,
                 double step = 0.0);
+  ~RegionSurface() override;
 
   // lowest (topmost) point of the region over x,y; false if the region is not there.
   // No communication: any rank may ask for any column.
@@ -52,6 +58,13 @@ class RegionSurface : protected Pointers {
   double start, direction, step;      // of the search along z
   bool bounded;
 
+  std::unique_ptr<class RegionColumns> columns;    // empty: they are searched
+  mutable Slope::Intervals parts;                  // keeps its memory
+
+  bool column(double x, double y) const;
+  bool search(double x, double y, double &z) const;
+  bool search_near(double x, double y, double near, double &z) const;
+  bool search_below(double x, double y, double top, double &z) const;
   bool inside(double x, double y, double walked) const;
   bool between(double x, double y, double out, double in, double &z) const;
 };

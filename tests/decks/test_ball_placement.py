@@ -5,7 +5,7 @@ import re
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
-from deck_helpers import run_deck
+from deck_helpers import run_deck, write_asc
 
 # a sphere around 0,0,6 (radius 5) and prisms; the fix reports and writes when it is defined
 
@@ -194,6 +194,7 @@ BAD = [
     ("file two.txt", "w: file two.txt line 3: must hold x y z, got 2 values"),
     ("file word.txt", "w: file word.txt line 2: y must be a finite number, got zwei"),
     ("file nan.txt", "w: file nan.txt line 1: z must be a finite number, got nan"),
+    ("file huge.txt", "w: file huge.txt line 1: z must be a finite number, got 1e999"),
     ("file empty.txt", "w: file empty.txt holds no balls"),
     ("surface ball upper spacing 1 write gone/balls.txt", "w: cannot write gone/balls.txt: "),
 ]
@@ -208,6 +209,7 @@ def test_bad_input_ends_with_one_line(tmp_path):
         (path / "two.txt").write_text("# x y z\n1 2 3\n1 2\n")
         (path / "word.txt").write_text("1 2 3\n1 zwei 3\n")
         (path / "nan.txt").write_text("1 2 nan\n")
+        (path / "huge.txt").write_text("0 0 1e999\n")
         (path / "empty.txt").write_text("# nothing\n")
         before = set(path.iterdir())
         run_deck(DECK.format(placement=placement), path, expect_error=message)
@@ -221,3 +223,59 @@ def test_error_on_rank_0_ends_all_ranks(tmp_path):
     (tmp_path / "two.txt").write_text("1 2 3\n1 2\n")
     run_deck(DECK.format(placement="file two.txt"), tmp_path, np=2, timeout=60,
              expect_error="file two.txt line 2: must hold x y z, got 2 values")
+    (tmp_path / "huge.txt").write_text("0 0 1e999\n")
+    run_deck(DECK.format(placement="file huge.txt"), tmp_path, np=2, timeout=60,
+             expect_error="file huge.txt line 1: z must be a finite number, got 1e999")
+
+
+# --- columns as intervals ---
+
+SHAPES = {
+    "sphere": "region shape union 2 ball ball",
+    "cylinder along x": "region shape cylinder x 0.3 5 3 -6 5 units box",
+    "cylinder along y": "region shape cylinder y 0.3 5 3 -6 5 units box",
+    "upright cylinder": "region shape cylinder z 0.3 0.1 3 1 5 units box",
+    "plane": "region half plane 0 0 5 0.3 0.2 1 units box\nregion shape intersect 2 ball half",
+    "beside a plane": "region half plane 0 0 5 0.3 0.2 -1 side out units box\nregion shape intersect 2 ball half",
+    "hollow": "region core sphere 1 0 6 3 side out units box\nregion shape intersect 3 slab core ball",
+    "union": "region shape union 3 ball trench slab",
+    "terrain": "region hill terrain hill.asc depth 3 headroom 3\nregion shape intersect 2 hill ball",
+    "beside a terrain": "region hill terrain hill.asc depth 3 side out\nregion shape intersect 2 hill slab",
+    "polygon": "region plan polygon plan.csv\nregion shape intersect 2 plan ball",
+}
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_columns_of_known_styles_are_those_of_a_search(tmp_path, shape):
+    """With a cone in it, a style without intervals, the same region is searched in steps of 0.125 d."""
+    write_asc(tmp_path / "hill.asc", [[3 + 0.1 * (i - 5) ** 2 - 0.05 * i * j for i in range(11)] for j in range(11)],
+              -8.0, -8.0, 1.5)
+    (tmp_path / "plan.csv").write_text("-3.1,-4.2\n4.3,-3.7\n0.4,4.1\n")
+    deck = DECK[:DECK.index("fix ")] + SHAPES[shape]
+    deck += "\nregion cone cone z 0 0 90 90 -50 50 units box\nregion marched intersect 2 cone shape\n"
+    for side in "upper", "lower":
+        for region in "shape", "marched":
+            deck += f"fix w all wall/gran/balls 2 0.5 surface {region} {side} spacing 0.47 write {region}.{side}\n"
+            deck += "unfix w\n"
+    base = [int(n) for n in re.findall(r"(\d+) on the plan grid", run_deck(deck, tmp_path))]
+    assert len(base) == 4
+    for side in "upper", "lower":
+        placed = [balls(tmp_path / f"{region}.{side}")[:base.pop(0)] for region in ("shape", "marched")]
+        exact, marched = ({(round(x, 6), round(y, 6)): z for x, y, z in nodes} for nodes in placed)
+        assert len(marched) > 50 and marched.keys() <= exact.keys() and len(marched) > 0.95 * len(exact)
+        far = [place for place in marched if abs(exact[place] - marched[place]) > 1e-6 * 0.5]
+        assert len(far) < 0.01 * len(exact)     # there the search passed over a thin part
+
+
+def test_thin_part_is_found(tmp_path):
+    """A body of two hundredths of a diameter between two terrains."""
+    for name, height in ("upper", 4.0), ("lower", 3.99):
+        write_asc(tmp_path / f"{name}.asc", [[height] * 8] * 8, -8.0, -8.0, 2.0)
+    regions = ("region top terrain upper.asc depth 3\nregion bottom terrain lower.asc depth 3 side out\n"
+               "region same terrain upper.asc depth 3 side out\n"
+               "region sheet intersect 2 top bottom\nregion nothing intersect 2 top same\nfix             w all")
+    deck = DECK.replace("fix             w all", regions)
+    log = run_deck(deck.format(placement="surface top upper spacing 1 inside sheet write sheet.txt"), tmp_path)
+    assert counts(log)[1] == 17 * 17 and {z for _, _, z in balls(tmp_path / "sheet.txt")} == {4.0}
+    run_deck(deck.format(placement="surface top upper spacing 1 inside nothing"), tmp_path,
+             expect_error="w: the surface of region top holds no balls")

@@ -345,6 +345,57 @@ def test_restart_with_other_balls(tmp_path):
         run_deck(again, tmp_path, expect_error="Fix wall/gran/balls ground: the restart file was written with other fixed balls")
 
 
+def test_restart_with_balls_of_another_build(tmp_path):
+    """Balls lie on the edges of the fix's cells: a last bit sorts them otherwise, and springs must find their balls."""
+    rail = [(x, y, 0.0) for x in (-0.3, 0.0, 0.3) for y in (-0.05, 0.05)]
+    rail += [(0.05 * i, 0.05 * j, -0.5) for i in range(-10, 11) for j in range(-5, 6)]    # cells of one diameter
+    run_deck(held(tmp_path, positions=rail) + "restart 1000 cut.*.restart\nrun 2000\n", tmp_path)
+    whole = trajectory(tmp_path)[-21:]
+    again = RESTART.replace("mid.", "cut.1000.").format(id="ground", gravity="0.05 0 -1", every=50, steps=1000)
+    random = np.random.default_rng(3)
+    for _ in range(3):
+        np.savetxt(tmp_path / "floor.xyz", rail + random.uniform(-1e-14, 1e-14, np.shape(rail)), fmt="%.17g")
+        run_deck(again, tmp_path)
+        assert np.abs(trajectory(tmp_path, "again.txt")[..., :3] - whole[..., :3]).max() < 1e-9 * D
+
+
+def test_restart_with_the_balls_in_another_order(tmp_path):
+    run_deck(held(tmp_path) + "run 100\nwrite_restart mid.restart\n", tmp_path)
+    again = RESTART.format(id="ground", gravity="0 0 -1", every=50, steps=100)
+    rail = np.loadtxt(tmp_path / "floor.xyz")
+    other = "Fix wall/gran/balls ground: the restart file was written with other fixed balls "
+    for order in [1, 0, 2, 3, 4, 5], [0, 1, 2, 3, 5, 4]:
+        np.savetxt(tmp_path / "floor.xyz", rail[order], fmt="%.17g")
+        run_deck(again, tmp_path, expect_error=other + "(other places, or another order, of 6)")
+    np.savetxt(tmp_path / "floor.xyz", rail + 0.001 * D, fmt="%.17g")
+    run_deck(again, tmp_path, expect_error=other + "(other places")
+    np.savetxt(tmp_path / "floor.xyz", rail, fmt="%.17g")
+    run_deck(again.replace("balls 2 0.1", "balls 2 0.11"), tmp_path,
+             expect_error=other + "(diameter 0.1 there, 0.11 here)")
+    run_deck(again, tmp_path)
+
+
+def test_a_fix_before_it_deletes_balls(tmp_path):
+    """Evaporate deletes when lists are made anew, and the last ball takes the place of one that is gone: each of the
+    others keeps its springs, as if the wall fix were first."""
+    def run_with(first):
+        deck = held(tmp_path, neigh_modify="delay 0 every 10 check no", atom_modify="sort 0 0")
+        for x in (-0.9, -0.7, 0.8):     # to be deleted, in no contact
+            deck = deck.replace("create_atoms 1 single", f"create_atoms 1 single {x} 0.2 0.4\ncreate_atoms 1 single", 1)
+        deck = deck.replace("set atom ", "set atom 1*6 diameter 0.1 density 2500\nset atom ")
+        gone = "region high block INF INF INF INF 0.3 INF units box\nfix gone all evaporate 100 3 high 4711\n"
+        wall = next(line for line in deck.splitlines() if line.startswith("fix ground"))
+        deck = deck.replace(wall, gone + wall if first else wall + "\n" + gone)
+        deck = deck.replace("fix gravity", "group held id 4:6\nfix gravity").replace("fix move moving", "fix move held")
+        deck = deck.replace("fix gravity moving", "fix gravity held").replace("dump trace moving", "dump trace held")
+        run_deck(deck + "run 1000\n", tmp_path)
+        return trajectory(tmp_path)[-1]
+
+    expected, found = run_with(False), run_with(True)
+    assert expected.shape == (3, 9)
+    assert np.abs(found - expected).max() < 1e-12
+
+
 # --- overlaps at the start ---
 
 
