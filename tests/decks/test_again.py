@@ -71,6 +71,17 @@ def test_a_deck_again_gives_the_same_numbers(site, np_):
     assert (after[0] == first[1]).all() and after[1, 0] == "100"
 
 
+@pytest.mark.parametrize("step", [180, 300])
+def test_a_run_of_no_steps_changes_nothing(site, step):
+    """Balls slide alone when it comes: at set-up their forces are estimates; those of the step before must be kept."""
+    start = (START.replace("friction 30", "friction 10").replace("lattice sc 1.0", "lattice sc 1.6")
+             + "velocity soil set 3 0 -2\n")
+    for out, runs in (("whole", "run 400"), ("cut", f"run {step}\nrun 0\nrun {400 - step}")):
+        run_deck(f"{start}{RUN.replace('run 50', runs)}\nwrite_dump all custom {out} id x y z vx vy vz omegax omegay "
+                 "omegaz modify sort id format float %.17g\n", site)
+    assert (site / "whole").read_text() == (site / "cut").read_text()
+
+
 @pytest.mark.skipif("ASAN_OPTIONS" in os.environ, reason="a sanitizer keeps what is freed")
 def test_no_memory_is_lost(site, monkeypatch):
     """What 50 runs with clear add to the process. A lost raster would be 32 kB each time."""
