@@ -12,14 +12,15 @@ namespace LAMMPS_NS {
 // init(); the pair style asks all of them for their contacts before any force is computed.
 class ContactHolder {
  public:
-  virtual ~ContactHolder() {}
-
   // which contacts touch now (starting: in the step that has just ended), counted with each ball;
   // lists_new: the neighbor list, and so those made with it, has been built since the last step
   virtual void find_contacts(bool starting, bool lists_new) = 0;
 
   // of the springs of this rank's contacts, J
   virtual double elastic_energy() const = 0;
+
+ protected:
+  ~ContactHolder() = default;    // not virtual: that of Fix may throw in some versions of LAMMPS
 };
 
 }    // namespace LAMMPS_NS
