@@ -31,7 +31,10 @@ struct MovingPartners {
   int nforce;    // partners below this number get their force, and count their contacts
 
   const Vector &x(int j) const { return balls.x[j]; }
-  double share(int j) const { return j < nforce ? 1.0 : 0.5; }    // of the contact that is this rank's
+  double share(int j) const
+  {
+    return j < nforce ? 1.0 : 0.5;
+  }    // of the contact that is this rank's
   bool gets_force(int j) const { return j < nforce; }
   void prefetch(int j) const
   {

@@ -27,8 +27,10 @@ struct ContactCounts {
   // before the contacts of a step are counted
   void clear(int balls, bool lists_new, bool starting)
   {
-    if (lists_new) before.assign(balls, 0);
-    else before.swap(now);
+    if (lists_new)
+      before.assign(balls, 0);
+    else
+      before.swap(now);
     now.assign(balls, 0);
     if (starting) estimated.assign(balls, 0);
   }

@@ -22,7 +22,8 @@ struct SpringDashpot {
 
 // Twice the energy (J) that a spring of stretch s (m) can give back, its ends moving at u (m/s): at a
 // force of most (N) it slides. limit: the same for spring and dashpot together, now.
-inline double held(const SpringDashpot &law, double most, double limit, const double *s, const double *u)
+inline double held(const SpringDashpot &law, double most, double limit, const double *s,
+                   const double *u)
 {
   constexpr double NEARLY = 0.8;    // of the square of a force: velocities may be half a step old
   if (!(law.k > 0.0)) return 0.0;
@@ -38,7 +39,8 @@ inline double held(const SpringDashpot &law, double most, double limit, const do
 }
 
 // the same of all springs of a contact, J
-inline double elastic_energy(const ContactLaw &law, const Contact &c, double mass_dashpot, const double *history)
+inline double elastic_energy(const ContactLaw &law, const Contact &c, double mass_dashpot,
+                             const double *history)
 {
   const double root_mass = std::sqrt(mass_dashpot), elastic = law.kn * c.overlap;
   const double vn = normal_velocity(c);
@@ -49,9 +51,10 @@ inline double elastic_energy(const ContactLaw &law, const Contact &c, double mas
   for (double &x : w) x *= c.rolling_radius;
   const SpringDashpot sliding = {law.kt, law.ct_given + law.ct_root * root_mass};
   const SpringDashpot rolling = {law.kr, law.cr_given + law.cr_root * root_mass};
-  return 0.5 * (elastic * c.overlap +
-                held(sliding, law.friction * elastic, law.friction * pressing, history, vt) +
-                held(rolling, law.rolling * elastic, law.rolling * pressing, history + 3, w));
+  return 0.5 *
+      (elastic * c.overlap +
+       held(sliding, law.friction * elastic, law.friction * pressing, history, vt) +
+       held(rolling, law.rolling * elastic, law.rolling * pressing, history + 3, w));
 }
 
 // The same of a list, this rank's share, J; see(entry, overlap) is called for each contact that overlaps.
@@ -62,7 +65,8 @@ double elastic_energy(const ContactList &list, const ContactLaw &law, const Movi
   double energy = 0.0;
   for (size_t k = 0; k < list.entries.size(); k++) {
     const ContactList::Entry &e = list.entries[k];
-    if (!(ContactList::distance(balls, partners, e) < balls.radius[e.i] + partners.radius(e.j))) continue;
+    if (!(ContactList::distance(balls, partners, e) < balls.radius[e.i] + partners.radius(e.j)))
+      continue;
     Contact c;
     Vector delta;
     ContactList::set_contact(law, balls, partners, e, c, delta);

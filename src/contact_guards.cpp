@@ -19,9 +19,9 @@
 
 using namespace LAMMPS_NS;
 
-static constexpr double ZETA_FOLLOWED = 2.0;           // damping ratio up to which the law is followed
+static constexpr double ZETA_FOLLOWED = 2.0;    // damping ratio up to which the law is followed
 static constexpr double MASS_RATIO_TESTED = 1000.0;    // of two balls that touch
-static constexpr double DEEP = 0.1;                    // overlap, of the smaller radius, that is not sensible
+static constexpr double DEEP = 0.1;    // overlap, of the smaller radius, that is not sensible
 
 /* ---------------------------------------------------------------------- */
 
@@ -34,8 +34,7 @@ ContactGuards::ContactGuards(LAMMPS *lmp, const ContactTable &contacts) :
    by rank 0, or by all: to the screen, the log and the summaries
 ------------------------------------------------------------------------- */
 
-template <typename... Args>
-void ContactGuards::warn(const char *format, const Args &...args)
+template <typename... Args> void ContactGuards::warn(const char *format, const Args &...args)
 {
   if (comm->me > 0) return;
   const std::string text = "Pair gran/restitution: " + fmt::format(format, args...);
@@ -88,7 +87,8 @@ void ContactGuards::check_timestep()
          "0.25 sqrt(m_min/kn) = {:.4g} s (types {} {})",
          dt, dt / bound, bound, iworst, jworst);
   else
-    warn("time step {:.4g} s is {:.3g} times the largest with which the dashpots of scheme plain let "
+    warn("time step {:.4g} s is {:.3g} times the largest with which the dashpots of scheme plain "
+         "let "
          "a heap come to rest, 0.15 m_min/cn = {:.4g} s (types {} {})",
          dt, dt / bound, bound, iworst, jworst);
 }
@@ -114,13 +114,16 @@ void ContactGuards::check_dashpots(int i, int j)
       heaviest = std::max(heaviest, range->mass_max);
     }
   if (heaviest > MASS_RATIO_TESTED * lightest && a.moving && b.moving)
-    warn("the masses of balls of types {} and {} that can touch are tested up to a ratio of {:g}, got {:.4g}",
+    warn("the masses of balls of types {} and {} that can touch are tested up to a ratio of {:g}, "
+         "got {:.4g}",
          i, j, MASS_RATIO_TESTED, heaviest / lightest);
   const double cn = table.law(i, j).cn(lightest);
   const double zeta = cn / (2.0 * sqrt(table.coeff(i, j).kn * lightest));
   if (zeta > ZETA_FOLLOWED && !table.is_plain())
-    warn("damping ratio of types {} and {} must be <= {:g} to be followed in time, got {:.4g} (cn {:.4g} N s/m, "
-         "lightest ball {:.4g} kg): these contacts do not rebound and rest at the right overlap, but reach it "
+    warn("damping ratio of types {} and {} must be <= {:g} to be followed in time, got {:.4g} (cn "
+         "{:.4g} N s/m, "
+         "lightest ball {:.4g} kg): these contacts do not rebound and rest at the right overlap, "
+         "but reach it "
          "too fast",
          i, j, ZETA_FOLLOWED, zeta, cn, lightest);
 }
@@ -132,7 +135,8 @@ void ContactGuards::check_dashpots(int i, int j)
 void ContactGuards::check_neighbor_lists()
 {
   if (neighbor->delay == 0 && neighbor->every == 1 && neighbor->dist_check) return;
-  warn("with neigh_modify every {} delay {} check {} contacts may be found late and rebound too fast; "
+  warn("with neigh_modify every {} delay {} check {} contacts may be found late and rebound too "
+       "fast; "
        "every 1 delay 0 check yes finds them in time",
        neighbor->every, neighbor->delay, neighbor->dist_check ? "yes" : "no");
 }
@@ -153,7 +157,8 @@ void ContactGuards::check_fixed_balls(int freeze_group_bit)
     if (!(atom->mask[i] & (moved | freeze_group_bit))) mine++;
   MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (all)
-    warn("no integrator moves {} balls and no fix freeze holds them: without it a fixed ball has the "
+    warn("no integrator moves {} balls and no fix freeze holds them: without it a fixed ball has "
+         "the "
          "dashpots of a moving one",
          all);
 }
@@ -174,8 +179,10 @@ void ContactGuards::see_overlap(int i, double overlap, double radius)
 void ContactGuards::watch_energy(double elastic)
 {
   if (energy.look(elastic))
-    warn("the energy of the balls grew by {:.3g} % of the largest energy of motion until step {}, with "
-         "nothing but contacts and gravity at work: the time step is too large, or contacts were found "
+    warn("the energy of the balls grew by {:.3g} % of the largest energy of motion until step {}, "
+         "with "
+         "nothing but contacts and gravity at work: the time step is too large, or contacts were "
+         "found "
          "late",
          100.0 * energy.growth(), update->ntimestep);
 }
@@ -208,16 +215,19 @@ void ContactGuards::report()
     MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
     bigint where[2] = {overlaps.ball, overlaps.step};
     MPI_Bcast(where, 2, MPI_LMP_BIGINT, all.rank, world);
-    warn("{} contacts were seen deeper than {:g} % of the smaller radius, the deepest {:.3g} % (ball {}, "
+    warn("{} contacts were seen deeper than {:g} % of the smaller radius, the deepest {:.3g} % "
+         "(ball {}, "
          "step {}): the stiffness is too small for the speeds, or the time step too large",
          f.deep, 100.0 * DEEP, 100.0 * all.most, where[0], where[1]);
   }
   if (f.energy_grew > 1)
-    warn("the energy of the balls had grown at {} of the looks every {} steps, by {:.3g} % of the largest "
+    warn("the energy of the balls had grown at {} of the looks every {} steps, by {:.3g} % of the "
+         "largest "
          "energy of motion",
          f.energy_grew, +EVERY, 100.0 * f.energy_growth);
   if (f.dangerous_builds)
-    warn("{} neighbor lists came late (dangerous builds): balls went farther than half the skin {:g} in "
+    warn("{} neighbor lists came late (dangerous builds): balls went farther than half the skin "
+         "{:g} in "
          "one step, and contacts may have begun too deep",
          f.dangerous_builds, neighbor->skin);
 }

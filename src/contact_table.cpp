@@ -21,7 +21,8 @@ using namespace Slope;
 
 static constexpr double STEP_RULE = 0.25;       // dt <= STEP_RULE sqrt(m/kn)
 static constexpr double DASHPOT_RULE = 0.15;    // scheme plain: dt <= DASHPOT_RULE m/cn
-static constexpr int FORMAT = 20261122;         // of what restart files hold, histories of walls included
+static constexpr int FORMAT =
+    20261122;    // of what restart files hold, histories of walls included
 static constexpr double DEGREE = PI / 180.0;
 
 /* ---------------------------------------------------------------------- */
@@ -114,7 +115,8 @@ ContactTable::Coeff ContactTable::read_coeff(const std::string &types, int narg,
       if (!utils::is_double(arg[iarg + k]))
         error->all(FLERR, "Pair gran/restitution {}: value {} must be a number, got {}", keyword, k,
                    arg[iarg + k]);
-      return strtod(arg[iarg + k], nullptr);    // numeric() has words of its own for 1e999, in some versions
+      return strtod(arg[iarg + k],
+                    nullptr);    // numeric() has words of its own for 1e999, in some versions
     };
     auto rule = [&](bool holds, const char *text, double got) {
       if (!holds || !std::isfinite(got))
@@ -165,10 +167,11 @@ ContactTable::Coeff ContactTable::read_coeff(const std::string &types, int narg,
   if (!stiffness)
     error->all(FLERR, "Pair gran/restitution pair_coeff {}: stiffness kn kt is required", types);
   if (c.kt == 0.0 && c.ct > 0.0)
-    error->all(FLERR,
-               "Pair gran/restitution pair_coeff {}: ct must be 0 where kt is 0, got {:.15g}: give the "
-               "contact a tangential stiffness",
-               types, c.ct);
+    error->all(
+        FLERR,
+        "Pair gran/restitution pair_coeff {}: ct must be 0 where kt is 0, got {:.15g}: give the "
+        "contact a tangential stiffness",
+        types, c.ct);
   if (damping == (c.restitution_set == 1))
     error->all(FLERR,
                "Pair gran/restitution pair_coeff {}: exactly one of restitution and damping is "
@@ -327,7 +330,9 @@ std::string ContactTable::text(double dt) const
 
 std::string ContactTable::line(int i, int j, double dt) const
 {
-  auto number = [](double x) { return std::isfinite(x) ? fmt::format("{:.4g}", x) : "inf"; };
+  auto number = [](double x) {
+    return std::isfinite(x) ? fmt::format("{:.4g}", x) : "inf";
+  };
   const Coeff &c = coeffs[index(i, j)];
   const TypeRange &a = ranges[i], &b = ranges[j];
   const ContactLaw &law = laws[index(i, j)];
@@ -373,7 +378,8 @@ void ContactTable::read_settings(FILE *fp)
   MPI_Bcast(values, 5, MPI_INT, 0, world);
   if (values[0] != FORMAT)
     error->all(FLERR,
-               "Pair gran/restitution: restart file must have contacts of format {}, got {}: begin anew, or "
+               "Pair gran/restitution: restart file must have contacts of format {}, got {}: begin "
+               "anew, or "
                "go on with the version of the package that wrote it",
                FORMAT, values[0] > 1 ? std::to_string(values[0]) : "one of an earlier version");
   mass_ball = values[1];

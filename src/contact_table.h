@@ -37,16 +37,20 @@ class ContactTable : protected Pointers {
 
   explicit ContactTable(LAMMPS *);
 
-  void allocate();                                   // for the types that there are now
-  void read_settings(int narg, char **arg);          // keywords of pair_style
-  Coeff read_coeff(const std::string &types, int narg, char **arg) const;    // of pair_coeff, after the types
-  void set(int itype, int jtype, const Coeff &);     // in both orders
-  void make_laws();                                  // after set()
+  void allocate();                             // for the types that there are now
+  void read_settings(int narg, char **arg);    // keywords of pair_style
+  Coeff read_coeff(const std::string &types, int narg,
+                   char **arg) const;               // of pair_coeff, after the types
+  void set(int itype, int jtype, const Coeff &);    // in both orders
+  void make_laws();                                 // after set()
 
   bool is_set(int itype, int jtype) const { return coeff(itype, jtype).set; }
   const Coeff &coeff(int itype, int jtype) const { return coeffs[index(itype, jtype)]; }
   const Slope::ContactLaw &law(int itype, int jtype) const { return laws[index(itype, jtype)]; }
-  const Slope::ContactLaw &law(size_t k) const { return laws[k]; }    // k: itype * (ntypes + 1) + jtype
+  const Slope::ContactLaw &law(size_t k) const
+  {
+    return laws[k];
+  }    // k: itype * (ntypes + 1) + jtype
   const TypeRange &range(int type) const { return ranges[type]; }
   bool is_plain() const { return plain; }
 
@@ -68,7 +72,7 @@ class ContactTable : protected Pointers {
   // restart files
   void write_settings(FILE *) const;    // by rank 0
   void write_coeffs(FILE *) const;
-  void read_settings(FILE *);           // collective
+  void read_settings(FILE *);    // collective
   void read_coeffs(FILE *);
 
   double memory_usage() const;
