@@ -182,7 +182,8 @@ void FixControlLine::end_of_step()
 
 void FixControlLine::reset_dt()
 {
-  clock.change_step_size(update->ntimestep, update->dt);
+  // between runs, where newer LAMMPS calls this too, the next set-up sees the change
+  if (update->whichflag == 1) clock.change_step_size(update->ntimestep, update->dt);
 }
 
 /* ---------------------------------------------------------------------- */

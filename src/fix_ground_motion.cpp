@@ -254,7 +254,8 @@ void FixGroundMotion::kick_until(double time, bool first_half)
 
 void FixGroundMotion::reset_dt()
 {
-  clock.change_step_size(update->ntimestep, update->dt);
+  // between runs, where newer LAMMPS calls this too, the next set-up sees the change
+  if (update->whichflag == 1) clock.change_step_size(update->ntimestep, update->dt);
 }
 
 /* ----------------------------------------------------------------------
