@@ -35,7 +35,7 @@ using Slope::CrossingLog;
 using Slope::PlanLine;
 
 static constexpr double PI = 3.14159265358979323846;
-static constexpr int BEGIN = 10;    // numbers at the begin of what a restart file holds
+static constexpr int BEGIN = 10;    // numbers with which what a restart file holds begins
 
 enum { X, Y, Z };
 

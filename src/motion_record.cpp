@@ -6,6 +6,7 @@
 #include "motion_record.h"
 
 #include "number_rows.h"
+#include "text_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,16 +45,16 @@ MotionRecord MotionRecord::read(const std::string &path, double scale)
     const Point p = {row.values[0], {row.values[1], row.values[2], row.values[3]}};
     for (const double value : row.values)
       if (std::fabs(value) > LARGEST)
-        throw row_error(path, row.line,
+        throw line_error(path, row.line,
                         "numbers must be within +-" + number_text(LARGEST) + ", got " +
                             number_text(value));
     const size_t n = points.size();
     if (n > 0 && p.t < points[n - 1].t)
-      throw row_error(path, row.line,
+      throw line_error(path, row.line,
                       "times must not fall, got " + number_text(p.t) + " after " +
                           number_text(points[n - 1].t));
     if (n > 1 && p.t == points[n - 2].t)
-      throw row_error(path, row.line,
+      throw line_error(path, row.line,
                       "at most two lines may have the same time, a jump, got a third one of " +
                           number_text(p.t));
     points.push_back(p);

@@ -6,7 +6,6 @@
 #ifndef SLOPE_NUMBER_ROWS_H
 #define SLOPE_NUMBER_ROWS_H
 
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -23,12 +22,6 @@ struct NumberRow {
 // Errors are std::runtime_error with one line: file, line in it, rule, value.
 std::vector<NumberRow> read_number_rows(const std::string &path, int count,
                                         const std::string &names);
-
-// such an error: "PATH, line 7: what"
-std::runtime_error row_error(const std::string &path, int line, const std::string &what);
-
-// a number as messages write it, to ten digits
-std::string number_text(double value);
 
 }    // namespace Slope
 

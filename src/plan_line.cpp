@@ -6,6 +6,7 @@
 #include "plan_line.h"
 
 #include "number_rows.h"
+#include "text_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,12 +38,12 @@ PlanLine PlanLine::read(const std::string &path)
   for (const NumberRow &row : read_number_rows(path, 2, "x y or x,y")) {
     const double x = row.values[0], y = row.values[1];
     if (!(std::fabs(x) <= LARGEST && std::fabs(y) <= LARGEST))
-      throw row_error(path, row.line,
+      throw line_error(path, row.line,
                       "x and y must be within +-" + number_text(LARGEST) + ", got " +
                           number_text(x) + " " + number_text(y));
     const size_t n = points.size();
     if (n > 0 && x == points[n - 2] && y == points[n - 1])
-      throw row_error(path, row.line,
+      throw line_error(path, row.line,
                       "two points in a row must differ, got " + number_text(x) + " " +
                           number_text(y) + " twice");
     points.push_back(x);
@@ -67,7 +68,7 @@ static double left_of(const double *a, const double *b, const double *c)
    All places are shifted to the east by next to nothing, and to the north by even less: none is then
    on a line. Whether they were is known exactly for lines along x and y, and elsewhere to rounding.
    Each question has the same answer whenever it is asked of the same points: of the end of one path
-   and the begin of the next, and of a corner for both pieces that meet there.
+   and the start of the next, and of a corner for both pieces that meet there.
 ------------------------------------------------------------------------- */
 
 static bool place_is_left(double area, const double *p, const double *q)

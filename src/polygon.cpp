@@ -5,6 +5,8 @@
 
 #include "polygon.h"
 
+#include "text_file.h"
+
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
@@ -47,48 +49,12 @@ struct Rings {
   std::vector<std::vector<int>> lines;
 };
 
-std::string to_text(double value)
-{
-  char text[32];
-  snprintf(text, sizeof(text), "%.10g", value);
-  return text;
-}
-
-std::runtime_error error(const std::string &path, int line, const std::string &what)
-{
-  return std::runtime_error(path + ", line " + std::to_string(line) + ": " + what);
-}
-
-// what a message quotes: short and printable
-
-std::string quoted(const std::string &text)
-{
-  std::string found = text.substr(0, 40);
-  for (char &c : found)
-    if (!isprint((unsigned char) c)) c = '?';
-  return found;
-}
-
 std::string trimmed(const std::string &text)
 {
   const char *space = " \t\r\v\f";
   const size_t begin = text.find_first_not_of(space);
   if (begin == std::string::npos) return "";
   return text.substr(begin, text.find_last_not_of(space) - begin + 1);
-}
-
-std::string text_of(const std::string &path)
-{
-  FILE *fp = fopen(path.c_str(), "rb");
-  if (!fp) throw std::runtime_error("cannot read " + path + ": " + strerror(errno));
-  std::string text;
-  std::vector<char> chunk(1 << 16);
-  size_t n;
-  while ((n = fread(chunk.data(), 1, chunk.size(), fp)) > 0) text.append(chunk.data(), n);
-  const std::string reason = ferror(fp) ? strerror(errno) : "";
-  fclose(fp);
-  if (!reason.empty()) throw std::runtime_error("cannot read " + path + ": " + reason);
-  return text;
 }
 
 // "x,y" and nothing else
@@ -107,8 +73,7 @@ bool parse(const std::string &text, Point &p)
 
 Rings read_rings(const std::string &path)
 {
-  std::string text = text_of(path);
-  if (text.compare(0, 3, "\xef\xbb\xbf") == 0) text.erase(0, 3);    // mark of UTF-8
+  const std::string text = text_of(path);
 
   Rings rings;
   bool open = false;    // the last ring goes on
@@ -124,10 +89,10 @@ Rings read_rings(const std::string &path)
 
     Point p;
     if (!parse(content, p))
-      throw error(path, line, "must be two numbers, x,y, got " + quoted(content));
+      throw line_error(path, line, "must be two numbers, x,y, got " + excerpt(content));
     if (!(std::fabs(p.x) <= LARGEST && std::fabs(p.y) <= LARGEST))    // NaN, too
-      throw error(path, line, "x and y must be numbers within +-" + to_text(LARGEST) + ", got " +
-                  quoted(content));
+      throw line_error(path, line, "x and y must be numbers within +-" + number_text(LARGEST) + ", got " +
+                  excerpt(content));
     if (!open) {
       rings.points.emplace_back();
       rings.lines.emplace_back();
@@ -147,7 +112,7 @@ Rings read_rings(const std::string &path)
       rings.lines[r].pop_back();
     }
     if (points.size() < 3)
-      throw error(path, rings.lines[r][0], "a ring must have at least 3 points, got " +
+      throw line_error(path, rings.lines[r][0], "a ring must have at least 3 points, got " +
                   std::to_string(points.size()));
   }
   return rings;
@@ -293,11 +258,11 @@ void check_crossings(const std::string &path, const std::vector<Segment> &all, c
 
   const Segment &s = all[found.first], &t = all[found.second];
   const Point at = meeting(s, t);
-  const std::string where = " at " + to_text(at.x) + "," + to_text(at.y);
+  const std::string where = " at " + number_text(at.x) + "," + number_text(at.y);
   if (s.ring == t.ring)
-    throw error(path, s.line, "a ring must not cross or touch itself, the edges from lines " +
+    throw line_error(path, s.line, "a ring must not cross or touch itself, the edges from lines " +
                 std::to_string(s.line) + " and " + std::to_string(t.line) + " meet" + where);
-  throw error(path, s.line, "rings must not cross, the edges from lines " +
+  throw line_error(path, s.line, "rings must not cross, the edges from lines " +
               std::to_string(s.line) + " and " + std::to_string(t.line) + " do" + where);
 }
 
@@ -423,7 +388,7 @@ Polygon Polygon::read(const std::string &path)
     bool flat = true;
     for (const Point &p : ring) flat = flat && side(ring[0], ring[1], p) == 0;
     if (flat)
-      throw error(path, rings.lines[r][0], "a ring must have an area > 0, its points are on a line");
+      throw line_error(path, rings.lines[r][0], "a ring must have an area > 0, its points are on a line");
     sizes.push_back(n);
   }
 
@@ -431,7 +396,7 @@ Polygon Polygon::read(const std::string &path)
   check_crossings(path, all, polygon);
   const double area = polygon.area();
   if (!(area > 0.0))
-    throw std::runtime_error(path + ": must have an area > 0, got " + to_text(area) +
+    throw std::runtime_error(path + ": must have an area > 0, got " + number_text(area) +
                              ", rings cancel each other");
   return polygon;
 }

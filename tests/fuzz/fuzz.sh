@@ -45,7 +45,7 @@ for target in "${targets[@]}"; do
   sed 's/= 1 << 20;/= 1 << 12;/' "$source" >"$out/${source##*/}"
   clang++ -std=c++17 -g -O1 -fno-omit-frame-pointer -fsanitize=fuzzer,address,undefined \
     -fno-sanitize-recover=undefined -I "$top/src" -I "$(dirname "$source")" -I "$here" \
-    "$here/fuzz_$target.cpp" "$out/${source##*/}" ${libraries:+"$libraries"} -o "$out/fuzz_$target"
+    "$here/fuzz_$target.cpp" "$out/${source##*/}" "$top/src/text_file.cpp" ${libraries:+"$libraries"} -o "$out/fuzz_$target"
   "$out/fuzz_$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=3000 -print_final_stats=1 \
     -dict="$here/words" -artifact_prefix="$out/found/$target." "$out/corpus/$target" "$here/seeds/$target" \
     >"$out/$target.log" 2>&1 || status=1

@@ -1,0 +1,30 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+/* Text files that users write, and what messages about them quote. No LAMMPS. */
+
+#ifndef SLOPE_TEXT_FILE_H
+#define SLOPE_TEXT_FILE_H
+
+#include <stdexcept>
+#include <string>
+
+namespace Slope {
+
+// The whole file without a mark of UTF-8. Errors are std::runtime_error: "cannot read PATH: reason".
+std::string text_of(const std::string &path);
+
+// an error in a line: "PATH, line 7: what"
+std::runtime_error line_error(const std::string &path, int line, const std::string &what);
+
+// short and printable
+std::string excerpt(const std::string &text);
+
+// a number to ten digits
+std::string number_text(double value);
+
+}    // namespace Slope
+
+#endif
