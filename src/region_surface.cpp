@@ -119,16 +119,7 @@ bool RegionSurface::search(double x, double y, double &z) const
     in = std::min(in + step, length);
   }
 
-  while (in - out > PRECISION * length) {
-    const double middle = 0.5 * (in + out);
-    if (middle <= out || middle >= in) break;
-    if (inside(x, y, middle))
-      in = middle;
-    else
-      out = middle;
-  }
-  z = start + direction * in;
-  return true;
+  return between(x, y, out, in, PRECISION * length, z);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -179,7 +170,8 @@ bool RegionSurface::search_near(double x, double y, double near, double &z) cons
   }
   if (!passed) return false;
 
-  return above ? between(x, y, next, here, z) : between(x, y, here, next, z);
+  const double precision = ROUGHLY * step;
+  return above ? between(x, y, next, here, precision, z) : between(x, y, here, next, precision, z);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -204,16 +196,17 @@ bool RegionSurface::search_below(double x, double y, double top, double &z) cons
   double in = top - zlo - 0.5 * step;
   if (in < 0.0 || !inside(x, y, in)) return false;
   for (double out = in - step; out >= 0.0; in = out, out -= step)
-    if (!inside(x, y, out)) return between(x, y, out, in, z);
+    if (!inside(x, y, out)) return between(x, y, out, in, ROUGHLY * step, z);
   return height(x, y, z);
 }
 
-// the boundary between a point outside and one inside
+// the boundary between a point outside and one inside, distances walked, to a precision in m
 
-bool RegionSurface::between(double x, double y, double out, double in, double &z) const
+bool RegionSurface::between(double x, double y, double out, double in, double precision, double &z) const
 {
-  while (in - out > ROUGHLY * step) {
+  while (in - out > precision) {
     const double middle = 0.5 * (in + out);
+    if (middle <= out || middle >= in) break;
     if (inside(x, y, middle))
       in = middle;
     else

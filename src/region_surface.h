@@ -66,7 +66,7 @@ class RegionSurface : protected Pointers {
   bool search_near(double x, double y, double near, double &z) const;
   bool search_below(double x, double y, double top, double &z) const;
   bool inside(double x, double y, double walked) const;
-  bool between(double x, double y, double out, double in, double &z) const;
+  bool between(double x, double y, double out, double in, double precision, double &z) const;
 };
 
 }    // namespace LAMMPS_NS
