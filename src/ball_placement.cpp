@@ -232,7 +232,7 @@ bool BallPlacement::any() const
       for (int k = 0; k < some && at < tiles && !mine; k++, at += comm->nprocs)
         mine = looks->has_balls(static_cast<int>(at * step % tiles));
     });
-    const int mine_left = at < tiles;
+    int mine_left = at < tiles;
     MPI_Allreduce(&mine, &found, 1, MPI_INT, MPI_MAX, world);
     MPI_Allreduce(&mine_left, &left, 1, MPI_INT, MPI_MAX, world);
   }
@@ -269,7 +269,7 @@ SurfaceCounts BallPlacement::count_all(std::vector<std::string> *text) const
       balls.clear();
     }
   });
-  const bigint numbers[4] = {mine.without_surface, mine.dropped, mine.base, mine.extra};
+  bigint numbers[4] = {mine.without_surface, mine.dropped, mine.base, mine.extra};
   bigint sums[4];
   MPI_Allreduce(numbers, sums, 4, MPI_LMP_BIGINT, MPI_SUM, world);
   SurfaceCounts all;

@@ -52,8 +52,8 @@ void on_all_ranks(LAMMPS *lmp, const std::string &caller, Work work)
   } catch (std::exception &e) {
     problem = e.what();
   }
-  const int me = lmp->comm->me, nprocs = lmp->comm->nprocs, mine = problem.empty() ? nprocs : me;
-  int first;
+  const int me = lmp->comm->me, nprocs = lmp->comm->nprocs;
+  int mine = problem.empty() ? nprocs : me, first;
   MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, lmp->world);
   if (first == nprocs) return;
   int length = problem.size();
