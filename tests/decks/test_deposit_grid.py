@@ -489,8 +489,8 @@ def test_pieces_come_and_go_with_the_fix(tmp_path, monkeypatch):
     flat(tmp_path, 20)
     write_balls(tmp_path / "balls.data", [[5, 5, 5]], 0.5, None, [(0.0, 20.0)] * 3)
     fix = "fix dep all deposit/grid 10 0 cell {} terrain ground output out\n"
-    log = run_deck(head() + fix.format(0.5) + "info fixes\nunfix dep\ninfo fixes\n" + fix.format(1) + fix.format(2)
-                   + "info fixes\nrun 10\nwrite_restart a.restart\nunfix dep\ninfo fixes\n", tmp_path)
+    log = run_deck(head() + fix.format(0.5) + "info out log fixes\nunfix dep\ninfo out log fixes\n" + fix.format(1) + fix.format(2)
+                   + "info out log fixes\nrun 10\nwrite_restart a.restart\nunfix dep\ninfo out log fixes\n", tmp_path)
     counts = [part.count("style = DEPOSIT_GRID_PART") for part in log.split("Info-Info")[1:]]
     assert [count for count in counts if count] == [4, 1] and len(counts) >= 4, counts
     assert (tmp_path / "a.restart").read_bytes().count(b"DEPOSIT_GRID_PART\0") == 1

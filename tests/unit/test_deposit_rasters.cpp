@@ -222,6 +222,7 @@ TEST(DepositRasters, TouchedCells)
   for (const int number : {1, 2, 4}) {
     Ranks ranks(grid, number);
     ranks.sample(draw(20), 0.5);
+    for (Rasters &mine : ranks.rasters) mine.take_snapshot(1, 1, 0.5, 0.0);
     ranks.sample(draw(1), 1.0, false);
     saved.emplace_back();
     for (int band = 0; band < ranks.rasters[0].bands().number(); band++) {
