@@ -30,6 +30,7 @@ class DepositBands {
   bool mine(int band) const { return owner(band) == me; }
   static int band_of(int row) { return row / ROWS; }
 
+  int cells_in_band() const { return std::min<long long>(ROWS * (long long) columns, 1 << 30); }
   int first_row(int band) const { return band * ROWS; }
   int end_row(int band) const { return std::min(rows, first_row(band) + ROWS); }
 

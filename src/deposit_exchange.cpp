@@ -9,15 +9,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <vector>
+#include <cstdlib>
+#include <map>
 
 using namespace LAMMPS_NS;
 using Slope::DepositBands;
 using Slope::DepositBlocks;
 
-static constexpr size_t ROUND = 4096;    // blocks that a rank sends in a round: 6 MB of bins
-static constexpr int HEAD = 2;           // column, band: what stands before the values of a block
+static constexpr size_t ROUND = 2048;          // blocks that a rank sends in a round: 3 MB of bins
+static constexpr int BATCH = 64;               // bands whose bytes rank 0 has at a time, if there
+static constexpr int BATCH_CELLS = 4000000;    // are no more ranks, and not more cells in them
+static constexpr int HEAD = 2;    // column, band: what stands before the values of a block
 
 /* ---------------------------------------------------------------------- */
 
@@ -94,19 +96,51 @@ void DepositExchange::one_round(const DepositBlocks &blocks, size_t begin, size_
 }
 
 /* ----------------------------------------------------------------------
-   rank 0 takes the bands in order; each other rank has its next one ready by then
+   batch by batch of bands, in which every rank has work before it waits for another one
 ------------------------------------------------------------------------- */
 
 void DepositExchange::to_rank_zero(const DepositBands &bands, int from, int to,
                                    const MakeBytes &make, const TakeBytes &take)
 {
-  const int step = from <= to ? 1 : -1;
-  for (int band = from; band != to + step; band += step) {
-    const int owner = bands.owner(band);
-    if (comm->me == 0)
-      take(owner == 0 ? make(band) : receive(owner));
-    else if (comm->me == owner)
-      send(make(band));
+  const int step = from <= to ? 1 : -1, count = std::abs(to - from) + 1;
+  const int batch = std::max(comm->nprocs, std::min(BATCH, BATCH_CELLS / bands.cells_in_band()));
+  for (int done = 0; done < count; done += batch) {
+    std::vector<int> now;
+    for (int k = done; k < std::min(count, done + batch); k++) now.push_back(from + step * k);
+    batch_to_rank_zero(bands, now, make, take);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DepositExchange::batch_to_rank_zero(const DepositBands &bands, const std::vector<int> &now,
+                                         const MakeBytes &make, const TakeBytes &take)
+{
+  std::string mine;
+  std::vector<bigint> sizes(now.size(), 0);    // of the bands of this rank
+  for (size_t k = 0; k < now.size(); k++) {
+    if (!bands.mine(now[k])) continue;
+    const std::string bytes = make(now[k]);
+    sizes[k] = bytes.size();
+    mine += bytes;
+  }
+  std::vector<bigint> all(now.size());
+  MPI_Reduce(sizes.data(), all.data(), (int) now.size(), MPI_LMP_BIGINT, MPI_SUM, 0, world);
+  if (comm->me > 0) {
+    if (!mine.empty()) send(mine);
+    return;
+  }
+
+  std::map<int, bigint> total, next;
+  for (size_t k = 0; k < now.size(); k++) total[bands.owner(now[k])] += all[k];
+  std::map<int, std::string> texts;
+  texts[0].swap(mine);
+  for (size_t k = 0; k < now.size(); k++) {
+    const int owner = bands.owner(now[k]);
+    if (owner > 0 && all[k] > 0 && next[owner] == 0) texts[owner] = receive(owner, total[owner]);
+    take(texts[owner].substr(next[owner], all[k]));
+    next[owner] += all[k];
+    if (next[owner] == total[owner]) texts[owner] = std::string();
   }
 }
 
@@ -114,18 +148,15 @@ void DepositExchange::to_rank_zero(const DepositBands &bands, int from, int to,
 
 void DepositExchange::send(const std::string &bytes)
 {
-  bigint size = bytes.size();
-  MPI_Send(&size, 1, MPI_LMP_BIGINT, 0, 0, world);
+  const bigint size = bytes.size();
   for (bigint k = 0; k < size; k += MOST_BYTES)
     MPI_Send(bytes.data() + k, (int) std::min<bigint>(MOST_BYTES, size - k), MPI_BYTE, 0, 0, world);
 }
 
 /* ---------------------------------------------------------------------- */
 
-std::string DepositExchange::receive(int rank)
+std::string DepositExchange::receive(int rank, bigint size)
 {
-  bigint size;
-  MPI_Recv(&size, 1, MPI_LMP_BIGINT, rank, 0, world, MPI_STATUS_IGNORE);
   std::string bytes(size, '\0');
   for (bigint k = 0; k < size; k += MOST_BYTES)
     MPI_Recv(&bytes[k], (int) std::min<bigint>(MOST_BYTES, size - k), MPI_BYTE, rank, 0, world,

@@ -12,12 +12,13 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
 
 // How the ranks of fix deposit/grid pass on what they have of the plan grid. All methods are
 // collective. No message has more than MOST_BYTES, whatever the size of the grid, and what a rank
-// keeps for them does not grow with it.
+// keeps for them does not grow with its rows.
 class DepositExchange : protected Pointers {
  public:
   static constexpr int MOST_BYTES = 1 << 28;
@@ -46,8 +47,10 @@ class DepositExchange : protected Pointers {
  private:
   void one_round(const Slope::DepositBlocks &, size_t begin, size_t end,
                  const Slope::DepositBands &, const TakeBlock &);
+  void batch_to_rank_zero(const Slope::DepositBands &, const std::vector<int> &bands,
+                          const MakeBytes &, const TakeBytes &);
   void send(const std::string &bytes);
-  std::string receive(int rank);
+  std::string receive(int rank, bigint size);
 };
 
 }    // namespace LAMMPS_NS
