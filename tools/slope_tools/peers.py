@@ -14,7 +14,7 @@ from typing import Dict, NamedTuple, Optional
 
 import numpy as np
 
-from . import jobs, runs
+from . import jobs, last_words, runs
 from .errors import SlopeError
 
 DATA, DECK, LOG, SCREEN, FINAL, SERIES = "balls.data", "in.scene", "log.scene", "screen.txt", "final.txt", "series.txt"
@@ -465,4 +465,4 @@ def read_text(path):
 def failure(log, folder):
     """Why a run failed, in one line."""
     error = re.search(r"^.*ERROR.*$", log, re.MULTILINE)
-    return runs.told(error[0]) if error else runs.last_words(folder / SCREEN) or "no word"
+    return runs.told(error[0]) if error else last_words.Screen(folder / SCREEN).words() or "no word"

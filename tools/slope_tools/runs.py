@@ -241,15 +241,6 @@ def told(line):
     return INPUT_PLACE.sub("", line.strip())
 
 
-def last_words(path):
-    """The last line of a text file that is not empty; '' if there is none."""
-    try:
-        lines = Path(path).read_text(encoding="utf-8", errors="replace").splitlines()
-    except OSError:
-        return ""
-    return next((line.strip() for line in reversed(lines) if line.strip(" -\t")), "")
-
-
 # --- restart files ---
 
 def restarts(folder):
