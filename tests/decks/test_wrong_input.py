@@ -398,7 +398,11 @@ SETUPS = [
     ({"line": "fix line soil control/line fence.csv output out",
       "deposit": DECK["deposit"] + "\n" + DECK["deposit"].replace("deposit soil", "other soil") + "2"},
      "Fix control/line line needs deposit ID, the fix deposit/grid that has the bulk factor, where there is not exactly one, got 2"),
-    ({"motion": DECK["motion"] + "\nrun_style respa 2 2"}, "Fix ground/motion needs run_style verlet, got respa"),
+    ({"run": "run_style respa 2 2\nrun 1"}, "Pair gran/restitution needs run_style verlet, got respa"),
+    ({"move": "fix move soil rigid single"},
+     "Pair gran/restitution: balls must move one by one, got fix move rigid, whose bodies have another mass than a ball"),
+    ({"move": "fix move soil rigid/nve single"},
+     "Pair gran/restitution: balls must move one by one, got fix move rigid/nve, whose bodies"),
     ({"deposit": "region high sphere 4 4 9 3 units box\n" + DECK["deposit"].replace("terrain ground", "terrain high")},
      "Fix deposit/grid terrain region high must have a height within one "),
 ]

@@ -85,7 +85,8 @@ ABORT = (BOX + "MPI_ABORT was invoked on rank 1 in communicator MPI_COMM_WORLD\n
          "You may or may not see output from other processes, depending on\nexactly when Open MPI kills them.\n" + BOX)
 SLOTS = BOX + "There are not enough slots available in the system to satisfy the 64\nslots that were requested\n" + BOX
 MPICH = ("application called MPI_Abort(MPI_COMM_WORLD, 1) - process 0\n" + "=" * 83 + "\n"
-         "=   BAD TERMINATION OF ONE OF YOUR APPLICATION PROCESSES\n=   EXIT CODE: 9\n" + "=" * 83 + "\nYOUR APPLICATION TERMINATED WITH THE EXIT STRING: "
+         "=   BAD TERMINATION OF ONE OF YOUR APPLICATION PROCESSES\n=   EXIT CODE: 9\n" + "=" * 83 + "\n"
+         "YOUR APPLICATION TERMINATED WITH THE EXIT STRING: "
          "Killed (signal 9)\nThis typically refers to a problem with your application.\n"
          "Please see the FAQ page for debugging suggestions\n")
 
