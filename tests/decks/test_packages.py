@@ -1,9 +1,11 @@
-"""With LAMMPS packages that the default build does not have (tests/matrix.sh --only packages): suffix omp, bonds."""
+"""Suffixes, bonds: some with LAMMPS packages that the default build does not have (tests/matrix.sh --only packages)."""
 
 import functools
+import os
 import re
 import subprocess
 
+import deck_helpers
 import numpy
 import pytest
 from deck_helpers import ENVIRONMENT, LMP, collapse_deck, read_dump, run_deck, write_collapse
@@ -21,7 +23,7 @@ def needs(package):
         pytest.skip(f"LMP is built without package {package}")
 
 
-# --- suffix omp ---
+# --- suffixes ---
 
 OMP = "package omp 1\nsuffix omp\n"
 FLOOR = """
@@ -49,6 +51,24 @@ dump         all all custom 100 out.dump id x y z vx vy vz omegax omegay omegaz
 dump_modify  all sort id format float %.17g
 run          500
 """
+
+
+@pytest.mark.parametrize("suffix", ["kk", "kk/device", "kk/host", "omp", "gpu", "intel", "opt"])
+def test_every_suffix_is_known(tmp_path, monkeypatch, suffix):
+    """By the pair (frozen balls), by the guards (what moves balls and does work); to the bit, as the fixes are the same."""
+    if "LMP_SUFFIXES" not in os.environ:
+        pytest.skip("LMP_SUFFIXES is not set: the test program of a build with the styles in it")
+    monkeypatch.setattr(deck_helpers, "LMP", os.environ["LMP_SUFFIXES"])
+    found = []
+    for name, first in (("plain", ""), ("suffix", f"suffix {suffix}\n")):
+        folder = tmp_path / name
+        folder.mkdir()
+        log = run_deck(first + FLOOR, folder)
+        found.append(read_dump(folder / "out.dump")[500])
+        assert "WARNING: Pair gran/restitution" not in log
+        for style in ("freeze", "gravity", "nve/sphere"):
+            assert f"style = {style}{'/' + suffix if first else ''}," in log, style
+    assert numpy.array_equal(*found) and numpy.abs(found[0][:, 4:]).max() > 0.1
 
 
 def test_suffix_omp_is_the_run_without(tmp_path):
