@@ -55,7 +55,7 @@ run          500
 
 @pytest.mark.parametrize("suffix", ["kk", "kk/device", "kk/host", "omp", "gpu", "intel", "opt"])
 def test_every_suffix_is_known(tmp_path, monkeypatch, suffix):
-    """By the pair (frozen balls), by the guards (what moves balls and does work); to the bit, as the fixes are the same."""
+    """By the pair (frozen balls), by the guards (what moves balls and does work); to the bit, by the same fixes."""
     if "LMP_SUFFIXES" not in os.environ:
         pytest.skip("LMP_SUFFIXES is not set: the test program of a build with the styles in it")
     monkeypatch.setattr(deck_helpers, "LMP", os.environ["LMP_SUFFIXES"])
@@ -151,7 +151,8 @@ def test_bonded_balls_touch_or_do_not(tmp_path, special, force):
                                              ("lj 0 1 1 coul 1 1 1", "lj 0 1 1 coul 1 1 1")])
 def test_parts_of_contacts_are_refused(tmp_path, special, values):
     needs("MOLECULE")
-    run_deck(BONDS.format(special=special), tmp_path, expect_error="Pair gran/restitution: special_bonds must be 0 or 1, "
+    run_deck(BONDS.format(special=special), tmp_path,
+             expect_error="Pair gran/restitution: special_bonds must be 0 or 1, "
              f"the same for lj and coul, as balls that are bonded touch fully or not at all, got {values}")
 
 

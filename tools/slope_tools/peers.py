@@ -4,7 +4,6 @@ A Code writes its input into a folder, tells the command, and reads back what it
 pair gran/restitution as its start-up table prints them; how a peer differs from it is said in `differs`.
 """
 import math
-import os
 import re
 import shutil
 import subprocess

@@ -81,7 +81,8 @@ def named_files(deck):
 
     Variables of style index or string are filled in; a word that stands in both places is in both sets.
     """
-    values = {name: text for name, (style, text) in variables(deck).items() if style == "string"} | index_variables(deck)
+    values = {name: text for name, (style, text) in variables(deck).items() if style == "string"}
+    values |= index_variables(deck)
 
     def fill(word):
         return re.sub(r"\$(?:\{(\w+)\}|(\w))", lambda match: values.get(match[1] or match[2], match[0]), word)

@@ -57,7 +57,8 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--lmp", metavar="FILE", help="the LAMMPS program (default: LMP of the environment, then "
                         "build/lmp beside tools/)")
     parser.add_argument("--crosscheck", metavar="FILE", type=Path,
-                        help="crosscheck.yaml of `slope crosscheck`: its comparisons with other codes go into the report")
+                        help="crosscheck.yaml of `slope crosscheck`: its comparisons with other codes go into the "
+                        "report")
     parser.add_argument("-o", dest="output", metavar="DIR", type=Path, default=Path(NAME),
                         help=f"folder of the report and of the runs (default {NAME})")
     return parser
