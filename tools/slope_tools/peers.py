@@ -78,6 +78,7 @@ class Result(NamedTuple):
 class Code:
     """A program that can run a scene."""
     name = title = ""
+    is_lammps = True
     differs = ()        # sentences: in what its physics is not that of pair gran/restitution
 
     def __init__(self, lmp):
@@ -142,6 +143,10 @@ class Slope(Code):
         yield "fix spread all balance 1000 1.01 shift xy 10 1.01"
 
 
+class Build(Slope):
+    """The same in another build of ours."""
+    name, title = "build", "SLOPE, another build"
+
 class Frozen(Code):
     """A pair style of stock LAMMPS in the same program; the fixed balls are frozen atoms."""
 
@@ -191,6 +196,7 @@ class Hooke(Frozen):
 
 class Liggghts(Code):
     name, title = "liggghts", "LIGGGHTS, epsd2"
+    is_lammps = False
     differs = ("epsd2 measures with R/2: mu_r is doubled to give the same torque; its spring is kt R^2/4, a quarter of "
                "ours, and has no dashpot",
                "the tangential dashpot is not limited by friction, and none acts on a sliding contact",
@@ -274,6 +280,7 @@ print("SLOPE-YADE", config.version.strip(), seconds, flush=True)
 
 class Yade(Code):
     name, title = "yade", "YADE, ViscElPhys"
+    is_lammps = False
     differs = ("the normal force never pulls (our limit_damping yes)",
                "the rolling torque grows with the spin, to mu_r R Fn, the limit of ours, at 1 rad/s: no threshold",
                "leapfrog: velocities are those of half a step ago; torques act at the middle of the overlap")
@@ -314,7 +321,7 @@ class Yade(Code):
         return np.load(folder / "series.npy")
 
 
-ALL = (Slope, Granular, Hooke, Liggghts, Yade)
+ALL = (Slope, Build, Granular, Hooke, Liggghts, Yade)
 
 
 # --- pieces of the inputs ---
