@@ -20,6 +20,7 @@
 #include "memory.h"
 #include "neigh_list.h"
 #include "neighbor.h"
+#include "requirements.h"
 #include "update.h"
 
 #include <algorithm>
@@ -169,6 +170,9 @@ void PairGranRestitution::init_style()
     error->all(FLERR, "Pair gran/restitution requires ghost velocities: comm_modify vel yes");
   if (comm->style == 1 && force->newton_pair)    // CommTiled cannot send the histories of ghosts back
     error->all(FLERR, "Pair gran/restitution with comm_style tiled requires newton off");
+  require_verlet(lmp, "Pair gran/restitution");
+  require_single_balls(lmp, "Pair gran/restitution");
+  require_whole_contacts(lmp, "Pair gran/restitution");
 
   compat::request_history_list(neighbor, this, instance_me);
   dt = update->dt;
@@ -179,8 +183,8 @@ void PairGranRestitution::init_style()
     fix_history->pair = this;
   }
 
-  const auto freezes = compat::fixes_of_style(lmp, "freeze");
-  freeze_group_bit = freezes.empty() ? 0 : freezes[0]->groupbit;
+  freeze_group_bit = 0;
+  for (const Fix *fix : compat::fixes_of_style(lmp, "freeze")) freeze_group_bit |= fix->groupbit;
 
   sizes_vary = !compat::fixes_of_style(lmp, "adapt").empty();
 
