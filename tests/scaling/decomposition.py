@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""What many ranks would have to do with a collapse: for a dump of the moving balls, the load, the ghosts and the bytes of
-each of N parts, as LAMMPS' ways to divide a box make them.
+"""What many ranks would have to do with a collapse: for a dump of the moving balls, the load, the ghosts and the bytes
+of each of N parts, as LAMMPS' ways to divide a box make them.
 
     tests/scaling/decomposition.py DUMP --diameter D [--parts 8,64,512,1024] [--refine F] [-o FILE.csv]
 

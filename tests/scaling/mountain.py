@@ -4,8 +4,8 @@
     tests/scaling/mountain.py FOLDER [--lmp FILE] [--diameters 10,5,2.5] [--steps N] [-o DIR]
 
 FOLDER holds Frankslide_topography.asc and Frankslide_pile.asc (the tilupy project, data/frankslide/rasters): the
-ground without the body, and the body's thickness, m. Prints a line per diameter: balls, and user + system time of create_atoms, of all that
-comes before the first step, and with --steps of these steps.
+ground without the body, and the body's thickness, m. Prints a line per diameter: balls, and user + system time of
+create_atoms, of all that comes before the first step, and with --steps of these steps.
 """
 import argparse
 import re

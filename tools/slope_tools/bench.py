@@ -97,8 +97,8 @@ def add_parser(commands, **kwargs):
                         help="ranks of the parts ranks and weak, besides one (default 2)")
     parser.add_argument("--only", metavar="PART,...", help=f"these parts: {', '.join(PARTS)} (default all)")
     parser.add_argument("--peers", metavar="CODE,...",
-                        help="these codes: " + ", ".join(code.name for code in peers.ALL[1:]) + "
-                        " (default all; build: the one of --lmp build=FILE)")
+                        help="these codes: " + ", ".join(code.name for code in peers.ALL[1:])
+                        + " (default all; build: the one of --lmp build=FILE)")
     parser.add_argument("--lmp", metavar="[CODE=]FILE", action="append",
                         help="the LAMMPS program (default: LMP of the environment, then build/lmp beside tools/); "
                         "with CODE= that of one code: granular, hooke, or build for another build of ours")
