@@ -496,8 +496,8 @@ double PairGranRestitution::single(int i, int j, int itype, int jtype, double rs
   MovingBalls balls = moving_balls();
   balls.v = vectors(atom->v);
   balls.omega = vectors(atom->omega);
-  const Sides moves = {atom->mask[i] & freeze_group_bit ? 0.0 : 1.0,
-                       atom->mask[j] & freeze_group_bit ? 0.0 : 1.0};
+  const Sides moves = {(atom->mask[i] & freeze_group_bit) ? 0.0 : 1.0,
+                       (atom->mask[j] & freeze_group_bit) ? 0.0 : 1.0};
   Contact contact;
   Vector delta;
   const MovingPartners partners = {balls, INT_MAX};

@@ -72,7 +72,7 @@ class PairGranRestitution : public Pair {
  protected:
   ContactTable table;
 
-  double dt;
+  double dt = 0.0;
   bool starting = false;    // at set-up
   int freeze_group_bit;
   class FixContactHistory *fix_history;

@@ -3,9 +3,9 @@
 
     tests/scaling/mountain.py FOLDER [--lmp FILE] [--diameters 10,5,2.5] [--steps N] [-o DIR]
 
-FOLDER holds Frankslide_topography.asc and Frankslide_pile.asc (the tilupy project, data/frankslide/rasters): the ground
-without the body, and the body's thickness, m. Prints a line per diameter: balls, and user + system time of create_atoms, of all that comes
-before the first step, and with --steps of these steps.
+FOLDER holds Frankslide_topography.asc and Frankslide_pile.asc (the tilupy project, data/frankslide/rasters): the
+ground without the body, and the body's thickness, m. Prints a line per diameter: balls, and user + system time of
+create_atoms, of all that comes before the first step, and with --steps of these steps.
 """
 import argparse
 import re
@@ -91,7 +91,8 @@ def main():
     args.output.mkdir(exist_ok=True)
     (args.output / "in.mountain").write_text(DECK)
     write_surfaces(args.source, args.output)
-    print(f"{'d, m':>6} {'soil balls':>12} {'atoms, s':>10} {'set-up, s':>10}" + (f" {args.steps:>8} steps, s" if args.steps else ""))
+    print(f"{'d, m':>6} {'soil balls':>12} {'atoms, s':>10} {'set-up, s':>10}"
+          + (f" {args.steps:>8} steps, s" if args.steps else ""))
     for d in args.diameters.split(","):
         atoms, _ = cpu(lmp, args.output, d=d, stage=0, steps=0)
         setup, log = cpu(lmp, args.output, d=d, stage=1, steps=0)

@@ -10,7 +10,8 @@ LONGEST_FILE, LONGEST_FUNCTION = 600, 80
 
 
 def includes(path):
-    return {name for name in re.findall(r'^#include "([^"]+)"', path.read_text(), re.MULTILINE) if (SRC / name).exists()}
+    return {name for name in re.findall(r'^#include "([^"]+)"', path.read_text(), re.MULTILINE)
+            if (SRC / name).exists()}
 
 
 def circle(of):

@@ -147,6 +147,7 @@ class Build(Slope):
     """The same in another build of ours."""
     name, title = "build", "SLOPE, another build"
 
+
 class Frozen(Code):
     """A pair style of stock LAMMPS in the same program; the fixed balls are frozen atoms."""
 
