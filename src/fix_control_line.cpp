@@ -8,7 +8,7 @@
 
 #include "fix_control_line.h"
 
-#include "deposit_rasters.h"
+#include "file_set.h"
 #include "fix_deposit_grid.h"
 #include "gather_records.h"
 #include "lammps_compat.h"

@@ -283,7 +283,7 @@ TABLE = {
         10 20 cell 0 -> cell must be > 0, got 0
         10 20 cell nan -> cell must be a finite number, got nan
         10 20 cell inf -> cell must be a finite number, got inf
-        10 20 cell 1e-4 terrain ground output out -> cell must give at most 4e+08 cells, got 6400000000 cells, they
+        10 20 cell 1e-4 terrain ground output out -> cell must give at most 2147483647 cells, got 6400000000 cells, they
         10 20 cell 1 terrain nowhere output out -> terrain region nowhere does not exist
         10 20 cell 1 terrain road output out -> terrain region road must have an upper boundary, got INF
         10 20 cell 1 terrain space output out -> terrain region space must have a bounding box, style plane has none

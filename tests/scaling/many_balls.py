@@ -1,12 +1,11 @@
 #!/usr/bin/python3
-"""Millions of balls on one machine: memory and time per ball-step of a sheet of balls that begins to slide down a
-slope.
+"""Millions of balls on one machine: memory and time per ball-step of a sheet of balls that begins to slide.
 
     tests/scaling/many_balls.py [--balls 1e6,1e7] [--np 2] [--steps 200] [--lmp FILE] [-o DIR]
 
-The sheet is 250 m long and 20 m thick, balls of 1 m; its width makes their number. The deposit is sampled and written
-at the last step. Prints for each number: balls, peak memory of all ranks together (GB, ranks times that of the
-largest), seconds of the set-up and of the loop, ns per ball-step, and the time per ball-step over that of the first.
+The sheet is 250 m long and 20 m thick, on a slope of 30 degrees, balls of 1 m; its width makes their number. The
+deposit is sampled and written at the last step. Prints for each number: balls, peak memory of all ranks together (GB,
+ranks times that of the largest), seconds of the set-up and of the loop, ns per ball-step, that over the first one's.
 """
 import argparse
 import re
