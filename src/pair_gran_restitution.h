@@ -63,7 +63,8 @@ class PairGranRestitution : public Pair {
   void announce_wall(class ContactHolder *wall, int wall_type, int groupbit);
   Slope::MovingBalls moving_balls();
   void store_flags() const;
-  bool force_estimated(int i) const;    // of a ball at set-up: contacts that slid alone, see contact_law.h
+  bool force_estimated(
+      int i) const;           // of a ball at set-up: contacts that slid alone, see contact_law.h
   bool sizes_vary = false;    // between two neighbor lists, by fix adapt
 
   void watch_energy();    // every ContactGuards::EVERY steps and at the end of a run
@@ -72,7 +73,7 @@ class PairGranRestitution : public Pair {
  protected:
   ContactTable table;
 
-  double dt;
+  double dt = 0.0;
   bool starting = false;    // at set-up
   int freeze_group_bit;
   class FixContactHistory *fix_history;
