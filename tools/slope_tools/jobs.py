@@ -391,7 +391,16 @@ class Display:
         else:
             at = f" at {one.log.time:.1f} s" if one.log.time is not None else ""
             since = f" since step {one.restart[0]}" if one.restart else ""
-            self.say(f"{self.label(one)}: finished{at}, wall time {duration(wall)}{since}")
+            self.say(f"{self.label(one)}: finished{at}, wall time {duration(wall)}{since}{self._to_go()}")
+
+    def _to_go(self):
+        """How many runs are left and when they will have ended, for those who see no table."""
+        left = self.waiting - self.ended_runs
+        return "" if self.live or left <= 0 else f"; {left} to go, all by {clock(self._ends(left))}"
+
+    def _ends(self, left):
+        """Seconds that so many runs take, as those before did."""
+        return sum(self.walls) / len(self.walls) * left / self.jobs
 
     def update(self, active, waiting):
         if self.live:
@@ -430,7 +439,7 @@ class Display:
                           ProgressBar(100, 100 * (share or 0), width=12), text, end)
         ends = ""
         if self.walls and waiting:
-            ends = clock(sum(self.walls) / len(self.walls) * (waiting + len(active) / 2) / self.jobs)
+            ends = clock(self._ends(waiting + len(active) / 2))
         table.add_row(f"{self.done_before + self.ended_runs - self.failed} of {self.total} finished"
                       + (f", {self.failed} failed" if self.failed else ""), "", f"{waiting} waiting", ends,
                       style="dim")

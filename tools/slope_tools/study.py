@@ -9,10 +9,10 @@ import re
 import shutil
 from pathlib import Path
 
-from . import jobs, rasters, repeats, results, runs
+from . import jobs, rasters, repeats, results, runs, sample
 from .cli import number
 from .errors import SlopeError
-from .settings import check_settings
+from .settings import check_settings, one_value_each
 from .size_error import SizeErrors
 
 TOOLS = Path(__file__).resolve().parents[1]
@@ -31,6 +31,10 @@ example: six runs, as many at a time as there are cores; the same command goes o
 
 with a conservative volume that counts the chance: every combination three times, from other offsets of the lattice:
   tools/slope study in.collapse --set rolling=0,0.1 --repeat xoffset=0.25,0.5 --road road.geojson -o out
+
+an ensemble: 64 runs with values drawn from distributions, how likely a volume is exceeded, which variable matters:
+  tools/slope study in.collapse --sample 64 --vary friction=20:40 --vary rolling=triangular:0:0:0.2 \\
+      --road road.geojson -o out
 
 Every run has a folder of its own in DIR, and is not repeated once it is finished. Over all runs: DIR/study.csv,
 DIR/combinations.csv (mean and scatter), DIR/study.yaml, and the maps envelope_* (largest thickness) and exceedance_*
@@ -51,14 +55,22 @@ def add_parser(commands, **kwargs):
         "study", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
         description="Run one deck over the product of lists of its variables.", **kwargs)
     add_deck(parser)
-    parser.add_argument("--set", metavar="NAME=V1,V2,...", action="append", default=[], required=True,
+    parser.add_argument("--set", metavar="NAME=V1,V2,...", action="append", default=[],
                         help="values of an index variable of the deck; A:B:STEP stands for A, A + STEP, ... up to B")
+    sample.add_arguments(parser)
     repeats.add_arguments(parser)
     parser.add_argument("--size-error", metavar="FILE", type=Path,
                         help="converge.yaml of `slope sensitivity --converge`: its error at the size of these balls "
                              "counts in the conservative volume")
     parser.add_argument("--exceed", default="0.1,0.5,1", metavar="T1,T2,...",
                         help="thicknesses of the maps of exceedance, m (default 0.1,0.5,1)")
+    parser.add_argument("--exceed-speed", default="5", metavar="V1,V2,...",
+                        help="speeds of the maps of exceedance of an ensemble, m/s (default 5)")
+    parser.add_argument("--exceed-energy", default="100000", metavar="E1,E2,...",
+                        help="energies of a ball for the same, J (default 100000)")
+    parser.add_argument("--of", metavar="NAME",
+                        help="quantity of the hazard curve of an ensemble, a column of study.csv (default: "
+                             "remove_on_road_m3; without a road distance_99_m)")
     add_runs(parser)
     return parser
 
@@ -93,6 +105,10 @@ def run(args):
     repeats.check(list(repeated), args.equally_good)
     thresholds = check_thresholds(args.exceed)
     defaults = runs.index_variables(args.deck)
+    if args.sample is not None or args.vary:
+        return run_ensemble(args, settings, repeated, thresholds, defaults)
+    if not settings:
+        raise SlopeError("--set", "must be given, or --sample with --vary")
     todo = repeats.plan(args.output, settings, repeated, defaults)
     check_names(todo)
     errors = None
@@ -101,12 +117,38 @@ def run(args):
             raise SlopeError("--size-error", "needs --road: it is the error of the volume to remove", args.size_error)
         errors = SizeErrors(args.size_error, "remove_m3")
         errors.check(settings, defaults)
-    perform(args, {**settings, **repeated}, todo,
-            lambda todo, work: results.collect(args, settings, repeated, errors, todo, work, thresholds))
+    return perform(args, {**settings, **repeated}, todo,
+                   lambda todo, work: results.collect(args, settings, repeated, errors, todo, work, thresholds))
 
 
-def perform(args, settings, todo, collect):
-    """Run what is not finished of todo, then collect(todo, work); SlopeError after that if a run failed."""
+def run_ensemble(args, settings, repeated, thresholds, defaults):
+    """The runs of --sample, and what they say together."""
+    from . import ensemble, ensemble_maps
+    if args.sample is None:
+        raise SlopeError("--sample", "must be given with --vary: how many runs")
+    if args.size_error:
+        raise SlopeError("--size-error", "must not be given with --sample: an ensemble has no conservative volume",
+                         args.size_error)
+    fixed = one_value_each(settings, "--set", "--vary")
+    plan = sample.check(args.sample, args.design, args.seed, args.vary, args.deck, fixed, repeated)
+    levels = ensemble_maps.Thresholds(thresholds, check_thresholds(args.exceed_speed, "--exceed-speed", "speeds"),
+                                      check_thresholds(args.exceed_energy, "--exceed-energy", "energies"))
+    of = ensemble.check_quantity(args.of, args.road is not None)
+    todo = sample.plan(args.output, plan, fixed, repeated, defaults)
+    check_names(todo)
+    sample.check_growth(args.output, plan)
+    several = sample.settings_of(todo)
+    perform(args, {**several, **repeated}, todo,
+            lambda todo, work: results.collect(args, several, repeated, None, todo, work, thresholds,
+                                               ensemble.Order(plan, of, levels)),
+            begin=lambda: sample.keep(args.output, plan))
+
+
+def perform(args, settings, todo, collect, begin=None):
+    """Run what is not finished of todo, then collect(todo, work); SlopeError after that if a run failed.
+
+    begin: called once the folder is there, before the first run.
+    """
     files = data_files(args.deck, settings)
     if args.road:
         check_road(args, settings)
@@ -127,6 +169,8 @@ def perform(args, settings, todo, collect):
         with jobs.alone_in(args.output), jobs.signals_interrupt(), jobs.copied(files, inputs) as digests:
             for one in todo:
                 jobs.check_finished(one, args.deck, digests)
+            if begin:
+                begin()
             work = jobs.Work(args.deck, digests, inputs, lmp, args.np, most)
             work.do(todo)
             collect(todo, work)
@@ -142,8 +186,8 @@ def perform(args, settings, todo, collect):
 
 # --- what is to be run ---
 
-def check_thresholds(text):
-    """The thicknesses of --exceed, m."""
+def check_thresholds(text, option="--exceed", what="thicknesses"):
+    """The thicknesses of --exceed, m, or what an option like it holds."""
     found = []
     for part in text.split(","):
         try:
@@ -151,7 +195,7 @@ def check_thresholds(text):
         except argparse.ArgumentTypeError:
             value = -1.0
         if value < 0 or value in found:
-            raise SlopeError("--exceed", "must be different thicknesses >= 0, with commas between", text)
+            raise SlopeError(option, f"must be different {what} >= 0, with commas between", text)
         found.append(value)
     return found
 
