@@ -4,6 +4,7 @@ Order of the work: check the deck and the settings, plan the runs (repeats.py), 
 finished (jobs.py), collect (results.py), combine (combinations.py, headline.py).
 """
 import argparse
+import contextlib
 import os
 import re
 import shutil
@@ -155,32 +156,43 @@ def perform(args, settings, todo, collect, begin=None):
     check_folder(args, todo)
     if args.dry_run:
         return list_runs(todo)
+    with prepared(args, files, len(todo)) as work:
+        for one in todo:
+            jobs.check_finished(one, args.deck, work.digests)
+        if begin:
+            begin()
+        work.do(todo)
+        collect(todo, work)
+    raise_failed(args.output, todo)
+
+
+@contextlib.contextmanager
+def prepared(args, files, number):
+    """The jobs.Work of so many runs, while the output folder is ours; files: of data_files()."""
     lmp = find_lmp(args.lmp)
     cores = jobs.cores()
     most = args.jobs or max(1, cores // args.np)
     if args.np > 1 and not shutil.which("mpirun"):
         raise SlopeError("--np", "needs mpirun, which is not on the PATH, unless it is 1", args.np)
-    if min(most, len(todo)) * args.np > cores:
-        results.warn(f"{min(most, len(todo))} runs of {args.np} ranks at a time on {cores} cores: they slow each other "
+    if min(most, number) * args.np > cores:
+        results.warn(f"{min(most, number)} runs of {args.np} ranks at a time on {cores} cores: they slow each other "
                      "down")
     try:
         args.output.mkdir(parents=True, exist_ok=True)
         inputs = args.output / ".inputs"
         with jobs.alone_in(args.output), jobs.signals_interrupt(), jobs.copied(files, inputs) as digests:
-            for one in todo:
-                jobs.check_finished(one, args.deck, digests)
-            if begin:
-                begin()
-            work = jobs.Work(args.deck, digests, inputs, lmp, args.np, most)
-            work.do(todo)
-            collect(todo, work)
+            yield jobs.Work(args.deck, digests, inputs, lmp, args.np, most)
     except OSError as error:
         place = error.filename2 or error.filename or args.output        # of a copy, the second is where it goes
         raise SlopeError(place, f"cannot be used: {error.strerror}") from error
+
+
+def raise_failed(output, todo):
+    """SlopeError if runs failed, with the first of them."""
     failed = [one for one in todo if one.error]
     if failed:
         more = f" and {len(failed) - 1} more" if len(failed) > 1 else ""
-        raise SlopeError(args.output, f"{len(failed)} of {len(todo)} runs failed: {failed[0].name}{more}: "
+        raise SlopeError(output, f"{len(failed)} of {len(todo)} runs failed: {failed[0].name}{more}: "
                          f"{failed[0].error}")
 
 
@@ -209,13 +221,19 @@ def check_road(args, settings):
         raise SlopeError("--cut-angle", "must be > 0 and < 90 degrees", f"{args.cut_angle:g}")
     if args.mesh <= 0:
         raise SlopeError("--mesh", "must be > 0", f"{args.mesh:g}")
-    known = {**runs.index_variables(args.deck), **{name: several[0] for name, several in settings.items()}}
-    for words in runs.commands(args.deck):
+    path = terrain_of(args.deck, {name: several[0] for name, several in settings.items()})
+    if path:
+        polygons.read_local(args.road, rasters.read_place(path), args.local)
+
+
+def terrain_of(deck, chosen):
+    """The terrain file that a deck names, with the values chosen of its variables; None if it is not in reach."""
+    known = {**runs.index_variables(deck), **chosen}
+    for words in runs.commands(deck):
         if words[0] == "region" and words[2:3] == ["terrain"] and len(words) > 3:
-            path = args.deck.parent / re.sub(r"\$\{(\w+)\}", lambda match: known.get(match[1], match[0]), words[3])
-            if path.is_file():
-                polygons.read_local(args.road, rasters.read_place(path), args.local)
-            return
+            path = deck.parent / re.sub(r"\$\{(\w+)\}", lambda match: known.get(match[1], match[0]), words[3])
+            return path if path.is_file() else None
+    return None
 
 
 def check_names(todo):
