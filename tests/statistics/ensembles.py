@@ -27,8 +27,8 @@ def indices(seeds=5):
         print(f"indices, seed {seed}: largest error {np.abs(mine - exact).max():.4f}; {found.told}", flush=True)
 
 
-def bands(repetitions=40, rounds=25):
-    """How many of 40 ensembles cover a reference of 400 runs at its 50, 75 and 90 %, in 25 rounds."""
+def bands(repetitions=40, rounds=10):
+    """How many of 40 ensembles cover a reference of 400 runs at its 50, 75 and 90 %, in 10 rounds."""
     for points, several in ((32, 1), (64, 1), (128, 1), (32, 3)):
         covered = np.zeros((rounds, 3), int)
         for turn in range(rounds):

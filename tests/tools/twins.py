@@ -40,14 +40,13 @@ class Twin:
         targets = [backanalysis.Target(NAMES[k], "", float(value), 0.0) for k, value in zip(outputs, observed)]
         points = backanalysis.first(3, seed)
         found = np.array([collapse(LOW + WIDTH * point, rng, outputs) for point in points])
-        while True:
-            self.found = backanalysis.posterior(points, found, targets)
-            if len(points) >= runs:
-                break
-            more = backanalysis.propose(self.found, points, min(batch, runs - len(points)))
+        guess = None
+        while len(points) < runs:
+            guess = backanalysis.posterior(points, found, targets, guess)
+            more = backanalysis.propose(guess, points, min(batch, runs - len(points)))
             points = np.vstack([points, more])
             found = np.vstack([found, [collapse(LOW + WIDTH * point, rng, outputs) for point in more]])
-        self.points = points
+        self.points, self.found = points, backanalysis.posterior(points, found, targets)
 
     @property
     def error(self):

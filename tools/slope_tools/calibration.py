@@ -1,6 +1,6 @@
 """The runs of a calibration, one batch after the other: what was proposed is kept in a ledger, so that it can go on."""
 from pathlib import Path
-from typing import Any, Callable, Dict, List, Mapping, Sequence
+from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence
 
 import numpy as np
 import yaml
@@ -76,14 +76,15 @@ class Calibration:
     def do(self, evaluate: Callable, targets: Callable, say: Callable[[str], None]) -> backanalysis.Posterior:
         """All runs; what they say of the variables but for the last one, which only shows what the best values give."""
         self.begin()
+        found = None
         while True:
             todo = [i for i in range(len(self._known())) if i not in self.outputs]
             for i, outputs in zip(todo, evaluate([self.runs[i] for i in todo])):
                 self.outputs[i] = outputs
             decided = len(self.ledger.points)
-            found = self.posterior(targets())
             if decided == self.number:
-                return found
+                return self.posterior(targets())
+            found = self.posterior(targets(), found)
             say(f"{decided} of {self.number} runs: " + "; ".join(
                 f"{one.name} {backanalysis.shown(one, low)} to {backanalysis.shown(one, high)}"
                 for one, (low, high) in zip(self.ledger.variables, map(found.interval,
@@ -97,11 +98,13 @@ class Calibration:
         """Numbers of the runs that count: not those that failed, and not the one at the best values."""
         return [i for i in range(min(len(self.ledger.points), self.number - 1)) if self.outputs.get(i) is not None]
 
-    def posterior(self, targets: Sequence[backanalysis.Target]) -> backanalysis.Posterior:
-        """What the runs so far say."""
+    def posterior(self, targets: Sequence[backanalysis.Target],
+                  before: Optional[backanalysis.Posterior] = None) -> backanalysis.Posterior:
+        """What the runs so far say; before: what they said a batch ago."""
         of = self.finished()
         if len(of) <= len(self.ledger.variables) + 1:
             failed = [one for one in self.runs if one.error]
             raise SlopeError(self.output, f"{len(failed)} of {len(self.runs)} runs failed, too many to go on: "
                              f"{failed[0].name}: {failed[0].error}" if failed else "too few runs to go on")
-        return backanalysis.posterior(self.ledger.places(of), np.array([self.outputs[i] for i in of]), targets)
+        return backanalysis.posterior(self.ledger.places(of), np.array([self.outputs[i] for i in of]), targets,
+                                      before)
