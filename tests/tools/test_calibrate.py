@@ -249,3 +249,34 @@ def test_wrong_calibrations_are_one_line(slope, here, arguments, message):
     status, out, err = slope(f"calibrate case/in.tiny {arguments} -o out")
     assert (status, out) == (2, "") and err.count("\n") == 1 and err.startswith(f"slope calibrate: {message}"), err
     assert not Path("out").exists()
+
+
+# --- the pages ---
+
+def examples(page, command):
+    """Command lines of a page's examples, without the program; continued lines are joined."""
+    text = (TOP / "doc" / "src" / page).read_text(encoding="ascii").replace("\\\n", " ")
+    return [line.split("tools/slope ")[1] for line in text.splitlines()
+            if line.startswith(f"   tools/slope {command} ") and "DECK" not in line]
+
+
+@pytest.mark.parametrize("line", [
+    *examples("tool_calibrate.rst", "calibrate"), *examples("choosing_parameters.rst", "calibrate"),
+    *(line for line in examples("tool_study.rst", "study") if "--sample" in line)])
+def test_every_example_of_the_pages_is_understood(line, here, capsys):
+    """Up to what it would run; decks and data of the examples that are no case of the repository are made up."""
+    deck = Path("case/in.tiny").read_text().replace("variable  rolling", "variable  spacing index 1\nvariable  field_e "
+                                                    "index 0.1\nvariable  rolling")
+    Path("case/in.collapse").write_text(deck)
+    os.symlink(TOP / "inputs", "inputs")
+    for name in ("deposit.geojson", "outline.geojson"):
+        Path(name).write_text('{"type": "Polygon", "coordinates": [[[14, 6], [26, 6], [26, 18], [14, 6]]]}')
+    Path("road.csv").write_text((TOP / "inputs" / "20_embankment" / "road.csv").read_text())
+    words = shlex.split(line.replace("in.collapse", "case/in.collapse"))
+    if "--help" not in words:
+        words += ["--dry-run", *(["--local"] if "--local" not in words else [])]
+    try:
+        status = cli.main(words)
+    except SystemExit as error:
+        status = error.code
+    assert status == 0, capsys.readouterr().err
