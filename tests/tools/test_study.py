@@ -23,7 +23,7 @@ TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
 from slope_tools import (  # noqa: E402  (after the path is set)
-    cli, convergence, headline, jobs, rasters, results, runs, settings, size_study, study)
+    cli, convergence, headline, job_display, rasters, results, runs, settings, size_study, study)
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 MM = 0.0005 + 1e-9          # .asc maps are in whole mm
@@ -554,7 +554,7 @@ def test_a_terminal_gets_a_live_display(here):
 
 
 def test_lines_now_and_then_without_a_terminal(slope, here, monkeypatch):
-    monkeypatch.setattr(jobs, "TELL", 0.05)
+    monkeypatch.setattr(job_display, "TELL", 0.05)
     status, out, _ = slope("case/in.tiny --set steps=700 -o out")
     assert status == 0
     assert re.search(r"^\[1/1\] steps_700: step \d+ of 700, \d\.\d\d s, ends by \d\d:\d\d:\d\d$", out, re.MULTILINE)

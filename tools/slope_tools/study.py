@@ -5,12 +5,13 @@ finished (jobs.py), collect (results.py), combine (combinations.py, headline.py)
 """
 import argparse
 import contextlib
+import functools
 import os
 import re
 import shutil
 from pathlib import Path
 
-from . import jobs, rasters, repeats, results, runs, sample
+from . import jobs, launcher, rasters, repeats, results, runs, sample, slurm
 from .cli import number
 from .errors import SlopeError
 from .settings import check_settings, one_value_each
@@ -97,6 +98,14 @@ def add_runs(parser, road=False):
     parser.add_argument("--lmp", metavar="FILE", help="the LAMMPS program (default: LMP of the environment, then "
                         "build/lmp beside tools/)")
     parser.add_argument("--dry-run", action="store_true", help="only list the runs")
+    parser.add_argument("--launcher", metavar="COMMAND",
+                        help="what starts the ranks of a run instead of mpirun, such as 'srun --mpi=pmix' or 'mpiexec "
+                             "-n {np}'; without {np}, -n N is added")
+    parser.add_argument("--engine", choices=("local", "slurm"), default="local",
+                        help="local (default): runs on this machine; slurm: job arrays of a Slurm cluster, whose nodes "
+                             "see DIR")
+    parser.add_argument("--slurm", metavar="OPTIONS", default="",
+                        help="options of sbatch for --engine slurm, such as '--partition=long --time=2:00:00'")
 
 
 def run(args):
@@ -172,16 +181,21 @@ def prepared(args, files, number):
     lmp = find_lmp(args.lmp)
     cores = jobs.cores()
     most = args.jobs or max(1, cores // args.np)
-    if args.np > 1 and not shutil.which("mpirun"):
-        raise SlopeError("--np", "needs mpirun, which is not on the PATH, unless it is 1", args.np)
-    if min(most, number) * args.np > cores:
+    make = jobs.Work
+    launcher.check(args.launcher, args.np)
+    if args.engine == "slurm":
+        slurm.check(args.slurm)
+        make = functools.partial(slurm.Work, options=args.slurm, throttle=args.jobs)
+    elif args.slurm:
+        raise SlopeError("--slurm", "must be given with --engine slurm", args.slurm)
+    elif min(most, number) * args.np > cores:
         results.warn(f"{min(most, number)} runs of {args.np} ranks at a time on {cores} cores: they slow each other "
                      "down")
     try:
         args.output.mkdir(parents=True, exist_ok=True)
         inputs = args.output / ".inputs"
         with jobs.alone_in(args.output), jobs.signals_interrupt(), jobs.copied(files, inputs) as digests:
-            yield jobs.Work(args.deck, digests, inputs, lmp, args.np, most)
+            yield make(args.deck, digests, inputs, lmp, args.np, most, args.launcher)
     except OSError as error:
         place = error.filename2 or error.filename or args.output        # of a copy, the second is where it goes
         raise SlopeError(place, f"cannot be used: {error.strerror}") from error
