@@ -261,8 +261,7 @@ def examples(page, command):
 
 
 @pytest.mark.parametrize("line", [
-    *examples("tool_calibrate.rst", "calibrate"), *examples("choosing_parameters.rst", "calibrate"),
-    *(line for line in examples("tool_study.rst", "study") if "--sample" in line)])
+    *examples("tool_calibrate.rst", "calibrate"), *examples("choosing_parameters.rst", "calibrate")])
 def test_every_example_of_the_pages_is_understood(line, here, capsys):
     """Up to what it would run; decks and data of the examples that are no case of the repository are made up."""
     deck = Path("case/in.tiny").read_text().replace("variable  rolling", "variable  spacing index 1\nvariable  field_e "

@@ -174,7 +174,7 @@ def test_words_of_a_launcher(start, ranks, expected):
 
 
 def test_a_run_is_started_by_the_launcher(here):
-    Path("mine").write_text('#!/bin/sh\nprintf '%s ' "$@" > started\nshift 2\nexec "$@"\n')
+    Path("mine").write_text("#!/bin/sh\nprintf '%s ' \"$@\" > started\nshift 2\nexec \"$@\"\n")
     Path("mine").chmod(0o755)
     assert cli.main(shlex.split(f"study case/in.tiny --set steps=20 --launcher {here}/mine -o out")) == 0
     assert (here / "out" / "steps_20" / "started").read_text().startswith(f"-n 1 {LMP} -in in.tiny")

@@ -132,7 +132,7 @@ class Fit:
         for one in todo:
             jobs.check_finished(one, self.args.deck, self.work.digests)
         self.work.do(todo)
-        rows, _ = results.rows_of(self.args, todo, results.Maps(()))
+        rows, _ = results.rows_of(self.args, todo, results.Maps(()), pictures=False)
         found: List[Optional[np.ndarray]] = []
         for one, row in zip(todo, rows):
             self.rows[one.name] = row

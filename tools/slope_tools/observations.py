@@ -94,7 +94,8 @@ class Observations:
         self.grid, self.transform = run_.raster.z, run_.raster.transform
 
         def relative(name, unit, value, whole=None):
-            found.append(Target(name, unit, value, wanted.tolerance * (value if whole is None else whole)))
+            scale = value if whole is None else whole
+            found.append(Target(name, unit, float(value), float(wanted.tolerance * scale)))
 
         if wanted.observed is not None:
             self.mapped = score.read_observed(wanted.observed, run_.raster, wanted.threshold, wanted.local)

@@ -29,7 +29,7 @@ def collect(args, settings, repeated, errors, todo, work, thresholds, order=None
     if order and all(one.error for one in todo):
         return      # study.perform says so
     maps = Maps(thresholds)
-    rows, thickness = rows_of(args, todo, maps)
+    rows, thickness = rows_of(args, todo, maps, pictures=order is None)
     warnings = doubts(rows)
     if maps.problem:
         warnings.append(maps.problem)
@@ -89,8 +89,11 @@ def unseen(repeated, defaults):
             f"{'was' if len(offsets) == 1 else 'were'} not repeated"] if offsets else []
 
 
-def rows_of(args, todo, maps):
-    """A row for each run, finished or failed, and the final thickness of the last one that finished."""
+def rows_of(args, todo, maps, pictures=True):
+    """A row for each run, finished or failed, and the final thickness of the last one that finished.
+
+    pictures: whether `slope volume` draws its map of each, which takes longest.
+    """
     rows, thickness = [], None
     for one in rasters.progress(todo, "collecting the runs"):
         row = {"run": one.name, "status": "failed" if one.error else "finished", "set": one.combination,
@@ -100,7 +103,7 @@ def rows_of(args, todo, maps):
             continue
         row, thickness = result(one, row, maps)
         if args.road:
-            row.update(on_road(one, args, args.output / row["summary"], thickness))
+            row.update(on_road(one, args, args.output / row["summary"], thickness, pictures))
         rows.append(row)
     return rows, thickness
 
@@ -182,7 +185,7 @@ def whole_deposit(prefix, thickness, summary):
     return {"connected_m": found and found.distance, "connected_deg": found and found.reach_angle}
 
 
-def on_road(one, args, summary, thickness):
+def on_road(one, args, summary, thickness, picture=True):
     """What `slope volume` says of a run, all of which goes to the folder volume of the run; and what lies beyond."""
     from . import polygons, volume
     parser = argparse.ArgumentParser()
@@ -192,7 +195,7 @@ def on_road(one, args, summary, thickness):
     if one.log.terrain:
         words += ["--terrain", str(one.folder / one.log.terrain)]
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
-        volume.run(parser.parse_args(words + ["--local"] * args.local))
+        volume.run(parser.parse_args(words + ["--local"] * args.local + ["--no-picture"] * (not picture)))
     about = runs.load_yaml(one.folder / "volume" / "volume.yaml", "what `slope volume` wrote")
     return {"remove_m3": about["volume"]["remove"], "remove_on_road_m3": about["volume"]["remove_on_road"],
             "remove_beside_road_m3": about["volume"]["remove_beside_road"],
