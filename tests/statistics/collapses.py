@@ -1,4 +1,4 @@
-"""Twin experiments with small collapses of balls: hidden friction, rolling and spacing, found from the mapped thickness.
+"""Twin experiments with small collapses of balls: hidden friction, rolling, spacing, found from the mapped thickness.
 
     LMP=build/lmp /usr/bin/python3 tests/statistics/collapses.py FOLDER [--seeds 10] [--runs 60] [--direct 400]
 
@@ -28,7 +28,7 @@ LOW = np.array([one.low for one in VARIABLES])
 WIDTH = np.array([one.high - one.low for one in VARIABLES])
 VARY = " ".join(f"--vary {name}={text}" for name, text in RANGES.items())
 DECK = "case/in.tiny"
-END = "--set steps=1200"
+END = "--set steps=3000"
 
 
 def slope(words):
