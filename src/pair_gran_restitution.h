@@ -27,7 +27,7 @@ namespace LAMMPS_NS {
 
 class PairGranRestitution : public Pair {
  public:
-  PairGranRestitution(class LAMMPS *);
+  explicit PairGranRestitution(class LAMMPS *);
   ~PairGranRestitution() override;
   void compute(int, int) override;
   void settings(int, char **) override;
@@ -64,7 +64,7 @@ class PairGranRestitution : public Pair {
   Slope::MovingBalls moving_balls();
   void store_flags() const;
   bool force_estimated(int i) const;    // of a ball at set-up: contacts that slid alone, see contact_law.h
-  bool sizes_vary;    // between two neighbor lists, by fix adapt
+  bool sizes_vary = false;    // between two neighbor lists, by fix adapt
 
   void watch_energy();    // every ContactGuards::EVERY steps and at the end of a run
   ContactGuards guards;
@@ -73,7 +73,7 @@ class PairGranRestitution : public Pair {
   ContactTable table;
 
   double dt;
-  bool starting;    // at set-up
+  bool starting = false;    // at set-up
   int freeze_group_bit;
   class FixContactHistory *fix_history;
   std::vector<Slope::ContactList> lists;    // by type pair and by which side is frozen

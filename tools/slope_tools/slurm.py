@@ -121,7 +121,9 @@ class Work(jobs.Work):
         for one in todo:
             said.append((one, self._prepare(one)))
             (one.folder / STATUS).unlink(missing_ok=True)
-            (one.folder / jobs.SCREEN).touch()
+            screen = one.folder / jobs.SCREEN
+            screen.touch()
+            one.heard = screen.stat().st_size
             lines.append(f"{one.folder.absolute()}\t{shlex.join(self._line(one))}\n")
             self.tries[one.name] = self.tries.get(one.name, 0) + 1
         array = self._submit(lines)
