@@ -26,7 +26,7 @@ units: metres, m2, m3 of ground (bulk).
 
 example: friction, rolling resistance and roughness from a mapped deposit, by 60 runs:
   tools/slope calibrate in.collapse --observed deposit.geojson --vary friction=15:40 --vary rolling=0:0.2 \\
-      --vary spacing=0.5:1.5 --repeat xoffset=0.25,0.5,0.75 --runs 60 -o fit
+      --vary spacing=0.5:1.3 --repeat xoffset=0.25,0.5,0.75 --runs 60 -o fit
 
 from numbers alone, such as those of a report:
   tools/slope calibrate in.collapse --front 2000 --area 850000 --vary friction=10:35 --vary rolling=0:0.2 \\
