@@ -50,7 +50,7 @@ class Charts:
     def all(self):
         """Pictures; the first one is that of the volume to remove, if there is a road."""
         data = self.data
-        if not data.study or len(data.finished) < 2:
+        if not data.study or len(data.finished) < 2 or data.study.get("ensemble"):
             return []
         far = travel_shares.DISTANCE if all(row.get(travel_shares.DISTANCE) is not None for row in data.finished) \
             else "front_m"

@@ -62,7 +62,11 @@ class Page:
                                      "variable": self.sizes.variable, "deck": self.sizes.deck},
             "mass_error": (one.deposit.volume - one.summary["volume"]["released"] + one.summary["volume"]["off_grid"]
                            + one.summary["volume"]["lost"]) / one.summary["volume"]["released"],
-            "place": self.place()}
+            "place": self.place(), "ensemble": None}
+        if study and study.get("ensemble"):
+            from . import report_ensemble
+            mine = found["ensemble"] = report_ensemble.Ensemble(data, numbers, self.picture).content()
+            mine["maps"] = report_ensemble.draw(mine["maps"], maps)
         return {**found, **self.what_was_run(), **self.provenance()}
 
     # --- tables ---
@@ -70,7 +74,7 @@ class Page:
     def columns(self):
         """Heads of the study's table: those of which anything is known."""
         data = self.data
-        wanted = COLUMNS + (ROAD_COLUMNS if data.study and data.study["conservative"] else ())
+        wanted = COLUMNS + (ROAD_COLUMNS if data.road is not None else ())
         same = len({round(row["released_m3"], 3) for row in data.finished}) == 1
         return [(head, unit, key) for head, unit, key in wanted
                 if any(row.get(key) is not None for row in data.finished) and not (same and key == "released_m3")]
