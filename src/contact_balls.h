@@ -9,6 +9,8 @@
 #ifndef SLOPE_CONTACT_BALLS_H
 #define SLOPE_CONTACT_BALLS_H
 
+#include "instruction_set.h"
+
 namespace Slope {
 
 struct Vector {
@@ -30,23 +32,23 @@ struct MovingPartners {
   const MovingBalls &balls;
   int nforce;    // partners below this number get their force, and count their contacts
 
-  const Vector &x(int j) const { return balls.x[j]; }
-  double share(int j) const
+  SLOPE_INLINE const Vector &x(int j) const { return balls.x[j]; }
+  SLOPE_INLINE double share(int j) const
   {
     return j < nforce ? 1.0 : 0.5;
   }    // of the contact that is this rank's
-  bool gets_force(int j) const { return j < nforce; }
-  void prefetch(int j) const
+  SLOPE_INLINE bool gets_force(int j) const { return j < nforce; }
+  SLOPE_INLINE void prefetch(int j) const
   {
     __builtin_prefetch(&balls.v[j]);
     __builtin_prefetch(&balls.omega[j]);
     __builtin_prefetch(&balls.f[j], 1);
     __builtin_prefetch(&balls.torque[j], 1);
   }
-  const Vector &v(int j) const { return balls.v[j]; }
-  const Vector &omega(int j) const { return balls.omega[j]; }
-  double radius(int j) const { return balls.radius[j]; }
-  double mass(int j) const { return balls.mass[j]; }
+  SLOPE_INLINE const Vector &v(int j) const { return balls.v[j]; }
+  SLOPE_INLINE const Vector &omega(int j) const { return balls.omega[j]; }
+  SLOPE_INLINE double radius(int j) const { return balls.radius[j]; }
+  SLOPE_INLINE double mass(int j) const { return balls.mass[j]; }
 };
 
 // ... or fixed ones of one radius (m)
@@ -56,38 +58,16 @@ struct FixedPartners {
   double radius_all;
   Vector still = {0.0, 0.0, 0.0};
 
-  FixedPartners(const Vector *positions, double radius) : position(positions), radius_all(radius) {}
+  SLOPE_INLINE FixedPartners(const Vector *positions, double radius) : position(positions), radius_all(radius) {}
 
-  const Vector &x(int j) const { return position[j]; }
-  double share(int) const { return 1.0; }
-  bool gets_force(int) const { return false; }
-  void prefetch(int) const {}
-  const Vector &v(int) const { return still; }
-  const Vector &omega(int) const { return still; }
-  double radius(int) const { return radius_all; }
-  double mass(int) const { return 1.0; }
-};
-
-// ... or fixed ones of their own radii (m), which stand for a smooth surface: see fix wall/gran/mesh
-struct PhantomPartners {
-  static constexpr bool MOVE = false;
-  const Vector *position;
-  const double *radii;
-  Vector still = {0.0, 0.0, 0.0};
-
-  PhantomPartners(const Vector *positions, const double *radii_in) :
-      position(positions), radii(radii_in)
-  {
-  }
-
-  const Vector &x(int j) const { return position[j]; }
-  double share(int) const { return 1.0; }
-  bool gets_force(int) const { return false; }
-  void prefetch(int) const {}
-  const Vector &v(int) const { return still; }
-  const Vector &omega(int) const { return still; }
-  double radius(int j) const { return radii[j]; }
-  double mass(int) const { return 1.0; }
+  SLOPE_INLINE const Vector &x(int j) const { return position[j]; }
+  SLOPE_INLINE double share(int) const { return 1.0; }
+  SLOPE_INLINE bool gets_force(int) const { return false; }
+  SLOPE_INLINE void prefetch(int) const {}
+  SLOPE_INLINE const Vector &v(int) const { return still; }
+  SLOPE_INLINE const Vector &omega(int) const { return still; }
+  SLOPE_INLINE double radius(int) const { return radius_all; }
+  SLOPE_INLINE double mass(int) const { return 1.0; }
 };
 
 }    // namespace Slope

@@ -65,14 +65,14 @@ double elastic_energy(const ContactList &list, const ContactLaw &law, const Movi
   double energy = 0.0;
   for (size_t k = 0; k < list.entries.size(); k++) {
     const ContactList::Entry &e = list.entries[k];
-    if (!(ContactList::distance(balls, partners, e) < balls.radius[e.i] + partners.radius(e.j)))
+    if (!(distance(balls, partners, e.i, e.j) < balls.radius[e.i] + partners.radius(e.j)))
       continue;
     Contact c;
     Vector delta;
-    ContactList::set_contact(law, balls, partners, e, c, delta);
+    set_contact(law, balls, partners, e.i, e.j, c, delta);
     see(e, c.overlap);
     const double mass =
-        list.mass_factor(law) / (list.move_i / balls.mass[e.i] + list.move_j / partners.mass(e.j));
+        list.moves.mass_factor(law) / list.moves.inverse_mass(balls.mass[e.i], partners.mass(e.j));
     energy += partners.share(e.j) * elastic_energy(law, c, mass, list.histories[k]);
   }
   return energy;

@@ -7,6 +7,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "contact_kernel.h"
 #include "contact_table.h"
 #include "error.h"
 #include "fix.h"
@@ -61,7 +62,8 @@ void ContactGuards::start(int freeze_group_bit)
 
 void ContactGuards::print_table()
 {
-  const std::string text = table.text(update->dt);
+  const std::string text =
+      table.text(update->dt) + fmt::format("  contact kernel {}\n", Slope::ContactKernels::current_name());
   if (text != printed && comm->me == 0) utils::logmesg(lmp, text);
   printed = text;
 }

@@ -361,24 +361,36 @@ void ElevationGrid::write(const std::string &path, int digits) const
 
 void ElevationGrid::write(AtomicFile &file, int digits) const
 {
-  file.write("ncols " + std::to_string(nx) + "\nnrows " + std::to_string(ny) + "\nxllcorner " +
-             exact(xlo) + "\nyllcorner " + exact(ylo) + "\ncellsize " + exact(cell) +
-             "\nNODATA_value -9999\n");
-
-  std::string row;
+  file.write(header(nx, ny, xlo, ylo, cell));
+  std::string text;
   for (int j = ny - 1; j >= 0; j--) {
-    row.clear();
-    for (int i = 0; i < nx; i++) {
-      const double value = at(i, j);
-      if (value == 0.0)
-        row += '0';    // most cells of a deposit
-      else if (std::isnan(value))
-        row += "-9999";
-      else
-        append(row, value, digits);
-      row += i + 1 < nx ? ' ' : '\n';
-    }
-    file.write(row);
+    text.clear();
+    append_row(text, &z[(size_t) j * nx], nx, digits);
+    file.write(text);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::string ElevationGrid::header(int nx, int ny, double xlo, double ylo, double cell)
+{
+  return "ncols " + std::to_string(nx) + "\nnrows " + std::to_string(ny) + "\nxllcorner " +
+      exact(xlo) + "\nyllcorner " + exact(ylo) + "\ncellsize " + exact(cell) +
+      "\nNODATA_value -9999\n";
+}
+
+/* ---------------------------------------------------------------------- */
+
+void ElevationGrid::append_row(std::string &text, const double *row, int nx, int digits)
+{
+  for (int i = 0; i < nx; i++) {
+    if (row[i] == 0.0)
+      text += '0';    // most cells of a deposit
+    else if (std::isnan(row[i]))
+      text += "-9999";
+    else
+      append(text, row[i], digits);
+    text += i + 1 < nx ? ' ' : '\n';
   }
 }
 

@@ -39,6 +39,11 @@ class ElevationGrid {
   void write(const std::string &path, int digits = 9) const;
   void write(AtomicFile &, int digits = 9) const;    // which the caller commits
 
+  // the text of such a file in parts, for those who have the rows elsewhere: header, then the rows
+  // from north to south, each appended to what is there
+  static std::string header(int nx, int ny, double xlo, double ylo, double cell);
+  static void append_row(std::string &text, const double *row, int nx, int digits);
+
   // Height at a point, bilinear between the four cell centres around it; in the half cell along
   // the raster's edge the same plane goes on, so that a plane is exact up to the edge. NaN outside
   // of the raster, and where a centre that has a weight is NODATA.

@@ -42,13 +42,12 @@ void EnergyGuard::start()
   known = true;
   for (int k = 0; k < modify->nfix; k++) {
     const Fix *fix = modify->fix[k];
-    const std::string style = fix->style;
-    if (fix->time_integrate && !utils::strmatch(style, "^nve/sphere")) known = false;
+    const std::string style = Slope::plain_style(fix->style);
+    if (fix->time_integrate && style != "nve/sphere") known = false;
+    if (style == "adapt") known = false;    // sizes, masses
     if (!(modify->fmask[k] & POST_FORCE)) continue;
-    if (!utils::strmatch(style, "^gravity") && style != "wall/gran/balls" &&
-        style != "wall/gran/mesh" && !utils::strmatch(style, "^freeze"))
+    if (style != "gravity" && style != "wall/gran/balls" && style != "wall/gran/mesh" && style != "freeze")
       known = false;
-    if (style == "adapt") known = false;
   }
 }
 

@@ -390,7 +390,7 @@ void FixWallGranBalls::apply(bool starting)
 {
   const MovingBalls moving = pair->moving_balls();
   const FixedPartners fixed(balls.data(), radius);
-  Vector force = {0.0, 0.0, 0.0};
+  ContactTally tally = ContactTally();
 
   for (int type = 1; type <= atom->ntypes; type++) {
     ContactList &l = lists[type];
@@ -399,17 +399,12 @@ void FixWallGranBalls::apply(bool starting)
     if (!law)    // a type that came after init(), by fix pour or fix deposit
       error->one(FLERR, "{}: pair_coeff {} {} is not set (moving type {}, wall type {})", caller,
                  std::min(type, wall_type), std::max(type, wall_type), type, wall_type);
-    l.apply<true>(*law, update->dt, starting, moving, fixed,
-                  [&](int, int, const Vector &f, const Vector &) {
-                    force.x -= f.x;
-                    force.y -= f.y;
-                    force.z -= f.z;
-                  });
+    l.apply(*law, update->dt, starting, moving, fixed, &tally);
   }
 
-  force_mine[0] = force.x;
-  force_mine[1] = force.y;
-  force_mine[2] = force.z;
+  force_mine[0] = -tally.force.x;
+  force_mine[1] = -tally.force.y;
+  force_mine[2] = -tally.force.z;
   force_ready = 0;
   lists_newer = true;
 }

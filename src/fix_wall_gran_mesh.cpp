@@ -30,9 +30,9 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace Slope;
 
-static constexpr double DEEPEST = 0.25;    // overlap over radius up to which nothing passes
 static constexpr double SAME_SURFACE = 1.0e-9;
 static constexpr double RESTART_FORMAT = 1.0;
+static constexpr int RESTART_SIZE = 16;    // numbers, without those of the recorder
 
 static Vector vector_of(const double *x)
 {
@@ -46,7 +46,7 @@ static Vector vector_of(const double *x)
 FixWallGranMesh::FixWallGranMesh(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), caller(fmt::format("Fix wall/gran/mesh {}", id)),
     options(lmp, caller, narg - 3, arg + 3), surface(options.surface()), pair(nullptr),
-    lists_newer(false), all_ready(false), first_step(false), fast{0.0, 0.0, 0.0, 0.0, 0}
+    lists_newer(false), all_ready(false), first_step(false), fast(lmp, caller)
 {
   scalar_flag = vector_flag = 1;
   size_vector = IMPULSE + 3;
@@ -109,7 +109,7 @@ void FixWallGranMesh::init()
       error->all(FLERR, "{} output must be another than that of fix {}, got {}", caller, fix->id,
                  recorder->prefix);
   }
-  fast = {0.0, 0.0, 0.0, 0.0, 0};
+  fast.start();
 }
 
 /* ----------------------------------------------------------------------
@@ -122,9 +122,9 @@ ContactLaw FixWallGranMesh::law_of(int type) const
   if (!law)    // a type that came after init(), by fix pour or fix deposit
     error->one(FLERR, "{}: pair_coeff {} {} is not set (moving type {}, wall type {})", caller,
                std::min(type, options.type), std::max(type, options.type), type, options.type);
-  ContactLaw mine = *law;
-  mine.rolling_factor = 2.0;    // of the two radii's r r/(r + r)
-  return mine;
+  ContactLaw smooth = *law;
+  smooth.rolling_factor = 2.0;    // of the two radii's r r/(r + r)
+  return smooth;
 }
 
 /* ----------------------------------------------------------------------
@@ -142,10 +142,11 @@ void FixWallGranMesh::store_contacts()
   store.clear();
   std::vector<int> count(watch.balls(), 0);
   auto visit = [this](std::function<void(const ContactList &, size_t)> what) {
-    for (const ContactList &l : lists)
-      for (size_t k = 0; k < l.entries.size(); k++)
-        if (l.has_history(k) && l.entries[k].i < atom->nlocal)
-          what(l, k);    // may have been deleted
+    for (const auto &entry : lists) {
+      const ContactList &l = entry.second;
+      for (size_t k = 0; k < l.entries.size(); k++)    // balls may have been deleted
+        if (l.has_history(k) && l.entries[k].i < atom->nlocal) what(l, k);
+    }
   };
   visit([&](const ContactList &l, size_t k) {
     count[watch.slots[l.entries[k].j].ball]++;
@@ -182,10 +183,9 @@ void FixWallGranMesh::setup_post_neighbor()
 
 void FixWallGranMesh::post_neighbor()
 {
-  lists.resize(atom->ntypes + 1);
-  for (ContactList &l : lists) l.clear(true, false);
+  lists.clear();
   watch.clear();
-  kind.clear();
+  radii.clear();
   history.clear();
 
   const Vector &low = surface->low(), &high = surface->high();
@@ -231,8 +231,9 @@ void FixWallGranMesh::add_contact(int slot, const double *from)
   if (from) std::copy_n(from, HISTORY, values);
   const int i = watch.number_of(watch.slots[slot].ball);
   const double r = atom->radius[i];
-  kind.push_back(atom->type[i]);
-  ContactList &l = lists[kind.back()];
+  radii.push_back(r);
+  ContactList &l = lists[{atom->type[i], r}];
+  if (l.entries.empty()) l.clear(true, false);
   l.add(i, slot, values, from != nullptr, r, r, atom->rmass[i], 1.0);
   if (pair->sizes_vary) l.equal = false;
 }
@@ -249,47 +250,26 @@ void FixWallGranMesh::look()
     const double step = size_of(moving.v[i]) * update->dt;
     watch.look(b, vector_of(atom->x[i]), atom->radius[i], step, *surface);
   }
-  const size_t before = kind.size(), n = watch.slots.size();
+  const size_t before = radii.size(), n = watch.slots.size();
   for (size_t s = before; s < n; s++) add_contact(static_cast<int>(s), nullptr);
 
   centres.reserve(n + 1);    // contacts are read 32 bytes at a time, 8 beyond a vector
   centres.resize(n);
-  radii.resize(n);
   for (size_t s = 0; s < n; s++) {
     const SurfaceWatch::Slot &slot = watch.slots[s];
-    centres[s] = slot.centre;
-    radii[s] = slot.radius;
+    centres[s] = moved(slot.centre, slot.radius - radii[s], slot.at.normal);    // fix adapt
     if (slot.touches) check_speed(watch.number_of(slot.ball), slot.at.normal);
   }
 }
 
-/* ----------------------------------------------------------------------
-   A ball that comes along the normal at v gets as deep as v sqrt(m/kn), undamped. Up to a quarter of
-   its radius nothing passes, whatever the edges that it meets.
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 void FixWallGranMesh::check_speed(int i, const Vector &normal)
 {
-  const Vector v = vector_of(atom->v[i]);
-  const double towards = -dot(v, normal);
-  if (!(towards > 0.0)) return;
+  const double towards = -dot(vector_of(atom->v[i]), normal);
   const ContactLaw *law = pair->law(atom->type[i], options.type);
-  if (!law) return;
-  const double deep = towards * std::sqrt(atom->rmass[i] / law->kn);
-  const double share = deep / (DEEPEST * atom->radius[i]);
-  if (share <= 1.0) return;
-  if (fast.count++ == 0)
-    error->warning(
-        FLERR,
-        "{}: ball {} comes at {:.4g} m/s at step {}, {:.3g} times the speed up to which nothing "
-        "passes, {:g} R sqrt(kn/m): the contacts need a larger stiffness",
-        caller, atom->tag[i], towards, update->ntimestep, share, DEEPEST);
-  if (share > fast.share)
-    fast = {share, towards, static_cast<double>(atom->tag[i]),
-            static_cast<double>(update->ntimestep), fast.count};
+  if (law && towards > 0.0) fast.look(i, towards, law->kn);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixWallGranMesh::setup(int)
 {
@@ -338,9 +318,10 @@ void FixWallGranMesh::find_contacts(bool starting, bool lists_new)
 {
   look();
   const MovingBalls moving = pair->moving_balls();
-  const PhantomPartners phantoms(centres.data(), radii.data());
   InitialOverlap initial(lmp);
-  for (ContactList &l : lists) {
+  for (auto &entry : lists) {
+    ContactList &l = entry.second;
+    const FixedPartners phantoms(centres.data(), entry.first.radius);
     if (starting)
       l.start(moving, phantoms, [&](const ContactList::Entry &e, double overlap) {
         initial.look(overlap, atom->radius[e.i], atom->tag[e.i], atom->x[e.i],
@@ -373,8 +354,7 @@ Vector FixWallGranMesh::force_of_law(const SurfaceWatch::Slot &slot, double phas
 
 void FixWallGranMesh::apply(bool starting)
 {
-  MovingBalls moving = pair->moving_balls();
-  const PhantomPartners phantoms(centres.data(), radii.data());
+  const MovingBalls moving = pair->moving_balls();
   Vector force = {0.0, 0.0, 0.0}, moment = force, momentum = force;
   int contacts = 0;
 
@@ -387,36 +367,35 @@ void FixWallGranMesh::apply(bool starting)
   };
   torque_of_balls(1.0);
 
-  for (int type = 1; type <= atom->ntypes; type++) {
-    ContactList &l = lists[type];
-    if (l.entries.empty()) continue;
-    const ContactLaw law = law_of(type);
+  for (auto &entry : lists) {
+    const FixedPartners phantoms(centres.data(), entry.first.radius);
+    const ContactLaw law = law_of(entry.first.type);
     std::unique_ptr<ImpactForce> impact;
-    l.apply<true>(law, update->dt, starting, moving, phantoms,
-                  [&](int i, int j, const Vector &f, const Vector &) {
-                    const SurfaceWatch::Slot &slot = watch.slots[j];
-                    const double phase = history[j][PHASE];
-                    const bool ended = phase == ENDED;
-                    Vector shown = f;
-                    if (law.exact > 0.0 && (ended || (is_impact(phase) && moving.count[i] == 1))) {
-                      if (!impact || impact->of_mass() != atom->rmass[i])
-                        impact.reset(new ImpactForce(law, atom->rmass[i], update->dt));
-                      shown = force_of_law(slot, phase, f, moving.v[i], *impact);
-                    }
-                    const Vector arm = {-slot.radius * slot.at.normal.x,
-                                        -slot.radius * slot.at.normal.y,
-                                        -slot.radius * slot.at.normal.z};
-                    const Vector at = moved(vector_of(atom->x[i]), 1.0, arm);
-                    const Vector torque = cross(arm, f);    // on the ball
-                    momentum = moved(momentum, -1.0, f);
-                    force = moved(force, -1.0, shown);
-                    moment = moved(moment, -1.0, cross(minus(at, options.point), shown));
-                    moment = moved(moment, 1.0, torque);
-                    contacts += !ended;
-                    if (recorder && !starting)
-                      recorder->add(slot.at.triangle, dot(shown, slot.at.normal),
-                                    dot(f, slot.at.normal) * update->dt);
-                  });
+    auto add = [&](int i, int j, const Vector &f, const Vector &) {
+      const SurfaceWatch::Slot &slot = watch.slots[j];
+      const double phase = history[j][PHASE];
+      const bool ended = phase == ENDED;
+      Vector shown = f;
+      if (law.exact > 0.0 && (ended || (is_impact(phase) && moving.count[i] == 1))) {
+        if (!impact || impact->of_mass() != atom->rmass[i])
+          impact.reset(new ImpactForce(law, atom->rmass[i], update->dt));
+        shown = force_of_law(slot, phase, f, moving.v[i], *impact);
+      }
+      const Vector arm = {-slot.radius * slot.at.normal.x, -slot.radius * slot.at.normal.y,
+                          -slot.radius * slot.at.normal.z};
+      const Vector at = moved(vector_of(atom->x[i]), 1.0, arm);
+      const Vector torque = cross(arm, f);    // on the ball
+      momentum = moved(momentum, -1.0, f);
+      force = moved(force, -1.0, shown);
+      moment = moved(moment, -1.0, cross(minus(at, options.point), shown));
+      moment = moved(moment, 1.0, torque);
+      contacts += !ended;
+      if (recorder && !starting)
+        recorder->add(slot.at.triangle, dot(shown, slot.at.normal),
+                      dot(f, slot.at.normal) * update->dt);
+    };
+    ContactTally tally = tally_of(add);
+    entry.second.apply(law, update->dt, starting, moving, phantoms, &tally);
   }
   torque_of_balls(-1.0);
 
@@ -433,14 +412,13 @@ void FixWallGranMesh::apply(bool starting)
 double FixWallGranMesh::elastic_energy() const
 {
   const MovingBalls moving = pair->moving_balls();
-  const PhantomPartners phantoms(centres.data(), radii.data());
   double energy = 0.0;
-  for (size_t type = 1; type < lists.size(); type++)
-    if (!lists[type].entries.empty())
-      energy += Slope::elastic_energy(lists[type], law_of(type), moving, phantoms,
-                                      [this](const ContactList::Entry &e, double overlap) {
-                                        pair->guards.see_overlap(e.i, overlap, atom->radius[e.i]);
-                                      });
+  for (const auto &entry : lists)
+    energy += Slope::elastic_energy(entry.second, law_of(entry.first.type), moving,
+                                    FixedPartners(centres.data(), entry.first.radius),
+                                    [this](const ContactList::Entry &e, double overlap) {
+                                      pair->guards.see_overlap(e.i, overlap, atom->radius[e.i]);
+                                    });
   return energy;
 }
 
@@ -451,7 +429,7 @@ void FixWallGranMesh::post_run()
   store_contacts();
   keep_given();
   if (recorder && update->whichflag == 1) recorder->write();
-  report();
+  fast.report(pair->guards);
 }
 
 /* ----------------------------------------------------------------------
@@ -463,28 +441,6 @@ void FixWallGranMesh::keep_given()
   if (last_step == update->ntimestep) return;    // run 0 only has what the set-up found
   std::copy(given, given + 3, last);
   last_step = update->ntimestep;
-}
-
-/* ----------------------------------------------------------------------
-   balls that came too fast, once per run
-------------------------------------------------------------------------- */
-
-void FixWallGranMesh::report()
-{
-  bigint count;
-  MPI_Allreduce(&fast.count, &count, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (count == 0) return;
-  struct {
-    double share;
-    int rank;
-  } own = {fast.share, comm->me}, worst;
-  MPI_Allreduce(&own, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
-  MPI_Bcast(&fast, sizeof(fast), MPI_BYTE, worst.rank, world);
-  pair->guards.say(fmt::format(
-      "{}: a ball came too fast for it {} times, the worst at {:.4g} m/s (ball {:.0f}, step "
-      "{:.0f}), {:.3g} times the speed up to which nothing passes, {:g} R sqrt(kn/m): the "
-      "contacts need a larger stiffness",
-      caller, count, fast.speed, fast.ball, fast.step, fast.share, DEEPEST));
 }
 
 /* ----------------------------------------------------------------------
@@ -515,9 +471,9 @@ double FixWallGranMesh::compute_vector(int n)
 double FixWallGranMesh::memory_usage()
 {
   double bytes = surface->memory_usage() + watch.memory_usage() + store.memory_usage();
-  for (const ContactList &l : lists) bytes += l.memory_usage();
+  for (const auto &entry : lists) bytes += entry.second.memory_usage();
   bytes += history.size() * sizeof(history[0]) + centres.capacity() * sizeof(Vector) +
-      radii.capacity() * sizeof(double) + kind.capacity() * sizeof(int);
+      radii.capacity() * sizeof(double);
   return bytes;
 }
 
@@ -576,7 +532,7 @@ void FixWallGranMesh::write_restart(FILE *fp)
   const RunClock::State at = clock.state();
   list.insert(list.end(), {at.base, at.base_step, at.last, at.step_size, at.on});
   list.push_back(static_cast<double>(last_step));
-  list.push_back(recorder ? 1.0 : 0.0);
+  list.push_back(static_cast<double>(recorded.size()));
   list.insert(list.end(), recorded.begin(), recorded.end());
   if (list.size() * sizeof(double) > MAXSMALLINT)
     error->one(FLERR, "{} must have at most {} bytes in a restart file, got {}", caller,
@@ -588,7 +544,8 @@ void FixWallGranMesh::write_restart(FILE *fp)
 
 void FixWallGranMesh::restart(char *buf)
 {
-  const double *list = reinterpret_cast<double *>(buf);
+  double list[RESTART_SIZE];
+  memcpy(list, buf, sizeof(list));
   if (list[0] != RESTART_FORMAT)
     error->all(FLERR,
                "{}: the restart file is of another version of the fix: run from the start again",
@@ -603,10 +560,13 @@ void FixWallGranMesh::restart(char *buf)
     mine[IMPULSE + d] = list[3 + d];
     last[d] = list[6 + d];
   }
+  all_ready = false;
   clock.set_state({list[9], list[10], list[11], list[12], list[13]});
   last_step = static_cast<bigint>(list[14]);
-  if (recorder && list[15] != 0.0) recorder->unpack(list + 16);
-  all_ready = false;
+  std::vector<double> recorded(static_cast<size_t>(list[RESTART_SIZE - 1]));
+  if (!recorder || recorded.empty()) return;
+  memcpy(recorded.data(), buf + sizeof(list), recorded.size() * sizeof(double));
+  recorder->unpack(recorded.data());
 }
 
 int FixWallGranMesh::pack_restart(int i, double *buf)

@@ -16,6 +16,7 @@ FixStyle(wall/gran/mesh,FixWallGranMesh);
 
 #include "contact_holder.h"
 #include "contact_list.h"
+#include "fast_balls.h"
 #include "impact_force.h"
 #include "run_clock.h"
 #include "surface_contact_store.h"
@@ -25,6 +26,7 @@ FixStyle(wall/gran/mesh,FixWallGranMesh);
 
 #include <array>
 #include <deque>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -70,16 +72,23 @@ class FixWallGranMesh : public Fix, public ContactHolder {
   std::unique_ptr<Slope::TouchedSurface> surface;
   class PairGranRestitution *pair;
 
-  // The contacts of this rank's balls, by type of the ball. Each has a slot in watch, and in the contact
-  // list a phantom ball as partner: a fixed ball of the same size, so placed that it touches the ball
-  // where the surface does, and as deep.
+  // The contacts of this rank's balls, by type and radius of the ball. Each has a slot in watch, and in the
+  // contact list a phantom ball as partner: a fixed ball of the same size, so placed that it touches the
+  // ball where the surface does, and as deep.
 
   Slope::SurfaceWatch watch;
-  std::vector<Slope::ContactList> lists;
-  std::vector<int> kind;    // of each slot: type of the ball
+  struct Kind {
+    int type;
+    double radius;
+    bool operator<(const Kind &other) const
+    {
+      return type != other.type ? type < other.type : radius < other.radius;
+    }
+  };
+  std::map<Kind, Slope::ContactList> lists;
+  std::vector<double> radii;    // of each slot's phantom
   std::deque<std::array<double, Slope::HISTORY>> history;
   std::vector<Slope::Vector> centres;    // of the phantoms
-  std::vector<double> radii;
   bool lists_newer;    // contacts have been updated since they were last stored by atom
   Slope::SurfaceContactStore store;
 
@@ -97,13 +106,7 @@ class FixWallGranMesh : public Fix, public ContactHolder {
   bigint last_step;
   bool first_step;
 
-  // balls that came too fast
-
-  struct Fast {
-    double share;    // of the speed up to which nothing passes
-    double speed, ball, step;
-    bigint count;
-  } fast;
+  FastBalls fast;
 
   Slope::ContactLaw law_of(int type) const;
   void add_contact(int slot, const double *from);
@@ -117,7 +120,6 @@ class FixWallGranMesh : public Fix, public ContactHolder {
   void keep_given();
   void reduce();
   void record();
-  void report();
 };
 
 }    // namespace LAMMPS_NS

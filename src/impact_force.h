@@ -12,6 +12,7 @@
 #define SLOPE_IMPACT_FORCE_H
 
 #include "contact_law.h"
+#include "oscillator.h"
 
 #include <algorithm>
 #include <cmath>

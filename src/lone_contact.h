@@ -20,6 +20,7 @@
 #include <cmath>
 
 namespace Slope {
+inline namespace SLOPE_INSTRUCTIONS {
 
 enum Life { BEGINS, LASTS, ENDS };    // within the step that has just been made
 
@@ -297,6 +298,7 @@ struct LoneContact {
   }
 };
 
+}    // namespace SLOPE_INSTRUCTIONS
 }    // namespace Slope
 
 #endif

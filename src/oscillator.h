@@ -10,9 +10,12 @@
 #ifndef SLOPE_OSCILLATOR_H
 #define SLOPE_OSCILLATOR_H
 
+#include "instruction_set.h"
+
 #include <cmath>
 
 namespace Slope {
+inline namespace SLOPE_INSTRUCTIONS {
 
 // displacement x and rate r some time later: x' = xx x + xr r, r' = rx x + rr r
 struct Motion {
@@ -104,6 +107,7 @@ inline Oscillator true_at_rest(const Oscillator &law)
   return std::fabs(error(x)) < 1.0e-6 ? Oscillator{zeta * x, x * x} : law;    // a step far too large
 }
 
+}    // namespace SLOPE_INSTRUCTIONS
 }    // namespace Slope
 
 #endif

@@ -15,10 +15,12 @@
 #include "fix_dummy.h"
 #include "force.h"
 #include "initial_overlap.h"
+#include "kernel_choice.h"
 #include "lammps_compat.h"
 #include "memory.h"
 #include "neigh_list.h"
 #include "neighbor.h"
+#include "requirements.h"
 #include "update.h"
 
 #include <algorithm>
@@ -51,6 +53,7 @@ PairGranRestitution::PairGranRestitution(LAMMPS *lmp) : Pair(lmp), guards(lmp, t
   single_extra = 10;
   svector = new double[single_extra];
 
+  choose_contact_kernel(lmp);
   freeze_group_bit = 0;
   dt = update->dt;
 
@@ -167,6 +170,9 @@ void PairGranRestitution::init_style()
     error->all(FLERR, "Pair gran/restitution requires ghost velocities: comm_modify vel yes");
   if (comm->style == 1 && force->newton_pair)    // CommTiled cannot send the histories of ghosts back
     error->all(FLERR, "Pair gran/restitution with comm_style tiled requires newton off");
+  require_verlet(lmp, "Pair gran/restitution");
+  require_single_balls(lmp, "Pair gran/restitution");
+  require_whole_contacts(lmp, "Pair gran/restitution");
 
   compat::request_history_list(neighbor, this, instance_me);
   dt = update->dt;
@@ -177,8 +183,8 @@ void PairGranRestitution::init_style()
     fix_history->pair = this;
   }
 
-  const auto freezes = compat::fixes_of_style(lmp, "freeze");
-  freeze_group_bit = freezes.empty() ? 0 : freezes[0]->groupbit;
+  freeze_group_bit = 0;
+  for (const Fix *fix : compat::fixes_of_style(lmp, "freeze")) freeze_group_bit |= fix->groupbit;
 
   sizes_vary = !compat::fixes_of_style(lmp, "adapt").empty();
 
@@ -455,17 +461,13 @@ void PairGranRestitution::compute(int eflag, int vflag)
   const int nlocal = atom->nlocal, newton_pair = force->newton_pair;
   const MovingBalls balls = moving_balls();
   const MovingPartners partners = {balls, newton_pair ? INT_MAX : nlocal};
+  auto add_virial = [&](int i, int j, const Vector &f, const Vector &d) {
+    ev_tally_xyz(i, j, nlocal, newton_pair, 0.0, 0.0, f.x, f.y, f.z, d.x, d.y, d.z);
+  };
+  ContactTally tally = tally_of(add_virial);
   for (size_t k = 0; k < lists.size(); k++) {
     const ContactLaw &law = table.law(k / 3);
-    if (evflag)
-      lists[k].apply<true>(law, dt, starting, balls, partners,
-                           [&](int i, int j, const Vector &f, const Vector &d) {
-                             ev_tally_xyz(i, j, nlocal, newton_pair, 0.0, 0.0, f.x, f.y, f.z, d.x,
-                                          d.y, d.z);
-                           });
-    else
-      lists[k].apply<false>(law, dt, starting, balls, partners,
-                            [](int, int, const Vector &, const Vector &) {});
+    lists[k].apply(law, dt, starting, balls, partners, evflag ? &tally : nullptr);
   }
   fix_history->lists_used = true;
   if (starting) {
@@ -500,14 +502,14 @@ double PairGranRestitution::single(int i, int j, int itype, int jtype, double rs
   MovingBalls balls = moving_balls();
   balls.v = vectors(atom->v);
   balls.omega = vectors(atom->omega);
-  ContactList pair_of_balls;
-  pair_of_balls.clear(!(atom->mask[i] & freeze_group_bit), !(atom->mask[j] & freeze_group_bit));
+  const Sides moves = {(atom->mask[i] & freeze_group_bit) ? 0.0 : 1.0,
+                       (atom->mask[j] & freeze_group_bit) ? 0.0 : 1.0};
   Contact contact;
   Vector delta;
   const MovingPartners partners = {balls, INT_MAX};
-  ContactList::set_contact(law, balls, partners, {i, j}, contact, delta);
-  const ContactStep step = pair_of_balls.step_of(law, dt, true, atom->radius[i], atom->radius[j],
-                                                 atom->rmass[i], atom->rmass[j]);
+  set_contact(law, balls, partners, i, j, contact, delta);
+  const ContactStep step = step_of(moves, law, dt, true, atom->radius[i], atom->radius[j], atom->rmass[i],
+                                   atom->rmass[j]);
   ContactForce c;
   contact_force(step, contact, 0.0, history, c);
 

@@ -27,7 +27,7 @@ namespace LAMMPS_NS {
 
 class PairGranRestitution : public Pair {
  public:
-  PairGranRestitution(class LAMMPS *);
+  explicit PairGranRestitution(class LAMMPS *);
   ~PairGranRestitution() override;
   void compute(int, int) override;
   void settings(int, char **) override;
@@ -66,7 +66,7 @@ class PairGranRestitution : public Pair {
   void store_flags() const;
   bool force_estimated(int i) const;    // of a ball at set-up: contacts that slid alone, see contact_law.h
   bool forces_taken_back() const;       // in the first step of a run: its forces are the last step's
-  bool sizes_vary;    // between two neighbor lists, by fix adapt
+  bool sizes_vary = false;    // between two neighbor lists, by fix adapt
 
   void watch_energy();    // every ContactGuards::EVERY steps and at the end of a run
   ContactGuards guards;
@@ -75,7 +75,7 @@ class PairGranRestitution : public Pair {
   ContactTable table;
 
   double dt;
-  bool starting;    // at set-up
+  bool starting = false;    // at set-up
   int freeze_group_bit;
   class FixContactHistory *fix_history;
   std::vector<Slope::ContactList> lists;    // by type pair and by which side is frozen

@@ -9,14 +9,15 @@
 #ifndef SLOPE_SIMD4_H
 #define SLOPE_SIMD4_H
 
+#include "instruction_set.h"
+
 #include <cmath>
 #ifdef __AVX__
 #include <immintrin.h>
 #endif
 
-#define SLOPE_INLINE inline __attribute__((always_inline))
-
 namespace Slope {
+inline namespace SLOPE_INSTRUCTIONS {
 
 typedef double Four __attribute__((vector_size(32)));
 typedef decltype(Four() < Four()) FourFlags;    // 0 or -1 each
@@ -35,7 +36,7 @@ SLOPE_INLINE FourThere &four(double *p)
   return *reinterpret_cast<FourThere *>(p);
 }
 
-SLOPE_INLINE TwoThere &two(double *p)
+SLOPE_INLINE TwoThere &two_at(double *p)
 {
   return *reinterpret_cast<TwoThere *>(p);
 }
@@ -117,6 +118,7 @@ template <class T> SLOPE_INLINE T smaller(T a, T b)
   return choose(a < b, a, b);
 }
 
+}    // namespace SLOPE_INSTRUCTIONS
 }    // namespace Slope
 
 #endif

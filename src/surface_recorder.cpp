@@ -5,7 +5,8 @@
 
 #include "surface_recorder.h"
 
-#include "deposit_rasters.h"
+#include "atomic_file.h"
+#include "file_set.h"
 #include "rank_zero.h"
 
 #include "comm.h"

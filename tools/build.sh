@@ -1,5 +1,5 @@
 #!/bin/bash
-# Set-up, configure, build: build/lmp. Arguments go to cmake, e.g. -D SLOPE_NATIVE=OFF.
+# Set-up, configure, build: build/lmp. Arguments go to cmake, e.g. -D LAMMPS_SIZES=bigbig.
 # JOBS=<n> in the environment: number of compilers at a time (default 2).
 set -euo pipefail
 

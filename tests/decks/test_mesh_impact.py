@@ -131,7 +131,8 @@ def rolled(tmp_path, sign, n):
     x = (-4.0, 0.1, sign * 0.4 + 0.5 * np.hypot(1, slope) + 0.02)
     write_case(tmp_path, plane(n, height=lambda x, y: sign * x * x / 40), x, (v, 0, v * slope),
                omega=(0, v * np.hypot(1, slope) / 0.5, 0))
-    rows, frames, _ = run_case(tmp_path, "run 1200", coeff="restitution 0.5 friction 30", g=9.81, dump_every=10, every=10)
+    rows, frames, _ = run_case(tmp_path, "run 1200", coeff="restitution 0.5 friction 30", g=9.81, dump_every=10,
+                               every=10)
     e = energy(frames, g=9.81)[:, 0]
     assert (frames[-1, 0, 1] > 0.1 or sign < 0) and rows[15:, 2].max() == 1
     print(e[15] - e[-1], rows[15:, 2].min())

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from deck_helpers import doc_examples, run_deck, write_asc
-from mesh_helpers import (RHO, STIFFNESS, bowl, box, mesh_deck, plane, rule_step, run_case, stl_bytes, stl_text,
-                          write_case)
+from mesh_helpers import RHO, STIFFNESS, bowl, box, mesh_deck, plane, run_case, stl_bytes, stl_text, write_case
 
 MASS = RHO * np.pi / 6
 
@@ -77,7 +76,7 @@ def bounce_inside(tmp_path, triangles, outside, balls, steps, speed, seed=3):
     v = way / np.linalg.norm(way, axis=1)[:, None] * rng.uniform(0.3, 1.0, balls)[:, None] * speed
     x = rng.uniform(-0.7, 0.7, (balls, 3))
     write_case(tmp_path, triangles, x, v)
-    rows, frames, log = run_case(tmp_path, f"run {steps}", coeff="restitution 1 friction 0", every=20,
+    rows, frames, log = run_case(tmp_path, f"run {steps}", coeff="restitution 1 friction 0", every=20, skin=0.8,
                                  dump_every=steps // 20)
     impacts = rows[:, 2].mean() * steps / 12.6    # steps that an undamped contact lasts
     print(f"{impacts} impacts, {log.count('WARNING')} warnings")
@@ -146,37 +145,45 @@ def test_text_and_binary_files_are_the_same(tmp_path):
 
 
 DEGENERATE = np.array([[(0, 0, 0), (1, 1, 1), (2, 2, 2)]], float)
-FIX = "Fix wall/gran/mesh wall"
+START = "fix wall all wall/gran/mesh"
 
 
-@pytest.mark.parametrize("change, message", [
-    (dict(data=stl_bytes(plane(1))[:-7]), f"{FIX}: mesh.stl: the file is cut short, or no STL: 2 triangles need 184 bytes"),
-    (dict(data=stl_text(plane(1))[:-30].encode()), f"{FIX}: mesh.stl, line 14: the file is cut short"),
-    (dict(data=b"solid x\nendsolid x\n"), f"{FIX}: mesh.stl: there must be a triangle with an area, got no triangles"),
-    (dict(data=stl_bytes(DEGENERATE)), f"{FIX}: mesh.stl: there must be a triangle with an area, got 1 without"),
-    (dict(data=stl_bytes(plane(1) * 1000)), f"{FIX}: the surface of mesh.stl must be at most 100 times as large as the box"),
-    (dict(data=stl_bytes(plane(1) + (0, 50, 0))), f"{FIX}: the surface of mesh.stl must reach into the box, y -14 to 14"),
-    (dict(data=stl_bytes(plane(1) + (0, 0, 1.3))), f"{FIX}: 1 pairs overlap at the start by more than 5 % of the radius"),
-    (dict(wall="fix wall all wall/gran/mesh 2 none.stl"), f"{FIX}: cannot read none.stl: No such file"),
-    (dict(wall="fix wall all wall/gran/mesh 2 terrain none.asc"), f"{FIX}: cannot read none.asc"),
-    (dict(wall="fix wall all wall/gran/mesh 2 terrain mesh.stl scale 2"), f"{FIX}: scale is for STL files"),
-    (dict(wall="fix wall all wall/gran/mesh 2"), f"{FIX}: needs TYPE and FILE.stl or terrain FILE.asc, got 1 arguments"),
-    (dict(wall="fix wall all wall/gran/mesh 2 terrain"), f"{FIX} terrain: FILE.asc is missing"),
-    (dict(wall="fix wall all wall/gran/mesh 3 mesh.stl"), f"{FIX} type must be 1 to 2 (the atom types of the box), got 3"),
-    (dict(wall="fix wall all wall/gran/mesh x mesh.stl"), f"{FIX} type must be a whole number"),
-    (dict(keywords="size 3"), f"{FIX}: unknown keyword size, must be scale, move, point or output"),
-    (dict(keywords="move 1 2"), f"{FIX} move must be followed by 3 values, got 2"),
-    (dict(keywords="scale 0"), f"{FIX} scale must be > 0, got 0"),
-    (dict(keywords="point 1 inf 2"), f"{FIX} point must be a finite number, got inf"),
-    (dict(keywords="output out 0"), f"{FIX} output Nevery must be >= 1, got 0"),
-    (dict(keywords="output no/such/out 10"), f"{FIX}: cannot write no/such/out.csv: No such file"),
-    (dict(coeff="restitution 0.5\npair_style none"), f"{FIX}: requires pair_style gran/restitution"),
-])
+WRONG = {
+    "binary, cut": (dict(data=stl_bytes(plane(1))[:-7]),
+                    "mesh.stl: the file is cut short, or no STL: 2 triangles need 184 bytes"),
+    "text, cut": (dict(data=stl_text(plane(1))[:-30].encode()), "mesh.stl, line 14: the file is cut short"),
+    "empty": (dict(data=b"solid x\nendsolid x\n"), "mesh.stl: there must be a triangle with an area, got no triangles"),
+    "degenerate": (dict(data=stl_bytes(DEGENERATE)), "mesh.stl: there must be a triangle with an area, got 1 without"),
+    "millimetres": (dict(data=stl_bytes(plane(1) * 1000)),
+                    "the surface of mesh.stl must be at most 100 times as large as the box"),
+    "elsewhere": (dict(data=stl_bytes(plane(1) + (0, 50, 0))),
+                  "the surface of mesh.stl must reach into the box, y -14 to 14"),
+    "in a ball": (dict(data=stl_bytes(plane(1) + (0, 0, 1.3))),
+                  "1 pairs overlap at the start by more than 5 % of the radius"),
+    "no file": (dict(wall=f"{START} 2 none.stl"), "cannot read none.stl: No such file"),
+    "no grid": (dict(wall=f"{START} 2 terrain none.asc"), "cannot read none.asc"),
+    "terrain moved": (dict(wall=f"{START} 2 terrain mesh.stl scale 2"), "scale is for STL files"),
+    "no surface": (dict(wall=f"{START} 2"), "needs TYPE and FILE.stl or terrain FILE.asc, got 1 arguments"),
+    "no name": (dict(wall=f"{START} 2 terrain"), "terrain: FILE.asc is missing"),
+    "type": (dict(wall=f"{START} 3 mesh.stl"), "type must be 1 to 2 (the atom types of the box), got 3"),
+    "type word": (dict(wall=f"{START} x mesh.stl"), "type must be a whole number"),
+    "keyword": (dict(keywords="size 3"), "unknown keyword size, must be scale, move, point or output"),
+    "few values": (dict(keywords="move 1 2"), "move must be followed by 3 values, got 2"),
+    "scale": (dict(keywords="scale 0"), "scale must be > 0, got 0"),
+    "point": (dict(keywords="point 1 inf 2"), "point must be a finite number, got inf"),
+    "every": (dict(keywords="output out 0"), "output Nevery must be >= 1, got 0"),
+    "folder": (dict(keywords="output no/such/out 10"), "cannot write no/such/out.csv: No such file"),
+    "no pair": (dict(coeff="restitution 0.5\npair_style none"), "requires pair_style gran/restitution"),
+}
+
+
+@pytest.mark.parametrize("change, message", WRONG.values(), ids=WRONG.keys())
 def test_what_is_wrong_ends_the_run_with_one_line(tmp_path, change, message):
     write_case(tmp_path, plane(1), (0.3, 0.2, 1.6), (0, 0, -1))
     if "data" in change:
-        (tmp_path / "mesh.stl").write_bytes(change.pop("data"))
-    run_deck(mesh_deck("run 1", **change), tmp_path, expect_error=message)
+        (tmp_path / "mesh.stl").write_bytes(change["data"])
+    deck = mesh_deck("run 1", **{key: value for key, value in change.items() if key != "data"})
+    run_deck(deck, tmp_path, expect_error=message)
     assert not list(tmp_path.glob("out*"))
 
 
@@ -200,7 +207,8 @@ def test_a_mesh_much_larger_than_the_box_is_doubted(tmp_path):
 
 def test_two_fixes_cannot_write_the_same_files(tmp_path):
     write_case(tmp_path, plane(1), (0.3, 0.2, 1.6), (0, 0, -1))
-    run_deck(mesh_deck("run 1", keywords="output out 10\nfix other all wall/gran/mesh 2 mesh.stl output out 10"), tmp_path,
+    keywords = f"output out 10\n{START.replace('wall', 'other', 1)} 2 mesh.stl output out 10"
+    run_deck(mesh_deck("run 1", keywords=keywords), tmp_path,
              expect_error="Fix wall/gran/mesh wall output must be another than that of fix other, got out")
 
 

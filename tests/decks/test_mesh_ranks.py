@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from deck_helpers import read_dump, write_asc
-from mesh_helpers import RHO, box, mesh_deck, rule_step, run_case, run_deck, stack, thermo, write_case
+from deck_helpers import read_dump, run_deck, write_asc
+from mesh_helpers import RHO, box, mesh_deck, rule_step, run_case, stack, write_case
 
 STEPS = 900
 COEFF = "restitution 0.5 friction 30 rolling 0.1"
 
 
 def write_container(tmp_path, seed=1, top=4.9):
-    """Thirty balls of three sizes that fall, bounce and roll in an open box with a ridge in it, or on a hilly ground."""
+    """Thirty balls of three sizes above an open box with a ridge in it; and a hilly ground."""
     rng = np.random.default_rng(seed)
     x = np.array([(i, j, k) for k in (0.9, 2.1) for i in range(-2, 3) for j in (-1, 0, 1)], float) * (1.1, 1.2, 1.1)
     x += rng.uniform(-0.04, 0.04, x.shape)

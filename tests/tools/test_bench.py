@@ -29,10 +29,10 @@ def test_every_code_runs_the_same_collapse(slope):
     status, out, err = slope(f"{SMALL} --only peers")
     assert status == 0, err
     about = yaml.safe_load(Path("bench/bench.yaml").read_text())
-    installed = [code for code in peers.ALL if not code(LMP).missing()]
+    installed = [code for code in peers.ALL if code is not peers.Build and not code(LMP).missing()]
     assert list(about["codes"]) == [code.name for code in installed]
     for code in peers.ALL:
-        assert (code in installed) or f"{code.title}: not measured" in out
+        assert code is peers.Build or (code in installed) or f"{code.title}: not measured" in out
     for name, state in about["same_scene"].items():
         assert state["same"], (name, state)
         if name not in bench.LOOSE:
@@ -42,6 +42,18 @@ def test_every_code_runs_the_same_collapse(slope):
     rows = list(csv.DictReader(open("bench/bench.csv", encoding="ascii")))
     assert len(rows) == 2 * (len(installed) - 1) and all(float(row["loop_s"]) > 0 for row in rows)
     assert Path("bench/bench.png").stat().st_size > 10_000
+
+
+def test_two_builds_side_by_side(slope):
+    """Each code with a program of its own; here copies of one, which run the same steps."""
+    for name in "other", "stock":
+        Path(name).symlink_to(LMP)
+    status, out, err = slope(f"{SMALL} --only peers --peers build,granular --lmp build=other --lmp granular=stock")
+    assert status == 0, err
+    about = yaml.safe_load(Path("bench/bench.yaml").read_text())
+    assert list(about["codes"]) == ["slope", "build", "granular"] and "SLOPE, another build" in out
+    assert about["same_scene"]["build"] == about["same_scene"]["slope"]
+    assert set(about["bench"]["programs_sha256"]) == {"build", "granular"}
 
 
 def test_a_wrong_coefficient_is_noticed(slope, monkeypatch):
@@ -118,6 +130,10 @@ def test_two_materials_of_yade_give_the_wanted_contact():
     ("--np 2,x", "--np: must be a whole number >= 1, got 'x'"),
     ("--steps 0", "argument --steps: must be a whole number >= 1, got '0'"),
     ("--lmp none", "--lmp: must lead to the LAMMPS program"),
+    ("--lmp granular=none", "--lmp: must lead to the LAMMPS program"),
+    ("--lmp yade=lmp", "--lmp: must be FILE, or CODE=FILE with CODE of build, granular, hooke, got yade=lmp"),
+    ("--lmp one --lmp two", "--lmp: must name one program for all, others as CODE=FILE, got two"),
+    ("--peers build", "--peers: must be of granular, hooke, liggghts, yade, got build"),
     ("-o file", "-o: must be a folder, got file"),
 ])
 def test_bad_input_is_one_line(slope, arguments, message):

@@ -3,7 +3,7 @@
 #ifndef SLOPE_TEST_ONE_CONTACT_H
 #define SLOPE_TEST_ONE_CONTACT_H
 
-#include "contact_law.h"
+#include "contact_force.h"
 
 #include <algorithm>
 #include <cmath>

@@ -12,7 +12,23 @@
 
 using namespace OneContact;
 
-static const auto no_tally = [](int, int, const Vector &, const Vector &) {};
+// every test with each kernel that this processor can run
+class ContactLists : public ::testing::TestWithParam<int> {
+ protected:
+  void SetUp() override
+  {
+    if (!ContactKernels::all()[GetParam()].runs_here)
+      GTEST_SKIP() << "not on this processor: " << ContactKernels::all()[GetParam()].name;
+    ContactKernels::set_current(GetParam());
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Kernel, ContactLists, ::testing::Range<int>(0, ContactKernels::all().size()),
+                         [](const ::testing::TestParamInfo<int> &info) {
+                           std::string name = ContactKernels::all()[info.param].name;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
 
 // groups of a ball and three partners, some of which touch it now or did a step ago
 struct Cloud {
@@ -154,7 +170,7 @@ struct Reference {
   }
 };
 
-TEST(ContactList, SameAsOneContactAtATime)
+TEST_P(ContactLists, SameAsOneContactAtATime)
 {
   const int groups = 70, contacts = 3 * groups;    // four blocks, the last not full
   const double dt = 1e-4;
@@ -170,8 +186,14 @@ TEST(ContactList, SameAsOneContactAtATime)
         const MovingPartners partners = {balls, static_cast<int>(cloud.x.size())};
         int tallied = 0;
         cloud.list.find(false, true, balls, partners);
-        cloud.list.apply<true>(law, dt, false, balls, partners,
-                               [&](int, int, const Vector &, const Vector &) { tallied++; });
+        Vector sum = {0.0, 0.0, 0.0};
+        auto visit = [&](int, int, const Vector &f, const Vector &) {
+          tallied++;
+          for (int d = 0; d < 3; d++) (&sum.x)[d] += (&f.x)[d];
+        };
+        ContactTally tally = tally_of(visit);
+        cloud.list.apply(law, dt, false, balls, partners, &tally);
+        for (int d = 0; d < 3; d++) EXPECT_EQ((&tally.force.x)[d], (&sum.x)[d]);
         EXPECT_EQ(cloud.list.equal, !different);
         EXPECT_EQ(tallied, expected.lone + expected.crowded + expected.ended);
         EXPECT_GT(expected.crowded, 40);
@@ -194,7 +216,7 @@ TEST(ContactList, SameAsOneContactAtATime)
       }
 }
 
-TEST(ContactList, CountsContactsOfEachBall)
+TEST_P(ContactLists, CountsContactsOfEachBall)
 {
   const ContactLaw law = law_of(0.48);
   Cloud cloud(20, true);
@@ -219,7 +241,7 @@ TEST(ContactList, CountsContactsOfEachBall)
   }
 }
 
-TEST(ContactList, CountsEndAt255)
+TEST_P(ContactLists, CountsEndAt255)
 {
   ContactList list;
   Cloud cloud(1, false);
@@ -276,7 +298,7 @@ struct Trio {
     }
     list.find(again, first && !again, all, MovingPartners{all, 3});
     first = false;
-    list.apply<false>(law, dt, again, all, MovingPartners{all, 3}, no_tally);
+    list.apply(law, dt, again, all, MovingPartners{all, 3});
   }
 
   void step()
@@ -288,7 +310,7 @@ struct Trio {
   }
 };
 
-TEST(ContactList, LifeOfALoneContact)
+TEST_P(ContactLists, LifeOfALoneContact)
 {
   Trio trio(10.0);
   EXPECT_FALSE(trio.list.has_history(0));
@@ -330,7 +352,7 @@ TEST(ContactList, LifeOfALoneContact)
 }
 
 // the forces of the step that has just ended once more, from what it left; what slid is flagged
-TEST(ContactList, AgainGivesTheForcesOfTheStep)
+TEST_P(ContactLists, AgainGivesTheForcesOfTheStep)
 {
   for (double friction : {10.0, 0.05}) {
     Trio trio(friction);
@@ -360,7 +382,7 @@ TEST(ContactList, AgainGivesTheForcesOfTheStep)
 }
 
 // a third ball that touches one of the two: the dashpots share what they take
-TEST(ContactList, CompanyCountsTheLargerOfTheTwo)
+TEST_P(ContactLists, CompanyCountsTheLargerOfTheTwo)
 {
   for (bool company : {false, true}) {
     Trio trio(0.5);
@@ -386,7 +408,7 @@ TEST(ContactList, CompanyCountsTheLargerOfTheTwo)
 }
 
 // balls that overlap before the first step have begun already, and are counted so
-TEST(ContactList, StartTakesOverlapsForOldContacts)
+TEST_P(ContactLists, StartTakesOverlapsForOldContacts)
 {
   Trio trio(0.5);
   trio.x[1].z = 0.2 - 1e-5;

@@ -19,7 +19,7 @@ from rich.live import Live
 from rich.progress_bar import ProgressBar
 from rich.table import Table
 
-from . import runs
+from . import last_words, runs
 from .errors import SlopeError
 
 POLL = 0.1              # s between two looks at the runs
@@ -65,6 +65,7 @@ class Run:
         self.log = runs.Log(self.folder / runs.LOG)
         self.restart = None         # step and path of the restart file that it goes on from
         self.refused = set()        # restart files that LAMMPS could not read
+        self.heard = 0              # bytes on its screen that are of the parts before this one
 
     @property
     def marker(self):
@@ -76,16 +77,17 @@ class Run:
         return "unfinished" if self.folder.exists() else "new"
 
     def fail(self, status):
-        """Keep why it failed: the ERROR line of its log, else what was last heard of it."""
+        """Keep why it failed."""
         how = f"ended with status {status}" if status >= 0 else f"ended by {signal.Signals(-status).name}"
         if status == 0:
             how = "lmp ended with status 0, but left no complete run"
-        error = self.log.update().error
-        screen = self.folder / SCREEN
-        if error is None and screen.exists():       # a rank other than 0 tells its errors there only
-            error = runs.Log(screen).update().error or runs.last_words(screen)
+        words = last_words.reason(self.log.update(), self.screen())
         where = self.folder / runs.LOG
-        self.error = f"{error or 'no word in its log'} ({how}; see {where if where.exists() else screen})"
+        self.error = f"{words or 'no word in its log'} ({how}; see {where if where.exists() else self.folder / SCREEN})"
+
+    def screen(self):
+        """What it said since it was started."""
+        return last_words.Screen(self.folder / SCREEN, self.heard)
 
 
 # --- folders ---
@@ -226,6 +228,7 @@ class Work:
                 if self.ranks > physical_cores():
                     before += ["--oversubscribe"]
             with open(one.folder / SCREEN, "ab" if one.restart else "wb") as screen:
+                one.heard = screen.tell()
                 # a session of its own: Ctrl-C reaches the study, which then ends the run
                 process = subprocess.Popen([*before, self.lmp, *self.command(one)], cwd=one.folder,
                                            env=environment(), stdin=subprocess.DEVNULL, stdout=screen,
@@ -276,9 +279,7 @@ class Work:
         """Whether LAMMPS could not read the restart file, complete as it looked: then it is not tried again."""
         if status == 0 or status in KILLED or not one.restart:
             return False
-        one.log.update()
-        crashed = status < 0 or status > 128        # then LAMMPS' last words are lost
-        if not (one.log.reading or (crashed and one.log.thermo == 0)):
+        if not last_words.spoiled_restart(one.log.update(), one.screen(), crashed=status < 0 or status > 128):
             return False
         one.refused.add(one.restart[1])
         return True

@@ -4,7 +4,6 @@ A Code writes its input into a folder, tells the command, and reads back what it
 pair gran/restitution as its start-up table prints them; how a peer differs from it is said in `differs`.
 """
 import math
-import os
 import re
 import shutil
 import subprocess
@@ -14,7 +13,7 @@ from typing import Dict, NamedTuple, Optional
 
 import numpy as np
 
-from . import jobs, runs
+from . import jobs, last_words, runs
 from .errors import SlopeError
 
 DATA, DECK, LOG, SCREEN, FINAL, SERIES = "balls.data", "in.scene", "log.scene", "screen.txt", "final.txt", "series.txt"
@@ -79,6 +78,7 @@ class Result(NamedTuple):
 class Code:
     """A program that can run a scene."""
     name = title = ""
+    is_lammps = True
     differs = ()        # sentences: in what its physics is not that of pair gran/restitution
 
     def __init__(self, lmp):
@@ -143,6 +143,11 @@ class Slope(Code):
         yield "fix spread all balance 1000 1.01 shift xy 10 1.01"
 
 
+class Build(Slope):
+    """The same in another build of ours."""
+    name, title = "build", "SLOPE, another build"
+
+
 class Frozen(Code):
     """A pair style of stock LAMMPS in the same program; the fixed balls are frozen atoms."""
 
@@ -192,6 +197,7 @@ class Hooke(Frozen):
 
 class Liggghts(Code):
     name, title = "liggghts", "LIGGGHTS, epsd2"
+    is_lammps = False
     differs = ("epsd2 measures with R/2: mu_r is doubled to give the same torque; its spring is kt R^2/4, a quarter of "
                "ours, and has no dashpot",
                "the tangential dashpot is not limited by friction, and none acts on a sliding contact",
@@ -275,6 +281,7 @@ print("SLOPE-YADE", config.version.strip(), seconds, flush=True)
 
 class Yade(Code):
     name, title = "yade", "YADE, ViscElPhys"
+    is_lammps = False
     differs = ("the normal force never pulls (our limit_damping yes)",
                "the rolling torque grows with the spin, to mu_r R Fn, the limit of ours, at 1 rad/s: no threshold",
                "leapfrog: velocities are those of half a step ago; torques act at the middle of the overlap")
@@ -315,7 +322,7 @@ class Yade(Code):
         return np.load(folder / "series.npy")
 
 
-ALL = (Slope, Granular, Hooke, Liggghts, Yade)
+ALL = (Slope, Build, Granular, Hooke, Liggghts, Yade)
 
 
 # --- pieces of the inputs ---
@@ -465,4 +472,4 @@ def read_text(path):
 def failure(log, folder):
     """Why a run failed, in one line."""
     error = re.search(r"^.*ERROR.*$", log, re.MULTILINE)
-    return runs.told(error[0]) if error else runs.last_words(folder / SCREEN) or "no word"
+    return runs.told(error[0]) if error else last_words.Screen(folder / SCREEN).words() or "no word"

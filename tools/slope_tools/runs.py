@@ -81,7 +81,8 @@ def named_files(deck):
 
     Variables of style index or string are filled in; a word that stands in both places is in both sets.
     """
-    values = {name: text for name, (style, text) in variables(deck).items() if style == "string"} | index_variables(deck)
+    values = {name: text for name, (style, text) in variables(deck).items() if style == "string"}
+    values |= index_variables(deck)
 
     def fill(word):
         return re.sub(r"\$(?:\{(\w+)\}|(\w))", lambda match: values.get(match[1] or match[2], match[0]), word)
@@ -239,15 +240,6 @@ def part(path):
 def told(line):
     """A message of LAMMPS without the place in its source."""
     return INPUT_PLACE.sub("", line.strip())
-
-
-def last_words(path):
-    """The last line of a text file that is not empty; '' if there is none."""
-    try:
-        lines = Path(path).read_text(encoding="utf-8", errors="replace").splitlines()
-    except OSError:
-        return ""
-    return next((line.strip() for line in reversed(lines) if line.strip(" -\t")), "")
 
 
 # --- restart files ---
