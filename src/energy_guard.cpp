@@ -46,7 +46,8 @@ void EnergyGuard::start()
     if (fix->time_integrate && style != "nve/sphere") known = false;
     if (style == "adapt") known = false;    // sizes, masses
     if (!(modify->fmask[k] & POST_FORCE)) continue;
-    if (style != "gravity" && style != "wall/gran/balls" && style != "freeze") known = false;
+    if (style != "gravity" && style != "wall/gran/balls" && style != "wall/gran/mesh" && style != "freeze")
+      known = false;
   }
 }
 
