@@ -16,6 +16,7 @@
 using namespace Slope;
 
 static constexpr int MOST_HIDDEN = 24;          // cells that a rim is followed without corners that show it
+static constexpr int BLOCK = 32;                // cells: more than a rim and the reach of a cell
 static constexpr int NOT_REFINED = INT_MAX;     // a steep cell that no rim runs through
 static constexpr int64_t OF_CELL = 1 << 20;     // numbers of the balls of one cell
 static constexpr size_t LEAST_KNOWN = 1024;     // tiles whose nodes are remembered
@@ -97,18 +98,23 @@ void SurfaceSampler::sample(int tile, std::vector<PlacedBall> &balls, SurfaceCou
     }
 }
 
+// whether the cells of a tile and of those around it have all corners with a ball, or none
+
+bool SurfaceSampler::uniform(int ti, int tj)
+{
+  const PlanNodes::Balls around = nodes.around(ti, tj);
+  const bool strip = (ti <= 1 && closer.ilo < 0) || (tj <= 1 && closer.jlo < 0) ||
+      (ti >= nodes.tiles_x - 2 && closer.ihi == nodes.nx) ||
+      (tj >= nodes.tiles_y - 2 && closer.jhi == nodes.ny);
+  return around == PlanNodes::NONE || (around == PlanNodes::ALL && !strip);
+}
+
 // A rim may come into the tile from cells beyond it, without a corner here that shows it
 
 void SurfaceSampler::close_rims_around(int ti, int tj)
 {
   const int size = nodes.tile;
-  if (size > MOST_HIDDEN) {
-    const PlanNodes::Balls around = nodes.around(ti, tj);
-    const bool strip = (ti <= 1 && closer.ilo < 0) || (tj <= 1 && closer.jlo < 0) ||
-        (ti >= nodes.tiles_x - 2 && closer.ihi == nodes.nx) ||
-        (tj >= nodes.tiles_y - 2 && closer.jhi == nodes.ny);
-    if (around == PlanNodes::NONE || (around == PlanNodes::ALL && !strip)) return;
-  }
+  if (size > MOST_HIDDEN && uniform(ti, tj)) return;
   const int i0 = std::max(ti * size - MOST_HIDDEN - 1, closer.ilo);
   const int j0 = std::max(tj * size - MOST_HIDDEN - 1, closer.jlo);
   const int i1 = std::min((ti + 1) * size + MOST_HIDDEN, closer.ihi);
@@ -139,8 +145,8 @@ bool SurfaceSampler::belongs(int64_t cell)
 
 void SurfaceSampler::collect(int64_t seed)
 {
-  typedef std::pair<int64_t, int> Step;
-  std::vector<Step> todo = {{seed, NOT_REFINED}};
+  Steps todo = {{seed, NOT_REFINED}};
+  std::unordered_set<int64_t> blocks;
   patch.clear();
   while (!todo.empty()) {
     const int64_t cell = todo.back().first;
@@ -156,12 +162,30 @@ void SurfaceSampler::collect(int64_t seed)
         for (int a = i - reach; a <= i + reach; a++)
           if (closer.in_range(a, b) && !patch.count(nodes.cell(a, b)) && belongs(nodes.cell(a, b)))
             todo.push_back({nodes.cell(a, b), NOT_REFINED});
+      join_rims(i, j, blocks, todo);
     }
     if (hidden != NOT_REFINED) follow_rim(cell, hidden, todo);
   }
 }
 
-void SurfaceSampler::follow_rim(int64_t cell, int hidden, std::vector<std::pair<int64_t, int>> &todo)
+void SurfaceSampler::join_rims(int i, int j, std::unordered_set<int64_t> &blocks, Steps &todo)
+{
+  const int bi = (i + BLOCK) / BLOCK, bj = (j + BLOCK) / BLOCK;    // i, j >= -1
+  if (!blocks.insert(nodes.cell(bi, bj)).second) return;
+  if (nodes.tile == BLOCK && i >= 0 && j >= 0 && i < nodes.nx && j < nodes.ny &&
+      uniform(i / BLOCK, j / BLOCK))
+    return;
+  const int i0 = std::max((bi - 2) * BLOCK, closer.ilo), i1 = std::min((bi + 1) * BLOCK, closer.ihi);
+  const int j0 = std::max((bj - 2) * BLOCK, closer.jlo), j1 = std::min((bj + 1) * BLOCK, closer.jhi);
+  for (int b = j0; b < j1; b++)
+    for (int a = i0; a < i1; a++) {
+      const int64_t cell = nodes.cell(a, b);
+      if (closer.kind(a, b) == SurfaceCloser::RIM && !closed.count(cell) && !patch.count(cell))
+        todo.push_back({cell, 0});
+    }
+}
+
+void SurfaceSampler::follow_rim(int64_t cell, int hidden, Steps &todo)
 {
   const int i = nodes.cell_i(cell), j = nodes.cell_j(cell);
   Member &member = patch[cell];
@@ -183,7 +207,7 @@ void SurfaceSampler::close_patch(int64_t seed)
 
   closer.start();
   std::unordered_map<int64_t, bool> refined;
-  std::vector<std::pair<int64_t, int>> rim;
+  Steps rim;
   auto refine = [&](int64_t cell, int hidden) {
     if (hidden > MOST_HIDDEN || refined[cell]) return;
     refined[cell] = true;

@@ -18,6 +18,8 @@
 
 #include <cstdint>
 #include <unordered_map>
+#include <unordered_set>
+#include <utility>
 #include <vector>
 
 namespace Slope {
@@ -82,9 +84,12 @@ class SurfaceSampler {
   std::unordered_map<int64_t, Member> patch;
 
   bool belongs(int64_t cell);
+  bool uniform(int tile_i, int tile_j);
   void close_patch(int64_t seed);
   void collect(int64_t seed);
-  void follow_rim(int64_t cell, int hidden, std::vector<std::pair<int64_t, int>> &todo);
+  typedef std::vector<std::pair<int64_t, int>> Steps;    // cells, and how hidden they are
+  void follow_rim(int64_t cell, int hidden, Steps &todo);
+  void join_rims(int i, int j, std::unordered_set<int64_t> &blocks, Steps &todo);
   void close_rims_around(int tile_i, int tile_j);
   void remember_less(int tile_j);
 };

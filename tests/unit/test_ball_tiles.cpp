@@ -77,7 +77,7 @@ TEST(SurfaceTiles, size_and_order_of_tiles_change_nothing)
 {
   for (double spacing : {2.0 * R, R}) {
     const std::vector<PlacedBall> whole = by_tiles(spacing, 1024, 1);
-    EXPECT_GT(std::count_if(whole.begin(), whole.end(), is_extra), 500);
+    EXPECT_GT(std::count_if(whole.begin(), whole.end(), is_extra), 200);
     for (int tile : {32, 4, 64, 128}) {
       const std::vector<PlacedBall> balls = by_tiles(spacing, tile, tile);
       ASSERT_EQ(balls.size(), whole.size()) << tile;
@@ -120,7 +120,9 @@ TEST(BallTiles, finds_what_a_loop_over_all_balls_finds_and_makes_only_what_is_ne
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   for (int k = 0; k < 2000; k++) {
-    if (k == 1) EXPECT_LE(made, 4);
+    if (k == 1) {
+      EXPECT_LE(made, 4);
+    }
     const double x = -3.0 + unit(random) * (SIDE + 6.0), y = -3.0 + unit(random) * (0.8 * SIDE + 6.0);
     const double at[3] = {x, y, 0.7 * x + 8.0 * (unit(random) - 0.5)}, reach = 0.5 + 2.0 * unit(random);
     std::set<int64_t> expected, found;
