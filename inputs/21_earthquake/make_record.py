@@ -1,16 +1,17 @@
 #!/usr/bin/python3
 """Makes motion.txt of this case: a synthetic earthquake of 300 gal, the same on every machine.
 
-A stationary noise with the spectrum of Kanai and Tajimi (2.5 Hz, damping 0.6: stiff soil), without its slow part by the
-filter of Clough and Penzien (0.25 Hz, 0.6): cosines every 0.05 Hz from 0.1 to 12 Hz, amplitudes from the spectrum, phases
-from Python's Mersenne Twister with a fixed seed. Its envelope is that of Jennings, Housner and Tsai: (t/3)^2 to 3 s, 1 to
-10 s, exp(-0.4 (t - 10)) to 20 s. A correction (a + b t) times the envelope makes the ground end at rest where it began.
+A stationary noise with the spectrum of Kanai and Tajimi (2.5 Hz, damping 0.6: stiff soil), without its slow part by
+the filter of Clough and Penzien (0.25 Hz, 0.6): cosines every 0.05 Hz from 0.1 to 12 Hz, amplitudes from the spectrum,
+phases from Python's Mersenne Twister with a fixed seed. Its envelope is that of Jennings, Housner and Tsai: (t/3)^2
+to 3 s, 1 to 10 s, exp(-0.4 (t - 10)) to 20 s. A correction (a + b t) times the envelope makes the ground end at rest
+where it began.
 
-Two horizontal components and a vertical one, 1 : 0.85 : 0.5, of phases of their own; x is down and up the slope. All are
-scaled so that the largest horizontal acceleration, of both components together, is 300 gal.
+Two horizontal components and a vertical one, 1 : 0.85 : 0.5, of phases of their own; x is along the fall of the face.
+All are scaled so that the largest horizontal acceleration, of both components together, is 300 gal.
 
-Writes "t ax ay az", s and m/s2, every 0.02 s. Run it in this folder; it overwrites motion.txt. --axes x or xy: the other
-components are 0, and the file has another name.
+Writes "t ax ay az", s and m/s2, every 0.02 s. Run it in this folder; it overwrites motion.txt. --axes x or xy: the
+other components are 0, and the file is motion_x.txt or motion_xy.txt.
 """
 import argparse
 import math

@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import yaml
 
-from . import combinations, rasters, repeats, rest, runs, study_table, travel_shares
+from . import combinations, intensity, rasters, repeats, rest, runs, study_table, travel_shares
 from .study_file import read_study      # noqa: F401  (for those who work on with a study)
 from .study_maps import Maps
 
@@ -51,6 +51,7 @@ def collect(args, settings, repeated, errors, todo, work, thresholds):
             best["doubts"] += errors.doubts(deck.name, {**work.defaults, **best["set"]}, [*settings, *repeated],
                                             about["study"]["road"])
         best["doubts"] += unseen(repeated, work.defaults)
+    about["intensity"] = intensity.collect(args, settings, groups) if finished else None
     for text in warnings:
         warn(text)
     runs.write(output / "study.csv", study_table.table(settings, repeated, rows, work.defaults))

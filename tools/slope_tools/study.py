@@ -9,7 +9,7 @@ import re
 import shutil
 from pathlib import Path
 
-from . import jobs, rasters, repeats, results, runs
+from . import intensity, jobs, rasters, repeats, results, runs
 from .cli import number
 from .errors import SlopeError
 from .settings import check_settings
@@ -59,6 +59,7 @@ def add_parser(commands, **kwargs):
                              "counts in the conservative volume")
     parser.add_argument("--exceed", default="0.1,0.5,1", metavar="T1,T2,...",
                         help="thicknesses of the maps of exceedance, m (default 0.1,0.5,1)")
+    intensity.add_arguments(parser)
     add_runs(parser)
     return parser
 
@@ -95,6 +96,7 @@ def run(args):
     defaults = runs.index_variables(args.deck)
     todo = repeats.plan(args.output, settings, repeated, defaults)
     check_names(todo)
+    intensity.check(args.intensity, settings, bool(args.road))
     errors = None
     if args.size_error:
         if not args.road:
