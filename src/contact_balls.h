@@ -68,6 +68,28 @@ struct FixedPartners {
   double mass(int) const { return 1.0; }
 };
 
+// ... or fixed ones of their own radii (m), which stand for a smooth surface: see fix wall/gran/mesh
+struct PhantomPartners {
+  static constexpr bool MOVE = false;
+  const Vector *position;
+  const double *radii;
+  Vector still = {0.0, 0.0, 0.0};
+
+  PhantomPartners(const Vector *positions, const double *radii_in) :
+      position(positions), radii(radii_in)
+  {
+  }
+
+  const Vector &x(int j) const { return position[j]; }
+  double share(int) const { return 1.0; }
+  bool gets_force(int) const { return false; }
+  void prefetch(int) const {}
+  const Vector &v(int) const { return still; }
+  const Vector &omega(int) const { return still; }
+  double radius(int j) const { return radii[j]; }
+  double mass(int) const { return 1.0; }
+};
+
 }    // namespace Slope
 
 #endif

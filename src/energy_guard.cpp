@@ -46,7 +46,7 @@ void EnergyGuard::start()
     if (fix->time_integrate && !utils::strmatch(style, "^nve/sphere")) known = false;
     if (!(modify->fmask[k] & POST_FORCE)) continue;
     if (!utils::strmatch(style, "^gravity") && style != "wall/gran/balls" &&
-        !utils::strmatch(style, "^freeze"))
+        style != "wall/gran/mesh" && !utils::strmatch(style, "^freeze"))
       known = false;
     if (style == "adapt") known = false;
   }

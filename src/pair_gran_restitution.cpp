@@ -203,7 +203,8 @@ double PairGranRestitution::init_one(int i, int j)
 
 /* ---------------------------------------------------------------------- */
 
-void PairGranRestitution::announce_wall(ContactHolder *wall, int type, int groupbit)
+void PairGranRestitution::announce_wall(ContactHolder *wall, int type, int groupbit,
+                                        const char *style)
 {
   walls.push_back(wall);
   for (int itype = 1; itype <= atom->ntypes; itype++) {
@@ -213,7 +214,7 @@ void PairGranRestitution::announce_wall(ContactHolder *wall, int type, int group
     MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
     if (any && !law(itype, type))
       error->all(FLERR,
-                 "Fix wall/gran/balls: pair_coeff {} {} is not set (moving type {}, wall type {})",
+                 "Fix {}: pair_coeff {} {} is not set (moving type {}, wall type {})", style,
                  std::min(itype, type), std::max(itype, type), itype, type);
   }
   if (allocated) table.add_wall_type(type);
@@ -413,6 +414,11 @@ void PairGranRestitution::unpack_reverse_comm(int n, int *list, double *buf)
 bool PairGranRestitution::force_estimated(int i) const
 {
   return counts.is_estimated(i);
+}
+
+bool PairGranRestitution::forces_taken_back() const
+{
+  return fix_history && fix_history->forces_taken_back;
 }
 
 /* ----------------------------------------------------------------------

@@ -1,0 +1,622 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+/* A surface of triangles as a smooth wall. Balls near it are listed when LAMMPS rebuilds its neighbor
+   list; each step finds the points that they touch (surface_watch.h). At each of these a ball touches a
+   fixed phantom ball of its own size, so that law, impacts, guards and energies are those of balls. */
+
+#include "fix_wall_gran_mesh.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "contact_energy.h"
+#include "error.h"
+#include "force.h"
+#include "initial_overlap.h"
+#include "lammps_compat.h"
+#include "modify.h"
+#include "neighbor.h"
+#include "pair_gran_restitution.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <functional>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace Slope;
+
+static constexpr double DEEPEST = 0.25;    // overlap over radius up to which nothing passes
+static constexpr double SAME_SURFACE = 1.0e-9;
+static constexpr double RESTART_FORMAT = 1.0;
+
+static Vector vector_of(const double *x)
+{
+  return {x[0], x[1], x[2]};
+}
+
+/* ----------------------------------------------------------------------
+   fix ID group wall/gran/mesh TYPE FILE.stl|terrain FILE.asc keyword value ...
+------------------------------------------------------------------------- */
+
+FixWallGranMesh::FixWallGranMesh(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), caller(fmt::format("Fix wall/gran/mesh {}", id)),
+    options(lmp, caller, narg - 3, arg + 3), surface(options.surface()), pair(nullptr),
+    lists_newer(false), all_ready(false), first_step(false), fast{0.0, 0.0, 0.0, 0.0, 0}
+{
+  scalar_flag = vector_flag = 1;
+  size_vector = IMPULSE + 3;
+  extscalar = extvector = 1;
+  global_freq = 1;
+  restart_global = restart_peratom = 1;
+  create_attribute = 1;
+  maxexchange_dynamic = 1;
+
+  std::fill(mine, mine + NVALUE, 0.0);
+  std::fill(all, all + NVALUE, 0.0);
+  for (int d = 0; d < 3; d++) given[d] = given_before[d] = 0.0;
+  if (options.every) {
+    nevery = options.every;
+    recorder.reset(new SurfaceRecorder(lmp, caller, options.output, options.every, *surface));
+  }
+
+  FixWallGranMesh::grow_arrays(atom->nmax);
+  atom->add_callback(Atom::GROW);
+  atom->add_callback(Atom::RESTART);
+}
+
+/* ---------------------------------------------------------------------- */
+
+FixWallGranMesh::~FixWallGranMesh()
+{
+  atom->delete_callback(id, Atom::GROW);
+  atom->delete_callback(id, Atom::RESTART);
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixWallGranMesh::setmask()
+{
+  return PRE_EXCHANGE | POST_NEIGHBOR | POST_FORCE | (recorder ? END_OF_STEP : 0);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixWallGranMesh::init()
+{
+  pair = dynamic_cast<PairGranRestitution *>(force->pair_match("gran/restitution", 1));
+  if (!pair)
+    error->all(FLERR, "{}: requires pair_style gran/restitution, which holds its coefficients",
+               caller);
+  pair->announce_wall(this, options.type, groupbit, style);
+
+  // contacts must be stored by atom before any fix migrates atoms
+
+  for (int i = 0; i < modify->nfix; i++) {
+    if (modify->fix[i] == this) break;
+    if (modify->fix[i]->pre_exchange_migrate)
+      error->all(FLERR, "{}: must come before fix {} {}, which moves atoms between ranks", caller,
+                 modify->fix[i]->id, modify->fix[i]->style);
+  }
+  for (Fix *fix : compat::fixes_of_style(lmp, style)) {
+    const auto other = static_cast<FixWallGranMesh *>(fix);
+    if (other != this && recorder && other->recorder && other->recorder->prefix == recorder->prefix)
+      error->all(FLERR, "{} output must be another than that of fix {}, got {}", caller, fix->id,
+                 recorder->prefix);
+  }
+  fast = {0.0, 0.0, 0.0, 0.0, 0};
+}
+
+/* ----------------------------------------------------------------------
+   law for balls of a type on the surface, where the rolling radius is the ball's
+------------------------------------------------------------------------- */
+
+ContactLaw FixWallGranMesh::law_of(int type) const
+{
+  const ContactLaw *law = pair->law(type, options.type);
+  if (!law)    // a type that came after init(), by fix pour or fix deposit
+    error->one(FLERR, "{}: pair_coeff {} {} is not set (moving type {}, wall type {})", caller,
+               std::min(type, options.type), std::max(type, options.type), type, options.type);
+  ContactLaw mine = *law;
+  mine.rolling_factor = 2.0;    // of the two radii's r r/(r + r)
+  return mine;
+}
+
+/* ----------------------------------------------------------------------
+   contacts from the lists to storage by atom: before atoms migrate or are sorted, before a
+   restart file, at the end of a run
+------------------------------------------------------------------------- */
+
+void FixWallGranMesh::store_contacts()
+{
+  if (!lists_newer) return;
+  lists_newer = false;
+
+  // per ball: how many, then each
+
+  store.clear();
+  std::vector<int> count(watch.balls(), 0);
+  auto visit = [this](std::function<void(const ContactList &, size_t)> what) {
+    for (const ContactList &l : lists)
+      for (size_t k = 0; k < l.entries.size(); k++)
+        if (l.has_history(k) && l.entries[k].i < atom->nlocal)
+          what(l, k);    // may have been deleted
+  };
+  visit([&](const ContactList &l, size_t k) {
+    count[watch.slots[l.entries[k].j].ball]++;
+  });
+  int most = 0;
+  for (int b = 0; b < watch.balls(); b++) {
+    if (count[b]) store.make(watch.number_of(b), count[b]);
+    most = std::max(most, count[b]);
+    count[b] = 0;
+  }
+  visit([&](const ContactList &l, size_t k) {
+    const SurfaceWatch::Slot &slot = watch.slots[l.entries[k].j];
+    double *to = store.contact(l.entries[k].i, count[slot.ball]++);
+    memcpy(to, &slot.at.normal, sizeof(Vector));
+    std::copy_n(l.histories[k], HISTORY, to + 3);
+  });
+  maxexchange = SurfaceContactStore::packed(most);
+}
+
+void FixWallGranMesh::pre_exchange()
+{
+  store_contacts();
+}
+
+/* ----------------------------------------------------------------------
+   list the triangles near each moving ball, and the contacts that it has
+   LAMMPS rebuilds when a ball has moved by half the skin; the surface does not move
+------------------------------------------------------------------------- */
+
+void FixWallGranMesh::setup_post_neighbor()
+{
+  post_neighbor();
+}
+
+void FixWallGranMesh::post_neighbor()
+{
+  lists.resize(atom->ntypes + 1);
+  for (ContactList &l : lists) l.clear(true, false);
+  watch.clear();
+  kind.clear();
+  history.clear();
+
+  const Vector &low = surface->low(), &high = surface->high();
+  std::vector<int> near;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    const Vector x = vector_of(atom->x[i]);
+    const double r = atom->radius[i];
+    const double reach = r + 0.5 * neighbor->skin + size_of(vector_of(atom->v[i])) * update->dt;
+    if (x.x < low.x - reach || x.x > high.x + reach || x.y < low.y - reach ||
+        x.y > high.y + reach || x.z < low.z - reach || x.z > high.z + reach)
+      continue;
+    near.clear();
+    surface->find_near(x, reach, near);
+    SurfacePoint nearest;
+    nearest.distance = HUGE_VAL;
+    size_t n = 0;
+    for (const int number : near) {
+      const SurfacePoint p = nearest_point(surface->triangle(number), number, x);
+      if (p.distance < nearest.distance) nearest = p;
+      if (p.distance < reach) near[n++] = number;
+    }
+    near.resize(n);
+    if (n == 0) continue;
+    const int ball = watch.add_ball(i, near);
+    if (nearest.distance > r) check_speed(i, nearest.normal);
+    for (int k = 0; k < store.contacts(i); k++) {
+      const double *stored = store.contact(i, k);
+      add_contact(watch.add_slot(ball, vector_of(stored)), stored + 3);
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   a slot's contact to the lists; from: its history, if it has one
+------------------------------------------------------------------------- */
+
+void FixWallGranMesh::add_contact(int slot, const double *from)
+{
+  history.emplace_back();
+  double *values = history.back().data();
+  std::fill_n(values, HISTORY, 0.0);
+  if (from) std::copy_n(from, HISTORY, values);
+  const int i = watch.number_of(watch.slots[slot].ball);
+  const double r = atom->radius[i];
+  kind.push_back(atom->type[i]);
+  ContactList &l = lists[kind.back()];
+  l.add(i, slot, values, from != nullptr, r, r, atom->rmass[i], 1.0);
+  if (pair->sizes_vary) l.equal = false;
+}
+
+/* ----------------------------------------------------------------------
+   what each ball near the surface touches now
+------------------------------------------------------------------------- */
+
+void FixWallGranMesh::look()
+{
+  const MovingBalls moving = pair->moving_balls();
+  for (int b = 0; b < watch.balls(); b++) {
+    const int i = watch.number_of(b);
+    const double step = size_of(moving.v[i]) * update->dt;
+    watch.look(b, vector_of(atom->x[i]), atom->radius[i], step, *surface);
+  }
+  const size_t before = kind.size(), n = watch.slots.size();
+  for (size_t s = before; s < n; s++) add_contact(static_cast<int>(s), nullptr);
+
+  centres.reserve(n + 1);    // contacts are read 32 bytes at a time, 8 beyond a vector
+  centres.resize(n);
+  radii.resize(n);
+  for (size_t s = 0; s < n; s++) {
+    const SurfaceWatch::Slot &slot = watch.slots[s];
+    centres[s] = slot.centre;
+    radii[s] = slot.radius;
+    if (slot.touches) check_speed(watch.number_of(slot.ball), slot.at.normal);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   A ball that comes along the normal at v gets as deep as v sqrt(m/kn), undamped. Up to a quarter of
+   its radius nothing passes, whatever the edges that it meets.
+------------------------------------------------------------------------- */
+
+void FixWallGranMesh::check_speed(int i, const Vector &normal)
+{
+  const Vector v = vector_of(atom->v[i]);
+  const double towards = -dot(v, normal);
+  if (!(towards > 0.0)) return;
+  const ContactLaw *law = pair->law(atom->type[i], options.type);
+  if (!law) return;
+  const double deep = towards * std::sqrt(atom->rmass[i] / law->kn);
+  const double share = deep / (DEEPEST * atom->radius[i]);
+  if (share <= 1.0) return;
+  if (fast.count++ == 0)
+    error->warning(
+        FLERR,
+        "{}: ball {} comes at {:.4g} m/s at step {}, {:.3g} times the speed up to which nothing "
+        "passes, {:g} R sqrt(kn/m): the contacts need a larger stiffness",
+        caller, atom->tag[i], towards, update->ntimestep, share, DEEPEST);
+  if (share > fast.share)
+    fast = {share, towards, static_cast<double>(atom->tag[i]),
+            static_cast<double>(update->ntimestep), fast.count};
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixWallGranMesh::setup(int)
+{
+  clock.begin(update->ntimestep, update->dt);
+  std::copy(given, given + 3, given_before);
+  apply(true);
+  first_step = true;
+}
+
+void FixWallGranMesh::post_force(int)
+{
+  double before[3];
+  std::copy(given, given + 3, before);
+  if (first_step && pair->forces_taken_back()) std::copy(given_before, given_before + 3, before);
+  first_step = false;
+  apply(false);
+  for (int d = 0; d < 3; d++) mine[IMPULSE + d] += 0.5 * update->dt * (before[d] + given[d]);
+  clock.pass(update->ntimestep);
+  if (recorder) recorder->end_step(mine + FORCE);
+}
+
+void FixWallGranMesh::reset_dt()
+{
+  // between runs, where newer LAMMPS calls this too, the next set-up sees the change
+  if (update->whichflag == 1) clock.change_step_size(update->ntimestep, update->dt);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixWallGranMesh::end_of_step()
+{
+  if (recorder->row_due()) record();
+}
+
+void FixWallGranMesh::record()
+{
+  reduce();
+  recorder->add_row(clock.at(update->ntimestep), all);
+}
+
+/* ----------------------------------------------------------------------
+   called by the pair style before it computes forces
+------------------------------------------------------------------------- */
+
+void FixWallGranMesh::find_contacts(bool starting, bool lists_new)
+{
+  look();
+  const MovingBalls moving = pair->moving_balls();
+  const PhantomPartners phantoms(centres.data(), radii.data());
+  InitialOverlap initial(lmp);
+  for (ContactList &l : lists) {
+    if (starting)
+      l.start(moving, phantoms, [&](const ContactList::Entry &e, double overlap) {
+        initial.look(overlap, atom->radius[e.i], atom->tag[e.i], atom->x[e.i],
+                     fmt::format("triangle {}", watch.slots[e.j].at.triangle + 1));
+      });
+    l.find(starting, lists_new, moving, phantoms);
+  }
+  if (starting) initial.check(caller);
+}
+
+/* ----------------------------------------------------------------------
+   How much larger the force of an impact is than that of the law: the motion that the step follows is as
+   much faster (theory: a force as a step needs it).
+------------------------------------------------------------------------- */
+
+double FixWallGranMesh::hurry(const ContactLaw &law, double mass) const
+{
+  if (!(law.exact > 0.0)) return 1.0;
+  const double dt = update->dt;
+  const double a = law.kn * dt * dt / mass;
+  const Oscillator followed = true_at_rest({law.cn(mass) * 0.5 * dt / mass, a});
+  return std::sqrt(followed.a / a);
+}
+
+/* ----------------------------------------------------------------------
+   contact forces of the surface on the balls
+------------------------------------------------------------------------- */
+
+void FixWallGranMesh::apply(bool starting)
+{
+  MovingBalls moving = pair->moving_balls();
+  const PhantomPartners phantoms(centres.data(), radii.data());
+  Vector force = {0.0, 0.0, 0.0}, moment = force, momentum = force;
+  int contacts = 0;
+
+  // torques of the rolling resistance act on the surface, too: the sum of what the balls get, less that
+  // of the forces
+
+  auto torque_of_balls = [&](double sign) {
+    for (int b = 0; b < watch.balls(); b++)
+      if (watch.has_slots(b)) moment = moved(moment, sign, moving.torque[watch.number_of(b)]);
+  };
+  torque_of_balls(1.0);
+
+  for (int type = 1; type <= atom->ntypes; type++) {
+    ContactList &l = lists[type];
+    if (l.entries.empty()) continue;
+    const ContactLaw law = law_of(type);
+    double mass = 0.0, faster = 1.0;
+    l.apply<true>(law, update->dt, starting, moving, phantoms,
+                  [&](int i, int j, const Vector &f, const Vector &) {
+                    const SurfaceWatch::Slot &slot = watch.slots[j];
+                    const double phase = history[j][PHASE];
+                    const bool ended = phase == ENDED;
+                    double share = 1.0;
+                    if (ended || (is_impact(phase) && moving.count[i] == 1)) {
+                      if (mass != atom->rmass[i]) faster = hurry(law, mass = atom->rmass[i]);
+                      share = 1.0 / faster;
+                    }
+                    const Vector arm = {-slot.radius * slot.at.normal.x,
+                                        -slot.radius * slot.at.normal.y,
+                                        -slot.radius * slot.at.normal.z};
+                    const Vector at = moved(vector_of(atom->x[i]), 1.0, arm);
+                    const Vector torque = cross(arm, f);    // on the ball
+                    momentum = moved(momentum, -1.0, f);
+                    force = moved(force, -share, f);
+                    moment = moved(moment, -share, cross(minus(at, options.point), f));
+                    moment = moved(moment, 1.0, torque);
+                    contacts += !ended;
+                    if (recorder && !starting) {
+                      const double press = dot(f, slot.at.normal);
+                      recorder->add(slot.at.triangle, share * press, press * update->dt);
+                    }
+                  });
+  }
+  torque_of_balls(-1.0);
+
+  const Vector sums[2] = {force, moment};
+  memcpy(mine, sums, sizeof(sums));
+  memcpy(given, &momentum, sizeof(momentum));
+  mine[CONTACTS] = contacts;
+  all_ready = false;
+  lists_newer = true;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixWallGranMesh::elastic_energy() const
+{
+  const MovingBalls moving = pair->moving_balls();
+  const PhantomPartners phantoms(centres.data(), radii.data());
+  double energy = 0.0;
+  for (size_t type = 1; type < lists.size(); type++)
+    if (!lists[type].entries.empty())
+      energy += Slope::elastic_energy(lists[type], law_of(type), moving, phantoms,
+                                      [this](const ContactList::Entry &e, double overlap) {
+                                        pair->guards.see_overlap(e.i, overlap, atom->radius[e.i]);
+                                      });
+  return energy;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixWallGranMesh::post_run()
+{
+  store_contacts();
+  if (recorder && update->whichflag == 1) recorder->write();
+  report();
+}
+
+/* ----------------------------------------------------------------------
+   balls that came too fast, once per run
+------------------------------------------------------------------------- */
+
+void FixWallGranMesh::report()
+{
+  bigint count;
+  MPI_Allreduce(&fast.count, &count, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (count == 0) return;
+  struct {
+    double share;
+    int rank;
+  } own = {fast.share, comm->me}, worst;
+  MPI_Allreduce(&own, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
+  MPI_Bcast(&fast, sizeof(fast), MPI_BYTE, worst.rank, world);
+  pair->guards.say(fmt::format(
+      "{}: a ball came too fast for it {} times, the worst at {:.4g} m/s (ball {:.0f}, step "
+      "{:.0f}), {:.3g} times the speed up to which nothing passes, {:g} R sqrt(kn/m): the "
+      "contacts need a larger stiffness",
+      caller, count, fast.speed, fast.ball, fast.step, fast.share, DEEPEST));
+}
+
+/* ----------------------------------------------------------------------
+   number of contacts; force on the surface, its moment, impulse
+------------------------------------------------------------------------- */
+
+void FixWallGranMesh::reduce()
+{
+  if (all_ready) return;
+  MPI_Allreduce(mine, all, NVALUE, MPI_DOUBLE, MPI_SUM, world);
+  all_ready = true;
+}
+
+double FixWallGranMesh::compute_scalar()
+{
+  reduce();
+  return all[CONTACTS];
+}
+
+double FixWallGranMesh::compute_vector(int n)
+{
+  reduce();
+  return all[n];
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixWallGranMesh::memory_usage()
+{
+  double bytes = surface->memory_usage() + watch.memory_usage() + store.memory_usage();
+  for (const ContactList &l : lists) bytes += l.memory_usage();
+  bytes += history.size() * sizeof(history[0]) + centres.capacity() * sizeof(Vector) +
+      radii.capacity() * sizeof(double) + kind.capacity() * sizeof(int);
+  return bytes;
+}
+
+/* ----------------------------------------------------------------------
+   storage by atom
+------------------------------------------------------------------------- */
+
+void FixWallGranMesh::grow_arrays(int nmax)
+{
+  store.resize(nmax);
+}
+
+void FixWallGranMesh::copy_arrays(int i, int j, int /*delflag*/)
+{
+  store_contacts();    // a fix before this one deletes atoms before they migrate
+  store.copy(i, j);
+}
+
+void FixWallGranMesh::set_arrays(int i)
+{
+  store.make(i, 0);
+}
+
+int FixWallGranMesh::pack_exchange(int i, double *buf)
+{
+  return store.pack(i, buf);
+}
+
+int FixWallGranMesh::unpack_exchange(int i, double *buf)
+{
+  const int m = store.unpack(i, buf);
+  maxexchange = std::max(maxexchange, m);
+  return m;
+}
+
+/* ----------------------------------------------------------------------
+   restart file: what identifies the surface, sums so far, and the contacts of each atom
+------------------------------------------------------------------------- */
+
+void FixWallGranMesh::write_restart(FILE *fp)
+{
+  const bool in_use = lists_newer;
+  store_contacts();
+  lists_newer = in_use;    // the run goes on with the lists
+  double momentum[3];
+  MPI_Allreduce(given, momentum, 3, MPI_DOUBLE, MPI_SUM, world);
+  reduce();
+  std::vector<double> recorded;
+  if (recorder) recorded = recorder->pack();
+  if (comm->me > 0) return;
+  std::vector<double> list = {RESTART_FORMAT, static_cast<double>(surface->count()),
+                              surface->checksum()};
+  list.insert(list.end(), all + IMPULSE, all + IMPULSE + 3);
+  list.insert(list.end(), momentum, momentum + 3);
+  const RunClock::State at = clock.state();
+  list.insert(list.end(), {at.base, at.base_step, at.last, at.step_size, at.on});
+  list.push_back(recorder ? 1.0 : 0.0);
+  list.insert(list.end(), recorded.begin(), recorded.end());
+  if (list.size() * sizeof(double) > MAXSMALLINT)
+    error->one(FLERR, "{} must have at most {} bytes in a restart file, got {}", caller,
+               MAXSMALLINT, list.size() * sizeof(double));
+  const int size = static_cast<int>(list.size() * sizeof(double));
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(list.data(), sizeof(double), list.size(), fp);
+}
+
+void FixWallGranMesh::restart(char *buf)
+{
+  const double *list = reinterpret_cast<double *>(buf);
+  if (list[0] != RESTART_FORMAT)
+    error->all(FLERR,
+               "{}: the restart file is of another version of the fix: run from the start again",
+               caller);
+  if (list[1] != surface->count() ||
+      std::fabs(list[2] - surface->checksum()) > SAME_SURFACE * std::fabs(surface->checksum()))
+    error->all(
+        FLERR,
+        "{}: the restart file was written with another surface ({:.0f} triangles there, {} here)",
+        caller, list[1], surface->count());
+  for (int d = 0; d < 3 && comm->me == 0; d++) {
+    mine[IMPULSE + d] = list[3 + d];
+    given[d] = list[6 + d];
+  }
+  clock.set_state({list[9], list[10], list[11], list[12], list[13]});
+  if (recorder && list[14] != 0.0) recorder->unpack(list + 15);
+  all_ready = false;
+}
+
+int FixWallGranMesh::pack_restart(int i, double *buf)
+{
+  const int m = 1 + store.pack(i, &buf[1]);
+  buf[0] = m;
+  return m;
+}
+
+void FixWallGranMesh::unpack_restart(int i, int nth)
+{
+  double *extra = atom->extra[i];
+  int m = 0;
+  for (int k = 0; k < nth; k++) m += static_cast<int>(extra[m]);
+  store.unpack(i, &extra[m + 1]);
+}
+
+int FixWallGranMesh::size_restart(int i)
+{
+  return 1 + SurfaceContactStore::packed(store.contacts(i));
+}
+
+int FixWallGranMesh::maxsize_restart()
+{
+  // over all ranks: rank 0 writes it, and read_restart sizes its buffer by it
+
+  int mine_most = 0, most;
+  for (int i = 0; i < atom->nlocal; i++) mine_most = std::max(mine_most, store.contacts(i));
+  MPI_Allreduce(&mine_most, &most, 1, MPI_INT, MPI_MAX, world);
+  return 1 + SurfaceContactStore::packed(most);
+}

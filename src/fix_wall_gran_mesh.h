@@ -1,0 +1,120 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(wall/gran/mesh,FixWallGranMesh);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_WALL_GRAN_MESH_H
+#define LMP_FIX_WALL_GRAN_MESH_H
+
+#include "fix.h"
+
+#include "contact_holder.h"
+#include "contact_list.h"
+#include "run_clock.h"
+#include "surface_contact_store.h"
+#include "surface_options.h"
+#include "surface_recorder.h"
+#include "surface_watch.h"
+
+#include <array>
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class FixWallGranMesh : public Fix, public ContactHolder {
+ public:
+  FixWallGranMesh(class LAMMPS *, int, char **);
+  ~FixWallGranMesh() override;
+  int setmask() override;
+  void init() override;
+  void setup_post_neighbor() override;
+  void setup(int) override;
+  void pre_exchange() override;
+  void post_neighbor() override;
+  void post_force(int) override;
+  void end_of_step() override;
+  void reset_dt() override;
+  void post_run() override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+
+  double memory_usage() override;
+  void grow_arrays(int) override;
+  void copy_arrays(int, int, int) override;
+  void set_arrays(int) override;
+  int pack_exchange(int, double *) override;
+  int unpack_exchange(int, double *) override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+  int pack_restart(int, double *) override;
+  void unpack_restart(int, int) override;
+  int size_restart(int) override;
+  int maxsize_restart() override;
+
+  void find_contacts(bool starting, bool lists_new) override;
+  double elastic_energy() const override;
+
+ private:
+  std::string caller;    // style and ID, for messages
+  SurfaceOptions options;
+  std::unique_ptr<Slope::TouchedSurface> surface;
+  class PairGranRestitution *pair;
+
+  // The contacts of this rank's balls, by type of the ball. Each has a slot in watch, and in the contact
+  // list a phantom ball as partner: a fixed ball of the same size, so placed that it touches the ball
+  // where the surface does, and as deep.
+
+  Slope::SurfaceWatch watch;
+  std::vector<Slope::ContactList> lists;
+  std::vector<int> kind;    // of each slot: type of the ball
+  std::deque<std::array<double, Slope::HISTORY>> history;
+  std::vector<Slope::Vector> centres;    // of the phantoms
+  std::vector<double> radii;
+  bool lists_newer;    // contacts have been updated since they were last stored by atom
+  Slope::SurfaceContactStore store;
+
+  // What the balls do to the surface: the force as the contact law has it, its moment, the momentum that
+  // has been given in all; all as velocity Verlet hands them over
+
+  enum { FORCE = 0, MOMENT = 3, IMPULSE = 6, CONTACTS = 9, NVALUE };
+  double mine[NVALUE], all[NVALUE];
+  bool all_ready;
+  std::unique_ptr<SurfaceRecorder> recorder;    // nullptr without output
+  Slope::RunClock clock;
+  double given[3];           // momentum per time in this step
+  double given_before[3];    // in the last step of the run before
+  bool first_step;
+
+  // balls that came too fast
+
+  struct Fast {
+    double share;    // of the speed up to which nothing passes
+    double speed, ball, step;
+    bigint count;
+  } fast;
+
+  Slope::ContactLaw law_of(int type) const;
+  void add_contact(int slot, const double *from);
+  void look();
+  void check_speed(int i, const Slope::Vector &normal);
+  void store_contacts();
+  void apply(bool);
+  double hurry(const Slope::ContactLaw &, double mass) const;
+  void reduce();
+  void record();
+  void report();
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif
