@@ -155,6 +155,8 @@ def show(about: Mapping[str, Any]) -> None:
 
 def collect(args, settings: Settings, groups: Sequence[Group]) -> Optional[Dict[str, Any]]:
     """The entry of study.yaml, None without an intensity; writes intensity.csv and prints the table."""
+    if getattr(args, "sample", None) is not None:
+        return None     # of values that are drawn, each has one run
     name = check(args.intensity, settings, bool(args.road))
     about = entry(name, groups, args.more_than) if name else None
     if about:
