@@ -46,6 +46,7 @@ def pressure_map(corners, pressure, direction, title):
     edges = np.cross(places[:, 1] - places[:, 0], places[:, 2] - places[:, 0])
     seen = np.abs(edges) > 1e-9 * np.abs(edges).max()     # others are seen from their edge
     places, values = places[seen], values[seen]
+    places[..., 0] -= places[..., 0].min()
     top = values.max()
     with plt.rc_context(STYLE):
         span = np.ptp(places.reshape(-1, 2), axis=0)
