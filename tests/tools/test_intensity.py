@@ -80,6 +80,15 @@ def test_points_count_the_runs_above_and_keep_other_variables_apart():
     assert [one["runs"] for one in about["lines"][1]["points"][0]["exceed"]] == [2, 0]
 
 
+def test_a_scatter_of_failing_is_doubted():
+    """Of 1000 m3 released, 10 m3 on the road are no failure."""
+    rows = [row("0", "0", "", 0.0), row("0", "0", "0.5", 10.0), row("300", "0", "", 5.0), row("300", "0", "0.5", 60.0),
+            row("600", "0", "", 40.0), row("600", "0", "0.5", 60.0)]
+    text, = intensity.doubts(intensity.entry("peak", combinations.grouped(rows), []))
+    assert text.startswith("at peak 300 some runs fail")
+    assert not intensity.doubts(intensity.entry("peak", combinations.grouped(rows[:2] + rows[4:]), []))
+
+
 @pytest.mark.parametrize("settings, found", [({"peak": ["0", "300"]}, "peak"), ({"peak": ["300"]}, None),
                                              ({"rolling": ["0", "1"], "pga": ["1", "2"]}, "pga"),
                                              ({"rolling": ["0", "1"]}, None), ({"peaks": ["0", "1"]}, None),

@@ -25,6 +25,7 @@ QUANTITY = "remove_on_road_m3"
 CONFIDENCE = 0.95       # of the interval of a probability
 DEFAULTS = 3            # volumes, if none are given
 FILE = "intensity.csv"
+STANDS = 0.01           # of the released volume: less on the road, and the mass has not failed
 
 Settings = Mapping[str, Sequence[str]]
 
@@ -113,9 +114,18 @@ def point(at: float, group: Group, volumes: Sequence[float]) -> Dict[str, Any]:
         above = sum(value > volume for value in found)
         share, low, high = probability(above, len(found))
         exceed.append({"more_than_m3": volume, "runs": above, "probability": share, "low": low, "high": high})
-    released = [row["released_m3"] for row in group.rows]
+    released = sum(row["released_m3"] for row in group.rows) / len(group.rows)
     return {"at": at, "runs": len(found), "mean_m3": one.mean, "scatter_m3": one.scatter, "smallest_m3": min(found),
-            "largest_m3": max(found), "share_of_released": one.mean * len(released) / sum(released), "exceed": exceed}
+            "largest_m3": max(found), "released_m3": released, "share_of_released": one.mean / released,
+            "exceed": exceed}
+
+
+def doubts(about: Mapping[str, Any]) -> List[str]:
+    """What speaks against a common scatter of all runs: chance decides whether the mass fails at all."""
+    mixed = sorted({f"{one['at']:g}" for line in about["lines"] for one in line["points"]
+                    if one["smallest_m3"] <= STANDS * one["released_m3"] < one["largest_m3"]}, key=float)
+    return [f"at {about['variable']} {', '.join(mixed)} some runs fail and others stand: the scatter is that "
+            "of failing, not of a volume; take the probabilities at each intensity"] if mixed else []
 
 
 def table(about: Mapping[str, Any]) -> str:

@@ -52,6 +52,8 @@ def collect(args, settings, repeated, errors, todo, work, thresholds):
                                             about["study"]["road"])
         best["doubts"] += unseen(repeated, work.defaults)
     about["intensity"] = intensity.collect(args, settings, groups) if finished else None
+    if about["intensity"]:
+        about["conservative"]["doubts"] += intensity.doubts(about["intensity"])
     structures.collect(output, finished)
     for text in warnings:
         warn(text)

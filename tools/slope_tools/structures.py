@@ -31,13 +31,10 @@ class Series:
     largest: np.ndarray
 
     def mean_force(self, window=WINDOW):
-        """Times and size of the mean force over the window (s) that ends then: the impulse's change over the time."""
-        if len(self.time) < 2:
-            return self.time, np.linalg.norm(self.force, axis=1)
-        begin = np.maximum(self.time - window, self.time[0])
-        before = np.stack([np.interp(begin, self.time, column) for column in self.impulse.T], axis=-1)
-        span = np.maximum(self.time - begin, 1e-300)
-        return self.time, np.linalg.norm(self.impulse - before, axis=1) / np.where(span > 0.5 * window, span, window)
+        """Times, and size of the mean force over the window (s) that ends then: the change of the impulse over it."""
+        begin = self.time - window
+        before = np.stack([np.interp(begin, self.time, column, left=0.0) for column in self.impulse.T], axis=-1)
+        return self.time, np.linalg.norm(self.impulse - before, axis=1) / window
 
 
 def outputs(settings: Sequence[str], style: str) -> Dict[str, str]:
@@ -54,10 +51,13 @@ def table_of(path: Path, columns: Sequence[str]) -> Dict[str, np.ndarray]:
     """Columns of a CSV that a fix wrote."""
     try:
         with open(path, encoding="ascii", newline="") as file:
-            rows = list(csv.DictReader(file))
+            reader = csv.DictReader(file)
+            if not set(columns) <= set(reader.fieldnames or ()):
+                raise ValueError(f"its first line is {','.join(reader.fieldnames or ())[:60]!r}")
+            rows = list(reader)
         # a height is empty where the terrain has none
         return {name: np.array([row[name] or "nan" for row in rows], float) for name in columns}
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (OSError, ValueError, TypeError, csv.Error) as error:
         raise SlopeError(path, f"must be what the run wrote, with {', '.join(columns)}",
                          getattr(error, "strerror", None) or error) from error
 
