@@ -58,7 +58,8 @@ FixWallGranMesh::FixWallGranMesh(LAMMPS *lmp, int narg, char **arg) :
 
   std::fill(mine, mine + NVALUE, 0.0);
   std::fill(all, all + NVALUE, 0.0);
-  for (int d = 0; d < 3; d++) given[d] = given_before[d] = 0.0;
+  for (int d = 0; d < 3; d++) given[d] = last[d] = 0.0;
+  last_step = -1;
   if (options.every) {
     nevery = options.every;
     recorder.reset(new SurfaceRecorder(lmp, caller, options.output, options.every, *surface));
@@ -293,7 +294,6 @@ void FixWallGranMesh::check_speed(int i, const Vector &normal)
 void FixWallGranMesh::setup(int)
 {
   clock.begin(update->ntimestep, update->dt);
-  std::copy(given, given + 3, given_before);
   apply(true);
   first_step = true;
 }
@@ -302,7 +302,8 @@ void FixWallGranMesh::post_force(int)
 {
   double before[3];
   std::copy(given, given + 3, before);
-  if (first_step && pair->forces_taken_back()) std::copy(given_before, given_before + 3, before);
+  if (first_step && last_step == update->ntimestep - 1 && pair->forces_taken_back())
+    std::copy(last, last + 3, before);
   first_step = false;
   apply(false);
   for (int d = 0; d < 3; d++) mine[IMPULSE + d] += 0.5 * update->dt * (before[d] + given[d]);
@@ -351,17 +352,19 @@ void FixWallGranMesh::find_contacts(bool starting, bool lists_new)
 }
 
 /* ----------------------------------------------------------------------
-   How much larger the force of an impact is than that of the law: the motion that the step follows is as
-   much faster (theory: a force as a step needs it).
+   force of a contact on its ball as the contact law has it, from what the step gave; zero where an
+   impact has ended in the step
 ------------------------------------------------------------------------- */
 
-double FixWallGranMesh::hurry(const ContactLaw &law, double mass) const
+Vector FixWallGranMesh::force_of_law(const SurfaceWatch::Slot &slot, double phase, const Vector &f,
+                                     const Vector &v, const ImpactForce &impact) const
 {
-  if (!(law.exact > 0.0)) return 1.0;
-  const double dt = update->dt;
-  const double a = law.kn * dt * dt / mass;
-  const Oscillator followed = true_at_rest({law.cn(mass) * 0.5 * dt / mass, a});
-  return std::sqrt(followed.a / a);
+  if (phase == ENDED) return {0.0, 0.0, 0.0};
+  const Vector &n = slot.at.normal;
+  const double d = slot.radius - slot.at.distance, V = -dot(v, n) * update->dt;
+  const Vector along = moved(f, -dot(f, n), n);
+  const double share = impact.tangential(phase, d, V);
+  return moved({share * along.x, share * along.y, share * along.z}, impact.normal(phase, d, V), n);
 }
 
 /* ----------------------------------------------------------------------
@@ -388,16 +391,17 @@ void FixWallGranMesh::apply(bool starting)
     ContactList &l = lists[type];
     if (l.entries.empty()) continue;
     const ContactLaw law = law_of(type);
-    double mass = 0.0, faster = 1.0;
+    std::unique_ptr<ImpactForce> impact;
     l.apply<true>(law, update->dt, starting, moving, phantoms,
                   [&](int i, int j, const Vector &f, const Vector &) {
                     const SurfaceWatch::Slot &slot = watch.slots[j];
                     const double phase = history[j][PHASE];
                     const bool ended = phase == ENDED;
-                    double share = 1.0;
-                    if (ended || (is_impact(phase) && moving.count[i] == 1)) {
-                      if (mass != atom->rmass[i]) faster = hurry(law, mass = atom->rmass[i]);
-                      share = 1.0 / faster;
+                    Vector shown = f;
+                    if (law.exact > 0.0 && (ended || (is_impact(phase) && moving.count[i] == 1))) {
+                      if (!impact || impact->of_mass() != atom->rmass[i])
+                        impact.reset(new ImpactForce(law, atom->rmass[i], update->dt));
+                      shown = force_of_law(slot, phase, f, moving.v[i], *impact);
                     }
                     const Vector arm = {-slot.radius * slot.at.normal.x,
                                         -slot.radius * slot.at.normal.y,
@@ -405,14 +409,13 @@ void FixWallGranMesh::apply(bool starting)
                     const Vector at = moved(vector_of(atom->x[i]), 1.0, arm);
                     const Vector torque = cross(arm, f);    // on the ball
                     momentum = moved(momentum, -1.0, f);
-                    force = moved(force, -share, f);
-                    moment = moved(moment, -share, cross(minus(at, options.point), f));
+                    force = moved(force, -1.0, shown);
+                    moment = moved(moment, -1.0, cross(minus(at, options.point), shown));
                     moment = moved(moment, 1.0, torque);
                     contacts += !ended;
-                    if (recorder && !starting) {
-                      const double press = dot(f, slot.at.normal);
-                      recorder->add(slot.at.triangle, share * press, press * update->dt);
-                    }
+                    if (recorder && !starting)
+                      recorder->add(slot.at.triangle, dot(shown, slot.at.normal),
+                                    dot(f, slot.at.normal) * update->dt);
                   });
   }
   torque_of_balls(-1.0);
@@ -446,8 +449,20 @@ double FixWallGranMesh::elastic_energy() const
 void FixWallGranMesh::post_run()
 {
   store_contacts();
+  keep_given();
   if (recorder && update->whichflag == 1) recorder->write();
   report();
+}
+
+/* ----------------------------------------------------------------------
+   as the forces of the balls are kept (fix_contact_history.cpp)
+------------------------------------------------------------------------- */
+
+void FixWallGranMesh::keep_given()
+{
+  if (last_step == update->ntimestep) return;    // run 0 only has what the set-up found
+  std::copy(given, given + 3, last);
+  last_step = update->ntimestep;
 }
 
 /* ----------------------------------------------------------------------
@@ -548,7 +563,8 @@ void FixWallGranMesh::write_restart(FILE *fp)
   store_contacts();
   lists_newer = in_use;    // the run goes on with the lists
   double momentum[3];
-  MPI_Allreduce(given, momentum, 3, MPI_DOUBLE, MPI_SUM, world);
+  if (update->whichflag == 1) keep_given();
+  MPI_Allreduce(last, momentum, 3, MPI_DOUBLE, MPI_SUM, world);
   reduce();
   std::vector<double> recorded;
   if (recorder) recorded = recorder->pack();
@@ -559,6 +575,7 @@ void FixWallGranMesh::write_restart(FILE *fp)
   list.insert(list.end(), momentum, momentum + 3);
   const RunClock::State at = clock.state();
   list.insert(list.end(), {at.base, at.base_step, at.last, at.step_size, at.on});
+  list.push_back(static_cast<double>(last_step));
   list.push_back(recorder ? 1.0 : 0.0);
   list.insert(list.end(), recorded.begin(), recorded.end());
   if (list.size() * sizeof(double) > MAXSMALLINT)
@@ -584,10 +601,11 @@ void FixWallGranMesh::restart(char *buf)
         caller, list[1], surface->count());
   for (int d = 0; d < 3 && comm->me == 0; d++) {
     mine[IMPULSE + d] = list[3 + d];
-    given[d] = list[6 + d];
+    last[d] = list[6 + d];
   }
   clock.set_state({list[9], list[10], list[11], list[12], list[13]});
-  if (recorder && list[14] != 0.0) recorder->unpack(list + 15);
+  last_step = static_cast<bigint>(list[14]);
+  if (recorder && list[15] != 0.0) recorder->unpack(list + 16);
   all_ready = false;
 }
 

@@ -16,6 +16,7 @@ FixStyle(wall/gran/mesh,FixWallGranMesh);
 
 #include "contact_holder.h"
 #include "contact_list.h"
+#include "impact_force.h"
 #include "run_clock.h"
 #include "surface_contact_store.h"
 #include "surface_options.h"
@@ -82,16 +83,17 @@ class FixWallGranMesh : public Fix, public ContactHolder {
   bool lists_newer;    // contacts have been updated since they were last stored by atom
   Slope::SurfaceContactStore store;
 
-  // What the balls do to the surface: the force as the contact law has it, its moment, the momentum that
-  // has been given in all; all as velocity Verlet hands them over
+  // what the balls do to the surface: the force as the contact law has it, its moment, and the momentum
+  // that it has got since the fix was defined
 
   enum { FORCE = 0, MOMENT = 3, IMPULSE = 6, CONTACTS = 9, NVALUE };
   double mine[NVALUE], all[NVALUE];
   bool all_ready;
   std::unique_ptr<SurfaceRecorder> recorder;    // nullptr without output
   Slope::RunClock clock;
-  double given[3];           // momentum per time in this step
-  double given_before[3];    // in the last step of the run before
+  double given[3];    // momentum per time in this step, as velocity Verlet hands it over
+  double last[3];     // and in a step that ended a run, which the set-up of the next one only estimates
+  bigint last_step;
   bool first_step;
 
   // balls that came too fast
@@ -108,7 +110,9 @@ class FixWallGranMesh : public Fix, public ContactHolder {
   void check_speed(int i, const Slope::Vector &normal);
   void store_contacts();
   void apply(bool);
-  double hurry(const Slope::ContactLaw &, double mass) const;
+  Slope::Vector force_of_law(const Slope::SurfaceWatch::Slot &, double phase, const Slope::Vector &f,
+                             const Slope::Vector &v, const Slope::ImpactForce &) const;
+  void keep_given();
   void reduce();
   void record();
   void report();
