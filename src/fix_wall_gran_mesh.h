@@ -92,7 +92,8 @@ class FixWallGranMesh : public Fix, public ContactHolder {
   std::unique_ptr<SurfaceRecorder> recorder;    // nullptr without output
   Slope::RunClock clock;
   double given[3];    // momentum per time in this step, as velocity Verlet hands it over
-  double last[3];     // and in a step that ended a run, which the set-up of the next one only estimates
+  double
+      last[3];    // and in a step that ended a run, which the set-up of the next one only estimates
   bigint last_step;
   bool first_step;
 
@@ -110,8 +111,9 @@ class FixWallGranMesh : public Fix, public ContactHolder {
   void check_speed(int i, const Slope::Vector &normal);
   void store_contacts();
   void apply(bool);
-  Slope::Vector force_of_law(const Slope::SurfaceWatch::Slot &, double phase, const Slope::Vector &f,
-                             const Slope::Vector &v, const Slope::ImpactForce &) const;
+  Slope::Vector force_of_law(const Slope::SurfaceWatch::Slot &, double phase,
+                             const Slope::Vector &f, const Slope::Vector &v,
+                             const Slope::ImpactForce &) const;
   void keep_given();
   void reduce();
   void record();

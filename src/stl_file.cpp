@@ -103,7 +103,9 @@ class Words {
   {
     std::string word;
     if (!next(word)) end(what);
-    if (word != what) fail(std::string(what) + " must stand here, got " + excerpt(word));
+    if (word == what) return;
+    if (at == text.size() && std::string(what).compare(0, word.size(), word) == 0) end(what);
+    fail(std::string(what) + " must stand here, got " + excerpt(word));
   }
 
   double number(const char *what)

@@ -141,7 +141,8 @@ TEST(StlFile, SliversHaveAnArea)
 TEST(StlFile, SaysWhatIsWrongWithText)
 {
   EXPECT_SAYS("solid x\n" + ONE, "line 9: the file is cut short: it ends where facet or endsolid");
-  EXPECT_SAYS("solid x\n" + ONE.substr(0, 60), "the file is cut short");
+  for (const size_t n : {10, 40, 60, 91})
+    EXPECT_SAYS("solid x\n" + ONE.substr(0, n), "the file is cut short");
   EXPECT_SAYS("solid x\nendsolid x\n", "must be a triangle with an area, got no triangles");
   EXPECT_SAYS("solid\n" + ONE + "vertex 1 1 1\nendsolid", "line 9: facet or endsolid must stand here, got vertex");
   std::string text = "solid x\n" + ONE + "endsolid x\n";
