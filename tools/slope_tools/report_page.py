@@ -57,7 +57,7 @@ class Page:
             "balance": report_numbers.balance(data), "rows": self.rows(), "columns": self.columns(),
             "means": self.means(), "differences": report_charts.differences(data, numbers),
             "maps": maps.of_run(), "section": self.picture(*self.section.picture()), "charts": charts.all(),
-            "intensity": report_intensity.content(data, charts, numbers, self.picture),
+            "intensity": report_intensity.content(data, numbers, self.picture),
             "hit": Structures(data, numbers, self.picture).content(),
             "road_chart": REMOVE in one.row, "removal": maps.removal(removal), "over_all": maps.over_all(),
             "reference": self.reference and self.reference_tables(),
