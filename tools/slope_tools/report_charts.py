@@ -6,9 +6,11 @@ from .report_data import is_number
 from .repeats import key_of
 
 AXIS = {"rolling": "rolling resistance (-)", "friction": "friction angle (degrees)", "restitution": "restitution (-)",
-        "d": "diameter of the balls (m)", "field_d": "diameter of the field balls (m)"}
+        "d": "diameter of the balls (m)", "field_d": "diameter of the field balls (m)",
+        "peak": "peak acceleration (gal)"}
 REMOVE = "remove_m3"
-TITLES = {REMOVE: "Volume to remove from the road", "front_m": "Distance of the farthest ball",
+TITLES = {REMOVE: "Volume to remove from the road", "remove_on_road_m3": "Volume on the road",
+          "front_m": "Distance of the farthest ball",
           travel_shares.DISTANCE: "Distance that 99 % of the volume stays within",
           "thickness_m": "Largest thickness at the end"}
 

@@ -1,7 +1,7 @@
 """All that a report shows, read, computed and drawn, as the template takes it."""
 import re
 
-from . import report_charts, report_convergence, report_numbers, runs
+from . import report_charts, report_convergence, report_intensity, report_numbers, runs
 from .rasters import crs_name
 from .reference import read as read_reference
 from .report_charts import REMOVE, Charts
@@ -9,6 +9,7 @@ from .report_data import Data, find_deck
 from .report_ground import Ground
 from .report_maps import Maps
 from .report_section import Section
+from .report_structures import Structures
 from .report_warnings import warnings
 
 # columns of a study's table: head, unit, key
@@ -56,6 +57,8 @@ class Page:
             "balance": report_numbers.balance(data), "rows": self.rows(), "columns": self.columns(),
             "means": self.means(), "differences": report_charts.differences(data, numbers),
             "maps": maps.of_run(), "section": self.picture(*self.section.picture()), "charts": charts.all(),
+            "intensity": report_intensity.content(data, numbers, self.picture),
+            "hit": Structures(data, numbers, self.picture).content(),
             "road_chart": REMOVE in one.row, "removal": maps.removal(removal), "over_all": maps.over_all(),
             "reference": self.reference and self.reference_tables(),
             "sizes": self.sizes and {"charts": self.sizes.pictures(self.picture), "rows": self.sizes.rows(numbers),

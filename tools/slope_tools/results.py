@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import yaml
 
-from . import combinations, rasters, repeats, rest, runs, study_table, travel_shares
+from . import combinations, intensity, rasters, repeats, rest, runs, structures, study_table, travel_shares
 from .study_file import read_study      # noqa: F401  (for those who work on with a study)
 from .study_maps import Maps
 
@@ -61,6 +61,10 @@ def collect(args, settings, repeated, errors, todo, work, thresholds, order=None
             best["doubts"] += errors.doubts(deck.name, {**work.defaults, **best["set"]}, [*settings, *repeated],
                                             about["study"]["road"])
         best["doubts"] += unseen(repeated, work.defaults)
+    about["intensity"] = intensity.collect(args, settings, groups) if finished else None
+    if about["intensity"]:
+        about["conservative"]["doubts"] += intensity.doubts(about["intensity"])
+    structures.collect(output, finished)
     for text in warnings:
         warn(text)
     runs.write(output / "study.csv", study_table.table(settings, repeated, rows, work.defaults))
@@ -173,7 +177,8 @@ def result(one, row, maps):
            "change_rate": summary.get("change_rate"),
            "wall_s": marker.get("wall_seconds"), "summary": f"{one.name}/{path.name}",
            "slope_version": summary["slope_version"], "lammps_version": summary["lammps_version"],
-           "lmp_sha256": about.get("lmp_sha256"), "log_warnings": one.log.warnings}
+           "lmp_sha256": about.get("lmp_sha256"), "log_warnings": one.log.warnings,
+           **structures.of_run(one.folder, one.log.settings)}
     return row, thickness
 
 

@@ -11,7 +11,7 @@ import re
 import shutil
 from pathlib import Path
 
-from . import jobs, launcher, rasters, repeats, results, runs, sample, slurm
+from . import intensity, jobs, launcher, rasters, repeats, results, runs, sample, slurm
 from .cli import number
 from .errors import SlopeError
 from .settings import check_settings, one_value_each
@@ -73,6 +73,7 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--of", metavar="NAME",
                         help="quantity of the hazard curve of an ensemble, a column of study.csv (default: "
                              "remove_on_road_m3; without a road distance_99_m)")
+    intensity.add_arguments(parser)
     add_runs(parser)
     return parser
 
@@ -121,6 +122,7 @@ def run(args):
         raise SlopeError("--set", "must be given, or --sample with --vary")
     todo = repeats.plan(args.output, settings, repeated, defaults)
     check_names(todo)
+    intensity.check(args.intensity, settings, bool(args.road))
     errors = None
     if args.size_error:
         if not args.road:
