@@ -68,7 +68,7 @@ def run(args):
     geometry = None
     if args.polygon:
         crs = polygons.as_crs("--crs", args.crs) if args.crs else None
-        geometry = polygons.read_local(args.polygon, raster, local=args.local, crs=crs)
+        geometry = polygons.read_local(args.polygon, raster, local=args.local, crs=crs, terrain=args.terrain)
     if args.scar:
         area, surface, choices = from_scar(args, raster, geometry)
     else:
@@ -215,6 +215,7 @@ def warnings(choices, found, cell):
     if found.cells < COARSE:
         lines.append(f"the body covers {found.cells} cells of {cell:g} m: take a finer terrain")
     if found.wall > 0.5 * found.largest_depth:
-        lines.append(f"the body is {found.wall:.3g} m deep at the rim of its area, where it ends in a wall: is the "
-                     "polygon large enough?")
+        lines.append(f"the body is {found.wall:.3g} m deep at the rim of its area, where it ends in a wall: "
+                     + ("a wider polygon, or --shape ellipsoid?" if choices["shape"] == "sphere" else
+                        "is the polygon large enough?"))
     return lines
