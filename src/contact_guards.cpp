@@ -62,8 +62,8 @@ void ContactGuards::start(int freeze_group_bit)
 
 void ContactGuards::print_table()
 {
-  const std::string text =
-      table.text(update->dt) + fmt::format("  contact kernel {}\n", Slope::ContactKernels::current_name());
+  const std::string text = table.text(update->dt) +
+      fmt::format("  contact kernel {}\n", Slope::ContactKernels::current_name());
   if (text != printed && comm->me == 0) utils::logmesg(lmp, text);
   printed = text;
 }

@@ -66,9 +66,9 @@ void DepositBins::add_volume(double volume)
     int column = -1;
     for (int k = 0; k < shares[X].count; k++) {
       const int i = shares[X].cell[k];
-      if (i / DepositBlocks::SIDE != column) {
-        column = i / DepositBlocks::SIDE;
-        block = bins.make(column, j / DepositBlocks::SIDE) + VOLUME * DepositBlocks::CELLS;
+      if (DepositBlocks::of_cell(i) != column) {
+        column = DepositBlocks::of_cell(i);
+        block = bins.make(column, DepositBlocks::of_cell(j)) + VOLUME * DepositBlocks::CELLS;
       }
       block[DepositBlocks::index(i, j)] += strip * shares[X].part[k];
     }
@@ -86,7 +86,7 @@ void DepositBins::add_centre(const double *place, double speed, double energy)
     return;
   const int i = grid.cell_of(X, place[X]), j = grid.cell_of(Y, place[Y]);
   double *block =
-      bins.make(i / DepositBlocks::SIDE, j / DepositBlocks::SIDE) + DepositBlocks::index(i, j);
+      bins.make(DepositBlocks::of_cell(i), DepositBlocks::of_cell(j)) + DepositBlocks::index(i, j);
   double &most_speed = block[SPEED * DepositBlocks::CELLS];
   double &most_energy = block[ENERGY * DepositBlocks::CELLS];
   most_speed = std::max(most_speed, speed);

@@ -19,6 +19,7 @@ void DepositBlocks::set_grid(const PlanGrid &grid)
   directory.clear();
   directory.resize(DepositBands(grid, 0, 1).number());
   blocks.clear();
+  last.column = last.band = -1;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -27,6 +28,7 @@ void DepositBlocks::clear()
 {
   for (const Place &block : blocks) directory[block.band][block.column] = -1;
   blocks.clear();
+  last.column = last.band = -1;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -25,7 +25,10 @@ class DepositBlocks {
   static constexpr int CELLS = SIDE * SIDE;
 
   // what cells of a new block have, one value of each kind
-  explicit DepositBlocks(const std::vector<double> &start_in) : start(start_in), across(0) {}
+  explicit DepositBlocks(const std::vector<double> &start_in) :
+      start(start_in), across(0), last{-1, -1}, last_values(nullptr)
+  {
+  }
 
   void set_grid(const PlanGrid &);
   void clear();    // no blocks; their memory is used again
@@ -36,9 +39,13 @@ class DepositBlocks {
   // values of the block in this column and band of blocks, made if it is not there
   double *make(int column, int band)
   {
-    std::vector<int32_t> &places = directory[band];
-    if (!places.empty() && places[column] >= 0) return values[places[column]].get();
-    return add(column, band);
+    if (column == last.column && band == last.band) return last_values;    // balls come in clusters
+    const std::vector<int32_t> &places = directory[band];
+    last_values = !places.empty() && places[column] >= 0 ? values[places[column]].get()
+                                                         : add(column, band);
+    last.column = column;
+    last.band = band;
+    return last_values;
   }
 
   // nullptr if there is none
@@ -48,7 +55,9 @@ class DepositBlocks {
     return places.empty() || places[column] < 0 ? nullptr : values[places[column]].get();
   }
 
-  // where a cell has its value of kind 0 in the values of its block
+  // column or band of the block that a cell is in, and where in the values of the block the cell has
+  // its value of kind 0
+  static int of_cell(unsigned k) { return k / SIDE; }
   static int index(unsigned i, unsigned j) { return j % SIDE * SIDE + i % SIDE; }
 
   // all blocks, in the order in which they were made
@@ -70,6 +79,8 @@ class DepositBlocks {
   std::vector<std::vector<int32_t>> directory;    // band, column: number of the block; -1: none
   std::vector<Place> blocks;
   std::vector<std::unique_ptr<double[]>> values;    // of more blocks than there are, after clear()
+  Place last;                                       // block of the last make()
+  double *last_values;
 
   double *add(int column, int band);
 };

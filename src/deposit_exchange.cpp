@@ -136,8 +136,9 @@ void DepositExchange::batch_to_rank_zero(const DepositBands &bands, const std::v
   std::map<int, std::string> texts;
   texts[0].swap(mine);
   for (size_t k = 0; k < now.size(); k++) {
+    if (all[k] == 0) continue;    // perhaps after the last byte of its rank
     const int owner = bands.owner(now[k]);
-    if (owner > 0 && all[k] > 0 && next[owner] == 0) texts[owner] = receive(owner, total[owner]);
+    if (owner > 0 && next[owner] == 0) texts[owner] = receive(owner, total[owner]);
     take(texts[owner].substr(next[owner], all[k]));
     next[owner] += all[k];
     if (next[owner] == total[owner]) texts[owner] = std::string();

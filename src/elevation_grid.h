@@ -24,7 +24,7 @@ class AtomicFile;
 // Errors are std::runtime_error with one line: file, line in it, rule, value.
 class ElevationGrid {
  public:
-  ElevationGrid() : nx(0), ny(0), xlo(0.0), ylo(0.0), cell(1.0) {}
+  ElevationGrid() : nx(0), ny(0), xlo(0.0), ylo(0.0), cell(1.0), elsewhere(nullptr) {}
 
   // nx by ny cells of one value; the memory is allocated here (std::bad_alloc)
   ElevationGrid(int nx, int ny, double xlo, double ylo, double cell, double value);
@@ -59,11 +59,19 @@ class ElevationGrid {
   int count_nodata() const;
 
   double &at(int i, int j) { return z[(size_t) j * nx + i]; }
-  double at(int i, int j) const { return z[(size_t) j * nx + i]; }
+  double at(int i, int j) const { return values()[(size_t) j * nx + i]; }
+
+  // take the values of somebody else, nx * ny of them, who keeps them as long as this grid and its
+  // copies are used: for reading only
+  void refer_to(const double *values);
+  const double *values() const { return elsewhere ? elsewhere : z.data(); }
 
   int nx, ny;               // columns, rows
   double xlo, ylo, cell;    // south-west corner of the raster, size of a cell
-  std::vector<double> z;    // values, row by row from the south; public for those who send it
+  std::vector<double> z;    // own values, row by row from the south; public for those who send it
+
+ private:
+  const double *elsewhere;
 };
 
 }    // namespace Slope

@@ -82,7 +82,8 @@ void FixContactHistory::end_of_step()
 void FixContactHistory::post_run()
 {
   FixNeighHistory::post_run();
-  if (!forces_known()) keep_forces();    // run 0 only has what the set-up found, an estimate for some balls
+  if (!forces_known())
+    keep_forces();    // run 0 only has what the set-up found, an estimate for some balls
   auto law = static_cast<PairGranRestitution *>(pair);
   if (update->ntimestep % nevery) law->watch_energy();
   law->guards.report();

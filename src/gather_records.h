@@ -43,8 +43,8 @@ std::vector<Record> gather_records(MPI_Comm world, const std::vector<Record> &mi
     all.resize(place + numbers[rank]);
     for (bigint left = numbers[rank]; left > 0; left -= most) {
       const bigint part = std::min(most, left);
-      MPI_Recv(all.data() + place, static_cast<int>(part * sizeof(Record)), MPI_BYTE, rank, 0, world,
-               MPI_STATUS_IGNORE);
+      MPI_Recv(all.data() + place, static_cast<int>(part * sizeof(Record)), MPI_BYTE, rank, 0,
+               world, MPI_STATUS_IGNORE);
       place += part;
     }
   }

@@ -30,9 +30,9 @@ class InitialOverlap : protected Pointers {
   void check(const std::string &caller);
 
  private:
-  double worst;      // overlap / radius
-  bigint count;      // pairs above the limit
-  std::string text;  // the worst pair
+  double worst;        // overlap / radius
+  bigint count;        // pairs above the limit
+  std::string text;    // the worst pair
 };
 
 }    // namespace LAMMPS_NS

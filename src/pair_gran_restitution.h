@@ -64,7 +64,7 @@ class PairGranRestitution : public Pair {
                      const char *style = "wall/gran/balls");
   Slope::MovingBalls moving_balls();
   void store_flags() const;
-  bool force_estimated(int i) const;    // of a ball at set-up: contacts that slid alone, see contact_law.h
+  bool force_estimated(int i) const;    // of a ball at set-up: it slid alone, see contact_law.h
   bool forces_taken_back() const;       // in the first step of a run: its forces are the last step's
   bool sizes_vary = false;    // between two neighbor lists, by fix adapt
 
@@ -74,7 +74,7 @@ class PairGranRestitution : public Pair {
  protected:
   ContactTable table;
 
-  double dt;
+  double dt = 0.0;
   bool starting = false;    // at set-up
   int freeze_group_bit;
   class FixContactHistory *fix_history;

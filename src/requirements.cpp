@@ -37,10 +37,11 @@ void LAMMPS_NS::require_single_balls(LAMMPS *lmp, const std::string &caller)
   for (int i = 0; i < modify->nfix; i++) {
     const Fix *fix = modify->fix[i];
     if (fix->rigid_flag)
-      lmp->error->all(FLERR,
-                      "{}: balls must move one by one, got fix {} {}, whose bodies have another mass than "
-                      "a ball: use fix nve/sphere, or pair_style granular for rigid bodies",
-                      caller, fix->id, fix->style);
+      lmp->error->all(
+          FLERR,
+          "{}: balls must move one by one, got fix {} {}, whose bodies have another mass than "
+          "a ball: use fix nve/sphere, or pair_style granular for rigid bodies",
+          caller, fix->id, fix->style);
   }
 }
 
@@ -55,8 +56,9 @@ void LAMMPS_NS::require_whole_contacts(LAMMPS *lmp, const std::string &caller)
   const double *lj = lmp->force->special_lj, *coul = lmp->force->special_coul;
   for (int k = 1; k <= 3; k++)
     if (lj[k] != coul[k] || (lj[k] != 0.0 && lj[k] != 1.0))
-      lmp->error->all(FLERR,
-                      "{}: special_bonds must be 0 or 1, the same for lj and coul, as balls that are bonded "
-                      "touch fully or not at all, got lj {:g} {:g} {:g} coul {:g} {:g} {:g}",
-                      caller, lj[1], lj[2], lj[3], coul[1], coul[2], coul[3]);
+      lmp->error->all(
+          FLERR,
+          "{}: special_bonds must be 0 or 1, the same for lj and coul, as balls that are bonded "
+          "touch fully or not at all, got lj {:g} {:g} {:g} coul {:g} {:g} {:g}",
+          caller, lj[1], lj[2], lj[3], coul[1], coul[2], coul[3]);
 }

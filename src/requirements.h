@@ -16,8 +16,9 @@ namespace LAMMPS_NS {
 class LAMMPS;
 
 void require_verlet(LAMMPS *, const std::string &caller);
-void require_single_balls(LAMMPS *, const std::string &caller);      // no rigid bodies
-void require_whole_contacts(LAMMPS *, const std::string &caller);    // special_bonds, if there are bonds
+void require_single_balls(LAMMPS *, const std::string &caller);    // no rigid bodies
+void require_whole_contacts(LAMMPS *,
+                            const std::string &caller);    // special_bonds, if there are bonds
 
 }    // namespace LAMMPS_NS
 

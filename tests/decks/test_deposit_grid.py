@@ -501,6 +501,15 @@ def test_pieces_come_and_go_with_the_fix(tmp_path, monkeypatch):
     assert (tmp_path / "a.restart").read_bytes().count(b"DEPOSIT_GRID_PART\0") == 1
 
 
+@pytest.mark.parametrize("np_", [1, 2])
+def test_restart_of_a_mass_in_the_south(tmp_path, np_):
+    """Rows in the north, of either rank, that have nothing to say."""
+    flat(tmp_path, 20)
+    write_balls(tmp_path / "balls.data", [[5, 2, 5]], 0.5, None, [(0.0, 20.0)] * 3)
+    run_deck(head() + "fix dep all deposit/grid 10 0 cell 0.5 terrain ground output out\nrun 10\n"
+             "write_restart a.restart\n", tmp_path, np=np_)
+
+
 # --- ranks ---
 
 RASTERS = ["thickness", "surface", "base", "max_thickness", "max_speed", "max_energy", "arrival", "last_motion"]

@@ -5,7 +5,7 @@
 
 The sheet is 250 m long and 20 m thick, on a slope of 30 degrees, balls of 1 m; its width makes their number. The
 deposit is sampled and written at the last step. Prints for each number: balls, peak memory of all ranks together (GB,
-ranks times that of the largest), seconds of the set-up and of the loop, ns per ball-step, and that over the first one's.
+ranks times that of the largest), seconds of the set-up and of the loop, ns per ball-step, that over the first one's.
 """
 import argparse
 import re

@@ -42,6 +42,7 @@ fix field soil wall/gran/balls 3 ${d} surface ground upper spacing ${d} outside 
 delete_balls soil overlap 0.0
 variable skin equal 0.2*v_d
 neighbor ${skin} bin
+atom_modify sort 1000 $(20*v_d)
 variable mass equal 2700*PI/6*v_d^3
 variable dt equal 0.25*sqrt(v_mass/v_kn)
 timestep ${dt}

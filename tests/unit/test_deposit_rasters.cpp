@@ -253,6 +253,8 @@ TEST(DepositRasters, TouchedCells)
       next++;
     }
   EXPECT_EQ(next, cells.size());
+  for (int band = 0; band < again.rasters[0].bands().number(); band++)
+    EXPECT_TRUE(again.rasters[(band + 1) % 3].touched(band).empty());    // not in others' rows
 }
 
 // pieces of a restart file: all bands once, in order, each piece within its bytes

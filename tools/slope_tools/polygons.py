@@ -36,25 +36,25 @@ for library in ("fiona", "shapely"):  # what they log is in the exceptions as we
     logging.getLogger(library).setLevel(logging.CRITICAL + 1)
 
 
-def read_local(path, raster, local=False, crs=None):
+def read_local(path, raster, local=False, crs=None, terrain="--terrain"):
     """Polygons of a file in the local metres of a terrain: a valid, not empty shapely Polygon or MultiPolygon.
 
     raster: the terrain, a Raster of rasters.read_asc_local() or a Place of rasters.read_place(). Format by content and
     suffix: the deck's format (.csv), text with WKT, else what fiona opens. Coordinates of a file with a CRS are
     reprojected to the terrain's; those of CSV and WKT are taken to be in the terrain's CRS, but of a file that write()
     wrote, which are local already. local=True: the file's coordinates are local, whatever CRS it names. crs: the CRS of
-    the file, whatever it names. Polygons that overlap or touch become one. Raises SlopeError, which names file and
-    place.
+    the file, whatever it names. terrain: what messages call the terrain. Polygons that overlap or touch become one.
+    Raises SlopeError, which names file and place.
     """
     if not Path(path).is_file():
         raise SlopeError(path, "must be an existing file")
     try:
-        return _read_local(path, raster, local, crs)
+        return _read_local(path, raster, local, crs, terrain)
     except ShapelyError as error:     # GEOS gives up on coordinates such as 1e-320 among others
         raise SlopeError(path, "must be polygons whose points differ by more than rounding") from error
 
 
-def _read_local(path, raster, local, crs):
+def _read_local(path, raster, local, crs, terrain):
     text = read_text(path)
     if text is None:
         polygons, own = _read_fiona(path)
@@ -67,7 +67,7 @@ def _read_local(path, raster, local, crs):
     plain = not local and text is not None and crs is None      # numbers of which no file says what they are
     as_it_stands = geometry.envelope
     if not local:
-        geometry = _to_local(path, geometry, crs or own, raster, plain)
+        geometry = _to_local(path, geometry, crs or own, raster, plain, terrain)
     geometry = _checked(path, geometry)
     bounds = getattr(raster, "extent", None) or extent(raster)
     if geometry.intersection(box(*bounds)).area == 0:
@@ -280,10 +280,10 @@ def _place_line(raster):
 
 # --- coordinates ---
 
-def _to_local(path, geometry, crs, raster, plain):
+def _to_local(path, geometry, crs, raster, plain, terrain):
     """A geometry in a CRS to the local metres of the terrain. plain: text, which is in the terrain's CRS."""
     if not plain:
-        for where, missing in ((path, crs), ("--terrain", raster.crs)):
+        for where, missing in ((path, crs), (terrain, raster.crs)):
             if missing is None:
                 raise SlopeError(where, "must have a CRS, so that polygon and terrain can be brought together (a .prj "
                                  "file beside a shapefile, slope terrain --crs for a terrain; --local if the polygon "

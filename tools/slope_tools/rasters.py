@@ -175,13 +175,14 @@ def _check_ascii_header(path, lines):
     return header, number
 
 
-def read_asc_local(path):
+def read_asc_local(path, heights=True):
     """Read an .asc that write_asc_local wrote, and its sidecar, into a Raster: (z, transform, crs, offset).
 
     The transform gives local x, y; adding the offset (east, north) gives coordinates in crs. A raster without a
-    sidecar is read as by read(). Raises SlopeError if either file is broken or they do not belong together.
+    sidecar is read as by read(); heights as there. Raises SlopeError if either file is broken or they do not belong
+    together.
     """
-    raster = read(path)
+    raster = read(path, heights)
     place = read_sidecar(path)
     if place is None:
         return raster
@@ -233,11 +234,12 @@ def read_place(path):
         raise SlopeError(path, f"must be a raster that GDAL can read ({error})") from error
 
 
-def write_asc_local(path, raster, about):
+def write_asc_local(path, raster, about, exact=False):
     """Write raster (square cells, north up, at least one height) to path and the sidecar beside it; return the sidecar.
 
-    about: dict of more entries for the sidecar. Both files are complete or not touched: they are written beside
-    their names and then renamed. Raises SlopeError where the folder or the disk refuses.
+    about: dict of more entries for the sidecar. exact: heights with all of their digits, not to the millimetre, so that
+    they are equal to those of another file. Both files are complete or not touched: they are written beside their names
+    and then renamed. Raises SlopeError where the folder or the disk refuses.
     """
     path = Path(path)
     rows, columns = raster.z.shape
@@ -258,10 +260,11 @@ def write_asc_local(path, raster, about):
     new_yaml = new_asc.with_suffix(".new_yaml")
     try:
         with open(new_asc, "w", encoding="ascii") as out:
-            out.write(f"ncols {columns}\nnrows {rows}\nxllcorner {xlo:.12g}\nyllcorner {ylo:.12g}\n"
-                      f"cellsize {cell:.12g}\nNODATA_value {NODATA}\n")
+            digits, form = (15, repr) if exact else (12, "{:.3f}".format)
+            out.write(f"ncols {columns}\nnrows {rows}\nxllcorner {xlo:.{digits}g}\nyllcorner {ylo:.{digits}g}\n"
+                      f"cellsize {cell:.{digits}g}\nNODATA_value {NODATA}\n")
             for row in progress(raster.z, f"writing {path}"):
-                out.write(" ".join([f"{height:.3f}" for height in row.tolist()]).replace("nan", str(NODATA)) + "\n")
+                out.write(" ".join([form(height) for height in row.tolist()]).replace("nan", str(NODATA)) + "\n")
         with open(new_yaml, "w", encoding="utf-8") as out:
             out.write(f"# About {path.name}. Metres; east = x + origin east, north = y + origin north.\n")
             yaml.safe_dump(sidecar, out, sort_keys=False)

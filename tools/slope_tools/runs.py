@@ -376,9 +376,9 @@ def load_terrain(folder, log):
     return rasters.read_asc_local(path) if path and path.is_file() else None
 
 
-def load_raster(prefix, name):
-    """One of the rasters of fix deposit/grid."""
+def load_raster(prefix, name, heights=True):
+    """One of the rasters of fix deposit/grid; heights: whether its values are checked as such."""
     path = Path(f"{prefix}.{name}.asc")
     if not path.is_file():
         raise SlopeError(path, "must be there: fix deposit/grid writes it beside its summary")
-    return rasters.read(path)
+    return rasters.read(path, heights)

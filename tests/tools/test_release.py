@@ -1,0 +1,552 @@
+"""slope release: bodies against closed forms; what is printed, written and released by a run is one volume."""
+import math
+import os
+import re
+import shlex
+import subprocess
+from pathlib import Path
+
+import fiona
+import numpy as np
+import pytest
+import rasterio
+import yaml
+from affine import Affine
+from rasterio.crs import CRS
+from shapely.affinity import rotate
+from shapely.geometry import Polygon, box, mapping
+
+from run_helpers import (CRS_M, EAST, NORTH, TOP, here, run_command, write_asc,  # noqa: F401  (here: a fixture)
+                         write_geojson)
+
+from slope_tools import (polygons, rasters, release, release_area, release_bodies, release_chart,  # noqa: E402
+                         release_slbl, release_solve)
+
+DATA = next((folder for folder in (top / "shared" / "data" for top in TOP.parents) if folder.is_dir()), TOP / "none")
+FRANK, S1000 = DATA / "frank", DATA / "s1000"
+NAMES = ["r.slip.asc", "r.slip.yaml", "r.depth.asc", "r.depth.yaml", "r.png", "r.yaml", "r.deck.txt"]
+
+
+@pytest.fixture
+def slope(here, capsys):        # noqa: F811
+    """Run `slope release ARGUMENTS` in a folder of its own; gives status, stdout, stderr."""
+    return lambda arguments: run_command("release", arguments, capsys)
+
+
+@pytest.fixture
+def no_picture(monkeypatch):
+    """An empty NAME.png: it takes nine tenths of the time, and one test looks at it."""
+    monkeypatch.setattr(release_chart, "draw", lambda path, *rest: Path(path).write_bytes(b""))
+
+
+@pytest.fixture
+def body(slope, no_picture):
+    """Run it to `r`, which must succeed; gives the body's numbers in r.yaml, and all of r.yaml."""
+    def run(arguments):
+        status, out, err = slope(f"{arguments} -o r")
+        assert status == 0, err
+        about = yaml.safe_load(Path("r.yaml").read_text())
+        assert f"volume {about['body']['volume']:.10g} m3" in out
+        return about["body"], about
+    return run
+
+
+@pytest.fixture
+def refused(slope):
+    """Run it; it must end with one line that has all parts, and leave no file."""
+    def run(arguments, *parts):
+        before = sorted(Path().rglob("*"))
+        status, out, err = slope(f"{arguments} -o r" if " -o " not in arguments else arguments)
+        assert status == 2 and out == "" and err.count("\n") == 1 and err.startswith("slope release: "), err
+        for part in parts:
+            assert part in err, err
+        assert sorted(Path().rglob("*")) == before
+    return run
+
+
+def terrain(height, path="t.asc", size=(100, 120), cell=2.0, crs=CRS_M, offset=(EAST, NORTH)):
+    """A terrain with the height(x, y), rows and columns, at local 0 0; gives x, y, z of its nodes, as written."""
+    rows, columns = size
+    x, y = np.meshgrid(cell * (np.arange(columns) + 0.5), cell * (rows - 0.5 - np.arange(rows)))
+    z = np.round(height(x, y) + 0.0 * x, 3)
+    raster = rasters.Raster(z, Affine(cell, 0, 0, 0, -cell, rows * cell), crs and CRS.from_string(crs), offset)
+    rasters.write_asc_local(path, raster, {})
+    return x, y, z
+
+
+def polygon(geometry, path="p.csv"):
+    """A polygon in the deck's format, local metres of the terrain t.asc."""
+    polygons.write(path, geometry, rasters.read_place("t.asc"))
+    return path
+
+
+def ramp(degrees, direction=270.0, top=500.0):
+    """Heights of a plane that falls by an angle towards a compass bearing."""
+    fall, bearing = math.tan(math.radians(degrees)), math.radians(direction)
+    return lambda x, y: top - fall * (x * math.sin(bearing) + y * math.cos(bearing))
+
+
+# --- closed forms ---
+
+
+@pytest.mark.parametrize("degrees, direction", [(30, 270), (40, 180), (25, 45), (33, 110)])
+@pytest.mark.parametrize("stretch", [1, 0.6])
+def test_a_sphere_on_a_plane_slope_is_a_cap(body, degrees, direction, stretch):
+    terrain(ramp(degrees, direction), size=(240, 240), cell=1.0)
+    wide = 130 if stretch == 1 else 60     # of the polygon; of the sphere's cap 100 m
+    plan = 100 * math.cos(math.radians(degrees))
+    polygon(rotate(box(120 - wide / 2, 120 - plan / 2, 120 + wide / 2, 120 + plan / 2), -direction, (120, 120)))
+    shape = "sphere" if stretch == 1 else "ellipsoid"
+    _, about = body(f"t.asc --polygon p.csv --shape {shape} --volume 30000")
+    sagitta = about["sagitta_m"]
+    radius = (100 ** 2 / 4 + sagitta ** 2) / (2 * sagitta)
+    assert about["chord_m"] == pytest.approx(100, rel=1e-4)
+    assert math.pi * sagitta ** 2 * (3 * radius - sagitta) / 3 * stretch == pytest.approx(30000, rel=3e-3)
+    assert about["body"]["mean_slope"] == pytest.approx(degrees, abs=0.05)
+    assert about["body"]["bearing"] == pytest.approx(direction, abs=0.1)
+    distance = sphere_distance(about, degrees, direction, radius)
+    if stretch == 1:
+        assert np.abs(distance).max() < 2e-3
+    else:
+        assert np.abs(distance).max() > 1
+
+
+def sphere_distance(about, degrees, direction, radius):
+    """Of the nodes of the written slip surface in the body, from the sphere through toe, shoulder and sagitta."""
+    slip, ground = rasters.read_asc_local("r.slip.asc"), rasters.read_asc_local("t.asc")
+    row, column = np.nonzero(slip.z < ground.z)
+    x, y = slip.transform * (column + 0.5, row + 0.5)
+    toe, shoulder = np.array(about["toe"]), np.array(about["shoulder"])
+    tilt, bearing = math.radians(degrees), math.radians(direction)
+    normal = np.array([math.sin(tilt) * math.sin(bearing), math.sin(tilt) * math.cos(bearing), math.cos(tilt)])
+    centre = (toe + shoulder) / 2 + (radius - about["sagitta_m"]) * normal
+    return np.linalg.norm(np.column_stack([x, y, slip.z[row, column]]) - centre, axis=1) - radius
+
+
+@pytest.mark.parametrize("direction", [270, 180])
+def test_a_plane_on_a_plane_slope_is_a_wedge(body, direction):
+    terrain(ramp(35, direction), cell=2.0)
+    polygon(box(40, 50, 120, 130))      # 40 x 40 nodes
+    found, about = body("t.asc --polygon p.csv --dip 20")
+    steps = (math.tan(math.radians(35)) - math.tan(math.radians(20))) * 2.0 * np.arange(40)
+    assert found["volume"] == pytest.approx(40 * steps.sum() * 4, rel=1e-4)
+    wedge = 80 * (math.tan(math.radians(35)) - math.tan(math.radians(20))) * 80 ** 2 / 2
+    assert found["volume"] == pytest.approx(wedge, rel=0.04)     # the nodes end half a cell inside of the polygon
+    assert found["largest_depth"] == pytest.approx(steps[-1], abs=1e-3)
+    assert found["slip_slope"] < found["mean_slope"] == pytest.approx(35, abs=0.05)
+    assert about["direction_degrees"] == pytest.approx(direction, abs=0.01)
+
+
+def test_a_plane_in_its_own_direction(body):
+    x, y, z = terrain(ramp(35, 270))
+    polygon(box(40, 50, 120, 130))
+    found, _ = body("t.asc --polygon p.csv --dip 30 --direction 300 --depth 9")
+    slip = rasters.read_asc_local("r.slip.asc").z
+    inside = slip < z
+    fall = math.tan(math.radians(30))
+    level = slip + fall * (x * math.sin(math.radians(300)) + y * math.cos(math.radians(300)))
+    assert np.ptp(level[inside]) < 1.1e-4 and found["largest_depth"] == pytest.approx(9, abs=2e-4)
+    assert inside.sum() == found["cells"]
+
+
+@pytest.mark.parametrize("columns, rows", [(59, 29), (39, 39), (19, 79)])
+def test_the_base_level_of_a_ramp_is_poissons(body, columns, rows):
+    """Depth u below a ramp: -(u_xx + u_yy) = curvature, 0 on the rim of a rectangle: the volume is torsion's series."""
+    terrain(ramp(30, 90), cell=2.0)
+    polygon(box(20, 20, 20 + 2 * columns, 20 + 2 * rows))
+    found, about = body("t.asc --polygon p.csv --curvature 0.01")
+    a, b = sorted((2.0 * (columns + 1), 2.0 * (rows + 1)))
+    odd = np.arange(1, 60, 2)
+    series = (np.tanh(odd * math.pi * b / (2 * a)) / odd ** 5).sum()
+    wanted = 0.01 * a ** 3 * b / 12 * (1 - 192 * a / (math.pi ** 5 * b) * series)
+    assert found["volume"] == pytest.approx(wanted, rel=4e-3)
+    assert about["tolerance_m"] == pytest.approx(0.01)
+    if b > 3.5 * a:
+        assert found["largest_depth"] == pytest.approx(0.01 * a ** 2 / 8, rel=0.02)     # K L^2 / 8
+
+
+@pytest.mark.parametrize("curvature", [0.01, 0.0, -0.02])
+def test_the_base_level_is_what_the_method_comes_to(curvature):
+    rng = np.random.default_rng(3)
+    x, y = np.meshgrid(np.arange(24.0), np.arange(20.0))
+    z = 0.8 * x + 2 * np.sin(x / 2) * np.cos(y / 3) + rng.normal(0, 0.3, x.shape)
+    inside = np.zeros(z.shape, bool)
+    inside[3:17, 2:20] = True
+    inside[8:10, 9:12] = False      # a hole
+    level, step = release_slbl.base_level(z, inside, 2.0, curvature), z.copy()
+    for _ in range(5000):           # Jaboyedoff's iteration
+        mean = (np.roll(step, 1, 0) + np.roll(step, -1, 0) + np.roll(step, 1, 1) + np.roll(step, -1, 1)) / 4
+        step = np.where(inside, np.minimum(step, mean - curvature * 2.0 ** 2 / 4), z)
+    assert level == pytest.approx(step, abs=1e-9)
+    assert (level == z)[~inside].all() and (level <= z).all()
+    assert 5 < (level < z - 1e-9).sum() < inside.sum()      # some nodes stay at the ground
+
+
+def test_the_sphere_of_the_embankment():
+    """inputs/20: toe x 84, shoulder x 156, depth 18; its body, region slip, has 48,859 m3."""
+    raster = rasters.read_asc_local(TOP / "inputs" / "20_embankment" / "terrain.asc")
+    whole = box(60, 10, 200, 150)
+    found = release_area.area_of(raster, release_area.nodes_inside(raster, whole), "p", "t")
+    line = release_area.FallLine(np.array([84.0, 80, 0]), np.array([156.0, 80, 36]))
+    depth = release_solve.depths(found, release_bodies.cap(found, line, 18.0))
+    assert release_solve.volume(depth, found.cell) == pytest.approx(48859, rel=0.005)
+    face = box(84, 30, 156, 130)
+    inside = release_area.nodes_inside(raster, face)
+    line = release_area.fall_line(release_area.area_of(raster, inside, "p", "t"), face, "p")
+    assert line.toe == pytest.approx([84, 80, 0], abs=0.3) and line.shoulder == pytest.approx([156, 80, 36], abs=0.3)
+
+
+# --- a target ---
+
+
+def hill(x, y):
+    """A bumpy slope that falls to the west, with a valley."""
+    return 100 + 0.6 * x + 3 * np.sin(x / 17) * np.cos(y / 23) + 0.0008 * (y - 100) ** 2
+
+
+@pytest.mark.parametrize("shape", ["--shape sphere", "--shape ellipsoid", "--dip 22", "--shape slbl"])
+def test_a_volume_or_a_depth_is_met(body, shape):
+    terrain(hill)
+    polygon(Polygon([(60, 50), (180, 60), (170, 140), (70, 150)]))
+    found, about = body(f"t.asc --polygon p.csv {shape} --volume 60000")
+    assert found["volume"] == pytest.approx(60000, rel=1e-5)
+    assert found["mean_depth"] * found["area"] == pytest.approx(60000, rel=1e-5)
+    assert about["given"]["volume_m3"] == 60000
+    again, _ = body(f"t.asc --polygon p.csv {shape} --depth {found['largest_depth']}")
+    assert again["volume"] == pytest.approx(60000, rel=1e-3)
+    deep, _ = body(f"t.asc --polygon p.csv {shape} --volume 80000")
+    assert deep["largest_depth"] > found["largest_depth"]
+
+
+def test_a_sphere_bulges_where_the_ground_does(slope, body):
+    terrain(lambda x, y: 200 - 0.004 * (x - 240) ** 2 - 0.003 * (y - 100) ** 2)
+    polygon(box(40, 60, 200, 140))
+    found, about = body("t.asc --polygon p.csv --volume 40000")
+    assert found["volume"] == pytest.approx(40000, rel=1e-5) and about["sagitta_m"] < 0
+    assert "above its chord" in slope("t.asc --polygon p.csv --volume 40000 -o r")[1]
+    assert any("bulges" in line for line in about["warnings"])
+
+
+def test_a_target_out_of_reach(refused):
+    terrain(ramp(30))
+    polygon(box(60, 60, 140, 140))
+    refused("t.asc --polygon p.csv --volume 1e8", "--volume: must be at most", "half sphere", "got 100000000")
+    refused("t.asc --polygon p.csv --dip 20 --volume 1e8", "--volume: must be at most", "plane through the toe")
+    refused("t.asc --polygon p.csv --dip 20 --depth 90", "--depth: must be at most", "got 90")
+    refused("t.asc --polygon p.csv --shape slbl --volume 1e9", "--volume: must be at most", "a curvature of")
+    refused("t.asc --polygon p.csv --dip 30 --volume 1e4", "--volume: must be at most")
+    refused("t.asc --polygon p.csv --dip 35 --volume 1e9", "--volume: must be at most")
+
+
+# --- the files ---
+
+
+def bilinear_volume(slip, ground, parts=8):
+    """Between two files with cells of 2 m, by points in every patch; both read by the letter of the format."""
+    a, b = (np.array([line.split() for line in Path(path).read_text().splitlines()[6:]], float)
+            for path in (ground, slip))     # NODATA is -9999 in both
+    depth = a - b
+    u = (np.arange(parts) + 0.5) / parts
+    total = 0.0
+    for fx in u:
+        for fy in u:
+            total += ((1 - fx) * (1 - fy) * depth[:-1, :-1] + fx * (1 - fy) * depth[:-1, 1:]
+                      + (1 - fx) * fy * depth[1:, :-1] + fx * fy * depth[1:, 1:]).sum()
+    return total / parts ** 2 * 4.0
+
+
+def test_the_files(slope, here):        # noqa: F811
+    _, _, z = terrain(hill)
+    digits = z + np.random.default_rng(1).uniform(-1e-6, 1e-6, z.shape)     # more than a millimetre has
+    digits[0, 0] = digits[3, 5] = np.nan
+    write_asc("t.asc", digits, 2.0)
+    polygon(Polygon([(60, 50), (180, 60), (170, 140), (70, 150)]))
+    status, out, err = slope("t.asc --polygon p.csv --depth 9 -o r")
+    assert status == 0 and err.count("\n") == 1 and "m deep at the rim of its area, where it ends in a wall" in err
+    assert sorted(path.name for path in here.iterdir()) == sorted([*NAMES, "t.asc", "t.yaml", "p.csv"])
+    printed = float(re.search(r"volume (\S+) m3", out)[1])
+    assert bilinear_volume("r.slip.asc", "t.asc") == pytest.approx(printed, rel=1e-9)
+    slip, place = rasters.read_asc_local("r.slip.asc"), rasters.read_sidecar("t.asc")
+    assert slip.crs == place.crs and slip.offset == place.offset == (EAST, NORTH)
+    raster = rasters.read_asc_local("t.asc")
+    away = ~release_area.nodes_inside(raster, polygons.read_local("p.csv", raster))
+    assert np.array_equal(slip.z[away], raster.z[away], equal_nan=True)     # to the last digit
+    assert (slip.z[~away] <= raster.z[~away]).all()
+    depth = rasters.read_asc_local("r.depth.asc").z
+    assert np.nansum(depth) * 4 == pytest.approx(printed, rel=1e-9) and np.nanmin(depth) > 0
+    about = yaml.safe_load(Path("r.yaml").read_text())
+    assert about["body"]["largest_depth"] == pytest.approx(np.nanmax(depth)) == pytest.approx(9, abs=1e-4)
+    assert about["body"]["area"] == np.isfinite(depth).sum() * 4 and about["shape"] == "sphere"
+    with rasterio.open("r.png") as picture:
+        shown = picture.read()
+    assert min(shown.shape[1:]) > 500 and len(np.unique(shown.reshape(shown.shape[0], -1), axis=1).T) > 500
+    for name, value in (("largest depth", "largest_depth"), ("mean depth", "mean_depth")):
+        assert f"{name} {about['body'][value]:.4g} m" in out
+    assert f"mean slope {about['body']['mean_slope']:.1f} degrees" in out
+
+
+def test_numbers_come_before_files(slope, monkeypatch, here):       # noqa: F811
+    def full(path, *rest):
+        raise OSError(28, "No space left on device")
+    terrain(hill)
+    polygon(box(80, 20, 140, 180))
+    before = sorted(here.iterdir())
+    monkeypatch.setattr(release_chart, "draw", full)
+    status, out, err = slope("t.asc --polygon p.csv --depth 5 -o r")
+    assert status == 2 and "volume" in out and "wrote" not in out
+    assert err == "slope release: r: cannot be written: No space left on device\n"
+    assert sorted(here.iterdir()) == before
+
+
+# --- scars ---
+
+
+def test_scars_give_the_body_back(body):
+    terrain(hill)
+    polygon(Polygon([(60, 50), (180, 60), (170, 140), (70, 150)]))
+    found, _ = body("t.asc --polygon p.csv --depth 9")
+    for name in ("r.slip.asc", "r.slip.yaml", "r.depth.asc", "r.depth.yaml"):
+        Path(name).rename(f"a{name}")
+    depth = rasters.read_asc_local("ar.depth.asc")
+    rasters.write_asc_local("change.asc", depth._replace(z=1.0 * (np.isnan(depth.z)) - np.nan_to_num(depth.z)), {},
+                            exact=True)
+    for scar in ("ar.slip.asc", "ar.depth.asc --scar-is depth", "change.asc --scar-is change"):
+        again, about = body(f"t.asc --scar {scar}")
+        assert again == pytest.approx({**found, "wall": again["wall"], "bearing": again["bearing"]}, rel=1e-6)
+        assert about["shape"] == "scar"
+    half, _ = body("t.asc --scar ar.slip.asc --polygon p.csv --least 4")
+    kept = np.nansum(np.where(depth.z >= 4, depth.z, 0)) * 4
+    assert half["volume"] == pytest.approx(kept, rel=1e-6) and half["volume"] < found["volume"]
+    polygon(box(60, 40, 110, 160), "west.csv")
+    west, _ = body("t.asc --scar ar.slip.asc --polygon west.csv")
+    assert 0.1 * found["volume"] < west["volume"] < 0.9 * found["volume"]
+
+
+def test_a_scar_on_another_grid_and_in_another_crs(body):
+    dent = (lambda x, y: 12 * np.clip(1 - ((x - 120) / 40) ** 2 - ((y - 100) / 30) ** 2, 0, None))
+    terrain(ramp(30))
+    terrain(lambda x, y: ramp(30)(x, y) - dent(x, y), "fine.asc", (266, 320), 0.75)
+    found, _ = body("t.asc --scar fine.asc --least 0.01")
+    assert found["volume"] == pytest.approx(math.pi / 2 * 12 * 40 * 30, rel=3e-3)
+    assert found["largest_depth"] == pytest.approx(12 * (1 - 1 / 40 ** 2 - 1 / 30 ** 2), abs=0.01)
+    raster = rasters.read_asc_local("fine.asc")
+    raster = raster._replace(z=dent(*np.meshgrid(0.75 * (np.arange(320) + 0.5), 0.75 * (265.5 - np.arange(266)))))
+    with rasterio.open("far.tif", "w", driver="GTiff", height=266, width=320, count=1, dtype="float64", crs=CRS_M,
+                       transform=Affine.translation(EAST, NORTH) * raster.transform) as out:
+        out.write(raster.z, 1)
+    subprocess.run(["gdalwarp", "-q", "-t_srs", "EPSG:6668", "-r", "bilinear", "-tr", "8e-6", "8e-6", "-dstnodata",
+                    "-9999", "far.tif", "degrees.tif"], check=True)
+    other, _ = body("t.asc --scar degrees.tif --scar-is depth --least 0.01")
+    assert other["volume"] == pytest.approx(found["volume"], rel=5e-3)
+
+
+def test_a_scar_that_is_none(refused):
+    terrain(ramp(30))
+    terrain(ramp(30, top=501), "higher.asc")
+    refused("t.asc --scar higher.asc", "higher.asc: must be lower than the terrain somewhere")
+    terrain(lambda x, y: np.where(np.hypot(x - 120, y - 100) < 30, -3.0, 0.0), "change.asc")
+    refused("t.asc --scar change.asc --scar-is depth", "change.asc: must hold depths >= 0", "--scar-is change",
+            "got -3")
+    refused("t.asc --scar change.asc --scar-is change --least 4", "somewhere, by --least 4 m")
+    terrain(ramp(30), "away.asc", offset=(EAST + 5000, NORTH))
+    refused("t.asc --scar away.asc", "away.asc: must overlap the terrain")
+    refused("t.asc --scar none.asc", "none.asc: must be an existing file")
+    refused("t.asc --scar higher.asc --volume 100", "--volume: must not be given with --scar")
+    terrain(ramp(30, top=499), "lower.asc")
+    refused("t.asc --scar lower.asc", "lower.asc: must lie 2 cells within the heights of t.asc")
+    polygon(box(10, 10, 40, 40))
+    refused("t.asc --scar change.asc --scar-is change --polygon p.csv", "p.csv: must hold some of the scar")
+
+
+# --- layers ---
+
+
+def test_layers_of_a_gis_are_the_same_body(body):
+    terrain(hill)
+    shape = Polygon([(60, 50), (180, 60), (170, 140), (70, 150)])
+    polygon(shape)
+    found, _ = body("t.asc --polygon p.csv --shape slbl --volume 50000")
+    in_crs = Polygon([(x + EAST, y + NORTH) for x, y in shape.exterior.coords])
+    write_geojson("p.geojson", in_crs, crs=CRS_M)
+    lon, lat = rasterio.warp.transform(CRS_M, "EPSG:4326", *np.transpose(in_crs.exterior.coords).tolist())
+    write_geojson("degrees.geojson", Polygon(zip(lon, lat)))
+    with fiona.open("p.shp", "w", driver="ESRI Shapefile", schema={"geometry": "Polygon", "properties": {}},
+                    crs=CRS_M) as out:
+        out.write({"geometry": mapping(in_crs), "properties": {}})
+    for layer in ("p.geojson", "degrees.geojson", "p.shp"):
+        again, about = body(f"t.asc --polygon {layer} --shape slbl --volume 50000")
+        assert again == pytest.approx(found, rel=1e-6) and about["polygon"] == layer
+
+
+def test_layers_that_do_not_fit(refused):
+    terrain(hill)
+    write_geojson("metres.geojson", box(60, 60, 160, 140))
+    refused("t.asc --polygon metres.geojson --depth 5", "metres.geojson: coordinates in EPSG:4326 must be longitude")
+    write_geojson("far.geojson", box(139, 35, 139.01, 35.01))
+    refused("t.asc --polygon far.geojson --depth 5", "far.geojson: must overlap the terrain")
+    with fiona.open("p.shp", "w", driver="ESRI Shapefile", schema={"geometry": "Polygon", "properties": {}}) as out:
+        out.write({"geometry": mapping(box(60, 60, 160, 140)), "properties": {}})
+    refused("t.asc --polygon p.shp --depth 5", "p.shp: must have a CRS", "got none")
+    terrain(hill, "plain.asc", crs=None, offset=(0, 0))
+    write_geojson("p.geojson", box(EAST + 60, NORTH + 60, EAST + 160, NORTH + 140), crs=CRS_M)
+    refused("plain.asc --polygon p.geojson --depth 5", "plain.asc: must have a CRS", "got none")
+    refused("t.asc --polygon p.geojson --depth 5 --crs EPSG:0", "--crs: must be a CRS such as EPSG:6677")
+
+
+def test_bad_input(refused):
+    terrain(hill)
+    polygon(box(60, 60, 160, 140))
+    refused("t.asc --polygon p.csv", "--depth: or --volume must be given for --shape sphere")
+    refused("t.asc --depth 5", "--polygon: must be given, unless --scar")
+    refused("t.asc --polygon p.csv --depth -3", "--depth: must be > 0, got -3")
+    refused("t.asc --polygon p.csv --volume 0", "--volume: must be > 0, got 0")
+    refused("t.asc --polygon p.csv --depth 5 --volume 9", "not allowed with argument")
+    refused("t.asc --polygon p.csv --shape plane --depth 5", "--dip: must be given for a plane")
+    refused("t.asc --polygon p.csv --dip 95", "--dip: must be > 0 and < 90 degrees, got 95")
+    refused("t.asc --polygon p.csv --dip 30 --direction 400", "--direction: must be a compass bearing", "got 400")
+    refused("t.asc --polygon p.csv --shape slbl --dip 30 --depth 2", "--dip: must be given for a plane only")
+    refused("t.asc --polygon p.csv --shape sphere --curvature 0.1", "--curvature: must be given for slbl only")
+    refused("t.asc --polygon p.csv --scar t.asc --least -1", "--least: must be >= 0, got -1")
+    refused("t.asc --polygon p.csv --depth 5 -o nowhere/r", "-o: must be in an existing folder, got nowhere/r")
+    refused("none.asc --polygon p.csv --depth 5", "none.asc: must be an existing file")
+    (Path() / "t.tif").write_bytes(Path("t.asc").read_bytes())
+    refused("t.tif --polygon p.csv --depth 5 --local", "t.tif: must be an .asc with square cells")
+    write_asc("r.slip.asc", np.ones((40, 40)), 2.0)
+    refused("r.slip.asc --polygon p.csv --depth 5 --local", "-o: must be another name: r.slip.asc belongs to an input")
+    refused("t.asc --polygon p.csv --depth 5 -o t", "-o: must be another name: t.yaml belongs to an input")
+
+
+@pytest.mark.parametrize("geometry, parts", [
+    (box(300, 60, 400, 140), ["p.csv: must overlap the terrain"]),
+    (box(200, 60, 300, 140), ["p.csv: must lie 2 cells within the heights of t.asc, got its edge at local x y 2"]),
+    (box(20, 60, 80, 140), ["p.csv: must lie 2 cells within the heights of t.asc, got NODATA at local x y 47 9"]),
+    (box(100, 60, 104, 64), ["p.csv: must hold at least 9 centres of the cells of t.asc, which are 2 m", "got 4"]),
+    (box(60, 60, 90, 140).union(box(100, 60, 160, 140)), ["p.csv: must be one polygon for --shape sphere", "got 2"]),
+    (box(160, 20, 230, 60), ["p.csv: the ground in it must fall by at least 1 degree, got", "flat"])])
+def test_a_polygon_at_a_bad_place(refused, geometry, parts):
+    def height(x, y):
+        z = np.where(x < 150, 0.6 * x, 90.0)
+        z[np.hypot(x - 47, y - 97) < 1] = np.nan
+        return z
+    terrain(height)
+    polygon(geometry)
+    refused("t.asc --polygon p.csv --depth 5", *parts)
+
+
+def test_flat_ground_for_every_shape(refused):
+    terrain(lambda x, y: 5 + 0.001 * x)
+    polygon(box(60, 60, 160, 140))
+    for shape in ("--depth 5", "--shape ellipsoid --volume 1000", "--dip 10", "--curvature 0.01"):
+        refused(f"t.asc --polygon p.csv {shape}", "p.csv: the ground in it must fall by at least 1 degree")
+
+
+# --- LAMMPS ---
+
+CONTACT = """
+variable     kn equal 1.96e9*v_d/1.25
+pair_style   gran/restitution
+pair_coeff   1 1 stiffness ${kn} ${kn} restitution 0.48 friction 30 rolling 0.05
+pair_coeff   1 2 stiffness ${kn} ${kn} restitution 0.48 friction 0
+pair_coeff   1 3 stiffness ${kn} ${kn} restitution 0.1 friction 30 rolling 0.05
+neighbor     $(0.2*v_d) bin
+neigh_modify every 1 delay 0 check yes
+timestep     $(0.25*sqrt(3411.4*PI/6*v_d^3/v_kn))
+"""
+
+
+def released(name, d, steps=0):
+    """The summary of a run of NAME's deck with a contact model and gravity; hardly a ball is taken out at the start."""
+    lmp = os.environ.get("LMP")
+    if not lmp or not Path(lmp).is_file():
+        pytest.skip("LMP names no lmp")
+    head, tail = Path(f"{name}.deck.txt").read_text().split("# --- contact model")
+    deck = ("units si\natom_style sphere\nboundary s s fs\ncomm_modify vel yes\n" + head + CONTACT
+            + tail.split("\n", 1)[1] + "fix move soil nve/sphere\nfix weight soil gravity 9.80665 vector 0 0 -1\n"
+            f"thermo_modify lost ignore\nrun {steps}\n")
+    Path("in.deck").write_text(deck)
+    done = subprocess.run([lmp, "-in", "in.deck", "-var", "d", str(d), "-log", "none"], capture_output=True, text=True,
+                          timeout=600, check=False)
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr
+    summary = yaml.safe_load(Path(f"{name}.summary.yaml").read_text())
+    removed = int(re.search(r"Delete_balls: (\d+) balls", done.stdout)[1])
+    print(name, d, summary["balls"], removed)
+    assert removed <= 0.02 * summary["balls"]["released"]       # at corners of walls
+    return summary
+
+
+@pytest.mark.parametrize("shape", ["--shape sphere", "--shape ellipsoid", "--shape slbl", "--dip 24"])
+def test_a_run_releases_what_is_printed(body, shape):
+    terrain(hill)
+    polygon(Polygon([(60, 50), (180, 60), (170, 140), (70, 150)]))
+    found, _ = body(f"t.asc --polygon p.csv {shape} --volume 60000")
+    for d in (5, 2.5):
+        summary = released("r", d)
+        assert summary["volume"]["released"] == pytest.approx(found["volume"], rel=0.002)
+        assert summary["release"]["from_cubic"] == pytest.approx(0, abs=0.05)
+    base = rasters.read("r.base.asc").z     # on a grid of the terrain's cells: the slip surface's own nodes
+    assert base == pytest.approx(rasters.read("r.slip.asc").z, abs=1e-6)
+
+
+def test_the_balls_slide(body):
+    terrain(hill)
+    polygon(Polygon([(60, 50), (180, 60), (170, 140), (70, 150)]))
+    body("t.asc --polygon p.csv --shape slbl --volume 60000")
+    summary = released("r", 5, steps=2000)
+    assert summary["motion"]["median_speed"] > 0.3 * 9.8 * 0.5 * summary["time"]
+    assert summary["balls"]["lost"] == 0 and summary["guards"]["deep_contacts"] == 0
+
+
+def test_a_million_cubic_metres_at_frank(body):
+    if not FRANK.is_dir():
+        pytest.skip("shared/data/frank is not there")
+    after = rasters.read(FRANK / "Frankslide_topography.asc")
+    pile = rasters.read(FRANK / "Frankslide_pile.asc", heights=False)
+    rasters.write_asc_local("before.asc", after._replace(z=after.z + pile.z), {})
+    scar, _ = body(f"before.asc --scar {FRANK / 'Frankslide_topography.asc'}")
+    assert scar["volume"] == pytest.approx(pile.z.sum() * 400, rel=1e-6) == pytest.approx(36.0e6, rel=1e-3)
+    Path("p.csv").write_text("650,1350\n950,1400\n930,1650\n640,1600\n")
+    for shape in ("sphere", "ellipsoid", "slbl", "plane --dip 36"):
+        found, _ = body(f"before.asc --polygon p.csv --shape {shape} --volume 1e6")
+        assert found["volume"] == pytest.approx(1e6, rel=1e-5)
+    for d in (10, 5):
+        assert released("r", d)["volume"]["released"] == pytest.approx(1e6, rel=0.002)
+
+
+def test_the_depths_of_s1000(body):
+    if not S1000.is_dir():
+        pytest.skip("shared/data/s1000 is not there")
+    shallow = f"{shlex.quote(str(S1000 / 'pre_runout_DEM.asc'))} --scar {S1000 / 'landslide_depth.asc'}"
+    found, about = body(f"{shallow} --scar-is change")
+    assert found["volume"] == pytest.approx(22481, abs=1) and found["largest_depth"] == pytest.approx(15.7, abs=0.05)
+    assert found["cells"] == 30 and any("30 cells" in line for line in about["warnings"])
+
+
+# --- the page ---
+
+
+def doc_examples():
+    text = (TOP / "doc" / "src" / "tool_release.rst").read_text(encoding="ascii").replace("\\\n", "") + release.EPILOG
+    return re.findall(r"^ +tools/slope release ((?!TERRAIN).*)", text, re.MULTILINE)
+
+
+@pytest.mark.parametrize("command", doc_examples())
+def test_every_example_of_the_page_and_the_help_runs(slope, no_picture, command):
+    assert len(doc_examples()) >= 9
+    terrain(hill, "terrain.asc")
+    terrain(hill, "t.asc")
+    terrain(hill, "before.asc")
+    terrain(lambda x, y: hill(x, y) - 6 * (np.hypot(x - 120, y - 100) < 40), "after.asc")
+    terrain(lambda x, y: -6.0 * (np.hypot(x - 120, y - 100) < 40), "change.asc")
+    terrain(lambda x, y: 6.0 * (np.hypot(x - 120, y - 100) < 40), "depth.asc")
+    shape = Polygon([(60, 50), (180, 60), (170, 140), (70, 150)])
+    in_crs = Polygon([(x + EAST, y + NORTH) for x, y in shape.exterior.coords])
+    polygon(shape, "release.csv")
+    write_geojson("release.geojson", in_crs, crs=CRS_M)
+    with fiona.open("release.shp", "w", driver="ESRI Shapefile", schema={"geometry": "Polygon", "properties": {}},
+                    crs=CRS_M) as out:
+        out.write({"geometry": mapping(in_crs), "properties": {}})
+    status, out, err = slope(command)
+    if "--help" in command:
+        assert "tools/slope release terrain.asc" in out
+    else:
+        assert status == 0 and "volume" in out and "wrote" in out, err
