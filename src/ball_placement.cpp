@@ -7,79 +7,77 @@
 
 #include "atom.h"
 #include "atomic_file.h"
+#include "ball_ground.h"
 #include "comm.h"
 #include "error.h"
-#include "fix_wall_gran_balls.h"
-#include "lammps_compat.h"
 #include "rank_zero.h"
 #include "region_surface.h"
 #include "style_argument.h"
 #include "sunk_region.h"
-#include "surface_sampler.h"
 #include "tokenizer.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
-#include <new>
 #include <stdexcept>
 
 using namespace LAMMPS_NS;
+using Slope::PlacedBall;
+using Slope::SurfaceCounts;
 
 static constexpr double MAX_BALLS = 2147483647.0;
+static constexpr double COUNTED = 131072.0;     // plan nodes of a ground that is counted at once
+static constexpr int MARKS = 4096;              // columns that tell one ground from another
+static constexpr double SAME_PLACE = 1.0e-6;    // in diameters
+static constexpr double RIM_MARKS = 0.05;       // of the columns, rounding may decide on a ball
+static constexpr double IN_ORDER = 1.0e-8;      // of a file's balls, in diameters, in the mean
+static constexpr size_t CHUNK = 1 << 26;        // of a message: MPI counts in int
 
-// a column is searched in steps of this times the diameter: thinner soil holds no ball
-static constexpr double SEARCH_STEP = 0.125;
-static constexpr double LEAST_SINK = 0.05;    // in diameters: the closer, the more columns it takes
+static std::string line_of(const PlacedBall &b)
+{
+  return fmt::format("{:.15g} {:.15g} {:.15g}\n", b.x, b.y, b.z);
+}
+
+static bigint common_divisor(bigint a, bigint b)
+{
+  return b == 0 ? a : common_divisor(b, a % b);
+}
+
+// places from 0 to 1 that repeat no grid: multiples of an irrational number
+static double part(double irrational, bigint k)
+{
+  const double turns = irrational * static_cast<double>(k + 1);
+  return turns - std::floor(turns);
+}
 
 /* ---------------------------------------------------------------------- */
 
-BallPlacement::BallPlacement(LAMMPS *lmp, const std::string &caller_in, double diameter_in,
+BallPlacement::BallPlacement(LAMMPS *lmp, const std::string &caller_in, double diameter,
                              double smallest_in, int narg, char **arg, bool may_write) :
     Pointers(lmp),
-    smallest(smallest_in), caller(caller_in), diameter(diameter_in), side(RegionSurface::UPPER),
-    spacing(0.0), origin{0.0, 0.0}, filter_inside(true), sink(0.0), filter_sink(-1.0)
+    caller(caller_in), arguments(lmp, caller_in, diameter, smallest_in, narg, arg, may_write),
+    dropped(0), counted(-1)
 {
-  if (!(diameter > 0.0) || !std::isfinite(diameter))
-    error->all(FLERR, "{} diameter must be > 0, got {}", caller, diameter);
-  parse(narg, arg, may_write);
-  if (region.empty())
-    smallest = 0.0;
-  else if (!(smallest > 0.0 && smallest < diameter))
-    smallest = diameter;
-
-  const double step = SEARCH_STEP * diameter;
-  if (!filter.empty())
-    columns.reset(new RegionSurface(lmp, caller, filter.c_str(), RegionSurface::LOWER, step));
-  if (!region.empty()) {
-    surface.reset(new RegionSurface(lmp, caller, region.c_str(), side, step));
-    if (!surface->has_boundary())
-      error->all(FLERR, "{} region {} must have a{} boundary, got INF", caller, region,
-                 side == RegionSurface::LOWER ? " lower" : "n upper");
-    find_bodies();
-  }
-
-  on_rank_zero(lmp, caller, [this]() {
-    if (region.empty())
-      read_file();
-    else
-      place_on_surface();
-  });
-  share();
-  if (xyz.empty())
-    error->all(FLERR, "{}: {} holds no balls", caller,
-               region.empty() ? "file " + file : "the surface of region " + region);
-  if (comm->me == 0) utils::logmesg(lmp, "{}\n", summary);
-  if (!write.empty())
-    on_rank_zero(lmp, caller, [this]() {
-      write_file();
-    });
+  ground.reset(new BallGround(lmp, arguments));
+  if (arguments.region.empty())
+    place_file();
+  else
+    place_surface();
 }
 
 BallPlacement::~BallPlacement() = default;
+
+std::shared_ptr<SunkRegion> BallPlacement::sunk() const
+{
+  return ground->sunk;
+}
+
+const std::string &BallPlacement::outside() const
+{
+  return ground->outside;
+}
 
 double BallPlacement::smallest_ball(LAMMPS *lmp, int groupbit)
 {
@@ -92,278 +90,317 @@ double BallPlacement::smallest_ball(LAMMPS *lmp, int groupbit)
   return all < HUGE_VAL ? all : 0.0;
 }
 
-/* ----------------------------------------------------------------------
-   arguments
-------------------------------------------------------------------------- */
-
-void BallPlacement::need(int n, const char *values, int narg, char **arg) const
+void BallPlacement::check_regions() const
 {
-  if (n >= narg)
-    error->all(FLERR, "{} {} must be followed by {}, got {} of {} values", caller, arg[0], values,
-               narg - 1, n);
+  std::string changed;
+  if (!ground->stands(changed))
+    error->all(FLERR, "{}: region {} must stay as it was when these balls were defined", caller,
+               changed);
 }
 
-double BallPlacement::number(const char *what, int narg, char **arg) const
+/* ---------------------------------------------------------------------- */
+
+void BallPlacement::place_file()
 {
-  need(1, what, narg, arg);
-  return number_argument(lmp, fmt::format("{} {}", caller, arg[0]), arg[1]);
+  on_rank_zero(lmp, caller, [this]() {
+    read_file();
+  });
+  share_file();
+  counted = from_file.size();
+  if (counted == 0) error->all(FLERR, "{}: file {} holds no balls", caller, arguments.file);
+  SurfaceCounts counts;
+  counts.base = counted;
+  if (comm->me == 0) report(counts, true);
+  if (arguments.write.empty()) return;
+  std::vector<std::string> text(1);
+  if (comm->me == 0)
+    for (const PlacedBall &b : from_file) text[0] += line_of(b);
+  write_file(text, counted);
 }
 
-void BallPlacement::parse(int narg, char **arg, bool may_write)
+void BallPlacement::place_surface()
 {
-  if (narg < 1) error->all(FLERR, "{} needs surface or file, got neither", caller);
-  int iarg;
-  if (strcmp(arg[0], "surface") == 0) {
-    need(2, "REGION upper|lower", narg, arg);
-    region = arg[1];
-    if (strcmp(arg[2], "upper") == 0)
-      side = RegionSurface::UPPER;
-    else if (strcmp(arg[2], "lower") == 0)
-      side = RegionSurface::LOWER;
-    else
-      error->all(FLERR, "{} surface side must be upper or lower, got {}", caller, arg[2]);
-    iarg = 3;
-  } else if (strcmp(arg[0], "file") == 0) {
-    need(1, "FILE", narg, arg);
-    file = arg[1];
-    iarg = 2;
-  } else {
-    error->all(FLERR, "{} needs surface or file, got {}", caller, arg[0]);
+  double nodes = 0.0;
+  on_all_ranks(lmp, caller, [&]() {
+    if (!ground->build()) return;
+    nodes = Slope::count_nodes(ground->grid());
+    if (!(nodes < MAX_BALLS))
+      throw std::runtime_error(fmt::format("spacing must give fewer than 2^31 balls, got {:.3g} with {}",
+                                           nodes, arguments.spacing));
+    if (nodes > 0.0) sampler = new_sampler();
+  });
+  if (comm->me == 0) warn_of_spacing();
+  if (!any())
+    error->all(FLERR, "{}: the surface of region {} holds no balls", caller, arguments.region);
+
+  std::vector<std::string> text(2);
+  SurfaceCounts counts;
+  const bool writing = !arguments.write.empty(), known = writing || nodes <= COUNTED;
+  if (known) {
+    counts = count_all(writing ? &text : nullptr);
+    counted = counts.base + counts.extra;
   }
-
-  while (iarg < narg) {
-    int n = region.empty() ? 0 : parse_surface(narg - iarg, &arg[iarg]);
-    if (n == 0) n = parse_any(narg - iarg, &arg[iarg], may_write);
-    if (n == 0)
-      error->all(FLERR, "{} keyword must be {}inside{}, got {}", caller,
-                 region.empty() ? "" : "spacing, origin, sink, sunk, smallest, ",
-                 may_write ? ", outside or write" : " or outside", arg[iarg]);
-    iarg += n;
-  }
-  if (!region.empty() && spacing == 0.0)
-    error->all(FLERR, "{} surface needs a spacing, got none", caller);
-  if (filter_sink >= 0.0 && (filter.empty() || filter_inside))
-    error->all(FLERR, "{} sunk needs outside REGION, got none", caller);
-}
-
-// keywords of a surface: how many words one takes, 0 if it is none of them
-
-int BallPlacement::parse_surface(int narg, char **arg)
-{
-  if (strcmp(arg[0], "spacing") == 0) {
-    spacing = number("S", narg, arg);
-    if (spacing <= 0.0) error->all(FLERR, "{} spacing must be > 0, got {}", caller, arg[1]);
-  } else if (strcmp(arg[0], "sink") == 0) {
-    sink = number("H", narg, arg);
-    check_sink(sink, arg);
-  } else if (strcmp(arg[0], "sunk") == 0) {
-    filter_sink = number("H", narg, arg);
-    check_sink(filter_sink, arg);
-  } else if (strcmp(arg[0], "smallest") == 0) {
-    smallest = number("D", narg, arg);
-    if (smallest <= 0.0) error->all(FLERR, "{} smallest must be > 0, got {}", caller, arg[1]);
-  } else if (strcmp(arg[0], "origin") == 0) {
-    need(2, "x y", narg, arg);
-    for (int d = 0; d < 2; d++) {
-      const char *text = arg[1 + d];
-      origin[d] = number_argument(lmp, fmt::format("{} origin {}", caller, "xy"[d]), text);
-      if (std::fabs(origin[d]) > FARTHEST)
-        error->all(FLERR, "{} origin {} must be within +-{:g}, got {}", caller, "xy"[d], FARTHEST,
-                   text);
-    }
-    return 3;
-  } else {
-    return 0;
-  }
-  return 2;
-}
-
-void BallPlacement::check_sink(double value, char **arg) const
-{
-  const double least = LEAST_SINK * diameter;
-  if (value != 0.0 && !(value >= least))
-    error->all(FLERR, "{} {} must be 0 or at least {:.6g} ({} diameters), got {}", caller, arg[0],
-               least, LEAST_SINK, arg[1]);
-}
-
-int BallPlacement::parse_any(int narg, char **arg, bool may_write)
-{
-  const bool inside = strcmp(arg[0], "inside") == 0;
-  if (inside || strcmp(arg[0], "outside") == 0) {
-    need(1, "REGION", narg, arg);
-    if (!filter.empty())
-      error->all(FLERR, "{} can have one filter (inside or outside), got {} {} as well", caller,
-                 arg[0], arg[1]);
-    filter_inside = inside;
-    filter = arg[1];
-  } else if (strcmp(arg[0], "write") == 0 && may_write) {
-    need(1, "FILE", narg, arg);
-    write = arg[1];
-  } else {
-    return 0;
-  }
-  return 2;
+  if (comm->me == 0) report(counts, known);
+  if (writing) write_file(text, counted);
 }
 
 /* ----------------------------------------------------------------------
-   the bodies of sunk balls: the one that lies on these, and those that the filter leaves out
+   balls on a plan grid, and more where the surface is steep: how far a point of the surface may be
+   from the nearest ball, from the plan grid alone on level ground, with extra balls where it is
+   steep. The smallest ball touches one whose centre is contact away: what is said of equal balls
+   holds with half of that for their radius.
 ------------------------------------------------------------------------- */
 
-void BallPlacement::find_bodies()
+std::unique_ptr<Slope::SurfaceSampler> BallPlacement::new_sampler() const
 {
-  if (sink > 0.0) sunk = std::make_shared<SunkRegion>(lmp, caller, region, side, sink, diameter);
-
-  const auto others = compat::fixes_of_style(lmp, "wall/gran/balls");
-  if (sunk && side == RegionSurface::LOWER)
-    for (Fix *fix : others) {
-      const std::string &left_out = static_cast<FixWallGranBalls *>(fix)->left_out();
-      if (left_out.empty() || !compat::find_region(lmp, left_out)) continue;
-      const RegionSurface its(lmp, caller, left_out.c_str(), RegionSurface::LOWER,
-                              SEARCH_STEP * diameter);
-      if (left_out == region || sunk->lies_in(its))
-        error->all(
-            FLERR,
-            "{} sink must come before fix {}, which is outside region {}: define that after this",
-            caller, fix->id, left_out);
-    }
-
-  if (filter.empty() || filter_inside) return;
-  if (filter_sink < 0.0) {
-    outside = filter;
-    for (Fix *fix : others) {
-      const Sunk body = static_cast<FixWallGranBalls *>(fix)->body();
-      if (body && (body->region == filter || body->lies_in(*columns))) bodies.push_back(body);
-    }
-  } else if (filter_sink > 0.0) {
-    if (!columns->has_boundary())
-      error->all(FLERR, "{} sunk region {} must have a lower boundary, got INF", caller, filter);
-    bodies.push_back(std::make_shared<SunkRegion>(lmp, caller, filter, RegionSurface::LOWER,
-                                                  filter_sink, diameter));
-  }
+  const double half = 0.25 * (arguments.diameter + arguments.smallest);
+  return std::unique_ptr<Slope::SurfaceSampler>(
+      new Slope::SurfaceSampler(ground->grid(), half, ground->surface()));
 }
 
-void BallPlacement::share()
+void BallPlacement::warn_of_spacing() const
 {
-  bigint size = xyz.size();
-  MPI_Bcast(&size, 1, MPI_LMP_BIGINT, 0, world);
-  xyz.resize(size);
-  const bigint most = 1 << 28;    // MPI counts in int
-  for (bigint done = 0; done < size; done += most)
-    MPI_Bcast(&xyz[done], static_cast<int>(std::min(most, size - done)), MPI_DOUBLE, 0, world);
-}
-
-/* ----------------------------------------------------------------------
-   balls on a plan grid, and more where the surface is steep
-------------------------------------------------------------------------- */
-
-// Columns of the filter's region, and of the sunk surface below it where the balls would be above it.
-// A sunk surface reaches farther than its body.
-
-bool BallPlacement::height(double x, double y, double &z) const
-{
-  return sunk ? sunk->height(x, y, z) : surface->height(x, y, z);
-}
-
-bool BallPlacement::keep(double x, double y) const
-{
-  double z, bottom;
-  for (const Sunk &body : bodies)
-    if (body->centre(x, y, bottom) && height(x, y, z) && bottom < z) return false;
-  if (!columns || (bodies.size() == 1 && bodies[0]->region == filter)) return true;
-  return columns->height(x, y, z) == filter_inside;
-}
-
-bool BallPlacement::scar(double x, double y, double &z) const
-{
-  double top, bottom;
-  z = HUGE_VAL;
-  if (!height(x, y, top)) return false;
-  for (const Sunk &body : bodies)
-    if (body->centre(x, y, bottom) && bottom < top) z = std::min(z, bottom);
-
-  // a prism without a bottom leaves no scar, it only selects
-
-  if (columns->has_boundary() && columns->height(x, y, bottom)) z = std::min(z, bottom);
-  return z < HUGE_VAL;
-}
-
-void BallPlacement::check_floor() const
-{
-  const double most = sunk->lowest() + sink - sunk->floor();
-  if (sink < most) return;
-  const bool of_region = side == RegionSurface::UPPER || !sunk->ground.empty();
-  throw std::runtime_error(fmt::format(
-      "sink must be < {:.6g}, so that the balls lie above the bottom of {}, got {}", most,
-      of_region ? "region " + (sunk->ground.empty() ? region : sunk->ground) : "the simulation box",
-      sink));
-}
-
-void BallPlacement::place_on_surface()
-{
-  for (const Sunk &body : bodies) body->build();
-  Slope::PlanGrid grid = {surface->xlo, surface->xhi, surface->ylo, surface->yhi,
-                          spacing,      origin[0],    origin[1]};
-  if (!(grid.xlo <= grid.xhi && grid.ylo <= grid.yhi)) return;    // an empty intersection
-  if (sunk) {
-    sunk->build();
-    sunk->plan(grid.xlo, grid.xhi, grid.ylo, grid.yhi);
-    check_floor();
-  }
-  if (!(Slope::plan_nodes(grid) < MAX_BALLS))
-    throw std::runtime_error(
-        fmt::format("spacing must give fewer than 2^31 balls, got {:.3g} with {}",
-                    Slope::plan_nodes(grid), spacing));
-
-  // How far a point of the surface may be from the nearest ball, from the plan grid alone on
-  // level ground, with extra balls where it is steep. The smallest ball touches one whose centre is
-  // contact away: what is said of equal balls holds with half of that for their radius.
-
-  const double contact = 0.5 * (diameter + smallest), half = 0.5 * contact;
+  const double contact = 0.5 * (arguments.diameter + arguments.smallest), half = 0.5 * contact;
+  const double spacing = arguments.spacing;
   const bool leaks = spacing / std::sqrt(2.0) >= contact;
   const double steep = Slope::cover_radius(spacing, half) + Slope::sampling_slack(half);
   if (leaks || steep >= contact)
     error->warning(FLERR,
                    "{} spacing {} lets a ball of diameter {} through {}: spacing must be < {:.4g}",
-                   caller, spacing, smallest, leaks ? "even on level ground" : "on steep ground",
+                   caller, spacing, arguments.smallest,
+                   leaks ? "even on level ground" : "on steep ground",
                    contact * (leaks ? std::sqrt(2.0) : 1.299));
+}
 
-  Slope::Surface ground;
-  ground.height = [this](double x, double y, double &z) {
-    return height(x, y, z);
-  };
-  if (columns) {
-    ground.keep = [this](double x, double y) {
-      return keep(x, y);
-    };
+/* ----------------------------------------------------------------------
+   tile by tile
+------------------------------------------------------------------------- */
 
-    // what lies outside of a region borders on the scar that it leaves
+Slope::TilePlan BallPlacement::tiles() const
+{
+  if (!sampler) return {0.0, 0.0, HUGE_VAL, 1, 1};
+  const Slope::PlanNodes &plan = sampler->plan();
+  return {plan.xfirst, plan.yfirst, plan.tile * plan.grid.spacing, plan.tiles_x, plan.tiles_y};
+}
 
-    if (!filter_inside && (columns->has_boundary() || !bodies.empty()))
-      ground.scar = [this](double x, double y, double &z) {
-        return scar(x, y, z);
-      };
+void BallPlacement::make(int tile, std::vector<PlacedBall> &balls)
+{
+  if (!sampler) {
+    balls.swap(from_file);    // once: a single tile is kept
+    return;
   }
-
-  Slope::SurfaceBalls balls = Slope::sample_surface(grid, half, ground);
-  xyz.swap(balls.xyz);
-
-  summary =
-      fmt::format("{}: {} fixed balls of diameter {} ({} on the plan grid every {}, {} extra "
-                  "where the surface is steep or ends",
-                  caller, balls.base + balls.extra, diameter, balls.base, spacing, balls.extra);
-  if (balls.without_surface)
-    summary += fmt::format(", {} plan nodes without surface", balls.without_surface);
-  if (columns)
-    summary += fmt::format(", {} plan nodes not {} region {}", balls.dropped,
-                           filter_inside ? "inside" : "outside", filter);
-  for (size_t k = 0; k < bodies.size(); k++)
-    summary += fmt::format("{} sunk by {}", k ? "," : "", bodies[k]->sink);
-  if (sunk) {
-    summary += fmt::format(", sunk by {}", sink);
-    if (!sunk->ground.empty()) summary += " and continued up to region " + sunk->ground;
+  std::string changed;
+  if (!ground->stands(changed))
+    error->one(FLERR, "{}: region {} must stay as it was when these balls were defined", caller,
+               changed);
+  SurfaceCounts unused;
+  try {
+    sampler->sample(tile, balls, unused);
+  } catch (std::exception &e) {
+    error->one(FLERR, "{}: {}", caller, e.what());
   }
-  if (smallest < diameter) summary += fmt::format(", tight for balls of diameter {}", smallest);
-  summary += ")";
+}
+
+void BallPlacement::forget()
+{
+  if (sampler) sampler->forget();
+}
+
+/* ----------------------------------------------------------------------
+   the whole ground: each rank makes some rows of tiles, and forgets them
+------------------------------------------------------------------------- */
+
+void BallPlacement::my_rows(int &first, int &end) const
+{
+  const bigint rows = sampler->tiles_y();
+  first = static_cast<int>(rows * comm->me / comm->nprocs);
+  end = static_cast<int>(rows * (comm->me + 1) / comm->nprocs);
+}
+
+// does any node have a ball? Asked of a few tiles of each rank first, then of more
+
+bool BallPlacement::any() const
+{
+  if (!sampler) return false;
+  const bigint tiles = sampler->tiles();
+  bigint step = 1 + 618 * tiles / 1000, at = comm->me;    // every tile comes once, far ones in turn
+  while (common_divisor(step, tiles) > 1) step++;
+  int mine = 0, found = 0, left = 1;
+  for (int some = 16; !found && left; some *= 8) {
+    on_all_ranks(lmp, caller, [&]() {
+      const auto looks = new_sampler();
+      for (int k = 0; k < some && at < tiles && !mine; k++, at += comm->nprocs)
+        mine = looks->has_balls(static_cast<int>(at * step % tiles));
+    });
+    int mine_left = at < tiles;
+    MPI_Allreduce(&mine, &found, 1, MPI_INT, MPI_MAX, world);
+    MPI_Allreduce(&mine_left, &left, 1, MPI_INT, MPI_MAX, world);
+  }
+  return found;
+}
+
+bigint BallPlacement::count()
+{
+  if (counted < 0) {
+    check_regions();
+    const SurfaceCounts counts = count_all(nullptr);
+    counted = counts.base + counts.extra;
+  }
+  return counted;
+}
+
+SurfaceCounts BallPlacement::count_all(std::vector<std::string> *text) const
+{
+  SurfaceCounts mine;
+  on_all_ranks(lmp, caller, [&]() {
+    const auto share = new_sampler();
+    std::vector<PlacedBall> balls;
+    int first, end;
+    my_rows(first, end);
+    for (int row = first; row < end; row++) {
+      for (int i = 0; i < share->tiles_x(); i++) {
+        if (!text) balls.clear();
+        share->sample(row * share->tiles_x() + i, balls, mine);
+      }
+      if (!text) continue;
+      Slope::in_order(balls);
+      for (const PlacedBall &b : balls)
+        (*text)[Slope::is_extra(b)] += line_of(b);
+      balls.clear();
+    }
+  });
+  bigint numbers[4] = {mine.without_surface, mine.dropped, mine.base, mine.extra};
+  bigint sums[4];
+  MPI_Allreduce(numbers, sums, 4, MPI_LMP_BIGINT, MPI_SUM, world);
+  SurfaceCounts all;
+  all.without_surface = sums[0];
+  all.dropped = sums[1];
+  all.base = sums[2];
+  all.extra = sums[3];
+  return all;
+}
+
+std::vector<PlacedBall> BallPlacement::all()
+{
+  if (!sampler) return std::move(from_file);
+  check_regions();
+  std::vector<PlacedBall> mine, together;
+  on_all_ranks(lmp, caller, [&]() {
+    const auto share = new_sampler();
+    SurfaceCounts unused;
+    int first, end;
+    my_rows(first, end);
+    for (int tile = first * share->tiles_x(); tile < end * share->tiles_x(); tile++)
+      share->sample(tile, mine, unused);
+  });
+  for (int from = 0; from < comm->nprocs; from++) {
+    bigint n = mine.size();
+    MPI_Bcast(&n, 1, MPI_LMP_BIGINT, from, world);
+    const size_t before = together.size();
+    together.resize(before + n);
+    if (from == comm->me) std::copy(mine.begin(), mine.end(), together.begin() + before);
+    bcast(&together[before], n * sizeof(PlacedBall), from);
+  }
+  Slope::in_order(together);
+  return together;
+}
+
+// MPI counts in int
+
+void BallPlacement::bcast(void *data, size_t bytes, int from) const
+{
+  char *at = static_cast<char *>(data);
+  for (size_t done = 0; done < bytes; done += CHUNK)
+    MPI_Bcast(at + done, static_cast<int>(std::min(CHUNK, bytes - done)), MPI_CHAR, from, world);
+}
+
+/* ----------------------------------------------------------------------
+   what rank 0 says of the ground
+------------------------------------------------------------------------- */
+
+void BallPlacement::report(const SurfaceCounts &counts, bool known) const
+{
+  const PlacementArguments &a = arguments;
+  const std::string where = fmt::format("{} region {}", a.filter_inside ? "inside" : "outside", a.filter);
+  std::string text = fmt::format("{}: ", caller);
+  if (a.region.empty()) {
+    text += fmt::format("{} fixed balls of diameter {} (from file {}", counts.base, a.diameter, a.file);
+    if (!a.filter.empty()) text += fmt::format(", {} not {}", dropped, where);
+  } else if (known) {
+    text += fmt::format("{} fixed balls of diameter {} ({} on the plan grid every {}, {} extra "
+                        "where the surface is steep or ends",
+                        counts.base + counts.extra, a.diameter, counts.base, a.spacing, counts.extra);
+    if (counts.without_surface)
+      text += fmt::format(", {} plan nodes without surface", counts.without_surface);
+    if (!a.filter.empty()) text += fmt::format(", {} plan nodes not {}", counts.dropped, where);
+  } else {
+    text += fmt::format("fixed balls of diameter {} (on a plan grid of {:.0f} nodes every {}, made "
+                        "where balls come near",
+                        a.diameter, Slope::count_nodes(ground->grid()), a.spacing);
+    if (!a.filter.empty()) text += ", " + where;
+  }
+  for (size_t k = 0; k < ground->bodies.size(); k++)
+    text += fmt::format("{} sunk by {}", k ? "," : "", ground->bodies[k]->sink);
+  if (ground->sunk) {
+    text += fmt::format(", sunk by {}", a.sink);
+    if (!ground->sunk->ground.empty())
+      text += " and continued up to region " + ground->sunk->ground;
+  }
+  if (a.smallest > 0.0 && a.smallest < a.diameter)
+    text += fmt::format(", tight for balls of diameter {}", a.smallest);
+  utils::logmesg(lmp, "{})\n", text);
+}
+
+/* ----------------------------------------------------------------------
+   numbers that tell one ground from another: of a file the places in their order, of a surface the
+   plan grid and the balls on some of its nodes
+------------------------------------------------------------------------- */
+
+const std::vector<double> &BallPlacement::fingerprint()
+{
+  if (!marks.empty()) return marks;
+  marks = {static_cast<double>(counted), arguments.diameter};
+  if (!sampler) {
+    marks.insert(marks.end(), sums, sums + 3);
+    return marks;
+  }
+  const Slope::PlanNodes &plan = sampler->plan();
+  const double nodes = static_cast<double>(plan.nx) * plan.ny;
+  for (const double value : {plan.grid.spacing, plan.xfirst, plan.yfirst, plan.nx + 0.0, plan.ny + 0.0})
+    marks.push_back(value);
+  for (int k = 0; k < std::min(nodes, MARKS + 0.0); k++) {
+    const bigint node = static_cast<bigint>(nodes <= MARKS ? k : part(0.6180339887498949, k) * nodes);
+    marks.push_back(sampler->node(static_cast<int>(node % plan.nx), static_cast<int>(node / plan.nx)));
+  }
+  return marks;
+}
+
+std::string BallPlacement::unlike(const std::vector<double> &there)
+{
+  const std::vector<double> &here = fingerprint();
+  const double d = arguments.diameter;
+  if (there.size() < 2) return "nothing known of them";
+  if (there[0] >= 0.0 && here[0] >= 0.0 && there[0] != here[0])
+    return fmt::format("{:.0f} there, {:.0f} here", there[0], here[0]);
+  if (std::fabs(there[1] - d) > 1.0e-9 * d)
+    return fmt::format("diameter {:.15g} there, {:.15g} here", there[1], d);
+  if (there.size() != here.size()) return "another plan grid";
+  if (!sampler) {
+    for (size_t k = 2; k < here.size(); k++)
+      if (!(std::fabs(there[k] - here[k]) <= IN_ORDER * d * here[0]))
+        return fmt::format("other places, or another order, of {:.0f}", here[0]);
+    return "";
+  }
+  for (size_t k = 2; k < 7; k++)
+    if (!(std::fabs(there[k] - here[k]) <= SAME_PLACE * d)) return "another plan grid";
+  double balls = 0.0, moved = 0.0, only_one = 0.0;
+  for (size_t k = 7; k < here.size(); k++) {
+    const bool has = std::isfinite(here[k]), had = std::isfinite(there[k]);
+    balls += has || had;
+    only_one += has != had;
+    moved += has && had && std::fabs(here[k] - there[k]) > SAME_PLACE * d;
+  }
+  return moved > 0.0 || only_one > std::max(2.0, RIM_MARKS * balls) ? "another surface" : "";
 }
 
 /* ----------------------------------------------------------------------
@@ -372,11 +409,11 @@ void BallPlacement::place_on_surface()
 
 void BallPlacement::read_file()
 {
+  const std::string &file = arguments.file;
   std::ifstream in(file);
   if (!in)
     throw std::runtime_error(fmt::format("cannot open file {}: {}", file, utils::getsyserror()));
 
-  bigint dropped = 0;
   std::string line;
   for (int nline = 1; std::getline(in, line); nline++) {
     const std::string where = fmt::format("file {} line {}: ", file, nline);
@@ -397,34 +434,75 @@ void BallPlacement::read_file()
         throw std::runtime_error(
             fmt::format("{}{} must be within +-{:g}, got {}", where, "xyz"[d], FARTHEST, words[d]));
     }
-    if (keep(x[0], x[1]))
-      xyz.insert(xyz.end(), x, x + 3);
+    if (ground->keep(x[0], x[1]))
+      from_file.push_back({x[0], x[1], x[2], static_cast<int64_t>(from_file.size())});
     else
       dropped++;
-    if (xyz.size() / 3 > MAX_BALLS)
+    if (from_file.size() > MAX_BALLS)
       throw std::runtime_error(where + "must be fewer than 2^31 balls, got more");
   }
   if (in.bad())
     throw std::runtime_error(fmt::format("cannot read file {}: {}", file, utils::getsyserror()));
+}
 
-  summary = fmt::format("{}: {} fixed balls of diameter {} (from file {}", caller, xyz.size() / 3,
-                        diameter, file);
-  if (columns)
-    summary +=
-        fmt::format(", {} not {} region {}", dropped, filter_inside ? "inside" : "outside", filter);
-  summary += ")";
+// sums: of the coordinates with a weight of -1 to 1 that each ball's number decides on: two balls that
+// change places change them
+
+void BallPlacement::share_file()
+{
+  bigint size = from_file.size();
+  MPI_Bcast(&size, 1, MPI_LMP_BIGINT, 0, world);
+  on_all_ranks(lmp, caller, [&]() {
+    from_file.resize(size);
+  });
+  bcast(from_file.data(), size * sizeof(PlacedBall), 0);
+  long double sum[3] = {0.0, 0.0, 0.0};
+  for (bigint k = 0; k < size; k++) {
+    const double x[3] = {from_file[k].x, from_file[k].y, from_file[k].z};
+    for (int d = 0; d < 3; d++) sum[d] += (2.0 * part(0.6180339887498949, k) - 1.0) * x[d];
+  }
+  for (int d = 0; d < 3; d++) sums[d] = static_cast<double>(sum[d]);
 }
 
 /* ----------------------------------------------------------------------
-   the same kind of file
+   the same kind of file, of all balls in order: rank 0 writes what each rank has made of its rows,
+   the balls on nodes of all ranks first
 ------------------------------------------------------------------------- */
 
-void BallPlacement::write_file()
+void BallPlacement::write_file(std::vector<std::string> &text, bigint n) const
 {
-  Slope::AtomicFile out(write);
-  out.write(fmt::format("# {}: {} fixed balls of diameter {}, units {}\n# x y z\n", caller,
-                        xyz.size() / 3, diameter, update->unit_style));
-  for (size_t k = 0; k < xyz.size(); k += 3)
-    out.write(fmt::format("{:.15g} {:.15g} {:.15g}\n", xyz[k], xyz[k + 1], xyz[k + 2]));
-  out.commit();
+  std::unique_ptr<Slope::AtomicFile> out;
+  on_rank_zero(lmp, caller, [&]() {
+    out.reset(new Slope::AtomicFile(arguments.write));
+    out->write(fmt::format("# {}: {} fixed balls of diameter {}, units {}\n# x y z\n", caller, n,
+                           arguments.diameter, update->unit_style));
+  });
+  for (std::string &lines : text)
+    for (int from = 0; from < comm->nprocs; from++) {
+      if (from > 0) send_to_rank_zero(lines, from);
+      on_rank_zero(lmp, caller, [&]() {
+        out->write(lines);
+      });
+    }
+  on_rank_zero(lmp, caller, [&]() {
+    out->commit();
+  });
+}
+
+// lines of rank from replace those of rank 0
+
+void BallPlacement::send_to_rank_zero(std::string &lines, int from) const
+{
+  bigint size = lines.size();
+  if (comm->me == from) MPI_Send(&size, 1, MPI_LMP_BIGINT, 0, 0, world);
+  if (comm->me == 0) {
+    MPI_Recv(&size, 1, MPI_LMP_BIGINT, from, 0, world, MPI_STATUS_IGNORE);
+    lines.resize(size);
+  }
+  if (comm->me != 0 && comm->me != from) return;
+  for (size_t done = 0; done < static_cast<size_t>(size); done += CHUNK) {
+    const int n = static_cast<int>(std::min(CHUNK, static_cast<size_t>(size) - done));
+    if (comm->me == from) MPI_Send(&lines[done], n, MPI_CHAR, 0, 0, world);
+    if (comm->me == 0) MPI_Recv(&lines[done], n, MPI_CHAR, from, 0, world, MPI_STATUS_IGNORE);
+  }
 }

@@ -8,74 +8,79 @@
 
 #include "pointers.h"
 
+#include "ball_tiles.h"
+#include "placement_arguments.h"
+#include "surface_sampler.h"
+
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
 
-// Where the fixed balls go, from the arguments that fix wall/gran/balls and create_balls share:
+// The fixed balls that placement_arguments.h describes. Those on a surface are made tile by tile, by
+// the rank that asks and only then; the regions must stay as they are as long as this does. Those of
+// a file are one tile, read once, which every rank holds.
 //
-//   surface REGION upper|lower spacing S [inside REGION | outside REGION [sunk H]] [origin x y]
-//     [sink H] [smallest D]
-//   file FILE [inside REGION | outside REGION]
-//   write FILE     in addition, if may_write
-//
-// The constructor does it all: reads the arguments, places the balls, reports how many (rank 0)
-// and writes the file. Errors end the run on all ranks; messages start with caller.
-// smallest: diameter of the smallest moving ball, the fixed balls' own where it is not known or larger.
+// The constructor checks the arguments, reports (rank 0), and writes the file that write asks for.
+// Errors end the run on all ranks; messages start with caller.
 class BallPlacement : protected Pointers {
  public:
   BallPlacement(class LAMMPS *, const std::string &caller, double diameter, double smallest,
                 int narg, char **arg, bool may_write = false);
   ~BallPlacement() override;
 
-  std::vector<double> xyz;    // x,y,z of each ball, the same on all ranks
+  // any rank alone: the tiles, and the balls of one of them, appended
+  Slope::TilePlan tiles() const;
+  void make(int tile, std::vector<Slope::PlacedBall> &balls);
+  void forget();    // what was only needed to make them
+
+  // all ranks, each makes its share
+  bigint count();
+  std::vector<Slope::PlacedBall> all();    // on all ranks, in order; once for a file
+
+  // numbers that tell this ground from another one, also in another build: for restart files;
+  // on all ranks: how it is not the ground of these numbers, empty if it is
+  const std::vector<double> &fingerprint();
+  std::string unlike(const std::vector<double> &fingerprint);
+
+  // all ranks: the regions must be those of the constructor
+  void check_regions() const;
 
   // what others need to know of a placement: the body that these balls lie below, nullptr if they are
   // not sunk; the region outside of which they are, empty if sunk says that it is sunk; the diameter
   // of the smallest ball that finds no way through, 0 if that is not known
-  typedef std::shared_ptr<class SunkRegion> Sunk;
-  Sunk sunk;
-  std::string outside;
-  double smallest;
+  std::shared_ptr<class SunkRegion> sunk() const;
+  const std::string &outside() const;
+  double smallest() const { return arguments.smallest; }
 
   // diameter of the smallest ball of a group, 0 if it has none; all ranks
   static double smallest_ball(class LAMMPS *, int groupbit);
 
  private:
-  std::string caller;
-  double diameter;
+  const std::string caller;
+  const PlacementArguments arguments;
+  std::unique_ptr<class BallGround> ground;
+  std::unique_ptr<Slope::SurfaceSampler> sampler;    // empty: a file, or no column at all
+  std::vector<Slope::PlacedBall> from_file;
+  double sums[3];                // of these
+  bigint dropped;                // lines of the file
+  bigint counted;                // balls, -1: unknown
+  std::vector<double> marks;     // the fingerprint
 
-  // arguments
-
-  std::string region, file, write;    // region or file is empty
-  int side;
-  double spacing, origin[2];
-  std::string filter;
-  bool filter_inside;
-  double sink, filter_sink;    // < 0: the sink of the fix that has sunk the filter's region
-
-  std::unique_ptr<class RegionSurface> surface, columns;    // columns: of the filter
-  std::vector<Sunk> bodies;                                 // sunk ones that the filter leaves out
-  std::string summary;                                      // rank 0
-
-  void need(int n, const char *values, int, char **) const;
-  double number(const char *what, int, char **) const;
-  void parse(int, char **, bool);
-  int parse_surface(int, char **);
-  int parse_any(int, char **, bool);
-  void check_sink(double, char **) const;
-
-  void find_bodies();
-  bool height(double x, double y, double &z) const;
-  bool keep(double x, double y) const;
-  bool scar(double x, double y, double &z) const;
-  void check_floor() const;
-  void place_on_surface();
+  void place_file();
+  void place_surface();
+  std::unique_ptr<Slope::SurfaceSampler> new_sampler() const;
+  void my_rows(int &first, int &end) const;
+  void warn_of_spacing() const;
+  bool any() const;
+  Slope::SurfaceCounts count_all(std::vector<std::string> *text) const;    // text: lines, of nodes, extra
+  void report(const Slope::SurfaceCounts &, bool known) const;
+  void bcast(void *data, size_t bytes, int from) const;
+  void write_file(std::vector<std::string> &text, bigint n) const;
+  void send_to_rank_zero(std::string &lines, int from) const;
   void read_file();
-  void write_file();
-  void share();
+  void share_file();
 };
 
 }    // namespace LAMMPS_NS

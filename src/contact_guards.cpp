@@ -37,8 +37,12 @@ ContactGuards::ContactGuards(LAMMPS *lmp, const ContactTable &contacts) :
 
 template <typename... Args> void ContactGuards::warn(const char *format, const Args &...args)
 {
+  if (comm->me == 0) say("Pair gran/restitution: " + fmt::format(format, args...));
+}
+
+void ContactGuards::say(const std::string &text)
+{
   if (comm->me > 0) return;
-  const std::string text = "Pair gran/restitution: " + fmt::format(format, args...);
   error->warning(FLERR, text);
   if (std::find(warnings.begin(), warnings.end(), text) == warnings.end()) warnings.push_back(text);
 }
@@ -58,8 +62,8 @@ void ContactGuards::start(int freeze_group_bit)
 
 void ContactGuards::print_table()
 {
-  const std::string text =
-      table.text(update->dt) + fmt::format("  contact kernel {}\n", Slope::ContactKernels::current_name());
+  const std::string text = table.text(update->dt) +
+      fmt::format("  contact kernel {}\n", Slope::ContactKernels::current_name());
   if (text != printed && comm->me == 0) utils::logmesg(lmp, text);
   printed = text;
 }

@@ -57,7 +57,8 @@ void CreateBalls::command(int narg, char **arg)
 
   const double smallest = BallPlacement::smallest_ball(lmp, group->bitmask[0]);
   BallPlacement placement(lmp, "Create_balls", diameter, smallest, narg - 3, &arg[3]);
-  std::vector<double> &xyz = placement.xyz;
+  std::vector<double> xyz;
+  for (const Slope::PlacedBall &b : placement.all()) xyz.insert(xyz.end(), {b.x, b.y, b.z});
   into_box(xyz);
 
   // the ghosts are overwritten by the new atoms, as at the start of Comm::exchange()

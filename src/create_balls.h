@@ -20,7 +20,7 @@ namespace LAMMPS_NS {
 
 class CreateBalls : public Command {
  public:
-  CreateBalls(class LAMMPS *lmp) : Command(lmp) {}
+  explicit CreateBalls(class LAMMPS *lmp) : Command(lmp) {}
   void command(int, char **) override;
 
  private:

@@ -18,7 +18,7 @@ namespace LAMMPS_NS {
 
 class DeleteBalls : public Command {
  public:
-  DeleteBalls(class LAMMPS *lmp) : Command(lmp) {}
+  explicit DeleteBalls(class LAMMPS *lmp) : Command(lmp) {}
   void command(int, char **) override;
 };
 

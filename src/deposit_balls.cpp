@@ -99,10 +99,7 @@ DepositBalls::Sums DepositBalls::bin(DepositBins &bins) const
   for (int dim = X; dim <= Y; dim++)
     bins.set_period(dim, domain->periodicity[dim] && !domain->triclinic, domain->boxlo[dim],
                     domain->boxhi[dim]);
-  bins.start();
-  for (int i = 0; i < atom->nlocal; i++)
-    if (selected(i)) bins.show(atom->x[i], side_of(i));
-  bins.open();
+  bins.clear();
 
   Sums sums = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   for (int i = 0; i < atom->nlocal; i++) {
@@ -120,7 +117,9 @@ DepositBalls::Sums DepositBalls::bin(DepositBins &bins) const
     sums.mass_y += m * x[Y];
     if (speed > DepositSummary::FAST) sums.fast += side * side * side;
   }
-  return sums;
+  Sums all;
+  MPI_Allreduce(&sums, &all, sizeof(Sums) / sizeof(double), MPI_DOUBLE, MPI_SUM, world);
+  return all;
 }
 
 /* ----------------------------------------------------------------------

@@ -29,16 +29,16 @@ class DepositBalls : protected Pointers {
   bool selected(int i) const;             // whether an atom is in the group
   void unwrap(int i, double *x) const;    // its place, which does not jump at periodic sides
 
-  // into the cells of a grid; what they add up to
-  struct Sums {
-    double number, off_grid, mass, mass_x, mass_y, fast;    // fast: volume of the fast ones
-  };
-  Sums bin(Slope::DepositBins &) const;
-
   // those that are outside of the box; with a ledger, which gets a note of each
   Slope::MassLedger::Mass outside(Slope::MassLedger *) const;
 
   // --- of all ranks; collective ---
+
+  // those of this rank into the cells of a grid; what those of all ranks add up to
+  struct Sums {
+    double number, off_grid, mass, mass_x, mass_y, fast;    // fast: volume of the fast ones
+  };
+  Sums bin(Slope::DepositBins &) const;
 
   double volume() const;    // bulk
 

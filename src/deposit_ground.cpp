@@ -6,49 +6,38 @@
 #include "deposit_ground.h"
 
 #include "deposit_balls.h"
+#include "deposit_exchange.h"
 #include "lammps_compat.h"
 #include "region_surface.h"
 #include "region_terrain.h"
 
 #include "atom.h"
-#include "comm.h"
 #include "error.h"
 #include "region.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <vector>
 
 using namespace LAMMPS_NS;
-using Slope::ElevationGrid;
 using Slope::PlanGrid;
 
 static constexpr double PI = 3.14159265358979323846;
-static const double NaN = std::numeric_limits<double>::quiet_NaN();
 
 enum { X, Y };
 
-/* ----------------------------------------------------------------------
-   searching the columns of a region takes time, so every rank takes its share of the rows
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
-void DepositGround::read(const PlanGrid &grid, ElevationGrid &base)
+void DepositGround::read(Slope::DepositRasters &rasters)
 {
   const RegionSurface ground(lmp, "Fix deposit/grid terrain", region.c_str(), RegionSurface::UPPER);
-  std::vector<double> row(grid.n[X]);
-  for (int j = 0; j < grid.n[Y]; j++) {
-    const int rank = j % comm->nprocs;
-    if (comm->me == rank)
-      for (int i = 0; i < grid.n[X]; i++)
-        if (!ground.height(grid.lo[X] + (i + 0.5) * grid.cell, grid.lo[Y] + (j + 0.5) * grid.cell,
-                           row[i]))
-          row[i] = NaN;
-    if (rank > 0 && comm->me == rank) MPI_Send(row.data(), grid.n[X], MPI_DOUBLE, 0, 0, world);
-    if (rank > 0 && comm->me == 0)
-      MPI_Recv(row.data(), grid.n[X], MPI_DOUBLE, rank, 0, world, MPI_STATUS_IGNORE);
-    if (comm->me == 0) std::copy(row.begin(), row.end(), &base.at(0, j));
-  }
+  const PlanGrid &grid = rasters.grid();
+  const Slope::DepositBands &bands = rasters.bands();
+  for (int band = bands.first(); band < bands.number(); band += bands.step())
+    for (int j = bands.first_row(band); j < bands.end_row(band); j++)
+      for (int i = 0; i < grid.n[X]; i++) {
+        double z;
+        if (ground.height(grid.centre(X, i), grid.centre(Y, j), z)) rasters.base(i, j) = z;
+      }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -94,15 +83,12 @@ void DepositGround::check(const DepositBalls &balls)
     std::copy(x, x + 3, worst + 1);
     worst[4] = diameter;
   }
-  std::vector<double> all(5 * comm->nprocs);
-  MPI_Allgather(worst, 5, MPI_DOUBLE, all.data(), 5, MPI_DOUBLE, world);
-  for (int k = 0; k < comm->nprocs; k++)
-    if (all[5 * k] < worst[0]) std::copy(&all[5 * k], &all[5 * k] + 5, worst);
-
-  if (worst[0] < HUGE_VAL)
-    error->all(FLERR,
-               "Fix deposit/grid terrain region {} must have a height within one diameter {:g} of "
-               "every released ball, got none at ball {:.0f}, {:.8g} {:.8g} {:.8g} (too deep: "
-               "larger depth of region terrain; a small hole: tools/slope terrain --fill)",
-               region, worst[4], worst[0], worst[1], worst[2], worst[3]);
+  const int rank = DepositExchange(lmp).rank_of_smallest(worst[0]);
+  if (rank < 0) return;
+  MPI_Bcast(worst, 5, MPI_DOUBLE, rank, world);
+  error->all(FLERR,
+             "Fix deposit/grid terrain region {} must have a height within one diameter {:g} of "
+             "every released ball, got none at ball {:.0f}, {:.8g} {:.8g} {:.8g} (too deep: "
+             "larger depth of region terrain; a small hole: tools/slope terrain --fill)",
+             region, worst[4], worst[0], worst[1], worst[2], worst[3]);
 }

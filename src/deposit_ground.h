@@ -6,8 +6,7 @@
 #ifndef SLOPE_DEPOSIT_GROUND_H
 #define SLOPE_DEPOSIT_GROUND_H
 
-#include "deposit_bins.h"
-#include "elevation_grid.h"
+#include "deposit_rasters.h"
 #include "pointers.h"
 
 #include <string>
@@ -21,8 +20,8 @@ class DepositGround : protected Pointers {
   {
   }
 
-  // heights at the cell centres, NaN where there is none, into the raster of rank 0
-  void read(const Slope::PlanGrid &, Slope::ElevationGrid &);
+  // heights at the cell centres, NaN where there is none, into the rows of this rank
+  void read(Slope::DepositRasters &);
 
   // Every ball has ground below and around it, or the run ends: a hole in the elevation model
   // under the mass would swallow it.

@@ -5,7 +5,9 @@
 
 #include "deposit_options.h"
 
+#include "deposit_pieces.h"
 #include "deposit_rasters.h"
+#include "deposit_restart.h"
 #include "lammps_compat.h"
 #include "region_surface.h"
 #include "style_argument.h"
@@ -19,6 +21,7 @@
 #include <cstring>
 
 using namespace LAMMPS_NS;
+using Slope::DepositPieces;
 using Slope::DepositRasters;
 using Slope::PlanGrid;
 
@@ -27,7 +30,7 @@ static constexpr double SIMPLE_CUBIC = 6.0 / PI;
 static constexpr double MOTION = 0.1;        // m/s
 static constexpr double MAXBULK = 1.0e3;     // a ball's square must not be cut by countless cells
 static constexpr double MAXCELL = 1.0e12;    // the area of a cell must be finite
-static constexpr double MAXCELLS = 4.0e8;
+static constexpr double MAXCELLS = 2147483647.0;    // as many as the readers of rasters take
 
 /* ----------------------------------------------------------------------
    fix ID group deposit/grid Nevery Nfreq cell S terrain REGION output PREFIX keyword value ...
@@ -197,13 +200,19 @@ void DepositOptions::make_grid()
                  "{:.10g}, got {}",
                  terrain, whole[0], whole[1], whole[2], whole[3], got);
 
-  double ncells = 1.0;
-  for (int k = 0; k < 4; k += 2)
-    ncells *= std::max(1.0, std::ceil((extent[k + 1] - extent[k]) / cell - 1.0e-9));
+  const double ncells = PlanGrid::cells_in(extent[0], extent[1], cell) *
+      PlanGrid::cells_in(extent[2], extent[3], cell);
   if (ncells > MAXCELLS)
     error->all(FLERR,
-               "Fix deposit/grid cell must give at most {:g} cells, got {:.0f} cells, they need "
-               "{:.3g} GB of memory on one rank",
-               MAXCELLS, ncells, 1.0e-9 * ncells * DepositRasters::BYTES_PER_CELL);
+               "Fix deposit/grid cell must give at most {:.0f} cells, got {:.0f} cells, they need "
+               "{:.3g} GB of memory",
+               MAXCELLS, ncells, 1.0e-9 * ncells * DepositRasters::MOST_BYTES_PER_CELL);
   grid = PlanGrid(extent, cell);
+  const double band = DepositPieces::bytes_of_band(grid);
+  if (band > DepositRestart::MOST_BYTES)
+    error->all(FLERR,
+               "Fix deposit/grid cell must give rows of which {} fit into the {:.0f} bytes that a "
+               "fix has in a restart file, got {:.0f} bytes in {} columns: a larger cell, or a "
+               "smaller extent along x",
+               Slope::DepositBands::ROWS, DepositRestart::MOST_BYTES, band, grid.n[0]);
 }

@@ -6,7 +6,7 @@
 #ifndef SLOPE_DEPOSIT_OPTIONS_H
 #define SLOPE_DEPOSIT_OPTIONS_H
 
-#include "deposit_bins.h"
+#include "plan_grid.h"
 #include "pointers.h"
 
 #include <string>

@@ -5,80 +5,66 @@
 
 #include "deposit_rasters.h"
 
+#include "deposit_bins.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 using namespace Slope;
 
+static constexpr int SIDE = DepositBlocks::SIDE;
+static constexpr int CELLS = DepositBlocks::CELLS;
 static const double NaN = std::numeric_limits<double>::quiet_NaN();
 
 enum { X, Y };
 
+// of a cell where nothing ever was, kind by kind
+static const double UNTOUCHED[DepositRasters::KINDS] = {0.0, 0.0, 0.0, 0.0, NaN, NaN, 0.0};
+
 /* ---------------------------------------------------------------------- */
 
-AtomicFile &FileSet::add(const std::string &path)
+DepositRasters::DepositRasters() :
+    snapshot_step(-1), snapshot_time(0.0), change(1.0),
+    blocks(std::vector<double>(UNTOUCHED, UNTOUCHED + KINDS))
 {
-  files.emplace_back(new AtomicFile(path));
-  paths.push_back(path);
-  return *files.back();
 }
 
 /* ---------------------------------------------------------------------- */
 
-std::vector<std::string> FileSet::names() const
+void DepositRasters::create(const PlanGrid &grid_in, int me, int nranks)
 {
-  std::vector<std::string> found;
-  for (const std::string &path : paths) found.push_back(path.substr(path.rfind('/') + 1));
-  return found;
+  cells = grid_in;
+  rows = DepositBands(cells, me, nranks);
+  blocks.set_grid(cells);
+  ground.assign(rows.ncells(), NaN);
 }
 
 /* ---------------------------------------------------------------------- */
 
-void FileSet::commit()
+void DepositRasters::clear()
 {
-  for (auto &file : files) file->close();
-  for (auto &file : files) file->commit();
+  for (size_t k = 0; k < blocks.size(); k++) std::fill_n(blocks[k] + THICKNESS * CELLS, CELLS, 0.0);
 }
 
 /* ---------------------------------------------------------------------- */
 
-void DepositRasters::create(const PlanGrid &grid_in)
+void DepositRasters::add(int column, int band, const double *bins, bool record, double time,
+                         double motion)
 {
-  grid = grid_in;
-  const ElevationGrid zero(grid.n[X], grid.n[Y], grid.lo[X], grid.lo[Y], grid.cell, 0.0);
-  thickness = snapshot = max_thickness = max_speed = max_energy = zero;
-  base = arrival = last_motion =
-      ElevationGrid(grid.n[X], grid.n[Y], grid.lo[X], grid.lo[Y], grid.cell, NaN);
-}
-
-/* ---------------------------------------------------------------------- */
-
-void DepositRasters::start()
-{
-  for (int j = filled.first[Y]; j < filled.first[Y] + filled.size[Y]; j++)
-    std::fill_n(&thickness.at(filled.first[X], j), filled.size[X], 0.0);
-  filled.size[X] = filled.size[Y] = 0;
-}
-
-/* ---------------------------------------------------------------------- */
-
-void DepositRasters::add(DepositWindow &from, bool record, double time, double motion)
-{
-  if (from.values.empty()) return;
-  const double area = grid.cell * grid.cell;
-  for (int j = 0; j < from.size[Y]; j++)
-    for (int i = 0; i < from.size[X]; i++) {
-      const int gi = from.first[X] + i, gj = from.first[Y] + j;
-      thickness.at(gi, gj) += from.volume(i, j) / area;
-      const double speed = from.speed(i, j);
-      if (!record || speed < 0.0) continue;
-      max_speed.at(gi, gj) = std::max(max_speed.at(gi, gj), speed);
-      max_energy.at(gi, gj) = std::max(max_energy.at(gi, gj), from.energy(i, j));
-      if (std::isnan(arrival.at(gi, gj))) arrival.at(gi, gj) = time;
-      if (speed > motion) last_motion.at(gi, gj) = time;
-    }
-  filled.cover(from);
+  const double area = cells.cell * cells.cell;
+  double *block = blocks.make(column, band);
+  for (int k = 0; k < CELLS; k++) {
+    block[THICKNESS * CELLS + k] += bins[DepositBins::VOLUME * CELLS + k] / area;
+    const double speed = bins[DepositBins::SPEED * CELLS + k];
+    if (!record || speed < 0.0) continue;
+    double &most_speed = block[MAX_SPEED * CELLS + k], &most_energy = block[MAX_ENERGY * CELLS + k];
+    double &arrival = block[ARRIVAL * CELLS + k];
+    most_speed = std::max(most_speed, speed);
+    most_energy = std::max(most_energy, bins[DepositBins::ENERGY * CELLS + k]);
+    if (std::isnan(arrival)) arrival = time;
+    if (speed > motion) block[LAST_MOTION * CELLS + k] = time;
+  }
 }
 
 /* ----------------------------------------------------------------------
@@ -88,78 +74,113 @@ void DepositRasters::add(DepositWindow &from, bool record, double time, double m
 double DepositRasters::finish(bool record)
 {
   double sum = 0.0;
-  for (int j = filled.first[Y]; j < filled.first[Y] + filled.size[Y]; j++) {
-    double row = 0.0;
-    for (int i = filled.first[X]; i < filled.first[X] + filled.size[X]; i++) {
-      const double h = thickness.at(i, j);
-      row += h;
-      if (record && h > max_thickness.at(i, j)) max_thickness.at(i, j) = h;
-    }
-    sum += row;
+  for (size_t b = 0; b < blocks.size(); b++) {
+    const double *h = blocks[b] + THICKNESS * CELLS;
+    double *most = blocks[b] + MAX_THICKNESS * CELLS;
+    double here = 0.0;
+    for (int k = 0; k < CELLS; k++) here += h[k];
+    sum += here;
+    if (!record) continue;
+    for (int k = 0; k < CELLS; k++) most[k] = std::max(most[k], h[k]);
   }
-  return sum * grid.cell * grid.cell;
+  return sum * cells.cell * cells.cell;
 }
 
 /* ---------------------------------------------------------------------- */
 
-void DepositRasters::take_snapshot(int64_t step, int window, double time, double released)
+double DepositRasters::moved() const
 {
-  if (snapshot_step >= 0 && snapshot_step + window == step) {
-    double sum = 0.0;
-    for (size_t k = 0; k < thickness.z.size(); k++)
-      sum += std::fabs(thickness.z[k] - snapshot.z[k]);
-    change = 0.5 * sum * grid.cell * grid.cell / (released * (time - snapshot_time));
+  double sum = 0.0;
+  for (size_t b = 0; b < blocks.size(); b++) {
+    const double *h = blocks[b] + THICKNESS * CELLS, *before = blocks[b] + SNAPSHOT * CELLS;
+    double here = 0.0;
+    for (int k = 0; k < CELLS; k++) here += std::fabs(h[k] - before[k]);
+    sum += here;
   }
-  snapshot.z = thickness.z;
+  return 0.5 * sum * cells.cell * cells.cell;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DepositRasters::take_snapshot(int64_t step, int window, double time, double share)
+{
+  if (snapshot_step >= 0 && snapshot_step + window == step) change = share / (time - snapshot_time);
+  for (size_t b = 0; b < blocks.size(); b++)
+    std::copy_n(blocks[b] + THICKNESS * CELLS, CELLS, blocks[b] + SNAPSHOT * CELLS);
   snapshot_step = step;
   snapshot_time = time;
 }
 
-/* ----------------------------------------------------------------------
-   the sum of the thickness as written is the volume on the grid to 1e-9
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
-void DepositRasters::write(FileSet &files, const std::string &prefix,
-                           const std::string &number) const
+double DepositRasters::at(Name name, int i, int j) const
 {
-  ElevationGrid surface = base;
-  for (size_t k = 0; k < surface.z.size(); k++) surface.z[k] += thickness.z[k];
-
-  if (!number.empty()) thickness.write(files.add(prefix + "." + number + ".thickness.asc"), 12);
-  thickness.write(files.add(prefix + ".thickness.asc"), 12);
-  surface.write(files.add(prefix + ".surface.asc"), 9);
-  base.write(files.add(prefix + ".base.asc"), 9);
-  max_thickness.write(files.add(prefix + ".max_thickness.asc"), 9);
-  max_speed.write(files.add(prefix + ".max_speed.asc"), 9);
-  max_energy.write(files.add(prefix + ".max_energy.asc"), 9);
-  arrival.write(files.add(prefix + ".arrival.asc"), 9);
-  last_motion.write(files.add(prefix + ".last_motion.asc"), 9);
+  const double *block = blocks.find(i / SIDE, j / SIDE);
+  return block ? block[name * CELLS + DepositBlocks::index(i, j)] : UNTOUCHED[name];
 }
 
 /* ---------------------------------------------------------------------- */
 
-std::vector<double> DepositRasters::touched() const
+void DepositRasters::row(Name name, int j, double *values) const
 {
-  std::vector<double> values;
-  for (size_t k = 0; k < ncells(); k++) {
-    if (max_thickness.z[k] == 0.0 && std::isnan(arrival.z[k])) continue;
-    const double cell[PER_CELL] = {(double) k,      max_thickness.z[k], max_speed.z[k],
-                                   max_energy.z[k], arrival.z[k],       last_motion.z[k],
-                                   snapshot.z[k]};
-    values.insert(values.end(), cell, cell + PER_CELL);
+  for (int i = 0; i < cells.n[X]; i += SIDE) {
+    const int count = std::min(SIDE, cells.n[X] - i);
+    const double *block = blocks.find(i / SIDE, j / SIDE);
+    if (block)
+      std::copy_n(block + name * CELLS + DepositBlocks::index(i, j), count, values + i);
+    else
+      std::fill_n(values + i, count, UNTOUCHED[name]);
   }
-  return values;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double DepositRasters::largest(Name name) const
+{
+  double found = 0.0;
+  for (size_t b = 0; b < blocks.size(); b++) {
+    const double *values = blocks[b] + name * CELLS;
+    found = std::max(found, *std::max_element(values, values + CELLS));
+  }
+  return found;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double DepositRasters::bytes() const
+{
+  return (double) ground.capacity() * sizeof(double) + blocks.bytes();
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::vector<double> DepositRasters::touched(int band) const
+{
+  std::vector<double> found;
+  for (int j = rows.first_row(band); j < rows.end_row(band); j++)
+    for (int i = 0; i < cells.n[X]; i += SIDE) {
+      const double *block = blocks.find(i / SIDE, band);
+      if (!block) continue;
+      const double *cell = block + DepositBlocks::index(i, j);
+      for (int k = i; k < std::min(i + SIDE, cells.n[X]); k++, cell++) {
+        if (cell[MAX_THICKNESS * CELLS] == 0.0 && std::isnan(cell[ARRIVAL * CELLS])) continue;
+        const double values[PER_CELL] = {(double) j * cells.n[X] + k, cell[MAX_THICKNESS * CELLS],
+                                         cell[MAX_SPEED * CELLS],     cell[MAX_ENERGY * CELLS],
+                                         cell[ARRIVAL * CELLS],       cell[LAST_MOTION * CELLS],
+                                         cell[SNAPSHOT * CELLS]};
+        found.insert(found.end(), values, values + PER_CELL);
+      }
+    }
+  return found;
 }
 
 /* ---------------------------------------------------------------------- */
 
 void DepositRasters::restore(const double *values)
 {
-  const size_t k = (size_t) values[0];
-  max_thickness.z[k] = values[1];
-  max_speed.z[k] = values[2];
-  max_energy.z[k] = values[3];
-  arrival.z[k] = values[4];
-  last_motion.z[k] = values[5];
-  snapshot.z[k] = values[6];
+  const int64_t number = (int64_t) values[0];
+  const int i = (int) (number % cells.n[X]), j = (int) (number / cells.n[X]);
+  if (!rows.mine(j / SIDE)) return;
+  double *cell = blocks.make(i / SIDE, j / SIDE) + DepositBlocks::index(i, j);
+  for (int kind = MAX_THICKNESS; kind <= SNAPSHOT; kind++) cell[kind * CELLS] = values[kind];
 }

@@ -6,69 +6,70 @@
 #ifndef SLOPE_DEPOSIT_RASTERS_H
 #define SLOPE_DEPOSIT_RASTERS_H
 
-#include "atomic_file.h"
-#include "deposit_bins.h"
-#include "elevation_grid.h"
+#include "deposit_bands.h"
+#include "deposit_blocks.h"
+#include "plan_grid.h"
 
 #include <cstdint>
-#include <memory>
-#include <string>
 #include <vector>
 
 namespace Slope {
 
-// Files that appear together: on a full disk either all of them are new, or none.
-class FileSet {
- public:
-  AtomicFile &add(const std::string &path);
-  std::vector<std::string> names() const;    // without their folder, in the order they were added
-  void commit();
-
- private:
-  std::vector<std::unique_ptr<AtomicFile>> files;
-  std::vector<std::string> paths;
-};
-
-// The rasters of a deposit: the ground without the body, the thickness now, and what each cell saw
-// so far. A sample is start(), add() of every rank's window, finish().
+// The rasters of a deposit, the rows of one rank: the ground without the body, the thickness now, and
+// what each cell saw so far. A sample is clear(), add() of all blocks of bins, finish().
 class DepositRasters {
  public:
-  static constexpr double BYTES_PER_CELL = 72.0;    // eight rasters, one more to write a file
+  enum Name { THICKNESS, MAX_THICKNESS, MAX_SPEED, MAX_ENERGY, ARRIVAL, LAST_MOTION, SNAPSHOT };
+  static constexpr int KINDS = 7;
 
-  DepositRasters() : snapshot_step(-1), snapshot_time(0.0), change(1.0) {}
+  // if the mass was in every cell: base, all kinds, and the bins of the balls
+  static constexpr double MOST_BYTES_PER_CELL = 8.0 * (1 + KINDS + 3);
 
-  void create(const PlanGrid &);    // std::bad_alloc
+  DepositRasters();
+
+  void create(const PlanGrid &, int me, int nranks);
+  const PlanGrid &grid() const { return cells; }
+  const DepositBands &bands() const { return rows; }
+
+  // height of the ground, NaN where there is none, of a cell of this rank
+  double &base(int i, int j) { return ground[rows.place(i, j)]; }
+  double base(int i, int j) const { return ground[rows.place(i, j)]; }
 
   // --- a sample; time: now; motion: a faster ball moves; record: also maxima and times ---
 
-  void start();
-  void add(DepositWindow &, bool record, double time, double motion);
-  double finish(bool record);    // returns the volume that the thickness raster holds
+  void clear();
+  void add(int column, int band, const double *bins, bool record, double time, double motion);
+  double finish(bool record);    // returns the volume that the thickness raster holds here
 
-  // the share of the released volume that went to another cell since the snapshot before, per
-  // time: known if that was window steps ago, else it stays as it is
-  void take_snapshot(int64_t step, int window, double time, double released);
+  // --- change since the last snapshot ---
 
-  // --- files ---
+  double moved() const;    // volume that went to another cell, of these cells
 
-  // PREFIX.base.asc, .thickness.asc, ...; number: also PREFIX.NUMBER.thickness.asc, or empty
-  void write(FileSet &, const std::string &prefix, const std::string &number) const;
+  // share: of the released volume, moved in all cells. Change per time is known if the last snapshot
+  // was window steps ago, else it stays as it is.
+  void take_snapshot(int64_t step, int window, double time, double share);
 
-  // what cells that the mass touched saw, for restart files
+  // --- what the rows hold ---
+
+  double at(Name, int i, int j) const;
+  void row(Name, int j, double *values) const;    // of all columns
+  double largest(Name) const;                     // of those that begin with 0
+  double bytes() const;
+
+  // what cells that the mass touched saw, of a band and in the order of rows and columns, for restart
+  // files: number of the cell, values
   static constexpr int PER_CELL = 7;
-  std::vector<double> touched() const;
-  void restore(const double *values);    // of one cell
+  std::vector<double> touched(int band) const;
+  void restore(const double *values);    // of one cell; nothing if it is another rank's
 
-  size_t ncells() const { return base.z.size(); }
-
-  ElevationGrid base, thickness, max_thickness, max_speed, max_energy, arrival, last_motion;
   int64_t snapshot_step;
   double snapshot_time, change;
 
  private:
-  PlanGrid grid;
-  ElevationGrid snapshot;    // thickness when the window began
-  DepositWindow filled;      // cells of thickness that may not be 0
+  PlanGrid cells;
+  DepositBands rows;
+  std::vector<double> ground;
+  DepositBlocks blocks;
 };
 
 }    // namespace Slope

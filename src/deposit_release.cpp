@@ -7,6 +7,9 @@
 
 #include "body_volume.h"
 #include "deposit_balls.h"
+#include "deposit_exchange.h"
+#include "deposit_ground.h"
+#include "deposit_options.h"
 #include "lammps_compat.h"
 
 #include "atom.h"
@@ -23,6 +26,7 @@ using namespace LAMMPS_NS;
 using Slope::BodyVolume;
 
 static constexpr double PI = 3.14159265358979323846;
+static constexpr double SIMPLE_CUBIC = 6.0 / PI;     // bulk volume / volume of a ball
 static constexpr double UNBOUNDED = 1.0e19;          // LAMMPS writes INF as 1e20
 static constexpr double ASTRAY = 0.05;               // of the balls may lie far from the body
 static constexpr double LEAST = 1.0, MOST = 10.0;    // bulk factor: volume of a body / of its balls
@@ -31,14 +35,51 @@ enum { X, Y, Z };
 
 /* ---------------------------------------------------------------------- */
 
-DepositRelease::DepositRelease(LAMMPS *lmp, const DepositBalls &balls_in) :
-    Pointers(lmp), balls(balls_in)
+DepositRelease::DepositRelease(LAMMPS *lmp, DepositBalls &balls_in,
+                               const DepositOptions &options_in) :
+    Pointers(lmp),
+    balls(balls_in), options(options_in)
 {
 }
 
 /* ---------------------------------------------------------------------- */
 
-DepositRelease::Mass DepositRelease::find() const
+DepositRelease::Released DepositRelease::find()
+{
+  Released found = {find_mass(), 0.0, 0.0, 0.0};
+  DepositGround(lmp, options.terrain).check(balls);
+  if (!options.body.empty()) {
+    found.body = body_volume(found.mass);
+    balls.set_bulk(found.body / found.mass.solid);
+  }
+  double z;
+  found.volume = balls.volume();
+  balls.farthest(found.mass.top, found.front, z);
+  return found;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DepositRelease::log(const std::string &fix_id, const Released &released) const
+{
+  if (comm->me != 0) return;
+  const Slope::PlanGrid &grid = options.grid;
+  std::string factor = fmt::format("{:.6g}", balls.bulk());
+  if (!options.body.empty())
+    factor += fmt::format(" = region {} {:.10g} / balls {:.10g}, {:+.1f} % from 6/pi", options.body,
+                          released.body, released.mass.solid,
+                          100.0 * (balls.bulk() / SIMPLE_CUBIC - 1.0));
+  utils::logmesg(lmp,
+                 "Fix deposit/grid {}: {:.0f} balls released, bulk volume {:.10g}; {} x {} cells "
+                 "of {:g}\n"
+                 "Fix deposit/grid {}: bulk factor {}\n",
+                 fix_id, released.mass.number, released.volume, grid.n[X], grid.n[Y], grid.cell,
+                 fix_id, factor);
+}
+
+/* ---------------------------------------------------------------------- */
+
+DepositRelease::Mass DepositRelease::find_mass() const
 {
   struct Top {
     double x[3], tag;
@@ -65,18 +106,19 @@ DepositRelease::Mass DepositRelease::find() const
                "Fix deposit/grid group must hold balls when the run starts, got none: its region "
                "or lattice made no ball");
 
-  std::vector<Top> tops(comm->nprocs);
-  MPI_Allgather(&top, 4, MPI_DOUBLE, tops.data(), 4, MPI_DOUBLE, world);
-  for (const Top &other : tops)
-    if (top.below(other)) top = other;
+  DepositExchange exchange(lmp);
+  const double zmax = -exchange.smallest(-top.x[Z]);
+  const int rank = exchange.rank_of_smallest(top.x[Z] == zmax ? top.tag : HUGE_VAL);
+  MPI_Bcast(&top, 4, MPI_DOUBLE, std::max(0, rank), world);
   return {all[0], all[1], all[3] / all[2], all[4] / all[2], {top.x[X], top.x[Y], top.x[Z]}};
 }
 
 /* ---------------------------------------------------------------------- */
 
-double DepositRelease::body_volume(const std::string &id, const Mass &mass) const
+double DepositRelease::body_volume(const Mass &mass) const
 {
-  Region *region = body(id);
+  Region *region = body();
+  const std::string &id = options.body;
   double volume = 0.0;
   std::string problem;
   try {
@@ -100,8 +142,9 @@ double DepositRelease::body_volume(const std::string &id, const Mass &mass) cons
 
 /* ---------------------------------------------------------------------- */
 
-Region *DepositRelease::body(const std::string &id) const
+Region *DepositRelease::body() const
 {
+  const std::string &id = options.body;
   Region *region = compat::find_region(lmp, id);
   if (!region) error->all(FLERR, "Fix deposit/grid bulk region {} does not exist", id);
   region->init();

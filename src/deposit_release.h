@@ -22,18 +22,28 @@ class DepositRelease : protected Pointers {
     double x, y;      // centre of mass
     double top[3];    // place of the highest ball, of several the one with the lowest ID
   };
+  struct Released {
+    Mass mass;
+    double volume;    // bulk
+    double body;      // volume of the region that the balls stand for; 0 without
+    double front;     // plan distance of the farthest ball from the top
+  };
 
-  DepositRelease(class LAMMPS *, const class DepositBalls &);
+  DepositRelease(class LAMMPS *, class DepositBalls &, const class DepositOptions &);
 
-  Mass find() const;
+  // with a bulk region the balls get their bulk factor
+  Released find();
 
-  // volume of the region that the balls stand for
-  double body_volume(const std::string &region, const Mass &) const;
+  // to the log
+  void log(const std::string &fix_id, const Released &) const;
 
  private:
-  const class DepositBalls &balls;
+  class DepositBalls &balls;
+  const class DepositOptions &options;
 
-  class Region *body(const std::string &id) const;
+  Mass find_mass() const;
+  double body_volume(const Mass &) const;
+  class Region *body() const;
   double integrate(class Region *) const;
   void check_balls(class Region *, const Mass &) const;
 };

@@ -6,7 +6,7 @@
 #ifndef SLOPE_DEPOSIT_SUMMARY_H
 #define SLOPE_DEPOSIT_SUMMARY_H
 
-#include "deposit_bins.h"
+#include "plan_grid.h"
 
 #include <cstdint>
 #include <string>

@@ -6,6 +6,7 @@
 #include "elevation_grid.h"
 
 #include "atomic_file.h"
+#include "free_memory.h"
 
 #include <algorithm>
 #include <cctype>
@@ -15,7 +16,6 @@
 #include <map>
 #include <new>
 #include <sys/stat.h>
-#include <unistd.h>
 
 using namespace Slope;
 
@@ -56,10 +56,10 @@ std::string gigabytes(double bytes)
 
 void check_memory(const std::string &what, double need)
 {
-  const double have = (double) sysconf(_SC_PHYS_PAGES) * sysconf(_SC_PAGESIZE);
+  const double have = free_memory();
   if (need > have)
-    throw std::runtime_error(what + " need " + gigabytes(need) + " of memory, this machine has " +
-                             gigabytes(have));
+    throw std::runtime_error(what + " need " + gigabytes(need) + " of memory, " + gigabytes(have) +
+                             " are free");
 }
 
 bool ends_word(char c)
@@ -276,8 +276,14 @@ double between(double a, double b, double f)
 ElevationGrid::ElevationGrid(int _nx, int _ny, double _xlo, double _ylo, double _cell,
                              double value) :
     nx(_nx),
-    ny(_ny), xlo(_xlo), ylo(_ylo), cell(_cell), z((size_t) _nx * _ny, value)
+    ny(_ny), xlo(_xlo), ylo(_ylo), cell(_cell), z((size_t) _nx * _ny, value), elsewhere(nullptr)
 {
+}
+
+void ElevationGrid::refer_to(const double *values)
+{
+  elsewhere = values;
+  std::vector<double>().swap(z);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -361,24 +367,36 @@ void ElevationGrid::write(const std::string &path, int digits) const
 
 void ElevationGrid::write(AtomicFile &file, int digits) const
 {
-  file.write("ncols " + std::to_string(nx) + "\nnrows " + std::to_string(ny) + "\nxllcorner " +
-             exact(xlo) + "\nyllcorner " + exact(ylo) + "\ncellsize " + exact(cell) +
-             "\nNODATA_value -9999\n");
-
-  std::string row;
+  file.write(header(nx, ny, xlo, ylo, cell));
+  std::string text;
   for (int j = ny - 1; j >= 0; j--) {
-    row.clear();
-    for (int i = 0; i < nx; i++) {
-      const double value = at(i, j);
-      if (value == 0.0)
-        row += '0';    // most cells of a deposit
-      else if (std::isnan(value))
-        row += "-9999";
-      else
-        append(row, value, digits);
-      row += i + 1 < nx ? ' ' : '\n';
-    }
-    file.write(row);
+    text.clear();
+    append_row(text, values() + (size_t) j * nx, nx, digits);
+    file.write(text);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::string ElevationGrid::header(int nx, int ny, double xlo, double ylo, double cell)
+{
+  return "ncols " + std::to_string(nx) + "\nnrows " + std::to_string(ny) + "\nxllcorner " +
+      exact(xlo) + "\nyllcorner " + exact(ylo) + "\ncellsize " + exact(cell) +
+      "\nNODATA_value -9999\n";
+}
+
+/* ---------------------------------------------------------------------- */
+
+void ElevationGrid::append_row(std::string &text, const double *row, int nx, int digits)
+{
+  for (int i = 0; i < nx; i++) {
+    if (row[i] == 0.0)
+      text += '0';    // most cells of a deposit
+    else if (std::isnan(row[i]))
+      text += "-9999";
+    else
+      append(text, row[i], digits);
+    text += i + 1 < nx ? ' ' : '\n';
   }
 }
 
@@ -399,7 +417,7 @@ double ElevationGrid::height(double x, double y) const
 
   // a raster of one column or row is constant across it
 
-  const double *south = &z[(size_t) j * nx + i];
+  const double *south = values() + (size_t) j * nx + i;
   const double *north = ny > 1 ? south + nx : south;
   const int east = nx > 1 ? 1 : 0;
   return between(between(south[0], south[east], fx), between(north[0], north[east], fx), fy);
@@ -446,8 +464,8 @@ bool ElevationGrid::nodata_within(double x, double y, double r) const
 double ElevationGrid::zmin() const
 {
   double found = NaN;
-  for (const double value : z)
-    if (!(value >= found) && !std::isnan(value)) found = value;
+  for (const double *v = values(), *end = v + (size_t) nx * ny; v < end; v++)
+    if (!(*v >= found) && !std::isnan(*v)) found = *v;
   return found;
 }
 
@@ -456,8 +474,8 @@ double ElevationGrid::zmin() const
 double ElevationGrid::zmax() const
 {
   double found = NaN;
-  for (const double value : z)
-    if (!(value <= found) && !std::isnan(value)) found = value;
+  for (const double *v = values(), *end = v + (size_t) nx * ny; v < end; v++)
+    if (!(*v <= found) && !std::isnan(*v)) found = *v;
   return found;
 }
 
@@ -465,7 +483,7 @@ double ElevationGrid::zmax() const
 
 int ElevationGrid::count_nodata() const
 {
-  return std::count_if(z.begin(), z.end(), [](double value) {
+  return std::count_if(values(), values() + (size_t) nx * ny, [](double value) {
     return std::isnan(value);
   });
 }

@@ -24,7 +24,7 @@ class AtomicFile;
 // Errors are std::runtime_error with one line: file, line in it, rule, value.
 class ElevationGrid {
  public:
-  ElevationGrid() : nx(0), ny(0), xlo(0.0), ylo(0.0), cell(1.0) {}
+  ElevationGrid() : nx(0), ny(0), xlo(0.0), ylo(0.0), cell(1.0), elsewhere(nullptr) {}
 
   // nx by ny cells of one value; the memory is allocated here (std::bad_alloc)
   ElevationGrid(int nx, int ny, double xlo, double ylo, double cell, double value);
@@ -38,6 +38,11 @@ class ElevationGrid {
   // error leaves nothing behind.
   void write(const std::string &path, int digits = 9) const;
   void write(AtomicFile &, int digits = 9) const;    // which the caller commits
+
+  // the text of such a file in parts, for those who have the rows elsewhere: header, then the rows
+  // from north to south, each appended to what is there
+  static std::string header(int nx, int ny, double xlo, double ylo, double cell);
+  static void append_row(std::string &text, const double *row, int nx, int digits);
 
   // Height at a point, bilinear between the four cell centres around it; in the half cell along
   // the raster's edge the same plane goes on, so that a plane is exact up to the edge. NaN outside
@@ -54,11 +59,19 @@ class ElevationGrid {
   int count_nodata() const;
 
   double &at(int i, int j) { return z[(size_t) j * nx + i]; }
-  double at(int i, int j) const { return z[(size_t) j * nx + i]; }
+  double at(int i, int j) const { return values()[(size_t) j * nx + i]; }
+
+  // take the values of somebody else, nx * ny of them, who keeps them as long as this grid and its
+  // copies are used: for reading only
+  void refer_to(const double *values);
+  const double *values() const { return elsewhere ? elsewhere : z.data(); }
 
   int nx, ny;               // columns, rows
   double xlo, ylo, cell;    // south-west corner of the raster, size of a cell
-  std::vector<double> z;    // values, row by row from the south; public for those who send it
+  std::vector<double> z;    // own values, row by row from the south; public for those who send it
+
+ private:
+  const double *elsewhere;
 };
 
 }    // namespace Slope

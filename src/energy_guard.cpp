@@ -42,13 +42,12 @@ void EnergyGuard::start()
   known = true;
   for (int k = 0; k < modify->nfix; k++) {
     const Fix *fix = modify->fix[k];
-    const std::string style = fix->style;
-    if (fix->time_integrate && !utils::strmatch(style, "^nve/sphere")) known = false;
+    const std::string style = Slope::plain_style(fix->style);
+    if (fix->time_integrate && style != "nve/sphere") known = false;
+    if (style == "adapt") known = false;    // sizes, masses
     if (!(modify->fmask[k] & POST_FORCE)) continue;
-    if (!utils::strmatch(style, "^gravity") && style != "wall/gran/balls" &&
-        !utils::strmatch(style, "^freeze"))
+    if (style != "gravity" && style != "wall/gran/balls" && style != "wall/gran/mesh" && style != "freeze")
       known = false;
-    if (style == "adapt") known = false;
   }
 }
 
@@ -63,10 +62,11 @@ void EnergyGuard::check_finite() const
     double sum = 0.0;
     for (int d = 0; d < 3; d++) sum += x[d] + v[d] + f[d] + atom->omega[i][d] + atom->torque[i][d];
     if (!std::isfinite(sum))
-      error->one(FLERR,
-                 "Pair gran/restitution: ball {} has a place, velocity or force that is not finite at "
-                 "step {}: x {:.6g} {:.6g} {:.6g}, v {:.6g} {:.6g} {:.6g}, f {:.6g} {:.6g} {:.6g}",
-                 atom->tag[i], update->ntimestep, x[0], x[1], x[2], v[0], v[1], v[2], f[0], f[1], f[2]);
+      error->one(
+          FLERR,
+          "Pair gran/restitution: ball {} has a place, velocity or force that is not finite at "
+          "step {}: x {:.6g} {:.6g} {:.6g}, v {:.6g} {:.6g} {:.6g}, f {:.6g} {:.6g} {:.6g}",
+          atom->tag[i], update->ntimestep, x[0], x[1], x[2], v[0], v[1], v[2], f[0], f[1], f[2]);
   }
 }
 
@@ -79,8 +79,9 @@ bool EnergyGuard::look(double elastic)
   double moving = elastic, height = 0.0, gravity[3] = {0.0, 0.0, 0.0};
   for (int i = 0; i < atom->nlocal; i++) {
     const double *v = atom->v[i], *w = atom->omega[i], r = atom->radius[i];
-    moving += 0.5 * atom->rmass[i] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2] +
-                                      0.4 * r * r * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]));
+    moving += 0.5 * atom->rmass[i] *
+        (v[0] * v[0] + v[1] * v[1] + v[2] * v[2] +
+         0.4 * r * r * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]));
   }
   for (Fix *fix : compat::fixes_of_style(lmp, "gravity")) {
     int dim;

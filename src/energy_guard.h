@@ -17,8 +17,8 @@ namespace LAMMPS_NS {
 
 class EnergyGuard : protected Pointers {
  public:
-  static constexpr int EVERY = 50;           // steps between two looks
-  static constexpr double GROWTH = 0.1;      // of the largest energy of motion, that is not sensible
+  static constexpr int EVERY = 50;         // steps between two looks
+  static constexpr double GROWTH = 0.1;    // of the largest energy of motion, that is not sensible
 
   explicit EnergyGuard(LAMMPS *);
 
@@ -33,13 +33,13 @@ class EnergyGuard : protected Pointers {
   bigint seen() const { return count; }      // looks at which it was not sensible
 
  private:
-  bool known;             // all that does work
+  bool known;    // all that does work
   bool begun;
-  double lowest, motion;  // energy so far, J; largest energy of motion and springs
+  double lowest, motion;    // energy so far, J; largest energy of motion and springs
   double grown;
   bigint count;
-  bigint number;          // of balls, when lowest began
-  double pull[3];         // gravity then
+  bigint number;     // of balls, when lowest began
+  double pull[3];    // gravity then
 
   void check_finite() const;
 };

@@ -28,7 +28,7 @@ static constexpr double ROUNDING = 1.0e-10;    // of the largest force
 
 FixContactHistory::FixContactHistory(LAMMPS *lmp, int narg, char **arg) :
     FixNeighHistory(lmp, narg, arg), lists_new(true), lists_used(false), force(nullptr),
-    force_step(-1), force_dt(0.0)
+    forces_taken_back(false), force_step(-1), force_dt(0.0)
 {
   nevery = ContactGuards::EVERY;
   FixContactHistory::grow_arrays(atom->nmax);
@@ -82,7 +82,8 @@ void FixContactHistory::end_of_step()
 void FixContactHistory::post_run()
 {
   FixNeighHistory::post_run();
-  if (!forces_known()) keep_forces();    // run 0 only has what the set-up found, an estimate for some balls
+  if (!forces_known())
+    keep_forces();    // run 0 only has what the set-up found, an estimate for some balls
   auto law = static_cast<PairGranRestitution *>(pair);
   if (update->ntimestep % nevery) law->watch_energy();
   law->guards.report();
@@ -111,6 +112,7 @@ void FixContactHistory::keep_forces()
 
 void FixContactHistory::initial_integrate(int)
 {
+  forces_taken_back = false;
   if (force_step != update->ntimestep - 1 || force_step != update->firststep) return;
   double mine[4] = {0.0, 0.0, 0.0, 0.0}, most[4];    // largest force, torque; differences
   const auto law = static_cast<PairGranRestitution *>(pair);
@@ -123,6 +125,7 @@ void FixContactHistory::initial_integrate(int)
     }
   MPI_Allreduce(mine, most, 4, MPI_DOUBLE, MPI_MAX, world);
   if (most[2] > ROUNDING * most[0] || most[3] > ROUNDING * most[1]) return;
+  forces_taken_back = true;
   for (int i = 0; i < atom->nlocal; i++) {
     memcpy(atom->f[i], force[i], 3 * sizeof(double));
     memcpy(atom->torque[i], &force[i][3], 3 * sizeof(double));

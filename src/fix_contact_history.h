@@ -48,6 +48,7 @@ class FixContactHistory : public FixNeighHistory {
   static constexpr int FORCE = 6;
   double **force;
   bool forces_known() const;
+  bool forces_taken_back;    // they are those that the first step of this run has begun with
 
  private:
   bigint force_step;    // the step that they belong to

@@ -8,11 +8,13 @@
 
 #include "fix_control_line.h"
 
-#include "deposit_rasters.h"
+#include "file_set.h"
 #include "fix_deposit_grid.h"
+#include "gather_records.h"
 #include "lammps_compat.h"
 #include "rank_zero.h"
 #include "region_surface.h"
+#include "requirements.h"
 #include "slope_version.h"
 #include "yaml_text.h"
 
@@ -118,8 +120,7 @@ void FixControlLine::init()
     if (fix != this && static_cast<FixControlLine *>(fix)->prefix == prefix)
       error->all(FLERR, "Fix control/line output must be another than that of fix {}, got {}",
                  fix->id, prefix);
-  if (utils::strmatch(update->integrate_style, "^respa"))
-    error->all(FLERR, "Fix control/line needs run_style verlet, got {}", update->integrate_style);
+  require_verlet(lmp, "Fix control/line");
   find_deposit();
   ground.reset(
       new RegionSurface(lmp, "Fix control/line", deposit->terrain().c_str(), RegionSurface::UPPER));
@@ -247,16 +248,11 @@ void FixControlLine::note(int i, const double *from, const double *to, const Pla
 
 void FixControlLine::collect()
 {
-  int mine = CrossingLog::NUMBERS * (int) fresh.size();
-  std::vector<int> counts(comm->nprocs), starts(comm->nprocs, 0);
-  MPI_Allgather(&mine, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
-  for (int k = 1; k < comm->nprocs; k++) starts[k] = starts[k - 1] + counts[k - 1];
-  const int total = starts.back() + counts.back();
-  if (total == 0) return;
+  int mine = !fresh.empty(), any;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  if (!any) return;
 
-  std::vector<CrossingLog::Event> all(comm->me == 0 ? total / CrossingLog::NUMBERS : 0);
-  MPI_Gatherv(fresh.data(), mine, MPI_DOUBLE, all.data(), counts.data(), starts.data(), MPI_DOUBLE,
-              0, world);
+  const std::vector<CrossingLog::Event> all = gather_records(world, fresh);
   fresh.clear();
   if (comm->me == 0) {
     log.events.insert(log.events.end(), all.begin(), all.end());

@@ -28,8 +28,12 @@ void FixGravitySlope::post_force(int vflag)
   const double g[12] = {xacc, yacc, zacc, xacc, yacc, zacc, xacc, yacc, zacc, xacc, yacc, zacc};
   sweep(
       n, atom->mask, groupbit,
-      [&](int i) { add_four(&f[3 * i], OfComponents(four(&mass[i])), g); },
-      [&](int i) { add_one(&f[3 * i], mass[i], g); });
+      [&](int i) {
+        add_four(&f[3 * i], OfComponents(four(&mass[i])), g);
+      },
+      [&](int i) {
+        add_one(&f[3 * i], mass[i], g);
+      });
 }
 
 /* ----------------------------------------------------------------------

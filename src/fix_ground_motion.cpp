@@ -11,6 +11,7 @@
 
 #include "lammps_compat.h"
 #include "rank_zero.h"
+#include "requirements.h"
 #include "style_argument.h"
 
 #include "atom.h"
@@ -116,15 +117,14 @@ int FixGroundMotion::setmask()
 
 void FixGroundMotion::init()
 {
-  if (utils::strmatch(update->integrate_style, "^respa"))
-    error->all(FLERR, "Fix ground/motion needs run_style verlet, got {}", update->integrate_style);
+  require_verlet(lmp, "Fix ground/motion");
 
   kicked = placed = frozen = 0;
   bool before = true;
   for (int k = 0; k < modify->nfix; k++) {
     const Fix *fix = modify->fix[k];
     if (fix == this) before = false;
-    if (utils::strmatch(fix->style, "^freeze")) frozen |= fix->groupbit;
+    if (Slope::is_style(fix->style, "freeze")) frozen |= fix->groupbit;
     if (!fix->time_integrate || !utils::strmatch(fix->style, "^nve")) continue;
     kicked |= fix->groupbit;
     if (before) placed |= fix->groupbit;

@@ -45,8 +45,10 @@ template <bool MOVE> void FixNVESphereSlope::integrate()
 
 void FixNVESphereSlope::initial_integrate(int vflag)
 {
-  if (extra) FixNVESphere::initial_integrate(vflag);    // dipoles
-  else integrate<true>();
+  if (extra)
+    FixNVESphere::initial_integrate(vflag);    // dipoles
+  else
+    integrate<true>();
 }
 
 /* ---------------------------------------------------------------------- */

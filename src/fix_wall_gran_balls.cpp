@@ -3,9 +3,9 @@
    Distributed under the GNU General Public License, version 2
 ------------------------------------------------------------------------- */
 
-/* Fixed balls as a wall. They are no atoms: sorted once into plan cells, listed for the
-   moving balls close to them when LAMMPS rebuilds its neighbor list, so that a step costs
-   what the contacts cost, whatever the size of the terrain. */
+/* Fixed balls as a wall. They are no atoms: made and sorted into plan cells where moving balls come
+   near, listed for these when LAMMPS rebuilds its neighbor list, so that a step costs what the
+   contacts cost, and a rank holds what its own balls need, whatever the size of the terrain. */
 
 #include "fix_wall_gran_balls.h"
 
@@ -13,10 +13,10 @@
 #include "ball_placement.h"
 #include "comm.h"
 #include "contact_energy.h"
+#include "contact_store.h"
 #include "error.h"
 #include "force.h"
 #include "initial_overlap.h"
-#include "memory.h"
 #include "modify.h"
 #include "neighbor.h"
 #include "pair_gran_restitution.h"
@@ -32,19 +32,15 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace Slope;
 
-static constexpr int MAX_PARTNERS = 1024;    // fixed balls that one ball can touch
 static constexpr double SAME_SIZE = 1.0e-9;
-static constexpr double SAME_PLACE = 1.0e-8;    // in diameters, in the mean
-static constexpr int RESTART_SIZE = 6;
-static constexpr double RESTART_FORMAT = -2.0;    // in place of the number of balls of the first one
+static constexpr double RESTART_FORMAT = -3.0;    // in place of the number of balls of the first one
 
 /* ----------------------------------------------------------------------
    fix ID group wall/gran/balls TYPE DIAMETER surface|file ...
 ------------------------------------------------------------------------- */
 
 FixWallGranBalls::FixWallGranBalls(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), pair(nullptr), sunk_released(false), smallest(0.0), lists_newer(false),
-    npartner(nullptr), partner(nullptr), values(nullptr)
+    Fix(lmp, narg, arg), pair(nullptr), smaller_warned(false), lists_newer(false)
 {
   caller = fmt::format("Fix wall/gran/balls {}", id);
   if (narg < 6)
@@ -61,11 +57,11 @@ FixWallGranBalls::FixWallGranBalls(LAMMPS *lmp, int narg, char **arg) :
   radius = 0.5 * diameter;
 
   const double moving = BallPlacement::smallest_ball(lmp, groupbit);
-  BallPlacement placement(lmp, caller, diameter, moving, narg - 5, &arg[5], true);
-  sort_balls(placement.xyz);
-  sunk = placement.sunk;
-  outside = placement.outside;
-  smallest = placement.smallest;
+  placement.reset(new BallPlacement(lmp, caller, diameter, moving, narg - 5, &arg[5], true));
+  balls.reset(new BallTiles(placement->tiles(), diameter,
+                            [this](int tile, std::vector<PlacedBall> &made) {
+                              placement->make(tile, made);
+                            }));
 
   scalar_flag = vector_flag = 1;
   size_vector = 3;
@@ -78,12 +74,9 @@ FixWallGranBalls::FixWallGranBalls(LAMMPS *lmp, int narg, char **arg) :
   for (int k = 0; k < 3; k++) force_mine[k] = force_all[k] = 0.0;
   force_ready = 0;
 
-  ipage.init(MAX_PARTNERS, 64 * MAX_PARTNERS);
-  dpage.init(MAX_PARTNERS * HISTORY, 64 * MAX_PARTNERS * HISTORY);
-  FixWallGranBalls::grow_arrays(atom->nmax);
+  store.reset(new ContactStore(lmp, caller));
   atom->add_callback(Atom::GROW);
   atom->add_callback(Atom::RESTART);
-  for (int i = 0; i < atom->nlocal; i++) npartner[i] = 0;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -92,100 +85,6 @@ FixWallGranBalls::~FixWallGranBalls()
 {
   atom->delete_callback(id, Atom::GROW);
   atom->delete_callback(id, Atom::RESTART);
-  memory->destroy(npartner);
-  memory->sfree(partner);
-  memory->sfree(values);
-}
-
-/* ----------------------------------------------------------------------
-   sums of the coordinates with a weight of -1 to 1 that each ball's number decides on: two balls that
-   change places change them
-------------------------------------------------------------------------- */
-
-void FixWallGranBalls::add_up(const std::vector<double> &xyz)
-{
-  long double sum[3] = {0.0, 0.0, 0.0};
-  for (size_t k = 0; k < xyz.size(); k++) {
-    const double turns = 0.6180339887498949 * static_cast<double>(k / 3 + 1);
-    sum[k % 3] += (2.0 * (turns - std::floor(turns)) - 1.0) * xyz[k];
-  }
-  for (int d = 0; d < 3; d++) checksum[d] = static_cast<double>(sum[d]);
-}
-
-/* ----------------------------------------------------------------------
-   counting sort into plan cells of one diameter
-------------------------------------------------------------------------- */
-
-void FixWallGranBalls::sort_balls(const std::vector<double> &xyz)
-{
-  const size_t n = xyz.size() / 3;
-  double xhi = -HUGE_VAL, yhi = -HUGE_VAL;
-  xlo = ylo = HUGE_VAL;
-  add_up(xyz);
-  for (size_t k = 0; k < n; k++) {
-    xlo = std::min(xlo, xyz[3 * k]);
-    xhi = std::max(xhi, xyz[3 * k]);
-    ylo = std::min(ylo, xyz[3 * k + 1]);
-    yhi = std::max(yhi, xyz[3 * k + 1]);
-  }
-
-  // larger cells where the balls are so sparse that empty cells would outnumber them, in plan or in
-  // a long row
-
-  const double area = (xhi - xlo + diameter) * (yhi - ylo + diameter);
-  const double longest = std::max(xhi - xlo, yhi - ylo);
-  const double cell = std::max({diameter, std::sqrt(area / (2.0 * n)), longest / n});
-  cell_inv = 1.0 / cell;
-  ncx = static_cast<int>((xhi - xlo) * cell_inv) + 1;
-  ncy = static_cast<int>((yhi - ylo) * cell_inv) + 1;
-
-  auto cell_of = [&](size_t k) {
-    return static_cast<size_t>((xyz[3 * k + 1] - ylo) * cell_inv) * ncx +
-        static_cast<size_t>((xyz[3 * k] - xlo) * cell_inv);
-  };
-  const size_t ncell = static_cast<size_t>(ncx) * ncy;
-  first.assign(ncell + 1, 0);
-  top.assign(ncell, -HUGE_VALF);
-  for (size_t k = 0; k < n; k++) first[cell_of(k) + 1]++;
-  for (size_t c = 0; c < ncell; c++) first[c + 1] += first[c];
-  balls.reserve(n + 1);    // contacts are read 32 bytes at a time, 8 beyond a vector
-  balls.resize(n);
-  number.resize(n);
-  std::vector<int> next(first.begin(), first.end() - 1);
-  for (size_t k = 0; k < n; k++) {
-    const size_t c = cell_of(k);
-    number[next[c]] = static_cast<int>(k);
-    balls[next[c]++] = {xyz[3 * k], xyz[3 * k + 1], xyz[3 * k + 2]};
-    top[c] = std::max(top[c], std::nextafter(static_cast<float>(xyz[3 * k + 2]), HUGE_VALF));
-  }
-}
-
-/* ----------------------------------------------------------------------
-   call visit(k, distance^2) for every fixed ball k closer to x than reach
-------------------------------------------------------------------------- */
-
-template <typename Visit>
-void FixWallGranBalls::visit_near(const double *x, double reach, Visit visit) const
-{
-  const double ulo = (x[0] - reach - xlo) * cell_inv, uhi = (x[0] + reach - xlo) * cell_inv;
-  const double vlo = (x[1] - reach - ylo) * cell_inv, vhi = (x[1] + reach - ylo) * cell_inv;
-  if (!(uhi >= 0.0 && ulo < ncx && vhi >= 0.0 && vlo < ncy)) return;
-  const int ilo = ulo > 0.0 ? static_cast<int>(ulo) : 0;
-  const int jlo = vlo > 0.0 ? static_cast<int>(vlo) : 0;
-  const int ihi = uhi < ncx ? static_cast<int>(uhi) : ncx - 1;
-  const int jhi = vhi < ncy ? static_cast<int>(vhi) : ncy - 1;
-  const double reach2 = reach * reach, lowest = x[2] - reach;
-
-  for (int j = jlo; j <= jhi; j++)
-    for (int i = ilo; i <= ihi; i++) {
-      const size_t c = static_cast<size_t>(j) * ncx + i;
-      if (top[c] < lowest) continue;    // a ball high above the ground
-      for (int k = first[c]; k < first[c + 1]; k++) {
-        const double dx = x[0] - balls[k].x, dy = x[1] - balls[k].y, dz = x[2] - balls[k].z;
-        const double d2 = dx * dx + dy * dy + dz * dz;
-        if (d2 < reach2) visit(k, d2);
-      }
-    }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -193,7 +92,7 @@ void FixWallGranBalls::visit_near(const double *x, double reach, Visit visit) co
 double FixWallGranBalls::deepest_overlap(const double *x, double r) const
 {
   double deepest = 0.0;
-  visit_near(x, r + radius, [&](int, double d2) {
+  balls->visit_near(x, r + radius, [&](int, double d2) {
     deepest = std::max(deepest, r + radius - std::sqrt(d2));
   });
   return deepest;
@@ -225,9 +124,8 @@ void FixWallGranBalls::init()
                  modify->fix[i]->id, modify->fix[i]->style);
   }
 
+  placement->check_regions();
   check_sizes();
-  if (sunk) sunk->release();    // its memory
-  sunk_released = true;
 }
 
 /* ----------------------------------------------------------------------
@@ -236,7 +134,8 @@ void FixWallGranBalls::init()
 
 void FixWallGranBalls::check_sizes()
 {
-  if (smallest == 0.0) return;
+  const double smallest = placement->smallest();
+  if (smallest == 0.0 || smaller_warned) return;
   const double moving = BallPlacement::smallest_ball(lmp, groupbit);
   if (moving == 0.0 || moving > smallest * (1.0 - SAME_SIZE)) return;
   if (comm->me == 0)
@@ -244,17 +143,20 @@ void FixWallGranBalls::check_sizes()
                    "{}: balls of diameter {} may pass between these, placed for {} and larger, on steep "
                    "ground: define the fix after the balls, or with smallest {}",
                    caller, moving, smallest, moving);
-  smallest = 0.0;
+  smaller_warned = true;
 }
 
 /* ---------------------------------------------------------------------- */
 
 std::shared_ptr<SunkRegion> FixWallGranBalls::body() const
 {
-  if (!sunk || sunk->side == RegionSurface::UPPER) return nullptr;
-  if (!sunk_released) return sunk;
-  return std::make_shared<SunkRegion>(lmp, caller, sunk->region, sunk->side, sunk->sink,
-                                      sunk->diameter);
+  const auto sunk = placement->sunk();
+  return sunk && sunk->side == RegionSurface::LOWER ? sunk : nullptr;
+}
+
+const std::string &FixWallGranBalls::left_out() const
+{
+  return placement->outside();
 }
 
 /* ----------------------------------------------------------------------
@@ -266,31 +168,8 @@ void FixWallGranBalls::store_contacts()
 {
   if (!lists_newer) return;
   lists_newer = false;
-
-  ipage.reset();
-  dpage.reset();
-  std::fill(npartner, npartner + atom->nlocal, 0);
-  int most = 0;
-  for (const ContactList &l : lists)
-    for (size_t k = 0, end; k < l.entries.size(); k = end) {
-      const int i = l.entries[k].i;    // its entries follow one another
-      int n = 0;
-      for (end = k; end < l.entries.size() && l.entries[end].i == i; end++) n += l.has_history(end);
-      if (n == 0 || i >= atom->nlocal) continue;    // the last ones may have been deleted
-      if (n > MAX_PARTNERS)
-        error->one(FLERR, "{}: ball {} touches {} fixed balls, the most is {}", caller,
-                   atom->tag[i], n, MAX_PARTNERS);
-      partner[i] = ipage.get(n);
-      values[i] = dpage.get(n * HISTORY);
-      for (; k < end; k++)
-        if (l.has_history(k)) {
-          partner[i][npartner[i]] = number[l.entries[k].j];
-          memcpy(&values[i][npartner[i]++ * HISTORY], l.histories[k],
-                 HISTORY * sizeof(double));
-        }
-      most = std::max(most, n);
-    }
-  maxexchange = 1 + (1 + HISTORY) * most;
+  store->take(lists, [this](int k) { return balls->number(k); });
+  maxexchange = store->maxexchange;
 }
 
 void FixWallGranBalls::pre_exchange()
@@ -315,6 +194,7 @@ void FixWallGranBalls::setup_post_neighbor()
 
 void FixWallGranBalls::post_neighbor()
 {
+  balls->drop_unused();
   lists.resize(atom->ntypes + 1);
   for (ContactList &l : lists) l.clear(true, false);
 
@@ -322,31 +202,17 @@ void FixWallGranBalls::post_neighbor()
   const double *r = atom->radius;
   const int *mask = atom->mask, *type = atom->type;
   const double beyond = radius + 0.5 * neighbor->skin;
-  size_t total = 0;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(mask[i] & groupbit)) continue;
     ContactList &l = lists[type[i]];
-    const size_t before = l.entries.size();
-    visit_near(x[i], r[i] + beyond, [&](int k, double) {
+    balls->visit_near(x[i], r[i] + beyond, [&](int k, double) {
       l.add(i, k, nullptr, false, r[i], radius, atom->rmass[i], 1.0);
     });
-    total += l.entries.size() - before;
   }
-
-  history.assign(total * HISTORY, 0.0);
-  double *next = history.data();
-  for (ContactList &l : lists) {
-    for (size_t k = 0; k < l.entries.size(); k++, next += HISTORY) {
-      const ContactList::Entry &e = l.entries[k];
-      l.histories[k] = next;
-      for (int p = 0; p < npartner[e.i]; p++)
-        if (partner[e.i][p] == number[e.j]) {
-          memcpy(next, &values[e.i][p * HISTORY], HISTORY * sizeof(double));
-          l.set_history(k);
-        }
-    }
-    if (pair->sizes_vary) l.equal = false;
-  }
+  placement->forget();
+  store->give(lists, [this](int k) { return balls->number(k); });
+  if (pair->sizes_vary)
+    for (ContactList &l : lists) l.equal = false;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -368,12 +234,12 @@ void FixWallGranBalls::post_force(int)
 void FixWallGranBalls::find_contacts(bool starting, bool lists_new)
 {
   const MovingBalls moving = pair->moving_balls();
-  const FixedPartners fixed(balls.data(), radius);
+  const FixedPartners fixed = partners();
   InitialOverlap initial(lmp);
   for (ContactList &l : lists) {
     if (starting)
       l.start(moving, fixed, [&](const ContactList::Entry &e, double overlap) {
-        const Vector &ball = balls[e.j];
+        const Vector &ball = balls->places()[e.j];
         initial.look(overlap, std::min(atom->radius[e.i], radius), atom->tag[e.i], atom->x[e.i],
                      fmt::format("the fixed ball at {:.6g} {:.6g} {:.6g},", ball.x, ball.y, ball.z));
       });
@@ -389,7 +255,7 @@ void FixWallGranBalls::find_contacts(bool starting, bool lists_new)
 void FixWallGranBalls::apply(bool starting)
 {
   const MovingBalls moving = pair->moving_balls();
-  const FixedPartners fixed(balls.data(), radius);
+  const FixedPartners fixed = partners();
   ContactTally tally = ContactTally();
 
   for (int type = 1; type <= atom->ntypes; type++) {
@@ -414,7 +280,7 @@ void FixWallGranBalls::apply(bool starting)
 double FixWallGranBalls::elastic_energy() const
 {
   const MovingBalls moving = pair->moving_balls();
-  const FixedPartners fixed(balls.data(), radius);
+  const FixedPartners fixed = partners();
   double energy = 0.0;
   for (size_t type = 1; type < lists.size(); type++)
     if (!lists[type].entries.empty())
@@ -432,7 +298,7 @@ double FixWallGranBalls::elastic_energy() const
 
 double FixWallGranBalls::compute_scalar()
 {
-  return static_cast<double>(balls.size());
+  return static_cast<double>(placement->count());
 }
 
 double FixWallGranBalls::compute_vector(int n)
@@ -448,12 +314,8 @@ double FixWallGranBalls::compute_vector(int n)
 
 double FixWallGranBalls::memory_usage()
 {
-  double bytes = balls.capacity() * sizeof(Vector) +
-      (first.capacity() + number.capacity()) * sizeof(int) + top.capacity() * sizeof(float) +
-      history.capacity() * sizeof(double);
+  double bytes = balls->memory_usage() + store->memory_usage();
   for (const ContactList &l : lists) bytes += l.memory_usage();
-  bytes += static_cast<double>(atom->nmax) * (sizeof(int) + sizeof(int *) + sizeof(double *));
-  bytes += ipage.size() + dpage.size();
   return bytes;
 }
 
@@ -463,9 +325,7 @@ double FixWallGranBalls::memory_usage()
 
 void FixWallGranBalls::grow_arrays(int nmax)
 {
-  memory->grow(npartner, nmax, "wall/gran/balls:npartner");
-  partner = (int **) memory->srealloc(partner, nmax * sizeof(int *), "wall/gran/balls:partner");
-  values = (double **) memory->srealloc(values, nmax * sizeof(double *), "wall/gran/balls:values");
+  store->grow_arrays(nmax);
 }
 
 void FixWallGranBalls::copy_arrays(int i, int j, int /*delflag*/)
@@ -473,45 +333,24 @@ void FixWallGranBalls::copy_arrays(int i, int j, int /*delflag*/)
   // a fix before this one deletes atoms before they migrate: the lists still hold the old indices
 
   store_contacts();
-
-  // the chunks stay where they are until the next store_contacts()
-
-  npartner[j] = npartner[i];
-  partner[j] = partner[i];
-  values[j] = values[i];
+  store->copy_arrays(i, j);
 }
 
 void FixWallGranBalls::set_arrays(int i)
 {
-  npartner[i] = 0;
+  store->set_arrays(i);
 }
 
 int FixWallGranBalls::pack_exchange(int i, double *buf)
 {
-  int m = 0;
-  buf[m++] = npartner[i];
-  for (int p = 0; p < npartner[i]; p++) {
-    buf[m++] = partner[i][p];
-    memcpy(&buf[m], &values[i][p * HISTORY], HISTORY * sizeof(double));
-    m += HISTORY;
-  }
-  return m;
+  return store->pack_exchange(i, buf);
 }
 
 int FixWallGranBalls::unpack_exchange(int i, double *buf)
 {
-  int m = 0;
-  const int n = static_cast<int>(buf[m++]);
-  npartner[i] = n;
-  partner[i] = ipage.get(n);
-  values[i] = dpage.get(n * HISTORY);
-  for (int p = 0; p < n; p++) {
-    partner[i][p] = static_cast<int>(buf[m++]);
-    memcpy(&values[i][p * HISTORY], &buf[m], HISTORY * sizeof(double));
-    m += HISTORY;
-  }
-  maxexchange = std::max(maxexchange, m);
-  return m;
+  const int n = store->unpack_exchange(i, buf);
+  maxexchange = std::max(maxexchange, n);
+  return n;
 }
 
 /* ----------------------------------------------------------------------
@@ -523,67 +362,46 @@ void FixWallGranBalls::write_restart(FILE *fp)
   const bool in_use = lists_newer;
   store_contacts();
   lists_newer = in_use;    // the run goes on with the lists
-  if (comm->me == 0) {
-    const double list[RESTART_SIZE] = {RESTART_FORMAT, static_cast<double>(balls.size()),
-                                       diameter,       checksum[0],
-                                       checksum[1],    checksum[2]};
-    const int size = sizeof(list);
-    fwrite(&size, sizeof(int), 1, fp);
-    fwrite(list, sizeof(double), RESTART_SIZE, fp);
-  }
+  if (comm->me != 0) return;
+  std::vector<double> list = placement->fingerprint();
+  list.insert(list.begin(), {RESTART_FORMAT, static_cast<double>(list.size())});
+  const int size = static_cast<int>(list.size() * sizeof(double));
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(list.data(), sizeof(double), list.size(), fp);
 }
 
 void FixWallGranBalls::restart(char *buf)
 {
-  const double *list = reinterpret_cast<double *>(buf);
-  if (list[0] != RESTART_FORMAT)
+  double head[2];
+  memcpy(head, buf, sizeof(head));
+  if (head[0] != RESTART_FORMAT)
     error->all(FLERR,
                "{}: the restart file must be of this version of the fix, got one of an older version, "
                "whose contacts may be those of other balls: run from the start again",
                caller);
-  if (list[1] != static_cast<double>(balls.size()))
-    error->all(FLERR,
-               "{}: the restart file was written with other fixed balls ({:.0f} there, {} here)",
-               caller, list[1], balls.size());
-  if (std::fabs(list[2] - diameter) > SAME_SIZE * diameter)
-    error->all(FLERR,
-               "{}: the restart file was written with other fixed balls (diameter {:.15g} there, "
-               "{:.15g} here)",
-               caller, list[2], diameter);
-  for (int d = 0; d < 3; d++)
-    if (!(std::fabs(list[3 + d] - checksum[d]) <= SAME_PLACE * diameter * balls.size()))
-      error->all(FLERR,
-                 "{}: the restart file was written with other fixed balls (other places, or another "
-                 "order, of {})",
-                 caller, balls.size());
+  std::vector<double> there(static_cast<size_t>(head[1]));
+  memcpy(there.data(), buf + sizeof(head), there.size() * sizeof(double));
+  const std::string why = placement->unlike(there);
+  if (!why.empty())
+    error->all(FLERR, "{}: the restart file was written with other fixed balls ({})", caller, why);
 }
 
 int FixWallGranBalls::pack_restart(int i, double *buf)
 {
-  const int m = 1 + pack_exchange(i, &buf[1]);
-  buf[0] = m;
-  return m;
+  return store->pack_restart(i, buf);
 }
 
 void FixWallGranBalls::unpack_restart(int i, int nth)
 {
-  double *extra = atom->extra[i];
-  int m = 0;
-  for (int k = 0; k < nth; k++) m += static_cast<int>(extra[m]);
-  unpack_exchange(i, &extra[m + 1]);
+  store->unpack_restart(i, nth);
 }
 
 int FixWallGranBalls::size_restart(int i)
 {
-  return 2 + npartner[i] * (1 + HISTORY);
+  return store->size_restart(i);
 }
 
 int FixWallGranBalls::maxsize_restart()
 {
-  // over all ranks: rank 0 writes it, and read_restart sizes its buffer by it
-
-  int mine = 0, most;
-  for (int i = 0; i < atom->nlocal; i++) mine = std::max(mine, npartner[i]);
-  MPI_Allreduce(&mine, &most, 1, MPI_INT, MPI_MAX, world);
-  return 2 + most * (1 + HISTORY);
+  return store->maxsize_restart();
 }

@@ -14,9 +14,9 @@ FixStyle(wall/gran/balls,FixWallGranBalls);
 
 #include "fix.h"
 
+#include "ball_tiles.h"
 #include "contact_holder.h"
 #include "contact_list.h"
-#include "my_page.h"
 
 #include <memory>
 #include <string>
@@ -58,11 +58,11 @@ class FixWallGranBalls : public Fix, public ContactHolder {
   // largest overlap (m) of a ball at x with any fixed ball, <= 0 if it touches none
   double deepest_overlap(const double *x, double radius) const;
 
-  // the body that the balls lie sunk below, nullptr if they do not; all ranks ask
+  // the body that the balls lie sunk below, nullptr if they do not
   std::shared_ptr<class SunkRegion> body() const;
 
   // the region outside of which the balls are, without knowing whether it is sunk; or empty
-  const std::string &left_out() const { return outside; }
+  const std::string &left_out() const;
 
  private:
   std::string caller;    // style and ID, for messages
@@ -70,41 +70,21 @@ class FixWallGranBalls : public Fix, public ContactHolder {
   double diameter, radius;
   class PairGranRestitution *pair;
 
-  std::shared_ptr<class SunkRegion> sunk;
-  bool sunk_released;
-  std::string outside;
-  double smallest;    // diameter of the smallest ball that finds no way through; 0: unknown
+  std::unique_ptr<class BallPlacement> placement;
+  std::unique_ptr<Slope::BallTiles> balls;    // those near the moving balls of this rank
+  bool smaller_warned;
 
-  // the fixed balls, sorted by plan cell (x fastest): cell c holds first[c] .. first[c+1]-1
-
-  std::vector<Slope::Vector> balls;
-  std::vector<int> first;
-  std::vector<int> number;    // of each ball in the placement, which rounding does not change
-  std::vector<float> top;     // highest ball centre of a cell
-  double xlo, ylo, cell_inv;
-  int ncx, ncy;
-  double checksum[3];    // of the places in their order: a restart must find the same balls
-
-  // what may touch until the next neighbor list, by type of the moving ball
+  // what may touch until the next neighbor list, by type of the moving ball, and the same contacts
+  // by atom, touching ones only
 
   std::vector<Slope::ContactList> lists;
-  std::vector<double> history;
+  std::unique_ptr<class ContactStore> store;
   bool lists_newer;    // contacts have been updated since they were last stored by atom
-
-  // the same contacts stored by atom, touching ones only: what exchange and restart carry
-
-  int *npartner;
-  int **partner;
-  double **values;
-  MyPage<int> ipage;
-  MyPage<double> dpage;
 
   double force_mine[3], force_all[3];    // on the fixed balls
   int force_ready;
 
-  void sort_balls(const std::vector<double> &);
-  void add_up(const std::vector<double> &);
-  template <typename Visit> void visit_near(const double *, double, Visit) const;
+  Slope::FixedPartners partners() const { return {balls->places(), radius}; }
   void check_sizes();
   void store_contacts();
   void apply(bool);

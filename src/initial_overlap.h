@@ -20,7 +20,7 @@ class InitialOverlap : protected Pointers {
  public:
   static constexpr double LIMIT = 0.05;    // of the smaller radius
 
-  InitialOverlap(class LAMMPS *lmp) : Pointers(lmp), worst(LIMIT), count(0) {}
+  explicit InitialOverlap(class LAMMPS *lmp) : Pointers(lmp), worst(LIMIT), count(0) {}
 
   // note one overlapping pair; partner names it in the message
   void look(double overlap, double radius, tagint ball, const double *where,
@@ -30,9 +30,9 @@ class InitialOverlap : protected Pointers {
   void check(const std::string &caller);
 
  private:
-  double worst;      // overlap / radius
-  bigint count;      // pairs above the limit
-  std::string text;  // the worst pair
+  double worst;        // overlap / radius
+  bigint count;        // pairs above the limit
+  std::string text;    // the worst pair
 };
 
 }    // namespace LAMMPS_NS

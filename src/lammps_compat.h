@@ -20,6 +20,7 @@
 #include "region_cylinder.h"
 #include "region_plane.h"
 #include "region_sphere.h"
+#include "style_name.h"
 
 #include <string>
 #include <vector>
@@ -66,15 +67,14 @@ namespace compat {
 #endif
   }
 
-  // fixes of one style, or of our variant of it, in the order of the deck; without one that is just
-  // being replaced
+  // fixes of one style, accelerated variants of it included, in the order of the deck; without one
+  // that is just being replaced
   inline std::vector<Fix *> fixes_of_style(LAMMPS *lmp, const std::string &style)
   {
     std::vector<Fix *> found;
     Modify *modify = lmp->modify;
     for (int i = 0; i < modify->nfix; i++)
-      if (modify->fix[i] &&
-          (style == modify->fix[i]->style || style + "/slope" == modify->fix[i]->style))
+      if (modify->fix[i] && Slope::is_style(modify->fix[i]->style, style))
         found.push_back(modify->fix[i]);
     return found;
   }

@@ -64,9 +64,7 @@ void MassLedger::take_here(const Mass &all)
 
 std::vector<std::string> MassLedger::lines(std::vector<Loss> all, double before)
 {
-  std::sort(all.begin(), all.end(), [](const Loss &a, const Loss &b) {
-    return a.step < b.step || (a.step == b.step && a.tag < b.tag);
-  });
+  std::sort(all.begin(), all.end(), earlier);
   std::vector<std::string> found;
   for (const Loss &loss : all) {
     if (!must_log()) break;

@@ -22,6 +22,10 @@ class MassLedger {
   struct Loss {    // of one ball; numbers only, so that ranks can send them
     double tag, x[3], step;
   };
+  static bool earlier(const Loss &a, const Loss &b)    // by step, then by ball
+  {
+    return a.step < b.step || (a.step == b.step && a.tag < b.tag);
+  }
   static constexpr int MAXLOGGED = 5;          // lost balls that get a line in the log
   static constexpr double BALANCE = 1.0e-9;    // of the released volume
 

@@ -20,6 +20,7 @@
 #include "memory.h"
 #include "neigh_list.h"
 #include "neighbor.h"
+#include "requirements.h"
 #include "update.h"
 
 #include <algorithm>
@@ -61,8 +62,9 @@ PairGranRestitution::PairGranRestitution(LAMMPS *lmp) : Pair(lmp), guards(lmp, t
   // a restart file hands the history back to a fix of the same ID
 
   fix_history = nullptr;
-  for (int n = 0; history_id.empty() || modify->find_fix(history_id) >= 0 ||
-       modify->find_fix(dummy_id) >= 0; n++) {
+  for (int n = 0;
+       history_id.empty() || modify->find_fix(history_id) >= 0 || modify->find_fix(dummy_id) >= 0;
+       n++) {
     history_id = fmt::format("NEIGH_HISTORY_SLOPE{}", n);
     dummy_id = fmt::format("NEIGH_HISTORY_SLOPE_DUMMY{}", n);
   }
@@ -124,10 +126,11 @@ void PairGranRestitution::coeff(int narg, char **arg)
   auto types = [&](const char *text, int &lo, int &hi) {
     utils::bounds(FLERR, text, 1, atom->ntypes, lo, hi, nullptr);
     if (!(lo >= 1 && lo <= hi && hi <= atom->ntypes))
-      error->all(FLERR,
-                 "Pair gran/restitution pair_coeff {} {}: types must be 1 to {}, or a range of them with "
-                 "*, got {}",
-                 arg[0], arg[1], atom->ntypes, text);
+      error->all(
+          FLERR,
+          "Pair gran/restitution pair_coeff {} {}: types must be 1 to {}, or a range of them with "
+          "*, got {}",
+          arg[0], arg[1], atom->ntypes, text);
   };
   types(arg[0], ilo, ihi);
   types(arg[1], jlo, jhi);
@@ -143,8 +146,8 @@ void PairGranRestitution::coeff(int narg, char **arg)
       count++;
     }
   if (count == 0)
-    error->all(FLERR, "Pair gran/restitution pair_coeff {} {}: no pair I <= J of {} types",
-               arg[0], arg[1], atom->ntypes);
+    error->all(FLERR, "Pair gran/restitution pair_coeff {} {}: no pair I <= J of {} types", arg[0],
+               arg[1], atom->ntypes);
   table.make_laws();
 }
 
@@ -162,13 +165,16 @@ const ContactLaw *PairGranRestitution::law(int itype, int jtype) const
 void PairGranRestitution::init_style()
 {
   if (!atom->radius_flag || !atom->rmass_flag || !atom->omega_flag || !atom->torque_flag)
-    error->all(FLERR,
-               "Pair gran/restitution requires balls: atom_style must be sphere, got {}",
+    error->all(FLERR, "Pair gran/restitution requires balls: atom_style must be sphere, got {}",
                atom->atom_style);
   if (!comm->ghost_velocity)
     error->all(FLERR, "Pair gran/restitution requires ghost velocities: comm_modify vel yes");
-  if (comm->style == 1 && force->newton_pair)    // CommTiled cannot send the histories of ghosts back
+  if (comm->style == 1 &&
+      force->newton_pair)    // CommTiled cannot send the histories of ghosts back
     error->all(FLERR, "Pair gran/restitution with comm_style tiled requires newton off");
+  require_verlet(lmp, "Pair gran/restitution");
+  require_single_balls(lmp, "Pair gran/restitution");
+  require_whole_contacts(lmp, "Pair gran/restitution");
 
   compat::request_history_list(neighbor, this, instance_me);
   dt = update->dt;
@@ -179,8 +185,8 @@ void PairGranRestitution::init_style()
     fix_history->pair = this;
   }
 
-  const auto freezes = compat::fixes_of_style(lmp, "freeze");
-  freeze_group_bit = freezes.empty() ? 0 : freezes[0]->groupbit;
+  freeze_group_bit = 0;
+  for (const Fix *fix : compat::fixes_of_style(lmp, "freeze")) freeze_group_bit |= fix->groupbit;
 
   sizes_vary = !compat::fixes_of_style(lmp, "adapt").empty();
 
@@ -198,14 +204,17 @@ double PairGranRestitution::init_one(int i, int j)
   const bool amoves = a.radius_dynamic > 0.0, bmoves = b.radius_dynamic > 0.0;
   const bool can_touch = (amoves && (bmoves || b.frozen)) || (bmoves && (amoves || a.frozen));
   if (can_touch && !table.is_set(i, j))
-    error->all(FLERR, "Pair gran/restitution: pair_coeff {} {} is not set, and balls of both types "
-                      "exist", i, j);
+    error->all(FLERR,
+               "Pair gran/restitution: pair_coeff {} {} is not set, and balls of both types "
+               "exist",
+               i, j);
   return table.cutoff(i, j);
 }
 
 /* ---------------------------------------------------------------------- */
 
-void PairGranRestitution::announce_wall(ContactHolder *wall, int type, int groupbit)
+void PairGranRestitution::announce_wall(ContactHolder *wall, int type, int groupbit,
+                                        const char *style)
 {
   walls.push_back(wall);
   for (int itype = 1; itype <= atom->ntypes; itype++) {
@@ -215,7 +224,7 @@ void PairGranRestitution::announce_wall(ContactHolder *wall, int type, int group
     MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
     if (any && !law(itype, type))
       error->all(FLERR,
-                 "Fix wall/gran/balls: pair_coeff {} {} is not set (moving type {}, wall type {})",
+                 "Fix {}: pair_coeff {} {} is not set (moving type {}, wall type {})", style,
                  std::min(itype, type), std::max(itype, type), itype, type);
   }
   if (allocated) table.add_wall_type(type);
@@ -248,10 +257,11 @@ void PairGranRestitution::watch_energy()
   const MovingPartners partners = {balls, force->newton_pair ? INT_MAX : atom->nlocal};
   double elastic = 0.0;
   for (size_t k = 0; k < lists.size(); k++)
-    elastic += elastic_energy(
-        lists[k], table.law(k / 3), balls, partners, [this](const ContactList::Entry &e, double overlap) {
-          guards.see_overlap(e.i, overlap, std::min(atom->radius[e.i], atom->radius[e.j]));
-        });
+    elastic += elastic_energy(lists[k], table.law(k / 3), balls, partners,
+                              [this](const ContactList::Entry &e, double overlap) {
+                                guards.see_overlap(e.i, overlap,
+                                                   std::min(atom->radius[e.i], atom->radius[e.j]));
+                              });
   for (const ContactHolder *wall : walls) elastic += wall->elastic_energy();
   guards.watch_energy(elastic);
 }
@@ -292,8 +302,8 @@ void PairGranRestitution::build_lists()
 
       if (!flags[jj]) continue;
       const Vector a = x[i], b = x[j];
-      const double r = sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y) +
-                            (a.z - b.z) * (a.z - b.z));
+      const double r =
+          sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y) + (a.z - b.z) * (a.z - b.z));
       guards.see_overlap(i, radius[i] + radius[j] - r, std::min(radius[i], radius[j]));
     }
   }
@@ -330,7 +340,8 @@ void PairGranRestitution::find_half_step()
   half_v.assign(v, v + nall);
   half_omega.assign(omega, omega + nall);
   for (int i = 0; i < nlocal; i++) {
-    const double *f = fix_history->force[i];    // velocity Verlet's second half step, for solid balls
+    const double *f =
+        fix_history->force[i];    // velocity Verlet's second half step, for solid balls
     const double a = 0.5 * dt / atom->rmass[i];
     const double b = a / (0.4 * atom->radius[i] * atom->radius[i]);
     v[i] = {v[i].x - a * f[0], v[i].y - a * f[1], v[i].z - a * f[2]};
@@ -417,6 +428,11 @@ bool PairGranRestitution::force_estimated(int i) const
   return counts.is_estimated(i);
 }
 
+bool PairGranRestitution::forces_taken_back() const
+{
+  return fix_history && fix_history->forces_taken_back;
+}
+
 /* ----------------------------------------------------------------------
    history of a contact as its partner sees it
 ------------------------------------------------------------------------- */
@@ -440,7 +456,8 @@ void PairGranRestitution::compute(int eflag, int vflag)
   starting = update->setupflag;
   const bool lists_new = starting || fix_history->lists_new;
   if (lists_new) build_lists();
-  if (starting) find_half_step();
+  if (starting)
+    find_half_step();
   else if (!half_v.empty()) {
     half_v.clear();
     half_omega.clear();
@@ -460,9 +477,7 @@ void PairGranRestitution::compute(int eflag, int vflag)
     lists[k].apply(law, dt, starting, balls, partners, evflag ? &tally : nullptr);
   }
   fix_history->lists_used = true;
-  if (starting) {
-    share(ContactCounts::ESTIMATED);
-  }
+  if (starting) { share(ContactCounts::ESTIMATED); }
 }
 
 /* ----------------------------------------------------------------------
@@ -492,14 +507,14 @@ double PairGranRestitution::single(int i, int j, int itype, int jtype, double rs
   MovingBalls balls = moving_balls();
   balls.v = vectors(atom->v);
   balls.omega = vectors(atom->omega);
-  const Sides moves = {atom->mask[i] & freeze_group_bit ? 0.0 : 1.0,
-                       atom->mask[j] & freeze_group_bit ? 0.0 : 1.0};
+  const Sides moves = {(atom->mask[i] & freeze_group_bit) ? 0.0 : 1.0,
+                       (atom->mask[j] & freeze_group_bit) ? 0.0 : 1.0};
   Contact contact;
   Vector delta;
   const MovingPartners partners = {balls, INT_MAX};
   set_contact(law, balls, partners, i, j, contact, delta);
-  const ContactStep step = step_of(moves, law, dt, true, atom->radius[i], atom->radius[j], atom->rmass[i],
-                                   atom->rmass[j]);
+  const ContactStep step = step_of(moves, law, dt, true, atom->radius[i], atom->radius[j],
+                                   atom->rmass[i], atom->rmass[j]);
   ContactForce c;
   contact_force(step, contact, 0.0, history, c);
 

@@ -27,7 +27,7 @@ namespace LAMMPS_NS {
 
 class PairGranRestitution : public Pair {
  public:
-  PairGranRestitution(class LAMMPS *);
+  explicit PairGranRestitution(class LAMMPS *);
   ~PairGranRestitution() override;
   void compute(int, int) override;
   void settings(int, char **) override;
@@ -57,14 +57,16 @@ class PairGranRestitution : public Pair {
   double atom2cut(int);
   double radii2cut(double, double);
 
-  // for fix wall/gran/balls: the contact law of a type pair, nullptr where no pair_coeff
+  // for the walls: the contact law of a type pair, nullptr where no pair_coeff
   // set it, and a line in the start-up table for every type that the wall meets
   const Slope::ContactLaw *law(int itype, int jtype) const;
-  void announce_wall(class ContactHolder *wall, int wall_type, int groupbit);
+  void announce_wall(class ContactHolder *wall, int wall_type, int groupbit,
+                     const char *style = "wall/gran/balls");
   Slope::MovingBalls moving_balls();
   void store_flags() const;
-  bool force_estimated(int i) const;    // of a ball at set-up: contacts that slid alone, see contact_law.h
-  bool sizes_vary;    // between two neighbor lists, by fix adapt
+  bool force_estimated(int i) const;    // of a ball at set-up: it slid alone, see contact_law.h
+  bool forces_taken_back() const;       // in the first step of a run: its forces are the last step's
+  bool sizes_vary = false;    // between two neighbor lists, by fix adapt
 
   void watch_energy();    // every ContactGuards::EVERY steps and at the end of a run
   ContactGuards guards;
@@ -72,8 +74,8 @@ class PairGranRestitution : public Pair {
  protected:
   ContactTable table;
 
-  double dt;
-  bool starting;    // at set-up
+  double dt = 0.0;
+  bool starting = false;    // at set-up
   int freeze_group_bit;
   class FixContactHistory *fix_history;
   std::vector<Slope::ContactList> lists;    // by type pair and by which side is frozen

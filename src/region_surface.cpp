@@ -10,7 +10,9 @@
 #include "lammps_compat.h"
 #include "region.h"
 #include "region_columns.h"
+#include "region_intersect.h"
 #include "region_terrain.h"
+#include "region_union.h"
 
 #include <algorithm>
 #include <cmath>
@@ -73,9 +75,32 @@ RegionSurface::RegionSurface(LAMMPS *lmp, const std::string &caller, const char 
 
   if (side == UPPER && region->interior) terrain = dynamic_cast<RegTerrain *>(region);
   if (!terrain) columns = RegionColumns::of(lmp, region);
+  note_parts(region);
 }
 
 RegionSurface::~RegionSurface() = default;
+
+/* ---------------------------------------------------------------------- */
+
+void RegionSurface::note_parts(Region *part)
+{
+  made_of.push_back({part->id, part, part->extent_zlo, part->extent_zhi});
+  if (dynamic_cast<RegIntersect *>(part) || dynamic_cast<RegUnion *>(part))
+    for (Region *inner : compat::parts_of(lmp, part)) note_parts(inner);
+}
+
+bool RegionSurface::stands(std::string &changed) const
+{
+  for (const Part &part : made_of) {
+    const Region *now = compat::find_region(lmp, part.id);
+    if (now == part.region &&
+        (!now->bboxflag || (now->extent_zlo == part.zlo && now->extent_zhi == part.zhi)))
+      continue;
+    changed = part.id;
+    return false;
+  }
+  return true;
+}
 
 /* ---------------------------------------------------------------------- */
 

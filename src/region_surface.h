@@ -12,6 +12,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -49,6 +50,10 @@ class RegionSurface : protected Pointers {
   // false if the region goes on beyond any box on this side (INF): no boundary there
   bool has_boundary() const { return bounded; }
 
+  // whether the region, and all that it is made of, is still the one of the constructor; if not, the
+  // ID of the first one that is not: nothing may be asked then
+  bool stands(std::string &changed) const;
+
   // bounding box; where the region has no bound, that of the simulation box
   double xlo, xhi, ylo, yhi, zlo, zhi;
 
@@ -56,11 +61,19 @@ class RegionSurface : protected Pointers {
   class Region *region;
   const class RegTerrain *terrain;    // set if its grid is the boundary
   double start, direction, step;      // of the search along z
+
+  struct Part {
+    std::string id;
+    class Region *region;
+    double zlo, zhi;    // of its bounding box
+  };
+  std::vector<Part> made_of;
   bool bounded;
 
   std::unique_ptr<class RegionColumns> columns;    // empty: they are searched
   mutable Slope::Intervals parts;                  // keeps its memory
 
+  void note_parts(class Region *);
   bool column(double x, double y) const;
   bool search(double x, double y, double &z) const;
   bool search_near(double x, double y, double near, double &z) const;

@@ -7,6 +7,7 @@
 
 #include "comm.h"
 #include "error.h"
+#include "node_array.h"
 #include "rank_zero.h"
 #include "style_argument.h"
 
@@ -56,8 +57,6 @@ RegTerrain::RegTerrain(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
 
   read(arg[2]);
 
-  const double zmin = elevation.zmin();
-  const double zmax = elevation.zmax();
   if (depth < 0.0) depth = DEFAULT_CELLS * elevation.cell;
   if (headroom < 0.0) headroom = DEFAULT_CELLS * elevation.cell;
   bottom = zmin - depth;
@@ -86,8 +85,10 @@ RegTerrain::RegTerrain(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
                    "Region terrain {}: {} x {} cells of {:.8g}, x {:.8g} to {:.8g}, "
                    "y {:.8g} to {:.8g}, heights {:.8g} to {:.8g}, {} cells without data\n",
                    id, elevation.nx, elevation.ny, elevation.cell, extent_xlo, extent_xhi,
-                   extent_ylo, extent_yhi, zmin, zmax, elevation.count_nodata());
+                   extent_ylo, extent_yhi, zmin, zmax, nodata);
 }
+
+RegTerrain::~RegTerrain() = default;
 
 /* ----------------------------------------------------------------------
    one rank reads; what went wrong there ends the run on all of them
@@ -95,26 +96,39 @@ RegTerrain::RegTerrain(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
 
 void RegTerrain::read(const char *path)
 {
-  on_rank_zero(lmp, "Region terrain", [&]() { elevation = Slope::ElevationGrid::read(path); });
-
+  double head[6];
+  on_rank_zero(lmp, "Region terrain", [&]() {
+    elevation = Slope::ElevationGrid::read(path);
+    head[0] = elevation.xlo;
+    head[1] = elevation.ylo;
+    head[2] = elevation.cell;
+    head[3] = elevation.zmin();
+    head[4] = elevation.zmax();
+    head[5] = elevation.count_nodata();
+  });
   int size[2] = {elevation.nx, elevation.ny};
-  double place[3] = {elevation.xlo, elevation.ylo, elevation.cell};
   MPI_Bcast(size, 2, MPI_INT, 0, world);
-  MPI_Bcast(place, 3, MPI_DOUBLE, 0, world);
-  int lacking = 0, any = 0;
+  MPI_Bcast(head, 6, MPI_DOUBLE, 0, world);
+  elevation.nx = size[0];
+  elevation.ny = size[1];
+  elevation.xlo = head[0];
+  elevation.ylo = head[1];
+  elevation.cell = head[2];
+  zmin = head[3];
+  zmax = head[4];
+  nodata = static_cast<int>(head[5]);
+  if (comm->nprocs == 1) return;
+
   try {
-    if (comm->me != 0)
-      elevation = Slope::ElevationGrid(size[0], size[1], place[0], place[1], place[2], 0.0);
+    heights.reset(new NodeArray(lmp, static_cast<size_t>(size[0]) * size[1]));
   } catch (std::bad_alloc &) {
-    lacking = 1;
-  }
-  MPI_Allreduce(&lacking, &any, 1, MPI_INT, MPI_MAX, world);
-  if (any)
     error->all(FLERR,
-               "Region terrain: {}: {} x {} cells need {:.3g} GB of memory on each rank, more than "
+               "Region terrain: {}: {} x {} cells need {:.3g} GB of memory on each node, more than "
                "is free",
                path, size[0], size[1], 8.0e-9 * size[0] * size[1]);
-  MPI_Bcast(elevation.z.data(), (int) elevation.z.size(), MPI_DOUBLE, 0, world);
+  }
+  heights->fill(elevation.z.data());
+  elevation.refer_to(heights->data());
 }
 
 /* ----------------------------------------------------------------------

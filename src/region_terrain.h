@@ -16,11 +16,14 @@ RegionStyle(terrain,RegTerrain);
 
 #include "elevation_grid.h"
 
+#include <memory>
+
 namespace LAMMPS_NS {
 
 class RegTerrain : public Region {
  public:
   RegTerrain(class LAMMPS *, int, char **);
+  ~RegTerrain() override;
   int inside(double, double, double) override;
   int surface_interior(double *, double) override;
   int surface_exterior(double *, double) override;
@@ -30,7 +33,9 @@ class RegTerrain : public Region {
 
  private:
   Slope::ElevationGrid elevation;
-  double bottom;    // the region ends here
+  std::unique_ptr<class NodeArray> heights;    // one copy for the ranks of a node
+  double zmin, zmax, bottom;                   // the region ends at the bottom
+  int nodata;
 
   void read(const char *);
   int no_contacts();

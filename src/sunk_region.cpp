@@ -154,9 +154,9 @@ void SunkRegion::build()
   surface.reset(new Slope::SunkSurface(bed, sink, pitch));
 }
 
-void SunkRegion::release()
+bool SunkRegion::stands(std::string &changed) const
 {
-  surface.reset();
+  return boundary->stands(changed) && (!top || top->stands(changed));
 }
 
 void SunkRegion::plan(double &xlo, double &xhi, double &ylo, double &yhi) const

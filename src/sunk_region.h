@@ -35,15 +35,17 @@ class SunkRegion : protected Pointers {
   const double sink, diameter;
   std::string ground;    // ID, empty: none
 
-  // Rank 0: look at the boundary, once; may throw. Needs the region; the others need this.
+  // Look at the boundary, once; may throw. Needs the region; the others need this.
   void build();
-  void release();                                                         // what build() has made
   void plan(double &xlo, double &xhi, double &ylo, double &yhi) const;    // of height()
   bool height(double x, double y, double &z) const;    // of ball centres, below the ground only
   bool centre(double x, double y, double &z) const;    // of a body: above it, too
 
   double lowest() const;    // of the centres
   double floor() const;     // what they must lie above
+
+  // whether the regions are those of the constructor; if not, which one is not
+  bool stands(std::string &changed) const;
 
   // whether all of the body lies in columns of another region
   bool lies_in(const RegionSurface &columns) const;

@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <limits>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 using namespace Slope;
 
@@ -54,7 +56,7 @@ SunkSurface::SunkSurface(const Bed &bed, double sink_in, double pitch) : sink(si
   ylo = bed.ylo - my * py;
   xhi = bed.xhi + mx * px;
   yhi = bed.yhi + my * py;
-  z.assign(static_cast<size_t>(nx) * ny, INFINITE);
+  z.reset(nx, ny, INFINITE);
 
   look(bed);
   if (bed.body) {
@@ -66,12 +68,14 @@ SunkSurface::SunkSurface(const Bed &bed, double sink_in, double pitch) : sink(si
 
 double SunkSurface::lowest() const
 {
-  return *std::min_element(z.begin(), z.end()) - sink;
+  double found = INFINITE;
+  z.each([&](int, int, double height) { found = std::min(found, height); });
+  return found - sink;
 }
 
 bool SunkSurface::has(int i, int j) const
 {
-  return i >= 0 && i < nx && j >= 0 && j < ny && z[at(i, j)] < INFINITE;
+  return i >= 0 && i < nx && j >= 0 && j < ny && z.get(i, j) < INFINITE;
 }
 
 /* ----------------------------------------------------------------------
@@ -84,7 +88,7 @@ bool SunkSurface::look_at(const Bed &bed, int i, int j, double near)
   const double x = std::min(column_x(i), bed.xhi), y = std::min(column_y(j), bed.yhi);
   double height;
   const bool there = bed.height(x, y, near, height) && std::isfinite(height);
-  if (there) z[at(i, j)] = height;
+  if (there) z.at(i, j) = height;
   return there;
 }
 
@@ -109,7 +113,7 @@ void SunkSurface::look(const Bed &bed)
       bool there = false;
       for (int k = 0; k < 6 && !there; k++)
         if (has(close[k][0], close[k][1]))
-          there = look_at(bed, i, j, z[at(close[k][0], close[k][1])]);
+          there = look_at(bed, i, j, z.get(close[k][0], close[k][1]));
     }
 }
 
@@ -120,25 +124,24 @@ void SunkSurface::look(const Bed &bed)
 void SunkSurface::trim(const Bed &bed)
 {
   const double thin = std::max(px, py);
-  std::vector<size_t> todo;
+  std::vector<std::pair<int, int>> todo;
   auto look_around = [&](int i, int j) {
     for (int b = -1; b <= 1; b++)
       for (int a = -1; a <= 1; a++)
-        if (has(i + a, j + b)) todo.push_back(at(i + a, j + b));
+        if (has(i + a, j + b)) todo.push_back({i + a, j + b});
   };
-  for (int j = 0; j < ny; j++)
-    for (int i = 0; i < nx; i++)
-      if (has(i, j) && !(has(i - 1, j) && has(i + 1, j) && has(i, j - 1) && has(i, j + 1)))
-        todo.push_back(at(i, j));
+  z.each([&](int i, int j, double height) {
+    if (height < INFINITE && !(has(i - 1, j) && has(i + 1, j) && has(i, j - 1) && has(i, j + 1)))
+      todo.push_back({i, j});
+  });
 
   while (!todo.empty()) {
-    const size_t k = todo.back();
-    const int i = static_cast<int>(k % nx), j = static_cast<int>(k / nx);
+    const int i = todo.back().first, j = todo.back().second;
     todo.pop_back();
     double top;
     if (!has(i, j) || !bed.ground(column_x(i), column_y(j), UNKNOWN, top)) continue;
-    if (top - z[k] >= thin) continue;
-    z[k] = INFINITE;
+    if (top - z.get(i, j) >= thin) continue;
+    z.at(i, j) = INFINITE;
     look_around(i, j);
   }
 }
@@ -146,14 +149,13 @@ void SunkSurface::trim(const Bed &bed)
 std::vector<SunkSurface::Edge> SunkSurface::edges() const
 {
   std::vector<Edge> found;
-  for (int j = 1; j < ny - 1; j++)
-    for (int i = 1; i < nx - 1; i++) {
-      if (!has(i, j)) continue;
-      if (!has(i - 1, j)) found.push_back({i, j, -1, 0});
-      if (!has(i + 1, j)) found.push_back({i, j, 1, 0});
-      if (!has(i, j - 1)) found.push_back({i, j, 0, -1});
-      if (!has(i, j + 1)) found.push_back({i, j, 0, 1});
-    }
+  z.each([&](int i, int j, double height) {
+    if (!(height < INFINITE) || i < 1 || i > nx - 2 || j < 1 || j > ny - 2) return;
+    if (!has(i - 1, j)) found.push_back({i, j, -1, 0});
+    if (!has(i + 1, j)) found.push_back({i, j, 1, 0});
+    if (!has(i, j - 1)) found.push_back({i, j, 0, -1});
+    if (!has(i, j + 1)) found.push_back({i, j, 0, 1});
+  });
   return found;
 }
 
@@ -167,7 +169,7 @@ bool SunkSurface::plane(int i, int j, double &gx, double &gy) const
   for (int b = -AROUND; b <= AROUND; b++)
     for (int a = -AROUND; a <= AROUND; a++) {
       if (a * a + b * b > AROUND * AROUND || !has(i + a, j + b)) continue;
-      const double dz = z[at(i + a, j + b)] - z[at(i, j)];
+      const double dz = z.get(i + a, j + b) - z.get(i, j);
       n += 1.0;
       sx += a;
       sy += b;
@@ -196,7 +198,7 @@ bool SunkSurface::plane(int i, int j, double &gx, double &gy) const
 
 void SunkSurface::end_at(const Bed &bed, const Edge &edge)
 {
-  const Point on = {column_x(edge.i), column_y(edge.j), z[at(edge.i, edge.j)]};
+  const Point on = {column_x(edge.i), column_y(edge.j), z.get(edge.i, edge.j)};
   const double xoff = column_x(edge.i + edge.di), yoff = column_y(edge.j + edge.dj);
   Point rim = on;
   double t = 0.0, t_off = 1.0;
@@ -243,8 +245,12 @@ void SunkSurface::go_on(const Bed &bed, const std::vector<Edge> &found)
     double gx, gy, under;    // slope; depth below the ground
   };
   std::vector<Ramp> ramps(1);    // the first stands for walls
-  std::vector<int> nearest(z.size(), -1);
-  std::vector<float> distance2(z.size(), HUGE_VALF);
+  struct Nearest {
+    int ramp;
+    float distance2;
+  };
+  SparsePlane<Nearest> nearest;
+  nearest.reset(nx, ny, {-1, HUGE_VALF});
   const double pitch = std::max(px, py), reach = bed.ground ? REACH * sink : 0.0;
   const int wide = static_cast<int>(reach / px), high = static_cast<int>(reach / py);
 
@@ -254,11 +260,11 @@ void SunkSurface::go_on(const Bed &bed, const std::vector<Edge> &found)
     double top;
     const bool sloped = bed.ground && plane(i, j, ramp.gx, ramp.gy) &&
         bed.ground(column_x(i), column_y(j), UNKNOWN, top);
-    if (sloped) ramp.under = top - z[at(i, j)];
+    if (sloped) ramp.under = top - z.get(i, j);
     bool rises = false;
     for (next = e; next < found.size() && found[next].i == i && found[next].j == j; next++) {
       const Edge &edge = found[next];
-      const double on = z[at(i, j)] + edge.di * px * ramp.gx + edge.dj * py * ramp.gy;
+      const double on = z.get(i, j) + edge.di * px * ramp.gx + edge.dj * py * ramp.gy;
       if (sloped && bed.ground(column_x(i + edge.di), column_y(j + edge.dj), UNKNOWN, top) &&
           on > top - WALL * pitch)
         rises = true;
@@ -270,24 +276,21 @@ void SunkSurface::go_on(const Bed &bed, const std::vector<Edge> &found)
     for (int b = std::max(j - high, 0); b <= std::min(j + high, ny - 1); b++)
       for (int a = std::max(i - wide, 0); a <= std::min(i + wide, nx - 1); a++) {
         const double dx = (a - i) * px, dy = (b - j) * py, d2 = dx * dx + dy * dy;
-        const size_t k = at(a, b);
-        if (d2 > reach * reach || d2 >= distance2[k] * (1.0 - 1.0e-6) || z[k] < INFINITE) continue;
-        distance2[k] = static_cast<float>(d2);
-        nearest[k] = mine;
+        if (d2 > reach * reach || d2 >= nearest.get(a, b).distance2 * (1.0 - 1.0e-6)) continue;
+        if (z.get(a, b) < INFINITE) continue;
+        nearest.at(a, b) = {mine, static_cast<float>(d2)};
       }
   }
 
-  for (int j = 0; j < ny; j++)
-    for (int i = 0; i < nx; i++) {
-      const size_t k = at(i, j);
-      double top;
-      if (nearest[k] <= 0 || !bed.ground(column_x(i), column_y(j), UNKNOWN, top)) continue;
-      const Ramp &ramp = ramps[nearest[k]];
-      const double dx = (i - ramp.i) * px, dy = (j - ramp.j) * py;
-      const double away = std::max(0.0, std::sqrt(dx * dx + dy * dy) - 2.0 * pitch);
-      z[k] = std::max(z[at(ramp.i, ramp.j)] + dx * ramp.gx + dy * ramp.gy,
-                      top - ramp.under + RISE * away);
-    }
+  nearest.each([&](int i, int j, const Nearest &n) {
+    double top;
+    if (n.ramp <= 0 || !bed.ground(column_x(i), column_y(j), UNKNOWN, top)) return;
+    const Ramp &ramp = ramps[n.ramp];
+    const double dx = (i - ramp.i) * px, dy = (j - ramp.j) * py;
+    const double away = std::max(0.0, std::sqrt(dx * dx + dy * dy) - 2.0 * pitch);
+    z.at(i, j) = std::max(z.get(ramp.i, ramp.j) + dx * ramp.gx + dy * ramp.gy,
+                          top - ramp.under + RISE * away);
+  });
 }
 
 void SunkSurface::sort_rims()
@@ -316,7 +319,8 @@ bool SunkSurface::patch(double x, double y, double &height, double &gx, double &
   if (!(x >= xlo && x <= xhi && y >= ylo && y <= yhi)) return false;
   const int i = std::min(static_cast<int>((x - xlo) / px), nx - 2);
   const int j = std::min(static_cast<int>((y - ylo) / py), ny - 2);
-  const double *low = &z[at(i, j)], *high = &z[at(i, j + 1)];
+  const double low[2] = {z.get(i, j), z.get(i + 1, j)};
+  const double high[2] = {z.get(i, j + 1), z.get(i + 1, j + 1)};
   if (!(low[0] < INFINITE && low[1] < INFINITE && high[0] < INFINITE && high[1] < INFINITE))
     return false;
   const double u = (x - column_x(i)) / px, v = (y - column_y(j)) / py;
@@ -356,8 +360,12 @@ bool SunkSurface::height(double x, double y, double &lowest) const
     const double dy = column_y(j) - y, half = std::sqrt(std::max(0.0, sink2 - dy * dy));
     const int ilo = std::max(0, static_cast<int>(std::ceil((x - half - xlo) / px)));
     const int ihi = std::min(nx - 1, static_cast<int>((x + half - xlo) / px));
-    for (int i = ilo; i <= ihi; i++)
-      if (z[at(i, j)] - sink < lowest) touch(column_x(i), column_y(j), z[at(i, j)]);
+    for (int i = ilo, next; i <= ihi; i = next) {
+      const double *height = z.run(i, j, ihi + 1, next);
+      if (!height) continue;
+      for (int k = i; k < next; k++)
+        if (height[k - i] - sink < lowest) touch(column_x(k), column_y(j), height[k - i]);
+    }
   }
   const int bx = static_cast<int>((x - xlo) / sink), by = static_cast<int>((y - ylo) / sink);
   for (int b = std::max(by - 1, 0); b <= std::min(by + 1, bins_y - 1); b++)

@@ -14,7 +14,8 @@
 #ifndef SLOPE_SUNK_SURFACE_H
 #define SLOPE_SUNK_SURFACE_H
 
-#include <cstddef>
+#include "sparse_plane.h"
+
 #include <functional>
 #include <vector>
 
@@ -62,12 +63,11 @@ class SunkSurface {
   const double sink;
   double px, py;              // between columns
   int nx, ny, mx, my;         // columns, and how many of them are margin on each side
-  std::vector<double> z;      // of the columns; infinite: the surface is not there
+  SparsePlane<double> z;      // of the columns; infinite: the surface is not there
   std::vector<Point> rims;    // where it ends between columns, by bins of size sink
   std::vector<int> first;     // bin b holds rims first[b] .. first[b+1]-1
   int bins_x, bins_y;
 
-  size_t at(int i, int j) const { return static_cast<size_t>(j) * nx + i; }
   bool has(int i, int j) const;
   double column_x(int i) const { return xlo + i * px; }
   double column_y(int j) const { return ylo + j * py; }

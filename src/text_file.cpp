@@ -13,7 +13,7 @@
 
 static constexpr size_t LONGEST = 40;    // excerpt
 
-std::string Slope::text_of(const std::string &path)
+std::string Slope::bytes_of(const std::string &path)
 {
   FILE *fp = fopen(path.c_str(), "rb");
   if (!fp) throw std::runtime_error("cannot read " + path + ": " + strerror(errno));
@@ -24,6 +24,12 @@ std::string Slope::text_of(const std::string &path)
   const std::string reason = ferror(fp) ? strerror(errno) : "";
   fclose(fp);
   if (!reason.empty()) throw std::runtime_error("cannot read " + path + ": " + reason);
+  return text;
+}
+
+std::string Slope::text_of(const std::string &path)
+{
+  std::string text = bytes_of(path);
   if (text.compare(0, 3, "\xef\xbb\xbf") == 0) text.erase(0, 3);
   return text;
 }

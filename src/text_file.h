@@ -16,6 +16,9 @@ namespace Slope {
 // The whole file without a mark of UTF-8. Errors are std::runtime_error: "cannot read PATH: reason".
 std::string text_of(const std::string &path);
 
+// the whole file as it is; errors alike
+std::string bytes_of(const std::string &path);
+
 // an error in a line: "PATH, line 7: what"
 std::runtime_error line_error(const std::string &path, int line, const std::string &what);
 

@@ -8,7 +8,8 @@
 # --fetch SUITE a Debian release (bookworm, trixie, sid): the LAMMPS of its source package is fetched
 #               into DIR/source/SUITE from the mirror that this machine's apt uses
 # --only WAY    smallbig-mpi, smallbig-serial, bigbig-mpi, bigbig-serial (sizes and MPI of LAMMPS),
-#               shared (liblammps.so, for Python and the library interface) or plugin (slopeplugin.so
+#               shared (liblammps.so, for Python and the library interface), packages (OPENMP and
+#               MOLECULE: suffix omp and bonds, see decks/test_packages.py) or plugin (slopeplugin.so
 #               in a stock lmp of the same source); default: all of them
 # --tests REGEX only these tests, as ctest -R; "none" builds alone
 # -o DIR        output folder (default: build/matrix)
@@ -19,7 +20,7 @@ set -euo pipefail
 export LC_ALL=C
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-all_ways=(smallbig-mpi smallbig-serial bigbig-mpi bigbig-serial shared plugin)
+all_ways=(smallbig-mpi smallbig-serial bigbig-mpi bigbig-serial shared packages plugin)
 out=$top/build/matrix
 tests=
 suites=() ways=() trees=()
@@ -140,6 +141,7 @@ one() {
     *-mpi) options+=(-D LAMMPS_SIZES="${way%-*}" -D BUILD_MPI=ON) ;;
     *-serial) options+=(-D LAMMPS_SIZES="${way%-*}" -D BUILD_MPI=OFF) ;;
     shared) options+=(-D BUILD_SHARED_LIBS=ON) ;;
+    packages) options+=(-D BUILD_OMP=ON -D PKG_OPENMP=ON -D PKG_MOLECULE=ON) ;;
     plugin) options+=(-D SLOPE_PLUGIN=ON -D SLOPE_STOCK_LMP="$folder.stock/lmp") ;;
   esac
 

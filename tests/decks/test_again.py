@@ -86,7 +86,8 @@ def test_a_run_of_no_steps_changes_nothing(site, step):
 def test_no_memory_is_lost(site, monkeypatch):
     """What 50 runs with clear add to the process. A lost raster would be 32 kB each time."""
     # glibc gives back what is freed, so that the size of the process is what is in use
-    for name, value in {"MALLOC_MMAP_THRESHOLD_": "16384", "MALLOC_TRIM_THRESHOLD_": "0", "MALLOC_TOP_PAD_": "0"}.items():
+    for name, value in {"MALLOC_MMAP_THRESHOLD_": "16384", "MALLOC_TRIM_THRESHOLD_": "0",
+                        "MALLOC_TOP_PAD_": "0"}.items():
         monkeypatch.setitem(ENVIRONMENT, name, value)
     deck = "variable again loop 60\nlabel again\n" + START + RUN.replace("run 50", "run 2")
     deck += 'clear\nshell "grep VmRSS /proc/$PPID/status >> memory.txt"\nnext again\njump SELF again\n'

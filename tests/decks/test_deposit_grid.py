@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import yaml
 
+import deck_helpers
 from deck_helpers import doc_examples, flat_numbers, flight_head as head, read_asc, run_deck, write_asc, write_balls
 
 
@@ -88,9 +89,11 @@ run 500
 
     # which balls are left, step by step as LAMMPS looks at them
     inside = np.ones(len(x), bool)
+    left = np.full(len(x), 2000)    # step
     for step in range(1, 1001):
         at = x + v * 0.001 * step
         inside &= ((at >= lo) & (at < lo + 20)).all(axis=1)
+        left[~inside & (left == 2000)] = step
     at = x + v * 1.0
     n = [math.ceil((extent[1] - extent[0]) / cell), math.ceil((extent[3] - extent[2]) / cell)]
     expected = thickness_of(at[inside], d[inside], (extent[0], extent[2]), n, cell)
@@ -120,6 +123,8 @@ run 500
     assert vector[9] == balls["lost"]
     warnings = [line for line in log.splitlines() if "left the box" in line]
     assert len(warnings) == 5 and "lost so far: 5, more are only counted" in warnings[-1]
+    lost = [int(line.split(" ball ")[1].split()[0]) for line in warnings]
+    assert lost == (np.argsort(left, kind="stable")[:5] + 1).tolist()
     assert "balance does not close" not in log
 
 
@@ -417,17 +422,20 @@ thermo_modify lost ignore
 {run}
 """
 DEP = ("fix dep all deposit/grid 20 0 cell 0.7 terrain ground output {} window 200 "
-       "extent -2 8.5 -1 9")
+       "extent -2 8.5 -2 8")
 
 
 def heap(begin, dep, run):
     return HEAP.format(begin=begin, dep=dep, run=run)
 
 
-@pytest.mark.parametrize("np_write, np_read", [(1, 4), (4, 2)])
-def test_restart(tmp_path, np_write, np_read):
+@pytest.mark.parametrize("np_write, np_read, pieces", [(1, 4, 1), (4, 2, 1), (2, 3, 2), (1, 1, 2)])
+def test_restart(tmp_path, monkeypatch, np_write, np_read, pieces):
     """A restarted run ends with the files of the continuous one: all maxima, times, balls lost
-    before and after. The restart is written in the run, in the middle of a window."""
+    before and after. The restart is written in the run, in the middle of a window; also one in
+    pieces, as LAMMPS needs it of a grid with more than 2 GB of cells."""
+    if pieces > 1:
+        monkeypatch.setitem(deck_helpers.ENVIRONMENT, "SLOPE_RESTART_PIECE", "6720")    # 8 rows
     flat(tmp_path, 12, z=0.0, xlo=-2.0, ylo=-2.0, cell=1.0)
     begin = """
 region box block -2 10 -2 10 -0.5 8 units box
@@ -467,19 +475,87 @@ set group all density 2000
         dep = DEP.format("two").replace(change, what)
         run_deck(heap("read_restart a.1500.restart", dep, "run 0"), tmp_path,
                  expect_error="Fix deposit/grid dep must have the grid of the restart file, "
-                 "cell 0.7, 15 x 15 cells from -2 -1, bulk 1.909859317; got")
+                 "cell 0.7, 15 x 15 cells from -2 -2, bulk 1.909859317; got")
 
     # and so is data of an older format, whose first number is 1 and not 2
     data = (tmp_path / "a.1500.restart").read_bytes()
     key = struct.pack("<4d", 2.0, 0.7, 15.0, 15.0)
-    assert data.count(key) == 1
+    assert data.count(key) == pieces and data.count(b"DEPOSIT_GRID_PART\0") == pieces - 1
     (tmp_path / "old.restart").write_bytes(data.replace(key, struct.pack("<d", 1.0) + key[8:]))
     run_deck(heap("read_restart old.restart", DEP.format("two"), "run 0"), tmp_path,
              expect_error="Fix deposit/grid dep must have restart data of format 2, got 1: the file "
              "is of another version of SLOPE")
 
 
+def test_pieces_come_and_go_with_the_fix(tmp_path, monkeypatch):
+    """Removed, replaced under its ID, cleared: no piece is left behind, and none is missing."""
+    monkeypatch.setitem(deck_helpers.ENVIRONMENT, "SLOPE_RESTART_PIECE", "1")
+    flat(tmp_path, 20)
+    write_balls(tmp_path / "balls.data", [[5, 5, 5]], 0.5, None, [(0.0, 20.0)] * 3)
+    fix = "fix dep all deposit/grid 10 0 cell {} terrain ground output out\n"
+    show = "info out log fixes\n"
+    log = run_deck(head() + fix.format(0.5) + show + "unfix dep\n" + show + fix.format(1) + fix.format(2) + show
+                   + "run 10\nwrite_restart a.restart\nunfix dep\n" + show, tmp_path)
+    counts = [part.count("style = DEPOSIT_GRID_PART") for part in log.split("Info-Info")[1:]]
+    assert [count for count in counts if count] == [4, 1] and len(counts) >= 4, counts
+    assert (tmp_path / "a.restart").read_bytes().count(b"DEPOSIT_GRID_PART\0") == 1
+
+
+@pytest.mark.parametrize("np_", [1, 2])
+def test_restart_of_a_mass_in_the_south(tmp_path, np_):
+    """Rows in the north, of either rank, that have nothing to say."""
+    flat(tmp_path, 20)
+    write_balls(tmp_path / "balls.data", [[5, 2, 5]], 0.5, None, [(0.0, 20.0)] * 3)
+    run_deck(head() + "fix dep all deposit/grid 10 0 cell 0.5 terrain ground output out\nrun 10\n"
+             "write_restart a.restart\n", tmp_path, np=np_)
+
+
+# --- ranks ---
+
+RASTERS = ["thickness", "surface", "base", "max_thickness", "max_speed", "max_energy", "arrival", "last_motion"]
+
+
+@pytest.mark.parametrize("np_, processors, cell", [(2, "2 1 1", 0.03), (3, "1 3 1", 0.5), (4, "1 1 4", 0.11)])
+def test_ranks_agree(tmp_path, np_, processors, cell):
+    """All rasters of one rank, on ranks beside and above each other; also where a rank has more cells than it sends
+    at once (0.03: 3,500 blocks of 8 x 8 cells, all of one rank)."""
+    rng = np.random.default_rng(3)
+    x = np.array([10.7, 0.7, 2.0]) + rng.uniform(0, 1, (300, 3)) * [8.6, 18.6, 16.0]
+    flat(tmp_path, z=3.0)
+    write_balls(tmp_path / "balls.data", x, 1.25, rng.normal(0, 2, x.shape), [(0.0, 20.0)] * 3)
+    text = head().replace("read_data", "processors {}\nread_data") + f"""
+fix dep all deposit/grid 10 0 cell {cell} terrain ground output {{}} extent 10 20 0 20 window 10
+run 40
+"""
+    run_deck(text.format("* * *", "one"), tmp_path)
+    run_deck(text.format(processors, "several"), tmp_path, np=np_)
+    for name in RASTERS:
+        a, b = raster(tmp_path, name, "one"), raster(tmp_path, name, "several")
+        assert b == pytest.approx(a, rel=1e-9, abs=1e-11, nan_ok=True), name
+    assert raster(tmp_path, "thickness", "one").sum() > 0
+    one, several = summary(tmp_path, "one"), summary(tmp_path, "several")
+    assert several["ranks"] == np_ and several["change_rate"] == pytest.approx(one["change_rate"], rel=1e-9) != 1.0
+    for key, value in flat_numbers(one).items():
+        assert flat_numbers(several)[key] == pytest.approx(value, rel=1e-9, abs=1e-9), key
+
+
 # --- bad input ---
+
+
+@pytest.mark.parametrize("np_", [1, 2])
+def test_larger_than_the_memory(tmp_path, np_):
+    """Refused before anything is allocated: by the sum over the ranks of the machine."""
+    available = [line.split()[1] for line in open("/proc/meminfo") if line.startswith("MemAvailable")]
+    if 1024 * int(available[0]) > 175e9:
+        pytest.skip("this machine has the memory for as many cells as there may be")
+    flat(tmp_path, 10)
+    write_balls(tmp_path / "balls.data", [[5, 5, 5]], 0.5, None, [(0.0, 10.0)] * 3)
+    ranks = ["1 rank", "2 ranks"][np_ - 1]
+    run_deck(head() + "fix dep all deposit/grid 10 0 cell 0.00022 terrain ground output out\nrun 1\n", tmp_path,
+             np=np_, expect_error="Fix deposit/grid cell 0.00022: 45455 x 45455 cells need 182 GB of memory on a node "
+             f"({ranks}), which has ")
+    assert not list(tmp_path.glob("out.*"))
+
 
 GOOD = "fix dep all deposit/grid 10 0 cell 1 terrain ground output out"
 
@@ -512,8 +588,11 @@ GOOD = "fix dep all deposit/grid 10 0 cell 1 terrain ground output out"
     ("terrain ground", "terrain halfspace", "Fix deposit/grid terrain region halfspace must have "
      "an upper boundary, got INF"),
     ("cell 1", "cell 0.0001",
-     "Fix deposit/grid cell must give at most 4e+08 cells, got 10000000000 cells, "
-     "they need 720 GB"),
+     "Fix deposit/grid cell must give at most 2147483647 cells, got 10000000000 cells, "
+     "they need 880 GB"),
+    ("cell 1", "cell 0.000001 extent 0 10 0 0.000005",
+     "Fix deposit/grid cell must give rows of which 8 fit into the 2147482623 bytes that a fix has in a "
+     "restart file, got 4480000000 bytes in 10000000 columns"),
     ("dep all", "dep nogroup", "Could not find fix group ID"),
     ("dep all", "dep none", "Fix deposit/grid group must hold balls when the run starts, got none"),
 ])

@@ -98,3 +98,12 @@ def test_sliding_is_no_alarm(tmp_path, deck, e, part):
 
 def test_growing_energy_is_one(tmp_path):
     assert alarms(run_deck(BURST, tmp_path))
+
+
+def test_sizes_that_vary_are_no_alarm(tmp_path):
+    """A ball at rest on a frozen one is blown up by fix adapt: energy that comes from neither contacts nor gravity."""
+    grown = BURST.replace("atom_style   sphere", "atom_style sphere 1").replace("scheme plain", "")
+    grown = grown.replace("damping $(138*sqrt(1e6*v_mass)) 0", "restitution 0.9")
+    adapt = "variable size equal 0.02*(1+0.001*step)\nfix grow ball adapt 1 atom diameter v_size\n"
+    log = run_deck(grown.replace("run          600", adapt + "run 600"), tmp_path)
+    assert alarms(log) == []

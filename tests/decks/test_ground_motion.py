@@ -342,3 +342,11 @@ def test_doc_examples(tmp_path):
     write_balls(tmp_path / "balls.data", [[0, 0, 1]], 1.0, None, [(-9, 9)] * 3)
     write_motion(tmp_path, [0, 1, 2], [0, 1, 0])
     run_deck(flight_head() + "group soil type 1\n" + doc_examples("fix_ground_motion") + "run 5", tmp_path)
+
+
+def test_respa_is_refused(tmp_path):
+    random_motion(tmp_path)
+    write_balls(tmp_path / "balls.data", [[0, 0, 1]], 1.0, None, [(-9, 9)] * 3)
+    write_asc(tmp_path / "ground.asc", np.zeros((20, 20)), -100, -100, 10)
+    run_deck(flight_head() + "fix shake all ground/motion motion.txt\nrun_style respa 2 2\nrun 1", tmp_path,
+             expect_error="Fix ground/motion needs run_style verlet, got respa")

@@ -118,7 +118,7 @@ def test_plan_grid_alone_leaks(tmp_path, angle):
 
 def test_plan_spacing_is_kept_below_45_degrees(tmp_path):
     depth_below_slope(tmp_path, 45, SURFACE)
-    lines = [l for l in (tmp_path / "fixed.xyz").read_text().splitlines() if not l.startswith("#")]
+    lines = [line for line in (tmp_path / "fixed.xyz").read_text().splitlines() if not line.startswith("#")]
     assert len(lines) == 31 * 11
 
 

@@ -39,8 +39,8 @@ WALL = "fix floor ball wall/gran/balls 2 1.0 surface ground upper spacing 0.5"
 
 def run(tmp_path, expect_error=None, np=1, **settings):
     (tmp_path / "flat.asc").write_text("ncols 10\nnrows 10\nxllcorner 0\nyllcorner 0\ncellsize 1\n" + "0 " * 99 + "0\n")
-    deck = {"z": 2.0, "atoms": "", "style": "", "types": "* *", "e": 0.5, "k": 1e7, "floor": WALL, "skin": 0.3, "neigh": "", "dt": 2e-3, "extra": "",
-            "steps": 1000, **settings}
+    deck = {"z": 2.0, "atoms": "", "style": "", "types": "* *", "e": 0.5, "k": 1e7, "floor": WALL,
+            "skin": 0.3, "neigh": "", "dt": 2e-3, "extra": "", "steps": 1000, **settings}
     log = run_deck(DECK.format(**deck), tmp_path, np=np, expect_error=expect_error)
     if expect_error:
         return log, None
@@ -116,7 +116,8 @@ def test_wall_type_without_coefficients(tmp_path):
 
 def test_force_that_is_no_number(tmp_path):
     run(tmp_path, expect_error="ball 1 has a place, velocity or force that is not finite at step 50", steps=100,
-        extra="variable huge equal 1e308*(step==50)\nfix push ball addforce v_huge v_huge 0\nfix push2 ball addforce v_huge 0 0")
+        extra="variable huge equal 1e308*(step==50)\nfix push ball addforce v_huge v_huge 0\n"
+              "fix push2 ball addforce v_huge 0 0")
 
 
 def test_a_ball_that_leaves(tmp_path):

@@ -349,7 +349,8 @@ def test_start_up_table(tmp_path):
     m1, m2 = ball_mass(0.1, 2500), ball_mass(0.1, 5000)
     zeta = -math.log(0.48) / math.hypot(math.pi, math.log(0.48))
     assert rows[1, 1] == pytest.approx([1e6, 8e5, 2 * zeta * math.sqrt(1e6 * m1 / 2), zeta, 0.48, 0.48, 30,
-                                        math.degrees(math.atan(0.1)), math.pi / math.sqrt(2e6 / m1 * (1 - zeta ** 2)) / 2e-6],
+                                        math.degrees(math.atan(0.1)),
+                                        math.pi / math.sqrt(2e6 / m1 * (1 - zeta ** 2)) / 2e-6],
                                        rel=1e-3)
     pair = m1 * m2 / (m1 + m2)
     assert rows[1, 2][2:5] == pytest.approx([500, 250 / math.sqrt(2e6 * pair), math.exp(
@@ -371,7 +372,8 @@ def test_coefficients_survive_a_restart(tmp_path):
     first, _, _ = collide(tmp_path, coeff=COEFFS, style=style, steps=100,
                           extra="run 100\nwrite_restart mid.restart")
     read = "read_restart mid.restart\nneigh_modify delay 0\ncomm_modify vel yes\n"
-    log = run_deck(read + "fix move all nve/sphere\nrun 100\nprint \"velocities $(vx[1]:%.17g) $(vx[2]:%.17g)\"\n", tmp_path)
+    log = run_deck(read + "fix move all nve/sphere\nrun 100\n"
+                   "print \"velocities $(vx[1]:%.17g) $(vx[2]:%.17g)\"\n", tmp_path)
     assert table(log) == table(first)
     end = [float(word) for word in re.findall(r"^velocities (\S+) (\S+)", log, re.M)[0]]
     one, two = numbers(tmp_path / "one.txt"), numbers(tmp_path / "two.txt")

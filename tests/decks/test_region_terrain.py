@@ -30,7 +30,10 @@ def balls(tmp_path):
 def plane(xlo, ylo, cell, nx=12, ny=8):
     x = xlo + (np.arange(nx) + 0.5) * cell
     y = ylo + (np.arange(ny) + 0.5) * cell
-    height = lambda x, y: 50.0 + 0.4137 * (x - xlo) - 0.3271 * (y - ylo)
+
+    def height(x, y):
+        return 50.0 + 0.4137 * (x - xlo) - 0.3271 * (y - ylo)
+
     return height, height(x[None, :], y[:, None])
 
 

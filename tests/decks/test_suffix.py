@@ -26,8 +26,8 @@ def collapse(tmp_path, name, text, np=1):
 def deck(begin, commands="", move="fix move soil nve/sphere", weight="fix weight soil gravity 9.80665 vector 0 0 -1",
          **settings):
     """The collapse; the first balls may be held, others weightless, so that fours are of several groups."""
-    text = collapse_deck(f"fix_modify weight energy yes\nthermo_style custom step step f_weight\n{commands}\nrun {STEPS}",
-                         every=50, **settings)
+    text = collapse_deck(f"fix_modify weight energy yes\nthermo_style custom step step f_weight\n{commands}\n"
+                         f"run {STEPS}", every=50, **settings)
     assert "fix move soil nve/sphere\n" in text
     text = text.replace("fix move soil nve/sphere\n", move + "\n")
     text = text.replace("fix weight soil gravity 9.80665 vector 0 0 -1\n", weight + "\n")
@@ -41,7 +41,8 @@ CASES = {
     "some weightless": dict(weight="group heavy id 1:90 95:390\nfix weight heavy gravity 9.80665 vector 0.3 -0.1 -1"),
     "gravity by variable": dict(weight="variable g equal 9.8*(1+0.1*sin(step))\n"
                                        "fix weight soil gravity v_g vector 0 0 -1"),
-    "gravity turned off": dict(commands="fix_modify weight energy no\nunfix weight\nfix weight soil gravity 0 vector 0 0 -1"),
+    "gravity turned off": dict(commands="fix_modify weight energy no\nunfix weight\n"
+                                        "fix weight soil gravity 0 vector 0 0 -1"),
     "first group": dict(sort="first soil"),
 }
 
@@ -67,4 +68,3 @@ def test_suffix_chooses_the_variants(tmp_path):
     log = run_deck(deck("suffix slope", "info out log fixes"), tmp_path)
     for style in ("nve/sphere/slope", "gravity/slope"):
         assert re.search(rf"style = {style},", log), style
-

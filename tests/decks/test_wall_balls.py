@@ -194,7 +194,8 @@ def test_newton_off(tmp_path, reference, ranks, processors):
 
 
 def test_frozen_atoms_on_ranks(tmp_path, reference):
-    assert difference(reference["one"], run(tmp_path, wall=False, np=4, processors="4 1 1", box=reference["box"])) < 1e-9
+    four = run(tmp_path, wall=False, np=4, processors="4 1 1", box=reference["box"])
+    assert difference(reference["one"], four) < 1e-9
 
 
 @pytest.mark.parametrize("settings", [
@@ -342,7 +343,8 @@ def test_restart_with_other_balls(tmp_path):
     again = RESTART.format(id="ground", gravity="0 0 -1", every=50, steps=100)
     for other in ("0 -0.05 0\n", "0 -0.05 0\n0 0.06 0\n"):
         (tmp_path / "floor.xyz").write_text(other)
-        run_deck(again, tmp_path, expect_error="Fix wall/gran/balls ground: the restart file was written with other fixed balls")
+        run_deck(again, tmp_path,
+                 expect_error="Fix wall/gran/balls ground: the restart file was written with other fixed balls")
 
 
 def test_restart_with_balls_of_another_build(tmp_path):
@@ -415,7 +417,8 @@ def test_initial_overlap_of_two_balls(tmp_path, ranks):
     # the second pair: centres 0.06 apart, radii 0.05 + 0.03; the smaller radius counts
     deck = make_deck(tmp_path, balls=balls, processors="2 1 1" if ranks == 2 else "* * *")
     run_deck(deck + "run 1\n", tmp_path, np=ranks, expect_error=(
-        "Pair gran/restitution: 2 pairs overlap at the start by more than 5 % of the radius, worst 66.67 % between ball"))
+        "Pair gran/restitution: 2 pairs overlap at the start by more than 5 % of the radius, "
+        "worst 66.67 % between ball"))
     balls[3]["x"] = 0.5 + 0.08 - 0.04 * 0.03
     balls[1]["x"] = -0.5 + 0.98 * D
     deck = make_deck(tmp_path, balls=balls, processors="2 1 1" if ranks == 2 else "* * *")
@@ -429,11 +432,13 @@ def test_delete_balls(tmp_path):
     settings = dict(balls=balls, positions=[(0.3 * k, 0.0, 0.0) for k in range(3)])
     volume = math.pi * D ** 3 / 6
     for fraction, removed in ((0.05, 2), (0.1, 1), (0.0, 3), (0.5, 0)):
-        log = run_deck(make_deck(tmp_path, **settings, before=f"delete_balls moving overlap {fraction}") + "print \"left $(atoms)\"\n",
+        log = run_deck(make_deck(tmp_path, **settings, before=f"delete_balls moving overlap {fraction}") +
+                       "print \"left $(atoms)\"\n",
                        tmp_path)
         line = next(line for line in log.splitlines() if line.startswith("Delete_balls:"))
-        assert line == (f"Delete_balls: {removed} balls of group moving removed that overlapped fixed balls by more than "
-                        f"{fraction:g} of their radius: {removed * volume:.6g} m3 of balls, {removed * D ** 3:.6g} m3 of "
+        assert line == (f"Delete_balls: {removed} balls of group moving removed that overlapped fixed balls by more "
+                        f"than {fraction:g} of their radius: {removed * volume:.6g} m3 of balls, "
+                        f"{removed * D ** 3:.6g} m3 of "
                         f"ground at 6/pi; {4 - removed} balls left")
         assert f"left {4 - removed}" in log.splitlines()
         share = removed * D ** 3 / (3 * D ** 3 + 0.2 ** 3)
@@ -474,7 +479,8 @@ def test_force_on_the_ground_is_the_weight(tmp_path, ranks):
              for y in (-0.15, 0.15)]
     deck = make_deck(tmp_path, balls=balls, positions=positions, processors="4 1 1" if ranks == 4 else "* * *",
                      gravity="0 0 -1", coeff="stiffness 1e5 1e5 restitution 0.01 friction 30 rolling 0.1", dt=5e-5)
-    log = run_deck(deck + "run 6000\nprint \"ground $(f_ground[1]:%.9e) $(f_ground[2]:%.9e) $(f_ground[3]:%.9e) $(f_ground)\"\n",
+    log = run_deck(deck + "run 6000\n"
+                   "print \"ground $(f_ground[1]:%.9e) $(f_ground[2]:%.9e) $(f_ground[3]:%.9e) $(f_ground)\"\n",
                    tmp_path, np=ranks)
     words = next(line for line in log.splitlines() if line.startswith("ground")).split()[1:]
     weight = 8 * MASS * G
@@ -513,7 +519,8 @@ pair_coeff * * stiffness 1e7 1e7 restitution 0.5
 
 
 @pytest.mark.parametrize("fix, message", [
-    ("wall/gran/balls 3 0.1 file floor.xyz", "Fix wall/gran/balls ground type must be 1 to 2 (the atom types of the box), got 3"),
+    ("wall/gran/balls 3 0.1 file floor.xyz",
+     "Fix wall/gran/balls ground type must be 1 to 2 (the atom types of the box), got 3"),
     ("wall/gran/balls 0 0.1 file floor.xyz", "type must be 1 to 2 (the atom types of the box), got 0"),
     ("wall/gran/balls 2 0 file floor.xyz", "diameter must be > 0, got 0"),
     ("wall/gran/balls 2 -0.1 file floor.xyz", "diameter must be > 0, got -0.1"),
@@ -543,4 +550,5 @@ def test_other_pair_style(tmp_path):
     start, end = deck.index("pair_style"), deck.index("timestep")
     deck = deck[:start] + "pair_style gran/hooke 1e5 NULL 50 NULL 0.5 1\npair_coeff * *\n" + deck[end:]
     run_deck(deck + "run 1\n", tmp_path,
-             expect_error="Fix wall/gran/balls ground: requires pair_style gran/restitution, which holds its coefficients")
+             expect_error="Fix wall/gran/balls ground: requires pair_style gran/restitution, which holds its "
+             "coefficients")

@@ -105,7 +105,7 @@ TABLE = {
         1 1 stiffness 1e6 1e6 restitution 0.5 rolling_spring 1 -1 -> rolling_spring must be >= 0 (cr), got -1
         1 1 stiffness 1e6 1e6 restitution 0.5 7 -> pair_coeff: unknown keyword 7, must be stiffness, restitution
         1 1 stiffness 1e6 1e6 restitution 0.5 color red -> pair_coeff: unknown keyword color, must be stiffness
-        """,
+        """,  # noqa: E501
     ("wall", "fix wall soil wall/gran/balls", "Fix wall/gran/balls wall"): """
         -> : needs TYPE DIAMETER and surface or file, got 0 arguments
         2 1.0 -> : needs TYPE DIAMETER and surface or file, got 2 arguments
@@ -283,7 +283,7 @@ TABLE = {
         10 20 cell 0 -> cell must be > 0, got 0
         10 20 cell nan -> cell must be a finite number, got nan
         10 20 cell inf -> cell must be a finite number, got inf
-        10 20 cell 1e-4 terrain ground output out -> cell must give at most 4e+08 cells, got 6400000000 cells, they
+        10 20 cell 1e-4 terrain ground output out -> cell must give at most 2147483647 cells, got 6400000000 cells, they
         10 20 cell 1 terrain nowhere output out -> terrain region nowhere does not exist
         10 20 cell 1 terrain road output out -> terrain region road must have an upper boundary, got INF
         10 20 cell 1 terrain space output out -> terrain region space must have a bounding box, style plane has none
@@ -311,7 +311,7 @@ TABLE = {
         10 20 cell 1 terrain ground output out extent 0 9 0 8 -> extent must lie in that of region ground, 0 8 0 8
         10 20 color red -> : unknown keyword color, must be cell, terrain, output, bulk, extent, motion, window or
         10 20 red -> : unknown keyword red, must be cell, terrain, output, bulk, extent, motion, window or series
-        """,
+        """,  # noqa: E501
     ("motion", "fix shake soil ground/motion", "Fix ground/motion"): """
         -> needs FILE with lines t ax ay az
         no.txt -> : cannot read no.txt: No such file or directory
@@ -372,10 +372,12 @@ SETUPS = [
      "Pair gran/restitution requires balls: atom_style must be sphere, got atomic"),
     ({**NO_BALLS, **ONLY, "create": DECK["create"]},
      "Create_balls atom_style must have radius and mass per atom, as sphere has, got atomic"),
-    ({**NO_BALLS, **ONLY, "delete": DECK["delete"]}, "Delete_balls requires balls: atom_style must be sphere, got atomic"),
+    ({**NO_BALLS, **ONLY, "delete": DECK["delete"]},
+     "Delete_balls requires balls: atom_style must be sphere, got atomic"),
     ({**NO_BALLS, **ONLY, "deposit": DECK["deposit"]},
      "Fix deposit/grid requires balls: atom_style must be sphere, got atomic"),
-    ({**NO_BALLS, **ONLY, "line": DECK["line"]}, "Fix control/line requires balls: atom_style must be sphere, got atomic"),
+    ({**NO_BALLS, **ONLY, "line": DECK["line"]},
+     "Fix control/line requires balls: atom_style must be sphere, got atomic"),
 
     # what does not fit together
     ({**FLAT, **ONLY, "create": DECK["create"]},
@@ -383,22 +385,31 @@ SETUPS = [
     ({**FLAT, **ONLY, "deposit": DECK["deposit"]},
      "Fix deposit/grid requires a simulation in 3 dimensions, got 2"),
     ({"set": "set group soil diameter 1.5 density 2000", "delete": ""},
-     "Pair gran/restitution: 254 pairs overlap at the start by more than 5 % of the radius, worst 66.67 % between ball 1"),
+     "Pair gran/restitution: 254 pairs overlap at the start by more than 5 % of the radius, worst 66.67 % between "
+     "ball 1"),
     ({"more walls": "fix more soil wall/gran/balls 2 5.0 file balls.txt", "delete": ""},
-     "Fix wall/gran/balls more: 5 pairs overlap at the start by more than 5 % of the radius, worst 270.7 % between ball 1"),
-    ({"more walls": "fix more soil wall/gran/balls 2 500.0 file balls.txt"}, "Delete_balls: no ball of group soil is left"),
+     "Fix wall/gran/balls more: 5 pairs overlap at the start by more than 5 % of the radius, worst 270.7 % between "
+     "ball 1"),
+    ({"more walls": "fix more soil wall/gran/balls 2 500.0 file balls.txt"},
+     "Delete_balls: no ball of group soil is left"),
     ({"terrain": "variable up equal 0.1\n" + DECK["terrain"] + " move NULL NULL v_up"},
      "Fix wall/gran/balls wall region ground must stand still, got one that moves or varies"),
     ({"box": "region big block 0 8 0 8 -1e20 1e20\ncreate_box 3 big"},
      "Region polygon road has no end in z: the simulation box needs one"),
-    ({"deposit": DECK["deposit"] + "\n" + DECK["deposit"].replace("deposit soil", "other soil").replace("cell 1.0", "cell 2")},
+    ({"deposit": DECK["deposit"] + "\n"
+      + DECK["deposit"].replace("deposit soil", "other soil").replace("cell 1.0", "cell 2")},
      "Fix deposit/grid output must be another than that of fix other, got out"),
     ({"line": DECK["line"] + "\n" + DECK["line"].replace("line soil", "other soil")},
      "Fix control/line output must be another than that of fix other, got out"),
     ({"line": "fix line soil control/line fence.csv output out",
       "deposit": DECK["deposit"] + "\n" + DECK["deposit"].replace("deposit soil", "other soil") + "2"},
-     "Fix control/line line needs deposit ID, the fix deposit/grid that has the bulk factor, where there is not exactly one, got 2"),
-    ({"motion": DECK["motion"] + "\nrun_style respa 2 2"}, "Fix ground/motion needs run_style verlet, got respa"),
+     "Fix control/line line needs deposit ID, the fix deposit/grid that has the bulk factor, where there is not "
+     "exactly one, got 2"),
+    ({"run": "run_style respa 2 2\nrun 1"}, "Pair gran/restitution needs run_style verlet, got respa"),
+    ({"move": "fix move soil rigid single"},
+     "Pair gran/restitution: balls must move one by one, got fix move rigid, whose bodies have another mass"),
+    ({"move": "fix move soil rigid/nve single"},
+     "Pair gran/restitution: balls must move one by one, got fix move rigid/nve, whose bodies"),
     ({"deposit": "region high sphere 4 4 9 3 units box\n" + DECK["deposit"].replace("terrain ground", "terrain high")},
      "Fix deposit/grid terrain region high must have a height within one "),
 ]

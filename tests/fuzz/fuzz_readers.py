@@ -46,9 +46,11 @@ MEMORY = 8_000_000_000         # bytes of address space
 
 NUMBERS = [b"0", b"-1", b"1", b"1.5", b"1e400", b"-1e400", b"1e-320", b"nan", b"inf", b"-inf", b"2147483648",
            b"99999999999999999999", b"9" * 5000, b"1_0", b"0x10", b"1e15", b"-9999", b"20000", b"100000", b""]
-WORDS = [b"\0", b"\xff\xfe", b"\xef\xbb\xbf", b"\x1b[31m", "\u0663".encode(), b"#", b",", b"\n\n", b"\r", b"\t", b"<", b"&a;",
+WORDS = [b"\0", b"\xff\xfe", b"\xef\xbb\xbf", b"\x1b[31m", "\u0663".encode(), b"#", b",", b"\n\n", b"\r", b"\t",
+         b"<", b"&a;",
          b"*a", b"!!python/object:os.system", b"{}", b"[", b"]", b"null", b"EMPTY", b"<!DOCTYPE x []>", b"../../x"]
-VALUES = [None, True, "", "x", "nan", 0, -1, 10 ** 400, 1e400, float("nan"), [], {}, [[]], {"a": 1}, "2001-99-99", 1e-320]
+VALUES = [None, True, "", "x", "nan", 0, -1, 10 ** 400, 1e400, float("nan"), [], {}, [[]], {"a": 1}, "2001-99-99",
+          1e-320]
 
 
 # --- mutations ---
@@ -139,7 +141,8 @@ def mutate_zip(data, pool, rng):
     change = mutate_zip if name.endswith(".zip") else mutate
     members[name] = change(members[name], list(members.values()), rng)
     if rng.random() < 0.2:
-        members[rng.choice(("../../x.xml", "/etc/x.xml", "\x1b[2J.xml", "a\nb.xml", "x" * 3000 + ".xml"))] = members[name]
+        other = rng.choice(("../../x.xml", "/etc/x.xml", "\x1b[2J.xml", "a\nb.xml", "x" * 3000 + ".xml"))
+        members[other] = members[name]
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w", rng.choice((zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, zipfile.ZIP_LZMA))) as archive:
         for key, content in members.items():
@@ -165,7 +168,8 @@ def mutate_gz(data, pool, rng):
 
 # --- targets: files that are read, how they change, and who reads them ---
 
-GRID = b"ncols 4\nnrows 3\nxllcorner 10\nyllcorner 20\ncellsize 2.5\nNODATA_value -9999\n1 2 3 4\n5 6.25 -9999 8\n9 1e1 11 12\n"
+GRID = (b"ncols 4\nnrows 3\nxllcorner 10\nyllcorner 20\ncellsize 2.5\nNODATA_value -9999\n"
+        b"1 2 3 4\n5 6.25 -9999 8\n9 1e1 11 12\n")
 RINGS = b"# a road\nx,y\n0,0\n10,0\n10,10\n0,10\n\n2,2\n2,4\n4,4\n"
 WKT = b"POLYGON ((0 0, 10 0, 10 10, 0 10, 0 0), (2 2, 2 4, 4 4, 2 2))\nMULTIPOLYGON (((20 20, 30 20, 30 30, 20 20)))\n"
 DUMP = (b"ITEM: TIMESTEP\n10\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS ff ff ff\n0 1\n0 1\n0 1\n"

@@ -1,15 +1,15 @@
 #!/usr/bin/python3
-"""What many ranks would have to do with a collapse that few have computed: for a dump of the moving balls, the load, the
-ghosts and the bytes of each of N parts, as LAMMPS' two ways to divide a box make them.
+"""What many ranks would have to do with a collapse: for a dump of the moving balls, the load, the ghosts and the bytes
+of each of N parts, as LAMMPS' ways to divide a box make them.
 
     tests/scaling/decomposition.py DUMP --diameter D [--parts 8,64,512,1024] [--refine F] [-o FILE.csv]
 
 Ways: rcb (fix balance ... rcb with comm_style tiled: recursive bisection of the longest side, equal numbers of balls);
-shift (fix balance ... shift xy with processors * * 1: columns of equal numbers of balls, one set of borders per axis, for
-the whole box); strips (processors 1 * 1 and shift y, what inputs/20_embankment does).
+shift (fix balance ... shift xy with processors * * 1: columns of equal numbers of balls, one set of borders per axis,
+for the whole box); strips (processors 1 * 1 and shift y, what inputs/20_embankment does).
 
---refine F: as if the same mass were made of balls F times smaller. The borders stay, a part has F^3 times the balls, and the
-shell of ghosts is F times thinner. Lengths in m.
+--refine F: as if the same mass were made of balls F times smaller. The borders stay, a part has F^3 times the balls,
+and the shell of ghosts is F times thinner. Lengths in m.
 """
 import argparse
 import csv
@@ -82,7 +82,8 @@ def ghosts(places: np.ndarray, part: Part, reach: float, refine: float) -> float
     times thinner, the balls refine^3 times as many."""
     thin = reach / refine
     sample = thin if refine == 1 else min(reach, max(thin, 0.5 * reach))    # as thin as the sample can show
-    shell = count_inside(places, part.lower - sample, part.upper + sample) - count_inside(places, part.lower, part.upper)
+    shell = (count_inside(places, part.lower - sample, part.upper + sample)
+             - count_inside(places, part.lower, part.upper))
     return shell * refine ** 3 * thin / sample
 
 

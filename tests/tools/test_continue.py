@@ -94,8 +94,8 @@ def cut(here, slope, monkeypatch):
     monkeypatch.delenv("DIES")
     folder = here / "out" / FOLDER
     assert not (folder / "finished.yaml").exists()
-    assert [(step, path.name) for step, path in runs.restarts(folder)] == [(500, "tiny.1.restart"),
-                                                                            (400, "tiny.2.restart")]
+    found = [(step, path.name) for step, path in runs.restarts(folder)]
+    assert found == [(500, "tiny.1.restart"), (400, "tiny.2.restart")]
     return folder
 
 
@@ -152,8 +152,7 @@ def test_a_continued_run_ends_as_the_uncut_one(slope, here, monkeypatch, before,
     assert (folder / "log.1.lammps").exists() and (log.step, log.error) == (STEPS, None)
     assert (log.terrain, log.table) == (whole.terrain, whole.table) and set(whole.warnings) <= set(log.warnings)
     assert set(whole.notes) <= set(log.notes) and set(whole.settings) <= set(log.settings)
-    rows = [next(csv.DictReader(open(output / "study.csv", encoding="ascii"))) for output in (here / "out",
-                                                                                            here / "whole")]
+    rows = [next(csv.DictReader(open(here / output / "study.csv", encoding="ascii"))) for output in ("out", "whole")]
     assert float(rows[0]["front_m"]) == pytest.approx(float(rows[1]["front_m"]), rel=CLOSE)
     # nothing is left to do
     assert "1 of 1 runs are finished already" in slope(arguments(after))[1]

@@ -204,7 +204,8 @@ def test_snapshots_of_a_longer_run_before_are_noticed():
         os.utime(f"a.{step}.dump", (written, written))
     result = run("a.100.dump", "a.200.dump", "a.300.dump", "-o", "run")
     assert result.returncode == 0 and len(read_pvd("run.pvd")) == 3
-    assert result.stderr == ("dump2vtk: warning: a.300.dump, line 1: step 300 was written before step 200 of a.200.dump, "
+    assert result.stderr == ("dump2vtk: warning: a.300.dump, line 1: step 300 was written before step 200 of a.200.dump"
+                             ", "
                              "line 1: is it of another run?\n")
     os.utime("a.300.dump", (5010, 5010))
     assert run("a.100.dump", "a.200.dump", "a.300.dump", "-o", "again").stderr == ""

@@ -21,7 +21,8 @@ def test_a_second_of_mutations(target, tmp_path):
 
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")     # of fiona, kept off the terminal
-@pytest.mark.parametrize("case", [f"{path.parent.name}/{path.name}" for path in FUZZ.glob("found/*/*") if path.is_dir()])
+@pytest.mark.parametrize("case", [f"{path.parent.name}/{path.name}" for path in FUZZ.glob("found/*/*")
+                                  if path.is_dir()])
 def test_what_was_found_in_python(case):
     wrong, _ = fuzz_readers.check(fuzz_readers.TARGETS[case.split("/")[0]][3], FUZZ / "found" / case)
     assert wrong is None, wrong

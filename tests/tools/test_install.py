@@ -30,7 +30,8 @@ def prefix(tmp_path_factory):
 @pytest.fixture
 def call(prefix, tmp_path):
     """call(PROGRAM, WORDS...): run a program of the installation in a folder of its own; return what it printed."""
-    outside = {key: value for key, value in os.environ.items() if key not in ("LMP", "SLOPE_TOOLS", "DUMP2VTK", "LIBLAMMPS")}
+    outside = {key: value for key, value in os.environ.items()
+               if key not in ("LMP", "SLOPE_TOOLS", "DUMP2VTK", "LIBLAMMPS")}
 
     def run(program, *words):
         done = subprocess.run([str(prefix / "bin" / program), *words], cwd=tmp_path, env=outside, text=True,
@@ -45,7 +46,8 @@ def test_everything_is_there(prefix):
     share = prefix / "share" / "slope"
     tracked = subprocess.run(["git", "-C", str(TOP), "ls-files", "inputs", "doc", "tools/slope_tools", "tools/slope",
                               "README.md", "LICENSE"], text=True, capture_output=True)
-    names = tracked.stdout.split() or ["inputs/20_embankment/in.embankment", "doc/src/theory.rst", "tools/slope", "LICENSE"]
+    names = tracked.stdout.split() or ["inputs/20_embankment/in.embankment",
+                                       "doc/src/theory.rst", "tools/slope", "LICENSE"]
     assert not [name for name in names if not (share / name).is_file()]
     assert not list(prefix.rglob("__pycache__")) and not list(share.rglob("log.*"))
 
@@ -55,7 +57,8 @@ def test_no_way_back_to_the_checkout(prefix):
     for path in prefix.rglob("*"):
         if path.is_symlink():
             assert prefix in path.resolve().parents, f"{path} leads to {path.resolve()}"
-        elif path.is_file() and path.suffix in (".py", ".rst", ".md", ".csv", "") and path.parent.name not in ("bin", "lib"):
+        elif (path.is_file() and path.suffix in (".py", ".rst", ".md", ".csv", "")
+              and path.parent.name not in ("bin", "lib")):
             assert str(TOP) not in path.read_text(errors="replace"), path
 
 
@@ -92,7 +95,8 @@ def test_python_module(prefix, tmp_path):
     module = prefix / "share" / "slope" / "python"
     if not module.exists():
         pytest.skip("no liblammps.so: build with -D BUILD_SHARED_LIBS=ON")
-    program = "from lammps import lammps; print(lammps(cmdargs=['-screen', 'none', '-log', 'none']).has_style('region', 'terrain'))"
+    program = ("from lammps import lammps; "
+               "print(lammps(cmdargs=['-screen', 'none', '-log', 'none']).has_style('region', 'terrain'))")
     environment = {key: value for key, value in os.environ.items() if key != "LD_LIBRARY_PATH"}
     done = subprocess.run(["/usr/bin/python3", "-c", program], cwd=tmp_path, text=True, stdout=subprocess.PIPE,
                           env={**environment, "PYTHONPATH": str(module)})

@@ -308,11 +308,13 @@ SQUARE = "10,10\n20,10\n20,20\n10,20\n"
     ("a.csv", csv(SQUARE + "\n15,15\n25,15\n25,25\n15,25\n"), "--local",
      "a.csv: line 6: a ring must not cross another one, line 1, got an overlap at 17.5 17.5"),
     ("a.csv", csv(SQUARE + "\n" + SQUARE), "--local", "a.csv: must have an area > 0"),
-    ("a.csv", csv(SQUARE), "", "a.csv: must overlap the terrain (with --local it would), local x y 0 0 100 80, got 12010 "
+    ("a.csv", csv(SQUARE), "",
+     "a.csv: must overlap the terrain (with --local it would), local x y 0 0 100 80, got 12010 "
      "-33990 12020 -33980"),
     ("a.csv", csv(SQUARE.replace("0,", "000,")), "", "a.csv: must overlap the terrain, local x y 0 0 100 80, got "),
     # degrees, by chance within the terrain's metres
-    ("a.geojson", lambda path: geojson(path, box(39.0, 36.0, 39.1, 36.1)), "", "a.geojson: must overlap the terrain, local"),
+    ("a.geojson", lambda path: geojson(path, box(39.0, 36.0, 39.1, 36.1)), "",
+     "a.geojson: must overlap the terrain, local"),
     ("a.csv", lambda path: Path(path).write_bytes(b"1,2\n\xff,3\n"), "", "a.csv: must be text in UTF-8"),
     ("a.wkt", wkt("POLYGON ((1 1, 2 2"), "", "a.wkt: line 1: must be WKT such as POLYGON"),
     ("a.wkt", wkt("# road\nPOLYGON ((1 1, 2 1, 2 2, 1 1))\nPOLYGON ((1 1, x))"), "", "a.wkt: line 3: must be WKT"),

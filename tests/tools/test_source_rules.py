@@ -10,7 +10,8 @@ LONGEST_FILE, LONGEST_FUNCTION = 600, 80
 
 
 def includes(path):
-    return {name for name in re.findall(r'^#include "([^"]+)"', path.read_text(), re.MULTILINE) if (SRC / name).exists()}
+    names = re.findall(r'^#include "([^"]+)"', path.read_text(), re.MULTILINE)
+    return {name for name in names if (SRC / name).exists()}
 
 
 def circle(of):

@@ -575,8 +575,9 @@ def test_output_too_large_says_how_much_memory(slope, monkeypatch):
 def test_input_too_large_is_one_line(here, cells):
     """What the machine does not have, 16 or 400 GB, and what it has, but not for a process of 2 GB."""
     Path("huge.asc").write_text(f"ncols {cells}\nnrows {cells}\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3\n")
-    done = subprocess.run([sys.executable, TOOLS / "slope", "terrain", "huge.asc", "-o", "out.asc"], text=True, check=False,
-                          capture_output=True, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (2 ** 31, 2 ** 31)),
+    done = subprocess.run([sys.executable, TOOLS / "slope", "terrain", "huge.asc", "-o", "out.asc"], text=True,
+                          check=False, capture_output=True,
+                          preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (2 ** 31, 2 ** 31)),
                           env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})
     assert (done.returncode, done.stderr.count("\n")) == (2, 1)
     assert done.stderr.startswith(("slope terrain: huge.asc: must fit in the ",

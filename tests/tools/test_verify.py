@@ -112,8 +112,10 @@ def test_the_pages(slope):
 PEERS = """\
 crosscheck: {finished: today, package: v1, versions: {granular: LAMMPS 1, slope: SLOPE 1}, compared: 1, failed: 1}
 checks:
-- {case: bounce, quantity: "rebound of <two>", code: granular, value: 0.51234, against: plain, expected: 0.48, tolerance: 0.01, passed: false}
-- {case: roll, quantity: threshold, code: slope, value: rolls, against: plain, expected: rolls, tolerance: null, passed: null}
+- {case: bounce, quantity: "rebound of <two>", code: granular, value: 0.51234, against: plain, expected: 0.48,
+   tolerance: 0.01, passed: false}
+- {case: roll, quantity: threshold, code: slope, value: rolls, against: plain, expected: rolls, tolerance: null,
+   passed: null}
 differs: {granular: [in the dashpots]}
 """
 

@@ -3,22 +3,16 @@
    Distributed under the GNU General Public License, version 2
 ------------------------------------------------------------------------- */
 
-// The squares of balls are cut exactly by the cells, on and off the grid and across periodic sides;
-// windows of several ranks add up to the rasters; maxima, times and the change of the deposit.
+// The squares of balls are cut exactly by the cells, on and off the grid and across periodic sides; only
+// blocks of cells that a ball touches are there.
 
 #include "deposit_bins.h"
-#include "deposit_rasters.h"
 
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <random>
-#include <string>
 #include <vector>
 
 using namespace Slope;
@@ -41,12 +35,17 @@ static std::vector<Ball> draw(int n, double beyond)
 
 static double bin_all(DepositBins &bins, const std::vector<Ball> &balls)
 {
-  bins.start();
-  for (const Ball &ball : balls) bins.show(ball.x, ball.side);
-  bins.open();
+  bins.clear();
   double beyond = 0.0;
   for (const Ball &ball : balls) beyond += bins.bin(ball.x, ball.side, 1.0, 1.0);
   return beyond;
+}
+
+// of a cell; 0 where no block is
+static double volume_in(const DepositBins &bins, int i, int j)
+{
+  const double *block = bins.blocks().find(i / DepositBlocks::SIDE, j / DepositBlocks::SIDE);
+  return block ? block[DepositBlocks::index(i, j)] : 0.0;
 }
 
 // length of a..b in c..d
@@ -93,13 +92,11 @@ TEST(DepositBins, SquaresAreCutExactly)
     DepositBins bins;
     bins.set_grid(grid);
     const double beyond = bin_all(bins, balls);
-    DepositWindow &window = bins.window();
     double on_grid = 0.0, released = 0.0;
-    for (int j = 0; j < window.size[1]; j++)
-      for (int i = 0; i < window.size[0]; i++) {
-        const double wanted = expected(grid, balls, i + window.first[0], j + window.first[1]);
-        ASSERT_NEAR(window.volume(i, j), wanted, 1e-12) << cell;
-        on_grid += window.volume(i, j);
+    for (int j = 0; j < grid.n[1]; j++)
+      for (int i = 0; i < grid.n[0]; i++) {
+        ASSERT_NEAR(volume_in(bins, i, j), expected(grid, balls, i, j), 1e-12) << cell;
+        on_grid += volume_in(bins, i, j);
       }
     for (const Ball &ball : balls) released += std::pow(ball.side, 3);
     EXPECT_NEAR(on_grid + beyond, released, 1e-12 * released) << cell;
@@ -115,7 +112,7 @@ TEST(DepositBins, NothingIsBeyondInsideOfTheEdge)
   EXPECT_EQ(bin_all(bins, {ball}), 0.0);
   const Ball out = {{-20.0, 2.5}, 1.0};
   EXPECT_EQ(bin_all(bins, {out}), 1.0);
-  EXPECT_EQ(bins.window().ncells(), 0u);
+  EXPECT_EQ(bins.blocks().size(), 0u);
 }
 
 TEST(DepositBins, PeriodicSides)
@@ -128,133 +125,48 @@ TEST(DepositBins, PeriodicSides)
   auto balls = draw(50, 0.0);
   balls.push_back({{grid.hi[0] + 0.1, 5.0}, 1.0});    // left the box a little
   bin_all(bins, balls);
-  DepositWindow &window = bins.window();
-  EXPECT_EQ(window.size[0], grid.n[0]);
-  for (int j = 0; j < window.size[1]; j++)
-    for (int i = 0; i < window.size[0]; i++)
-      ASSERT_NEAR(window.volume(i, j), expected(grid, balls, i, j + window.first[1], prd), 1e-12);
-}
-
-TEST(DepositRasters, WindowsOfRanksAddUp)
-{
-  const PlanGrid grid(EXTENT, 0.7);
-  const auto balls = draw(60, 0.0);
-  DepositRasters rasters;
-  rasters.create(grid);
-  const std::vector<Ball> first(balls.begin(), balls.begin() + 20);
-  const std::vector<Ball> second(balls.begin() + 20, balls.end());
-  double released = 0.0, beyond = 0.0;
-  for (const Ball &ball : balls) released += std::pow(ball.side, 3);
-  for (int round = 0; round < 2; round++) {    // the second one begins at 0 again
-    rasters.start();
-    beyond = 0.0;
-    for (const auto *part : {&first, &second}) {
-      DepositBins bins;
-      bins.set_grid(grid);
-      beyond += bin_all(bins, *part);
-      rasters.add(bins.window(), true, 0.5, 0.1);
-    }
-    EXPECT_NEAR(rasters.finish(true) + beyond, released, 1e-12 * released);
-  }
   for (int j = 0; j < grid.n[1]; j++)
     for (int i = 0; i < grid.n[0]; i++)
-      ASSERT_NEAR(rasters.thickness.at(i, j), expected(grid, balls, i, j) / 0.49, 1e-12);
+      ASSERT_NEAR(volume_in(bins, i, j), expected(grid, balls, i, j, prd), 1e-12);
 }
 
-// one ball over one cell of 1 m
-static void sample(DepositRasters &rasters, const PlanGrid &grid, double x, double speed,
-                   double energy, double time, bool record = true)
+// two small balls far apart: the blocks below them, not those between; and again after clear()
+TEST(DepositBins, BlocksOnlyWhereBallsAre)
+{
+  const double extent[4] = {0.0, 1000.0, 0.0, 1000.0};
+  DepositBins bins;
+  bins.set_grid(PlanGrid(extent, 1.0));
+  const std::vector<Ball> balls = {{{4.0, 4.0}, 0.5}, {{904.0, 500.0}, 0.5}, {{4.2, 4.0}, 0.5}};
+  for (int round = 0; round < 2; round++) {
+    EXPECT_EQ(bin_all(bins, balls), 0.0);
+    const DepositBlocks &blocks = bins.blocks();
+    ASSERT_EQ(blocks.size(), 3u);    // the second one lies on the edge of two blocks
+    EXPECT_EQ(blocks.column(0), 0);
+    EXPECT_EQ(blocks.band(0), 0);
+    double sum = 0.0;
+    for (size_t k = 0; k < blocks.size(); k++)
+      for (int cell = 0; cell < DepositBlocks::CELLS; cell++) sum += blocks[k][cell];
+    EXPECT_NEAR(sum, 3 * 0.125, 1e-15);    // not what was there before
+    EXPECT_EQ(blocks.find(50, 50), nullptr);
+  }
+  const double most = 4 * 1536 + 4 * 125 + 125 * 24 + 200 * 4;
+  EXPECT_LT(bins.blocks().bytes(), 2 * most);
+}
+
+// the largest speed and energy of the centres over a cell; -1 where there is none
+TEST(DepositBins, SpeedOfCentres)
 {
   DepositBins bins;
-  bins.set_grid(grid);
-  const double place[2] = {x, 4.5};
-  bins.start();
-  bins.show(place, 1.0);
-  bins.open();
-  bins.bin(place, 1.0, speed, energy);
-  rasters.start();
-  rasters.add(bins.window(), record, time, 0.1);
-  rasters.finish(record);
-}
-
-TEST(DepositRasters, WhatCellsSaw)
-{
-  const PlanGrid grid(EXTENT, 1.0);
-  DepositRasters rasters;
-  rasters.create(grid);
-  sample(rasters, grid, -2.5, 3.0, 70.0, 0.0);
-  sample(rasters, grid, -2.5, 0.05, 90.0, 1.0);
-  sample(rasters, grid, 1.5, 2.0, 10.0, 2.0);
-  sample(rasters, grid, 5.5, 9.0, 99.0, 3.0, false);    // not to be recorded
-  EXPECT_EQ(rasters.max_speed.at(0, 2), 3.0);
-  EXPECT_EQ(rasters.max_energy.at(0, 2), 90.0);
-  EXPECT_EQ(rasters.arrival.at(0, 2), 0.0);
-  EXPECT_EQ(rasters.last_motion.at(0, 2), 0.0);    // 0.05 m/s is none
-  EXPECT_EQ(rasters.arrival.at(4, 2), 2.0);
-  EXPECT_EQ(rasters.max_thickness.at(4, 2), 1.0);
-  EXPECT_EQ(rasters.thickness.at(4, 2), 0.0);
-  EXPECT_EQ(rasters.thickness.at(8, 2), 1.0);
-  EXPECT_EQ(rasters.max_thickness.at(8, 2), 0.0);
-  EXPECT_TRUE(std::isnan(rasters.arrival.at(8, 2)));
-
-  // the cells that were touched, and only they, in another one
-  const auto saved = rasters.touched();
-  ASSERT_EQ(saved.size(), 2u * DepositRasters::PER_CELL);
-  DepositRasters other;
-  other.create(grid);
-  other.restore(saved.data());
-  other.restore(saved.data() + DepositRasters::PER_CELL);
-  EXPECT_EQ(other.max_speed.z, rasters.max_speed.z);
-  EXPECT_EQ(other.max_energy.z, rasters.max_energy.z);
-  EXPECT_EQ(other.max_thickness.z, rasters.max_thickness.z);
-  EXPECT_EQ(other.touched().size(), saved.size());
-}
-
-TEST(DepositRasters, ChangePerTime)
-{
-  const PlanGrid grid(EXTENT, 1.0);
-  DepositRasters rasters;
-  rasters.create(grid);
-  EXPECT_EQ(rasters.change, 1.0);
-  sample(rasters, grid, 1.5, 1.0, 1.0, 0.0);
-  rasters.take_snapshot(100, 50, 1.0, 4.0);
-  EXPECT_EQ(rasters.change, 1.0);    // nothing to compare with
-  sample(rasters, grid, 2.25, 1.0, 1.0, 0.0);    // three quarters of 1 m3 of 4 go on, in 0.5 s
-  rasters.take_snapshot(150, 50, 1.5, 4.0);
-  EXPECT_DOUBLE_EQ(rasters.change, 0.75 / 4.0 / 0.5);
-  rasters.take_snapshot(230, 50, 2.5, 4.0);    // not a window later
-  EXPECT_DOUBLE_EQ(rasters.change, 0.75 / 4.0 / 0.5);
-  rasters.take_snapshot(280, 50, 3.0, 4.0);
-  EXPECT_EQ(rasters.change, 0.0);
-}
-
-TEST(DepositRasters, FilesTogetherOrNotAtAll)
-{
-  char folder[] = "/tmp/test_deposit.XXXXXX";
-  ASSERT_TRUE(mkdtemp(folder));
-  const std::string prefix = std::string(folder) + "/out";
-  const PlanGrid grid(EXTENT, 1.0);
-  DepositRasters rasters;
-  rasters.create(grid);
-  for (double &z : rasters.base.z) z = 5.0;
-  sample(rasters, grid, 1.5, 1.0, 1.0, 0.0);
-  {
-    FileSet files;
-    rasters.write(files, prefix, "");
-  }
-  EXPECT_NE(access((prefix + ".base.asc").c_str(), F_OK), 0);
-  FileSet files;
-  rasters.write(files, prefix, "120");
-  const std::vector<std::string> names = {
-      "out.120.thickness.asc", "out.thickness.asc",     "out.surface.asc",
-      "out.base.asc",          "out.max_thickness.asc", "out.max_speed.asc",
-      "out.max_energy.asc",    "out.arrival.asc",       "out.last_motion.asc"};
-  EXPECT_EQ(files.names(), names);
-  files.commit();
-  const ElevationGrid base = ElevationGrid::read(prefix + ".base.asc");
-  const ElevationGrid surface = ElevationGrid::read(prefix + ".surface.asc");
-  EXPECT_EQ(base.at(4, 2), 5.0);
-  EXPECT_EQ(surface.at(4, 2), 6.0);
-  for (const std::string &name : names) EXPECT_EQ(remove((folder + ("/" + name)).c_str()), 0);
-  EXPECT_EQ(rmdir(folder), 0);    // nothing else
+  bins.set_grid(PlanGrid(EXTENT, 1.0));
+  const double x[3][2] = {{-2.5, 2.5}, {-2.4, 2.6}, {-1.9, 2.5}};
+  bins.clear();
+  bins.bin(x[0], 1.0, 3.0, 5.0);
+  bins.bin(x[1], 1.0, 2.0, 7.0);
+  const double *speeds = bins.blocks().find(0, 0) + DepositBins::SPEED * DepositBlocks::CELLS;
+  const double *energies = bins.blocks().find(0, 0) + DepositBins::ENERGY * DepositBlocks::CELLS;
+  EXPECT_EQ(speeds[0], 3.0);
+  EXPECT_EQ(energies[0], 7.0);
+  EXPECT_EQ(speeds[1], -1.0);    // covered in part, no centre
+  bins.bin(x[2], 1.0, 0.0, 0.0);
+  EXPECT_EQ(speeds[1], 0.0);
 }

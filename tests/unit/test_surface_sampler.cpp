@@ -110,7 +110,7 @@ Surface level()
   return plane(0.0, 0.0);
 }
 
-PlanGrid square(double side, double spacing = S)
+NodeGrid square(double side, double spacing = S)
 {
   return {0.0, side, 0.0, side, spacing, 0.0, 0.0};
 }
@@ -210,7 +210,7 @@ TEST(SurfaceSampler, round_off_loses_no_row_at_the_edge)
   const SurfaceBalls balls = sample_surface({0.0, 0.3, 0.0, 0.3, 0.1, 0.0, 0.0}, 0.05, s);
   EXPECT_EQ(balls.base, 16);
   EXPECT_EQ(balls.extra, 0);
-  EXPECT_EQ(plan_nodes({0.0, 0.3, 0.0, 0.3, 0.1, 0.0, 0.0}), 16.0);
+  EXPECT_EQ(count_nodes({0.0, 0.3, 0.0, 0.3, 0.1, 0.0, 0.0}), 16.0);
 }
 
 TEST(SurfaceSampler, the_strip_beyond_the_last_node_is_closed)
@@ -584,7 +584,7 @@ TEST(SurfaceSampler, ground_for_smaller_balls_leaves_them_no_way)
       const double high = side * std::tan(degrees * PI / 180.0);
       const std::array<double, 3> lo = {{0.5, 0.5, middle - high}};
       const std::array<double, 3> hi = {{side - 0.5, side - 0.5, middle + high}};
-      const PlanGrid grid = square(side, 0.9 * S);
+      const NodeGrid grid = square(side, 0.9 * S);
       EXPECT_FALSE(ball_gets_through(sample_surface(grid, 0.5 * contact, s).xyz, contact, lo, hi))
           << degrees << " degrees, azimuth " << azimuth;
       if (degrees > 50.0 && azimuth == 0.0)

@@ -26,6 +26,7 @@ COMMANDS = {
     "export": "every raster of a run as a GeoTIFF in the survey's coordinates, for a GIS",
     "score": "a run's deposit against a mapped one: overlap, run-out, volume",
     "study": "one deck over lists of its variables, several runs at a time: table, envelope, exceedance",
+    "calibrate": "which values of a deck's variables give a deposit that was observed, and how well they are known",
     "sensitivity": "one variable of a deck at a time: what it does to the volumes, how far one run can be trusted",
     "bench": "how fast a collapse runs: against other codes, on larger terrains, on ranks, with more balls",
     "crosscheck": "the same scenes in other codes: bounce, slide, roll, rolling resistance, a collapse",

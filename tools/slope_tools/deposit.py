@@ -109,8 +109,8 @@ def read_summary(path):
     what = "a summary that fix deposit/grid wrote"
     summary = runs.parse_yaml(path, what)
     try:
-        for value in (summary["bulk_factor"], summary["time"], *(summary["volume"][key] for key in
-                                                                  ("on_grid", "off_grid", "lost"))):
+        for value in (summary["bulk_factor"], summary["time"],
+                      *(summary["volume"][key] for key in ("on_grid", "off_grid", "lost"))):
             if not runs.is_number(value):
                 raise ValueError(str(value)[:60])
         if not (isinstance(summary["moving"], bool) and summary["bulk_factor"] > 0):

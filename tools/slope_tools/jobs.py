@@ -1,6 +1,5 @@
 """The runs of a study: their folders, their processes, and how far they are."""
 import contextlib
-import datetime
 import fcntl
 import hashlib
 import os
@@ -8,22 +7,17 @@ import re
 import shutil
 import signal
 import subprocess
-import sys
 import time
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, NamedTuple
+from typing import Any, Dict, Optional
 
 import yaml
-from rich.console import Console
-from rich.live import Live
-from rich.progress_bar import ProgressBar
-from rich.table import Table
-
-from . import runs
+from . import last_words, launcher, runs
 from .errors import SlopeError
+from .job_display import Display
 
 POLL = 0.1              # s between two looks at the runs
-TELL = 30.0             # s between two lines about a run, where there is no terminal
 PATIENCE = 10.0         # s that a run gets to end after SIGTERM
 SCREEN = "screen.txt"
 KILLED = {base for code in (signal.SIGKILL, signal.SIGTERM) for base in (-code, 128 + code)}     # lmp, or mpirun of it
@@ -65,6 +59,7 @@ class Run:
         self.log = runs.Log(self.folder / runs.LOG)
         self.restart = None         # step and path of the restart file that it goes on from
         self.refused = set()        # restart files that LAMMPS could not read
+        self.heard = 0              # bytes on its screen that are of the parts before this one
 
     @property
     def marker(self):
@@ -76,16 +71,17 @@ class Run:
         return "unfinished" if self.folder.exists() else "new"
 
     def fail(self, status):
-        """Keep why it failed: the ERROR line of its log, else what was last heard of it."""
+        """Keep why it failed."""
         how = f"ended with status {status}" if status >= 0 else f"ended by {signal.Signals(-status).name}"
         if status == 0:
             how = "lmp ended with status 0, but left no complete run"
-        error = self.log.update().error
-        screen = self.folder / SCREEN
-        if error is None and screen.exists():       # a rank other than 0 tells its errors there only
-            error = runs.Log(screen).update().error or runs.last_words(screen)
+        words = last_words.reason(self.log.update(), self.screen())
         where = self.folder / runs.LOG
-        self.error = f"{error or 'no word in its log'} ({how}; see {where if where.exists() else screen})"
+        self.error = f"{words or 'no word in its log'} ({how}; see {where if where.exists() else self.folder / SCREEN})"
+
+    def screen(self):
+        """What it said since it was started."""
+        return last_words.Screen(self.folder / SCREEN, self.heard)
 
 
 # --- folders ---
@@ -152,19 +148,21 @@ def signals_interrupt():
             signal.signal(name, handler)
 
 
-class Active(NamedTuple):
-    """A run under way."""
+@dataclass
+class Active:
+    """A run under way; process: of subprocess, or what stands for one elsewhere."""
     run: Run
-    process: subprocess.Popen
+    process: Any
     began: float            # time.monotonic()
 
 
 class Work:
     """Runs the deck in the run folders, some at a time."""
 
-    def __init__(self, deck, digests, inputs, lmp, ranks, jobs):
+    def __init__(self, deck, digests, inputs, lmp, ranks, jobs, start: Optional[str] = None):
+        """start: the launcher.words of --launcher, None of mpirun."""
         self.deck, self.digests, self.inputs = deck, digests, inputs
-        self.lmp, self.ranks, self.jobs = lmp, ranks, jobs
+        self.lmp, self.ranks, self.jobs, self.start = lmp, ranks, jobs, start
         self.package = runs.package_version()
         self.lmp_digest = sha256(lmp)
         self.defaults = runs.index_variables(inputs / deck.name)
@@ -178,23 +176,36 @@ class Work:
         with Display(todo, waiting, self.jobs) as display:
             try:
                 while waiting or self.active:
-                    while waiting and len(self.active) < self.jobs:
-                        one = waiting.pop(0)
-                        display.started(one, self._start(one))
+                    for one, said in self._begin(waiting):
+                        display.started(one, said)
                     time.sleep(POLL)
                     for active in list(self.active):
                         active.run.log.update()
                         if active.process.poll() is not None:
                             self.active.remove(active)
-                            if self._refused(active.run, active.process.returncode):
+                            if self._again(active):
                                 waiting.insert(0, active.run)
                                 continue
                             self._ended(active)
                             display.ended(active)
-                    display.update(self.active, len(waiting))
+                    display.update(self._shown(), len(waiting))
             except BaseException:
                 self._stop()
                 raise
+
+    def _begin(self, waiting):
+        """Start what may run now, taking it from waiting; (run, what to say of it) of each."""
+        while waiting and len(self.active) < self.jobs:
+            one = waiting.pop(0)
+            yield one, self._start(one)
+
+    def _again(self, active):
+        """Whether a run that ended is to be started once more."""
+        return self._refused(active.run, active.process.returncode)
+
+    def _shown(self):
+        """The runs that the display shows as under way."""
+        return self.active
 
     def command(self, one):
         """Arguments of lmp."""
@@ -208,32 +219,37 @@ class Work:
     def _start(self, one):
         """Start a run, from its last restart file if there is one; returns what to say of it."""
         try:
-            said = "started"
-            if one.folder.exists():
-                one.restart, why = self._last_restart(one)
-                said = f"starts anew: {why}"
-            if one.restart:
-                step, path = one.restart
-                said = f"continues at step {step}, from {path}"
-                self._reopen_folder(one)
-            else:
-                self._make_folder(one)
-            before = []
-            if shutil.which("setpriv"):     # a run does not outlive a study that was killed
-                before += ["setpriv", "--pdeathsig", "TERM"]
-            if self.ranks > 1:
-                before += ["mpirun", "-np", str(self.ranks), "--bind-to", "none"]
-                if self.ranks > physical_cores():
-                    before += ["--oversubscribe"]
+            said = self._prepare(one)
+            # a run does not outlive a study that was killed
+            before = ["setpriv", "--pdeathsig", "TERM"] if shutil.which("setpriv") else []
             with open(one.folder / SCREEN, "ab" if one.restart else "wb") as screen:
+                one.heard = screen.tell()
                 # a session of its own: Ctrl-C reaches the study, which then ends the run
-                process = subprocess.Popen([*before, self.lmp, *self.command(one)], cwd=one.folder,
-                                           env=environment(), stdin=subprocess.DEVNULL, stdout=screen,
-                                           stderr=subprocess.STDOUT, start_new_session=True)
+                process = subprocess.Popen([*before, *self._line(one)], cwd=one.folder, env=environment(),
+                                           stdin=subprocess.DEVNULL, stdout=screen, stderr=subprocess.STDOUT,
+                                           start_new_session=True)
         except OSError as error:
             raise SlopeError(one.folder, f"cannot be run: {error.strerror} ({error.filename})") from error
         self.active.append(Active(one, process, time.monotonic()))
         return said
+
+    def _prepare(self, one):
+        """Make the folder of a run, or make it ready to go on; returns what to say of it."""
+        said = "started"
+        if one.folder.exists():
+            one.restart, why = self._last_restart(one)
+            said = f"starts anew: {why}"
+        if one.restart:
+            step, path = one.restart
+            said = f"continues at step {step}, from {path}"
+            self._reopen_folder(one)
+        else:
+            self._make_folder(one)
+        return said
+
+    def _line(self, one):
+        """The whole command of a run."""
+        return [*launcher.words(self.start, self.ranks, physical_cores()), str(self.lmp), *self.command(one)]
 
     def _last_restart(self, one):
         """Step and path of the restart file from which an unfinished run can go on, or None; and why it cannot."""
@@ -276,9 +292,7 @@ class Work:
         """Whether LAMMPS could not read the restart file, complete as it looked: then it is not tried again."""
         if status == 0 or status in KILLED or not one.restart:
             return False
-        one.log.update()
-        crashed = status < 0 or status > 128        # then LAMMPS' last words are lost
-        if not (one.log.reading or (crashed and one.log.thermo == 0)):
+        if not last_words.spoiled_restart(one.log.update(), one.screen(), crashed=status < 0 or status > 128):
             return False
         one.refused.add(one.restart[1])
         return True
@@ -334,116 +348,3 @@ class Work:
                 active.process.kill()
                 active.process.wait()
         self.active.clear()
-
-
-# --- progress ---
-
-class Display:
-    """Shows how far the runs are: a table that renews itself on a terminal, else a line now and then."""
-
-    def __init__(self, todo, waiting, jobs):
-        self.total, self.waiting, self.jobs = len(todo), len(waiting), jobs
-        self.numbers = {one.name: i for i, one in enumerate(todo, 1)}
-        self.ended_runs = self.failed = 0
-        self.walls = []
-        self.told = {}      # name -> when the last line about it was printed
-        self.live = None
-        if sys.stderr.isatty():
-            # without auto_refresh there is no thread, and the study may fork
-            self.live = Live(console=Console(stderr=True), auto_refresh=False, transient=True)
-        self.done_before = self.total - self.waiting
-
-    def __enter__(self):
-        if self.done_before:
-            self.say(f"{self.done_before} of {self.total} runs are finished already")
-        if self.live:
-            self.live.start()
-        return self
-
-    def __exit__(self, kind, *_):
-        if self.live:
-            self.live.stop()
-        if kind is not None and issubclass(kind, KeyboardInterrupt):
-            done = self.done_before + self.ended_runs - self.failed
-            self.say(f"stopped with {done} of {self.total} runs finished; the same command goes on")
-
-    def say(self, line):
-        if self.live:
-            self.live.console.print(line, markup=False, highlight=False)
-        else:
-            print(line, flush=True)
-
-    def label(self, one):
-        return f"[{self.numbers[one.name]}/{self.total}] {one.name}"
-
-    def started(self, one, said):
-        self.told[one.name] = time.monotonic()
-        if not self.live or said != "started":
-            self.say(f"{self.label(one)}: {said}")
-
-    def ended(self, active):
-        one, wall = active.run, time.monotonic() - active.began
-        self.ended_runs += 1
-        self.walls.append(wall)
-        if one.error:
-            self.failed += 1
-            self.say(f"{self.label(one)}: failed: {one.error}")
-        else:
-            at = f" at {one.log.time:.1f} s" if one.log.time is not None else ""
-            since = f" since step {one.restart[0]}" if one.restart else ""
-            self.say(f"{self.label(one)}: finished{at}, wall time {duration(wall)}{since}")
-
-    def update(self, active, waiting):
-        if self.live:
-            return self.live.update(self._table(active, waiting), refresh=True)
-        for job in active:
-            if time.monotonic() - self.told[job.run.name] > TELL:
-                self.told[job.run.name] = time.monotonic()
-                _, text, end = self._progress(job)
-                self.say(f"{self.label(job.run)}: {text}" + (f", ends by {end}" if end else ""))
-        return None
-
-    @staticmethod
-    def _progress(job):
-        """Share done (None if not known), what to say of it, and when it will have ended at the latest."""
-        log = job.run.log
-        if log.thermo == 0:
-            return None, "setting up", ""
-        text = f"step {log.step}" + (f" of {log.last}" if log.last else "")
-        if log.time is not None:
-            text += f", {log.time:.2f} s"
-        if not log.last or log.last <= log.first:
-            return None, text, ""
-        share = (log.step - log.first) / (log.last - log.first)
-        spent = time.monotonic() - job.began
-        return share, text, clock(spent * (1 - share) / share) if share > 0 else ""
-
-    def _table(self, active, waiting):
-        table = Table(box=None, padding=(0, 2, 0, 0))
-        table.add_column("run", no_wrap=True)
-        table.add_column("", no_wrap=True)
-        for head in ("step", "ends by"):
-            table.add_column(head, no_wrap=True, min_width=8)
-        for job in active:
-            share, text, end = self._progress(job)
-            table.add_row(f"[{self.numbers[job.run.name]}/{self.total}] {job.run.varied}",
-                          ProgressBar(100, 100 * (share or 0), width=12), text, end)
-        ends = ""
-        if self.walls and waiting:
-            ends = clock(sum(self.walls) / len(self.walls) * (waiting + len(active) / 2) / self.jobs)
-        table.add_row(f"{self.done_before + self.ended_runs - self.failed} of {self.total} finished"
-                      + (f", {self.failed} failed" if self.failed else ""), "", f"{waiting} waiting", ends,
-                      style="dim")
-        return table
-
-
-def duration(seconds):
-    """Such as 1:02:03, or 4.5 s."""
-    return f"{seconds:.1f} s" if seconds < 60 else str(datetime.timedelta(seconds=round(seconds)))
-
-
-def clock(seconds):
-    """The time of day in so many seconds, with the date if that is not today."""
-    today = datetime.datetime.now()
-    then = today + datetime.timedelta(seconds=seconds)
-    return then.strftime("%H:%M:%S" if then.date() == today.date() else "%Y-%m-%d %H:%M")

@@ -4,7 +4,6 @@ A Code writes its input into a folder, tells the command, and reads back what it
 pair gran/restitution as its start-up table prints them; how a peer differs from it is said in `differs`.
 """
 import math
-import os
 import re
 import shutil
 import subprocess
@@ -14,7 +13,7 @@ from typing import Dict, NamedTuple, Optional
 
 import numpy as np
 
-from . import jobs, runs
+from . import jobs, last_words, runs
 from .errors import SlopeError
 
 DATA, DECK, LOG, SCREEN, FINAL, SERIES = "balls.data", "in.scene", "log.scene", "screen.txt", "final.txt", "series.txt"
@@ -147,6 +146,7 @@ class Slope(Code):
 class Build(Slope):
     """The same in another build of ours."""
     name, title = "build", "SLOPE, another build"
+
 
 class Frozen(Code):
     """A pair style of stock LAMMPS in the same program; the fixed balls are frozen atoms."""
@@ -472,4 +472,4 @@ def read_text(path):
 def failure(log, folder):
     """Why a run failed, in one line."""
     error = re.search(r"^.*ERROR.*$", log, re.MULTILINE)
-    return runs.told(error[0]) if error else runs.last_words(folder / SCREEN) or "no word"
+    return runs.told(error[0]) if error else last_words.Screen(folder / SCREEN).words() or "no word"

@@ -175,13 +175,14 @@ def _check_ascii_header(path, lines):
     return header, number
 
 
-def read_asc_local(path):
+def read_asc_local(path, heights=True):
     """Read an .asc that write_asc_local wrote, and its sidecar, into a Raster: (z, transform, crs, offset).
 
     The transform gives local x, y; adding the offset (east, north) gives coordinates in crs. A raster without a
-    sidecar is read as by read(). Raises SlopeError if either file is broken or they do not belong together.
+    sidecar is read as by read(); heights as there. Raises SlopeError if either file is broken or they do not belong
+    together.
     """
-    raster = read(path)
+    raster = read(path, heights)
     place = read_sidecar(path)
     if place is None:
         return raster

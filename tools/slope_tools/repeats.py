@@ -2,7 +2,7 @@
 import itertools
 import math
 import re
-from typing import Dict, List, Mapping, Optional, Sequence
+from typing import Dict, Iterable, List, Mapping, Optional, Sequence
 
 from . import jobs
 from .errors import SlopeError
@@ -63,21 +63,33 @@ def plan(output, settings: Settings, repeated: Settings, defaults: Mapping[str, 
     for name in repeated:
         if len(settings.get(name, ())) > 1:
             raise SlopeError("--repeat", "must not name a variable of several values of --set", name)
-    base = {**defaults, **{name: several[0] for name, several in settings.items()}}
-    chances: List[Dict[str, str]] = [{name: value} for name, several in repeated.items() for value in several
-                                     if as_number(value) != as_number(base[name])]
-    if repeated and not chances:
-        raise SlopeError("--repeat", "must give a value that the first run does not have",
-                         ", ".join(f"{name}={','.join(several)}" for name, several in repeated.items()))
+    chances = chances_of(repeated, {**defaults, **{name: several[0] for name, several in settings.items()}})
     total = math.prod(len(several) for several in settings.values()) * (1 + len(chances))
     if total > MOST_RUNS:
         raise SlopeError("--set", f"must make at most {MOST_RUNS} runs", total)
+    varied = [name for name, several in settings.items() if len(several) > 1]
+    return with_repeats(output, (dict(zip(settings, chosen)) for chosen in itertools.product(*settings.values())),
+                        chances, varied)
+
+
+def chances_of(repeated: Settings, base: Mapping[str, str]) -> List[Dict[str, str]]:
+    """What each further run of a combination changes: one value of --repeat that is not the first run's (base)."""
+    chances = [{name: value} for name, several in repeated.items() for value in several
+               if as_number(value) != as_number(base[name])]
+    if repeated and not chances:
+        raise SlopeError("--repeat", "must give a value that the first run does not have",
+                         ", ".join(f"{name}={','.join(several)}" for name, several in repeated.items()))
+    return chances
+
+
+def with_repeats(output, combinations: Iterable[Dict[str, str]], chances: Sequence[Dict[str, str]],
+                 varied: Sequence[str]) -> List[Repeat]:
+    """The runs of combinations, each followed by its repeats; varied: names of what differs between them."""
     todo = []
-    for chosen in itertools.product(*settings.values()):
-        combination = dict(zip(settings, chosen))
+    for combination in combinations:
         for repeat in ({}, *chances):
             one = Repeat(output, combination, repeat)
-            told = [f"{name} {one.chosen[name]}" for name, several in settings.items() if len(several) > 1]
+            told = [f"{name} {one.chosen[name]}" for name in varied]
             one.varied = ", ".join(told + [key_of(repeat)] * bool(repeat)) or one.name
             todo.append(one)
     return todo

@@ -6,9 +6,11 @@ from .report_data import is_number
 from .repeats import key_of
 
 AXIS = {"rolling": "rolling resistance (-)", "friction": "friction angle (degrees)", "restitution": "restitution (-)",
-        "d": "diameter of the balls (m)", "field_d": "diameter of the field balls (m)"}
+        "d": "diameter of the balls (m)", "field_d": "diameter of the field balls (m)",
+        "peak": "peak acceleration (gal)"}
 REMOVE = "remove_m3"
-TITLES = {REMOVE: "Volume to remove from the road", "front_m": "Distance of the farthest ball",
+TITLES = {REMOVE: "Volume to remove from the road", "remove_on_road_m3": "Volume on the road",
+          "front_m": "Distance of the farthest ball",
           travel_shares.DISTANCE: "Distance that 99 % of the volume stays within",
           "thickness_m": "Largest thickness at the end"}
 
@@ -50,7 +52,7 @@ class Charts:
     def all(self):
         """Pictures; the first one is that of the volume to remove, if there is a road."""
         data = self.data
-        if not data.study or len(data.finished) < 2:
+        if not data.study or len(data.finished) < 2 or data.study.get("ensemble"):
             return []
         far = travel_shares.DISTANCE if all(row.get(travel_shares.DISTANCE) is not None for row in data.finished) \
             else "front_m"

@@ -119,7 +119,7 @@ class Data:
         # everything is read before anything is drawn: drawing takes a while
         if len(self.finished) > 1 and self.study.get("envelope"):
             for entry in (self.study["envelope"]["max_thickness"], *(self.study.get("exceedance") or ())):
-                self.over_all[entry["file"]] = self._map(entry["file"])
+                self.over_all[entry["file"]] = self.read_map(entry["file"])
         self.removed = self._removed() if road else None
 
     def _read_single(self, shown):
@@ -149,9 +149,10 @@ class Data:
                              f"must have the grid of {self.result.prefix}.thickness.asc")
         return found[0].z, found[1]
 
-    def _map(self, name):
+    def read_map(self, name):
+        """Values of a map over all runs; 0 where it has none."""
         path = self.folder / str(name)
-        raster = rasters.read_asc_local(path)
+        raster = rasters.read_asc_local(path, heights=False)
         if raster.z.shape != self.result.thickness.shape:
             raise SlopeError(path, f"must have the grid of {self.result.prefix}.thickness.asc")
         return np.where(np.isfinite(raster.z), raster.z, 0)
@@ -207,8 +208,15 @@ class Data:
         return found
 
     def governing(self):
-        """The run that stands for the headline, else the one of which 99 % of the volume goes farthest."""
-        best = self.study["conservative"]
+        """The run that stands for the headline; else the one of which 99 % of the volume goes farthest.
+
+        Of an ensemble the one at the 90 % quantile of what counts.
+        """
+        best, ensemble = self.study["conservative"], self.study.get("ensemble")
+        if ensemble and ensemble["of"]:
+            # a quantile is the value of a run
+            at = {one["share"]: one["value"] for one in ensemble["quantities"][ensemble["of"]]["quantiles"]}[0.9]
+            return min(self.finished, key=lambda row: abs(row[ensemble["of"]] - at))["run"]
         if not best:
             from .travel_shares import DISTANCE
             key = DISTANCE if all(row.get(DISTANCE) is not None for row in self.finished) else "front_m"

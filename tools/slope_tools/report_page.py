@@ -1,7 +1,7 @@
 """All that a report shows, read, computed and drawn, as the template takes it."""
 import re
 
-from . import report_charts, report_convergence, report_numbers, runs
+from . import report_charts, report_convergence, report_intensity, report_numbers, runs
 from .rasters import crs_name
 from .reference import read as read_reference
 from .report_charts import REMOVE, Charts
@@ -9,6 +9,7 @@ from .report_data import Data, find_deck
 from .report_ground import Ground
 from .report_maps import Maps
 from .report_section import Section
+from .report_structures import Structures
 from .report_warnings import warnings
 
 # columns of a study's table: head, unit, key
@@ -56,13 +57,19 @@ class Page:
             "balance": report_numbers.balance(data), "rows": self.rows(), "columns": self.columns(),
             "means": self.means(), "differences": report_charts.differences(data, numbers),
             "maps": maps.of_run(), "section": self.picture(*self.section.picture()), "charts": charts.all(),
+            "intensity": report_intensity.content(data, numbers, self.picture),
+            "hit": Structures(data, numbers, self.picture).content(),
             "road_chart": REMOVE in one.row, "removal": maps.removal(removal), "over_all": maps.over_all(),
             "reference": self.reference and self.reference_tables(),
             "sizes": self.sizes and {"charts": self.sizes.pictures(self.picture), "rows": self.sizes.rows(numbers),
                                      "variable": self.sizes.variable, "deck": self.sizes.deck},
             "mass_error": (one.deposit.volume - one.summary["volume"]["released"] + one.summary["volume"]["off_grid"]
                            + one.summary["volume"]["lost"]) / one.summary["volume"]["released"],
-            "place": self.place()}
+            "place": self.place(), "ensemble": None}
+        if study and study.get("ensemble"):
+            from . import report_ensemble
+            mine = found["ensemble"] = report_ensemble.Ensemble(data, numbers, self.picture).content()
+            mine["maps"] = report_ensemble.draw(mine["maps"], maps)
         return {**found, **self.what_was_run(), **self.provenance()}
 
     # --- tables ---
@@ -70,7 +77,7 @@ class Page:
     def columns(self):
         """Heads of the study's table: those of which anything is known."""
         data = self.data
-        wanted = COLUMNS + (ROAD_COLUMNS if data.study and data.study["conservative"] else ())
+        wanted = COLUMNS + (ROAD_COLUMNS if data.road is not None else ())
         same = len({round(row["released_m3"], 3) for row in data.finished}) == 1
         return [(head, unit, key) for head, unit, key in wanted
                 if any(row.get(key) is not None for row in data.finished) and not (same and key == "released_m3")]

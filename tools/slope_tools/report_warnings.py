@@ -20,6 +20,7 @@ def warnings(data):
         for text in (data.study["conservative"] or {}).get("doubts") or ():
             if not SAID_TOO.search(text):
                 found.append((AMBER, f"The volume to remove: {text}"))
+        found += [(AMBER, f"The ensemble: {text}") for text in (data.study.get("ensemble") or {}).get("doubts") or ()]
         names = {row["run"]: data.label_of(row) for row in data.rows}
         entries = []
         for text in data.study.get("warnings") or ():

@@ -7,23 +7,29 @@ import sys
 import numpy as np
 import yaml
 
-from . import combinations, rasters, repeats, rest, runs, study_table, travel_shares
+from . import combinations, intensity, rasters, repeats, rest, runs, structures, study_table, travel_shares
 from .study_file import read_study      # noqa: F401  (for those who work on with a study)
 from .study_maps import Maps
 
 BALANCE = 1e-9          # of the released volume
 NAMED = 3               # runs that a warning names
+SHOWN = 20              # runs of an ensemble whose table is printed
 
 
 def warn(text):
     print(f"slope study: warning: {text}", file=sys.stderr)
 
 
-def collect(args, settings, repeated, errors, todo, work, thresholds):
-    """Table, maps and study.yaml over all runs that finished; errors: a SizeErrors or None."""
+def collect(args, settings, repeated, errors, todo, work, thresholds, order=None):
+    """Table, maps and study.yaml over all runs that finished; errors: a SizeErrors or None.
+
+    order: the ensemble.Order that the runs were made for, or None of lists.
+    """
     output, deck = args.output, args.deck
+    if order and all(one.error for one in todo):
+        return      # study.perform says so
     maps = Maps(thresholds)
-    rows, thickness = rows_of(args, todo, maps)
+    rows, thickness = rows_of(args, todo, maps, pictures=order is None)
     warnings = doubts(rows)
     if maps.problem:
         warnings.append(maps.problem)
@@ -40,29 +46,42 @@ def collect(args, settings, repeated, errors, todo, work, thresholds):
                   "ranks": work.ranks, "jobs": work.jobs, "package": work.package, "collected": runs.now(),
                   "machine": runs.machine()},
         "largest": {key: largest(finished, key) for key in keys if finished},
-        "conservative": None,
+        "conservative": None, "ensemble": None,
         "scatter": {name: one and {"deviation": one.deviation, "degrees_of_freedom": one.degrees_of_freedom}
                     for name, one in scatters.items()},
         "combinations": combinations.entries(groups, names), **written, "warnings": warnings, "runs": rows}
     if args.road and finished:
         about["study"]["road"] = write_road(args, first, thickness)
+    if order:
+        from . import ensemble
+        about["ensemble"] = ensemble.evaluate(order, rows, output, first and terrain_place(first), maps.problem)
+    elif args.road and finished:
         best = about["conservative"] = combinations.conservative(settings, rows, groups, errors)
         if errors:
             best["doubts"] += errors.doubts(deck.name, {**work.defaults, **best["set"]}, [*settings, *repeated],
                                             about["study"]["road"])
         best["doubts"] += unseen(repeated, work.defaults)
+    about["intensity"] = intensity.collect(args, settings, groups) if finished else None
+    if about["intensity"]:
+        about["conservative"]["doubts"] += intensity.doubts(about["intensity"])
+    structures.collect(output, finished)
     for text in warnings:
         warn(text)
     runs.write(output / "study.csv", study_table.table(settings, repeated, rows, work.defaults))
     runs.write(output / "combinations.csv", combinations.table(groups, names, settings))
     runs.write(output / "study.yaml", "# slope study: volumes in m3 of ground (bulk), lengths in m, times in s\n"
                + yaml.safe_dump(about, sort_keys=False))
-    study_table.print_runs(settings, rows, scatters, f"{deck.name}: {len(rows)} runs, volumes in m3 of ground")
-    if any(scatters.values()):
+    if not order or len(rows) <= SHOWN:
+        study_table.print_runs(settings, rows, scatters, f"{deck.name}: {len(rows)} runs, volumes in m3 of ground")
+    if any(scatters.values()) and not order:
         study_table.print_combinations(settings, groups, scatters)
     print(f"{output / 'study.yaml'}, {output / 'study.csv'}, {output / 'combinations.csv'}: all numbers")
     if about["conservative"]:
         print("\n".join(combinations.told(about["conservative"])))
+    if about["ensemble"]:
+        print("\n".join(ensemble.told(about["ensemble"])))
+        print(f"{output / ensemble.HAZARD}, {output / ensemble.INFLUENCE}: all curves and indices; "
+              f"{output / ensemble.MAPS}: {len(about['ensemble']['maps'])} maps of quantiles and exceedance")
     for entry in [*(written["envelope"] or {}).values(), *(written["exceedance"] or ())]:
         print(f"{output / entry['file']}: {entry['what']}")
 
@@ -74,8 +93,11 @@ def unseen(repeated, defaults):
             f"{'was' if len(offsets) == 1 else 'were'} not repeated"] if offsets else []
 
 
-def rows_of(args, todo, maps):
-    """A row for each run, finished or failed, and the final thickness of the last one that finished."""
+def rows_of(args, todo, maps, pictures=True):
+    """A row for each run, finished or failed, and the final thickness of the last one that finished.
+
+    pictures: whether `slope volume` draws its map of each, which takes longest.
+    """
     rows, thickness = [], None
     for one in rasters.progress(todo, "collecting the runs"):
         row = {"run": one.name, "status": "failed" if one.error else "finished", "set": one.combination,
@@ -85,7 +107,7 @@ def rows_of(args, todo, maps):
             continue
         row, thickness = result(one, row, maps)
         if args.road:
-            row.update(on_road(one, args, args.output / row["summary"], thickness))
+            row.update(on_road(one, args, args.output / row["summary"], thickness, pictures))
         rows.append(row)
     return rows, thickness
 
@@ -155,7 +177,8 @@ def result(one, row, maps):
            "change_rate": summary.get("change_rate"),
            "wall_s": marker.get("wall_seconds"), "summary": f"{one.name}/{path.name}",
            "slope_version": summary["slope_version"], "lammps_version": summary["lammps_version"],
-           "lmp_sha256": about.get("lmp_sha256"), "log_warnings": one.log.warnings}
+           "lmp_sha256": about.get("lmp_sha256"), "log_warnings": one.log.warnings,
+           **structures.of_run(one.folder, one.log.settings)}
     return row, thickness
 
 
@@ -167,7 +190,7 @@ def whole_deposit(prefix, thickness, summary):
     return {"connected_m": found and found.distance, "connected_deg": found and found.reach_angle}
 
 
-def on_road(one, args, summary, thickness):
+def on_road(one, args, summary, thickness, picture=True):
     """What `slope volume` says of a run, all of which goes to the folder volume of the run; and what lies beyond."""
     from . import polygons, volume
     parser = argparse.ArgumentParser()
@@ -177,7 +200,7 @@ def on_road(one, args, summary, thickness):
     if one.log.terrain:
         words += ["--terrain", str(one.folder / one.log.terrain)]
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
-        volume.run(parser.parse_args(words + ["--local"] * args.local))
+        volume.run(parser.parse_args(words + ["--local"] * args.local + ["--no-picture"] * (not picture)))
     about = runs.load_yaml(one.folder / "volume" / "volume.yaml", "what `slope volume` wrote")
     return {"remove_m3": about["volume"]["remove"], "remove_on_road_m3": about["volume"]["remove_on_road"],
             "remove_beside_road_m3": about["volume"]["remove_beside_road"],

@@ -81,7 +81,8 @@ def named_files(deck):
 
     Variables of style index or string are filled in; a word that stands in both places is in both sets.
     """
-    values = {name: text for name, (style, text) in variables(deck).items() if style == "string"} | index_variables(deck)
+    values = {name: text for name, (style, text) in variables(deck).items() if style == "string"}
+    values |= index_variables(deck)
 
     def fill(word):
         return re.sub(r"\$(?:\{(\w+)\}|(\w))", lambda match: values.get(match[1] or match[2], match[0]), word)
@@ -241,15 +242,6 @@ def told(line):
     return INPUT_PLACE.sub("", line.strip())
 
 
-def last_words(path):
-    """The last line of a text file that is not empty; '' if there is none."""
-    try:
-        lines = Path(path).read_text(encoding="utf-8", errors="replace").splitlines()
-    except OSError:
-        return ""
-    return next((line.strip() for line in reversed(lines) if line.strip(" -\t")), "")
-
-
 # --- restart files ---
 
 def restarts(folder):
@@ -384,9 +376,9 @@ def load_terrain(folder, log):
     return rasters.read_asc_local(path) if path and path.is_file() else None
 
 
-def load_raster(prefix, name):
-    """One of the rasters of fix deposit/grid."""
+def load_raster(prefix, name, heights=True):
+    """One of the rasters of fix deposit/grid; heights: whether its values are checked as such."""
     path = Path(f"{prefix}.{name}.asc")
     if not path.is_file():
         raise SlopeError(path, "must be there: fix deposit/grid writes it beside its summary")
-    return rasters.read(path)
+    return rasters.read(path, heights)

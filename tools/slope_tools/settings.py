@@ -15,26 +15,29 @@ def as_number(text):
         return text
 
 
-def check_settings(options, deck, option="--set"):
-    """{name: [values]} of the options NAME=VALUES, in their order; every name must be an index variable of the deck."""
+def check_names(names, deck, option, options):
+    """The names that options NAME=... give, all of them different index variables of the deck; SlopeError otherwise."""
     found = runs.variables(deck)
     known = {name for name, (style, _) in found.items() if style == "index"}
     fixes = [words for words in runs.commands(deck) if words[0] == "fix" and words[3:4] == ["deposit/grid"]]
     if len(fixes) != 1:
         raise SlopeError(deck, "must have one fix deposit/grid, which gives the deposit", len(fixes))
-    settings = {}
-    for words in options:
-        name, equals, text = words.partition("=")
-        if not (equals and name):
+    for i, (name, words) in enumerate(zip(names, options)):
+        if not name or "=" not in words:
             raise SlopeError(option, "must be NAME=V1,V2,... or NAME=A:B:STEP", words)
         if name not in known:
             style = f"{name} of style {found[name][0]}" if name in found else name
             raise SlopeError(option, f"must name an index variable of {deck} ({', '.join(sorted(known)) or 'none'})",
                              style)
-        if name in settings:
+        if name in names[:i]:
             raise SlopeError(option, "must name a variable once", f"{name} twice")
-        settings[name] = values(words, text, option)
-    return settings
+    return names
+
+
+def check_settings(options, deck, option="--set"):
+    """{name: [values]} of the options NAME=VALUES, in their order; every name must be an index variable of the deck."""
+    names = check_names([words.partition("=")[0] for words in options], deck, option, options)
+    return {name: values(words, words.partition("=")[2], option) for name, words in zip(names, options)}
 
 
 def values(words, text, option="--set"):

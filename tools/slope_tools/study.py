@@ -4,15 +4,17 @@ Order of the work: check the deck and the settings, plan the runs (repeats.py), 
 finished (jobs.py), collect (results.py), combine (combinations.py, headline.py).
 """
 import argparse
+import contextlib
+import functools
 import os
 import re
 import shutil
 from pathlib import Path
 
-from . import jobs, rasters, repeats, results, runs
+from . import intensity, jobs, launcher, rasters, repeats, results, runs, sample, slurm
 from .cli import number
 from .errors import SlopeError
-from .settings import check_settings
+from .settings import check_settings, one_value_each
 from .size_error import SizeErrors
 
 TOOLS = Path(__file__).resolve().parents[1]
@@ -31,6 +33,10 @@ example: six runs, as many at a time as there are cores; the same command goes o
 
 with a conservative volume that counts the chance: every combination three times, from other offsets of the lattice:
   tools/slope study in.collapse --set rolling=0,0.1 --repeat xoffset=0.25,0.5 --road road.geojson -o out
+
+an ensemble: 64 runs with values drawn from distributions, how likely a volume is exceeded, which variable matters:
+  tools/slope study in.collapse --sample 64 --vary friction=20:40 --vary rolling=triangular:0:0:0.2 \\
+      --road road.geojson -o out
 
 Every run has a folder of its own in DIR, and is not repeated once it is finished. Over all runs: DIR/study.csv,
 DIR/combinations.csv (mean and scatter), DIR/study.yaml, and the maps envelope_* (largest thickness) and exceedance_*
@@ -51,14 +57,23 @@ def add_parser(commands, **kwargs):
         "study", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
         description="Run one deck over the product of lists of its variables.", **kwargs)
     add_deck(parser)
-    parser.add_argument("--set", metavar="NAME=V1,V2,...", action="append", default=[], required=True,
+    parser.add_argument("--set", metavar="NAME=V1,V2,...", action="append", default=[],
                         help="values of an index variable of the deck; A:B:STEP stands for A, A + STEP, ... up to B")
+    sample.add_arguments(parser)
     repeats.add_arguments(parser)
     parser.add_argument("--size-error", metavar="FILE", type=Path,
                         help="converge.yaml of `slope sensitivity --converge`: its error at the size of these balls "
                              "counts in the conservative volume")
     parser.add_argument("--exceed", default="0.1,0.5,1", metavar="T1,T2,...",
                         help="thicknesses of the maps of exceedance, m (default 0.1,0.5,1)")
+    parser.add_argument("--exceed-speed", default="5", metavar="V1,V2,...",
+                        help="speeds of the maps of exceedance of an ensemble, m/s (default 5)")
+    parser.add_argument("--exceed-energy", default="100000", metavar="E1,E2,...",
+                        help="energies of a ball for the same, J (default 100000)")
+    parser.add_argument("--of", metavar="NAME",
+                        help="quantity of the hazard curve of an ensemble, a column of study.csv (default: "
+                             "remove_on_road_m3; without a road distance_99_m)")
+    intensity.add_arguments(parser)
     add_runs(parser)
     return parser
 
@@ -84,6 +99,14 @@ def add_runs(parser, road=False):
     parser.add_argument("--lmp", metavar="FILE", help="the LAMMPS program (default: LMP of the environment, then "
                         "build/lmp beside tools/)")
     parser.add_argument("--dry-run", action="store_true", help="only list the runs")
+    parser.add_argument("--launcher", metavar="COMMAND",
+                        help="what starts the ranks of a run instead of mpirun, such as 'srun --mpi=pmix' or 'mpiexec "
+                             "-n {np}'; without {np}, -n N is added")
+    parser.add_argument("--engine", choices=("local", "slurm"), default="local",
+                        help="local (default): runs on this machine; slurm: job arrays of a Slurm cluster, whose nodes "
+                             "see DIR")
+    parser.add_argument("--slurm", metavar="OPTIONS", default="",
+                        help="options of sbatch for --engine slurm, such as '--partition=long --time=2:00:00'")
 
 
 def run(args):
@@ -93,57 +116,106 @@ def run(args):
     repeats.check(list(repeated), args.equally_good)
     thresholds = check_thresholds(args.exceed)
     defaults = runs.index_variables(args.deck)
+    if args.sample is not None or args.vary:
+        return run_ensemble(args, settings, repeated, thresholds, defaults)
+    if not settings:
+        raise SlopeError("--set", "must be given, or --sample with --vary")
     todo = repeats.plan(args.output, settings, repeated, defaults)
     check_names(todo)
+    intensity.check(args.intensity, settings, bool(args.road))
     errors = None
     if args.size_error:
         if not args.road:
             raise SlopeError("--size-error", "needs --road: it is the error of the volume to remove", args.size_error)
         errors = SizeErrors(args.size_error, "remove_m3")
         errors.check(settings, defaults)
-    perform(args, {**settings, **repeated}, todo,
-            lambda todo, work: results.collect(args, settings, repeated, errors, todo, work, thresholds))
+    return perform(args, {**settings, **repeated}, todo,
+                   lambda todo, work: results.collect(args, settings, repeated, errors, todo, work, thresholds))
 
 
-def perform(args, settings, todo, collect):
-    """Run what is not finished of todo, then collect(todo, work); SlopeError after that if a run failed."""
+def run_ensemble(args, settings, repeated, thresholds, defaults):
+    """The runs of --sample, and what they say together."""
+    from . import ensemble, ensemble_maps
+    if args.sample is None:
+        raise SlopeError("--sample", "must be given with --vary: how many runs")
+    if args.size_error:
+        raise SlopeError("--size-error", "must not be given with --sample: an ensemble has no conservative volume",
+                         args.size_error)
+    fixed = one_value_each(settings, "--set", "--vary")
+    plan = sample.check(args.sample, args.design, args.seed, args.vary, args.deck, fixed, repeated)
+    levels = ensemble_maps.Thresholds(thresholds, check_thresholds(args.exceed_speed, "--exceed-speed", "speeds"),
+                                      check_thresholds(args.exceed_energy, "--exceed-energy", "energies"))
+    of = ensemble.check_quantity(args.of, args.road is not None)
+    todo = sample.plan(args.output, plan, fixed, repeated, defaults)
+    check_names(todo)
+    sample.check_growth(args.output, plan)
+    several = sample.settings_of(todo)
+    perform(args, {**several, **repeated}, todo,
+            lambda todo, work: results.collect(args, several, repeated, None, todo, work, thresholds,
+                                               ensemble.Order(plan, of, levels)),
+            begin=lambda: sample.keep(args.output, plan))
+
+
+def perform(args, settings, todo, collect, begin=None):
+    """Run what is not finished of todo, then collect(todo, work); SlopeError after that if a run failed.
+
+    begin: called once the folder is there, before the first run.
+    """
     files = data_files(args.deck, settings)
     if args.road:
         check_road(args, settings)
     check_folder(args, todo)
     if args.dry_run:
         return list_runs(todo)
+    with prepared(args, files, len(todo)) as work:
+        for one in todo:
+            jobs.check_finished(one, args.deck, work.digests)
+        if begin:
+            begin()
+        work.do(todo)
+        collect(todo, work)
+    raise_failed(args.output, todo)
+
+
+@contextlib.contextmanager
+def prepared(args, files, number):
+    """The jobs.Work of so many runs, while the output folder is ours; files: of data_files()."""
     lmp = find_lmp(args.lmp)
     cores = jobs.cores()
     most = args.jobs or max(1, cores // args.np)
-    if args.np > 1 and not shutil.which("mpirun"):
-        raise SlopeError("--np", "needs mpirun, which is not on the PATH, unless it is 1", args.np)
-    if min(most, len(todo)) * args.np > cores:
-        results.warn(f"{min(most, len(todo))} runs of {args.np} ranks at a time on {cores} cores: they slow each other "
+    make = jobs.Work
+    launcher.check(args.launcher, args.np)
+    if args.engine == "slurm":
+        slurm.check(args.slurm)
+        make = functools.partial(slurm.Work, options=args.slurm, throttle=args.jobs)
+    elif args.slurm:
+        raise SlopeError("--slurm", "must be given with --engine slurm", args.slurm)
+    elif min(most, number) * args.np > cores:
+        results.warn(f"{min(most, number)} runs of {args.np} ranks at a time on {cores} cores: they slow each other "
                      "down")
     try:
         args.output.mkdir(parents=True, exist_ok=True)
         inputs = args.output / ".inputs"
         with jobs.alone_in(args.output), jobs.signals_interrupt(), jobs.copied(files, inputs) as digests:
-            for one in todo:
-                jobs.check_finished(one, args.deck, digests)
-            work = jobs.Work(args.deck, digests, inputs, lmp, args.np, most)
-            work.do(todo)
-            collect(todo, work)
+            yield make(args.deck, digests, inputs, lmp, args.np, most, args.launcher)
     except OSError as error:
         place = error.filename2 or error.filename or args.output        # of a copy, the second is where it goes
         raise SlopeError(place, f"cannot be used: {error.strerror}") from error
+
+
+def raise_failed(output, todo):
+    """SlopeError if runs failed, with the first of them."""
     failed = [one for one in todo if one.error]
     if failed:
         more = f" and {len(failed) - 1} more" if len(failed) > 1 else ""
-        raise SlopeError(args.output, f"{len(failed)} of {len(todo)} runs failed: {failed[0].name}{more}: "
+        raise SlopeError(output, f"{len(failed)} of {len(todo)} runs failed: {failed[0].name}{more}: "
                          f"{failed[0].error}")
 
 
 # --- what is to be run ---
 
-def check_thresholds(text):
-    """The thicknesses of --exceed, m."""
+def check_thresholds(text, option="--exceed", what="thicknesses"):
+    """The thicknesses of --exceed, m, or what an option like it holds."""
     found = []
     for part in text.split(","):
         try:
@@ -151,7 +223,7 @@ def check_thresholds(text):
         except argparse.ArgumentTypeError:
             value = -1.0
         if value < 0 or value in found:
-            raise SlopeError("--exceed", "must be different thicknesses >= 0, with commas between", text)
+            raise SlopeError(option, f"must be different {what} >= 0, with commas between", text)
         found.append(value)
     return found
 
@@ -165,13 +237,19 @@ def check_road(args, settings):
         raise SlopeError("--cut-angle", "must be > 0 and < 90 degrees", f"{args.cut_angle:g}")
     if args.mesh <= 0:
         raise SlopeError("--mesh", "must be > 0", f"{args.mesh:g}")
-    known = {**runs.index_variables(args.deck), **{name: several[0] for name, several in settings.items()}}
-    for words in runs.commands(args.deck):
+    path = terrain_of(args.deck, {name: several[0] for name, several in settings.items()})
+    if path:
+        polygons.read_local(args.road, rasters.read_place(path), args.local)
+
+
+def terrain_of(deck, chosen):
+    """The terrain file that a deck names, with the values chosen of its variables; None if it is not in reach."""
+    known = {**runs.index_variables(deck), **chosen}
+    for words in runs.commands(deck):
         if words[0] == "region" and words[2:3] == ["terrain"] and len(words) > 3:
-            path = args.deck.parent / re.sub(r"\$\{(\w+)\}", lambda match: known.get(match[1], match[0]), words[3])
-            if path.is_file():
-                polygons.read_local(args.road, rasters.read_place(path), args.local)
-            return
+            path = deck.parent / re.sub(r"\$\{(\w+)\}", lambda match: known.get(match[1], match[0]), words[3])
+            return path if path.is_file() else None
+    return None
 
 
 def check_names(todo):

@@ -19,7 +19,7 @@ import yaml
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from . import jobs, runs, verification
+from . import jobs, last_words, runs, verification
 from .errors import SlopeError
 from .study import count, find_lmp
 from .verification.claims import Result
@@ -57,7 +57,8 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--lmp", metavar="FILE", help="the LAMMPS program (default: LMP of the environment, then "
                         "build/lmp beside tools/)")
     parser.add_argument("--crosscheck", metavar="FILE", type=Path,
-                        help="crosscheck.yaml of `slope crosscheck`: its comparisons with other codes go into the report")
+                        help="crosscheck.yaml of `slope crosscheck`: its comparisons with other codes go into the "
+                        "report")
     parser.add_argument("-o", dest="output", metavar="DIR", type=Path, default=Path(NAME),
                         help=f"folder of the report and of the runs (default {NAME})")
     return parser
@@ -163,8 +164,8 @@ class Runner:
     def ended(self, one, status):
         folder = self.folder / one.name
         if status:
-            error = runs.Log(folder / runs.LOG).update().error or runs.last_words(folder / jobs.SCREEN)
-            raise SlopeError(folder / runs.LOG, f"must end well: {error or 'no word'}", f"status {status}")
+            words = last_words.reason(runs.Log(folder / runs.LOG).update(), last_words.Screen(folder / jobs.SCREEN))
+            raise SlopeError(folder / runs.LOG, f"must end well: {words or 'no word'}", f"status {status}")
         (folder / FINISHED).write_text(self.identity(one))
         return Result(folder)
 

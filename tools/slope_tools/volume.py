@@ -70,6 +70,7 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--samples", metavar="K", type=int, default=SAMPLES,
                         help=f"parts of a cell along a side for round corners and rough ground, even (default "
                              f"{SAMPLES}); planes are exact with any")
+    parser.add_argument("--no-picture", action="store_true", help="without volume.png, which takes longest")
     return parser
 
 
@@ -108,7 +109,8 @@ def run(args):
         rasters.write_geotiff(new / "volume_mesh.tif", {"volume to remove (m3)": result.volume},
                               run_.raster._replace(transform=mesh.transform))
         write_profile(new / "axis.csv", run_, profile)
-        draw(new / "volume.png", run_, road, axis, mesh, result, about)
+        if not args.no_picture:
+            draw(new / "volume.png", run_, road, axis, mesh, result, about)
         about["files"] = sorted(path.name for path in new.iterdir()) + ["volume.yaml"]
         deposit.write_yaml(new / "volume.yaml", about, "slope volume: what must be removed; m, m2, m3, degrees")
     print(summary(about, folder))

@@ -1,4 +1,4 @@
-"""The claims that the package is held to: one module per case or question, each with its runs, closed forms, tolerances, controls.
+"""The claims that the package is held to: a module per case or question, with runs, closed forms, tolerances, controls.
 
 `slope verify` runs them all, tests/decks/test_verification.py the quick ones. A module has a docstring, whose first
 line is its title, CASE, the folder in inputs/ that it is about, and CLAIMS. A new one is one more name in MODULES.

@@ -26,8 +26,8 @@ def errata():
                 "between soil/slip surface balls are 0.48\".",
                 f"The dashpot follows from 0.48 with the mass of one ball ({soil:.3g} N s/m), so it holds for a ball "
                 f"on a fixed ball. Two moving balls have half of that mass: {moving:.3f}. A true 0.48 between them "
-                f"needs {true:.3g} N s/m. Pair gran/restitution takes the right mass for each pair (mass pair); the paper's "
-                "convention is mass ball.",
+                f"needs {true:.3g} N s/m. Pair gran/restitution takes the right mass for each pair (mass pair); the "
+                "paper's convention is mass ball.",
                 ("table_4_moving", "true_0.48")),
         Erratum("Condition for rolling: 3.5 tan(theta) > tan(phi), not 3",
                 "A ball rolls without sliding if 3 tan(theta) > tan(phi).",

@@ -58,8 +58,8 @@ CLAIMS = [
           (DENSE,), loss, AtMost(0.03), Control("restitution 0.9999", (DENSE(e=0.9999),))),
     Claim("dense_gas_gain", "The same: largest gain of energy over that at the start", "", NEWTON, (DENSE,), rise,
           AtMost(0.03), Control("scheme plain", (DENSE(scheme="plain"),)),
-          remark="Contacts that begin in company do so as velocity Verlet has them, at any moment of a step, and chance "
-                 "of both signs heats: by 1 to 4 % with seven seeds, by 5 to 8 % with scheme plain."),
+          remark="Contacts that begin in company do so as velocity Verlet has them, at any moment of a step, and "
+                 "chance of both signs heats: by 1 to 4 % with seven seeds, by 5 to 8 % with scheme plain."),
     Claim("slot", "An undamped ball flies to and fro in a slot, gaps of 0.5 to 3 overlaps, 60,000 steps of the rule: "
           "largest change of energy", "", NEWTON, (SLOT,), slot_change, AtMost(0.05), Control("scheme plain", PLAIN)),
     Claim("slot_gain", "The same with gaps that squeeze the ball by up to an overlap: largest gain of energy", "",

@@ -1,0 +1,58 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#ifndef SLOPE_DEPOSIT_EXCHANGE_H
+#define SLOPE_DEPOSIT_EXCHANGE_H
+
+#include "deposit_bands.h"
+#include "deposit_blocks.h"
+#include "pointers.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// How the ranks of fix deposit/grid pass on what they have of the plan grid. All methods are
+// collective. No message has more than MOST_BYTES, whatever the size of the grid, and what a rank
+// keeps for them does not grow with its rows.
+class DepositExchange : protected Pointers {
+ public:
+  static constexpr int MOST_BYTES = 1 << 28;
+
+  explicit DepositExchange(class LAMMPS *lmp) : Pointers(lmp) {}
+
+  // All blocks to the ranks that hold their bands; there take() gets column, band and values of each,
+  // in an order that depends on nothing but the ranks and their blocks.
+  typedef std::function<void(int column, int band, const double *values)> TakeBlock;
+  void to_owners(const Slope::DepositBlocks &, const Slope::DepositBands &, const TakeBlock &take);
+
+  // What is to be said of the bands from ... to, one way or the other: make() is called on the rank
+  // that holds the band, take() on rank 0, band by band in this order. take() must not throw.
+  typedef std::function<std::string(int band)> MakeBytes;
+  typedef std::function<void(const std::string &)> TakeBytes;
+  void to_rank_zero(const Slope::DepositBands &, int from, int to, const MakeBytes &make,
+                    const TakeBytes &take);
+
+  // of all ranks
+  double sum(double value);
+  double smallest(double value);
+
+  // rank on which a value is smallest, the first of several; all of them HUGE_VAL: -1
+  int rank_of_smallest(double value);
+
+ private:
+  void one_round(const Slope::DepositBlocks &, size_t begin, size_t end,
+                 const Slope::DepositBands &, const TakeBlock &);
+  void batch_to_rank_zero(const Slope::DepositBands &, const std::vector<int> &bands,
+                          const MakeBytes &, const TakeBytes &);
+  void send(const std::string &bytes);
+  std::string receive(int rank, bigint size);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

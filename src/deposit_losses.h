@@ -1,0 +1,46 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#ifndef SLOPE_DEPOSIT_LOSSES_H
+#define SLOPE_DEPOSIT_LOSSES_H
+
+#include "mass_ledger.h"
+#include "pointers.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// Balls that LAMMPS deletes because they left the box, counted where LAMMPS does it.
+class DepositLosses : protected Pointers {
+ public:
+  DepositLosses(class LAMMPS *lmp, const class DepositBalls &balls_in) : Pointers(lmp), balls(balls_in)
+  {
+  }
+
+  // write_restart and others move the atoms to their ranks without a call of a fix, and then drop
+  // those outside of the box: who was outside before and is gone afterwards was lost in the command
+  void begin_command();
+  void end_command();
+
+  // LAMMPS is about to send every ball to the rank that owns its place. A ball that is beyond a fixed
+  // side of the box has no owner and is deleted without a word.
+  void before_exchange();
+
+  // collective: what all ranks lost since the last time; returns lines on the first balls
+  std::vector<std::string> add_up();
+
+  Slope::MassLedger ledger;
+
+ private:
+  const class DepositBalls &balls;
+
+  std::vector<Slope::MassLedger::Loss> first_of_all_ranks();
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

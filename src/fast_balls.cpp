@@ -1,0 +1,67 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#include "fast_balls.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "contact_guards.h"
+#include "error.h"
+#include "update.h"
+
+#include <cmath>
+
+using namespace LAMMPS_NS;
+
+/* ---------------------------------------------------------------------- */
+
+FastBalls::FastBalls(LAMMPS *lmp, const std::string &_caller) : Pointers(lmp), caller(_caller)
+{
+  start();
+}
+
+void FastBalls::start()
+{
+  worst = {0.0, 0.0, 0.0, 0.0};
+  count = 0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FastBalls::look(int i, double speed, double stiffness)
+{
+  const double deep = speed * std::sqrt(atom->rmass[i] / stiffness);
+  const double share = deep / (DEEPEST * atom->radius[i]);
+  if (!(share > 1.0)) return;
+  if (count++ == 0)
+    error->warning(
+        FLERR,
+        "{}: ball {} comes at {:.4g} m/s at step {}, {:.3g} times the speed up to which nothing "
+        "passes, {:g} R sqrt(kn/m): the contacts need a larger stiffness",
+        caller, atom->tag[i], speed, update->ntimestep, share, +DEEPEST);
+  if (share > worst.share)
+    worst = {share, speed, static_cast<double>(atom->tag[i]),
+             static_cast<double>(update->ntimestep)};
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FastBalls::report(ContactGuards &guards)
+{
+  bigint all;
+  MPI_Allreduce(&count, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all == 0) return;
+  struct {
+    double share;
+    int rank;
+  } mine = {worst.share, comm->me}, most;
+  MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
+  MPI_Bcast(&worst, sizeof(worst), MPI_BYTE, most.rank, world);
+  guards.say(fmt::format(
+      "{}: a ball came too fast for it {} times, the worst at {:.4g} m/s (ball {:.0f}, step "
+      "{:.0f}), {:.3g} times the speed up to which nothing passes, {:g} R sqrt(kn/m): the "
+      "contacts need a larger stiffness",
+      caller, all, worst.speed, worst.ball, worst.step, worst.share, +DEEPEST));
+}

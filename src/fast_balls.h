@@ -1,0 +1,40 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#ifndef SLOPE_FAST_BALLS_H
+#define SLOPE_FAST_BALLS_H
+
+#include "pointers.h"
+
+#include <string>
+
+namespace LAMMPS_NS {
+
+// The guard against balls that come so fast that they may pass through a surface. A ball that comes along
+// the normal at v gets as deep as v sqrt(m/kn), undamped. Up to a quarter of its radius nothing
+// passes, whatever the edges that it meets.
+class FastBalls : protected Pointers {
+ public:
+  static constexpr double DEEPEST = 0.25;    // overlap over radius
+
+  FastBalls(class LAMMPS *, const std::string &caller);
+
+  void start();    // of a run
+  void look(int i, double speed,
+            double stiffness);                 // towards the surface; warns of the first one
+  void report(class ContactGuards &guards);    // at the end of a run; collective
+
+ private:
+  std::string caller;
+  struct Worst {
+    double share;    // of the speed up to which nothing passes
+    double speed, ball, step;
+  } worst;
+  bigint count;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,600 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+/* A surface of triangles as a smooth wall. Balls near it are listed when LAMMPS rebuilds its neighbor
+   list; each step finds the points that they touch (surface_watch.h). At each of these a ball touches a
+   fixed phantom ball of its own size, so that law, impacts, guards and energies are those of balls. */
+
+#include "fix_wall_gran_mesh.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "contact_energy.h"
+#include "error.h"
+#include "force.h"
+#include "initial_overlap.h"
+#include "lammps_compat.h"
+#include "modify.h"
+#include "neighbor.h"
+#include "pair_gran_restitution.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <functional>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace Slope;
+
+static constexpr double SAME_SURFACE = 1.0e-9;
+static constexpr double RESTART_FORMAT = 1.0;
+static constexpr int RESTART_SIZE = 16;    // numbers, without those of the recorder
+
+static Vector vector_of(const double *x)
+{
+  return {x[0], x[1], x[2]};
+}
+
+/* ----------------------------------------------------------------------
+   fix ID group wall/gran/mesh TYPE FILE.stl|terrain FILE.asc keyword value ...
+------------------------------------------------------------------------- */
+
+FixWallGranMesh::FixWallGranMesh(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), caller(fmt::format("Fix wall/gran/mesh {}", id)),
+    options(lmp, caller, narg - 3, arg + 3), surface(options.surface()), pair(nullptr),
+    lists_newer(false), all_ready(false), first_step(false), fast(lmp, caller)
+{
+  scalar_flag = vector_flag = 1;
+  size_vector = IMPULSE + 3;
+  extscalar = extvector = 1;
+  global_freq = 1;
+  restart_global = restart_peratom = 1;
+  create_attribute = 1;
+  maxexchange_dynamic = 1;
+
+  std::fill(mine, mine + NVALUE, 0.0);
+  std::fill(all, all + NVALUE, 0.0);
+  for (int d = 0; d < 3; d++) given[d] = last[d] = 0.0;
+  last_step = -1;
+  if (options.every) {
+    nevery = options.every;
+    recorder.reset(new SurfaceRecorder(lmp, caller, options.output, options.every, *surface));
+  }
+
+  FixWallGranMesh::grow_arrays(atom->nmax);
+  atom->add_callback(Atom::GROW);
+  atom->add_callback(Atom::RESTART);
+}
+
+/* ---------------------------------------------------------------------- */
+
+FixWallGranMesh::~FixWallGranMesh()
+{
+  atom->delete_callback(id, Atom::GROW);
+  atom->delete_callback(id, Atom::RESTART);
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixWallGranMesh::setmask()
+{
+  return PRE_EXCHANGE | POST_NEIGHBOR | POST_FORCE | (recorder ? END_OF_STEP : 0);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixWallGranMesh::init()
+{
+  pair = dynamic_cast<PairGranRestitution *>(force->pair_match("gran/restitution", 1));
+  if (!pair)
+    error->all(FLERR, "{}: requires pair_style gran/restitution, which holds its coefficients",
+               caller);
+  pair->announce_wall(this, options.type, groupbit, style);
+
+  // contacts must be stored by atom before any fix migrates atoms
+
+  for (int i = 0; i < modify->nfix; i++) {
+    if (modify->fix[i] == this) break;
+    if (modify->fix[i]->pre_exchange_migrate)
+      error->all(FLERR, "{}: must come before fix {} {}, which moves atoms between ranks", caller,
+                 modify->fix[i]->id, modify->fix[i]->style);
+  }
+  for (Fix *fix : compat::fixes_of_style(lmp, style)) {
+    const auto other = static_cast<FixWallGranMesh *>(fix);
+    if (other != this && recorder && other->recorder && other->recorder->prefix == recorder->prefix)
+      error->all(FLERR, "{} output must be another than that of fix {}, got {}", caller, fix->id,
+                 recorder->prefix);
+  }
+  fast.start();
+}
+
+/* ----------------------------------------------------------------------
+   law for balls of a type on the surface, where the rolling radius is the ball's
+------------------------------------------------------------------------- */
+
+ContactLaw FixWallGranMesh::law_of(int type) const
+{
+  const ContactLaw *law = pair->law(type, options.type);
+  if (!law)    // a type that came after init(), by fix pour or fix deposit
+    error->one(FLERR, "{}: pair_coeff {} {} is not set (moving type {}, wall type {})", caller,
+               std::min(type, options.type), std::max(type, options.type), type, options.type);
+  ContactLaw smooth = *law;
+  smooth.rolling_factor = 2.0;    // of the two radii's r r/(r + r)
+  return smooth;
+}
+
+/* ----------------------------------------------------------------------
+   contacts from the lists to storage by atom: before atoms migrate or are sorted, before a
+   restart file, at the end of a run
+------------------------------------------------------------------------- */
+
+void FixWallGranMesh::store_contacts()
+{
+  if (!lists_newer) return;
+  lists_newer = false;
+
+  // per ball: how many, then each
+
+  store.clear();
+  std::vector<int> count(watch.balls(), 0);
+  auto visit = [this](std::function<void(const ContactList &, size_t)> what) {
+    for (const auto &entry : lists) {
+      const ContactList &l = entry.second;
+      for (size_t k = 0; k < l.entries.size(); k++)    // balls may have been deleted
+        if (l.has_history(k) && l.entries[k].i < atom->nlocal) what(l, k);
+    }
+  };
+  visit([&](const ContactList &l, size_t k) {
+    count[watch.slots[l.entries[k].j].ball]++;
+  });
+  int most = 0;
+  for (int b = 0; b < watch.balls(); b++) {
+    if (count[b]) store.make(watch.number_of(b), count[b]);
+    most = std::max(most, count[b]);
+    count[b] = 0;
+  }
+  visit([&](const ContactList &l, size_t k) {
+    const SurfaceWatch::Slot &slot = watch.slots[l.entries[k].j];
+    double *to = store.contact(l.entries[k].i, count[slot.ball]++);
+    memcpy(to, &slot.at.normal, sizeof(Vector));
+    std::copy_n(l.histories[k], HISTORY, to + 3);
+  });
+  maxexchange = SurfaceContactStore::packed(most);
+}
+
+void FixWallGranMesh::pre_exchange()
+{
+  store_contacts();
+}
+
+/* ----------------------------------------------------------------------
+   list the triangles near each moving ball, and the contacts that it has
+   LAMMPS rebuilds when a ball has moved by half the skin; the surface does not move
+------------------------------------------------------------------------- */
+
+void FixWallGranMesh::setup_post_neighbor()
+{
+  post_neighbor();
+}
+
+void FixWallGranMesh::post_neighbor()
+{
+  lists.clear();
+  watch.clear();
+  radii.clear();
+  history.clear();
+
+  const Vector &low = surface->low(), &high = surface->high();
+  std::vector<int> near;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    const Vector x = vector_of(atom->x[i]);
+    const double r = atom->radius[i];
+    const double reach = r + 0.5 * neighbor->skin + size_of(vector_of(atom->v[i])) * update->dt;
+    if (x.x < low.x - reach || x.x > high.x + reach || x.y < low.y - reach ||
+        x.y > high.y + reach || x.z < low.z - reach || x.z > high.z + reach)
+      continue;
+    near.clear();
+    surface->find_near(x, reach, near);
+    SurfacePoint nearest;
+    nearest.distance = HUGE_VAL;
+    size_t n = 0;
+    for (const int number : near) {
+      const SurfacePoint p = nearest_point(surface->triangle(number), number, x);
+      if (p.distance < nearest.distance) nearest = p;
+      if (p.distance < reach) near[n++] = number;
+    }
+    near.resize(n);
+    if (n == 0) continue;
+    const int ball = watch.add_ball(i, near);
+    if (nearest.distance > r) check_speed(i, nearest.normal);
+    for (int k = 0; k < store.contacts(i); k++) {
+      const double *stored = store.contact(i, k);
+      add_contact(watch.add_slot(ball, vector_of(stored)), stored + 3);
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   a slot's contact to the lists; from: its history, if it has one
+------------------------------------------------------------------------- */
+
+void FixWallGranMesh::add_contact(int slot, const double *from)
+{
+  history.emplace_back();
+  double *values = history.back().data();
+  std::fill_n(values, HISTORY, 0.0);
+  if (from) std::copy_n(from, HISTORY, values);
+  const int i = watch.number_of(watch.slots[slot].ball);
+  const double r = atom->radius[i];
+  radii.push_back(r);
+  ContactList &l = lists[{atom->type[i], r}];
+  if (l.entries.empty()) l.clear(true, false);
+  l.add(i, slot, values, from != nullptr, r, r, atom->rmass[i], 1.0);
+  if (pair->sizes_vary) l.equal = false;
+}
+
+/* ----------------------------------------------------------------------
+   what each ball near the surface touches now
+------------------------------------------------------------------------- */
+
+void FixWallGranMesh::look()
+{
+  const MovingBalls moving = pair->moving_balls();
+  for (int b = 0; b < watch.balls(); b++) {
+    const int i = watch.number_of(b);
+    const double step = size_of(moving.v[i]) * update->dt;
+    watch.look(b, vector_of(atom->x[i]), atom->radius[i], step, *surface);
+  }
+  const size_t before = radii.size(), n = watch.slots.size();
+  for (size_t s = before; s < n; s++) add_contact(static_cast<int>(s), nullptr);
+
+  centres.reserve(n + 1);    // contacts are read 32 bytes at a time, 8 beyond a vector
+  centres.resize(n);
+  for (size_t s = 0; s < n; s++) {
+    const SurfaceWatch::Slot &slot = watch.slots[s];
+    centres[s] = moved(slot.centre, slot.radius - radii[s], slot.at.normal);    // fix adapt
+    if (slot.touches) check_speed(watch.number_of(slot.ball), slot.at.normal);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixWallGranMesh::check_speed(int i, const Vector &normal)
+{
+  const double towards = -dot(vector_of(atom->v[i]), normal);
+  const ContactLaw *law = pair->law(atom->type[i], options.type);
+  if (law && towards > 0.0) fast.look(i, towards, law->kn);
+}
+
+void FixWallGranMesh::setup(int)
+{
+  clock.begin(update->ntimestep, update->dt);
+  apply(true);
+  first_step = true;
+}
+
+void FixWallGranMesh::post_force(int)
+{
+  double before[3];
+  std::copy(given, given + 3, before);
+  if (first_step && last_step == update->ntimestep - 1 && pair->forces_taken_back())
+    std::copy(last, last + 3, before);
+  first_step = false;
+  apply(false);
+  for (int d = 0; d < 3; d++) mine[IMPULSE + d] += 0.5 * update->dt * (before[d] + given[d]);
+  clock.pass(update->ntimestep);
+  if (recorder) recorder->end_step(mine + FORCE);
+}
+
+void FixWallGranMesh::reset_dt()
+{
+  // between runs, where newer LAMMPS calls this too, the next set-up sees the change
+  if (update->whichflag == 1) clock.change_step_size(update->ntimestep, update->dt);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixWallGranMesh::end_of_step()
+{
+  if (recorder->row_due()) record();
+}
+
+void FixWallGranMesh::record()
+{
+  reduce();
+  recorder->add_row(clock.at(update->ntimestep), all);
+}
+
+/* ----------------------------------------------------------------------
+   called by the pair style before it computes forces
+------------------------------------------------------------------------- */
+
+void FixWallGranMesh::find_contacts(bool starting, bool lists_new)
+{
+  look();
+  const MovingBalls moving = pair->moving_balls();
+  InitialOverlap initial(lmp);
+  for (auto &entry : lists) {
+    ContactList &l = entry.second;
+    const FixedPartners phantoms(centres.data(), entry.first.radius);
+    if (starting)
+      l.start(moving, phantoms, [&](const ContactList::Entry &e, double overlap) {
+        initial.look(overlap, atom->radius[e.i], atom->tag[e.i], atom->x[e.i],
+                     fmt::format("triangle {}", watch.slots[e.j].at.triangle + 1));
+      });
+    l.find(starting, lists_new, moving, phantoms);
+  }
+  if (starting) initial.check(caller);
+}
+
+/* ----------------------------------------------------------------------
+   force of a contact on its ball as the contact law has it, from what the step gave; zero where an
+   impact has ended in the step
+------------------------------------------------------------------------- */
+
+Vector FixWallGranMesh::force_of_law(const SurfaceWatch::Slot &slot, double phase, const Vector &f,
+                                     const Vector &v, const ImpactForce &impact) const
+{
+  if (phase == ENDED) return {0.0, 0.0, 0.0};
+  const Vector &n = slot.at.normal;
+  const double d = slot.radius - slot.at.distance, V = -dot(v, n) * update->dt;
+  const Vector along = moved(f, -dot(f, n), n);
+  const double share = impact.tangential(phase, d, V);
+  return moved({share * along.x, share * along.y, share * along.z}, impact.normal(phase, d, V), n);
+}
+
+/* ----------------------------------------------------------------------
+   contact forces of the surface on the balls
+------------------------------------------------------------------------- */
+
+void FixWallGranMesh::apply(bool starting)
+{
+  const MovingBalls moving = pair->moving_balls();
+  Vector force = {0.0, 0.0, 0.0}, moment = force, momentum = force;
+  int contacts = 0;
+
+  // torques of the rolling resistance act on the surface, too: the sum of what the balls get, less that
+  // of the forces
+
+  auto torque_of_balls = [&](double sign) {
+    for (int b = 0; b < watch.balls(); b++)
+      if (watch.has_slots(b)) moment = moved(moment, sign, moving.torque[watch.number_of(b)]);
+  };
+  torque_of_balls(1.0);
+
+  for (auto &entry : lists) {
+    const FixedPartners phantoms(centres.data(), entry.first.radius);
+    const ContactLaw law = law_of(entry.first.type);
+    std::unique_ptr<ImpactForce> impact;
+    auto add = [&](int i, int j, const Vector &f, const Vector &) {
+      const SurfaceWatch::Slot &slot = watch.slots[j];
+      const double phase = history[j][PHASE];
+      const bool ended = phase == ENDED;
+      Vector shown = f;
+      if (law.exact > 0.0 && (ended || (is_impact(phase) && moving.count[i] == 1))) {
+        if (!impact || impact->of_mass() != atom->rmass[i])
+          impact.reset(new ImpactForce(law, atom->rmass[i], update->dt));
+        shown = force_of_law(slot, phase, f, moving.v[i], *impact);
+      }
+      const Vector arm = {-slot.radius * slot.at.normal.x, -slot.radius * slot.at.normal.y,
+                          -slot.radius * slot.at.normal.z};
+      const Vector at = moved(vector_of(atom->x[i]), 1.0, arm);
+      const Vector torque = cross(arm, f);    // on the ball
+      momentum = moved(momentum, -1.0, f);
+      force = moved(force, -1.0, shown);
+      moment = moved(moment, -1.0, cross(minus(at, options.point), shown));
+      moment = moved(moment, 1.0, torque);
+      contacts += !ended;
+      if (recorder && !starting)
+        recorder->add(slot.at.triangle, dot(shown, slot.at.normal),
+                      dot(f, slot.at.normal) * update->dt);
+    };
+    ContactTally tally = tally_of(add);
+    entry.second.apply(law, update->dt, starting, moving, phantoms, &tally);
+  }
+  torque_of_balls(-1.0);
+
+  const Vector sums[2] = {force, moment};
+  memcpy(mine, sums, sizeof(sums));
+  memcpy(given, &momentum, sizeof(momentum));
+  mine[CONTACTS] = contacts;
+  all_ready = false;
+  lists_newer = true;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixWallGranMesh::elastic_energy() const
+{
+  const MovingBalls moving = pair->moving_balls();
+  double energy = 0.0;
+  for (const auto &entry : lists)
+    energy += Slope::elastic_energy(entry.second, law_of(entry.first.type), moving,
+                                    FixedPartners(centres.data(), entry.first.radius),
+                                    [this](const ContactList::Entry &e, double overlap) {
+                                      pair->guards.see_overlap(e.i, overlap, atom->radius[e.i]);
+                                    });
+  return energy;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixWallGranMesh::post_run()
+{
+  store_contacts();
+  keep_given();
+  if (recorder && update->whichflag == 1) recorder->write();
+  fast.report(pair->guards);
+}
+
+/* ----------------------------------------------------------------------
+   as the forces of the balls are kept (fix_contact_history.cpp)
+------------------------------------------------------------------------- */
+
+void FixWallGranMesh::keep_given()
+{
+  if (last_step == update->ntimestep) return;    // run 0 only has what the set-up found
+  std::copy(given, given + 3, last);
+  last_step = update->ntimestep;
+}
+
+/* ----------------------------------------------------------------------
+   number of contacts; force on the surface, its moment, impulse
+------------------------------------------------------------------------- */
+
+void FixWallGranMesh::reduce()
+{
+  if (all_ready) return;
+  MPI_Allreduce(mine, all, NVALUE, MPI_DOUBLE, MPI_SUM, world);
+  all_ready = true;
+}
+
+double FixWallGranMesh::compute_scalar()
+{
+  reduce();
+  return all[CONTACTS];
+}
+
+double FixWallGranMesh::compute_vector(int n)
+{
+  reduce();
+  return all[n];
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixWallGranMesh::memory_usage()
+{
+  double bytes = surface->memory_usage() + watch.memory_usage() + store.memory_usage();
+  for (const auto &entry : lists) bytes += entry.second.memory_usage();
+  bytes += history.size() * sizeof(history[0]) + centres.capacity() * sizeof(Vector) +
+      radii.capacity() * sizeof(double);
+  return bytes;
+}
+
+/* ----------------------------------------------------------------------
+   storage by atom
+------------------------------------------------------------------------- */
+
+void FixWallGranMesh::grow_arrays(int nmax)
+{
+  store.resize(nmax);
+}
+
+void FixWallGranMesh::copy_arrays(int i, int j, int /*delflag*/)
+{
+  store_contacts();    // a fix before this one deletes atoms before they migrate
+  store.copy(i, j);
+}
+
+void FixWallGranMesh::set_arrays(int i)
+{
+  store.make(i, 0);
+}
+
+int FixWallGranMesh::pack_exchange(int i, double *buf)
+{
+  return store.pack(i, buf);
+}
+
+int FixWallGranMesh::unpack_exchange(int i, double *buf)
+{
+  const int m = store.unpack(i, buf);
+  maxexchange = std::max(maxexchange, m);
+  return m;
+}
+
+/* ----------------------------------------------------------------------
+   restart file: what identifies the surface, sums so far, and the contacts of each atom
+------------------------------------------------------------------------- */
+
+void FixWallGranMesh::write_restart(FILE *fp)
+{
+  const bool in_use = lists_newer;
+  store_contacts();
+  lists_newer = in_use;    // the run goes on with the lists
+  double momentum[3];
+  if (update->whichflag == 1) keep_given();
+  MPI_Allreduce(last, momentum, 3, MPI_DOUBLE, MPI_SUM, world);
+  reduce();
+  std::vector<double> recorded;
+  if (recorder) recorded = recorder->pack();
+  if (comm->me > 0) return;
+  std::vector<double> list = {RESTART_FORMAT, static_cast<double>(surface->count()),
+                              surface->checksum()};
+  list.insert(list.end(), all + IMPULSE, all + IMPULSE + 3);
+  list.insert(list.end(), momentum, momentum + 3);
+  const RunClock::State at = clock.state();
+  list.insert(list.end(), {at.base, at.base_step, at.last, at.step_size, at.on});
+  list.push_back(static_cast<double>(last_step));
+  list.push_back(static_cast<double>(recorded.size()));
+  list.insert(list.end(), recorded.begin(), recorded.end());
+  if (list.size() * sizeof(double) > MAXSMALLINT)
+    error->one(FLERR, "{} must have at most {} bytes in a restart file, got {}", caller,
+               MAXSMALLINT, list.size() * sizeof(double));
+  const int size = static_cast<int>(list.size() * sizeof(double));
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(list.data(), sizeof(double), list.size(), fp);
+}
+
+void FixWallGranMesh::restart(char *buf)
+{
+  double list[RESTART_SIZE];
+  memcpy(list, buf, sizeof(list));
+  if (list[0] != RESTART_FORMAT)
+    error->all(FLERR,
+               "{}: the restart file is of another version of the fix: run from the start again",
+               caller);
+  if (list[1] != surface->count() ||
+      std::fabs(list[2] - surface->checksum()) > SAME_SURFACE * std::fabs(surface->checksum()))
+    error->all(
+        FLERR,
+        "{}: the restart file was written with another surface ({:.0f} triangles there, {} here)",
+        caller, list[1], surface->count());
+  for (int d = 0; d < 3 && comm->me == 0; d++) {
+    mine[IMPULSE + d] = list[3 + d];
+    last[d] = list[6 + d];
+  }
+  all_ready = false;
+  clock.set_state({list[9], list[10], list[11], list[12], list[13]});
+  last_step = static_cast<bigint>(list[14]);
+  std::vector<double> recorded(static_cast<size_t>(list[RESTART_SIZE - 1]));
+  if (!recorder || recorded.empty()) return;
+  memcpy(recorded.data(), buf + sizeof(list), recorded.size() * sizeof(double));
+  recorder->unpack(recorded.data());
+}
+
+int FixWallGranMesh::pack_restart(int i, double *buf)
+{
+  const int m = 1 + store.pack(i, &buf[1]);
+  buf[0] = m;
+  return m;
+}
+
+void FixWallGranMesh::unpack_restart(int i, int nth)
+{
+  double *extra = atom->extra[i];
+  int m = 0;
+  for (int k = 0; k < nth; k++) m += static_cast<int>(extra[m]);
+  store.unpack(i, &extra[m + 1]);
+}
+
+int FixWallGranMesh::size_restart(int i)
+{
+  return 1 + SurfaceContactStore::packed(store.contacts(i));
+}
+
+int FixWallGranMesh::maxsize_restart()
+{
+  // over all ranks: rank 0 writes it, and read_restart sizes its buffer by it
+
+  int mine_most = 0, most;
+  for (int i = 0; i < atom->nlocal; i++) mine_most = std::max(mine_most, store.contacts(i));
+  MPI_Allreduce(&mine_most, &most, 1, MPI_INT, MPI_MAX, world);
+  return 1 + SurfaceContactStore::packed(most);
+}

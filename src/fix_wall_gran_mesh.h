@@ -1,0 +1,128 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(wall/gran/mesh,FixWallGranMesh);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_WALL_GRAN_MESH_H
+#define LMP_FIX_WALL_GRAN_MESH_H
+
+#include "fix.h"
+
+#include "contact_holder.h"
+#include "contact_list.h"
+#include "fast_balls.h"
+#include "impact_force.h"
+#include "run_clock.h"
+#include "surface_contact_store.h"
+#include "surface_options.h"
+#include "surface_recorder.h"
+#include "surface_watch.h"
+
+#include <array>
+#include <deque>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class FixWallGranMesh : public Fix, public ContactHolder {
+ public:
+  FixWallGranMesh(class LAMMPS *, int, char **);
+  ~FixWallGranMesh() override;
+  int setmask() override;
+  void init() override;
+  void setup_post_neighbor() override;
+  void setup(int) override;
+  void pre_exchange() override;
+  void post_neighbor() override;
+  void post_force(int) override;
+  void end_of_step() override;
+  void reset_dt() override;
+  void post_run() override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+
+  double memory_usage() override;
+  void grow_arrays(int) override;
+  void copy_arrays(int, int, int) override;
+  void set_arrays(int) override;
+  int pack_exchange(int, double *) override;
+  int unpack_exchange(int, double *) override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+  int pack_restart(int, double *) override;
+  void unpack_restart(int, int) override;
+  int size_restart(int) override;
+  int maxsize_restart() override;
+
+  void find_contacts(bool starting, bool lists_new) override;
+  double elastic_energy() const override;
+
+ private:
+  std::string caller;    // style and ID, for messages
+  SurfaceOptions options;
+  std::unique_ptr<Slope::TouchedSurface> surface;
+  class PairGranRestitution *pair;
+
+  // The contacts of this rank's balls, by type and radius of the ball. Each has a slot in watch, and in the
+  // contact list a phantom ball as partner: a fixed ball of the same size, so placed that it touches the
+  // ball where the surface does, and as deep.
+
+  Slope::SurfaceWatch watch;
+  struct Kind {
+    int type;
+    double radius;
+    bool operator<(const Kind &other) const
+    {
+      return type != other.type ? type < other.type : radius < other.radius;
+    }
+  };
+  std::map<Kind, Slope::ContactList> lists;
+  std::vector<double> radii;    // of each slot's phantom
+  std::deque<std::array<double, Slope::HISTORY>> history;
+  std::vector<Slope::Vector> centres;    // of the phantoms
+  bool lists_newer;    // contacts have been updated since they were last stored by atom
+  Slope::SurfaceContactStore store;
+
+  // what the balls do to the surface: the force as the contact law has it, its moment, and the momentum
+  // that it has got since the fix was defined
+
+  enum { FORCE = 0, MOMENT = 3, IMPULSE = 6, CONTACTS = 9, NVALUE };
+  double mine[NVALUE], all[NVALUE];
+  bool all_ready;
+  std::unique_ptr<SurfaceRecorder> recorder;    // nullptr without output
+  Slope::RunClock clock;
+  double given[3];    // momentum per time in this step, as velocity Verlet hands it over
+  double
+      last[3];    // and in a step that ended a run, which the set-up of the next one only estimates
+  bigint last_step;
+  bool first_step;
+
+  FastBalls fast;
+
+  Slope::ContactLaw law_of(int type) const;
+  void add_contact(int slot, const double *from);
+  void look();
+  void check_speed(int i, const Slope::Vector &normal);
+  void store_contacts();
+  void apply(bool);
+  Slope::Vector force_of_law(const Slope::SurfaceWatch::Slot &, double phase,
+                             const Slope::Vector &f, const Slope::Vector &v,
+                             const Slope::ImpactForce &) const;
+  void keep_given();
+  void reduce();
+  void record();
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

@@ -1,0 +1,108 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+/* The nodes of a plan grid on a surface, looked at tile by tile and only where somebody asks.
+   No LAMMPS. Lengths are in one unit of the caller's choice (m). */
+
+#ifndef SLOPE_PLAN_NODES_H
+#define SLOPE_PLAN_NODES_H
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace Slope {
+
+// square plan grid: nodes at origin + integers * spacing, those inside the rectangle
+struct NodeGrid {
+  double xlo, xhi, ylo, yhi;
+  double spacing;
+  double xorigin, yorigin;
+};
+
+// number of nodes of the plan grid; a double, because it may be beyond any integer
+double count_nodes(const NodeGrid &grid);
+
+// the surface, column by column; called only inside the rectangle of the plan grid
+struct Surface {
+  // height of the surface at x,y; false where there is none
+  std::function<bool(double x, double y, double &z)> height;
+
+  // true where balls are wanted; empty: everywhere
+  std::function<bool(double x, double y)> keep;
+
+  // Where keep() is false: height of the ground that other balls make there, below height();
+  // false where unknown. The vertical gap at the rim of keep() is closed. Empty: leave it.
+  std::function<bool(double x, double y, double &z)> scar;
+};
+
+// Cell i,j of the plan grid has its corners at the nodes i,j i+1,j i,j+1 i+1,j+1. Cells that
+// reach over the edge of the rectangle have corners outside: i and j run from -1 to nx and ny.
+// A tile is a square of nodes and of the cells of which these are the lower left corners; the
+// first tiles of a row or column have the cells before their nodes, too.
+class PlanNodes {
+ public:
+  static constexpr int TILE = 32;    // nodes along its side, a power of two
+  static constexpr double ROUND_OFF = 1.0e-9;    // of the spacing
+
+  // Needs a spacing > 0 and a rectangle that is not empty (else std::invalid_argument), fewer
+  // than 2^31 nodes (else std::length_error).
+  PlanNodes(const NodeGrid &grid, const Surface &surface, int tile = TILE);
+
+  const NodeGrid grid;
+  const Surface surface;
+  const int tile, shift;    // 1 << shift is the tile
+  int nx, ny, tiles_x, tiles_y;
+  double xfirst, yfirst;    // node 0,0
+
+  // a node on the edge of the rectangle does not fall out of it by round-off
+  double x(int i) const;
+  double y(int j) const;
+
+  // what is at a node; nothing beyond the grid. The reference is good until forget().
+  struct Look {
+    double z;     // NaN: no surface
+    bool ball;    // kept, so there is a ball
+    bool surface() const { return z == z; }
+  };
+  const Look &at(int i, int j);
+
+  bool has_ball(int i, int j) { return at(i, j).ball; }
+
+  // 0 to 4 of the corners of a cell that have a ball
+  int corners(int i, int j)
+  {
+    return has_ball(i, j) + has_ball(i + 1, j) + has_ball(i, j + 1) + has_ball(i + 1, j + 1);
+  }
+
+  // a cell's number, and the tile that it belongs to
+  int64_t cell(int i, int j) const { return static_cast<int64_t>(j + 1) * (nx + 1) + (i + 1); }
+  int cell_i(int64_t cell) const { return static_cast<int>(cell % (nx + 1)) - 1; }
+  int cell_j(int64_t cell) const { return static_cast<int>(cell / (nx + 1)) - 1; }
+
+  // whether all nodes of a tile i,j and those around it have a ball, or none has
+  enum Balls { NONE, SOME, ALL };
+  Balls around(int i, int j);
+
+  // forget all tiles but those in rows jlo to jhi of tiles
+  void forget(int jlo = 0, int jhi = -1);
+  size_t looked_at() const { return known; }    // tiles that are remembered
+
+ private:
+  struct Tile {
+    std::vector<Look> nodes;
+    int inside, balls;    // nodes of the grid, those with a ball
+  };
+  std::vector<std::unique_ptr<Tile>> tiles;
+  size_t known;
+  const Look nothing;
+
+  const Tile &look(int tile_number);
+};
+
+}    // namespace Slope
+
+#endif

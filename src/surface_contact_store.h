@@ -1,0 +1,86 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+/* The contacts of balls with a surface, stored by ball: what exchange and restart carry. No LAMMPS. */
+
+#ifndef SLOPE_SURFACE_CONTACT_STORE_H
+#define SLOPE_SURFACE_CONTACT_STORE_H
+
+#include "contact_law.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace Slope {
+
+class SurfaceContactStore {
+ public:
+  // of a contact: its normal, by which it is found again, and its history
+  static constexpr int NUMBERS = 3 + HISTORY;
+
+  void resize(int balls)    // as many as there may be
+  {
+    count.resize(balls, 0);
+    start.resize(balls, 0);
+  }
+
+  void clear()    // all contacts
+  {
+    std::fill(count.begin(), count.end(), 0);
+    numbers.clear();
+  }
+
+  int contacts(int i) const { return count[i]; }
+  double *contact(int i, int k) { return &numbers[start[i] + k * NUMBERS]; }
+
+  // space for n contacts of ball i, which loses those that it had
+  void make(int i, int n)
+  {
+    start[i] = numbers.size();
+    count[i] = n;
+    numbers.resize(numbers.size() + n * NUMBERS);
+  }
+
+  void copy(int from, int to)    // both share the numbers
+  {
+    count[to] = count[from];
+    start[to] = start[from];
+  }
+
+  // returns how many values of the buffer there are
+  int pack(int i, double *buffer) const
+  {
+    buffer[0] = count[i];
+    std::copy_n(numbers.begin() + start[i], count[i] * NUMBERS, buffer + 1);
+    return packed(count[i]);
+  }
+
+  int unpack(int i, const double *buffer)
+  {
+    const int n = static_cast<int>(buffer[0]);
+    make(i, n);
+    std::copy_n(buffer + 1, n * NUMBERS, numbers.begin() + start[i]);
+    return packed(n);
+  }
+
+  static int packed(int contacts) { return 1 + contacts * NUMBERS; }
+
+  double memory_usage() const
+  {
+    return static_cast<double>(count.capacity()) * sizeof(int) +
+        static_cast<double>(start.capacity()) * sizeof(size_t) +
+        static_cast<double>(numbers.capacity()) * sizeof(double);
+  }
+
+ private:
+  std::vector<int> count;
+  std::vector<size_t> start;
+  std::vector<double> numbers;
+};
+
+}    // namespace Slope
+
+#endif

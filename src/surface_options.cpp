@@ -1,0 +1,186 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#include "surface_options.h"
+
+#include "elevation_grid.h"
+#include "rank_zero.h"
+#include "stl_file.h"
+#include "style_argument.h"
+#include "terrain_surface.h"
+#include "triangle_mesh.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+
+#include <algorithm>
+#include <exception>
+
+using namespace LAMMPS_NS;
+using namespace Slope;
+
+static constexpr double TOO_LARGE = 100.0;    // largest sizes of a mesh, in those of the box
+static constexpr double DOUBTED = 10.0;
+
+/* ---------------------------------------------------------------------- */
+
+SurfaceOptions::SurfaceOptions(LAMMPS *lmp, const std::string &_caller, int narg, char **arg) :
+    Pointers(lmp), point{0.0, 0.0, 0.0}, every(0), caller(_caller), terrain(false),
+    scale(1.0), move{0.0, 0.0, 0.0}
+{
+  if (narg < 2)
+    error->all(FLERR, "{}: needs TYPE and FILE.stl or terrain FILE.asc, got {} arguments", caller,
+               narg);
+  type = whole_number_argument(lmp, caller + " type", arg[0]);
+  if (type < 1 || type > atom->ntypes)
+    error->all(FLERR, "{} type must be 1 to {} (the atom types of the box), got {}", caller,
+               atom->ntypes, type);
+
+  int iarg = 1;
+  terrain = std::string(arg[iarg]) == "terrain";
+  if (terrain && ++iarg == narg) error->all(FLERR, "{} terrain: FILE.asc is missing", caller);
+  file = arg[iarg++];
+  while (iarg < narg) iarg += read_keyword(narg - iarg, &arg[iarg]);
+}
+
+/* ---------------------------------------------------------------------- */
+
+int SurfaceOptions::read_keyword(int narg, char **arg)
+{
+  const std::string keyword = arg[0];
+  const int n = keyword == "scale"              ? 1
+      : keyword == "move" || keyword == "point" ? 3
+      : keyword == "output"                     ? 2
+                                                : 0;
+  if (n == 0)
+    error->all(FLERR, "{}: unknown keyword {}, must be scale, move, point or output", caller,
+               keyword);
+  if (narg <= n)
+    error->all(FLERR, "{} {} must be followed by {} value{}, got {}", caller, keyword, n,
+               n > 1 ? "s" : "", narg - 1);
+  if (terrain && (keyword == "scale" || keyword == "move"))
+    error->all(FLERR, "{}: {} is for STL files, a terrain stays where its file has it", caller,
+               keyword);
+
+  const std::string what = caller + " " + keyword;
+  if (keyword == "scale") {
+    scale = number_argument(lmp, what, arg[1]);
+    if (!(scale > 0.0)) error->all(FLERR, "{} must be > 0, got {}", what, arg[1]);
+  } else if (keyword == "output") {
+    output = arg[1];
+    every = whole_number_argument(lmp, what + " Nevery", arg[2]);
+    if (every < 1) error->all(FLERR, "{} Nevery must be >= 1, got {}", what, arg[2]);
+  } else {
+    Vector &v = keyword == "move" ? move : point;
+    v = {number_argument(lmp, what, arg[1]), number_argument(lmp, what, arg[2]),
+         number_argument(lmp, what, arg[3])};
+  }
+  return 1 + n;
+}
+
+/* ----------------------------------------------------------------------
+   one rank reads; what went wrong there ends the run on all of them
+------------------------------------------------------------------------- */
+
+std::unique_ptr<TouchedSurface> SurfaceOptions::surface() const
+{
+  std::unique_ptr<TouchedSurface> made = terrain ? read_terrain() : read_stl();
+  check_place(*made);
+  return made;
+}
+
+std::unique_ptr<TouchedSurface> SurfaceOptions::read_stl() const
+{
+  StlFile stl;
+  on_rank_zero(lmp, caller, [&]() {
+    stl = StlFile::read(file, scale, move);
+  });
+  int n[2] = {static_cast<int>(stl.triangles.size()), stl.skipped};
+  MPI_Bcast(n, 2, MPI_INT, 0, world);
+  stl.triangles.resize(n[0]);
+  const int width = sizeof(Triangle) / sizeof(double), most = MAXSMALLINT / 16 / width;
+  for (int k = 0; k < n[0]; k += most)
+    MPI_Bcast(&stl.triangles[k], std::min(n[0] - k, most) * width, MPI_DOUBLE, 0, world);
+  std::unique_ptr<TouchedSurface> made(new TriangleMesh(stl.triangles));
+
+  double area = 0.0;
+  for (const Triangle &t : stl.triangles) area += t.area();
+  const Vector &low = made->low(), &high = made->high();
+  if (comm->me == 0) {
+    utils::logmesg(
+        lmp,
+        "{}: {} triangles, area {:.6g}, x {:.6g} to {:.6g}, y {:.6g} to {:.6g}, z {:.6g} to "
+        "{:.6g}\n",
+        caller, n[0], area, low.x, high.x, low.y, high.y, low.z, high.z);
+    if (n[1])
+      error->warning(FLERR, "{}: {} of the {} triangles of {} have no area and are skipped", caller,
+                     n[1], n[0] + n[1], file);
+  }
+  return made;
+}
+
+std::unique_ptr<TouchedSurface> SurfaceOptions::read_terrain() const
+{
+  ElevationGrid grid;
+  on_rank_zero(lmp, caller, [&]() {
+    grid = ElevationGrid::read(file);
+  });
+  int size[2] = {grid.nx, grid.ny};
+  double place[3] = {grid.xlo, grid.ylo, grid.cell};
+  MPI_Bcast(size, 2, MPI_INT, 0, world);
+  MPI_Bcast(place, 3, MPI_DOUBLE, 0, world);
+  if (comm->me > 0) grid = ElevationGrid(size[0], size[1], place[0], place[1], place[2], 0.0);
+  for (int j = 0; j < grid.ny; j++) MPI_Bcast(&grid.at(0, j), grid.nx, MPI_DOUBLE, 0, world);
+
+  std::unique_ptr<TouchedSurface> made;
+  try {
+    made.reset(new TerrainSurface(grid, file));
+  } catch (std::exception &e) {    // on all ranks alike
+    error->all(FLERR, "{}: {}", caller, e.what());
+  }
+  const Vector &low = made->low(), &high = made->high();
+  if (comm->me == 0)
+    utils::logmesg(
+        lmp,
+        "{}: smooth ground, {} x {} cells of {:.8g}, x {:.6g} to {:.6g}, y {:.6g} to {:.6g}, z "
+        "{:.6g} to {:.6g}\n",
+        caller, grid.nx, grid.ny, grid.cell, low.x, high.x, low.y, high.y, low.z, high.z);
+  return made;
+}
+
+/* ----------------------------------------------------------------------
+   a file in millimetres: far too large, or nowhere near the balls
+------------------------------------------------------------------------- */
+
+void SurfaceOptions::check_place(const TouchedSurface &made) const
+{
+  const double low[3] = {made.low().x, made.low().y, made.low().z};
+  const double high[3] = {made.high().x, made.high().y, made.high().z};
+  double size = 0.0, box = 0.0;
+  for (int d = 0; d < 3; d++) {
+    size = std::max(size, high[d] - low[d]);
+    box = std::max(box, domain->boxhi[d] - domain->boxlo[d]);
+    const bool fixed = domain->boundary[d][0] < 2 && domain->boundary[d][1] < 2;
+    if (fixed && (high[d] < domain->boxlo[d] || low[d] > domain->boxhi[d]))
+      error->all(
+          FLERR,
+          "{}: the surface of {} must reach into the box, {} {:.6g} to {:.6g}, got {:.6g} to "
+          "{:.6g}: is it in other units (scale 0.001) or another place (move)?",
+          caller, file, "xyz"[d], domain -> boxlo[d], domain -> boxhi[d], low[d], high[d]);
+  }
+  if (size > TOO_LARGE * box)
+    error->all(FLERR,
+               "{}: the surface of {} must be at most {:g} times as large as the box, {:.6g}, got "
+               "{:.6g}: is it in other units (scale 0.001)?",
+               caller, file, TOO_LARGE, box, size);
+  if (size > DOUBTED * box && comm->me == 0)
+    error->warning(
+        FLERR,
+        "{}: the surface of {} is {:.3g} times as large as the box, {:.6g}: is it in other "
+        "units (scale 0.001)?",
+        caller, file, size / box, box);
+}

@@ -1,0 +1,50 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#ifndef SLOPE_TRIANGLE_MESH_H
+#define SLOPE_TRIANGLE_MESH_H
+
+#include "touched_surface.h"
+
+#include <vector>
+
+namespace Slope {
+
+// Triangles in a tree of boxes: what is near a point is found in the logarithm of their number. They
+// need not be connected, and neither order nor direction matters.
+class TriangleMesh : public TouchedSurface {
+ public:
+  explicit TriangleMesh(
+      const std::vector<Triangle> &triangles);    // at least one, each with an area
+
+  void find_near(const Vector &x, double reach, std::vector<int> &numbers) const override;
+  Triangle triangle(int number) const override { return triangles[number]; }
+  int count() const override { return static_cast<int>(triangles.size()); }
+  bool sparse() const override { return false; }
+  const Vector &low() const override { return boxes[0].low; }
+  const Vector &high() const override { return boxes[0].high; }
+  double checksum() const override { return sum; }
+  double memory_usage() const override;
+
+ private:
+  static constexpr int LEAF = 4;    // triangles below which a box is not divided
+
+  struct Box {
+    Vector low, high;
+    int first, last;    // of order
+    int other;          // number of the second half's box; the first one's follows; 0: a leaf
+  };
+
+  std::vector<Triangle> triangles;    // in the order of the file
+  std::vector<int> order;
+  std::vector<Box> boxes;
+  double sum;
+
+  int build(const std::vector<Vector> &middles, int first, int last);
+};
+
+}    // namespace Slope
+
+#endif

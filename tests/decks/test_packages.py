@@ -1,0 +1,160 @@
+"""Suffixes, bonds: some with LAMMPS packages that the default build does not have (tests/matrix.sh --only packages)."""
+
+import functools
+import os
+import re
+import subprocess
+
+import deck_helpers
+import numpy
+import pytest
+from deck_helpers import ENVIRONMENT, LMP, collapse_deck, read_dump, run_deck, write_collapse
+
+
+@functools.lru_cache
+def help_text():
+    return subprocess.run([LMP, "-h"], env=ENVIRONMENT, stdin=subprocess.DEVNULL, capture_output=True, text=True).stdout
+
+
+def needs(package):
+    """Skip where LMP is built without a package of LAMMPS."""
+    installed = help_text().split("Installed packages:")[1].split("* ")[0].split()
+    if package not in installed:
+        pytest.skip(f"LMP is built without package {package}")
+
+
+# --- suffixes ---
+
+OMP = "package omp 1\nsuffix omp\n"
+FLOOR = """
+units        si
+atom_style   sphere
+boundary     f f f
+comm_modify  vel yes
+region       box block 0 10 0 10 -2 10
+create_box   2 box
+create_atoms 1 single 5.2 5.1 2
+create_atoms 2 single 5 5 0
+set          type * diameter 1.0 density 2500
+group        ball type 1
+group        floor type 2
+pair_style   gran/restitution
+pair_coeff   * * stiffness 1e7 1e7 restitution 0.5 friction 30
+neighbor     0.3 bin
+neigh_modify every 1 delay 0 check yes
+timestep     2e-3
+fix          move ball nve/sphere
+fix          weight ball gravity 9.80665 vector 0 0 -1
+fix          stay floor freeze
+info         out log fixes
+dump         all all custom 100 out.dump id x y z vx vy vz omegax omegay omegaz
+dump_modify  all sort id format float %.17g
+run          500
+"""
+
+
+@pytest.mark.parametrize("suffix", ["kk", "kk/device", "kk/host", "omp", "gpu", "intel", "opt"])
+def test_every_suffix_is_known(tmp_path, monkeypatch, suffix):
+    """By the pair (frozen balls), by the guards (what moves balls and does work); to the bit, by the same fixes."""
+    if "LMP_SUFFIXES" not in os.environ:
+        pytest.skip("LMP_SUFFIXES is not set: the test program of a build with the styles in it")
+    monkeypatch.setattr(deck_helpers, "LMP", os.environ["LMP_SUFFIXES"])
+    found = []
+    for name, first in (("plain", ""), ("suffix", f"suffix {suffix}\n")):
+        folder = tmp_path / name
+        folder.mkdir()
+        log = run_deck(first + FLOOR, folder)
+        found.append(read_dump(folder / "out.dump")[500])
+        assert "WARNING: Pair gran/restitution" not in log
+        for style in ("freeze", "gravity", "nve/sphere"):
+            assert f"style = {style}{'/' + suffix if first else ''}," in log, style
+    assert numpy.array_equal(*found) and numpy.abs(found[0][:, 4:]).max() > 0.1
+
+
+def test_suffix_omp_is_the_run_without(tmp_path):
+    """Energy of the balls in the field of fix gravity/omp is counted, or the guard would cry; and all is the same."""
+    needs("OPENMP")
+    found = {}
+    for name, first in (("plain", ""), ("omp", OMP)):
+        folder = tmp_path / name
+        folder.mkdir()
+        log = run_deck(first + FLOOR, folder)
+        found[name] = read_dump(folder / "out.dump")
+        assert "WARNING: Pair gran/restitution" not in log
+    for style in ("nve/sphere/omp", "gravity/omp"):
+        assert re.search(rf"style = {style},", log), style
+    assert found["plain"].keys() == found["omp"].keys() and len(found["omp"]) == 6
+    for step, balls in found["plain"].items():
+        assert numpy.allclose(found["omp"][step], balls, rtol=1e-12, atol=1e-12), step
+    assert numpy.abs(found["omp"][500] - found["omp"][0]).max() > 0.5      # it has fallen, and touched the other
+
+
+def test_energy_that_grows_is_seen_with_suffix_omp(tmp_path):
+    """The guard is not off there."""
+    needs("OPENMP")
+    late = FLOOR.replace("restitution 0.5 friction 30", "restitution 1.0 friction 0").replace(
+        "neighbor     0.3 bin\nneigh_modify every 1 delay 0 check yes", "neighbor 0.0 bin\n"
+        "neigh_modify every 8 delay 8 check no").replace("single 5.2 5.1 2", "single 5.0 5.0 4")
+    log = run_deck(OMP + late.replace("run          500", "timestep 1.5e-3\nrun 3000"), tmp_path)
+    assert "the energy of the balls grew by" in log
+
+
+def test_a_collapse_with_suffix_omp(tmp_path):
+    """Walls, two ranks; sums are made in another order."""
+    needs("OPENMP")
+    dumps = []
+    for name, first in (("plain", ""), ("omp", OMP)):
+        folder = tmp_path / name
+        folder.mkdir()
+        write_collapse(folder, balls=200)
+        run_deck(first + collapse_deck("run 200", every=200), folder, np=2)
+        dumps.append(read_dump(folder / "out.dump")[200])
+    assert numpy.allclose(*dumps, rtol=1e-9, atol=1e-9)
+
+
+# --- bonds ---
+
+BONDS = """
+units        si
+atom_style   hybrid sphere bond
+boundary     f f f
+comm_modify  vel yes cutoff 3.0
+special_bonds {special}
+region       box block -5 5 -5 5 -5 5
+create_box   1 box bond/types 1 extra/bond/per/atom 2 extra/special/per/atom 4
+create_atoms 1 single 0 0 0
+create_atoms 1 single 0.999 0 0
+set          type 1 diameter 1.0 density 2500
+bond_style   zero
+bond_coeff   1
+create_bonds single/bond 1 1 2
+pair_style   gran/restitution
+pair_coeff   1 1 stiffness 1e6 1e6 restitution 0.5
+neighbor     0.3 bin
+neigh_modify every 1 delay 0 check yes
+timestep     1e-3
+fix          move all nve/sphere
+thermo_style custom step fmax
+thermo_modify format float %.10g
+run          0
+"""
+
+
+@pytest.mark.parametrize("special, force", [("lj/coul 0 1 1", 0.0), ("lj/coul 1 1 1", 1000.0)])
+def test_bonded_balls_touch_or_do_not(tmp_path, special, force):
+    needs("MOLECULE")
+    log = run_deck(BONDS.format(special=special), tmp_path)
+    assert float(re.search(r"^ +0 +(\S+)\s*$", log, re.MULTILINE)[1]) == pytest.approx(force, rel=1e-6)
+
+
+@pytest.mark.parametrize("special, values", [("lj/coul 0.5 1 1", "lj 0.5 1 1 coul 0.5 1 1"),
+                                             ("lj 0 1 1 coul 1 1 1", "lj 0 1 1 coul 1 1 1")])
+def test_parts_of_contacts_are_refused(tmp_path, special, values):
+    needs("MOLECULE")
+    run_deck(BONDS.format(special=special), tmp_path,
+             expect_error="Pair gran/restitution: special_bonds must be 0 or 1, "
+             f"the same for lj and coul, as balls that are bonded touch fully or not at all, got {values}")
+
+
+def test_special_bonds_without_bonds_do_not_matter(tmp_path):
+    run_deck("special_bonds lj/coul 0.5 1 1\n" + FLOOR, tmp_path)

@@ -1,0 +1,73 @@
+"""The long statistics of ensembles and calibrations, on stand-ins that cost nothing: not a part of the test suite.
+
+    /usr/bin/python3 tests/statistics/ensembles.py [indices] [bands] [twins]
+
+Some minutes on one core. What came out is in doc/src/tool_study.rst and doc/src/tool_calibrate.rst.
+"""
+import sys
+from pathlib import Path
+
+import numpy as np
+
+TOP = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(TOP / "tests" / "tools"), str(TOP / "tools")]
+
+import twins  # noqa: E402  (after the path is set)
+from test_ensemble import ishigami, ishigami_indices, noisy  # noqa: E402
+from slope_tools import designs, emulator, hazard  # noqa: E402
+
+
+def indices(seeds=5):
+    """Largest error of the Sobol indices of Ishigami's function by 256 points."""
+    exact = np.concatenate(ishigami_indices())
+    for seed in range(seeds):
+        points = designs.points(designs.SOBOL, 3, 256, seed)
+        found = emulator.analyse("abc", points, ishigami(points), range(256))
+        mine = np.array([one.first for one in found.influences] + [one.total for one in found.influences])
+        print(f"indices, seed {seed}: largest error {np.abs(mine - exact).max():.4f}; {found.told}", flush=True)
+
+
+def bands(repetitions=40, rounds=10):
+    """How many of 40 ensembles cover a reference of 400 runs at its 50, 75 and 90 %, in 10 rounds."""
+    for points, several in ((32, 1), (64, 1), (128, 1), (32, 3)):
+        covered = np.zeros((rounds, 3), int)
+        for turn in range(rounds):
+            rng = np.random.default_rng(1000 + turn)
+            reference = noisy(rng.random((400, 3)), rng)
+            levels = np.quantile(reference, [0.5, 0.75, 0.9], method="inverted_cdf")
+            for k in range(repetitions):
+                place = np.repeat(designs.points(designs.SOBOL, 3, points, 100 * turn + k), several, axis=0)
+                curve = hazard.curve(noisy(place, rng), np.repeat(range(points), several))
+                for i, level in enumerate(levels):
+                    band = curve.at(level)
+                    covered[turn, i] += band.low <= (reference > level).mean() <= band.high
+        print(f"bands, {points} points of {several} runs: {covered.min()} to {covered.max()} of {repetitions} cover, "
+              f"mean {covered.mean():.1f}; {np.mean((covered >= 32)) * 100:.0f} % of the rounds have 32 or more",
+              flush=True)
+
+
+def twin_experiments(seeds=10, runs=60):
+    """Hidden values that can be told apart, and those that cannot."""
+    good = 0
+    for seed in range(seeds):
+        one = twins.Twin(seed, runs)
+        widths = [one.found.interval(i)[1] - one.found.interval(i)[0] for i in range(3)] * twins.WIDTH
+        hit = bool((np.abs(one.error) <= twins.CLOSE).all())
+        good += hit
+        print(f"twin, seed {seed}: error {one.error.round(3)}, 90 % intervals {np.round(widths, 3)} wide, pairs hold "
+              f"{one.holds}, {'recovered' if hit else 'not recovered'}", flush=True)
+    print(f"twins: {good} of {seeds} recovered to 2 degrees, 0.02 and 0.1 d by {runs} runs", flush=True)
+    held = 0
+    for seed in range(seeds):
+        one = twins.Twin(seed, 40, outputs=(0,))
+        held += sum(one.holds)
+        said = any("not identifiable" in text for text in one.words)
+        print(f"run-out alone, seed {seed}: pairs hold {one.holds}, {'said' if said else 'not said'}", flush=True)
+    print(f"run-out alone: {held} of {3 * seeds} regions hold the hidden values", flush=True)
+
+
+if __name__ == "__main__":
+    wanted = sys.argv[1:] or ["indices", "bands", "twins"]
+    for name, what in (("indices", indices), ("bands", bands), ("twins", twin_experiments)):
+        if name in wanted:
+            what()

@@ -1,0 +1,281 @@
+"""tools/slope calibrate: twin experiments on a stand-in and on small collapses, resuming, regions, words, bad input."""
+import csv
+import os
+import shlex
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import rasterio
+import yaml
+
+import twins
+from tiny_collapse import LMP, TOP, write_case
+
+TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
+sys.path.insert(0, str(TOOLS))
+
+from slope_tools import backanalysis, calibration, cli, distributions, rasters  # noqa: E402
+
+pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
+PROGRAM = [sys.executable, str(TOOLS / "slope")]
+
+
+# --- the search, on functions ---
+
+def test_a_twin_is_recovered_where_it_can_be():
+    one = twins.Twin(1, 40, batch=9)
+    assert (np.abs(one.error) <= twins.CLOSE).all(), one.error
+    assert all(one.holds) and len(one.points) == 40
+    assert not any("not identifiable" in text for text in one.words)
+    # the later points lie where the hidden values are
+    place = (one.hidden - twins.LOW) / twins.WIDTH
+    first, last = (np.abs(part - place).mean() for part in (one.points[:14], one.points[-9:]))
+    assert last < 0.6 * first
+
+
+def test_what_cannot_be_told_apart_is_said_and_the_region_holds_the_truth():
+    one = twins.Twin(3, 24, batch=10, outputs=(0,))
+    assert all(one.holds)
+    assert any("not identifiable" in text for text in one.words)
+
+
+def test_two_variables_that_make_up_for_each_other_are_said_to():
+    rng = np.random.default_rng(4)
+    variables = [distributions.distribution(name, "0:1", "", "") for name in "ab"]
+    points = backanalysis.first(2, 1)
+    outputs = (points.sum(axis=1) + rng.normal(0, 0.01, len(points)))[:, None]
+    found = backanalysis.posterior(points, outputs, [backanalysis.Target("sum", "", 1.0, 0.0)])
+    assert found.correlation()[0, 1] < -0.9
+    assert any(text.startswith("a and b are not identifiable apart from each other: more a with less b")
+               for text in backanalysis.judgement(found, variables))
+    region = found.pair(0, 1)
+    assert region.holds([0.3, 0.7]) and region.holds([0.7, 0.3]) and not region.holds([0.9, 0.9])
+    assert region.density[region.inside].sum() == pytest.approx(0.9, abs=0.05)
+
+
+def test_intervals_of_a_gaussian():
+    """One output that is its variable, with chance 0.05: mean, and 90 % within 1.645 standard deviations."""
+    rng = np.random.default_rng(1)
+    points = np.concatenate([backanalysis.first(1, 1), rng.random((190, 1))])
+    outputs = points + rng.normal(0, 0.05, points.shape)
+    found = backanalysis.posterior(points, outputs, [backanalysis.Target("x", "", 0.4, 0.0)])
+    low, high = found.interval(0)
+    assert found.best[0] == pytest.approx(0.4, abs=0.015) and found.noise[0] == pytest.approx(0.05, rel=0.15)
+    assert high - low == pytest.approx(2 * 1.645 * 0.05, rel=0.2)
+    wide = backanalysis.posterior(points, outputs, [backanalysis.Target("x", "", 0.4, 0.1)]).interval(0)
+    assert wide[1] - wide[0] == pytest.approx(2 * 1.645 * np.hypot(0.05, 0.1), rel=0.2)
+
+
+def test_what_the_model_cannot_reach_is_said():
+    points = backanalysis.first(2, 1)
+    rng = np.random.default_rng(2)
+    outputs = np.column_stack([points[:, 0], points[:, 1], points[:, 0] + 1]) + rng.normal(0, 0.01, (len(points), 3))
+    targets = [backanalysis.Target(name, "", value, 0.0) for name, value in zip("xyz", (0.5, 0.5, 2.5))]
+    found = backanalysis.posterior(points, outputs, targets)
+    variables = [distributions.distribution(name, "0:1", "", "") for name in "ab"]
+    assert found.misfit > 2
+    assert any("no values of these variables reach the observation" in text
+               for text in backanalysis.judgement(found, variables))
+
+
+def test_the_ledger_keeps_what_was_decided(tmp_path):
+    variables = [distributions.distribution("a", "0:10", "", "")]
+    ledger = calibration.Ledger(tmp_path, {"seed": 1}, variables)
+    ledger.add(np.array([[0.25], [0.5]]))
+    again = calibration.Ledger(tmp_path, {"seed": 1}, variables)
+    assert again.points == [{"a": "2.5"}, {"a": "5"}] and again.places([1]) == 0.5
+    with pytest.raises(calibration.SlopeError, match="must be of the same observation, variables and seed"):
+        calibration.Ledger(tmp_path, {"seed": 2}, variables)
+
+
+# --- small collapses ---
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("LMP", LMP)
+    deck = write_case(tmp_path / "case")
+    Path("case/road.csv").write_text("13,0\n18,0\n18,24\n13,24\n")
+    terrain = rasters.read(Path("case/terrain.asc"))
+    rasters.write_asc_local(Path("case/terrain.asc"), terrain._replace(
+        crs=rasterio.crs.CRS.from_epsg(6677), offset=(-12000.0, 34000.0)), {})
+    deck.write_text(deck.read_text().replace("index 150", "index 700\nvariable  xoffset index 0.0").replace(
+        "sc 1.0", "sc 1.0 origin ${xoffset} 0 0"))
+    return tmp_path
+
+
+@pytest.fixture
+def slope(here, capsys):
+    """Run `slope ARGUMENTS` in the test's folder; gives status, stdout, stderr."""
+    def run(arguments):
+        capsys.readouterr()
+        try:
+            status = cli.main(shlex.split(arguments))
+        except SystemExit as error:
+            status = error.code
+        return status, *capsys.readouterr()
+    return run
+
+
+def truth(slope, values="--set friction=20 --set rolling=0.1"):
+    """The mapped deposit: that of a run with hidden values and another lattice, as a GeoTIFF."""
+    assert slope(f"study case/in.tiny {values} --set xoffset=0.4 --exceed 0.1 -o truth")[0] == 0
+    Path("truth/envelope_thickness.tif").rename("mapped.tif")
+
+
+def load():
+    with open("out/calibrate.csv", encoding="ascii") as lines:
+        return yaml.safe_load(Path("out/calibrate.yaml").read_text()), list(csv.DictReader(lines))
+
+
+WORDS = "--vary friction=5:40 --vary rolling=0:0.4"
+
+
+def test_a_calibration_of_small_collapses_goes_on_after_a_kill(slope, here):
+    truth(slope)
+    words = f"calibrate case/in.tiny --observed mapped.tif {WORDS} --repeat xoffset=0.2 --runs 16 --jobs 2 -o out"
+    process = subprocess.Popen([*PROGRAM, *shlex.split(words)], stdout=subprocess.DEVNULL, env={**os.environ})
+    end = time.monotonic() + 120
+    while len(list(Path("out").glob("*/finished.yaml"))) < 3:
+        assert time.monotonic() < end and process.poll() is None
+        time.sleep(0.1)
+    process.send_signal(signal.SIGKILL)
+    process.wait(20)
+    decided = yaml.safe_load(Path("out/calibrate.ledger.yaml").read_text())["points"]
+    status, out, err = slope(words)
+    assert status == 0, err
+    assert "runs are finished already" in out and "10 of 16 runs: friction " in out
+    about, table = load()
+    assert len(table) == 16 and [{name: row[name] for name in ("friction", "rolling")} for row in table][:10] == decided
+    assert [row["repeat"] for row in table[:4]] == ["base", "xoffset 0.2"] * 2
+    names = [entry["name"] for entry in about["targets"]]
+    assert names == ["lack of overlap", "99 % of the volume within", *(f"volume in zone {k}" for k in range(1, 7))]
+    # the outputs are those of the runs: overlap and volumes by hand
+    with rasterio.open("mapped.tif") as tif:
+        mapped = np.maximum(tif.read(1), 0)
+    from tiny_collapse import read_asc
+    for row in (table[0], table[-1]):
+        mine = read_asc(f"out/{row['run']}/tiny.thickness.asc")
+        both, either = ((mine > 0.1) & (mapped > 0.1)).sum(), ((mine > 0.1) | (mapped > 0.1)).sum()
+        assert float(row["lack of overlap (1 - CSI)"]) == pytest.approx(1 - both / either)
+        assert sum(float(row[f"volume in zone {k} (m3)"]) for k in range(1, 7)) == pytest.approx(mine.sum())
+    # zones are bands of distance that hold equal shares of what is mapped
+    assert [entry["observed"] for entry in about["targets"][2:]] == pytest.approx([mapped.sum() / 6] * 6, rel=0.15)
+    # the last run is at the best values, and near the truth in what it gives
+    assert about["best"]["run"] == table[-1]["run"] and about["best"]["set"]["friction"] == table[-1]["friction"]
+    first = sorted(float(row["score"]) for row in table[:10])
+    assert float(table[-1]["score"]) == pytest.approx(about["best"]["score"], rel=1e-5)
+    assert about["best"]["score"] < first[5]
+    for name in ("friction", "rolling"):
+        entry = about["variables"][name]
+        assert entry["low"] <= entry["high"] and entry["identifiable"] in ("yes", "roughly", "no")
+    assert about["pairs"][0]["rows_of"] == "rolling" and "x" in "".join(about["pairs"][0]["region"])
+    for name in ("calibrate.png", "predicted.png"):
+        assert Path("out", name).read_bytes().startswith(b"\x89PNG")
+    # more runs are added; what was finished is kept
+    before = {path: path.stat().st_mtime_ns for path in Path("out").glob("*/finished.yaml")}
+    status, out, err = slope(words.replace("--runs 16", "--runs 18"))
+    assert status == 0 and len(load()[1]) == 18, err
+    assert all(path.stat().st_mtime_ns == stamp for path, stamp in before.items())
+    status, _, err = slope(words)
+    assert status == 2 and "--runs: must be at least what out/calibrate.ledger.yaml has, 18, got 16" in err
+    status, _, err = slope(words.replace("friction=5", "friction=6"))
+    assert status == 2 and "calibrate.ledger.yaml: must be of the same observation, variables and seed" in err
+
+
+def test_numbers_alone_with_a_failing_run(slope, here):
+    deck = Path("case/in.tiny")
+    deck.write_text(deck.read_text().replace("group       soil", 'if "${friction} > 37" then "nonsense"\n'
+                                             "group       soil"))
+    status, out, err = slope(f"calibrate case/in.tiny --front 14 --area 180 --volume 40 --road case/road.csv --local "
+                             f"{WORDS} --runs 12 --set steps=300 -o out")
+    assert status == 0, err
+    about, table = load()
+    failed = [row for row in table if row["status"] == "failed"]
+    assert failed and all(float(row["friction"]) > 37 and row["score"] == "" for row in failed)
+    assert f"doubt: {len(failed)} of 12 runs failed and say nothing" in out
+    assert [entry["name"] for entry in about["targets"]] == ["99 % of the volume within", "area covered",
+                                                             "volume on the road"]
+    assert not Path("out/predicted.png").exists()
+
+
+def test_outlines(slope, here):
+    """An outline has its own targets; that of the run itself is met by it."""
+    Path("outline.csv").write_text("14,6\n26,6\n26,18\n14,18\n")
+    status, out, err = slope(f"calibrate case/in.tiny --observed outline.csv --local {WORDS} --runs 8 --set steps=200 "
+                             "-o out")
+    assert status == 0, err
+    about, _ = load()
+    assert [entry["name"] for entry in about["targets"]] == [
+        "lack of overlap", "50 % of the area within", "90 % of the area within", "99 % of the area within", "area"]
+    assert about["targets"][-1]["observed"] == pytest.approx(144)
+
+
+def test_all_runs_failed_is_one_line(slope, here):
+    Path("case/in.tiny").write_text("nonsense\n" + Path("case/in.tiny").read_text())
+    status, _, err = slope(f"calibrate case/in.tiny --front 14 {WORDS} --runs 7 -o out")
+    assert status == 2 and err.count("\n") == 1
+    assert err.startswith("slope calibrate: out: 6 of 6 runs failed, too many to go on: friction_"), err
+
+
+@pytest.mark.parametrize("arguments, message", [
+    (f"{WORDS} --runs 20", "--observed, --front, --area, --volume: must give at least one of them"),
+    (f"{WORDS} --runs 6 --front 10", "--runs: must be at least 7 for 2 parameters, got 6"),
+    ("--vary friction=40:5 --runs 20 --front 10", "--vary: friction must have its lower bound first"),
+    ("--vary friction=5:95 --runs 20 --front 10", "--vary: friction must stay within the deck's range, >= 0 and < 90"),
+    ("--vary friction=list:5,10 --runs 20 --front 10", "--vary: must be a range here, NAME=LO:HI"),
+    (f"{WORDS} --runs 20 --front -3", "--front: must be > 0, got -3"),
+    (f"{WORDS} --runs 20 --volume 40", "--volume: needs --road"),
+    (f"{WORDS} --runs 20 --front 9 --tolerance 2", "--tolerance: must be a share"),
+    (f"{WORDS} --runs 20 --front 9 --set friction=3", "--vary: must not name a variable of --set, got friction"),
+    (f"{WORDS} --runs 20 --front 9 --repeat cell=2", "--repeat: must name what is chance"),
+    (f"{WORDS} --runs 20 --observed none.tif", "--observed: must be an existing file, got none.tif"),
+    (f"{WORDS} --runs 20 --observed far.tif", "far.tif: must overlap the grid of the run"),
+    (f"{WORDS} --runs 20 --observed other.tif", "other.tif: must be in the CRS of the run, EPSG:6677"),
+    (f"{WORDS} --runs 20 --observed away.csv --local", "away.csv: must overlap the terrain"),
+])
+def test_wrong_calibrations_are_one_line(slope, here, arguments, message):
+    for name, crs, west in (("far.tif", 6677, 500000.0), ("other.tif", 6678, -12000.0)):
+        with rasterio.open(name, "w", driver="GTiff", width=40, height=24, count=1, dtype="float64",
+                           crs=rasterio.crs.CRS.from_epsg(crs),
+                           transform=rasterio.transform.from_origin(west, 34024.0, 1, 1)) as out:
+            out.write(np.ones((24, 40)), 1)
+    Path("away.csv").write_text("900,900\n950,900\n950,950\n")
+    status, out, err = slope(f"calibrate case/in.tiny {arguments} -o out")
+    assert (status, out) == (2, "") and err.count("\n") == 1 and err.startswith(f"slope calibrate: {message}"), err
+    assert not Path("out").exists()
+
+
+# --- the pages ---
+
+def examples(page, command):
+    """Command lines of a page's examples, without the program; continued lines are joined."""
+    text = (TOP / "doc" / "src" / page).read_text(encoding="ascii").replace("\\\n", " ")
+    return [line.split("tools/slope ")[1] for line in text.splitlines()
+            if line.startswith(f"   tools/slope {command} ") and "DECK" not in line]
+
+
+@pytest.mark.parametrize("line", [
+    *examples("tool_calibrate.rst", "calibrate"), *examples("choosing_parameters.rst", "calibrate")])
+def test_every_example_of_the_pages_is_understood(line, here, capsys):
+    """Up to what it would run; decks and data of the examples that are no case of the repository are made up."""
+    deck = Path("case/in.tiny").read_text().replace("variable  rolling", "variable  spacing index 1\nvariable  field_e "
+                                                    "index 0.1\nvariable  rolling")
+    Path("case/in.collapse").write_text(deck)
+    os.symlink(TOP / "inputs", "inputs")
+    for name in ("deposit.geojson", "outline.geojson"):
+        Path(name).write_text('{"type": "Polygon", "coordinates": [[[14, 6], [26, 6], [26, 18], [14, 6]]]}')
+    Path("road.csv").write_text((TOP / "inputs" / "20_embankment" / "road.csv").read_text())
+    words = shlex.split(line.replace("in.collapse", "case/in.collapse"))
+    if "--help" not in words:
+        words += ["--dry-run", *(["--local"] if "--local" not in words else [])]
+    try:
+        status = cli.main(words)
+    except SystemExit as error:
+        status = error.code
+    assert status == 0, capsys.readouterr().err

@@ -1,0 +1,423 @@
+"""tools/slope study --sample: distributions, designs, bounds, indices, and an ensemble of small collapses."""
+import csv
+import math
+import os
+import shlex
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import rasterio
+import yaml
+from scipy import stats
+
+from tiny_collapse import LMP, TOP, read_asc, write_case
+
+TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
+sys.path.insert(0, str(TOOLS))
+
+from slope_tools import (  # noqa: E402  (after the path is set)
+    cli, deck_ranges, designs, distributions, emulator, ensemble, hazard, sample)
+
+pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
+ROAD = "--road case/road.csv --local"
+
+
+def variable(text):
+    return distributions.distribution("x", text, "--vary", f"x={text}")
+
+
+# --- distributions ---
+
+@pytest.mark.parametrize("text, reference", [
+    ("10:40", stats.uniform(10, 30)), ("uniform:-5:5", stats.uniform(-5, 10)),
+    ("loguniform:1e-3:10", stats.loguniform(1e-3, 10)), ("triangular:0:1:4", stats.triang(0.25, 0, 4)),
+    ("normal:30:4:25:40", stats.truncnorm(-1.25, 2.5, 30, 4)), ("1000:1000.01", stats.uniform(1000, 0.01)),
+])
+def test_values_follow_the_distribution_and_come_back(text, reference):
+    one = variable(text)
+    shares = np.linspace(0, 1, 101)
+    values = [one.value(u) for u in shares]
+    assert np.array(values, float) == pytest.approx(reference.ppf(shares), rel=1e-5, abs=1e-6 * (one.high - one.low))
+    assert len(set(values)) == 101 and all(one.low <= float(value) <= one.high for value in values)
+    assert [one.unit(value) for value in values] == pytest.approx(shares, abs=1e-5)
+
+
+def test_a_list_has_its_weights():
+    one = variable("list:a.asc@1,b.asc@2,0.5@5")
+    u = (np.arange(800) + 0.5) / 800
+    values = [one.value(share) for share in u]
+    assert [values.count(value) for value in one.values] == [100, 200, 500]
+    assert [one.unit(value) for value in one.values] == [1 / 16, 2 / 8, 11 / 16]
+    assert set(one.snap(u)) == {1 / 16, 2 / 8, 11 / 16}
+    assert variable("list:1,2").edges == (0, 0.5, 1)
+
+
+RANGED = """\
+variable a index 0.5   # a share; 0 <= share < 1
+variable b index 30    # degrees
+variable c index 0.3   # where c is > 0, or 5
+variable e index 0.5
+pair_coeff 1 1 stiffness 1 1 restitution ${e} friction ${b}
+fix deposit all deposit/grid 1 1 cell 1
+"""
+
+
+def test_a_deck_has_ranges(tmp_path):
+    deck = tmp_path / "in.a"
+    deck.write_text(RANGED)
+    found = deck_ranges.ranges(deck)
+    assert set(found) == {"a", "b", "e"}
+    assert [found["a"].holds(value) for value in (-0.1, 0, 0.5, 1)] == [False, True, True, False]
+    assert [found["b"].holds(value) for value in (0, 89.9, 90)] == [True, True, False]
+    assert found["e"].told == "> 0 and <= 1" and found["a"].told == ">= 0 and < 1"
+
+
+# --- designs ---
+
+@pytest.mark.parametrize("dimensions, number", [(1, 5), (3, 60), (6, 128)])
+def test_a_longer_design_contains_the_shorter_one(dimensions, number):
+    short, long = (designs.points(designs.SOBOL, dimensions, n, 7) for n in (number, 2 * number))
+    assert (long[:number] == short).all() and len(np.unique(long, axis=0)) == 2 * number
+    assert (designs.points(designs.SOBOL, dimensions, number, 8) != short).all()
+
+
+def test_a_design_is_even():
+    """Each coordinate, in 32 classes; a latin hypercube by definition."""
+    for kind in designs.KINDS:
+        points = designs.points(kind, 4, 32, 3)
+        assert (np.sort(np.floor(32 * points), axis=0) == np.arange(32)[:, None]).all()
+
+
+# --- bounds ---
+
+def test_bounds_are_those_of_clopper_and_pearson():
+    """1 of 10: 0.0051 to 0.3942 with 90 % (their table); the ends."""
+    low, high = hazard.share_bounds([0, 1, 10], 10)
+    assert low == pytest.approx([0, 0.005116, 0.741134], abs=1e-6)
+    assert high == pytest.approx([0.258866, 0.394163, 1], abs=1e-6)
+
+
+def test_failed_runs_widen_the_bounds_and_move_no_estimate():
+    values, point = np.arange(1, 41.0), range(40)
+    without, with_ = (hazard.curve(values, point, failed).at(30) for failed in (0, 4))
+    assert without.value == with_.value == 0.25
+    assert with_.low < without.low and with_.high > without.high
+    assert with_.low == pytest.approx(hazard.share_bounds(10, 44)[0])
+    assert with_.high == pytest.approx(hazard.share_bounds(14, 44)[1])
+
+
+def test_quantiles_and_their_bounds_are_order_statistics():
+    values = np.random.default_rng(2).permutation(np.arange(1, 101.0))
+    found = hazard.quantiles(values, range(100))
+    assert [one.value for one in found] == [50, 90, 95, 99]
+    # X_(l) and X_(u) with P(B(100, 0.9) < l) <= 5 % and P(B(100, 0.9) < u) >= 95 %
+    low = max(k for k in range(1, 101) if stats.binom.cdf(k - 1, 100, 0.9) <= 0.05)
+    high = min(k for k in range(1, 101) if stats.binom.cdf(k - 1, 100, 0.9) >= 0.95)
+    assert (found[1].low, found[1].high) == (low, high)
+    # 100 runs do not bound the 99 % quantile, three not even the median
+    assert found[3].high is None and stats.binom.cdf(99, 100, 0.99) < 0.95
+    assert hazard.quantiles([1, 2, 3], range(3))[0] == (0.5, 2, None, None)
+
+
+def test_runs_of_the_same_point_are_worth_less():
+    values = np.repeat(np.arange(1, 21.0), 3)
+    point = np.repeat(np.arange(20), 3)
+    alone, together = hazard.curve(values, range(60)).at(10), hazard.curve(values, point).at(10)
+    assert alone.value == together.value == 0.5
+    assert (together.low, together.high) == pytest.approx(hazard.curve(np.arange(1, 21.0), range(20)).at(10)[1:])
+    assert together.high - together.low > 1.5 * (alone.high - alone.low)
+    # three that have nothing in common count as three
+    free = np.random.default_rng(1).permutation(values)
+    assert hazard.effect_of(free > 10, point) < 1.5
+
+
+def noisy(u, rng):
+    """A volume with a threshold, as a road has one, and chance."""
+    return np.maximum(0, 4000 * u[:, 0] ** 2 + 3000 * u[:, 1] - 1500 * u[:, 2] + rng.normal(0, 300, len(u)) - 500)
+
+
+def test_bands_of_the_hazard_curve_cover_a_reference():
+    """90 % bands at the 50, 75 and 90 % of 400 runs: 32 to 40 of 40 repetitions of an ensemble of 64 cover them."""
+    rng = np.random.default_rng(11)
+    reference = noisy(rng.random((400, 3)), rng)
+    levels = np.quantile(reference, [0.5, 0.75, 0.9], method="inverted_cdf")
+    shares = [(reference > level).mean() for level in levels]
+    covered = np.zeros(3, int)
+    for seed in range(40):
+        curve = hazard.curve(noisy(designs.points(designs.SOBOL, 3, 64, seed), rng), range(64))
+        bands = [curve.at(level) for level in levels]
+        covered += [band.low <= share <= band.high for band, share in zip(bands, shares)]
+    assert (covered >= 32).all(), covered
+
+
+# --- which variables matter ---
+
+def ishigami(u, a=7.0, b=0.1):
+    x = math.pi * (2 * u - 1)
+    return np.sin(x[:, 0]) + a * np.sin(x[:, 1]) ** 2 + b * x[:, 2] ** 4 * np.sin(x[:, 0])
+
+
+def ishigami_indices(a=7.0, b=0.1):
+    one, two = (1 + b * math.pi ** 4 / 5) ** 2 / 2, a ** 2 / 8
+    three = b ** 2 * math.pi ** 8 * (1 / 18 - 1 / 50)
+    return np.array([one, two, 0]) / (one + two + three), np.array([one + three, two, three]) / (one + two + three)
+
+
+def test_indices_of_a_known_function():
+    points = designs.points(designs.SOBOL, 3, 256, 1)
+    found = emulator.analyse("abc", points, ishigami(points), range(256))
+    assert found.check.verdict == "good"
+    first, total = ishigami_indices()
+    assert [one.first for one in found.influences] == pytest.approx(first, abs=0.03)
+    assert [one.total for one in found.influences] == pytest.approx(total, abs=0.03)
+    for one, exact in zip(found.influences, total):
+        assert abs(one.total - exact) < 3 * one.total_error + 0.005 and one.total_error < 0.06
+
+
+def test_the_noise_of_chance_is_seen_and_idle_variables_too():
+    rng = np.random.default_rng(5)
+    points = designs.points(designs.SOBOL, 3, 64, 1)
+    values = 100 * points[:, 0] + 30 * points[:, 1] + rng.normal(0, 5, 64)
+    found = emulator.analyse("abc", points, values, range(64))
+    assert found.check.verdict == "good" and found.check.noise == pytest.approx(5, rel=0.4)
+    exact = 100 ** 2 / (100 ** 2 + 30 ** 2)
+    assert [one.first for one in found.influences] == pytest.approx([exact, 1 - exact, 0], abs=0.05)
+    assert [one.rank_clear for one in found.influences] == [True, True, False]
+
+
+def test_an_emulator_that_explains_nothing_gives_no_indices():
+    points = designs.points(designs.SOBOL, 2, 40, 1)
+    found = emulator.analyse("ab", points, np.random.default_rng(3).normal(0, 1, 40), range(40))
+    assert found.check.verdict == "bad" and "no indices" in found.told
+    assert all(one.first is None and one.total is None for one in found.influences)
+    few = emulator.analyse("ab", points[:5], points[:5, 0], range(5))
+    assert few.check is None and "5 points are too few for an emulator of 2 variables" in few.told
+    assert "same in all runs" in emulator.analyse("ab", points, np.ones(40), range(40)).told
+
+
+def test_runs_of_a_point_are_left_out_together():
+    point = np.repeat(np.arange(11), 3)
+    masks = emulator.folds(point)
+    assert sum(mask.astype(int) for mask in masks).tolist() == [1] * 33
+    assert all(len(set(mask[point == one])) == 1 for mask in masks for one in range(11))
+
+
+# --- an ensemble of small collapses ---
+
+@pytest.fixture
+def slope(tmp_path, monkeypatch, capsys):
+    """Run `slope study case/in.tiny ARGUMENTS` in the test's folder; gives status, stdout, stderr."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("LMP", LMP)
+    write_case(tmp_path / "case")
+    Path("case/road.csv").write_text("13,0\n18,0\n18,24\n13,24\n")
+
+    def run(arguments):
+        capsys.readouterr()
+        try:
+            status = cli.main(["study", "case/in.tiny", *shlex.split(arguments)])
+        except SystemExit as error:
+            status = error.code
+        return status, *capsys.readouterr()
+    return run
+
+
+def load():
+    with open("out/study.csv", encoding="ascii") as lines:
+        return yaml.safe_load(Path("out/study.yaml").read_text()), list(csv.DictReader(lines))
+
+
+def curves():
+    with open("out/hazard.csv", encoding="ascii") as lines:
+        found = {}
+        for row in csv.DictReader(lines):
+            found.setdefault(row["quantity"], []).append([float(row[key]) for key in ("value", "exceeded", "low",
+                                                                                      "high")])
+    return {name: np.array(several).T for name, several in found.items()}
+
+
+WORDS = f"--vary friction=10:40 --vary rolling=triangular:0:0:0.4 --set steps=900 --exceed 0.1,0.5 {ROAD} -o out"
+
+
+def test_an_ensemble_grows_and_its_tables_are_those_of_the_runs(slope):
+    status, out, err = slope(f"--sample 6 {WORDS}")
+    assert status == 0, err
+    first = load()[1]
+    status, out, err = slope(f"--sample 12 {WORDS} --exceed-speed 2")
+    assert status == 0 and "6 of 12 runs are finished already" in out, err
+    assert "; 5 to go, all by " in out and "ensemble: 12 runs of 12 points" in out
+    about, table = load()
+    assert [row["run"] for row in table[:6]] == [row["run"] for row in first]
+    assert about["conservative"] is None
+    found = about["ensemble"]
+    assert found["design"] == {"kind": "sobol", "seed": 1, "points": 12,
+                               "variables": {"friction": "uniform:10:40", "rolling": "triangular:0:0:0.4"}}
+    assert yaml.safe_load(Path("out/design.yaml").read_text()) == found["design"]
+    points = designs.points("sobol", 2, 12, 1)
+    assert [float(row["friction"]) for row in table] == pytest.approx(10 + 30 * points[:, 0], abs=1e-4)
+    triangle = stats.triang(0, 0, 0.4).ppf(points[:, 1])
+    assert [float(row["rolling"]) for row in table] == pytest.approx(triangle, abs=1e-5)
+
+    # quantiles and curve, by counting
+    volumes = np.array([float(row["remove_on_road_m3"]) for row in table])
+    entry = found["quantities"]["remove_on_road_m3"]
+    assert entry["mean"] == pytest.approx(volumes.mean()) and np.ptp(volumes) > 1
+    assert [one["value"] for one in entry["quantiles"]] == pytest.approx(np.sort(volumes)[[5, 10, 11, 11]])
+    value, exceeded, low, high = curves()["remove_on_road_m3"]
+    assert value[0] == 0 and exceeded == pytest.approx([(volumes > one + 1e-6).mean() for one in value])
+    assert (low <= exceeded).all() and (exceeded <= high).all() and exceeded[-1] == 0 and high[-1] > 0.2
+
+    # maps, by counting
+    names = [row["run"] for row in table]
+    for raster, levels in (("thickness", (0, 0.1, 0.5)), ("max_thickness", (0, 0.1, 0.5)), ("max_speed", (0, 2))):
+        stack = np.array([read_asc(f"out/{name}/tiny.{raster}.asc") for name in names])
+        for level in levels:
+            there = read_asc(f"out/ensemble/{raster}_above_{level:g}.asc")
+            assert there == pytest.approx((stack > level).mean(axis=0), abs=6e-4) and there.max() > 0
+        ordered = np.sort(stack, axis=0)
+        assert read_asc(f"out/ensemble/{raster}_q50.asc") == pytest.approx(ordered[5], abs=6e-4)
+        assert read_asc(f"out/ensemble/{raster}_q90.asc") == pytest.approx(ordered[10], abs=6e-4)
+        with rasterio.open(f"out/ensemble/{raster}.tif") as tif:
+            assert tif.count == 3 * (4 + len(levels))
+            bands = {name: tif.read(i + 1) for i, name in enumerate(tif.descriptions)}
+        told = next(name for name in bands if "> 0.1 m" in name or "> 2 m/s" in name)
+        plain = told.split(",")[0]
+        assert (bands[f"{plain}, lower bound"] <= bands[plain]).all()
+        assert (bands[f"{plain}, upper bound"] >= bands[plain]).all()
+    arrival = np.array([read_asc(f"out/{name}/tiny.arrival.asc") for name in names])
+    reached = read_asc("out/ensemble/arrival_reached.asc")
+    assert reached == pytest.approx(np.isfinite(arrival).mean(axis=0), abs=6e-4)
+    early = np.sort(np.where(np.isfinite(arrival), arrival, np.inf), axis=0)[::-1][10]
+    assert np.nan_to_num(read_asc("out/ensemble/arrival_q90.asc"), nan=-1) == pytest.approx(
+        np.where(np.isfinite(early), early, -1), abs=6e-4)
+    assert {Path("out", entry["file"]) for entry in found["maps"]} == set(Path("out/ensemble").glob("*.asc"))
+
+    # ranks and indices
+    one = found["influence"]["remove_on_road_m3"]
+    assert one["variables"]["rolling"]["rank"] == pytest.approx(stats.spearmanr(
+        [float(row["rolling"]) for row in table], volumes)[0])
+    with open("out/influence.csv", encoding="ascii") as lines:
+        cells = list(csv.DictReader(lines))
+    assert {row["variable"] for row in cells} == {"friction", "rolling"}
+    for row in cells:
+        entry = found["influence"][row["quantity"]]["variables"][row["variable"]]
+        assert [row[key] for key in ("first", "total")] == ["" if entry[key] is None else str(entry[key])
+                                                            for key in ("first", "total")]
+
+    assert cli.main(["report", "out"]) == 0
+    page = Path("out/report.html").read_text()
+    for text in ("How likely", "hazard curve", "90 % of the runs stay within", "friction", "ensemble of 12 points"):
+        assert text in page, text
+
+
+def test_repeats_of_points_and_a_list(slope):
+    deck = Path("case/in.tiny")
+    deck.write_text(deck.read_text().replace("index 150", "index 150\nvariable  seed index 0").replace(
+        "overlap 0.0", 'overlap 0.0\nif "${seed} > 0" then "displace_atoms soil random 1e-6 1e-6 1e-6 ${seed} units '
+        'box"'))
+    status, _, err = slope("--sample 4 --vary friction=20:40 --vary rolling=list:0,0.3@2 --repeat seed=1 "
+                           "--set steps=300 -o out")
+    assert status == 0, err
+    about, table = load()
+    assert [row["seed"] for row in table] == ["0", "1"] * 4 and {row["rolling"] for row in table} == {"0", "0.3"}
+    assert about["ensemble"]["points"] == 4 and about["ensemble"]["of"] == "distance_99_m"
+    assert about["ensemble"]["finished"] == 8
+
+
+def test_a_failed_run_is_kept_out_and_counted(slope):
+    deck = Path("case/in.tiny")
+    deck.write_text(deck.read_text().replace("group       soil", 'if "${friction} > 34" then "nonsense"\n'
+                                             "group       soil"))
+    status, out, err = slope(f"--sample 8 --vary friction=10:40 --set steps=300 {ROAD} -o out")
+    about, table = load()
+    failed = [row["status"] for row in table].count("failed")
+    assert status == 2 and failed == sum(float(row["friction"]) > 34 for row in table) > 0
+    assert f"slope study: out: {failed} of 8 runs failed: steps_300_friction_" in err.splitlines()[-1]
+    found = about["ensemble"]
+    assert (found["finished"], found["failed"]) == (8 - failed, failed)
+    assert f"doubt: {failed} of 8 runs failed: they are kept out of the estimates and may be anything" in out
+    volumes = sorted(float(row["remove_on_road_m3"]) for row in table if row["status"] == "finished")
+    _, exceeded, _, high = curves()["remove_on_road_m3"]
+    assert exceeded[-1] == 0 and high[-1] == pytest.approx(hazard.share_bounds(failed, 8)[1])
+    assert found["quantities"]["remove_on_road_m3"]["largest"] == pytest.approx(volumes[-1])
+
+
+def test_all_runs_failed_is_one_line(slope):
+    Path("case/in.tiny").write_text("nonsense\n" + Path("case/in.tiny").read_text())
+    status, _, err = slope("--sample 3 --vary friction=10:40 -o out")
+    assert status == 2 and err.count("\n") == 1
+    assert err.startswith("slope study: out: 3 of 3 runs failed: friction_") and "Unknown command: nonsense" in err
+    assert not Path("out/study.yaml").exists()
+
+
+def test_a_latin_hypercube_does_not_grow(slope):
+    words = "--vary friction=10:40 --design lhs --set steps=20 -o out"
+    assert slope(f"--sample 4 {words}")[0] == 0
+    assert slope(f"--sample 4 {words}")[0] == 0
+    status, _, err = slope(f"--sample 8 {words}")
+    assert status == 2 and err.startswith("slope study: --design: lhs cannot grow or change: out has 4 points of lhs "
+                                          "with seed 1") and err.count("\n") == 1
+    assert slope(f"--sample 4 {words} --seed 2")[0] == 2
+
+
+@pytest.mark.parametrize("arguments, message", [
+    ("--sample 4", "--vary: must give the variables of the ensemble that --sample asks for"),
+    ("--vary friction=10:40", "--sample: must be given with --vary: how many runs"),
+    ("--sample 8 --vary friction=40:10", "--vary: friction must have its lower bound first, LO < HI, got "
+     "friction=40:10"),
+    ("--sample 8 --vary friction=normal:30:5:40:20", "--vary: friction must have its lower bound first"),
+    ("--sample 8 --vary friction=30:95", "--vary: friction must stay within the deck's range, >= 0 and < 90, got "
+     "friction=30:95"),
+    ("--sample 8 --vary rolling=-0.1:0.1", "--vary: rolling must stay within the deck's range, >= 0, got "),
+    ("--sample 8 --vary friction=list:20,90", "--vary: friction must stay within the deck's range"),
+    ("--sample 2 --vary friction=10:40 --vary rolling=0:0.1", "--sample: must be more runs than there are parameters, "
+     "2, got 2"),
+    ("--sample 0 --vary friction=10:40", "--sample: must be more runs than there are parameters"),
+    ("--sample 8 --vary colour=1:2", "--vary: must name an index variable of case/in.tiny"),
+    ("--sample 8 --vary friction", "--vary: must be NAME=LO:HI or NAME=KIND:..., of uniform:LO:HI"),
+    ("--sample 8 --vary friction=1:2:3", "--vary: must be NAME=LO:HI or NAME=KIND:..., of uniform:LO:HI"),
+    ("--sample 8 --vary friction=loguniform:0:3", "--vary: loguniform must have LO > 0"),
+    ("--sample 8 --vary friction=triangular:0:5:3", "--vary: triangular must have LO <= MODE <= HI"),
+    ("--sample 8 --vary friction=normal:30:0:20:40", "--vary: normal must have DEVIATION > 0"),
+    ("--sample 8 --vary friction=normal:0:1:20:40", "--vary: normal must have a part of it between LO and HI"),
+    ("--sample 8 --vary friction=list:20@0,30", "--vary: must be NAME=list:V1@WEIGHT,V2@WEIGHT,... with weights > 0"),
+    ("--sample 8 --vary friction=list:20", "--vary: friction must have several values"),
+    ("--sample 8 --vary friction=list:20,30", "--vary: must have a range among its variables"),
+    ("--sample 8 --vary friction=1:2 --vary friction=2:3", "--vary: must name a variable once, got friction twice"),
+    ("--sample 8 --vary friction=1:2 --set friction=3", "--vary: must not name a variable of --set, got friction"),
+    ("--sample 8 --vary friction=1:2 --set rolling=0,1", "--set: must give one value"),
+    ("--sample 8 --vary friction=1:2 --of remove_m3", "--road: must be given for remove_m3"),
+    ("--sample 8 --vary friction=1:2 --of colour", "--of: must be one of remove_m3"),
+    ("--sample 8 --vary friction=1:2 --seed -1", "--seed: must be from 0"),
+    ("--sample 20000 --vary friction=1:2", "--sample: must make at most 10000 runs, got 20000"),
+    ("--sample 8 --vary friction=1:2 --exceed-speed x", "--exceed-speed: must be different speeds >= 0"),
+    ("", "--set: must be given, or --sample with --vary"),
+])
+def test_wrong_ensembles_are_one_line(slope, arguments, message):
+    status, out, err = slope(f"{arguments} -o out")
+    assert (status, out) == (2, "") and err.count("\n") == 1 and err.startswith(f"slope study: {message}"), err
+    assert not Path("out").exists()
+
+
+def test_what_an_ensemble_says_in_words():
+    about = {"finished": 5, "points": 5, "confidence": 0.9, "of": "front_m", "doubts": ["why"], "quantities": {
+        "front_m": {"name": "farthest ball", "unit": "m", "quantiles": [{"share": 0.9, "value": 120.0, "low": 100.0,
+                                                                         "high": None}]}},
+             "influence": {"front_m": {"told": "so", "variables": {
+                 "a": {"rank": 0.1, "first": 0.1, "first_error": 0.0, "total": 0.2, "total_error": 0.05},
+                 "b": {"rank": -0.7, "first": 0.7, "first_error": 0.0, "total": 0.9, "total_error": 0.01}}}}}
+    assert ensemble.told(about) == [
+        "ensemble: 5 runs of 5 points; bounds hold with 90 %",
+        "farthest ball: 90 % of the runs stay within 120 m (100 to ?)",
+        "farthest ball depends on b (0.70 alone, 0.90 with others, +- 0.01), a (0.10 alone, 0.20 with others, +- "
+        "0.05); so",
+        "doubt: why"]
+
+
+def test_points_of_the_design_are_found_in_the_rows():
+    plan = sample.Sample(3, "sobol", 1, (variable("0:10"),))
+    rows = [{"set": {"steps": "9", "x": value}} for value in ("5", "5", "2.5", "5")]
+    assert ensemble.points_of(plan, rows) == [0, 0, 1, 0]
+    assert plan.places(rows).tolist() == [[0.5], [0.5], [0.25], [0.5]]

@@ -1,0 +1,198 @@
+"""tools/slope study --engine slurm, on a real Slurm in a folder: three nodes on this machine; and --launcher."""
+import csv
+import getpass
+import os
+import shlex
+import shutil
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from tiny_collapse import LMP, TOP, write_case
+
+TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
+sys.path.insert(0, str(TOOLS))
+
+from slope_tools import cli, launcher  # noqa: E402  (after the path is set)
+
+PROGRAM = [sys.executable, str(TOOLS / "slope")]
+PATH = f"{os.environ['PATH']}:/usr/sbin:/sbin"
+CONF = """\
+ClusterName=test
+SlurmctldHost={host}(127.0.0.1)
+SlurmctldPort={ports[0]}
+AuthType=auth/munge
+AuthInfo=socket={folder}/munge/s
+CredType=cred/munge
+SlurmUser={user}
+SlurmdUser={user}
+StateSaveLocation={folder}/state
+SlurmdSpoolDir={folder}/spool-%n
+SlurmctldPidFile={folder}/ctld.pid
+SlurmdPidFile={folder}/slurmd-%n.pid
+SlurmctldLogFile={folder}/ctld.log
+SlurmdLogFile={folder}/slurmd-%n.log
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_CPU
+MpiDefault=none
+ReturnToService=2
+SchedulerParameters=sched_interval=2
+JobAcctGatherType=jobacct_gather/none
+NodeName=n1 NodeHostname={host} NodeAddr=127.0.0.1 Port={ports[1]} CPUs=1 State=UNKNOWN
+NodeName=n2 NodeHostname={host} NodeAddr=127.0.0.1 Port={ports[2]} CPUs=1 State=UNKNOWN
+NodeName=n3 NodeHostname={host} NodeAddr=127.0.0.1 Port={ports[3]} CPUs=1 State=UNKNOWN
+PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP
+"""
+
+
+def free_ports(number):
+    several = [socket.socket() for _ in range(number)]
+    for one in several:
+        one.bind(("127.0.0.1", 0))
+    ports = [one.getsockname()[1] for one in several]
+    for one in several:
+        one.close()
+    return ports
+
+
+def slurm(*words):
+    return subprocess.run(words, capture_output=True, text=True, check=True, timeout=60).stdout
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("LMP", LMP)
+    write_case(tmp_path / "case")
+    return tmp_path
+
+
+@pytest.fixture
+def cluster(here, monkeypatch):
+    """munged, slurmctld and three slurmd; SLURM_CONF leads to them."""
+    monkeypatch.setenv("PATH", PATH)
+    for name in ("munged", "slurmctld", "slurmd", "sbatch"):
+        if not shutil.which(name, path=PATH):
+            pytest.skip(f"{name} is not installed (Debian: slurm-wlm, munge)")
+    folder = here / "slurm"
+    for name in ("munge", "state", "spool-n1", "spool-n2", "spool-n3"):
+        (folder / name).mkdir(parents=True, mode=0o755)
+    key = folder / "munge" / "key"
+    key.write_bytes(os.urandom(64))
+    key.chmod(0o600)
+    conf = folder / "slurm.conf"
+    conf.write_text(CONF.format(host=socket.gethostname().split(".")[0], ports=free_ports(4), folder=folder,
+                                user=getpass.getuser()))
+    monkeypatch.setenv("SLURM_CONF", str(conf))
+    munge = folder / "munge"
+    daemons = [["munged", "--foreground", "--force", f"--key-file={key}", f"--socket={munge}/s",
+                f"--pid-file={munge}/pid", f"--log-file={munge}/log", f"--seed-file={munge}/seed"],
+               ["slurmctld", "-D", "-f", str(conf)], *(["slurmd", "-D", "-N", f"n{i}", "-f", str(conf)]
+                                                       for i in (1, 2, 3))]
+    running = []
+    try:
+        for words in daemons:
+            running.append(subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                            stderr=subprocess.DEVNULL))
+            time.sleep(1)
+        end = time.monotonic() + 60
+        while subprocess.run(["sinfo", "-h", "-o", "%t %D"], capture_output=True, text=True,
+                             check=False).stdout.split() != ["idle", "3"]:
+            if time.monotonic() > end or any(one.poll() is not None for one in running):
+                pytest.skip("Slurm does not start here: " + (folder / "ctld.log").read_text()[-200:]
+                            if (folder / "ctld.log").exists() else "Slurm does not start here")
+            time.sleep(0.5)
+        yield folder
+    finally:
+        for one in reversed(running):
+            one.terminate()
+        for one in running:
+            try:
+                one.wait(20)
+            except subprocess.TimeoutExpired:
+                one.kill()
+
+
+def table(folder):
+    with open(Path(folder) / "study.csv", encoding="ascii") as lines:
+        return [{key: value for key, value in row.items() if key != "wall_s"} for row in csv.DictReader(lines)]
+
+
+def states():
+    return dict(line.split()[:2] for line in slurm("squeue", "-h", "-r", "-o", "%F_%K %T").splitlines())
+
+
+def test_an_array_goes_on_when_runs_are_cancelled_and_a_node_is_drained(cluster, here):
+    lists = "study case/in.tiny --set rolling=0:0.11:0.01 --set steps=1500"
+    process = subprocess.Popen([*PROGRAM, *shlex.split(f"{lists} --engine slurm -o out")], stdout=subprocess.PIPE,
+                               stderr=subprocess.PIPE, text=True)
+    end = time.monotonic() + 120
+    while list(states().values()).count("RUNNING") < 3:
+        assert time.monotonic() < end and process.poll() is None
+        time.sleep(0.2)
+    assert len(states()) == 12
+    running = [name for name, state in states().items() if state == "RUNNING"]
+    waiting = [name for name, state in states().items() if state == "PENDING"]
+    slurm("scancel", running[0], waiting[-1])
+    slurm("scontrol", "update", "nodename=n2", "state=drain", "reason=test")
+    out, err = process.communicate(timeout=500)
+    assert process.returncode == 0, err
+    assert out.count("task") == 14 and len(list((here / "out" / ".slurm").glob("*.runs"))) >= 2
+    assert cli.main(shlex.split(f"{lists} -o local")) == 0
+    assert table("out") == table("local") and len(table("out")) == 12
+    assert not states()
+
+
+def test_an_interruption_cancels_the_array(cluster, here):
+    process = subprocess.Popen([*PROGRAM, *shlex.split("study case/in.tiny --set rolling=0,0.1 --set steps=200000 "
+                                                       "--engine slurm -o out")], stdout=subprocess.DEVNULL)
+    end = time.monotonic() + 60
+    while "RUNNING" not in states().values():
+        assert time.monotonic() < end and process.poll() is None
+        time.sleep(0.2)
+    process.terminate()
+    assert process.wait(90) == 130
+    assert not states()
+
+
+# --- what starts the ranks ---
+
+@pytest.mark.parametrize("start, ranks, expected", [
+    (None, 1, []), (None, 2, ["mpirun", "-np", "2", "--bind-to", "none"]),
+    (None, 4, ["mpirun", "-np", "4", "--bind-to", "none", "--oversubscribe"]),
+    ("srun --mpi=pmix", 4, ["srun", "--mpi=pmix", "-n", "4"]),
+    ("mpiexec -n {np} -genv 'A B'", 2, ["mpiexec", "-n", "2", "-genv", "A B"]),
+])
+def test_words_of_a_launcher(start, ranks, expected):
+    assert launcher.words(start, ranks, 2) == expected
+
+
+def test_a_run_is_started_by_the_launcher(here):
+    Path("mine").write_text("#!/bin/sh\nprintf '%s ' \"$@\" > started\nshift 2\nexec \"$@\"\n")
+    Path("mine").chmod(0o755)
+    assert cli.main(shlex.split(f"study case/in.tiny --set steps=20 --launcher {here}/mine -o out")) == 0
+    assert (here / "out" / "steps_20" / "started").read_text().startswith(f"-n 1 {LMP} -in in.tiny")
+
+
+@pytest.mark.parametrize("words, message", [
+    ("--launcher nonsense", "--launcher: must begin with a program on the PATH, got nonsense"),
+    ("--launcher '\"'", "--launcher: must be a command"),
+    ("--slurm=--time=1", "--slurm: must be given with --engine slurm, got --time=1"),
+])
+def test_wrong_launchers_are_one_line(here, capsys, words, message):
+    assert cli.main(shlex.split(f"study case/in.tiny --set steps=20 {words} -o out")) == 2
+    err = capsys.readouterr().err
+    assert err.count("\n") == 1 and err.startswith(f"slope study: {message}"), err
+
+
+def test_without_slurm_it_is_said(here, capsys, monkeypatch):
+    monkeypatch.setenv("PATH", "/nowhere")
+    assert cli.main(shlex.split("study case/in.tiny --set steps=20 --engine slurm -o out")) == 2
+    assert capsys.readouterr().err == ("slope study: --engine slurm: needs sbatch of Slurm, which is not on the "
+                                       "PATH\n")

@@ -1,0 +1,199 @@
+"""Structures and control lines in study and report: numbers against the runs' own files and closed forms."""
+import csv
+import os
+import re
+import shlex
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from tiny_collapse import LMP, TOP, write_case
+
+TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
+sys.path.insert(0, str(TOOLS))
+
+from slope_tools import cli, errors, figure_structures, report_structures, structures  # noqa: E402
+
+pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
+ADDED = """\
+if "${wall} > 0" then "fix wall soil wall/gran/mesh 3 wall.stl output ${out}.wall 10"
+fix         post soil wall/gran/mesh 3 post.stl output ${out}.post 10
+fix         ground2 soil wall/gran/mesh 3 post.stl
+neighbor    0.2 bin"""
+LINE = """\
+velocity    soil set -4 0 0
+fix         fence soil control/line fence.csv output ${out}.fence
+run         ${steps}"""
+
+
+def slope(arguments, capsys):
+    capsys.readouterr()
+    try:
+        status = cli.main(shlex.split(arguments))
+    except SystemExit as error:
+        status = error.code
+    return status, *capsys.readouterr()
+
+
+def write_stl(path, low, high):
+    """The twelve triangles of a box."""
+    corners = np.array([[(low, high)[k >> d & 1][d] for d in range(3)] for k in range(8)], float)
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    with open(path, "w", encoding="ascii") as out:
+        out.write("solid box\n")
+        for a, b, c, d in faces:
+            for triangle in ((a, b, c), (a, c, d)):
+                out.write("facet normal 0 0 0\nouter loop\n" + "".join(
+                    "vertex {:g} {:g} {:g}\n".format(*corners[k]) for k in triangle) + "endloop\nendfacet\n")
+        out.write("endsolid box\n")
+
+
+def write_structures(folder):
+    """The small collapse above a wall at x 12 to 13, a post that nothing reaches, and a line at x 11."""
+    deck = write_case(folder)
+    text = deck.read_text().replace("index 150", "index 900\nvariable  wall index 1")
+    for old, new in (("neighbor    0.2 bin", ADDED), ("run         ${steps}", LINE)):
+        assert text.count(old) == 1
+        text = text.replace(old, new)
+    deck.write_text(text)
+    write_stl(folder / "wall.stl", (12, 1, -1), (13, 23, 2))
+    write_stl(folder / "post.stl", (2, 11, -1), (3, 12, 2))
+    (folder / "fence.csv").write_text("11 23\n11 1\n")
+
+
+@pytest.fixture(scope="module")
+def studied(tmp_path_factory):
+    """A study with and without the wall; in the deck's folder lie outputs of a run by hand, with a wall."""
+    folder = tmp_path_factory.mktemp("structures")
+    write_structures(folder / "case")
+    (folder / "case" / "tiny.wall.csv").write_text("left by an earlier run\n")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        patch.setenv("LMP", LMP)
+        assert cli.main(shlex.split("study case/in.tiny --set wall=1,0 --jobs 1 -o out")) == 0
+    return folder / "out"
+
+
+def rows_of(path):
+    with open(path, encoding="ascii") as file:
+        return list(csv.DictReader(file))
+
+
+def test_structures_of_each_run_are_those_of_its_files(studied):
+    rows = rows_of(studied / "structures.csv")
+    # ground2 has no output
+    assert [(row["run"], row["structure"]) for row in rows] == [("wall_1", "wall"), ("wall_1", "post"),
+                                                                ("wall_0", "post")]
+    series = np.genfromtxt(studied / "wall_1" / "tiny.wall.csv", delimiter=",", names=True)
+    pressure = np.genfromtxt(studied / "wall_1" / "tiny.wall.triangles.csv", delimiter=",", names=True)
+    wall, post = rows[0], rows[2]
+    assert float(wall["largest_force_n"]) == series["largest_force"].max() > 0
+    assert float(wall["at_s"]) == series["time"][series["largest_force"].argmax()]
+    assert float(wall["impulse_ns"]) == pytest.approx(np.sqrt(sum(series[f"j{k}"][-1] ** 2 for k in "xyz")), rel=1e-12)
+    assert float(wall["largest_pressure_pa"]) == pressure["largest_pressure"].max()
+    assert 0 < float(wall["mean_force_n"]) < float(wall["largest_force_n"])
+    assert float(post["largest_force_n"]) == float(post["largest_pressure_pa"]) == 0 and post["at_s"] == ""
+    study = yaml.safe_load((studied / "study.yaml").read_text())
+    assert study["runs"][0]["structures"]["wall"]["largest_force_n"] == float(wall["largest_force_n"])
+
+
+def test_lines_of_each_run_are_those_of_its_files(studied):
+    rows = rows_of(studied / "lines.csv")
+    assert [row["line"] for row in rows] == ["fence", "fence"]
+    for row in rows:
+        about = yaml.safe_load((studied / row["run"] / "tiny.fence.line.yaml").read_text())
+        assert float(row["forward_m3"]) == about["forward"]["volume"]
+        assert float(row["net_m3"]) == about["net_volume"]
+        assert int(row["crossings"]) == about["forward"]["crossings"]
+        for entry in about["quantiles"]:        # found anew from the crossings
+            for name, unit in (("speed", "m_s"), ("height", "m"), ("energy", "j")):
+                assert float(row[f"{name}_{100 * entry['share']:.0f}_{unit}"]) == pytest.approx(entry[name], rel=1e-8)
+    held, free = (float(row["net_m3"]) for row in rows)
+    assert held < free
+
+
+def test_report_draws_them(studied, capsys):
+    status, _, err = slope(f"report {studied}", capsys)
+    assert status == 0, err
+    page = (studied / "report.html").read_text()
+    section = re.search(r'<section id="structures".*?</section>', page, re.DOTALL)[0]
+    for title in ("Force on wall", "Force on post", "Energies at the line fence"):
+        assert section.count(f'alt="{title}"') == 1
+    assert section.count("<tr>") == 2 + 3 + 2       # heads, structures, lines
+    shown = re.search(r"Maps of the run wall (\d)", page)[1]
+    assert section.count('alt="Largest pressure on wall"') == int(shown)
+    assert "Largest pressure on post" not in section        # nothing touched it
+    assert slope(f"report {studied} --run wall_1 -o {studied}/one.html", capsys)[0] == 0
+    assert (studied / "one.html").read_text().count('alt="Largest pressure on wall"') == 1
+
+
+def test_a_single_run_is_reported_too(studied, capsys):
+    status, _, err = slope(f"report {studied / 'wall_1'} -o {studied}/single.html", capsys)
+    assert status == 0, err
+    assert (studied / "single.html").read_text().count('alt="Force on wall"') == 1
+
+
+def test_without_structures_there_is_nothing(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("LMP", LMP)
+    write_case(tmp_path / "case")
+    assert slope("study case/in.tiny --set rolling=0 -o out", capsys)[0] == 0
+    assert not (tmp_path / "out" / "structures.csv").exists() and not (tmp_path / "out" / "lines.csv").exists()
+    assert slope("report out", capsys)[0] == 0
+    assert 'id="structures"' not in (tmp_path / "out" / "report.html").read_text()
+
+
+# --- numbers and pictures alone ---
+
+def series_of(time, force):
+    """A Series of a force (N) in x that jumps to its value at each time."""
+    time, force = np.asarray(time, float), np.asarray(force, float)
+    impulse = np.concatenate([[0], np.cumsum(force[:-1] * np.diff(time))])
+    triple = np.column_stack([force, 0 * force, 0 * force])
+    return structures.Series(time, triple, 0 * triple, np.column_stack([impulse, 0 * impulse, 0 * impulse]),
+                             np.abs(force))
+
+
+def test_mean_force_of_a_constant_force_and_of_a_pulse():
+    time, mean = series_of(np.linspace(0, 4, 401), np.full(401, -7.0)).mean_force(0.5)
+    assert mean[time >= 0.5] == pytest.approx(7.0, rel=1e-9) and mean[0] == 0
+    pulse = np.zeros(401)
+    pulse[200:210] = 100.0          # 0.1 s: a fifth of the window
+    time, mean = series_of(np.linspace(0, 4, 401), pulse).mean_force(0.5)
+    assert mean.max() == pytest.approx(20.0, rel=1e-9)
+    assert mean[(time < 2) | (time > 2.61)] == pytest.approx(0, abs=1e-9)
+
+
+def test_a_map_is_seen_from_where_the_load_comes():
+    """Looking along -x: y to the right; the nearer face is drawn last."""
+    near = np.array([[5, 0, 0], [5, 2, 0], [5, 0, 1]], float)
+    far = near - [3, 0, 0]
+    places, order = figure_structures.seen_from(np.array([near, far]), np.array([-1.0, 0.0, 0.4]))
+    assert list(order) == [1, 0] and places[1] == pytest.approx(near[:, 1:])
+    assert figure_structures.seen_from(np.array([near, far]), np.array([2.0, 0, 0]))[1].tolist() == [0, 1]
+
+
+@pytest.mark.parametrize("line, found", [
+    ("fix a soil wall/gran/mesh 4 wall.stl output out.a 10", {"a": "out.a"}),
+    ("fix a soil wall/gran/mesh 4 wall.stl point 1 2 3", {}),
+    ("fix a soil wall/gran/mesh 4 terrain ground.asc output out.a 10", {}),
+    ("fix a soil control/line line.csv output out.a", {})])
+def test_structures_are_known_from_the_log(line, found):
+    assert structures.outputs([line], "wall/gran/mesh") == found
+
+
+@pytest.mark.parametrize("text", ["", "<VTKFile/>", "<VTKFile><DataArray Name='corners'>1 2 3</DataArray></VTKFile>"])
+def test_a_mesh_file_that_is_none(tmp_path, text):
+    (tmp_path / "a.vtp").write_text(text)
+    with pytest.raises(errors.SlopeError, match="a.vtp: must be what fix wall/gran/mesh wrote"):
+        report_structures.polydata(tmp_path / "a.vtp")
+
+
+@pytest.mark.parametrize("text", ["", "time,fx\n1,2\n", "left by an earlier run\n", "not,text\n\x00\n"])
+def test_a_series_that_is_none(tmp_path, text):
+    (tmp_path / "a.csv").write_text(text)
+    with pytest.raises(errors.SlopeError, match="a.csv: must be what the run wrote"):
+        structures.series(tmp_path, "a")

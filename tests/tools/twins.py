@@ -1,0 +1,64 @@
+"""Twin experiments for calibrations: a cheap stand-in for a collapse, with chance, whose values are looked for."""
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+
+TOP = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))))
+
+from slope_tools import backanalysis, distributions  # noqa: E402  (after the path is set)
+
+VARIABLES = [distributions.distribution(name, text, "--vary", text) for name, text in
+             (("friction", "15:40"), ("rolling", "0:0.2"), ("spacing", "0.5:1.5"))]
+CLOSE = np.array([2.0, 0.02, 0.1])      # degrees, -, diameters
+LOW = np.array([one.low for one in VARIABLES])
+WIDTH = np.array([one.high - one.low for one in VARIABLES])
+CHANCE = np.array([0.8, 0.25, 0.08, 0.008])     # of the four outputs
+NAMES = ("run-out", "width", "thickness at the toe", "share that stays near")
+
+
+def collapse(values, rng, outputs=range(4)):
+    """Run-out (m), width (m), thickness (m), share that stays near: three of four would do to find the values."""
+    friction, rolling, spacing = values
+    slide = np.tan(np.radians(friction))
+    found = np.array([60 / (0.25 + 0.6 * slide + 1.5 * rolling) * (1.25 - 0.25 * spacing),
+                      20 * (1 + 0.5 * (40 - friction) / 25 - 1.2 * rolling),
+                      3 + 6 * rolling + 2 * slide + 0.8 * spacing,
+                      0.5 + 0.4 * (spacing - 1) - 0.5 * rolling])
+    return (found + rng.normal(size=4) * CHANCE)[list(outputs)]
+
+
+class Twin:
+    """A calibration of the stand-in by so many runs, a batch at a time; hidden: the true values."""
+
+    def __init__(self, seed, runs=60, batch=4, outputs=range(4)):
+        rng = np.random.default_rng(100 + seed)
+        self.hidden = LOW + WIDTH * (0.2 + 0.6 * rng.random(3))
+        observed = collapse(self.hidden, rng, outputs)
+        targets = [backanalysis.Target(NAMES[k], "", float(value), 0.0) for k, value in zip(outputs, observed)]
+        points = backanalysis.first(3, seed)
+        found = np.array([collapse(LOW + WIDTH * point, rng, outputs) for point in points])
+        guess = None
+        while len(points) < runs:
+            guess = backanalysis.posterior(points, found, targets, guess)
+            more = backanalysis.propose(guess, points, min(batch, runs - len(points)))
+            points = np.vstack([points, more])
+            found = np.vstack([found, [collapse(LOW + WIDTH * point, rng, outputs) for point in more]])
+        self.points, self.found = points, backanalysis.posterior(points, found, targets)
+
+    @property
+    def error(self):
+        """Best less hidden values."""
+        return LOW + WIDTH * self.found.best - self.hidden
+
+    @property
+    def holds(self):
+        """Whether each region over a pair holds the hidden values."""
+        place = (self.hidden - LOW) / WIDTH
+        return [self.found.pair(i, j).holds(place) for i, j in ((0, 1), (0, 2), (1, 2))]
+
+    @property
+    def words(self):
+        return backanalysis.judgement(self.found, VARIABLES)

@@ -1,0 +1,103 @@
+/* Loads of a surface: sums over ranks and steps, files; contacts stored by ball; force of an impact. */
+
+#include "impact_force.h"
+#include "surface_contact_store.h"
+#include "surface_loads.h"
+#include "triangle_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+using namespace Slope;
+
+static TriangleMesh two()
+{
+  return TriangleMesh({{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}, {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}});
+}
+
+TEST(SurfaceLoads, AddsUpBallsAndRanksInAStep)
+{
+  SurfaceLoads loads;
+  std::vector<SurfaceLoads::Record> records = {{7, 1, 3.0, 0.3}, {6, 1, 8.0, 0.8}, {7, 0, 2.0, 0.2},
+                                               {7, 1, 4.0, 0.4}, {5, 1, 1.0, 0.1}};
+  loads.take(records);
+  const TriangleMesh mesh = two();
+  EXPECT_EQ(loads.triangles(mesh, 7.0),
+            "triangle,x,y,z,area,last_pressure,largest_pressure,impulse\n"
+            "1,0.6666666667,0.6666666667,0,2,1,1,0.1\n"
+            "2,0.3333333333,0.3333333333,1,0.5,14,16,3.2\n");
+  // a triangle that nothing touches in the last step has no pressure
+  EXPECT_NE(loads.triangles(mesh, 8.0).find("1,0.5,0,16,3.2\n"), std::string::npos);
+  records = {{9, 0, 6.0, 0.6}};
+  loads.take(records);
+  EXPECT_NE(loads.triangles(mesh, 9.0).find("0,2,3,3,0.4\n"), std::string::npos);
+}
+
+TEST(SurfaceLoads, GoesThroughARestartFile)
+{
+  SurfaceLoads loads, other;
+  std::vector<SurfaceLoads::Record> records = {{7, 1, 3.0, 0.3}, {6, 0, 8.0, 0.8}};
+  loads.take(records);
+  loads.add_row({7, 0.5, {1, 2, 3}, {4, 5, 6}, {7, 8, 9}, 2, 10});
+  other.add_row({1, 0.1, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0, 0});
+  other.unpack(loads.pack().data());
+  const TriangleMesh mesh = two();
+  EXPECT_EQ(loads.series(), "step,time,fx,fy,fz,mx,my,mz,jx,jy,jz,contacts,largest_force\n"
+                            "7,0.5,1,2,3,4,5,6,7,8,9,2,10\n");
+  EXPECT_EQ(other.series(), loads.series());
+  EXPECT_EQ(other.triangles(mesh, 7.0), loads.triangles(mesh, 7.0));
+  EXPECT_EQ(other.polydata(mesh, 7.0), loads.polydata(mesh, 7.0));
+  EXPECT_NE(loads.polydata(mesh, 7.0).find("NumberOfPolys=\"2\""), std::string::npos);
+}
+
+TEST(SurfaceContactStore, KeepsPacksAndCopies)
+{
+  SurfaceContactStore store, other;
+  store.resize(3);
+  other.resize(5);
+  store.make(1, 2);
+  for (int k = 0; k < 2; k++)
+    for (int m = 0; m < SurfaceContactStore::NUMBERS; m++) store.contact(1, k)[m] = 100 * k + m;
+  std::vector<double> buffer(1 + 2 * SurfaceContactStore::NUMBERS);
+  EXPECT_EQ(store.pack(1, buffer.data()), static_cast<int>(buffer.size()));
+  EXPECT_EQ(other.unpack(4, buffer.data()), static_cast<int>(buffer.size()));
+  other.copy(4, 0);
+  other.make(4, 0);
+  EXPECT_EQ(other.contacts(4), 0);
+  ASSERT_EQ(other.contacts(0), 2);
+  EXPECT_EQ(other.contact(0, 1)[3], 103.0);
+  EXPECT_EQ(store.pack(0, buffer.data()), 1);
+  store.clear();
+  EXPECT_EQ(store.contacts(1), 0);
+}
+
+// the law's own force along a step-by-step impact, from where the contact list's steps are
+TEST(ImpactForce, IsTheLawsInClosedForm)
+{
+  const double kn = 2.0e6, m = 300.0, w = std::sqrt(kn / m), dt = 0.25 / w, v0 = 1.5;
+  for (const double e : {0.3, 0.6, 1.0})
+    for (const double begin : {0.05, 0.5, 0.95}) {    // of a step
+      ContactLaw law = ContactLaw();
+      law.kn = kn;
+      law.cn_root = 2.0 * damping_ratio(e) * std::sqrt(kn);
+      law.exact = 1.0;
+      law.fn_least = -HUGE_VAL;
+      const ImpactForce impact(law, m, dt);
+      const Oscillator o = true_at_rest({law.cn(m) * 0.5 * dt / m, kn * dt * dt / m});
+      const double fast = 1.0 + o.stiffness() / 12.0, hurry = std::sqrt(o.a) / 0.25;
+      const Oscillator own = {law.cn(m) * 0.5 * dt / m, kn * dt * dt / m};
+      double before = 0.0, t = 1.0 - begin;
+      for (int k = 0; k < 8; k++, t += 1.0) {
+        const double d = o.after(t).x(0.0, fast * v0 * dt);
+        const double V = k == 0 ? v0 * dt : d - before;
+        const Motion there = own.after(t * hurry);    // the law's motion, at the same phase
+        const double force = (kn * there.x(0.0, v0 * dt) + law.cn(m) / dt * there.rate(0.0, v0 * dt));
+        EXPECT_NEAR(impact.normal(k + 1.0, d, V), force, 1e-9 * kn * v0 / w) << e << " " << begin << " " << k;
+        EXPECT_NEAR(impact.tangential(k + 1.0, d, V), k ? 1.0 / hurry : 1.0 / (hurry * (0.5 + 1.0 - begin)), 1e-9);
+        before = d;
+      }
+    }
+}

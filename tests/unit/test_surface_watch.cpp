@@ -1,0 +1,373 @@
+/* Which points of a surface a ball touches: faces, edges and corners once each, whatever the triangles. */
+
+#include "surface_watch.h"
+#include "terrain_surface.h"
+#include "triangle_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <set>
+#include <vector>
+
+using namespace Slope;
+
+static const double R = 0.5;
+
+static void add_square(std::vector<Triangle> &list, const Vector &a, const Vector &u, const Vector &v, int n = 1)
+{
+  auto at = [&](double i, double j) { return moved(moved(a, i / n, u), j / n, v); };
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++) {
+      list.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      list.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+}
+
+// a cube from 0 to 2
+static std::vector<Triangle> cube(int n = 1)
+{
+  std::vector<Triangle> list;
+  const Vector o = {0, 0, 0}, x = {2, 0, 0}, y = {0, 2, 0}, z = {0, 0, 2};
+  for (const Vector *shift : {&o, &z}) add_square(list, *shift, x, y, n);
+  for (const Vector *shift : {&o, &y}) add_square(list, *shift, x, z, n);
+  for (const Vector *shift : {&o, &x}) add_square(list, *shift, y, z, n);
+  return list;
+}
+
+static std::vector<SurfacePoint> contacts(const std::vector<Triangle> &list, const Vector &x, double r = R)
+{
+  std::vector<SurfacePoint> points;
+  for (size_t k = 0; k < list.size(); k++) {
+    const SurfacePoint p = nearest_point(list[k], static_cast<int>(k), x);
+    if (p.distance < r) points.push_back(p);
+  }
+  points.resize(SurfaceWatch::choose(points, r));
+  return points;
+}
+
+static void expect_vector(const Vector &a, double x, double y, double z)
+{
+  EXPECT_NEAR(a.x, x, 1e-12);
+  EXPECT_NEAR(a.y, y, 1e-12);
+  EXPECT_NEAR(a.z, z, 1e-12);
+}
+
+TEST(NearestPoint, IsTheNearestOfAllPoints)
+{
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  for (int k = 0; k < 300; k++) {
+    auto point = [&]() { return Vector{any(random), any(random), any(random)}; };
+    const Triangle t = {point(), point(), point()};
+    const Vector x = point();
+    const SurfacePoint p = nearest_point(t, 7, x);
+    EXPECT_EQ(p.triangle, 7);
+    EXPECT_NEAR(size_of(minus(x, p.point)), p.distance, 1e-12);
+    expect_vector(moved(p.point, p.distance, p.normal), x.x, x.y, x.z);
+    double least = HUGE_VAL;
+    for (int i = 0; i <= 60; i++)
+      for (int j = 0; i + j <= 60; j++) {
+        const Vector q = moved(moved(t.a, i / 60.0, minus(t.b, t.a)), j / 60.0, minus(t.c, t.a));
+        least = std::min(least, size_of(minus(x, q)));
+      }
+    EXPECT_LE(p.distance, least + 1e-12);
+    EXPECT_GE(p.distance, least - 0.06);
+  }
+}
+
+TEST(NearestPoint, HasANormalEvenOnTheTriangle)
+{
+  const Triangle t = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  expect_vector(nearest_point(t, 0, {0.2, 0.2, 0.0}).normal, 0, 0, 1);
+  expect_vector(nearest_point(t, 0, {0.0, 0.0, 0.0}).normal, 0, 0, 1);
+  expect_vector(nearest_point(t, 0, {0.2, 0.2, -0.3}).normal, 0, 0, -1);    // two sides
+}
+
+TEST(Choose, AFaceCountsOnceWhateverItsTriangles)
+{
+  for (const int n : {1, 2, 7, 30})
+    for (const Vector &x : {Vector{1.0, 1.0, 2.4}, Vector{0.7, 1.3, 2.1}, Vector{1.0, 0.4, 2.3}, Vector{1, 1, 2.05}}) {
+      const auto found = contacts(cube(n), x);
+      ASSERT_EQ(found.size(), 1u) << n;
+      EXPECT_NEAR(found[0].distance, x.z - 2.0, 1e-12);
+      expect_vector(found[0].normal, 0, 0, 1);
+    }
+}
+
+TEST(Choose, AnEdgeAndACornerCountOnceFromOutside)
+{
+  for (const int n : {1, 3}) {
+    auto found = contacts(cube(n), {2.2, 1.0, 2.2});
+    ASSERT_EQ(found.size(), 1u);
+    expect_vector(found[0].point, 2, 1, 2);
+    expect_vector(found[0].normal, std::sqrt(0.5), 0, std::sqrt(0.5));
+    found = contacts(cube(n), {2.2, -0.2, 2.2});
+    ASSERT_EQ(found.size(), 1u);
+    expect_vector(found[0].point, 2, 0, 2);
+    // beside an edge the face alone
+    found = contacts(cube(n), {1.95, 1.0, 2.3});
+    ASSERT_EQ(found.size(), 1u);
+    expect_vector(found[0].normal, 0, 0, 1);
+  }
+}
+
+TEST(Choose, FromInsideTheFacesCountAndNoEdge)
+{
+  for (const int n : {1, 5}) {
+    EXPECT_EQ(contacts(cube(n), {1.0, 1.0, 0.4}).size(), 1u);
+    EXPECT_EQ(contacts(cube(n), {1.6, 1.0, 0.4}).size(), 2u);
+    const auto found = contacts(cube(n), {1.6, 0.45, 0.4});
+    ASSERT_EQ(found.size(), 3u);
+    std::set<int> axes;
+    for (const SurfacePoint &p : found)
+      axes.insert(std::fabs(p.normal.x) > 0.9 ? 0 : std::fabs(p.normal.y) > 0.9 ? 1 : 2);
+    EXPECT_EQ(axes.size(), 3u);
+  }
+}
+
+TEST(Choose, AConcaveKinkHasTwoContactsIfItIsSharp)
+{
+  for (const double degrees : {10.0, 14.0, 16.0, 30.0, 90.0}) {
+    const double a = degrees * std::acos(-1.0) / 180.0;
+    std::vector<Triangle> list;
+    add_square(list, {-4, -4, 0}, {4, 0, 0}, {0, 8, 0});
+    add_square(list, {0, -4, 0}, {4 * std::cos(a), 0, 4 * std::sin(a)}, {0, 8, 0});
+    const double h = 0.999 * R;    // both overlap alike
+    const auto found = contacts(list, {-h * std::tan(0.5 * a), 0.3, h});
+    EXPECT_EQ(found.size(), degrees > 15.0 ? 2u : 1u) << degrees;
+    EXPECT_NEAR(found[0].distance, h, 1e-9);
+  }
+}
+
+TEST(Choose, AFineBowlHasOneContact)
+{
+  for (const double radius : {0.8, 2.0}) {    // the ball's is 0.5
+    std::vector<Triangle> list;
+    const int n = 60;
+    const double pi = std::acos(-1.0);
+    auto at = [&](int i, int j) {
+      const double down = pi - 0.5 * pi * (i + 0.3) / n, turn = 2.0 * pi * j / n;
+      return Vector{radius * std::sin(down) * std::cos(turn), radius * std::sin(down) * std::sin(turn),
+                    radius * std::cos(down)};
+    };
+    for (int i = 0; i < n; i++)
+      for (int j = 0; j < n; j++) {
+        list.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+        list.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+      }
+    const double depth = radius - 0.99 * R;
+    const auto found = contacts(list, {depth * 0.3, 0.0, -depth * std::sqrt(1 - 0.09)});
+    EXPECT_EQ(found.size(), 1u) << radius;
+  }
+}
+
+TEST(Choose, WhatIsHiddenBehindAFaceDoesNotCount)
+{
+  std::vector<Triangle> list = cube();
+  add_square(list, {0, 0, 1.97}, {2, 0, 0}, {0, 2, 0});    // a plate in the cube, close below its top
+  EXPECT_EQ(contacts(list, {1.0, 1.0, 2.2}).size(), 1u);
+  list = cube();
+  for (Triangle &t : cube()) list.push_back(t);    // everything twice
+  EXPECT_EQ(contacts(list, {1.0, 1.0, 2.2}).size(), 1u);
+}
+
+TEST(Choose, AnOpenEdgeCounts)
+{
+  std::vector<Triangle> list;
+  add_square(list, {0, 0, 0}, {2, 0, 0}, {0, 2, 0}, 3);
+  const auto found = contacts(list, {-0.3, 1.0, 0.0});
+  ASSERT_EQ(found.size(), 1u);
+  expect_vector(found[0].normal, -1, 0, 0);
+}
+
+// --- followed from step to step ---
+
+struct Followed {
+  TriangleMesh mesh;
+  SurfaceWatch watch;
+  explicit Followed(const std::vector<Triangle> &list) : mesh(list)
+  {
+    std::vector<int> all;
+    for (int k = 0; k < mesh.count(); k++) all.push_back(k);
+    watch.add_ball(42, all);
+  }
+  int touching(const Vector &x)
+  {
+    watch.look(0, x, R, 0.001, mesh);
+    int n = 0;
+    for (const SurfaceWatch::Slot &slot : watch.slots) n += slot.touches;
+    return n;
+  }
+};
+
+TEST(SurfaceWatch, AContactKeepsItsSlotFromFaceToFace)
+{
+  Followed f(cube(4));
+  EXPECT_EQ(f.touching({1.0, 1.0, 2.6}), 0);
+  for (int k = 0; k <= 1000; k++) EXPECT_EQ(f.touching({1.0 + 1e-3 * k, 1.0, 2.499}), 1) << k;
+  const double pi = std::acos(-1.0);
+  for (int k = 0; k <= 1000; k++) {    // around the edge
+    const double a = 0.5 * pi * k / 1000;
+    EXPECT_EQ(f.touching({2 + 0.499 * std::sin(a), 1.0, 2 + 0.499 * std::cos(a)}), 1);
+  }
+  EXPECT_EQ(f.touching({2.499, 1.0, 1.0}), 1);
+  EXPECT_EQ(f.watch.slots.size(), 1u);
+  EXPECT_EQ(f.watch.number_of(0), 42);
+}
+
+TEST(SurfaceWatch, APhantomTouchesTheBallWhereTheSurfaceDoes)
+{
+  Followed f(cube());
+  f.touching({2.2, 1.0, 2.3});
+  ASSERT_EQ(f.watch.slots.size(), 1u);
+  const SurfaceWatch::Slot &slot = f.watch.slots[0];
+  const Vector way = minus(Vector{2.2, 1.0, 2.3}, slot.centre);
+  EXPECT_NEAR(2 * R - size_of(way), R - std::sqrt(0.13), 1e-12);
+  expect_vector(slot.at.normal, way.x / size_of(way), 0, way.z / size_of(way));
+}
+
+TEST(SurfaceWatch, ASecondContactGetsASlotAndItIsUsedAgain)
+{
+  Followed f(cube());
+  EXPECT_EQ(f.touching({1.0, 1.0, 0.49}), 1);
+  EXPECT_EQ(f.touching({1.51, 1.0, 0.49}), 2);    // from inside, floor and wall
+  EXPECT_EQ(f.watch.slots[1].at.normal.x, -1.0);
+  EXPECT_EQ(f.touching({1.49, 1.0, 0.49}), 1);
+  EXPECT_TRUE(f.watch.slots[1].on);    // left in this step: its place is known
+  EXPECT_NEAR(f.watch.slots[1].at.distance, 0.51, 1e-12);
+  EXPECT_EQ(f.touching({1.49, 1.0, 0.49}), 1);
+  EXPECT_FALSE(f.watch.slots[1].on);
+  EXPECT_GT(f.watch.slots[1].centre.x, 1e9);
+  EXPECT_EQ(f.touching({0.49, 1.0, 0.49}), 2);
+  EXPECT_EQ(f.watch.slots.size(), 2u);
+  EXPECT_EQ(f.watch.slots[1].at.normal.x, 1.0);
+}
+
+TEST(SurfaceWatch, AStoredContactIsFoundByItsNormal)
+{
+  Followed f(cube());
+  f.watch.add_slot(0, {-1, 0, 0});
+  f.watch.add_slot(0, {0, 0, 1});
+  EXPECT_EQ(f.touching({1.51, 1.0, 0.49}), 2);
+  EXPECT_EQ(f.watch.slots.size(), 2u);
+  EXPECT_EQ(f.watch.slots[0].at.normal.x, -1.0);
+  EXPECT_EQ(f.watch.slots[1].at.normal.z, 1.0);
+}
+
+TEST(SurfaceWatch, FarJumpsAndSmallStepsFindTheSame)
+{
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> any(-0.6, 2.6), small(-0.004, 0.004);
+  Followed f(cube(6));
+  Vector x = {1, 1, 2.4};
+  int touched = 0;
+  for (int k = 0; k < 20000; k++) {
+    if (k % 50 == 0) x = {any(random), any(random), any(random)};
+    x = {x.x + small(random), x.y + small(random), x.z + small(random)};
+    const int n = f.touching(x);
+    EXPECT_EQ(n, static_cast<int>(contacts(cube(6), x).size()));
+    touched += n > 0;
+  }
+  EXPECT_GT(touched, 5000);
+}
+
+// --- what is near ---
+
+TEST(TriangleMesh, FindsAllThatIsNear)
+{
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> any(-10.0, 10.0), small(-0.5, 0.5);
+  std::vector<Triangle> list;
+  for (int k = 0; k < 3000; k++) {
+    const Vector a = {any(random), any(random), any(random)};
+    auto beside = [&]() { return Vector{a.x + small(random), a.y + small(random), a.z + small(random)}; };
+    list.push_back({a, beside(), beside()});
+  }
+  const TriangleMesh mesh(list);
+  size_t handed = 0, near = 0;
+  for (int k = 0; k < 300; k++) {
+    const Vector x = {any(random), any(random), any(random)};
+    std::vector<int> found;
+    mesh.find_near(x, 0.8, found);
+    const std::set<int> set(found.begin(), found.end());
+    EXPECT_EQ(set.size(), found.size());
+    handed += found.size();
+    for (int m = 0; m < mesh.count(); m++)
+      if (nearest_point(list[m], m, x).distance < 0.8) {
+        near++;
+        EXPECT_TRUE(set.count(m));
+      }
+  }
+  EXPECT_GT(near, 300u);
+  EXPECT_LT(handed, 300u * 60);
+}
+
+TEST(TriangleMesh, ManyEqualMiddlesEnd)
+{
+  const TriangleMesh mesh(std::vector<Triangle>(1000, Triangle{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  std::vector<int> found;
+  mesh.find_near({0, 0, 0}, 0.1, found);
+  EXPECT_EQ(found.size(), 1000u);
+}
+
+TEST(TriangleMesh, AnotherMeshHasAnotherSum)
+{
+  std::vector<Triangle> a = cube(), b = cube();
+  std::swap(b[0], b[1]);
+  EXPECT_NE(TriangleMesh(a).checksum(), TriangleMesh(b).checksum());
+}
+
+// --- terrain ---
+
+TEST(TerrainSurface, IsTheGridsPlaneUpToTheRim)
+{
+  ElevationGrid grid(5, 4, 10.0, 20.0, 2.0, 0.0);
+  for (int j = 0; j < grid.ny; j++)
+    for (int i = 0; i < grid.nx; i++) grid.at(i, j) = 0.3 * (11.0 + 2.0 * i) - 0.2 * (21.0 + 2.0 * j) + 5.0;
+  const TerrainSurface ground(grid, "g");
+  double area = 0.0;
+  for (int k = 0; k < ground.count(); k++) {
+    const Triangle t = ground.triangle(k);
+    for (const Vector *c : {&t.a, &t.b, &t.c}) EXPECT_NEAR(c->z, 0.3 * c->x - 0.2 * c->y + 5.0, 1e-12);
+    EXPECT_GT(t.twice_area().z, 0.0);
+    area += 0.5 * t.twice_area().z;
+  }
+  EXPECT_NEAR(area, 80.0, 1e-9);    // all of the raster, once
+  expect_vector(ground.low(), 10, 20, 0.3 * 10 - 0.2 * 28 + 5.0);
+  expect_vector(ground.high(), 20, 28, 0.3 * 20 - 0.2 * 20 + 5.0);
+}
+
+TEST(TerrainSurface, FindsAllThatIsNear)
+{
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> any(-2.0, 22.0), height(0.0, 3.0);
+  ElevationGrid grid(20, 20, 0.0, 0.0, 1.0, 0.0);
+  for (double &z : grid.z) z = height(random);
+  grid.at(7, 9) = NAN;
+  const TerrainSurface ground(grid, "g");
+  EXPECT_EQ(ground.holes(), 4);
+  size_t near = 0;
+  for (int k = 0; k < 300; k++) {
+    const Vector x = {any(random), any(random), 2.0 * height(random)};
+    std::vector<int> found;
+    ground.find_near(x, 1.3, found);
+    const std::set<int> set(found.begin(), found.end());
+    for (const int m : found) EXPECT_TRUE(std::isfinite(ground.triangle(m).area()));
+    for (int m = 0; m < ground.count(); m++) {
+      const Triangle t = ground.triangle(m);
+      if (!std::isfinite(t.area() + ground.triangle(m ^ 1).area()) || !(nearest_point(t, m, x).distance < 1.3)) continue;
+      near++;
+      EXPECT_TRUE(set.count(m)) << m;
+    }
+  }
+  EXPECT_GT(near, 1000u);
+}
+
+TEST(TerrainSurface, NeedsAQuadrangle)
+{
+  ElevationGrid grid(3, 3, 0.0, 0.0, 1.0, NAN);
+  EXPECT_THROW(TerrainSurface(grid, "g"), std::runtime_error);
+  EXPECT_EQ(TerrainSurface(ElevationGrid(1, 1, 0.0, 0.0, 1.0, 2.0), "g").count(), 8);
+}

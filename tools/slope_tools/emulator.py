@@ -1,0 +1,178 @@
+"""A Gaussian process that stands for the runs of an ensemble, its own error, and which variables matter by it.
+
+Points lie in the unit cube (designs). The process has a smooth part, a Matern 5/2 kernel with a length for each
+variable, and the noise of chance. Its error is that of a cross-validation: runs of points that the process has not
+seen. What a bad fit says is withheld.
+"""
+import math
+import warnings
+from dataclasses import dataclass
+from typing import List, Optional, Sequence
+
+import numpy as np
+from scipy import stats
+from scipy.stats import qmc
+from sklearn.exceptions import ConvergenceWarning
+from sklearn.gaussian_process import GaussianProcessRegressor
+from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
+
+FOLDS = 8
+GOOD, ROUGH = 0.8, 0.5      # share of the variance of unseen runs that is explained: good, rough from here, bad below
+BASE = 2048                 # points of Saltelli's scheme, for each of its matrices
+BASE_OF_FOLD = 1024         # of an emulator that stands for the error only
+LEAST_POINTS = 8            # fewer say nothing of which variable matters
+LENGTHS = 0.05, 20.0        # of the kernel, in units of the cube
+NOISE = 1e-8, 2.0           # share of the variance
+SEED = 1
+
+
+class Emulator:
+    """The process fitted to values (n) at points (n, d). noise: standard deviation of a run by chance."""
+
+    def __init__(self, points: np.ndarray, values: Sequence[float], kernel=None, restarts: int = 1):
+        points, values = np.asarray(points, float), np.asarray(values, float)
+        self.mean, self.scale = float(values.mean()), float(values.std()) or 1.0
+        if kernel is None:
+            dimensions = points.shape[1]
+            kernel = (ConstantKernel(1.0, (1e-2, 1e3)) * Matern(np.full(dimensions, 0.7), LENGTHS, 2.5)
+                      + WhiteKernel(0.1, NOISE))
+        self.process = GaussianProcessRegressor(kernel, n_restarts_optimizer=restarts, random_state=SEED)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ConvergenceWarning)     # a length at its bound: the variable is idle
+            self.process.fit(points, (values - self.mean) / self.scale)
+
+    @property
+    def kernel(self):
+        return self.process.kernel_
+
+    @property
+    def noise(self) -> float:
+        return self.scale * math.sqrt(self.kernel.k2.noise_level)
+
+    def at(self, points: np.ndarray) -> np.ndarray:
+        """Mean of the process."""
+        return self.mean + self.scale * self.process.predict(points)
+
+    def spread(self, points: np.ndarray):
+        """Mean, and standard deviation of the smooth part: by how much the mean itself may be wrong."""
+        mean, deviation = self.process.predict(points, return_std=True)
+        variance = np.maximum(deviation ** 2 - self.kernel.k2.noise_level, 1e-12)
+        return self.mean + self.scale * mean, self.scale * np.sqrt(variance)
+
+
+@dataclass(frozen=True)
+class Check:
+    """What a cross-validation says of an emulator.
+
+    explained: share of the variance of the runs left out that it explains (1 is perfect, 0 is the mean of all runs);
+    error: root mean square of what it is wrong by; noise: standard deviation of a run by chance, as the process has it;
+    deviation: of all runs.
+    """
+    explained: float
+    error: float
+    noise: float
+    deviation: float
+
+    @property
+    def verdict(self) -> str:
+        return "good" if self.explained >= GOOD else "rough" if self.explained >= ROUGH else "bad"
+
+
+@dataclass(frozen=True)
+class Influence:
+    """What a variable does to a quantity. rank: rank correlation; first, total: Sobol indices, with their errors.
+
+    The indices are shares of the variance that the variables make; they are None where the emulator is bad.
+    """
+    name: str
+    rank: float
+    rank_clear: bool            # whether it is larger than chance, in one of twenty
+    first: Optional[float]
+    first_error: Optional[float]
+    total: Optional[float]
+    total_error: Optional[float]
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """Which variables a quantity depends on; check is None, and told says why, where no emulator was made."""
+    check: Optional[Check]
+    influences: List[Influence]
+    told: str
+
+
+def folds(point: np.ndarray) -> List[np.ndarray]:
+    """Masks of the runs that are left out together: all of the same point, points dealt out in turn."""
+    _, index = np.unique(point, return_inverse=True)
+    number = min(FOLDS, index.max() + 1)
+    order = np.random.default_rng(SEED).permutation(index.max() + 1)
+    return [order[index] % number == k for k in range(number)]
+
+
+def analyse(names: Sequence[str], points: np.ndarray, values: Sequence[float], point: Sequence[int],
+            snap=lambda u: u) -> Analysis:
+    """Influence of each variable on values of runs at points (n, d); point: which point of the design each run is of.
+
+    snap: moves places in the cube to where runs can be, for variables of a list.
+    """
+    points, values, of = np.asarray(points, float), np.asarray(values, float), np.asarray(point)
+    different = len(np.unique(of))
+    ranks = [rank(points[:, i], values) for i in range(len(names))]
+
+    def without(told: str, check: Optional[Check] = None) -> Analysis:
+        return Analysis(check, [Influence(name, *one, None, None, None, None) for name, one in zip(names, ranks)], told)
+
+    if np.ptp(values) <= 1e-9 * max(1e-300, float(np.abs(values).max())):
+        return without("it is the same in all runs")
+    if different < max(LEAST_POINTS, 2 * len(names) + 2):
+        return without(f"{different} points are too few for an emulator of {len(names)} variables")
+    whole = Emulator(points, values)
+    parts, predicted = [], np.empty(len(values))
+    for out in folds(of):
+        part = Emulator(points[~out], values[~out], whole.kernel, restarts=0)
+        predicted[out] = part.at(points[out])
+        parts.append(part)
+    error = float(np.sqrt(np.mean((predicted - values) ** 2)))
+    check = Check(1 - error ** 2 / float(values.var()), error, whole.noise, float(values.std(ddof=1)))
+    if check.verdict == "bad":
+        return without(f"no indices: of runs that it has not seen the emulator explains {percent(check.explained)} of "
+                       "the variance", check)
+    first, total = indices(whole, len(names), snap)
+    many = np.array([indices(part, len(names), snap, BASE_OF_FOLD) for part in parts])
+    errors = np.sqrt((len(parts) - 1) / len(parts) * ((many - many.mean(axis=0)) ** 2).sum(axis=0))     # jackknife
+    told = f"the emulator explains {percent(check.explained)} of the variance of runs that it has not seen"
+    if check.verdict == "rough":
+        told += ": take the indices as rough"
+    return Analysis(check, [Influence(name, *ranks[i], float(first[i]), float(errors[0][i]), float(total[i]),
+                                      float(errors[1][i])) for i, name in enumerate(names)], told)
+
+
+def rank(places: np.ndarray, values: np.ndarray):
+    """Rank correlation (Spearman), and whether it is larger than chance."""
+    if np.ptp(places) == 0 or np.ptp(values) == 0:
+        return 0.0, False
+    found = stats.spearmanr(places, values)
+    return float(found[0]), bool(found[1] < 0.05)
+
+
+def indices(emulator: Emulator, dimensions: int, snap=lambda u: u, base: int = BASE):
+    """First-order and total Sobol indices of the emulator's mean, for evenly distributed points: two arrays.
+
+    Saltelli et al., Computer Physics Communications, 181, 259 (2010), with the estimators of Jansen.
+    """
+    both = qmc.Sobol(2 * dimensions, scramble=True, seed=SEED).random(base)
+    a, b = snap(both[:, :dimensions]), snap(both[:, dimensions:])
+    of_a, of_b = emulator.at(a), emulator.at(b)
+    variance = float(np.concatenate([of_a, of_b]).var())
+    first, total = np.empty(dimensions), np.empty(dimensions)
+    for i in range(dimensions):
+        mixed = a.copy()
+        mixed[:, i] = b[:, i]
+        of_mixed = emulator.at(mixed)
+        first[i] = 1 - float(np.mean((of_b - of_mixed) ** 2)) / (2 * variance) if variance > 0 else 0.0
+        total[i] = float(np.mean((of_a - of_mixed) ** 2)) / (2 * variance) if variance > 0 else 0.0
+    return np.clip(first, 0, 1), np.clip(total, 0, None)
+
+
+def percent(share: float) -> str:
+    return f"{100 * max(share, 0.0):.0f} %"

@@ -1,0 +1,134 @@
+"""How likely a value is exceeded: quantiles, shares and curves of an ensemble's runs, with binomial bounds.
+
+The runs of an ensemble are points drawn from the distributions of its variables, perhaps several runs of each point.
+Bounds are those of Clopper and Pearson for a share k of n; where a point has several runs, n is the number of
+independent runs that they are worth (Korn and Graubard, Survey Methodology, 24, 193, 1998). Failed runs could have
+given anything: in a lower bound they do not exceed a value, in an upper one they do. Every function is pure.
+"""
+import math
+from dataclasses import dataclass
+from typing import List, NamedTuple, Optional, Sequence, Tuple
+
+import numpy as np
+from scipy import stats
+
+CONFIDENCE = 0.9                # of bounds, two-sided: 5 % beyond either
+SHARES = 0.5, 0.9, 0.95, 0.99   # of the quantiles
+
+
+class Band(NamedTuple):
+    """An estimate and its bounds; None: so many runs do not bound it."""
+    value: float
+    low: Optional[float]
+    high: Optional[float]
+
+
+class Quantile(NamedTuple):
+    """The value that a share of the runs stays at or below."""
+    share: float
+    value: float
+    low: Optional[float]
+    high: Optional[float]
+
+
+@dataclass(frozen=True)
+class Curve:
+    """P(V > value), with bounds, at ascending values; between two of them it is the one of the lower."""
+    values: np.ndarray
+    share: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+
+    def at(self, value: float) -> Band:
+        """The share that exceeds a value, which may lie anywhere from the lowest of the curve on."""
+        i = int(np.searchsorted(self.values, value, "right")) - 1
+        i = max(i, 0)
+        return Band(float(self.share[i]), float(self.low[i]), float(self.high[i]))
+
+
+def share_bounds(k, n: int, failed: int = 0, effect: float = 1.0) -> Tuple[np.ndarray, np.ndarray]:
+    """Bounds of the share of which k of n finished runs are seen; k may be an array.
+
+    effect: how many of the runs are worth one independent run, >= 1.
+    """
+    k = np.asarray(k, float)
+    tail = (1 - CONFIDENCE) / 2
+    total = (n + failed) / effect
+    few, many = k / effect, (k + failed) / effect
+    with np.errstate(invalid="ignore"):
+        low = np.where(k > 0, stats.beta.ppf(tail, np.maximum(few, 1e-9), total - few + 1), 0.0)
+        high = np.where(k < n, stats.beta.ppf(1 - tail, many + 1, np.maximum(total - many, 1e-9)), 1.0)
+    return low, high
+
+
+@dataclass(frozen=True)
+class Places:
+    """Where quantiles and their bounds are among n sorted values, from 0; None: so many runs do not bound it."""
+    value: int
+    low: Optional[int]
+    high: Optional[int]
+
+
+def places(share: float, n: int, failed: int = 0, effect: float = 1.0) -> Places:
+    """The Places of the quantile of a share of n sorted values."""
+    above = np.arange(n - 1, -1, -1)        # how many lie above each of them
+    low, high = share_bounds(above, n, failed, effect)
+    left = 1 - share
+    rounding = 1e-12
+    first = int(np.argmax(above <= n * left + n * rounding))
+    sure_below = share_bounds(n, n, failed, effect)[0] > left     # whether all of them may be said to lie below
+    at_low = np.flatnonzero(low <= left)
+    at_high = np.flatnonzero(high <= left)
+    return Places(first, int(at_low[0]) if sure_below and len(at_low) else None,
+                  int(at_high[0]) if len(at_high) else None)
+
+
+def effect_of(exceeding: np.ndarray, point: np.ndarray) -> float:
+    """How many runs are worth one independent run, for the share of those that exceed a value; point: of each run.
+
+    The variance of the share as it is between the points, over that of as many independent runs; from 1 to the runs of
+    a point.
+    """
+    n = len(exceeding)
+    _, index, sizes = np.unique(point, return_inverse=True, return_counts=True)
+    several = n / len(sizes)
+    if several <= 1 or len(sizes) < 2:
+        return max(1.0, several)
+    share = float(np.mean(exceeding))
+    if not 0 < share < 1:
+        return several
+    sums = np.bincount(index, exceeding - share)
+    between = len(sizes) / (len(sizes) - 1) * float((sums ** 2).sum()) / n ** 2
+    return min(max(1.0, between / (share * (1 - share) / n)), several)
+
+
+def quantiles(values: Sequence[float], point: Sequence[int], failed: int = 0,
+              shares: Sequence[float] = SHARES) -> List[Quantile]:
+    """Quantiles of finished runs; point: which point of the design each run is of; failed: runs that gave none."""
+    given = np.asarray(values, float)
+    ordered = np.sort(given)
+    found = []
+    for share in shares:
+        value = ordered[places(share, len(ordered), failed).value]
+        at = places(share, len(ordered), failed, effect_of(given > value, np.asarray(point)))
+        found.append(Quantile(share, float(value), *(None if i is None else float(ordered[i])
+                                                     for i in (at.low, at.high))))
+    return found
+
+
+def curve(values: Sequence[float], point: Sequence[int], failed: int = 0) -> Curve:
+    """The share of the runs above each of their values, and above what lies below all of them.
+
+    It begins at 0, or, where there are negative values, below the lowest one.
+    """
+    given, of = np.asarray(values, float), np.asarray(point)
+    n = len(given)
+    start = 0.0 if given.min() > 0 else np.nextafter(given.min(), -math.inf)
+    at = np.unique(np.concatenate([[start], given]))
+    above = n - np.searchsorted(np.sort(given), at, "right")
+    low, high = np.empty(len(at)), np.empty(len(at))
+    several = len(np.unique(of)) < n
+    for i, value in enumerate(at):
+        effect = effect_of(given > value, of) if several else 1.0
+        low[i], high[i] = share_bounds(above[i], n, failed, effect)
+    return Curve(at, above / n, low, high)

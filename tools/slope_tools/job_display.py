@@ -1,0 +1,131 @@
+"""How far the runs of a study are: a table that renews itself on a terminal, else a line now and then."""
+import datetime
+import sys
+import time
+
+from rich.console import Console
+from rich.live import Live
+from rich.progress_bar import ProgressBar
+from rich.table import Table
+
+TELL = 30.0             # s between two lines about a run, where there is no terminal
+
+
+class Display:
+    """Shows how far the runs are: a table that renews itself on a terminal, else a line now and then."""
+
+    def __init__(self, todo, waiting, jobs):
+        self.total, self.waiting, self.jobs = len(todo), len(waiting), jobs
+        self.numbers = {one.name: i for i, one in enumerate(todo, 1)}
+        self.ended_runs = self.failed = 0
+        self.walls = []
+        self.told = {}      # name -> when the last line about it was printed
+        self.live = None
+        if sys.stderr.isatty():
+            # without auto_refresh there is no thread, and the study may fork
+            self.live = Live(console=Console(stderr=True), auto_refresh=False, transient=True)
+        self.done_before = self.total - self.waiting
+
+    def __enter__(self):
+        if self.done_before:
+            self.say(f"{self.done_before} of {self.total} runs are finished already")
+        if self.live:
+            self.live.start()
+        return self
+
+    def __exit__(self, kind, *_):
+        if self.live:
+            self.live.stop()
+        if kind is not None and issubclass(kind, KeyboardInterrupt):
+            done = self.done_before + self.ended_runs - self.failed
+            self.say(f"stopped with {done} of {self.total} runs finished; the same command goes on")
+
+    def say(self, line):
+        if self.live:
+            self.live.console.print(line, markup=False, highlight=False)
+        else:
+            print(line, flush=True)
+
+    def label(self, one):
+        return f"[{self.numbers[one.name]}/{self.total}] {one.name}"
+
+    def started(self, one, said):
+        self.told[one.name] = time.monotonic()
+        if not self.live or said != "started":
+            self.say(f"{self.label(one)}: {said}")
+
+    def ended(self, active):
+        one, wall = active.run, time.monotonic() - active.began
+        self.ended_runs += 1
+        self.walls.append(wall)
+        if one.error:
+            self.failed += 1
+            self.say(f"{self.label(one)}: failed: {one.error}")
+        else:
+            at = f" at {one.log.time:.1f} s" if one.log.time is not None else ""
+            since = f" since step {one.restart[0]}" if one.restart else ""
+            self.say(f"{self.label(one)}: finished{at}, wall time {duration(wall)}{since}{self._to_go()}")
+
+    def _to_go(self):
+        """How many runs are left and when they will have ended, for those who see no table."""
+        left = self.waiting - self.ended_runs
+        return "" if self.live or left <= 0 else f"; {left} to go, all by {clock(self._ends(left))}"
+
+    def _ends(self, left):
+        """Seconds that so many runs take, as those before did."""
+        return sum(self.walls) / len(self.walls) * left / self.jobs
+
+    def update(self, active, waiting):
+        if self.live:
+            return self.live.update(self._table(active, waiting), refresh=True)
+        for job in active:
+            if time.monotonic() - self.told[job.run.name] > TELL:
+                self.told[job.run.name] = time.monotonic()
+                _, text, end = self._progress(job)
+                self.say(f"{self.label(job.run)}: {text}" + (f", ends by {end}" if end else ""))
+        return None
+
+    @staticmethod
+    def _progress(job):
+        """Share done (None if not known), what to say of it, and when it will have ended at the latest."""
+        log = job.run.log
+        if log.thermo == 0:
+            return None, "setting up", ""
+        text = f"step {log.step}" + (f" of {log.last}" if log.last else "")
+        if log.time is not None:
+            text += f", {log.time:.2f} s"
+        if not log.last or log.last <= log.first:
+            return None, text, ""
+        share = (log.step - log.first) / (log.last - log.first)
+        spent = time.monotonic() - job.began
+        return share, text, clock(spent * (1 - share) / share) if share > 0 else ""
+
+    def _table(self, active, waiting):
+        table = Table(box=None, padding=(0, 2, 0, 0))
+        table.add_column("run", no_wrap=True)
+        table.add_column("", no_wrap=True)
+        for head in ("step", "ends by"):
+            table.add_column(head, no_wrap=True, min_width=8)
+        for job in active:
+            share, text, end = self._progress(job)
+            table.add_row(f"[{self.numbers[job.run.name]}/{self.total}] {job.run.varied}",
+                          ProgressBar(100, 100 * (share or 0), width=12), text, end)
+        ends = ""
+        if self.walls and waiting:
+            ends = clock(self._ends(waiting + len(active) / 2))
+        table.add_row(f"{self.done_before + self.ended_runs - self.failed} of {self.total} finished"
+                      + (f", {self.failed} failed" if self.failed else ""), "", f"{waiting} waiting", ends,
+                      style="dim")
+        return table
+
+
+def duration(seconds):
+    """Such as 1:02:03, or 4.5 s."""
+    return f"{seconds:.1f} s" if seconds < 60 else str(datetime.timedelta(seconds=round(seconds)))
+
+
+def clock(seconds):
+    """The time of day in so many seconds, with the date if that is not today."""
+    today = datetime.datetime.now()
+    then = today + datetime.timedelta(seconds=seconds)
+    return then.strftime("%H:%M:%S" if then.date() == today.date() else "%Y-%m-%d %H:%M")
