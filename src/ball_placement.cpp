@@ -31,7 +31,6 @@ static constexpr double MAX_BALLS = 2147483647.0;
 static constexpr double COUNTED = 131072.0;     // plan nodes of a ground that is counted at once
 static constexpr int MARKS = 4096;              // columns that tell one ground from another
 static constexpr double SAME_PLACE = 1.0e-6;    // in diameters
-static constexpr double RIM_MARKS = 0.05;       // of the columns, rounding may decide on a ball
 static constexpr double IN_ORDER = 1.0e-8;      // of a file's balls, in diameters, in the mean
 static constexpr size_t CHUNK = 1 << 26;        // of a message: MPI counts in int
 
@@ -393,14 +392,13 @@ std::string BallPlacement::unlike(const std::vector<double> &there)
   }
   for (size_t k = 2; k < 7; k++)
     if (!(std::fabs(there[k] - here[k]) <= SAME_PLACE * d)) return "another plan grid";
-  double balls = 0.0, moved = 0.0, only_one = 0.0;
   for (size_t k = 7; k < here.size(); k++) {
-    const bool has = std::isfinite(here[k]), had = std::isfinite(there[k]);
-    balls += has || had;
-    only_one += has != had;
-    moved += has && had && std::fabs(here[k] - there[k]) > SAME_PLACE * d;
+    if (std::isinf(here[k]) || std::isinf(there[k])) continue;    // rounding may decide there
+    if (std::isnan(here[k]) != std::isnan(there[k]) ||
+        std::fabs(here[k] - there[k]) > SAME_PLACE * d)
+      return "another surface";
   }
-  return moved > 0.0 || only_one > std::max(2.0, RIM_MARKS * balls) ? "another surface" : "";
+  return "";
 }
 
 /* ----------------------------------------------------------------------

@@ -19,6 +19,7 @@ static constexpr int MOST_HIDDEN = 24;          // cells that a rim is followed 
 static constexpr int BLOCK = 32;                // cells: more than a rim and the reach of a cell
 static constexpr int NOT_REFINED = INT_MAX;     // a steep cell that no rim runs through
 static constexpr int64_t OF_CELL = 1 << 20;     // numbers of the balls of one cell
+static constexpr double ASIDE = 1.0e-6;         // of the spacing: farther than rounding
 static constexpr size_t LEAST_KNOWN = 1024;     // tiles whose nodes are remembered
 
 /* ---------------------------------------------------------------------- */
@@ -46,11 +47,20 @@ void SurfaceSampler::remember_less(int tile_j)
 
 double SurfaceSampler::node(int i, int j) const
 {
-  const double x = nodes.x(i), y = nodes.y(j);
-  double z;
-  if (!nodes.surface.height(x, y, z) || !std::isfinite(z))
-    return std::numeric_limits<double>::quiet_NaN();
-  return !nodes.surface.keep || nodes.surface.keep(x, y) ? z : HUGE_VAL;
+  const NodeGrid &g = nodes.grid;
+  const double x = nodes.x(i), y = nodes.y(j), off = ASIDE * g.spacing;
+  const double at[5][2] = {{x, y}, {x - off, y}, {x + off, y}, {x, y - off}, {x, y + off}};
+  double height = 0.0, z;
+  int balls = 0;
+  for (int k = 0; k < 5; k++) {
+    const double px = std::min(std::max(at[k][0], g.xlo), g.xhi);
+    const double py = std::min(std::max(at[k][1], g.ylo), g.yhi);
+    const bool there = nodes.surface.height(px, py, z) && std::isfinite(z);
+    balls += there && (!nodes.surface.keep || nodes.surface.keep(px, py));
+    if (k == 0) height = z;
+  }
+  if (balls == 5) return height;
+  return balls == 0 ? std::numeric_limits<double>::quiet_NaN() : -HUGE_VAL;
 }
 
 bool SurfaceSampler::has_balls(int tile)

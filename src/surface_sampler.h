@@ -61,7 +61,7 @@ class SurfaceSampler {
   // whether a tile has balls on nodes; a surface without such a tile has no balls
   bool has_balls(int tile);
 
-  // height of the ball on a node; NaN without surface, infinite if keep() drops it
+  // height of the ball on a node, NaN without; -infinite where rounding may decide on that, at a rim
   double node(int i, int j) const;
 
   // forget what was looked at, but not which cells need balls
