@@ -27,8 +27,7 @@ BallGround::BallGround(LAMMPS *lmp, const PlacementArguments &a) :
 {
   const double step = SEARCH_STEP * a.diameter;
   if (!a.filter.empty())
-    columns.reset(
-        new RegionSurface(lmp, a.caller, a.filter.c_str(), RegionSurface::LOWER, step));
+    columns.reset(new RegionSurface(lmp, a.caller, a.filter.c_str(), RegionSurface::LOWER, step));
   if (a.region.empty()) return;
   boundary.reset(new RegionSurface(lmp, a.caller, a.region.c_str(), a.side, step));
   if (!boundary->has_boundary())

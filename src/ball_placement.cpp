@@ -124,8 +124,8 @@ void BallPlacement::place_surface()
     if (!ground->build()) return;
     nodes = Slope::count_nodes(ground->grid());
     if (!(nodes < MAX_BALLS))
-      throw std::runtime_error(fmt::format("spacing must give fewer than 2^31 balls, got {:.3g} with {}",
-                                           nodes, arguments.spacing));
+      throw std::runtime_error(fmt::format(
+          "spacing must give fewer than 2^31 balls, got {:.3g} with {}", nodes, arguments.spacing));
     if (nodes > 0.0) sampler = new_sampler();
   });
   if (comm->me == 0) warn_of_spacing();
@@ -164,11 +164,10 @@ void BallPlacement::warn_of_spacing() const
   const bool leaks = spacing / std::sqrt(2.0) >= contact;
   const double steep = Slope::cover_radius(spacing, half) + Slope::sampling_slack(half);
   if (leaks || steep >= contact)
-    error->warning(FLERR,
-                   "{} spacing {} lets a ball of diameter {} through {}: spacing must be < {:.4g}",
-                   caller, spacing, arguments.smallest,
-                   leaks ? "even on level ground" : "on steep ground",
-                   contact * (leaks ? std::sqrt(2.0) : 1.299));
+    error->warning(
+        FLERR, "{} spacing {} lets a ball of diameter {} through {}: spacing must be < {:.4g}",
+        caller, spacing, arguments.smallest, leaks ? "even on level ground" : "on steep ground",
+        contact * (leaks ? std::sqrt(2.0) : 1.299));
 }
 
 /* ----------------------------------------------------------------------
@@ -263,8 +262,7 @@ SurfaceCounts BallPlacement::count_all(std::vector<std::string> *text) const
       }
       if (!text) continue;
       Slope::in_order(balls);
-      for (const PlacedBall &b : balls)
-        (*text)[Slope::is_extra(b)] += line_of(b);
+      for (const PlacedBall &b : balls) (*text)[Slope::is_extra(b)] += line_of(b);
       balls.clear();
     }
   });
@@ -320,15 +318,18 @@ void BallPlacement::bcast(void *data, size_t bytes, int from) const
 void BallPlacement::report(const SurfaceCounts &counts, bool known) const
 {
   const PlacementArguments &a = arguments;
-  const std::string where = fmt::format("{} region {}", a.filter_inside ? "inside" : "outside", a.filter);
+  const std::string where =
+      fmt::format("{} region {}", a.filter_inside ? "inside" : "outside", a.filter);
   std::string text = fmt::format("{}: ", caller);
   if (a.region.empty()) {
-    text += fmt::format("{} fixed balls of diameter {} (from file {}", counts.base, a.diameter, a.file);
+    text +=
+        fmt::format("{} fixed balls of diameter {} (from file {}", counts.base, a.diameter, a.file);
     if (!a.filter.empty()) text += fmt::format(", {} not {}", dropped, where);
   } else if (known) {
-    text += fmt::format("{} fixed balls of diameter {} ({} on the plan grid every {}, {} extra "
-                        "where the surface is steep or ends",
-                        counts.base + counts.extra, a.diameter, counts.base, a.spacing, counts.extra);
+    text +=
+        fmt::format("{} fixed balls of diameter {} ({} on the plan grid every {}, {} extra "
+                    "where the surface is steep or ends",
+                    counts.base + counts.extra, a.diameter, counts.base, a.spacing, counts.extra);
     if (counts.without_surface)
       text += fmt::format(", {} plan nodes without surface", counts.without_surface);
     if (!a.filter.empty()) text += fmt::format(", {} plan nodes not {}", counts.dropped, where);
@@ -365,11 +366,14 @@ const std::vector<double> &BallPlacement::fingerprint()
   }
   const Slope::PlanNodes &plan = sampler->plan();
   const double nodes = static_cast<double>(plan.nx) * plan.ny;
-  for (const double value : {plan.grid.spacing, plan.xfirst, plan.yfirst, plan.nx + 0.0, plan.ny + 0.0})
+  for (const double value :
+       {plan.grid.spacing, plan.xfirst, plan.yfirst, plan.nx + 0.0, plan.ny + 0.0})
     marks.push_back(value);
   for (int k = 0; k < std::min(nodes, MARKS + 0.0); k++) {
-    const bigint node = static_cast<bigint>(nodes <= MARKS ? k : part(0.6180339887498949, k) * nodes);
-    marks.push_back(sampler->node(static_cast<int>(node % plan.nx), static_cast<int>(node / plan.nx)));
+    const bigint node =
+        static_cast<bigint>(nodes <= MARKS ? k : part(0.6180339887498949, k) * nodes);
+    marks.push_back(
+        sampler->node(static_cast<int>(node % plan.nx), static_cast<int>(node / plan.nx)));
   }
   return marks;
 }

@@ -63,10 +63,10 @@ class BallPlacement : protected Pointers {
   std::unique_ptr<class BallGround> ground;
   std::unique_ptr<Slope::SurfaceSampler> sampler;    // empty: a file, or no column at all
   std::vector<Slope::PlacedBall> from_file;
-  double sums[3];                // of these
-  bigint dropped;                // lines of the file
-  bigint counted;                // balls, -1: unknown
-  std::vector<double> marks;     // the fingerprint
+  double sums[3];               // of these
+  bigint dropped;               // lines of the file
+  bigint counted;               // balls, -1: unknown
+  std::vector<double> marks;    // the fingerprint
 
   void place_file();
   void place_surface();
@@ -74,7 +74,8 @@ class BallPlacement : protected Pointers {
   void my_rows(int &first, int &end) const;
   void warn_of_spacing() const;
   bool any() const;
-  Slope::SurfaceCounts count_all(std::vector<std::string> *text) const;    // text: lines, of nodes, extra
+  Slope::SurfaceCounts
+  count_all(std::vector<std::string> *text) const;    // text: lines, of nodes, extra
   void report(const Slope::SurfaceCounts &, bool known) const;
   void bcast(void *data, size_t bytes, int from) const;
   void write_file(std::vector<std::string> &text, bigint n) const;

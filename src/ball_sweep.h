@@ -19,7 +19,8 @@ SLOPE_INLINE void sweep(int n, const int *mask, int groupbit, FourBalls four, On
 {
   int i = 0;
   for (; i + 4 <= n; i += 4) {
-    if (mask[i] & mask[i + 1] & mask[i + 2] & mask[i + 3] & groupbit) four(i);
+    if (mask[i] & mask[i + 1] & mask[i + 2] & mask[i + 3] & groupbit)
+      four(i);
     else
       for (int k = i; k < i + 4; k++)
         if (mask[k] & groupbit) one(k);
@@ -32,9 +33,9 @@ SLOPE_INLINE void sweep(int n, const int *mask, int groupbit, FourBalls four, On
 struct OfComponents {
   Four first, second, third;
 
-  SLOPE_INLINE explicit OfComponents(Four s)
-      : first(SLOPE_SHUFFLE(s, s, 0, 0, 0, 1)), second(SLOPE_SHUFFLE(s, s, 1, 1, 2, 2)),
-        third(SLOPE_SHUFFLE(s, s, 2, 3, 3, 3))
+  SLOPE_INLINE explicit OfComponents(Four s) :
+      first(SLOPE_SHUFFLE(s, s, 0, 0, 0, 1)), second(SLOPE_SHUFFLE(s, s, 1, 1, 2, 2)),
+      third(SLOPE_SHUFFLE(s, s, 2, 3, 3, 3))
   {
   }
 };

@@ -54,16 +54,16 @@ class BallTiles {
   const Make make;
 
   struct Tile {
-    int number;                 // in the plan
-    size_t begin, end;          // balls
-    std::vector<int> first;     // cell c (x fastest) holds begin + first[c] .. first[c+1]-1
-    std::vector<float> top;     // highest ball centre of a cell
+    int number;                // in the plan
+    size_t begin, end;         // balls
+    std::vector<int> first;    // cell c (x fastest) holds begin + first[c] .. first[c+1]-1
+    std::vector<float> top;    // highest ball centre of a cell
     double xlo, ylo, cell_inv;
     int ncx, ncy;
-    int64_t asked;              // when it was last asked for
+    int64_t asked;    // when it was last asked for
   };
-  std::vector<int> slot;        // of the plan's tiles, -1: not made
-  std::vector<Tile> tiles;      // those that are made
+  std::vector<int> slot;      // of the plan's tiles, -1: not made
+  std::vector<Tile> tiles;    // those that are made
   int ntiles;
   int64_t now;
 
@@ -88,8 +88,7 @@ class BallTiles {
 
 /* ---------------------------------------------------------------------- */
 
-template <typename Visit>
-void BallTiles::visit_near(const double *x, double reach, Visit visit)
+template <typename Visit> void BallTiles::visit_near(const double *x, double reach, Visit visit)
 {
   const double inv = 1.0 / plan.size, spare = 1.0e-9;
   const double ulo = (x[0] - reach - plan.xlo) * inv, uhi = (x[0] + reach - plan.xlo) * inv;

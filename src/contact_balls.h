@@ -58,7 +58,10 @@ struct FixedPartners {
   double radius_all;
   Vector still = {0.0, 0.0, 0.0};
 
-  SLOPE_INLINE FixedPartners(const Vector *positions, double radius) : position(positions), radius_all(radius) {}
+  SLOPE_INLINE FixedPartners(const Vector *positions, double radius) :
+      position(positions), radius_all(radius)
+  {
+  }
 
   SLOPE_INLINE const Vector &x(int j) const { return position[j]; }
   SLOPE_INLINE double share(int) const { return 1.0; }

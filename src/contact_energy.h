@@ -65,8 +65,7 @@ double elastic_energy(const ContactList &list, const ContactLaw &law, const Movi
   double energy = 0.0;
   for (size_t k = 0; k < list.entries.size(); k++) {
     const ContactList::Entry &e = list.entries[k];
-    if (!(distance(balls, partners, e.i, e.j) < balls.radius[e.i] + partners.radius(e.j)))
-      continue;
+    if (!(distance(balls, partners, e.i, e.j) < balls.radius[e.i] + partners.radius(e.j))) continue;
     Contact c;
     Vector delta;
     set_contact(law, balls, partners, e.i, e.j, c, delta);

@@ -42,13 +42,13 @@ inline namespace SLOPE_INSTRUCTIONS {
 // (lone_contact.h). With several contacts the dashpots are shared out: see crowd below.
 // Derivation: doc/src/theory.rst.
 template <class N> struct ContactStepOf {
-  double dt, grow;           // s; grow: what the springs grow by, 0 at set-up
-  N force;                   // m / dt^2: N per m
-  N stiffness, damping;      // normal force in m: stiffness d + damping V
-  N kt, ct, kr, cr;          // N/m, N s/m: as velocity Verlet needs them
-  N taken_t, taken_r;        // share of the sliding and rolling motion that a dashpot takes in a step
-  N per_kt, per_kr;          // 1 / kt, 1 / kr; 0 without a spring
-  double shared;             // 1: dashpots of several contacts share what they take; 0: plain
+  double dt, grow;         // s; grow: what the springs grow by, 0 at set-up
+  N force;                 // m / dt^2: N per m
+  N stiffness, damping;    // normal force in m: stiffness d + damping V
+  N kt, ct, kr, cr;        // N/m, N s/m: as velocity Verlet needs them
+  N taken_t, taken_r;      // share of the sliding and rolling motion that a dashpot takes in a step
+  N per_kt, per_kr;        // 1 / kt, 1 / kr; 0 without a spring
+  double shared;           // 1: dashpots of several contacts share what they take; 0: plain
   double friction, rolling, fn_least;
 };
 using ContactStep = ContactStepOf<double>;
@@ -73,10 +73,10 @@ template <class N> SLOPE_INLINE N discrete(N a)
 
 // inverse_mass (1/kg): 1/m_i + 1/m_j, where a fixed ball has none. mass_dashpot (kg): that of the
 // conversion restitution -> dashpot. inverse_rolling (1/kg): 2.5 Rr^2 (1/(m_i R_i^2) + 1/(m_j R_j^2)),
-// of solid spheres. dt (s) > 0; again: for the forces of the step that has just ended once more.
+// of solid spheres. dt (s) > 0; repeat: for the forces of the step that has just ended once more.
 template <class N>
 SLOPE_INLINE ContactStepOf<N> contact_step(const ContactLaw &law, N inverse_mass, N mass_dashpot,
-                                           N inverse_rolling, double dt, bool again)
+                                           N inverse_rolling, double dt, bool repeat)
 {
   const N root_mass = root(mass_dashpot);
   const N point = POINT * inverse_mass;
@@ -85,7 +85,7 @@ SLOPE_INLINE ContactStepOf<N> contact_step(const ContactLaw &law, N inverse_mass
   const N cr = law.cr_given + law.cr_root * root_mass;
   ContactStepOf<N> s;
   s.dt = dt;
-  s.grow = again ? 0.0 : dt;
+  s.grow = repeat ? 0.0 : dt;
   s.friction = law.friction;
   s.rolling = law.rolling;
   s.fn_least = law.fn_least;
@@ -120,7 +120,8 @@ inline LoneContact lone_contact(const ContactLaw &law, double inverse_mass, doub
 {
   const double root_mass = std::sqrt(mass_dashpot);
   const double half = 0.5 * dt, square = dt * dt;
-  return LoneContact({(law.cn_given + law.cn_root * root_mass) * half * inverse_mass, law.kn * square * inverse_mass},
+  return LoneContact({(law.cn_given + law.cn_root * root_mass) * half * inverse_mass,
+                      law.kn * square * inverse_mass},
                      {POINT * (law.ct_given + law.ct_root * root_mass) * half * inverse_mass,
                       POINT * law.kt * square * inverse_mass},
                      law.friction,
@@ -189,7 +190,8 @@ template <class T, class N> SLOPE_INLINE T normal_velocity(const ContactOf<T, N>
 }
 
 // velocity of the contact point in the tangent plane, m/s: v - vn n - (Ri wi + Rj wj) x n
-template <class T, class N> SLOPE_INLINE void sliding_velocity(const ContactOf<T, N> &c, T vn, T *vt)
+template <class T, class N>
+SLOPE_INLINE void sliding_velocity(const ContactOf<T, N> &c, T vn, T *vt)
 {
   const T *n = c.n;
   vt[0] = c.v[0] - vn * n[0] - (c.rw[1] * n[2] - c.rw[2] * n[1]);
@@ -214,8 +216,8 @@ SLOPE_INLINE void set_force(const ContactOf<T, N> &c, T fn, const T *ft, Contact
 // Rolling: the same construction as sliding on Rr (wi - wj) in the tangent plane, torque arm Rr.
 // The dashpots of sliding and of rolling act on the same spin: one more than those of sliding.
 template <class T, class N>
-SLOPE_INLINE void add_rolling(const ContactStepOf<N> &step, const ContactOf<T, N> &c, T crowd, T pressing,
-                              T *spring, ContactForceOf<T> &out)
+SLOPE_INLINE void add_rolling(const ContactStepOf<N> &step, const ContactOf<T, N> &c, T crowd,
+                              T pressing, T *spring, ContactForceOf<T> &out)
 {
   const T *n = c.n;
   const N rr = c.rolling_radius;
@@ -223,7 +225,8 @@ SLOPE_INLINE void add_rolling(const ContactStepOf<N> &step, const ContactOf<T, N
   const T vr[3] = {rr * (c.w[0] - wn * n[0]), rr * (c.w[1] - wn * n[1]), rr * (c.w[2] - wn * n[2])};
   const T cr = step.cr / (1.0 + (2.0 * crowd + step.shared) * step.taken_r);
   T fr[3];
-  limited_spring(step.kr, cr, T(cr * step.per_kr), T(step.rolling * pressing), n, vr, step.grow, spring, fr);
+  limited_spring(step.kr, cr, T(cr * step.per_kr), T(step.rolling * pressing), n, vr, step.grow,
+                 spring, fr);
   for (int d = 0; d < 3; d++) out.m[d] = rr * fr[d];
 }
 
@@ -232,20 +235,22 @@ SLOPE_INLINE void add_rolling(const ContactStepOf<N> &step, const ContactOf<T, N
 // is reduced by 1 / (1 + crowd * what it takes). history: the springs, updated.
 // ROLLING = false leaves out the rolling resistance, for laws that have none.
 template <bool ROLLING = true, class T, class N>
-SLOPE_INLINE void contact_force(const ContactStepOf<N> &step, const ContactOf<T, N> &c, T crowd, T *history,
-                                ContactForceOf<T> &out)
+SLOPE_INLINE void contact_force(const ContactStepOf<N> &step, const ContactOf<T, N> &c, T crowd,
+                                T *history, ContactForceOf<T> &out)
 {
   const T *n = c.n;
   const T vn = normal_velocity(c);
   const T others = step.shared * crowd;
-  const T F = step.stiffness * c.overlap - step.damping / (1.0 + others * step.damping) * vn * step.dt;
+  const T F =
+      step.stiffness * c.overlap - step.damping / (1.0 + others * step.damping) * vn * step.dt;
   const T fn = larger(T(F * step.force), all<T>(step.fn_least));
   const T pressing = larger(fn, T());
 
   T vt[3], ft[3];
   sliding_velocity(c, vn, vt);
   const T ct = step.ct / (1.0 + others * step.taken_t);
-  limited_spring(step.kt, ct, T(ct * step.per_kt), T(step.friction * pressing), n, vt, step.grow, history, ft);
+  limited_spring(step.kt, ct, T(ct * step.per_kt), T(step.friction * pressing), n, vt, step.grow,
+                 history, ft);
 
   set_force(c, fn, ft, out);
   if (ROLLING) add_rolling(step, c, others, pressing, history + 3, out);
@@ -267,16 +272,16 @@ inline void flatten(const double *n, const double *v, double *out)
 }
 
 // The same of a contact whose balls touch nothing else (in the step that it ends in they touch
-// nothing at all). again: see contact_step. history: HISTORY values, updated. Returns false if again
+// nothing at all). repeat: see contact_step. history: HISTORY values, updated. Returns false if repeat
 // could only estimate the force.
 template <bool ROLLING = true>
-inline bool lone_contact_force(const ContactStep &step, const LoneContact &lone, Life life, bool again,
-                               const Contact &c, double *history, ContactForce &out)
+inline bool lone_contact_force(const ContactStep &step, const LoneContact &lone, Life life,
+                               bool repeat, const Contact &c, double *history, ContactForce &out)
 {
   const double *n = c.n;
   const double vn = normal_velocity(c);
-  const double age = std::floor(history[PHASE]) - (again ? 1.0 : 0.0);    // before this step
-  const bool grazes = life == BEGINS && !(vn < 0.0);    // and parts already
+  const double age = std::floor(history[PHASE]) - (repeat ? 1.0 : 0.0);    // before this step
+  const bool grazes = life == BEGINS && !(vn < 0.0);                       // and parts already
   if (grazes || (life == LASTS && age >= lone.longest)) {
     contact_force<ROLLING>(step, c, 0.0, history, out);
     history[PHASE] = grazes ? BEGAN_IN_CROWD : LASTING;
@@ -297,7 +302,8 @@ inline bool lone_contact_force(const ContactStep &step, const LoneContact &lone,
   double rho[3];
   flatten(n, history + 3, rho);
   turn(n, rho, springs.roll);
-  const bool slid = lone.kick(life, again, has_slid(history[PHASE]), c.overlap, -vn * step.dt, U, Y, springs, kick);
+  const bool slid = lone.kick(life, repeat, has_slid(history[PHASE]), c.overlap, -vn * step.dt, U,
+                              Y, springs, kick);
 
   const double fn = std::max(kick.n * step.force, step.fn_least);
   double ft[3], fr[3];
@@ -312,9 +318,9 @@ inline bool lone_contact_force(const ContactStep &step, const LoneContact &lone,
     turn(springs.roll, n, history + 3);
     for (int d = 0; d < 3; d++) out.m[d] *= rr;
   }
-  if (again) return !slid;
+  if (repeat) return !slid;
   history[PHASE] = life == ENDS ? static_cast<double>(ENDED)
-                                 : (life == BEGINS ? 1.0 : age + 1.0) + (slid ? SLID : 0.0);
+                                : (life == BEGINS ? 1.0 : age + 1.0) + (slid ? SLID : 0.0);
   return true;
 }
 

@@ -18,8 +18,8 @@ inline namespace SLOPE_INSTRUCTIONS {
 
 // the law for balls of these radii (m) and masses (kg), time step dt (s); repeat as for contact_step()
 template <class N>
-SLOPE_INLINE ContactStepOf<N> step_of(const Sides &moves, const ContactLaw &law, double dt, bool repeat, N ri,
-                                      N rj, N mi, N mj)
+SLOPE_INLINE ContactStepOf<N> step_of(const Sides &moves, const ContactLaw &law, double dt,
+                                      bool repeat, N ri, N rj, N mi, N mj)
 {
   const N inverse = moves.inverse_mass(mi, mj);
   return contact_step(law, inverse, N(moves.mass_factor(law) / inverse),
@@ -27,8 +27,8 @@ SLOPE_INLINE ContactStepOf<N> step_of(const Sides &moves, const ContactLaw &law,
 }
 
 // the same for a contact whose balls touch nothing else
-inline LoneContact lone_of(const Sides &moves, const ContactLaw &law, double dt, double ri, double rj,
-                           double mi, double mj)
+inline LoneContact lone_of(const Sides &moves, const ContactLaw &law, double dt, double ri,
+                           double rj, double mi, double mj)
 {
   const double inverse = moves.inverse_mass(mi, mj);
   const double rr = law.rolling_factor * ri * rj / (ri + rj);
@@ -48,8 +48,8 @@ SLOPE_INLINE double distance(const MovingBalls &balls, const Partners &partners,
 
 // geometry and velocities of the contact of ball i with partner j; delta: from the partner to the ball, m
 template <class Partners>
-SLOPE_INLINE void set_contact(const ContactLaw &law, const MovingBalls &balls, const Partners &partners, int i,
-                              int j, Contact &c, Vector &delta)
+SLOPE_INLINE void set_contact(const ContactLaw &law, const MovingBalls &balls,
+                              const Partners &partners, int i, int j, Contact &c, Vector &delta)
 {
   const double ri = balls.radius[i], rj = partners.radius(j);
   const double *xi = &balls.x[i].x, *xj = &partners.x(j).x;

@@ -171,7 +171,7 @@ void ContactGuards::check_fixed_balls(int freeze_group_bit)
 
 /* ---------------------------------------------------------------------- */
 
-void ContactGuards::see_overlap(int i, double overlap, double radius)
+void ContactGuards::record_overlap(int i, double overlap, double radius)
 {
   const double share = overlap / radius;
   if (share > DEEP) overlaps.count++;
@@ -184,7 +184,7 @@ void ContactGuards::see_overlap(int i, double overlap, double radius)
 
 void ContactGuards::watch_energy(double elastic)
 {
-  if (energy.look(elastic))
+  if (energy.check(elastic))
     warn("the energy of the balls grew by {:.3g} % of the largest energy of motion until step {}, "
          "with "
          "nothing but contacts and gravity at work: the time step is too large, or contacts were "

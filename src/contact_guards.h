@@ -29,7 +29,7 @@ class ContactGuards : protected Pointers {
   // once per run, when masses, coefficients and step are final; prints the table if it has changed
   void start(int freeze_group_bit);
 
-  void see_overlap(int i, double overlap, double radius);    // m; radius: the smaller one
+  void record_overlap(int i, double overlap, double radius);    // m; radius: the smaller one
   void watch_energy(double elastic);    // J, of this rank's springs; collective
   void say(const std::string &text);    // a warning of a wall; by rank 0, or by all
   void report();                        // at the end of a run; collective

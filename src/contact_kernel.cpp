@@ -14,7 +14,8 @@ using namespace Slope;
 namespace Slope {
 extern const ContactKernel contact_kernel_baseline;
 #ifdef SLOPE_X86_KERNELS
-extern const ContactKernel contact_kernel_x86_64_v2, contact_kernel_x86_64_v3, contact_kernel_x86_64_v4;
+extern const ContactKernel contact_kernel_x86_64_v2, contact_kernel_x86_64_v3,
+    contact_kernel_x86_64_v4;
 #endif
 }    // namespace Slope
 
@@ -64,7 +65,8 @@ int ContactKernels::choose(const char *name)
   }
   if (best < 0)
     throw std::invalid_argument(std::string("environment variable ") + ENVIRONMENT +
-                                " must name a kernel that runs on this processor (" + here + "), got " + name);
+                                " must name a kernel that runs on this processor (" + here +
+                                "), got " + name);
   return best;
 }
 

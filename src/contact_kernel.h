@@ -53,7 +53,8 @@ struct ContactTally {
 // the passes compiled for one instruction set, for each kind of partners
 struct ContactKernel {
   template <class Partners>
-  using Find = void (*)(const ContactView &, bool repeat, bool first, const MovingBalls &, const Partners &);
+  using Find = void (*)(const ContactView &, bool repeat, bool first, const MovingBalls &,
+                        const Partners &);
   template <class Partners>
   using Apply = void (*)(const ContactView &, const ContactLaw &, double dt, bool repeat,
                          const MovingBalls &, const Partners &, ContactTally *);
@@ -65,24 +66,26 @@ struct ContactKernel {
 
   // First pass: which contacts touch, as bits, and the balls' numbers of contacts. repeat: what touched in
   // the step that has just ended. first: the list is new, those of the step before are counted, too.
-  void find(const ContactView &v, bool repeat, bool first, const MovingBalls &b, const MovingPartners &p) const
+  void find(const ContactView &v, bool repeat, bool first, const MovingBalls &b,
+            const MovingPartners &p) const
   {
     find_moving(v, repeat, first, b, p);
   }
-  void find(const ContactView &v, bool repeat, bool first, const MovingBalls &b, const FixedPartners &p) const
+  void find(const ContactView &v, bool repeat, bool first, const MovingBalls &b,
+            const FixedPartners &p) const
   {
     find_fixed(v, repeat, first, b, p);
   }
 
   // Second pass: adds the forces to the balls, whose numbers of contacts are complete. tally: nullptr if
   // nobody asks
-  void apply(const ContactView &v, const ContactLaw &law, double dt, bool repeat, const MovingBalls &b,
-             const MovingPartners &p, ContactTally *tally) const
+  void apply(const ContactView &v, const ContactLaw &law, double dt, bool repeat,
+             const MovingBalls &b, const MovingPartners &p, ContactTally *tally) const
   {
     apply_moving(v, law, dt, repeat, b, p, tally);
   }
-  void apply(const ContactView &v, const ContactLaw &law, double dt, bool repeat, const MovingBalls &b,
-             const FixedPartners &p, ContactTally *tally) const
+  void apply(const ContactView &v, const ContactLaw &law, double dt, bool repeat,
+             const MovingBalls &b, const FixedPartners &p, ContactTally *tally) const
   {
     apply_fixed(v, law, dt, repeat, b, p, tally);
   }
@@ -90,26 +93,26 @@ struct ContactKernel {
 
 namespace ContactKernels {
 
-  struct Choice {
-    const char *name;
-    bool runs_here;    // this processor has its instructions
-    const ContactKernel *kernel;
-  };
+struct Choice {
+  const char *name;
+  bool runs_here;    // this processor has its instructions
+  const ContactKernel *kernel;
+};
 
-  // all of this program, the slowest first
-  const std::vector<Choice> &all();
+// all of this program, the slowest first
+const std::vector<Choice> &all();
 
-  // The number, in all(), of the one to use: that of this name, or if it is nullptr or empty the last one that
-  // runs here. Throws std::invalid_argument where there is none of that name, or it does not run here.
-  int choose(const char *name);
+// The number, in all(), of the one to use: that of this name, or if it is nullptr or empty the last one that
+// runs here. Throws std::invalid_argument where there is none of that name, or it does not run here.
+int choose(const char *name);
 
-  // name of the environment variable that overrides the choice
-  extern const char *const ENVIRONMENT;
+// name of the environment variable that overrides the choice
+extern const char *const ENVIRONMENT;
 
-  // the one in use: choose(environment) until another one is set
-  const ContactKernel &current();
-  const char *current_name();
-  void set_current(int number);
+// the one in use: choose(environment) until another one is set
+const ContactKernel &current();
+const char *current_name();
+void set_current(int number);
 
 }    // namespace ContactKernels
 

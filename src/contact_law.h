@@ -11,13 +11,12 @@
 #ifndef SLOPE_CONTACT_LAW_H
 #define SLOPE_CONTACT_LAW_H
 
+#include "constants.h"
 #include "instruction_set.h"
 
 #include <cmath>
 
 namespace Slope {
-
-static constexpr double PI = 3.14159265358979323846;
 
 // ----------------------------------------------------------------------
 // coefficients
@@ -50,15 +49,15 @@ inline double contact_time(double k, double m, double zeta)
 // (N s/m) or follows from a restitution and then grows with the root of the contact's mass:
 // c = c_given + c_root * sqrt(m). One of the two is zero.
 struct ContactLaw {
-  double kn, kt, kr;                    // normal, tangential, rolling stiffness, N/m
-  double cn_given, ct_given, cr_given;  // dashpots, N s/m
-  double cn_root, ct_root, cr_root;     // dashpots per root of mass, N s/(m sqrt(kg))
-  double friction;                      // tan of the friction angle
-  double rolling;                       // rolling resistance coefficient mu_r
-  double mass_factor;                   // 1: reduced mass, 2: mass of one of two equal balls
-  double rolling_factor;                // 2: harmonic mean radius, 1: reduced radius
-  double fn_least;                      // smallest normal force: -HUGE_VAL, or 0 when it must not pull
-  double exact;                         // 1: scheme exact, 0: plain (see ContactStep)
+  double kn, kt, kr;                      // normal, tangential, rolling stiffness, N/m
+  double cn_given, ct_given, cr_given;    // dashpots, N s/m
+  double cn_root, ct_root, cr_root;       // dashpots per root of mass, N s/(m sqrt(kg))
+  double friction;                        // tan of the friction angle
+  double rolling;                         // rolling resistance coefficient mu_r
+  double mass_factor;                     // 1: reduced mass, 2: mass of one of two equal balls
+  double rolling_factor;                  // 2: harmonic mean radius, 1: reduced radius
+  double fn_least;    // smallest normal force: -HUGE_VAL, or 0 when it must not pull
+  double exact;       // 1: scheme exact, 0: plain (see ContactStep)
 
   // mass (kg) in c = 2 zeta sqrt(k m): two moving balls, or a ball on a fixed one
   double mass(double mi, double mj) const { return mass_factor * mi * mj / (mi + mj); }
@@ -76,7 +75,10 @@ struct Sides {
   double i, j;
 
   // of the contact's mass, in the dashpots that follow from a restitution
-  SLOPE_INLINE double mass_factor(const ContactLaw &law) const { return i * j > 0.0 ? law.mass_factor : 1.0; }
+  SLOPE_INLINE double mass_factor(const ContactLaw &law) const
+  {
+    return i * j > 0.0 ? law.mass_factor : 1.0;
+  }
 
   // 1/kg
   template <class N> SLOPE_INLINE N inverse_mass(N mi, N mj) const { return i / mi + j / mj; }

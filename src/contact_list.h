@@ -26,7 +26,7 @@ class ContactList {
 
   std::vector<Entry> entries;
   std::vector<double *> histories;    // HISTORY values of each
-  std::vector<int *> flags;           // where LAMMPS wants to know what has a history: store_flags()
+  std::vector<int *> flags;    // where LAMMPS wants to know what has a history: store_flags()
 
   Sides moves;
 
@@ -50,7 +50,8 @@ class ContactList {
   }
 
   // has_history: the contact touched a step ago, or ended in it; then its history is there
-  void add(int i, int j, double *history, bool has_history, double ri, double rj, double mi, double mj)
+  void add(int i, int j, double *history, bool has_history, double ri, double rj, double mi,
+           double mj)
   {
     if (entries.empty()) {
       radius_i = ri;
@@ -81,11 +82,12 @@ class ContactList {
   // Contacts that overlap although they did not touch a step ago, before the first step:
   // visit(entry, overlap). They count as old ones.
   template <class Partners, class Visit>
-  void start(const MovingBalls &balls, const Partners &partners, Visit visit)
+  void adopt_overlaps(const MovingBalls &balls, const Partners &partners, Visit visit)
   {
     for (size_t k = 0; k < entries.size(); k++) {
       const Entry &e = entries[k];
-      const double overlap = balls.radius[e.i] + partners.radius(e.j) - distance(balls, partners, e.i, e.j);
+      const double overlap =
+          balls.radius[e.i] + partners.radius(e.j) - distance(balls, partners, e.i, e.j);
       if (touches(k) || overlap <= 0.0) continue;
       visit(e, overlap);
       std::memset(histories[k], 0, HISTORY * sizeof(double));
@@ -111,7 +113,8 @@ class ContactList {
   void apply(const ContactLaw &law, double dt, bool repeat, const MovingBalls &balls,
              const Partners &partners, ContactTally *tally = nullptr)
   {
-    if (!entries.empty()) ContactKernels::current().apply(view(), law, dt, repeat, balls, partners, tally);
+    if (!entries.empty())
+      ContactKernels::current().apply(view(), law, dt, repeat, balls, partners, tally);
   }
 
  private:
@@ -123,13 +126,17 @@ class ContactList {
   std::vector<std::uint64_t> ended;       // came apart in the last step, and was treated then
 
   static std::uint64_t bit(size_t k) { return std::uint64_t(1) << (k % BLOCK); }
-  static bool is_set(const std::vector<std::uint64_t> &bits, size_t k) { return bits[k / BLOCK] & bit(k); }
+  static bool is_set(const std::vector<std::uint64_t> &bits, size_t k)
+  {
+    return bits[k / BLOCK] & bit(k);
+  }
   static void set(std::vector<std::uint64_t> &bits, size_t k) { bits[k / BLOCK] |= bit(k); }
 
   ContactView view()
   {
-    return {entries.data(), histories.data(), entries.size(), touching.size(), touching.data(), before.data(),
-            ended.data(), moves, equal, radius_i, radius_j, mass_i, mass_j};
+    return {entries.data(), histories.data(), entries.size(), touching.size(), touching.data(),
+            before.data(),  ended.data(),     moves,          equal,           radius_i,
+            radius_j,       mass_i,           mass_j};
   }
 };
 
@@ -137,7 +144,9 @@ class ContactList {
 template <class Visit> ContactTally tally_of(Visit &visit)
 {
   return {{0.0, 0.0, 0.0},
-          [](void *v, int i, int j, const Vector &f, const Vector &d) { (*static_cast<Visit *>(v))(i, j, f, d); },
+          [](void *v, int i, int j, const Vector &f, const Vector &d) {
+            (*static_cast<Visit *>(v))(i, j, f, d);
+          },
           &visit};
 }
 

@@ -32,8 +32,8 @@ class ContactPasses : ContactView {
     for (size_t block = 0; block < blocks; block++) {
       before[block] = touching[block];
       if (!repeat) {
-        touching[block] =
-            equal ? touching_bits<double>(block, balls, partners) : touching_bits<Four>(block, balls, partners);
+        touching[block] = equal ? touching_bits<double>(block, balls, partners)
+                                : touching_bits<Four>(block, balls, partners);
         ended[block] = 0;
       }
       if (first) count(block, before[block], balls.count_before, partners);
@@ -46,11 +46,15 @@ class ContactPasses : ContactView {
              const Partners &partners, ContactTally *tally)
   {
     if (law.rolling > 0.0) {
-      if (equal) apply<true, double, TALLY>(law, dt, repeat, balls, partners, tally);
-      else apply<true, Four, TALLY>(law, dt, repeat, balls, partners, tally);
+      if (equal)
+        apply<true, double, TALLY>(law, dt, repeat, balls, partners, tally);
+      else
+        apply<true, Four, TALLY>(law, dt, repeat, balls, partners, tally);
     } else {
-      if (equal) apply<false, double, TALLY>(law, dt, repeat, balls, partners, tally);
-      else apply<false, Four, TALLY>(law, dt, repeat, balls, partners, tally);
+      if (equal)
+        apply<false, double, TALLY>(law, dt, repeat, balls, partners, tally);
+      else
+        apply<false, Four, TALLY>(law, dt, repeat, balls, partners, tally);
     }
   }
 
@@ -58,7 +62,8 @@ class ContactPasses : ContactView {
   typedef ContactEntry Entry;
   static constexpr int AHEAD = 16;    // contacts found, and fetched from memory, before their turn
 
-  SLOPE_INLINE static void add_to(ContactTally &tally, const Entry &e, const Vector &f, const Vector &delta)
+  SLOPE_INLINE static void add_to(ContactTally &tally, const Entry &e, const Vector &f,
+                                  const Vector &delta)
   {
     tally.force.x += f.x;
     tally.force.y += f.y;
@@ -122,8 +127,8 @@ class ContactPasses : ContactView {
     const ContactLaw law = law_in;    // copies: no store below can change them
     const MovingBalls balls = balls_in;
     const Partners partners = partners_in;
-    const Sizes<double> same = {radius_i, radius_j,
-                                step_of(moves, law, dt, repeat, radius_i, radius_j, mass_i, mass_j)};
+    const Sizes<double> same = {
+        radius_i, radius_j, step_of(moves, law, dt, repeat, radius_i, radius_j, mass_i, mass_j)};
     const LoneContact lone = lone_of(moves, law, dt, radius_i, radius_j, mass_i, mass_j);
     auto evaluate = [&](int k, Life life) {
       apply_lone<ROLLING, TALLY>(k, life, law, same, lone, repeat, balls, partners, tally);
@@ -131,13 +136,15 @@ class ContactPasses : ContactView {
     Batch batch;
     batch.count = 0;
     for (size_t block = 0; block < blocks; block++) {
-      if (repeat) sort_repeated<Partners>(block, law, balls, batch, evaluate);
-      else sort<Partners>(block, law, balls, batch, evaluate);
+      if (repeat)
+        sort_repeated<Partners>(block, law, balls, batch, evaluate);
+      else
+        sort<Partners>(block, law, balls, batch, evaluate);
       int c = 0;
       for (; c + 4 + AHEAD <= batch.count; c += 4) {
         for (int m = 0; m < 4; m++) prefetch(batch.found[c + AHEAD + m], partners);
-        apply_four<ROLLING, N, TALLY>(&batch.found[c], &batch.crowd[c], 4, law, same, repeat, balls, partners,
-                                      tally);
+        apply_four<ROLLING, N, TALLY>(&batch.found[c], &batch.crowd[c], 4, law, same, repeat, balls,
+                                      partners, tally);
       }
       batch.drop(c);
     }
@@ -147,15 +154,15 @@ class ContactPasses : ContactView {
       batch.crowd[c] = batch.crowd[count - 1];    // they write the same springs
     }
     for (int c = 0; c < count; c += 4)
-      apply_four<ROLLING, N, TALLY>(&batch.found[c], &batch.crowd[c], std::min(4, count - c), law, same,
-                                    repeat, balls, partners, tally);
+      apply_four<ROLLING, N, TALLY>(&batch.found[c], &batch.crowd[c], std::min(4, count - c), law,
+                                    same, repeat, balls, partners, tally);
   }
 
   // Contacts of a block that touch: those with company go into the batch, the others to lone(). A
   // contact begins or ends alone if its balls touch nothing else before and after the step.
   template <class Partners, class Lone>
-  SLOPE_INLINE void sort(size_t block, const ContactLaw &law, const MovingBalls &balls, Batch &batch,
-                         Lone lone)
+  SLOPE_INLINE void sort(size_t block, const ContactLaw &law, const MovingBalls &balls,
+                         Batch &batch, Lone lone)
   {
     const bool exact = law.exact > 0.0;
     const int start = static_cast<int>(block) * BLOCK;
@@ -163,8 +170,10 @@ class ContactPasses : ContactView {
     for (std::uint64_t bits = now & was; bits; bits &= bits - 1) {
       const int k = start + __builtin_ctzll(bits);
       const int n = larger_count<Partners>(entries[k], balls.count);
-      if (n == 1 && exact && is_impact(histories[k][PHASE])) lone(k, LASTS);
-      else batch.push(k, n - 1);
+      if (n == 1 && exact && is_impact(histories[k][PHASE]))
+        lone(k, LASTS);
+      else
+        batch.push(k, n - 1);
     }
     for (std::uint64_t bits = now & ~was; bits; bits &= bits - 1) {
       const int k = start + __builtin_ctzll(bits);
@@ -183,7 +192,8 @@ class ContactPasses : ContactView {
     for (std::uint64_t bits = was & ~now; bits; bits &= bits - 1) {
       const int k = start + __builtin_ctzll(bits);
       const Entry &e = entries[k];
-      if (larger_count<Partners>(e, balls.count) == 0 && larger_count<Partners>(e, balls.count_before) == 1) {
+      if (larger_count<Partners>(e, balls.count) == 0 &&
+          larger_count<Partners>(e, balls.count_before) == 1) {
         lone(k, ENDS);
         ended[block] |= bit(k);
       }
@@ -192,7 +202,8 @@ class ContactPasses : ContactView {
 
   // the same for the step that has just ended, from the phases in the histories
   template <class Partners, class Lone>
-  void sort_repeated(size_t block, const ContactLaw &law, const MovingBalls &balls, Batch &batch, Lone lone)
+  void sort_repeated(size_t block, const ContactLaw &law, const MovingBalls &balls, Batch &batch,
+                     Lone lone)
   {
     const bool exact = law.exact > 0.0;
     const int start = static_cast<int>(block) * BLOCK;
@@ -201,8 +212,10 @@ class ContactPasses : ContactView {
       const Entry &e = entries[k];
       const double phase = histories[k][PHASE];
       const int n = larger_count<Partners>(e, balls.count);
-      if (!exact || n > 1 || !is_impact(phase)) batch.push(k, n - 1);
-      else lone(k, is_new_impact(phase) ? BEGINS : LASTS);
+      if (!exact || n > 1 || !is_impact(phase))
+        batch.push(k, n - 1);
+      else
+        lone(k, is_new_impact(phase) ? BEGINS : LASTS);
     }
     for (std::uint64_t bits = ended[block]; bits; bits &= bits - 1)
       lone(start + __builtin_ctzll(bits), ENDS);
@@ -210,7 +223,8 @@ class ContactPasses : ContactView {
 
   // a bit of each contact of a block that touches
   template <class N, class Partners>
-  SLOPE_INLINE std::uint64_t touching_bits(size_t block, const MovingBalls &balls, const Partners &partners) const
+  SLOPE_INLINE std::uint64_t touching_bits(size_t block, const MovingBalls &balls,
+                                           const Partners &partners) const
   {
     const size_t start = block * BLOCK;
     const int listed = static_cast<int>(std::min<size_t>(BLOCK, size - start));
@@ -243,10 +257,12 @@ class ContactPasses : ContactView {
   }
 
   template <class Partners>
-  static void find_reach(const Entry *, const MovingBalls &, const Partners &, double &) {}
+  static void find_reach(const Entry *, const MovingBalls &, const Partners &, double &)
+  {
+  }
   template <class Partners>
-  SLOPE_INLINE static void find_reach(const Entry *e, const MovingBalls &balls, const Partners &partners,
-                                      Four &reach)
+  SLOPE_INLINE static void find_reach(const Entry *e, const MovingBalls &balls,
+                                      const Partners &partners, Four &reach)
   {
     for (int m = 0; m < 4; m++) reach[m] = balls.radius[e[m].i] + partners.radius(e[m].j);
   }
@@ -323,8 +339,10 @@ class ContactPasses : ContactView {
     }
     const Four none = Four();
     const Columns f(out.f[0], out.f[1], out.f[2], none);
-    const Columns ti(out.m[0] - ri * out.t[0], out.m[1] - ri * out.t[1], out.m[2] - ri * out.t[2], none);
-    const Columns tj(out.m[0] + rj * out.t[0], out.m[1] + rj * out.t[1], out.m[2] + rj * out.t[2], none);
+    const Columns ti(out.m[0] - ri * out.t[0], out.m[1] - ri * out.t[1], out.m[2] - ri * out.t[2],
+                     none);
+    const Columns tj(out.m[0] + rj * out.t[0], out.m[1] + rj * out.t[1], out.m[2] + rj * out.t[2],
+                     none);
     give(e[0], f.x, ti.x, tj.x, balls, partners);
     if (count > 1) give(e[1], f.y, ti.y, tj.y, balls, partners);
     if (count > 2) give(e[2], f.z, ti.z, tj.z, balls, partners);
@@ -332,7 +350,7 @@ class ContactPasses : ContactView {
     if (TALLY)
       for (int m = 0; m < count; m++)
         add_to(*tally, e[m], Vector{out.f[0][m], out.f[1][m], out.f[2][m]},
-              Vector{delta.x[m], delta.y[m], delta.z[m]});
+               Vector{delta.x[m], delta.y[m], delta.z[m]});
   }
 
   template <class Partners>
@@ -360,8 +378,8 @@ class ContactPasses : ContactView {
   // a contact whose balls touch nothing else
   template <bool ROLLING, bool TALLY, class Partners>
   void apply_lone(int k, Life life, const ContactLaw &law, const Sizes<double> &same,
-                  const LoneContact &lone, bool repeat, const MovingBalls &balls, const Partners &partners,
-                  ContactTally *tally)
+                  const LoneContact &lone, bool repeat, const MovingBalls &balls,
+                  const Partners &partners, ContactTally *tally)
   {
     const Entry e = entries[k];
     Contact c;
@@ -379,9 +397,11 @@ class ContactPasses : ContactView {
       rj = partners.radius(e.j);
       const double mi = balls.mass[e.i], mj = partners.mass(e.j);
       known = lone_contact_force<ROLLING>(step_of(moves, law, same.step.dt, repeat, ri, rj, mi, mj),
-                                          lone_of(moves, law, same.step.dt, ri, rj, mi, mj), life, repeat, c, history, out);
+                                          lone_of(moves, law, same.step.dt, ri, rj, mi, mj), life,
+                                          repeat, c, history, out);
     }
-    if (!repeat) std::memcpy(histories[k], history, sizeof(history));
+    if (!repeat)
+      std::memcpy(histories[k], history, sizeof(history));
     else if (!known) {
       balls.estimated[e.i] = 1;
       if (Partners::MOVE) balls.estimated[e.j] = 1;
@@ -443,18 +463,20 @@ template <class Partners>
 void apply_contacts(const ContactView &view, const ContactLaw &law, double dt, bool repeat,
                     const MovingBalls &balls, const Partners &partners, ContactTally *tally)
 {
-  if (tally) ContactPasses(view).apply<true>(law, dt, repeat, balls, partners, tally);
-  else ContactPasses(view).apply<false>(law, dt, repeat, balls, partners, tally);
+  if (tally)
+    ContactPasses(view).apply<true>(law, dt, repeat, balls, partners, tally);
+  else
+    ContactPasses(view).apply<false>(law, dt, repeat, balls, partners, tally);
 }
 
 }    // namespace SLOPE_INSTRUCTIONS
 }    // namespace Slope
 
 // a constant, so that none of this code runs before its kernel has been chosen
-#define SLOPE_CONTACT_KERNEL                                                    \
-  {                                                                             \
-    find_contacts<MovingPartners>, find_contacts<FixedPartners>,                \
-        apply_contacts<MovingPartners>, apply_contacts<FixedPartners>           \
+#define SLOPE_CONTACT_KERNEL                                                                     \
+  {                                                                                              \
+    find_contacts<MovingPartners>, find_contacts<FixedPartners>, apply_contacts<MovingPartners>, \
+        apply_contacts<FixedPartners>                                                            \
   }
 
 #endif

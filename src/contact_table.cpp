@@ -7,6 +7,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "constants.h"
 #include "error.h"
 #include "fix.h"
 #include "lammps_compat.h"
@@ -23,7 +24,6 @@ static constexpr double STEP_RULE = 0.25;       // dt <= STEP_RULE sqrt(m/kn)
 static constexpr double DASHPOT_RULE = 0.15;    // scheme plain: dt <= DASHPOT_RULE m/cn
 static constexpr int FORMAT =
     20261122;    // of what restart files hold, histories of walls included
-static constexpr double DEGREE = PI / 180.0;
 
 /* ---------------------------------------------------------------------- */
 
@@ -265,6 +265,13 @@ void ContactTable::find_ranges(int freeze_group_bit)
 /* ----------------------------------------------------------------------
    type pairs that can touch: one side moves, the other one does too, is frozen or a wall
 ------------------------------------------------------------------------- */
+
+bool ContactTable::balls_can_touch(int i, int j) const
+{
+  const TypeRange &a = ranges[i], &b = ranges[j];
+  const bool a_moves = a.radius_dynamic > 0.0, b_moves = b.radius_dynamic > 0.0;
+  return (a_moves && (b_moves || b.frozen)) || (b_moves && a.frozen);
+}
 
 bool ContactTable::can_touch(int i, int j) const
 {

@@ -59,9 +59,11 @@ class ContactTable : protected Pointers {
   void add_wall_type(int type) { wall_type[type] = 1; }
 
   // one side moves, the other one does too, is frozen or a wall
-  bool can_touch(int itype, int jtype) const;
-  double cutoff(int itype, int jtype) const;           // m, largest sum of the radii
-  double lightest(int itype, int jtype) const;         // mass of the lightest moving ball, kg
+  bool can_touch(int itype, int jtype) const;    // and there is a law
+  bool balls_can_touch(int itype,
+                       int jtype) const;          // without walls; balls that are to be poured, too
+  double cutoff(int itype, int jtype) const;      // m, largest sum of the radii
+  double lightest(int itype, int jtype) const;    // mass of the lightest moving ball, kg
   double bound_on_step(int itype, int jtype) const;    // s, the smaller one of:
   double spring_bound(int itype, int jtype) const;
   double dashpot_bound(int itype, int jtype) const;    // infinite with scheme exact

@@ -11,10 +11,10 @@
 #include "atom.h"
 #include "atom_vec.h"
 #include "ball_placement.h"
+#include "constants.h"
 #include "domain.h"
 #include "error.h"
 #include "group.h"
-#include "math_const.h"
 #include "modify.h"
 #include "style_argument.h"
 
@@ -50,10 +50,8 @@ void CreateBalls::command(int narg, char **arg)
   if (type < 1 || type > atom->ntypes)
     error->all(FLERR, "Create_balls type must be 1 to {} (the atom types of the box), got {}",
                atom->ntypes, arg[0]);
-  if (!(diameter > 0.0))
-    error->all(FLERR, "Create_balls diameter must be > 0, got {}", arg[1]);
-  if (!(density > 0.0))
-    error->all(FLERR, "Create_balls density must be > 0, got {}", arg[2]);
+  if (!(diameter > 0.0)) error->all(FLERR, "Create_balls diameter must be > 0, got {}", arg[1]);
+  if (!(density > 0.0)) error->all(FLERR, "Create_balls density must be > 0, got {}", arg[2]);
 
   const double smallest = BallPlacement::smallest_ball(lmp, group->bitmask[0]);
   BallPlacement placement(lmp, "Create_balls", diameter, smallest, narg - 3, &arg[3]);
@@ -72,7 +70,7 @@ void CreateBalls::command(int narg, char **arg)
     if (mine(&xyz[k])) atom->avec->create_atom(type, &xyz[k]);
   for (int i = nlocal_previous; i < atom->nlocal; i++) {
     atom->radius[i] = 0.5 * diameter;
-    atom->rmass[i] = density * MathConst::MY_PI / 6.0 * diameter * diameter * diameter;
+    atom->rmass[i] = density * Slope::PI / 6.0 * diameter * diameter * diameter;
   }
   atom->data_fix_compute_variable(nlocal_previous, atom->nlocal);
 

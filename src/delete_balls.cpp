@@ -7,6 +7,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "constants.h"
 #include "domain.h"
 #include "error.h"
 #include "fix_wall_gran_balls.h"
@@ -20,7 +21,6 @@
 
 using namespace LAMMPS_NS;
 
-static constexpr double PI = 3.14159265358979323846;
 static constexpr const char *MARKED = "delete_balls_marked";
 static constexpr double MUCH = 0.2;    // share of the volume, to be warned of
 
@@ -61,15 +61,15 @@ void DeleteBalls::command(int narg, char **arg)
     const double r = atom->radius[i];
     double deepest = 0.0;
     for (Fix *fix : walls)
-      deepest = std::fmax(
-          deepest, static_cast<FixWallGranBalls *>(fix)->deepest_overlap(atom->x[i], r));
+      deepest =
+          std::fmax(deepest, static_cast<FixWallGranBalls *>(fix)->deepest_overlap(atom->x[i], r));
     if (deepest > fraction * r) {
       atom->mask[i] |= marked;
       mine[0] += 1.0;
-      mine[2] += 4.0 / 3.0 * PI * r * r * r;
+      mine[2] += 4.0 / 3.0 * Slope::PI * r * r * r;
     } else {
       mine[1] += 1.0;
-      mine[3] += 4.0 / 3.0 * PI * r * r * r;
+      mine[3] += 4.0 / 3.0 * Slope::PI * r * r * r;
     }
   }
   MPI_Allreduce(mine, all, 4, MPI_DOUBLE, MPI_SUM, world);
@@ -82,12 +82,13 @@ void DeleteBalls::command(int narg, char **arg)
                    "Delete_balls: {:.0f} balls of group {} removed that overlapped fixed balls by "
                    "more than {:g} of their radius: {:.6g} m3 of balls, {:.6g} m3 of ground at "
                    "6/pi; {:.0f} balls left\n",
-                   all[0], name, fraction, all[2], all[2] * 6.0 / PI, all[1]);
+                   all[0], name, fraction, all[2], all[2] * 6.0 / Slope::PI, all[1]);
   if (all[1] == 0.0) error->all(FLERR, "Delete_balls: no ball of group {} is left", name);
   const double share = all[2] / (all[2] + all[3]);
   if (share > MUCH && comm->me == 0)
-    error->warning(FLERR,
-                   "Delete_balls: {:.0f} % of the volume of group {} is removed, of smaller balls it "
-                   "would be less",
-                   100.0 * share, name);
+    error->warning(
+        FLERR,
+        "Delete_balls: {:.0f} % of the volume of group {} is removed, of smaller balls it "
+        "would be less",
+        100.0 * share, name);
 }

@@ -5,6 +5,7 @@
 
 #include "deposit_balls.h"
 
+#include "constants.h"
 #include "histogram.h"
 
 #include "atom.h"
@@ -21,8 +22,6 @@ using Slope::DepositSummary;
 using Slope::Histogram;
 using Slope::MassLedger;
 
-static constexpr double PI = 3.14159265358979323846;
-static constexpr double DEGREE = PI / 180.0;
 static constexpr double SLOWEST = 1.0e-9;    // of the largest speed: slower is 0 in the median
 static constexpr double SHARES[] = {0.5, 0.9, 0.95, 0.99};
 
@@ -41,7 +40,7 @@ DepositBalls::DepositBalls(LAMMPS *lmp, int groupbit_in, double bulk) :
 void DepositBalls::set_bulk(double bulk)
 {
   factor = bulk;
-  side_factor = cbrt(bulk * PI / 6.0);
+  side_factor = cbrt(bulk * Slope::PI / 6.0);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -200,7 +199,7 @@ void DepositBalls::seen_from(const double *place, int i, double &distance, doubl
   double x[3];
   unwrap(i, x);
   distance = hypot(x[X] - place[X], x[Y] - place[Y]);
-  angle = distance > 0.0 ? atan2(place[Z] - x[Z], distance) / DEGREE : 90.0;
+  angle = distance > 0.0 ? atan2(place[Z] - x[Z], distance) / Slope::DEGREE : 90.0;
 }
 
 /* ----------------------------------------------------------------------

@@ -75,7 +75,7 @@ class DepositBlocks {
   };
 
   std::vector<double> start;
-  int across;    // blocks in a band
+  int across;                                     // blocks in a band
   std::vector<std::vector<int32_t>> directory;    // band, column: number of the block; -1: none
   std::vector<Place> blocks;
   std::vector<std::unique_ptr<double[]>> values;    // of more blocks than there are, after clear()

@@ -5,6 +5,7 @@
 
 #include "deposit_ground.h"
 
+#include "constants.h"
 #include "deposit_balls.h"
 #include "deposit_exchange.h"
 #include "lammps_compat.h"
@@ -20,8 +21,6 @@
 
 using namespace LAMMPS_NS;
 using Slope::PlanGrid;
-
-static constexpr double PI = 3.14159265358979323846;
 
 enum { X, Y };
 
@@ -63,8 +62,8 @@ void DepositGround::check(const DepositBalls &balls)
     if (!found(x[0], x[1])) return true;
     if (terrain) return terrain->grid().nodata_within(x[0], x[1], diameter);
     for (int k = 0; k < 8; k++) {
-      const double px = x[0] + diameter * cos(0.25 * PI * k);
-      const double py = x[1] + diameter * sin(0.25 * PI * k);
+      const double px = x[0] + diameter * cos(0.25 * Slope::PI * k);
+      const double py = x[1] + diameter * sin(0.25 * Slope::PI * k);
       if (px < ground.xlo || px > ground.xhi || py < ground.ylo || py > ground.yhi) continue;
       if (!found(px, py)) return true;
     }

@@ -17,7 +17,8 @@ namespace LAMMPS_NS {
 // Balls that LAMMPS deletes because they left the box, counted where LAMMPS does it.
 class DepositLosses : protected Pointers {
  public:
-  DepositLosses(class LAMMPS *lmp, const class DepositBalls &balls_in) : Pointers(lmp), balls(balls_in)
+  DepositLosses(class LAMMPS *lmp, const class DepositBalls &balls_in) :
+      Pointers(lmp), balls(balls_in)
   {
   }
 

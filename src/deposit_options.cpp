@@ -5,6 +5,7 @@
 
 #include "deposit_options.h"
 
+#include "constants.h"
 #include "deposit_pieces.h"
 #include "deposit_rasters.h"
 #include "deposit_restart.h"
@@ -25,8 +26,6 @@ using Slope::DepositPieces;
 using Slope::DepositRasters;
 using Slope::PlanGrid;
 
-static constexpr double PI = 3.14159265358979323846;
-static constexpr double SIMPLE_CUBIC = 6.0 / PI;
 static constexpr double MOTION = 0.1;        // m/s
 static constexpr double MAXBULK = 1.0e3;     // a ball's square must not be cut by countless cells
 static constexpr double MAXCELL = 1.0e12;    // the area of a cell must be finite
@@ -37,7 +36,7 @@ static constexpr double MAXCELLS = 2147483647.0;    // as many as the readers of
 ------------------------------------------------------------------------- */
 
 DepositOptions::DepositOptions(LAMMPS *lmp, int narg_in, char **arg_in) :
-    Pointers(lmp), window(0), cell(0.0), motion(MOTION), bulk(SIMPLE_CUBIC), series(false),
+    Pointers(lmp), window(0), cell(0.0), motion(MOTION), bulk(Slope::SIMPLE_CUBIC), series(false),
     narg(narg_in), iarg(5), arg(arg_in), extent_set(false)
 {
   if (narg < 5)

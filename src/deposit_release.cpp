@@ -6,6 +6,7 @@
 #include "deposit_release.h"
 
 #include "body_volume.h"
+#include "constants.h"
 #include "deposit_balls.h"
 #include "deposit_exchange.h"
 #include "deposit_ground.h"
@@ -25,8 +26,6 @@
 using namespace LAMMPS_NS;
 using Slope::BodyVolume;
 
-static constexpr double PI = 3.14159265358979323846;
-static constexpr double SIMPLE_CUBIC = 6.0 / PI;     // bulk volume / volume of a ball
 static constexpr double UNBOUNDED = 1.0e19;          // LAMMPS writes INF as 1e20
 static constexpr double ASTRAY = 0.05;               // of the balls may lie far from the body
 static constexpr double LEAST = 1.0, MOST = 10.0;    // bulk factor: volume of a body / of its balls
@@ -68,7 +67,7 @@ void DepositRelease::log(const std::string &fix_id, const Released &released) co
   if (!options.body.empty())
     factor += fmt::format(" = region {} {:.10g} / balls {:.10g}, {:+.1f} % from 6/pi", options.body,
                           released.body, released.mass.solid,
-                          100.0 * (balls.bulk() / SIMPLE_CUBIC - 1.0));
+                          100.0 * (balls.bulk() / Slope::SIMPLE_CUBIC - 1.0));
   utils::logmesg(lmp,
                  "Fix deposit/grid {}: {:.0f} balls released, bulk volume {:.10g}; {} x {} cells "
                  "of {:g}\n"
@@ -97,7 +96,7 @@ DepositRelease::Mass DepositRelease::find_mass() const
     ball.tag = atom->tag[i];
     if (top.below(ball)) top = ball;
     const double m = atom->rmass[i], d = 2.0 * atom->radius[i];
-    const double add[5] = {1.0, PI / 6.0 * d * d * d, m, m * ball.x[X], m * ball.x[Y]};
+    const double add[5] = {1.0, Slope::PI / 6.0 * d * d * d, m, m * ball.x[X], m * ball.x[Y]};
     for (int k = 0; k < 5; k++) mine[k] += add[k];
   }
   MPI_Allreduce(mine, all, 5, MPI_DOUBLE, MPI_SUM, world);

@@ -5,13 +5,11 @@
 
 #include "deposit_summary.h"
 
+#include "constants.h"
 #include "yaml_text.h"
 
 using namespace Slope;
 using namespace Slope::yaml;
-
-static constexpr double PI = 3.14159265358979323846;
-static constexpr double SIMPLE_CUBIC = 6.0 / PI;
 
 /* ---------------------------------------------------------------------- */
 

@@ -323,8 +323,8 @@ ElevationGrid ElevationGrid::read(const std::string &path)
     double value;
     if (!text.number(value)) {
       if (text.at_end())
-        throw text.error("only " + std::to_string(grid.z.size()) + " of " +
-                         std::to_string(ncells) + " values (" + size + ")");
+        throw text.error("only " + std::to_string(grid.z.size()) + " of " + std::to_string(ncells) +
+                         " values (" + size + ")");
       const std::string word = text.word();
       throw text.error("height must be a number, got " + word);
     }
@@ -348,9 +348,10 @@ ElevationGrid ElevationGrid::read(const std::string &path)
 
   // the file begins in the north
 
-  const auto row = [&](int j) { return grid.z.begin() + (size_t) j * grid.nx; };
-  for (int j = 0; j < grid.ny / 2; j++)
-    std::swap_ranges(row(j), row(j + 1), row(grid.ny - 1 - j));
+  const auto row = [&](int j) {
+    return grid.z.begin() + (size_t) j * grid.nx;
+  };
+  for (int j = 0; j < grid.ny / 2; j++) std::swap_ranges(row(j), row(j + 1), row(grid.ny - 1 - j));
   return grid;
 }
 
@@ -436,7 +437,9 @@ bool ElevationGrid::nodata_within(double x, double y, double r) const
 
   // as a double up to here: far from the raster it is more than an int holds
 
-  auto within = [](double at, int n) { return (int) std::max(-1.0, std::min((double) n, at)); };
+  auto within = [](double at, int n) {
+    return (int) std::max(-1.0, std::min((double) n, at));
+  };
   const int ilo = std::max(0, within(std::floor(u - reach - 1.5), nx));
   const int ihi = std::min(nx - 1, within(std::ceil(u + reach + 1.5), nx));
   const int jlo = std::max(0, within(std::floor(v - reach - 1.5), ny));

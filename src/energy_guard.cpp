@@ -37,7 +37,7 @@ void EnergyGuard::start()
   count = 0;
 
   // a fix that moves balls or adds forces does work that is its own business; fix ground/motion
-  // does neither, and its work is counted: see look()
+  // does neither, and its work is counted: see check()
 
   known = true;
   for (int k = 0; k < modify->nfix; k++) {
@@ -46,7 +46,8 @@ void EnergyGuard::start()
     if (fix->time_integrate && style != "nve/sphere") known = false;
     if (style == "adapt") known = false;    // sizes, masses
     if (!(modify->fmask[k] & POST_FORCE)) continue;
-    if (style != "gravity" && style != "wall/gran/balls" && style != "wall/gran/mesh" && style != "freeze")
+    if (style != "gravity" && style != "wall/gran/balls" && style != "wall/gran/mesh" &&
+        style != "freeze")
       known = false;
   }
 }
@@ -72,7 +73,7 @@ void EnergyGuard::check_finite() const
 
 /* ---------------------------------------------------------------------- */
 
-bool EnergyGuard::look(double elastic)
+bool EnergyGuard::check(double elastic)
 {
   check_finite();
 

@@ -27,7 +27,7 @@ class EnergyGuard : protected Pointers {
 
   // Collective; elastic: energy of this rank's springs (J). Returns true when the energy has
   // grown more than is sensible for the first time in this run.
-  bool look(double elastic);
+  bool check(double elastic);
 
   double growth() const { return grown; }    // most so far, of the largest energy of motion
   bigint seen() const { return count; }      // looks at which it was not sensible

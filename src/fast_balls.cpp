@@ -30,7 +30,7 @@ void FastBalls::start()
 
 /* ---------------------------------------------------------------------- */
 
-void FastBalls::look(int i, double speed, double stiffness)
+void FastBalls::record(int i, double speed, double stiffness)
 {
   const double deep = speed * std::sqrt(atom->rmass[i] / stiffness);
   const double share = deep / (DEEPEST * atom->radius[i]);

@@ -22,8 +22,8 @@ class FastBalls : protected Pointers {
   FastBalls(class LAMMPS *, const std::string &caller);
 
   void start();    // of a run
-  void look(int i, double speed,
-            double stiffness);                 // towards the surface; warns of the first one
+  void record(int i, double speed,
+              double stiffness);               // towards the surface; warns of the first one
   void report(class ContactGuards &guards);    // at the end of a run; collective
 
  private:

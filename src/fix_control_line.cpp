@@ -8,6 +8,7 @@
 
 #include "fix_control_line.h"
 
+#include "constants.h"
 #include "file_set.h"
 #include "fix_deposit_grid.h"
 #include "gather_records.h"
@@ -36,7 +37,6 @@ using namespace FixConst;
 using Slope::CrossingLog;
 using Slope::PlanLine;
 
-static constexpr double PI = 3.14159265358979323846;
 static constexpr int BEGIN = 10;    // numbers with which what a restart file holds begins
 
 enum { X, Y, Z };
@@ -237,7 +237,7 @@ void FixControlLine::note(int i, const double *from, const double *to, const Pla
   std::copy(v, v + 3, e.v);
   e.speed = sqrt(square);
   e.energy = 0.5 * atom->rmass[i] * (square + 0.4 * r * r * spin) * force->mvv2e;
-  e.volume = 4.0 / 3.0 * PI * r * r * r * deposit->bulk();
+  e.volume = 4.0 / 3.0 * Slope::PI * r * r * r * deposit->bulk();
   e.diameter = 2.0 * r;
   fresh.push_back(e);
 }

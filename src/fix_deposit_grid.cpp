@@ -8,6 +8,7 @@
 
 #include "fix_deposit_grid.h"
 
+#include "constants.h"
 #include "deposit_ground.h"
 #include "lammps_compat.h"
 #include "node_memory.h"
@@ -25,9 +26,6 @@ using namespace FixConst;
 using Slope::DepositRasters;
 using Slope::MassLedger;
 typedef DepositResults Result;
-
-static constexpr double PI = 3.14159265358979323846;
-static constexpr double DEGREE = PI / 180.0;
 
 enum { X, Y, Z };
 
@@ -231,7 +229,7 @@ void FixDepositGrid::find_travel(const DepositBalls::Sums &sums)
   const DepositRelease::Mass &from = results.released.mass;
   double *value = results.vector, z;
   const bool any = balls.farthest(from.top, value[Result::FRONT], z);
-  value[Result::REACH] = any ? atan2(from.top[Z] - z, value[Result::FRONT]) / DEGREE : 0.0;
+  value[Result::REACH] = any ? atan2(from.top[Z] - z, value[Result::FRONT]) / Slope::DEGREE : 0.0;
   value[Result::CENTROID] =
       any ? hypot(sums.mass_x / sums.mass - from.x, sums.mass_y / sums.mass - from.y) : 0.0;
 }

@@ -49,7 +49,10 @@ class FixDepositGrid : public Fix {
   double memory_usage() override;
 
   // for fix control/line
-  double bulk() const { return balls.bulk(); }    // bulk volume / volume of a ball; 0: not known yet
+  double bulk() const
+  {
+    return balls.bulk();
+  }    // bulk volume / volume of a ball; 0: not known yet
   const std::string &terrain() const { return options.terrain; }    // region of the ground
 
   // for the fixes that have the further pieces of a large grid in restart files

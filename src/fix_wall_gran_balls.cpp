@@ -33,14 +33,15 @@ using namespace FixConst;
 using namespace Slope;
 
 static constexpr double SAME_SIZE = 1.0e-9;
-static constexpr double RESTART_FORMAT = -3.0;    // in place of the number of balls of the first one
+static constexpr double RESTART_FORMAT =
+    -3.0;    // in place of the number of balls of the first one
 
 /* ----------------------------------------------------------------------
    fix ID group wall/gran/balls TYPE DIAMETER surface|file ...
 ------------------------------------------------------------------------- */
 
 FixWallGranBalls::FixWallGranBalls(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), pair(nullptr), smaller_warned(false), lists_newer(false)
+    Fix(lmp, narg, arg), pair(nullptr), smaller_warned(false), contacts_in_lists(false)
 {
   caller = fmt::format("Fix wall/gran/balls {}", id);
   if (narg < 6)
@@ -52,16 +53,15 @@ FixWallGranBalls::FixWallGranBalls(LAMMPS *lmp, int narg, char **arg) :
     error->all(FLERR, "{} type must be 1 to {} (the atom types of the box), got {}", caller,
                atom->ntypes, wall_type);
   diameter = number_argument(lmp, caller + " diameter", arg[4]);
-  if (!(diameter > 0.0))
-    error->all(FLERR, "{} diameter must be > 0, got {}", caller, arg[4]);
+  if (!(diameter > 0.0)) error->all(FLERR, "{} diameter must be > 0, got {}", caller, arg[4]);
   radius = 0.5 * diameter;
 
   const double moving = BallPlacement::smallest_ball(lmp, groupbit);
   placement.reset(new BallPlacement(lmp, caller, diameter, moving, narg - 5, &arg[5], true));
-  balls.reset(new BallTiles(placement->tiles(), diameter,
-                            [this](int tile, std::vector<PlacedBall> &made) {
-                              placement->make(tile, made);
-                            }));
+  balls.reset(
+      new BallTiles(placement->tiles(), diameter, [this](int tile, std::vector<PlacedBall> &made) {
+        placement->make(tile, made);
+      }));
 
   scalar_flag = vector_flag = 1;
   size_vector = 3;
@@ -139,10 +139,11 @@ void FixWallGranBalls::check_sizes()
   const double moving = BallPlacement::smallest_ball(lmp, groupbit);
   if (moving == 0.0 || moving > smallest * (1.0 - SAME_SIZE)) return;
   if (comm->me == 0)
-    error->warning(FLERR,
-                   "{}: balls of diameter {} may pass between these, placed for {} and larger, on steep "
-                   "ground: define the fix after the balls, or with smallest {}",
-                   caller, moving, smallest, moving);
+    error->warning(
+        FLERR,
+        "{}: balls of diameter {} may pass between these, placed for {} and larger, on steep "
+        "ground: define the fix after the balls, or with smallest {}",
+        caller, moving, smallest, moving);
   smaller_warned = true;
 }
 
@@ -166,9 +167,11 @@ const std::string &FixWallGranBalls::left_out() const
 
 void FixWallGranBalls::store_contacts()
 {
-  if (!lists_newer) return;
-  lists_newer = false;
-  store->take(lists, [this](int k) { return balls->number(k); });
+  if (!contacts_in_lists) return;
+  contacts_in_lists = false;
+  store->take(lists, [this](int k) {
+    return balls->number(k);
+  });
   maxexchange = store->maxexchange;
 }
 
@@ -210,7 +213,9 @@ void FixWallGranBalls::post_neighbor()
     });
   }
   placement->forget();
-  store->give(lists, [this](int k) { return balls->number(k); });
+  store->give(lists, [this](int k) {
+    return balls->number(k);
+  });
   if (pair->sizes_vary)
     for (ContactList &l : lists) l.equal = false;
 }
@@ -238,10 +243,11 @@ void FixWallGranBalls::find_contacts(bool starting, bool lists_new)
   InitialOverlap initial(lmp);
   for (ContactList &l : lists) {
     if (starting)
-      l.start(moving, fixed, [&](const ContactList::Entry &e, double overlap) {
+      l.adopt_overlaps(moving, fixed, [&](const ContactList::Entry &e, double overlap) {
         const Vector &ball = balls->places()[e.j];
-        initial.look(overlap, std::min(atom->radius[e.i], radius), atom->tag[e.i], atom->x[e.i],
-                     fmt::format("the fixed ball at {:.6g} {:.6g} {:.6g},", ball.x, ball.y, ball.z));
+        initial.record(
+            overlap, std::min(atom->radius[e.i], radius), atom->tag[e.i], atom->x[e.i],
+            fmt::format("the fixed ball at {:.6g} {:.6g} {:.6g},", ball.x, ball.y, ball.z));
       });
     l.find(starting, lists_new, moving, fixed);
   }
@@ -272,7 +278,7 @@ void FixWallGranBalls::apply(bool starting)
   force_mine[1] = -tally.force.y;
   force_mine[2] = -tally.force.z;
   force_ready = 0;
-  lists_newer = true;
+  contacts_in_lists = true;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -284,11 +290,11 @@ double FixWallGranBalls::elastic_energy() const
   double energy = 0.0;
   for (size_t type = 1; type < lists.size(); type++)
     if (!lists[type].entries.empty())
-      energy += Slope::elastic_energy(
-          lists[type], *pair->law(type, wall_type), moving, fixed,
-          [this](const ContactList::Entry &e, double overlap) {
-            pair->guards.see_overlap(e.i, overlap, std::min(atom->radius[e.i], radius));
-          });
+      energy += Slope::elastic_energy(lists[type], *pair->law(type, wall_type), moving, fixed,
+                                      [this](const ContactList::Entry &e, double overlap) {
+                                        pair->guards.record_overlap(
+                                            e.i, overlap, std::min(atom->radius[e.i], radius));
+                                      });
   return energy;
 }
 
@@ -359,9 +365,9 @@ int FixWallGranBalls::unpack_exchange(int i, double *buf)
 
 void FixWallGranBalls::write_restart(FILE *fp)
 {
-  const bool in_use = lists_newer;
+  const bool in_use = contacts_in_lists;
   store_contacts();
-  lists_newer = in_use;    // the run goes on with the lists
+  contacts_in_lists = in_use;    // the run goes on with the lists
   if (comm->me != 0) return;
   std::vector<double> list = placement->fingerprint();
   list.insert(list.begin(), {RESTART_FORMAT, static_cast<double>(list.size())});
@@ -375,10 +381,11 @@ void FixWallGranBalls::restart(char *buf)
   double head[2];
   memcpy(head, buf, sizeof(head));
   if (head[0] != RESTART_FORMAT)
-    error->all(FLERR,
-               "{}: the restart file must be of this version of the fix, got one of an older version, "
-               "whose contacts may be those of other balls: run from the start again",
-               caller);
+    error->all(
+        FLERR,
+        "{}: the restart file must be of this version of the fix, got one of an older version, "
+        "whose contacts may be those of other balls: run from the start again",
+        caller);
   std::vector<double> there(static_cast<size_t>(head[1]));
   memcpy(there.data(), buf + sizeof(head), there.size() * sizeof(double));
   const std::string why = placement->unlike(there);

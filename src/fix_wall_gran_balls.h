@@ -79,7 +79,7 @@ class FixWallGranBalls : public Fix, public ContactHolder {
 
   std::vector<Slope::ContactList> lists;
   std::unique_ptr<class ContactStore> store;
-  bool lists_newer;    // contacts have been updated since they were last stored by atom
+  bool contacts_in_lists;    // contacts have been updated since they were last stored by atom
 
   double force_mine[3], force_all[3];    // on the fixed balls
   int force_ready;

@@ -46,7 +46,7 @@ static Vector vector_of(const double *x)
 FixWallGranMesh::FixWallGranMesh(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), caller(fmt::format("Fix wall/gran/mesh {}", id)),
     options(lmp, caller, narg - 3, arg + 3), surface(options.surface()), pair(nullptr),
-    lists_newer(false), all_ready(false), first_step(false), fast(lmp, caller)
+    contacts_in_lists(false), all_ready(false), first_step(false), fast(lmp, caller)
 {
   scalar_flag = vector_flag = 1;
   size_vector = IMPULSE + 3;
@@ -134,8 +134,8 @@ ContactLaw FixWallGranMesh::law_of(int type) const
 
 void FixWallGranMesh::store_contacts()
 {
-  if (!lists_newer) return;
-  lists_newer = false;
+  if (!contacts_in_lists) return;
+  contacts_in_lists = false;
 
   // per ball: how many, then each
 
@@ -242,13 +242,13 @@ void FixWallGranMesh::add_contact(int slot, const double *from)
    what each ball near the surface touches now
 ------------------------------------------------------------------------- */
 
-void FixWallGranMesh::look()
+void FixWallGranMesh::find_features()
 {
   const MovingBalls moving = pair->moving_balls();
   for (int b = 0; b < watch.balls(); b++) {
     const int i = watch.number_of(b);
     const double step = size_of(moving.v[i]) * update->dt;
-    watch.look(b, vector_of(atom->x[i]), atom->radius[i], step, *surface);
+    watch.find_features(b, vector_of(atom->x[i]), atom->radius[i], step, *surface);
   }
   const size_t before = radii.size(), n = watch.slots.size();
   for (size_t s = before; s < n; s++) add_contact(static_cast<int>(s), nullptr);
@@ -268,7 +268,7 @@ void FixWallGranMesh::check_speed(int i, const Vector &normal)
 {
   const double towards = -dot(vector_of(atom->v[i]), normal);
   const ContactLaw *law = pair->law(atom->type[i], options.type);
-  if (law && towards > 0.0) fast.look(i, towards, law->kn);
+  if (law && towards > 0.0) fast.record(i, towards, law->kn);
 }
 
 void FixWallGranMesh::setup(int)
@@ -316,16 +316,16 @@ void FixWallGranMesh::record()
 
 void FixWallGranMesh::find_contacts(bool starting, bool lists_new)
 {
-  look();
+  find_features();
   const MovingBalls moving = pair->moving_balls();
   InitialOverlap initial(lmp);
   for (auto &entry : lists) {
     ContactList &l = entry.second;
     const FixedPartners phantoms(centres.data(), entry.first.radius);
     if (starting)
-      l.start(moving, phantoms, [&](const ContactList::Entry &e, double overlap) {
-        initial.look(overlap, atom->radius[e.i], atom->tag[e.i], atom->x[e.i],
-                     fmt::format("triangle {}", watch.slots[e.j].at.triangle + 1));
+      l.adopt_overlaps(moving, phantoms, [&](const ContactList::Entry &e, double overlap) {
+        initial.record(overlap, atom->radius[e.i], atom->tag[e.i], atom->x[e.i],
+                       fmt::format("triangle {}", watch.slots[e.j].at.triangle + 1));
       });
     l.find(starting, lists_new, moving, phantoms);
   }
@@ -404,7 +404,7 @@ void FixWallGranMesh::apply(bool starting)
   memcpy(given, &momentum, sizeof(momentum));
   mine[CONTACTS] = contacts;
   all_ready = false;
-  lists_newer = true;
+  contacts_in_lists = true;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -417,7 +417,7 @@ double FixWallGranMesh::elastic_energy() const
     energy += Slope::elastic_energy(entry.second, law_of(entry.first.type), moving,
                                     FixedPartners(centres.data(), entry.first.radius),
                                     [this](const ContactList::Entry &e, double overlap) {
-                                      pair->guards.see_overlap(e.i, overlap, atom->radius[e.i]);
+                                      pair->guards.record_overlap(e.i, overlap, atom->radius[e.i]);
                                     });
   return energy;
 }
@@ -515,9 +515,9 @@ int FixWallGranMesh::unpack_exchange(int i, double *buf)
 
 void FixWallGranMesh::write_restart(FILE *fp)
 {
-  const bool in_use = lists_newer;
+  const bool in_use = contacts_in_lists;
   store_contacts();
-  lists_newer = in_use;    // the run goes on with the lists
+  contacts_in_lists = in_use;    // the run goes on with the lists
   double momentum[3];
   if (update->whichflag == 1) keep_given();
   MPI_Allreduce(last, momentum, 3, MPI_DOUBLE, MPI_SUM, world);

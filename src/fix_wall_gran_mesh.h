@@ -89,7 +89,7 @@ class FixWallGranMesh : public Fix, public ContactHolder {
   std::vector<double> radii;    // of each slot's phantom
   std::deque<std::array<double, Slope::HISTORY>> history;
   std::vector<Slope::Vector> centres;    // of the phantoms
-  bool lists_newer;    // contacts have been updated since they were last stored by atom
+  bool contacts_in_lists;    // contacts have been updated since they were last stored by atom
   Slope::SurfaceContactStore store;
 
   // what the balls do to the surface: the force as the contact law has it, its moment, and the momentum
@@ -110,7 +110,7 @@ class FixWallGranMesh : public Fix, public ContactHolder {
 
   Slope::ContactLaw law_of(int type) const;
   void add_contact(int slot, const double *from);
-  void look();
+  void find_features();
   void check_speed(int i, const Slope::Vector &normal);
   void store_contacts();
   void apply(bool);

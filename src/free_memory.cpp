@@ -36,7 +36,7 @@ double number_in(const std::string &path)
 {
   std::ifstream file(path);
   double value;
-  return file >> value ? value : NAN;
+  return (file >> value) ? value : NAN;
 }
 
 // what the group and those above it leave; their pages of files that nobody uses can be had, too
@@ -58,7 +58,7 @@ double left_in_groups(const std::string &root)
     if (!std::isnan(most) && !std::isnan(used))
       left = std::min(left, most - used + (std::isnan(idle) ? 0.0 : idle));
     if (group.empty()) return std::max(0.0, left);
-    group = group.substr(0, group.rfind('/'));
+    group.resize(group.rfind('/'));
   }
 }
 

@@ -14,8 +14,8 @@ using namespace LAMMPS_NS;
 
 /* ---------------------------------------------------------------------- */
 
-void InitialOverlap::look(double overlap, double radius, tagint ball, const double *where,
-                          const std::string &partner)
+void InitialOverlap::record(double overlap, double radius, tagint ball, const double *where,
+                            const std::string &partner)
 {
   const double ratio = overlap / radius;
   if (ratio <= LIMIT) return;

@@ -23,8 +23,8 @@ class InitialOverlap : protected Pointers {
   explicit InitialOverlap(class LAMMPS *lmp) : Pointers(lmp), worst(LIMIT), count(0) {}
 
   // note one overlapping pair; partner names it in the message
-  void look(double overlap, double radius, tagint ball, const double *where,
-            const std::string &partner);
+  void record(double overlap, double radius, tagint ball, const double *where,
+              const std::string &partner);
 
   // collective: ends the run if any rank saw an overlap above the limit
   void check(const std::string &caller);

@@ -74,7 +74,9 @@ class Intervals {
     parts.insert(parts.end(), with.parts.begin(), with.parts.end());
     if (mine == 0) return;
     std::inplace_merge(parts.begin(), parts.begin() + mine, parts.end(),
-                       [](const Interval &a, const Interval &b) { return a.lo < b.lo; });
+                       [](const Interval &a, const Interval &b) {
+                         return a.lo < b.lo;
+                       });
     close_gaps(0.0);
   }
 
@@ -96,7 +98,9 @@ class Intervals {
   {
     close_gaps(thin);
     parts.erase(std::remove_if(parts.begin(), parts.end(),
-                               [=](const Interval &p) { return p.hi - p.lo <= thin; }),
+                               [=](const Interval &p) {
+                                 return p.hi - p.lo <= thin;
+                               }),
                 parts.end());
   }
 
@@ -127,7 +131,8 @@ inline Interval column_of_sphere(double dx, double dy, double z, double radius)
 
 // the side of a plane that its normal nx,ny,nz points to; the line at dx, dy from a point of the
 // plane at height z
-inline Interval column_of_half_space(double dx, double dy, double z, double nx, double ny, double nz)
+inline Interval column_of_half_space(double dx, double dy, double z, double nx, double ny,
+                                     double nz)
 {
   const double side = dx * nx + dy * ny;
   if (nz == 0.0) return side >= 0.0 ? Interval::all() : Interval::none();

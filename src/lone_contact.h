@@ -46,20 +46,23 @@ struct LoneContact {
   double left_t;                                    // exp(-2 h)
   double cn, kt, ct, kr, cr;    // law: fn = a d + cn d', ft = kt xi + ct xi', fr alike
   double inverse_r, across;
-  double fast;                  // see kick()
-  double longest;               // steps that an impact lasts at most
+  double fast;       // see kick()
+  double longest;    // steps that an impact lasts at most
 
   // what a kick needs and changes
   struct Springs {
     double slide[3], roll[3];    // m, in the tangent plane
   };
   struct Kick {
-    double n, slide[3], roll[3];    // on the overlap, the contact point, the rolling; per contact mass, m
+    double n, slide[3],
+        roll[3];    // on the overlap, the contact point, the rolling; per contact mass, m
   };
 
   // law: the contact's oscillators, normal and tangential
-  LoneContact(const Oscillator &law_n, const Oscillator &law_t, double tan_friction, const Rolling &law_r) :
-      normal(true_at_rest(law_n)), sliding(law_t), rolling(law_r.law)
+  LoneContact(const Oscillator &law_n, const Oscillator &law_t, double tan_friction,
+              const Rolling &law_r) :
+      normal(true_at_rest(law_n)),
+      sliding(law_t), rolling(law_r.law)
   {
     fast = 1.0 + normal.stiffness() / 12.0;
     friction = tan_friction / fast;
@@ -93,18 +96,19 @@ struct LoneContact {
   // Overlap d at the end of a step (< 0 if the contact ends in it) in which it grew by V; paths in the
   // tangent plane of the contact point, U[3], and of the rolling, Y[3], turned by 90 degrees so
   // that both count alike (n x Rr (wi - wj)). springs: those a step ago, replaced. BEGINS needs V > 0.
-  // again: the kick of this very step once more, with the springs as the step has left them: exact
+  // repeat: the kick of this very step once more, with the springs as the step has left them: exact
   // unless the contact slid or rolled in the step (slid), an estimate then. Returns whether it did.
   //
   // fast: a contact that begins or ends in company has no closed form, and gains or loses energy with
   // the moment within the step; on average it begins with 1 - a/6 of its energy, and ends with
   // as much more. Lone contacts do the same, so that those which begin alone and end in company, or the
   // reverse, neither heat nor cool.
-  bool kick(Life life, bool again, bool slid, double d, double V, const double *U, const double *Y,
+  bool kick(Life life, bool repeat, bool slid, double d, double V, const double *U, const double *Y,
             Springs &springs, Kick &out) const
   {
     State s;
-    Kick before = {0.0, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};    // the part of the step's force given already
+    Kick before = {
+        0.0, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};    // the part of the step's force given already
     out = before;
     if (life == BEGINS) {
       slid = false;
@@ -117,7 +121,7 @@ struct LoneContact {
     } else {
       const double d0 = d - V, r0 = (d - step_n.xx * d0) / step_n.xr;
       if (life == ENDS && !(d0 > 0.0)) return false;    // a normal that turns: it ended at once
-      if (life == LASTS && again) {
+      if (life == LASTS && repeat) {
         recall(s, slid, d0, r0, V, U, Y, springs, out);
       } else {
         s = start(d0, r0, V, U, Y, springs, before.slide);
@@ -149,9 +153,9 @@ struct LoneContact {
 
  private:
   struct State {
-    double d, r;             // overlap and its rate
-    double xi[3], u[3];      // sliding spring, rate of the contact point
-    double rho[3], y[3];     // rolling
+    double d, r;            // overlap and its rate
+    double xi[3], u[3];     // sliding spring, rate of the contact point
+    double rho[3], y[3];    // rolling
   };
 
   // factor that brings a vector to a length
@@ -176,8 +180,8 @@ struct LoneContact {
   }
 
   // State a step ago, with the rates from the paths in the step; given: the force then, as in kick()
-  State start(double d0, double r0, double V, const double *U, const double *Y, const Springs &springs,
-              double *given) const
+  State start(double d0, double r0, double V, const double *U, const double *Y,
+              const Springs &springs, double *given) const
   {
     State s;
     s.d = d0;
@@ -210,7 +214,8 @@ struct LoneContact {
   }
 
   // state after a step that the contact lasted; returns whether it slid or rolled
-  bool last(State &s, double d0, double r0, double V, const double *U, const Springs &springs, Kick &out) const
+  bool last(State &s, double d0, double r0, double V, const double *U, const Springs &springs,
+            Kick &out) const
   {
     if (resistance == 0.0) {
       State now = s;
@@ -220,7 +225,8 @@ struct LoneContact {
         held[k] = kt * s.xi[k] + ct * s.u[k];
       }
       stuck(now, d0, r0, V, U, xi_now, f);
-      if (cut(f, limit(now, friction)) == 1.0 && cut(held, (1.0 + 1.0e-9) * limit(s, friction)) == 1.0) {
+      if (cut(f, limit(now, friction)) == 1.0 &&
+          cut(held, (1.0 + 1.0e-9) * limit(s, friction)) == 1.0) {
         for (int k = 0; k < 3; k++) out.slide[k] = (s.u[k] - now.u[k]) / POINT;
         s = now;
         return false;
@@ -248,8 +254,8 @@ struct LoneContact {
 
   // Spring and dashpot over a part of a step: they stick, or slide with the force on the limit at the end
   // of the part. left: the normal rate that the part takes; adds the impulse to sum, returns it in given.
-  static void part(double k, double c, double inverse, const Motion &q, double limit, double most, double *x,
-                   double *u, double *sum, double *given)
+  static void part(double k, double c, double inverse, const Motion &q, double limit, double most,
+                   double *x, double *u, double *sum, double *given)
   {
     double x1[3], u1[3], f[3], dv[3];
     for (int d = 0; d < 3; d++) {
@@ -290,7 +296,8 @@ struct LoneContact {
           part(kt, ct, POINT, t, limit(s, friction), friction * taken, s.xi, s.u, out.slide, given);
           for (int d = 0; d < 3; d++) s.y[d] -= across * given[d];
         } else if (resistance > 0.0) {
-          part(kr, cr, inverse_r, r, limit(s, resistance), resistance * taken, s.rho, s.y, out.roll, given);
+          part(kr, cr, inverse_r, r, limit(s, resistance), resistance * taken, s.rho, s.y, out.roll,
+               given);
           for (int d = 0; d < 3; d++) s.u[d] -= across * given[d];
         }
       }

@@ -46,17 +46,17 @@ MotionRecord MotionRecord::read(const std::string &path, double scale)
     for (const double value : row.values)
       if (std::fabs(value) > LARGEST)
         throw line_error(path, row.line,
-                        "numbers must be within +-" + number_text(LARGEST) + ", got " +
-                            number_text(value));
+                         "numbers must be within +-" + number_text(LARGEST) + ", got " +
+                             number_text(value));
     const size_t n = points.size();
     if (n > 0 && p.t < points[n - 1].t)
       throw line_error(path, row.line,
-                      "times must not fall, got " + number_text(p.t) + " after " +
-                          number_text(points[n - 1].t));
+                       "times must not fall, got " + number_text(p.t) + " after " +
+                           number_text(points[n - 1].t));
     if (n > 1 && p.t == points[n - 2].t)
       throw line_error(path, row.line,
-                      "at most two lines may have the same time, a jump, got a third one of " +
-                          number_text(p.t));
+                       "at most two lines may have the same time, a jump, got a third one of " +
+                           number_text(p.t));
     points.push_back(p);
   }
   if (points.size() < 2)

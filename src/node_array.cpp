@@ -115,7 +115,8 @@ void NodeArray::fill(const double *values)
   if (fills) {
     if (comm->me == 0) std::copy(values, values + size, numbers);
     for (size_t done = 0; done < size; done += CHUNK)
-      MPI_Bcast(numbers + done, static_cast<int>(std::min(CHUNK, size - done)), MPI_DOUBLE, 0, those);
+      MPI_Bcast(numbers + done, static_cast<int>(std::min(CHUNK, size - done)), MPI_DOUBLE, 0,
+                those);
   }
 #ifdef SLOPE_NODES
   if (shared) MPI_Win_fence(0, window);

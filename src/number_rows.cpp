@@ -59,10 +59,10 @@ std::vector<NumberRow> Slope::read_number_rows(const std::string &path, int coun
     const bool numbers = parse(content, row.values);
     if (numbers && row.values.empty()) continue;
     if (!numbers || (int) row.values.size() != count)
-      throw line_error(
-          path, row.line,
-          "must be " + std::to_string(count) + " numbers, " + names + ", got " +
-              excerpt(content.substr(std::min(content.find_first_not_of(" \t\r"), content.size()))));
+      throw line_error(path, row.line,
+                       "must be " + std::to_string(count) + " numbers, " + names + ", got " +
+                           excerpt(content.substr(
+                               std::min(content.find_first_not_of(" \t\r"), content.size()))));
     rows.push_back(row);
   }
   return rows;

@@ -104,7 +104,8 @@ inline Oscillator true_at_rest(const Oscillator &law)
     x *= std::exp(std::fmax(-0.5, std::fmin(0.5, step)));
     if (std::fabs(step) < 1.0e-12) return {zeta * x, x * x};
   }
-  return std::fabs(error(x)) < 1.0e-6 ? Oscillator{zeta * x, x * x} : law;    // a step far too large
+  return std::fabs(error(x)) < 1.0e-6 ? Oscillator{zeta * x, x * x}
+                                      : law;    // a step far too large
 }
 
 }    // namespace SLOPE_INSTRUCTIONS

@@ -200,10 +200,7 @@ void PairGranRestitution::init_style()
 
 double PairGranRestitution::init_one(int i, int j)
 {
-  const ContactTable::TypeRange &a = table.range(i), &b = table.range(j);
-  const bool amoves = a.radius_dynamic > 0.0, bmoves = b.radius_dynamic > 0.0;
-  const bool can_touch = (amoves && (bmoves || b.frozen)) || (bmoves && (amoves || a.frozen));
-  if (can_touch && !table.is_set(i, j))
+  if (table.balls_can_touch(i, j) && !table.is_set(i, j))
     error->all(FLERR,
                "Pair gran/restitution: pair_coeff {} {} is not set, and balls of both types "
                "exist",
@@ -223,8 +220,7 @@ void PairGranRestitution::announce_wall(ContactHolder *wall, int type, int group
       if ((atom->mask[i] & groupbit) && atom->type[i] == itype) mine = 1;
     MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
     if (any && !law(itype, type))
-      error->all(FLERR,
-                 "Fix {}: pair_coeff {} {} is not set (moving type {}, wall type {})", style,
+      error->all(FLERR, "Fix {}: pair_coeff {} {} is not set (moving type {}, wall type {})", style,
                  std::min(itype, type), std::max(itype, type), itype, type);
   }
   if (allocated) table.add_wall_type(type);
@@ -259,8 +255,8 @@ void PairGranRestitution::watch_energy()
   for (size_t k = 0; k < lists.size(); k++)
     elastic += elastic_energy(lists[k], table.law(k / 3), balls, partners,
                               [this](const ContactList::Entry &e, double overlap) {
-                                guards.see_overlap(e.i, overlap,
-                                                   std::min(atom->radius[e.i], atom->radius[e.j]));
+                                guards.record_overlap(
+                                    e.i, overlap, std::min(atom->radius[e.i], atom->radius[e.j]));
                               });
   for (const ContactHolder *wall : walls) elastic += wall->elastic_energy();
   guards.watch_energy(elastic);
@@ -304,7 +300,7 @@ void PairGranRestitution::build_lists()
       const Vector a = x[i], b = x[j];
       const double r =
           sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y) + (a.z - b.z) * (a.z - b.z));
-      guards.see_overlap(i, radius[i] + radius[j] - r, std::min(radius[i], radius[j]));
+      guards.record_overlap(i, radius[i] + radius[j] - r, std::min(radius[i], radius[j]));
     }
   }
   if (sizes_vary)
@@ -381,9 +377,9 @@ void PairGranRestitution::find_contacts(bool lists_new)
   if (starting) {
     InitialOverlap initial(lmp);
     for (ContactList &l : lists)
-      l.start(balls, partners, [&](const ContactList::Entry &e, double overlap) {
-        initial.look(overlap, std::min(atom->radius[e.i], atom->radius[e.j]), atom->tag[e.i],
-                     atom->x[e.i], fmt::format("ball {}", atom->tag[e.j]));
+      l.adopt_overlaps(balls, partners, [&](const ContactList::Entry &e, double overlap) {
+        initial.record(overlap, std::min(atom->radius[e.i], atom->radius[e.j]), atom->tag[e.i],
+                       atom->x[e.i], fmt::format("ball {}", atom->tag[e.j]));
       });
     initial.check("Pair gran/restitution");
   }

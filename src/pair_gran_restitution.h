@@ -65,8 +65,8 @@ class PairGranRestitution : public Pair {
   Slope::MovingBalls moving_balls();
   void store_flags() const;
   bool force_estimated(int i) const;    // of a ball at set-up: it slid alone, see contact_law.h
-  bool forces_taken_back() const;       // in the first step of a run: its forces are the last step's
-  bool sizes_vary = false;    // between two neighbor lists, by fix adapt
+  bool forces_taken_back() const;    // in the first step of a run: its forces are the last step's
+  bool sizes_vary = false;           // between two neighbor lists, by fix adapt
 
   void watch_energy();    // every ContactGuards::EVERY steps and at the end of a run
   ContactGuards guards;

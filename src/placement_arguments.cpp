@@ -22,8 +22,9 @@ PlacementArguments::PlacementArguments(LAMMPS *lmp, const std::string &caller_in
                                        double diameter_in, double smallest_in, int narg, char **arg,
                                        bool may_write) :
     Pointers(lmp),
-    caller(caller_in), diameter(diameter_in), side(RegionSurface::UPPER), spacing(0.0),
-    origin{0.0, 0.0}, filter_inside(true), sink(0.0), filter_sink(-1.0), smallest(smallest_in)
+    caller(caller_in), diameter(diameter_in), side(RegionSurface::UPPER),
+    spacing(0.0), origin{0.0, 0.0}, filter_inside(true), sink(0.0), filter_sink(-1.0),
+    smallest(smallest_in)
 {
   if (!(diameter > 0.0) || !std::isfinite(diameter))
     error->all(FLERR, "{} diameter must be > 0, got {}", caller, diameter);

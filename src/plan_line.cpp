@@ -39,13 +39,13 @@ PlanLine PlanLine::read(const std::string &path)
     const double x = row.values[0], y = row.values[1];
     if (!(std::fabs(x) <= LARGEST && std::fabs(y) <= LARGEST))
       throw line_error(path, row.line,
-                      "x and y must be within +-" + number_text(LARGEST) + ", got " +
-                          number_text(x) + " " + number_text(y));
+                       "x and y must be within +-" + number_text(LARGEST) + ", got " +
+                           number_text(x) + " " + number_text(y));
     const size_t n = points.size();
     if (n > 0 && x == points[n - 2] && y == points[n - 1])
       throw line_error(path, row.line,
-                      "two points in a row must differ, got " + number_text(x) + " " +
-                          number_text(y) + " twice");
+                       "two points in a row must differ, got " + number_text(x) + " " +
+                           number_text(y) + " twice");
     points.push_back(x);
     points.push_back(y);
   }

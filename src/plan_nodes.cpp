@@ -81,11 +81,11 @@ const PlanNodes::Look &PlanNodes::at(int i, int j)
 {
   if (i < 0 || i >= nx || j < 0 || j >= ny) return nothing;
   const int number = (j >> shift) * tiles_x + (i >> shift);
-  const Tile &found = tiles[number] ? *tiles[number] : look(number);
+  const Tile &found = tiles[number] ? *tiles[number] : make_tile(number);
   return found.nodes[static_cast<size_t>(j & (tile - 1)) * std::min(tile, nx) + (i & (tile - 1))];
 }
 
-const PlanNodes::Tile &PlanNodes::look(int number)
+const PlanNodes::Tile &PlanNodes::make_tile(int number)
 {
   const int ilo = (number % tiles_x) * tile, jlo = (number / tiles_x) * tile;
   const int wide = std::min(tile, nx), high = std::min(tile, ny);
@@ -113,7 +113,7 @@ PlanNodes::Balls PlanNodes::around(int i, int j)
   for (int b = std::max(j - 1, 0); b <= std::min(j + 1, tiles_y - 1); b++)
     for (int a = std::max(i - 1, 0); a <= std::min(i + 1, tiles_x - 1); a++) {
       const int number = b * tiles_x + a;
-      const Tile &found = tiles[number] ? *tiles[number] : look(number);
+      const Tile &found = tiles[number] ? *tiles[number] : make_tile(number);
       all &= found.balls == found.inside;
       none &= found.balls == 0;
       if (!all && !none) return SOME;

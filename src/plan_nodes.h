@@ -45,7 +45,7 @@ struct Surface {
 // first tiles of a row or column have the cells before their nodes, too.
 class PlanNodes {
  public:
-  static constexpr int TILE = 32;    // nodes along its side, a power of two
+  static constexpr int TILE = 32;                // nodes along its side, a power of two
   static constexpr double ROUND_OFF = 1.0e-9;    // of the spacing
 
   // Needs a spacing > 0 and a rectangle that is not empty (else std::invalid_argument), fewer
@@ -100,7 +100,7 @@ class PlanNodes {
   size_t known;
   const Look nothing;
 
-  const Tile &look(int tile_number);
+  const Tile &make_tile(int tile_number);
 };
 
 }    // namespace Slope

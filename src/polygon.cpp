@@ -19,11 +19,11 @@
 
 using namespace Slope;
 
-static constexpr double LARGEST = 1.0e12;         // coordinates; their products must be finite
-static constexpr double MOST_PARTS = 64.0;        // of edges in strips, per edge: bounds the memory
-static constexpr double ROUNDING = 4.0e-16;       // relative error of a determinant's terms
-static constexpr double COORDINATE = 1.0e-14;     // more than the relative rounding of a coordinate
-static constexpr double ON_LINE = 1.0e-9;         // of a cell, a strip, or the bounding box
+static constexpr double LARGEST = 1.0e12;        // coordinates; their products must be finite
+static constexpr double MOST_PARTS = 64.0;       // of edges in strips, per edge: bounds the memory
+static constexpr double ROUNDING = 4.0e-16;      // relative error of a determinant's terms
+static constexpr double COORDINATE = 1.0e-14;    // more than the relative rounding of a coordinate
+static constexpr double ON_LINE = 1.0e-9;        // of a cell, a strip, or the bounding box
 
 namespace {
 
@@ -35,8 +35,8 @@ struct Point {
 struct Segment {
   Point a, b;
   int ring;
-  int line;         // in the file, of point a
-  int next, prev;   // edges of the same ring that share a point with it
+  int line;          // in the file, of point a
+  int next, prev;    // edges of the same ring that share a point with it
 
   double xmin() const { return std::min(a.x, b.x); }
   double xmax() const { return std::max(a.x, b.x); }
@@ -91,8 +91,9 @@ Rings read_rings(const std::string &path)
     if (!parse(content, p))
       throw line_error(path, line, "must be two numbers, x,y, got " + excerpt(content));
     if (!(std::fabs(p.x) <= LARGEST && std::fabs(p.y) <= LARGEST))    // NaN, too
-      throw line_error(path, line, "x and y must be numbers within +-" + number_text(LARGEST) + ", got " +
-                  excerpt(content));
+      throw line_error(path, line,
+                       "x and y must be numbers within +-" + number_text(LARGEST) + ", got " +
+                           excerpt(content));
     if (!open) {
       rings.points.emplace_back();
       rings.lines.emplace_back();
@@ -112,8 +113,8 @@ Rings read_rings(const std::string &path)
       rings.lines[r].pop_back();
     }
     if (points.size() < 3)
-      throw line_error(path, rings.lines[r][0], "a ring must have at least 3 points, got " +
-                  std::to_string(points.size()));
+      throw line_error(path, rings.lines[r][0],
+                       "a ring must have at least 3 points, got " + std::to_string(points.size()));
   }
   return rings;
 }
@@ -165,15 +166,14 @@ bool meet(const Segment &s, const Segment &t, bool neighbours)
     const Point &shared = s.b == t.a ? s.b : s.a;
     const Point &p = s.b == t.a ? s.a : s.b;
     const Point &q = s.b == t.a ? t.b : t.a;
-    const double same =
-        (p.x - shared.x) * (q.x - shared.x) + (p.y - shared.y) * (q.y - shared.y);
+    const double same = (p.x - shared.x) * (q.x - shared.x) + (p.y - shared.y) * (q.y - shared.y);
     return side(p, shared, q) == 0 && same > 0.0;
   }
   const int c = side(s.a, s.b, t.a) * side(s.a, s.b, t.b);
   const int d = side(t.a, t.b, s.a) * side(t.a, t.b, s.b);
   if (s.ring != t.ring) return c < 0 && d < 0;
-  return c <= 0 && d <= 0 && s.xmin() <= t.xmax() && t.xmin() <= s.xmax() &&
-      s.ymin() <= t.ymax() && t.ymin() <= s.ymax();
+  return c <= 0 && d <= 0 && s.xmin() <= t.xmax() && t.xmin() <= s.xmax() && s.ymin() <= t.ymax() &&
+      t.ymin() <= s.ymax();
 }
 
 // where they do; for edges on one line a point that both have
@@ -233,12 +233,17 @@ void check_crossings(const std::string &path, const std::vector<Segment> &all, c
   // edges cell by cell: counted, then put
 
   std::vector<size_t> first((size_t) cells.n * cells.n + 1, 0);
-  for (const Segment &s : all) cells.along(s, [&](size_t cell) { first[cell + 1]++; });
+  for (const Segment &s : all)
+    cells.along(s, [&](size_t cell) {
+      first[cell + 1]++;
+    });
   for (size_t k = 1; k < first.size(); k++) first[k] += first[k - 1];
   std::vector<int> member(first.back());
   std::vector<size_t> place = first;
   for (size_t e = 0; e < all.size(); e++)
-    cells.along(all[e], [&](size_t cell) { member[place[cell]++] = (int) e; });
+    cells.along(all[e], [&](size_t cell) {
+      member[place[cell]++] = (int) e;
+    });
 
   std::pair<int, int> found((int) all.size(), 0);
   for (size_t cell = 0; cell + 1 < first.size(); cell++)
@@ -260,10 +265,13 @@ void check_crossings(const std::string &path, const std::vector<Segment> &all, c
   const Point at = meeting(s, t);
   const std::string where = " at " + number_text(at.x) + "," + number_text(at.y);
   if (s.ring == t.ring)
-    throw line_error(path, s.line, "a ring must not cross or touch itself, the edges from lines " +
-                std::to_string(s.line) + " and " + std::to_string(t.line) + " meet" + where);
-  throw line_error(path, s.line, "rings must not cross, the edges from lines " +
-              std::to_string(s.line) + " and " + std::to_string(t.line) + " do" + where);
+    throw line_error(path, s.line,
+                     "a ring must not cross or touch itself, the edges from lines " +
+                         std::to_string(s.line) + " and " + std::to_string(t.line) + " meet" +
+                         where);
+  throw line_error(path, s.line,
+                   "rings must not cross, the edges from lines " + std::to_string(s.line) +
+                       " and " + std::to_string(t.line) + " do" + where);
 }
 
 }    // namespace
@@ -340,7 +348,8 @@ void Polygon::cut_into_strips()
   ending.resize(first_ending[n]);
   through.resize(first_through[n]);
   std::vector<int> place_ending = first_ending, place_through = first_through;
-  const double slack = ON_LINE * (xhi - xlo) + COORDINATE * std::max(std::fabs(xlo), std::fabs(xhi));
+  const double slack =
+      ON_LINE * (xhi - xlo) + COORDINATE * std::max(std::fabs(xlo), std::fabs(xhi));
   const double rim = ON_LINE / scale + COORDINATE * std::max(std::fabs(ylo), std::fabs(yhi));
   for (size_t i = 0; i < edges.size(); i++) {
     const Edge &e = edges[i];
@@ -357,9 +366,13 @@ void Polygon::cut_into_strips()
 
   for (int k = 0; k < n; k++) {
     std::sort(ending.begin() + first_ending[k], ending.begin() + first_ending[k + 1],
-              [this](int a, int b) { return edges[a].xmax() > edges[b].xmax(); });
+              [this](int a, int b) {
+                return edges[a].xmax() > edges[b].xmax();
+              });
     std::sort(through.begin() + first_through[k], through.begin() + first_through[k + 1],
-              [](const Through &a, const Through &b) { return a.xmin > b.xmin; });
+              [](const Through &a, const Through &b) {
+                return a.xmin > b.xmin;
+              });
     double reach = -LARGEST;
     for (int i = first_through[k + 1] - 1; i >= first_through[k]; i--)
       through[i].reach = reach = std::max(reach, through[i].xmax);
@@ -382,13 +395,13 @@ Polygon Polygon::read(const std::string &path)
       const Point &p = ring[k], &q = ring[(k + 1) % n];
       points.push_back(p.x);
       points.push_back(p.y);
-      all.push_back({p, q, (int) r, rings.lines[r][k], base + (k + 1) % n,
-                     base + (k + n - 1) % n});
+      all.push_back({p, q, (int) r, rings.lines[r][k], base + (k + 1) % n, base + (k + n - 1) % n});
     }
     bool flat = true;
     for (const Point &p : ring) flat = flat && side(ring[0], ring[1], p) == 0;
     if (flat)
-      throw line_error(path, rings.lines[r][0], "a ring must have an area > 0, its points are on a line");
+      throw line_error(path, rings.lines[r][0],
+                       "a ring must have an area > 0, its points are on a line");
     sizes.push_back(n);
   }
 
@@ -423,7 +436,9 @@ bool Polygon::inside(double x, double y) const
 
   const auto begin = through.begin() + first_through[k];
   const auto end = through.begin() + first_through[k + 1];
-  auto t = std::partition_point(begin, end, [=](const Through &t) { return t.xmin > x; });
+  auto t = std::partition_point(begin, end, [=](const Through &t) {
+    return t.xmin > x;
+  });
   if ((t - begin) % 2) odd = !odd;
   for (; t != end && t->reach > x; t++)
     if (is_east(edges[t->edge])) odd = !odd;
@@ -452,14 +467,18 @@ double Polygon::area() const
   std::sort(heights.begin(), heights.end());
   heights.erase(std::unique(heights.begin(), heights.end()), heights.end());
   std::vector<Edge> from_south = edges, here;
-  std::sort(from_south.begin(), from_south.end(),
-            [](const Edge &a, const Edge &b) { return a.y0 < b.y0; });
+  std::sort(from_south.begin(), from_south.end(), [](const Edge &a, const Edge &b) {
+    return a.y0 < b.y0;
+  });
 
   auto next = from_south.begin();
   for (size_t k = 0; k + 1 < heights.size(); k++) {
     const double south = heights[k], height = heights[k + 1] - south;
     here.erase(std::remove_if(here.begin(), here.end(),
-                              [=](const Edge &e) { return e.y1 <= south; }), here.end());
+                              [=](const Edge &e) {
+                                return e.y1 <= south;
+                              }),
+               here.end());
     for (; next != from_south.end() && next->y0 <= south; ++next) here.push_back(*next);
     cuts.clear();
     for (const Edge &e : here) cuts.push_back(e.xat(south + 0.5 * height));

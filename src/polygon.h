@@ -56,10 +56,10 @@ class Polygon {
     double reach;         // largest xmax of this one and those after it
     int edge;
   };
-  double scale;                               // strips per height
-  std::vector<int> first_through;             // of strip k: from first[k] to first[k+1]
-  std::vector<Through> through;               // in a strip: by xmin, from the east
-  std::vector<int> first_ending, ending;      // in a strip: by their largest x, from the east
+  double scale;                             // strips per height
+  std::vector<int> first_through;           // of strip k: from first[k] to first[k+1]
+  std::vector<Through> through;             // in a strip: by xmin, from the east
+  std::vector<int> first_ending, ending;    // in a strip: by their largest x, from the east
 
   int strip(double y) const;
   void cut_into_strips();

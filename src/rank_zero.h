@@ -18,8 +18,7 @@ namespace LAMMPS_NS {
 
 // Collective: rank 0 does something that may throw, such as reading a file; what went wrong
 // there ends the run on all ranks, with one line that starts with caller. Nobody hangs.
-template <typename Work>
-void on_rank_zero(LAMMPS *lmp, const std::string &caller, Work work)
+template <typename Work> void on_rank_zero(LAMMPS *lmp, const std::string &caller, Work work)
 {
   std::string problem;
   if (lmp->comm->me == 0) {
@@ -41,8 +40,7 @@ void on_rank_zero(LAMMPS *lmp, const std::string &caller, Work work)
 
 // Collective: all ranks do something that may throw on any of them; what went wrong first ends the
 // run on all ranks in the same way.
-template <typename Work>
-void on_all_ranks(LAMMPS *lmp, const std::string &caller, Work work)
+template <typename Work> void on_all_ranks(LAMMPS *lmp, const std::string &caller, Work work)
 {
   std::string problem;
   try {

@@ -19,8 +19,8 @@ using namespace LAMMPS_NS;
 using Slope::Interval;
 using Slope::Intervals;
 
-static constexpr int LOOKS = 64;           // columns in which a region is held against its intervals
-static constexpr double FAR = 1.0e6;       // where a region goes on without end it is not looked at
+static constexpr int LOOKS = 64;        // columns in which a region is held against its intervals
+static constexpr double FAR = 1.0e6;    // where a region goes on without end it is not looked at
 static constexpr double CLOSE = 1.0e-6;    // to an end, of the region's size: rounding may decide
 
 /* ---------------------------------------------------------------------- */
@@ -130,9 +130,11 @@ class CombinedColumns : public RegionColumns {
   CombinedColumns(bool intersect_in, std::vector<std::unique_ptr<RegionColumns>> parts_in) :
       intersect(intersect_in), parts(std::move(parts_in))
   {
-    std::stable_sort(parts.begin(), parts.end(),
-                     [](const std::unique_ptr<RegionColumns> &a,
-                        const std::unique_ptr<RegionColumns> &b) { return a->cost() < b->cost(); });
+    std::stable_sort(
+        parts.begin(), parts.end(),
+        [](const std::unique_ptr<RegionColumns> &a, const std::unique_ptr<RegionColumns> &b) {
+          return a->cost() < b->cost();
+        });
   }
 
  protected:

@@ -79,7 +79,9 @@ void RegPolygon::init()
 
 void RegPolygon::read(const char *path)
 {
-  on_rank_zero(lmp, "Region polygon", [&]() { polygon = Slope::Polygon::read(path); });
+  on_rank_zero(lmp, "Region polygon", [&]() {
+    polygon = Slope::Polygon::read(path);
+  });
 
   std::vector<double> xy = polygon.xy;
   std::vector<int> sizes = polygon.sizes;

@@ -24,7 +24,8 @@ static constexpr double PRECISION = 1.0e-12;    // of the region's height
 static constexpr double DEFAULT_STEPS = 1000.0;
 static constexpr double ROUGHLY = 1.0e-3;    // of a step
 static constexpr int NEAR_STEPS = 16;
-static constexpr double THIN = 0.008;    // of a step: no part of a region, but two surfaces in one place
+static constexpr double THIN =
+    0.008;    // of a step: no part of a region, but two surfaces in one place
 
 /* ---------------------------------------------------------------------- */
 
@@ -227,7 +228,8 @@ bool RegionSurface::search_below(double x, double y, double top, double &z) cons
 
 // the boundary between a point outside and one inside, distances walked, to a precision in m
 
-bool RegionSurface::between(double x, double y, double out, double in, double precision, double &z) const
+bool RegionSurface::between(double x, double y, double out, double in, double precision,
+                            double &z) const
 {
   while (in - out > precision) {
     const double middle = 0.5 * (in + out);

@@ -72,11 +72,11 @@ RegTerrain::RegTerrain(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
   if (!(extent_xlo >= -FARTHEST && extent_xlo < extent_xhi && extent_xhi <= FARTHEST &&
         extent_ylo >= -FARTHEST && extent_ylo < extent_yhi && extent_yhi <= FARTHEST &&
         extent_zlo >= -FARTHEST && extent_zlo < extent_zhi && extent_zhi <= FARTHEST))
-    error->all(FLERR,
-               "Region terrain: {} with depth and headroom must have an extent within +-{:g}, got x "
-               "{:.8g} to {:.8g}, y {:.8g} to {:.8g}, z {:.8g} to {:.8g}",
-               arg[2], FARTHEST, extent_xlo, extent_xhi, extent_ylo, extent_yhi, extent_zlo,
-               extent_zhi);
+    error->all(
+        FLERR,
+        "Region terrain: {} with depth and headroom must have an extent within +-{:g}, got x "
+        "{:.8g} to {:.8g}, y {:.8g} to {:.8g}, z {:.8g} to {:.8g}",
+        arg[2], FARTHEST, extent_xlo, extent_xhi, extent_ylo, extent_yhi, extent_zlo, extent_zhi);
 
   cmax = tmax = 0;
 

@@ -55,8 +55,8 @@ inline int region_keyword(LAMMPS *lmp, const std::string &caller, const std::str
   const std::string keyword = arg[0];
   const auto known = nvalues.find(keyword);
   if (known == nvalues.end())
-    error->all(FLERR, "{}: unknown keyword {}, must be {}side, units, move or rotate", caller, keyword,
-               own);
+    error->all(FLERR, "{}: unknown keyword {}, must be {}side, units, move or rotate", caller,
+               keyword, own);
   const int n = known->second;
   if (n >= narg)
     error->all(FLERR, "{} {} must be followed by {} value{}, got {}", caller, keyword, n,

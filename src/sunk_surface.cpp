@@ -58,7 +58,7 @@ SunkSurface::SunkSurface(const Bed &bed, double sink_in, double pitch) : sink(si
   yhi = bed.yhi + my * py;
   z.reset(nx, ny, INFINITE);
 
-  look(bed);
+  measure(bed);
   if (bed.body) {
     if (bed.ground) trim(bed);
     go_on(bed, edges());
@@ -69,7 +69,9 @@ SunkSurface::SunkSurface(const Bed &bed, double sink_in, double pitch) : sink(si
 double SunkSurface::lowest() const
 {
   double found = INFINITE;
-  z.each([&](int, int, double height) { found = std::min(found, height); });
+  z.each([&](int, int, double height) {
+    found = std::min(found, height);
+  });
   return found - sink;
 }
 
@@ -92,7 +94,7 @@ bool SunkSurface::look_at(const Bed &bed, int i, int j, double near)
   return there;
 }
 
-void SunkSurface::look(const Bed &bed)
+void SunkSurface::measure(const Bed &bed)
 {
   const int iend = nx - 1 - mx, jend = ny - 1 - my;
   for (int j = my;; j = std::min(j + STRIDE, jend)) {

@@ -72,7 +72,7 @@ class SunkSurface {
   double column_x(int i) const { return xlo + i * px; }
   double column_y(int j) const { return ylo + j * py; }
 
-  void look(const Bed &);
+  void measure(const Bed &);
   bool look_at(const Bed &, int i, int j, double near);
   void trim(const Bed &);
   std::vector<Edge> edges() const;

@@ -196,7 +196,7 @@ Point SurfaceCloser::column(int i, int j, int n, size_t k) const
           nodes.y(j) + (nodes.y(j + 1) - nodes.y(j)) * b / n, 0.0};
 }
 
-SurfaceCloser::Columns SurfaceCloser::look(int i, int j) const
+SurfaceCloser::Columns SurfaceCloser::columns_of(int i, int j) const
 {
   const double wanted = std::ceil(nodes.grid.spacing / (SUBGRID * radius));
   Columns found;

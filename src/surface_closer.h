@@ -51,14 +51,14 @@ class SurfaceCloser {
     std::vector<double> z;
     bool on(size_t k) const { return z[k] == z[k]; }
   };
-  Columns look(int i, int j) const;
+  Columns columns_of(int i, int j) const;
 
   // cells in range next to this one into which the rim goes on
   std::vector<int64_t> rim_goes_on(int i, int j, const Columns &) const;
 
   // add what these need beyond the nodes and the balls added since start()
   void start();
-  void close(int i, int j);                     // a steep cell
+  void close(int i, int j);                      // a steep cell
   void refine(int i, int j, const Columns &);    // one in which the kept surface ends
 
   // balls added, by the cell that asked for them, in their order
@@ -69,8 +69,8 @@ class SurfaceCloser {
   const double radius, cover2, pitch;
   std::unordered_map<int64_t, std::vector<Point>> lying;    // the same by the cell that they lie in
   std::vector<Point> samples;
-  int64_t here;                // cell that asks
-  bool look_only, leak;        // whether a sample is not covered, instead of adding balls
+  int64_t here;            // cell that asks
+  bool look_only, leak;    // whether a sample is not covered, instead of adding balls
 
   struct Rim {
     Point p;         // last point of the kept surface

@@ -15,17 +15,20 @@
 
 using namespace Slope;
 
-static constexpr int MOST_HIDDEN = 24;          // cells that a rim is followed without corners that show it
-static constexpr int BLOCK = 32;                // cells: more than a rim and the reach of a cell
-static constexpr int NOT_REFINED = INT_MAX;     // a steep cell that no rim runs through
-static constexpr int64_t OF_CELL = 1 << 20;     // numbers of the balls of one cell
-static constexpr double ASIDE = 1.0e-6;         // of the spacing: farther than rounding
-static constexpr size_t LEAST_KNOWN = 1024;     // tiles whose nodes are remembered
+static constexpr int MOST_HIDDEN =
+    24;                             // cells that a rim is followed without corners that show it
+static constexpr int BLOCK = 32;    // cells: more than a rim and the reach of a cell
+static constexpr int NOT_REFINED = INT_MAX;    // a steep cell that no rim runs through
+static constexpr int64_t OF_CELL = 1 << 20;    // numbers of the balls of one cell
+static constexpr double ASIDE = 1.0e-6;        // of the spacing: farther than rounding
+static constexpr size_t LEAST_KNOWN = 1024;    // tiles whose nodes are remembered
 
 /* ---------------------------------------------------------------------- */
 
-SurfaceSampler::SurfaceSampler(const NodeGrid &grid, double radius, const Surface &surface, int tile) :
-    nodes(grid, surface, tile), closer(nodes, radius)
+SurfaceSampler::SurfaceSampler(const NodeGrid &grid, double radius, const Surface &surface,
+                               int tile) :
+    nodes(grid, surface, tile),
+    closer(nodes, radius)
 {
   if (!(radius > 0.0)) throw std::invalid_argument("radius must be > 0");
 }
@@ -85,8 +88,7 @@ void SurfaceSampler::sample(int tile, std::vector<PlacedBall> &balls, SurfaceCou
   for (int j = tj * size; j < j1; j++)
     for (int i = ti * size; i < i1; i++) {
       const PlanNodes::Look &look = nodes.at(i, j);
-      if (look.ball)
-        balls.push_back({nodes.x(i), nodes.y(j), look.z, nodes.cell(i, j) * OF_CELL});
+      if (look.ball) balls.push_back({nodes.x(i), nodes.y(j), look.z, nodes.cell(i, j) * OF_CELL});
       counts.base += look.ball;
       counts.dropped += look.surface() && !look.ball;
       counts.without_surface += !look.surface();
@@ -185,8 +187,10 @@ void SurfaceSampler::join_rims(int i, int j, std::unordered_set<int64_t> &blocks
   if (nodes.tile == BLOCK && i >= 0 && j >= 0 && i < nodes.nx && j < nodes.ny &&
       uniform(i / BLOCK, j / BLOCK))
     return;
-  const int i0 = std::max((bi - 2) * BLOCK, closer.ilo), i1 = std::min((bi + 1) * BLOCK, closer.ihi);
-  const int j0 = std::max((bj - 2) * BLOCK, closer.jlo), j1 = std::min((bj + 1) * BLOCK, closer.jhi);
+  const int i0 = std::max((bi - 2) * BLOCK, closer.ilo),
+            i1 = std::min((bi + 1) * BLOCK, closer.ihi);
+  const int j0 = std::max((bj - 2) * BLOCK, closer.jlo),
+            j1 = std::min((bj + 1) * BLOCK, closer.jhi);
   for (int b = j0; b < j1; b++)
     for (int a = i0; a < i1; a++) {
       const int64_t cell = nodes.cell(a, b);
@@ -200,9 +204,10 @@ void SurfaceSampler::follow_rim(int64_t cell, int hidden, Steps &todo)
   const int i = nodes.cell_i(cell), j = nodes.cell_j(cell);
   Member &member = patch[cell];
   member.hidden = hidden;
-  if (member.columns.z.empty()) member.columns = closer.look(i, j);
+  if (member.columns.z.empty()) member.columns = closer.columns_of(i, j);
   if (hidden == MOST_HIDDEN) return;
-  for (const int64_t next : closer.rim_goes_on(i, j, member.columns)) todo.push_back({next, hidden + 1});
+  for (const int64_t next : closer.rim_goes_on(i, j, member.columns))
+    todo.push_back({next, hidden + 1});
 }
 
 // In the order in which all cells of the ground would be closed: row by row, then the cells that only

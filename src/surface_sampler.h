@@ -75,7 +75,8 @@ class SurfaceSampler {
   // are in reach of one another is closed at once, row by row: cells decide on others' balls.
   typedef std::vector<SurfaceCloser::Point> Points;
   std::unordered_map<int64_t, Points> closed;
-  std::unordered_map<int64_t, bool> leaky;    // steep cells: do the nodes alone leave a way through?
+  std::unordered_map<int64_t, bool>
+      leaky;    // steep cells: do the nodes alone leave a way through?
 
   struct Member {
     int hidden;    // how many cells the rim has come since its last cell that shows at the corners

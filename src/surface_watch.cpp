@@ -86,8 +86,8 @@ void SurfaceWatch::find_near(Ball &ball, const Vector &x, double radius, double 
 
 /* ---------------------------------------------------------------------- */
 
-void SurfaceWatch::look(int number, const Vector &x, double radius, double step,
-                        const TouchedSurface &surface)
+void SurfaceWatch::find_features(int number, const Vector &x, double radius, double step,
+                                 const TouchedSurface &surface)
 {
   Ball &ball = watched[number];
   const Vector way = minus(x, ball.seen);

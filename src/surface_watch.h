@@ -40,7 +40,8 @@ class SurfaceWatch {
 
   // The contacts of a ball now, at x; step: a distance that it does not exceed in one step. Slots
   // that it needs beyond those that there are come at the end of slots.
-  void look(int ball, const Vector &x, double radius, double step, const TouchedSurface &surface);
+  void find_features(int ball, const Vector &x, double radius, double step,
+                     const TouchedSurface &surface);
 
   // Of points sorted by distance: keeps, in front, those that are contacts of their own, and returns
   // how many these are. A point is not one if a nearer one

@@ -415,7 +415,7 @@ TEST_P(ContactLists, StartTakesOverlapsForOldContacts)
   trio.history[0][0] = 7.0;
   const MovingBalls balls = trio.balls();
   int visits = 0;
-  trio.list.start(balls, MovingPartners{balls, 3}, [&](const ContactList::Entry &e, double overlap) {
+  trio.list.adopt_overlaps(balls, MovingPartners{balls, 3}, [&](const ContactList::Entry &e, double overlap) {
     EXPECT_EQ(e.j, 1);
     EXPECT_NEAR(overlap, 1e-5, 1e-15);
     visits++;

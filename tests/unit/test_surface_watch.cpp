@@ -195,7 +195,7 @@ struct Followed {
   }
   int touching(const Vector &x)
   {
-    watch.look(0, x, R, 0.001, mesh);
+    watch.find_features(0, x, R, 0.001, mesh);
     int n = 0;
     for (const SurfaceWatch::Slot &slot : watch.slots) n += slot.touches;
     return n;

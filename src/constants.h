@@ -1,0 +1,18 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#ifndef SLOPE_CONSTANTS_H
+#define SLOPE_CONSTANTS_H
+
+namespace Slope {
+
+static constexpr double PI = 3.14159265358979323846;
+static constexpr double DEGREE = PI / 180.0;    // rad
+static constexpr double SIMPLE_CUBIC =
+    6.0 / PI;    // bulk volume / volume of a ball, on this lattice
+
+}    // namespace Slope
+
+#endif
