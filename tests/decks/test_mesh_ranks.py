@@ -143,5 +143,5 @@ def test_impulse_is_the_change_of_momentum(tmp_path):
     scale = (mass[:, None] * np.abs(frames[0, :, 4:7])).sum()
     worst = max(np.abs(momentum[step] - momentum0 + steps[step]).max() for step in momentum)
     print(worst / scale, rows[:, 2].max())
-    assert rows[:, 2].max() > 2 and np.abs(rows[-1, 9:]).max() > 0.1 * scale
+    assert rows[:, 2].max() > 2 and np.abs(rows[:, 9:]).max() > 0.05 * scale
     assert worst < 1e-9 * scale

@@ -524,6 +524,19 @@ def test_the_depths_of_s1000(body):
 # --- the page ---
 
 
+def test_the_output_on_the_page(slope, no_picture):
+    page = (TOP / "doc" / "src" / "tool_release.rst").read_text(encoding="ascii")
+    terrain(hill, "terrain.asc")
+    terrain(hill)
+    polygon(Polygon([(60, 50), (180, 60), (170, 140), (70, 150)]), "release.csv")
+    for _ in range(2):      # a second time over the files of the first
+        status, out, _ = slope("terrain.asc --polygon release.csv --volume 60000 -o release")
+        assert status == 0 and all(f"   {line}\n" in page for line in out.splitlines()[:3])
+    regions = [line for line in Path("release.deck.txt").read_text().splitlines() if line.startswith("region ")]
+    assert len(regions) == 5 and all(f"   {line}\n" in page for line in regions)
+    assert f"   {slope('terrain.asc --polygon release.csv --volume 1e9 -o release')[2]}" in page
+
+
 def doc_examples():
     text = (TOP / "doc" / "src" / "tool_release.rst").read_text(encoding="ascii").replace("\\\n", "") + release.EPILOG
     return re.findall(r"^ +tools/slope release ((?!TERRAIN).*)", text, re.MULTILINE)

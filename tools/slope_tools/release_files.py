@@ -29,7 +29,8 @@ def check(name: Path, inputs: Iterable[str]) -> None:
     if not name.parent.is_dir():
         raise SlopeError("-o", "must be in an existing folder", name)
     for source in inputs:
-        for path in (Path(source), Path(source).with_suffix(".yaml")):
+        sidecar = [Path(source).with_suffix(".yaml")] if Path(source).suffix == ".asc" else []
+        for path in (Path(source), *sidecar):
             for made in paths(name):
                 if made.exists() and path.exists() and made.samefile(path):
                     raise SlopeError("-o", f"must be another name: {made} belongs to an input", name)

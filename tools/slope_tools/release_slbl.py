@@ -5,7 +5,7 @@ that occurred during Typhoon Talas (Japan), Earth Surf. Dynam. 7, 439-458, 2019,
 """
 import numpy as np
 from scipy.sparse import coo_matrix, identity
-from scipy.sparse.linalg import spsolve
+from scipy.sparse.linalg import splu
 
 MOST = 200      # steps; a dozen is usual
 
@@ -35,15 +35,16 @@ def base_level(z: np.ndarray, inside: np.ndarray, cell: float, curvature: float)
 
     ground = z[row, column]
     heights, free = ground.copy(), None
-    for _ in range(MOST):
-        lower = mean @ heights + fixed < ground
+    for _ in range(MOST):       # from the surface that knows no ground above it
+        lower = np.full(len(row), True) if free is None else mean @ heights + fixed < ground
         if free is not None and (lower == free).all():
             break
         free = lower
         heights = ground.copy()
         if free.any():
             right = fixed[free] - (matrix[free][:, ~free] @ ground[~free])
-            heights[free] = spsolve(matrix[free][:, free].tocsc(), right)
+            heights[free] = splu(matrix[free][:, free].tocsc(), permc_spec="MMD_AT_PLUS_A",
+                                 options={"SymmetricMode": True}).solve(right)
     level = z.copy()
     level[row, column] = np.minimum(heights, ground)
     return level
