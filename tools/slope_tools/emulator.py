@@ -1,8 +1,8 @@
 """A Gaussian process that stands for the runs of an ensemble, its own error, and which variables matter by it.
 
-Points lie in the unit cube (designs). The process has a smooth part, a Matern 5/2 kernel with a length for each
-variable, and the noise of chance. Its error is that of a cross-validation: runs of points that the process has not
-seen. What a bad fit says is withheld.
+Points lie in the unit cube (designs). The process has a smooth part with a length for each variable, of a Matern 5/2
+or a Gaussian kernel, whichever the runs make likelier, and the noise of chance. Its error is that of a
+cross-validation: runs of points that the process has not seen. What a bad fit says is withheld.
 """
 import math
 import warnings
@@ -21,6 +21,7 @@ GOOD, ROUGH = 0.8, 0.5      # share of the variance of unseen runs that is expla
 BASE = 2048                 # points of Saltelli's scheme, for each of its matrices
 BASE_OF_FOLD = 1024         # of an emulator that stands for the error only
 LEAST_POINTS = 8            # fewer say nothing of which variable matters
+SMOOTHNESS = 2.5, math.inf      # of Matern's kernels; inf is the Gaussian one
 LENGTHS = 0.05, 20.0        # of the kernel, in units of the cube
 NOISE = 1e-8, 2.0           # share of the variance
 SEED = 1
@@ -32,14 +33,15 @@ class Emulator:
     def __init__(self, points: np.ndarray, values: Sequence[float], kernel=None, restarts: int = 1):
         points, values = np.asarray(points, float), np.asarray(values, float)
         self.mean, self.scale = float(values.mean()), float(values.std()) or 1.0
-        if kernel is None:
-            dimensions = points.shape[1]
-            kernel = (ConstantKernel(1.0, (1e-2, 1e3)) * Matern(np.full(dimensions, 0.7), LENGTHS, 2.5)
-                      + WhiteKernel(0.1, NOISE))
-        self.process = GaussianProcessRegressor(kernel, n_restarts_optimizer=restarts, random_state=SEED)
+        kernels = [kernel] if kernel else [
+            ConstantKernel(1.0, (1e-2, 1e3)) * Matern(np.full(points.shape[1], 0.7), LENGTHS, smoothness)
+            + WhiteKernel(0.1, NOISE) for smoothness in SMOOTHNESS]
+        fitted = [GaussianProcessRegressor(one, n_restarts_optimizer=restarts, random_state=SEED) for one in kernels]
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ConvergenceWarning)     # a length at its bound: the variable is idle
-            self.process.fit(points, (values - self.mean) / self.scale)
+            for one in fitted:
+                one.fit(points, (values - self.mean) / self.scale)
+        self.process = max(fitted, key=lambda one: one.log_marginal_likelihood_value_)
 
     @property
     def kernel(self):
