@@ -267,13 +267,13 @@ SurfaceCounts BallPlacement::count_all(std::vector<std::string> *text) const
     }
   });
   bigint numbers[4] = {mine.without_surface, mine.dropped, mine.base, mine.extra};
-  bigint sums[4];
-  MPI_Allreduce(numbers, sums, 4, MPI_LMP_BIGINT, MPI_SUM, world);
+  bigint totals[4];
+  MPI_Allreduce(numbers, totals, 4, MPI_LMP_BIGINT, MPI_SUM, world);
   SurfaceCounts all;
-  all.without_surface = sums[0];
-  all.dropped = sums[1];
-  all.base = sums[2];
-  all.extra = sums[3];
+  all.without_surface = totals[0];
+  all.dropped = totals[1];
+  all.base = totals[2];
+  all.extra = totals[3];
   return all;
 }
 

@@ -1,5 +1,6 @@
-"""The ground on demand: each rank makes the fixed balls near its own ones, tile by tile. Held against the same balls from
-a file, which every rank holds: over ranks, balance, a shrink-wrapped box, a ball that comes down far away, restarts."""
+"""The ground on demand: each rank makes the fixed balls near its own ones, tile by tile. Held against the same balls
+from a file, which every rank holds: over ranks, balance, a shrink-wrapped box, a ball that comes down far away,
+restarts."""
 
 import re
 
@@ -77,7 +78,8 @@ def test_the_run_is_worth_comparing(site):
 
 
 @pytest.mark.parametrize("np, settings", [
-    (1, {}), (1, dict(boundary="s s fs")), (2, dict(processors="2 1 1")), (2, dict(boundary="s s fs", processors="1 2 1")),
+    (1, {}), (1, dict(boundary="s s fs")), (2, dict(processors="2 1 1")),
+    (2, dict(boundary="s s fs", processors="1 2 1")),
     (2, dict(boundary="s s fs", processors="2 1 1", balance="fix even all balance 200 1.0 shift x 5 1.05")),
     (4, dict(processors="4 1 1"))], ids=["one", "shrink-wrapped", "two", "two shrink-wrapped", "balanced", "four"])
 def test_the_balls_of_the_file_are_there_wherever_a_ball_comes(site, np, settings):
