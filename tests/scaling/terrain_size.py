@@ -1,0 +1,135 @@
+#!/usr/bin/python3
+"""What a terrain ten times larger costs under the same mass: memory of each rank, set-up and steps.
+
+    tests/scaling/terrain_size.py [--np 4] [--steps 500] [--repeat 5] [--lmp FILE ...] [-o DIR]
+
+A body of 20,000 balls of 1 m on a slope of 30 degrees, one ball of the ground every metre; terrains of 0.3 and 3 km2
+in cells of 5 m, runs in alternation. Prints for each program: PSS per rank (MB, /proc/PID/smaps_rollup in the first
+steps, mean over the ranks) on both, and its growth; CPU of the set-up and of a step on one rank, larger over smaller.
+"""
+import argparse
+import os
+import re
+import resource
+import subprocess
+import time
+from pathlib import Path
+from statistics import mean, median
+
+DECK = """# a body on a slope, on a terrain of any width
+units si
+suffix slope
+atom_style sphere
+boundary s s fs
+comm_modify vel yes
+processors 1 *
+region ground terrain slope.asc depth 40 headroom 60
+region all block 0 590 0 ${width} -40 400 units box
+region bed terrain bed.asc depth 100 side out
+region sheet terrain top.asc depth 100
+region plan block 300 500 220 270 -40 400 units box
+region body intersect 3 plan sheet bed
+create_box 3 all
+lattice sc 0.9995
+create_atoms 1 region body
+group soil type 1
+set group soil diameter 1.0 density 2700
+pair_style gran/restitution
+pair_coeff * * stiffness 1e8 1e8 restitution 0.5 friction 30 rolling 0.05
+fix bed soil wall/gran/balls 3 1.0 surface ground upper spacing 1.0
+delete_balls soil overlap 0.0
+neighbor 0.2 bin
+neigh_modify every 1 delay 0 check yes binsize 1.2
+atom_modify sort 1000 20
+timestep 9e-4
+fix move soil nve/sphere
+fix weight soil gravity 9.80665 vector 0 0 -1
+thermo ${steps}
+thermo_modify flush yes lost ignore
+run ${steps}
+"""
+
+
+def write_slopes(folder, width):
+    """The slope, and what is 1.5 and 3.5 m above it: cells of 5 m, falling in -x."""
+    rows = width // 5 + 1
+    for name, lift in (("slope", 0.0), ("bed", 1.5), ("top", 3.5)):
+        row = " ".join(f"{0.57735 * 5 * i + lift:.4f}" for i in range(120))
+        (folder / f"{name}.asc").write_text(f"ncols 120\nnrows {rows}\nxllcorner -2.5\nyllcorner -2.5\ncellsize 5\n"
+                                            "NODATA_value -9999\n" + "\n".join([row] * rows) + "\n")
+
+
+def pss(folder):
+    """MB of each process of the run."""
+    found = []
+    for pid in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            if os.path.realpath(f"/proc/{pid}/cwd") != str(folder.resolve()):
+                continue
+            if Path(f"/proc/{pid}/comm").read_text().startswith(("mpirun", "orted")):
+                continue
+            text = Path(f"/proc/{pid}/smaps_rollup").read_text()
+        except OSError:
+            continue
+        if match := re.search(r"^Pss: +(\d+) kB", text, re.MULTILINE):
+            found.append(int(match[1]) / 1024)
+    return found
+
+
+def run(lmp, folder, ranks, steps):
+    """(MB per rank, CPU seconds of all ranks, seconds of the loop)"""
+    command = ["mpirun", "--oversubscribe", "--bind-to", "none", "-np", str(ranks), lmp, "-in", "in.slope",
+               "-screen", "none", "-var", "width", (folder / "width").read_text(), "-var", "steps", str(steps)]
+    log = folder / "log.lammps"
+    log.unlink(missing_ok=True)
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    with subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL) as process:
+        megabytes = []
+        while process.poll() is None:
+            if not megabytes and log.exists() and re.search(r"^ +0 +\S+ +\S", log.read_text(), re.MULTILINE):
+                megabytes = pss(folder)
+            time.sleep(0.02)
+    if process.returncode:
+        raise SystemExit(f"the run in {folder} failed")
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    loop = float(re.findall(r"^Loop time of (\S+)", log.read_text(), re.MULTILINE)[-1])
+    return megabytes, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, loop
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--np", type=int, default=4)
+    parser.add_argument("--steps", type=int, default=500)
+    parser.add_argument("--repeat", type=int, default=5)
+    parser.add_argument("--lmp", nargs="+", default=[str(Path(__file__).resolve().parents[2] / "build" / "lmp")])
+    parser.add_argument("-o", dest="output", type=Path, default=Path("terrain_size"))
+    args = parser.parse_args()
+    folders = {}
+    for width in 500, 5000:
+        folders[width] = args.output / str(width)
+        folders[width].mkdir(parents=True, exist_ok=True)
+        (folders[width] / "in.slope").write_text(DECK)
+        (folders[width] / "width").write_text(str(width))
+        write_slopes(folders[width], width)
+    for program in args.lmp:
+        lmp = str(Path(program).absolute())
+        memory, setup, step = ({width: [] for width in folders} for _ in range(3))
+        for _ in range(args.repeat):
+            for width, folder in folders.items():
+                megabytes, _, _ = run(lmp, folder, args.np, args.steps // 2)
+                memory[width] += megabytes
+                _, short, _ = run(lmp, folder, 1, 1)
+                _, full, _ = run(lmp, folder, 1, args.steps)
+                setup[width].append(short)
+                step[width].append((full - short) / (args.steps - 1))
+        small, large = folders
+        print(f"{program}\n  PSS per rank: {mean(memory[small]):.2f} and {mean(memory[large]):.2f} MB, "
+              f"{mean(memory[large]) - mean(memory[small]):+.2f} MB, {args.np} ranks")
+        for name, values in (("set-up", setup), ("step", step)):
+            ratios = [b / a for a, b in zip(values[small], values[large])]
+            print(f"  {name}: {median(values[small]):.4f} and {median(values[large]):.4f} s of CPU, one rank, "
+                  f"ratio {median(ratios):.3f} ({min(ratios):.3f} to {max(ratios):.3f})", flush=True)
+
+
+if __name__ == "__main__":
+    main()
