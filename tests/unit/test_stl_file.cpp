@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -13,7 +15,11 @@
 
 using namespace Slope;
 
-static const std::string PATH = "test_stl_file.stl";
+// of this process alone: ctest runs tests side by side
+static const std::string PATH = "test_stl_file." + std::to_string(getpid()) + ".stl";
+static const struct Cleaner {
+  ~Cleaner() { std::remove(PATH.c_str()); }
+} cleaner;
 
 static const std::string ONE =
     "facet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 2 0 0\n  vertex 0 4 0\n endloop\nendfacet\n";
