@@ -22,7 +22,7 @@ suffix slope
 atom_style sphere
 boundary s s fs
 comm_modify vel yes
-processors 1 *
+processors 1 * 1
 region ground terrain slope.asc depth 40 headroom 60
 region all block 0 590 0 ${width} -40 400 units box
 region bed terrain bed.asc depth 100 side out
