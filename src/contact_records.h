@@ -3,10 +3,10 @@
    Distributed under the GNU General Public License, version 2
 ------------------------------------------------------------------------- */
 
-/* The contacts of balls with a surface, stored by ball: what exchange and restart carry. No LAMMPS. */
+/* Contacts of balls with a wall, stored by ball: what exchange and restart carry. No LAMMPS. */
 
-#ifndef SLOPE_SURFACE_CONTACT_STORE_H
-#define SLOPE_SURFACE_CONTACT_STORE_H
+#ifndef SLOPE_CONTACT_RECORDS_H
+#define SLOPE_CONTACT_RECORDS_H
 
 #include "contact_law.h"
 
@@ -16,10 +16,10 @@
 
 namespace Slope {
 
-class SurfaceContactStore {
+// A record is what the contact is found by again, a number or more, and its history.
+class ContactRecords {
  public:
-  // of a contact: its normal, by which it is found again, and its history
-  static constexpr int NUMBERS = 3 + HISTORY;
+  explicit ContactRecords(int keys_in) : keys(keys_in), width(keys_in + HISTORY) {}
 
   void resize(int balls)    // as many as there may be
   {
@@ -34,14 +34,15 @@ class SurfaceContactStore {
   }
 
   int contacts(int i) const { return count[i]; }
-  double *contact(int i, int k) { return &numbers[start[i] + k * NUMBERS]; }
+  double *key(int i, int k) { return &numbers[start[i] + k * width]; }
+  double *history(int i, int k) { return key(i, k) + keys; }
 
   // space for n contacts of ball i, which loses those that it had
   void make(int i, int n)
   {
     start[i] = numbers.size();
     count[i] = n;
-    numbers.resize(numbers.size() + n * NUMBERS);
+    numbers.resize(numbers.size() + n * width);
   }
 
   void copy(int from, int to)    // both share the numbers
@@ -54,7 +55,7 @@ class SurfaceContactStore {
   int pack(int i, double *buffer) const
   {
     buffer[0] = count[i];
-    std::copy_n(numbers.begin() + start[i], count[i] * NUMBERS, buffer + 1);
+    std::copy_n(numbers.begin() + start[i], count[i] * width, buffer + 1);
     return packed(count[i]);
   }
 
@@ -62,11 +63,15 @@ class SurfaceContactStore {
   {
     const int n = static_cast<int>(buffer[0]);
     make(i, n);
-    std::copy_n(buffer + 1, n * NUMBERS, numbers.begin() + start[i]);
+    std::copy_n(buffer + 1, n * width, numbers.begin() + start[i]);
     return packed(n);
   }
 
-  static int packed(int contacts) { return 1 + contacts * NUMBERS; }
+  int packed(int contacts) const { return 1 + contacts * width; }
+  int largest(int balls) const    // of the first balls, packed
+  {
+    return packed(balls ? *std::max_element(count.begin(), count.begin() + balls) : 0);
+  }
 
   double memory_usage() const
   {
@@ -76,6 +81,7 @@ class SurfaceContactStore {
   }
 
  private:
+  const int keys, width;
   std::vector<int> count;
   std::vector<size_t> start;
   std::vector<double> numbers;
