@@ -5,6 +5,7 @@ polygon is cut by them; a mapped raster on another grid is spread over the run's
 """
 import argparse
 from pathlib import Path
+from typing import List
 
 from .. import disk, errors
 from ..deposit import deposit, score
@@ -54,7 +55,7 @@ def run(args):
         raise SlopeError("--threshold", "must be >= 0", f"{args.threshold:g}")
     if args.mesh is not None and args.mesh <= 0:
         raise SlopeError("--mesh", "must be > 0", f"{args.mesh:g}")
-    warnings = []
+    warnings: List[str] = []
     warn = errors.warner("score", warnings)
     run_ = deposit.read(args.prefix, args.terrain, warn)
     folder = args.output or Path(f"{args.prefix}.score")
