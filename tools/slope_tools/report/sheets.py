@@ -275,4 +275,5 @@ def layout(count, frame, width, tallest) -> Tuple[int, Tuple[float, float]]:
         rows = math.ceil(count / columns)
         size = map_size(frame, width / columns - 0.1, tallest / rows)
         found.append((min(size[0] * size[1], ENOUGH), -rows * size[1], columns, size))
-    return max(found)[2:]
+    _, _, columns, size = max(found)
+    return columns, size
