@@ -8,6 +8,7 @@ from ..errors import SlopeError
 from ..options import number
 from ..provenance import version
 from ..survey import polygons, release_scar, release_solve
+from ..survey.crs import as_crs
 from ..survey.rasters import crs_name
 from ..survey.release import from_scar, from_shape, read_terrain
 
@@ -56,7 +57,8 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--least", metavar="D", type=number, default=0.0,
                         help="depths of a scar below this count as none, m (default 0): the noise of two surveys")
     place = parser.add_mutually_exclusive_group()
-    place.add_argument("--crs", metavar="EPSG:n", help="the coordinates of P are in this CRS, whatever P says")
+    place.add_argument("--assign-crs", "--crs", dest="crs", metavar="EPSG:n",
+                       help="the coordinates of P are in this CRS, whatever P says")
     place.add_argument("--local", action="store_true", help="the coordinates of P are the terrain's local metres")
     return parser
 
@@ -67,7 +69,7 @@ def run(args):
     raster = read_terrain(args.terrain)
     geometry = None
     if args.polygon:
-        crs = polygons.as_crs("--crs", args.crs) if args.crs else None
+        crs = as_crs("--assign-crs", args.crs) if args.crs else None
         geometry = polygons.read_local(args.polygon, raster, local=args.local, crs=crs, terrain=args.terrain)
     if args.scar:
         area, surface, choices = from_scar(args, raster, geometry)
