@@ -1,0 +1,169 @@
+"""The body that is released: what is asked of it, checked; found below a polygon or from a scar; its numbers in words."""
+from typing import Any, Dict, List, NamedTuple, Optional, Tuple
+
+import numpy as np
+from shapely.geometry.base import BaseGeometry
+
+from ..errors import SlopeError
+from . import polygons, release_area, release_bodies, release_scar, release_solve
+from .rasters import Raster
+from .release_area import Area
+from .release_solve import Measures
+
+SHAPES = ("sphere", "ellipsoid", "plane", "slbl")
+COARSE = 50     # cells; a body of fewer is drawn with a coarse brush
+
+
+class Wanted(NamedTuple):
+    """What is asked of a body; lengths in m, angles in degrees."""
+    terrain: str                        # what messages call the terrain
+    polygon: Optional[str] = None       # file of the release polygon
+    shape: Optional[str] = None         # of SHAPES
+    depth: Optional[float] = None       # largest, vertical
+    volume: Optional[float] = None      # m3
+    curvature: Optional[float] = None   # of slbl, 1/m
+    dip: Optional[float] = None         # of the plane
+    direction: Optional[float] = None   # compass bearing to which it dips
+    scar: Optional[str] = None          # raster instead of a shape
+    scar_is: str = "surface"
+    least: float = 0.0                  # smaller depths of the scar are none
+
+
+class Found(NamedTuple):
+    """A body."""
+    area: Area
+    slip: np.ndarray        # the ground without the body on the nodes of the area, m
+    choices: Dict[str, Any]     # shape, its numbers
+    measures: Measures
+    doubts: List[str]
+
+
+def find(wanted: Wanted, raster: Raster, geometry: Optional[BaseGeometry]) -> Found:
+    """The body that is wanted (of checked()), in a terrain, below a polygon (local metres); SlopeError if there is none."""
+    area, surface, choices = (from_scar if wanted.scar else from_shape)(wanted, raster, geometry)
+    slip = release_solve.slip_surface(area, release_solve.depths(area, surface), wanted.polygon or wanted.scar)
+    found = release_solve.measures(area, slip)
+    return Found(area, slip, choices, found, doubts(choices, found, area.cell))
+
+
+def checked(wanted: Wanted) -> Wanted:
+    """What is wanted, with the shape set that is not named; SlopeError, which names the option, if it does not go together."""
+    for name in ("depth", "volume"):
+        value = getattr(wanted, name)
+        if value is not None and not value > 0:
+            raise SlopeError(f"--{name}", "must be > 0", f"{value:g}")
+    if wanted.least < 0:
+        raise SlopeError("--least", "must be >= 0", f"{wanted.least:g}")
+    if wanted.scar:
+        for name in ("shape", "depth", "volume", "curvature", "dip", "direction"):
+            if getattr(wanted, name) is not None:
+                raise SlopeError(f"--{name}", "must not be given with --scar, whose depths are what they are")
+        return wanted
+    if not wanted.polygon:
+        raise SlopeError("--polygon", "must be given, unless --scar says where the body is")
+    if wanted.shape is None:
+        wanted = wanted._replace(shape="plane" if wanted.dip is not None or wanted.direction is not None else
+                                 "slbl" if wanted.curvature is not None else "sphere")
+    check_shape(wanted)
+    return wanted
+
+
+def check_shape(wanted: Wanted) -> None:
+    """What goes with which shape."""
+    if wanted.shape == "plane":
+        if wanted.dip is None:
+            raise SlopeError("--dip", "must be given for a plane, degrees below the horizontal")
+        if not 0 < wanted.dip < 90:
+            raise SlopeError("--dip", "must be > 0 and < 90 degrees", f"{wanted.dip:g}")
+        if wanted.direction is not None and not 0 <= wanted.direction <= 360:
+            raise SlopeError("--direction", "must be a compass bearing, 0 to 360 degrees", f"{wanted.direction:g}")
+    elif wanted.dip is not None or wanted.direction is not None:
+        raise SlopeError("--dip" if wanted.dip is not None else "--direction", "must be given for a plane only",
+                         f"--shape {wanted.shape}")
+    if wanted.curvature is not None and wanted.shape != "slbl":
+        raise SlopeError("--curvature", "must be given for slbl only", f"--shape {wanted.shape}")
+    if wanted.shape != "plane" and wanted.depth is None and wanted.volume is None and wanted.curvature is None:
+        raise SlopeError("--depth", f"or --volume must be given for --shape {wanted.shape}"
+                         + (", or --curvature" * (wanted.shape == "slbl")))
+
+
+def from_scar(wanted: Wanted, raster: Raster, geometry) -> Tuple[Area, np.ndarray, dict]:
+    """Area, slip surface on its nodes and choices of a body that a raster gives."""
+    depth = release_scar.depths(wanted.scar, wanted.scar_is, raster, wanted.least)
+    if geometry is not None:
+        depth = np.where(release_area.nodes_inside(raster, geometry), depth, 0.0)
+        if not depth.any():
+            raise SlopeError(wanted.polygon, f"must hold some of the scar in {wanted.scar}")
+    area = release_area.area_of(raster, depth > 0, wanted.polygon or wanted.scar, wanted.terrain)
+    row, column = area.corner
+    part = depth[row:row + area.z.shape[0], column:column + area.z.shape[1]]
+    return area, area.z - part, {"shape": "scar", "scar": wanted.scar, "scar_is": wanted.scar_is, "least": wanted.least}
+
+
+def from_shape(wanted: Wanted, raster: Raster, geometry) -> Tuple[Area, np.ndarray, dict]:
+    """The same of a body below a polygon."""
+    area = release_area.area_of(raster, release_area.nodes_inside(raster, geometry), wanted.polygon, wanted.terrain)
+    release_area.require_slope(area, wanted.polygon)
+    parts = len(polygons.polygons_of(geometry))
+    if wanted.shape != "slbl" and parts > 1:
+        raise SlopeError(wanted.polygon, f"must be one polygon for --shape {wanted.shape}; slbl takes several", parts)
+    if wanted.shape == "sphere":
+        shape = release_bodies.sphere_shape(area, geometry, wanted.polygon)
+    elif wanted.shape == "ellipsoid":
+        shape = release_bodies.ellipsoid_shape(area, geometry, wanted.polygon)
+    elif wanted.shape == "plane":
+        direction = release_bodies.bearing(area.downhill) if wanted.direction is None else wanted.direction
+        shape = release_bodies.plane_shape(area, wanted.dip, direction)
+    else:
+        shape = release_bodies.slbl_shape(area)
+    if wanted.depth is not None:
+        free = release_solve.to_depth(area, shape, wanted.depth)
+    elif wanted.volume is not None:
+        free = release_solve.to_volume(area, shape, wanted.volume)
+    else:
+        free = shape.most if wanted.shape == "plane" else wanted.curvature
+    choices = {"shape": shape.name, "given": {"depth_m": wanted.depth, "volume_m3": wanted.volume,
+                                              "curvature_per_m": wanted.curvature},
+               shape.number: free, **shape.about}
+    if wanted.shape == "slbl":
+        choices["tolerance_m"] = free * area.cell ** 2 / 4
+    return area, shape.surface(free), choices
+
+
+def text(choices: Dict[str, Any], found: Measures, cell: float) -> str:
+    """What the user needs to know of the body before anything is written."""
+    shape = choices["shape"]
+    if shape == "scar":
+        what = f"scar of {choices['scar']} ({choices['scar_is']})"
+    elif shape == "plane":
+        what = (f"plane that dips {choices['dip_degrees']:.4g} degrees towards {choices['direction_degrees']:.4g}, "
+                f"{choices['drop_m']:.4g} m below the highest one")
+    elif shape == "slbl":
+        what = (f"sloping local base level, curvature {choices['curvature_per_m']:.4g} /m (tolerance "
+                f"{choices['tolerance_m']:.4g} m for cells of {cell:g} m)")
+    else:
+        toe, shoulder = (" ".join(f"{value:.1f}" for value in choices[end]) for end in ("toe", "shoulder"))
+        wide = f", {choices['width_m']:.4g} m wide" if shape == "ellipsoid" else ""
+        sagitta = choices["sagitta_m"]
+        what = (f"{shape} through toe {toe} and shoulder {shoulder}, {abs(sagitta):.4g} m "
+                f"{'below' if sagitta > 0 else 'above'} its chord of {choices['chord_m']:.4g} m{wide}")
+    return (f"{what}\n"
+            f"volume {found.volume:.10g} m3, largest depth {found.largest_depth:.4g} m, mean depth "
+            f"{found.mean_depth:.4g} m, area {found.area:.10g} m2 ({found.cells} cells of {cell:g} m)\n"
+            f"mean slope {found.mean_slope:.1f} degrees, of the slip surface {found.slip_slope:.1f}, towards "
+            f"{found.bearing:.0f} degrees from north; ground at {found.lowest:.1f} to {found.highest:.1f} m")
+
+
+def doubts(choices: Dict[str, Any], found: Measures, cell: float) -> List[str]:
+    """What makes the body doubtful."""
+    lines = []
+    if choices.get("sagitta_m", 1) < 0:
+        lines.append(f"the ground bulges above the line from toe to shoulder, and so does the {choices['shape']}: a "
+                     "smaller polygon, or --shape slbl?")
+    if found.cells < COARSE:
+        lines.append(f"the body covers {found.cells} cells of {cell:g} m: take a finer terrain")
+    if found.wall > 0.5 * found.largest_depth:
+        lines.append(f"the body is {found.wall:.3g} m deep at the rim of its area, where it ends in a wall: "
+                     + ("a wider polygon, or --shape ellipsoid?" if choices["shape"] == "sphere" else
+                        "is the polygon large enough?"))
+    return lines
