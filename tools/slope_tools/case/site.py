@@ -9,10 +9,11 @@ import shutil
 from pathlib import Path
 from typing import Any, Callable, List, NamedTuple, Optional, Set
 
+import numpy as np
+
 from .. import disk, provenance
 from ..errors import SlopeError
-from ..survey import body as bodies
-from ..survey import local_terrain, polygons, rasters
+from ..survey import local_terrain, polygons, rasters, release
 from ..survey.rasters import Raster, crs_name
 from . import release_files, site_budget, site_choices, site_deck
 from .site_budget import Size, Trial
@@ -45,7 +46,7 @@ def check_target(folder: Path, again: bool) -> None:
         deck = folder / site_deck.NAME
         known = site_choices.found(folder).get("deck_sha256")
         if deck.is_file() and known != digest(deck):
-            raise SlopeError(deck, "must not have been changed by hand, it would be lost: rename it first, or remove it")
+            raise SlopeError(deck, "must not have been changed by hand, that would be lost: rename or remove it first")
     elif (folder / site_choices.NAME).is_file():
         raise SlopeError("-o", f"must be a new folder; `slope site {folder}` makes this one anew from its "
                          f"{site_choices.NAME}", folder)
@@ -70,13 +71,22 @@ def make(choices: Choices, folder: Path, machine: Machine, tell: Callable[[str],
     try:
         new.mkdir()
         try:
-            made = build(choices, new, folder, machine, tell, warn)
+            made = built(choices, new, folder, machine, tell, warn)
             exchange(new, folder.absolute(), old)
         finally:
             shutil.rmtree(new, ignore_errors=True)
     except OSError as error:
         raise SlopeError(folder, f"cannot be written: {error.strerror or error}") from None
     return made
+
+
+def built(choices: Choices, new: Path, folder: Path, machine: Machine, tell, warn) -> Made:
+    """build(), whose messages do not name the folder that is not there afterwards."""
+    try:
+        return build(choices, new, folder, machine, tell, warn)
+    except SlopeError as error:
+        error.args = (str(error).replace(f"{new}/", ""),)
+        raise
 
 
 def exchange(new: Path, folder: Path, old: Set[str]) -> None:
@@ -96,14 +106,13 @@ def exchange(new: Path, folder: Path, old: Set[str]) -> None:
 def build(choices: Choices, new: Path, folder: Path, machine: Machine, tell, warn) -> Made:
     """Everything, into the folder `new`, which will be `folder`."""
     choices = {name: dict(section) for name, section in choices.items()}
-    wanted = wanted_body(choices)
+    wanted = wanted_body(choices, new)
     raster = terrain(choices, new, tell)
-    geometry = release_polygon(choices, raster)
-    found = bodies.find(wanted, raster, geometry)
-    tell(bodies.text(found.choices, found.measures, found.area.cell))
-    for line in found.doubts:
+    found = release.body_of(wanted)
+    tell(release.text(found))
+    for line in found.warnings:
         warn(line)
-    body = write_body(new, choices, raster, found, geometry)
+    body = write_body(new, wanted, found)
     layers = read_layers(choices, raster, new, tell, warn)
     title = choices["project"]["name"] or folder.absolute().name
     parts = site_deck.Parts(title, ", ".join(Path(name).name for name in choices["terrain"]["files"]), body,
@@ -113,7 +122,7 @@ def build(choices: Choices, new: Path, folder: Path, machine: Machine, tell, war
     say_size(choices, size, trial, found, machine, tell, warn)
     deck = site_deck.text(choices, parts, numbers(choices, trial, size))
     disk.write(new / site_deck.NAME, deck)
-    draw_map(new, choices, raster, found, geometry, layers, reached, title)
+    draw_map(new, found, layers, reached, title)
     files = sorted([path.name for path in new.iterdir()] + [site_choices.NAME])
     about = {"slope_version": provenance.version(), "made": provenance.now(), "files": files,
              "deck_sha256": digest(new / site_deck.NAME), "crs": crs_name(raster.crs),
@@ -127,13 +136,13 @@ def build(choices: Choices, new: Path, folder: Path, machine: Machine, tell, war
 
 # --- ground ---
 
-def wanted_body(choices: Choices) -> bodies.Wanted:
+def wanted_body(choices: Choices, new: Path) -> release.Wanted:
     """What is asked of the body, checked before anything is read."""
-    release = choices["release"]
-    if not (release["polygon"] or release["scar"]):
+    given = choices["release"]
+    if not (given["polygon"] or given["scar"]):
         raise SlopeError("--release", "must be given, a polygon, or --scar, a raster")
-    wanted = bodies.checked(bodies.Wanted(choices["terrain"]["files"][0], **release))
-    release["shape"] = wanted.shape
+    wanted = release.check(release.Wanted(str(new / TERRAIN), **given))
+    given["shape"] = wanted.shape
     return wanted
 
 
@@ -146,23 +155,14 @@ def terrain(choices: Choices, new: Path, tell) -> Raster:
     return rasters.read_asc_local(new / TERRAIN)
 
 
-def release_polygon(choices: Choices, raster: Raster):
-    path = choices["release"]["polygon"]
-    return path and polygons.read_local(path, raster, terrain=choices["terrain"]["files"][0])
-
-
-def write_body(new: Path, choices: Choices, raster: Raster, found: bodies.Found, geometry):
+def write_body(new: Path, wanted: release.Wanted, found: release.Body):
     """The body's files, and what the deck needs to know of it."""
-    name, measures = new / BODY, found.measures
-    about = {"slope_version": provenance.version(), "terrain": TERRAIN, **found.choices, "body": measures._asdict(),
-             "cell": found.area.cell, "crs": crs_name(raster.crs),
-             "origin": {"east": float(raster.offset[0]), "north": float(raster.offset[1])}, "warnings": found.doubts}
-    release_files.write(name, str(new / TERRAIN), raster, found.area, found.slip, about, geometry,
-                        f"{measures.volume:,.0f} m\u00b3, up to {measures.largest_depth:.3g} m deep")
+    name = new / BODY
+    release_files.write_body(name, wanted._replace(terrain=TERRAIN), found)
     name.with_name(f"{BODY}.deck.txt").unlink()     # its lines are in the deck
-    if geometry is not None:
-        polygons.write(new / f"{BODY}.csv", geometry, raster)
-    return release_files.deck_body(name, str(new / TERRAIN), raster, found.area, found.slip)
+    if found.geometry is not None:
+        polygons.write(new / f"{BODY}.csv", found.geometry, found.raster)
+    return release_files.deck_body(name, wanted.terrain, found.raster, found.area, found.slip)
 
 
 # --- balls ---
@@ -180,13 +180,13 @@ def numbers(choices: Choices, trial: Optional[Trial], size: Optional[Size], diam
                              choices["motion"]["peak_friction"] or site_deck.LEAST_PEAK, trial and trial.rest, seconds)
 
 
-def tried(choices: Choices, parts: site_deck.Parts, found: bodies.Found, new: Path, machine: Machine, tell, warn):
+def tried(choices: Choices, parts: site_deck.Parts, found: release.Body, new: Path, machine: Machine, tell, warn):
     """The Trial of a run with coarse balls, and its largest thickness; None, None where there is no LAMMPS."""
     if choices["motion"]["peak_friction"] is None and parts.motion:
         choices["motion"]["peak_friction"] = site_deck.peak_friction(found.measures.slip_slope)
     if machine.lmp is None:
         return None, None
-    d = site_budget.three_digits((parts.body.volume / site_budget.TRIAL) ** (1 / 3))
+    d = site_budget.trial_diameter(choices, parts.body.volume)
     coarse = {**choices, "model": {**choices["model"], "field_diameter": d, "cell": max(found.area.cell, d / 2)}}
     folder = new / "trial"
     folder.mkdir()
@@ -206,7 +206,7 @@ def tried(choices: Choices, parts: site_deck.Parts, found: bodies.Found, new: Pa
     return trial, reached
 
 
-def settle(choices: Choices, parts: site_deck.Parts, found: bodies.Found, trial: Optional[Trial], machine: Machine,
+def settle(choices: Choices, parts: site_deck.Parts, found: release.Body, trial: Optional[Trial], machine: Machine,
            raster: Raster) -> Size:
     """Fill in what the choices leave open, and with it the size of the balls."""
     model, balls = choices["model"], choices["balls"]
@@ -219,18 +219,18 @@ def settle(choices: Choices, parts: site_deck.Parts, found: bodies.Found, trial:
     return size
 
 
-def say_size(choices: Choices, size: Size, trial: Optional[Trial], found: bodies.Found, machine: Machine, tell, warn):
+def say_size(choices: Choices, size: Size, trial: Optional[Trial], found: release.Body, machine: Machine, tell, warn):
     """What the user needs to know of the balls, and of what the study takes."""
     thick = found.measures.mean_depth / size.diameter, found.measures.largest_depth / size.diameter
     tell(f"balls of {size.diameter:g} m: {size.balls:,} of them, the body is {thick[0]:.1f} of them thick on the mean, "
          f"{thick[1]:.1f} at the most")
     study = choices["study"]
-    runs = (f"{size.runs} runs: {len(study['rolling'])} rolling resistances x {1 + len(study['xoffset'])} places of the "
-            "lattice")
+    each = 1 + len(study["xoffset"])
+    runs = f"{size.runs} runs: {len(study['rolling'])} rolling resistances x {each} places of the lattice"
     if study["sizes"]:
-        runs += f", {len(study['sizes'])} sizes of balls x {1 + len(study['xoffset'])}"
-    took = "" if size.seconds is None else f"; about {site_budget.told(size.seconds)} on this machine when nothing else runs"
-    tell(f"the study, {runs}{took}, {machine.jobs} at a time, {size.gigabytes:.2g} GB")
+        runs += f", {len(study['sizes'])} sizes of balls x {each}"
+    took = "" if size.seconds is None else f", about {site_budget.told(size.seconds)} if nothing else runs"
+    tell(f"the study: {runs}; {machine.jobs} at a time{took}, {size.gigabytes:.2g} GB")
     if trial is None:
         warn("no LAMMPS program (LMP, --lmp, build/lmp): the deck was not tried, time and speeds are not known")
     if thick[1] < 3:
@@ -239,13 +239,12 @@ def say_size(choices: Choices, size: Size, trial: Optional[Trial], found: bodies
 
 # --- map ---
 
-def draw_map(new: Path, choices: Choices, raster: Raster, found: bodies.Found, geometry, layers: Layers, reached,
-             title: str) -> None:
+def draw_map(new: Path, found: release.Body, layers: Layers, reached, title: str) -> None:
     from . import site_map      # matplotlib: only once all is there
-    depth = raster.z * 0.0
+    depth = np.zeros(found.raster.z.shape)
     row, column = found.area.corner
     rows, columns = found.slip.shape
-    depth[row:row + rows, column:column + columns] = found.area.z - found.slip
-    site_map.draw(new / MAP, site_map.Layers(raster, depth, geometry or None, layers.road, layers.observed,
+    depth[row:row + rows, column:column + columns] = np.nan_to_num(found.area.z - found.slip)
+    site_map.draw(new / MAP, site_map.Layers(found.raster, depth, found.geometry, layers.road, layers.observed,
                                              layers.structures, layers.lines, reached),
                   f"{title}: {found.measures.volume:,.0f} m\u00b3")

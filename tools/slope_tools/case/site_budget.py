@@ -72,6 +72,17 @@ def three_digits(value: float) -> float:
 
 # --- the trial run ---
 
+def trial_diameter(choices: Choices, volume: float) -> float:
+    """Of the trial's balls (m): TRIAL of them, or fewer if the site has fewer."""
+    balls = choices["balls"]
+    number = TRIAL
+    if balls["diameter"]:
+        number = min(number, volume / balls["diameter"] ** 3)
+    elif balls["number"]:
+        number = min(number, balls["number"])
+    return three_digits((volume / max(number, 1)) ** (1 / 3))
+
+
 def measure(folder: Path, deck: str, lmp: Path) -> Trial:
     """Run a site's deck in its folder and read what it measured; SlopeError with LAMMPS' own words if it fails.
 
@@ -170,8 +181,8 @@ def size(choices: Choices, volume: float, trial: Optional[Trial], jobs: int, cel
         d = three_digits((volume / balls["number"]) ** (1 / 3))
     elif balls["minutes"]:
         if trial is None:
-            raise SlopeError("--minutes", "needs a LAMMPS program (LMP, --lmp) that measures this machine; --balls does not",
-                             f"{balls['minutes']:g}")
+            raise SlopeError("--minutes", "needs a LAMMPS program (LMP, --lmp) to measure this machine, --balls "
+                             "does not", f"{balls['minutes']:g}")
         d = up(fit(60 * balls["minutes"], seconds, volume, "--minutes", "s"))
     elif balls["memory"]:
         d = up(fit(balls["memory"], lambda one: gigabytes(one, volume, cells, jobs), volume, "--memory", "GB"))
@@ -180,8 +191,8 @@ def size(choices: Choices, volume: float, trial: Optional[Trial], jobs: int, cel
         d = three_digits((volume / DEFAULT) ** (1 / 3))
     number = round(volume / d ** 3)
     if not 1 <= number <= MOST:
-        raise SlopeError("--diameter" if balls["diameter"] else "--balls", f"must make 1 to {MOST:,} balls of a body of "
-                         f"{volume:.6g} m3", f"{number:,} of {d:g} m")
+        raise SlopeError("--diameter" if balls["diameter"] else "--balls", f"must make 1 to {MOST:,} balls of a "
+                         f"body of {volume:.6g} m3", f"{number:,} of {d:g} m")
     return Size(d, number, sum(runs for _, runs in parts), trial and seconds(d), gigabytes(d, volume, cells, jobs))
 
 

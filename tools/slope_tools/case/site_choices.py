@@ -71,9 +71,9 @@ def rule_of(error: jsonschema.ValidationError) -> str:
         return f"must have no {', '.join(extra)}, which is unknown; keys are {', '.join(error.schema['properties'])}"
     if error.validator == "required":
         return f"must have {' and '.join(key for key in error.validator_value if key not in error.instance)}"
-    rules = {"type": "be of type {}", "exclusiveMinimum": "be > {}", "minimum": "be >= {}", "exclusiveMaximum": "be < {}",
-             "maximum": "be <= {}", "enum": "be one of {}", "minItems": "have at least {} items",
-             "maxItems": "have at most {} items"}
+    rules = {"type": "be of type {}", "exclusiveMinimum": "be > {}", "minimum": "be >= {}",
+             "exclusiveMaximum": "be < {}", "maximum": "be <= {}", "enum": "be one of {}",
+             "minItems": "have at least {} items", "maxItems": "have at most {} items"}
     if error.validator in rules:
         value = error.validator_value
         told = ", ".join(str(one) for one in value) if isinstance(value, list) else value

@@ -15,8 +15,8 @@ from ..survey import lines, polygons
 from ..survey.rasters import Raster, crs_name
 
 # names of the deck's own fixes and groups, and of files that a run writes beside them
-TAKEN = {"all", "soil", "slip", "field", "spread", "move", "weight", "deposit", "rest", "shake", "drag", "stands", "fails",
-         "balls", "road", "release", "terrain", "body", "ground", "base", "summary"}
+TAKEN = {"all", "soil", "slip", "field", "spread", "move", "weight", "deposit", "rest", "shake", "drag", "stands",
+         "fails", "balls", "road", "release", "terrain", "body", "ground", "base", "summary"}
 CHECK = 1e-9            # s, relative: times of a motion that are one
 
 
@@ -84,7 +84,7 @@ def corners(path: str) -> np.ndarray:
 
 
 def structures(paths: Iterable[str], raster: Raster, folder: Path, taken: Set[str]) -> List[Structure]:
-    """Copy STL files into a folder. Their coordinates are local metres or those of the terrain's CRS: where they fit."""
+    """Copy STL files into a folder. Coordinates: local metres, or the terrain's CRS, as they fit."""
     return [structure(path, raster, folder, taken) for path in paths]
 
 
@@ -97,12 +97,13 @@ def structure(path: str, raster: Raster, folder: Path, taken: Set[str]) -> Struc
         if xlo <= a[0] and ylo <= a[1] and b[0] <= xhi and b[1] <= yhi:
             break
     else:
-        raise SlopeError(path, f"must lie within the terrain, local x y {polygons.numbers((xlo, ylo, xhi, yhi))}, or that "
-                         f"plus {polygons.numbers(raster.offset)} in {crs_name(raster.crs)}",
+        raise SlopeError(path, f"must lie within the terrain, local x y {polygons.numbers((xlo, ylo, xhi, yhi))}, or "
+                         f"that plus {polygons.numbers(raster.offset)} in {crs_name(raster.crs)}",
                          polygons.numbers((*low[:2], *high[:2])))
     bottom, top = np.nanmin(raster.z), np.nanmax(raster.z)
     if not (a[2] <= top and b[2] >= bottom):
-        raise SlopeError(path, f"must have heights (m) of the terrain, {bottom:.6g} to {top:.6g}", f"{a[2]:.6g} to {b[2]:.6g}")
+        raise SlopeError(path, f"must have heights (m) of the terrain, {bottom:.6g} to {top:.6g}",
+                         f"{a[2]:.6g} to {b[2]:.6g}")
     name = unused(Path(path).stem, taken)
     copy(path, folder / f"{name}.stl")
     point = ((a[0] + b[0]) / 2, (a[1] + b[1]) / 2, float(a[2]))
@@ -125,8 +126,8 @@ def control_lines(paths: Iterable[str], raster: Raster, folder: Path, taken: Set
                              polygons.numbers((*points.min(axis=0), *points.max(axis=0))))
         name = unused(Path(path).stem, taken)
         rows = "".join(f"{x:.10g},{y:.10g}\n" for x, y in points.tolist())
-        (folder / f"{name}.csv").write_text(f"# control line, local x,y in m; forward is from its left to its right\n{rows}",
-                                            encoding="ascii")
+        head = "# control line, local x,y in m; forward is from its left to its right\n"
+        (folder / f"{name}.csv").write_text(head + rows, encoding="ascii")
         found.append(Line(name, f"{name}.csv", points))
     return found
 
@@ -138,7 +139,8 @@ def motion(path: str, folder: Path) -> Motion:
     try:
         text = Path(path).read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        raise SlopeError(path, f"must be text, lines t ax ay az ({getattr(error, 'strerror', None) or error})") from None
+        why = getattr(error, "strerror", None) or error
+        raise SlopeError(path, f"must be text, lines t ax ay az ({why})") from None
     rows = []
     for number, line in enumerate(text.splitlines(), 1):
         words = line.split("#")[0].split()
@@ -149,8 +151,8 @@ def motion(path: str, folder: Path) -> Motion:
         except ValueError:
             row = []
         if len(row) != 4 or not np.isfinite(row).all():
-            raise SlopeError(f"{path}: line {number}", "must be four numbers, t ax ay az in s and m/s2 (slope quake makes "
-                             "it from a record)", line[:60])
+            raise SlopeError(f"{path}: line {number}", "must be four numbers, t ax ay az in s and m/s2 (slope quake "
+                             "makes it from a record)", line[:60])
         rows.append(row)
     values = np.array(rows)
     if len(values) < 2 or not (np.diff(values[:, 0]) > 0).all():

@@ -42,7 +42,8 @@ def draw(path: Path, layers: Layers, title: str) -> None:
     bounds = figures.even(float(layers.depth.max()))
     with figures.plt.rc_context(figures.STYLE):
         frame = figure_maps.frame_of(base, True, crs)
-        sheet, axes, size, beside, below = sheets.single(figures.FULL, frame, title, figure_maps.TALL[figures.FULL], bounds)
+        sheet, axes, size, beside, below = sheets.single(figures.FULL, frame, title,
+                                                         figure_maps.TALL[figures.FULL], bounds)
         figure_maps.base_map(axes, base)
         image = figure_maps.draw_values(axes, base, layers.depth, bounds, "PuBu", layers.depth > 0)
         entries = draw_outlines(axes, layers)
@@ -82,7 +83,8 @@ def draw_outlines(axes, layers: Layers) -> List[Entry]:
     for geometry, style, name in ((layers.release, RELEASE, "release polygon"),
                                   (layers.observed, OBSERVED, "mapped deposit")):
         if geometry is not None:
-            outline(axes, geometry, color=style["color"], linewidth=style["lw"], linestyle=style.get("ls", "-"), zorder=6)
+            outline(axes, geometry, color=style["color"], linewidth=style["lw"], linestyle=style.get("ls", "-"),
+                    zorder=6)
             entries.append(Entry(name, style))
     for one in layers.structures:
         (xlo, ylo), (xhi, yhi) = one.low[:2], one.high[:2]

@@ -8,7 +8,7 @@ from ..ensemble import jobs
 from ..errors import SlopeError
 from ..options import count, number
 from ..programs import find_lmp
-from ..survey.body import SHAPES
+from ..survey.release import SHAPES
 from ..survey.release_scar import KINDS
 
 # option -> section and key of site.yaml
@@ -59,8 +59,8 @@ def add_parser(commands, **kwargs):
     about.add_argument("--author", help="who answers for it")
     parser.add_argument("--lmp", metavar="FILE", help="the LAMMPS program that tries the deck (default: LMP of the "
                         "environment, then build/lmp beside tools/)")
-    parser.add_argument("--jobs", type=count, metavar="J", help="runs at a time that the estimate counts with (default: "
-                        "as many as the cores of this machine)")
+    parser.add_argument("--jobs", type=count, metavar="J", help="runs at a time, for the estimate (default: "
+                        "as many as the cores)")
     return parser
 
 
@@ -93,10 +93,10 @@ def add_layers(group):
     group.add_argument("--structure", metavar="STL", action="append",
                        help="a wall or building of triangles, m, in local coordinates or the terrain's CRS; may be "
                             "given several times")
-    group.add_argument("--line", metavar="LINE", action="append", help="control line: what passes it is counted; may be "
-                       "given several times")
-    group.add_argument("--motion", metavar="FILE", help="motion of the ground of slope quake: the body stands, is shaken, "
-                       "and fails when it has moved")
+    group.add_argument("--line", metavar="LINE", action="append", help="control line: what passes it is counted; may "
+                       "be given several times")
+    group.add_argument("--motion", metavar="FILE", help="motion of the ground of slope quake: the body stands, is "
+                       "shaken, and fails when it has moved")
     group.add_argument("--observed", metavar="P|RASTER", help="a mapped deposit, outline or thickness: the run of the "
                        "report is held against it")
 

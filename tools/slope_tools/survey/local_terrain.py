@@ -1,4 +1,7 @@
-"""Survey rasters to one terrain in local metres: read, merge, fill holes, crop or resample, move to the local origin."""
+"""Survey rasters to one terrain in local metres.
+
+Order of the work: read, merge, fill holes, crop or resample, move to the local origin, write.
+"""
 import math
 from pathlib import Path
 from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
@@ -80,7 +83,7 @@ def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[st
     return rasters.write_asc_local(output, local, {"filled_cells": filled, "sources": list(inputs), "steps": steps})
 
 
-def summary(name: str, about: Dict[str, Any]) -> str:
+def summary(name: object, about: Dict[str, Any]) -> str:
     """What the user needs to know of a terrain."""
     size, extent, height, origin = (about[key] for key in ("size", "extent", "height", "origin"))
     return (f"{name}: {size['columns']} x {size['rows']} cells of {about['cell']:.6g} m, "
