@@ -8,14 +8,13 @@ from pathlib import Path
 
 from .. import disk, errors
 from ..deposit import deposit, score
-from ..deposit.score import (balls, connected_runout, mesh_table, overlap, read_observed, runout, volumes,
+from ..deposit.score import (THRESHOLD, balls, connected_runout, mesh_table, overlap, read_observed, runout, volumes,
                              write_csv)
 from ..deposit.volume import make_mesh
 from ..errors import SlopeError
 from ..options import number
 from ..survey.rasters import crs_name
 
-THRESHOLD = 0.1   # m
 EPILOG = """\
 units: metres, m2, m3, degrees. PREFIX is what fix deposit/grid was given as output.
 
