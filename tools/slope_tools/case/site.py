@@ -18,7 +18,7 @@ from ..survey.rasters import Raster, crs_name
 from . import release_files, site_budget, site_choices, site_deck
 from .site_budget import Size, Trial
 from .site_choices import Choices
-from .site_layers import Layers, read_layers
+from .site_layers import Layers, Shown, read_layers
 
 MAP = "map.png"
 TERRAIN = "terrain.asc"
@@ -58,11 +58,15 @@ def digest(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
+Draw = Callable[[Path, Shown, str], None]       # of the map: file, what it shows, title
+
+
 def make(choices: Choices, folder: Path, machine: Machine, tell: Callable[[str], Any],
-         warn: Callable[[str], Any]) -> Made:
+         warn: Callable[[str], Any], draw: Draw) -> Made:
     """Make a site's folder, or make it anew, from complete choices whose files are seen from the working folder.
 
-    tell and warn are called with lines for the user. Raises SlopeError on bad input; the folder is then as it was.
+    tell and warn are called with lines for the user, draw draws the map. Raises SlopeError on bad input; the
+    folder is then as it was.
     """
     again = (folder / site_choices.NAME).is_file()
     check_target(folder, again)
@@ -71,7 +75,7 @@ def make(choices: Choices, folder: Path, machine: Machine, tell: Callable[[str],
     try:
         new.mkdir()
         try:
-            made = built(choices, new, folder, machine, tell, warn)
+            made = built(choices, new, folder, machine, tell, warn, draw)
             exchange(new, folder.absolute(), old)
         finally:
             shutil.rmtree(new, ignore_errors=True)
@@ -80,10 +84,10 @@ def make(choices: Choices, folder: Path, machine: Machine, tell: Callable[[str],
     return made
 
 
-def built(choices: Choices, new: Path, folder: Path, machine: Machine, tell, warn) -> Made:
+def built(choices: Choices, new: Path, folder: Path, machine: Machine, tell, warn, draw: Draw) -> Made:
     """build(), whose messages do not name the folder that is not there afterwards."""
     try:
-        return build(choices, new, folder, machine, tell, warn)
+        return build(choices, new, folder, machine, tell, warn, draw)
     except SlopeError as error:
         error.args = (str(error).replace(f"{new}/", ""),)
         raise
@@ -103,7 +107,7 @@ def exchange(new: Path, folder: Path, old: Set[str]) -> None:
     shutil.rmtree(aside)
 
 
-def build(choices: Choices, new: Path, folder: Path, machine: Machine, tell, warn) -> Made:
+def build(choices: Choices, new: Path, folder: Path, machine: Machine, tell, warn, draw: Draw) -> Made:
     """Everything, into the folder `new`, which will be `folder`."""
     choices = {name: dict(section) for name, section in choices.items()}
     wanted = wanted_body(choices, new)
@@ -122,7 +126,7 @@ def build(choices: Choices, new: Path, folder: Path, machine: Machine, tell, war
     say_size(choices, size, trial, found, machine, tell, warn)
     deck = site_deck.text(choices, parts, numbers(choices, trial, size))
     disk.write(new / site_deck.NAME, deck)
-    draw_map(new, found, layers, reached, title)
+    draw(new / MAP, shown(found, layers, reached), f"{title}: {found.measures.volume:,.0f} m\u00b3")
     files = sorted([path.name for path in new.iterdir()] + [site_choices.NAME])
     about = {"slope_version": provenance.version(), "made": provenance.now(), "files": files,
              "deck_sha256": digest(new / site_deck.NAME), "crs": crs_name(raster.crs),
@@ -239,12 +243,11 @@ def say_size(choices: Choices, size: Size, trial: Optional[Trial], found: releas
 
 # --- map ---
 
-def draw_map(new: Path, found: release.Body, layers: Layers, reached, title: str) -> None:
-    from . import site_map      # matplotlib: only once all is there
+def shown(found: release.Body, layers: Layers, reached: Optional[Raster]) -> Shown:
+    """What the map shows; reached: the largest thickness of the trial run."""
     depth = np.zeros(found.raster.z.shape)
     row, column = found.area.corner
     rows, columns = found.slip.shape
     depth[row:row + rows, column:column + columns] = np.nan_to_num(found.area.z - found.slip)
-    site_map.draw(new / MAP, site_map.Layers(found.raster, depth, found.geometry, layers.road, layers.observed,
-                                             layers.structures, layers.lines, reached),
-                  f"{title}: {found.measures.volume:,.0f} m\u00b3")
+    return Shown(found.raster, depth, found.geometry, layers.road, layers.observed, layers.structures, layers.lines,
+                 reached)

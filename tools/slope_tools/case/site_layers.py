@@ -1,14 +1,16 @@
 """What lies on a site's terrain: road, structures, control lines, a mapped deposit, and the motion of the ground."""
 from pathlib import Path
-from typing import List, NamedTuple, Optional, Set
+from typing import List, NamedTuple, Optional, Sequence, Set
 
+import numpy as np
 from shapely.geometry import box
 from shapely.geometry.base import BaseGeometry
 
 from ..errors import SlopeError
 from ..geometry import extent
 from ..survey import polygons, rasters
-from ..survey.rasters import Raster
+from ..survey.crs import same_crs
+from ..survey.rasters import Raster, crs_name
 from . import site_inputs
 from .site_choices import Choices
 from .site_inputs import Line, Motion, Structure
@@ -25,6 +27,18 @@ class Layers(NamedTuple):
     structures: List[Structure]
     lines: List[Line]
     motion: Optional[Motion]
+
+
+class Shown(NamedTuple):
+    """What the map of a site shows; geometries in local metres."""
+    raster: Raster                      # the ground before
+    depth: np.ndarray                   # of the body on its nodes, m, 0 where there is none
+    release: Optional[BaseGeometry]
+    road: Optional[BaseGeometry]
+    observed: Optional[BaseGeometry]
+    structures: Sequence[Structure]
+    lines: Sequence[Line]
+    reached: Optional[Raster]           # largest thickness of the trial run, m
 
 
 def read_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> Layers:
@@ -68,16 +82,18 @@ def observed_layer(path: Optional[str], raster: Raster, folder: Path, terrain: s
         return None
     if Path(path).suffix.lower() not in RASTERS:
         return polygon_layer(path, raster, folder / f"{OBSERVED}.csv", terrain, tell, warn)
-    from ..deposit import score
     mapped = rasters.read(path, heights=False)
     if mapped.crs is None:
         mapped = mapped._replace(crs=raster.crs)
         warn(f"{path} has no CRS: taken to be in that of the terrain")
+    if not same_crs(mapped.crs, raster.crs):
+        raise SlopeError(path, f"must be in the CRS of the terrain, {crs_name(raster.crs)} (gdalwarp -t_srs "
+                         "reprojects)", crs_name(mapped.crs))
+    wrong = np.argwhere(mapped.z < 0)
+    if len(wrong) or not np.nansum(mapped.z) > 0:
+        raise SlopeError(path, "must be thicknesses >= 0, somewhere > 0",
+                         f"{mapped.z[tuple(wrong[0])]:g}" if len(wrong) else "none")
     target = folder / f"{OBSERVED}.tif"
     rasters.write_geotiff(target, {"thickness": mapped.z}, mapped)
-    try:
-        score.read_observed(target, raster, 0.1, False)
-    except SlopeError as error:
-        raise SlopeError(path, str(error).partition(": ")[2]) from None
     tell(f"{target.name}: thickness, {mapped.z.shape[1]} x {mapped.z.shape[0]} cells")
     return None

@@ -1,13 +1,13 @@
 """slope site: from the files of a GIS to a folder with terrain, body, deck and map, which `slope study` runs."""
 import argparse
-import sys
 from pathlib import Path
 
 from ..case import site, site_choices
 from ..ensemble import jobs
-from ..errors import SlopeError
+from ..errors import SlopeError, printer
 from ..options import count, number
 from ..programs import find_lmp
+from ..report import site_map
 from ..survey.release import SHAPES
 from ..survey.release_scar import KINDS
 
@@ -114,7 +114,7 @@ def run(args):
     folder, choices = chosen(args)
     cores = args.jobs or jobs.cores()
     made = site.make(choices, folder, site.Machine(program(args.lmp), cores), lambda line: print(line, flush=True),
-                     lambda line: print(f"slope site: warning: {line}", file=sys.stderr, flush=True))
+                     printer("site"), site_map.draw)
     print(f"written to {folder}: {' '.join(made.files)}")
     print(f"look at {folder / site.MAP}, then: tools/slope study {folder}")
 

@@ -1,18 +1,17 @@
 """The map of a site, to check by eye: ground, body, road, structures, and where the trial run went."""
 import base64
 from pathlib import Path
-from typing import List, NamedTuple, Optional, Sequence
+from typing import List
 
 import numpy as np
-from shapely.geometry.base import BaseGeometry
 
+from ..case.site_layers import Shown
 from ..drawing import figures
 from ..drawing.maps import outline, window
 from ..geometry import extent
-from ..report import figure_maps, sheets
-from ..report.sheets import Entry
 from ..survey.rasters import Raster, crs_name
-from .site_inputs import Line, Structure
+from . import figure_maps, sheets
+from .sheets import Entry
 
 RELEASE = {"color": figures.RELEASE, "lw": 1.0, "ls": "--"}
 STRUCTURE = {"color": "#111111", "lw": 1.2}
@@ -22,19 +21,7 @@ TRIAL = {"color": "#1f7a4d", "lw": 1.0, "ls": ":"}
 REACHED = 0.1       # m of thickness
 
 
-class Layers(NamedTuple):
-    """What is drawn; geometries in local metres."""
-    raster: Raster                      # the ground before
-    depth: np.ndarray                   # of the body on its nodes, 0 where there is none
-    release: Optional[BaseGeometry]
-    road: Optional[BaseGeometry]
-    observed: Optional[BaseGeometry]
-    structures: Sequence[Structure]
-    lines: Sequence[Line]
-    reached: Optional[Raster]           # largest thickness of the trial run, m
-
-
-def draw(path: Path, layers: Layers, title: str) -> None:
+def draw(path: Path, layers: Shown, title: str) -> None:
     """Write the map as a PNG."""
     raster, crs = layers.raster, crs_name(layers.raster.crs) if layers.raster.crs is not None else ""
     shown = window(raster, *boxes(layers))
@@ -56,7 +43,7 @@ def draw(path: Path, layers: Layers, title: str) -> None:
     path.write_bytes(base64.b64decode(uri.partition(",")[2]))
 
 
-def boxes(layers: Layers) -> List:
+def boxes(layers: Shown) -> List:
     """The boxes of all that must be seen; parts beyond the terrain are cut off."""
     raster = layers.raster
     row, column = np.nonzero(layers.depth > 0)
@@ -77,7 +64,7 @@ def cells_box(raster: Raster, row: np.ndarray, column: np.ndarray):
     return xlo, ylo, xhi, yhi
 
 
-def draw_outlines(axes, layers: Layers) -> List[Entry]:
+def draw_outlines(axes, layers: Shown) -> List[Entry]:
     """Everything that is a line; what it is, for the legend."""
     entries = []
     for geometry, style, name in ((layers.release, RELEASE, "release polygon"),
