@@ -90,7 +90,7 @@ def run(args):
     files = data_files.data_files(args.deck, {**settings, **repeated})
     setup = run_arguments.setup_of(args)
     if setup.road:
-        study.check_road(setup, settings)
+        study.check_road(setup.road, setup.deck, settings)
     study.check_folder(setup, [])
     about = {**wanted.about, "deck": args.deck.name, "set": fixed, "repeat": repeated,
              "variables": {one.name: one.told for one in variables}, "seed": args.seed}

@@ -137,7 +137,7 @@ class Edge:
         length s it is at most s^2 / 4 less than at the piece's ends.
         """
         middle = np.array([[(left + right) / 2], [(top + bottom) / 2]])
-        square, share = self.squares(*middle, which)
+        square, share = self.squares(middle[0], middle[1], which)
         first = square[0].argmin()
         r = self.start[which[first]] + share[0, first] * self.along[which[first]]
         corners = np.array([(x, y) for x in (left, right) for y in (top, bottom)]) - r
@@ -316,7 +316,8 @@ class _Work:
         # cells of which all, or nothing, lies above the cut need no more than their distance from the edge
         t = self.t[top:bottom, left:right]
         at = slice(top - self.corner[0], bottom - self.corner[0]), slice(left - self.corner[1], right - self.corner[1])
-        distance = self.edge.nearest(*np.meshgrid(np.arange(left, right) + 0.5, np.arange(top, bottom) + 0.5), near)
+        middle_x, middle_y = np.meshgrid(np.arange(left, right) + 0.5, np.arange(top, bottom) + 0.5)
+        distance = self.edge.nearest(middle_x, middle_y, near)
         below = self.edge.high[near].max() + self.tangent * (distance + HALF_DIAGONAL) <= self.low[at]
         above = self.edge.low[near].min() + self.tangent * (distance - HALF_DIAGONAL) >= self.high[at]
         open_ = (~(below | above) & (t > 0))[fine] & (on_road < area)
@@ -330,9 +331,9 @@ class _Work:
             h = np.full(corners.shape, np.nan)
             j, i = np.nonzero(corners)
             h[corners] = self.above_ground(x[i], y[j], near)
-            h = [part[open_] for part in (h[:-1, :-1], h[:-1, 1:], h[1:, 1:], h[1:, :-1])]
-            mean[open_] = linear_mean(*h, t[open_])
-            below[open_] = sum(h) < 0
+            four = [part[open_] for part in (h[:-1, :-1], h[:-1, 1:], h[1:, 1:], h[1:, :-1])]
+            mean[open_] = linear_mean(four[0], four[1], four[2], four[3], t[open_])
+            below[open_] = sum(four) < 0
             mixed = open_ & (on_road > 0)
             if mixed.any():
                 # where h is linear beside the edge, its mean is its value at the centre of what is beside
@@ -370,7 +371,8 @@ class _Work:
         number, corners = (np.array(values) for values in zip(*triangles))
         (ax, ay), (bx, by), (cx, cy) = corners.transpose(1, 2, 0)
         area = np.abs((bx - ax) * (cy - ay) - (cx - ax) * (by - ay))
-        h = self.above_ground(*corners.reshape(-1, 2).T, near).reshape(-1, 3).T
+        every = corners.reshape(-1, 2)
+        h = self.above_ground(every[:, 0], every[:, 1], near).reshape(-1, 3).T
         volume = (positive_mean(*(t[number] - h)) - positive_mean(*-h)) * area
         total, area = (np.bincount(number, values, len(parts)) for values in (volume, area))
         return np.clip(np.divide(total, area, out=np.zeros(len(parts)), where=area > 0), 0, t)

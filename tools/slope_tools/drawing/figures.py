@@ -2,6 +2,7 @@
 import base64
 import io
 import math
+from typing import List
 
 import matplotlib
 import numpy as np
@@ -66,7 +67,7 @@ def shortened(text, inches, size, bold=False):
 
 def wrapped(text, inches, size, bold=False, most=3):
     """The text in at most so many lines of a width; what does not fit is cut, with dots."""
-    lines = []
+    lines: List[str] = []
     for word in text.split():
         if lines and text_width(f"{lines[-1]} {word}", size, bold) <= inches:
             lines[-1] += f" {word}"

@@ -70,7 +70,7 @@ class Fit:
         moving = sum(not row["at_rest"] for row in self.rows.values() if row["status"] == "finished")
         if moving:
             doubts.append(f"{moving} deposits are not at rest")
-        about = {
+        about: Dict[str, Any] = {
             "calibration": {**plan.ledger.about, "runs": plan.number, "failed": len(failed), "package":
                             self.work.package, "collected": provenance.now(), "machine": provenance.machine()},
             "best": {"set": plan.ledger.points[plan.number - 1], "run": best.name,

@@ -3,6 +3,7 @@ import csv
 import io
 import math
 from pathlib import Path
+from typing import Union
 
 import numpy as np
 from shapely.geometry import LineString, Point, box
@@ -46,7 +47,8 @@ class Section:
             except Exception as error:
                 raise SlopeError("--section", "must be X1 Y1 X2 Y2 (finite numbers, local m), the file of a line, or "
                                  f"{FALL}", " ".join(asked)) from error
-            where, how = "--section", "as --section asked"
+            where: Union[str, Path] = "--section"
+            how = "as --section asked"
             if (points[0] == points[1]).all():
                 raise SlopeError("--section", "must have two different ends", " ".join(f"{v:g}" for v in points.flat))
         elif len(asked) == 1:
