@@ -36,9 +36,9 @@ def same(line, wanted, share):
     """Whether a line is the wanted one, but for numbers that differ by at most a share."""
     if NUMBER.sub("#", line) != NUMBER.sub("#", wanted):
         return False
-    return share == math.inf or all(
-        abs(float(a.replace(",", "")) - float(b.replace(",", ""))) <= share * abs(float(b.replace(",", "")))
-               for a, b in zip(NUMBER.findall(line), NUMBER.findall(wanted)))
+    pairs = [[float(number.replace(",", "")) for number in pair]
+             for pair in zip(NUMBER.findall(line), NUMBER.findall(wanted))]
+    return share == math.inf or all(abs(a - b) <= share * abs(b) for a, b in pairs)
 
 
 def test_the_tutorial_leads_from_a_survey_file_to_a_report(tmp_path):
