@@ -153,7 +153,7 @@ def wanted_body(choices: Choices, new: Path) -> release.Wanted:
 def terrain(choices: Choices, new: Path, tell) -> Raster:
     """Write the terrain and read it back, as the deck will."""
     given = choices["terrain"]
-    wanted = local_terrain.Wanted(given["crs"], None, given["cell"], given["bounds"], given["fill"])
+    wanted = local_terrain.Wanted(given["crs"], None, given["cell"], given["bounds"], given["fill"], given["assign_crs"])
     about = local_terrain.make(given["files"], new / TERRAIN, wanted, tell)
     tell(local_terrain.summary(TERRAIN, about))
     return rasters.read_asc_local(new / TERRAIN)

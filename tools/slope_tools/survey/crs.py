@@ -22,6 +22,15 @@ def warn(text):
     print(f"slope terrain: warning: {text}", file=sys.stderr)
 
 
+def as_crs(option, name):
+    """The CRS that an option names; SlopeError if there is none of that name."""
+    try:
+        with rasterio.Env():  # GDAL's own message is not for stderr
+            return CRS.from_user_input(name)
+    except CRSError:
+        raise SlopeError(option, "must be a CRS such as EPSG:6677", name) from None
+
+
 def same_crs(a, b):
     """Whether two CRS (or None) are one, however they are spelt."""
     return a == b or (a is not None and b is not None and epsg(a) is not None and epsg(a) == epsg(b))
@@ -63,4 +72,15 @@ def transform(source, target, x, y):
 
 
 def not_covered(source, target):
-    return SlopeError("--crs", f"must cover the input, which is in {crs_name(source)}", crs_name(target))
+    return SlopeError("--crs", f"must cover the input, whose coordinates are in {crs_name(source)} "
+                      "(--assign-crs EPSG:n overrides a wrong tag)", crs_name(target))
+
+
+def require_degrees(crs, bounds, where):
+    """Raise SlopeError unless coordinates (west, south, east, north) can be those of a CRS in degrees."""
+    if crs is None or not crs.is_geographic:
+        return
+    west, south, east, north = bounds
+    if max(-west, east) > 360 or max(-south, north) > 90:
+        raise SlopeError(where, f"coordinates in {crs_name(crs)} must be longitude and latitude; --assign-crs EPSG:n "
+                         "of slope terrain and slope polygon overrides a tag that is wrong or missing", box(bounds))

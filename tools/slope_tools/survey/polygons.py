@@ -13,10 +13,8 @@ from typing import List, Tuple
 
 import fiona
 import numpy as np
-import rasterio
 import rasterio.warp
 from rasterio.crs import CRS
-from rasterio.errors import CRSError
 from shapely import wkt
 from shapely.errors import ShapelyError
 from shapely.geometry import MultiPolygon, Polygon, box, shape
@@ -25,7 +23,7 @@ from shapely.validation import explain_validity
 
 from ..errors import SlopeError
 from ..geometry import extent, polygons_of
-from .crs import same_crs
+from .crs import require_degrees, same_crs
 from .rasters import crs_name
 
 FARTHEST = 1e12    # m or degrees: larger coordinates are mistakes, region polygon refuses them, too
@@ -79,15 +77,6 @@ def _read_local(path, raster, local, crs, terrain):
 
 def numbers(values):
     return " ".join(f"{value:.10g}" for value in values)
-
-
-def as_crs(option, name):
-    """The CRS that an option names; SlopeError if there is none of that name."""
-    try:
-        with rasterio.Env():  # GDAL's own message is not for stderr
-            return CRS.from_user_input(name)
-    except CRSError:
-        raise SlopeError(option, "must be a CRS such as EPSG:6677", name) from None
 
 
 def read_text(path):
@@ -292,11 +281,7 @@ def _to_local(path, geometry, crs, raster, plain, terrain):
                 raise SlopeError(where, "must have a CRS, so that polygon and terrain can be brought together (a .prj "
                                  "file beside a shapefile, slope terrain --crs for a terrain; --local if the polygon "
                                  "is in the terrain's local metres)", "none")
-        if crs.is_geographic:
-            west, south, east, north = geometry.bounds
-            if max(-west, east) > 360 or max(-south, north) > 90:
-                raise SlopeError(path, f"coordinates in {crs_name(crs)} must be longitude and latitude (which a "
-                                 "GeoJSON has that names no other CRS)", numbers(geometry.bounds))
+        require_degrees(crs, geometry.bounds, path)
     if not (plain or same_crs(crs, raster.crs)):
         geometry = _reproject(path, geometry, crs, raster.crs)
     return map_points(geometry, lambda points: points - raster.offset)

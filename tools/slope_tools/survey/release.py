@@ -6,6 +6,7 @@ import numpy as np
 
 from ..errors import SlopeError
 from . import polygons, rasters, release_area, release_bodies, release_scar, release_solve
+from .crs import as_crs
 
 
 SHAPES = ("sphere", "ellipsoid", "plane", "slbl")
@@ -51,7 +52,7 @@ def body_of(wanted: Wanted) -> Body:
     raster = read_terrain(wanted.terrain)
     geometry = None
     if wanted.polygon:
-        crs = polygons.as_crs("--crs", wanted.crs) if wanted.crs else None
+        crs = as_crs("--assign-crs", wanted.crs) if wanted.crs else None
         geometry = polygons.read_local(wanted.polygon, raster, local=wanted.local, crs=crs, terrain=wanted.terrain)
     area, surface, choices = (from_scar if wanted.scar else from_shape)(wanted, raster, geometry)
     slip = release_solve.slip_surface(area, release_solve.depths(area, surface), wanted.where)
