@@ -173,6 +173,7 @@ def size(choices: Choices, volume: float, trial: Optional[Trial], jobs: int, cel
     balls, model, parts = choices["balls"], choices["model"], plan(choices)
 
     def seconds(d: float) -> float:
+        assert trial is not None
         return study_seconds(d, volume, trial, model["speed"], model["density"], parts, jobs)
 
     if balls["diameter"]:

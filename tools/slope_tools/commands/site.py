@@ -12,7 +12,8 @@ from ..survey.release import SHAPES
 from ..survey.release_scar import KINDS
 
 # option -> section and key of site.yaml
-OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"), "assign_crs": ("terrain", "assign_crs"), "bounds": ("terrain", "bounds"),
+OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
+           "assign_crs": ("terrain", "assign_crs"), "bounds": ("terrain", "bounds"),
            "cell": ("terrain", "cell"), "fill": ("terrain", "fill"), "release": ("release", "polygon"),
            "shape": ("release", "shape"), "depth": ("release", "depth"), "volume": ("release", "volume"),
            "curvature": ("release", "curvature"), "dip": ("release", "dip"), "direction": ("release", "direction"),

@@ -70,11 +70,10 @@ def check(args):
     origin = None
     if args.origin != ["auto"]:
         try:
-            origin = tuple(map(number, args.origin))
-        except argparse.ArgumentTypeError:
-            origin = ()
-        if len(origin) != 2:
-            raise SlopeError("--origin", "must be auto or two numbers, E N", " ".join(args.origin))
+            east, north = map(number, args.origin)
+        except (argparse.ArgumentTypeError, ValueError):
+            raise SlopeError("--origin", "must be auto or two numbers, E N", " ".join(args.origin)) from None
+        origin = east, north
     wanted = local_terrain.Wanted(args.crs, origin, args.cell, args.bounds, args.fill, args.assign_crs)
     local_terrain.checked_crs(wanted)
     return wanted

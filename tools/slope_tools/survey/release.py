@@ -8,7 +8,6 @@ from ..errors import SlopeError
 from . import polygons, rasters, release_area, release_bodies, release_scar, release_solve
 from .crs import as_crs
 
-
 SHAPES = ("sphere", "ellipsoid", "plane", "slbl")
 COARSE = 50     # cells; a body of fewer is drawn with a coarse brush
 
