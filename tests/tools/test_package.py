@@ -25,8 +25,8 @@ def test_the_example_of_the_page(tmp_path, monkeypatch):
     """It says what `slope study` said at the study's own angle, more for a flatter cut, and draws the map."""
     monkeypatch.chdir(tmp_path)
     tiny_collapse.write_case("case")
-    assert cli.main(["study", "case/in.tiny", "--set", "rolling=0,0.1", "--road", "case/road.csv", "--local", "-o",
-                     "out"]) == 0
+    assert cli.main(["study", "case/in.tiny", "--set", "rolling=0,0.1", "--set", "steps=900", "--road",
+                     "case/road.csv", "--local", "-o", "out"]) == 0
     done = subprocess.run([sys.executable, str(EXAMPLE), "out", "case/road.csv", "map.png"], text=True,
                           capture_output=True, env=os.environ)
     assert done.returncode == 0, done.stderr

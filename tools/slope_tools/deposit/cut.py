@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 from shapely.affinity import translate
-from shapely.geometry import box
+from shapely.geometry import Point, box
 from shapely.ops import triangulate
 
 from ..geometry import Lines, coverage, edges, polygons_of
@@ -191,6 +191,13 @@ def linear_mean(a, b, c, d, t):
                              - positive_mean(*(-corner for corner in corners)))
         mean[bent] = np.clip(total / 4, 0, t)
     return mean
+
+
+def heights(road, ground, tangent, x, y):
+    """Height of the cut (m) at points x, y in index coordinates, NaN in the road; other arguments as of removed()."""
+    edge = Edge(road, ground, tangent)
+    z = edge.cut(x, y, np.arange(len(edge.start)))
+    return np.where([road.contains(Point(place)) for place in zip(x, y)], np.nan, z)
 
 
 def removed(thickness, ground, road, tangent, mesh, k):
