@@ -25,7 +25,7 @@ set -euo pipefail
 export LC_ALL=C
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-tree=$top out=$top/build/machines tests=unit mirror= ccache= keep= list=
+tree=$top out=$top/build/machines tests=unit mirror='' ccache='' keep='' list=''
 all_ways=(bare user paraview yade deb tar)
 releases=() ways=()
 
@@ -94,7 +94,7 @@ fi
 ((${#releases[@]})) || releases=(debian-12 debian-13)
 ((${#ways[@]})) || ways=(bare)
 
-git -C "$tree" rev-parse --verify -q HEAD >/dev/null || die "TREE $tree is no git checkout with a commit"
+git -C "$tree" rev-parse --verify -q HEAD >/dev/null 2>&1 || die "TREE $tree is no git checkout with a commit"
 ((EUID == 0)) || die "must be root, for chroots: sudo tests/machines.sh ..."
 command -v mmdebstrap >/dev/null || die "mmdebstrap is not there: apt-get install mmdebstrap"
 unshare --mount --pid --fork true 2>/dev/null || die "this machine does not permit mount namespaces"
@@ -106,6 +106,7 @@ space=$(df --output=avail -BG "$out" | tr -dc 0-9)
 # --- a machine ---
 
 current=
+# shellcheck disable=SC2317 # trap calls it
 clean() { [[ -z $current ]] || rm -rf --one-file-system "$current"; }
 trap clean EXIT
 trap 'exit 130' INT TERM
@@ -131,6 +132,7 @@ enter() {
   local root=$1 debs=$out/cache/debs-$suite compiled=$out/cache/ccache-$suite
   shift
   mkdir -p "$debs/partial" "$compiled" "$root"/{results,packages,var/cache/compiled}
+  # shellcheck disable=SC2016,SC2034 # expanded inside
   ROOT=$root DEBS=$debs COMPILED=$compiled PACKAGES=$out/packages-$suite \
     unshare --mount --pid --fork --kill-child bash -c '
       mount -t proc proc "$ROOT/proc" && mount --rbind /sys "$ROOT/sys" && mount --rbind /dev "$ROOT/dev" &&
@@ -143,7 +145,7 @@ enter() {
 
 # --- a row of the table ---
 
-row() { printf '%-13s %-9s %-10s %-7s %-30s %8s %8s %8s  %s\n' "$@" | tee -a "$out/table.txt"; }
+row() { printf '%-13s %-9s %-8s %-7s %-22s %9s %9s %9s  %s\n' "$@" | tee -a "$out/table.txt"; }
 
 # of STEP in this row's steps: status, or "-"; seconds, or "-"
 status_of() { awk -v step="$1" '$1 == step { s = $2 } END { print s == "" ? "-" : s }' "$results/steps"; }
@@ -185,6 +187,7 @@ one() {
     return 1
   fi
   cp /etc/resolv.conf "$current/etc/resolv.conf"
+  echo force-unsafe-io >"$current/etc/dpkg/dpkg.cfg.d/machines" # nothing to lose if the power fails
   if [[ $way != deb && $way != tar ]]; then
     git clone -q --no-hardlinks "$tree" "$current/srv/slope"
     git -C "$current/srv/slope" remote remove origin
@@ -202,9 +205,10 @@ one() {
 
 # report_row RELEASE WAY STATUS: what the steps say
 report_row() {
-  local release=$1 way=$2 status=$3 set_up=FAILED left_out= notes
+  local release=$1 way=$2 status=$3 set_up=FAILED left_out='' notes
   if [[ $way == deb || $way == tar ]]; then
     set_up=$(word "$(status_of given)")
+    sed -i 's/^given /set-up /' "$results/steps"
   elif grep -q '^setup: LAMMPS source: ' "$results/demo.log" 2>/dev/null; then
     left_out=$(sed -n 's/^setup: \([^ ]*\) is left out.*/\1/p' "$results/demo.log" | xargs)
     set_up=ok
@@ -213,7 +217,7 @@ report_row() {
   notes=${left_out:+without $left_out}
   ((status == 0)) || notes+="${notes:+; }$results: $(awk '$2 != 0 { print $1 ".log" }' "$results/steps" | xargs)"
   row "$release" "$way" "$set_up" "$(word "$(status_of demo)")" "$(counts)" \
-    "$(seconds_of given)" "$(seconds_of demo)" "$(seconds_of tests)" "$notes"
+    "$(seconds_of set-up)" "$(seconds_of demo)" "$(seconds_of tests)" "$notes"
   if [[ -z $keep ]]; then
     rm -rf --one-file-system "$current"
   fi
@@ -221,12 +225,16 @@ report_row() {
   return "$status"
 }
 
-status=0
-: >"$out/table.txt"
-row release way set-up demo tests given-s demo-s tests-s notes
-for release in "${releases[@]}"; do
-  for way in "${ways[@]}"; do
-    one "$release" "$way" || status=1
+# in one piece: the script may change while it runs
+main() {
+  local status=0 release way
+  : >"$out/table.txt"
+  row release way set-up demo tests set-up,s demo,s tests,s notes
+  for release in "${releases[@]}"; do
+    for way in "${ways[@]}"; do
+      one "$release" "$way" || status=1
+    done
   done
-done
-exit "$status"
+  exit "$status"
+}
+main

@@ -21,8 +21,12 @@ step() {
 install() { apt-get -qq update && apt-get -qq -y -o Dpkg::Use-Pty=0 --no-install-recommends install "$@"; }
 
 readme_commands() {
+  local began
   cd "$tree" || return 1
+  began=$(date +%s)
   step demo "${runner[@]}" tools/demo.sh || return 1
+  # the source of LAMMPS is put there at the end of set-up
+  echo "set-up 0 $(($(stat -c %Y .lammps) - began))" >>/results/steps
   step report test -s build/demo/report.html
   case $tests in
     none) ;;
