@@ -83,10 +83,12 @@ if ((${#missing[@]})); then
     for package in "${missing[@]}"; do
       is_optional "$package" || wanted+=("$package")
     done
-    for package in "${wanted[@]}"; do
-      possible "$package" || die "apt-get cannot install $package: $(why_not "$package")"
-    done
-    ((${#wanted[@]} == 0)) || possible "${wanted[@]}" || die "apt-get cannot install all of: ${wanted[*]}"
+    if ((${#wanted[@]})) && ! possible "${wanted[@]}"; then
+      for package in "${wanted[@]}"; do
+        possible "$package" || die "apt-get cannot install $package: $(why_not "$package")"
+      done
+      die "apt-get can install each of these, but not all: ${wanted[*]}"
+    fi
     for package in "${missing[@]}"; do
       if ! is_optional "$package"; then
         continue
