@@ -1,5 +1,5 @@
 #!/bin/bash
-# Layout of the C++ (clang-format), style of the Python (flake8), static analysis of the C++ (cppcheck).
+# Layout of the C++ (clang-format), style and types of the Python (flake8, mypy), static analysis of the C++ (cppcheck).
 # Prints what is wrong, and ends with status 1 if anything is. JOBS=<n>: processes at a time (default 2).
 set -euo pipefail
 export LC_ALL=C
@@ -39,6 +39,10 @@ done
 # --- Python: .flake8 ---
 
 if has flake8 "the Python"; then flake8 || failed=1; fi
+
+# --- types of the tools: mypy.ini ---
+
+if has mypy "the types of the Python"; then mypy --no-error-summary || failed=1; fi
 
 # --- static analysis: what is known stands in cppcheck.txt ---
 

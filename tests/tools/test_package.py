@@ -1,108 +1,82 @@
-"""cpack: what is in the .deb and the .tar.gz, and that they run where they are unpacked; see doc/src/build.rst.
-
-They are installed, with what they need from the release, by tests/machines.sh."""
-
-import hashlib
+"""The package from a script: the example of the page, and what --debug and a bug look like."""
+import importlib
 import os
 import re
-import shutil
 import subprocess
-from pathlib import Path
+import sys
 
 import pytest
 import yaml
 
-TOP = Path(__file__).resolve().parents[2]
-BUILD = Path(os.environ.get("SLOPE_BUILD", TOP / "build"))
-VERSION = re.search(r'SLOPE_VERSION "(.*)"', (TOP / "src" / "slope_version.h").read_text())[1]
+import tiny_collapse
+from run_helpers import TOOLS, TOP
 
-pytestmark = [
-    pytest.mark.skipif(not (BUILD / "CPackConfig.cmake").exists(), reason=f"no build with packages in {BUILD}"),
-    pytest.mark.skipif(not shutil.which("dpkg-shlibdeps"), reason="dpkg-dev is not installed"),
-    pytest.mark.skipif("SLOPE_PLUGIN" in os.environ, reason="a plugin is no package of its own"),
-]
+sys.path.insert(0, str(TOOLS))
 
+from slope_tools import cli  # noqa: E402  (after the path is set)
+from slope_tools.commands import polygon, study  # noqa: E402
+from slope_tools.errors import SlopeError  # noqa: E402
 
-@pytest.fixture(scope="module")
-def made(tmp_path_factory):
-    """The folder with both packages, and beside them what is in them."""
-    folder = tmp_path_factory.mktemp("cpack")
-    done = subprocess.run(["cpack", "--config", str(BUILD / "CPackConfig.cmake"), "-B", str(folder)], cwd=folder,
-                          text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
-    assert done.returncode == 0, done.stdout[-2000:]
-    deb, = folder.glob("slope-*.deb")
-    tar, = folder.glob("slope-*.tar.gz")
-    subprocess.run(["dpkg-deb", "-x", str(deb), str(folder / "deb")], check=True)
-    (folder / "tar").mkdir()
-    subprocess.run(["tar", "-xf", str(tar), "-C", str(folder / "tar")], check=True)
-    return folder
+EXAMPLE = TOP / "doc" / "src" / "examples" / "clear_the_road.py"
+PAGE = TOP / "doc" / "src" / "python_package.rst"
 
 
-def field(folder, name):
-    deb, = folder.glob("slope-*.deb")
-    return subprocess.check_output(["dpkg-deb", "-f", str(deb), name], text=True).strip()
+def test_the_example_of_the_page(tmp_path, monkeypatch):
+    """It says what `slope study` said at the study's own angle, more for a flatter cut, and draws the map."""
+    monkeypatch.chdir(tmp_path)
+    tiny_collapse.write_case("case")
+    assert cli.main(["study", "case/in.tiny", "--set", "rolling=0,0.1", "--set", "steps=900", "--road",
+                     "case/road.csv", "--local", "-o", "out"]) == 0
+    done = subprocess.run([sys.executable, str(EXAMPLE), "out", "case/road.csv", "map.png"], text=True,
+                          capture_output=True, env=os.environ)
+    assert done.returncode == 0, done.stderr
+    runs = yaml.safe_load((tmp_path / "out" / "study.yaml").read_text())["runs"]
+    for row in runs:
+        told = [float(value) for value in re.findall(rf"{row['run']}: cut of .* degrees, (\S+) m3", done.stdout)]
+        assert len(told) == 3 and told[0] >= told[1] >= told[2] > 0
+        assert told[1] == pytest.approx(row["remove_m3"], abs=0.051)
+    assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
 
 
-def outside():
-    """The environment without what leads to the checkout's programs."""
-    return {key: value for key, value in os.environ.items()
-            if key not in ("LMP", "SLOPE_TOOLS", "DUMP2VTK", "LIBLAMMPS")}
+def test_the_example_tells_bad_input_in_one_line(tmp_path):
+    done = subprocess.run([sys.executable, str(EXAMPLE), "nowhere", "road.csv", "map.png"], text=True,
+                          capture_output=True, cwd=tmp_path, env=os.environ)
+    assert done.returncode == 1 and re.fullmatch(r"clear_the_road.py: nowhere/study.yaml: .*\n", done.stderr)
 
 
-def test_names_tell_version_and_release(made):
-    lines = Path("/etc/os-release").read_text().splitlines()
-    release = dict(line.split("=", 1) for line in lines if "=" in line)
-    name = "-".join(release[key].strip('"') for key in ("ID", "VERSION_ID") if key in release)
-    assert sorted(path.suffix for path in made.glob(f"slope-{VERSION}-{name}-*")) == [".deb", ".gz"]
-    assert field(made, "Version") == f"{VERSION}-1~{name.replace('-', '')}"
+def test_the_calls_of_the_page_are_there():
+    calls = re.findall(r"``((?:survey|case|deposit|ensemble|report|drawing)\.[\w.]+)", PAGE.read_text(encoding="ascii"))
+    assert len(calls) > 12
+    for call in calls:
+        if call == "drawing.maps":
+            continue
+        module, _, name = call.rpartition(".")
+        assert callable(getattr(importlib.import_module(f"slope_tools.{module}"), name)), call
 
 
-def test_files_in_the_way_of_no_other_package(made):
-    """All in /opt/slope, but links of names that Debian's lammps does not have, and of the licence for Debian."""
-    root = made / "deb"
-    elsewhere = sorted(str(path.relative_to(root)) for path in root.rglob("*")
-                       if not path.is_dir() and root / "opt" / "slope" not in path.parents)
-    programs = ["slope", "slope-lmp"] + ["dump2vtk"] * (BUILD / "dump2vtk").exists()
-    assert elsewhere == sorted([f"usr/bin/{name}" for name in programs] + ["usr/share/doc/slope/copyright"])
-    for name in elsewhere:
-        assert (root / name).is_symlink() and (root / name).resolve().is_file(), name
+@pytest.mark.parametrize("debug", [False, True])
+def test_bad_input_is_a_line_and_debug_shows_where(debug, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(["--debug"] * debug + ["polygon", "none.geojson", "--terrain", "none.asc", "-o", "out.csv"]) == 2
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[-1].startswith("slope polygon: ")
+    assert (len(lines) == 1) != debug and ("Traceback" in lines[0]) == debug
 
 
-def test_what_it_depends_on(made):
-    """What its programs are linked with, and the Python modules of tools/packages.txt; the tarball says the same."""
-    depends = {word.split()[0] for word in field(made, "Depends").split(", ")}
-    text = (TOP / "tools" / "packages.txt").read_text().split("\n# tools\n")[1].split("\n\n")[0]
-    modules = {line.split()[0] for line in text.splitlines()
-               if line.startswith("python3") and " without: " not in line}
-    assert {"python3-numpy", "python3-yaml"} <= modules <= depends
-    assert {"libc6", "libstdc++6", "openmpi-bin"} <= depends
-    assert any(name.startswith("libvtk9") for name in depends) == (BUILD / "dump2vtk").exists()
-    needs, = made.glob("tar/slope-*/share/slope/needs.txt")
-    assert set(needs.read_text().split()) == depends
+def test_a_bug_is_told_as_one_and_debug_raises_it(monkeypatch, capsys):
+    def broken(*_):
+        raise KeyError("depth")
+    monkeypatch.setattr(study, "check_settings", broken)
+    words = ["study", "deck", "--set", "a=1", "-o", "out"]
+    assert cli.main(words) == 1
+    error = capsys.readouterr().err
+    assert re.fullmatch(r"slope study: a bug in the tools: KeyError: 'depth' \(test_package.py, line \d+\); .*\n",
+                        error)
+    with pytest.raises(KeyError):
+        cli.main(["--debug", *words])
 
 
-@pytest.mark.parametrize("kind", ["deb", "tar"])
-def test_a_study_where_it_was_unpacked(made, kind, tmp_path):
-    """Through the links of the .deb, and of the .tar.gz with the lmp beside slope: balls of 8 m, a second."""
-    at = made / "deb" / "opt" / "slope" if kind == "deb" else next(made.glob("tar/slope-*"))
-    slope = made / "deb" / "usr" / "bin" / "slope" if kind == "deb" else at / "bin" / "slope"
-    case = at / "share" / "slope" / "inputs" / "20_embankment" / "in.embankment"
-    done = subprocess.run([slope, "study", case, "--set", "d=8", "--set", "duration=1", "-o", "out"], cwd=tmp_path,
-                          env=outside(), text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
-    assert done.returncode == 0, done.stdout[-2000:]
-    about, = (tmp_path / "out").rglob("variables.yaml")
-    lmp = hashlib.sha256((at / "bin" / "lmp").read_bytes()).hexdigest()
-    assert yaml.safe_load(about.read_text())["lmp_sha256"] == lmp
-    assert list((tmp_path / "out").rglob("finished.yaml"))
-
-
-def test_nothing_is_left_when_it_is_removed(made):
-    """prerm takes away what Python wrote beside the sources, and nothing else."""
-    deb, = made.glob("slope-*.deb")
-    script = subprocess.check_output(["dpkg-deb", "-I", str(deb), "prerm"], text=True)
-    root = made / "deb"
-    (root / "opt" / "slope" / "share" / "slope" / "tools" / "slope_tools" / "__pycache__").mkdir(exist_ok=True)
-    before = {path for path in root.rglob("*") if "__pycache__" not in path.parts}
-    script = script.replace("/opt/slope", str(root / "opt" / "slope"))
-    subprocess.run(["sh", "-c", script, "prerm", "remove"], check=True)
-    assert set(root.rglob("*")) == before
+def test_polygon_raises_for_a_script(tmp_path):
+    """A room raises SlopeError with the line, and prints nothing."""
+    with pytest.raises(SlopeError, match="none.csv"):
+        polygon.polygons.read_local(tmp_path / "none.csv", None)
