@@ -1,5 +1,4 @@
 """Coordinate reference systems: are two the same, is a metre a metre."""
-import math
 import sys
 
 import numpy as np
@@ -51,15 +50,13 @@ def require_metres(crs, where):
 
 def warn_of_stretch(raster):
     """Warn where a metre of the CRS is not a metre on the ground (Web Mercator at 37 N: 0.8 m), by more than 1 %."""
+    from pyproj import Proj
     x, y = raster.transform * (raster.z.shape[1] / 2, raster.z.shape[0] / 2)
-    lon, lat = np.radians(transform(raster.crs, CRS.from_epsg(4326), x + np.array([0, 1, 0]), y + np.array([0, 0, 1])))
-    a, e2 = 6378137.0, 0.00669438  # WGS 84: half axis (m), eccentricity squared
-    n = a / math.sqrt(1 - e2 * math.sin(lat[0]) ** 2)  # radii of curvature, m: prime vertical, meridian
-    m = n ** 3 * (1 - e2) / a ** 2
-    for i in (1, 2):
-        metre = math.hypot(n * math.cos(lat[0]) * (lon[i] - lon[0]), m * (lat[i] - lat[0]))
-        if not abs(metre - 1) < STRETCH:
-            return warn(f"a metre in {crs_name(raster.crs)} is {metre:.3f} m on the ground: choose a local CRS")
+    projection = Proj(raster.crs.to_wkt())
+    factors = projection.get_factors(*projection(x, y, inverse=True))
+    for scale in (factors.parallel_scale, factors.meridional_scale):
+        if not abs(1 / scale - 1) < STRETCH:
+            return warn(f"a metre in {crs_name(raster.crs)} is {1 / scale:.3f} m on the ground: choose a local CRS")
 
 
 def transform(source, target, x, y):

@@ -9,6 +9,7 @@ import logging
 import os
 import re
 from pathlib import Path
+from typing import List, Tuple
 
 import fiona
 import numpy as np
@@ -179,7 +180,9 @@ def crossing(where, geometry):
 
 def _read_rings(path, text):
     """The polygons that the rings of a text in the deck's format make by the even-odd rule."""
-    rings, points, first = [], [], 0  # rings: the line it starts at, its polygon
+    rings: List[Tuple[int, Polygon]] = []       # the line it starts at, its polygon
+    points: List[Tuple[float, ...]] = []
+    first = 0
 
     def close():
         if points:
@@ -224,7 +227,8 @@ def _even_odd(path, rings):
     """Polygons of the rings (line, polygon): one inside of another is a hole, one inside of the hole an island."""
     rings.sort(key=lambda ring: -ring[1].area)  # what contains a ring comes before it
     bounds = np.array([polygon.bounds for _, polygon in rings])
-    depth, holes = [], [[] for _ in rings]
+    depth: List[int] = []
+    holes: List[List[int]] = [[] for _ in rings]
     for i, (line, polygon) in enumerate(rings):
         low, high = bounds[:i, :2] < bounds[i, 2:], bounds[:i, 2:] > bounds[i, :2]
         around = []
@@ -301,8 +305,8 @@ def map_points(geometry, function):
     parts = polygons_of(geometry)
     rings = [np.asarray(ring.coords)[:, :2] for part in parts for ring in (part.exterior, *part.interiors)]
     points = function(np.concatenate(rings))
-    rings = iter(np.split(points, np.cumsum([len(ring) for ring in rings])[:-1]))
-    new = [Polygon(next(rings), [next(rings) for _ in part.interiors]) for part in parts]
+    moved = iter(np.split(points, np.cumsum([len(ring) for ring in rings])[:-1]))
+    new = [Polygon(next(moved), [next(moved) for _ in part.interiors]) for part in parts]
     return new[0] if len(new) == 1 else MultiPolygon(new)
 
 
