@@ -19,9 +19,9 @@ for event in frank s1000; do
 done
 
 # what each event allows
-"$slope" calibrate frank/in.frank --front 3080 --area 3.57e6 --tolerance 0.05 $vary $chance --set d=20 --runs 30 \
-  --jobs "$jobs" -o frank.fit
-"$slope" calibrate s1000/in.s1000 --observed s1000/deposit.asc --tolerance 0.1 $vary $chance --set d=2.4 --runs 30 \
+"$slope" calibrate frank/in.frank --front 3080 --area 3.57e6 --tolerance front=0.05 --tolerance area=0.15 $vary \
+  $chance --set d=20 --runs 30 --jobs "$jobs" -o frank.fit
+"$slope" calibrate s1000/in.s1000 --observed s1000/deposit.asc --tolerance 0.1 $vary $chance --set d=3 --runs 30 \
   --jobs "$jobs" -o s1000.fit
 
 # its best values with small balls, and what the other event becomes with them

@@ -30,7 +30,8 @@ def main():
         print(f"{last['distance']:10.0f} {about['travel']['front']:9.0f} {last['reach_angle']:10.1f} "
               f"{covered(prefix, 'max_thickness', 0.1, cell):10.3f} {covered(prefix, 'max_thickness', 1, cell):7.3f} "
               f"{covered(prefix, 'thickness', 0.1, cell):10.3f} {100 * volume['lost'] / volume['released']:8.2f} "
-              f"{about['time']:7.1f} {str(about['at_rest']).lower():>8} {about['guards']['largest_overlap']:8.3f}  {prefix}")
+              f"{about['time']:7.1f} {str(about['at_rest']).lower():>8} {about['guards']['largest_overlap']:8.3f}  "
+              f"{prefix}")
 
 
 if __name__ == "__main__":

@@ -39,7 +39,7 @@ def run(case, folder, **variables):
     """Run the case's deck in the folder that its prepare.sh made; log and summary."""
     name = case.name.split("_")[1]
     log = run_deck((folder / f"in.{name}").read_text(), folder, vars=variables)
-    return log, yaml.safe_load((folder / f"{name}.summary.yaml").read_text())
+    return log, yaml.safe_load((folder / f"{variables.get('out', name)}.summary.yaml").read_text())
 
 
 def within(summary):
@@ -48,7 +48,7 @@ def within(summary):
 
 
 def mountain():
-    """Ground without the body, and thickness of the body, rows from the south: a face of 35 degrees above level ground."""
+    """Ground without the body, thickness of the body; rows from the south: a face of 35 degrees above level ground."""
     x = CELL * (numpy.arange(SIDE) + 0.5)
     slip = numpy.tile(numpy.interp(x, [0, 500], [350, 0]), (SIDE, 1))
     pile = numpy.zeros_like(slip)
@@ -98,9 +98,18 @@ def test_the_ground_stays_as_rough_when_the_balls_change(frank):
     ground = {}
     for d, spacing in ((40, 0.5), (20, 0.5), (20, 1.0)):
         log, _ = run(FRANK, frank, d=d, spacing=spacing, duration=0.01)
-        ground[d, spacing] = re.search(r"field: \d+ fixed balls of (diameter \S+) .* plan grid every (\S+),", log).groups()
+        ground[d, spacing] = re.search(r"field: \d+ fixed balls of (\S+ \S+) .* plan grid every (\S+),", log).groups()
     assert ground[40, 0.5] == ground[20, 0.5] == ("diameter 15", "7.5")
     assert ground[20, 1.0] == ("diameter 15", "15")
+
+
+def test_a_run_goes_on_from_its_restart(frank):
+    """As slope study continues one that was stopped: what was released stays known, and the clock goes on."""
+    _, short = run(FRANK, frank, d=20, duration=6, out="short")
+    log, summary = run(FRANK, frank, d=20, duration=9, out="short", restart="short.1.restart")
+    assert summary["volume"] == pytest.approx(short["volume"], rel=1e-9, abs=1e-6)
+    assert summary["time"] == pytest.approx(9, rel=0.01) and "Created" not in log.split("read_restart")[1][:200]
+    assert summary["travel"]["top"] == short["travel"]["top"]
 
 
 def test_rasters_of_different_grids_are_refused(tmp_path):
