@@ -99,7 +99,7 @@ class Fit:
             doubts.append(f"{len(targets)} observed numbers cannot tell {len(self.variables)} variables")
         blind = [target.name for target, one in zip(targets, found.emulators) if not one.noise_seen]
         if blind:
-            doubts.append(f"the runs are too few to show the chance of {', '.join(blind)}: the region may be too narrow")
+            doubts.append(f"too few runs to show the chance of {', '.join(blind)}: the region may be too narrow")
         moving = sum(not row["at_rest"] for row in self.rows.values() if row["status"] == "finished")
         if moving:
             doubts.append(f"{moving} deposits are not at rest")
