@@ -23,6 +23,9 @@ def main():
     parser.add_argument("folder", type=Path, metavar="FOLDER")
     parser.add_argument("-o", dest="output", type=Path, required=True, metavar="BEFORE.asc")
     args = parser.parse_args()
+    for name in ("Frankslide_topography.asc", "Frankslide_pile.asc"):
+        if not (args.folder / name).is_file():
+            parser.error(f"{args.folder / name}: must be an existing file: README.md says where it is from")
     header, slip = read(args.folder / "Frankslide_topography.asc")
     place, pile = read(args.folder / "Frankslide_pile.asc")
     if [line.split() for line in header] != [line.split() for line in place]:

@@ -19,6 +19,9 @@ def main():
     parser.add_argument("folder", type=Path, metavar="FOLDER")
     parser.add_argument("-o", dest="output", type=Path, required=True, metavar="DEPOSIT.asc")
     args = parser.parse_args()
+    for name in ("DEM_of_Difference.asc",):
+        if not (args.folder / name).is_file():
+            parser.error(f"{args.folder / name}: must be an existing file: README.md says where it is from")
     lines = (args.folder / "DEM_of_Difference.asc").read_text().splitlines()
     change = np.array([line.split() for line in lines[6:] if line.strip()], float)
     rows = (" ".join(f"{z:.6g}" for z in row) for row in np.where(change == NODATA, 0.0, np.maximum(change, 0.0)))

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import yaml
 
-NODATA = -9999.0
+FILES = ("surface.asc", "base.asc", "summary.yaml")     # of fix deposit/grid, that are read
 
 
 def read(path):
@@ -57,6 +57,9 @@ def main():
     parser.add_argument("--band", type=float, default=100.0, metavar="M", help="width of a zone, m (default 100)")
     parser.add_argument("-o", dest="output", type=Path, metavar="ZONES.csv", help="(default PREFIX.zones.csv)")
     args = parser.parse_args()
+    for path in (args.before, args.change, *(Path(f"{args.prefix}.{name}") for name in FILES)):
+        if not path.is_file():
+            parser.error(f"{path}: must be an existing file")
     _, before = read(args.before)
     _, measured = read(args.change)
     if measured.shape != before.shape:

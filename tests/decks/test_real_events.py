@@ -122,6 +122,16 @@ def test_rasters_of_different_grids_are_refused(tmp_path):
     assert not (tmp_path / "out.asc").exists()
 
 
+def test_data_that_is_not_there_is_one_line(tmp_path):
+    for case in (FRANK, S1000):
+        told = subprocess.run([case / "prepare.sh", tmp_path, tmp_path / "case"], capture_output=True, text=True,
+                              check=False, env=ENVIRONMENT)
+        assert told.returncode == 2 and "must be an existing file" in told.stderr and "Traceback" not in told.stderr
+    told = subprocess.run([S1000 / "zones.py", tmp_path / "run", "--before", "none.asc", "--change", "none.asc"],
+                          capture_output=True, text=True, check=False)
+    assert told.returncode == 2 and "none.asc: must be an existing file" in told.stderr
+
+
 # --- S-1000 ---
 
 def hillside():
