@@ -85,7 +85,7 @@ def test_a_small_mountain_falls(frank):
     far = {}
     for name, variables in (("rough", {"friction": 30, "spacing": 1.0, "rolling": 0.1}),
                             ("smooth", {"friction": 8, "spacing": 0.3, "rolling": 0.0})):
-        log, summary = run(FRANK, frank, d=20, duration=60, **variables)
+        log, summary = run(FRANK, frank, d=25, duration=30, **variables)
         assert summary["volume"]["released"] == pytest.approx(volume, rel=2e-3)
         assert abs(summary["volume"]["residual"]) <= 1e-9 * volume
         assert summary["guards"]["deep_contacts"] == 0 and "too small" not in log
@@ -153,7 +153,7 @@ def s1000(tmp_path_factory):
         write_asc(data / f"{name}.asc", values, xlo=361015.5, ylo=70223.25, cell=10.0)
     folder = prepare(S1000, data, tmp_path_factory.mktemp("case") / "s1000")
     shutil.copy(data / "DEM_of_Difference.asc", folder)
-    _, summary = run(S1000, folder, d=2.5, duration=30, friction=10, spacing=0.4, rolling=0.0)
+    _, summary = run(S1000, folder, d=4, duration=15, friction=10, spacing=0.4, rolling=0.0)
     return folder, summary
 
 
