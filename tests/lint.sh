@@ -1,5 +1,5 @@
 #!/bin/bash
-# Layout of the C++ (clang-format), style of the Python (flake8), static analysis of the C++ (cppcheck).
+# Layout of the C++ (clang-format), style and types of the Python (flake8, mypy), static analysis of the C++ (cppcheck).
 # Prints what is wrong, and ends with status 1 if anything is. JOBS=<n>: processes at a time (default 2).
 set -euo pipefail
 export LC_ALL=C
@@ -7,7 +7,7 @@ export LC_ALL=C
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 failed=0
 
-for program in clang-format flake8 cppcheck; do
+for program in clang-format flake8 mypy cppcheck; do
   command -v "$program" >/dev/null || { echo "lint: $program is not there: run tools/setup.sh" >&2; exit 2; }
 done
 
@@ -24,6 +24,10 @@ done
 # --- Python: .flake8 ---
 
 flake8 || failed=1
+
+# --- types of the tools: mypy.ini ---
+
+mypy --no-error-summary || failed=1
 
 # --- static analysis: what is known stands in cppcheck.txt ---
 

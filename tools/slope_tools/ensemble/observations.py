@@ -8,7 +8,7 @@ volume on the road.
 """
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Optional
+from typing import Any, Dict, List, Mapping, Optional, Tuple
 
 import numpy as np
 
@@ -84,16 +84,17 @@ class Observations:
         self.wanted = wanted
         self.targets: List[Target] = []
         self.mapped: Optional[score.Observed] = None
-        self.grid = self.edges = None
+        self.shape: Tuple[int, ...] = ()        # of the grid of the first run
+        self.edges = np.empty(0)                # of the bands of distance, m
 
     def measure(self, summary: Path, terrain: Optional[Path], row: Mapping[str, Any]) -> np.ndarray:
         """The outputs of a run, in the order of the targets; row: of the table of `slope study`."""
         run_ = deposit.read(run_folders.prefix_of(summary), terrain, lambda text: None)
         if not self.targets:
             self._set_targets(run_)
-        elif self.grid.shape != run_.raster.z.shape or not self.transform.almost_equals(run_.raster.transform):
+        elif self.shape != run_.raster.z.shape or not self.transform.almost_equals(run_.raster.transform):
             raise SlopeError(summary, "must have the grid of the other runs: cells cannot be varied here")
-        outputs = self._of_map(run_) if self.mapped is not None else []
+        outputs = self._of_map(run_, self.mapped) if self.mapped is not None else []
         if self.wanted.front is not None:
             if row.get(travel_shares.DISTANCE) is None:
                 raise SlopeError(summary, "must tell the distance of 99 % of the volume (travel: quantiles)")
@@ -106,27 +107,28 @@ class Observations:
         return np.array(outputs, float)
 
     def _set_targets(self, run_: deposit.Deposit) -> None:
-        wanted, found = self.wanted, []
-        self.grid, self.transform = run_.raster.z, run_.raster.transform
+        wanted = self.wanted
+        found: List[Target] = []
+        self.shape, self.transform = run_.raster.z.shape, run_.raster.transform
 
         def relative(name, unit, value, whole=None, kind="observed"):
             scale = value if whole is None else whole
             found.append(Target(name, unit, float(value), float(wanted.share(kind) * scale)))
 
         if wanted.observed is not None:
-            self.mapped = score.read_observed(wanted.observed, run_.raster, wanted.threshold, wanted.local)
-            if not self.mapped.share.any():
+            mapped = self.mapped = score.read_observed(wanted.observed, run_.raster, wanted.threshold, wanted.local)
+            if not mapped.share.any():
                 raise SlopeError(wanted.observed, f"must be somewhere thicker than {wanted.threshold:g} m on the grid")
             found.append(Target("lack of overlap", "1 - CSI", None, wanted.share("observed")))
             distance = self.distance = distances(run_)
-            outline = self.mapped.thickness is None
-            weight = self.mapped.share if outline else self.mapped.thickness
+            outline = mapped.thickness is None
+            weight: np.ndarray = mapped.share if mapped.thickness is None else mapped.thickness
             of = distance[weight > 0], weight[weight > 0]
             for share in SHARES[outline]:
                 relative(f"{100 * share:g} % of the {'area' if outline else 'volume'} within", "m",
                          reach.within(*of, share))
             if outline:
-                relative("area", "m2", float(weight.sum()) * run_.cell ** 2 + self.mapped.outside)
+                relative("area", "m2", float(weight.sum()) * run_.cell ** 2 + mapped.outside)
             else:
                 self.edges = np.array([reach.within(*of, k / ZONES) for k in range(1, ZONES)])
                 total = float(weight.sum()) * run_.cell ** 2
@@ -138,10 +140,10 @@ class Observations:
                 relative(name, unit, getattr(wanted, kind), kind=kind)
         self.targets = found
 
-    def _of_map(self, run_: deposit.Deposit) -> List[float]:
+    def _of_map(self, run_: deposit.Deposit, mapped: score.Observed) -> List[float]:
         simulated = run_.raster.z > self.wanted.threshold
-        overlap = score.overlap(simulated, self.mapped, run_.cell)
-        outline = self.mapped.thickness is None
+        overlap = score.overlap(simulated, mapped, run_.cell)
+        outline = mapped.thickness is None
         weight = simulated.astype(float) if outline else run_.raster.z
         outputs = [1 - (overlap["jaccard"] or 0.0)]
         there = weight > 0
