@@ -226,7 +226,7 @@ def test_without_a_restart_file_it_starts_anew(slope, here, cut, break_it):
         break_it(cut / name)
     status, told, err = slope(arguments())
     assert status == 0, err
-    assert f"[1/1] {FOLDER}: starts anew: it left no complete restart file\n" in told
+    assert f"[1/1] {FOLDER}: starts again: it left no complete restart file\n" in told
     assert not (cut / "log.1.lammps").exists()
 
 
@@ -265,13 +265,13 @@ def edit(path, old, new):
 
 
 @pytest.mark.parametrize("change, why", [
-    (lambda cut: edit("case/in.tiny", "restitution 0.1", "restitution 0.2"), "it was begun with another in.tiny"),
+    (lambda cut: edit("case/in.tiny", "restitution 0.1", "restitution 0.2"), "it was started with another in.tiny"),
     (lambda cut: edit("case/terrain.asc", "8.0000 8.0000\n", "8.0000 8.1000\n"),
-     "it was begun with another terrain.asc"),
+     "it was started with another terrain.asc"),
     (lambda cut: edit(cut / "variables.yaml", "lmp_sha256: ", "lmp_sha256: 0"),
-     "it was begun with another LAMMPS program"),
+     "it was started with another LAMMPS program"),
     (lambda cut: edit(cut / "variables.yaml", "package: ", "package: x"),
-     "it was begun with another version of the package"),
+     "it was started with another version of the package"),
     (lambda cut: (edit("case/in.tiny", "read_restart ${restart}", "read_restart none"),
                   edit(cut / "in.tiny", "read_restart ${restart}", "read_restart none")),
      "in.tiny has no read_restart ${restart}"),
@@ -281,7 +281,7 @@ def test_a_run_of_something_else_starts_anew(slope, here, cut, change, why):
     change(cut)
     status, told, err = slope(arguments())
     assert status == 0, err
-    assert f"[1/1] {FOLDER}: starts anew: {why}\n" in told
+    assert f"[1/1] {FOLDER}: starts again: {why}\n" in told
     assert not (cut / "rubbish").exists()
 
 

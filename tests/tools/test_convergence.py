@@ -283,7 +283,7 @@ def test_a_failed_size_is_told_and_the_others_are_fitted(slope):
     ("--converge d=1,0", "--converge: must give numbers > 0 for d, which is led to 0, got 0"),
     ("--converge terrain=a.asc,b.asc", "--converge: must give numbers > 0 for terrain"),
     ("--converge colour=1,2", "--converge: must name an index variable of case/in.tiny"),
-    ("--converge d=1,2 --vary friction=20", "--converge: must stand without --vary"),
+    ("--converge d=1,2 --vary friction=20", "--converge: must be given without --vary"),
     ("--converge d=1,2 --set d=3", "--converge: must not name a variable of --set, got d"),
     ("--converge d=1,2 --repeat xoffset=0", "--repeat: must give a value that the first run does not have, got "
      "xoffset=0"),

@@ -230,7 +230,7 @@ LINES = ["0,1", "0.01,2", "0.02,1", "0.03,0", "0.04,1"]
     ("time,size (gal)", LINES, "a.csv, line 1: columns must be time and EW, NS or UD, got 'size'"),
     ("0,1", LINES, "a.csv, line 1: the first line must name the columns, such as time,EW (gal),NS (gal), got '0,1'"),
     ("time,EW (gal)", LINES[:1], "a.csv: must hold at least two lines of values, got 1"),
-    ("time,EW (m/s2)", ["0,0", "0.01,300", "0.02,-300"], "at most 50 m/s2 is believed: the unit (--unit) or"),
+    ("time,EW (m/s2)", ["0,0", "0.01,300", "0.02,-300"], "at most 50 m/s2: the unit (--unit) or"),
     ("time,EW (gal)", ["0,3", "0.01,3", "0.02,3"], "a.csv: must hold a motion, the acceleration is constant"),
 ])
 def test_a_csv_that_is_wrong(slope, head, lines, message):
@@ -306,7 +306,7 @@ def test_window(slope):
     ("--band 5 1", "--band: must be 0 < LOW < HIGH"), ("--peak 0", "--peak: must be > 0, got 0"),
     ("--scale 0", "--scale: must not be 0, got 0"),
     ("--peak 6000", "--peak: a largest acceleration of at most 5000 gal"),
-    ("--scale 100", "--scale: a largest acceleration of at most 5000 gal is believed"),
+    ("--scale 100", "--scale: must give a largest acceleration of at most 5000 gal"),
     ("--peak x", "must be a finite number, got 'x'")])
 def test_options_that_are_wrong(slope, options, message):
     knet("a.EW", EW, "E-W")

@@ -346,7 +346,7 @@ def test_resume_after_a_kill(slope, here, how, status):
     wait_for(lambda: not processes_in(out), "the end of the run that was under way", 10)
     assert "Loop time" not in (second / "log.lammps").read_text()       # it did not just come to its end
     if how != signal.SIGKILL:
-        assert "stopped with 1 of 3 runs finished; the same command goes on" in told
+        assert "stopped with 1 of 3 runs finished; the same command continues" in told
         assert complaint == "slope study: interrupted\n"
     assert (out / "steps_2000_rolling_0" / "finished.yaml").exists()
     assert not (second / "finished.yaml").exists() and not (out / "study.yaml").exists()

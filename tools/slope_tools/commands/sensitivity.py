@@ -62,7 +62,7 @@ def run(args):
     setup = run_arguments.setup_of(args)
     if args.converge:
         if args.vary:
-            raise SlopeError("--converge", "must stand without --vary: a study of one kind at a time", args.vary[0])
+            raise SlopeError("--converge", "must be given without --vary: one kind of study at a time", args.vary[0])
         from ..ensemble import size_study
         return size_study.run(setup, args.converge, base, repeated, of, {name: NAMES[name] for name in of})
     todo = plan(setup, base, kinds)

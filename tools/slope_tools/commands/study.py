@@ -17,7 +17,7 @@ from .run_arguments import add_deck, add_intensity, add_repeats, add_runs, add_s
 EPILOG = """\
 units: metres, seconds, m3 of ground (bulk); thresholds of --exceed in metres.
 
-example: six runs, as many at a time as there are cores; the same command goes on after an interruption:
+example: six runs, as many at a time as there are cores; the same command continues after an interruption:
   tools/slope study inputs/20_embankment/in.embankment --set rolling=0:0.1:0.05 --set friction=25,30 -o out
 
 with a conservative volume that counts the chance: every combination three times, from other offsets of the lattice:

@@ -38,7 +38,7 @@ class Display:
             self.live.stop()
         if kind is not None and issubclass(kind, KeyboardInterrupt):
             done = self.done_before + self.ended_runs - self.failed
-            self.say(f"stopped with {done} of {self.total} runs finished; the same command goes on")
+            self.say(f"stopped with {done} of {self.total} runs finished; the same command continues")
 
     def say(self, line):
         if self.live:

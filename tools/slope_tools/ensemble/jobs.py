@@ -223,7 +223,7 @@ class Work:
         said = "started"
         if one.folder.exists():
             one.restart, why = self._last_restart(one)
-            said = f"starts anew: {why}"
+            said = f"starts again: {why}"
         if one.restart:
             step, path = one.restart
             said = f"continues at step {step}, from {path}"
@@ -244,11 +244,11 @@ class Work:
         for key, now, what in (("lmp_sha256", self.lmp_digest, "another LAMMPS program"),
                                ("package", self.package, "another version of the package")):
             if about.get(key) != now:
-                return None, f"it was begun with {what}"
+                return None, f"it was started with {what}"
         one.log.update()
         for name in self._inputs_of(one):
             if not (one.folder / name).is_file() or sha256(one.folder / name) != self.digests[name]:
-                return None, f"it was begun with another {name}"
+                return None, f"it was started with another {name}"
         for step, path in restarts.restarts(one.folder):
             # at a restart file of the end, or after it, LAMMPS would go on and not know that it had halted
             if (path not in one.refused and str(path.relative_to(one.folder)) not in self.digests

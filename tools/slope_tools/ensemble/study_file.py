@@ -49,7 +49,7 @@ def check_headline(path, best):
     for key in (*PARTS, "remove_m3", "kind", "repeats", "rounded"):
         if key not in best:
             raise SlopeError(path, f"conservative must have {key}: it is of another version; `slope study` with the "
-                             "same arguments writes it anew, and keeps the runs")
+                             "same arguments rewrites it and keeps the runs")
     for key in (*PARTS, "remove_m3"):
         if not (disk.is_number(best[key]) or (best[key] is None and key in PARTS and key not in ALWAYS)):
             raise ValueError(f"conservative: {key}")
@@ -60,7 +60,7 @@ def check_row(where, row, road):
     for key in (*COLUMNS, "moving_share", *(ROAD_COLUMNS if road else ())):
         if key not in row:
             raise SlopeError(where, f"must have {key}: it is of another version; `slope study` with the same "
-                             "arguments writes it anew, and keeps the runs")
+                             "arguments rewrites it and keeps the runs")
         if key in ("moving", "at_rest", "stop_reason", "end") or (key in MAYBE and row[key] is None):
             continue
         if not disk.is_number(row[key]):

@@ -45,7 +45,7 @@ def processed(components, wanted: Processing):
         steps.append(f"scaled by {factor:.6g}")
     if motions.peak(motion) > records.MOST:
         raise SlopeError("--peak" if wanted.peak else "--scale",
-                         f"a largest acceleration of at most {records.MOST / GAL:g} gal is believed",
+                         f"must give a largest acceleration of at most {records.MOST / GAL:g} gal",
                          f"{motions.peak(motion) / GAL:.6g}")
     return motion, steps
 

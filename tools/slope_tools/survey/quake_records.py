@@ -54,7 +54,7 @@ def read(path, unit=None):
     for component in found:
         most = np.abs(component.values - component.values.mean()).max()
         if most > MOST:
-            raise SlopeError(path, f"a largest acceleration of at most {MOST:g} m/s2 is believed: the unit (--unit) or "
+            raise SlopeError(path, f"the largest acceleration must be at most {MOST:g} m/s2: the unit (--unit) or "
                              "scale factor is wrong", f"{most:.6g} m/s2 ({component.name})")
     return found
 
