@@ -113,6 +113,8 @@ def test_no_package_is_ever_removed(machine):
 
 @pytest.mark.parametrize("words, conflicts, why", [
     ("Remv python3-paraview [5.11.0]", "", "it would remove python3-paraview"),
+    (" viewer : Conflicts: python3-film but 9.1 is to be installed",      # as apt says it of ParaView
+     "", "viewer, which is installed, excludes python3-film"),
     (" film-dev : Depends: python3-film (= 9.1) but it is not going to be installed",
      "installed viewer: other, python3-film, ", "viewer, which is installed, excludes python3-film"),
     (" film-dev : Depends: python3-film (= 9.1) but it is not going to be installed",
