@@ -51,6 +51,11 @@ class Emulator:
     def noise(self) -> float:
         return self.scale * math.sqrt(self.kernel.k2.noise_level)
 
+    @property
+    def noise_seen(self) -> bool:
+        """Whether the values show any; few of them in many dimensions can all be taken for the smooth part."""
+        return bool(self.kernel.k2.noise_level > 100 * NOISE[0])
+
     def at(self, points: np.ndarray) -> np.ndarray:
         """Mean of the process."""
         return self.mean + self.scale * self.process.predict(points)
