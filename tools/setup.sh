@@ -76,7 +76,7 @@ if ((${#missing[@]})); then
     command -v sudo >/dev/null || die "not root and no sudo, cannot install: ${missing[*]}"
     as_root=(sudo "DEBIAN_FRONTEND=$DEBIAN_FRONTEND")
   fi
-  say "${#missing[@]} packages are missing; apt-get installs them${as_root:+, and sudo may ask for your password}." \
+  say "packages that are missing: ${#missing[@]}; apt-get installs them${as_root:+, and sudo may ask for your password}." \
     "On a machine that has nothing: 650 to 750 MB to download, 3 GB on disk, a few minutes"
   # what failed may have nothing to do with us: install tells
   update "${as_root[@]}" apt-get -qq || say "apt-get update failed, trying to go on"

@@ -95,7 +95,7 @@ def test_what_is_missing_is_installed_in_the_names_of_this_release(machine):
     said, errors, status = machine(installed=["lint"])
     assert (errors, status) == ([], 0)
     assert really_installed(machine) == [["needed", "film-dev", "new-name"]]
-    assert "3 packages are missing" in said[0] and "disk" in said[0]
+    assert "packages that are missing: 3;" in said[0] and "disk" in said[0]
     assert said[1] == "setup: installing needed film-dev new-name (56.7 MB to download, 89.1 MB on disk)"
 
 
