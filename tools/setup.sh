@@ -43,15 +43,20 @@ possible() { apt-get -qq -s -o Debug::NoLocking=1 --no-remove --no-install-recom
 
 # why_not PACKAGE: in a few words
 why_not() {
-  local said removed needs other
+  local said removed excludes needs other
   said=$(apt-get -s -o Debug::NoLocking=1 --no-install-recommends install "$1" 2>&1) || true
   removed=$(sed -n 's/^Remv \([^ ]*\).*/\1/p' <<<"$said" | xargs)
+  # " python3-paraview : Conflicts: python3-vtk9 but 9.1.0 is to be installed"
+  excludes=$(sed -n -E 's/^ *([^ ]+) : (Conflicts|Breaks): ([^ ]+) .*/\1, which is installed, excludes \3/p;' <<<"$said" |
+    head -n 1)
   # what it needs and does not get; and who is installed that excludes that
   needs=$(sed -n 's/.* Depends: \([^ ]*\).*/\1/p' <<<"$said" | head -n 1)
   other=$(dpkg-query -W -f '${db:Status-Status} ${Package}: ${Conflicts}, ${Breaks}\n' 2>/dev/null |
     sed -n 's/^installed //p' | grep -E "[:,] *${needs:-$1}( |,|$)" | head -n 1) || true
   if [[ -n $removed ]]; then
     echo "it would remove $removed"
+  elif [[ -n $excludes ]]; then
+    echo "$excludes"
   elif [[ -n $other ]]; then
     echo "${other%%:*}, which is installed, excludes ${needs:-$1}"
   elif [[ -n $needs ]]; then
@@ -71,7 +76,7 @@ if ((${#missing[@]})); then
     command -v sudo >/dev/null || die "not root and no sudo, cannot install: ${missing[*]}"
     as_root=(sudo "DEBIAN_FRONTEND=$DEBIAN_FRONTEND")
   fi
-  say "${#missing[@]} packages are missing; apt-get installs them${as_root:+, and sudo may ask for your password}." \
+  say "packages that are missing: ${#missing[@]}; apt-get installs them${as_root:+, and sudo may ask for your password}." \
     "On a machine that has nothing: 650 to 750 MB to download, 3 GB on disk, a few minutes"
   # what failed may have nothing to do with us: install tells
   update "${as_root[@]}" apt-get -qq || say "apt-get update failed, trying to go on"

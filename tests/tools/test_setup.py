@@ -95,7 +95,7 @@ def test_what_is_missing_is_installed_in_the_names_of_this_release(machine):
     said, errors, status = machine(installed=["lint"])
     assert (errors, status) == ([], 0)
     assert really_installed(machine) == [["needed", "film-dev", "new-name"]]
-    assert "3 packages are missing" in said[0] and "disk" in said[0]
+    assert "packages that are missing: 3;" in said[0] and "disk" in said[0]
     assert said[1] == "setup: installing needed film-dev new-name (56.7 MB to download, 89.1 MB on disk)"
 
 
@@ -113,6 +113,8 @@ def test_no_package_is_ever_removed(machine):
 
 @pytest.mark.parametrize("words, conflicts, why", [
     ("Remv python3-paraview [5.11.0]", "", "it would remove python3-paraview"),
+    (" viewer : Conflicts: python3-film but 9.1 is to be installed",      # as apt says it of ParaView
+     "", "viewer, which is installed, excludes python3-film"),
     (" film-dev : Depends: python3-film (= 9.1) but it is not going to be installed",
      "installed viewer: other, python3-film, ", "viewer, which is installed, excludes python3-film"),
     (" film-dev : Depends: python3-film (= 9.1) but it is not going to be installed",
