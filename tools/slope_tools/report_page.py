@@ -1,7 +1,7 @@
 """All that a report shows, read, computed and drawn, as the template takes it."""
 import re
 
-from . import report_charts, report_convergence, report_intensity, report_numbers, runs
+from . import report_charts, report_convergence, report_frames, report_intensity, report_numbers, report_view, runs
 from .rasters import crs_name
 from .reference import read as read_reference
 from .report_charts import REMOVE, Charts
@@ -35,6 +35,7 @@ class Page:
         self.sizes = path and report_convergence.Sizes(path)
         self.warnings = warnings(self.data)
         self.numbers = report_numbers.Numbers((self.data.study or {}).get("scatter"))
+        self.frames, self.no_frames = report_frames.read(self.data.result)
         self.pictures = 0
 
     def picture(self, uri, alt, caption):
@@ -65,6 +66,7 @@ class Page:
                                      "variable": self.sizes.variable, "deck": self.sizes.deck},
             "mass_error": (one.deposit.volume - one.summary["volume"]["released"] + one.summary["volume"]["off_grid"]
                            + one.summary["volume"]["lost"]) / one.summary["volume"]["released"],
+            "view": report_view.content(data, self.ground, self.section, self.frames, self.no_frames),
             "place": self.place(), "ensemble": None}
         if study and study.get("ensemble"):
             from . import report_ensemble
