@@ -1,7 +1,8 @@
 """All that a report shows, read, computed and drawn, as the template takes it."""
 import re
 
-from . import report_charts, report_convergence, report_frames, report_intensity, report_numbers, report_view, runs
+from . import (report_charts, report_convergence, report_film, report_frames, report_heading, report_intensity,
+               report_limits, report_numbers, report_view, runs)
 from .rasters import crs_name
 from .reference import read as read_reference
 from .report_charts import REMOVE, Charts
@@ -35,7 +36,11 @@ class Page:
         self.sizes = path and report_convergence.Sizes(path)
         self.warnings = warnings(self.data)
         self.numbers = report_numbers.Numbers((self.data.study or {}).get("scatter"))
+        given = {name: getattr(args, name) for name in report_heading.FIELDS}
+        self.heading = report_heading.heading(args.folder, given)
         self.frames, self.no_frames = report_frames.read(self.data.result)
+        self.film_file = None if args.no_film else args.film_file
+        self.film = report_film.Film(None, "")
         self.pictures = 0
 
     def picture(self, uri, alt, caption):
@@ -48,6 +53,8 @@ class Page:
         one, study = data.result, data.study
         maps = Maps(data, self.ground, self.section, self.picture)
         charts = Charts(data, self.reference, self.picture)
+        if self.film_file:
+            self.film = report_film.film(data, self.ground, self.section, maps.layers, self.frames, self.film_file.name)
         removal = numbers("to remove", "m3", one.row[REMOVE], REMOVE, data.label(one)) if REMOVE in one.row else ""
         found = {
             "made": runs.now(), "study": study, "single": not study, "one": one, "summary": one.summary,
@@ -66,7 +73,8 @@ class Page:
                                      "variable": self.sizes.variable, "deck": self.sizes.deck},
             "mass_error": (one.deposit.volume - one.summary["volume"]["released"] + one.summary["volume"]["off_grid"]
                            + one.summary["volume"]["lost"]) / one.summary["volume"]["released"],
-            "view": report_view.content(data, self.ground, self.section, self.frames, self.no_frames),
+            "view": report_view.content(data, self.ground, self.section, self.frames, self.no_frames, self.film.text),
+            "heading": self.heading, "limits": report_limits.content(data, numbers),
             "place": self.place(), "ensemble": None}
         if study and study.get("ensemble"):
             from . import report_ensemble

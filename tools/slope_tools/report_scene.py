@@ -116,7 +116,7 @@ def ground_of(data, ground, box):
         return packed(np.where(np.isfinite(shares), shares, FULL + 1), "<u2")
 
     return {"columns": columns, "rows": rows, "box": [float(side) for side in box], "low": low,
-            "span": max(top - low, 1e-3), "base": heights(base), "before": heights(before), "step": width / (columns - 1),
+            "span": max(top - low, 1e-3), "base": heights(base), "before": heights(before),
             "interval": interval, "grid": figures.nice(max(width, depth) / 4)}
 
 

@@ -36,7 +36,7 @@
     ends.className = 'ends';
     const values = mode === 'speed' ? [0, about.top / 2, about.top] : [about.low, (about.low + about.top) / 2, about.top];
     for (const value of values) ends.append(Object.assign(document.createElement('span'), {textContent: +value.toPrecision(3)}));
-    const title = mode === 'speed' ? 'speed of the balls (m/s)' : 'height at the release (m)';
+    const title = mode === 'speed' ? 'speed of the balls (m/s)' : 'height at release (m)';
     box.replaceChildren(Object.assign(document.createElement('div'), {textContent: title}), bar, ends);
     if (mode === 'speed') box.append(swatch(`background: ${SlopeWorld.AT_REST}`, 'slower than 0.1 m/s'));
     box.append(swatch('background: #c6ad9a', 'slip surface'));
@@ -136,7 +136,7 @@
     /* From where: azimuth (radians from east) and elevation of the camera as it is seen from the target. */
     function look(azimuth, elevation, share) {
       const far = share * size / (2 * Math.tan(FIELD_OF_VIEW * Math.PI / 360)) / Math.min(1, camera.aspect / 1.25);
-      controls.target.set(0, 0, scene.ground.low + scene.ground.span / 3);
+      controls.target.set(0, 0, scene.ground.low + scene.ground.span / 4);
       camera.position.set(Math.cos(azimuth) * Math.cos(elevation), Math.sin(azimuth) * Math.cos(elevation),
                           Math.sin(elevation)).multiplyScalar(far).add(controls.target);
       controls.update();
@@ -146,8 +146,8 @@
     /* Down the slope along the section, radians from east. */
     const [a, b] = [scene.section[0], scene.section[scene.section.length - 1]];
     const down = Math.atan2(b[1] - a[1], b[0] - a[0]) + (scene.falls ? 0 : Math.PI);
-    const views = {oblique: () => look(down + 0.75, 0.5, 0.78), front: () => look(down, 0.3, 0.78),
-                   side: () => look(down + Math.PI / 2, 0.06, 0.7), above: () => look(-Math.PI / 2, 1.5706, 0.9)};
+    const views = {oblique: () => look(down + 0.75, 0.5, 0.92), front: () => look(down, 0.3, 0.78),
+                   side: () => look(down + Math.PI / 2, 0.15, 0.8), above: () => look(-Math.PI / 2, 1.5706, 0.9)};
 
     function resize() {
       renderer.setSize(stage.clientWidth, stage.clientHeight, false);

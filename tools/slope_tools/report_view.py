@@ -14,22 +14,29 @@ OWN = ("report_view_world.js", "report_view.js")
 THREE = (Path("/usr/share/javascript/three"), Path("/usr/share/nodejs/three"))      # where Debian's package has it
 LIBRARY, ORBIT = ("three.min.js", "build/three.min.js"), "examples/js/controls/OrbitControls.js"
 PACKAGE = "libjs-three"
-# of the library: the packaged file has lost it
+# of the library, whose packaged file has lost it
 LICENCE = """\
 /* three.js, copyright 2010 the three.js authors, under the MIT licence:
-Permission is hereby granted, free of charge, to any person obtaining a copy of this software and associated documentation files (the "Software"), to deal in the Software without restriction, including without limitation the rights to use, copy, modify, merge, publish, distribute, sublicense, and/or sell copies of the Software, and to permit persons to whom the Software is furnished to do so, subject to the following conditions: The above copyright notice and this permission notice shall be included in all copies or substantial portions of the Software.
-THE SOFTWARE IS PROVIDED "AS IS", WITHOUT WARRANTY OF ANY KIND, EXPRESS OR IMPLIED, INCLUDING BUT NOT LIMITED TO THE WARRANTIES OF MERCHANTABILITY, FITNESS FOR A PARTICULAR PURPOSE AND NONINFRINGEMENT. IN NO EVENT SHALL THE AUTHORS OR COPYRIGHT HOLDERS BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM, OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN THE SOFTWARE. */
-"""   # noqa: E501
+Permission is hereby granted, free of charge, to any person obtaining a copy of this software and associated
+documentation files (the "Software"), to deal in the Software without restriction, including without limitation the
+rights to use, copy, modify, merge, publish, distribute, sublicense, and/or sell copies of the Software, and to permit
+persons to whom the Software is furnished to do so, subject to the following conditions: The above copyright notice
+and this permission notice shall be included in all copies or substantial portions of the Software.
+THE SOFTWARE IS PROVIDED "AS IS", WITHOUT WARRANTY OF ANY KIND, EXPRESS OR IMPLIED, INCLUDING BUT NOT LIMITED TO THE
+WARRANTIES OF MERCHANTABILITY, FITNESS FOR A PARTICULAR PURPOSE AND NONINFRINGEMENT. IN NO EVENT SHALL THE AUTHORS OR
+COPYRIGHT HOLDERS BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR
+OTHERWISE, ARISING FROM, OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN THE SOFTWARE. */
+"""
 
 
-def content(data, ground, section, frames: Optional[Frames], why: str) -> Dict[str, Any]:
-    """What the template takes: scene (JSON) and scripts, with a caption; or why there is none."""
-    found: Dict[str, Any] = {"scene": None, "scripts": [], "why": why, "caption": "", "film": ""}
+def content(data, ground, section, frames: Optional[Frames], why: str, film: str) -> Dict[str, Any]:
+    """What the template takes: scene (JSON) and scripts, with a caption, or why there is none; and film, a sentence."""
+    found: Dict[str, Any] = {"scene": None, "scripts": [], "why": why, "caption": "", "film": film}
     if frames is None:
         return found
     scripts = library()
     if scripts is None:
-        return {**found, "why": f"it needs the JavaScript library three.js: install the Debian package {PACKAGE} and "
+        return {**found, "why": f"It needs the JavaScript library three.js: install the Debian package {PACKAGE} and "
                                 "make the report again."}
     about = scene(data, ground, section, frames)
     # in a script element, only the end of an element must not stand in a text
@@ -60,5 +67,5 @@ def caption(data, about, frames: Frames) -> str:
     return (f"{run}{balls}, at {every} that the run wrote, {gap:.2g} s apart on average; between two of them each ball "
             f"is drawn on a straight line. The ground is the one without the body, so that the slip surface shows; "
             f"heights are not exaggerated; contours every {about['ground']['interval']:g} m, grid of "
-            f"{about['ground']['grid']:g} m. Drag turns the view, with the right button it moves, the wheel zooms after "
-            "a click. The scale holds at the middle of the view.")
+            f"{about['ground']['grid']:g} m. Drag turns the view, with the right button it moves, the wheel zooms "
+            "after a click. The scale holds at the middle of the view.")

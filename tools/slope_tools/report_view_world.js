@@ -91,6 +91,22 @@ const SlopeWorld = (function () {
       pen.strokeStyle = colour;
       pen.stroke();
     }
+    function letter(text, [x, y]) {     // upright for somebody who looks north
+      const high = 24 * thin;
+      pen.save();
+      pen.translate(x, y);
+      pen.scale(1, -1);
+      pen.font = `bold ${high}px sans-serif`;
+      pen.textAlign = 'center';
+      pen.textBaseline = 'middle';
+      pen.lineWidth = high / 5;
+      pen.strokeStyle = 'white';
+      pen.setLineDash([]);
+      pen.strokeText(text, 0, 0);
+      pen.fillStyle = scene.colours.section;
+      pen.fillText(text, 0, 0);
+      pen.restore();
+    }
     if (grid) {
       const step = scene.ground.grid;
       for (let x = Math.ceil(xlo / step) * step; x <= xhi; x += step) line([[x, ylo], [x, yhi]], '#00000048', 0.7);
@@ -99,6 +115,9 @@ const SlopeWorld = (function () {
     scene.road.forEach((ring) => line(ring, scene.colours.road, 2.5, [], scene.colours.road + '40'));
     scene.release.forEach((ring) => line(ring, scene.colours.release, 2.2, [7, 4]));
     line(scene.section, scene.colours.section, 1.6, [12, 4, 2, 4]);
+    const last = scene.section.length - 1;
+    letter('A', scene.section[0]);
+    letter("A'", scene.section[last]);
     const texture = new THREE.CanvasTexture(canvas);
     texture.anisotropy = 8;
     return texture;
@@ -127,7 +146,7 @@ const SlopeWorld = (function () {
       float shade = clamp(dot(normalize(outwards), light), 0.0, 1.0);
       vec3 colour = mix(vec3(0.90, 0.88, 0.83), vec3(0.80, 0.70, 0.62), scar) * (0.32 + 0.80 * shade);
       float level = height / interval, step = fwidth(level);      // contours, a pixel wide
-      float line = 1.0 - smoothstep(0.6 * step, 1.4 * step, abs(fract(level + 0.5) - 0.5));
+      float line = 1.0 - smoothstep(0.35 * step, 1.1 * step, abs(fract(level + 0.5) - 0.5));
       colour = mix(colour, vec3(0.25), 0.45 * lines * line * (1.0 - smoothstep(0.2, 0.5, step)));
       vec4 drawn = texture2D(picture, onMap);
       gl_FragColor = vec4(mix(colour, drawn.rgb, drawn.a), 1.0);
