@@ -33,7 +33,7 @@ class Frames(NamedTuple):
 
 
 def read(result) -> Tuple[Optional[Frames], str]:
-    """The Frames of a run, or None and the reason in a sentence."""
+    """The Frames of a run, or None and the reason: a sentence, and lines for a deck below it."""
     paths = snapshots(result.folder, result.summary["stop"]["step"])
     if len(paths) < 2:
         return None, "The run wrote no series of dumps of its balls. " + advice(result)
@@ -106,5 +106,6 @@ def advice(result) -> str:
                   if re.match(r"fix \S+ \S+ deposit/grid ", line)), ("fix", "deposit", "soil"))
     steps = max(1, round(SECONDS / result.summary["dt"]))
     digits = 1 - len(str(steps))
-    return (f"These lines in the deck, before its run command, give the next report one: dump view {words[2]} custom "
-            f"{max(1, round(steps, digits))} view.*.dump id diameter x y z vx vy vz; dump_modify view pad 9")
+    return ("These lines in the deck, before its run command, give the next report one:\n"
+            f"dump view {words[2]} custom {max(1, round(steps, digits))} view.*.dump id diameter x y z vx vy vz\n"
+            "dump_modify view pad 9")

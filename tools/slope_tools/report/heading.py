@@ -10,12 +10,12 @@ FIELDS = {"project": "name", "client": "client", "author": "author"}      # opti
 LONGEST = 200               # letters
 
 
-def heading(folder: Path, given: Dict[str, Optional[str]]) -> Dict[str, str]:
-    """{field: text} of project, client and author, those that are known; given: the options, which come first."""
+def heading(folder: Path, given: Dict[str, Optional[str]]) -> Dict[str, Optional[str]]:
+    """{field: text, None where unknown} of project, client and author; given: the options, which come first."""
     for name, text in given.items():
         check(f"--{name}", text)
     found = of_site(folder)
-    return {name: text for name in FIELDS if (text := given.get(name) or found.get(name))}
+    return {name: given.get(name) or found.get(name) for name in FIELDS}
 
 
 def of_site(folder: Path) -> Dict[str, str]:

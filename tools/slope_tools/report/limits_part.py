@@ -23,8 +23,8 @@ def uncertainty(data, numbers) -> CONTENT:
     found = []
     if best and best["chance_m3"] is not None:
         low, high = (headline.text(value, best["place_m3"]) for value in
-                     (best["mean_m3"] - best["chance_m3"], best["mean_m3"] + best["chance_m3"]))
-        found.append(f"Another run with the same values removes {low} to {high} m3 in 95 % of cases.")
+                     (max(0.0, best["mean_m3"] - best["chance_m3"]), best["mean_m3"] + best["chance_m3"]))
+        found.append(f"Another run with the same values gives {low} to {high} m3 to remove, in 95 % of cases.")
     key = travel_shares.DISTANCE
     deviation = ((study and study.get("scatter") or {}).get(key) or {}).get("deviation")
     if disk.is_number(deviation):

@@ -145,7 +145,8 @@ const SlopeWorld = (function () {
     void main() {
       float shade = clamp(dot(normalize(outwards), light), 0.0, 1.0);
       vec3 colour = mix(vec3(0.90, 0.88, 0.83), vec3(0.80, 0.70, 0.62), scar) * (0.32 + 0.80 * shade);
-      float level = height / interval, step = fwidth(level);      // contours, a pixel wide
+      // contours, a pixel wide; a little above their level, or a flat place at just that level would be one of them
+      float level = height / interval - 0.002, step = fwidth(level) + 1e-6;
       float line = 1.0 - smoothstep(0.35 * step, 1.1 * step, abs(fract(level + 0.5) - 0.5));
       colour = mix(colour, vec3(0.25), 0.45 * lines * line * (1.0 - smoothstep(0.2, 0.5, step)));
       vec4 drawn = texture2D(picture, onMap);
