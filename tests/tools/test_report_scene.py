@@ -141,11 +141,12 @@ def test_speeds_without_velocities_are_those_of_the_way(case):
     assert solid == pytest.approx(about["volume"]["released"] / about["bulk_factor"], rel=1e-6)
 
 
-@pytest.mark.parametrize("dumped, balls, shots, most", [
-    (18, 3161, 18, 33333), (60, 9000, 60, 10000), (900, 9000, 60, 10000), (61, 1_000_000, 40, 15000),
-    (20, 1_000_000, 20, 30000)])
-def test_budget(dumped, balls, shots, most):
-    chosen, room = frames.budget(dumped, balls)
+@pytest.mark.parametrize("dumped, balls, size, shots, most", [
+    (18, 3161, 3e5, 18, 33333), (60, 9000, 1e6, 60, 10000), (900, 9000, 1e6, 60, 10000),
+    (61, 1_000_000, 1e7, 40, 15000), (20, 1_000_000, 1e7, 20, 30000), (60, 1_000_000, 5e7, 20, 30000),
+    (60, 1_000_000, 9e9, 12, 50000)])
+def test_budget(dumped, balls, size, shots, most):
+    chosen, room = frames.budget(dumped, balls, size)
     assert (len(chosen), room) == (shots, most)
     assert chosen[0] == 0 and chosen[-1] == dumped - 1
     assert np.ptp(np.diff(chosen)) <= 1

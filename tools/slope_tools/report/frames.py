@@ -12,6 +12,8 @@ MOST_FRAMES = 60        # snapshots that are taken, evenly spaced
 FEWEST_FRAMES = 24      # before that many are left, snapshots are left out rather than balls
 ENOUGH_BALLS = 15_000
 MOST_PLACES = 600_000   # balls x snapshots; 8 bytes each, 6.4 MB in a page
+MOST_BYTES = 1e9        # of dumps that are read, half a minute; but FEW of them, however large
+FEW = 12
 SECONDS = 0.5           # between the dumps that the page asks for
 SEED = 20               # of the choice of the balls that are shown
 
@@ -39,7 +41,7 @@ def read(result) -> Tuple[Optional[Frames], str]:
         return None, "The run wrote no series of dumps of its balls. " + advice(result)
     try:
         first = shot_of(paths[0])
-        chosen, most = budget(len(paths), len(first.of["id"]))
+        chosen, most = budget(len(paths), len(first.of["id"]), paths[-1].stat().st_size)
         shots = [first] + [shot_of(paths[k]) for k in chosen[1:]]
     except SlopeError as error:
         return None, f"The dumps cannot be read: {error}."
@@ -91,9 +93,9 @@ def mean_speeds(places, time):
     return np.concatenate([np.zeros_like(way[:1]), way])
 
 
-def budget(dumped: int, balls: int) -> Tuple[List[int], int]:
-    """Which of so many snapshots are taken, and at most how many balls of each."""
-    frames = min(dumped, MOST_FRAMES)
+def budget(dumped: int, balls: int, size: float = 0) -> Tuple[List[int], int]:
+    """Which of so many snapshots, of so many bytes each, are taken, and at most how many balls of each."""
+    frames = min(dumped, MOST_FRAMES, max(FEW, int(MOST_BYTES / max(size, 1))))
     while frames > FEWEST_FRAMES and MOST_PLACES // frames < min(balls, ENOUGH_BALLS):
         frames -= 1
     chosen = np.unique(np.round(np.linspace(0, dumped - 1, frames)).astype(int))
