@@ -76,6 +76,7 @@ def encode(program: str, picture: "Picture", times: np.ndarray) -> bytes:
                    "-pix_fmt", "yuv420p", "-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2", "-movflags", "+faststart",
                    "-threads", "1", "-y", str(path)]
         with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=told) as process:
+            assert process.stdin is not None
             try:
                 for time in times:
                     process.stdin.write(picture.at(time))
@@ -94,7 +95,7 @@ def encode(program: str, picture: "Picture", times: np.ndarray) -> bytes:
 class Picture:
     """Plan above, section below; only the balls and the time are drawn anew."""
 
-    def __init__(self, data, ground, section, layers, frames: Frames):
+    def __init__(self, data, ground, section, layers, frames):
         self.frames, self.section = frames, section
         self.top = fastest(frames.speed)
         colours = LinearSegmentedColormap.from_list("speed", tones("speed"))
