@@ -32,7 +32,7 @@ DUMP = """\
 dump        view soil custom 75 view.*.dump id diameter x y z vx vy vz
 dump_modify view pad 9
 """
-BROWSER = ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--window-size=1100,900", "--hide-scrollbars")
+BROWSER = ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--window-size=800,700", "--hide-scrollbars")
 SOFTWARE = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")     # no graphics card needed
 
 
@@ -270,6 +270,7 @@ def browser():
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
         opened.append(webdriver.Chrome(service=Service(driver), options=options))
         opened[-1].set_page_load_timeout(280)
+        opened[-1].set_script_timeout(120)
         return opened[-1]
 
     yield start
@@ -300,8 +301,15 @@ def at(driver, seconds):
 
 def picture(driver):
     from PIL import Image
-    image = Image.open(io.BytesIO(driver.find_element("id", "view-canvas").screenshot_as_png))
-    return np.asarray(image.convert("RGB")).astype(int)
+    from selenium.common.exceptions import TimeoutException
+    for left in (3, 2, 1, 0):       # the driver waits 10 s, which a busy machine may need for a picture
+        try:
+            content = driver.find_element("id", "view-canvas").screenshot_as_png
+            return np.asarray(Image.open(io.BytesIO(content)).convert("RGB")).astype(int)
+        except TimeoutException:
+            if not left:
+                raise
+    return None
 
 
 def coloured(picture):
