@@ -392,7 +392,7 @@ def test_layers_that_do_not_fit(refused):
     terrain(hill, "plain.asc", crs=None, offset=(0, 0))
     write_geojson("p.geojson", box(EAST + 60, NORTH + 60, EAST + 160, NORTH + 140), crs=CRS_M)
     refused("plain.asc --polygon p.geojson --depth 5", "plain.asc: must have a CRS", "got none")
-    refused("t.asc --polygon p.geojson --depth 5 --crs EPSG:0", "--crs: must be a CRS such as EPSG:6677")
+    refused("t.asc --polygon p.geojson --depth 5 --assign-crs EPSG:0", "--assign-crs: must be a CRS such as EPSG:6677")
 
 
 def test_bad_input(refused):

@@ -1,6 +1,7 @@
 """Which files a deck needs in the folder where it runs."""
 import os
 import re
+from typing import Set
 
 from .. import disk
 from ..errors import SlopeError
@@ -20,7 +21,7 @@ def data_files(deck, settings):
     folder = deck.parent
     words, written = decks.named_files(deck)
     words.update(value for several in settings.values() for value in several)
-    left = set()
+    left: Set[str] = set()
     for summary in run_folders.summaries(folder):
         left.update(map(str, disk.load_yaml(summary, "a summary of fix deposit/grid").get("files") or ()))
     found = {}

@@ -9,11 +9,12 @@ from pathlib import Path
 from .. import options
 from ..case import data_files, decks
 from ..case.settings import check_settings, one_value_each
+from ..deposit.score import THRESHOLD
 from ..ensemble import backanalysis, calibration, distributions, jobs, observations, repeats, study
 from ..ensemble.fit import Fit
 from ..errors import SlopeError
 from ..options import number
-from . import run_arguments as run_arguments_command, score as score_command
+from . import run_arguments
 
 TOLERANCE = 0.05
 EPILOG = """\
@@ -39,7 +40,7 @@ def add_parser(commands, **kwargs):
         "calibrate", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
         description="Which values of a deck's variables give a deposit that was observed, and how well they are "
                     "known.", **kwargs)
-    run_arguments_command.add_deck(parser)
+    run_arguments.add_deck(parser)
     parser.add_argument("--observed", metavar="POLYGON|RASTER", type=Path,
                         help="the mapped deposit: its outline, or its thickness in metres, as for `slope score`")
     parser.add_argument("--front", metavar="L", type=number,
@@ -47,11 +48,12 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--area", metavar="A", type=number,
                         help="area that the mass ever covered, thicker than --threshold, m2")
     parser.add_argument("--volume", metavar="V", type=number, help="volume on the road of --road, m3")
-    parser.add_argument("--tolerance", metavar="SHARE", type=number, default=TOLERANCE,
+    parser.add_argument("--tolerance", metavar="[NAME=]SHARE", type=tolerance, action="append", default=[],
                         help="standard deviation of what was observed, as a share of it "
-                             f"(default {TOLERANCE:g}); chance comes on top")
-    parser.add_argument("--threshold", metavar="T", type=number, default=score_command.THRESHOLD,
-                        help=f"a deposit is where it is thicker than this, m (default {score_command.THRESHOLD:g})")
+                             f"(default {TOLERANCE:g}); chance comes on top. NAME=SHARE: of one observation, observed, "
+                             "front, area or volume; may be repeated")
+    parser.add_argument("--threshold", metavar="T", type=number, default=THRESHOLD,
+                        help=f"a deposit is where it is thicker than this, m (default {THRESHOLD:g})")
     parser.add_argument("--vary", metavar="NAME=LO:HI", action="append", default=[], required=True,
                         help="a variable of the deck that is looked for, and its range; all values in it are equally "
                              "likely before (loguniform:LO:HI and the others of `slope study` too)")
@@ -59,15 +61,24 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--set", metavar="NAME=VALUE", action="append", default=[],
                         help="value of another index variable in all runs (default: the deck's)")
     parser.add_argument("--seed", metavar="S", type=int, default=1, help="of the first points (default 1)")
-    repeats.add_arguments(parser)
-    run_arguments_command.add_runs(parser)
+    run_arguments.add_repeats(parser)
+    run_arguments.add_runs(parser)
     return parser
+
+
+def tolerance(text):
+    """argparse type: (name of an observation or None, share)."""
+    name, equals, share = text.rpartition("=")
+    if equals and name not in observations.KINDS:
+        raise argparse.ArgumentTypeError(f"must name one of {', '.join(observations.KINDS)}, got {name!r}")
+    return name or None, number(share)
 
 
 def run(args):
     """Do the command; raises SlopeError on bad input, and where too few runs finished."""
-    wanted = observations.Wanted(args.observed, args.front, args.area, args.volume, args.tolerance, args.threshold,
-                                 args.local)
+    shares = dict(args.tolerance)
+    wanted = observations.Wanted(args.observed, args.front, args.area, args.volume, shares.pop(None, TOLERANCE),
+                                 args.threshold, args.local, shares)
     variables = distributions.parse(args.vary, args.deck, ranges_only=True)
     fixed = one_value_each(check_settings(args.set, args.deck), "--set", "--vary")
     repeated = check_settings(args.repeat, args.deck, "--repeat")
@@ -87,9 +98,10 @@ def run(args):
         wanted.check_place(terrain)
     settings = {name: [value] for name, value in fixed.items()}
     files = data_files.data_files(args.deck, {**settings, **repeated})
-    if args.road:
-        study.check_road(args, settings)
-    study.check_folder(args, [])
+    setup = run_arguments.setup_of(args)
+    if setup.road:
+        study.check_road(setup.road, setup.deck, settings)
+    study.check_folder(setup, [])
     about = {**wanted.about, "deck": args.deck.name, "set": fixed, "repeat": repeated,
              "variables": {one.name: one.told for one in variables}, "seed": args.seed}
     ledger = calibration.Ledger(args.output, about, variables)
@@ -100,5 +112,5 @@ def run(args):
         first = backanalysis.first(len(variables), args.seed)[:args.runs - 1]
         print(f"{args.runs} runs: {len(ledger.points) or len(first)} decided on; the others follow from what they give")
         return
-    with study.prepared(args, files, batch) as work:
-        Fit(args, wanted, work_plan, work).do()
+    with study.prepared(setup, files, batch) as work:
+        Fit(setup, wanted, work_plan, work).do()

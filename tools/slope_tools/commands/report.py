@@ -1,14 +1,15 @@
 """slope report: one self-contained HTML page on a study or a run, for the screen and for A4 paper.
 
-Order of the work: find the runs and read their results (report_data.py), find what maps and section share
-(report_ground.py, report_section.py), collect warnings and numbers (report_warnings.py, report_numbers.py), draw
-(report_maps.py, report_charts.py), fill the template (report_page.py), write.
+Order of the work: find the runs and read their results (data.py), find what maps and section share
+(ground.py, section.py), collect warnings and numbers (warnings.py, numbers.py), draw
+(maps_part.py, charts.py), fill the template (page.py), write.
 """
 import argparse
 from pathlib import Path
 
 from .. import disk
 from ..errors import SlopeError
+from ..report.asked import Asked
 from ..report.document import make, write_pictures
 from ..report.heading import SITE
 from ..report.section import FALL
@@ -73,11 +74,12 @@ def run(args):
         raise SlopeError(args.folder, "must be an existing folder")
     if not output.absolute().parent.is_dir():
         raise SlopeError("-o", "must be in an existing folder", output)
-    args.film = None if args.no_film else output.with_suffix(".mp4")
-    page, html = make(args)
+    asked = Asked(args.folder, args.shown, args.section, args.local, args.reference, args.converge, args.project,
+                  args.client, args.author, None if args.no_film else output.with_suffix(".mp4"))
+    page, html = make(asked)
     tables = {output.with_suffix(".section.csv"): page.section.table(),
               output.with_suffix(".numbers.csv"): page.numbers.table()}
-    films = {args.film: page.film.content} if page.film.content else {}
+    films = {asked.film: page.film.content} if page.film.content else {}
     for path, text in {output: html, **tables, **films}.items():
         disk.write(path, text)
     view = ", a 3-D view" if 'id="scene"' in html else ""

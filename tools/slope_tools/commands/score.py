@@ -5,17 +5,17 @@ polygon is cut by them; a mapped raster on another grid is spread over the run's
 """
 import argparse
 from pathlib import Path
+from typing import List
 
 from .. import disk, errors
 from ..deposit import deposit, score
-from ..deposit.score import (balls, connected_runout, mesh_table, overlap, read_observed, runout, volumes,
+from ..deposit.score import (THRESHOLD, balls, connected_runout, mesh_table, overlap, read_observed, runout, volumes,
                              write_csv)
 from ..deposit.volume import make_mesh
 from ..errors import SlopeError
 from ..options import number
 from ..survey.rasters import crs_name
 
-THRESHOLD = 0.1   # m
 EPILOG = """\
 units: metres, m2, m3, degrees. PREFIX is what fix deposit/grid was given as output.
 
@@ -55,7 +55,7 @@ def run(args):
         raise SlopeError("--threshold", "must be >= 0", f"{args.threshold:g}")
     if args.mesh is not None and args.mesh <= 0:
         raise SlopeError("--mesh", "must be > 0", f"{args.mesh:g}")
-    warnings = []
+    warnings: List[str] = []
     warn = errors.warner("score", warnings)
     run_ = deposit.read(args.prefix, args.terrain, warn)
     folder = args.output or Path(f"{args.prefix}.score")

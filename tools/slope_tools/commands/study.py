@@ -12,7 +12,7 @@ from ..ensemble import intensity, repeats, results, sample
 from ..ensemble.size_error import SizeErrors
 from ..ensemble.study import check_names, check_thresholds, perform
 from ..errors import SlopeError
-from .run_arguments import add_deck, add_runs
+from .run_arguments import add_deck, add_intensity, add_repeats, add_runs, add_sample, setup_of
 
 EPILOG = """\
 units: metres, seconds, m3 of ground (bulk); thresholds of --exceed in metres.
@@ -41,8 +41,8 @@ def add_parser(commands, **kwargs):
     add_deck(parser)
     parser.add_argument("--set", metavar="NAME=V1,V2,...", action="append", default=[],
                         help="values of an index variable of the deck; A:B:STEP stands for A, A + STEP, ... up to B")
-    sample.add_arguments(parser)
-    repeats.add_arguments(parser)
+    add_sample(parser)
+    add_repeats(parser)
     parser.add_argument("--size-error", metavar="FILE", type=Path,
                         help="converge.yaml of `slope sensitivity --converge`: its error at the size of these balls "
                              "counts in the conservative volume")
@@ -55,7 +55,7 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--of", metavar="NAME",
                         help="quantity of the hazard curve of an ensemble, a column of study.csv (default: "
                              "remove_on_road_m3; without a road distance_99_m)")
-    intensity.add_arguments(parser)
+    add_intensity(parser)
     add_runs(parser)
     return parser
 
@@ -80,8 +80,10 @@ def run(args):
             raise SlopeError("--size-error", "needs --road: it is the error of the volume to remove", args.size_error)
         errors = SizeErrors(args.size_error, "remove_m3")
         errors.check(settings, defaults)
-    return perform(args, {**settings, **repeated}, todo,
-                   lambda todo, work: results.collect(args, settings, repeated, errors, todo, work, thresholds))
+    setup = setup_of(args)
+    questions = results.Questions(settings, repeated, thresholds, errors, None, args.intensity, args.more_than)
+    return perform(setup, {**settings, **repeated}, todo,
+                   lambda todo, work: results.collect(setup, questions, todo, work))
 
 
 def run_ensemble(args, settings, repeated, thresholds, defaults):
@@ -101,7 +103,7 @@ def run_ensemble(args, settings, repeated, thresholds, defaults):
     check_names(todo)
     sample.check_growth(args.output, plan)
     several = sample.settings_of(todo)
-    perform(args, {**several, **repeated}, todo,
-            lambda todo, work: results.collect(args, several, repeated, None, todo, work, thresholds,
-                                               ensemble.Order(plan, of, levels)),
+    setup = setup_of(args)
+    questions = results.Questions(several, repeated, thresholds, None, ensemble.Order(plan, of, levels))
+    perform(setup, {**several, **repeated}, todo, lambda todo, work: results.collect(setup, questions, todo, work),
             begin=lambda: sample.keep(args.output, plan))

@@ -7,16 +7,12 @@ import math
 from pathlib import Path
 
 import numpy as np
-import rasterio
-import rasterio.warp
 from affine import Affine
-from rasterio.crs import CRS
-from rasterio.errors import CRSError
 
 from ..errors import SlopeError
 from ..options import number
 from ..survey import fggml, rasters
-from ..survey.crs import box, require_metres, warn_of_stretch
+from ..survey.crs import as_crs, box, require_metres, warn_of_stretch
 from ..survey.holes import fill, small_holes
 from ..survey.rasters import Raster
 from ..survey.resampling import regrid
@@ -51,6 +47,9 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--crs", metavar="EPSG:n",
                         help="wanted CRS, in metres: an input in another CRS is reprojected to it (bilinear); an input "
                              "without a CRS cannot be, and is taken to be in this one")
+    parser.add_argument("--assign-crs", metavar="EPSG:n",
+                        help="the coordinates of the inputs are in this CRS, whatever their tags say (not of FG-GML); "
+                             "--crs may then reproject them")
     parser.add_argument("--bounds", nargs=4, type=number, metavar=("W", "S", "E", "N"),
                         help="crop to this box, in the output's CRS, m")
     parser.add_argument("--cell", type=number, metavar="S",
@@ -65,7 +64,7 @@ def add_parser(commands, **kwargs):
 
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints what was done, a summary and the line for the deck."""
-    crs, origin = check(args)
+    crs, assigned, origin = check(args)
     steps = []  # what was done, for stdout and the sidecar
 
     def tell(step):
@@ -74,9 +73,11 @@ def run(args):
 
     cell = args.cell
     if any(map(fggml.is_one, args.inputs)):
+        if assigned is not None:
+            raise SlopeError("--assign-crs", "must not be given for FG-GML, which has its CRS", args.assign_crs)
         raster, crs, cell = read_fggml(args.inputs, crs, cell, tell)
     else:
-        raster = merge([declare(path, crs, tell) for path in args.inputs], args.inputs, tell)
+        raster = merge([declare(path, crs, tell, assigned) for path in args.inputs], args.inputs, tell)
         crs = crs or raster.crs
     require_metres(crs, args.inputs[0])
     if not np.isfinite(raster.z).any():
@@ -101,7 +102,10 @@ def run(args):
 
 
 def check(args):
-    """Check what can be checked before any reading; return the wanted CRS and origin, each None if not given."""
+    """Check what can be checked before any reading.
+
+    Return the wanted CRS, that of the inputs, and the origin; each is None if it is not given.
+    """
     if args.output.suffix != ".asc" or args.output.is_dir():
         raise SlopeError("-o", "must be a file that ends in .asc", args.output)
     if not args.output.parent.is_dir():
@@ -115,14 +119,12 @@ def check(args):
         raise SlopeError("--fill", "must be >= 0", args.fill)
     if args.bounds and not (args.bounds[0] < args.bounds[2] and args.bounds[1] < args.bounds[3]):
         raise SlopeError("--bounds", "W S E N must have W < E and S < N", box(args.bounds))
-    crs = origin = None
+    crs = assigned = origin = None
     if args.crs:
-        try:
-            with rasterio.Env():  # GDAL's own message is not for stderr
-                crs = CRS.from_user_input(args.crs)
-        except CRSError:
-            raise SlopeError("--crs", "must be a CRS such as EPSG:6677", args.crs) from None
+        crs = as_crs("--crs", args.crs)
         require_metres(crs, "--crs")
+    if args.assign_crs:
+        assigned = as_crs("--assign-crs", args.assign_crs)
     if args.origin != ["auto"]:
         try:
             origin = tuple(map(number, args.origin))
@@ -130,7 +132,7 @@ def check(args):
             origin = ()
         if len(origin) != 2:
             raise SlopeError("--origin", "must be auto or two numbers, E N", " ".join(args.origin))
-    return crs, origin
+    return crs, assigned, origin
 
 
 def summary(path, about):

@@ -4,7 +4,7 @@ import os
 import re
 import zlib
 from pathlib import Path
-from typing import NamedTuple
+from typing import BinaryIO, List, NamedTuple, Tuple, cast
 
 import numpy as np
 
@@ -65,6 +65,16 @@ def last(path, wanted=()):
     return Snapshot(path, step, of)
 
 
+def frames(path) -> List[Tuple[List[str], np.ndarray]]:
+    """All snapshots of a short dump that the tools asked for: names of the columns, a row per ball as in the file."""
+    found = []
+    for part in Path(path).read_text(encoding="ascii").split("ITEM: ATOMS ")[1:]:
+        head, rows = part.split("ITEM:")[0].split("\n", 1)
+        columns = head.split()
+        found.append((columns, np.array(rows.split(), float).reshape(-1, len(columns))))
+    return found
+
+
 def last_text(path):
     """The text of a dump from the head of its last snapshot on, and the number of lines before it.
 
@@ -73,7 +83,7 @@ def last_text(path):
     have = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     kept, lines = bytearray(), 0
     try:
-        with (gzip.open if path.suffix == ".gz" else open)(path, "rb") as file:
+        with cast(BinaryIO, gzip.open(path, "rb") if path.suffix == ".gz" else open(path, "rb")) as file:
             while chunk := file.read(CHUNK):
                 unseen = max(len(kept) - len(BEGIN), 0)
                 kept += chunk

@@ -1,7 +1,7 @@
 """A run's deposit against a mapped one."""
 import csv
 import math
-from typing import NamedTuple, Optional
+from typing import List, NamedTuple, Optional, Tuple
 
 import numpy as np
 from affine import Affine
@@ -17,6 +17,7 @@ from . import reach
 from .connected import connected, top
 from .volume_files import text
 
+THRESHOLD = 0.1   # m
 RASTERS = {".tif", ".tiff", ".asc", ".vrt", ".img", ".bil"}
 FULL = 1e-9       # a smaller share of a cell, or of the largest thickness, is rounding
 
@@ -255,7 +256,7 @@ def draw(path, run_, simulated, observed, about):
     raster = run_.raster
     kind = np.where(simulated, np.where(observed.share >= 0.5, 1, 2), np.where(observed.share >= 0.5, 3, 0))
     row, column = np.nonzero(kind > 0)
-    bounds = []
+    bounds: List[Tuple] = []
     if len(row):
         t = raster.transform
         bounds.append((t.c + column.min() * t.a, t.f + (row.max() + 1) * t.e, t.c + (column.max() + 1) * t.a,

@@ -13,6 +13,7 @@ OFFSET = re.compile(r"\w*offset")
 FIRST = "base"                              # the repeat that has the deck's values
 
 Settings = Mapping[str, Sequence[str]]
+NONE: Dict[str, str] = {}
 
 
 class Repeat(jobs.Run):
@@ -31,15 +32,6 @@ class Repeat(jobs.Run):
 
 def key_of(repeat: Mapping[str, str]) -> str:
     return " ".join(f"{name} {value}" for name, value in repeat.items()) or FIRST
-
-
-def add_arguments(parser):
-    """--repeat and --equally-good, of the commands that make runs."""
-    parser.add_argument("--repeat", metavar="NAME=V1,V2,...", action="append", default=[],
-                        help="values of a variable that nobody can prefer, called seed or ...offset: one more run "
-                             "each, which shows the scatter by chance; A:B:STEP stands for A, A + STEP, ... up to B")
-    parser.add_argument("--equally-good", metavar="NAME,...", default="",
-                        help="variables of another name whose values are equally good, so that --repeat takes them")
 
 
 def check(names: Sequence[str], equally_good: str) -> None:
@@ -87,7 +79,7 @@ def with_repeats(output, combinations: Iterable[Dict[str, str]], chances: Sequen
     """The runs of combinations, each followed by its repeats; varied: names of what differs between them."""
     todo = []
     for combination in combinations:
-        for repeat in ({}, *chances):
+        for repeat in [NONE, *chances]:
             one = Repeat(output, combination, repeat)
             told = [f"{name} {one.chosen[name]}" for name in varied]
             one.varied = ", ".join(told + [key_of(repeat)] * bool(repeat)) or one.name

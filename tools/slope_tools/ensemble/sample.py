@@ -1,7 +1,7 @@
 """The plan of an ensemble: how many runs, where they lie in the distributions of --vary, what may be added later."""
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, Sequence, Tuple
 
 import numpy as np
 import yaml
@@ -44,19 +44,6 @@ class Sample:
 
     def snap(self, u: np.ndarray) -> np.ndarray:
         return designs.snapped(self.variables, u)
-
-
-def add_arguments(parser) -> None:
-    """--sample, --vary, --design and --seed."""
-    parser.add_argument("--sample", metavar="N", type=int,
-                        help="an ensemble: N points of the distributions of --vary, instead of a product of lists")
-    parser.add_argument("--vary", metavar="NAME=DISTRIBUTION", action="append", default=[],
-                        help="a variable of the ensemble: LO:HI or uniform:LO:HI, loguniform:LO:HI, "
-                             "triangular:LO:MODE:HI, normal:MEAN:DEVIATION:LO:HI, list:V1@WEIGHT,V2@WEIGHT,...")
-    parser.add_argument("--design", choices=designs.KINDS, default=designs.SOBOL,
-                        help="sobol (default): more points can be added, those there are stay; lhs: Latin hypercube, "
-                             "whose number of points is final")
-    parser.add_argument("--seed", metavar="S", type=int, default=1, help="of the design (default 1)")
 
 
 def check(number: int, kind: str, seed: int, vary: Sequence[str], deck: Path, fixed: Mapping[str, str],
@@ -102,7 +89,7 @@ def check_growth(folder: Path, sample: Sample) -> None:
     path = folder / FILE
     if not path.is_file():
         return
-    before: Optional[Mapping[str, Any]] = disk.load_yaml(path, WHAT)
+    before: Mapping[str, Any] = disk.load_yaml(path, WHAT)
     if designs.LHS in (before.get("kind"), sample.kind) and before != sample.about:
         raise SlopeError("--design", f"lhs cannot grow or change: {folder} has {before.get('points')} points of "
                          f"{before.get('kind')} with seed {before.get('seed')}; give another -o, or take sobol",

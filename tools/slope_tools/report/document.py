@@ -5,6 +5,7 @@ from pathlib import Path
 
 from .. import disk
 from ..errors import SlopeError
+from .asked import Asked
 
 
 def write_pictures(output, html):
@@ -15,15 +16,15 @@ def write_pictures(output, html):
     print(f"{output.with_suffix('.1.png')} to {len(pictures)}: its maps")
 
 
-def make(args):
+def make(asked: Asked):
     """The Page and its HTML. What `slope study` wrote is trusted to be of the right kind: if it is not, one line."""
     import jinja2
     from .page import Page
     try:
-        page = Page(args)
+        page = Page(asked)
         return page, render(page.content())
     except (jinja2.TemplateError, ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
-        raise SlopeError(args.folder, "must hold what a run or `slope study` wrote, unchanged",
+        raise SlopeError(asked.folder, "must hold what a run or `slope study` wrote, unchanged",
                          f"{type(error).__name__}: {error}"[:200]) from error
 
 

@@ -1,14 +1,14 @@
 """The maps of a report on a shaded relief, as data URIs."""
 import math
-from typing import NamedTuple, Optional, Tuple
+from typing import Any, NamedTuple, Optional, Tuple
 
 import numpy as np
-from matplotlib.colors import BoundaryNorm, LinearSegmentedColormap, ListedColormap
+from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.patches import Rectangle
 
 from ..drawing import figures
 from ..drawing.figures import FULL, HALF, RELEASE, ROAD, SECTION, STYLE, TITLE, classes_of, plt, text_width, wrapped
-from ..drawing.maps import outline, part
+from ..drawing.maps import outline, part, scheme, shade
 from ..geometry import polygons_of
 from . import sheets
 from .sheets import Box, Entry, Frame
@@ -22,30 +22,13 @@ TINTS = LinearSegmentedColormap.from_list(
 
 class Layers(NamedTuple):
     """What is drawn over every map; geometries are in local metres."""
-    raster: object                       # grid, CRS and offset of the deposit
+    raster: Any                          # grid, CRS and offset of the deposit
     ground: np.ndarray                   # the ground before
     shown: Tuple                         # local xlo, ylo, xhi, yhi of the maps
     release: Optional[np.ndarray] = None     # mask: cells that held balls at the start
-    road: object = None                  # polygon
+    road: Any = None                     # polygon
     section: Optional[np.ndarray] = None     # points of the line, rows of x y
     interval: float = 5.0                # of the contours, m
-
-
-def shade(z, step):
-    """Shaded relief, light from the north-west at 45 degrees; flat ground is 0.71 whatever else is on the map.
-
-    matplotlib's stretches what it finds to 0 to 1, so that a map of nearly flat ground looks like mountains.
-    """
-    south, east = np.gradient(z, step)
-    azimuth, altitude = math.radians(315), math.radians(45)
-    light = math.sin(azimuth) * math.cos(altitude), math.cos(azimuth) * math.cos(altitude), math.sin(altitude)
-    return np.clip((-east * light[0] + south * light[1] + light[2]) / np.sqrt(1 + east ** 2 + south ** 2), 0, 1)
-
-
-def scheme(name, bounds, low=0.15, high=1.0):
-    """Colour map and norm of classes; the lightest tones of the colour map are left out."""
-    colours = plt.get_cmap(name)(np.linspace(low, high, len(bounds) - 1))
-    return ListedColormap(colours), BoundaryNorm(bounds, len(bounds) - 1)
 
 
 # --- what is drawn into the axes of a map ---
@@ -199,7 +182,8 @@ def small_maps(layers, panels, bar, bounds, colours):
         columns, size = sheets.layout(len(panels), frame, FULL - left - right - beside, 1.5 * TALL[FULL])
         rows = math.ceil(len(panels) / columns)
         step = max(size[0], sheets.NARROW) + 0.1
-        top, image = sheet.bottom, None
+        top: float = sheet.bottom
+        image: Any = None
         for row in range(rows):
             titles = [wrapped(title, step - 0.1, TITLE - 1.5, True) for title, _ in
                       panels[row * columns:(row + 1) * columns]]

@@ -1,11 +1,13 @@
 """All that a report shows, read, computed and drawn, as the template takes it."""
 import re
+from typing import Any, Dict, List
 
 from .. import provenance
 from ..case import decks
 from ..survey.rasters import crs_name
 from . import charts as report_charts, convergence_part, film, frames, heading, intensity_part, limits_part
 from . import numbers as report_numbers, view
+from .asked import Asked
 from .charts import Charts, REMOVE
 from .data import Data, find_deck
 from .ground import Ground
@@ -29,18 +31,19 @@ MEANS = (("to remove", "m3", "remove_m3"), ("on the road", "m3", "remove_on_road
 class Page:
     """A page: data, ground, section, warnings (red or amber, text), and the number of pictures."""
 
-    def __init__(self, args):
-        self.data = Data(args.folder, args.shown)
+    def __init__(self, asked: Asked):
+        self.data = Data(asked.folder, asked.shown)
         self.ground = Ground(self.data)
-        self.section = Section(self.data, self.ground, args.section, args.local)
-        self.reference = args.reference and read_reference(args.reference, report_charts.quantities(self.data))
-        path = convergence_part.find(args.converge, self.data)
+        self.section = Section(self.data, self.ground, asked.section, asked.local)
+        self.reference = read_reference(asked.reference, report_charts.quantities(self.data)) \
+            if asked.reference else None
+        path = convergence_part.find(asked.converge, self.data)
         self.sizes = path and convergence_part.Sizes(path)
         self.warnings = warnings(self.data)
         self.numbers = report_numbers.Numbers((self.data.study or {}).get("scatter"))
-        self.heading = heading.heading(args.folder, {name: getattr(args, name) for name in heading.FIELDS})
+        self.heading = heading.heading(asked.folder, {name: getattr(asked, name) for name in heading.FIELDS})
         self.frames, self.no_frames = frames.read(self.data.result)
-        self.film_file, self.film = args.film, film.Film(None, "")
+        self.film_file, self.film = asked.film, film.Film(None, "")
         self.pictures = 0
 
     def picture(self, uri, alt, caption):
@@ -142,7 +145,9 @@ class Page:
 
     def reference_tables(self):
         """Numbers from elsewhere: of each quantity a table, with the runs' own beside them where they can be held."""
-        tables = []
+        tables: List[Dict[str, Any]] = []
+        if self.reference is None:
+            return None
         own = self.data.finished or [report_charts.single_row(self.data)]
         for key, quantity in self.reference.quantities.items():
             what, unit = report_charts.sensitivity.NAMES[key]

@@ -4,14 +4,14 @@ import os
 import shutil
 import sys
 from statistics import median
-from typing import NamedTuple
+from typing import Any, Dict, List, NamedTuple
 
 import numpy as np
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from .. import disk
-from . import peers
+from . import peer_runs, peers
 from .bench_report import BUSY, TARGETS, report
 from .bench_scenes import BALLS, CASE, D, DENSITY, PREPARED, SKIN, collapse, contacts, copies, time_step, write_terrain
 from .peers import Scene
@@ -100,7 +100,7 @@ class Plan:
         folder = self.folder(name)
         write_terrain(folder / "terrain.asc", self.size, factor)
         disk.write(folder / peers.DECK, collapse(self.size, steps))
-        result = peers.run(self.ours, folder)
+        result = peer_runs.run(self.ours, folder)
         self.versions["slope"] = f"LAMMPS {result.version}"
         fixed = {kind: np.loadtxt(folder / f"fixed.{kind}.xyz") for kind in (2, 3)}
         return Scene(D, DENSITY, result.final, fixed, contacts(), time_step(), SKIN * D)
@@ -114,7 +114,7 @@ class Plan:
         """A timed run of a scene that is written in a folder."""
         self.say(f"{part}: {code.title}" + (f", {ranks} ranks" if ranks > 1 else "")
                  + f", {len(scene.moving):,} moving balls")
-        result = peers.run(code, folder, ranks)
+        result = peer_runs.run(code, folder, ranks)
         return self.keep(part, code, scene, steps, ranks, result)
 
     def keep(self, part, code, scene, steps, ranks, result):
@@ -133,17 +133,17 @@ class Plan:
     def peers(self, names):
         """Ours, a peer, ours, the next peer, and so on: the ratios of neighbouring runs."""
         codes = []
-        for code in peers.ALL[1:]:
-            if code.name in names:
-                one = code(self.programs.get(code.name, self.lmp))
+        for kind in peers.ALL[1:]:
+            if kind.name in names:
+                one = kind(self.programs.get(kind.name, self.lmp))
                 missing = one.missing()
                 if missing:
-                    self.notes.append(f"{code.title}: not measured: {missing}")
+                    self.notes.append(f"{one.title}: not measured: {missing}")
                 else:
                     codes.append(one)
         ours = self.write(self.ours, "slope", self.scene, self.steps)
         folders = {code.name: self.write(code, code.name, self.scene, self.steps) for code in codes}
-        ratios = {code.name: [] for code in codes}
+        ratios: Dict[str, List[float]] = {code.name: [] for code in codes}
         for _ in range(self.repeat):
             for code in codes:
                 mine = self.measure("peers", self.ours, ours, self.scene, self.steps)
@@ -195,7 +195,7 @@ class Plan:
         folder = self.folder(f"rest_{ranks}")
         for path in (CASE, CASE.with_name("terrain.asc")):
             shutil.copy(path, folder)
-        steps, seconds = peers.run_deck(self.lmp, folder, CASE.name, ranks)
+        steps, seconds = peer_runs.run_deck(self.lmp, folder, CASE.name, ranks)
         self.cases.append({"ranks": ranks, "steps": steps, "seconds": seconds})
         self.bar.update(self.task, advance=1, refresh=self.live)
         return seconds / steps
@@ -208,7 +208,7 @@ class Plan:
             alone = self.measure("throughput", self.ours, here, self.scene, self.steps)
             self.say("throughput: two runs side by side")
             both = [self.keep("throughput", self.ours, self.scene, self.steps, 1, result)
-                    for result in peers.run_together(self.ours, [here, there])]
+                    for result in peer_runs.run_together(self.ours, [here, there])]
             ratios.append(2 * alone.result.seconds / (sum(one.result.seconds for one in both) / 2))
         self.set("throughput", "throughput of two runs side by side / one", ratios)
 
@@ -221,7 +221,7 @@ class Plan:
         steps = max(100, self.steps // 5)
         here = self.write(self.ours, "slope_short", self.scene, steps)
         there = self.write(self.ours, "slope_many", many, steps)
-        ratios = {ranks: [] for ranks in (1, *several)}
+        ratios: Dict[Any, List[float]] = {ranks: [] for ranks in (1, *several)}
         extra, told = [], []
         for _ in range(self.repeat):
             for ranks, ratio in ratios.items():
