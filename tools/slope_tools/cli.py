@@ -21,6 +21,7 @@ COMMANDS = {
     "terrain": "survey rasters (GeoTIFF, ESRI ASCII) to the plain terrain.asc that decks read",
     "polygon": "polygons (GeoJSON, shapefile, CSV, WKT) to the .csv in local metres that decks read",
     "release": "the body that is released: slip surface below a polygon or from a scar, to a volume; lines of the deck",
+    "site": "from the files of a GIS to a folder with terrain, body, deck and map, which study runs",
     "quake": "strong-motion records (K-NET, KiK-net, PEER AT2, CSV) to the motion of the ground that decks read",
     "volume": "what must be removed from a road, per mesh cell and in total, above a cut surface",
     "export": "every raster of a run as a GeoTIFF in the survey's coordinates, for a GIS",

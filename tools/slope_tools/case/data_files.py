@@ -9,7 +9,8 @@ from . import decks, run_folders
 
 # what runs, and the tools after them, leave in the deck's folder; a file that the deck reads is copied all the same
 OUTPUTS = re.compile(r"^\.|^core|^log\.|\.(restart|dump|lammpstrj|vtp|vts|pvd)(\.gz)?$|\.(yaml|csv|tif)\.new$"
-                     r"|\.summary\.yaml$|\.(png|jpe?g|svg|pdf|html|tif)$|~$", re.IGNORECASE)
+                     r"|\.summary\.yaml$|^report\.(section|numbers)\.csv$|\.(png|jpe?g|svg|pdf|html|tif)$|~$",
+                     re.IGNORECASE)
 
 
 def data_files(deck, settings):

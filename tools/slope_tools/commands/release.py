@@ -63,33 +63,9 @@ def run(args):
     wanted = release.Wanted(args.terrain, args.polygon, args.shape, args.depth, args.volume, args.curvature, args.dip,
                             args.direction, args.scar, args.scar_is, args.least, args.crs, args.local)
     body = release.body_of(wanted)
-    print(text(body.choices, body.measures, body.area.cell), flush=True)
+    print(release.text(body), flush=True)
     tell = errors.printer("release")
     for line in body.warnings:
         tell(line)
     release_files.write_body(args.output, wanted, body)
     print(f"wrote {', '.join(path.name for path in release_files.paths(args.output))}")
-
-
-def text(choices, found, cell):
-    """What the user needs to know of the body before anything is written."""
-    shape = choices["shape"]
-    if shape == "scar":
-        what = f"scar of {choices['scar']} ({choices['scar_is']})"
-    elif shape == "plane":
-        what = (f"plane that dips {choices['dip_degrees']:.4g} degrees towards {choices['direction_degrees']:.4g}, "
-                f"{choices['drop_m']:.4g} m below the highest one")
-    elif shape == "slbl":
-        what = (f"sloping local base level, curvature {choices['curvature_per_m']:.4g} /m (tolerance "
-                f"{choices['tolerance_m']:.4g} m for cells of {cell:g} m)")
-    else:
-        toe, shoulder = (" ".join(f"{value:.1f}" for value in choices[end]) for end in ("toe", "shoulder"))
-        wide = f", {choices['width_m']:.4g} m wide" if shape == "ellipsoid" else ""
-        sagitta = choices["sagitta_m"]
-        what = (f"{shape} through toe {toe} and shoulder {shoulder}, {abs(sagitta):.4g} m "
-                f"{'below' if sagitta > 0 else 'above'} its chord of {choices['chord_m']:.4g} m{wide}")
-    return (f"{what}\n"
-            f"volume {found.volume:.10g} m3, largest depth {found.largest_depth:.4g} m, mean depth "
-            f"{found.mean_depth:.4g} m, area {found.area:.10g} m2 ({found.cells} cells of {cell:g} m)\n"
-            f"mean slope {found.mean_slope:.1f} degrees, of the slip surface {found.slip_slope:.1f}, towards "
-            f"{found.bearing:.0f} degrees from north; ground at {found.lowest:.1f} to {found.highest:.1f} m")

@@ -7,14 +7,15 @@ from ..ensemble.setup import Road, Setup
 from ..options import count, number
 
 
-def add_deck(parser):
-    parser.add_argument("deck", metavar="DECK", type=Path,
-                        help="LAMMPS input deck with one fix deposit/grid; the plain files beside it are its data")
+def add_deck(parser, site=False):
+    parser.add_argument("deck", metavar="DECK|SITE" if site else "DECK", type=Path,
+                        help="LAMMPS input deck with one fix deposit/grid; the plain files beside it are its data"
+                             + "; or the folder that `slope site` made, whose standard study is run" * site)
 
 
-def add_runs(parser, road=False):
+def add_runs(parser, road=False, output=True):
     """Arguments of how the runs are made and what is measured; road: it must be given."""
-    parser.add_argument("-o", dest="output", metavar="DIR", required=True, type=Path, help="the study's folder")
+    parser.add_argument("-o", dest="output", metavar="DIR", required=output, type=Path, help="the study's folder")
     parser.add_argument("--np", type=count, default=1, metavar="N", help="MPI ranks of each run (default 1)")
     parser.add_argument("--jobs", type=count, metavar="J",
                         help="runs at a time (default: as many as the cores of this machine allow)")

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ..case import decks
 from ..case.settings import check_settings, one_value_each
-from ..ensemble import intensity, repeats, results, sample
+from ..ensemble import intensity, repeats, results, sample, site_study
 from ..ensemble.size_error import SizeErrors
 from ..ensemble.study import check_names, check_thresholds, perform
 from ..errors import SlopeError
@@ -27,6 +27,9 @@ an ensemble: 64 runs with values drawn from distributions, how likely a volume i
   tools/slope study in.collapse --sample 64 --vary friction=20:40 --vary rolling=triangular:0:0:0.2 \\
       --road road.geojson -o out
 
+everything of a site that `slope site ... -o mine` made: rolling resistances, repeats, sizes of balls, the report:
+  tools/slope study mine
+
 Every run has a folder of its own in DIR, and is not repeated once it is finished. Over all runs: DIR/study.csv,
 DIR/combinations.csv (mean and scatter), DIR/study.yaml, and the maps envelope_* (largest thickness) and exceedance_*
 (share of the runs above a thickness).
@@ -38,7 +41,7 @@ def add_parser(commands, **kwargs):
     parser = commands.add_parser(
         "study", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
         description="Run one deck over the product of lists of its variables.", **kwargs)
-    add_deck(parser)
+    add_deck(parser, site=True)
     parser.add_argument("--set", metavar="NAME=V1,V2,...", action="append", default=[],
                         help="values of an index variable of the deck; A:B:STEP stands for A, A + STEP, ... up to B")
     add_sample(parser)
@@ -56,12 +59,16 @@ def add_parser(commands, **kwargs):
                         help="quantity of the hazard curve of an ensemble, a column of study.csv (default: "
                              "remove_on_road_m3; without a road distance_99_m)")
     add_intensity(parser)
-    add_runs(parser)
+    add_runs(parser, output=False)
     return parser
 
 
 def run(args):
     """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
+    if args.deck.is_dir():
+        return run_site(args)
+    if args.output is None:
+        raise SlopeError("-o", "must be given, the study's folder")
     settings = check_settings(args.set, args.deck)
     repeated = check_settings(args.repeat, args.deck, "--repeat")
     repeats.check(list(repeated), args.equally_good)
@@ -84,6 +91,20 @@ def run(args):
     questions = results.Questions(settings, repeated, thresholds, errors, None, args.intensity, args.more_than)
     return perform(setup, {**settings, **repeated}, todo,
                    lambda todo, work: results.collect(setup, questions, todo, work))
+
+
+def run_site(args):
+    """The standard study of a site's folder, and the report."""
+    for option in ("set", "repeat", "vary", "sample", "size_error", "road", "of", "intensity", "equally_good",
+                   "output"):
+        if getattr(args, option):
+            raise SlopeError("-o" if option == "output" else f"--{option.replace('_', '-')}", "must not be given with "
+                             f"the folder of a site: {args.deck / 'site.yaml'} says what is run", getattr(args, option))
+    study = site_study.run(args.deck, setup_of(args))
+    if study:
+        from ..report import document
+        from ..report.asked import Asked
+        print("\n".join(document.write(Asked(study), args.deck / "report.html")))
 
 
 def run_ensemble(args, settings, repeated, thresholds, defaults):

@@ -213,7 +213,7 @@ def on_road(one, road: Road, summary, thickness, picture=True) -> Dict[str, Any]
     terrain = one.folder / one.log.terrain if one.log.terrain else None
     found = volume.of_run(str(prefix), volume.Wanted(road.file, road.mesh, road.cut_angle, road.local), terrain)
     volume.write(found, one.folder / "volume", picture)
-    about = found.about
+    about = disk.plain(found.about)       # numpy has no place in study.yaml
     return {"remove_m3": about["volume"]["remove"], "remove_on_road_m3": about["volume"]["remove_on_road"],
             "remove_beside_road_m3": about["volume"]["remove_beside_road"],
             "beyond_road_m3": beyond(thickness, run_folders.load_raster(prefix, "arrival").z == 0,

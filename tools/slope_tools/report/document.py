@@ -2,6 +2,7 @@
 import base64
 import re
 from pathlib import Path
+from typing import List
 
 from .. import disk
 from ..errors import SlopeError
@@ -14,6 +15,17 @@ def write_pictures(output, html):
     for place, picture in enumerate(pictures, 1):
         disk.write(output.with_suffix(f".{place}.png"), base64.b64decode(picture))
     print(f"{output.with_suffix('.1.png')} to {len(pictures)}: its maps")
+
+
+def write(asked: Asked, output: Path) -> List[str]:
+    """Write the page and its tables; returns lines for the user."""
+    page, html = make(asked)
+    tables = {output.with_suffix(".section.csv"): page.section.table(),
+              output.with_suffix(".numbers.csv"): page.numbers.table()}
+    for path, text in {output: html, **tables}.items():
+        disk.write(path, text)
+    return [f"{output}: {len(html) / 1e6:.1f} MB, {page.pictures} pictures; {', '.join(map(str, tables))}",
+            *(f"{'WARNING' if level == 'red' else 'note'}: {text}" for level, text in page.warnings)]
 
 
 def make(asked: Asked):

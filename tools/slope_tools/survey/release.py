@@ -8,7 +8,6 @@ from ..errors import SlopeError
 from . import polygons, rasters, release_area, release_bodies, release_scar, release_solve
 from .crs import as_crs
 
-
 SHAPES = ("sphere", "ellipsoid", "plane", "slbl")
 COARSE = 50     # cells; a body of fewer is drawn with a coarse brush
 
@@ -168,3 +167,28 @@ def warnings(choices, found, cell):
                      + ("a wider polygon, or --shape ellipsoid?" if choices["shape"] == "sphere" else
                         "is the polygon large enough?"))
     return lines
+
+
+def text(body: Body) -> str:
+    """What the user needs to know of the body before anything is written."""
+    choices, found, cell = body.choices, body.measures, body.area.cell
+    shape = choices["shape"]
+    if shape == "scar":
+        what = f"scar of {choices['scar']} ({choices['scar_is']})"
+    elif shape == "plane":
+        what = (f"plane that dips {choices['dip_degrees']:.4g} degrees towards {choices['direction_degrees']:.4g}, "
+                f"{choices['drop_m']:.4g} m below the highest one")
+    elif shape == "slbl":
+        what = (f"sloping local base level, curvature {choices['curvature_per_m']:.4g} /m (tolerance "
+                f"{choices['tolerance_m']:.4g} m for cells of {cell:g} m)")
+    else:
+        toe, shoulder = (" ".join(f"{value:.1f}" for value in choices[end]) for end in ("toe", "shoulder"))
+        wide = f", {choices['width_m']:.4g} m wide" if shape == "ellipsoid" else ""
+        sagitta = choices["sagitta_m"]
+        what = (f"{shape} through toe {toe} and shoulder {shoulder}, {abs(sagitta):.4g} m "
+                f"{'below' if sagitta > 0 else 'above'} its chord of {choices['chord_m']:.4g} m{wide}")
+    return (f"{what}\n"
+            f"volume {found.volume:.10g} m3, largest depth {found.largest_depth:.4g} m, mean depth "
+            f"{found.mean_depth:.4g} m, area {found.area:.10g} m2 ({found.cells} cells of {cell:g} m)\n"
+            f"mean slope {found.mean_slope:.1f} degrees, of the slip surface {found.slip_slope:.1f}, towards "
+            f"{found.bearing:.0f} degrees from north; ground at {found.lowest:.1f} to {found.highest:.1f} m")
