@@ -11,6 +11,7 @@ from .. import disk
 from ..errors import SlopeError
 from ..report.asked import Asked
 from ..report.document import make, write_pictures
+from ..report.heading import SITE
 from ..report.section import FALL
 
 EPILOG = """\
@@ -20,8 +21,8 @@ example: the study that `slope study ... -o out` made, with a section along a li
   tools/slope report out -o report.html
   tools/slope report out --section thalweg.geojson
 
-Writes report.html, with all pictures in it; report.section.csv, the heights along the section; and report.numbers.csv,
-the numbers on the page with all their digits.
+Writes report.html, with all pictures in it, and a 3-D view of a run that wrote dumps; report.section.csv, the heights
+along the section; report.numbers.csv, the numbers on the page with all their digits; and report.mp4, a film of the run.
 """
 
 
@@ -47,6 +48,12 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--converge", metavar="DIR", type=Path,
                         help="what the size of the balls does: the folder of `slope sensitivity --converge`, or its "
                              "converge.yaml (default: the one that the study took its size error from)")
+    for name, what in (("project", "name of the project or the site, the title of the page"),
+                       ("client", "for whom the report is"), ("author", "who made it")):
+        parser.add_argument(f"--{name}", metavar="TEXT", help=f"{what} (default: what {SITE} says, in DIR or above it)")
+    parser.add_argument("--no-film", action="store_true",
+                        help="make no film of the balls, REPORT.mp4 (default: one, where the run wrote dumps and "
+                             "ffmpeg is installed)")
     parser.add_argument("--no-paper", action="store_true", help=argparse.SUPPRESS)    # in older scripts
     parser.add_argument("--pictures", action="store_true",
                         help="write the maps as files too, REPORT.1.png, REPORT.2.png, ... in the page's order; "
@@ -67,15 +74,22 @@ def run(args):
         raise SlopeError(args.folder, "must be an existing folder")
     if not output.absolute().parent.is_dir():
         raise SlopeError("-o", "must be in an existing folder", output)
-    page, html = make(Asked(args.folder, args.shown, args.section, args.local, args.reference, args.converge))
+    asked = Asked(args.folder, args.shown, args.section, args.local, args.reference, args.converge, args.project,
+                  args.client, args.author, None if args.no_film else output.with_suffix(".mp4"))
+    page, html = make(asked)
     tables = {output.with_suffix(".section.csv"): page.section.table(),
               output.with_suffix(".numbers.csv"): page.numbers.table()}
-    for path, text in {output: html, **tables}.items():
+    films = {asked.film: page.film.content} if page.film.content else {}
+    for path, text in {output: html, **tables, **films}.items():
         disk.write(path, text)
-    print(f"{output}: {len(html) / 1e6:.1f} MB, {page.pictures} pictures; {', '.join(map(str, tables))}")
+    view = ", a 3-D view" if 'id="scene"' in html else ""
+    print(f"{output}: {len(html) / 1e6:.1f} MB, {page.pictures} pictures{view}; "
+          f"{', '.join(map(str, [*tables, *films]))}")
     if args.pictures:
         write_pictures(output, html)
     if args.no_paper:
         print("note: --no-paper is the default now; --reference FILE.yaml brings other numbers in")
+    if page.film.text and not films:
+        print(f"note: {page.film.text}")
     for level, text in page.warnings:
         print(f"{'WARNING' if level == 'red' else 'note'}: {text}")

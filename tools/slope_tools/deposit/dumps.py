@@ -40,20 +40,24 @@ def last(path, wanted=()):
     if number == 0:
         raise SlopeError(path, f"must have balls at step {step}", "none")
     first = lines_before + text.count("\n", 0, head.end()) + 1
-    rows = [line.split() for line in text[head.end():].splitlines()]
+    rows = text[head.end():].splitlines()
     if len(rows) != number:
         raise SlopeError(path, f"must have {number} balls at step {step}, as its head says (is the run still writing?)",
                          len(rows))
-    for i, row in enumerate(rows):
-        if len(row) != len(columns):
-            raise SlopeError(f"{path}: line {first + i}", f"must have {len(columns)} columns", len(row))
+    table = numbers_only(rows, len(columns))
+    if table is None:
+        rows = [line.split() for line in rows]
+        for i, row in enumerate(rows):
+            if len(row) != len(columns):
+                raise SlopeError(f"{path}: line {first + i}", f"must have {len(columns)} columns", len(row))
     index = {"id": columns.index("id")} if "id" in columns else {}
     for names in PLACES:
         index.update((names[0], columns.index(name)) for name in names if name in columns)
     if len(index) < 4:
         raise SlopeError(path, "must have the columns id x y z (or xu yu zu)", " ".join(columns))
     index.update((name, columns.index(name)) for name in wanted if name in columns)
-    of = {name: numbers(rows, i, f"{path}: line", first, name) for name, i in index.items()}
+    of = {name: numbers(rows, i, f"{path}: line", first, name) if table is None else table[:, i]
+          for name, i in index.items()}
     ids, count = np.unique(of["id"], return_counts=True)
     if len(ids) < number:
         raise SlopeError(path, f"must have each ball once at step {step}", f"id {ids[count.argmax()]:g} "
@@ -94,6 +98,15 @@ def last_text(path):
     except (OSError, EOFError, zlib.error) as error:
         raise SlopeError(path, f"must be a LAMMPS dump ({getattr(error, 'strerror', None) or error})") from error
     return kept.decode("ascii", "replace"), lines
+
+
+def numbers_only(rows, columns):
+    """Lines as a table, three times as fast as word by word; None unless all of it is finite numbers."""
+    try:
+        table = np.loadtxt(rows, ndmin=2, comments=None)
+    except ValueError:
+        return None
+    return table if table.shape == (len(rows), columns) and np.isfinite(table).all() else None
 
 
 def numbers(rows, column, where, first, name):

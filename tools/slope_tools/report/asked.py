@@ -11,3 +11,7 @@ class Asked(NamedTuple):
     local: bool = False                         # that line is in local metres
     reference: Optional[Path] = None            # numbers from elsewhere
     converge: Optional[Path] = None             # of slope sensitivity --converge
+    project: Optional[str] = None               # these three: the heading
+    client: Optional[str] = None
+    author: Optional[str] = None
+    film: Optional[Path] = None                 # file of the film, which is made, but written by the caller

@@ -5,7 +5,8 @@ from typing import Any, Dict, List
 from .. import provenance
 from ..case import decks
 from ..survey.rasters import crs_name
-from . import charts as report_charts, convergence_part, intensity_part, numbers as report_numbers
+from . import charts as report_charts, convergence_part, film, frames, heading, intensity_part, limits_part
+from . import numbers as report_numbers, view
 from .asked import Asked
 from .charts import Charts, REMOVE
 from .data import Data, find_deck
@@ -40,6 +41,9 @@ class Page:
         self.sizes = path and convergence_part.Sizes(path)
         self.warnings = warnings(self.data)
         self.numbers = report_numbers.Numbers((self.data.study or {}).get("scatter"))
+        self.heading = heading.heading(asked.folder, {name: getattr(asked, name) for name in heading.FIELDS})
+        self.frames, self.no_frames = frames.read(self.data.result)
+        self.film_file, self.film = asked.film, film.Film(None, "")
         self.pictures = 0
 
     def picture(self, uri, alt, caption):
@@ -52,6 +56,8 @@ class Page:
         one, study = data.result, data.study
         maps = Maps(data, self.ground, self.section, self.picture)
         charts = Charts(data, self.reference, self.picture)
+        if self.film_file:
+            self.film = film.film(data, self.ground, self.section, maps.layers, self.frames, self.film_file.name)
         removal = numbers("to remove", "m3", one.row[REMOVE], REMOVE, data.label(one)) if REMOVE in one.row else ""
         found = {
             "made": provenance.now(), "study": study, "single": not study, "one": one, "summary": one.summary,
@@ -70,6 +76,8 @@ class Page:
                                      "variable": self.sizes.variable, "deck": self.sizes.deck},
             "mass_error": (one.deposit.volume - one.summary["volume"]["released"] + one.summary["volume"]["off_grid"]
                            + one.summary["volume"]["lost"]) / one.summary["volume"]["released"],
+            "view": view.content(data, self.ground, self.section, self.frames, self.no_frames, self.film.text),
+            "heading": self.heading, "limits": limits_part.content(data, numbers),
             "place": self.place(), "ensemble": None}
         if study and study.get("ensemble"):
             from . import ensemble_part

@@ -1,0 +1,39 @@
+"""What a report says of itself: project, client and author, from the command line or from the site's file."""
+from pathlib import Path
+from typing import Dict, Optional
+
+from .. import disk
+from ..errors import SlopeError
+
+SITE = "site.yaml"          # of `slope site`; its study is a folder in the site's
+FIELDS = {"project": "name", "client": "client", "author": "author"}      # option: key below `project` in that file
+LONGEST = 200               # letters
+
+
+def heading(folder: Path, given: Dict[str, Optional[str]]) -> Dict[str, Optional[str]]:
+    """{field: text, None where unknown} of project, client and author; given: the options, which come first."""
+    for name, text in given.items():
+        check(f"--{name}", text)
+    found = of_site(folder)
+    return {name: given.get(name) or found.get(name) for name in FIELDS}
+
+
+def of_site(folder: Path) -> Dict[str, str]:
+    """What the file of the site says, in the folder or in the one above it."""
+    path = next((place / SITE for place in (folder, folder.absolute().parent) if (place / SITE).is_file()), None)
+    if path is None:
+        return {}
+    about = disk.load_yaml(path, "a file of `slope site`").get("project") or {}
+    if not isinstance(about, dict):
+        raise SlopeError(path, "project must have name, client and author", repr(about)[:60])
+    found = {}
+    for name, key in FIELDS.items():
+        check(f"{path}: project: {key}", about.get(key))
+        if about.get(key):
+            found[name] = about[key]
+    return found
+
+
+def check(where: str, text) -> None:
+    if text is not None and not (isinstance(text, str) and text.isprintable() and len(text) <= LONGEST):
+        raise SlopeError(where, f"must be one line of at most {LONGEST} letters", repr(text))

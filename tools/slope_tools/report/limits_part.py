@@ -1,0 +1,81 @@
+"""What stands beside the numbers of a report: how uncertain they are, and what is not in them."""
+import math
+from typing import List, Tuple
+
+from .. import disk
+from ..deposit import travel_shares
+from ..ensemble import headline
+
+CONTENT = List[Tuple[str, str]]
+
+
+def content(data, numbers) -> CONTENT:
+    """(what, sentences) of the shown run and of its study."""
+    return [*uncertainty(data, numbers), ("Varied", varied(data)), *model(data)]
+
+
+# --- uncertainty ---
+
+def uncertainty(data, numbers) -> CONTENT:
+    """By how much a run differs by chance, and what the size of the balls does."""
+    study = data.study
+    best = study and study["conservative"]
+    found = []
+    if best and best["chance_m3"] is not None:
+        low, high = (headline.text(value, best["place_m3"]) for value in
+                     (max(0.0, best["mean_m3"] - best["chance_m3"]), best["mean_m3"] + best["chance_m3"]))
+        found.append(f"Another run with the same values gives {low} to {high} m3 to remove, in 95 % of cases.")
+    key = travel_shares.DISTANCE
+    deviation = ((study and study.get("scatter") or {}).get(key) or {}).get("deviation")
+    if disk.is_number(deviation):
+        text = numbers("scatter of a run: 99 % within", "m", deviation)
+        found.append(f"The distance that 99 % of the volume stays within differs by {text} m from run to run "
+                     "(standard deviation).")
+    if not found:
+        found = ["Unknown: no run was repeated, and two runs that are equally good may differ by several percent "
+                 "(study --repeat)."] if not (study and study.get("ensemble")) else []
+    chance = [("Chance", " ".join(found))] if found else []
+    if best and best["size_m3"] is None or not study:
+        chance.append(("Size of the balls", "What smaller balls would give is unknown "
+                                            "(sensitivity --converge, study --size-error)."))
+    return chance
+
+
+def varied(data) -> str:
+    """Which variables the runs differ in; nothing else is in the spread of the numbers."""
+    several = {name: values for name, values in data.settings.items() if len(values) > 1}
+    if not several:
+        return ("Nothing: one set of values. What friction, restitution, the roughness of the ground or another slip "
+                "surface would change is not in the numbers.")
+    ranges = ", ".join(f"{name} {shortly(values)}" for name, values in several.items())
+    return (f"{ranges}. What other variables, or another slip surface, would change is not in the numbers.")
+
+
+def shortly(values) -> str:
+    """The values of a variable, or the ends of many."""
+    if len(values) <= 4:
+        return ", ".join(map(str, values))
+    try:
+        ordered = sorted(values, key=float)
+    except ValueError:
+        return f"{len(values)} values"
+    return f"{ordered[0]} to {ordered[-1]}"
+
+
+# --- what the model leaves out ---
+
+def model(data) -> CONTENT:
+    about = data.result.summary
+    ball = about["volume"]["released"] / about["balls"]["released"]
+    side = headline.text(ball ** (1 / 3), 10.0 ** (math.floor(math.log10(ball) / 3) - 2))
+    return [
+        ("The body", "Its slip surface and volume were given, not computed: the report does not say whether, or how "
+                     "likely, the slope fails. The body starts to move as a whole and without a cause, unless the deck "
+                     "shakes it."),
+        ("The mass", f"Equal balls, each for {headline.text(ball, headline.place_of_digits(ball))} m3 of ground, a "
+                     f"cube of {side} m: a parameter of the model, not the size of blocks. Speeds and energies of "
+                     "single balls are those of such a block. Dry: no water, no pore pressure, no liquefaction. No "
+                     "cohesion, no breakage, no change of volume on the way."),
+        ("The ground", f"As the elevation model has it; the deposit in cells of {data.result.deposit.cell:g} m. What "
+                       "is narrower than a cell or a ball, such as a ditch, has no effect. Nothing is eroded or taken "
+                       "along; there are no trees, and no walls or buildings but those that the deck names.")]
