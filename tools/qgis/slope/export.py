@@ -47,7 +47,7 @@ class Export(Algorithm):
 
     Beside each GeoTIFF lies its style (.qml)."""
     options = (RUN, TERRAIN, Option("OUTPUT", "-o", "new folder", "Folder for the GeoTIFFs"))
-    outputs = tuple(("raster", kind.upper(), name) for kind, name in NAMES.items())
+    outputs = tuple(("raster", kind.upper(), name[0].upper() + name[1:]) for kind, name in NAMES.items())
 
     def words(self, asked):
         return [prefix_of(asked), *super().words(asked)]

@@ -53,7 +53,7 @@ def raster_file(asked, key):
     if not pipe.set(layer.dataProvider().clone()):
         raise QgsProcessingException(f"{key}: must be a raster whose values can be read, got {layer.name()}")
     error = writer.writeRaster(pipe, layer.width(), layer.height(), layer.extent(), layer.crs(),
-                               asked.context.transformContext(), asked.feedback)
+                               asked.context.transformContext())
     if error:
         raise QgsProcessingException(f"{key}: cannot be written as a GeoTIFF (error {error}), got {layer.name()}")
     return path

@@ -70,8 +70,8 @@ class Option:
                                           fileFilter=self.filter)
 
     def given(self, asked) -> bool:
-        """Whether the user chose a value; asked: an Asked."""
-        return asked.parameters.get(self.key) not in (None, "")
+        """Whether there is a value, the user's or a default; asked: an Asked."""
+        return asked.parameters.get(self.key) not in (None, "") or self.default is not None
 
     def words(self, asked) -> List[str]:
         """Its words of the command line, none if it was not given."""
