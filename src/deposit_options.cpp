@@ -9,6 +9,7 @@
 #include "deposit_pieces.h"
 #include "deposit_rasters.h"
 #include "deposit_restart.h"
+#include "elevation_grid.h"
 #include "lammps_compat.h"
 #include "region_surface.h"
 #include "style_argument.h"
@@ -29,7 +30,6 @@ using Slope::PlanGrid;
 static constexpr double MOTION = 0.1;        // m/s
 static constexpr double MAXBULK = 1.0e3;     // a ball's square must not be cut by countless cells
 static constexpr double MAXCELL = 1.0e12;    // the area of a cell must be finite
-static constexpr double MAXCELLS = 2147483647.0;    // as many as the readers of rasters take
 
 /* ----------------------------------------------------------------------
    fix ID group deposit/grid Nevery Nfreq cell S terrain REGION output PREFIX keyword value ...
@@ -201,11 +201,12 @@ void DepositOptions::make_grid()
 
   const double ncells = PlanGrid::cells_in(extent[0], extent[1], cell) *
       PlanGrid::cells_in(extent[2], extent[3], cell);
-  if (ncells > MAXCELLS)
+  const double most = Slope::ElevationGrid::MAXCELLS;    // as many as the readers of rasters take
+  if (ncells > most)
     error->all(FLERR,
                "Fix deposit/grid cell must give at most {:.0f} cells, got {:.0f} cells, they need "
                "{:.3g} GB of memory",
-               MAXCELLS, ncells, 1.0e-9 * ncells * DepositRasters::MOST_BYTES_PER_CELL);
+               most, ncells, 1.0e-9 * ncells * DepositRasters::MOST_BYTES_PER_CELL);
   grid = PlanGrid(extent, cell);
   const double band = DepositPieces::bytes_of_band(grid);
   if (band > DepositRestart::MOST_BYTES)

@@ -14,7 +14,6 @@
 
 #include "comm.h"
 #include "error.h"
-#include "force.h"
 #include "timer.h"
 #include "update.h"
 
@@ -193,8 +192,7 @@ DepositSummary DepositReport::summary(const std::string &why, const DepositResul
 
 void DepositReport::add_guards(DepositSummary &s) const
 {
-  auto law = dynamic_cast<PairGranRestitution *>(force->pair_match("gran/restitution", 1));
-  if (law) {
+  if (auto law = PairGranRestitution::of(lmp)) {
     const ContactGuards::Found found = law->guards.found();
     s.guards = {true, found.deepest, found.energy_growth, found.deep, found.dangerous_builds};
     s.warnings = law->guards.warnings;

@@ -19,8 +19,7 @@
 
 using namespace Slope;
 
-static constexpr double NODATA = -9999.0;           // in a file whose header names no other
-static constexpr double MAXCELLS = 2147483647.0;    // cells are counted with int
+static constexpr double NODATA = -9999.0;    // in a file whose header names no other
 static const double NaN = std::numeric_limits<double>::quiet_NaN();
 
 static const double POWER[] = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
@@ -207,10 +206,11 @@ Header read_header(GridText &text)
     if (!header.count(name)) throw text.error(std::string("header key ") + name + " is missing");
 
   const double ncells = header["ncols"] * header["nrows"];
-  if (ncells > MAXCELLS)
+  if (ncells > ElevationGrid::MAXCELLS)
     throw text.error(to_text(header["ncols"]) + " x " + to_text(header["nrows"]) +
                      " cells would need " + to_text(std::round(8e-9 * ncells)) +
-                     " GB of memory, at most " + to_text(MAXCELLS) + " cells are possible");
+                     " GB of memory, at most " + to_text(ElevationGrid::MAXCELLS) +
+                     " cells are possible");
 
   Header found;
   found.nx = (int) header["ncols"];

@@ -24,6 +24,8 @@ class AtomicFile;
 // Errors are std::runtime_error with one line: file, line in it, rule, value.
 class ElevationGrid {
  public:
+  static constexpr double MAXCELLS = 2147483647.0;    // cells are counted with int
+
   ElevationGrid() : nx(0), ny(0), xlo(0.0), ylo(0.0), cell(1.0), elsewhere(nullptr) {}
 
   // nx by ny cells of one value; the memory is allocated here (std::bad_alloc)

@@ -13,11 +13,8 @@
 #include "ball_placement.h"
 #include "comm.h"
 #include "contact_energy.h"
-#include "contact_store.h"
 #include "error.h"
-#include "force.h"
 #include "initial_overlap.h"
-#include "modify.h"
 #include "neighbor.h"
 #include "pair_gran_restitution.h"
 #include "style_argument.h"
@@ -41,9 +38,8 @@ static constexpr double RESTART_FORMAT =
 ------------------------------------------------------------------------- */
 
 FixWallGranBalls::FixWallGranBalls(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), pair(nullptr), smaller_warned(false), contacts_in_lists(false)
+    FixContactWall(lmp, narg, arg, 1), smaller_warned(false)
 {
-  caller = fmt::format("Fix wall/gran/balls {}", id);
   if (narg < 6)
     error->all(FLERR, "{}: needs TYPE DIAMETER and surface or file, got {} arguments", caller,
                narg - 3);
@@ -63,28 +59,9 @@ FixWallGranBalls::FixWallGranBalls(LAMMPS *lmp, int narg, char **arg) :
         placement->make(tile, made);
       }));
 
-  scalar_flag = vector_flag = 1;
   size_vector = 3;
-  extscalar = extvector = 1;
-  global_freq = 1;
-  restart_global = restart_peratom = 1;
-  create_attribute = 1;
-  maxexchange_dynamic = 1;
-
   for (int k = 0; k < 3; k++) force_mine[k] = force_all[k] = 0.0;
   force_ready = 0;
-
-  store.reset(new ContactStore(lmp, caller));
-  atom->add_callback(Atom::GROW);
-  atom->add_callback(Atom::RESTART);
-}
-
-/* ---------------------------------------------------------------------- */
-
-FixWallGranBalls::~FixWallGranBalls()
-{
-  atom->delete_callback(id, Atom::GROW);
-  atom->delete_callback(id, Atom::RESTART);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -109,21 +86,7 @@ int FixWallGranBalls::setmask()
 
 void FixWallGranBalls::init()
 {
-  pair = dynamic_cast<PairGranRestitution *>(force->pair_match("gran/restitution", 1));
-  if (!pair)
-    error->all(FLERR, "{}: requires pair_style gran/restitution, which holds its coefficients",
-               caller);
-  pair->announce_wall(this, wall_type, groupbit);
-
-  // contacts must be stored by atom before any fix migrates atoms
-
-  for (int i = 0; i < modify->nfix; i++) {
-    if (modify->fix[i] == this) break;
-    if (modify->fix[i]->pre_exchange_migrate)
-      error->all(FLERR, "{}: must come before fix {} {}, which moves atoms between ranks", caller,
-                 modify->fix[i]->id, modify->fix[i]->style);
-  }
-
+  FixContactWall::init();
   placement->check_regions();
   check_sizes();
 }
@@ -161,39 +124,50 @@ const std::string &FixWallGranBalls::left_out() const
 }
 
 /* ----------------------------------------------------------------------
-   contacts from the lists to storage by atom: before atoms migrate or are sorted, before a
-   restart file, at the end of a run
+   a contact's key: the number of the fixed ball, which stays the same when its index does not
 ------------------------------------------------------------------------- */
 
-void FixWallGranBalls::store_contacts()
+void FixWallGranBalls::take_contacts()
 {
-  if (!contacts_in_lists) return;
-  contacts_in_lists = false;
-  store->take(lists, [this](int k) {
-    return balls->number(k);
-  });
-  maxexchange = store->maxexchange;
+  for (const ContactList &l : lists)
+    for (size_t k = 0, end; k < l.entries.size(); k = end) {
+      const int i = l.entries[k].i;    // its entries follow one another
+      int n = 0;
+      for (end = k; end < l.entries.size() && l.entries[end].i == i; end++) n += l.has_history(end);
+      if (n == 0 || i >= atom->nlocal) continue;
+      records.make(i, n);
+      for (n = 0; k < end; k++) {
+        if (!l.has_history(k)) continue;
+        *records.key(i, n) = static_cast<double>(balls->number(l.entries[k].j));
+        std::copy_n(l.histories[k], HISTORY, records.history(i, n++));
+      }
+    }
 }
 
-void FixWallGranBalls::pre_exchange()
-{
-  store_contacts();
-}
+// a history for each entry of new lists: the stored one for a contact that is known
 
-void FixWallGranBalls::post_run()
+void FixWallGranBalls::give_histories()
 {
-  store_contacts();
+  size_t total = 0;
+  for (const ContactList &l : lists) total += l.entries.size();
+  histories.assign(total * HISTORY, 0.0);
+  double *next = histories.data();
+  for (ContactList &l : lists)
+    for (size_t k = 0; k < l.entries.size(); k++, next += HISTORY) {
+      const ContactList::Entry &e = l.entries[k];
+      l.histories[k] = next;
+      for (int n = 0; n < records.contacts(e.i); n++)
+        if (*records.key(e.i, n) == static_cast<double>(balls->number(e.j))) {
+          std::copy_n(records.history(e.i, n), HISTORY, next);
+          l.set_history(k);
+        }
+    }
 }
 
 /* ----------------------------------------------------------------------
    list the fixed balls near each moving ball, with the history of those that touch
    LAMMPS rebuilds when a ball has moved by half the skin; fixed balls do not move
 ------------------------------------------------------------------------- */
-
-void FixWallGranBalls::setup_post_neighbor()
-{
-  post_neighbor();
-}
 
 void FixWallGranBalls::post_neighbor()
 {
@@ -213,9 +187,7 @@ void FixWallGranBalls::post_neighbor()
     });
   }
   placement->forget();
-  store->give(lists, [this](int k) {
-    return balls->number(k);
-  });
+  give_histories();
   if (pair->sizes_vary)
     for (ContactList &l : lists) l.equal = false;
 }
@@ -320,60 +292,21 @@ double FixWallGranBalls::compute_vector(int n)
 
 double FixWallGranBalls::memory_usage()
 {
-  double bytes = balls->memory_usage() + store->memory_usage();
+  double bytes =
+      balls->memory_usage() + records.memory_usage() + histories.capacity() * sizeof(double);
   for (const ContactList &l : lists) bytes += l.memory_usage();
   return bytes;
 }
 
 /* ----------------------------------------------------------------------
-   storage by atom
+   restart file: what identifies the balls
 ------------------------------------------------------------------------- */
 
-void FixWallGranBalls::grow_arrays(int nmax)
+std::vector<double> FixWallGranBalls::restart_values()
 {
-  store->grow_arrays(nmax);
-}
-
-void FixWallGranBalls::copy_arrays(int i, int j, int /*delflag*/)
-{
-  // a fix before this one deletes atoms before they migrate: the lists still hold the old indices
-
-  store_contacts();
-  store->copy_arrays(i, j);
-}
-
-void FixWallGranBalls::set_arrays(int i)
-{
-  store->set_arrays(i);
-}
-
-int FixWallGranBalls::pack_exchange(int i, double *buf)
-{
-  return store->pack_exchange(i, buf);
-}
-
-int FixWallGranBalls::unpack_exchange(int i, double *buf)
-{
-  const int n = store->unpack_exchange(i, buf);
-  maxexchange = std::max(maxexchange, n);
-  return n;
-}
-
-/* ----------------------------------------------------------------------
-   restart file: what identifies the balls, and the contacts of each atom
-------------------------------------------------------------------------- */
-
-void FixWallGranBalls::write_restart(FILE *fp)
-{
-  const bool in_use = contacts_in_lists;
-  store_contacts();
-  contacts_in_lists = in_use;    // the run goes on with the lists
-  if (comm->me != 0) return;
   std::vector<double> list = placement->fingerprint();
   list.insert(list.begin(), {RESTART_FORMAT, static_cast<double>(list.size())});
-  const int size = static_cast<int>(list.size() * sizeof(double));
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(list.data(), sizeof(double), list.size(), fp);
+  return list;
 }
 
 void FixWallGranBalls::restart(char *buf)
@@ -391,24 +324,4 @@ void FixWallGranBalls::restart(char *buf)
   const std::string why = placement->unlike(there);
   if (!why.empty())
     error->all(FLERR, "{}: the restart file was written with other fixed balls ({})", caller, why);
-}
-
-int FixWallGranBalls::pack_restart(int i, double *buf)
-{
-  return store->pack_restart(i, buf);
-}
-
-void FixWallGranBalls::unpack_restart(int i, int nth)
-{
-  store->unpack_restart(i, nth);
-}
-
-int FixWallGranBalls::size_restart(int i)
-{
-  return store->size_restart(i);
-}
-
-int FixWallGranBalls::maxsize_restart()
-{
-  return store->maxsize_restart();
 }

@@ -13,10 +13,8 @@
 #include "comm.h"
 #include "contact_energy.h"
 #include "error.h"
-#include "force.h"
 #include "initial_overlap.h"
 #include "lammps_compat.h"
-#include "modify.h"
 #include "neighbor.h"
 #include "pair_gran_restitution.h"
 #include "update.h"
@@ -44,17 +42,11 @@ static Vector vector_of(const double *x)
 ------------------------------------------------------------------------- */
 
 FixWallGranMesh::FixWallGranMesh(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), caller(fmt::format("Fix wall/gran/mesh {}", id)),
-    options(lmp, caller, narg - 3, arg + 3), surface(options.surface()), pair(nullptr),
-    contacts_in_lists(false), all_ready(false), first_step(false), fast(lmp, caller)
+    FixContactWall(lmp, narg, arg, 3), options(lmp, caller, narg - 3, arg + 3),
+    surface(options.surface()), all_ready(false), first_step(false), fast(lmp, caller)
 {
-  scalar_flag = vector_flag = 1;
+  wall_type = options.type;
   size_vector = IMPULSE + 3;
-  extscalar = extvector = 1;
-  global_freq = 1;
-  restart_global = restart_peratom = 1;
-  create_attribute = 1;
-  maxexchange_dynamic = 1;
 
   std::fill(mine, mine + NVALUE, 0.0);
   std::fill(all, all + NVALUE, 0.0);
@@ -64,18 +56,6 @@ FixWallGranMesh::FixWallGranMesh(LAMMPS *lmp, int narg, char **arg) :
     nevery = options.every;
     recorder.reset(new SurfaceRecorder(lmp, caller, options.output, options.every, *surface));
   }
-
-  FixWallGranMesh::grow_arrays(atom->nmax);
-  atom->add_callback(Atom::GROW);
-  atom->add_callback(Atom::RESTART);
-}
-
-/* ---------------------------------------------------------------------- */
-
-FixWallGranMesh::~FixWallGranMesh()
-{
-  atom->delete_callback(id, Atom::GROW);
-  atom->delete_callback(id, Atom::RESTART);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -89,20 +69,7 @@ int FixWallGranMesh::setmask()
 
 void FixWallGranMesh::init()
 {
-  pair = dynamic_cast<PairGranRestitution *>(force->pair_match("gran/restitution", 1));
-  if (!pair)
-    error->all(FLERR, "{}: requires pair_style gran/restitution, which holds its coefficients",
-               caller);
-  pair->announce_wall(this, options.type, groupbit, style);
-
-  // contacts must be stored by atom before any fix migrates atoms
-
-  for (int i = 0; i < modify->nfix; i++) {
-    if (modify->fix[i] == this) break;
-    if (modify->fix[i]->pre_exchange_migrate)
-      error->all(FLERR, "{}: must come before fix {} {}, which moves atoms between ranks", caller,
-                 modify->fix[i]->id, modify->fix[i]->style);
-  }
+  FixContactWall::init();
   for (Fix *fix : compat::fixes_of_style(lmp, style)) {
     const auto other = static_cast<FixWallGranMesh *>(fix);
     if (other != this && recorder && other->recorder && other->recorder->prefix == recorder->prefix)
@@ -118,28 +85,21 @@ void FixWallGranMesh::init()
 
 ContactLaw FixWallGranMesh::law_of(int type) const
 {
-  const ContactLaw *law = pair->law(type, options.type);
+  const ContactLaw *law = pair->law(type, wall_type);
   if (!law)    // a type that came after init(), by fix pour or fix deposit
     error->one(FLERR, "{}: pair_coeff {} {} is not set (moving type {}, wall type {})", caller,
-               std::min(type, options.type), std::max(type, options.type), type, options.type);
+               std::min(type, wall_type), std::max(type, wall_type), type, wall_type);
   ContactLaw smooth = *law;
   smooth.rolling_factor = 2.0;    // of the two radii's r r/(r + r)
   return smooth;
 }
 
-/* ----------------------------------------------------------------------
-   contacts from the lists to storage by atom: before atoms migrate or are sorted, before a
-   restart file, at the end of a run
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
-void FixWallGranMesh::store_contacts()
+void FixWallGranMesh::take_contacts()
 {
-  if (!contacts_in_lists) return;
-  contacts_in_lists = false;
-
   // per ball: how many, then each
 
-  store.clear();
   std::vector<int> count(watch.balls(), 0);
   auto visit = [this](std::function<void(const ContactList &, size_t)> what) {
     for (const auto &entry : lists) {
@@ -151,35 +111,22 @@ void FixWallGranMesh::store_contacts()
   visit([&](const ContactList &l, size_t k) {
     count[watch.slots[l.entries[k].j].ball]++;
   });
-  int most = 0;
   for (int b = 0; b < watch.balls(); b++) {
-    if (count[b]) store.make(watch.number_of(b), count[b]);
-    most = std::max(most, count[b]);
+    if (count[b]) records.make(watch.number_of(b), count[b]);
     count[b] = 0;
   }
   visit([&](const ContactList &l, size_t k) {
     const SurfaceWatch::Slot &slot = watch.slots[l.entries[k].j];
-    double *to = store.contact(l.entries[k].i, count[slot.ball]++);
-    memcpy(to, &slot.at.normal, sizeof(Vector));
-    std::copy_n(l.histories[k], HISTORY, to + 3);
+    const int ball = l.entries[k].i, n = count[slot.ball]++;
+    memcpy(records.key(ball, n), &slot.at.normal, sizeof(Vector));
+    std::copy_n(l.histories[k], HISTORY, records.history(ball, n));
   });
-  maxexchange = SurfaceContactStore::packed(most);
-}
-
-void FixWallGranMesh::pre_exchange()
-{
-  store_contacts();
 }
 
 /* ----------------------------------------------------------------------
    list the triangles near each moving ball, and the contacts that it has
    LAMMPS rebuilds when a ball has moved by half the skin; the surface does not move
 ------------------------------------------------------------------------- */
-
-void FixWallGranMesh::setup_post_neighbor()
-{
-  post_neighbor();
-}
 
 void FixWallGranMesh::post_neighbor()
 {
@@ -212,10 +159,8 @@ void FixWallGranMesh::post_neighbor()
     if (n == 0) continue;
     const int ball = watch.add_ball(i, near);
     if (nearest.distance > r) check_speed(i, nearest.normal);
-    for (int k = 0; k < store.contacts(i); k++) {
-      const double *stored = store.contact(i, k);
-      add_contact(watch.add_slot(ball, vector_of(stored)), stored + 3);
-    }
+    for (int k = 0; k < records.contacts(i); k++)
+      add_contact(watch.add_slot(ball, vector_of(records.key(i, k))), records.history(i, k));
   }
 }
 
@@ -267,7 +212,7 @@ void FixWallGranMesh::find_features()
 void FixWallGranMesh::check_speed(int i, const Vector &normal)
 {
   const double towards = -dot(vector_of(atom->v[i]), normal);
-  const ContactLaw *law = pair->law(atom->type[i], options.type);
+  const ContactLaw *law = pair->law(atom->type[i], wall_type);
   if (law && towards > 0.0) fast.record(i, towards, law->kn);
 }
 
@@ -426,7 +371,7 @@ double FixWallGranMesh::elastic_energy() const
 
 void FixWallGranMesh::post_run()
 {
-  store_contacts();
+  FixContactWall::post_run();
   keep_given();
   if (recorder && update->whichflag == 1) recorder->write();
   fast.report(pair->guards);
@@ -470,7 +415,7 @@ double FixWallGranMesh::compute_vector(int n)
 
 double FixWallGranMesh::memory_usage()
 {
-  double bytes = surface->memory_usage() + watch.memory_usage() + store.memory_usage();
+  double bytes = surface->memory_usage() + watch.memory_usage() + records.memory_usage();
   for (const auto &entry : lists) bytes += entry.second.memory_usage();
   bytes += history.size() * sizeof(history[0]) + centres.capacity() * sizeof(Vector) +
       radii.capacity() * sizeof(double);
@@ -478,53 +423,17 @@ double FixWallGranMesh::memory_usage()
 }
 
 /* ----------------------------------------------------------------------
-   storage by atom
+   restart file: what identifies the surface, and sums so far
 ------------------------------------------------------------------------- */
 
-void FixWallGranMesh::grow_arrays(int nmax)
+std::vector<double> FixWallGranMesh::restart_values()
 {
-  store.resize(nmax);
-}
-
-void FixWallGranMesh::copy_arrays(int i, int j, int /*delflag*/)
-{
-  store_contacts();    // a fix before this one deletes atoms before they migrate
-  store.copy(i, j);
-}
-
-void FixWallGranMesh::set_arrays(int i)
-{
-  store.make(i, 0);
-}
-
-int FixWallGranMesh::pack_exchange(int i, double *buf)
-{
-  return store.pack(i, buf);
-}
-
-int FixWallGranMesh::unpack_exchange(int i, double *buf)
-{
-  const int m = store.unpack(i, buf);
-  maxexchange = std::max(maxexchange, m);
-  return m;
-}
-
-/* ----------------------------------------------------------------------
-   restart file: what identifies the surface, sums so far, and the contacts of each atom
-------------------------------------------------------------------------- */
-
-void FixWallGranMesh::write_restart(FILE *fp)
-{
-  const bool in_use = contacts_in_lists;
-  store_contacts();
-  contacts_in_lists = in_use;    // the run goes on with the lists
   double momentum[3];
   if (update->whichflag == 1) keep_given();
   MPI_Allreduce(last, momentum, 3, MPI_DOUBLE, MPI_SUM, world);
   reduce();
   std::vector<double> recorded;
   if (recorder) recorded = recorder->pack();
-  if (comm->me > 0) return;
   std::vector<double> list = {RESTART_FORMAT, static_cast<double>(surface->count()),
                               surface->checksum()};
   list.insert(list.end(), all + IMPULSE, all + IMPULSE + 3);
@@ -534,12 +443,7 @@ void FixWallGranMesh::write_restart(FILE *fp)
   list.push_back(static_cast<double>(last_step));
   list.push_back(static_cast<double>(recorded.size()));
   list.insert(list.end(), recorded.begin(), recorded.end());
-  if (list.size() * sizeof(double) > MAXSMALLINT)
-    error->one(FLERR, "{} must have at most {} bytes in a restart file, got {}", caller,
-               MAXSMALLINT, list.size() * sizeof(double));
-  const int size = static_cast<int>(list.size() * sizeof(double));
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(list.data(), sizeof(double), list.size(), fp);
+  return list;
 }
 
 void FixWallGranMesh::restart(char *buf)
@@ -567,34 +471,4 @@ void FixWallGranMesh::restart(char *buf)
   if (!recorder || recorded.empty()) return;
   memcpy(recorded.data(), buf + sizeof(list), recorded.size() * sizeof(double));
   recorder->unpack(recorded.data());
-}
-
-int FixWallGranMesh::pack_restart(int i, double *buf)
-{
-  const int m = 1 + store.pack(i, &buf[1]);
-  buf[0] = m;
-  return m;
-}
-
-void FixWallGranMesh::unpack_restart(int i, int nth)
-{
-  double *extra = atom->extra[i];
-  int m = 0;
-  for (int k = 0; k < nth; k++) m += static_cast<int>(extra[m]);
-  store.unpack(i, &extra[m + 1]);
-}
-
-int FixWallGranMesh::size_restart(int i)
-{
-  return 1 + SurfaceContactStore::packed(store.contacts(i));
-}
-
-int FixWallGranMesh::maxsize_restart()
-{
-  // over all ranks: rank 0 writes it, and read_restart sizes its buffer by it
-
-  int mine_most = 0, most;
-  for (int i = 0; i < atom->nlocal; i++) mine_most = std::max(mine_most, store.contacts(i));
-  MPI_Allreduce(&mine_most, &most, 1, MPI_INT, MPI_MAX, world);
-  return 1 + SurfaceContactStore::packed(most);
 }

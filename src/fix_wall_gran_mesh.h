@@ -12,14 +12,12 @@ FixStyle(wall/gran/mesh,FixWallGranMesh);
 #ifndef LMP_FIX_WALL_GRAN_MESH_H
 #define LMP_FIX_WALL_GRAN_MESH_H
 
-#include "fix.h"
+#include "fix_contact_wall.h"
 
-#include "contact_holder.h"
 #include "contact_list.h"
 #include "fast_balls.h"
 #include "impact_force.h"
 #include "run_clock.h"
-#include "surface_contact_store.h"
 #include "surface_options.h"
 #include "surface_recorder.h"
 #include "surface_watch.h"
@@ -33,15 +31,12 @@ FixStyle(wall/gran/mesh,FixWallGranMesh);
 
 namespace LAMMPS_NS {
 
-class FixWallGranMesh : public Fix, public ContactHolder {
+class FixWallGranMesh : public FixContactWall {
  public:
   FixWallGranMesh(class LAMMPS *, int, char **);
-  ~FixWallGranMesh() override;
   int setmask() override;
   void init() override;
-  void setup_post_neighbor() override;
   void setup(int) override;
-  void pre_exchange() override;
   void post_neighbor() override;
   void post_force(int) override;
   void end_of_step() override;
@@ -51,26 +46,14 @@ class FixWallGranMesh : public Fix, public ContactHolder {
   double compute_vector(int) override;
 
   double memory_usage() override;
-  void grow_arrays(int) override;
-  void copy_arrays(int, int, int) override;
-  void set_arrays(int) override;
-  int pack_exchange(int, double *) override;
-  int unpack_exchange(int, double *) override;
-  void write_restart(FILE *) override;
   void restart(char *) override;
-  int pack_restart(int, double *) override;
-  void unpack_restart(int, int) override;
-  int size_restart(int) override;
-  int maxsize_restart() override;
 
   void find_contacts(bool starting, bool lists_new) override;
   double elastic_energy() const override;
 
  private:
-  std::string caller;    // style and ID, for messages
   SurfaceOptions options;
   std::unique_ptr<Slope::TouchedSurface> surface;
-  class PairGranRestitution *pair;
 
   // The contacts of this rank's balls, by type and radius of the ball. Each has a slot in watch, and in the
   // contact list a phantom ball as partner: a fixed ball of the same size, so placed that it touches the
@@ -89,8 +72,6 @@ class FixWallGranMesh : public Fix, public ContactHolder {
   std::vector<double> radii;    // of each slot's phantom
   std::deque<std::array<double, Slope::HISTORY>> history;
   std::vector<Slope::Vector> centres;    // of the phantoms
-  bool contacts_in_lists;    // contacts have been updated since they were last stored by atom
-  Slope::SurfaceContactStore store;
 
   // what the balls do to the surface: the force as the contact law has it, its moment, and the momentum
   // that it has got since the fix was defined
@@ -112,7 +93,8 @@ class FixWallGranMesh : public Fix, public ContactHolder {
   void add_contact(int slot, const double *from);
   void find_features();
   void check_speed(int i, const Slope::Vector &normal);
-  void store_contacts();
+  void take_contacts() override;
+  std::vector<double> restart_values() override;
   void apply(bool);
   Slope::Vector force_of_law(const Slope::SurfaceWatch::Slot &, double phase,
                              const Slope::Vector &f, const Slope::Vector &v,

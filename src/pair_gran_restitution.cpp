@@ -210,6 +210,13 @@ double PairGranRestitution::init_one(int i, int j)
 
 /* ---------------------------------------------------------------------- */
 
+PairGranRestitution *PairGranRestitution::of(LAMMPS *lmp)
+{
+  return dynamic_cast<PairGranRestitution *>(lmp->force->pair_match("gran/restitution", 1));
+}
+
+/* ---------------------------------------------------------------------- */
+
 void PairGranRestitution::announce_wall(ContactHolder *wall, int type, int groupbit,
                                         const char *style)
 {

@@ -57,11 +57,13 @@ class PairGranRestitution : public Pair {
   double atom2cut(int);
   double radii2cut(double, double);
 
+  // the pair style of this name, alone or in pair hybrid; nullptr if there is none
+  static PairGranRestitution *of(class LAMMPS *);
+
   // for the walls: the contact law of a type pair, nullptr where no pair_coeff
   // set it, and a line in the start-up table for every type that the wall meets
   const Slope::ContactLaw *law(int itype, int jtype) const;
-  void announce_wall(class ContactHolder *wall, int wall_type, int groupbit,
-                     const char *style = "wall/gran/balls");
+  void announce_wall(class ContactHolder *wall, int wall_type, int groupbit, const char *style);
   Slope::MovingBalls moving_balls();
   void store_flags() const;
   bool force_estimated(int i) const;    // of a ball at set-up: it slid alone, see contact_law.h

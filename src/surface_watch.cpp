@@ -13,6 +13,7 @@ using namespace Slope;
 static constexpr double FAR_AWAY = 1.0e15;    // m: no ball touches a phantom there
 static constexpr double SHELL = 0.05;    // of the radius: how far around a ball triangles are kept
 static constexpr double ON_PLANE = 1.0e-9;    // of the radius
+static constexpr double COS_FOLLOWED = 0.7071067811865476;
 
 /* ---------------------------------------------------------------------- */
 
@@ -113,18 +114,54 @@ size_t SurfaceWatch::choose(std::vector<SurfacePoint> &points, double radius)
   std::sort(points.begin(), points.end(), [](const SurfacePoint &p, const SurfacePoint &q) {
     return p.distance < q.distance || (p.distance == q.distance && p.triangle < q.triangle);
   });
-  std::vector<SurfacePoint> chosen;
+  const double on_plane = ON_PLANE * radius;
+  std::vector<SurfacePoint> own;
   for (size_t k = 0; k < points.size(); k++) {
-    const SurfacePoint &p = points[k];
-    bool own = true;
-    for (size_t m = 0; own && m < k; m++)    // the nearest ones first: most end there
-      own = dot(minus(p.point, points[m].point), points[m].normal) > ON_PLANE * radius;
-    for (size_t m = 0; own && m < chosen.size(); m++)
-      own = dot(p.normal, chosen[m].normal) < COS_SAME;
-    if (own) chosen.push_back(p);
+    bool stands_out = true;
+    for (size_t m = 0; stands_out && m < k; m++)    // the nearest ones first: most end there
+      stands_out = dot(minus(points[k].point, points[m].point), points[m].normal) > on_plane;
+    if (stands_out) own.push_back(points[k]);
   }
-  std::copy(chosen.begin(), chosen.end(), points.begin());
-  return chosen.size();
+  if (own.size() > 1) share_overlaps(own, radius);
+  std::copy(own.begin(), own.end(), points.begin());
+  return own.size();
+}
+
+/* ----------------------------------------------------------------------
+   Effective overlaps of points sorted by distance, as distances that give them. A point that stands
+   out by h from the tangent planes of the nearer ones has the part s of its overlap d in the energy,
+
+     E = 1/2 k sum s^2,   s = d where d <= h/2, h - h^2/(4 d) beyond,
+
+   so E is steady where points come, go and change their order, and a curved surface of many small
+   faces is one contact. The force is the gradient of E: with dh/dx = n_q - cos n_p it is along n_p
+   for the point p and along n_q for the nearer one, which gives up what p takes over.
+------------------------------------------------------------------------- */
+
+void SurfaceWatch::share_overlaps(std::vector<SurfacePoint> &own, double radius)
+{
+  std::vector<double> overlaps;
+  for (const SurfacePoint &p : own) overlaps.push_back(radius - p.distance);
+  std::vector<double> effective = overlaps;
+  for (size_t k = 1; k < own.size(); k++) {
+    double height = HUGE_VAL, cosine = 0.0;
+    size_t by = 0;    // the nearer one whose plane is next
+    for (size_t m = 0; m < k; m++) {
+      const double c = dot(own[k].normal, own[m].normal);
+      const double h = own[m].distance - own[k].distance * c;
+      if (h >= height) continue;
+      height = h;
+      cosine = c;
+      by = m;
+    }
+    const double d = overlaps[k];
+    if (d <= 0.5 * height) continue;
+    const double ratio = 0.5 * height / d;
+    const double part = height * (1.0 - 0.5 * ratio), by_height = 1.0 - ratio;
+    effective[k] = part * (ratio * ratio + by_height * cosine);
+    effective[by] -= part * by_height;
+  }
+  for (size_t k = 0; k < own.size(); k++) own[k].distance = radius - effective[k];
 }
 
 /* ---------------------------------------------------------------------- */

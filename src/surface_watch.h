@@ -43,16 +43,12 @@ class SurfaceWatch {
   void find_features(int ball, const Vector &x, double radius, double step,
                      const TouchedSurface &surface);
 
-  // Of points sorted by distance: keeps, in front, those that are contacts of their own, and returns
-  // how many these are. A point is not one if a nearer one
-  // - is seen in a direction that differs by less than SAME degrees, or
-  // - has it on or below its tangent plane: then the ball's cap beyond that plane holds it already.
-  // The second rule removes every point that is no local minimum of the distance: a triangle that
+  // Of points: keeps, in front and by distance, those that are contacts of their own, and returns how
+  // many these are; their distances become those that give the contact its overlap. A point is none
+  // if a nearer one has it on or below its tangent plane: then the ball's cap beyond that plane holds
+  // it already. This removes every point that is no local minimum of the distance: a triangle that
   // goes on beyond it has a nearer point, and lies below the tangent plane of that.
   static size_t choose(std::vector<SurfacePoint> &points, double radius);
-
-  static constexpr double COS_SAME = 0.9659258262890683;    // of 15 degrees
-  static constexpr double COS_FOLLOWED = 0.7071067811865476;
 
   std::vector<Slot> slots;
   int balls() const { return static_cast<int>(watched.size()); }
@@ -82,6 +78,7 @@ class SurfaceWatch {
   void find_near(Ball &ball, const Vector &x, double radius, double step,
                  const TouchedSurface &surface);
   void hand_out(int ball, size_t count, const Vector &x, double radius);
+  static void share_overlaps(std::vector<SurfacePoint> &own, double radius);
   void set(Slot &slot, const SurfacePoint &at, const Vector &x, double radius);
   int new_slot(int ball);
 };

@@ -20,8 +20,8 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent / "tools"), str(HERE / "decks")]
 
-from slope_tools import verify  # noqa: E402  (after the path is set)
-from slope_tools.verification import energy, resting_heap, rough_gas, sticking_impact  # noqa: E402
+from slope_tools.validation import verify  # noqa: E402
+from slope_tools.validation.verification import energy, resting_heap, rough_gas, sticking_impact  # noqa: E402
 
 GAS, SLOT = rough_gas.GAS, rough_gas.SLOT
 

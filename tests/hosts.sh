@@ -94,8 +94,8 @@ ip netns del "$b"
 
 # the later of the two that is complete, as tools/slope study finds it
 restart=$(PYTHONPATH=$top/tools /usr/bin/python3 -c "
-from slope_tools import runs
-print(*runs.restarts('$work/cut')[0])")
+from slope_tools.case import restarts
+print(*restarts.restarts('$work/cut')[0])")
 step=${restart%% *} restart=$(basename "${restart#* }")
 say "continued at step $step, from $restart, on host a alone"
 (cd "$work/cut" && ip netns exec "$a" "$LMP" -in in.embankment "${variables[@]}" -var restart "$restart" \

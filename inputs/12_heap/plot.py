@@ -10,7 +10,7 @@ matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
-from slope_tools.verification import claims, heap as case  # noqa: E402
+from slope_tools.validation.verification import claims, heap as case  # noqa: E402
 
 
 def main(names):

@@ -137,9 +137,9 @@ def thermo(log):
     return np.array(rows)
 
 
-def run_case(tmp_path, run, np=1, **settings):
+def run_case(tmp_path, run, np=1, timeout=300, **settings):
     """Rows of the thermo output, and frames of the dump as an array [frame, ball, id x y z v omega]."""
-    log = run_deck(mesh_deck(run, **settings), tmp_path, np=np)
+    log = run_deck(mesh_deck(run, **settings), tmp_path, np=np, timeout=timeout)
     frames = read_dump(tmp_path / settings.get("dump", "path.txt"))
     return thermo(log), stack(frames), log
 

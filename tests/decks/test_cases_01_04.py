@@ -1,6 +1,7 @@
 """The decks inputs/01 to 04: their curves, warnings and other schemes.
 
-What they claim of the paper's tables and closed forms is in slope_tools.verification; test_verification.py runs it.
+What they claim of the paper's tables and closed forms is in slope_tools.validation.verification;
+test_verification.py runs it.
 """
 
 import math
@@ -18,8 +19,8 @@ TOP = Path(__file__).resolve().parents[2]
 INPUTS = TOP / "inputs"
 sys.path.insert(0, os.environ.get("SLOPE_TOOLS", str(TOP / "tools")))
 
-from slope_tools.verification.claims import number  # noqa: E402  (after the path is set)
-from slope_tools.verification.slide_roll import D, G, on_a_sphere  # noqa: E402
+from slope_tools.validation.verification.claims import number  # noqa: E402
+from slope_tools.validation.verification.slide_roll import D, G, on_a_sphere  # noqa: E402
 
 
 def run_case(folder, tmp_path, **variables):

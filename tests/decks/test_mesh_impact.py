@@ -134,7 +134,7 @@ def rolled(tmp_path, sign, n):
     rows, frames, _ = run_case(tmp_path, "run 1200", coeff="restitution 0.5 friction 30", g=9.81, dump_every=10,
                                every=10)
     e = energy(frames, g=9.81)[:, 0]
-    assert (frames[-1, 0, 1] > 0.1 or sign < 0) and rows[15:, 2].max() == 1
+    assert (frames[-1, 0, 1] > 0.1 or sign < 0) and rows[15:, 2].max() <= 2
     print(e[15] - e[-1], rows[15:, 2].min())
     return (e[15] - e[-1]) / (0.7 * MASS * v * v), rows[15:, 2].min()
 

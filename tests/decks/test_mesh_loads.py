@@ -77,7 +77,7 @@ def bounce_inside(tmp_path, triangles, outside, balls, steps, speed, seed=3):
     x = rng.uniform(-0.7, 0.7, (balls, 3))
     write_case(tmp_path, triangles, x, v)
     rows, frames, log = run_case(tmp_path, f"run {steps}", coeff="restitution 1 friction 0", every=20, skin=0.8,
-                                 dump_every=steps // 20)
+                                 dump_every=steps // 20, timeout=300 + steps // 10)
     impacts = rows[:, 2].mean() * steps / 12.6    # steps that an undamped contact lasts
     print(f"{impacts} impacts, {log.count('WARNING')} warnings")
     assert not outside(frames[..., 1:4]).any()

@@ -13,7 +13,7 @@ from deck_helpers import doc_examples, run_deck, write_asc
 
 sys.path.insert(0, os.environ.get("SLOPE_TOOLS", str(Path(__file__).resolve().parents[2] / "tools")))
 
-from slope_tools import polygons, rasters  # noqa: E402  (after the path is set)
+from slope_tools.survey import polygons, rasters  # noqa: E402
 
 SQUARE = "0,0\n10,0\n10,10\n0,10\n"
 HOLE = SQUARE + "\n4,4\n4,7\n7,7\n7,4\n"

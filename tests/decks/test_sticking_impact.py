@@ -12,8 +12,8 @@ from deck_helpers import run_deck
 TOP = Path(__file__).resolve().parents[2]
 sys.path.insert(0, os.environ.get("SLOPE_TOOLS", str(TOP / "tools")))
 
-from slope_tools.verification import sticking_impact  # noqa: E402  (after the path is set)
-from slope_tools.verification.claims import Result  # noqa: E402
+from slope_tools.validation.verification import sticking_impact  # noqa: E402
+from slope_tools.validation.verification.claims import Result  # noqa: E402
 
 CASE = TOP / "inputs" / "06_oblique_impact"
 DECK = (CASE / "in.sticking_impact").read_text()

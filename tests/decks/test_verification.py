@@ -12,7 +12,7 @@ from test_energy_guard import alarms
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", Path(__file__).resolve().parents[2] / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import verification, verify  # noqa: E402  (after the path is set)
+from slope_tools.validation import verification, verify  # noqa: E402
 
 CLAIMS = [claim for claim in verification.all_claims() if claim.quick]
 

@@ -38,8 +38,10 @@ HERE = Path(__file__).resolve().parent
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", HERE.parents[1] / "tools"))
 sys.path[:0] = [str(TOOLS), str(HERE.parent / "tools")]
 
-from slope_tools import deposit, dumps, fggml, polygons, rasters, runs  # noqa: E402  (after the path is set)
+from slope_tools.case import run_folders  # noqa: E402
+from slope_tools.deposit import deposit, dumps  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
+from slope_tools.survey import fggml, polygons, rasters  # noqa: E402
 
 SLOW = 10.0                    # s
 MEMORY = 8_000_000_000         # bytes of address space
@@ -250,14 +252,14 @@ def study():
 
 def read_page(folder):
     """The report on a study, all but the drawing."""
-    from slope_tools import figure_charts, figure_maps, report
+    from slope_tools.report import document, figure_charts, figure_maps
     for name in ("value_map", "terrain_map", "mesh_map", "small_maps"):
         setattr(figure_maps, name, lambda *_, **__: "")
     for name in ("bars", "chart", "convergence"):
         setattr(figure_charts, name, lambda *_, **__: "")
     figure_charts.section = lambda *_, **__: ("", 1, None)
-    page, _ = report.make(SimpleNamespace(folder=folder, shown=None, section=None, local=False, reference=None,
-                                          converge=None))
+    page, _ = document.make(SimpleNamespace(folder=folder, shown=None, section=None, local=False, reference=None,
+                                            converge=None))
     page.section.table()
     page.numbers.table()
 
@@ -292,7 +294,7 @@ CONVERGE = {"study": {"variable": "d", "deck": "in.tiny", "finished": 4, "base":
 
 def sizes(path):
     """converge.yaml, as the report takes it."""
-    from slope_tools import figure_charts, report_convergence, report_numbers
+    from slope_tools.report import convergence_part as report_convergence, figure_charts, numbers as report_numbers
     found = report_convergence.Sizes(path)
     figure_charts.convergence = lambda *_: ""
     found.rows(report_numbers.Numbers(None))
@@ -300,7 +302,7 @@ def sizes(path):
 
 
 def reference_of(path):
-    from slope_tools import reference
+    from slope_tools.report import reference
     reference.read(path, {"remove_m3": "to remove", "front_m": "farthest ball"})
 
 
@@ -319,7 +321,7 @@ TARGETS = {
     "dump": (one("a.dump", DUMP), mutate, None, of("a.dump", lambda path: dumps.last(path, ("type", "vx")))),
     "dump_gz": (one("a.gz", lambda: gzip.compress(DUMP)), mutate_gz, None, of("a.gz", dumps.last)),
     "summary": (one("a.summary.yaml", yaml.safe_dump(SUMMARY).encode()), mutate_yaml, None,
-                of("a.summary.yaml", lambda path: (deposit.read_summary(path), runs.load_summary(path)))),
+                of("a.summary.yaml", lambda path: (deposit.read_summary(path), run_folders.load_summary(path)))),
     "reference": (one("r.yaml", yaml.safe_dump(REFERENCE).encode()), mutate_yaml, None, of("r.yaml", reference_of)),
     "converge": (one("c.yaml", yaml.safe_dump(CONVERGE).encode()), mutate_yaml, None, of("c.yaml", sizes)),
     "study": (lambda: [study()], mutate_yaml, ("study.yaml", "tiny.summary.yaml", "variables.yaml", "finished.yaml",

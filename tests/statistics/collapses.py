@@ -19,7 +19,8 @@ TOP = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(TOP / "tests" / "tools"), str(TOP / "tools")]
 
 from tiny_collapse import LMP, write_case  # noqa: E402  (after the path is set)
-from slope_tools import backanalysis, cli, distributions, observations, runs  # noqa: E402
+from slope_tools import cli, provenance  # noqa: E402
+from slope_tools.ensemble import backanalysis, distributions, observations  # noqa: E402
 
 RANGES = {"friction": "10:40", "rolling": "0:0.3", "spacing": "0.5:1.4"}
 CLOSE = np.array([2.0, 0.02, 0.1])
@@ -100,7 +101,7 @@ def main():
         print(f"seed {seed}: hidden {hidden.round(3)}, error {(best - hidden).round(3)}; direct runs know it to "
               f"{widths.round(3)}: {'recovered' if hit[can].all() else 'not recovered'} where identifiable "
               f"({can.tolist()}); words: {found['words']}", flush=True)
-    print(f"{good} of {judged} recovered where identifiable; package {runs.package_version()}")
+    print(f"{good} of {judged} recovered where identifiable; package {provenance.package_version()}")
 
 
 if __name__ == "__main__":

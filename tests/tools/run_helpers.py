@@ -16,7 +16,7 @@ TOP = Path(__file__).resolve().parents[2]
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli  # noqa: E402  (after the path is set)
+from slope_tools import cli  # noqa: E402
 
 BULK = 6 / math.pi
 CRS_M = "EPSG:6677"               # metres, zone IX of Japan

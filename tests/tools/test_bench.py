@@ -12,7 +12,8 @@ import yaml
 from run_helpers import TOP, here, run_command  # noqa: F401
 from tiny_collapse import LMP
 
-from slope_tools import bench, peers
+from slope_tools.commands import bench as bench_command
+from slope_tools.validation import bench, bench_report, bench_scenes, peers
 
 SMALL = "--quick --balls 300 --steps 40 --repeat 1"
 
@@ -35,7 +36,7 @@ def test_every_code_runs_the_same_collapse(slope):
         assert code is peers.Build or (code in installed) or f"{code.title}: not measured" in out
     for name, state in about["same_scene"].items():
         assert state["same"], (name, state)
-        if name not in bench.LOOSE:
+        if name not in bench_report.LOOSE:
             assert state["kinetic_energy_to_ours"] == pytest.approx(1, abs=0.02), name
             assert state["way_off"] < 0.02, name
     assert about["same_scene"]["slope"]["way_of_centroid"][0] < -0.01        # m: the mass moves
@@ -107,8 +108,8 @@ def test_copies_do_not_touch_each_other():
     moving = np.zeros((2, 9))
     moving[:, :3] = [[0, 0, 5], [0, 3, 5]]
     ground = np.array([[0.0, 0.0, 0.0], [0.0, 10.0, 0.0]])
-    scene = peers.Scene(1.0, 1.0, moving, {2: ground}, bench.contacts(), 1.0, 0.1)
-    many = bench.copies(scene, 3, 12.0)
+    scene = peers.Scene(1.0, 1.0, moving, {2: ground}, bench_scenes.contacts(), 1.0, 0.1)
+    many = bench_scenes.copies(scene, 3, 12.0)
     assert len(many.moving) == 6 and len(many.ground) == 6
     assert many.ground[:, 1].tolist() == [0, 10, 12, 22, 24, 34] and (many.moving[:, 3:] == 0).all()
 
@@ -153,7 +154,7 @@ def test_a_run_that_fails_is_one_line(slope, monkeypatch):
 def examples():
     text = (TOP / "doc" / "src" / "tool_bench.rst").read_text(encoding="ascii")
     return [*re.findall(r"^ +tools/slope bench ((?!keyword).*)", text, re.MULTILINE),
-            *re.findall("tools/slope bench (.*)", bench.EPILOG)]
+            *re.findall("tools/slope bench (.*)", bench_command.EPILOG)]
 
 
 @pytest.mark.parametrize("command", examples())

@@ -19,7 +19,9 @@ from tiny_collapse import LMP, TOP, write_case
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import backanalysis, calibration, cli, distributions, rasters  # noqa: E402
+from slope_tools import cli  # noqa: E402
+from slope_tools.ensemble import backanalysis, calibration, distributions  # noqa: E402
+from slope_tools.survey import rasters  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 PROGRAM = [sys.executable, str(TOOLS / "slope")]

@@ -18,7 +18,9 @@ from tiny_collapse import DECK, LMP, TOP, processes_in, read_asc, serial, write_
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli, jobs, runs  # noqa: E402  (after the path is set)
+from slope_tools import cli  # noqa: E402
+from slope_tools.case import logs, restarts, run_folders  # noqa: E402
+from slope_tools.ensemble import jobs  # noqa: E402
 
 PROGRAM = [sys.executable, str(TOOLS / "slope")]
 # Rounding differs after a restart, and in a collapse it grows: measured here by a factor of 30 in 200 steps. The runs
@@ -94,7 +96,7 @@ def cut(here, slope, monkeypatch):
     monkeypatch.delenv("DIES")
     folder = here / "out" / FOLDER
     assert not (folder / "finished.yaml").exists()
-    found = [(step, path.name) for step, path in runs.restarts(folder)]
+    found = [(step, path.name) for step, path in restarts.restarts(folder)]
     assert found == [(500, "tiny.1.restart"), (400, "tiny.2.restart")]
     return folder
 
@@ -147,8 +149,8 @@ def test_a_continued_run_ends_as_the_uncut_one(slope, here, monkeypatch, before,
     # what was continued stands in the folder, and the logs are read as one
     about = yaml.safe_load((folder / "variables.yaml").read_text())
     assert [entry["step"] for entry in about["continued"]] == [500] and about["ranks"] == after
-    log = runs.Log(folder / "log.lammps").update()
-    whole = runs.Log(here / "whole" / FOLDER / "log.lammps").update()
+    log = logs.Log(folder / "log.lammps").update()
+    whole = logs.Log(here / "whole" / FOLDER / "log.lammps").update()
     assert (folder / "log.1.lammps").exists() and (log.step, log.error) == (STEPS, None)
     assert (log.terrain, log.table) == (whole.terrain, whole.table) and set(whole.warnings) <= set(log.warnings)
     assert set(whole.notes) <= set(log.notes) and set(whole.settings) <= set(log.settings)
@@ -174,7 +176,7 @@ def test_a_study_that_was_killed(slope, here):
     for _ in range(2):
         process = subprocess.Popen([*PROGRAM, "study", *command], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
         end = time.monotonic() + 30
-        while not (folder.exists() and any(step >= last + 100 for step, _ in runs.restarts(folder))):
+        while not (folder.exists() and any(step >= last + 100 for step, _ in restarts.restarts(folder))):
             assert time.monotonic() < end and process.poll() is None
             time.sleep(0.01)
         process.send_signal(signal.SIGKILL)
@@ -182,12 +184,12 @@ def test_a_study_that_was_killed(slope, here):
         while processes_in(folder):
             assert time.monotonic() < end
             time.sleep(0.02)
-        last = runs.restarts(folder)[0][0]
+        last = restarts.restarts(folder)[0][0]
     status, told, err = slope(shlex.join(command))
     assert status == 0, err
     assert f"[1/1] steps_4000: continues at step {last}, from " in told
     assert len(yaml.safe_load((folder / "variables.yaml").read_text())["continued"]) == 2
-    assert runs.load_summary(folder / "tiny.summary.yaml")["stop"]["step"] == 4000
+    assert run_folders.load_summary(folder / "tiny.summary.yaml")["stop"]["step"] == 4000
     assert sorted(path.name for path in folder.glob("log.*")) == ["log.1.lammps", "log.2.lammps", "log.lammps"]
 
 
@@ -231,13 +233,13 @@ def test_without_a_restart_file_it_starts_anew(slope, here, cut, break_it):
 def test_the_step_of_a_restart_file(here, cut):
     path = cut / "tiny.1.restart"
     whole = path.read_bytes()
-    assert runs.restart_step(path) == 500
+    assert restarts.restart_step(path) == 500
     for length in (*range(0, 200, 3), len(whole) // 2, len(whole) - 16, len(whole) - 1):
         (here / "part").write_bytes(whole[:length])
-        assert runs.restart_step(here / "part") is None, length
-    (here / "ends").write_bytes(runs.MAGIC * 2)
-    assert runs.restart_step(here / "ends") is None
-    assert runs.restart_step(here / "none") is None and runs.restart_step(here) is None
+        assert restarts.restart_step(here / "part") is None, length
+    (here / "ends").write_bytes(restarts.MAGIC * 2)
+    assert restarts.restart_step(here / "ends") is None
+    assert restarts.restart_step(here / "none") is None and restarts.restart_step(here) is None
 
 
 def test_a_restart_file_of_the_end_is_not_taken(slope, here):
@@ -247,7 +249,7 @@ def test_a_restart_file_of_the_end_is_not_taken(slope, here):
                                              "fix rest all halt 100 v_now >= 600 error continue\nthermo 50"))
     assert slope(arguments())[0] == 0
     before = numbers(here / "out" / FOLDER)
-    assert before["stop: step"] == 600 and runs.restarts(here / "out" / FOLDER)[0][0] == 600
+    assert before["stop: step"] == 600 and restarts.restarts(here / "out" / FOLDER)[0][0] == 600
     (here / "out" / FOLDER / "finished.yaml").unlink()      # killed before it was written
     status, told, err = slope(arguments())
     assert status == 0 and f"continues at step 500, from out/{FOLDER}/tiny.1.restart" in told, err
@@ -304,8 +306,8 @@ def test_the_embankment_can_be_continued(here):
     assert jobs.CONTINUES in (case / "in.embankment").read_text()
     assert run(here / "whole", "2.2").returncode == 0
     (here / "tiny.restart").write_bytes((here / "whole" / "tiny.2.restart").read_bytes())
-    assert runs.restarts(here / "whole")[1:] == [(1800, here / "whole" / "tiny.2.restart"),
-                                                 (900, here / "whole" / "tiny.1.restart")]
+    assert restarts.restarts(here / "whole")[1:] == [(1800, here / "whole" / "tiny.2.restart"),
+                                                     (900, here / "whole" / "tiny.1.restart")]
     done = run(here / "part", "2.2", "-var", "restart", "../tiny.restart")
     assert done.returncode == 0, done.stdout
     assert_same(numbers(here / "whole"), numbers(here / "part"))

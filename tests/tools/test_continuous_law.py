@@ -9,7 +9,7 @@ from run_helpers import TOP
 
 sys.path.insert(0, str(TOP / "tools"))
 
-from slope_tools.verification.continuous_law import Case, impacts, one_impact  # noqa: E402  (after the path is set)
+from slope_tools.validation.verification.continuous_law import Case, impacts, one_impact  # noqa: E402
 
 NO_SLIP = 89.999
 PARTNERS = [(math.inf, 1.0), (1.0, 1.0), (8.0, 2.0), (0.125, 0.5)]

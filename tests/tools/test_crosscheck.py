@@ -13,8 +13,9 @@ import yaml
 from run_helpers import TOP, here, run_command  # noqa: F401
 from tiny_collapse import LMP
 
-from slope_tools import crosscheck, peers
+from slope_tools.commands import crosscheck as crosscheck_command
 from slope_tools.errors import SlopeError
+from slope_tools.validation import crosscheck, peers
 
 
 @pytest.fixture
@@ -125,13 +126,14 @@ def test_bad_input_is_one_line(slope, arguments, message):
 def examples():
     text = (TOP / "doc" / "src" / "tool_crosscheck.rst").read_text(encoding="ascii")
     return [*re.findall(r"^ +tools/slope crosscheck ((?!keyword).*)", text, re.MULTILINE),
-            *re.findall("tools/slope crosscheck (.*)", crosscheck.EPILOG)]
+            *re.findall("tools/slope crosscheck (.*)", crosscheck_command.EPILOG)]
 
 
 @pytest.mark.parametrize("command", examples())
 def test_every_example_of_the_page_and_the_help_is_understood(slope, monkeypatch, command):
     """They would take minutes: here no case is run."""
     done = []
-    monkeypatch.setattr(crosscheck, "CASES", {name: lambda work, case: done.append(case) for name in crosscheck.CASES})
+    monkeypatch.setattr(crosscheck_command, "CASES",
+                        {name: lambda work, case: done.append(case) for name in crosscheck_command.CASES})
     status, out, err = slope(command)
     assert (status, err) == (0, "") and (done or "--help" in shlex.split(command))

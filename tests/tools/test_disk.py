@@ -22,7 +22,10 @@ from tiny_collapse import DECK, LMP, TOP, read_asc, write_case
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli, deposit, figures, maps, rasters, runs, travel  # noqa: E402,F401  (before any limit)
+from slope_tools import cli  # noqa: E402,F401
+from slope_tools.case import restarts as files, run_folders  # noqa: E402,F401
+from slope_tools.drawing import figures, maps  # noqa: E402,F401
+from slope_tools.survey import rasters  # noqa: E402,F401
 
 WRITES = ("restart     50 ${out}.1.restart ${out}.2.restart\n"
           "dump all all custom 50 ${out}.dump id type diameter x y z\n"
@@ -271,10 +274,10 @@ def test_a_run_without_a_folder_ends_before_it_begins(run_folder, tmp_path):
 def test_a_restart_file_that_does_not_fit_leaves_the_one_before(run_folder, tmp_path):
     (tmp_path / "work").mkdir()
     run_folder(tmp_path / "work")
-    assert [step for step, _ in runs.restarts(".")] == [100, 50]
+    assert [step for step, _ in files.restarts(".")] == [100, 50]
     size = os.path.getsize("tiny.1.restart")
     done = lmp("-var", "steps", "200", limit=size // 2)     # step 50 goes to tiny.1.restart again
-    assert [step for step, _ in runs.restarts(".")] == [100]
+    assert [step for step, _ in files.restarts(".")] == [100]
     assert done.returncode != 0 and "ERROR: I/O error while writing restart" in done.stdout
 
 
@@ -300,8 +303,8 @@ def test_a_run_that_is_killed(run_folder, tmp_path):
         for path in whole:
             if path.startswith("tiny") and path.endswith(".asc"):
                 assert read_asc(path).shape == (24, 40), path
-        about = runs.load_summary("tiny.summary.yaml")
-        restarts = runs.restarts(".")
+        about = run_folders.load_summary("tiny.summary.yaml")
+        restarts = files.restarts(".")
         assert restarts and abs(restarts[0][0] - about["step"]) <= 5
         # thickness and summary are of one output, unless the kill fell between two renames
         held = np.nansum(read_asc("tiny.thickness.asc"))

@@ -17,8 +17,9 @@ from tiny_collapse import LMP, TOP, read_asc, write_case
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import (  # noqa: E402  (after the path is set)
-    cli, deck_ranges, designs, distributions, emulator, ensemble, hazard, sample)
+from slope_tools import cli  # noqa: E402
+from slope_tools.case import deck_ranges  # noqa: E402
+from slope_tools.ensemble import designs, distributions, emulator, ensemble, hazard, sample  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 ROAD = "--road case/road.csv --local"

@@ -13,7 +13,8 @@ from run_helpers import (CRS_M, EAST, NORTH, TOP, here, run_command, write_asc, 
                          write_sidecar)
 from tiny_collapse import LMP, read_asc, write_case
 
-from slope_tools import deposit, export
+from slope_tools.commands import export as export_command
+from slope_tools.deposit import deposit, export
 from slope_tools.errors import SlopeError
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
@@ -154,7 +155,7 @@ def doc_examples():
     return re.findall(r"^ +tools/slope export ((?!PREFIX).*)", text, re.MULTILINE)
 
 
-@pytest.mark.parametrize("command", [*doc_examples(), *re.findall("tools/slope export (.*)", export.EPILOG)])
+@pytest.mark.parametrize("command", [*doc_examples(), *re.findall("tools/slope export (.*)", export_command.EPILOG)])
 def test_every_example_of_the_page_and_the_help_runs(slope, here, command):  # noqa: F811
     write_sidecar(40, 60, 2.5)
     write_rasters("embankment")

@@ -19,7 +19,9 @@ TOP = Path(__file__).resolve().parents[2]
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli, fggml, rasters, terrain  # noqa: E402  (after the path is set)
+from slope_tools import cli  # noqa: E402
+from slope_tools.commands import terrain as terrain_command  # noqa: E402
+from slope_tools.survey import fggml, rasters, terrain  # noqa: E402
 
 SECOND = 1 / 3600
 GROUND, WATER, MISSING = "\u5730\u8868\u9762", "\u5185\u6c34\u9762", "\u30c7\u30fc\u30bf\u306a\u3057"
@@ -381,7 +383,7 @@ def test_zone_of_a_site(lat, lon, number):
 
 def doc_examples():
     text = (TOP / "doc" / "src" / "tool_terrain.rst").read_text(encoding="ascii").replace("\\\n", " ")
-    return re.findall(r"^ +tools/slope terrain (.*FG-GML.*) -o", text + terrain.EPILOG, re.MULTILINE)
+    return re.findall(r"^ +tools/slope terrain (.*FG-GML.*) -o", text + terrain_command.EPILOG, re.MULTILINE)
 
 
 @pytest.mark.parametrize("command", doc_examples())

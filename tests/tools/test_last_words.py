@@ -12,7 +12,7 @@ import pytest
 TOP = Path(__file__).resolve().parents[2]
 sys.path.insert(0, os.environ.get("SLOPE_TOOLS", str(TOP / "tools")))
 
-from slope_tools import last_words, runs  # noqa: E402  (after the path is set)
+from slope_tools.case import last_words, logs  # noqa: E402
 
 SPOILED = Path(__file__).parent / "spoiled"
 MEMORY = "C++ memory allocation failed: std::bad_alloc"
@@ -29,7 +29,7 @@ RECORDED = {
 
 
 def read(log, screen, begin=0):
-    return runs.Log(log).update(), last_words.Screen(screen, begin)
+    return logs.Log(log).update(), last_words.Screen(screen, begin)
 
 
 def write(folder, log, screen):

@@ -19,7 +19,9 @@ TOP = Path(__file__).resolve().parents[2]
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli, polygon, polygons, rasters  # noqa: E402  (after the path is set)
+from slope_tools import cli  # noqa: E402
+from slope_tools.commands import polygon as polygon_command  # noqa: E402
+from slope_tools.survey import polygons, rasters  # noqa: E402
 
 CRS_M = "EPSG:6677"
 EAST, NORTH = -12000.0, 34000.0    # local 0 0 of the terrain, which is 100 m x 80 m
@@ -257,7 +259,7 @@ def test_ten_thousand_vertices(written):
 # --- the page ---
 
 def doc_examples():
-    text = (TOP / "doc" / "src" / "tool_polygon.rst").read_text(encoding="ascii") + polygon.EPILOG
+    text = (TOP / "doc" / "src" / "tool_polygon.rst").read_text(encoding="ascii") + polygon_command.EPILOG
     return re.findall(r"^ +tools/slope polygon ((?!IN ).*)", text, re.MULTILINE)
 
 

@@ -10,7 +10,9 @@ import yaml
 
 from run_helpers import TOP
 
-from slope_tools import cli, quake, quake_motion, quake_records  # noqa: E402  (run_helpers sets the path)
+from slope_tools import cli  # noqa: E402
+from slope_tools.commands import quake as quake_command  # noqa: E402
+from slope_tools.survey import quake_motion, quake_records  # noqa: E402
 
 DT = 0.01
 T = DT * np.arange(2000)
@@ -370,7 +372,7 @@ def test_spectrum_file_has_what_is_drawn(slope):
 
 
 def doc_examples():
-    text = (TOP / "doc" / "src" / "tool_quake.rst").read_text(encoding="ascii") + quake.EPILOG
+    text = (TOP / "doc" / "src" / "tool_quake.rst").read_text(encoding="ascii") + quake_command.EPILOG
     return re.findall(r"^ +tools/slope quake ((?!RECORD).*)", text, re.MULTILINE)
 
 

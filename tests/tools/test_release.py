@@ -19,8 +19,10 @@ from shapely.geometry import Polygon, box, mapping
 from run_helpers import (CRS_M, EAST, NORTH, TOP, here, run_command, write_asc,  # noqa: F401  (here: a fixture)
                          write_geojson)
 
-from slope_tools import (polygons, rasters, release, release_area, release_bodies, release_chart,  # noqa: E402
-                         release_slbl, release_solve)
+from slope_tools.case import release_chart  # noqa: E402
+from slope_tools.commands import release as release_command  # noqa: E402
+from slope_tools.survey import (polygons, rasters, release_area, release_bodies, release_slbl,  # noqa: E402
+                                release_solve)
 
 DATA = next((folder for folder in (top / "shared" / "data" for top in TOP.parents) if folder.is_dir()), TOP / "none")
 FRANK, S1000 = DATA / "frank", DATA / "s1000"
@@ -538,7 +540,8 @@ def test_the_output_on_the_page(slope, no_picture):
 
 
 def doc_examples():
-    text = (TOP / "doc" / "src" / "tool_release.rst").read_text(encoding="ascii").replace("\\\n", "") + release.EPILOG
+    text = (TOP / "doc" / "src" / "tool_release.rst").read_text(encoding="ascii").replace("\\\n", "")
+    text += release_command.EPILOG
     return re.findall(r"^ +tools/slope release ((?!TERRAIN).*)", text, re.MULTILINE)
 
 

@@ -14,8 +14,9 @@ from tiny_collapse import LMP, TOP, write_case
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import (  # noqa: E402  (after the path is set)
-    cli, combinations, headline, repeats, rest, results, study_file, study_table, travel_shares)
+from slope_tools import cli  # noqa: E402
+from slope_tools.deposit import rest, travel_shares  # noqa: E402
+from slope_tools.ensemble import combinations, headline, repeats, results, study_file, study_table  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")

@@ -24,8 +24,12 @@ from tiny_collapse import LMP, TOP, height, read_asc, write_case
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import (cli, figure_charts, figure_maps, figures, report, report_data, report_ground,  # noqa: E402
-                         report_section, results)
+from slope_tools import cli  # noqa: E402
+from slope_tools.commands import report as report_command  # noqa: E402
+from slope_tools.drawing import figures  # noqa: E402
+from slope_tools.ensemble import results  # noqa: E402
+from slope_tools.report import (data as report_data, figure_charts, figure_maps, ground as report_ground,  # noqa: E402
+                                section as report_section)
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 
@@ -898,7 +902,7 @@ def doc_examples():
             if " DIR " not in command]
 
 
-@pytest.mark.parametrize("command", [*doc_examples(), *re.findall("tools/slope (report .*)", report.EPILOG)])
+@pytest.mark.parametrize("command", [*doc_examples(), *re.findall("tools/slope (report .*)", report_command.EPILOG)])
 def test_every_example_of_the_page_and_the_help_runs(slope, here, command):
     Path("thalweg.geojson").write_text('{"type": "LineString", "coordinates": %s}' % BENT)
     Path("sizes").mkdir()

@@ -13,8 +13,9 @@ TOP = Path(__file__).resolve().parents[2]
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import flow_path, report_section  # noqa: E402  (after the path is set)
-from slope_tools.rasters import Raster  # noqa: E402
+from slope_tools.deposit import flow_path  # noqa: E402
+from slope_tools.report import section as report_section  # noqa: E402
+from slope_tools.survey.rasters import Raster  # noqa: E402
 
 CELL = 2.0
 CENTRE = LineString([(20, 180), (100, 180), (100, 20)])     # of a channel with a bend of 90 degrees
@@ -44,7 +45,7 @@ def site(centre=CENTRE, width=16.0, size=(100, 100), head=30.0):
 
 
 def sampled(raster, x, y):
-    from slope_tools.terrain import sample
+    from slope_tools.survey.resampling import sample
     return sample(raster, np.asarray(x), np.asarray(y))
 
 

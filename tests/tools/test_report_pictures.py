@@ -14,9 +14,10 @@ TOP = Path(__file__).resolve().parents[2]
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import figure_charts, figure_maps, figures, sheets  # noqa: E402  (after the path is set)
-from slope_tools.figure_charts import Convergence, Series  # noqa: E402
-from slope_tools.rasters import Raster  # noqa: E402
+from slope_tools.drawing import figures  # noqa: E402
+from slope_tools.report import figure_charts, figure_maps, sheets  # noqa: E402
+from slope_tools.report.figure_charts import Convergence, Series  # noqa: E402
+from slope_tools.survey.rasters import Raster  # noqa: E402
 
 LONG = "Thickness of the deposit at the end of a run with a name that is longer than most sheets of paper are wide"
 RUN = "rolling 0.050000001, friction 27.5, restitution 0.48, field_e 0.12, spacing 1.25, quiet 0.0003, seed 1234567"

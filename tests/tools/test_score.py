@@ -16,7 +16,9 @@ from shapely.geometry import MultiPolygon, Point, Polygon, box
 from run_helpers import (BULK, CRS_M, EAST, NORTH, TOP, centres, here, run_command, write_asc,  # noqa: F401
                          write_geojson, write_run, write_sidecar)
 
-from slope_tools import deposit, score
+from slope_tools import disk
+from slope_tools.commands import score as score_command
+from slope_tools.deposit import score
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 
@@ -283,7 +285,7 @@ def test_a_command_that_fails_at_the_end_changes_nothing(scored, slope, monkeypa
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(deposit, "write_yaml", full)
+    monkeypatch.setattr(disk, "write_yaml", full)
     status, out, err = slope("run --observed observed.geojson --local -o out --threshold 1")
     assert (status, out) == (2, "") and err.endswith("slope score: out: cannot be written: No space left on device\n")
     assert {path: path.read_bytes() for path in here.rglob("*") if path.is_file()} == before
@@ -296,7 +298,7 @@ def doc_examples():
     return re.findall(r"^ +tools/slope score ((?!PREFIX).*)", text, re.MULTILINE)
 
 
-@pytest.mark.parametrize("command", [*doc_examples(), *re.findall("tools/slope score (.*)", score.EPILOG)])
+@pytest.mark.parametrize("command", [*doc_examples(), *re.findall("tools/slope score (.*)", score_command.EPILOG)])
 def test_every_example_of_the_page_and_the_help_runs(slope, no_map, command):
     write_sidecar(40, 60, 2.5)
     write_sidecar(40, 60, 2.5, "dem.asc")

@@ -15,7 +15,8 @@ from tiny_collapse import LMP, TOP, write_case
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli, sensitivity  # noqa: E402  (after the path is set)
+from slope_tools import cli  # noqa: E402
+from slope_tools.ensemble import sensitivity  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 T = 4.302652729911275       # t(0.975) of three runs

@@ -17,7 +17,8 @@ from tiny_collapse import LMP, TOP, write_case
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli, launcher  # noqa: E402  (after the path is set)
+from slope_tools import cli  # noqa: E402
+from slope_tools.ensemble import launcher  # noqa: E402
 
 PROGRAM = [sys.executable, str(TOOLS / "slope")]
 PATH = f"{os.environ['PATH']}:/usr/sbin:/sbin"

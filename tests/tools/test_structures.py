@@ -15,7 +15,9 @@ from tiny_collapse import LMP, TOP, write_case
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli, errors, figure_structures, report_structures, structures  # noqa: E402
+from slope_tools import cli, errors  # noqa: E402
+from slope_tools.ensemble import structures  # noqa: E402
+from slope_tools.report import figure_structures, structures_part as report_structures  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 ADDED = """\

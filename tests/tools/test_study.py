@@ -22,8 +22,11 @@ from tiny_collapse import LMP, TOP, processes_in, read_asc, serial, write_case
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import (  # noqa: E402  (after the path is set)
-    cli, convergence, headline, job_display, rasters, results, runs, settings, size_study, study)
+from slope_tools import cli  # noqa: E402
+from slope_tools.case import decks, logs, settings  # noqa: E402
+from slope_tools.commands import study as study_command  # noqa: E402
+from slope_tools.ensemble import convergence, headline, job_display, results, size_study  # noqa: E402
+from slope_tools.survey import rasters  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 MM = 0.0005 + 1e-9          # .asc maps are in whole mm
@@ -410,7 +413,7 @@ def test_files_that_a_deck_reads_and_writes(here):
         read_restart first.restart
         dump d all custom 10 ${out}.*.dump id
         write_dump all custom last.txt id\n""")
-    read, written = runs.named_files(Path("in.files"))
+    read, written = decks.named_files(Path("in.files"))
     assert {"slip.xyz", "both.xyz", "first.restart"} <= read
     assert written == {"field.xyz", "both.xyz", "ave.txt", "steps.txt", "${out}.1", "heap.1", "$out.2", "heap.*.dump",
                        "${out}.*.dump", "last.txt"}
@@ -513,7 +516,7 @@ WARNING: Something is odd (src/some.cpp:77)
 
 def test_the_log_is_read_as_it_grows(tmp_path):
     path = tmp_path / "log.lammps"
-    log = runs.Log(path)
+    log = logs.Log(path)
     assert log.update().step is None
     for i in range(0, len(LOG), 7):
         with open(path, "a", encoding="ascii") as out:
@@ -652,7 +655,7 @@ def doc_examples():
             if " DECK " not in command]
 
 
-@pytest.mark.parametrize("command", [*doc_examples(), study.EPILOG.split("tools/slope ")[1].split("\n")[0]])
+@pytest.mark.parametrize("command", [*doc_examples(), study_command.EPILOG.split("tools/slope ")[1].split("\n")[0]])
 def test_every_example_of_the_page_and_the_help_runs(slope, here, command):
     """On a deck of this test with the variables and files that the examples name, and no more than 20 steps."""
     folder = here / "inputs" / "20_embankment"

@@ -19,7 +19,9 @@ TOP = Path(__file__).resolve().parents[2]
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli, rasters, terrain  # noqa: E402  (after the path is set)
+from slope_tools import cli  # noqa: E402
+from slope_tools.commands import terrain as terrain_command  # noqa: E402
+from slope_tools.survey import holes as small_holes, rasters  # noqa: E402
 
 CRS_M = "EPSG:6677"               # metres, zone IX of Japan
 EAST, NORTH = -12000.0, 34000.0   # lower left corner of the surveys below
@@ -432,7 +434,7 @@ def test_small_holes_against_a_flood_fill():
                 if len(group) <= 4 and all(0 < r < 12 and 0 < c < 16 for r, c in group):
                     count += 1
                     expected[tuple(zip(*group))] = True
-            mask, holes = terrain.small_holes(empty, 4)
+            mask, holes = small_holes.small_holes(empty, 4)
             assert (mask == expected).all() and holes == count
 
 
@@ -639,7 +641,7 @@ def doc_examples():
             if " IN " not in command and "FG-GML" not in command]  # those: test_fggml.py
 
 
-@pytest.mark.parametrize("command", [*doc_examples(), terrain.EPILOG.split("tools/slope ")[1].split("\n")[0]])
+@pytest.mark.parametrize("command", [*doc_examples(), terrain_command.EPILOG.split("tools/slope ")[1].split("\n")[0]])
 def test_every_example_of_the_page_and_the_help_runs(slope, here, command):
     z, transform = degrees_survey(200)
     write_tif("north.tif", z[:100], transform, crs="EPSG:6668")

@@ -12,7 +12,9 @@ import yaml
 
 from run_helpers import TOP, here, run_command  # noqa: F401
 
-from slope_tools import deposit, travel
+from slope_tools import disk
+from slope_tools.commands import travel as travel_command
+from slope_tools.deposit import travel
 
 
 @pytest.fixture
@@ -300,7 +302,7 @@ def test_a_command_that_fails_at_the_end_changes_nothing(travelled, slope, monke
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(deposit, "write_yaml", full)
+    monkeypatch.setattr(disk, "write_yaml", full)
     status, out, err = slope("a.dump -o out --axis y")
     assert (status, out) == (2, "") and err.endswith("slope travel: out: cannot be written: No space left on device\n")
     assert {path: path.read_bytes() for path in here.rglob("*") if path.is_file()} == before
@@ -313,7 +315,7 @@ def doc_examples():
     return re.findall(r"^ +tools/slope travel ((?!DUMP).*)", text, re.MULTILINE)
 
 
-@pytest.mark.parametrize("command", [*doc_examples(), *re.findall("tools/slope travel (.*)", travel.EPILOG)])
+@pytest.mark.parametrize("command", [*doc_examples(), *re.findall("tools/slope travel (.*)", travel_command.EPILOG)])
 def test_every_example_of_the_page_and_the_help_runs(slope, no_picture, here, command):  # noqa: F811
     for name in ("embankment.00044000", "rest.1", "rest.2", "start.1", "start.2"):
         write(f"{name}.dump", [(1, -1, 2), (2, 3, 1)])

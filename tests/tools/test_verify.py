@@ -9,11 +9,12 @@ import yaml
 
 from run_helpers import TOP, here, run_command  # noqa: F401
 
-from slope_tools import verification, verify
+from slope_tools.commands import verify as verify_command
 from slope_tools.errors import SlopeError
-from slope_tools.verification import claims
-from slope_tools.verification.claims import AtLeast, AtMost, Between, Claim, Control, Near, Run, Verdict
-from slope_tools.verification.restitution import observed
+from slope_tools.validation import verification
+from slope_tools.validation.verification import claims
+from slope_tools.validation.verification.claims import AtLeast, AtMost, Between, Claim, Control, Near, Run, Verdict
+from slope_tools.validation.verification.restitution import observed
 
 LMP = """#!/bin/sh
 # prints what -var e says; fails on e none
@@ -233,7 +234,7 @@ def doc_examples():
     return re.findall(r"^ +tools/slope verify ((?!keyword).*)", text, re.MULTILINE)
 
 
-@pytest.mark.parametrize("command", [*doc_examples(), *re.findall("tools/slope verify (.*)", verify.EPILOG)])
+@pytest.mark.parametrize("command", [*doc_examples(), *re.findall("tools/slope verify (.*)", verify_command.EPILOG)])
 def test_every_example_of_the_page_and_the_help_runs(slope, command):
     command = command.replace("11_column_collapse", "01_restitution")
     status, _, err = slope(command)

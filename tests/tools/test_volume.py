@@ -21,7 +21,10 @@ from shapely.ops import unary_union
 from run_helpers import (BULK, CRS_M, EAST, NORTH, TOP, centres, here, run_command, write_asc,  # noqa: F401
                          write_geojson, write_run, write_sidecar)
 
-from slope_tools import cut, deposit, rasters, volume
+from slope_tools import disk, geometry
+from slope_tools.commands import volume as volume_command
+from slope_tools.deposit import cut, deposit, volume, volume_files
+from slope_tools.survey import rasters
 
 LMP = os.environ.get("LMP", str(TOP / "build" / "lmp"))
 TAN30 = math.tan(math.radians(30))
@@ -37,7 +40,7 @@ def slope(here, capsys):  # noqa: F811
 @pytest.fixture
 def no_map(monkeypatch):
     """The map, which takes most of the time, is left out."""
-    monkeypatch.setattr(volume, "draw", lambda path, *_: path.touch())
+    monkeypatch.setattr(volume_files, "draw", lambda path, *_: path.touch())
 
 
 @pytest.fixture
@@ -310,7 +313,7 @@ def test_coverage_is_shapelys():
               rotate(box(3, 3, 7, 4), 30), MultiPolygon([box(0, 0, 2, 2), box(7, 5, 10, 8)]),
               Polygon([(0.5, 0.5), (9, 1), (1, 2), (9.5, 7.9), (0.2, 7)])]
     for polygon in shapes:
-        area, in_x, in_y = deposit.coverage(polygon, x, y)
+        area, in_x, in_y = geometry.coverage(polygon, x, y)
         for j in range(len(y) - 1):
             for i in range(len(x) - 1):
                 part = polygon.intersection(box(x[i], y[j], x[i + 1], y[j + 1]))
@@ -579,7 +582,7 @@ def test_a_command_that_fails_at_the_end_changes_nothing(cleared, slope, monkeyp
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(deposit, "write_yaml", full)
+    monkeypatch.setattr(disk, "write_yaml", full)
     status, out, err = slope("run --road road.geojson --local --mesh 5 -o out")
     assert (status, out) == (2, "") and err.endswith("slope volume: out: cannot be written: No space left on device\n")
     assert {path: path.read_bytes() for path in here.rglob("*") if path.is_file()} == before
@@ -592,7 +595,8 @@ def doc_examples():
     return re.findall(r"^ +tools/slope volume ((?!PREFIX).*)", text, re.MULTILINE)
 
 
-@pytest.mark.parametrize("command", [*doc_examples(), volume.EPILOG.split("tools/slope volume ")[1].split("\n")[0]])
+@pytest.mark.parametrize("command", [
+    *doc_examples(), volume_command.EPILOG.split("tools/slope volume ")[1].split("\n")[0]])
 def test_every_example_of_the_page_and_the_help_runs(slope, no_map, command):
     write_sidecar(80, 100, 2.5)
     write_sidecar(80, 100, 2.5, "dem.asc")

@@ -1,7 +1,7 @@
 /* Loads of a surface: sums over ranks and steps, files; contacts stored by ball; force of an impact. */
 
 #include "impact_force.h"
-#include "surface_contact_store.h"
+#include "contact_records.h"
 #include "surface_loads.h"
 #include "triangle_mesh.h"
 
@@ -53,23 +53,25 @@ TEST(SurfaceLoads, GoesThroughARestartFile)
   EXPECT_NE(loads.polydata(mesh, 7.0).find("NumberOfPolys=\"2\""), std::string::npos);
 }
 
-TEST(SurfaceContactStore, KeepsPacksAndCopies)
+TEST(ContactRecords, KeepsPacksAndCopies)
 {
-  SurfaceContactStore store, other;
+  ContactRecords store(3), other(3);
   store.resize(3);
   other.resize(5);
   store.make(1, 2);
   for (int k = 0; k < 2; k++)
-    for (int m = 0; m < SurfaceContactStore::NUMBERS; m++) store.contact(1, k)[m] = 100 * k + m;
-  std::vector<double> buffer(1 + 2 * SurfaceContactStore::NUMBERS);
+    for (int m = 0; m < 3 + HISTORY; m++) store.key(1, k)[m] = 100 * k + m;
+  std::vector<double> buffer(1 + 2 * (3 + HISTORY));
   EXPECT_EQ(store.pack(1, buffer.data()), static_cast<int>(buffer.size()));
   EXPECT_EQ(other.unpack(4, buffer.data()), static_cast<int>(buffer.size()));
   other.copy(4, 0);
   other.make(4, 0);
   EXPECT_EQ(other.contacts(4), 0);
   ASSERT_EQ(other.contacts(0), 2);
-  EXPECT_EQ(other.contact(0, 1)[3], 103.0);
+  EXPECT_EQ(other.history(0, 1)[0], 103.0);
   EXPECT_EQ(store.pack(0, buffer.data()), 1);
+  EXPECT_EQ(store.largest(1), 1);
+  EXPECT_EQ(store.largest(2), static_cast<int>(buffer.size()));
   store.clear();
   EXPECT_EQ(store.contacts(1), 0);
 }

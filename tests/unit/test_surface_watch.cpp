@@ -127,39 +127,98 @@ TEST(Choose, FromInsideTheFacesCountAndNoEdge)
   }
 }
 
-TEST(Choose, AConcaveKinkHasTwoContactsIfItIsSharp)
+// two squares that rise by an angle beyond x = 0
+static std::vector<Triangle> kink(double angle)
 {
-  for (const double degrees : {10.0, 14.0, 16.0, 30.0, 90.0}) {
+  std::vector<Triangle> list;
+  add_square(list, {-4, -4, 0}, {4, 0, 0}, {0, 8, 0});
+  add_square(list, {0, -4, 0}, {4 * std::cos(angle), 0, 4 * std::sin(angle)}, {0, 8, 0});
+  return list;
+}
+
+// a sphere's lower half from the inside
+static std::vector<Triangle> bowl(double radius, int n)
+{
+  std::vector<Triangle> list;
+  const double pi = std::acos(-1.0);
+  auto at = [&](int i, int j) {
+    const double down = pi - 0.5 * pi * (i + 0.3) / n, turn = 2.0 * pi * j / n;
+    return Vector{radius * std::sin(down) * std::cos(turn), radius * std::sin(down) * std::sin(turn),
+                  radius * std::cos(down)};
+  };
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++) {
+      list.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      list.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  return list;
+}
+
+// of a spring of stiffness 1
+static Vector force(const std::vector<Triangle> &list, const Vector &x)
+{
+  Vector sum = {0, 0, 0};
+  for (const SurfacePoint &p : contacts(list, x))
+    if (p.distance < R) sum = moved(sum, R - p.distance, p.normal);
+  return sum;
+}
+
+TEST(Choose, AConcaveEdgeHasAContactWithEachFace)
+{
+  for (const double degrees : {10.0, 16.0, 30.0, 90.0}) {
     const double a = degrees * std::acos(-1.0) / 180.0;
-    std::vector<Triangle> list;
-    add_square(list, {-4, -4, 0}, {4, 0, 0}, {0, 8, 0});
-    add_square(list, {0, -4, 0}, {4 * std::cos(a), 0, 4 * std::sin(a)}, {0, 8, 0});
     const double h = 0.999 * R;    // both overlap alike
-    const auto found = contacts(list, {-h * std::tan(0.5 * a), 0.3, h});
-    EXPECT_EQ(found.size(), degrees > 15.0 ? 2u : 1u) << degrees;
+    const auto found = contacts(kink(a), {-h * std::tan(0.5 * a), 0.3, h});
+    ASSERT_EQ(found.size(), 2u) << degrees;
     EXPECT_NEAR(found[0].distance, h, 1e-9);
+    EXPECT_NEAR(found[1].distance, h, 1e-9);
   }
 }
 
-TEST(Choose, AFineBowlHasOneContact)
+TEST(Choose, AShallowEdgeIsAlmostOneContact)
 {
-  for (const double radius : {0.8, 2.0}) {    // the ball's is 0.5
+  const double a = 0.01, h = 0.9 * R;
+  const Vector f = force(kink(a), {-h * std::tan(0.5 * a), 0.3, h});
+  EXPECT_NEAR(size_of(f), 0.1 * R, 1e-3 * R);
+}
+
+TEST(Choose, AFineBowlIsAlmostOneContact)
+{
+  for (const double radius : {0.8, 2.0})    // the ball's is 0.5
+    for (const double overlap : {0.01, 0.2}) {
+      const double depth = radius - (1.0 - overlap) * R;
+      const Vector f = force(bowl(radius, 60), {depth * 0.3, 0.0, -depth * std::sqrt(1 - 0.09)});
+      EXPECT_NEAR(size_of(f), overlap * R, 0.06 * overlap * R) << radius << " " << overlap;
+    }
+}
+
+// The force has a potential: on a closed path it does no work, over concave edges and deep in them.
+TEST(Choose, AClosedPathTakesNoWork)
+{
+  struct Case {
     std::vector<Triangle> list;
-    const int n = 60;
-    const double pi = std::acos(-1.0);
-    auto at = [&](int i, int j) {
-      const double down = pi - 0.5 * pi * (i + 0.3) / n, turn = 2.0 * pi * j / n;
-      return Vector{radius * std::sin(down) * std::cos(turn), radius * std::sin(down) * std::sin(turn),
-                    radius * std::cos(down)};
+    Vector middle;
+  };
+  const double degree = std::acos(-1.0) / 180.0;
+  const Case cases[] = {{kink(5 * degree), {-0.02, 0.3, 0.46}},  {kink(12 * degree), {-0.05, 0.3, 0.46}},
+                        {kink(25 * degree), {-0.1, 0.3, 0.46}},  {kink(40 * degree), {-0.15, 0.3, 0.46}},
+                        {bowl(2.0, 12), {0.5, 0.1, -1.41}},      {bowl(0.9, 12), {0.1, 0.1, -0.4}}};
+  for (const Case &c : cases) {
+    const int n = 20000;
+    const double pi = std::acos(-1.0), reach = 0.07;
+    auto at = [&](int k) {
+      const double turn = 2.0 * pi * k / n;
+      return moved(c.middle, reach, {std::cos(turn), 0.3 * std::sin(2.0 * turn), std::sin(turn)});
     };
-    for (int i = 0; i < n; i++)
-      for (int j = 0; j < n; j++) {
-        list.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
-        list.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
-      }
-    const double depth = radius - 0.99 * R;
-    const auto found = contacts(list, {depth * 0.3, 0.0, -depth * std::sqrt(1 - 0.09)});
-    EXPECT_EQ(found.size(), 1u) << radius;
+    double work = 0.0, least = 0.0, most = 0.0;
+    for (int k = 0; k < n; k++) {
+      const Vector f = force(c.list, moved(at(k), 0.5, minus(at(k + 1), at(k))));
+      work += dot(f, minus(at(k + 1), at(k)));
+      least = std::min(least, work);
+      most = std::max(most, work);
+    }
+    EXPECT_GT(most - least, 1e-3);    // a path over hill and valley
+    EXPECT_LT(std::fabs(work), 0.05 * (most - least)) << &c - cases;
   }
 }
 

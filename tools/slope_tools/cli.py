@@ -1,6 +1,6 @@
 """tools/slope: one program, one table of subcommands.
 
-A subcommand NAME is the module slope_tools.NAME with
+A subcommand NAME is the module slope_tools.commands.NAME with
 
     add_parser(commands, **kwargs)   calls commands.add_parser(NAME, **kwargs), adds its arguments, returns the parser
     run(args)                        does the work; raises SlopeError on bad input
@@ -9,13 +9,11 @@ Only the module that is asked for is imported: a subcommand starts fast, and nee
 """
 import argparse
 import importlib
-import math
 import os
-import re
 import sys
-from pathlib import Path
 
 from .errors import SlopeError
+from .provenance import version
 
 COMMANDS = {
     "terrain": "survey rasters (GeoTIFF, ESRI ASCII) to the plain terrain.asc that decks read",
@@ -43,23 +41,6 @@ class Parser(argparse.ArgumentParser):
         self.exit(2, f"{self.prog}: {message}\n")
 
 
-def number(text):
-    """argparse type: a finite number."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"must be a finite number, got {text!r}")
-    return value
-
-
-def version():
-    """The version of the package, from the one place that has it."""
-    header = Path(__file__).resolve().parents[2] / "src" / "slope_version.h"
-    return re.search(r'SLOPE_VERSION "(.*)"', header.read_text(encoding="ascii"))[1]
-
-
 def main(argv=None):
     """Run one subcommand on argv (default: the command line); return the status: 0, 2 bad input, 130 interrupted."""
     argv = sys.argv[1:] if argv is None else argv
@@ -69,7 +50,7 @@ def main(argv=None):
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
     for name, summary in COMMANDS.items():
         if argv[:1] == [name]:
-            module = importlib.import_module(f"{__package__}.{name}")
+            module = importlib.import_module(f"{__package__}.commands.{name}")
             module.add_parser(commands, help=summary).set_defaults(run=module.run)
         else:
             commands.add_parser(name, help=summary)

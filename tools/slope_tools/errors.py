@@ -1,4 +1,5 @@
-"""The one exception for bad input."""
+"""The one exception for bad input, and warnings."""
+import sys
 
 
 class SlopeError(Exception):
@@ -17,3 +18,11 @@ class SlopeError(Exception):
             got = str(got)
             line += f", got {got[:self.LONGEST]}{'...' * (len(got) > self.LONGEST)}"
         super().__init__("".join(c if c.isprintable() else "?" for c in " ".join(line.split())))
+
+
+def warner(command, kept):
+    """A function that prints a warning of a command on standard error, and keeps it in a list."""
+    def warn(text):
+        kept.append(text)
+        print(f"slope {command}: warning: {text}", file=sys.stderr)
+    return warn

@@ -1,0 +1,1 @@
+"""Decks, what they read, and what their runs wrote."""

@@ -1,0 +1,40 @@
+"""Which files a deck needs in the folder where it runs."""
+import os
+import re
+
+from .. import disk
+from ..errors import SlopeError
+from . import decks, run_folders
+
+# what runs, and the tools after them, leave in the deck's folder; a file that the deck reads is copied all the same
+OUTPUTS = re.compile(r"^\.|^core|^log\.|\.(restart|dump|lammpstrj|vtp|vts|pvd)(\.gz)?$|\.(yaml|csv|tif)\.new$"
+                     r"|\.summary\.yaml$|\.(png|jpe?g|svg|pdf|html|tif)$|~$", re.IGNORECASE)
+
+
+def data_files(deck, settings):
+    """{path in the run folder: source} of the deck and the data beside it.
+
+    The plain files of the deck's folder, without what runs leave there, and files in folders below that a word of the
+    deck or a value names.
+    """
+    folder = deck.parent
+    words, written = decks.named_files(deck)
+    words.update(value for several in settings.values() for value in several)
+    left = set()
+    for summary in run_folders.summaries(folder):
+        left.update(map(str, disk.load_yaml(summary, "a summary of fix deposit/grid").get("files") or ()))
+    found = {}
+    for path in sorted(folder.iterdir()):
+        output = OUTPUTS.search(path.name) or path.name in left or path.name in written
+        if path.is_file() and (path.name in words or not output):
+            found[path.name] = path
+    found[deck.name] = deck
+    for word in sorted(words):
+        if "/" not in word or word.startswith("/") or "$" in word or not (folder / word).is_file():
+            continue
+        inside = os.path.normpath(word)
+        if inside.startswith(".."):
+            raise SlopeError(deck, "must find its data in its own folder (a symbolic link will do) or by an absolute "
+                             "path", word)
+        found[inside] = folder / word
+    return found

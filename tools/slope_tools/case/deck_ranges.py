@@ -1,0 +1,63 @@
+"""The range that a deck has for a variable: where the variable stands in a command of ours, and what its comment says.
+
+A comment such as `# of the lattice; 0 <= offset < 1` on the line of an index variable states its range; the word in the
+middle may be any.
+"""
+import math
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Dict, Optional
+
+from . import decks
+
+NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+STATED = re.compile(rf"({NUMBER})\s*(<=?)\s*[A-Za-z_]\w*\s*(<=?)\s*({NUMBER})(?![\w.])")
+LINE = re.compile(r"^\s*variable\s+(\w+)\s+index\b[^#]*#(.*)$", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """An interval; below, above: whether its ends belong to it."""
+    low: float
+    high: float
+    with_low: bool = True
+    with_high: bool = True
+
+    def holds(self, value: float) -> bool:
+        above = value > self.low or (self.with_low and value == self.low)
+        return above and (value < self.high or (self.with_high and value == self.high))
+
+    @property
+    def told(self) -> str:
+        parts = [f"{'>=' if self.with_low else '>'} {self.low:g}"] * math.isfinite(self.low)
+        parts += [f"{'<=' if self.with_high else '<'} {self.high:g}"] * math.isfinite(self.high)
+        return " and ".join(parts)
+
+
+ABOVE_ZERO = Bounds(0, math.inf, with_low=False)
+FROM_ZERO = Bounds(0, math.inf)
+# the number behind a keyword of a command
+KEYWORDS = {"pair_coeff": {"friction": Bounds(0, 90, with_high=False), "restitution": Bounds(0, 1, with_low=False),
+                           "rolling": FROM_ZERO, "stiffness": ABOVE_ZERO, "damping": FROM_ZERO},
+            "set": {"diameter": ABOVE_ZERO, "density": ABOVE_ZERO},
+            "fix": {"spacing": ABOVE_ZERO, "cell": ABOVE_ZERO},
+            "create_balls": {"spacing": ABOVE_ZERO}}
+
+
+def ranges(deck: Path) -> Dict[str, Bounds]:
+    """{variable: its Bounds} of those whose range is known; a stated one counts before that of a command."""
+    found: Dict[str, Bounds] = {}
+    for words in decks.commands(deck):
+        for keyword, word in zip(words, words[1:]):
+            match = re.fullmatch(r"\$(?:\{(\w+)\}|(\w))", word)
+            bounds: Optional[Bounds] = KEYWORDS.get(words[0], {}).get(keyword)
+            if match and bounds:
+                found[match[1] or match[2]] = bounds
+    text = Path(deck).read_text(encoding="utf-8", errors="replace")
+    for name, comment in LINE.findall(text):
+        stated = STATED.search(comment)
+        if stated:
+            low, first, second, high = stated.groups()
+            found[name] = Bounds(float(low), float(high), first == "<=", second == "<=")
+    return found

@@ -1,0 +1,73 @@
+"""LAMMPS input decks: the commands, variables and files of one."""
+import re
+from pathlib import Path
+
+from ..errors import SlopeError
+
+WORD = re.compile(r'"""(.*?)"""|"([^"]*)"|\'([^\']*)\'|(\S+)')
+# words of a command that name files which it writes
+WRITTEN_AT = {"restart": (2, 4), "write_restart": (1, 2), "write_data": (1, 2), "write_dump": (3, 4), "dump": (5, 6),
+              "log": (1, 2)}
+
+
+def commands(deck):
+    """The commands of a deck and of the files that it includes by name: lists of words, comments taken off."""
+    found, waiting, seen = [], [Path(deck)], set()
+    while waiting:
+        path = waiting.pop(0)
+        seen.add(path)
+        try:
+            text = path.read_text(encoding="utf-8", errors="replace")
+        except OSError as error:
+            raise SlopeError(path, f"must be a LAMMPS input deck ({error.strerror})") from error
+        for line in re.sub(r"&[ \t]*\n", " ", text).splitlines():
+            words = []
+            for match in WORD.finditer(line):
+                if match.lastindex == 4 and "#" in match[4]:
+                    words += [match[4].split("#")[0]] * (not match[4].startswith("#"))
+                    break
+                words.append(match[match.lastindex])
+            if not words:
+                continue
+            found.append(words)
+            included = Path(deck).parent / words[-1]
+            if words[0] == "include" and included.is_file() and included not in seen:
+                waiting.append(included)
+    return found
+
+
+def variables(deck):
+    """{name: (style, text)} of a deck's `variable` commands; the first of a name counts, as for index variables."""
+    found = {}
+    for words in commands(deck):
+        if words[0] == "variable" and len(words) > 2:
+            found.setdefault(words[1], (words[2], " ".join(words[3:])))
+    return found
+
+
+def named_files(deck):
+    """Words of a deck that may name files which it reads, and those with which it names files that it writes.
+
+    Variables of style index or string are filled in; a word that stands in both places is in both sets.
+    """
+    values = {name: text for name, (style, text) in variables(deck).items() if style == "string"}
+    values |= index_variables(deck)
+
+    def fill(word):
+        return re.sub(r"\$(?:\{(\w+)\}|(\w))", lambda match: values.get(match[1] or match[2], match[0]), word)
+
+    read, written = set(), set()
+    for words in commands(deck):
+        first, last = WRITTEN_AT.get(words[0], (0, 0))
+        for k, word in enumerate(words):
+            keyword = words[k - 1] if k and words[0] in ("fix", "print") else ""
+            writes = first <= k < last or keyword in ("write", "append") or (
+                keyword == "file" and (words[0] == "print" or re.match("ave/|print|vector", " ".join(words[3:4]))))
+            (written if writes else read).update((word, fill(word)))
+    return read, written
+
+
+def index_variables(deck):
+    """{name: default} of the variables that -var can set."""
+    return {name: text.split()[0] if text else "" for name, (style, text) in variables(deck).items()
+            if style == "index"}

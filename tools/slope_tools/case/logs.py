@@ -1,0 +1,153 @@
+"""What the log of a run says."""
+import re
+from pathlib import Path
+
+from ..survey import rasters
+
+LOG = "log.lammps"
+# what our styles and LAMMPS say of what they made
+NOTES = ("Region terrain", "Fix wall/gran/balls", "Fix deposit/grid", "Delete_balls:", "Create_balls:", "Created ")
+TIMES = ("Time", "v_time")             # thermo columns; LAMMPS' own time begins anew after read_restart
+INPUT_PLACE = re.compile(r"\s*\([^()]*\.(?:cpp|h):\d+\)\s*$")     # LAMMPS names its source line at the end of a message
+
+
+class Log:
+    """What the log of a run says; update() reads what LAMMPS has added since.
+
+    step, time, first, last: of the run command under way; time (s) is None without a thermo column time or v_time,
+    last None before a run. thermo: number of lines of output since the command began. halted: the step at which fix
+    halt ended a run. reading: a restart file was begun and not read to its end. The logs of a run that was cut and
+    continued, see part(), are read as one.
+    """
+
+    def __init__(self, path):
+        self.path = Path(path)
+        self.place, self.rest = 0, ""
+        self.parts = None         # logs of the parts before this one, as long as they are not read
+        self.halted, self.reading = None, False
+        self.lammps = self.wall = self.error = self.step = self.time = self.last = self.terrain = None
+        self.first, self.steps, self.thermo, self.header = 0, None, 0, None
+        self.warnings, self.settings, self.notes, self.table = [], [], [], []
+        self.names = set()        # words of the commands: which files they name
+        self.in_table = False
+
+    def update(self):
+        """Read on; a log that is not there yet is an empty one."""
+        if self.parts is None:
+            self.parts = parts(self.path)
+            for path in self.parts:
+                self._read(path)
+                self.place, self.rest = 0, ""
+                self._new_part()
+        self._read(self.path)
+        return self
+
+    def _read(self, path):
+        try:
+            with open(path, "rb") as log:
+                log.seek(self.place)
+                new = log.read()
+        except OSError:
+            return
+        self.place += len(new)
+        *lines, self.rest = (self.rest + new.decode("utf-8", "replace")).split("\n")
+        for line in lines:
+            self._line(line)
+
+    def _new_part(self):
+        """Forget what counts only if it is the last that was heard."""
+        self.error = self.header = self.steps = self.last = None
+        self.thermo, self.reading = 0, False
+
+    def _line(self, line):
+        words = line.split()
+        if not words:
+            return
+        if self.in_table and line.startswith("  "):
+            self.table.append(line)
+            return
+        self.in_table = False
+        if self.header and self._is_output(words):
+            return
+        if line.startswith("LAMMPS ("):
+            self.lammps = self.lammps or line.strip()
+            self._new_part()
+        elif words[0] == "ERROR:" or line.startswith("ERROR on proc"):
+            self.error = self.error or told(line)
+        elif words[0] == "WARNING:":
+            add(self.warnings, told(line).removeprefix("WARNING: "))
+        elif line.startswith("Pair gran/restitution: contact coefficients"):
+            self.table, self.in_table = [line], True
+        elif line.startswith("Total wall time:"):
+            self.wall = words[-1]
+        elif line.startswith("Fix halt condition") and (match := re.search(r" on step (\d+)", line)):
+            self.halted = int(match[1])
+        elif line.startswith(NOTES):
+            add(self.notes, line.strip())
+        elif words[0] == "Step":
+            self.header, self.thermo = words, 0
+        elif words[0] == "Loop":
+            self.header = None
+        else:
+            self._command(words, line)
+
+    def _is_output(self, words):
+        """Take a line of thermodynamic output; False if it is none."""
+        if len(words) != len(self.header) or not re.fullmatch(r"\d+", words[0]):
+            return False
+        self.step = int(words[0])
+        for name in TIMES:
+            if name in self.header:
+                self.time = float(words[self.header.index(name)])
+        if self.thermo == 0:
+            self.first = self.step
+            if self.steps is not None:
+                self.last = self.steps[0] if self.steps[1] else self.first + self.steps[0]
+        self.thermo += 1
+        return True
+
+    def _command(self, words, line):
+        """A command as the log echoes it; the last of its echoes has all variables replaced."""
+        self.names.update(words)
+        if "${" in line:
+            return
+        if words[0] == "run" and len(words) > 1 and words[1].isdigit():
+            self.steps = int(words[1]), "upto" in words
+        elif words[0] == "read_restart":
+            self.reading = words[1] != "CPU"       # LAMMPS says last how long it took
+        elif words[0] == "region" and words[2:3] == ["terrain"] and len(words) > 3 and self.terrain is None:
+            self.terrain = words[3].strip("\"'")
+        if (words[0] in ("pair_style", "pair_coeff", "timestep", "units", "lattice", "neighbor")
+                or (words[0] == "fix" and len(words) > 3)):
+            add(self.settings, " ".join(line.split("#")[0].split()))
+
+
+def add(lines, line):
+    """Append a line that is not among them."""
+    if line not in lines:
+        lines.append(line)
+
+
+def parts(path):
+    """The logs that part() put aside for a log, the oldest first."""
+    path = Path(path)
+    name = re.compile(rf"{re.escape(path.stem)}\.(\d+){re.escape(path.suffix)}")
+    found = [(int(match[1]), other) for other in path.parent.glob("*") if (match := name.fullmatch(other.name))]
+    return [other for _, other in sorted(found)]
+
+
+def part(path):
+    """Put a log aside, log.lammps as log.1.lammps and so on: the run goes on with a new one."""
+    path = Path(path)
+    path.rename(path.with_name(f"{path.stem}.{len(parts(path)) + 1}{path.suffix}"))
+
+
+def told(line):
+    """A message of LAMMPS without the place in its source."""
+    return INPUT_PLACE.sub("", line.strip())
+
+
+def load_terrain(folder, log):
+    """The terrain of a run, with its sidecar; None if the log names none or the file is not in reach."""
+    path = log.terrain and Path(folder) / log.terrain
+    return rasters.read_asc_local(path) if path and path.is_file() else None

@@ -1,0 +1,81 @@
+"""What --set, --vary, --repeat and --converge stand for: variables of a deck and lists of their values."""
+import decimal
+
+from ..errors import SlopeError
+from . import decks
+
+MOST_RUNS = 10_000
+
+
+def as_number(text):
+    """A value as a float where it is one, so that 0.1 and 0.10 are one value; else the text."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def check_names(names, deck, option, options):
+    """The names that options NAME=... give, all of them different index variables of the deck; SlopeError otherwise."""
+    found = decks.variables(deck)
+    known = {name for name, (style, _) in found.items() if style == "index"}
+    fixes = [words for words in decks.commands(deck) if words[0] == "fix" and words[3:4] == ["deposit/grid"]]
+    if len(fixes) != 1:
+        raise SlopeError(deck, "must have one fix deposit/grid, which gives the deposit", len(fixes))
+    for i, (name, words) in enumerate(zip(names, options)):
+        if not name or "=" not in words:
+            raise SlopeError(option, "must be NAME=V1,V2,... or NAME=A:B:STEP", words)
+        if name not in known:
+            style = f"{name} of style {found[name][0]}" if name in found else name
+            raise SlopeError(option, f"must name an index variable of {deck} ({', '.join(sorted(known)) or 'none'})",
+                             style)
+        if name in names[:i]:
+            raise SlopeError(option, "must name a variable once", f"{name} twice")
+    return names
+
+
+def check_settings(options, deck, option="--set"):
+    """{name: [values]} of the options NAME=VALUES, in their order; every name must be an index variable of the deck."""
+    names = check_names([words.partition("=")[0] for words in options], deck, option, options)
+    return {name: values(words, words.partition("=")[2], option) for name, words in zip(names, options)}
+
+
+def values(words, text, option="--set"):
+    """The values that the right side of an option NAME=VALUES stands for, as text; words: all of it."""
+    found = []
+    for part in text.split(","):
+        ends = part.split(":")
+        if not part.strip():
+            raise SlopeError(option, "must have no empty value", words)
+        try:
+            numbers = [decimal.Decimal(end) for end in ends] if len(ends) == 3 else None
+        except decimal.InvalidOperation:
+            numbers = None
+        if numbers is None:
+            found.append(part)
+            continue
+        start, stop, step = numbers
+        if not all(end.is_finite() for end in numbers) or step == 0 or (stop - start) / step < 0:
+            raise SlopeError(option, "A:B:STEP must have a STEP that leads from A to B", words)
+        if (stop - start) / step >= MOST_RUNS:
+            raise SlopeError(option, f"must make at most {MOST_RUNS} runs", words)
+        found += [plain(start + i * step) for i in range(int((stop - start) / step) + 1)]
+    keys = [as_number(value) for value in found]
+    for i, key in enumerate(keys):
+        if key in keys[:i]:
+            raise SlopeError(option, "must have every value once", f"{words} with {found[i]} twice")
+    return found
+
+
+def plain(value):
+    """A decimal as text, without trailing zeros and, if it is short, without an exponent."""
+    value = value.normalize() + 0
+    return f"{value:f}" if -12 < value.adjusted() < 12 else str(value)
+
+
+def one_value_each(settings, option, several):
+    """{name: value} of settings of one value each; SlopeError otherwise, which says which options take several."""
+    for name, found in settings.items():
+        if len(found) > 1:
+            raise SlopeError(option, f"must give one value ({several} take several)", f"{name}={','.join(found)}")
+    return {name: found[0] for name, found in settings.items()}

@@ -1,0 +1,1 @@
+"""The subcommands of tools/slope: each parses its arguments, calls the rooms and prints."""

@@ -1,0 +1,92 @@
+"""slope bench: how fast a collapse runs, against the codes that are installed, and how that scales.
+
+Order of the work: make the scene (a collapse, run until the mass is dense and moves), run each part of the benchmark in
+alternation, evaluate (medians of the ratios of neighbouring runs), write.
+"""
+import argparse
+import shutil
+from pathlib import Path
+
+from ..ensemble import jobs
+from ..errors import SlopeError
+from ..options import count, number
+from ..programs import lmp_of_each
+from ..validation import peers
+from ..validation.bench import Plan
+from ..validation.bench_scenes import BALLS
+
+PARTS = {"peers": "against the other codes, one core",
+         "terrain": "terrain ten times larger, the same moving mass",
+         "ranks": "MPI ranks against one",
+         "throughput": "two single-rank runs side by side against one",
+         "weak": "many copies of the scene: 1e6 moving balls"}
+EPILOG = """\
+units: metres, seconds, bytes; time per ball and step in ns.
+
+example: a first look in two minutes; all of it on a machine with nothing else to do; one part, four ranks too:
+  tools/slope bench --quick
+  tools/slope bench -o bench
+  tools/slope bench --only ranks --np 2,4 -o ranks
+
+Writes DIR/bench.csv (every run), DIR/bench.yaml, DIR/bench.png, and the input of every code in a folder of its own.
+"""
+
+
+def add_parser(commands, **kwargs):
+    """Add `bench` and its arguments to argparse's commands; return its parser."""
+    parser = commands.add_parser(
+        "bench", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
+        description="How fast a collapse runs: against other codes, on larger terrains, on ranks, with more balls.",
+        **kwargs)
+    parser.add_argument("--quick", action="store_true",
+                        help="a small scene, few steps and repeats, without 1e6 balls and runs to rest; two minutes")
+    parser.add_argument("--balls", type=count, metavar="N", help=f"moving balls, about (default {BALLS}; --quick 8000)")
+    parser.add_argument("--field-factor", type=number, default=1.0, metavar="F",
+                        help="area of the terrain, times that of the scene (default 1: about 27,000 fixed balls)")
+    parser.add_argument("--steps", type=count, metavar="N", help="timed steps of a run (default 1000; --quick 300)")
+    parser.add_argument("--repeat", type=count, metavar="N", help="runs of each kind (default 5; --quick 3)")
+    parser.add_argument("--np", default="2", metavar="N1,N2,...",
+                        help="ranks of the parts ranks and weak, besides one (default 2)")
+    parser.add_argument("--only", metavar="PART,...", help=f"these parts: {', '.join(PARTS)} (default all)")
+    parser.add_argument("--peers", metavar="CODE,...",
+                        help="these codes: " + ", ".join(code.name for code in peers.ALL[1:])
+                        + " (default all; build: the one of --lmp build=FILE)")
+    parser.add_argument("--lmp", metavar="[CODE=]FILE", action="append",
+                        help="the LAMMPS program (default: LMP of the environment, then build/lmp beside tools/); "
+                        "with CODE= that of one code: granular, hooke, or build for another build of ours")
+    parser.add_argument("-o", dest="output", metavar="DIR", type=Path, default=Path("bench"),
+                        help="folder of the results (default bench)")
+    return parser
+
+
+def run(args):
+    """Do the command; raises SlopeError on bad input. Prints the tables."""
+    if args.field_factor < 1:
+        raise SlopeError("--field-factor", "must be >= 1", f"{args.field_factor:g}")
+    parts = peers.chosen("--only", args.only, PARTS)
+    lmp, programs = lmp_of_each(args.lmp, [code.name for code in peers.ALL[1:] if code.is_lammps])
+    names = peers.chosen("--peers", args.peers, [code.name for code in peers.ALL[1:]
+                                                 if code is not peers.Build or code.name in programs])
+    ranks = [rank for rank in whole_numbers("--np", args.np) if rank > 1]
+    if ranks and {"ranks", "weak"} & set(parts) and not shutil.which("mpirun"):
+        raise SlopeError("--np", "needs mpirun, which is not on the PATH", args.np)
+    balls = args.balls or (8000 if args.quick else BALLS)
+    if balls < 100:
+        raise SlopeError("--balls", "must be >= 100", balls)
+    if args.output.exists() and not args.output.is_dir():
+        raise SlopeError("-o", "must be a folder", args.output)
+    plan = Plan(args.output, lmp, programs, args.steps or (300 if args.quick else 1000),
+                args.repeat or (3 if args.quick else 5), balls, args.field_factor, args.quick)
+    try:
+        args.output.mkdir(parents=True, exist_ok=True)
+        with jobs.alone_in(args.output), jobs.signals_interrupt(), plan:
+            plan.do(parts, names, ranks)
+    except OSError as error:
+        raise SlopeError(error.filename or args.output, f"cannot be used: {error.strerror}") from error
+
+
+def whole_numbers(option, text):
+    try:
+        return [count(word) for word in text.split(",")]
+    except argparse.ArgumentTypeError as error:
+        raise SlopeError(option, str(error)) from error

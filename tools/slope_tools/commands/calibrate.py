@@ -1,0 +1,104 @@
+"""slope calibrate: which values of a deck's variables give what was observed, and how well they are known.
+
+Order of the work: check what was observed (observations.py), make runs batch after batch where they say most
+(calibration.py, backanalysis.py), run them as `slope study` does (study.py, jobs.py), write what they say together.
+"""
+import argparse
+from pathlib import Path
+
+from .. import options
+from ..case import data_files, decks
+from ..case.settings import check_settings, one_value_each
+from ..ensemble import backanalysis, calibration, distributions, jobs, observations, repeats, study
+from ..ensemble.fit import Fit
+from ..errors import SlopeError
+from ..options import number
+from . import run_arguments as run_arguments_command, score as score_command
+
+TOLERANCE = 0.05
+EPILOG = """\
+units: metres, m2, m3 of ground (bulk).
+
+example: friction, rolling resistance and roughness from a mapped deposit, by 60 runs:
+  tools/slope calibrate in.collapse --observed deposit.geojson --vary friction=15:40 --vary rolling=0:0.2 \\
+      --vary spacing=0.5:1.3 --repeat xoffset=0.25,0.5,0.75 --runs 60 -o fit
+
+from numbers alone, such as those of a report:
+  tools/slope calibrate in.collapse --front 2000 --area 850000 --vary friction=10:35 --vary rolling=0:0.2 \\
+      --runs 40 -o fit
+
+The same command goes on after an interruption; more --runs add to those there are. Writes DIR/calibrate.csv,
+DIR/calibrate.yaml, the regions over pairs of variables DIR/calibrate.png, and, with --observed, predicted against
+mapped DIR/predicted.png.
+"""
+
+
+def add_parser(commands, **kwargs):
+    """Add `calibrate` and its arguments to argparse's commands; return its parser."""
+    parser = commands.add_parser(
+        "calibrate", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
+        description="Which values of a deck's variables give a deposit that was observed, and how well they are "
+                    "known.", **kwargs)
+    run_arguments_command.add_deck(parser)
+    parser.add_argument("--observed", metavar="POLYGON|RASTER", type=Path,
+                        help="the mapped deposit: its outline, or its thickness in metres, as for `slope score`")
+    parser.add_argument("--front", metavar="L", type=number,
+                        help="distance in plan from the highest released ball that 99 %% of the volume stays within, m")
+    parser.add_argument("--area", metavar="A", type=number,
+                        help="area that the mass ever covered, thicker than --threshold, m2")
+    parser.add_argument("--volume", metavar="V", type=number, help="volume on the road of --road, m3")
+    parser.add_argument("--tolerance", metavar="SHARE", type=number, default=TOLERANCE,
+                        help="standard deviation of what was observed, as a share of it "
+                             f"(default {TOLERANCE:g}); chance comes on top")
+    parser.add_argument("--threshold", metavar="T", type=number, default=score_command.THRESHOLD,
+                        help=f"a deposit is where it is thicker than this, m (default {score_command.THRESHOLD:g})")
+    parser.add_argument("--vary", metavar="NAME=LO:HI", action="append", default=[], required=True,
+                        help="a variable of the deck that is looked for, and its range; all values in it are equally "
+                             "likely before (loguniform:LO:HI and the others of `slope study` too)")
+    parser.add_argument("--runs", metavar="N", type=options.count, required=True, help="how many runs, all in all")
+    parser.add_argument("--set", metavar="NAME=VALUE", action="append", default=[],
+                        help="value of another index variable in all runs (default: the deck's)")
+    parser.add_argument("--seed", metavar="S", type=int, default=1, help="of the first points (default 1)")
+    repeats.add_arguments(parser)
+    run_arguments_command.add_runs(parser)
+    return parser
+
+
+def run(args):
+    """Do the command; raises SlopeError on bad input, and where too few runs finished."""
+    wanted = observations.Wanted(args.observed, args.front, args.area, args.volume, args.tolerance, args.threshold,
+                                 args.local)
+    variables = distributions.parse(args.vary, args.deck, ranges_only=True)
+    fixed = one_value_each(check_settings(args.set, args.deck), "--set", "--vary")
+    repeated = check_settings(args.repeat, args.deck, "--repeat")
+    repeats.check(list(repeated), args.equally_good)
+    for one in variables:
+        for option, names in (("--set", fixed), ("--repeat", repeated)):
+            if one.name in names:
+                raise SlopeError("--vary", f"must not name a variable of {option}", one.name)
+    least = 2 * len(variables) + 3
+    if args.runs < least:
+        raise SlopeError("--runs", f"must be at least {least} for {len(variables)} parameters", args.runs)
+    if not 0 <= args.seed < 2 ** 32:
+        raise SlopeError("--seed", "must be from 0 to 4294967295", args.seed)
+    wanted.check(args.road is not None)
+    terrain = study.terrain_of(args.deck, fixed)
+    if terrain:
+        wanted.check_place(terrain)
+    settings = {name: [value] for name, value in fixed.items()}
+    files = data_files.data_files(args.deck, {**settings, **repeated})
+    if args.road:
+        study.check_road(args, settings)
+    study.check_folder(args, [])
+    about = {**wanted.about, "deck": args.deck.name, "set": fixed, "repeat": repeated,
+             "variables": {one.name: one.told for one in variables}, "seed": args.seed}
+    ledger = calibration.Ledger(args.output, about, variables)
+    chances = repeats.chances_of(repeated, {**decks.index_variables(args.deck), **fixed})
+    batch = args.jobs or max(1, jobs.cores() // args.np)
+    work_plan = calibration.Calibration(ledger, args.output, fixed, chances, args.seed, args.runs, batch)
+    if args.dry_run:
+        first = backanalysis.first(len(variables), args.seed)[:args.runs - 1]
+        print(f"{args.runs} runs: {len(ledger.points) or len(first)} decided on; the others follow from what they give")
+        return
+    with study.prepared(args, files, batch) as work:
+        Fit(args, wanted, work_plan, work).do()

@@ -1,0 +1,66 @@
+"""slope crosscheck: the same scenes in other codes, the paper's own method of verification.
+
+Order of the work: read a deck's final numbers (its run, with zero steps), write the scene for every code, run, compare.
+
+A peer is held against its twin: pair gran/restitution with those keywords that make it as the peer is (scheme plain,
+limit_damping yes). What remains is explained in Code.differs; what ours does differently by default shows in the table.
+"""
+import argparse
+from pathlib import Path
+
+from ..ensemble import jobs
+from ..errors import SlopeError
+from ..programs import find_lmp
+from ..validation import peers
+from ..validation.crosscheck import PEERS, Work, bounce, collapse, rolling, slide_roll
+from ..validation.crosscheck_report import report
+
+EPILOG = """\
+units: metres, seconds, m3 of ground (bulk).
+
+example: a minute and a half; with balls of 2.5 m instead of 4 m, some minutes; two codes:
+  tools/slope crosscheck --quick
+  tools/slope crosscheck -o crosscheck
+  tools/slope crosscheck --quick --peers granular,liggghts -o two
+
+Writes DIR/crosscheck.csv, DIR/crosscheck.yaml, DIR/crosscheck.png, and the input of every code in a folder of its own.
+"""
+CASES = {"bounce": bounce, "slide_roll": slide_roll, "rolling": rolling, "collapse": collapse}
+
+
+def add_parser(commands, **kwargs):
+    """Add `crosscheck` and its arguments to argparse's commands; return its parser."""
+    parser = commands.add_parser(
+        "crosscheck", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
+        description="The same scenes in other codes: bounce, slide, roll, rolling resistance, a collapse.", **kwargs)
+    parser.add_argument("--quick", action="store_true", help="a collapse of balls of 4 m instead of 2.5 m")
+    parser.add_argument("--only", metavar="CASE,...", help=f"these cases: {', '.join(CASES)} (default all)")
+    parser.add_argument("--peers", metavar="CODE,...",
+                        help="these codes: " + ", ".join(code.name for code in PEERS) + " (default all)")
+    parser.add_argument("--lmp", metavar="FILE", help="the LAMMPS program (default: LMP of the environment, then "
+                        "build/lmp beside tools/)")
+    parser.add_argument("-o", dest="output", metavar="DIR", type=Path, default=Path("crosscheck"),
+                        help="folder of the results (default crosscheck)")
+    return parser
+
+
+def run(args):
+    """Do the command; raises SlopeError on bad input, and when codes disagree. Prints the comparison."""
+    cases = peers.chosen("--only", args.only, CASES)
+    names = peers.chosen("--peers", args.peers, [code.name for code in PEERS])
+    if args.output.exists() and not args.output.is_dir():
+        raise SlopeError("-o", "must be a folder", args.output)
+    work = Work(args.output, find_lmp(args.lmp), names, args.quick)
+    try:
+        args.output.mkdir(parents=True, exist_ok=True)
+        with jobs.alone_in(args.output), jobs.signals_interrupt():
+            for case in cases:
+                CASES[case](work, case)
+            report(work)
+    except OSError as error:
+        raise SlopeError(error.filename or args.output, f"cannot be used: {error.strerror}") from error
+    failed = [check for check in work.checks if check.passed is False]
+    if failed:
+        first = failed[0]
+        raise SlopeError(args.output, f"{len(failed)} of {sum(check.passed is not None for check in work.checks)} "
+                         f"comparisons are outside of their tolerance: {first.case}, {first.quantity}, {first.code}")

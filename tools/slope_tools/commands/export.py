@@ -1,0 +1,55 @@
+"""slope export: every raster of a run as a GeoTIFF in the coordinates of the survey, for a GIS."""
+import argparse
+from pathlib import Path
+
+from .. import disk, errors
+from ..deposit import deposit
+from ..deposit.export import layers, write
+from ..survey import rasters
+from ..survey.rasters import crs_name
+
+EPILOG = """\
+units: metres, m/s, J, s. PREFIX is what fix deposit/grid was given as output.
+
+example: the rasters of a run, for QGIS; of a run in another folder than its terrain:
+  tools/slope export embankment
+  tools/slope export study/runs/001/embankment --terrain terrain.asc -o gis
+
+Writes PREFIX.thickness.tif and so on, and export.yaml.
+"""
+
+
+def add_parser(commands, **kwargs):
+    """Add `export` and its arguments to argparse's commands; return its parser."""
+    parser = commands.add_parser(
+        "export", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
+        description="Every raster of a run as a GeoTIFF in the coordinates of the survey.", **kwargs)
+    parser.add_argument("prefix", metavar="PREFIX", help="output of fix deposit/grid: PREFIX.thickness.asc and so on")
+    parser.add_argument("-o", dest="output", metavar="DIR", type=Path,
+                        help="folder for the results (default PREFIX.export)")
+    parser.add_argument("--terrain", metavar="TERRAIN.asc", type=Path,
+                        help="the run's terrain, whose sidecar tells the CRS (default: terrain.asc beside PREFIX)")
+    return parser
+
+
+def run(args):
+    """Do the command; raises SlopeError on bad input. Prints what was written."""
+    warnings = []
+    warn = errors.warner("export", warnings)
+    run_ = deposit.read(args.prefix, args.terrain, warn)
+    folder = args.output or Path(f"{args.prefix}.export")
+    disk.check_folder(folder)
+    place = run_.raster
+    found = layers(args.prefix)
+    about = {"prefix": run_.prefix, "terrain": run_.terrain, "crs": None if place.crs is None else crs_name(place.crs),
+             "origin": {"east": place.offset[0], "north": place.offset[1]}, "cell": run_.cell,
+             "run": {"slope_version": run_.summary.get("slope_version"), "time": run_.summary["time"]}, "rasters": []}
+    if not any(layer.kind == "base" for layer in found):
+        warn(f"no {args.prefix}.base.asc, as of a run by an older version: no ground without the body")
+    with disk.complete(folder) as new:
+        for layer in rasters.progress(found, "writing GeoTIFFs"):
+            about["rasters"].append(write(new, layer, place))
+        about["warnings"] = warnings
+        disk.write_yaml(new / "export.yaml", about, "slope export: rasters of a run as GeoTIFFs; m, m/s, J, s")
+    print(f"{len(found)} rasters, {about['crs'] or 'local metres, no CRS'}, cells of {run_.cell:g} m\n"
+          f"written to {folder}: {' '.join(one['file'] for one in about['rasters'])} export.yaml")

@@ -1,0 +1,79 @@
+"""slope polygon: polygons of a GIS to the rings in local metres that `region polygon` reads."""
+import argparse
+import sys
+import time
+from pathlib import Path
+
+from shapely.geometry import box
+
+from ..errors import SlopeError
+from ..survey import polygons, rasters
+
+SLOW = 5.0     # s; a run that took longer says so
+EPILOG = """\
+IN: GeoJSON, shapefile, or another format of GDAL with one layer; or text (.csv, .txt, .wkt) with
+  rings of lines x,y (metres), a blank line between two rings, # comments, one line of names at most; a point is inside
+  if it is inside an odd number of rings, so that a ring inside of another one is a hole
+  WKT such as POLYGON ((x y, x y, x y, x y))
+coordinates: of a file with a CRS, in that one (GeoJSON that names none: longitude, latitude), reprojected to the
+  terrain's; of text (CSV, WKT), in the terrain's CRS (east, north), but of a file that this command wrote, local;
+  --crs and --local say otherwise. OUT.csv is in the terrain's local metres.
+
+example:
+  tools/slope polygon road.geojson -o road.csv --terrain terrain.asc
+"""
+
+
+def add_parser(commands, **kwargs):
+    """Add `polygon` and its arguments to argparse's commands; return its parser."""
+    parser = commands.add_parser(
+        "polygon", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
+        description="Polygons (GeoJSON, shapefile, CSV, WKT) to the .csv in local metres that decks read.", **kwargs)
+    parser.add_argument("input", metavar="IN", help="polygons, also several and with holes; what overlaps becomes one")
+    parser.add_argument("-o", dest="output", metavar="OUT.csv", required=True, type=Path,
+                        help="rings for region polygon")
+    parser.add_argument("--terrain", metavar="TERRAIN.asc", required=True,
+                        help="terrain that `slope terrain` wrote; its sidecar TERRAIN.yaml has CRS and origin")
+    place = parser.add_mutually_exclusive_group()
+    place.add_argument("--crs", metavar="EPSG:n", help="the coordinates of IN are in this CRS, whatever IN says")
+    place.add_argument("--local", action="store_true",
+                       help="the coordinates of IN are the terrain's local metres, whatever IN says")
+    return parser
+
+
+def run(args):
+    """Do the command; raises SlopeError on bad input. Prints what was written and the line for the deck."""
+    start = time.monotonic()
+    if args.output.suffix != ".csv" or args.output.is_dir():
+        raise SlopeError("-o", "must be a file that ends in .csv", args.output)
+    if not args.output.parent.is_dir():
+        raise SlopeError("-o", "must be in an existing folder", args.output)
+    if args.output.exists() and Path(args.input).exists() and args.output.samefile(args.input):
+        raise SlopeError("-o", "must not be the input", args.output)
+    crs = polygons.as_crs("--crs", args.crs) if args.crs else None
+    place = rasters.read_place(args.terrain)
+    geometry = polygons.read_local(args.input, place, local=args.local, crs=crs)
+    beyond = 1 - geometry.intersection(box(*place.extent)).area / geometry.area
+    if beyond > 1e-9:
+        print(f"slope polygon: warning: {args.input}: {100 * beyond:.2g} % of the area lie outside of {args.terrain}",
+              file=sys.stderr)
+    geometry = polygons.write(args.output, geometry, place)
+    print(summary(args.output, geometry))
+    if time.monotonic() - start > SLOW:
+        print(f"took {time.monotonic() - start:.0f} s")
+
+
+def summary(path, geometry):
+    """What the user needs to know of the written polygons, and the line for the deck."""
+    rings = polygons.rings_of(geometry)
+    parts = polygons.polygons_of(geometry)
+    xlo, ylo, xhi, yhi = geometry.bounds
+    quoted = f'"{path}"' if " " in str(path) else path
+    return (f"{path}: {count(len(parts), 'polygon')}, {count(len(rings), 'ring')} "
+            f"({count(len(rings) - len(parts), 'hole')}), {sum(map(len, rings))} vertices, "
+            f"x {xlo:.3f} to {xhi:.3f}, y {ylo:.3f} to {yhi:.3f}, area {geometry.area:.3f} m2\n"
+            f"region {path.stem if path.stem.isidentifier() else 'road'} polygon {quoted}")
+
+
+def count(number, what):
+    return f"{number} {what}{'s' * (number != 1)}"

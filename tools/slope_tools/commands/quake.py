@@ -1,0 +1,84 @@
+"""slope quake: strong-motion records to the acceleration of the ground that fix ground/motion reads."""
+import argparse
+from pathlib import Path
+
+from ..errors import SlopeError
+from ..options import number
+from ..survey import quake_motion as motions, quake_records as records
+from ..survey.quake import processed, write
+
+EPILOG = """\
+RECORD: one file for each component, or one with all of them
+  K-NET, KiK-net ASCII (.EW .NS .UD, .EW2 .NS2 .UD2, ...): direction, factor to gal and length are in the head
+  PEER AT2: direction (azimuth or UP), unit and length are in the head
+  CSV: a first line such as "time,EW (gal),NS (gal),UD (gal)"; units gal, g, m/s2; times (s) evenly spaced
+OUT.txt has lines "t ax ay az" (s, m/s2) along the deck's axes: x towards --azimuth, y 90 degrees to the left, z up.
+
+examples:
+  tools/slope quake FKS005.EW FKS005.NS FKS005.UD -o motion.txt
+  tools/slope quake FKS005.EW FKS005.NS FKS005.UD --peak 300 --band 0.1 20 --azimuth 135 -o motion.txt
+"""
+
+
+def add_parser(commands, **kwargs):
+    """Add `quake` and its arguments to argparse's commands; return its parser."""
+    parser = commands.add_parser(
+        "quake", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
+        description="Strong-motion records to the acceleration of the ground that fix ground/motion reads.", **kwargs)
+    parser.add_argument("records", metavar="RECORD", nargs="+", help="files with the components of one record")
+    parser.add_argument("-o", dest="output", metavar="OUT.txt", required=True, type=Path,
+                        help="the motion; OUT.yaml, OUT.spectrum.csv and OUT.png are written beside it")
+    size = parser.add_mutually_exclusive_group()
+    size.add_argument("--peak", metavar="GAL", type=number,
+                      help="scale to this largest horizontal acceleration, of both components together")
+    size.add_argument("--scale", metavar="F", type=number, help="scale by this factor")
+    parser.add_argument("--azimuth", metavar="DEG", type=number, default=90.0,
+                        help="compass bearing of the deck's x axis (default 90: x is east, y is north)")
+    parser.add_argument("--window", metavar=("BEGIN", "END"), type=number, nargs=2,
+                        help="this part of the record only (s)")
+    parser.add_argument("--band", metavar=("LOW", "HIGH"), type=number, nargs=2,
+                        help=f"band-pass (Hz): Butterworth of order {motions.ORDER}, forth and back")
+    parser.add_argument("--baseline", choices=("rest", "mean", "none"), default="rest",
+                        help="rest: the ground ends at rest where it began (default); mean: take off the mean; none")
+    parser.add_argument("--unit", choices=("gal", "g", "m/s2"), help="unit of a CSV that names none")
+    return parser
+
+
+def run(args):
+    """Do the command; raises SlopeError on bad input. Prints what the motion is like and the line for the deck."""
+    check_output(args)
+    components = [component for path in args.records for component in records.read(path, args.unit)]
+    motion, steps = processed(components, args)
+    about = {"records": [c.source for c in components], "processing": steps, **motions.measures(motion)}
+    write(args.output, motion, about)
+    print(text(args.output, about))
+
+
+def check_output(args):
+    """What would be overwritten, and where nothing can be written, before there is any work."""
+    if args.output.suffix != ".txt" or args.output.is_dir():
+        raise SlopeError("-o", "must be a file that ends in .txt", args.output)
+    if not args.output.parent.is_dir():
+        raise SlopeError("-o", "must be in an existing folder", args.output)
+    for record in args.records:
+        if args.output.exists() and Path(record).exists() and args.output.samefile(record):
+            raise SlopeError("-o", "must not be a record", args.output)
+    for name in ("peak", "scale"):
+        value = getattr(args, name)
+        if value is not None and not (value > 0 if name == "peak" else value != 0):
+            raise SlopeError(f"--{name}", "must be > 0" if name == "peak" else "must not be 0", f"{value:g}")
+
+
+def text(path, about):
+    """What the user needs to know of the motion, and the line for the deck."""
+    lines = [f"{path}: {about['points']} points every {about['dt']:g} s, {about['length']:g} s; "
+             f"{'; '.join(about['processing'])}",
+             f"largest horizontal acceleration {about['peak_gal']:.5g} gal, Arias intensity "
+             f"{about['arias_horizontal']:.4g} m/s, D5-95 {about['duration_5_95_horizontal']:.4g} s",
+             "axis  acc. gal  vel. m/s  disp. m   end vel.  end disp.  Arias m/s  D5-95 s"]
+    for axis, a in about["axes"].items():
+        lines.append(f"{axis:<5} {a['acceleration_gal']:<9.4g} {a['velocity']:<9.4g} {a['displacement']:<9.4g} "
+                     f"{a['end_velocity']:<9.2g} {a['end_displacement']:<10.2g} {a['arias']:<10.4g} "
+                     f"{a['duration_5_95']:.4g}")
+    quoted = f'"{path}"' if " " in str(path) else path
+    return "\n".join([*lines, f"fix shake soil ground/motion {quoted}"])

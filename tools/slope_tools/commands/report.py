@@ -1,0 +1,80 @@
+"""slope report: one self-contained HTML page on a study or a run, for the screen and for A4 paper.
+
+Order of the work: find the runs and read their results (report_data.py), find what maps and section share
+(report_ground.py, report_section.py), collect warnings and numbers (report_warnings.py, report_numbers.py), draw
+(report_maps.py, report_charts.py), fill the template (report_page.py), write.
+"""
+import argparse
+from pathlib import Path
+
+from .. import disk
+from ..errors import SlopeError
+from ..report.document import make, write_pictures
+from ..report.section import FALL
+
+EPILOG = """\
+units: metres; the ends of --section are local coordinates of the run's terrain.
+
+example: the study that `slope study ... -o out` made, with a section along a line from a GIS:
+  tools/slope report out -o report.html
+  tools/slope report out --section thalweg.geojson
+
+Writes report.html, with all pictures in it; report.section.csv, the heights along the section; and report.numbers.csv,
+the numbers on the page with all their digits.
+"""
+
+
+def add_parser(commands, **kwargs):
+    """Add `report` and its arguments to argparse's commands; return its parser."""
+    parser = commands.add_parser(
+        "report", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
+        description="One self-contained HTML page on a study or a run.", **kwargs)
+    parser.add_argument("folder", metavar="DIR", type=Path, nargs="?",
+                        help="folder of a study (study.yaml) or of a single run (PREFIX.summary.yaml)")
+    parser.add_argument("-o", dest="output", metavar="REPORT.html", type=Path,
+                        help="the page (default DIR/report.html)")
+    parser.add_argument("--section", nargs="+", metavar="X1 Y1 X2 Y2|LINE",
+                        help="the section: its ends, local m; or a line of any shape: GeoJSON, shapefile, WKT, CSV; or "
+                             f"the word {FALL}: through the centroid of the released mass, along the fall line "
+                             "(default: along the path of the mass, or the fall line where that is about the same)")
+    parser.add_argument("--local", action="store_true", help="the line of --section is in local metres, not in a CRS")
+    parser.add_argument("--run", dest="shown", metavar="NAME",
+                        help="the run of a study whose maps are shown (default: the one that the conservative volume "
+                             "rests on, else the one that goes farthest)")
+    parser.add_argument("--reference", metavar="FILE.yaml", type=Path,
+                        help="numbers from elsewhere, published or measured, that stand beside those of the runs")
+    parser.add_argument("--converge", metavar="DIR", type=Path,
+                        help="what the size of the balls does: the folder of `slope sensitivity --converge`, or its "
+                             "converge.yaml (default: the one that the study took its size error from)")
+    parser.add_argument("--no-paper", action="store_true", help=argparse.SUPPRESS)    # in older scripts
+    parser.add_argument("--pictures", action="store_true",
+                        help="write the maps as files too, REPORT.1.png, REPORT.2.png, ... in the page's order; "
+                             "charts, drawn as lines, stay in the page")
+    return parser
+
+
+def run(args):
+    """Do the command; raises SlopeError on bad input. Prints what was written."""
+    if args.folder is None:     # behind --section, which takes what comes
+        if len(args.section or ()) not in (2, 5):
+            raise SlopeError("DIR", "must be given, the folder of a study or of a run")
+        args.folder = Path(args.section.pop())
+    output = args.output or args.folder / "report.html"
+    if output.suffix not in (".html", ".htm") or output.is_dir():
+        raise SlopeError("-o", "must be a file that ends in .html", output)
+    if not args.folder.is_dir():
+        raise SlopeError(args.folder, "must be an existing folder")
+    if not output.absolute().parent.is_dir():
+        raise SlopeError("-o", "must be in an existing folder", output)
+    page, html = make(args)
+    tables = {output.with_suffix(".section.csv"): page.section.table(),
+              output.with_suffix(".numbers.csv"): page.numbers.table()}
+    for path, text in {output: html, **tables}.items():
+        disk.write(path, text)
+    print(f"{output}: {len(html) / 1e6:.1f} MB, {page.pictures} pictures; {', '.join(map(str, tables))}")
+    if args.pictures:
+        write_pictures(output, html)
+    if args.no_paper:
+        print("note: --no-paper is the default now; --reference FILE.yaml brings other numbers in")
+    for level, text in page.warnings:
+        print(f"{'WARNING' if level == 'red' else 'note'}: {text}")

@@ -1,0 +1,68 @@
+"""slope sensitivity: one variable of a deck at a time; what it does to the volumes, how far one run can be trusted.
+
+Order of the work: plan the base run and those that differ from it by one variable, run them as `slope study` does
+(study.py, jobs.py), hold each against the mean of the equivalent runs. With --converge: size_study.py.
+"""
+import argparse
+
+from ..case.settings import check_settings, one_value_each
+from ..ensemble import repeats, study
+from ..ensemble.sensitivity import NAMES, OF_ROAD, OF_TRAVEL, collect, plan, quantities
+from ..errors import SlopeError
+from . import run_arguments as run_arguments_command
+
+EPILOG = """\
+units: metres, seconds, m3 of ground (bulk).
+
+example: what the size of the balls and the time step do, against the scatter over offsets of the lattice:
+  tools/slope sensitivity inputs/20_embankment/in.embankment --road inputs/20_embankment/road.csv --local \\
+      --set d=2.5 --vary d=1.25 --vary step=0.5 --repeat xoffset=0.25,0.5,0.75 -o out
+
+what the size of the balls does, with field balls that keep theirs: the value for small balls, the error of each size:
+  tools/slope sensitivity inputs/20_embankment/in.embankment --road inputs/20_embankment/road.csv --local \\
+      --converge d=4,2.5,1.25 --set field_d=1.25 --repeat xoffset=0.25,0.5 -o sizes
+
+Runs are kept and reused as those of `slope study`. Writes DIR/sensitivity.csv, DIR/sensitivity.yaml and the tornado
+chart DIR/sensitivity.png; with --converge DIR/converge.csv, DIR/converge_runs.csv, DIR/converge.yaml, DIR/converge.png.
+"""
+
+
+def add_parser(commands, **kwargs):
+    """Add `sensitivity` and its arguments to argparse's commands; return its parser."""
+    parser = commands.add_parser(
+        "sensitivity", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
+        description="One variable of a deck at a time: what it does to the volumes, and how far one run can be "
+                    "trusted.", **kwargs)
+    run_arguments_command.add_deck(parser)
+    parser.add_argument("--vary", metavar="NAME=V1,V2,...", action="append", default=[],
+                        help="values of an index variable of the deck that are a choice, each in a run of its own; "
+                             "A:B:STEP stands for A, A + STEP, ... up to B")
+    parser.add_argument("--converge", metavar="NAME=V1,V2,...",
+                        help="sizes of the balls, or of what else shall be small: a line through the results, and its "
+                             "end at 0; with --repeat at each size, without --vary")
+    repeats.add_arguments(parser)
+    parser.add_argument("--set", metavar="NAME=VALUE", action="append", default=[],
+                        help="value of an index variable in the base run (default: the deck's)")
+    parser.add_argument("--of", metavar="NAME,...",
+                        help=f"what is looked at (default {OF_ROAD}; {OF_TRAVEL} of --converge without a road), of "
+                             f"{', '.join(NAMES)}")
+    run_arguments_command.add_runs(parser)
+    return parser
+
+
+def run(args):
+    """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
+    base = one_value_each(check_settings(args.set, args.deck), "--set", "--vary, --repeat and --converge")
+    repeated = check_settings(args.repeat, args.deck, "--repeat")
+    kinds = {"vary": check_settings(args.vary, args.deck, "--vary"), "repeat": repeated}
+    for name in kinds["vary"].keys() & repeated.keys():
+        raise SlopeError("--repeat", "must not name a variable of --vary", name)
+    repeats.check(list(repeated), args.equally_good)
+    of = quantities(args)
+    if args.converge:
+        from ..ensemble import size_study
+        return size_study.run(args, base, repeated, of, {name: NAMES[name] for name in of})
+    todo = plan(args, base, kinds)
+    settings = {name: list(dict.fromkeys(one.chosen[name] for one in todo if name in one.chosen))
+                for name in (*base, *kinds["vary"], *kinds["repeat"])}
+    study.perform(args, settings, todo, lambda todo, work: collect(args, base, of, todo, work))

@@ -1,0 +1,1 @@
+"""What a run left: volumes, travel, comparison with a mapped deposit."""

@@ -1,0 +1,132 @@
+"""What fix deposit/grid wrote, read back, and what the commands that evaluate it share.
+
+Plan geometry on its grid is done in index coordinates: x in columns from the west edge, y in rows from the north edge.
+There a cell is the unit square between whole numbers, and areas are in cells.
+"""
+from pathlib import Path
+from typing import NamedTuple, Optional
+
+import numpy as np
+
+from .. import disk
+from ..errors import SlopeError
+from ..geometry import box, extent
+from ..survey import rasters
+from ..survey.rasters import Raster
+
+SAME_BALANCE = 1e-6    # relative; volume of the raster and in the summary
+SAME_HEIGHT = 1e-7     # of the largest height; two rasters of nine digits
+
+
+class Deposit(NamedTuple):
+    """A run's deposit: thickness on the raster (m, >= 0, 0 outside of it), ground below it (m, NaN where none)."""
+    prefix: str
+    raster: Raster          # z is the thickness; CRS and offset of the terrain
+    base: np.ndarray
+    summary: dict           # PREFIX.summary.yaml
+    terrain: Optional[str]  # file that gave CRS and offset
+
+    @property
+    def cell(self):
+        return float(self.raster.transform.a)
+
+    @property
+    def volume(self):
+        """Bulk volume on the grid (m3)."""
+        return float(self.raster.z.sum()) * self.cell ** 2
+
+    @property
+    def bulk(self):
+        """The run's bulk factor: volume of ground / volume of the balls."""
+        return float(self.summary["bulk_factor"])
+
+
+def read(prefix, terrain, warn):
+    """The Deposit that a run wrote to PREFIX, in the CRS of terrain (None: terrain.asc in the same folder, if any).
+
+    warn is called with one line for each thing that makes the numbers doubtful.
+    """
+    names = [f"{prefix}.{kind}" for kind in ("thickness.asc", "surface.asc", "summary.yaml")]
+    for name in names:
+        if not Path(name).is_file():
+            raise SlopeError(name, f"must be an existing file; {prefix} must be the output of fix deposit/grid")
+    summary = read_summary(names[2])
+    thickness, surface = (rasters.read(name, heights=False) for name in names[:2])
+    if thickness.z.shape != surface.z.shape or thickness.transform != surface.transform:
+        raise SlopeError(names[1], f"must have the grid of {names[0]}")
+    if min(thickness.z.shape) < 2:
+        raise SlopeError(names[0], "must have at least 2 x 2 cells", f"{thickness.z.shape[1]} x {thickness.z.shape[0]}")
+    wrong = np.argwhere(~(thickness.z >= 0))  # NaN too
+    if len(wrong):
+        row, column = wrong[0]
+        raise SlopeError(f"{names[0]}: row {row + 1} column {column + 1}", "must be a thickness >= 0",
+                         f"{thickness.z[row, column]:g}")
+    terrain, place = find_terrain(prefix, terrain, thickness, warn)
+    raster = thickness._replace(crs=place.crs, offset=place.offset) if place else thickness
+    deposit = Deposit(str(prefix), raster, read_base(prefix, thickness, surface), summary, terrain)
+    told = summary["volume"]["on_grid"]
+    if abs(deposit.volume - told) > SAME_BALANCE * max(told, 1e-30):
+        raise SlopeError(names[0], f"must hold the volume that {names[2]} tells, {told:.10g} m3: are they of one run?",
+                         f"{deposit.volume:.10g} m3")
+    if summary["moving"]:
+        warn(f"{names[2]}: the mass was still moving at {summary['time']:g} s: these are not final numbers")
+    lost = summary["volume"]["off_grid"] + summary["volume"]["lost"]
+    if lost > SAME_BALANCE * deposit.volume:
+        warn(f"{names[2]}: {lost:.6g} m3 of the mass left the grid or the box and are not counted")
+    return deposit
+
+
+def read_base(prefix, thickness, surface):
+    """The ground without the body (m): PREFIX.base.asc; of an older run, which wrote none, surface - thickness."""
+    name = f"{prefix}.base.asc"
+    difference = surface.z - thickness.z
+    if not Path(name).is_file():
+        return difference
+    base = rasters.read(name, heights=False)
+    if base.z.shape != thickness.z.shape or base.transform != thickness.transform:
+        raise SlopeError(name, f"must have the grid of {prefix}.thickness.asc")
+    largest = np.nanmax(np.abs(surface.z), initial=1.0)
+    wrong = np.argwhere((np.isnan(base.z) != np.isnan(difference))
+                        | (np.abs(base.z - difference) > SAME_HEIGHT * largest))
+    if len(wrong):
+        row, column = wrong[0]
+        raise SlopeError(f"{name}: row {row + 1} column {column + 1}",
+                         f"must be {prefix}.surface.asc less the thickness, {difference[row, column]:.9g}: are they of "
+                         "one run?", f"{base.z[row, column]:.9g}")
+    return base.z
+
+
+def read_summary(path):
+    what = "a summary that fix deposit/grid wrote"
+    summary = disk.parse_yaml(path, what)
+    try:
+        for value in (summary["bulk_factor"], summary["time"],
+                      *(summary["volume"][key] for key in ("on_grid", "off_grid", "lost"))):
+            if not disk.is_number(value):
+                raise ValueError(str(value)[:60])
+        if not (isinstance(summary["moving"], bool) and summary["bulk_factor"] > 0):
+            raise ValueError("moving, bulk_factor")
+    except (ValueError, KeyError, TypeError) as error:
+        raise SlopeError(path, f"must be {what} ({error!r})") from error
+    return summary
+
+
+def find_terrain(prefix, terrain, raster, warn):
+    """The file that tells where the run's grid lies and its Place; a warning and None, None without one."""
+    found = terrain or Path(prefix).with_name("terrain.asc")
+    if terrain is None and not found.is_file():
+        warn(f"no --terrain and no {found}: no CRS, coordinates are the local metres of the run")
+        return None, None
+    place = rasters.read_place(found)
+    grid, slack = extent(raster), 1e-6 * raster.transform.a
+    # fix deposit/grid covers its extent with whole cells from the south-west corner on: the last ones, in the east and
+    # in the north, may reach beyond the terrain
+    slack = np.array([slack, slack, raster.transform.a, raster.transform.a])
+    outside = np.subtract(place.extent, grid) * [1, 1, -1, -1] > slack
+    if outside.any():
+        raise SlopeError(found, f"must be the terrain of the run, whose grid is {box(grid)}; --terrain names another",
+                         box(place.extent))
+    if place.crs is None:
+        warn(f"{found} has no CRS: coordinates are metres as in that file" if place.offset != (0, 0) else
+             f"{found} has no CRS: coordinates are the local metres of the run")
+    return str(found), place

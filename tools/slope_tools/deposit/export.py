@@ -1,0 +1,55 @@
+"""The rasters of a run as GeoTIFFs in the survey's coordinates."""
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from ..errors import SlopeError
+from ..survey import rasters
+
+KINDS = {    # what fix deposit/grid writes: quantity, unit
+    "base": ("ground without the body", "m"),
+    "surface": ("ground and deposit", "m"),
+    "thickness": ("thickness of the deposit", "m"),
+    "max_thickness": ("largest thickness so far", "m"),
+    "max_speed": ("largest speed of a ball so far", "m/s"),
+    "max_energy": ("largest kinetic energy of a ball so far", "J"),
+    "arrival": ("time when the first ball came", "s"),
+    "last_motion": ("time when a ball last moved", "s"),
+}
+NAME = re.compile(r"(?:(\d+)\.)?(%s)\.asc" % "|".join(KINDS))    # after PREFIX and a point
+
+
+class Layer(NamedTuple):
+    """A raster of a run."""
+    path: Path
+    kind: str           # key of KINDS
+    step: int           # of a numbered copy (series yes of the fix), -1: none
+
+
+def layers(prefix):
+    """The rasters of a prefix, in the order of KINDS, numbered copies last."""
+    prefix = Path(prefix)
+    found = []
+    for path in prefix.parent.glob("*.asc"):
+        match = NAME.fullmatch(path.name[len(prefix.name) + 1:]) if path.name.startswith(f"{prefix.name}.") else None
+        if match:
+            found.append(Layer(path, match[2], -1 if match[1] is None else int(match[1])))
+    return sorted(found, key=lambda layer: (layer.step, list(KINDS).index(layer.kind)))
+
+
+def write(folder, layer, place):
+    """Write a layer as a GeoTIFF on the grid of place (a Raster with CRS and offset); what export.yaml tells of it."""
+    raster = rasters.read(layer.path, heights=False)
+    if raster.z.shape != place.z.shape or raster.transform != place.transform:
+        raise SlopeError(layer.path, "must have the grid of the run's thickness: is it of another run?")
+    quantity, unit = KINDS[layer.kind]
+    name = f"{layer.path.stem}.tif"
+    rasters.write_geotiff(folder / name, {f"{quantity} ({unit})": raster.z}, place)
+    there = raster.z[np.isfinite(raster.z)]
+    about = {"file": name, "quantity": quantity, "unit": unit}
+    if layer.step >= 0:
+        about["step"] = layer.step
+    return {**about, "nodata_cells": int(raster.z.size - there.size), "min": there.min() if there.size else None,
+            "max": there.max() if there.size else None}

@@ -1,0 +1,69 @@
+"""Whether a run's deposit is at rest, by its summary: how the run ended, and what still moves then."""
+from dataclasses import dataclass
+from typing import Any, Mapping, Optional
+
+from .. import disk
+from ..errors import SlopeError
+
+FAST = 0.1              # m/s: what is slower creeps or jitters (motion: fast_... of fix deposit/grid)
+MOST_FAST = 0.01        # share of the released volume that may be faster in a deposit at rest
+ENDS = {"halted": "ended by its rest criterion", "run completed": "stopped at its duration",
+        "time limit": "cut by a limit of computing time"}
+
+
+@dataclass(frozen=True)
+class Rest:
+    """at_rest, and in what the run falls short of it; share: of the volume that moves, volume in m3, speed in m/s."""
+    halted: bool
+    ended: str
+    at_rest: bool
+    share: float
+    threshold: float
+    volume: Optional[float] = None      # these two: None in summaries that do not know them
+    speed: Optional[float] = None
+
+    @property
+    def moves(self) -> str:
+        """What moves: `2.3 % of the volume (940 m3) is faster than 0.1 m/s, up to 30 m/s`."""
+        text = f"{percent(self.share)} of the volume"
+        if self.volume is not None:
+            text += f" ({self.volume:,.3g} m3)" if self.volume < 1000 else f" ({self.volume:,.0f} m3)"
+        text += f" is faster than {self.threshold:g} m/s"
+        return text if self.speed is None else f"{text}, up to {self.speed:.2g} m/s"
+
+    @property
+    def text(self) -> str:
+        """`at rest`, or how it ended and what moves."""
+        return "at rest" if self.at_rest else f"{self.ended}; {self.moves}"
+
+    @property
+    def short(self) -> str:
+        """For a narrow table."""
+        if self.at_rest:
+            return "at rest"
+        return "moves" if self.halted else "duration" if self.ended == ENDS["run completed"] else "cut"
+
+
+def percent(share: float) -> str:
+    """Two digits, or one from 10 % on; what is small is said to be below a hundredth of a percent."""
+    if 0 < share < 1e-4:
+        return "< 0.01 %"
+    return f"{100 * share:.2g} %" if share < 0.1 else f"{100 * share:.0f} %"
+
+
+def state(summary: Mapping[str, Any], where: Any) -> Rest:
+    """The state of a run by its summary (runs.load_summary); where: the file, for messages.
+
+    At rest is a deposit whose run ended by the deck's criterion of rest, and of which less than 1 % is faster than
+    0.1 m/s; a summary without fast_share has only the share that is faster than a threshold of the deck's.
+    """
+    reason, motion = str(summary["stop"]["reason"]), summary["motion"]
+    halted, ended = reason == "halted", ENDS.get(reason, f"was written in the run ({reason})")
+    if "fast_share" not in motion:
+        still = motion["moving_share"] < MOST_FAST and motion["threshold"] <= FAST and not summary["moving"]
+        return Rest(halted, ended, halted and still, motion["moving_share"], motion["threshold"])
+    for key in ("fast_share", "fast_volume", "fast_speed"):
+        if not disk.is_number(motion.get(key)):
+            raise SlopeError(where, f"motion: {key} must be a finite number", repr(motion.get(key))[:60])
+    share = float(motion["fast_share"])
+    return Rest(halted, ended, halted and share < MOST_FAST, share, FAST, motion["fast_volume"], motion["fast_speed"])

@@ -1,0 +1,79 @@
+"""The axis of a road, and the deposit along it."""
+import math
+
+import numpy as np
+from shapely.affinity import rotate
+from shapely.geometry import LineString, MultiLineString
+
+from .. import geometry
+from ..errors import SlopeError
+from ..survey.lines import lines_of
+
+STATIONS = 500         # cross sections of a curved road
+STRAIGHT = 0.98        # share of the centre line of a straight road that lies in the road
+
+
+def middle(road):
+    """The road's middle, and how it was found: the centre line of its smallest rectangle, where that lies in the road,
+
+    else the middles of the road's cross sections, square to the long side of that rectangle.
+    """
+    corners = np.array(road.minimum_rotated_rectangle.exterior.coords)[:4]
+    sides = np.hypot(*(corners - np.roll(corners, -1, axis=0)).T)
+    if sides[0] > sides[1]:
+        corners = np.roll(corners, -1, axis=0)  # the first side is a short one
+    ends = (corners[:2].mean(axis=0), corners[2:].mean(axis=0))
+    inside = lines_of(LineString(ends).intersection(road))
+    if inside.length >= STRAIGHT * max(sides):
+        return eastward(inside), "centre line of the road's smallest rectangle"
+    angle = math.degrees(math.atan2(*(ends[1] - ends[0])[::-1]))
+    level = rotate(road, -angle, origin=(0, 0))
+    west, south, east, north = level.bounds
+    tiny = 1e-9 * (east - west)
+    points = []
+    for x in np.linspace(west + tiny, east - tiny, STATIONS):
+        chords = lines_of(LineString([(x, south - 1), (x, north + 1)]).intersection(level)).geoms
+        if chords:
+            points.append(max(chords, key=lambda chord: chord.length).interpolate(0.5, normalized=True).coords[0])
+    return eastward(rotate(lines_of(LineString(points)), angle, origin=(0, 0))), "middles of the road's cross sections"
+
+
+def eastward(lines):
+    """The lines, each and all of them from west to east (from south to north if they run more that way)."""
+    west, south, east, north = lines.bounds
+    way = np.array([1.0, 0.0]) if east - west >= north - south else np.array([0.0, 1.0])
+    turned = [np.asarray(line.coords)[:, :2] for line in lines.geoms]
+    turned = [line if way @ (line[-1] - line[0]) >= 0 else line[::-1] for line in turned]
+    return MultiLineString(sorted(turned, key=lambda line: tuple(way @ line.T)[0]))
+
+
+def along(axis, run_, removed, blocked, path):
+    """Profile along the axis, a dict of arrays: one entry per cell that it crosses. Lengths are exact."""
+    shape = run_.raster.z.shape
+    inside = lines_of(axis.intersection(geometry.box_of(run_.raster)))
+    if inside.is_empty:
+        raise SlopeError(path, "axis of the road must lie in the grid of the run", geometry.box(axis.bounds))
+    parts = [np.asarray(line.coords)[:, :2] for line in geometry.to_index(eastward(inside), run_.raster).geoms]
+    start, end = np.concatenate([part[:-1] for part in parts]), np.concatenate([part[1:] for part in parts])
+    _, a, b = geometry.pieces(np.arange(shape[1] + 1.0), np.arange(shape[0] + 1.0), start, end)
+    length = np.hypot(*(b - a).T)
+    a, b, length = a[length > 0], b[length > 0], length[length > 0]
+    centre = (a + b) / 2
+    # an axis on the line between two cells: the thicker one counts
+    beside = 1e-6 * ((b - a) / length[:, None])[:, ::-1] * [1, -1]
+    sides = [np.clip((centre + way * beside).astype(int), 0, np.array(shape[::-1]) - 1) for way in (1, -1)]
+    thickness = [run_.raster.z[side[:, 1], side[:, 0]] for side in sides]
+    column, row = np.where((thickness[0] >= thickness[1])[:, None], *sides).T
+    length = length * run_.cell
+    to = np.cumsum(length)
+    x, y = run_.raster.transform * tuple(centre.T)
+    thickness = run_.raster.z[row, column]
+    return {"from": to - length, "to": to, "x": x, "y": y, "ground": run_.base[row, column], "thickness": thickness,
+            "removed": removed[row, column], "blocked": (thickness > blocked).astype(int)}
+
+
+def stretches(profile):
+    """Blocked stretches of a profile: list of (from, to)."""
+    step = np.diff(np.concatenate([[0], profile["blocked"], [0]]))
+    return [(profile["from"][a], profile["to"][b - 1])
+            for a, b in zip(np.flatnonzero(step == 1), np.flatnonzero(step == -1))]

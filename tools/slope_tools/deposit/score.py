@@ -1,0 +1,282 @@
+"""A run's deposit against a mapped one."""
+import csv
+import math
+from typing import NamedTuple, Optional
+
+import numpy as np
+from affine import Affine
+
+from .. import geometry
+from ..drawing import maps
+from ..errors import SlopeError
+from ..geometry import coverage, extent
+from ..survey import polygons, rasters
+from ..survey.crs import same_crs
+from ..survey.rasters import Raster, crs_name
+from . import reach
+from .connected import connected, top
+from .volume_files import text
+
+RASTERS = {".tif", ".tiff", ".asc", ".vrt", ".img", ".bil"}
+FULL = 1e-9       # a smaller share of a cell, or of the largest thickness, is rounding
+
+
+class Observed(NamedTuple):
+    """The mapped deposit on the run's grid: share of each cell; thickness (m, mean of the cell) or None."""
+    share: np.ndarray
+    thickness: Optional[np.ndarray]
+    points: np.ndarray      # local x, y of the corners of its outline: its farthest point is one of them
+    polygon: object         # shapely, local metres; None for a raster
+    outside: float          # area outside of the run's grid, m2
+    volume_outside: float   # m3
+
+
+# --- the mapped deposit ---
+
+def read_observed(path, raster, threshold, local):
+    """The Observed of a file, on the grid of a run's thickness raster."""
+    if path.suffix.lower() not in RASTERS:
+        polygon = polygons.read_local(path, raster, local)
+        return from_polygon(polygon, raster)
+    mapped = rasters.read_asc_local(path) if path.suffix == ".asc" else rasters.read(path)
+    return from_raster(path, mapped, raster, threshold, local)
+
+
+def from_polygon(polygon, raster):
+    grid = geometry.box_of(raster)
+    inside = polygon if grid.covers(polygon) else geometry.as_multi(polygon.intersection(grid))
+    rows, columns = raster.z.shape
+    share = coverage(geometry.to_index(inside, raster), np.arange(columns + 1.0), np.arange(rows + 1.0))[0]
+    share = np.clip(np.where(share > FULL, share, 0), 0, 1)
+    points = np.concatenate([np.asarray(part.exterior.coords)[:, :2] for part in geometry.polygons_of(polygon)])
+    return Observed(share, None, points, polygon, max(0, polygon.area - inside.area), 0.0)
+
+
+def from_raster(path, mapped, raster, threshold, local):
+    """A mapped raster of thickness on the run's grid: what each of its cells holds goes to the cells it shares."""
+    t = mapped.transform
+    if t.b or t.d or t.a <= 0 or t.e >= 0:
+        raise SlopeError(path, "must be a raster with rows from west to east and columns from north to south")
+    if local:
+        mapped = mapped._replace(crs=raster.crs, offset=raster.offset)
+    elif (mapped.crs is None) != (raster.crs is None):
+        raise SlopeError(path if mapped.crs is None else "--terrain", "must have a CRS, so that both can be brought "
+                         "together (--local if the mapped deposit is in the run's local metres)", "none")
+    elif not same_crs(mapped.crs, raster.crs):
+        raise SlopeError(path, f"must be in the CRS of the run, {crs_name(raster.crs)} (gdalwarp -t_srs reprojects)",
+                         crs_name(mapped.crs))
+    thickness = np.nan_to_num(mapped.z, nan=0.0)
+    wrong = np.argwhere(thickness < 0)
+    if len(wrong):
+        row, column = wrong[0]
+        raise SlopeError(f"{path}: row {row + 1} column {column + 1}", "must be a thickness >= 0",
+                         f"{thickness[row, column]:g}")
+    there = Affine.translation(*np.subtract(mapped.offset, raster.offset)) * t  # to the run's local metres
+    to_index = ~raster.transform * there
+    shape = raster.z.shape
+    x = to_index.c + to_index.a * np.arange(thickness.shape[1] + 1)
+    y = to_index.f + to_index.e * np.arange(thickness.shape[0] + 1)
+    if x[0] >= shape[1] or x[-1] <= 0 or y[0] >= shape[0] or y[-1] <= 0:
+        raise SlopeError(path, f"must overlap the grid of the run, {geometry.box(extent(raster))} (local metres)",
+                         geometry.box(extent(Raster(thickness, there, None))))
+    thick = thickness > threshold
+    share = np.clip(spread(thick.astype(float), x, y, shape), 0, 1)
+    share[share < FULL] = 0
+    area = abs(there.a * there.e)
+    cell = raster.transform.a ** 2
+    mean = spread(thickness, x, y, shape)
+    mean[mean < FULL * mean.max(initial=0)] = 0
+    points = corners(there, thick)
+    outside = thick.sum() * area - share.sum() * cell
+    volume_outside = thickness.sum() * area - mean.sum() * cell
+    return Observed(share, mean, points, None, *(value if value > 1e-9 * total * area else 0.0 for value, total in
+                                                 ((outside, thick.sum()), (volume_outside, thickness.sum()))))
+
+
+def spread(values, x, y, shape):
+    """Values, even in the cells between lines x and y (index coordinates, ascending), as means of the unit cells."""
+    for axis, lines, n in ((0, y, shape[0]), (1, x, shape[1])):
+        values = np.moveaxis(values, axis, 0)
+        # sum up to each line; between lines it grows evenly
+        total = np.concatenate([np.zeros((1, *values.shape[1:])), np.cumsum(values * np.diff(lines)[:, None], axis=0)])
+        at = np.clip(np.arange(n + 1.0), lines[0], lines[-1])
+        first = np.clip(np.searchsorted(lines, at, "right") - 1, 0, len(lines) - 2)
+        part = ((at - lines[first]) / np.diff(lines)[first])[:, None]
+        values = np.moveaxis(np.diff(total[first] * (1 - part) + total[first + 1] * part, axis=0), 0, axis)
+    return np.maximum(values, 0)
+
+
+def corners(transform, mask):
+    """Local x, y of the corners of the cells of a mask that have a neighbour outside of it."""
+    padded = np.pad(mask, 1)
+    inner = padded[:-2, 1:-1] & padded[2:, 1:-1] & padded[1:-1, :-2] & padded[1:-1, 2:]
+    row, column = np.nonzero(mask & ~inner)
+    return np.concatenate([np.transpose(transform * (column + i, row + j)) for i in (0, 1) for j in (0, 1)])
+
+
+# --- scores ---
+
+def overlap(simulated, observed, cell):
+    """Areas (m2) and their ratios; a ratio without a denominator is None."""
+    area = cell ** 2
+    met = float(observed.share[simulated].sum()) * area
+    total = float(observed.share.sum()) * area + observed.outside
+    run_ = float(simulated.sum()) * area
+    union = run_ + total - met
+
+    def ratio(part, whole):
+        return round(part / whole, 9) if whole > 0 else None
+
+    return {"simulated": round(run_, 9), "observed": round(total, 9), "true_positive": round(met, 9),
+            "false_positive": round(run_ - met, 9), "false_negative": round(total - met, 9),
+            "jaccard": ratio(met, union), "hit_rate": ratio(met, total), "precision": ratio(met, run_)}
+
+
+def runout(run_, simulated, observed):
+    """Distances in plan of the farthest points of both from the highest released point, and along the fall line (m)."""
+    x, y, _, source = top(run_)
+    points = corners(run_.raster.transform, simulated)
+    found = {"from": [round(x, 9), round(y, 9)], "from_source": source}
+    if not len(points) or not len(observed.points):
+        return {**found, "simulated": None, "observed": None, "difference": None}
+    centre = centroid(observed, run_.raster)
+    way = np.subtract(centre, (x, y))
+    length = math.hypot(*way)
+    for name, distance in (
+            ("", lambda at: np.hypot(*(at - (x, y)).T).max()),
+            ("along_fall_line", lambda at: float(((at - (x, y)) @ (way / length)).max()) if length > 0 else None)):
+        values = [distance(points), distance(observed.points)]
+        if None in values:
+            continue
+        ours, theirs = (round(float(value), 9) for value in values)
+        numbers = {"simulated": ours, "observed": theirs, "difference": round(ours - theirs, 9)}
+        if name:
+            # clockwise from north, as a compass has it
+            found[name] = {"azimuth": round(math.degrees(math.atan2(*way)) % 360, 9), **numbers}
+        else:
+            found.update(numbers)
+    found["quantiles_of"] = "area" if observed.thickness is None else "volume"
+    found["quantiles"] = quantiles(run_, simulated, observed, (x, y))
+    return found
+
+
+def quantiles(run_, simulated, observed, place):
+    """Distances (m) of cell centres from a place that shares of both deposits stay within.
+
+    Shares of the volume where both have a thickness; of the area where the mapped deposit is an outline.
+    """
+    ours, theirs = (simulated, observed.share) if observed.thickness is None else (run_.raster.z, observed.thickness)
+    rows, columns = np.indices(ours.shape)
+    x, y = run_.raster.transform * (columns + 0.5, rows + 0.5)
+    distance = np.hypot(x - place[0], y - place[1])
+    found = []
+    for share in reach.SHARES:
+        near, far = (round(reach.within(distance[of > 0], of[of > 0], share), 9) for of in (ours, theirs))
+        found.append({"share": share, "simulated": near, "observed": far, "difference": round(near - far, 9)})
+    return found
+
+
+def connected_runout(run_, threshold, observed):
+    """Of the largest connected part of the simulated deposit; its distance against the farthest mapped point (m)."""
+    part = connected(run_, threshold)
+    if part is None:
+        return None
+    found = {"parts": part.parts, "area": round(part.area, 9), "volume": round(part.volume, 9),
+             "share_of_volume": round(part.share, 9), "distance": round(part.distance, 9),
+             "reach_angle": None if part.reach_angle is None else round(part.reach_angle, 9)}
+    if len(observed.points):
+        x, y = top(run_)[:2]
+        far = round(float(np.hypot(*(observed.points - (x, y)).T).max()), 9)
+        found.update(observed=far, difference=round(found["distance"] - far, 9))
+    return found
+
+
+def balls(run_):
+    """Distance (m) and reach angle (degrees) that shares of the balls' volume stay within; None of an older run."""
+    told = (run_.summary.get("travel") or {}).get("quantiles")
+    return told if isinstance(told, list) else None
+
+
+def centroid(observed, raster):
+    if observed.polygon is not None:
+        return observed.polygon.centroid.coords[0]
+    rows, columns = observed.share.shape
+    weight = observed.share.sum()
+    return raster.transform * ((observed.share.sum(axis=0) @ (np.arange(columns) + 0.5)) / weight,
+                               (observed.share.sum(axis=1) @ (np.arange(rows) + 0.5)) / weight)
+
+
+def mesh_table(run_, simulated, observed, mesh):
+    """Arrays (mesh rows, mesh columns) by name: areas (m2) and, for a mapped raster, volumes (m3)."""
+    area = run_.cell ** 2
+    met = np.where(simulated, observed.share, 0)
+    table = {"true_positive": met, "false_positive": simulated - met, "false_negative": observed.share - met,
+             "simulated_volume": run_.raster.z}
+    if observed.thickness is not None:
+        table["observed_volume"] = observed.thickness
+    table = {name: mesh.sums(values) * area for name, values in table.items()}
+    if observed.thickness is not None:
+        table["volume_error"] = table["simulated_volume"] - table["observed_volume"]
+    return table
+
+
+def volumes(run_, observed, table):
+    """Volumes (m3) and their errors; per mesh cell: mean of the absolute errors over those with a deposit, and RMS."""
+    ours = math.fsum(table["simulated_volume"].ravel())
+    theirs = math.fsum(table["observed_volume"].ravel()) + observed.volume_outside
+    error = table["volume_error"][(table["simulated_volume"] > 0) | (table["observed_volume"] > 0)]
+    found = {"simulated": round(ours, 9), "observed": round(theirs, 9), "error": round(ours - theirs, 9),
+             "relative_error": round((ours - theirs) / theirs, 9) if theirs > 0 else None,
+             "mesh_cells": len(error)}
+    if len(error):
+        found["mean_absolute_error_of_mesh_cells"] = round(float(np.abs(error).mean()), 9)
+        found["rms_error_of_mesh_cells"] = round(float(np.sqrt((error ** 2).mean())), 9)
+        found["share_in_wrong_mesh_cells"] = round(float(np.abs(error).sum()) / (ours + theirs), 9)
+    return found
+
+
+# --- output ---
+
+def write_csv(path, run_, mesh, table):
+    """One row per mesh cell with a deposit, simulated or mapped."""
+    east, north = run_.raster.offset
+    listed = np.argwhere(np.any([np.abs(values) > 0 for values in table.values()], axis=0))
+    with open(path, "w", encoding="ascii", newline="") as out:
+        writer = csv.writer(out, lineterminator="\n")
+        writer.writerow(["row", "column", "xlo", "ylo", "east", "north", *table])
+        for row, column in listed.tolist():
+            x, y = mesh.corner(row, column)
+            places = map(float, (x, y, x + east, y + north))
+            writer.writerow([row + 1, column + 1, *map(text, places),
+                             *(text(float(values[row, column])) for values in table.values())])
+
+
+def draw(path, run_, simulated, observed, about):
+    raster = run_.raster
+    kind = np.where(simulated, np.where(observed.share >= 0.5, 1, 2), np.where(observed.share >= 0.5, 3, 0))
+    row, column = np.nonzero(kind > 0)
+    bounds = []
+    if len(row):
+        t = raster.transform
+        bounds.append((t.c + column.min() * t.a, t.f + (row.max() + 1) * t.e, t.c + (column.max() + 1) * t.a,
+                       t.f + row.min() * t.e))
+    if observed.polygon is not None:
+        bounds.append(geometry.as_multi(observed.polygon.intersection(geometry.box_of(raster))).bounds)
+    bounds.append((*about["runout"]["from"], *about["runout"]["from"]))
+    shown = maps.window(raster, *bounds)
+    area = about["area"]
+    jaccard = "none" if area["jaccard"] is None else f"{area['jaccard']:.3f}"
+    figure, axes = maps.relief(raster, run_.base, shown, f"{about['prefix']}: Jaccard {jaccard}, thicker than "
+                                                         f"{about['threshold']:g} m")
+    classes = {1: ("tab:green", "both"), 2: ("tab:orange", "simulated only"), 3: ("tab:blue", "mapped only")}
+    values, where = maps.part(raster, kind, shown)
+    colours = maps.ListedColormap([colour for colour, _ in classes.values()])
+    axes.imshow(np.ma.masked_equal(values, 0), cmap=colours, vmin=0.5, vmax=3.5, alpha=0.65, extent=where,
+                interpolation="nearest")
+    for colour, name in classes.values():
+        axes.plot([], [], "s", color=colour, alpha=0.65, label=name)
+    if observed.polygon is not None:
+        maps.outline(axes, observed.polygon, color="black", linewidth=1.0, label="mapped outline")
+    axes.plot(*about["runout"]["from"], "k^", markersize=6, label=about["runout"]["from_source"].split(": ")[-1])
+    axes.legend(loc="upper right", fontsize=8)
+    maps.save(figure, path)

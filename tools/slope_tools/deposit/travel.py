@@ -1,0 +1,197 @@
+"""Where balls come to rest: cumulative distributions along and across the slope, over several runs."""
+import csv
+import math
+from typing import NamedTuple, Optional
+
+import numpy as np
+
+from ..drawing import figures
+from ..drawing.figures import plt
+from ..errors import SlopeError
+from . import dumps, reach
+
+SHARES = {"min": 0, "p1": 1, "p5": 5, "p10": 10, "p25": 25, "p50": 50, "p75": 75, "p90": 90, "p95": 95, "p99": 99,
+          "max": 100}        # percentiles
+MOVING = 0.1                 # m/s; a ball that is faster has not arrived
+POINTS = 200                 # about as many positions in travel.csv per direction
+
+
+class Arrival(NamedTuple):
+    """The balls of one run at rest."""
+    name: str
+    step: int
+    id: np.ndarray
+    place: np.ndarray               # x y z
+    volume: Optional[np.ndarray]    # of the balls, m3; None: the dump has no diameter, all count the same
+    at: dict                        # direction: coordinate, m
+    moving: Optional[int]           # balls faster than MOVING, None without velocities
+    start: Optional[np.ndarray]     # x y z of each ball at the start, None without
+    top: Optional[np.ndarray]       # x y z of the highest ball at the start
+    missing: int                    # balls of the start that are not there now
+
+
+# --- the balls ---
+
+def read(path, start, args):
+    """The Arrival of a run."""
+    rest = chosen(dumps.last(path, ("type", "vx", "vy", "vz", "diameter", "radius")), args.type)
+    place = rest.place
+    turn = math.radians(args.axis)
+    way = np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
+    way[np.abs(way) < 1e-15] = 0                     # along y is along y
+    along, across = way @ (place[:, :2] - args.origin).T
+    moving = None
+    if all(key in rest.of for key in ("vx", "vy", "vz")):
+        moving = int((np.hypot(np.hypot(rest.of["vx"], rest.of["vy"]), rest.of["vz"]) > MOVING).sum())
+    before, top, missing = None, None, 0
+    if start:
+        first = chosen(dumps.last(start, ("type",)), args.type)
+        ids, order = first.of["id"], np.argsort(first.of["id"])
+        same = order[np.minimum(np.searchsorted(ids, rest.of["id"], sorter=order), len(ids) - 1)]
+        other = rest.of["id"][ids[same] != rest.of["id"]]
+        if len(other):
+            raise SlopeError(start, f"must have the balls of {path}", f"none with id {other[0]:g}")
+        before, top, missing = first.place[same], first.place[first.of["z"].argmax()], len(ids) - len(same)
+    return Arrival(str(path), rest.step, rest.of["id"].astype(int), place, volume_of(rest),
+                   {"along": along, "across": across}, moving, before, top, missing)
+
+
+def volume_of(snapshot):
+    """Volume of each ball, m3; None where the dump has neither diameter nor radius."""
+    if "diameter" in snapshot.of:
+        return math.pi / 6 * snapshot.of["diameter"] ** 3
+    return math.pi / 6 * (2 * snapshot.of["radius"]) ** 3 if "radius" in snapshot.of else None
+
+
+def chosen(snapshot, types):
+    """The balls of some types, None: all."""
+    if not types:
+        return snapshot
+    if "type" not in snapshot.of:
+        raise SlopeError(snapshot.path, "must have the column type, for --type")
+    keep = np.isin(snapshot.of["type"], types)
+    if not keep.any():
+        raise SlopeError(snapshot.path, f"must have balls of type {' '.join(map(str, types))} (--type)",
+                         "type " + " ".join(f"{value:g}" for value in np.unique(snapshot.of["type"])))
+    return snapshot._replace(of={name: values[keep] for name, values in snapshot.of.items()})
+
+
+# --- numbers ---
+
+def distribution(arrivals, name, limits, warn):
+    """Positions (m), the share of the balls at or below them in each run (runs, positions), and of all balls."""
+    balls = np.concatenate([one.at[name] for one in arrivals])
+    lo, hi = limits or (balls.min(), balls.max())
+    outside = ((balls < lo) | (balls > hi)).sum()
+    if outside:
+        warn(f"--{name} {lo:g} {hi:g}: {outside} of {len(balls)} balls lie beyond these limits")
+    step = step_of(hi - lo)
+    first = math.floor(lo / step + 1e-9) if limits else math.ceil(lo / step - 1e-9) - 1    # where the share is still 0
+    at = (step * np.arange(first, math.ceil(hi / step - 1e-9) + 1)).round(12)
+    shares = np.array([np.searchsorted(np.sort(one.at[name]), at, "right") / len(one.id) for one in arrivals])
+    return at, shares, np.searchsorted(np.sort(balls), at, "right") / len(balls)
+
+
+def step_of(length):
+    """The smallest of 1, 2, 5 x 10^n with at most POINTS steps in a length (m)."""
+    least = max(length, 1e-3) / POINTS
+    power = 10.0 ** math.floor(math.log10(least))
+    return next(step * power for step in (1, 2, 5, 10) if step * power >= least * (1 - 1e-9))
+
+
+def percentiles(values):
+    return {**{key: round(float(np.percentile(values, share)), 9) for key, share in SHARES.items()},
+            "mean": round(float(values.mean()), 9), "sd": round(float(values.std()), 9)}
+
+
+def spread(values):
+    """A number of each run, over the runs."""
+    return {"lowest": round(float(min(values)), 9), "median": round(float(np.median(values)), 9),
+            "highest": round(float(max(values)), 9)}
+
+
+def statistics(runs):
+    """Percentiles of the balls of all runs, and how each differs from run to run."""
+    single = [percentiles(values) for values in runs]
+    return {"all": percentiles(np.concatenate(runs)),
+            "over_runs": {key: spread([one[key] for one in single]) for key in single[0]}}
+
+
+def plan(difference):
+    """Length of vectors in plan."""
+    return np.hypot(difference[..., 0], difference[..., 1])
+
+
+def runout(one):
+    """From the highest ball at the start to the farthest one now: distance in plan (m), drop (m), angle (degrees).
+
+    And quantiles: what shares of the volume (of the balls, where the dump has no diameter) stay within.
+    """
+    distance = plan(one.place - one.top)
+    far = distance.argmax()
+    drop = one.top[2] - one.place[far, 2]
+    volume = np.ones(len(distance)) if one.volume is None else one.volume
+    shares = [{"share": share, "distance": round(within, 9), "reach_angle": round(angle, 9)}
+              for share, within, angle in reach.quantiles(one.place, one.top, volume)]
+    return {"distance": round(float(distance[far]), 9), "drop": round(float(drop), 9),
+            "reach_angle": round(math.degrees(math.atan2(drop, distance[far])), 9), "ball": int(one.id[far]),
+            "quantiles_of": "balls" if one.volume is None else "volume", "quantiles": shares}
+
+
+def each(one):
+    """What travel.yaml tells of one run."""
+    about = {"dump": one.name, "step": one.step, "balls": len(one.id), "moving": one.moving,
+             **{name: percentiles(values) for name, values in one.at.items()}}
+    if one.start is not None:
+        about.update(missing=one.missing, travel=percentiles(plan(one.place - one.start)), runout=runout(one))
+    return about
+
+
+# --- output ---
+
+def write_csv(path, arrivals, tables):
+    with open(path, "w", encoding="utf-8", newline="") as out:
+        writer = csv.writer(out, lineterminator="\n")
+        writer.writerow(["direction", "position", "lowest", "median", "highest", "all",
+                         *(one.name for one in arrivals)])
+        for name, (at, shares, together) in tables.items():
+            rows = np.column_stack([at, shares.min(axis=0), np.median(shares, axis=0), shares.max(axis=0), together,
+                                    shares.T])
+            writer.writerows([name, *(f"{value:.9g}" for value in row)] for row in rows)
+
+
+def write_balls(path, arrivals):
+    """Where each ball is, and how far, how deep and at which angle it came from its start."""
+    moved = arrivals[0].start is not None
+    with open(path, "w", encoding="utf-8", newline="") as out:
+        writer = csv.writer(out, lineterminator="\n")
+        writer.writerow(["run", "id", "along", "across", "z", *(("travel", "drop", "angle") if moved else ())])
+        for one in arrivals:
+            columns = [one.at["along"], one.at["across"], one.place[:, 2]]
+            if moved:
+                distance, drop = plan(one.place - one.start), one.start[:, 2] - one.place[:, 2]
+                columns += [distance, drop, np.degrees(np.arctan2(drop, distance))]
+            writer.writerows([one.name, ball, *(f"{value:.9g}" for value in row)] for ball, row in
+                             sorted(zip(one.id.tolist(), np.column_stack(columns))))
+
+
+def draw(path, arrivals, tables, args):
+    """The distributions, as the paper's Figure 3: a line for the median of the runs, a band from lowest to highest."""
+    several = len(arrivals) > 1
+    with plt.rc_context(figures.STYLE):
+        figure, panels = plt.subplots(1, 2, figsize=(figures.FULL, 2.9), sharey=True)
+        for axes, (name, (at, shares, _)), colour in zip(panels, tables.items(), figures.COLOURS):
+            if several:
+                axes.fill_between(at, shares.min(axis=0), shares.max(axis=0), step="post", color=colour, alpha=0.25,
+                                  lw=0, label=f"lowest to highest of {len(arrivals)} runs")
+            axes.step(at, np.median(shares, axis=0), where="post", color=colour, lw=1.4,
+                      label="median of the runs" if several else f"{len(arrivals[0].id)} balls")
+            turn = (args.axis + (90 if name == "across" else 0)) % 360
+            towards = {0: "x", 90: "y", 180: "-x", 270: "-y"}.get(turn, f"{turn:g} degrees from x to y")
+            axes.set(xlim=getattr(args, name) or (at[0], at[-1]), ylim=(0, 1),
+                     xlabel=f"{name} the slope, towards {towards} (m)")
+            axes.grid(color="#dddddd", lw=0.5)
+            axes.legend(loc="upper left")
+        panels[0].set_ylabel("cumulative share of the balls")
+        figure.savefig(path, dpi=figures.DPI)
+        plt.close(figure)

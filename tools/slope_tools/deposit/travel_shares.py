@@ -1,0 +1,35 @@
+"""How far the volume travels, by the shares that stay within a distance: what a summary's travel: quantiles say."""
+from typing import Any, Dict, Mapping, Optional
+
+from .. import disk
+from ..errors import SlopeError
+
+SHARES = (50, 90, 95, 99)       # percent of the volume
+HEADLINE = SHARES[-1]           # the distance that counts: one stray ball does not move it
+COLUMNS = (*(f"distance_{share}_m" for share in SHARES), *(f"reach_{share}_deg" for share in SHARES))
+DISTANCE = f"distance_{HEADLINE}_m"
+REACH = f"reach_{HEADLINE}_deg"
+
+
+def columns(summary: Mapping[str, Any], where: Any) -> Dict[str, Optional[float]]:
+    """{column: m in plan from the highest released ball, or degrees}; None each in a summary that knows no quantiles.
+
+    where: the file, for messages.
+    """
+    found: Dict[str, Optional[float]] = dict.fromkeys(COLUMNS)
+    entries = summary["travel"].get("quantiles")
+    if entries is None:
+        return found
+    try:
+        for entry in entries:
+            share = round(100 * entry["share"])
+            if share not in SHARES:
+                continue
+            for key, column in (("distance", f"distance_{share}_m"), ("reach_angle", f"reach_{share}_deg")):
+                if not disk.is_number(entry[key]):
+                    raise ValueError(key)
+                found[column] = entry[key]
+    except (TypeError, KeyError, ValueError, OverflowError) as error:
+        raise SlopeError(where, "travel: quantiles must be a list of share, distance (m) and reach_angle (degrees)",
+                         repr(error)[:60]) from error
+    return found

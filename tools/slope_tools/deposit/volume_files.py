@@ -1,0 +1,109 @@
+"""The files of a volume: tables, GeoJSON, a map."""
+import csv
+import json
+
+import numpy as np
+import rasterio.warp
+
+from ..drawing import maps
+from ..survey.rasters import epsg
+
+LABELS = 150           # mesh cells on a map that get their volume written into them
+WGS84 = "EPSG:4326"
+
+
+def rows(run_, mesh, result, factor):
+    """One dict per listed mesh cell, from the north-west on."""
+    east, north = run_.raster.offset
+    for row, column in result.listed:
+        x, y = (round(corner, 9) for corner in mesh.corner(row, column))  # 71 * 0.8 is 56.800000000000004
+        values = {"row": row + 1, "column": column + 1, "xlo": x, "ylo": y, "east": x + east, "north": y + north,
+                  "road_area": result.road_area[row, column], "deposit": result.deposit[row, column],
+                  "remove_on_road": result.road[row, column], "remove_beside_road": result.beside[row, column],
+                  "remove": result.volume[row, column]}
+        if factor:
+            values["remove_at_other_bulk_factor"] = round(values["remove"] * factor, result.digits)
+        yield {key: value.item() if isinstance(value, np.generic) else value for key, value in values.items()}
+
+
+def text(value, digits=9):
+    """A number in a CSV file; as many digits as it takes for a rounded one."""
+    return value if isinstance(value, int) else np.format_float_positional(round(value, digits), trim="-")
+
+
+def write_csv(path, run_, mesh, result, factor):
+    with open(path, "w", encoding="ascii", newline="") as out:
+        writer = csv.writer(out, lineterminator="\n")
+        for number_, values in enumerate(rows(run_, mesh, result, factor)):  # at least one: the road's
+            if number_ == 0:
+                writer.writerow(values)
+            writer.writerow(text(value, max(6, result.digits)) for value in values.values())
+
+
+def write_geojson(path, run_, mesh, result, factor):
+    """Squares of the mesh. With an EPSG number: in that CRS, which the file names as GDAL and QGIS read and write it;
+
+    in another CRS: in degrees of WGS 84, which is what GeoJSON means where it names none.
+    """
+    crs = run_.raster.crs
+    known = crs is not None and epsg(crs)
+    features = []
+    for values in rows(run_, mesh, result, factor):
+        x, y = values["east"], values["north"]
+        ring = [(x, y), (x + mesh.size, y), (x + mesh.size, y + mesh.size), (x, y + mesh.size), (x, y)]
+        if crs is not None and not known:
+            ring = list(zip(*rasterio.warp.transform(crs, WGS84, *zip(*ring))))
+        features.append({"type": "Feature", "properties": values,
+                         "geometry": {"type": "Polygon", "coordinates": [ring]}})
+    collection = {"type": "FeatureCollection", "name": "volume"}
+    if known:
+        collection["crs"] = {"type": "name", "properties": {"name": f"urn:ogc:def:crs:EPSG::{known}"}}
+    with open(path, "w", encoding="ascii") as out:
+        head = json.dumps(collection)[:-1]
+        out.write(head + ', "features": [\n' + ",\n".join(map(json.dumps, features)) + "\n]}\n")
+
+
+def write_profile(path, run_, profile):
+    east, north = run_.raster.offset
+    columns = {**profile, "east": profile["x"] + east, "north": profile["y"] + north}
+    order = ("from", "to", "x", "y", "east", "north", "ground", "thickness", "removed", "blocked")
+    with open(path, "w", encoding="ascii", newline="") as out:
+        writer = csv.writer(out, lineterminator="\n")
+        writer.writerow(order)
+        for values in zip(*(columns[key].tolist() for key in order)):
+            writer.writerow(map(text, values))
+
+
+def draw(path, run_, road, axis, mesh, result, about):
+    raster = run_.raster
+    full = np.argwhere(result.deposit > 0)
+    deposited = ()
+    if len(full):
+        (top, left), (bottom, right) = full.min(axis=0), full.max(axis=0)
+        deposited = *mesh.corner(bottom, left), *np.add(mesh.corner(top, right), mesh.size)
+    shown = maps.window(raster, road.bounds, deposited)
+    volume = about["volume"]
+    figure, axes = maps.relief(raster, run_.base, shown,
+                               f"{about['prefix']}: {volume['remove']:,.0f} m3 to remove above a cut of "
+                               f"{about['cut_angle']:g} degrees, {volume['remove_on_road']:,.0f} m3 of it on the road")
+    maps.values_on(axes, raster, result.removed, shown, "thickness to remove (m)")
+    thickness, where = maps.part(raster, raster.z, shown)
+    if (thickness > 0).any() and min(thickness.shape) >= 2:
+        axes.contour((thickness > 0).astype(float), [0.5], colors="black", linewidths=0.6, linestyles="dotted",
+                     extent=where, origin="upper")
+        axes.plot([], [], color="black", linewidth=0.8, linestyle="dotted", label="deposit")
+    maps.outline(axes, road, color="tab:blue", linewidth=1.4, label="road")
+    for number_, line in enumerate(axis.geoms):
+        axes.plot(*np.asarray(line.coords).T, color="tab:blue", linewidth=0.8, linestyle="dashdot",
+                  label=None if number_ else "axis")
+    cleared = np.argwhere(result.volume > 0)
+    if 0 < len(cleared) <= LABELS:
+        digits = 0 if result.volume.max() >= 10 else 2
+        for row, column in cleared:
+            x, y = mesh.corner(row, column)
+            axes.add_patch(maps.plt.Rectangle((x, y), mesh.size, mesh.size, fill=False, linewidth=0.4))
+            axes.text(x + mesh.size / 2, y + mesh.size / 2, f"{result.volume[row, column]:.{digits}f}",
+                      fontsize=5, ha="center", va="center", clip_on=True)
+        axes.plot([], [], color="black", linewidth=0.4, label=f"mesh of {mesh.size:g} m, m3 to remove")
+    axes.legend(loc="upper right", fontsize=8)
+    maps.save(figure, path)

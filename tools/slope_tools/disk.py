@@ -1,0 +1,94 @@
+"""Reading YAML, and writing files whole or not at all."""
+import math
+import os
+import shutil
+from contextlib import contextmanager
+from pathlib import Path
+
+import yaml
+import numpy as np
+
+from .errors import SlopeError
+
+
+def write(path, content):
+    """Write a file of text or bytes: complete, or not touched."""
+    path = Path(path)
+    new = path.with_name(f".{path.name}.{os.getpid()}.new")
+    try:
+        new.write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
+        os.replace(new, path)
+    except OSError as error:
+        raise SlopeError(path, f"cannot be written: {error.strerror}") from error
+    finally:
+        new.unlink(missing_ok=True)
+
+
+def parse_yaml(path, what):
+    """What is in a YAML file, of whatever type."""
+    try:
+        # safe_load makes no objects, and what an alias stands for is there once
+        return yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+    except RecursionError:
+        raise SlopeError(path, f"must be {what} (its nesting is too deep)") from None
+    except (OSError, ValueError, yaml.YAMLError) as error:
+        raise SlopeError(path, f"must be {what} ({getattr(error, 'strerror', None) or error})") from error
+
+
+def is_number(value):
+    """Whether it is a finite number, as YAML has them."""
+    try:
+        return not isinstance(value, bool) and math.isfinite(value)
+    except (TypeError, OverflowError):
+        return False
+
+
+def load_yaml(path, what):
+    """A YAML file that holds a mapping; what says what it must be."""
+    about = parse_yaml(path, what)
+    if not isinstance(about, dict):
+        raise SlopeError(path, f"must be {what}")
+    return about
+
+
+@contextmanager
+def complete(folder):
+    """A folder to write results into; when all are there they move to `folder`, by renames, else nothing changes."""
+    told, folder = folder, Path(folder).resolve()
+    # on the disk of the folder, so that renames do
+    new = (folder if folder.is_dir() else folder.parent) / f".{folder.name}.{os.getpid()}.new"
+    try:
+        new.mkdir()
+        yield new
+        folder.mkdir(exist_ok=True)
+        for path in sorted(new.iterdir()):
+            os.replace(path, folder / path.name)
+    except OSError as error:
+        raise SlopeError(told, f"cannot be written: {error.strerror or error}") from error
+    finally:
+        shutil.rmtree(new, ignore_errors=True)
+
+
+def check_folder(folder):
+    """Raise SlopeError if results cannot go to that folder, before the work is done."""
+    if folder.exists() and not folder.is_dir():
+        raise SlopeError("-o", "must be a folder", folder)
+    if not folder.resolve().parent.is_dir():
+        raise SlopeError("-o", "must be in an existing folder", folder)
+
+
+def plain(value):
+    """numpy's numbers, tuples and paths as what YAML and JSON know."""
+    if isinstance(value, dict):
+        return {key: plain(inner) for key, inner in value.items()}
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return [plain(inner) for inner in value]
+    if isinstance(value, np.generic):
+        return value.item()
+    return str(value) if isinstance(value, Path) else value
+
+
+def write_yaml(path, about, comment):
+    with open(path, "w", encoding="utf-8") as out:
+        out.write(f"# {comment}\n")
+        yaml.safe_dump(plain(about), out, sort_keys=False, allow_unicode=True)

@@ -1,0 +1,1 @@
+"""How pictures look: styles, maps on a shaded relief."""

@@ -1,0 +1,78 @@
+"""Maps of a deposit on a shaded relief of the ground, as PNG."""
+import math
+
+import matplotlib
+import numpy as np
+
+matplotlib.use("Agg")  # no display is needed
+
+from matplotlib import pyplot as plt  # noqa: E402  (after the backend is set)
+from matplotlib.colors import LightSource, ListedColormap  # noqa: E402, F401
+
+from ..geometry import extent, polygons_of  # noqa: E402
+
+SIDE = 8.0      # inches, width of a map
+PIXELS = 1200   # a raster is thinned out to at most this many cells along a side
+MARGIN = 0.1    # of the shown part around what matters, as a share of its size
+
+
+def window(raster, *bounds):
+    """Local xlo, ylo, xhi, yhi of a part of a raster: around the boxes in bounds, cut to the raster."""
+    xlo, ylo, xhi, yhi = np.transpose([bound for bound in bounds if bound])
+    low, high = np.array([xlo.min(), ylo.min()]), np.array([xhi.max(), yhi.max()])
+    room = max(MARGIN * (high - low).max(), 5 * raster.transform.a)
+    whole = extent(raster)
+    return *np.maximum(low - room, whole[:2]), *np.minimum(high + room, whole[2:])
+
+
+def part(raster, values, shown):
+    """Values in the window `shown`, thinned out for a picture, and imshow's extent of them."""
+    (left, top), (right, bottom) = ~raster.transform * (shown[0], shown[3]), ~raster.transform * (shown[2], shown[1])
+    rows, columns = raster.z.shape
+    top, left = max(0, math.floor(top)), max(0, math.floor(left))
+    bottom, right = min(rows, math.ceil(bottom)), min(columns, math.ceil(right))
+    step = max(1, math.ceil(max(bottom - top, right - left) / PIXELS))
+    t = raster.transform
+    values = values[top:bottom:step, left:right:step]
+    right, bottom = left + values.shape[1] * step, top + values.shape[0] * step
+    return values, (t.c + left * t.a, t.c + right * t.a, t.f + bottom * t.e, t.f + top * t.e)
+
+
+def relief(raster, base, shown, title):
+    """A figure with the shaded relief of the ground and axes in local metres: figure, axes."""
+    width, height = shown[2] - shown[0], shown[3] - shown[1]
+    figure, axes = plt.subplots(figsize=(SIDE, min(max(SIDE * height / width, SIDE / 3), 1.5 * SIDE)), dpi=130)
+    z, where = part(raster, base, shown)
+    step = (where[1] - where[0]) / z.shape[1]
+    if min(z.shape) >= 2:
+        filled = np.where(np.isfinite(z), z, np.nanmean(z) if np.isfinite(z).any() else 0)
+        shade = LightSource(315, 45).hillshade(filled, dx=step, dy=step)
+        axes.imshow(np.where(np.isfinite(z), shade, np.nan), cmap="gray", extent=where, vmin=-0.4, vmax=1.1)
+    axes.set(xlim=(shown[0], shown[2]), ylim=(shown[1], shown[3]), xlabel="x (m)", ylabel="y (m)", aspect="equal")
+    axes.set_title(title, fontsize=10)
+    axes.ticklabel_format(useOffset=False, style="plain")
+    return figure, axes
+
+
+def values_on(axes, raster, values, shown, label, cmap="YlOrRd"):
+    """Draw values > 0 over the relief, with a colour bar."""
+    values, where = part(raster, values, shown)
+    top = np.nanmax(values, initial=0)
+    image = axes.imshow(np.ma.masked_where(~(values > 0), values), cmap=cmap, alpha=0.75, extent=where, vmin=0,
+                        vmax=top if top > 0 else 1, interpolation="nearest")
+    axes.figure.colorbar(image, cax=axes.inset_axes([1.02, 0, 0.03, 1]), label=label)
+
+
+def outline(axes, geometry, **style):
+    """Draw the edges of polygons."""
+    label = style.pop("label", None)
+    for polygon in polygons_of(geometry):
+        for ring in (polygon.exterior, *polygon.interiors):
+            axes.plot(*np.asarray(ring.coords)[:, :2].T, label=label, **style)
+            label = None
+
+
+def save(figure, path):
+    """Write the figure; close it."""
+    figure.savefig(path, bbox_inches="tight")
+    plt.close(figure)

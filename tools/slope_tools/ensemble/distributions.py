@@ -1,0 +1,176 @@
+"""What --vary stands for in an ensemble: variables of a deck, and the distributions that their values come from."""
+import decimal
+import math
+import re
+from dataclasses import dataclass
+from typing import Any, Dict, List, Sequence, Tuple
+
+import numpy as np
+from scipy import stats
+
+from ..case import deck_ranges, settings
+from ..errors import SlopeError
+
+FORMS = {"uniform": "LO:HI", "loguniform": "LO:HI", "triangular": "LO:MODE:HI", "normal": "MEAN:DEVIATION:LO:HI",
+         "list": "V1@WEIGHT,V2@WEIGHT,..."}
+MUST = "must be NAME=LO:HI or NAME=KIND:..., of " + ", ".join(f"{kind}:{form}" for kind, form in FORMS.items())
+DIGITS = 6              # of a value, and of its place between the bounds
+LEAST_SHARE = 1e-6      # of a normal distribution that must lie between its bounds
+
+
+@dataclass(frozen=True)
+class Range:
+    """A variable between two bounds; frozen is its distribution (scipy)."""
+    name: str
+    text: str               # what stood behind NAME=
+    low: float
+    high: float
+    frozen: Any
+
+    @property
+    def decimals(self) -> int:
+        """To which decimal values are written: DIGITS of the width of the range."""
+        return max(0, DIGITS - 1 - math.floor(math.log10(self.high - self.low)))
+
+    def value(self, u: float) -> str:
+        """The value (text, for the deck) at which a share u of the distribution lies below."""
+        x = min(max(float(self.frozen.ppf(u)), self.low), self.high)
+        text = f"{x:.{self.decimals}f}"
+        if x != 0 and abs(x) < 10.0 ** (DIGITS - self.decimals):     # near 0 a loguniform value has few digits left
+            text = f"{x:.{DIGITS}g}"
+        if not self.low <= float(text) <= self.high:        # rounded out of the range
+            text = repr(x)
+        return settings.plain(decimal.Decimal(text))
+
+    def unit(self, text: str) -> float:
+        """The share of the distribution below a value: the inverse of value()."""
+        return float(self.frozen.cdf(float(text)))
+
+    def snap(self, u: np.ndarray) -> np.ndarray:
+        """The places that runs can have; of a range, all."""
+        return u
+
+    @property
+    def bounds(self) -> Tuple[float, ...]:
+        return self.low, self.high
+
+    @property
+    def told(self) -> str:
+        return self.text
+
+
+@dataclass(frozen=True)
+class Listed:
+    """A variable that has one of several values, each with a share; edges are the shares summed up, from 0 to 1."""
+    name: str
+    text: str
+    values: Tuple[str, ...]
+    edges: Tuple[float, ...]
+
+    def _index(self, u) -> np.ndarray:
+        return np.clip(np.searchsorted(self.edges, u, "right") - 1, 0, len(self.values) - 1)
+
+    def value(self, u: float) -> str:
+        return self.values[int(self._index(u))]
+
+    def unit(self, text: str) -> float:
+        """The middle of the value's share."""
+        i = self.values.index(text)
+        return (self.edges[i] + self.edges[i + 1]) / 2
+
+    def snap(self, u: np.ndarray) -> np.ndarray:
+        """The middles of the values' shares, which is where runs are."""
+        edges = np.array(self.edges)
+        return ((edges[:-1] + edges[1:]) / 2)[self._index(u)]
+
+    @property
+    def bounds(self) -> Tuple[float, ...]:
+        return tuple(float(value) for value in self.values if isinstance(settings.as_number(value), float))
+
+    @property
+    def told(self) -> str:
+        return self.text
+
+
+def parse(options: Sequence[str], deck, option: str = "--vary", ranges_only: bool = False) -> List[Any]:
+    """The variables (Range or Listed) of the options NAME=DISTRIBUTION, in their order.
+
+    Every NAME must be an index variable of the deck, and no value may leave the range that the deck has for it
+    (deck_ranges). ranges_only: no list will do.
+    """
+    for words in options:
+        if "=" not in words:
+            raise SlopeError(option, MUST, words)
+    names = settings.check_names([words.partition("=")[0] for words in options], deck, option, options)
+    known = deck_ranges.ranges(deck)
+    found = []
+    for name, words in zip(names, options):
+        one = distribution(name, words.partition("=")[2], option, words)
+        if ranges_only and isinstance(one, Listed):
+            raise SlopeError(option, "must be a range here, NAME=LO:HI", words)
+        if name in known:
+            for value in one.bounds:
+                if not known[name].holds(value):
+                    raise SlopeError(option, f"{name} must stay within the deck's range, {known[name].told}", words)
+        found.append(one)
+    return found
+
+
+def distribution(name: str, text: str, option: str, words: str):
+    """One variable; words: the whole option, for messages."""
+    kind, colon, rest = text.partition(":")
+    if kind not in FORMS:
+        kind, rest = "uniform", text
+    if kind == "list":
+        return listed(name, rest, option, words)
+    try:
+        numbers = [float(part) for part in rest.split(":")]
+    except ValueError:
+        numbers = []
+    if len(numbers) != len(FORMS[kind].split(":")) or not all(map(math.isfinite, numbers)):
+        raise SlopeError(option, MUST, words)
+    low, high = (numbers[0], numbers[-1]) if kind != "normal" else numbers[2:]
+    if not low < high:
+        raise SlopeError(option, f"{name} must have its lower bound first, LO < HI", words)
+    if high - low <= 1e-9 * max(abs(low), abs(high)):
+        raise SlopeError(option, f"{name} must have bounds that differ by more than rounding", words)
+    return Range(name, f"{kind}:{rest}", low, high, frozen(kind, numbers, option, words))
+
+
+def frozen(kind: str, numbers: Sequence[float], option: str, words: str):
+    """The distribution of scipy."""
+    low, high = numbers[0], numbers[-1]
+    if kind == "uniform":
+        return stats.uniform(low, high - low)
+    if kind == "loguniform":
+        if not low > 0:
+            raise SlopeError(option, "loguniform must have LO > 0", words)
+        return stats.loguniform(low, high)
+    if kind == "triangular":
+        if not low <= numbers[1] <= high:
+            raise SlopeError(option, "triangular must have LO <= MODE <= HI", words)
+        return stats.triang((numbers[1] - low) / (high - low), low, high - low)
+    mean, deviation, low, high = numbers
+    if not deviation > 0:
+        raise SlopeError(option, "normal must have DEVIATION > 0", words)
+    between = stats.norm(mean, deviation)
+    if between.cdf(high) - between.cdf(low) < LEAST_SHARE:
+        raise SlopeError(option, "normal must have a part of it between LO and HI", words)
+    return stats.truncnorm((low - mean) / deviation, (high - mean) / deviation, mean, deviation)
+
+
+def listed(name: str, rest: str, option: str, words: str) -> Listed:
+    """A list V1@WEIGHT,V2@WEIGHT,...; without weights all values weigh the same."""
+    entries: Dict[str, float] = {}
+    for part in rest.split(","):
+        value, at, weight = part.rpartition("@") if "@" in part else (part, "", "1")
+        if not (value.strip() and re.fullmatch(r"[0-9]*\.?[0-9]+(?:[eE][+-]?[0-9]+)?", weight) and float(weight) > 0):
+            raise SlopeError(option, f"must be NAME=list:{FORMS['list']} with weights > 0", words)
+        if settings.as_number(value) in map(settings.as_number, entries):
+            raise SlopeError(option, "must have every value once", words)
+        entries[value] = float(weight)
+    if len(entries) < 2:
+        raise SlopeError(option, f"{name} must have several values (--set takes one)", words)
+    weights = np.array(list(entries.values()))
+    edges = np.concatenate([[0.0], np.cumsum(weights) / weights.sum()])
+    return Listed(name, f"list:{rest}", tuple(entries), tuple(float(edge) for edge in edges))

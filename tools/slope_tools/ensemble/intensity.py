@@ -1,0 +1,177 @@
+"""Volume on the road against the intensity of what sets the mass off, and how likely a volume is exceeded at each.
+
+An intensity is a variable of the study such as the peak acceleration of an earthquake (gal). Its values are choices,
+as all values of --set; what differs by chance at one of them are the repeats. Of n runs at an intensity, k with more
+than a volume v: P(V > v) is k/n, with the interval of Clopper and Pearson (Biometrika 26, 1934, 404).
+"""
+import argparse
+import csv
+import io
+import math
+import re
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
+
+from rich.table import Table
+from scipy import stats
+
+from .. import disk
+from ..case.settings import as_number
+from ..errors import SlopeError
+from ..options import number
+from . import study_table
+from .combinations import Group
+
+NAME = re.compile(r"peak|pga|\w*intensity")     # names of variables that are one without being named
+QUANTITY = "remove_on_road_m3"
+CONFIDENCE = 0.95       # of the interval of a probability
+DEFAULTS = 3            # volumes, if none are given
+FILE = "intensity.csv"
+STANDS = 0.01           # of the released volume: less on the road, and the mass has not failed
+
+Settings = Mapping[str, Sequence[str]]
+
+
+def add_arguments(parser):
+    parser.add_argument("--intensity", metavar="NAME",
+                        help="variable of --set that is the intensity of what sets the mass off (default: the one "
+                             "called peak, pga or ...intensity); needs --road")
+    parser.add_argument("--more-than", metavar="V1,V2,...", type=volumes_of, default=[],
+                        help="volumes on the road, m3, that are exceeded with a probability at each intensity "
+                             "(default: three round ones)")
+
+
+def volumes_of(text):
+    """argparse type: different volumes >= 0, rising."""
+    found = [number(part) for part in text.split(",")]
+    if any(one < 0 for one in found) or len(set(found)) < len(found):
+        raise argparse.ArgumentTypeError(f"must be different volumes >= 0, with commas between, got {text!r}")
+    return sorted(found)
+
+
+def check(named: Optional[str], settings: Settings, road: bool) -> Optional[str]:
+    """The variable that is an intensity, or None; SlopeError if the one of --intensity cannot be."""
+    if named is None:
+        return find(settings) if road else None
+    if named not in settings:
+        raise SlopeError("--intensity", "must name a variable of --set", named)
+    if not road:
+        raise SlopeError("--intensity", "needs --road: what counts is the volume on it", named)
+    words = [value for value in settings[named] if not isinstance(as_number(value), float)]
+    if words or len(settings[named]) < 2:
+        raise SlopeError("--intensity", "must have several values, all of them numbers", ",".join(settings[named]))
+    return named
+
+
+def find(settings: Settings) -> Optional[str]:
+    """The first variable of several numbers that is called like an intensity."""
+    for name, several in settings.items():
+        if NAME.fullmatch(name) and len(several) > 1 and all(isinstance(as_number(one), float) for one in several):
+            return name
+    return None
+
+
+def round_volumes(largest: float) -> List[float]:
+    """Three of 1, 2, 5, 10, ... m3, those next below a volume."""
+    if largest <= 1:
+        return []
+    steps = [digit * 10.0 ** power for power in range(math.ceil(math.log10(largest)) + 1) for digit in (1, 2, 5)]
+    return [step for step in steps if step < largest][-DEFAULTS:]
+
+
+def probability(above: int, of: int) -> Tuple[float, float, float]:
+    """k of n runs: k/n and its interval of Clopper and Pearson."""
+    tail = (1 - CONFIDENCE) / 2
+    low = 0.0 if above == 0 else float(stats.beta.ppf(tail, above, of - above + 1))
+    high = 1.0 if above == of else float(stats.beta.ppf(1 - tail, above + 1, of - above))
+    return above / of, low, high
+
+
+def entry(name: str, groups: Sequence[Group], volumes: Sequence[float]) -> Optional[Dict[str, Any]]:
+    """What study.yaml says of the intensity: lines, one for each combination of the other variables, of points.
+
+    None if no run has a volume on the road.
+    """
+    groups = [group for group in groups if all(row.get(QUANTITY) is not None for row in group.rows)]
+    if not groups:
+        return None
+    volumes = list(volumes) or round_volumes(max(row[QUANTITY] for group in groups for row in group.rows))
+    lines: Dict[tuple, Dict[str, Any]] = {}
+    for group in groups:
+        rest = {other: value for other, value in group.set.items() if other != name}
+        line = lines.setdefault(tuple(rest.values()), {"set": rest, "points": []})
+        line["points"].append(point(float(group.set[name]), group, volumes))
+    for line in lines.values():
+        line["points"].sort(key=lambda one: one["at"])
+    return {"variable": name, "quantity": QUANTITY, "more_than_m3": volumes, "confidence": CONFIDENCE,
+            "lines": list(lines.values())}
+
+
+def point(at: float, group: Group, volumes: Sequence[float]) -> Dict[str, Any]:
+    """Volumes of the runs of one intensity (m3), their mean and scatter, and how many exceed each of the volumes."""
+    one = group.of(QUANTITY)
+    found = list(one.volumes.values())
+    exceed = []
+    for volume in volumes:
+        above = sum(value > volume for value in found)
+        share, low, high = probability(above, len(found))
+        exceed.append({"more_than_m3": volume, "runs": above, "probability": share, "low": low, "high": high})
+    released = sum(row["released_m3"] for row in group.rows) / len(group.rows)
+    return {"at": at, "runs": len(found), "mean_m3": one.mean, "scatter_m3": one.scatter, "smallest_m3": min(found),
+            "largest_m3": max(found), "released_m3": released, "share_of_released": one.mean / released,
+            "exceed": exceed}
+
+
+def doubts(about: Mapping[str, Any]) -> List[str]:
+    """What speaks against a common scatter of all runs: chance decides whether the mass fails at all."""
+    mixed = sorted({f"{one['at']:g}" for line in about["lines"] for one in line["points"]
+                    if one["smallest_m3"] <= STANDS * one["released_m3"] < one["largest_m3"]}, key=float)
+    return [f"at {about['variable']} {', '.join(mixed)} some runs fail and others stand: the scatter is that "
+            "of failing, not of a volume; take the probabilities at each intensity"] if mixed else []
+
+
+def table(about: Mapping[str, Any]) -> str:
+    """The CSV: a row for each point."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    columns = ("runs", "mean_m3", "scatter_m3", "smallest_m3", "largest_m3", "share_of_released")
+    volumes = [f"{volume:g}" for volume in about["more_than_m3"]]
+    writer.writerow([*about["lines"][0]["set"], about["variable"], *columns,
+                     *(f"{what}_{volume}_m3" for volume in volumes for what in ("p_more_than", "low", "high"))])
+    for line in about["lines"]:
+        for one in line["points"]:
+            writer.writerow([*line["set"].values(), f"{one['at']:g}", *(one[key] for key in columns),
+                             *(each[key] for each in one["exceed"] for key in ("probability", "low", "high"))])
+    return text.getvalue()
+
+
+def percent(share: float) -> str:
+    return f"{100 * share:.0f} %"
+
+
+def show(about: Mapping[str, Any]) -> None:
+    """The table on the screen."""
+    shown = Table(title=f"volume on the road (m3 of ground) against {about['variable']}, and P(V > v), in brackets the "
+                        f"{100 * about['confidence']:.0f} % interval of so few runs")
+    for head in (*about["lines"][0]["set"], about["variable"], "runs", "mean", "smallest", "largest",
+                 *(f"P(V > {volume:,.6g})" for volume in about["more_than_m3"])):
+        shown.add_column(head, justify="right")
+    for line in about["lines"]:
+        for one in line["points"]:
+            shown.add_row(*line["set"].values(), f"{one['at']:g}", str(one["runs"]),
+                          *(f"{one[key]:,.0f}" for key in ("mean_m3", "smallest_m3", "largest_m3")),
+                          *(f"{percent(each['probability'])} ({percent(each['low'])} to {percent(each['high'])})"
+                            for each in one["exceed"]))
+    study_table.show(shown)
+
+
+def collect(args, settings: Settings, groups: Sequence[Group]) -> Optional[Dict[str, Any]]:
+    """The entry of study.yaml, None without an intensity; writes intensity.csv and prints the table."""
+    if getattr(args, "sample", None) is not None:
+        return None     # of values that are drawn, each has one run
+    name = check(args.intensity, settings, bool(args.road))
+    about = entry(name, groups, args.more_than) if name else None
+    if about:
+        disk.write(args.output / FILE, table(about))
+        show(about)
+        print(f"{args.output / FILE}: volume on the road against {name}, and how likely more is")
+    return about

@@ -1,0 +1,352 @@
+"""The runs of a study: their folders, their processes, and how far they are."""
+import contextlib
+import fcntl
+import hashlib
+import os
+import re
+import shutil
+import signal
+import subprocess
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Dict, Optional
+
+import yaml
+from .. import disk, provenance
+from ..case import decks, last_words, logs, restarts, run_folders
+from ..errors import SlopeError
+from . import launcher
+from .job_display import Display
+
+POLL = 0.1              # s between two looks at the runs
+PATIENCE = 10.0         # s that a run gets to end after SIGTERM
+SCREEN = "screen.txt"
+KILLED = {base for code in (signal.SIGKILL, signal.SIGTERM) for base in (-code, 128 + code)}     # lmp, or mpirun of it
+CONTINUES = "read_restart ${restart}"      # what a deck that can be continued has in it
+SAFE = re.compile(r"[^A-Za-z0-9.+-]+")
+
+
+def cores():
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
+def physical_cores():
+    """What mpirun takes as its number of slots."""
+    siblings = {path.read_text(encoding="ascii") for path in
+                Path("/sys/devices/system/cpu").glob("cpu[0-9]*/topology/thread_siblings_list")}
+    return min(len(siblings) or 1, cores())
+
+
+def environment():
+    """Of a program that may be run by mpirun."""
+    values = {**os.environ, "OMP_NUM_THREADS": "1"}
+    # Open MPI on one machine: what a rank sends each step goes at once, without a handshake
+    values.setdefault("OMPI_MCA_btl_vader_eager_limit", "131072")
+    if os.geteuid() == 0:
+        values.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+    return values
+
+
+class Run:
+    """One run: its values, its folder, and what became of it."""
+
+    def __init__(self, output, chosen):
+        self.chosen: Dict[str, str] = chosen
+        self.name = "_".join(f"{name}_{SAFE.sub('-', value)}" for name, value in chosen.items()) or "base"
+        self.folder = Path(output) / self.name
+        self.varied = self.name     # for a narrow terminal: the values that differ
+        self.error = None
+        self.log = logs.Log(self.folder / logs.LOG)
+        self.restart = None         # step and path of the restart file that it goes on from
+        self.refused = set()        # restart files that LAMMPS could not read
+        self.heard = 0              # bytes on its screen that are of the parts before this one
+
+    @property
+    def marker(self):
+        return self.folder / run_folders.MARKER
+
+    def state(self):
+        if self.marker.exists():
+            return "finished"
+        return "unfinished" if self.folder.exists() else "new"
+
+    def fail(self, status):
+        """Keep why it failed."""
+        how = f"ended with status {status}" if status >= 0 else f"ended by {signal.Signals(-status).name}"
+        if status == 0:
+            how = "lmp ended with status 0, but left no complete run"
+        words = last_words.reason(self.log.update(), self.screen())
+        where = self.folder / logs.LOG
+        self.error = f"{words or 'no word in its log'} ({how}; see {where if where.exists() else self.folder / SCREEN})"
+
+    def screen(self):
+        """What it said since it was started."""
+        return last_words.Screen(self.folder / SCREEN, self.heard)
+
+
+# --- folders ---
+
+@contextlib.contextmanager
+def copied(files, folder):
+    """Copy the deck and its data: what is edited while the study runs does not reach its later runs.
+
+    Gives {name: digest}.
+    """
+    shutil.rmtree(folder, ignore_errors=True)
+    try:
+        for name, source in files.items():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(source, folder / name)
+        yield {name: sha256(folder / name) for name in files}
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def check_finished(one, deck, digests):
+    """Raise SlopeError if a finished run was made from files that are not the present ones."""
+    if not one.marker.exists():
+        return
+    for name, digest in (disk.load_yaml(one.marker, "what `slope study` wrote").get("inputs") or {}).items():
+        if digests.get(name, digest) != digest:
+            raise SlopeError(one.folder, f"was run with another {name} than that of {deck.parent}: remove the folder "
+                             "to run it again, or give another -o")
+
+
+def sha256(path):
+    """Of a file, in hexadecimal."""
+    digest = hashlib.sha256()
+    with open(path, "rb") as data:
+        for block in iter(lambda: data.read(1 << 20), b""):
+            digest.update(block)
+    return digest.hexdigest()
+
+
+@contextlib.contextmanager
+def alone_in(folder):
+    """No other study works in the folder meanwhile; the lock goes when the process does."""
+    with open(folder / ".lock", "w", encoding="ascii") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise SlopeError(folder, "must not be in use by another study") from None
+        yield
+
+
+# --- processes ---
+
+@contextlib.contextmanager
+def signals_interrupt():
+    """What a batch system or a closed terminal sends ends the study as Ctrl-C does."""
+    def interrupt(*_):
+        raise KeyboardInterrupt
+    before = {name: signal.signal(name, interrupt) for name in (signal.SIGTERM, signal.SIGHUP)
+              if signal.getsignal(name) != signal.SIG_IGN}      # nohup ignores SIGHUP
+    try:
+        yield
+    finally:
+        for name, handler in before.items():
+            signal.signal(name, handler)
+
+
+@dataclass
+class Active:
+    """A run under way; process: of subprocess, or what stands for one elsewhere."""
+    run: Run
+    process: Any
+    began: float            # time.monotonic()
+
+
+class Work:
+    """Runs the deck in the run folders, some at a time."""
+
+    def __init__(self, deck, digests, inputs, lmp, ranks, jobs, start: Optional[str] = None):
+        """start: the launcher.words of --launcher, None of mpirun."""
+        self.deck, self.digests, self.inputs = deck, digests, inputs
+        self.lmp, self.ranks, self.jobs, self.start = lmp, ranks, jobs, start
+        self.package = provenance.package_version()
+        self.lmp_digest = sha256(lmp)
+        self.defaults = decks.index_variables(inputs / deck.name)
+        self.continues = any(CONTINUES in word for words in decks.commands(inputs / deck.name)
+                             for word in (*words, " ".join(words)))
+        self.active = []
+
+    def do(self, todo):
+        """Run what is not finished. On an interruption, end the runs under way and leave their folders unfinished."""
+        waiting = [one for one in todo if not one.marker.exists()]
+        with Display(todo, waiting, self.jobs) as display:
+            try:
+                while waiting or self.active:
+                    for one, said in self._begin(waiting):
+                        display.started(one, said)
+                    time.sleep(POLL)
+                    for active in list(self.active):
+                        active.run.log.update()
+                        if active.process.poll() is not None:
+                            self.active.remove(active)
+                            if self._again(active):
+                                waiting.insert(0, active.run)
+                                continue
+                            self._ended(active)
+                            display.ended(active)
+                    display.update(self._shown(), len(waiting))
+            except BaseException:
+                self._stop()
+                raise
+
+    def _begin(self, waiting):
+        """Start what may run now, taking it from waiting; (run, what to say of it) of each."""
+        while waiting and len(self.active) < self.jobs:
+            one = waiting.pop(0)
+            yield one, self._start(one)
+
+    def _again(self, active):
+        """Whether a run that ended is to be started once more."""
+        return self._refused(active.run, active.process.returncode)
+
+    def _shown(self):
+        """The runs that the display shows as under way."""
+        return self.active
+
+    def command(self, one):
+        """Arguments of lmp."""
+        words = ["-in", self.deck.name, "-log", logs.LOG]
+        for name, value in one.chosen.items():
+            words += ["-var", name, value]
+        if one.restart:
+            words += ["-var", "restart", str(one.restart[1].relative_to(one.folder))]
+        return words
+
+    def _start(self, one):
+        """Start a run, from its last restart file if there is one; returns what to say of it."""
+        try:
+            said = self._prepare(one)
+            # a run does not outlive a study that was killed
+            before = ["setpriv", "--pdeathsig", "TERM"] if shutil.which("setpriv") else []
+            with open(one.folder / SCREEN, "ab" if one.restart else "wb") as screen:
+                one.heard = screen.tell()
+                # a session of its own: Ctrl-C reaches the study, which then ends the run
+                process = subprocess.Popen([*before, *self._line(one)], cwd=one.folder, env=environment(),
+                                           stdin=subprocess.DEVNULL, stdout=screen, stderr=subprocess.STDOUT,
+                                           start_new_session=True)
+        except OSError as error:
+            raise SlopeError(one.folder, f"cannot be run: {error.strerror} ({error.filename})") from error
+        self.active.append(Active(one, process, time.monotonic()))
+        return said
+
+    def _prepare(self, one):
+        """Make the folder of a run, or make it ready to go on; returns what to say of it."""
+        said = "started"
+        if one.folder.exists():
+            one.restart, why = self._last_restart(one)
+            said = f"starts anew: {why}"
+        if one.restart:
+            step, path = one.restart
+            said = f"continues at step {step}, from {path}"
+            self._reopen_folder(one)
+        else:
+            self._make_folder(one)
+        return said
+
+    def _line(self, one):
+        """The whole command of a run."""
+        return [*launcher.words(self.start, self.ranks, physical_cores()), str(self.lmp), *self.command(one)]
+
+    def _last_restart(self, one):
+        """Step and path of the restart file from which an unfinished run can go on, or None; and why it cannot."""
+        if not self.continues:
+            return None, f"{self.deck.name} has no {CONTINUES}"
+        about = disk.load_yaml(one.folder / run_folders.VARIABLES, "what `slope study` wrote")
+        for key, now, what in (("lmp_sha256", self.lmp_digest, "another LAMMPS program"),
+                               ("package", self.package, "another version of the package")):
+            if about.get(key) != now:
+                return None, f"it was begun with {what}"
+        one.log.update()
+        for name in self._inputs_of(one):
+            if not (one.folder / name).is_file() or sha256(one.folder / name) != self.digests[name]:
+                return None, f"it was begun with another {name}"
+        for step, path in restarts.restarts(one.folder):
+            # at a restart file of the end, or after it, LAMMPS would go on and not know that it had halted
+            if (path not in one.refused and str(path.relative_to(one.folder)) not in self.digests
+                    and (one.log.halted is None or step < one.log.halted)):
+                return (step, path), None
+        return None, "it left no complete restart file"
+
+    def _inputs_of(self, one):
+        """Names of the deck and of the data files that it named, as far as its log goes."""
+        return [name for name in self.digests if name == self.deck.name or name in one.log.names]
+
+    def _reopen_folder(self, one):
+        """Make the folder of a run that was cut ready to go on."""
+        about = disk.load_yaml(one.folder / run_folders.VARIABLES, "what `slope study` wrote")
+        about["ranks"] = self.ranks
+        step, path = one.restart
+        about.setdefault("continued", []).append({"step": step, "restart": str(path.relative_to(one.folder)),
+                                                  "ranks": self.ranks, "started": provenance.now()})
+        disk.write(one.folder / run_folders.VARIABLES, yaml.safe_dump(about, sort_keys=False))
+        if one.log.path.exists():
+            logs.part(one.log.path)
+        one.log = logs.Log(one.log.path)
+
+    @staticmethod
+    def _refused(one, status):
+        """Whether LAMMPS could not read the restart file, complete as it looked: then it is not tried again."""
+        if status == 0 or status in KILLED or not one.restart:
+            return False
+        if not last_words.spoiled_restart(one.log.update(), one.screen(), crashed=status < 0 or status > 128):
+            return False
+        one.refused.add(one.restart[1])
+        return True
+
+    def _make_folder(self, one):
+        """The folder with all that goes into the run, instead of one of an unfinished run."""
+        new = one.folder.with_name(f".{one.name}.new")
+        old = one.folder.with_name(f".{one.name}.old")
+        for rest in (new, old):
+            shutil.rmtree(rest, ignore_errors=True)
+        shutil.copytree(self.inputs, new)
+        about = {"deck": self.deck.name, "set": one.chosen, "variables": {**self.defaults, **one.chosen},
+                 "command": " ".join([self.lmp.name, *self.command(one)]), "ranks": self.ranks,
+                 "package": self.package, "lmp_sha256": self.lmp_digest, "started": provenance.now()}
+        disk.write(new / run_folders.VARIABLES, yaml.safe_dump(about, sort_keys=False))
+        if one.folder.exists():
+            one.folder.rename(old)
+        new.rename(one.folder)
+        shutil.rmtree(old, ignore_errors=True)
+
+    def _ended(self, active):
+        """Mark the run as finished, or keep why it is not."""
+        one, status = active.run, active.process.returncode
+        summaries = run_folders.summaries(one.folder)
+        if status != 0 or len(summaries) != 1:
+            return one.fail(status)
+        try:
+            summary = run_folders.load_summary(summaries[0])
+            if summary["ranks"] != self.ranks:
+                raise SlopeError(self.lmp, f"must be built with MPI to run on {self.ranks} ranks", summary["ranks"])
+        except SlopeError as error:
+            one.error = str(error)
+            return None
+        one.log.update()
+        # what the run used, and did not overwrite
+        inputs = {name: self.digests[name] for name in self._inputs_of(one)
+                  if (one.folder / name).is_file() and sha256(one.folder / name) == self.digests[name]}
+        about = {"finished": provenance.now(), "wall_seconds": round(time.monotonic() - active.began, 1),
+                 "summary": summaries[0].name, "machine": provenance.machine(),
+                 "inputs": inputs}
+        disk.write(one.marker, yaml.safe_dump(about, sort_keys=False))
+        return None
+
+    def _stop(self):
+        """End the runs under way, each by its own process id."""
+        for active in self.active:
+            active.process.terminate()
+        deadline = time.monotonic() + PATIENCE
+        for active in self.active:
+            try:
+                active.process.wait(max(0.1, deadline - time.monotonic()))
+            except subprocess.TimeoutExpired:
+                active.process.kill()
+                active.process.wait()
+        self.active.clear()

@@ -1,0 +1,34 @@
+"""How the ranks of a run are started: by mpirun, or by what --launcher names. The one place that knows."""
+import shlex
+import shutil
+from typing import List, Optional
+
+from ..errors import SlopeError
+
+RANKS = "{np}"
+
+
+def words(start: Optional[str], ranks: int, slots: int) -> List[str]:
+    """The words before the program; start: of --launcher, or None; slots: what mpirun takes as its number of slots."""
+    if start:
+        given = shlex.split(start)
+        if any(RANKS in word for word in given):
+            return [word.replace(RANKS, str(ranks)) for word in given]
+        return [*given, "-n", str(ranks)]
+    if ranks == 1:
+        return []
+    return ["mpirun", "-np", str(ranks), "--bind-to", "none", *(["--oversubscribe"] if ranks > slots else [])]
+
+
+def check(start: Optional[str], ranks: int) -> None:
+    """Raise SlopeError unless the launcher is there."""
+    if start is None:
+        if ranks > 1 and not shutil.which("mpirun"):
+            raise SlopeError("--np", "needs mpirun, which is not on the PATH, unless it is 1 (or --launcher)", ranks)
+        return
+    try:
+        given = shlex.split(start)
+    except ValueError as error:
+        raise SlopeError("--launcher", f"must be a command ({error})", start) from None
+    if not given or not shutil.which(given[0]):
+        raise SlopeError("--launcher", "must begin with a program on the PATH", start)

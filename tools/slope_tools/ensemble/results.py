@@ -1,0 +1,261 @@
+"""What came out of the runs of a study: their numbers, the table, the maps over all runs, the conservative volume."""
+import argparse
+import contextlib
+import io
+import sys
+
+import numpy as np
+import yaml
+
+from .. import disk, provenance
+from ..case import run_folders
+from ..deposit import rest, travel_shares
+from ..survey import rasters
+from . import combinations, intensity, repeats, structures, study_table
+from .study_file import read_study      # noqa: F401  (for those who work on with a study)
+from .study_maps import Maps
+
+BALANCE = 1e-9          # of the released volume
+NAMED = 3               # runs that a warning names
+SHOWN = 20              # runs of an ensemble whose table is printed
+
+
+def warn(text):
+    print(f"slope study: warning: {text}", file=sys.stderr)
+
+
+def collect(args, settings, repeated, errors, todo, work, thresholds, order=None):
+    """Table, maps and study.yaml over all runs that finished; errors: a SizeErrors or None.
+
+    order: the ensemble.Order that the runs were made for, or None of lists.
+    """
+    output, deck = args.output, args.deck
+    if order and all(one.error for one in todo):
+        return      # study.perform says so
+    maps = Maps(thresholds)
+    rows, thickness = rows_of(args, todo, maps, pictures=order is None)
+    warnings = doubts(rows)
+    if maps.problem:
+        warnings.append(maps.problem)
+    finished = [row for row in rows if row["status"] == "finished"]
+    groups = combinations.grouped(rows)
+    names = combinations.quantities(groups)
+    scatters = combinations.scatters(groups)
+    first = next((one for one in todo if not one.error), None)
+    written = maps.write(output, terrain_place(first) if first else None)
+    keys = ["front_m", "thickness_m", "max_thickness_m", "max_speed_m_s"]
+    keys += [key for key in (travel_shares.DISTANCE, "connected_m") if key in names]
+    about = {
+        "study": {"deck": deck.name, "set": settings, "repeat": repeated, "runs": len(rows), "finished": len(finished),
+                  "ranks": work.ranks, "jobs": work.jobs, "package": work.package, "collected": provenance.now(),
+                  "machine": provenance.machine()},
+        "largest": {key: largest(finished, key) for key in keys if finished},
+        "conservative": None, "ensemble": None,
+        "scatter": {name: one and {"deviation": one.deviation, "degrees_of_freedom": one.degrees_of_freedom}
+                    for name, one in scatters.items()},
+        "combinations": combinations.entries(groups, names), **written, "warnings": warnings, "runs": rows}
+    if args.road and finished:
+        about["study"]["road"] = write_road(args, first, thickness)
+    if order:
+        from . import ensemble
+        about["ensemble"] = ensemble.evaluate(order, rows, output, first and terrain_place(first), maps.problem)
+    elif args.road and finished:
+        best = about["conservative"] = combinations.conservative(settings, rows, groups, errors)
+        if errors:
+            best["doubts"] += errors.doubts(deck.name, {**work.defaults, **best["set"]}, [*settings, *repeated],
+                                            about["study"]["road"])
+        best["doubts"] += unseen(repeated, work.defaults)
+    about["intensity"] = intensity.collect(args, settings, groups) if finished else None
+    if about["intensity"]:
+        about["conservative"]["doubts"] += intensity.doubts(about["intensity"])
+    structures.collect(output, finished)
+    for text in warnings:
+        warn(text)
+    disk.write(output / "study.csv", study_table.table(settings, repeated, rows, work.defaults))
+    disk.write(output / "combinations.csv", combinations.table(groups, names, settings))
+    disk.write(output / "study.yaml", "# slope study: volumes in m3 of ground (bulk), lengths in m, times in s\n"
+               + yaml.safe_dump(about, sort_keys=False))
+    if not order or len(rows) <= SHOWN:
+        study_table.print_runs(settings, rows, scatters, f"{deck.name}: {len(rows)} runs, volumes in m3 of ground")
+    if any(scatters.values()) and not order:
+        study_table.print_combinations(settings, groups, scatters)
+    print(f"{output / 'study.yaml'}, {output / 'study.csv'}, {output / 'combinations.csv'}: all numbers")
+    if about["conservative"]:
+        print("\n".join(combinations.told(about["conservative"])))
+    if about["ensemble"]:
+        print("\n".join(ensemble.told(about["ensemble"])))
+        print(f"{output / ensemble.HAZARD}, {output / ensemble.INFLUENCE}: all curves and indices; "
+              f"{output / ensemble.MAPS}: {len(about['ensemble']['maps'])} maps of quantiles and exceedance")
+    for entry in [*(written["envelope"] or {}).values(), *(written["exceedance"] or ())]:
+        print(f"{output / entry['file']}: {entry['what']}")
+
+
+def unseen(repeated, defaults):
+    """The doubt that chance was not seen in full: seeds alone were repeated, though the deck has a lattice to move."""
+    offsets = repeats.only_seeds(repeated, defaults)
+    return [f"the chance of {', '.join(repeated)} alone is known: {', '.join(offsets)} of the deck "
+            f"{'was' if len(offsets) == 1 else 'were'} not repeated"] if offsets else []
+
+
+def rows_of(args, todo, maps, pictures=True):
+    """A row for each run, finished or failed, and the final thickness of the last one that finished.
+
+    pictures: whether `slope volume` draws its map of each, which takes longest.
+    """
+    rows, thickness = [], None
+    for one in rasters.progress(todo, "collecting the runs"):
+        row = {"run": one.name, "status": "failed" if one.error else "finished", "set": one.combination,
+               "repeat": one.repeat}
+        if one.error:
+            rows.append({**row, "error": one.error, "log_warnings": one.log.warnings})
+            continue
+        row, thickness = result(one, row, maps)
+        if args.road:
+            row.update(on_road(one, args, args.output / row["summary"], thickness, pictures))
+        rows.append(row)
+    return rows, thickness
+
+
+def moving_told(finished):
+    """The warning of those deposits that are not at rest, in a list; an empty one without any."""
+    moving = [row for row in finished if not row["at_rest"]]
+    if not moving:
+        return []
+    more = f"; and {len(moving) - NAMED} more" if len(moving) > NAMED else ""
+    return [f"{len(moving)} of {len(finished)} deposits are not at rest at the end: " + "; ".join(
+        f"{row['run']} at {row['stop_time_s']:.1f} s ({row['end']})" for row in moving[:NAMED]) + more]
+
+
+def doubts(rows):
+    """Warnings about runs."""
+    warnings = [f"{row['run']}: failed: {row['error']}" for row in rows if row["status"] == "failed"]
+    finished = [row for row in rows if row["status"] == "finished"]
+    warnings += moving_told(finished)
+    for row in finished:
+        left = row["off_grid_m3"] + row["lost_m3"]
+        if left > 1e-6 * row["released_m3"]:
+            warnings.append(f"{row['run']}: {left:.6g} m3 left the grid or the box")
+        if not abs(row["mass_error"]) <= BALANCE:
+            warnings.append(f"{row['run']}: the volume in the thickness raster differs from released - off the grid - "
+                            f"lost by {row['mass_error']:.1e} of the released volume")
+    of_road = {}
+    for row in finished:
+        for text in row.get("road_warnings", ()):
+            of_road.setdefault(text, []).append(row["run"])
+    for text, names in of_road.items():
+        warnings.append(text if len(names) == len(finished) else f"{', '.join(names)}: {text}")
+    for what in ("slope_version", "lammps_version", "lmp_sha256"):
+        if len({row[what] for row in finished}) > 1:
+            warnings.append(f"the runs are of different programs: {what} "
+                            + ", ".join(sorted({str(row[what]) for row in finished})))
+    return warnings
+
+
+def result(one, row, maps):
+    """The row of a finished run, and its final thickness; adds its rasters to the maps."""
+    marker = disk.load_yaml(one.marker, "what `slope study` wrote")
+    path = one.folder / str(marker.get("summary"))
+    about = disk.load_yaml(one.folder / run_folders.VARIABLES, "what `slope study` wrote")
+    summary = run_folders.load_summary(path)
+    prefix = run_folders.prefix_of(path)
+    thickness = run_folders.load_raster(prefix, "thickness")
+    maps.add(one.name, thickness, run_folders.load_raster(prefix, "max_thickness"))
+    one.log.update()
+    volume, travel = summary["volume"], summary["travel"]
+    stays = volume["released"] - volume["off_grid"] - volume["lost"]
+    on_grid = float(np.nansum(thickness.z)) * thickness.transform.a ** 2
+    state, whole = rest.state(summary, path), whole_deposit(prefix, thickness, summary)
+    row = {**row, "variables": about.get("variables"), "ranks": about.get("ranks"), "package": about.get("package"),
+           "released_m3": volume["released"],
+           "on_grid_m3": volume["on_grid"], "off_grid_m3": volume["off_grid"], "lost_m3": volume["lost"],
+           "residual_m3": volume["residual"], "mass_error": (on_grid - stays) / volume["released"],
+           "front_m": travel["front"], "reach_angle_deg": travel["reach_angle"], "centroid_m": travel["centroid"],
+           **travel_shares.columns(summary, path), **whole,
+           "thickness_m": summary["largest"]["thickness"], "max_thickness_m": summary["largest"]["max_thickness"],
+           "max_speed_m_s": summary["largest"]["max_speed"], "stop_time_s": summary["stop"]["time"],
+           "stop_reason": summary["stop"]["reason"], "moving": summary["moving"],
+           "at_rest": state.at_rest, "end": state.text, "end_short": state.short, "moves_share": state.share,
+           "moving_share": summary["motion"]["moving_share"], "fast_share": summary["motion"].get("fast_share"),
+           "fast_volume_m3": summary["motion"].get("fast_volume"),
+           "fast_speed_m_s": summary["motion"].get("fast_speed"),
+           "change_rate": summary.get("change_rate"),
+           "wall_s": marker.get("wall_seconds"), "summary": f"{one.name}/{path.name}",
+           "slope_version": summary["slope_version"], "lammps_version": summary["lammps_version"],
+           "lmp_sha256": about.get("lmp_sha256"), "log_warnings": one.log.warnings,
+           **structures.of_run(one.folder, one.log.settings)}
+    return row, thickness
+
+
+def whole_deposit(prefix, thickness, summary):
+    """How far the connected deposit reaches from the highest released ball: m in plan, and reach angle in degrees."""
+    from ..deposit import connected, deposit
+    base = run_folders.load_raster(prefix, "surface").z - thickness.z
+    found = connected.connected(deposit.Deposit(str(prefix), thickness, base, summary, None))
+    return {"connected_m": found and found.distance, "connected_deg": found and found.reach_angle}
+
+
+def on_road(one, args, summary, thickness, picture=True):
+    """What `slope volume` says of a run, all of which goes to the folder volume of the run; and what lies beyond."""
+    from ..commands import volume as volume_command
+    from ..survey import polygons
+    parser = argparse.ArgumentParser()
+    volume_command.add_parser(parser.add_subparsers())
+    prefix = run_folders.prefix_of(summary)
+    words = ["volume", str(prefix), "--road", str(args.road), "--cut-angle", str(args.cut_angle),
+             "--mesh", str(args.mesh), "-o", str(one.folder / "volume")]
+    if one.log.terrain:
+        words += ["--terrain", str(one.folder / one.log.terrain)]
+    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+        volume_command.run(parser.parse_args(words + ["--local"] * args.local + ["--no-picture"] * (not picture)))
+    about = disk.load_yaml(one.folder / "volume" / "volume.yaml", "what `slope volume` wrote")
+    return {"remove_m3": about["volume"]["remove"], "remove_on_road_m3": about["volume"]["remove_on_road"],
+            "remove_beside_road_m3": about["volume"]["remove_beside_road"],
+            "beyond_road_m3": beyond(thickness, run_folders.load_raster(prefix, "arrival").z == 0,
+                                     polygons.read_local(args.road, placed(thickness, one), args.local)),
+            "blocked_m": about["axis"]["blocked_length"], "axis_thickness_m": about["axis"]["largest_thickness"],
+            # what it says of the summary is in the table
+            "road_warnings": [text.replace(f"{one.folder}/", "") for text in about["warnings"]
+                              if not text.startswith(f"{summary}:")]}
+
+
+def beyond(thickness, released, road):
+    """Volume (m3) on those parts of the grid that the road (local metres) cuts off from the released mass (a mask).
+
+    None if the road does not divide the grid.
+    """
+    from shapely.geometry import box
+    from .. import geometry
+    rows, columns = thickness.z.shape
+    lines = np.arange(columns + 1.0), np.arange(rows + 1.0)
+    parts = geometry.polygons_of(box(0, 0, columns, rows).difference(geometry.to_index(road, thickness)))
+    shares = [geometry.coverage(part, *lines)[0] for part in parts]
+    shares = [share for share in shares if share.sum() > 1e-6]
+    if len(shares) < 2:
+        return None
+    shares.sort(key=lambda share: (share * released).sum())     # the last one is where the mass comes from
+    return float(sum((share * thickness.z).sum() for share in shares[:-1]) * thickness.transform.a ** 2)
+
+
+def placed(raster, one):
+    """The raster with the CRS and the offset of the run's terrain."""
+    place = terrain_place(one)
+    return raster._replace(crs=place.crs, offset=place.offset) if place else raster
+
+
+def write_road(args, one, thickness):
+    """Keep the road, in local metres, with the study; what study.yaml says of it."""
+    from ..survey import polygons
+    raster = placed(thickness, one)
+    polygons.write(args.output / "road.csv", polygons.read_local(args.road, raster, args.local), raster)
+    return {"file": args.road.name, "local": "road.csv", "cut_angle": args.cut_angle, "mesh": args.mesh}
+
+
+def terrain_place(one):
+    """CRS and offset of the runs' local metres, from the sidecar of their terrain; None without one."""
+    return one.log.terrain and rasters.read_sidecar(one.folder / one.log.terrain)
+
+
+def largest(rows, key):
+    """The largest value of a column and the first run that has it."""
+    best = max(rows, key=lambda row: row[key])
+    return {"value": best[key], "run": best["run"]}

@@ -1,0 +1,179 @@
+"""The runs of a study as job arrays of Slurm, instead of processes of this machine.
+
+Each array is a file with one run a line; its tasks leave the status of their program in the run's folder. What leaves
+the queue without a status, because it was cancelled or its node went down, is submitted again, and continues from its
+last restart file where the deck can do that.
+"""
+import shlex
+import shutil
+import subprocess
+import time
+from pathlib import Path
+from typing import Dict, List, Optional
+
+from .. import disk
+from ..errors import SlopeError
+from . import jobs
+
+PROGRAMS = "sbatch", "squeue", "scancel"
+FOLDER = ".slurm"           # in the study's: scripts of the arrays
+KNOWN = "arrays"            # file there: the arrays that were submitted
+STATUS = "slurm_status"     # in a run's folder: how its program ended
+LOOK = 2.0                  # s between two looks at the queue
+PATIENCE = 6.0              # s that a task may be out of the queue without a status: folders of other nodes lag behind
+TRIES = 5                   # times that a run is submitted
+SCRIPT = """\
+#!/bin/bash
+line=$(sed -n "$((SLURM_ARRAY_TASK_ID + 1))p" {runs})
+cd "$(cut -f 1 <<< "$line")" || exit
+eval "$(cut -f 2- <<< "$line")" {screen} 2>&1 < /dev/null
+echo $? > {status}.new && mv {status}.new {status}
+"""
+
+
+def check(options: str) -> None:
+    """Raise SlopeError unless Slurm's programs are there and answer."""
+    for name in PROGRAMS:
+        if not shutil.which(name):
+            raise SlopeError("--engine slurm", f"needs {name} of Slurm, which is not on the PATH")
+    try:
+        shlex.split(options)
+    except ValueError as error:
+        raise SlopeError("--slurm", f"must be options of sbatch ({error})", options) from None
+    call("squeue", "-h", "-o", "%A")
+
+
+def call(*words: str) -> str:
+    """What a program of Slurm says; SlopeError if it fails."""
+    done = subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
+    if done.returncode:
+        last = (done.stderr or done.stdout).strip().splitlines() or ["no word of it"]
+        raise SlopeError("--engine slurm", f"{words[0]} failed: {last[-1]}")
+    return done.stdout
+
+
+class Task:
+    """A task of an array, with the face of a subprocess.Popen. queue: what squeue says of all tasks."""
+
+    def __init__(self, name: str, status: Path, queue: "Queue"):
+        self.name, self.status, self.queue = name, status, queue
+        self.returncode: Optional[int] = None
+        self.lost = False           # it left the queue without a status
+        self.missing: Optional[float] = None
+
+    @property
+    def running(self) -> bool:
+        return self.queue.states().get(self.name) == "RUNNING"
+
+    def poll(self) -> Optional[int]:
+        if self.returncode is None:
+            try:
+                self.returncode = int(self.status.read_text(encoding="ascii"))
+            except (OSError, ValueError):
+                self._look()
+        return self.returncode
+
+    def _look(self) -> None:
+        if self.name in self.queue.states():
+            self.missing = None
+            return
+        now = time.monotonic()
+        self.missing = self.missing or now
+        if now - self.missing > PATIENCE:
+            self.returncode, self.lost = -9, True
+
+
+class Queue:
+    """The states of our tasks, asked for now and then: {array_task: state}."""
+
+    def __init__(self):
+        self.asked, self.known, self.arrays = -1e9, {}, []
+
+    def states(self) -> Dict[str, str]:
+        if time.monotonic() - self.asked > LOOK:
+            lines = call("squeue", "-h", "-r", "-o", "%F_%K %T").splitlines()
+            self.known = {name: state for name, state in (line.split()[:2] for line in lines)
+                          if state not in ("COMPLETED", "CANCELLED", "FAILED", "NODE_FAIL", "TIMEOUT")}
+            self.asked = time.monotonic()
+        return self.known
+
+
+class Work(jobs.Work):
+    """Runs the deck in the run folders, by arrays; options: of sbatch; throttle: tasks at a time, or None."""
+
+    def __init__(self, *args, options: str = "", throttle: Optional[int] = None):
+        super().__init__(*args)
+        self.options, self.throttle, self.queue = shlex.split(options), throttle, Queue()
+        self.folder = self.inputs.parent / FOLDER
+        self.tries: Dict[str, int] = {}
+        self.folder.mkdir(exist_ok=True)
+        known = self.folder / KNOWN
+        if known.is_file():         # of a study that was killed: nobody waits for them any more
+            self._cancel(known.read_text(encoding="ascii").split())
+            known.unlink()
+
+    def _begin(self, waiting):
+        """Submit all that waits as one array."""
+        if not waiting:
+            return []
+        todo, said = list(waiting), []
+        waiting.clear()
+        lines = []
+        for one in todo:
+            said.append((one, self._prepare(one)))
+            (one.folder / STATUS).unlink(missing_ok=True)
+            screen = one.folder / jobs.SCREEN
+            screen.touch()
+            one.heard = screen.stat().st_size
+            lines.append(f"{one.folder.absolute()}\t{shlex.join(self._line(one))}\n")
+            self.tries[one.name] = self.tries.get(one.name, 0) + 1
+        array = self._submit(lines)
+        for i, one in enumerate(todo):
+            task = Task(f"{array}_{i}", one.folder / STATUS, self.queue)
+            self.active.append(jobs.Active(one, task, time.monotonic()))
+        return [(one, f"{text}, task {i} of Slurm's array {array}") for i, (one, text) in enumerate(said)]
+
+    def _submit(self, lines: List[str]) -> str:
+        """Submit an array of commands; its number."""
+        place = self.folder / f"{len(list(self.folder.glob('*.runs'))) + 1}.runs"
+        disk.write(place, "".join(lines))
+        script = place.with_suffix(".sh")
+        disk.write(script, SCRIPT.format(runs=shlex.quote(str(place.absolute())), screen=f">> {jobs.SCREEN}",
+                                         status=STATUS))
+        array = f"0-{len(lines) - 1}" + (f"%{self.throttle}" if self.throttle else "")
+        answer = call("sbatch", "--parsable", f"--array={array}", f"--ntasks={self.ranks}", "--output=/dev/null",
+                      "--job-name=slope", *self.options, str(script.absolute()))
+        number = answer.strip().split(";")[0]
+        self.queue.arrays.append(number)
+        self.queue.asked = -1e9
+        disk.write(self.folder / KNOWN, "\n".join(self.queue.arrays) + "\n")
+        return number
+
+    def _again(self, active):
+        if active.process.lost and self.tries[active.run.name] < TRIES:
+            return True
+        return super()._again(active)
+
+    def _shown(self):
+        running = [active for active in self.active if active.process.running]
+        self.jobs = max(1, len(running))
+        for active in self.active:
+            if not active.process.running and active.run.log.thermo == 0:
+                active.began = time.monotonic()     # it waits: its wall time has not begun
+        return running
+
+    def _stop(self):
+        self._cancel(self.queue.arrays)
+        self.active.clear()
+
+    @staticmethod
+    def _cancel(arrays: List[str]) -> None:
+        """Cancel arrays, and wait until they are gone."""
+        for number in arrays:
+            subprocess.run(["scancel", number], stdin=subprocess.DEVNULL, capture_output=True, check=False)
+        end = time.monotonic() + 10 * jobs.PATIENCE
+        while arrays and time.monotonic() < end:
+            left = call("squeue", "-h", "-r", "-o", "%F").split()
+            if not set(left) & set(arrays):
+                return
+            time.sleep(0.5)

@@ -1,0 +1,194 @@
+"""What a run says of structures (fix wall/gran/mesh ... output) and control lines: read back, and tabled over a study.
+
+Which ones a run had is known from the commands in its log, so that files which an earlier run left are not taken for
+this one's. Forces in N, times in s, pressures in Pa, volumes in m3 of ground, energies in J.
+"""
+import csv
+import io
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Dict, List, Mapping, Sequence, Tuple
+
+import numpy as np
+from rich.table import Table
+
+from .. import disk
+from ..errors import SlopeError
+from . import study_table
+
+WINDOW = 0.5            # s, of the mean force: single impacts are those of the model's balls, what lasts is the mass's
+SHARES = (0.5, 0.9, 0.95, 0.99)
+SERIES = ("time", "fx", "fy", "fz", "mx", "my", "mz", "jx", "jy", "jz", "largest_force")
+FILES = {"structures": "structures.csv", "lines": "lines.csv"}
+
+
+@dataclass(frozen=True)
+class Series:
+    """What acted on a structure: force, moment, impulse (n, 3) at times (n), largest force since the time before."""
+    time: np.ndarray
+    force: np.ndarray
+    moment: np.ndarray
+    impulse: np.ndarray
+    largest: np.ndarray
+
+    def mean_force(self, window=WINDOW):
+        """Times, and size of the mean force over the window (s) that ends then: the change of the impulse over it."""
+        begin = self.time - window
+        before = np.stack([np.interp(begin, self.time, column, left=0.0) for column in self.impulse.T], axis=-1)
+        return self.time, np.linalg.norm(self.impulse - before, axis=1) / window
+
+
+def outputs(settings: Sequence[str], style: str) -> Dict[str, str]:
+    """{ID: PREFIX} of the fixes of a style with an output, from the commands of a log; those of a terrain left out."""
+    found = {}
+    for line in settings:
+        words = line.split()
+        if words[0] == "fix" and words[3:4] == [style] and "output" in words[:-1] and words[5:6] != ["terrain"]:
+            found[words[1]] = words[words.index("output") + 1]
+    return found
+
+
+def table_of(path: Path, columns: Sequence[str]) -> Dict[str, np.ndarray]:
+    """Columns of a CSV that a fix wrote."""
+    try:
+        with open(path, encoding="ascii", newline="") as file:
+            reader = csv.DictReader(file)
+            if not set(columns) <= set(reader.fieldnames or ()):
+                raise ValueError(f"its first line is {','.join(reader.fieldnames or ())[:60]!r}")
+            rows = list(reader)
+        # a height is empty where the terrain has none
+        return {name: np.array([row[name] or "nan" for row in rows], float) for name in columns}
+    except (OSError, ValueError, TypeError, csv.Error) as error:
+        raise SlopeError(path, f"must be what the run wrote, with {', '.join(columns)}",
+                         getattr(error, "strerror", None) or error) from error
+
+
+def series(folder: Path, prefix: str) -> Series:
+    found = table_of(folder / f"{prefix}.csv", SERIES)
+    force, moment, impulse = (np.stack([found[f"{letter}{axis}"] for axis in "xyz"], axis=-1) for letter in "fmj")
+    return Series(found["time"], force, moment, impulse, found["largest_force"])
+
+
+def pressures(folder: Path, prefix: str) -> Dict[str, np.ndarray]:
+    """Of the triangles that were touched: middle x, y, z (m) and largest pressure (Pa)."""
+    return table_of(folder / f"{prefix}.triangles.csv", ("x", "y", "z", "largest_pressure"))
+
+
+def crossings(folder: Path, prefix: str) -> Dict[str, np.ndarray]:
+    """Of all crossings of a line: time, direction (1 forward, -1 back), speed, height, energy, volume."""
+    return table_of(folder / f"{prefix}.line.csv", ("time", "direction", "speed", "height", "energy", "volume"))
+
+
+# --- a run ---
+
+def of_structure(folder: Path, prefix: str) -> Dict[str, Any]:
+    """Numbers of a structure."""
+    one, pressure = series(folder, prefix), pressures(folder, prefix)
+    time, mean = one.mean_force()
+    found: Dict[str, Any] = {"largest_force_n": 0.0, "at_s": None, "mean_force_n": 0.0, "mean_at_s": None,
+                             "end_force_n": 0.0, "impulse_ns": 0.0, "moment_nm": 0.0, "largest_pressure_pa": 0.0,
+                             "pressure_at": None}
+    if len(time) and one.largest.max() > 0:
+        found.update(largest_force_n=float(one.largest.max()), at_s=float(time[one.largest.argmax()]),
+                     mean_force_n=float(mean.max()), mean_at_s=float(time[mean.argmax()]),
+                     end_force_n=float(np.linalg.norm(one.force[-1])),
+                     impulse_ns=float(np.linalg.norm(one.impulse[-1])),
+                     moment_nm=float(np.linalg.norm(one.moment, axis=1).max()))
+    largest = pressure["largest_pressure"]
+    if len(largest) and largest.max() > 0:
+        k = int(largest.argmax())
+        found.update(largest_pressure_pa=float(largest[k]), pressure_at=[float(pressure[axis][k]) for axis in "xyz"])
+    return found
+
+
+def of_line(folder: Path, prefix: str) -> Dict[str, Any]:
+    """Numbers of a control line; speeds, heights, energies of the forward crossings, each of which counts alike."""
+    path = folder / f"{prefix}.line.yaml"
+    about = disk.load_yaml(path, "what fix control/line wrote")
+    found = crossings(folder, prefix)
+    forward = found["direction"] > 0
+    try:
+        numbers: Dict[str, Any] = {
+            "forward_m3": float(about["forward"]["volume"]), "back_m3": float(about["back"]["volume"]),
+            "net_m3": float(about["net_volume"]), "crossings": int(about["forward"]["crossings"])}
+    except (KeyError, TypeError, ValueError) as error:
+        raise SlopeError(path, f"must be what fix control/line wrote ({error!r})") from error
+    times = found["time"][forward]
+    numbers["first_s"] = float(times.min()) if len(times) else None
+    for name, unit in (("speed", "m_s"), ("height", "m"), ("energy", "j")):
+        values = found[name][forward]
+        values = np.sort(values[np.isfinite(values)])
+        for share in SHARES:
+            numbers[f"{name}_{100 * share:.0f}_{unit}"] = quantile(values, share)
+        numbers[f"largest_{name}_{unit}"] = float(values[-1]) if len(values) else None
+    return numbers
+
+
+def quantile(ordered, share):
+    """The smallest value that this share of them stays at or below, as in the fix's own summary; None of nothing."""
+    if not len(ordered):
+        return None
+    return float(ordered[max(0, int(np.ceil(share * len(ordered) - 1e-9)) - 1)])
+
+
+def of_run(folder, settings: Sequence[str]) -> Dict[str, Dict[str, Dict[str, Any]]]:
+    """{"structures": {ID: numbers}, "lines": {ID: numbers}} of a run with these commands in its log."""
+    folder = Path(folder)
+    return {"structures": {name: of_structure(folder, prefix)
+                           for name, prefix in outputs(settings, "wall/gran/mesh").items()},
+            "lines": {name: of_line(folder, prefix) for name, prefix in outputs(settings, "control/line").items()}}
+
+
+# --- a study ---
+
+def table(rows: Sequence[Mapping[str, Any]], what: str) -> str:
+    """The CSV over all runs: a row for each structure, or line, of each; '' if there is none."""
+    entries = [(row, name, numbers) for row in rows for name, numbers in (row.get(what) or {}).items()]
+    if not entries:
+        return ""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    columns = [key for key in entries[0][2] if key != "pressure_at"]
+    place = ["pressure_x_m", "pressure_y_m", "pressure_z_m"] if what == "structures" else []
+    writer.writerow(["run", *entries[0][0]["set"], what[:-1], *columns, *place])
+    for row, name, numbers in entries:
+        more = (numbers["pressure_at"] or [None] * 3) if place else []
+        writer.writerow([row["run"], *row["set"].values(), name, *(numbers[key] for key in columns), *more])
+    return text.getvalue()
+
+
+SHOWN: Dict[str, Tuple[Tuple[str, str, float], ...]] = {
+    "structures": (("largest kN", "largest_force_n", 1e3), (f"in {WINDOW:g} s kN", "mean_force_n", 1e3),
+                   ("at the end kN", "end_force_n", 1e3), ("impulse kN s", "impulse_ns", 1e3),
+                   ("pressure kPa", "largest_pressure_pa", 1e3)),
+    "lines": (("forward m3", "forward_m3", 1), ("back m3", "back_m3", 1), ("speed 95 % m/s", "speed_95_m_s", 1),
+              ("height 95 % m", "height_95_m", 1), ("energy 95 % kJ", "energy_95_j", 1e3),
+              ("largest kJ", "largest_energy_j", 1e3))}
+TITLES = {"structures": f"forces on structures: the largest, and the largest mean over {WINDOW:g} s",
+          "lines": "what crossed the lines; quantiles of the forward crossings"}
+
+
+def cell(value, unit):
+    return "-" if value is None else f"{value / unit:,.3g}" if abs(value) < 1000 * unit else f"{value / unit:,.0f}"
+
+
+def collect(output: Path, rows: Sequence[Mapping[str, Any]]) -> List[Path]:
+    """Write structures.csv and lines.csv and print the tables, where there is something; the files."""
+    written = []
+    for what, file in FILES.items():
+        text = table(rows, what)
+        if not text:
+            (output / file).unlink(missing_ok=True)     # of an earlier collection
+            continue
+        disk.write(output / file, text)
+        written.append(output / file)
+        shown = Table(title=TITLES[what])
+        for head in ("run", what[:-1], *(head for head, _, _ in SHOWN[what])):
+            shown.add_column(head, justify="right")
+        for row in rows:
+            for name, numbers in (row.get(what) or {}).items():
+                shown.add_row(row["run"], name, *(cell(numbers[key], unit) for _, key, unit in SHOWN[what]))
+        study_table.show(shown)
+    if written:
+        print(f"{', '.join(map(str, written))}: of each run")
+    return written

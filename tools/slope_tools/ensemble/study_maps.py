@@ -1,0 +1,70 @@
+"""The maps over all runs of a study: the largest thickness, and how many runs exceed a thickness."""
+import numpy as np
+
+from ..survey import rasters
+
+
+def same_grid(one, other):
+    return one.z.shape == other.z.shape and one.transform.almost_equals(other.transform)
+
+
+class Maps:
+    """Over all runs, cell by cell: the largest thickness, and how many runs exceed a threshold."""
+
+    def __init__(self, thresholds):
+        self.thresholds = thresholds
+        self.grid = self.problem = None
+        self.count, self.first = 0, None
+
+    def add(self, name, thickness, max_thickness):
+        if self.grid is None:
+            self.grid, self.first = thickness, name
+            shape = thickness.z.shape
+            self.envelope = {"thickness": np.zeros(shape), "max_thickness": np.zeros(shape)}
+            self.exceeding = [np.zeros(shape, int) for _ in self.thresholds]
+        elif not self.problem and not same_grid(thickness, self.grid):
+            self.problem = (f"no maps over all runs: the rasters of {name} have another grid than those of "
+                            f"{self.first}")
+        if self.problem:
+            return
+        for key, raster in (("thickness", thickness), ("max_thickness", max_thickness)):
+            np.fmax(self.envelope[key], raster.z, out=self.envelope[key])
+        for threshold, exceeding in zip(self.thresholds, self.exceeding):
+            exceeding += thickness.z > threshold
+        self.count += 1
+
+    def write(self, output, place):
+        """Write all rasters, remove those of an earlier call; what study.yaml says of them."""
+        written = {"envelope": None, "exceedance": None}
+        kept = set()
+        if self.grid is not None and not self.problem:
+            area = self.grid.transform.a ** 2
+
+            def write(name, z, what):
+                raster = self.grid._replace(z=z)
+                if place:
+                    raster = raster._replace(crs=place.crs, offset=place.offset)
+                path = output / f"{name}.asc"
+                rasters.write_asc_local(path, raster, {"what": what})
+                kept.update((path, path.with_suffix(".yaml")))
+                if raster.crs is not None:
+                    rasters.write_geotiff(path.with_suffix(".tif"), {what: z}, raster)
+                    kept.add(path.with_suffix(".tif"))
+                return {"file": path.name, "what": what}
+
+            written["envelope"] = {
+                key: {**write(f"envelope_{key}", z, what), "largest_m": float(z.max()),
+                      "area_m2": float((z > 0).sum() * area)}
+                for (key, z), what in zip(self.envelope.items(), (
+                    "largest final thickness over all runs, m", "largest thickness over all runs and times, m"))}
+            written["exceedance"] = [
+                {"threshold_m": threshold,
+                 **write(f"exceedance_{threshold:g}m", exceeding / self.count,
+                         f"share of the runs with a final thickness > {threshold:g} m"),
+                 "area_in_any_run_m2": float((exceeding > 0).sum() * area),
+                 "area_in_every_run_m2": float((exceeding == self.count).sum() * area)}
+                for threshold, exceeding in zip(self.thresholds, self.exceeding)]
+        for path in [*output.glob("envelope_*"), *output.glob("exceedance_*")]:
+            if path not in kept:
+                path.unlink()
+        return written

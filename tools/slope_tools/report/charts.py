@@ -1,0 +1,170 @@
+"""The charts of a study: its values against the first variable that it varies, and what chance makes of them."""
+from ..deposit import travel_shares
+from ..drawing.figures import FULL, HALF, WIDE
+from ..ensemble import headline, sensitivity
+from ..ensemble.repeats import key_of
+from . import figure_charts
+from .data import is_number
+from .figure_charts import Series
+
+AXIS = {"rolling": "rolling resistance (-)", "friction": "friction angle (degrees)", "restitution": "restitution (-)",
+        "d": "diameter of the balls (m)", "field_d": "diameter of the field balls (m)",
+        "peak": "peak acceleration (gal)"}
+REMOVE = "remove_m3"
+TITLES = {REMOVE: "Volume to remove from the road", "remove_on_road_m3": "Volume on the road",
+          "front_m": "Distance of the farthest ball",
+          travel_shares.DISTANCE: "Distance that 99 % of the volume stays within",
+          "thickness_m": "Largest thickness at the end"}
+
+
+def quantities(data):
+    """{column: what it is} of those that all finished runs have a number of; of a single run, of its summary."""
+    rows = data.finished or [single_row(data)]
+    return {name: label for name, (label, _) in sensitivity.NAMES.items()
+            if all(row.get(name) is not None for row in rows)}
+
+
+def single_row(data):
+    """The columns that a study would have of a single run."""
+    summary = data.result.summary
+    found = data.connected()
+    return {"released_m3": summary["volume"]["released"], "front_m": summary["travel"]["front"],
+            "reach_angle_deg": summary["travel"]["reach_angle"], "centroid_m": summary["travel"]["centroid"],
+            "thickness_m": summary["largest"]["thickness"], **travel_shares.columns(summary, data.result.path),
+            "connected_m": found and found.distance, "connected_deg": found and found.reach_angle}
+
+
+def unit(name):
+    return sensitivity.NAMES[name][1]
+
+
+class Charts:
+    """Draws the charts of a report.Data; reference: a reference.Reference or None; picture makes the template's."""
+
+    def __init__(self, data, reference, picture):
+        self.data, self.reference, self.picture = data, reference, picture
+        self.scatter = (data.study or {}).get("scatter") or {}
+
+    def variable(self):
+        """The first variable with several values, rolling if it has; None if they are no numbers."""
+        varied = [name for name, several in self.data.settings.items()
+                  if len(several) > 1 and all(is_number(value) for value in several)]
+        return "rolling" if "rolling" in varied else varied[0] if varied else None
+
+    def all(self):
+        """Pictures; the first one is that of the volume to remove, if there is a road."""
+        data = self.data
+        if not data.study or len(data.finished) < 2 or data.study.get("ensemble"):
+            return []
+        far = travel_shares.DISTANCE if all(row.get(travel_shares.DISTANCE) is not None for row in data.finished) \
+            else "front_m"
+        wanted = [*([REMOVE] if REMOVE in data.finished[0] else []), far, "thickness_m"]
+        wanted += [name for name in (self.reference.quantities if self.reference else ()) if name not in wanted]
+        name = self.variable()
+        return [self.bars(key) if name is None else self.chart(key, name) for key in wanted]
+
+    def title(self, key):
+        what = sensitivity.NAMES[key][0]
+        return TITLES.get(key, what[0].upper() + what[1:])
+
+    def label(self, key):
+        return f"{sensitivity.NAMES[key][0]} ({unit(key)})"
+
+    def bars(self, key):
+        rows, title = self.data.finished, self.title(key)
+        return self.picture(figure_charts.bars([self.data.label_of(row) for row in rows], [row[key] for row in rows],
+                                               self.label(key), title), title, f"{title} of every run.")
+
+    def chart(self, key, name):
+        """A quantity against a variable: a line where the differences are larger than chance."""
+        data, title = self.data, self.title(key)
+        scatter = self.scatter_of(key)
+        lines = {}
+        for row in data.finished:
+            rest = ", ".join(f"{other} {row['set'][other]}" for other, several in data.settings.items()
+                             if other != name and len(several) > 1)
+            lines.setdefault(rest, []).append(row)
+        own = self.reference and self.reference.quantities.get(key)
+        series, clear = [], []
+        for rest, rows in lines.items():
+            rows = sorted(rows, key=lambda row: float(row["set"][name]))
+            clear.append(self.is_clear(key, name, rows, scatter))
+            series.append(Series(rest or ("this study" if own else ""), [float(row["set"][name]) for row in rows],
+                                 [row[key] for row in rows], scatter and scatter.deviation, bool(clear[-1])))
+        others, levels, mark = [], [], None
+        several = any(len(rows) > 1 for rows in data.combinations().values())
+        caption = (f"{title} against {name}; {'dots: runs, ' * several}{'larger dots: means' * several}"
+                   f"{', bars: one standard deviation of a run' * bool(scatter and scatter.deviation)}"
+                   f"{'; ' * several}{chance_told(clear)}.")
+        if key == REMOVE:
+            mark, level = self.mark(name)
+            levels += level
+        if own:
+            if own.variable == name:
+                others = [Series(who, *zip(*points)) for who, points in own.series.items()]
+            levels += own.levels.items()
+            caption += f" Grey: {self.reference.title}."
+        return self.picture(figure_charts.chart(series, AXIS.get(name, name), self.label(key), title, others, levels,
+                                                mark, WIDE if key == REMOVE else FULL if own else HALF),
+                            title, caption)
+
+    def mark(self, name):
+        """The point of the conservative volume, and its level where it is more than the point."""
+        best = self.data.study["conservative"]
+        number = headline.text(best["rounded"]["volume_m3"], best["place_m3"])
+        x = float(best["set"][name])
+        if best["chance_m3"] is None and best["size_m3"] is None:
+            return (x, best["mean_m3"], f"{best['kind'].split(';')[0]}, {number} m3"), []
+        what = "conservative volume" if best["chance_m3"] is not None else "with the size of the balls"
+        return (x, best["mean_m3"], "mean that it rests on"), [(f"{what}, {number} m3", best["volume_m3"])]
+
+    def scatter_of(self, key):
+        """The scatter of a run in a column; None without repeats."""
+        found = self.scatter.get(key)
+        if found:
+            return headline.Scatter(found["deviation"], found["degrees_of_freedom"])
+        return headline.pooled(list(combinations(self.data.finished, key).values()))
+
+    def is_clear(self, key, name, rows, scatter):
+        """Whether the means differ by more than chance over the values of a variable; None if nobody knows."""
+        line = list(combinations(rows, key).values())
+        if scatter is None or len(line) < 2:
+            return None
+        return headline.is_clear(line, scatter)
+
+
+def combinations(rows, key):
+    """{values of what was chosen: headline.Combination of a column}."""
+    found = {}
+    for row in rows:
+        found.setdefault(tuple(row["set"].items()), {})[key_of(row.get("repeat") or {})] = row[key]
+    return {chosen: headline.Combination(str(chosen), volumes) for chosen, volumes in found.items()}
+
+
+def chance_told(clear):
+    """What a chart says of its differences."""
+    if all(one is None for one in clear):
+        return "one run each, so that chance is not known and no line is drawn"
+    if all(clear):
+        return "the differences are larger than chance"
+    if not any(clear):
+        return "the differences are no larger than chance: no trend, no line"
+    return "a line where the differences are larger than chance"
+
+
+def differences(data, numbers):
+    """Sentences on what the variables do to the conservative volume, against chance."""
+    best = data.study and data.study["conservative"]
+    found = []
+    for entry in (best or {}).get("differences") or ():
+        by = numbers(f"difference over {entry['variable']}", "m3", entry["by_m3"], REMOVE)
+        text = (f"{entry['variable']}: {by} m3 to remove between {entry['smallest_at']} and {entry['largest_at']} "
+                "(the largest)")
+        if entry["clear"] is None:
+            text += ", of one run each: chance unknown"
+        else:
+            chance = numbers(f"chance over {entry['variable']}", "m3", entry["chance_m3"], REMOVE)
+            text += (f", more than the {chance} m3 that chance makes" if entry["clear"] else
+                     f", no more than chance makes ({chance} m3): no trend")
+        found.append(text + ".")
+    return found

@@ -1,0 +1,92 @@
+"""What the size of the balls makes of the numbers: converge.yaml of `slope sensitivity --converge`, for a report."""
+from pathlib import Path
+
+from .. import disk
+from ..ensemble import headline
+from ..errors import SlopeError
+from . import figure_charts
+from .charts import AXIS
+from .figure_charts import Convergence
+
+WHAT = "a converge.yaml of `slope sensitivity --converge`"
+FILE = "converge.yaml"
+PLUS = "\N{PLUS-MINUS SIGN}"
+
+
+def find(asked, data):
+    """The file: what --converge names, itself or its folder; else what the study took its size error from, if there."""
+    if asked:
+        path = asked / FILE if asked.is_dir() else asked
+        if not path.is_file():
+            raise SlopeError("--converge", f"must be {WHAT}, or its folder", asked)
+        return path
+    size = ((data.study or {}).get("conservative") or {}).get("size") or {}
+    path = Path(str(size["file"])) if size.get("file") else None
+    return path if path and path.is_file() else None
+
+
+class Sizes:
+    """The fits in a file."""
+
+    def __init__(self, path):
+        self.path = path
+        about = disk.load_yaml(path, WHAT)
+        try:
+            study = about["study"]
+            self.variable, self.deck, self.runs = str(study["variable"]), str(study["deck"]), int(study["finished"])
+            self.fits = {str(name): fit(entry) for name, entry in about["quantities"].items()}
+            self.about = {str(name): (str(entry["name"]), str(entry["unit"])) for name, entry in
+                          about["quantities"].items()}
+            self.errors = {str(name): [(size["value"], size["error_percent"], size["standard_error_percent"])
+                                       for size in entry["sizes"]] for name, entry in about["quantities"].items()}
+            numbers = [one for several in self.errors.values() for size in several for one in size if one is not None]
+            if not (self.fits and all(map(disk.is_number, numbers)) and all(what for what, _ in self.about.values())):
+                raise ValueError("quantities")
+        except (KeyError, TypeError, AttributeError, ValueError, OverflowError) as error:
+            raise SlopeError(path, f"must be {WHAT} ({error!r})") from error
+
+    def pictures(self, picture):
+        """A chart for each quantity."""
+        found = []
+        for name, one in self.fits.items():
+            what, unit = self.about[name]
+            title = f"{what[0].upper()}{what[1:]} against {self.variable}"
+            interval = "" if one.low is None else ", with its 95 % interval"
+            bars = "; bars: one standard deviation of a run" if any(one.scatter) else ""
+            caption = (f"{title}: the line through the means ends at the value for small balls{interval}{bars}; "
+                       f"{self.runs} runs of {self.deck}.")
+            found.append(picture(figure_charts.convergence(one, AXIS.get(self.variable, self.variable),
+                                                           f"{what} ({unit})", title), title, caption))
+        return found
+
+    def rows(self, numbers):
+        """For a table: quantity, unit, value for small balls with interval, and the error at each size."""
+        found = []
+        for name, one in self.fits.items():
+            what, unit = self.about[name]
+            half = None if one.low is None else (one.high - one.low) / 2
+            step = headline.place(half / 2) if half else headline.place_of_digits(one.small)
+            small = headline.text(one.small, step) + (f" {PLUS} {headline.text(half, step)}" if half else "")
+            numbers.rows.append((f"small balls: {what}", unit, "", headline.text(one.small, step), one.small))
+            errors = [f"{size:g}: " + ("unknown" if error is None else f"{error:+.1f} %" + (
+                f" {PLUS} {deviation:.1f}" if deviation is not None else "")) for size, error, deviation in
+                self.errors[name]]
+            note = "" if one.supported is not False else "the line is not supported by its runs"
+            found.append({"what": what, "unit": unit, "small": small, "errors": errors, "note": note})
+        return found
+
+
+def fit(entry):
+    """The Convergence of a quantity."""
+    sizes, small = entry["sizes"], entry["small_balls"]
+    found = Convergence([size["value"] for size in sizes], [size["mean"] for size in sizes],
+                        [size["scatter"] for size in sizes], small["value"], entry["slope"]["value"], small["low"],
+                        small["high"], entry["supported"])
+    known = [*found.sizes, *found.means, found.small, found.slope]
+    known += [one for one in (*found.scatter, found.low, found.high) if one is not None]
+    if not sizes or not all(map(disk.is_number, known)) or not max(found.sizes) > 0:
+        raise ValueError("sizes")
+    low, high = (found.small if end is None else end for end in (found.low, found.high))
+    if (found.low is None) != (found.high is None) or not low <= found.small <= high:
+        raise ValueError("small_balls")
+    return found

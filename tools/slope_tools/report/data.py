@@ -1,0 +1,261 @@
+"""What a report is made of: the finished runs of a study, or one run, read back."""
+import math
+from pathlib import Path
+from typing import NamedTuple, Optional
+
+import numpy as np
+from affine import Affine
+
+from .. import disk
+from ..case import logs, run_folders
+from ..deposit import deposit, rest
+from ..errors import SlopeError
+from ..survey import rasters
+from .release_part import release
+
+MOST_SHOWN = 9          # runs that get a map and a line in the section
+CUT = "run completed"   # what a summary calls the end of a run that no criterion ended
+
+
+class End(NamedTuple):
+    """How a run ended; name: None of a single run."""
+    name: Optional[str]
+    at_rest: bool
+    cut: bool           # it stopped at its duration
+    text: str
+    share: float        # of the volume that moves
+    moving: bool        # more than 10 % of it
+    time: float         # s
+
+
+class Result:
+    """A finished run, read back."""
+
+    def __init__(self, folder, summary, row=None):
+        self.folder, self.path = Path(folder), Path(summary)
+        self.prefix = run_folders.prefix_of(summary)
+        self.summary = run_folders.load_summary(summary)
+        about, marker = (Path(folder) / name for name in (run_folders.VARIABLES, run_folders.MARKER))
+        self.about = disk.load_yaml(about, "what `slope study` wrote") if about.is_file() else {}
+        self.marker = disk.load_yaml(marker, "what `slope study` wrote") if marker.is_file() else {}
+        self.log = logs.Log(find_log(self.folder)).update()
+        self.row = row or {}
+        self.name = self.row.get("run", self.prefix.name)
+        terrain = self.log.terrain and self.folder / self.log.terrain
+        self.terrain_path = terrain if terrain and terrain.is_file() else None
+        self.deposit = deposit.read(self.prefix, self.terrain_path, lambda text: None)
+
+    def raster(self, name):
+        """Values of one of its rasters; they must have the deposit's grid."""
+        raster = run_folders.load_raster(self.prefix, name)
+        if raster.z.shape != self.deposit.raster.z.shape:
+            raise SlopeError(f"{self.prefix}.{name}.asc", f"must have the grid of {self.prefix}.thickness.asc")
+        return raster.z
+
+    @property
+    def thickness(self):
+        return self.deposit.raster.z
+
+    @property
+    def surface(self):
+        return self.deposit.base + self.thickness
+
+
+def find_log(folder):
+    """The log of a run: log.lammps, else the only log.* there is."""
+    found = sorted(path for path in Path(folder).glob("log.*") if path.name != "log.cite")
+    usual = Path(folder) / logs.LOG
+    return usual if usual in found or len(found) != 1 else found[0]
+
+
+def find_deck(result):
+    """The deck of a run: the one that the study copied, else the only in.* there is; None if that is not clear."""
+    named = result.about.get("deck")
+    decks = [result.folder / str(named)] if named else sorted(result.folder.glob("in.*"))
+    return decks[0] if len(decks) == 1 and decks[0].is_file() else None
+
+
+def same_grid(one, other):
+    return (one.thickness.shape == other.thickness.shape
+            and one.deposit.raster.transform.almost_equals(other.deposit.raster.transform))
+
+
+class Data:
+    """A study or a run, with everything that a page needs of its files.
+
+    study: study.yaml, None of a single run; rows: its runs, finished: those that finished; settings: its variables;
+    repeats: the variables that are chance; result: the run of the maps, drawn: those beside it on maps and
+    section, the same one among them; road: a polygon or None; removed: what is to be removed in the shown run, its
+    thickness in the cells and a Raster of volumes in a mesh; over_all: {file: values} of the maps over all runs.
+    """
+
+    def __init__(self, folder, shown=None):
+        self.folder, self.study = folder, None
+        self.rows, self.finished, self.settings, self.repeats = [], [], {}, {}
+        self.road = self.removed = self._connected = self._releases = None
+        self.over_all = {}
+        if (folder / "study.yaml").is_file():
+            self._read_study(shown)
+        else:
+            self._read_single(shown)
+
+    def _read_study(self, shown):
+        from ..ensemble import results
+        path = self.folder / "study.yaml"
+        self.study = results.read_study(path)
+        self.rows = self.study["runs"]
+        self.finished = [row for row in self.rows if row["status"] == "finished"]
+        about = self.study["study"]
+        self.settings, self.repeats = about["set"], dict(about.get("repeat") or {})
+        names = [row["run"] for row in self.finished]
+        shown = shown or self.governing()
+        if shown not in names:
+            raise SlopeError("--run", f"must be a finished run of {path}, such as {names[0]}", shown)
+        self.result = self._load(self.finished[names.index(shown)])
+        drawn = [self.result if name == shown else self._load(self.finished[names.index(name)])
+                 for name in self._beside(shown)]
+        self.drawn = [one for one in drawn if same_grid(one, self.result)]
+        road = about.get("road")
+        if road:
+            from ..survey import polygons
+            self.road = polygons.read_local(self.folder / str(road["local"]), self.result.deposit.raster, True)
+        # everything is read before anything is drawn: drawing takes a while
+        if len(self.finished) > 1 and self.study.get("envelope"):
+            for entry in (self.study["envelope"]["max_thickness"], *(self.study.get("exceedance") or ())):
+                self.over_all[entry["file"]] = self.read_map(entry["file"])
+        self.removed = self._removed() if road else None
+
+    def _read_single(self, shown):
+        if shown:
+            raise SlopeError("--run", f"needs a study, with study.yaml, in {self.folder}", shown)
+        found = run_folders.summaries(self.folder)
+        if len(found) != 1:
+            raise SlopeError(self.folder, "must be the folder of a study, with study.yaml, or of one run, with one "
+                             "PREFIX.summary.yaml", f"{len(found)} summaries")
+        self.result = Result(self.folder, found[0])
+        self.drawn = [self.result]
+
+    def _load(self, row):
+        path = self.folder / row["summary"]
+        return Result(path.parent, path, row)
+
+    def _removed(self):
+        found = []
+        raster = self.result.deposit.raster
+        for name in ("volume.tif", "volume_mesh.tif"):
+            one = rasters.read(self.result.folder / "volume" / name, heights=False)
+            east, north = raster.offset     # the files are in the CRS
+            found.append(one._replace(transform=Affine.translation(-east, -north) * one.transform,
+                                      z=np.nan_to_num(one.z)))
+        if found[0].z.shape != raster.z.shape:
+            raise SlopeError(self.result.folder / "volume" / "volume.tif",
+                             f"must have the grid of {self.result.prefix}.thickness.asc")
+        return found[0].z, found[1]
+
+    def read_map(self, name):
+        """Values of a map over all runs; 0 where it has none."""
+        path = self.folder / str(name)
+        raster = rasters.read_asc_local(path, heights=False)
+        if raster.z.shape != self.result.thickness.shape:
+            raise SlopeError(path, f"must have the grid of {self.result.prefix}.thickness.asc")
+        return np.where(np.isfinite(raster.z), raster.z, 0)
+
+    # --- how the runs began and ended ---
+
+    def ends(self):
+        """The End of each finished run."""
+        if self.study:
+            return [End(self.label_of(row), row["at_rest"], row["stop_reason"] == CUT, row["end"],
+                        row["moving_share"] if row.get("fast_share") is None else row["fast_share"], row["moving"],
+                        row["stop_time_s"]) for row in self.finished]
+        one = self.result
+        state = rest.state(one.summary, one.path)
+        stop = one.summary["stop"]
+        return [End(None, state.at_rest, stop["reason"] == CUT, state.text, state.share, one.summary["moving"],
+                    stop["time"])]
+
+    def releases(self):
+        """(name, Release) of each finished run whose summary is in reach."""
+        if self._releases is None:
+            self._releases = self._read_releases()
+        return self._releases
+
+    def _read_releases(self):
+        if not self.study:
+            return [(None, release(self.result.summary, [*self.result.log.notes, *self.result.log.warnings]))]
+        loaded = {one.row["run"]: one for one in self.drawn}
+        found = []
+        for row in self.finished:
+            one = loaded.get(row["run"])
+            path = self.folder / row["summary"]
+            if one or path.is_file():
+                summary = one.summary if one else run_folders.load_summary(path)
+                texts = [*(one.log.notes if one else ()), *(row.get("log_warnings") or ())]
+                found.append((self.label_of(row), release(summary, texts)))
+        return found
+
+    def connected(self):
+        """The connected deposit of the shown run; None where it is nowhere thick enough."""
+        if self._connected is None:
+            from ..deposit.connected import connected
+            self._connected = connected(self.result.deposit), True
+        return self._connected[0]
+
+    # --- runs and their names ---
+
+    def combinations(self):
+        """{values of what was chosen: the finished runs}, which differ by what is repeated; in their order."""
+        found = {}
+        for row in self.finished:
+            found.setdefault(tuple(row["set"].items()), []).append(row)
+        return found
+
+    def governing(self):
+        """The run that stands for the headline; else the one of which 99 % of the volume goes farthest.
+
+        Of an ensemble the one at the 90 % quantile of what counts.
+        """
+        best, ensemble = self.study["conservative"], self.study.get("ensemble")
+        if ensemble and ensemble["of"]:
+            # a quantile is the value of a run
+            at = {one["share"]: one["value"] for one in ensemble["quantities"][ensemble["of"]]["quantiles"]}[0.9]
+            return min(self.finished, key=lambda row: abs(row[ensemble["of"]] - at))["run"]
+        if not best:
+            from ..deposit.travel_shares import DISTANCE
+            key = DISTANCE if all(row.get(DISTANCE) is not None for row in self.finished) else "front_m"
+            return max(self.finished, key=lambda row: row[key])["run"]
+        return best["run"]
+
+    def _beside(self, shown):
+        """Names of the runs that are drawn: one of each combination, evenly spread if there are many."""
+        names = []
+        for rows in self.combinations().values():
+            mine = [row["run"] for row in rows]
+            names.append(shown if shown in mine else mine[0])
+        if len(names) > MOST_SHOWN:
+            names = [names[round(i * (len(names) - 1) / (MOST_SHOWN - 1))] for i in range(MOST_SHOWN)]
+        if shown not in names:
+            names[-1] = shown
+        return names
+
+    def label(self, one):
+        """A short name of a run: the values that differ in the study."""
+        return self.label_of(one.row) if self.study else one.name
+
+    def label_of(self, row):
+        repeat = [f"{name} {value}" for name, value in (row.get("repeat") or {}).items()]
+        return ", ".join(self.varied(row) + repeat) or row["run"]
+
+    def label_of_combination(self, row):
+        """The same without what is chance."""
+        return ", ".join(self.varied(row)) or ("all runs" if self.repeats else row["run"])
+
+    def varied(self, row):
+        return [f"{name} {value}" for name, value in row["set"].items() if len(self.settings.get(name) or ()) > 1]
+
+
+def is_number(text):
+    try:
+        return math.isfinite(float(text))
+    except ValueError:
+        return False

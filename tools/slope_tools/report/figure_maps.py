@@ -1,0 +1,225 @@
+"""The maps of a report on a shaded relief, as data URIs."""
+import math
+from typing import NamedTuple, Optional, Tuple
+
+import numpy as np
+from matplotlib.colors import BoundaryNorm, LinearSegmentedColormap, ListedColormap
+from matplotlib.patches import Rectangle
+
+from ..drawing import figures
+from ..drawing.figures import FULL, HALF, RELEASE, ROAD, SECTION, STYLE, TITLE, classes_of, plt, text_width, wrapped
+from ..drawing.maps import outline, part
+from ..geometry import polygons_of
+from . import sheets
+from .sheets import Box, Entry, Frame
+
+TALL = {FULL: 5.2, HALF: 3.7}       # inches: the tallest map
+SECTION_LINE = {"color": SECTION, "lw": 0.9, "ls": (0, (6, 2, 1, 2))}
+RELEASE_LINE = {"color": RELEASE, "lw": 0.9, "ls": "--"}
+TINTS = LinearSegmentedColormap.from_list(
+    "tints", ["#5f8f5a", "#9dbb7c", "#d9d39a", "#c8a36c", "#a87a55", "#e9e4de"])
+
+
+class Layers(NamedTuple):
+    """What is drawn over every map; geometries are in local metres."""
+    raster: object                       # grid, CRS and offset of the deposit
+    ground: np.ndarray                   # the ground before
+    shown: Tuple                         # local xlo, ylo, xhi, yhi of the maps
+    release: Optional[np.ndarray] = None     # mask: cells that held balls at the start
+    road: object = None                  # polygon
+    section: Optional[np.ndarray] = None     # points of the line, rows of x y
+    interval: float = 5.0                # of the contours, m
+
+
+def shade(z, step):
+    """Shaded relief, light from the north-west at 45 degrees; flat ground is 0.71 whatever else is on the map.
+
+    matplotlib's stretches what it finds to 0 to 1, so that a map of nearly flat ground looks like mountains.
+    """
+    south, east = np.gradient(z, step)
+    azimuth, altitude = math.radians(315), math.radians(45)
+    light = math.sin(azimuth) * math.cos(altitude), math.cos(azimuth) * math.cos(altitude), math.sin(altitude)
+    return np.clip((-east * light[0] + south * light[1] + light[2]) / np.sqrt(1 + east ** 2 + south ** 2), 0, 1)
+
+
+def scheme(name, bounds, low=0.15, high=1.0):
+    """Colour map and norm of classes; the lightest tones of the colour map are left out."""
+    colours = plt.get_cmap(name)(np.linspace(low, high, len(bounds) - 1))
+    return ListedColormap(colours), BoundaryNorm(bounds, len(bounds) - 1)
+
+
+# --- what is drawn into the axes of a map ---
+
+def base_map(axes, layers, labels=True):
+    """Shaded relief, contours, release and road."""
+    raster, shown = layers.raster, layers.shown
+    z, where = part(raster, layers.ground, shown)
+    step = (where[1] - where[0]) / z.shape[1]
+    known = np.isfinite(z)
+    if min(z.shape) >= 2 and known.any():
+        relief = shade(np.where(known, z, np.nanmean(z)), step)
+        axes.imshow(np.where(known, relief, np.nan), cmap="gray", extent=where, vmin=-0.6, vmax=1.0,
+                    interpolation="bilinear", zorder=1)
+        if np.ptp(z[known]) > layers.interval / 2:
+            heights = np.arange(math.floor(z[known].min() / layers.interval),
+                                math.ceil(z[known].max() / layers.interval) + 1) * layers.interval
+            # a little above the level, or a flat place at just that level would be full of them
+            lines = axes.contour(z, heights + 1e-4 * layers.interval, extent=where, origin="upper", colors="#333333",
+                                 linewidths=0.35, alpha=0.6, zorder=3)
+            if labels:
+                axes.clabel(lines, lines.levels[::2], fontsize=5, inline_spacing=2,
+                            fmt=lambda level: f"{layers.interval * round(level / layers.interval):g}")
+    if layers.release is not None and layers.release.any():
+        mask, where = part(raster, layers.release.astype(float), shown)
+        if min(mask.shape) >= 2 and np.ptp(mask) > 0:
+            axes.contour(mask, [0.5], extent=where, origin="upper", colors=RELEASE_LINE["color"],
+                         linewidths=RELEASE_LINE["lw"], linestyles=RELEASE_LINE["ls"], zorder=5)
+    if layers.road is not None:
+        outline(axes, layers.road, color=ROAD, linewidth=1.1, zorder=6)
+        for polygon in polygons_of(layers.road):
+            axes.fill(*np.asarray(polygon.exterior.coords)[:, :2].T, color=ROAD, alpha=0.13, lw=0, zorder=1.5)
+
+
+def draw_values(axes, layers, values, bounds, colours, mask=None, alpha=0.82):
+    """A raster in classes; values below the first bound, and where mask is False, are not drawn."""
+    z, where = part(layers.raster, values, layers.shown)
+    hidden = ~(z >= bounds[0])
+    if mask is not None:
+        hidden |= ~part(layers.raster, mask.astype(float), layers.shown)[0].astype(bool)
+    cmap, norm = scheme(colours, bounds)
+    return axes.imshow(np.ma.masked_where(hidden, z), extent=where, cmap=cmap, norm=norm, alpha=alpha,
+                       interpolation="nearest", zorder=2)
+
+
+def draw_section_line(axes, layers, size):
+    """The line of the section, with A and A' just beyond its ends."""
+    if layers.section is None:
+        return
+    line = np.asarray(layers.section)
+    axes.plot(*line.T, zorder=7, **SECTION_LINE)
+    shown = np.array(layers.shown)
+    scale = size[0] / (shown[2] - shown[0])     # inches per metre
+    room = 0.11 / scale
+    for point, towards, text in ((line[0], line[0] - line[1], "A"), (line[-1], line[-1] - line[-2], "A'")):
+        place = point + towards / max(np.hypot(*towards), 1e-30) * 0.1 / scale
+        axes.text(*np.clip(place, shown[:2] + room, shown[2:] - room), text, ha="center", va="center",
+                  fontsize=6.5, fontweight="bold", zorder=9,
+                  bbox={"boxstyle": "circle,pad=0.12", "fc": "white", "ec": SECTION, "lw": 0.5})
+
+
+def entries(layers):
+    """What the lines over a map are."""
+    found = []
+    if layers.release is not None and layers.release.any():
+        found.append(Entry("released mass", RELEASE_LINE))
+    if layers.road is not None:
+        found.append(Entry("road", {"color": ROAD, "lw": 1.1}))
+    if layers.section is not None:
+        found.append(Entry("section A-A'", SECTION_LINE))
+    return [*found, Entry(f"contours every {layers.interval:g} m", {"color": "#333333", "lw": 0.5})]
+
+
+def frame_of(layers, names, crs_name=""):
+    offset = layers.raster.offset if names and layers.raster.crs is not None else None
+    return Frame(layers.shown, names, offset, crs_name)
+
+
+def finish(sheet, layers, size, left):
+    """The scale, the legend and the data URI of a sheet whose maps have that size."""
+    width = layers.shown[2] - layers.shown[0]
+    sheets.scale_and_legend(sheet, left, size[0] / width, min(width, 2.5 / (size[0] / width)), entries(layers),
+                            layers.raster.crs is not None)
+    return figures.data_uri(sheet.finish())
+
+
+# --- maps ---
+
+def value_map(layers, values, title, bar, bounds, colours, width=HALF, crs_name="", mask=None):
+    """A map of a raster in classes; values below the first bound, and where mask is False, are not drawn."""
+    with plt.rc_context(STYLE):
+        frame = frame_of(layers, width == FULL, crs_name)
+        sheet, axes, size, beside, below = sheets.single(width, frame, title, TALL[width], bounds)
+        base_map(axes, layers, labels=width == FULL)
+        image = draw_values(axes, layers, values, bounds, colours, mask)
+        draw_section_line(axes, layers, size)
+        sheets.draw_axes(axes, frame, size)
+        sheets.colour_bar(sheet, image, bounds, bar, beside, below)
+        return finish(sheet, layers, size, sheets.margins(frame)[0])
+
+
+def mesh_map(layers, removed, mesh, title, crs_name):
+    """What must be removed: its thickness, and its volume (m3) in the cells of a mesh, a Raster in local metres."""
+    layers = layers._replace(section=None)
+    with plt.rc_context(STYLE):
+        frame, bounds = frame_of(layers, True, crs_name), classes_of(removed)
+        sheet, axes, size, beside, below = sheets.single(FULL, frame, title, TALL[FULL], bounds)
+        base_map(axes, layers, labels=False)
+        image = draw_values(axes, layers, removed, bounds, "YlOrBr", alpha=0.75)
+        side = mesh.transform.a
+        inches = side * size[0] / frame.width
+        for row, column in np.argwhere(mesh.z >= 0.5):
+            x, y = mesh.transform * (column, row + 1)
+            axes.add_patch(Rectangle((x, y), side, side, fill=False, lw=0.35, edgecolor="#222222", zorder=6))
+            text = f"{mesh.z[row, column]:,.0f}"
+            font = min(6.5, 6.5 * 0.9 * inches / text_width(text, 6.5))
+            if font >= 2.5:
+                axes.text(x + side / 2, y + side / 2, text, fontsize=font, ha="center", va="center", zorder=7,
+                          clip_on=True)
+        sheets.draw_axes(axes, frame, size)
+        sheets.colour_bar(sheet, image, bounds, "thickness to remove (m)", beside, below)
+        return finish(sheet, layers, size, sheets.margins(frame)[0])
+
+
+def terrain_map(layers, detail, crs_name):
+    """The whole terrain, tinted by height; detail: the part that the other maps show."""
+    with plt.rc_context(STYLE):
+        frame = frame_of(layers, True, crs_name)
+        z, where = part(layers.raster, layers.ground, layers.shown)
+        numbers = [np.nanmin(z), np.nanmax(z)] if np.isfinite(z).any() else [0]
+        sheet, axes, size, beside, below = sheets.single(FULL, frame, "Terrain before the collapse", TALL[FULL],
+                                                         [round(float(value)) for value in numbers])
+        base_map(axes, layers)
+        image = axes.imshow(np.ma.masked_invalid(z), extent=where, cmap=TINTS, alpha=0.45, zorder=2,
+                            interpolation="bilinear")
+        if tuple(detail) != tuple(layers.shown):
+            axes.add_patch(Rectangle(detail[:2], detail[2] - detail[0], detail[3] - detail[1], fill=False, lw=0.9,
+                                     edgecolor="black", zorder=6))
+        draw_section_line(axes, layers, size)
+        sheets.draw_axes(axes, frame, size)
+        sheets.colour_bar(sheet, image, None, "height (m)", beside, below)
+        return finish(sheet, layers, size, sheets.margins(frame)[0])
+
+
+def small_maps(layers, panels, bar, bounds, colours):
+    """The same map of several runs side by side; panels: list of (title, values)."""
+    with plt.rc_context(STYLE):
+        sheet, frame = sheets.Sheet(FULL), frame_of(layers, False)
+        left, _, right, bottom = sheets.margins(frame)
+        beside = sheets.bar_room(bounds)
+        columns, size = sheets.layout(len(panels), frame, FULL - left - right - beside, 1.5 * TALL[FULL])
+        rows = math.ceil(len(panels) / columns)
+        step = max(size[0], sheets.NARROW) + 0.1
+        top, image = sheet.bottom, None
+        for row in range(rows):
+            titles = [wrapped(title, step - 0.1, TITLE - 1.5, True) for title, _ in
+                      panels[row * columns:(row + 1) * columns]]
+            top += max(len(lines) for lines in titles) * TITLE * 1.25 / 72 + 0.02
+            for column, lines in enumerate(titles):
+                place = row * columns + column
+                lowest = place + columns >= len(panels)
+                axes = sheet.axes(Box(left + column * step, top, *size))
+                for k, line in enumerate(reversed(lines)):
+                    sheet.write(line, left + column * step, top - (k + 1) * (TITLE - 1.5) * 1.25 / 72 - 0.03,
+                                TITLE - 1.5, fontweight="bold")
+                base_map(axes, layers, labels=False)
+                image = draw_values(axes, layers, panels[place][1], bounds, colours)
+                sheets.draw_axes(axes, frame, size, left=column == 0, bottom=lowest)
+            below_is_full = len(panels) - (row + 1) * columns >= columns
+            top += size[1] + (0.05 if below_is_full else bottom)
+        sheet.bottom = top
+        upright = rows * size[1] >= sheets.LEAST_BAR
+        sheets.colour_bar(sheet, image, bounds, bar,
+                          Box(left + columns * step - 0.1 + right + 0.05, sheet.boxes[0][1].top, sheets.BAR,
+                              min(sheets.MOST_BAR, top - bottom - sheets.EDGE - 0.2)) if upright else None,
+                          Box(left, top + 0.04, 3.5, sheets.BAR))
+        return finish(sheet, layers, size, left)

@@ -1,0 +1,76 @@
+"""What a report shows of a study over an intensity: volume on the road against it, and how likely more is."""
+from ..drawing.figures import HALF
+from ..ensemble.intensity import percent
+from . import figure_charts
+from .figure_charts import Series
+
+AXIS = {"peak": "peak acceleration (gal)", "pga": "peak acceleration (gal)"}
+MOST_CURVES = 4         # probabilities in the chart
+
+
+def content(data, numbers, picture):
+    """For the template: heads and rows of the table, and the two charts; None without an intensity."""
+    about = (data.study or {}).get("intensity")
+    if not about:
+        return None
+    name = about["variable"]
+    pictures = [volumes(data, about, picture)]
+    if about["more_than_m3"]:
+        pictures.append(exceedance(about, picture))
+    return {"variable": AXIS.get(name, name), "others": list(about["lines"][0]["set"]),
+            "volumes": [f"{volume:,.6g}" for volume in about["more_than_m3"]], "rows": rows(about, numbers),
+            "confidence": percent(about["confidence"]), "charts": pictures}
+
+
+def rows(about, numbers):
+    """Of each point the other variables, the intensity, the number of runs, volumes, and probabilities as text."""
+    found = []
+    for line in about["lines"]:
+        for point in line["points"]:
+            of = ", ".join([*(f"{other} {value}" for other, value in line["set"].items()),
+                            f"{about['variable']} {point['at']:g}"])
+            cells = [numbers(f"on the road, {what}", "m3", point[f"{what}_m3"], about["quantity"], of)
+                     for what in ("mean", "smallest", "largest")]
+            cells.append(f"{100 * point['share_of_released']:.2g} %")
+            cells += [f"{percent(one['probability'])} ({percent(one['low'])} to {percent(one['high'])})"
+                      for one in point["exceed"]]
+            found.append({"set": list(line["set"].values()), "at": f"{point['at']:g}", "runs": point["runs"],
+                          "cells": cells})
+    return found
+
+
+def rest_of(line, about):
+    """The other variables of a line in words; '' if there is only one line."""
+    return ", ".join(f"{other} {value}" for other, value in line["set"].items() if len(about["lines"]) > 1)
+
+
+def volumes(data, about, picture):
+    """The volume on the road against the intensity: runs and means, without a common scatter."""
+    name, series = about["variable"], []
+    for line in about["lines"]:
+        mine = [row for row in data.finished if all(row["set"][other] == value for other, value in line["set"].items())]
+        series.append(Series(rest_of(line, about), [float(row["set"][name]) for row in mine],
+                             [row[about["quantity"]] for row in mine]))
+    title = "Volume on the road"
+    return picture(figure_charts.chart(series, AXIS.get(name, name), "on the road (m3)", title, width=HALF), title,
+                   f"{title} against {name}; dots: runs, larger dots: their means.")
+
+
+def exceedance(about, picture):
+    """P(V > v) against the intensity, a line for each volume and each combination of the other variables."""
+    series = []
+    for line in about["lines"]:
+        rest = rest_of(line, about)
+        for k, volume in enumerate(about["more_than_m3"]):
+            series.append(Series(f"more than {volume:,.6g} m3{', ' * bool(rest)}{rest}",
+                                 [point["at"] for point in line["points"]],
+                                 [point["exceed"][k]["probability"] for point in line["points"]]))
+    title = "Probability of more on the road"
+    runs = sorted({point["runs"] for line in about["lines"] for point in line["points"]})
+    caption = (f"Share of the runs at each intensity with more than a volume on the road; "
+               f"{' to '.join(map(str, runs[:1] + runs[1:][-1:]))} runs each. Lines join the points, and are no model.")
+    shown = series[:MOST_CURVES]
+    if len(shown) < len(series):
+        caption += f" The first {MOST_CURVES} of {len(series)} curves."
+    return picture(figure_charts.chart(shown, AXIS.get(about["variable"], about["variable"]),
+                                       "share of the runs (-)", title, width=HALF), title, caption)

@@ -1,0 +1,121 @@
+"""The maps of a report: of the shown run, and over all runs of a study."""
+import numpy as np
+
+from .. import geometry
+from ..drawing import figures
+from ..survey.rasters import crs_name
+from . import figure_maps
+from .ground import box_of
+
+OPEN = " The last class is open: it holds the few thicker cells, most of them in the release."
+
+
+class Maps:
+    """Draws maps; picture(uri, alt, caption) makes what the template takes."""
+
+    def __init__(self, data, ground, section, picture):
+        self.data, self.ground, self.picture = data, ground, picture
+        crs = ground.raster.crs
+        self.crs = crs_name(crs) if crs is not None else ""
+        line = section.points
+        self.layers = figure_maps.Layers(
+            ground.raster, ground.before,
+            ground.window(box_of(ground.raster, ground.touched), (*line.min(axis=0), *line.max(axis=0))),
+            ground.release, data.road, line, figures.contour_interval(ground.before))
+
+    def thickness(self, values, title, alt, caption, width=figures.HALF, layers=None):
+        """A map of a thickness, in classes that the release does not set."""
+        bounds = self.classes(values)
+        more = f" Less than {bounds[0]:g} m is not drawn."
+        if len(bounds) > 2 and bounds[-1] > 2 * bounds[-2]:
+            more += OPEN
+        return self.picture(
+            figure_maps.value_map(layers or self.layers, values, title, "thickness (m)", bounds, "YlOrBr", width,
+                                  self.crs), alt, caption + more)
+
+    def classes(self, values):
+        return figures.classes_of(values, self.ground.source)
+
+    def of_run(self):
+        """The maps of the shown run, by name."""
+        data, ground, layers, one = self.data, self.ground, self.layers, self.data.result
+        whole = geometry.extent(layers.raster)
+        found = {"slip": None, "speed": None, "arrival": None}
+        found["deposit"] = self.thickness(
+            one.thickness, "Thickness of the deposit at the end", "Map of the deposit's thickness at the end",
+            f"Final thickness, {one.deposit.cell:g} m cells." + ("" if not data.study else f" Run: {data.label(one)}."),
+            figures.FULL)
+        found["terrain"] = self.picture(
+            figure_maps.terrain_map(layers._replace(shown=whole), layers.shown, self.crs), "Map of the terrain before",
+            "Terrain before the collapse, light from the north-west"
+            + ("; the black frame is the part that the other maps show." if layers.shown != whole else "."))
+        if ground.slip_depth.max() > 0:
+            found["slip"] = self.picture(
+                figure_maps.value_map(layers._replace(ground=ground.base), ground.slip_depth, "Slip surface",
+                                      "depth below the ground (m)", figures.classes_of(ground.slip_depth), "PuBu"),
+                "Map of the slip surface", "Depth of the slip surface below the ground before; relief and contours are "
+                "those of the ground without the body.")
+        found["max_thickness"] = self.thickness(
+            ground.max_thickness, "Largest thickness in the run", "Map of the largest thickness",
+            "Largest thickness that a cell ever had.")
+        speed = ground.max_speed
+        if (speed > 0).any():
+            found["speed"] = self.picture(
+                figure_maps.value_map(layers, speed, "Largest speed", "speed (m/s)",
+                                      figures.even_to_most(speed[speed > 0]), "viridis_r", mask=speed > 0),
+                "Map of the largest speed", "Speed of the fastest ball that passed, sampled in the run.")
+        known = ground.arrival[np.isfinite(ground.arrival)]
+        if known.size and known.max() > 0:
+            found["arrival"] = self.picture(
+                figure_maps.value_map(layers, ground.arrival, "First arrival", "time (s)",
+                                      figures.even_to_most(known[known > 0]), "YlGnBu",
+                                      mask=np.isfinite(ground.arrival) & ~ground.release),
+                "Map of the first arrival", "Time at which the first ball arrived.")
+        return found
+
+    def removal(self, volume):
+        """Map of what `slope volume` says is to be removed; None if that is nothing. volume: of the run, as text."""
+        data = self.data
+        if data.removed is None or not data.removed[0].max() > 0:
+            return None
+        removed, mesh = data.removed
+        layers = self.layers._replace(shown=self.ground.window(box_of(self.layers.raster, removed > 0)))
+        road = data.study["study"]["road"]
+        return self.picture(
+            figure_maps.mesh_map(layers, removed, mesh, "Volume to remove", self.crs), "Map of the volume to remove",
+            f"Thickness of what lies on the road and above a cut rising at {road['cut_angle']:g} degrees from its "
+            f"edges, and its volume in m3 in squares of {mesh.transform.a:g} m; together {volume} m3; run: "
+            f"{data.label(data.result)}.")
+
+    def over_all(self):
+        """Maps of a study over all of its runs."""
+        data, layers = self.data, self.layers._replace(section=None)
+        found = {"runs": None, "envelope": None, "exceedance": []}
+        if not data.study or len(data.finished) < 2:
+            return found
+        if len(data.drawn) > 1:
+            some = "" if len(data.drawn) == len(data.finished) else \
+                f" {len(data.drawn)} of the {len(data.finished)} runs are shown."
+            bounds = figures.classes_of(np.array([one.thickness for one in data.drawn]),
+                                        np.array([self.ground.source] * len(data.drawn)))
+            found["runs"] = self.picture(
+                figure_maps.small_maps(layers, [(data.label(one), one.thickness) for one in data.drawn],
+                                       "thickness (m)", bounds, "YlOrBr"),
+                "Final thickness of the runs", "Final thickness of the runs." + some)
+        envelope = data.study.get("envelope")
+        if envelope:
+            found["envelope"] = self.thickness(
+                data.over_all[envelope["max_thickness"]["file"]], "Envelope of all runs", "Envelope",
+                f"Largest thickness over all {len(data.finished)} runs and all times.", layers=layers)
+        for entry in data.study.get("exceedance") or ():
+            if entry["file"] not in data.over_all:
+                continue
+            values = data.over_all[entry["file"]]
+            found["exceedance"].append(self.picture(
+                figure_maps.value_map(layers, values, f"Thicker than {entry['threshold_m']:g} m", "share of the runs",
+                                      [0.0, 0.2, 0.4, 0.6, 0.8, 1.0], "RdPu", mask=values > 0),
+                f"Share of the runs thicker than {entry['threshold_m']:g} m",
+                f"Share of the {len(data.finished)} runs with a final thickness > {entry['threshold_m']:g} m: in every "
+                f"run on {entry['area_in_every_run_m2']:,.0f} m2, in any run on "
+                f"{entry['area_in_any_run_m2']:,.0f} m2."))
+        return found

@@ -1,0 +1,211 @@
+"""The numbers of a report: rounded to what is known, and as they are in a table; the answer on top of the page."""
+import csv
+import io
+
+from .. import disk
+from ..deposit import rest, travel_shares
+from ..ensemble import headline
+from .release_part import over_runs
+
+UNKNOWN = "unknown"
+EXACT = 1e-9            # of a value: a smaller scatter is rounding
+
+
+class Numbers:
+    """Writes numbers, and keeps them: each that was shown, with all its digits, is a row of the table."""
+
+    def __init__(self, scatter):
+        self.scatter, self.rows = scatter or {}, []
+
+    def __call__(self, what, unit, value, key=None, of=""):
+        """A number as text: rounded by the scatter of a run in the column `key`, else to three digits."""
+        if value is None:
+            return UNKNOWN
+        text = headline.text(value, self.place(value, key))
+        self.rows.append((what, unit, of, text, value))
+        return text
+
+    def place(self, value, key=None):
+        """The power of ten that a number is rounded to."""
+        deviation = (self.scatter.get(key) or {}).get("deviation")
+        if disk.is_number(deviation) and deviation > EXACT * abs(value):
+            return headline.place(deviation)
+        return headline.place_of_digits(value)
+
+    def whole(self, what, unit, value, of=""):
+        """A volume that has no scatter, to the cubic metre."""
+        self.rows.append((what, unit, of, f"{value:,.0f}", value))
+        return f"{value:,.0f}"
+
+    def table(self):
+        """All numbers that were shown, as CSV."""
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(["what", "unit", "of", "shown", "value"])
+        for what, unit, of, shown, value in dict.fromkeys(self.rows):
+            writer.writerow([what, unit, of, shown.replace(",", ""), repr(float(value))])
+        return text.getvalue()
+
+
+# --- the answer ---
+
+def answer(data, numbers):
+    """The conservative volume: its number, what it may be called, and its parts; None without a road."""
+    best = data.study and data.study["conservative"]
+    if not best:
+        return None
+    road, place = data.study["study"]["road"], best["place_m3"]
+    who = best.get("label") or best.get("combination") or data.label(data.result)
+
+    def part(key):
+        value = best["rounded"].get(key)
+        if value is None:
+            return None
+        text = headline.text(value, place)
+        numbers.rows.append((f"conservative: {key}", "m3", who, text, best[key]))
+        return text
+
+    predicted, scatter = best["chance_m3"] is not None, best["scatter_m3"]
+    parts = [{"sign": "", "number": part("mean_m3"), "what": "mean" if predicted else "largest run",
+              "note": (f"of {best['repeats']} runs, {who}" if predicted else f"{who}; of {best['runs']} runs")}]
+    if predicted:
+        parts.append({
+            "sign": "+", "number": part("chance_m3"), "what": "chance",
+            "note": f"97.5 % of single runs lie below: t {best['quantile']:.3g} x standard deviation of a run "
+                    f"{headline.text(scatter, headline.place(scatter) if scatter else 1)} m3 x sqrt(1 + 1/"
+                    f"{best['repeats']}), {best['degrees_of_freedom']:.3g} degrees of freedom"})
+    else:
+        parts.append({"sign": "+", "number": UNKNOWN, "what": "chance",
+                      "note": "no run was repeated (study --repeat seed=..., xoffset=...)"})
+    parts.append(size_part(best, part("size_m3")))
+    title = "Conservative volume to remove from the road" if predicted else \
+        f"Volume to remove from the road: {best['kind']}"
+    return {"number": part("volume_m3"), "title": title, "parts": parts, "predicted": predicted, "road": road,
+            "who": who, "only": not predicted and best["size_m3"] is None}
+
+
+def size_part(best, number):
+    size = best.get("size") or {}
+    if number is None:
+        return {"sign": "+", "number": UNKNOWN, "what": "size of the balls",
+                "note": "not measured (sensitivity --converge, study --size-error)"}
+    note = f"at {size.get('variable')} {size.get('value')}"
+    if disk.is_number(size.get("error_percent")):
+        side = "small" if size["error_percent"] < 0 else "large"
+        note += f" the volume is {abs(size['error_percent']):.2g} % too {side}"
+        if disk.is_number(size.get("half_percent")):
+            note += f", known to {size['half_percent']:.2g} %"
+    return {"sign": "+", "number": number, "what": "size of the balls", "note": note}
+
+
+def cards(data, numbers):
+    """What stands below the conservative volume: dicts of what, number, unit, note, and status of the last one."""
+    return [released_card(data, numbers), travel_card(data, numbers), thickness_card(data, numbers), rest_card(data)]
+
+
+def released_card(data, numbers):
+    releases = data.releases()
+    values = sorted({round(row["released_m3"], 3) for row in data.finished}
+                    or {data.result.summary["volume"]["released"]})
+    texts = list(dict.fromkeys(numbers.whole("released", "m3", value) for value in (values[0], values[-1])))
+    for name, release in releases:
+        if release.body is not None:
+            numbers.whole("body", "m3", release.body, name or "")
+    return {"what": "Released", "number": " - ".join(texts), "unit": "m3",
+            "note": over_runs([release for _, release in releases])}
+
+
+def travel_card(data, numbers):
+    key, unit = travel_shares.DISTANCE, "m"
+    what = f"{travel_shares.HEADLINE} % of the volume stays within"
+    if data.study:
+        largest = data.study["largest"]
+        far = largest["front_m"]
+        names = {row["run"]: row for row in data.finished}
+        who = data.label_of(names[far["run"]])
+        farthest = f"; farthest ball {numbers('farthest ball', unit, far['value'], 'front_m', who)} m, {who}"
+        if key not in largest:
+            return {"what": what, "number": UNKNOWN, "unit": "", "note": f"runs of an older version{farthest}"}
+        row = names[largest[key]["run"]]
+        value, angle, name = row[key], row[travel_shares.REACH], data.label_of(row)
+        connected = row.get("connected_m")
+    else:
+        shares = travel_shares.columns(data.result.summary, data.result.path)
+        value, angle, name = shares[key], shares[travel_shares.REACH], ""
+        farthest = f"; farthest ball {numbers('farthest ball', unit, farthest_of(data.result.summary)[0])} m"
+        connected = data.connected() and data.connected().distance
+        if value is None:
+            return {"what": what, "number": UNKNOWN, "unit": "", "note": f"a run of an older version{farthest}"}
+    note = ("in plan from the highest released ball, reach angle "
+            f"{numbers('reach angle of 99 %', 'degrees', angle, travel_shares.REACH, name)} degrees")
+    if connected is not None:
+        note += f"; connected deposit {numbers('connected deposit', unit, connected, 'connected_m', name)} m"
+    return {"what": what, "number": numbers("99 % within", unit, value, key, name), "unit": unit,
+            "note": note + farthest + (f". Run: {name}" if name and data.study else "")}
+
+
+def farthest_of(summary):
+    """Distance (m) and reach angle (degrees) of the one farthest ball."""
+    far = summary["travel"].get("farthest")
+    if isinstance(far, dict) and all(disk.is_number(far.get(key)) for key in ("distance", "reach_angle")):
+        return far["distance"], far["reach_angle"]
+    return summary["travel"]["front"], summary["travel"]["reach_angle"]
+
+
+def thickness_card(data, numbers):
+    if data.study:
+        largest = data.study["largest"]
+        value, ever, speed = (largest[key]["value"] for key in ("thickness_m", "max_thickness_m", "max_speed_m_s"))
+    else:
+        about = data.result.summary["largest"]
+        value, ever, speed = (about[key] for key in ("thickness", "max_thickness", "max_speed"))
+    return {"what": "Thickest deposit", "number": numbers("largest thickness at the end", "m", value, "thickness_m"),
+            "unit": "m", "note": f"at the end; {numbers('largest thickness', 'm', ever)} m in the course of "
+            f"{'a' if data.study else 'the'} run. Fastest ball {numbers('largest speed', 'm/s', speed)} m/s"}
+
+
+def rest_card(data):
+    ends = data.ends()
+    resting = [end for end in ends if end.at_rest]
+    worst = next((end for level in (True, False) for end in ends if not end.at_rest and end.moving == level), None)
+    status = "rest" if worst is None else "moving" if worst.moving else "doubt"
+    if data.study:
+        note = "ended by their rest criterion, less than 1 % of the volume faster than 0.1 m/s" if worst is None else \
+            f"{worst.name}: {worst.text}, at {worst.time:.1f} s"
+        return {"what": "At rest at the end", "number": f"{len(resting)} of {len(ends)}", "unit": "runs", "note": note,
+                "status": status}
+    return {"what": "At the end of the run", "number": f"{ends[0].time:.1f}", "unit": "s", "status": status,
+            "note": ends[0].text + (", ended by its rest criterion" if worst is None else "")}
+
+
+# --- tables ---
+
+def travel_rows(data, numbers):
+    """Share of the volume, distance and reach angle, of the shown run; the connected deposit and the farthest ball."""
+    one = data.result
+    shares = travel_shares.columns(one.summary, one.path)
+    rows = []
+    for share in travel_shares.SHARES:
+        keys = f"distance_{share}_m", f"reach_{share}_deg"
+        rows.append((f"{share} % of the volume", *(numbers(f"{share} %: {what}", unit, shares[key], key)
+                                                   for key, what, unit in zip(keys, ("distance", "reach angle"),
+                                                                              ("m", "degrees")))))
+    found = data.connected()
+    if found is not None:
+        rows.append((f"connected deposit, thicker than {found.threshold:g} m",
+                     numbers("connected deposit: distance", "m", found.distance, "connected_m"),
+                     numbers("connected deposit: reach angle", "degrees", found.reach_angle)))
+    distance, angle = farthest_of(one.summary)
+    rows.append(("the one farthest ball", numbers("farthest ball: distance", "m", distance, "front_m"),
+                 numbers("farthest ball: reach angle", "degrees", angle)))
+    return rows
+
+
+def balance(data):
+    """The release of the shown run and how it ended, for a table."""
+    release = next((release for name, release in data.releases()
+                    if name is None or name == data.label(data.result)), None)
+    one = data.result
+    state = rest.state(one.summary, one.path)
+    return {"release": release.text if release else UNKNOWN, "rest": state.text,
+            "status": "rest" if state.at_rest else "moving" if one.summary["moving"] else "doubt"}

@@ -1,0 +1,186 @@
+"""All that a report shows, read, computed and drawn, as the template takes it."""
+import re
+
+from .. import provenance
+from ..case import decks
+from ..survey.rasters import crs_name
+from . import charts as report_charts, convergence_part, intensity_part, numbers as report_numbers
+from .charts import Charts, REMOVE
+from .data import Data, find_deck
+from .ground import Ground
+from .maps_part import Maps
+from .reference import read as read_reference
+from .section import Section
+from .structures_part import Structures
+from .warnings import warnings
+
+# columns of a study's table: head, unit, key
+COLUMNS = (("released", "m3", "released_m3"), ("99 % within", "m", "distance_99_m"),
+           ("reach angle", "deg", "reach_99_deg"), ("connected deposit", "m", "connected_m"),
+           ("farthest ball", "m", "front_m"), ("thickness", "m", "thickness_m"), ("ended at", "s", "stop_time_s"))
+ROAD_COLUMNS = (("to remove", "m3", "remove_m3"), ("on the road", "m3", "remove_on_road_m3"),
+                ("beyond it", "m3", "beyond_road_m3"), ("road blocked", "m", "blocked_m"))
+MEANS = (("to remove", "m3", "remove_m3"), ("on the road", "m3", "remove_on_road_m3"),
+         ("beyond it", "m3", "beyond_road_m3"), ("99 % within", "m", "distance_99_m"),
+         ("connected deposit", "m", "connected_m"), ("centroid moved", "m", "centroid_m"))
+
+
+class Page:
+    """A page: data, ground, section, warnings (red or amber, text), and the number of pictures."""
+
+    def __init__(self, args):
+        self.data = Data(args.folder, args.shown)
+        self.ground = Ground(self.data)
+        self.section = Section(self.data, self.ground, args.section, args.local)
+        self.reference = args.reference and read_reference(args.reference, report_charts.quantities(self.data))
+        path = convergence_part.find(args.converge, self.data)
+        self.sizes = path and convergence_part.Sizes(path)
+        self.warnings = warnings(self.data)
+        self.numbers = report_numbers.Numbers((self.data.study or {}).get("scatter"))
+        self.pictures = 0
+
+    def picture(self, uri, alt, caption):
+        self.pictures += 1
+        return {"uri": uri, "alt": alt, "caption": caption}
+
+    def content(self):
+        """What the template takes."""
+        data, numbers = self.data, self.numbers
+        one, study = data.result, data.study
+        maps = Maps(data, self.ground, self.section, self.picture)
+        charts = Charts(data, self.reference, self.picture)
+        removal = numbers("to remove", "m3", one.row[REMOVE], REMOVE, data.label(one)) if REMOVE in one.row else ""
+        found = {
+            "made": provenance.now(), "study": study, "single": not study, "one": one, "summary": one.summary,
+            "label": data.label(one), "settings": data.settings, "repeats": data.repeats,
+            "varied": [key for key, several in data.settings.items() if len(several) > 1],
+            "warnings": self.warnings, "answer": report_numbers.answer(data, numbers),
+            "cards": report_numbers.cards(data, numbers), "travel": report_numbers.travel_rows(data, numbers),
+            "balance": report_numbers.balance(data), "rows": self.rows(), "columns": self.columns(),
+            "means": self.means(), "differences": report_charts.differences(data, numbers),
+            "maps": maps.of_run(), "section": self.picture(*self.section.picture()), "charts": charts.all(),
+            "intensity": intensity_part.content(data, numbers, self.picture),
+            "hit": Structures(data, numbers, self.picture).content(),
+            "road_chart": REMOVE in one.row, "removal": maps.removal(removal), "over_all": maps.over_all(),
+            "reference": self.reference and self.reference_tables(),
+            "sizes": self.sizes and {"charts": self.sizes.pictures(self.picture), "rows": self.sizes.rows(numbers),
+                                     "variable": self.sizes.variable, "deck": self.sizes.deck},
+            "mass_error": (one.deposit.volume - one.summary["volume"]["released"] + one.summary["volume"]["off_grid"]
+                           + one.summary["volume"]["lost"]) / one.summary["volume"]["released"],
+            "place": self.place(), "ensemble": None}
+        if study and study.get("ensemble"):
+            from . import ensemble_part
+            mine = found["ensemble"] = ensemble_part.Ensemble(data, numbers, self.picture).content()
+            mine["maps"] = ensemble_part.draw(mine["maps"], maps)
+        return {**found, **self.what_was_run(), **self.provenance()}
+
+    # --- tables ---
+
+    def columns(self):
+        """Heads of the study's table: those of which anything is known."""
+        data = self.data
+        wanted = COLUMNS + (ROAD_COLUMNS if data.road is not None else ())
+        same = len({round(row["released_m3"], 3) for row in data.finished}) == 1
+        return [(head, unit, key) for head, unit, key in wanted
+                if any(row.get(key) is not None for row in data.finished) and not (same and key == "released_m3")]
+
+    def rows(self):
+        """The study's table: of each run its variables, its cells, or why it failed, and whether it is in doubt."""
+        data, best = self.data, (self.data.study or {}).get("conservative") or {}
+        varied = [key for key, several in data.settings.items() if len(several) > 1] or list(data.settings)
+        found = []
+        for row in data.rows:
+            repeat = ", ".join(f"{name} {value}" for name, value in (row.get("repeat") or {}).items()) or "base"
+            entry = {"set": [row["set"][key] for key in varied], "repeat": repeat, "run": row["run"],
+                     "best": bool(best) and row["status"] == "finished" and row["set"] == best.get("set"),
+                     "bad": row["status"] != "finished" or row["moving"], "error": row.get("error")}
+            if row["status"] == "finished":
+                name = data.label_of(row)
+                entry["cells"] = [self.cell(head, unit, key, row, name) for head, unit, key in self.columns()]
+                entry["end"], entry["at_rest"] = row.get("end_short", row["end"]), row["at_rest"]
+            found.append(entry)
+        return found
+
+    def cell(self, head, unit, key, row, name):
+        value = row.get(key)
+        if value is None:
+            return "-"
+        if key == "released_m3":
+            return self.numbers.whole(head, unit, value, name)
+        if key == "stop_time_s":
+            return f"{value:.1f}"
+        return self.numbers(head, unit, value, key, name)
+
+    def means(self):
+        """Heads and rows of the table over combinations; None without repeats."""
+        study = self.data.study
+        if not (study and self.data.repeats and study.get("combinations")):
+            return None
+        heads = [(head, unit, key) for head, unit, key in MEANS if all(key in entry for entry in study["combinations"])]
+        varied = [key for key, several in self.data.settings.items() if len(several) > 1]
+        rows = []
+        for entry in study["combinations"]:
+            cells = []
+            for head, unit, key in heads:
+                one, name = entry[key], str(entry["combination"])
+                text = self.numbers(f"mean: {head}", unit, one["mean"], key, name)
+                if one["scatter"] is not None:
+                    text += f" \N{PLUS-MINUS SIGN} {self.numbers(f'scatter: {head}', unit, one['scatter'], key, name)}"
+                cells.append(text)
+            best = study["conservative"] and entry["combination"] == study["conservative"]["combination"]
+            rows.append({"set": [entry["set"][key] for key in varied], "runs": entry["repeats"], "cells": cells,
+                         "best": best})
+        return {"heads": heads, "rows": rows}
+
+    def reference_tables(self):
+        """Numbers from elsewhere: of each quantity a table, with the runs' own beside them where they can be held."""
+        tables = []
+        own = self.data.finished or [report_charts.single_row(self.data)]
+        for key, quantity in self.reference.quantities.items():
+            what, unit = report_charts.sensitivity.NAMES[key]
+            xs = sorted({x for points in quantity.series.values() for x, _ in points})
+            series = [(name, [f"{dict(points)[x]:,.6g}" if x in dict(points) else "-" for x in xs])
+                      for name, points in quantity.series.items()]
+            low, high = (self.numbers(what, unit, pick(row[key] for row in own), key) for pick in (min, max))
+            tables.append({"what": f"{what} ({unit})", "variable": quantity.variable, "xs": [f"{x:g}" for x in xs],
+                           "series": series, "own": low if low == high else f"{low} to {high}",
+                           "levels": [(name, f"{value:,.6g}") for name, value in quantity.levels.items()]})
+        return {"title": self.reference.title, "remark": self.reference.remark, "tables": tables}
+
+    # --- what was run ---
+
+    def what_was_run(self):
+        """Title, purpose, deck, variables, and what the log says of the model."""
+        data, one = self.data, self.data.result
+        deck = find_deck(one)
+        text = deck.read_text(encoding="utf-8", errors="replace") if deck else ""
+        # the head of a deck: purpose; expected result and run time are for those who run it
+        purpose = re.match(r"(?:#(?! *(?:Expected|Run time)).*\n)+", text)
+        name = data.study["study"]["deck"] if data.study else deck.name if deck else one.prefix.name
+        variables = data.study and one.row.get("variables") or one.about.get("variables") or deck_variables(deck)
+        digests = (one.marker.get("inputs") or {}) if deck else {}
+        return {"title": f"Slope collapse: {'study' if data.study else 'run'} of {name}", "deck_name": name,
+                "purpose": " ".join(line.lstrip("# ") for line in purpose[0].splitlines()) if purpose else "",
+                "deck": text, "variables": variables or {}, "settings_lines": one.log.settings, "notes": one.log.notes,
+                "table": "\n".join(one.log.table),
+                "sources": [{"name": file, "sha256": digest} for file, digest in digests.items()]}
+
+    def provenance(self):
+        one = self.data.result
+        return {"machine": one.marker.get("machine"), "here": provenance.machine(), "package": one.about.get("package"),
+                "packages": sorted({str(row.get("package")) for row in self.data.finished}),
+                "command": one.about.get("command"), "wall": one.marker.get("wall_seconds"),
+                "started": one.about.get("started"), "ended": one.marker.get("finished"),
+                "lmp_sha256": one.about.get("lmp_sha256")}
+
+    def place(self):
+        """CRS and offset of the local metres; None without a CRS."""
+        raster = self.ground.raster
+        if raster.crs is None:
+            return None
+        return {"crs": crs_name(raster.crs), "east": raster.offset[0], "north": raster.offset[1]}
+
+
+def deck_variables(deck):
+    """Index variables of a deck that ran by hand: its defaults, marked as such."""
+    return {f"{name} (deck's default)": value for name, value in decks.index_variables(deck).items()} if deck else {}

@@ -1,0 +1,99 @@
+"""What a run released, against the body that it stands for."""
+import math
+import re
+from typing import NamedTuple, Optional
+
+from .. import disk
+
+CUBIC = 6 / math.pi         # bulk volume of balls in a simple cubic packing / volume of the balls
+DOUBTFUL = 0.15             # the bulk factor is farther from that only if the balls are not the body
+REMOVED = re.compile(r"Delete_balls: ([\d.]+) balls of group .*?; ([\d.]+) balls left")
+REMOVED_SHARE = re.compile(r"Delete_balls: ([\d.]+) % of the volume of group")
+
+
+class Release(NamedTuple):
+    """Volumes in m3 of ground; what is not known is None."""
+    released: float
+    body: Optional[float]           # of the region that the balls stand for
+    factor: float                   # bulk volume / volume of the balls
+    from_cubic: float               # factor / (6/pi) - 1
+    removed: Optional[float]        # share of the balls that delete_balls took away at the start
+
+    @property
+    def left_out(self):
+        """Share of the body that is not released; None where the body is not known."""
+        return None if self.body is None else 1 - self.released / self.body
+
+    @property
+    def text(self):
+        """What stands beside the released volume."""
+        return over_runs([self])
+
+    @property
+    def doubt(self):
+        """Why the released mass may not be the body; None without such a reason."""
+        if abs(self.from_cubic) > DOUBTFUL:
+            what, side = "there are more balls than the body has room for", "below"
+            if self.from_cubic > 0:
+                what, side = (f"the balls fill only {100 / (1 + self.from_cubic):.0f} % of the body, and each stands "
+                              "for more ground than it has room for"), "above"
+            return (f"The released mass is doubtful: the bulk factor {self.factor:.3g} is "
+                    f"{percent(abs(self.from_cubic))} {side} 6/pi: {what}")
+        if self.left_out is not None and abs(self.left_out) > DOUBTFUL:
+            return (f"The released mass is doubtful: it is {percent(abs(self.left_out))} "
+                    f"{'less' if self.left_out > 0 else 'more'} than the body of {self.body:,.0f} m3")
+        if self.body is None and self.removed is not None and 1 / (1 - self.removed) > 1 + DOUBTFUL:
+            return (f"The released mass is doubtful: {percent(self.removed)} of the balls were removed at the start, "
+                    "and no body is known that the others stand for (fix deposit/grid ... bulk region)")
+        return None
+
+
+def over_runs(releases):
+    """The same for several runs: body, share left out, balls removed and bulk factor, the range of each."""
+    bodies = [f"body {one.body:,.0f} m3, {percent(one.left_out)} of it left out" for one in releases
+              if one.body is not None]
+    about = [span(bodies)] if bodies and len(bodies) == len(releases) else ["body unknown"]
+    removed = sorted(one.removed for one in releases if one.removed is not None)
+    if removed:
+        about.append(f"{span([percent(removed[0]), percent(removed[-1])])} of the balls removed at the start")
+    if releases:
+        factors = sorted(one.factor for one in releases)
+        farthest = max(releases, key=lambda one: abs(one.from_cubic)).from_cubic
+        side = f"{percent(abs(farthest))} {'above' if farthest > 0 else 'below'} 6/pi"
+        most = "at most " if factors[0] < factors[-1] else ""
+        about.append(f"bulk factor {span([f'{factors[0]:.4g}', f'{factors[-1]:.4g}'])}, "
+                     + ("6/pi" if abs(farthest) < 5e-4 else most + side))
+    return "; ".join(about)
+
+
+def span(texts):
+    return texts[0] if texts[0] == texts[-1] else f"{texts[0]} to {texts[-1]}"
+
+
+def percent(share):
+    """Two digits, but whole numbers from 10 % on, and no more than hundredths."""
+    value = 100 * share
+    if abs(value) < 0.05:
+        return f"{value:.2f} %" if abs(value) >= 0.005 else "0 %"
+    return f"{value:.0f} %" if abs(value) >= 10 else f"{value:.1f} %"
+
+
+def release(summary, texts):
+    """The Release of a run by its summary; texts: notes and warnings of its log."""
+    about = summary.get("release") if isinstance(summary.get("release"), dict) else {}
+    body, factor, off = (about.get(key) for key in ("body_volume", "bulk_factor", "from_cubic"))
+    factor = factor if disk.is_number(factor) and factor > 0 else summary["bulk_factor"]
+    return Release(summary["volume"]["released"], body if disk.is_number(body) and body > 0 else None, factor,
+                   off if disk.is_number(off) else factor / CUBIC - 1, removed(texts))
+
+
+def removed(texts):
+    """Share of the balls that delete_balls took away, by the lines of a log; None if they do not tell."""
+    for text in texts:
+        if match := REMOVED.search(text):
+            gone, left = float(match[1]), float(match[2].rstrip("."))
+            return gone / (gone + left) if gone + left > 0 else None
+    for text in texts:
+        if match := REMOVED_SHARE.search(text):
+            return min(float(match[1]), 99.0) / 100
+    return None

@@ -1,0 +1,429 @@
+"""Reading the elevation tiles of the Geospatial Information Authority of Japan (FG-GML DEM, .xml, or many in a .zip).
+
+A tile is a grid in degrees. Its corners are the outer edges of its cells, rows run from the north-west corner to the
+east, and the list of heights begins at startPoint; what is before it, and what the list lacks at its end, is NODATA.
+
+The files come from outside: a DOCTYPE (and so any entity) is refused, members of a zip are only read in memory, and
+sizes are limited before anything is unpacked.
+"""
+import codecs
+import io
+import math
+import re
+import warnings
+import zipfile
+import zlib
+from typing import NamedTuple
+from xml.parsers import expat
+
+import numpy as np
+from affine import Affine
+from rasterio.crs import CRS
+
+from ..errors import SlopeError
+from . import rasters
+from .rasters import HIGHEST, NODATA, Raster
+
+SCHEMA = "http://fgd.gsi.go.jp/spec/"
+GML = "http://www.opengis.net/gml/3.2"
+LARGEST_XML = 256_000_000      # bytes; a tile of 1125 x 750 has 18 million
+LARGEST_ZIP = 4_000_000_000    # bytes, of all tiles in it, unpacked
+DEFLATE = 1100                 # deflate packs at most 1032 to 1: more means members that overlap
+CHUNK = 1 << 20                # bytes
+LONGEST = 200                  # characters of a file's own words in a message
+UNIT = 1 / 30 / 3600           # degrees; spacings are whole multiples of it: 1 (DEM1), 6 (DEM5), 12 (DEM10)
+ON_UNIT = 0.01                 # of a cell: corners have nine decimals or fewer, and belong to a multiple of the spacing
+MISSING = "\u30c7\u30fc\u30bf\u306a\u3057"  # "no data"
+
+# srsName: what to call the datum, the EPSG number of its degrees and of zone I of its plane rectangular system.
+# JGD2024 has new heights; its plan coordinates are those of JGD2011, and PROJ has no number for it yet.
+DATUMS = {"fguuid:jgd2000.bl": ("JGD2000", 4612, 2443),
+          "fguuid:jgd2011.bl": ("JGD2011", 6668, 6669),
+          "fguuid:jgd2024.bl": ("JGD2024", 6668, 6669)}
+
+# Places (latitude, longitude) in the zones of the plane rectangular system, which go by prefectures: seats of
+# prefectures, towns near their borders, islands. The zone of a site is that of the nearest place.
+ZONES = {
+    1: [(32.74, 129.87), (33.17, 129.72), (34.20, 129.29), (32.70, 128.84), (31.83, 129.86), (29.85, 129.86),
+        (28.38, 129.49), (27.37, 128.60), (27.04, 128.43)],
+    2: [(33.61, 130.42), (33.88, 130.88), (33.25, 130.30), (32.79, 130.74), (33.24, 131.61), (31.91, 131.42),
+        (31.56, 130.56), (30.34, 130.51), (32.21, 130.41), (32.58, 131.67)],
+    3: [(34.19, 131.47), (33.96, 130.94), (34.05, 131.81), (35.47, 133.05), (34.90, 132.08), (34.40, 132.46),
+        (34.49, 133.36), (34.81, 132.85), (36.20, 133.32)],
+    4: [(34.34, 134.04), (33.84, 132.77), (33.22, 132.56), (34.07, 134.56), (33.56, 133.53), (32.94, 132.73)],
+    5: [(34.69, 135.18), (35.54, 134.82), (35.50, 134.24), (35.43, 133.33), (34.66, 133.93), (34.99, 133.46),
+        (34.82, 134.69)],
+    6: [(35.02, 135.76), (35.47, 135.39), (34.69, 135.52), (36.07, 136.22), (35.65, 136.06), (35.00, 135.87),
+        (35.38, 136.27), (34.73, 136.51), (34.07, 136.19), (34.69, 135.83), (34.23, 135.17), (33.72, 135.99)],
+    7: [(36.59, 136.63), (37.39, 136.90), (36.70, 137.21), (35.39, 136.72), (36.15, 137.25), (35.18, 136.91),
+        (34.77, 137.39), (35.49, 137.50)],
+    8: [(37.90, 139.02), (37.15, 138.24), (38.22, 139.48), (38.02, 138.37), (37.13, 138.76), (36.65, 138.18),
+        (36.24, 137.97), (35.51, 137.82), (36.25, 138.48), (35.66, 138.57), (34.98, 138.38), (34.71, 137.73),
+        (35.10, 138.86)],
+    9: [(35.69, 139.69), (37.75, 140.47), (37.05, 140.89), (37.49, 139.93), (37.35, 139.32), (36.57, 139.88),
+        (36.34, 140.45), (35.86, 139.65), (35.99, 139.09), (35.61, 140.12), (36.39, 139.06), (36.65, 138.95),
+        (35.45, 139.64), (35.26, 139.15), (34.75, 139.36), (33.11, 139.79)],
+    10: [(40.82, 140.74), (39.72, 140.10), (38.24, 140.36), (37.92, 140.11), (38.73, 139.83), (39.70, 141.15),
+         (38.27, 140.87), (38.00, 140.62), (40.51, 141.49)],
+    11: [(43.19, 140.99), (41.77, 140.73), (42.47, 140.86), (41.87, 140.13), (42.90, 140.76)],
+    12: [(43.06, 141.35), (43.77, 142.36), (45.42, 141.67), (42.32, 140.97), (42.63, 141.61), (42.17, 142.78),
+         (44.36, 143.35), (43.94, 141.64), (43.34, 142.38)],
+    13: [(42.98, 144.38), (42.92, 143.20), (43.80, 143.89), (44.02, 144.27), (43.33, 145.58), (42.29, 143.31)],
+    14: [(27.09, 142.19), (24.78, 141.32)],
+    15: [(26.21, 127.68), (26.59, 127.98), (26.34, 126.80)],
+    16: [(24.34, 124.16), (24.81, 125.28), (24.47, 123.00)],
+    17: [(25.95, 131.30)],
+    18: [(20.42, 136.08)],
+    19: [(24.29, 153.98)],
+}
+FARTHEST = 3.0     # degrees from the nearest place; beyond, a site is not in Japan
+
+
+class Tile(NamedTuple):
+    """One DEM: heights in degrees of its datum. name: the file, and the member of a zip."""
+    name: str
+    raster: Raster
+    datum: str
+
+
+class NotTiles(Exception):
+    """Raised with what it is, by XML that is none of these tiles."""
+
+
+def is_one(path):
+    """Whether the file is a zip or XML, by its first bytes; GDAL's own XML rasters (VRT) are not meant."""
+    try:
+        with open(path, "rb") as source:
+            head = source.read(1024)
+    except OSError:
+        return False
+    if head.startswith(b"PK"):
+        return True
+    text = head.removeprefix(codecs.BOM_UTF8).lstrip()
+    return text.startswith(b"<") and b"<VRTDataset" not in head
+
+
+# --- files ---
+
+def read(path):
+    """All tiles of an .xml or .zip, a list of Tile; SlopeError if there are none or one is broken."""
+    try:
+        with open(path, "rb") as source:
+            if source.read(2) == b"PK":
+                return _read_zip(source, str(path))
+            size = source.seek(0, io.SEEK_END)
+            if size > LARGEST_XML:
+                raise SlopeError(path, f"must have at most {LARGEST_XML / 1e6:g} MB", f"{size / 1e6:.0f} MB")
+            source.seek(0)
+            return _tiles(source, str(path))
+    except NotTiles as error:
+        raise SlopeError(path, "must be a raster or FG-GML elevation data (Dataset with a DEM)", error) from None
+    except OSError as error:
+        raise SlopeError(path, f"cannot be read: {error.strerror or error}") from error
+
+
+def _read_zip(source, where, room=None):
+    """Tiles of the .xml in a zip, and of the zips in it: a download of several areas is a zip of zips.
+
+    room: bytes that may still be unpacked, in a list; None for the outer zip.
+    """
+    outer = room is None
+    room = room or [LARGEST_ZIP]
+    size = source.seek(0, io.SEEK_END)
+    try:
+        archive = zipfile.ZipFile(source)
+    except (zipfile.BadZipFile, NotImplementedError, ValueError) as error:
+        raise SlopeError(where, f"must be a whole zip file ({str(error)[:LONGEST]})") from error
+    wanted = (".xml", ".zip") if outer else (".xml",)
+    members = [member for member in archive.infolist() if member.filename.lower().endswith(wanted)]
+    total = sum(member.file_size for member in members)
+    room[0] -= total
+    if room[0] < 0 or total > DEFLATE * size:
+        raise SlopeError(where, f"must have at most {LARGEST_ZIP / 1e6:g} MB unpacked, and {DEFLATE} times its size",
+                         f"{total / 1e6:.0f} MB in {size / 1e6:.3g} MB")
+    tiles = []
+    for member in rasters.progress(members, f"reading {where}"):
+        kind = member.filename[-4:].lower()
+        name = f"{where}: {''.join(c if c.isprintable() else '?' for c in member.filename[:LONGEST])}"
+        if member.file_size > LARGEST_XML:
+            raise SlopeError(name, f"must have at most {LARGEST_XML / 1e6:g} MB unpacked",
+                             f"{member.file_size / 1e6:.0f} MB")
+        if member.flag_bits & 1:
+            raise SlopeError(name, "must not be encrypted")
+        if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):   # lzma asks for memory as it likes
+            raise SlopeError(name, "must be packed by deflate, or not at all",
+                             zipfile.compressor_names.get(member.compress_type, member.compress_type))
+        try:
+            with archive.open(member) as inner:
+                if kind == ".xml":
+                    tiles += _tiles(inner, name)
+                else:
+                    tiles += _read_zip(io.BytesIO(inner.read()), name, room)
+        except NotTiles:
+            continue  # metadata, or roads and buildings
+        except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, ValueError,
+                OSError) as error:     # ValueError: a member that begins before the file does
+            raise SlopeError(name, f"is damaged ({str(error)[:LONGEST]})") from error
+    if outer and not tiles:
+        raise SlopeError(where, "must hold FG-GML elevation tiles (.xml), it has none",
+                         f"{len(archive.infolist())} files")
+    return tiles
+
+
+def _tiles(stream, where):
+    """The tiles in one XML; NotTiles if it is something else."""
+    parser = _Parser(where)
+    parser.feed(stream)
+    if not parser.dems:
+        raise NotTiles("a Dataset without a DEM")
+    return [_tile(dem, where) for dem in parser.dems]
+
+
+# --- XML ---
+
+class _Parser:
+    """Collects of each DEM the texts of the elements in WANTED, with their lines, and the attributes in ATTRIBUTES."""
+
+    WANTED = {"lowerCorner", "upperCorner", "low", "high", "tupleList", "startPoint"}
+    ATTRIBUTES = {"Envelope": "srsName", "sequenceRule": "order"}
+
+    def __init__(self, where):
+        self.where = where
+        self.dems, self.root, self.text = [], None, None
+
+    def feed(self, stream):
+        head = stream.read(CHUNK)
+        decoder = self.decoder(head)
+        # after a decoder it is UTF-8, whatever the declaration says
+        self.expat = expat.ParserCreate("utf-8" if decoder else None, namespace_separator=" ")
+        self.expat.buffer_text = True
+        self.expat.buffer_size = CHUNK
+        self.expat.StartElementHandler = self.start
+        self.expat.EndElementHandler = self.end
+        self.expat.CharacterDataHandler = self.characters
+        self.expat.StartDoctypeDeclHandler = self.doctype
+        count = 0
+        try:
+            while head:
+                count += len(head)
+                if count > LARGEST_XML:
+                    raise SlopeError(self.where, f"must have at most {LARGEST_XML / 1e6:g} MB")
+                self.expat.Parse(decoder.decode(head).encode() if decoder else head)
+                head = stream.read(CHUNK)
+            self.expat.Parse(b"", True)
+        except expat.ExpatError as error:
+            line = f"{self.where}: line {error.lineno}"
+            what = expat.ErrorString(error.code)
+            if self.root is not None and what in (expat.errors.XML_ERROR_NO_ELEMENTS,
+                                                  expat.errors.XML_ERROR_UNCLOSED_TOKEN,
+                                                  expat.errors.XML_ERROR_PARTIAL_CHAR):
+                raise SlopeError(line, "is cut short: the XML ends in the middle") from error
+            raise SlopeError(line, f"must be XML ({what})") from error
+        except UnicodeDecodeError as error:
+            raise SlopeError(f"{self.where}: line {self.expat.CurrentLineNumber} or after",
+                             f"must be in the encoding that it declares ({error.reason})") from error
+
+    def decoder(self, head):
+        """What makes text of the file's bytes if expat cannot (Shift_JIS), else None."""
+        declared = re.match(rb"""(?:\xef\xbb\xbf)?\s*<\?xml[^>]*?encoding\s*=\s*["']([A-Za-z0-9._-]+)""", head)
+        name = declared.group(1).decode().lower().replace("-", "_") if declared else "utf_8"
+        if name in ("shift_jis", "sjis", "x_sjis", "windows_31j", "cp932", "ms932"):
+            return codecs.getincrementaldecoder("cp932")()
+        if name not in ("utf_8", "utf8", "us_ascii", "ascii"):
+            raise SlopeError(f"{self.where}: line 1", "encoding must be UTF-8 or Shift_JIS", declared.group(1).decode())
+        return None
+
+    def doctype(self, name, *_):
+        raise SlopeError(f"{self.where}: line {self.expat.CurrentLineNumber}", "must have no DOCTYPE", name)
+
+    def start(self, tag, attributes):
+        space, _, name = tag.rpartition(" ")
+        if self.root is None:
+            self.root = name
+            if not (space.startswith(SCHEMA) and name == "Dataset"):
+                raise NotTiles(f"XML with the root {name}")
+        if name == "DEM" and space.startswith(SCHEMA):
+            self.dems.append({"line": self.expat.CurrentLineNumber})
+        self.text = [] if self.dems and space == GML and name in self.WANTED else None
+        self.line = self.expat.CurrentLineNumber
+        if self.dems and space == GML and name in self.ATTRIBUTES:
+            value = attributes.get(self.ATTRIBUTES[name])
+            if value is not None:
+                self.dems[-1][self.ATTRIBUTES[name]] = self.line, value
+
+    def characters(self, text):
+        if self.text is not None:
+            self.text.append(text)
+
+    def end(self, tag):
+        if self.text is not None:
+            self.dems[-1][tag.rpartition(" ")[2]] = self.line, "".join(self.text)
+        self.text = None
+
+
+# --- tiles ---
+
+def _tile(dem, where):
+    """The Tile of what a _Parser collected of a DEM."""
+    def get(name):
+        if name not in dem:
+            raise SlopeError(f"{where}: line {dem['line']}", f"DEM must have {name}, it is missing")
+        return dem[name]
+
+    def pair(name, kind, what):
+        line, text = get(name)
+        try:
+            a, b = map(kind, text.split())
+            if not (math.isfinite(a) and math.isfinite(b)):
+                raise ValueError
+        except ValueError:
+            raise SlopeError(f"{where}: line {line}", f"{name} must be two {what}", text.strip()[:60]) from None
+        return a, b
+
+    line, srs = get("srsName")
+    if srs.lower() not in DATUMS:
+        raise SlopeError(f"{where}: line {line}", f"srsName must be one of {', '.join(DATUMS)}", srs[:60])
+    datum, degrees, _ = DATUMS[srs.lower()]
+    south, west = pair("lowerCorner", float, "numbers, latitude and longitude")
+    north, east = pair("upperCorner", float, "numbers, latitude and longitude")
+    if not (-90 <= south < north <= 90 and -360 <= west < east <= 360):
+        raise SlopeError(f"{where}: line {dem['lowerCorner'][0]}", "corners must be latitude and longitude, the lower "
+                         "one in the south-west", f"{south:.10g} {west:.10g} and {north:.10g} {east:.10g}")
+    if pair("low", int, "whole numbers") != (0, 0):
+        raise SlopeError(f"{where}: line {dem['low'][0]}", "low must be 0 0", dem["low"][1].strip()[:60])
+    columns, rows = (last + 1 for last in pair("high", int, "whole numbers, x and y"))
+    if not (0 < columns <= 100_000 and 0 < rows <= 100_000):
+        raise SlopeError(f"{where}: line {dem['high'][0]}", "high must be 0 to 99999", dem["high"][1].strip()[:60])
+    if dem.get("order", (0, "+x-y"))[1] != "+x-y":
+        raise SlopeError(f"{where}: line {dem['order'][0]}", "order must be +x-y", dem["order"][1][:60])
+    rasters.check_memory(rows, columns, where)
+    x, y = pair("startPoint", int, "whole numbers, x and y") if "startPoint" in dem else (0, 0)  # GML: the first cell
+    if not (0 <= x < columns and 0 <= y < rows):
+        raise SlopeError(f"{where}: line {dem['startPoint'][0]}", f"startPoint must be in the grid, 0 0 to "
+                         f"{columns - 1} {rows - 1}", f"{x} {y}")
+
+    line, text = get("tupleList")
+    heights = _heights(where, line, text)
+    start, room = y * columns + x, rows * columns - (y * columns + x)
+    if len(heights) > room:
+        raise SlopeError(f"{where}: line {line}", f"tupleList must have at most {room} tuples ({columns} x {rows} "
+                         f"cells, startPoint {x} {y})", len(heights))
+    z = np.full(rows * columns, np.nan)
+    z[start:start + len(heights)] = heights
+    dx, west = _on_grid((east - west) / columns, west)
+    dy, north = _on_grid((north - south) / rows, north)
+    transform = Affine(dx, 0, west, 0, -dy, north)
+    return Tile(where, Raster(z.reshape(rows, columns), transform, CRS.from_epsg(degrees)), datum)
+
+
+def _on_grid(spacing, edge):
+    """Spacing and a corner with all their digits: the file has those of the corners, rounded.
+
+    Spacings are multiples of 1/30 second of arc, and corners multiples of the spacing; else they stay as they are.
+    """
+    exact = round(spacing / UNIT) * UNIT
+    if exact == 0 or abs(exact - spacing) > 1e-4 * spacing:
+        return spacing, edge
+    count = edge / exact
+    return exact, (round(count) * exact if abs(count - round(count)) < ON_UNIT else edge)
+
+
+TO_NUMBERS = bytes.maketrans(b",", b" ")
+NOT_ASCII = bytes(range(128, 256))
+
+
+def _heights(where, line, text):
+    """The heights in a list of tuples "kind,height" that starts in that line, NaN for NODATA."""
+    data = text.encode()
+    heights = None
+    if _are_pairs(data) and text.count(MISSING) == text.count(f"{MISSING},{NODATA}"):
+        # the kinds are Japanese: without all that is not ASCII, numbers remain
+        numbers = data.translate(TO_NUMBERS, NOT_ASCII)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # numpy's way to say that something is not a number
+            try:
+                heights = np.fromstring(numbers, sep=" ")
+            except (DeprecationWarning, ValueError):
+                pass
+    if heights is None or len(heights) != data.count(b",") or not np.isfinite(heights).all():
+        heights = np.array(list(_slow_heights(where, line, text)), dtype=float)
+    heights[heights == NODATA] = np.nan
+    wrong = np.flatnonzero(~(np.abs(heights) <= HIGHEST) & ~np.isnan(heights))
+    if len(wrong):
+        raise SlopeError(f"{where}: tuple {wrong[0] + 1} of the list in line {line}",
+                         "must be a height in metres between -9000 and 9000, or -9999", f"{heights[wrong[0]]:g}")
+    return heights
+
+
+def _are_pairs(data):
+    """Whether bytes are words with one comma in the middle of each, and at least one of them."""
+    codes = np.frombuffer(b"\n" + data + b"\n", np.uint8)
+    space = codes <= 32
+    start, comma = np.flatnonzero(space[:-1] & ~space[1:]) + 1, np.flatnonzero(codes == 44)
+    return (len(start) == len(comma) > 0 and (start < comma).all() and (comma[:-1] < start[1:]).all()
+            and not space[comma + 1].any())
+
+
+def _slow_heights(where, line, text):
+    """The same, tuple by tuple: it finds what is wrong."""
+    for number, content in enumerate(text.split("\n"), line):
+        for word in content.split():
+            try:
+                kind, height = word.split(",")
+                value = float(height)
+                if not kind or not math.isfinite(value):
+                    raise ValueError
+            except ValueError:
+                raise SlopeError(f"{where}: line {number}", "must be tuples kind,height", word[:60]) from None
+            yield NODATA if kind == MISSING else value
+
+
+# --- all tiles of a terrain ---
+
+def spacing(tile):
+    """Seconds of arc, along the longitude and the latitude."""
+    return 3600 * tile.raster.transform.a, -3600 * tile.raster.transform.e
+
+
+def by_resolution(tiles):
+    """Lists of tiles of one spacing each, the finest first; in each they keep their order."""
+    groups = []
+    for tile in tiles:
+        for group in groups:
+            if np.allclose(spacing(tile), spacing(group[0]), rtol=1e-4, atol=0):
+                group.append(tile)
+                break
+        else:
+            groups.append([tile])
+    return sorted(groups, key=lambda group: spacing(group[0]))
+
+
+def one_datum(tiles, warn):
+    """The tiles with one CRS, that of the first; a warning if they are of several datums."""
+    datums = list(dict.fromkeys(tile.datum for tile in tiles))
+    if len(datums) == 1:
+        return tiles
+    first = {datum: next(tile.name for tile in tiles if tile.datum == datum) for datum in datums}
+    warn(f"tiles of {' and '.join(f'{datum} ({first[datum]})' for datum in datums)} are mixed and not converted: "
+         + ("heights and places" if "JGD2000" in datums else "heights") + " may differ where they meet")
+    crs = tiles[0].raster.crs
+    return [tile._replace(raster=tile.raster._replace(crs=crs)) for tile in tiles]
+
+
+def zone(raster, datum):
+    """Zone (1 to 19) of the plane rectangular system of the middle of a raster in degrees, and its CRS."""
+    rows, columns = raster.z.shape
+    lon, lat = raster.transform * (columns / 2, rows / 2)
+    distance, number = min((math.hypot(lat - y, (lon - x) * math.cos(math.radians(lat))), number)
+                           for number, places in ZONES.items() for y, x in places)
+    if distance > FARTHEST:
+        raise SlopeError("--crs", "must be given: no zone of Japan's plane rectangular system is near the site",
+                         f"latitude {lat:.4f}, longitude {lon:.4f}")
+    first = next(first for name, _, first in DATUMS.values() if name == datum)
+    return number, CRS.from_epsg(first + number - 1)
+
+
+def nominal_cell(metres):
+    """1, 2, 5 or 10 (times a power of ten), whichever is nearest in ratio: what a DEM5 is called, 5 m."""
+    decade = 10 ** math.floor(math.log10(metres))
+    return min((decade * step for step in (1, 2, 5, 10)), key=lambda size: abs(math.log(size / metres)))

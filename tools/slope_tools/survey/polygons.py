@@ -1,0 +1,351 @@
+"""Reading polygons (GeoJSON, shapefile, CSV, WKT) to the local metres of a terrain: the one place that does it.
+
+The deck's own format, which `region polygon` reads and write() writes: rings of lines `x,y`, a blank line between two
+rings, # starts a comment. A point is inside if it is inside an odd number of rings, so that holes are rings, too.
+"""
+import contextlib
+import io
+import logging
+import os
+import re
+from pathlib import Path
+
+import fiona
+import numpy as np
+import rasterio
+import rasterio.warp
+from rasterio.crs import CRS
+from rasterio.errors import CRSError
+from shapely import wkt
+from shapely.errors import ShapelyError
+from shapely.geometry import MultiPolygon, Polygon, box, shape
+from shapely.ops import unary_union
+from shapely.validation import explain_validity
+
+from ..errors import SlopeError
+from ..geometry import extent, polygons_of
+from .crs import same_crs
+from .rasters import crs_name
+
+FARTHEST = 1e12    # m or degrees: larger coordinates are mistakes, region polygon refuses them, too
+DIGITS = 6     # decimals of a written coordinate, m: beyond them is the noise of origins and projections
+PLACE = re.compile(r"^# local metres: .+", re.MULTILINE)
+WKT = re.compile(r"[A-Za-z]+\s*(?:Z|M|ZM)?\s*(?:\(|EMPTY)", re.IGNORECASE)
+
+for library in ("fiona", "shapely"):  # what they log is in the exceptions as well, or of no interest
+    logging.getLogger(library).setLevel(logging.CRITICAL + 1)
+
+
+def read_local(path, raster, local=False, crs=None, terrain="--terrain"):
+    """Polygons of a file in the local metres of a terrain: a valid, not empty shapely Polygon or MultiPolygon.
+
+    raster: the terrain, a Raster of rasters.read_asc_local() or a Place of rasters.read_place(). Format by content and
+    suffix: the deck's format (.csv), text with WKT, else what fiona opens. Coordinates of a file with a CRS are
+    reprojected to the terrain's; those of CSV and WKT are taken to be in the terrain's CRS, but of a file that write()
+    wrote, which are local already. local=True: the file's coordinates are local, whatever CRS it names. crs: the CRS of
+    the file, whatever it names. terrain: what messages call the terrain. Polygons that overlap or touch become one.
+    Raises SlopeError, which names file and place.
+    """
+    if not Path(path).is_file():
+        raise SlopeError(path, "must be an existing file")
+    try:
+        return _read_local(path, raster, local, crs, terrain)
+    except ShapelyError as error:     # GEOS gives up on coordinates such as 1e-320 among others
+        raise SlopeError(path, "must be polygons whose points differ by more than rounding") from error
+
+
+def _read_local(path, raster, local, crs, terrain):
+    text = read_text(path)
+    if text is None:
+        polygons, own = _read_fiona(path)
+    elif WKT.match(re.sub("#.*", "", text).lstrip()):
+        polygons, own = _read_wkt(path, text), raster.crs
+    else:
+        polygons, own = _read_rings(path, text), raster.crs
+        local = local or _is_local(path, text, raster)
+    geometry = polygons[0] if len(polygons) == 1 else unary_union(polygons)
+    plain = not local and text is not None and crs is None      # numbers of which no file says what they are
+    as_it_stands = geometry.envelope
+    if not local:
+        geometry = _to_local(path, geometry, crs or own, raster, plain, terrain)
+    geometry = _checked(path, geometry)
+    bounds = getattr(raster, "extent", None) or extent(raster)
+    if geometry.intersection(box(*bounds)).area == 0:
+        hint = " (with --local it would)" if plain and as_it_stands.intersection(box(*bounds)).area > 0 else ""
+        raise SlopeError(path, f"must overlap the terrain{hint}, local x y {numbers(bounds)}", numbers(geometry.bounds))
+    return geometry
+
+
+def numbers(values):
+    return " ".join(f"{value:.10g}" for value in values)
+
+
+def as_crs(option, name):
+    """The CRS that an option names; SlopeError if there is none of that name."""
+    try:
+        with rasterio.Env():  # GDAL's own message is not for stderr
+            return CRS.from_user_input(name)
+    except CRSError:
+        raise SlopeError(option, "must be a CRS such as EPSG:6677", name) from None
+
+
+def read_text(path):
+    """The text of a .csv, .txt, .wkt file; None for any other."""
+    if Path(path).suffix.lower() not in (".csv", ".txt", ".wkt"):
+        return None
+    try:
+        return Path(path).read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise SlopeError(path, f"must be text in UTF-8 ({error.reason} at byte {error.start})") from None
+    except OSError as error:
+        raise SlopeError(path, f"cannot be read: {error.strerror}") from None
+
+
+# --- formats ---
+
+def _read_fiona(path):
+    """Polygons of a file that fiona opens, and its CRS or None."""
+    try:
+        # fiona prints what it cannot decode of GDAL's messages
+        with contextlib.redirect_stderr(io.StringIO()), fiona.Env():
+            layers = fiona.listlayers(path)
+            if len(layers) != 1:
+                raise SlopeError(path, "must have one layer of polygons", f"{len(layers)} layers")
+            with fiona.open(path) as source:
+                features = [(feature["id"], feature["geometry"]) for feature in source]
+                crs = CRS.from_wkt(source.crs_wkt) if source.crs_wkt else None
+    except SlopeError:
+        raise
+    except Exception as error:  # GDAL's too, of classes that fiona keeps private
+        raise SlopeError(path, "must be polygons that GDAL can read: GeoJSON, shapefile, or another format of it "
+                         f"({error})") from error
+    polygons = []
+    for name, geometry in features:
+        if geometry is None:
+            continue
+        where = f"{path}: feature {name}"
+        try:
+            geometry = shape(geometry)
+        except (ShapelyError, ValueError, TypeError, AttributeError, NotImplementedError) as error:
+            raise SlopeError(where, f"must be a polygon ({error})") from error
+        polygons += _parts(where, geometry)
+    if not polygons:
+        raise SlopeError(path, "must hold a polygon, it is empty")
+    return polygons, crs
+
+
+def _read_wkt(path, text):
+    """Polygons of a text with one or several WKT, each of which may go over several lines."""
+    polygons, statement, first = [], "", 1
+    lines = text.splitlines()
+    for number, line in enumerate(lines, 1):
+        if not statement.strip():
+            first = number
+        statement += line.split("#")[0] + "\n"
+        if statement.count("(") > statement.count(")") and number < len(lines):
+            continue
+        if statement.strip():
+            where = f"{path}: line {first}"
+            try:
+                geometry = wkt.loads(statement.strip())
+            except (ShapelyError, ValueError, TypeError) as error:
+                raise SlopeError(where, "must be WKT such as POLYGON ((x y, x y, x y, x y))",
+                                 statement.strip()[:40]) from error
+            polygons += _parts(where, geometry)
+        statement = ""
+    if not polygons:
+        raise SlopeError(path, "must hold a polygon, it is empty")
+    return polygons
+
+
+def _parts(where, geometry):
+    """The polygons of a geometry of a file, in two dimensions; SlopeError if it is no good."""
+    if geometry.is_empty:
+        return []
+    if geometry.geom_type == "GeometryCollection":
+        return [part for inner in geometry.geoms for part in _parts(where, inner)]
+    if geometry.geom_type not in ("Polygon", "MultiPolygon"):
+        raise SlopeError(where, "must be a polygon", geometry.geom_type)
+    geometry = map_points(geometry, lambda points: points)
+    for part in polygons_of(geometry):
+        for ring in (part.exterior, *part.interiors):
+            if not (np.abs(ring.coords) <= FARTHEST).all():    # NaN, too
+                raise SlopeError(where, f"coordinates must be finite numbers within +-{FARTHEST:g}")
+    return polygons_of(_checked(where, geometry))
+
+
+def _checked(where, geometry):
+    if geometry.is_empty or geometry.convex_hull.area == 0:
+        raise SlopeError(where, "must have an area > 0")
+    if not geometry.is_valid:
+        raise crossing(where, geometry)
+    return geometry
+
+
+def crossing(where, geometry):
+    """The SlopeError on a geometry that is not valid: what is wrong, and at which point."""
+    reason = explain_validity(geometry).replace("[", " at ").replace("]", "")
+    return SlopeError(where, "must be polygons that do not cross or touch themselves", reason)
+
+
+def _read_rings(path, text):
+    """The polygons that the rings of a text in the deck's format make by the even-odd rule."""
+    rings, points, first = [], [], 0  # rings: the line it starts at, its polygon
+
+    def close():
+        if points:
+            where = f"{path}: line {first}"
+            if len(set(points)) < 3:
+                raise SlopeError(where, "a ring must have at least 3 points", len(set(points)))
+            rings.append((first, _checked(where, Polygon(points))))
+            points.clear()
+
+    header = True  # one line of names may come first
+    for number, line in enumerate(text.splitlines(), 1):
+        content = line.split("#")[0].strip()
+        if not content:
+            if not line.strip():
+                close()
+            continue
+        words = [word.strip() for word in content.split(",")]
+        if header and len(words) == 2 and all(re.fullmatch(r'"?[A-Za-z]\w*"?', word) for word in words) \
+                and not any(word.lower() in ("nan", "inf", "infinity") for word in words):
+            header = False
+            continue
+        header = False
+        try:
+            if "_" in content:     # Python's float takes 1_5 for 15
+                raise ValueError
+            x, y = map(float, words)
+        except ValueError:
+            raise SlopeError(f"{path}: line {number}", "must be two numbers, x,y", content[:60]) from None
+        if not (abs(x) <= FARTHEST and abs(y) <= FARTHEST):    # NaN, too
+            raise SlopeError(f"{path}: line {number}", f"must be two finite numbers within +-{FARTHEST:g}, x,y",
+                             content[:60])
+        if not points:
+            first = number
+        points.append((x, y))
+    close()
+    if not rings:
+        raise SlopeError(path, "must hold a polygon, it is empty")
+    return _even_odd(path, rings)
+
+
+def _even_odd(path, rings):
+    """Polygons of the rings (line, polygon): one inside of another is a hole, one inside of the hole an island."""
+    rings.sort(key=lambda ring: -ring[1].area)  # what contains a ring comes before it
+    bounds = np.array([polygon.bounds for _, polygon in rings])
+    depth, holes = [], [[] for _ in rings]
+    for i, (line, polygon) in enumerate(rings):
+        low, high = bounds[:i, :2] < bounds[i, 2:], bounds[:i, 2:] > bounds[i, :2]
+        around = []
+        for j in np.flatnonzero((low & high).all(axis=1)):
+            if rings[j][1].contains(polygon):
+                around.append(j)
+            elif rings[j][1].overlaps(polygon):
+                x, y = rings[j][1].intersection(polygon).representative_point().coords[0]
+                raise SlopeError(f"{path}: line {line}", f"a ring must not cross another one, line {rings[j][0]}",
+                                 f"an overlap at {numbers((x, y))}")
+        depth.append(len(around))
+        if depth[i] % 2:
+            holes[max(around, key=lambda j: depth[j])].append(polygon)
+    shells = [(polygon, holes[i]) for i, (_, polygon) in enumerate(rings) if depth[i] % 2 == 0]
+    return [part for polygon, inner in shells for part in polygons_of(_with_holes(polygon, inner))]
+
+
+def _with_holes(polygon, holes):
+    """A polygon without its holes, which may touch it and each other."""
+    whole = Polygon(polygon.exterior, [hole.exterior for hole in holes])
+    return whole if whole.is_valid else polygon.difference(unary_union(holes))
+
+
+def _is_local(path, text, raster):
+    """Whether a text was written by write(); SlopeError if it was for a terrain at another place.
+
+    A run without a terrain that tells its place (no CRS, origin 0 0) is in the local metres of whatever terrain.
+    """
+    place = PLACE.search(text)
+    if not place:
+        return False
+    unknown = raster.crs is None and tuple(raster.offset) == (0, 0)
+    if place.group(0) != _place_line(raster) and not unknown:
+        raise SlopeError(path, f"must be for this terrain ({_place_line(raster)[2:]})", place.group(0)[2:])
+    return True
+
+
+def _place_line(raster):
+    east, north = (repr(float(value)) for value in raster.offset)
+    return f"# local metres: east = x + {east}, north = y + {north}, CRS {crs_name(raster.crs)}"
+
+
+# --- coordinates ---
+
+def _to_local(path, geometry, crs, raster, plain, terrain):
+    """A geometry in a CRS to the local metres of the terrain. plain: text, which is in the terrain's CRS."""
+    if not plain:
+        for where, missing in ((path, crs), (terrain, raster.crs)):
+            if missing is None:
+                raise SlopeError(where, "must have a CRS, so that polygon and terrain can be brought together (a .prj "
+                                 "file beside a shapefile, slope terrain --crs for a terrain; --local if the polygon "
+                                 "is in the terrain's local metres)", "none")
+        if crs.is_geographic:
+            west, south, east, north = geometry.bounds
+            if max(-west, east) > 360 or max(-south, north) > 90:
+                raise SlopeError(path, f"coordinates in {crs_name(crs)} must be longitude and latitude (which a "
+                                 "GeoJSON has that names no other CRS)", numbers(geometry.bounds))
+    if not (plain or same_crs(crs, raster.crs)):
+        geometry = _reproject(path, geometry, crs, raster.crs)
+    return map_points(geometry, lambda points: points - raster.offset)
+
+
+def _reproject(path, geometry, crs, target):
+    def points_in_target(points):
+        try:
+            points = np.transpose(rasterio.warp.transform(crs, target, *points.T))
+        except Exception:  # GDAL's, of a class that rasterio keeps private
+            points = np.array([[np.nan, np.nan]])
+        if not np.isfinite(points).all():
+            raise SlopeError(path, f"must lie where {crs_name(target)}, the CRS of the terrain, covers it",
+                             f"{numbers(geometry.bounds)} in {crs_name(crs)}")
+        return points
+    return map_points(geometry, points_in_target)
+
+
+def map_points(geometry, function):
+    """A (Multi)Polygon with the points that the function gives for all of its points at once, an array (number, 2)."""
+    parts = polygons_of(geometry)
+    rings = [np.asarray(ring.coords)[:, :2] for part in parts for ring in (part.exterior, *part.interiors)]
+    points = function(np.concatenate(rings))
+    rings = iter(np.split(points, np.cumsum([len(ring) for ring in rings])[:-1]))
+    new = [Polygon(next(rings), [next(rings) for _ in part.interiors]) for part in parts]
+    return new[0] if len(new) == 1 else MultiPolygon(new)
+
+
+# --- the deck's format ---
+
+def rings_of(geometry):
+    """The rings of the polygons, arrays (number, 2) without the repeated first point; holes follow their shell."""
+    return [np.asarray(ring.coords)[:-1, :2] for part in polygons_of(geometry)
+            for ring in (part.exterior, *part.interiors)]
+
+
+def write(path, geometry, raster):
+    """Write a valid geometry in the local metres of a terrain to path, for region polygon; return it as it is written.
+
+    The file is complete or not touched.
+    """
+    rounded = map_points(geometry, lambda points: np.round(points, DIGITS) + 0.0)  # + 0.0 because of -0.0
+    if rounded.is_valid and rounded.area > 0:
+        geometry = rounded
+    path = Path(path)
+    new = path.with_name(f".{path.name}.{os.getpid()}.new")
+    try:
+        with open(new, "w", encoding="utf-8") as out:
+            out.write(_place_line(raster) + "\n")
+            out.write("\n".join("".join(f"{x!r},{y!r}\n" for x, y in ring.tolist()) for ring in rings_of(geometry)))
+        os.replace(new, path)
+    except OSError as error:
+        raise SlopeError(path, f"cannot be written: {error.strerror}") from error
+    finally:
+        new.unlink(missing_ok=True)
+    return geometry

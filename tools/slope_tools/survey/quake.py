@@ -1,0 +1,66 @@
+"""A ground motion from records of its components, and its files."""
+import os
+
+import numpy as np
+import yaml
+
+from ..errors import SlopeError
+from . import quake_motion as motions, quake_records as records
+from .quake_records import GAL
+
+
+def processed(components, args):
+    """The motion, and what was done to it, in order."""
+    motion = motions.combine(components, args.azimuth)
+    steps = [f"x axis towards {args.azimuth:g} degrees"]
+    if args.baseline != "none":
+        motion = motions.without_mean(motion)
+        steps.append("mean taken off")
+    if args.window:
+        motion = motions.window(motion, *args.window)
+        steps.append(f"{args.window[0]:g} to {args.window[1]:g} s")
+    if args.band:
+        motion = motions.band_pass(motion, *args.band)
+        steps.append(f"band-pass {args.band[0]:g} to {args.band[1]:g} Hz")
+    if args.baseline == "rest":
+        motion = motions.at_rest(motion)
+        steps.append("straight line taken off: ends at rest where it began")
+    most = motions.peak(motion)
+    if not most > 0:
+        raise SlopeError(components[0].source, "must hold a motion, the acceleration is constant")
+    factor = args.peak * GAL / most if args.peak else args.scale or 1.0
+    if factor != 1.0:
+        motion = motions.scaled(motion, factor)
+        steps.append(f"scaled by {factor:.6g}")
+    if motions.peak(motion) > records.MOST:
+        raise SlopeError("--peak" if args.peak else "--scale",
+                         f"a largest acceleration of at most {records.MOST / GAL:g} gal is believed",
+                         f"{motions.peak(motion) / GAL:.6g}")
+    return motion, steps
+
+
+def write(path, motion, about):
+    """All files beside, then under their names: none is half-written."""
+    from . import quake_charts      # matplotlib: only once the input is known to be good
+
+    head = "# acceleration of the ground for fix ground/motion: t ax ay az (s, m/s2)\n"
+    head += "".join(f"# {'; '.join(about[key])}\n" for key in ("records", "processing"))
+    rows = "".join(f"{t:.9g} {x:.12g} {y:.12g} {z:.12g}\n" for t, (x, y, z) in zip(motion.t, motion.a))
+    spectrum = "period,x,y,z\n" + "".join(
+        f"{period:g},{x:.6g},{y:.6g},{z:.6g}\n" for period, (x, y, z) in
+        zip(motions.PERIODS, np.asarray(motions.spectrum(motion)) / GAL))
+    texts = {path: head + rows, path.with_suffix(".yaml"): yaml.safe_dump(about, sort_keys=False),
+             path.with_suffix(".spectrum.csv"): spectrum}
+    picture = path.with_suffix(".png")
+    beside = {final: final.with_name(final.name + ".tmp") for final in (*texts, picture)}
+    try:
+        for final, content in texts.items():
+            beside[final].write_text(content, encoding="utf-8")
+        quake_charts.draw(beside[picture], motion, f"{path.name}: {about['peak_gal']:.4g} gal")
+        for final, part in beside.items():
+            os.replace(part, final)
+    except OSError as error:
+        raise SlopeError(path, f"cannot be written: {error.strerror}") from None
+    finally:
+        for part in beside.values():
+            part.unlink(missing_ok=True)

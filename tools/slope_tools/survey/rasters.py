@@ -1,0 +1,303 @@
+"""Reading rasters, writing the plain .asc with its sidecar, and GeoTIFFs: the one place in Python that does it.
+
+Heights are metres above the vertical datum of the survey, NaN where there is none (NODATA). Arrays have the shape
+(rows, columns), rows from north to south; a value belongs to the centre of its cell. A transform takes (column, row),
+counted from the outer corner of the first cell, to (x, y).
+"""
+import math
+import os
+import sys
+import warnings
+from pathlib import Path
+from typing import NamedTuple, Optional, Tuple
+
+import numpy as np
+import rasterio
+import yaml
+from affine import Affine
+from rasterio.crs import CRS
+from rasterio.errors import CRSError, NotGeoreferencedWarning, RasterioError
+from rich.console import Console
+from rich.progress import track
+
+from ..errors import SlopeError
+
+NODATA = -9999             # in written files
+HIGHEST = 9000.0           # m; beyond +-HIGHEST a value is a NODATA mark that the file does not declare (-9999, -32768)
+BYTES_PER_CELL = 40        # peak memory of `slope terrain` per cell, measured 22 to 33 for 16 million cells
+HEADER = {"ncols", "nrows", "xllcorner", "yllcorner", "xllcenter", "yllcenter", "cellsize", "dx", "dy", "nodata_value"}
+METRES = {None, "", "m", "metre", "meter", "metres", "meters"}
+
+
+class Raster(NamedTuple):
+    """Heights on a grid; CRS coordinates are transform * (column, row) + offset."""
+    z: np.ndarray
+    transform: Affine
+    crs: Optional[CRS]
+    offset: Tuple[float, float] = (0.0, 0.0)
+
+
+def progress(steps, what, total=None):
+    """Iterate over steps behind a progress bar on stderr, which shows only on a terminal."""
+    if not sys.stderr.isatty():
+        return steps
+    return track(steps, what, total, console=Console(stderr=True), transient=True)
+
+
+def check_memory(rows, columns, where):
+    """Raise SlopeError if rows x columns cells do not fit in this machine's memory."""
+    need = rows * columns * BYTES_PER_CELL / 1e9
+    have = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 1e9
+    if need > have:
+        raise SlopeError(where, f"must fit in the {have:.3g} GB of memory of this machine",
+                         f"{columns} x {rows} cells, which need {need:.3g} GB")
+
+
+def epsg(crs):
+    """EPSG number of a CRS, None if not known.
+
+    The confidence of 50 covers ESRI's spelling in .prj files, where the axes of many systems (all of Japan's plane
+    ones) are in another order than EPSG's, which does not matter here: rasters are always east, north.
+    """
+    return crs.to_epsg(confidence_threshold=50)
+
+
+def crs_name(crs):
+    """EPSG:n if known, else the name that the WKT carries; `none` without a CRS."""
+    if crs is None:
+        return "none"
+    return f"EPSG:{epsg(crs)}" if epsg(crs) else crs.to_wkt().split('"')[1]
+
+
+def read(path, heights=True):
+    """Read a single-band raster in metres (GeoTIFF, ESRI ASCII grid, or another format of GDAL) into a Raster.
+
+    The CRS is None where the file has none; it may be in degrees, the heights may not. heights=False: other values
+    than heights, such as the energies of fix deposit/grid; their size is not checked. Raises SlopeError on anything
+    that is not such a raster.
+    """
+    if not Path(path).is_file():
+        raise SlopeError(path, "must be an existing file")
+    try:
+        with warnings.catch_warnings(), rasterio.Env():  # Env: GDAL's own messages are not for stderr
+            warnings.simplefilter("ignore", NotGeoreferencedWarning)  # an error of our own, below
+            with rasterio.open(path) as source:
+                raster = _read(path, source)
+    except (RasterioError, OSError) as error:  # RasterioIOError is an OSError only
+        raise SlopeError(path, f"must be a raster that GDAL can read ({error})") from error
+    if not heights:
+        return raster
+    with np.errstate(invalid="ignore"):
+        wrong = np.argwhere(np.abs(raster.z) > HIGHEST)
+    if len(wrong):
+        row, column = wrong[0]
+        raise SlopeError(f"{path}: row {row + 1} column {column + 1}", "must be a height in metres between -9000 and "
+                         "9000, or the NODATA value that the file declares", f"{raster.z[row, column]:g}")
+    return raster
+
+
+def _read(path, source):
+    if source.count != 1:
+        raise SlopeError(path, "must have one band, the heights", f"{source.count} bands")
+    if source.units[0] not in METRES:
+        raise SlopeError(path, "heights must be in metres", source.units[0])
+    check_memory(*source.shape, path)
+    if source.driver == "AAIGrid":
+        z = _read_ascii_heights(path, *source.shape)
+    else:
+        z = source.read(1, masked=True).astype(float) * source.scales[0] + source.offsets[0]
+        z = z.filled(np.nan)
+    if source.transform.is_identity or source.transform.is_degenerate:
+        raise SlopeError(path, "must be georeferenced: place and size of the cells are missing")
+    z[~np.isfinite(z)] = np.nan
+    return Raster(z, source.transform, source.crs)
+
+
+def _read_ascii_heights(path, rows, columns):
+    """Heights of an ESRI ASCII grid of that shape.
+
+    GDAL gives shape and place of the grid and its CRS (.prj), but not the values: it takes words for 0, fills up a
+    short last row with 0 and ignores values after the last. Here each of these is an error with its line.
+    """
+    with open(path, encoding="ascii", errors="replace") as lines:
+        header, header_lines = _check_ascii_header(path, lines)
+        lines.seek(0)
+        z = np.empty(rows * columns)
+        count, line_count, odd_line = 0, 0, None
+        for number, line in enumerate(progress(lines, f"reading {path}", total=rows), 1):
+            words = line.split()
+            if number <= header_lines or not words:
+                continue
+            try:
+                if "_" in line:     # Python's float takes 1_5 for 15
+                    raise ValueError(f"no number: {next(word for word in words if '_' in word)!r}")
+                values = [float(word) for word in words]
+            except ValueError as error:
+                raise SlopeError(f"{path}: line {number}", "must hold numbers with a decimal point",
+                                 str(error).rsplit(":", 1)[1].strip()) from None
+            if len(values) != columns and odd_line is None:
+                odd_line = f"line {number}, which has {len(values)}"
+            room = z[count:count + len(values)]
+            room[:] = values[:len(room)]
+            count += len(values)
+            line_count += 1
+    # Rows may be wrapped, as ESRI allows; but as many lines as rows, of different lengths, are broken rows.
+    if count != z.size or (odd_line and line_count == rows):
+        where = f"first at {odd_line}" if odd_line else f"in {line_count} rows"
+        raise SlopeError(f"{path}: values", f"must be {rows} rows of {columns}, {z.size} values", f"{count}, {where}")
+    z[z == header.get("nodata_value", NODATA)] = np.nan  # ESRI's default where the header has none
+    return z.reshape(rows, columns)
+
+
+def _check_ascii_header(path, lines):
+    """Read the header of an ESRI ASCII grid from its lines; return it as a dict and its number of lines.
+
+    GDAL takes words for 0 here too, and puts a grid with xllcorner and yllcenter, or without one of them, at 0 0.
+    """
+    header, number = {}, 0
+    for line in lines:
+        words = line.split()
+        if words and words[0].lower() not in HEADER:
+            break
+        number += 1
+        if not words:
+            continue
+        try:
+            key, value = words
+            header[key.lower()] = float(value)
+        except ValueError:
+            raise SlopeError(f"{path}: line {number}", "must be a name and a number", line) from None
+    if not ({"xllcorner", "yllcorner"} <= header.keys() or {"xllcenter", "yllcenter"} <= header.keys()):
+        raise SlopeError(f"{path}: header", "must have xllcorner and yllcorner, or xllcenter and yllcenter")
+    for key in ("cellsize", "dx", "dy"):
+        if not 0 < header.get(key, 1) < math.inf:
+            raise SlopeError(f"{path}: header: {key}", "must be > 0", f"{header[key]:g}")
+    return header, number
+
+
+def read_asc_local(path, heights=True):
+    """Read an .asc that write_asc_local wrote, and its sidecar, into a Raster: (z, transform, crs, offset).
+
+    The transform gives local x, y; adding the offset (east, north) gives coordinates in crs. A raster without a
+    sidecar is read as by read(); heights as there. Raises SlopeError if either file is broken or they do not belong
+    together.
+    """
+    raster = read(path, heights)
+    place = read_sidecar(path)
+    if place is None:
+        return raster
+    if place.size != raster.z.shape or not np.allclose(raster.transform * (0, 0), place.extent[::3], rtol=0, atol=1e-3):
+        raise SlopeError(Path(path).with_suffix(".yaml"), f"must be the sidecar of {path}: size and extent differ")
+    return Raster(raster.z, raster.transform, place.crs, place.offset)
+
+
+class Place(NamedTuple):
+    """Where a terrain lies."""
+    crs: Optional[CRS]
+    offset: Tuple[float, float]                # east, north of local 0 0
+    size: Tuple[int, int]                      # rows, columns
+    extent: Tuple[float, float, float, float]  # local xlo, ylo, xhi, yhi
+
+
+def read_sidecar(path):
+    """The Place of an .asc that write_asc_local wrote, None if it has no sidecar; the .asc itself is not read."""
+    sidecar = Path(path).with_suffix(".yaml")
+    if Path(path).suffix != ".asc" or not sidecar.exists():
+        return None
+    try:
+        about = yaml.safe_load(sidecar.read_text(encoding="utf-8"))
+        offset = float(about["origin"]["east"]), float(about["origin"]["north"])
+        place = tuple(float(about["extent"][side]) for side in ("xlo", "ylo", "xhi", "yhi"))
+        if not np.isfinite((*offset, *place)).all():
+            raise ValueError("origin and extent must be finite")
+        with rasterio.Env():  # GDAL's own messages are not for stderr
+            crs = about["crs"] and CRS.from_wkt(about["crs"]["wkt"])
+        return Place(crs, offset, (about["size"]["rows"], about["size"]["columns"]), place)
+    except (OSError, ValueError, KeyError, TypeError, OverflowError, RecursionError, yaml.YAMLError,
+            CRSError) as error:
+        raise SlopeError(sidecar, f"must be a sidecar that `slope terrain` wrote ({error!r})") from error
+
+
+def read_place(path):
+    """The Place of a terrain: of its sidecar, else of the raster's own header; heights are not read."""
+    if not Path(path).is_file():
+        raise SlopeError(path, "must be an existing file")
+    place = read_sidecar(path)
+    if place is not None:
+        return place
+    try:
+        with warnings.catch_warnings(), rasterio.Env():
+            warnings.simplefilter("ignore", NotGeoreferencedWarning)
+            with rasterio.open(path) as source:
+                return Place(source.crs, (0.0, 0.0), source.shape, tuple(source.bounds))
+    except (RasterioError, OSError) as error:
+        raise SlopeError(path, f"must be a raster that GDAL can read ({error})") from error
+
+
+def write_asc_local(path, raster, about, exact=False):
+    """Write raster (square cells, north up, at least one height) to path and the sidecar beside it; return the sidecar.
+
+    about: dict of more entries for the sidecar. exact: heights with all of their digits, not to the millimetre, so that
+    they are equal to those of another file. Both files are complete or not touched: they are written beside their names
+    and then renamed. Raises SlopeError where the folder or the disk refuses.
+    """
+    path = Path(path)
+    rows, columns = raster.z.shape
+    cell = float(raster.transform.a)
+    xlo, yhi = map(float, raster.transform * (0, 0))
+    xhi, ylo = map(float, raster.transform * (columns, rows))
+    sidecar = {
+        "crs": raster.crs and {"epsg": epsg(raster.crs), "wkt": raster.crs.to_wkt()},
+        "origin": {"east": float(raster.offset[0]), "north": float(raster.offset[1])},
+        "cell": cell,
+        "size": {"columns": columns, "rows": rows},
+        "extent": {"xlo": xlo, "xhi": xhi, "ylo": ylo, "yhi": yhi},
+        "height": {"min": float(np.nanmin(raster.z)), "max": float(np.nanmax(raster.z))},
+        "nodata_cells": int(np.isnan(raster.z).sum()),
+        **about,
+    }
+    new_asc = path.with_name(f".{path.name}.{os.getpid()}.new")
+    new_yaml = new_asc.with_suffix(".new_yaml")
+    try:
+        with open(new_asc, "w", encoding="ascii") as out:
+            digits, form = (15, repr) if exact else (12, "{:.3f}".format)
+            out.write(f"ncols {columns}\nnrows {rows}\nxllcorner {xlo:.{digits}g}\nyllcorner {ylo:.{digits}g}\n"
+                      f"cellsize {cell:.{digits}g}\nNODATA_value {NODATA}\n")
+            for row in progress(raster.z, f"writing {path}"):
+                out.write(" ".join([form(height) for height in row.tolist()]).replace("nan", str(NODATA)) + "\n")
+        with open(new_yaml, "w", encoding="utf-8") as out:
+            out.write(f"# About {path.name}. Metres; east = x + origin east, north = y + origin north.\n")
+            yaml.safe_dump(sidecar, out, sort_keys=False)
+        os.replace(new_yaml, path.with_suffix(".yaml"))
+        os.replace(new_asc, path)
+    except OSError as error:
+        raise SlopeError(path, f"cannot be written: {error.strerror}") from error
+    finally:
+        new_asc.unlink(missing_ok=True)
+        new_yaml.unlink(missing_ok=True)
+    return sidecar
+
+
+def write_geotiff(path, bands, raster):
+    """Write bands, a dict of name -> values (NaN: NODATA), on the grid of raster (its z is not used) to a GeoTIFF.
+
+    It lies at the CRS coordinates, transform plus offset; without a CRS at the local ones. Doubles, so that sums over
+    the cells are those of the array. The file is complete or not touched. Raises SlopeError where it cannot be written.
+    """
+    path = Path(path)
+    new = path.with_name(f".{path.name}.{os.getpid()}.new")
+    rows, columns = next(iter(bands.values())).shape
+    try:
+        with warnings.catch_warnings(), rasterio.Env():
+            warnings.simplefilter("ignore", NotGeoreferencedWarning)
+            with rasterio.open(new, "w", driver="GTiff", height=rows, width=columns, count=len(bands), dtype="float64",
+                               crs=raster.crs, transform=Affine.translation(*raster.offset) * raster.transform,
+                               nodata=NODATA, compress="deflate") as out:
+                for band, (name, values) in enumerate(bands.items(), 1):
+                    out.write(np.where(np.isnan(values), NODATA, values), band)
+                    out.set_band_description(band, name)
+        os.replace(new, path)
+    except (RasterioError, OSError) as error:
+        raise SlopeError(path, f"cannot be written: {getattr(error, 'strerror', None) or error}") from error
+    finally:
+        new.unlink(missing_ok=True)

@@ -1,0 +1,58 @@
+"""A body from a raster: a second survey of the surface, depths, or the change between two surveys."""
+import numpy as np
+from affine import Affine
+
+from ..errors import SlopeError
+from . import rasters
+from .crs import same_crs, transform
+from .rasters import Raster, crs_name
+from .resampling import sample
+
+KINDS = ("surface", "depth", "change")
+
+
+def depths(path: str, kind: str, raster: Raster, least: float) -> np.ndarray:
+    """Depths (m, >= 0) of a scar on the nodes of a terrain, 0 where the scar raster has none.
+
+    kind: "surface", heights after the event; "depth", of the slip surface below the terrain, positive down; "change",
+    after minus before, of which what is negative counts. Depths below `least` (m) are 0. The scar's grid may be
+    another one: bilinear between its cell centres, and reprojected. A raster without a CRS is taken to be in the
+    terrain's. Raises SlopeError on a raster that is none, lies elsewhere, or holds no depth.
+    """
+    values = on_nodes(path, raster, heights=kind == "surface")
+    if kind == "depth":
+        wrong = np.nanmin(values)
+        if wrong < 0:
+            raise SlopeError(path, "must hold depths >= 0, positive down; if it is the change of the surface, give "
+                             "--scar-is change", f"{wrong:.6g}")
+    depth = raster.z - values if kind == "surface" else values if kind == "depth" else -values
+    with np.errstate(invalid="ignore"):
+        depth = np.where(depth >= max(least, 0.0), depth, 0.0)      # NaN too
+    depth = np.maximum(depth, 0.0)
+    if not depth.any():
+        what = {"surface": "be lower than the terrain", "depth": "hold a depth > 0", "change": "hold a change < 0"}
+        raise SlopeError(path, f"must {what[kind]} somewhere" + (f", by --least {least:g} m" if least else ""))
+    return depth
+
+
+def on_nodes(path: str, raster: Raster, heights: bool) -> np.ndarray:
+    """Values of a raster file at the nodes of a terrain, NaN where it has none; bilinear, exact at its own centres."""
+    scar = rasters.read_asc_local(path) if heights else _read_values(path)
+    rows, columns = raster.z.shape
+    x, y = np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
+    x, y = Affine.translation(*raster.offset) * raster.transform * (x, y)
+    if scar.crs is not None and raster.crs is None:
+        raise SlopeError(path, f"is in {crs_name(scar.crs)}, and the terrain must have a CRS, too: slope terrain --crs",
+                         "none")
+    if scar.crs is not None and not same_crs(scar.crs, raster.crs):
+        x, y = transform(raster.crs, scar.crs, x, y)
+    values = sample(scar._replace(transform=Affine.translation(*scar.offset) * scar.transform), x, y)
+    if not np.isfinite(values).any():
+        raise SlopeError(path, "must overlap the terrain")
+    return values
+
+
+def _read_values(path: str) -> Raster:
+    """A raster of other values than heights, with the place that its sidecar says, if it has one."""
+    raster, place = rasters.read(path, heights=False), rasters.read_sidecar(path)
+    return raster if place is None else raster._replace(crs=place.crs, offset=place.offset)

@@ -1,0 +1,102 @@
+"""From a slip surface to a body: its depths, its numbers, and the free number that makes a depth or a volume."""
+import math
+from typing import Callable, NamedTuple
+
+import numpy as np
+from scipy.ndimage import binary_erosion
+from scipy.optimize import brentq
+
+from ..errors import SlopeError
+from .release_area import Area
+from .release_bodies import Shape
+
+THINNEST = 1e-3     # m; what is thinner is not in the body
+DECIMALS = 4        # of a written height of the slip surface, m
+LOOKS = 41          # numbers that are tried of a shape whose body does not always grow with it
+EXACT = 1e-12       # relative, of the free number
+
+
+class Measures(NamedTuple):
+    """The numbers of a body; m, m2, m3, degrees."""
+    volume: float
+    largest_depth: float    # vertical
+    mean_depth: float
+    area: float             # in plan, of the cells in the body
+    cells: int
+    mean_slope: float       # of the ground over it
+    slip_slope: float       # of the slip surface, mean
+    bearing: float          # compass bearing of the fall line, downhill
+    wall: float             # largest depth at the rim of the polygon: there the body ends in a wall
+    highest: float          # of the ground over it
+    lowest: float
+
+
+def depths(area: Area, surface: np.ndarray) -> np.ndarray:
+    """How far (m) a surface lies below the ground, 0 outside of the polygon and where it is not below."""
+    with np.errstate(invalid="ignore"):
+        return np.where(area.inside & (surface < area.z), area.z - surface, 0.0)
+
+
+def volume(depth: np.ndarray, cell: float) -> float:
+    """Volume (m3) between two terrains whose nodes differ by depth (m), 0 on the outermost two: exact, as a bilinear
+
+    patch has the mean of its four corners.
+    """
+    return float(depth.sum()) * cell ** 2
+
+
+def solved(area: Area, shape: Shape, wanted: float, measure: Callable[[np.ndarray], float], option: str,
+           unit: str) -> float:
+    """The free number of a shape at which measure(depths) is what is wanted; SlopeError if there is none."""
+    def miss(number):
+        return measure(depths(area, shape.surface(number))) - wanted
+
+    tried = np.array([shape.least, shape.most]) if shape.steady else np.linspace(shape.least, shape.most, LOOKS)
+    found = np.array([miss(number) for number in tried])
+    rises = np.flatnonzero((found[:-1] <= 0) & (found[1:] >= 0))
+    if not len(rises) and found.max() < 0:
+        what = shape.limit if np.argmax(found) == len(found) - 1 else f"the largest {shape.name}"
+        raise SlopeError(option, f"must be at most {found.max() + wanted:.6g} {unit}, that of {what} within the "
+                         "release polygon: take a larger polygon or another shape", f"{wanted:.10g}")
+    if not len(rises):
+        raise SlopeError(option, f"must be at least {found.min() + wanted:.6g} {unit}, that of the smallest "
+                         f"{shape.name} within the release polygon: take a smaller polygon or another shape",
+                         f"{wanted:.10g}")
+    low, high = tried[rises[-1]], tried[rises[-1] + 1]
+    return float(brentq(miss, low, high, xtol=EXACT * max(abs(low), abs(high)), rtol=1e-14))
+
+
+def to_depth(area: Area, shape: Shape, depth: float) -> float:
+    """The free number of a shape whose largest depth (m, vertical) is given."""
+    return solved(area, shape, depth, lambda found: float(found.max()), "--depth", "m")
+
+
+def to_volume(area: Area, shape: Shape, wanted: float) -> float:
+    """The free number of a shape whose volume (m3) is given."""
+    return solved(area, shape, wanted, lambda found: volume(found, area.cell), "--volume", "m3")
+
+
+def slip_surface(area: Area, depth: np.ndarray, where: str) -> np.ndarray:
+    """The ground without the body (m): rounded where the body is, the ground's own value everywhere else."""
+    slip = np.where(depth >= THINNEST, np.minimum(np.round(area.z - depth, DECIMALS), area.z), area.z)
+    if not (slip < area.z).any():
+        raise SlopeError(where, f"must hold a body, no slip surface lies {THINNEST:g} m or more below the ground in it")
+    return slip
+
+
+def measures(area: Area, slip: np.ndarray) -> Measures:
+    """The numbers of the body between the ground and a slip surface."""
+    depth = area.z - slip
+    body = depth > 0
+    rim = area.inside & ~binary_erosion(area.inside)
+    east = area.downhill
+    return Measures(volume(depth, area.cell), float(depth.max()), float(depth[body].mean()),
+                    float(body.sum()) * area.cell ** 2, int(body.sum()), slope_of(area.z, area.cell, body),
+                    slope_of(slip, area.cell, body), math.degrees(math.atan2(east[0], east[1])) % 360,
+                    float(depth[rim].max(initial=0)), float(area.z[body].max()), float(area.z[body].min()))
+
+
+def slope_of(z: np.ndarray, cell: float, where: np.ndarray) -> float:
+    """Mean slope (degrees) of heights on the nodes of a mask, from central differences."""
+    south, east = np.gradient(z, cell)
+    return float(np.degrees(np.arctan(np.hypot(south, east)))[where].mean())

@@ -1,0 +1,1 @@
+"""Claims and their checks, other codes, speed."""

@@ -1,0 +1,245 @@
+"""Runs that check claims, and their report."""
+import csv
+import os
+import platform
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import NamedTuple, Union
+
+import io
+import numpy as np
+import yaml
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+from .. import disk, provenance
+from ..case import last_words, logs
+from ..ensemble import jobs
+from ..errors import SlopeError
+from . import verification
+from .verification.claims import Result
+from .verification.errata import errata
+
+NAME = "verification"       # of the files
+FINISHED = "finished"       # in the folder of a run that ended well: checksums of the program and of the run
+COLUMNS = ("case", "claim", "name", "source", "unit", "expected", "tolerance", "got", "passed", "control",
+           "control_got", "control_fails", "remark", "commands")
+
+
+# --- runs ---
+
+class Runner:
+    """Runs decks, each once, in a folder of its own. What an earlier runner finished there with the same program,
+    deck and data is kept."""
+
+    def __init__(self, folder, lmp):
+        self.folder, self.lmp = Path(folder), lmp
+        self.results = {}
+        self.kept = 0
+        self.program = jobs.sha256(lmp)
+
+    def result(self, one):
+        """The Result of a run; it is run now if it was not before."""
+        if one not in self.results:
+            self.do([one], 1)
+        return self.results[one]
+
+    def do(self, wanted, most):
+        """Run what has not been run, some at a time. On an interruption, end the runs under way."""
+        for one in dict.fromkeys(wanted):
+            if one not in self.results and self.is_finished(one):
+                self.results[one] = Result(self.folder / one.name)
+                self.kept += 1
+        waiting = [one for one in dict.fromkeys(wanted) if one not in self.results]
+        active = {}
+        with Bar(len(waiting)) as bar:
+            try:
+                while waiting or active:
+                    while waiting and len(active) < most:
+                        one = waiting.pop(0)
+                        active[one] = self.start(one)
+                        bar.say(one.name)
+                    time.sleep(0.02)
+                    for one, process in list(active.items()):
+                        if process.poll() is not None:
+                            del active[one]
+                            self.results[one] = self.ended(one, process.returncode)
+                            bar.step()
+            finally:
+                for process in active.values():
+                    process.terminate()
+                    process.wait()
+
+    def start(self, one):
+        folder = self.folder / one.name
+        shutil.rmtree(folder, ignore_errors=True)
+        one.write(folder)
+        guard = ["setpriv", "--pdeathsig", "TERM"] if shutil.which("setpriv") else []   # does not outlive us
+        with open(folder / jobs.SCREEN, "wb") as screen:
+            return subprocess.Popen([*guard, str(self.lmp), "-in", one.source.name, "-log", logs.LOG, *one.options],
+                                    cwd=folder, env={**os.environ, "OMP_NUM_THREADS": "1"}, stdin=subprocess.DEVNULL,
+                                    stdout=screen, stderr=subprocess.STDOUT, start_new_session=True)
+
+    def ended(self, one, status):
+        folder = self.folder / one.name
+        if status:
+            words = last_words.reason(logs.Log(folder / logs.LOG).update(), last_words.Screen(folder / jobs.SCREEN))
+            raise SlopeError(folder / logs.LOG, f"must end well: {words or 'no word'}", f"status {status}")
+        (folder / FINISHED).write_text(self.identity(one))
+        return Result(folder)
+
+    def identity(self, one):
+        return f"{self.program} {one.identity}\n"
+
+    def is_finished(self, one):
+        try:
+            return (self.folder / one.name / FINISHED).read_text() == self.identity(one)
+        except OSError:
+            return False
+
+
+class Bar:
+    """How far the runs are: a bar on a terminal, else nothing for single runs and a line each for many."""
+
+    def __init__(self, total):
+        self.live = sys.stderr.isatty() and total > 1
+        self.told = total > 1 and not self.live
+        self.bar = Progress(TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(),
+                            console=Console(stderr=True), transient=True)
+        self.task = self.bar.add_task("", total=total)
+
+    def __enter__(self):
+        if self.live:
+            self.bar.start()
+        return self
+
+    def __exit__(self, *_):
+        if self.live:
+            self.bar.stop()
+
+    def say(self, what):
+        self.bar.update(self.task, description=what)
+        if self.told:
+            print(f"slope verify: {what}", file=sys.stderr, flush=True)
+
+    def step(self):
+        self.bar.update(self.task, advance=1)
+
+
+# --- judgement ---
+
+class Outcome(NamedTuple):
+    """What came of a claim."""
+    claim: object
+    got: Union[float, str]
+    passed: bool
+    control_got: Union[float, str]
+    control_fails: bool
+
+    @property
+    def right(self):
+        return self.passed and self.control_fails
+
+
+def value(claim, wanted, runner):
+    """What a claim's runs, or its control's, give."""
+    got = claim.got(*(runner.result(one) for one in wanted))
+    return got if isinstance(got, str) else float(got)
+
+
+def judge(claim, runner):
+    """Hold a claim against its bound, and its control too, which must fail; NaN shows nothing."""
+    got, broken = value(claim, claim.runs, runner), value(claim, claim.control.runs, runner)
+    return Outcome(claim, got, bool(claim.bound.holds(got)), broken, broken == broken and not claim.bound.holds(broken))
+
+
+def text(got):
+    """A number or a word, for people."""
+    return got if isinstance(got, str) else f"{got:.5g}"
+
+
+def line(outcome):
+    claim = outcome.claim
+    expected, tolerance = claim.bound.texts()
+    verdict = "pass" if outcome.right else "FAIL"
+    control = "" if outcome.control_fails else f"; its control does not fail: {text(outcome.control_got)}"
+    return f"{verdict} {claim.case} {claim.name}: {text(outcome.got)}, expected {expected} ({tolerance}){control}"
+
+
+# --- the report ---
+
+def origin(args, lmp, runner, outcomes, seconds):
+    """Everything that the report says of how it was made."""
+    log = logs.Log(next(iter(runner.results.values())).folder / logs.LOG).update()
+    words = ["tools/slope verify"] + ["--quick"] * args.quick + [f"--only {args.only}"] * bool(args.only)
+    machine = provenance.machine()
+    return {"date": provenance.now(), "command": " ".join(words), "package": provenance.package_version(),
+            "lammps": log.lammps, "lmp_sha256": jobs.sha256(lmp),
+            "python": platform.python_version(), "numpy": np.__version__,
+            "processor": machine["processor"], "cores": machine["cores"], "system": platform.system(),
+            "runs": len(runner.results), "kept": runner.kept, "seconds": round(seconds, 1), "claims": len(outcomes),
+            "passed": sum(outcome.passed for outcome in outcomes),
+            "controls_that_fail": sum(outcome.control_fails for outcome in outcomes)}
+
+
+def row(outcome):
+    claim = outcome.claim
+    expected, tolerance = claim.bound.texts()
+    return dict(zip(COLUMNS, (
+        claim.case, claim.text, claim.name, claim.source, claim.unit, expected, tolerance, outcome.got, outcome.passed,
+        claim.control.broken, outcome.control_got, outcome.control_fails, claim.remark,
+        [one.command for one in claim.runs])))
+
+
+def compared(path):
+    """What `slope crosscheck` wrote, for the report."""
+    what = "what `slope crosscheck` wrote"
+    found = disk.load_yaml(path, what)
+    try:
+        about = found["crosscheck"]
+        rows = [{**one, "value": text(one["value"]), "expected": text(one["expected"]),
+                 "tolerance": "for information" if one["tolerance"] is None else text(one["tolerance"])}
+                for one in found["checks"]]
+        return {"rows": rows, "differs": found["differs"], "versions": about["versions"], "package": about["package"],
+                "date": about["finished"], "compared": about["compared"], "failed": about["failed"]}
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
+        raise SlopeError(path, f"must be {what}", repr(error)) from error
+
+
+def write(output, outcomes, about, peers=None):
+    """The report in its four forms."""
+    rows = [row(outcome) for outcome in outcomes]
+    table = io.StringIO()
+    out = csv.DictWriter(table, COLUMNS, lineterminator="\n")
+    out.writeheader()
+    out.writerows({**one, "commands": "; ".join(one["commands"])} for one in rows)
+
+    def of_module(case):        # several modules may be about one folder
+        names = {claim.name for claim in case.CLAIMS}
+        return [one for one in rows if one["name"] in names]
+
+    cases = [{"folder": case.CASE, "title": case.__doc__.splitlines()[0],
+              "intro": " ".join(case.__doc__.split("\n", 1)[1].split()),
+              "rows": [{**one, "got": text(one["got"]), "control_got": text(one["control_got"])}
+                       for one in of_module(case)],
+              "commands": list(dict.fromkeys(command for one in of_module(case) for command in one["commands"]))}
+             for case in verification.cases()]
+    content = {"about": about, "peers": peers, "cases": [case for case in cases if case["rows"]],
+               "errata": [{**one._asdict(), "rows": [other for case in cases for other in case["rows"]
+                                                     if other["name"] in one.claims]} for one in errata()]}
+    whole = yaml.safe_dump({**about, "results": rows}, sort_keys=False)
+    for name, data in ((".csv", table.getvalue()), (".yaml", whole),
+                       (".rst", render("verify.rst.j2", content)), (".html", render("verify.html.j2", content))):
+        disk.write(output / f"{NAME}{name}", data)
+
+
+def render(template, content):
+    """A page, from the template beside this file."""
+    import jinja2
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(Path(__file__).parent),
+                                     autoescape=template.endswith(".html.j2"), trim_blocks=True, lstrip_blocks=True,
+                                     undefined=jinja2.StrictUndefined, keep_trailing_newline=True)
+    return environment.get_template(template).render(content)
