@@ -45,7 +45,7 @@ def test_everything_is_there(prefix):
     """Decks, their data, tools, pages and the licence, as in the checkout."""
     share = prefix / "share" / "slope"
     tracked = subprocess.run(["git", "-C", str(TOP), "ls-files", "inputs", "doc", "tools/slope_tools", "tools/slope",
-                              "README.md", "LICENSE"], text=True, capture_output=True)
+                              "tools/qgis", "README.md", "LICENSE"], text=True, capture_output=True)
     names = tracked.stdout.split() or ["inputs/20_embankment/in.embankment",
                                        "doc/src/theory.rst", "tools/slope", "LICENSE"]
     assert not [name for name in names if not (share / name).is_file()]

@@ -166,7 +166,7 @@ def test_export(qgis, inside, place):
     assert float(last[1]) < thickest <= float(last[2]) and thickness["bounds"][-1] == "inf"
     assert styles["max_speed"]["labels"][-1].endswith(" m/s")
     powers = np.array([float(bound) for bound in styles["max_energy"]["bounds"][1:-1]])
-    assert np.allclose(powers[1:] / powers[:-1], 10) and styles["max_energy"]["labels"][-1].endswith(" J")
+    assert np.allclose(powers[2:] / powers[:-2], 10) and styles["max_energy"]["labels"][-1].endswith(" J")
     assert not any(styles["arrival"]["clear"]) and styles["arrival"]["labels"][0].endswith(" s")
     assert all(style["crs"] == CRS_M for style in styles.values())
     assert shown["colours"] > 10 and Path("map.png").stat().st_size > 1000

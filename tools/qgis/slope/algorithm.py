@@ -54,7 +54,11 @@ class Algorithm(QgsProcessingAlgorithm):
     def words(self, asked):
         """The words of the command line behind the command."""
         words = [word for option in self.options if not option.own for word in option.words(asked)]
-        return [*words, *split(EXTRA.key, asked.text(EXTRA.key))]
+        return [*words, *self.extra(asked)]
+
+    def extra(self, asked):
+        """The words of the parameter for further options."""
+        return split(EXTRA.key, asked.text(EXTRA.key))
 
     def collect(self, asked, results):
         """Put into the Results what the command wrote."""

@@ -39,7 +39,7 @@ class Export(Algorithm):
     Every raster of a run as a GeoTIFF in the survey's coordinates, with a style.
 
     Ground without the body and ground with the deposit (m, shaded relief); thickness and largest thickness of
-    the deposit (m); largest speed of a ball (m/s); largest kinetic energy of a ball (J, powers of ten); arrival
+    the deposit (m); largest speed of a ball (m/s); largest kinetic energy of a ball (J, classes of 1 and 3); arrival
     of the first ball and last motion (s).
 
     CRS and origin come from the sidecar of the run's terrain. Without a CRS the layers are in the local metres

@@ -1,4 +1,5 @@
 """Layers of QGIS as files that the tools read: the layer's own file where that says the same, else a temporary one."""
+import shutil
 from pathlib import Path
 
 from osgeo import gdal
@@ -31,8 +32,19 @@ def convert(asked, layer, selected, formats, key, preferred):
 
     A GeoPackage keeps all digits and any CRS; a layer without a CRS would get one in it, but not in a shapefile.
     """
-    return QgsProcessingUtils.convertToCompatibleFormat(layer, selected, key.lower(), formats, preferred, asked.context,
+    path = QgsProcessingUtils.convertToCompatibleFormat(layer, selected, key.lower(), formats, preferred, asked.context,
                                                         asked.feedback)
+    return path if Path(path) == Path(layer.source().split("|")[0]) else kept(asked, path)
+
+
+def kept(asked, path):
+    """A temporary file; if the results refer to it later, a copy of it, with what belongs to it, in their folder."""
+    if asked.keep is None:
+        return path
+    asked.keep.mkdir(parents=True, exist_ok=True)
+    for part in Path(path).parent.glob(f"{Path(path).stem}.*"):
+        shutil.copy(part, asked.keep)
+    return str(asked.keep / Path(path).name)
 
 
 def raster_layer(asked, key):
@@ -56,7 +68,7 @@ def raster_file(asked, key):
                                asked.context.transformContext())
     if error:
         raise QgsProcessingException(f"{key}: cannot be written as a GeoTIFF (error {error}), got {layer.name()}")
-    return path
+    return kept(asked, path)
 
 
 def slope_terrain(path):

@@ -11,8 +11,6 @@ from qgis.core import (QgsProcessing, QgsProcessingException, QgsProcessingParam
 
 from . import layers
 
-FILE_KINDS = ("file", "folder", "polygons", "line", "raster")
-
 
 @dataclass(frozen=True)
 class Option:
@@ -78,7 +76,8 @@ class Option:
         if self.kind == "switch":
             return [self.flag] if asked.algorithm.parameterAsBool(*asked.of(self.key)) else []
         if self.kind.startswith("new"):
-            return self._flagged(asked.output(self.key))
+            path = asked.output(self.key)
+            return self._flagged(path) if path else []
         if not self.given(asked):
             return []
         if self.kind == "words":
@@ -123,6 +122,7 @@ class Asked:
 
     def __init__(self, algorithm, parameters, context, feedback):
         self.algorithm, self.parameters, self.context, self.feedback = algorithm, parameters, context, feedback
+        self.keep = None        # folder for copies of layers to which the results refer
 
     def of(self, key):
         """Arguments of parameterAs...()."""

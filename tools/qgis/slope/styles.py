@@ -9,25 +9,24 @@ from qgis.core import (QgsColorRampShader, QgsFillSymbol, QgsGraduatedSymbolRend
 from qgis.PyQt.QtGui import QColor
 
 CLASSES = 7         # at most about so many
-DECADES = 6         # of a logarithmic scale, below the largest value
 CLEAR = QColor(255, 255, 255, 0)
 
 YELLOW_RED = ("#ffffb2", "#fed976", "#feb24c", "#fd8d3c", "#f03b20", "#bd0026", "#800026")
 VIRIDIS = ("#fde725", "#90d743", "#35b779", "#21918c", "#31688e", "#443983", "#440154")
-PURPLES = ("#f2f0f7", "#dadaeb", "#bcbddc", "#9e9ac8", "#807dba", "#6a51a3", "#4a1486")
+MAGMA = ("#fcfdbf", "#feb078", "#f1605d", "#b73779", "#721f81", "#2c115f", "#000004")
 BLUES = ("#eff3ff", "#c6dbef", "#9ecae1", "#6baed6", "#4292c6", "#2171b5", "#084594")
 
 # kind: colours from the smallest to the largest class, unit, scale, whether 0 is nothing and stays clear
 RASTERS = {
-    "thickness": (YELLOW_RED, "m", "even", True),
+    "thickness": (YELLOW_RED, "m", "thin to thick", True),
     "depth": (BLUES, "m", "even", True),
     "speed": (VIRIDIS[::-1], "m/s", "even", True),
-    "energy": (PURPLES, "J", "decades", True),
+    "energy": (MAGMA, "J", "powers", True),
     "arrival": (VIRIDIS, "s", "even", False),
-    "removal": (YELLOW_RED, "m", "even", True),
-    "mesh volume": (YELLOW_RED, "m3", "even", True),
+    "removal": (YELLOW_RED, "m", "thin to thick", True),
     "exceedance": (YELLOW_RED, "of the runs", "shares", True),
 }
+SERIES = {"thin to thick": (1, 2, 5), "powers": (1, 3)}     # upper bounds, times powers of ten
 GROUND = "ground"               # as a shaded relief
 MESH = "mesh cells"             # of `slope volume`, polygons
 OF_MESH = "remove"              # their column, m3
@@ -54,15 +53,18 @@ def apply(layer, kind):
 def bounds_of(largest: float, scale: str, smallest: float = 0.0) -> List[float]:
     """Upper bounds of the classes, the last one at or above the largest value.
 
-    even: round numbers at equal distances from the smallest value, or from 0; decades: powers of ten.
+    even: round numbers at equal distances from the smallest value, or from 0; of SERIES: CLASSES numbers of the series
+    up to the largest value, so that thin and thick, slow and fast are told apart on one map.
     """
     if scale == "shares":
         return list(SHARES)
     if not largest > 0:
         return [1.0]
-    if scale == "decades":
-        top = math.ceil(math.log10(largest) - 1e-12)
-        return [10.0 ** power for power in range(top - DECADES + 1, top + 1)]
+    if scale in SERIES:
+        steps, power = SERIES[scale], math.floor(math.log10(largest))
+        numbers = [step * 10.0 ** p for p in range(power - CLASSES, power + 2) for step in steps]
+        last = next(i for i, number in enumerate(numbers) if number >= largest * (1 - 1e-9))
+        return numbers[last - CLASSES + 1:last + 1]
     step = round_up((largest - smallest) / CLASSES)
     first, last = math.floor(smallest / step + 1e-9), math.ceil(largest / step - 1e-9)
     return [step * i for i in range(first + 1, max(first + 1, last) + 1)]

@@ -9,6 +9,26 @@ from .options import Option
 from .results import TERRAIN_TAG, load, survey_tif
 
 
+GROUND = (
+    Option("CRS", "--crs", "crs", "CRS of the terrain, in metres (default: the model's)"),
+    Option("CELL", "--cell", "number", "Cell size (m; default: the model's)"),
+    Option("BOUNDS", "--bounds", "extent", "Crop to this box", own=True),
+    Option("FILL", "--fill", "whole", "Fill holes of at most so many cells"))
+
+
+def bounds(asked, model):
+    """--bounds W S E N in the CRS of the terrain: that of the parameter CRS, else of the raster layer model."""
+    if not asked.parameters.get("BOUNDS"):
+        return []
+    crs = asked.algorithm.parameterAsCrs(*asked.of("CRS"))
+    if not crs.isValid():
+        crs = asked.algorithm.parameterAsRasterLayer(*asked.of(model)).crs()
+    box = asked.algorithm.parameterAsExtent(*asked.of("BOUNDS"), crs)
+    if box.isEmpty():
+        raise QgsProcessingException(f"BOUNDS: must be a box, got {asked.text('BOUNDS')}")
+    return ["--bounds", *map(repr, (box.xMinimum(), box.yMinimum(), box.xMaximum(), box.yMaximum()))]
+
+
 def show(results, key, asc, kind, name):
     """An .asc in local metres as a layer at its place in the survey."""
     results.layer(key, survey_tif(asc, load(Path(asc).with_suffix(".yaml")), **{TERRAIN_TAG: Path(asc).name}
@@ -36,25 +56,12 @@ class Terrain(Algorithm):
     take either."""
     options = (
         Option("DEM", "", "raster", "Elevation model (heights in m)", needed=True),
-        Option("CRS", "--crs", "crs", "CRS of the terrain, in metres (default: the model's)"),
-        Option("CELL", "--cell", "number", "Cell size (m; default: the model's)"),
-        Option("BOUNDS", "--bounds", "extent", "Crop to this box", own=True),
-        Option("FILL", "--fill", "whole", "Fill holes of at most so many cells", 0),
+        *GROUND,
         Option("OUTPUT", "-o", "new file", "The terrain", filter="ESRI ASCII grid (*.asc)"))
     outputs = (("raster", "LAYER", "Terrain at the survey's coordinates (m)"),)
 
     def words(self, asked):
-        words = super().words(asked)
-        if not asked.parameters.get("BOUNDS"):
-            return words
-        crs = self.parameterAsCrs(*asked.of("CRS"))
-        if not crs.isValid():
-            crs = self.parameterAsRasterLayer(*asked.of("DEM")).crs()
-        box = self.parameterAsExtent(*asked.of("BOUNDS"), crs)
-        if box.isEmpty():
-            raise QgsProcessingException(f"BOUNDS: must be a box, got {asked.text('BOUNDS')}")
-        edges = (box.xMinimum(), box.yMinimum(), box.xMaximum(), box.yMaximum())
-        return [*words, "--bounds", *map(repr, edges)]
+        return [*super().words(asked), *bounds(asked, "DEM")]
 
     def collect(self, asked, results):
         asc = asked.output("OUTPUT")
