@@ -131,6 +131,9 @@ def memory(prefix, crs, road, far):
     found["untagged"] = run("volume", RUN=prefix, MESH=5, ROAD=untagged, OUTPUT="untagged")
     untagged.setCrs(QgsCoordinateReferenceSystem(crs))
     found["tagged"] = run("volume", RUN=prefix, MESH=5, ROAD=untagged, OUTPUT="tagged")
+    filtered = QgsVectorLayer("both.shp", "filtered")
+    filtered.setSubsetString("id = 1")
+    found["filtered"] = run("volume", RUN=prefix, MESH=5, ROAD=filtered, OUTPUT="filtered")
     roads = QgsVectorLayer("several.gpkg|layername=road", "road")
     found["layer"] = run("volume", RUN=prefix, MESH=5, ROAD=roads, OUTPUT="layer")
     return found

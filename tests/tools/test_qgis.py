@@ -4,6 +4,7 @@ import csv
 import json
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import zipfile
@@ -261,9 +262,12 @@ def test_study_and_report(qgis, inside, place):
 
 def test_layers_that_are_no_files_of_their_own(inside, place):
     road, far = (",".join(map(str, in_survey(one))) for one in (ROAD, FAR))
-    with fiona.open("untagged.shp", "w", driver="ESRI Shapefile",
-                    schema={"geometry": "Polygon", "properties": {"id": "int"}}) as out:
-        out.write({"type": "Feature", "geometry": box(*in_survey(ROAD)).__geo_interface__, "properties": {"id": 1}})
+    for name, crs, several in (("untagged.shp", None, (ROAD,)), ("both.shp", CRS_M, (ROAD, FAR))):
+        with fiona.open(name, "w", driver="ESRI Shapefile", crs=crs,
+                        schema={"geometry": "Polygon", "properties": {"id": "int"}}) as out:
+            for i, bounds in enumerate(several, 1):
+                out.write({"type": "Feature", "geometry": box(*in_survey(bounds)).__geo_interface__,
+                           "properties": {"id": i}})
     for layer, bounds in (("other", FAR), ("road", ROAD)):
         with fiona.open("several.gpkg", "w", driver="GPKG", layer=layer, crs=CRS_M,
                         schema={"geometry": "Polygon", "properties": {}}) as out:
@@ -272,7 +276,7 @@ def test_layers_that_are_no_files_of_their_own(inside, place):
     slope("volume", "run/tiny", "--road", "road.geojson", "--mesh", 5, "-o", "same")
     expected = yaml.safe_load(Path("same/volume.yaml").read_text())["volume"]["remove"]
     found = inside("memory", "run/tiny.thickness.asc", CRS_M, road, far)
-    for name in ("one", "selected", "tagged", "layer", "text"):
+    for name in ("one", "selected", "tagged", "layer", "text", "filtered"):
         assert found[name]["REMOVE"] == expected, name
     assert found["both"]["REMOVE"] > expected + 10
     for name in ("none", "untagged"):
@@ -360,6 +364,36 @@ def test_the_zip_in_a_profile(home, place, tmp_path):
     done = subprocess.run([QGIS, "run", "slope:export", "--", "RUN=run/tiny.thickness.asc", "OUTPUT=new"], cwd=place,
                           env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0 and Path("new/tiny.thickness.qml").is_file(), done.stderr
+
+
+# --- the page ---
+
+def page_examples():
+    text = (TOP / "doc" / "src" / "tool_qgis.rst").read_text(encoding="ascii")
+    return re.findall(r"^ +qgis_process run slope:(\w+) -- (.*)", text, re.MULTILINE)
+
+
+def test_the_page_names_every_algorithm():
+    assert {name for name, _ in page_examples()} == ALGORITHMS
+    text = (TOP / "doc" / "src" / "tool_qgis.rst").read_text(encoding="ascii")
+    assert set(re.findall(r"^   \* - slope:(\w+)", text, re.MULTILINE)) == ALGORITHMS
+
+
+def test_every_example_of_the_page_runs(qgis, place):
+    shutil.copy("deck/in.tiny", "in.collapse")
+    for path in [*Path("run").glob("tiny.*"), *Path("deck").glob("terrain.*")]:
+        shutil.copy(path, Path("run") / path.name.replace("tiny", "collapse") if path.parent.name == "run" else ".")
+    for name, words in page_examples():
+        parameters = dict(word.split("=", 1) for word in shlex.split(words))
+        status, results, _, err = qgis(name, **parameters)
+        assert status == 0 and results, (name, err)
+        if name == "site":
+            site = results
+        if parameters.get("DECK") == "mine/site.yaml":
+            study = results
+    assert Path(site["SITE"]).is_file() and 200 < site["NUMBER_OF_BALLS"] < 450 and site["RELEASED"] > 100
+    assert where(site["DEPTH_LAYER"]) == where(site["TERRAIN_LAYER"]) == HERE
+    assert study["THICKNESS"].startswith("mine/study/") and study["CONSERVATIVE"] >= 0
 
 
 def test_modules_are_small():

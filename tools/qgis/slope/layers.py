@@ -21,8 +21,9 @@ def vector_file(asked, key):
     layer = asked.algorithm.parameterAsVectorLayer(*asked.of(key))
     if layer is None or not layer.isValid():
         raise QgsProcessingException(f"{key}: must be a vector layer, got {asked.text(key)}")
-    # a CRS that was set in QGIS is not in the file
-    formats = ONE_LAYER if layer.crs() == layer.dataProvider().crs() else []
+    # a CRS that was set in QGIS is not in the file, and a filter is not either
+    as_it_is = layer.crs() == layer.dataProvider().crs() and not layer.subsetString()
+    formats = ONE_LAYER if as_it_is else []
     path = convert(asked, layer, selected, formats, key, "gpkg" if layer.crs().isValid() else "shp")
     return path if Path(path).is_file() else convert(asked, layer, selected, [], key, "gpkg")
 
