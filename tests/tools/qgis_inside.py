@@ -166,6 +166,13 @@ def project(prefix, road):
     return {layer.name(): style(layer) for layer in QgsProject.instance().mapLayers().values()}
 
 
+def progress(*lines):
+    """Percent after each line."""
+    from slope.process import Progress
+    heard = Progress().heard
+    return [heard(line) for line in lines]
+
+
 def study(deck, word, *settings):
     """A study that is cancelled when a line holds the word, and is then run to its end; what was said in both."""
     import processing

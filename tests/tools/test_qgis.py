@@ -309,6 +309,14 @@ def test_a_study_is_cancelled_and_goes_on(inside, place):
     assert any(line.startswith("1 of 3 runs are finished already") for line in ended["lines"])
 
 
+def test_progress_of_a_study_in_two_parts(inside):
+    lines = ["[1/2] a: started", "[2/2] b: started", "[1/2] a: step 50 of 100, 0.5 s, ends by 12:00", "no word of it",
+             "[2/2] b: finished at 1 s, wall time 1 s", "[1/2] a: failed: lost atoms (see a/log.lammps)",
+             "[1/4] a: started", "[1/4] a: finished at 1 s, wall time 1 s; 3 to go", "3 of 4 runs are finished already",
+             "[4/4] d: starts anew: no restart file", "[4/4] d: finished at 1 s, wall time 1 s"]
+    assert inside("progress", *lines) == [0, 0, 25, None, 75, 100, 0, 25, 75, None, 100]
+
+
 # --- errors ---
 
 @pytest.mark.parametrize("name, parameters, message", [
@@ -379,7 +387,7 @@ def test_the_page_names_every_algorithm():
     assert set(re.findall(r"^   \* - slope:(\w+)", text, re.MULTILINE)) == ALGORITHMS
 
 
-def test_every_example_of_the_page_runs(qgis, place):
+def test_every_example_of_the_page_runs(qgis, inside, place):
     shutil.copy("deck/in.tiny", "in.collapse")
     for path in [*Path("run").glob("tiny.*"), *Path("deck").glob("terrain.*")]:
         shutil.copy(path, Path("run") / path.name.replace("tiny", "collapse") if path.parent.name == "run" else ".")
@@ -389,11 +397,18 @@ def test_every_example_of_the_page_runs(qgis, place):
         assert status == 0 and results, (name, err)
         if name == "site":
             site = results
+            assert "sizes: [1, 1.4, 2]" in Path(site["SITE"]).read_text()      # in the test fewer runs, one size
+            text = re.sub(r"(?m)^  rolling: .*$", "  rolling: [0.05]", Path(site["SITE"]).read_text(), count=1)
+            Path(site["SITE"]).write_text(re.sub(r"(?m)^  (sizes|xoffset): .*$", r"  \1: []", text))
         if parameters.get("DECK") == "mine/site.yaml":
             study = results
     assert Path(site["SITE"]).is_file() and 200 < site["NUMBER_OF_BALLS"] < 450 and site["RELEASED"] > 100
     assert where(site["DEPTH_LAYER"]) == where(site["TERRAIN_LAYER"]) == HERE
-    assert study["THICKNESS"].startswith("mine/study/") and study["CONSERVATIVE"] >= 0
+    assert study["THICKNESS"].startswith("mine/study/") and study["CONSERVATIVE"] > 10
+    assert study["REPORT"] == "mine/report.html" and "<html" in Path(study["REPORT"]).read_text()[:300]
+    shown = inside("look", "map.png", site["TERRAIN_LAYER"], site["DEPTH_LAYER"])["styles"]
+    assert shown[site["TERRAIN_LAYER"]]["renderer"] == "QgsHillshadeRenderer"
+    assert shown[site["DEPTH_LAYER"]]["labels"][-1].endswith(" m")
 
 
 def test_modules_are_small():

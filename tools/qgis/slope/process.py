@@ -17,7 +17,7 @@ PROGRAM, LAMMPS = "SLOPE_PROGRAM", "SLOPE_LMP"      # settings
 BESIDE = Path(__file__).resolve().parents[2] / "slope"      # of a checkout or an installation, also through a link
 POLL = 0.2              # s between two looks at the Cancel button
 PATIENCE = 30.0         # s which a command has to end its runs
-RUN = re.compile(r"\[(\d+)/(\d+)\] .*?: (?:(finished|failed)|step (\d+) of (\d+))")
+RUN = re.compile(r"\[(\d+)/(\d+)\] .*?: (?:(finished|failed)|(started)|step (\d+) of (\d+))")
 BEFORE = re.compile(r"(\d+) of (\d+) runs are finished already")
 
 
@@ -42,7 +42,7 @@ def environment():
 
 
 class Progress:
-    """How far a command is, in percent, from what `slope study` prints of its runs."""
+    """How far a command is, in percent, from what `slope study` prints of its runs; a site's has several parts."""
 
     def __init__(self):
         self.shares, self.before = {}, 0
@@ -51,12 +51,15 @@ class Progress:
         """Percent after this line; None if it says nothing of it."""
         before, run = BEFORE.match(line), RUN.match(line)
         if before:
-            self.before = int(before[1])
+            self.shares, self.before = {}, int(before[1])
             return 100 * self.before / int(before[2])
         if not run:
             return None
-        self.shares[run[1]] = 1.0 if run[3] else int(run[4]) / max(1, int(run[5]))
-        return min(100.0, 100 * (self.before + sum(self.shares.values())) / int(run[2]))
+        number, total, ended, started, step, last = run.groups()
+        if started and self.shares.get(number) == 1.0:      # a run of the next part
+            self.shares, self.before = {}, 0
+        self.shares[number] = 1.0 if ended else 0.0 if started else int(step) / max(1, int(last))
+        return min(100.0, 100 * (self.before + sum(self.shares.values())) / int(total))
 
 
 def listen(process):
