@@ -30,7 +30,6 @@ import traceback
 import warnings
 import zipfile
 from pathlib import Path
-from types import SimpleNamespace
 
 import yaml
 
@@ -252,14 +251,14 @@ def study():
 
 def read_page(folder):
     """The report on a study, all but the drawing."""
+    from slope_tools.report.asked import Asked
     from slope_tools.report import document, figure_charts, figure_maps
     for name in ("value_map", "terrain_map", "mesh_map", "small_maps"):
         setattr(figure_maps, name, lambda *_, **__: "")
     for name in ("bars", "chart", "convergence"):
         setattr(figure_charts, name, lambda *_, **__: "")
     figure_charts.section = lambda *_, **__: ("", 1, None)
-    page, _ = document.make(SimpleNamespace(folder=folder, shown=None, section=None, local=False, reference=None,
-                                            converge=None))
+    page, _ = document.make(Asked(folder))
     page.section.table()
     page.numbers.table()
 

@@ -21,7 +21,7 @@ sys.path.insert(0, str(TOOLS))
 
 from slope_tools import cli  # noqa: E402
 from slope_tools.commands import terrain as terrain_command  # noqa: E402
-from slope_tools.survey import fggml, rasters, terrain  # noqa: E402
+from slope_tools.survey import fggml, japan, rasters, terrain  # noqa: E402
 
 SECOND = 1 / 3600
 GROUND, WATER, MISSING = "\u5730\u8868\u9762", "\u5185\u6c34\u9762", "\u30c7\u30fc\u30bf\u306a\u3057"
@@ -375,8 +375,8 @@ def test_datums(written, name, epsg):
     (24.3, 154.0, 19)])
 def test_zone_of_a_site(lat, lon, number):
     raster = rasters.Raster(np.zeros((2, 2)), Affine(SECOND, 0, lon - SECOND, 0, -SECOND, lat + SECOND), None)
-    assert fggml.zone(raster, "JGD2011") == (number, CRS.from_epsg(6668 + number))
-    assert fggml.zone(raster, "JGD2000") == (number, CRS.from_epsg(2442 + number))
+    assert japan.zone(raster, "JGD2011") == (number, CRS.from_epsg(6668 + number))
+    assert japan.zone(raster, "JGD2000") == (number, CRS.from_epsg(2442 + number))
 
 
 # --- the page ---

@@ -11,6 +11,8 @@ import argparse
 import importlib
 import os
 import sys
+import traceback
+from pathlib import Path
 
 from .errors import SlopeError
 from .provenance import version
@@ -19,6 +21,7 @@ COMMANDS = {
     "terrain": "survey rasters (GeoTIFF, ESRI ASCII) to the plain terrain.asc that decks read",
     "polygon": "polygons (GeoJSON, shapefile, CSV, WKT) to the .csv in local metres that decks read",
     "release": "the body that is released: slip surface below a polygon or from a scar, to a volume; lines of the deck",
+    "site": "from the files of a GIS to a folder with terrain, body, deck and map, which study runs",
     "quake": "strong-motion records (K-NET, KiK-net, PEER AT2, CSV) to the motion of the ground that decks read",
     "volume": "what must be removed from a road, per mesh cell and in total, above a cut surface",
     "export": "every raster of a run as a GeoTIFF in the survey's coordinates, for a GIS",
@@ -42,14 +45,17 @@ class Parser(argparse.ArgumentParser):
 
 
 def main(argv=None):
-    """Run one subcommand on argv (default: the command line); return the status: 0, 2 bad input, 130 interrupted."""
+    """Run one subcommand on argv (default: the command line); return the status: 0, 1 a bug, 2 bad input, 130 interrupted."""
     argv = sys.argv[1:] if argv is None else argv
     parser = Parser(prog="slope", description="Tools of the SLOPE package: what goes into a deck and what comes out.",
                     epilog="`slope COMMAND --help` explains a command, with units and an example.")
     parser.add_argument("--version", action="version", version=f"SLOPE {version()}")
+    parser.add_argument("--debug", action="store_true",
+                        help="before COMMAND: where in the tools an error comes from, as a traceback")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    asked = next((word for word in argv if not word.startswith("-")), None)
     for name, summary in COMMANDS.items():
-        if argv[:1] == [name]:
+        if name == asked:
             module = importlib.import_module(f"{__package__}.commands.{name}")
             module.add_parser(commands, help=summary).set_defaults(run=module.run)
         else:
@@ -58,6 +64,8 @@ def main(argv=None):
     try:
         args.run(args)
     except SlopeError as error:
+        if args.debug:
+            traceback.print_exc()
         print(f"slope {args.command}: {error}", file=sys.stderr)
         return 2
     except MemoryError as error:
@@ -69,4 +77,12 @@ def main(argv=None):
     except BrokenPipeError:         # `slope ... | head`: nobody reads on
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 141
+    except Exception as error:
+        if args.debug:
+            raise
+        place = traceback.extract_tb(error.__traceback__)[-1]
+        print(f"slope {args.command}: a bug in the tools: {type(error).__name__}: {' '.join(str(error).split())[:200]} "
+              f"({Path(place.filename).name}, line {place.lineno}); slope --debug {args.command} shows where",
+              file=sys.stderr)
+        return 1
     return 0

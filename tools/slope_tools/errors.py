@@ -20,9 +20,16 @@ class SlopeError(Exception):
         super().__init__("".join(c if c.isprintable() else "?" for c in " ".join(line.split())))
 
 
+def printer(command):
+    """A function that prints a warning of a command on standard error."""
+    return lambda text: print(f"slope {command}: warning: {text}", file=sys.stderr)
+
+
 def warner(command, kept):
-    """A function that prints a warning of a command on standard error, and keeps it in a list."""
+    """The same, which keeps the warnings in a list, too."""
+    tell = printer(command)
+
     def warn(text):
         kept.append(text)
-        print(f"slope {command}: warning: {text}", file=sys.stderr)
+        tell(text)
     return warn

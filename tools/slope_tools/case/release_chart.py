@@ -3,8 +3,7 @@ import numpy as np
 
 from ..drawing import figures
 from ..drawing.figures import FULL, RELEASE, SECTION, STYLE, plt
-from ..drawing.maps import outline, part, window
-from ..report.figure_maps import scheme, shade
+from ..drawing.maps import outline, part, scheme, shade, window
 from ..survey.rasters import Raster
 from ..survey.release_area import Area
 from ..survey.resampling import sample

@@ -9,8 +9,10 @@ from scipy.ndimage import binary_dilation
 
 from ..disk import write_yaml
 from ..errors import SlopeError
+from ..provenance import version
 from ..survey import rasters, release_solve
-from ..survey.rasters import Raster
+from ..survey.rasters import Raster, crs_name
+from ..survey.release import Body, Wanted
 from ..survey.release_area import Area
 from . import release_deck
 
@@ -69,6 +71,16 @@ def write(name: Path, terrain: str, raster: Raster, area: Area, slip: np.ndarray
         shutil.rmtree(folder, ignore_errors=True)
 
 
+def write_body(name: Path, wanted: Wanted, body: Body) -> None:
+    """Write all files of what release.body_of() gave."""
+    about = {"slope_version": version(), "terrain": wanted.terrain, "polygon": wanted.polygon, **body.choices,
+             "body": body.measures._asdict(), "cell": body.area.cell, "crs": crs_name(body.raster.crs),
+             "origin": {"east": float(body.raster.offset[0]), "north": float(body.raster.offset[1])},
+             "warnings": body.warnings}
+    write(name, wanted.terrain, body.raster, body.area, body.slip, about, body.geometry,
+          f"{name.name}: {body.measures.volume:,.0f} m\u00b3, up to {body.measures.largest_depth:.3g} m deep")
+
+
 def deck_body(name: Path, terrain: str, raster: Raster, area: Area, slip: np.ndarray) -> release_deck.Body:
     """What the lines of the deck need to know; its paths are those from the folder of NAME."""
     depth = area.z - slip
@@ -78,4 +90,4 @@ def deck_body(name: Path, terrain: str, raster: Raster, area: Area, slip: np.nda
            float(slip[reached].min()) - ROOM, float(area.z[reached].max()) + ROOM)
     return release_deck.Body(os.path.relpath(terrain, name.parent), name.name + ".slip.asc", name.name,
                              release_solve.volume(depth, area.cell), area.cell,
-                             max(0.0, float(np.nanmin(raster.z)) - float(slip.min())), box)
+                             max(0.0, float(np.nanmin(raster.z)) - float(np.nanmin(slip))), box)

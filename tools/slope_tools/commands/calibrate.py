@@ -9,11 +9,12 @@ from pathlib import Path
 from .. import options
 from ..case import data_files, decks
 from ..case.settings import check_settings, one_value_each
+from ..deposit.score import THRESHOLD
 from ..ensemble import backanalysis, calibration, distributions, jobs, observations, repeats, study
 from ..ensemble.fit import Fit
 from ..errors import SlopeError
 from ..options import number
-from . import run_arguments as run_arguments_command, score as score_command
+from . import run_arguments
 
 TOLERANCE = 0.05
 EPILOG = """\
@@ -39,7 +40,7 @@ def add_parser(commands, **kwargs):
         "calibrate", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
         description="Which values of a deck's variables give a deposit that was observed, and how well they are "
                     "known.", **kwargs)
-    run_arguments_command.add_deck(parser)
+    run_arguments.add_deck(parser)
     parser.add_argument("--observed", metavar="POLYGON|RASTER", type=Path,
                         help="the mapped deposit: its outline, or its thickness in metres, as for `slope score`")
     parser.add_argument("--front", metavar="L", type=number,
@@ -50,8 +51,8 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--tolerance", metavar="SHARE", type=number, default=TOLERANCE,
                         help="standard deviation of what was observed, as a share of it "
                              f"(default {TOLERANCE:g}); chance comes on top")
-    parser.add_argument("--threshold", metavar="T", type=number, default=score_command.THRESHOLD,
-                        help=f"a deposit is where it is thicker than this, m (default {score_command.THRESHOLD:g})")
+    parser.add_argument("--threshold", metavar="T", type=number, default=THRESHOLD,
+                        help=f"a deposit is where it is thicker than this, m (default {THRESHOLD:g})")
     parser.add_argument("--vary", metavar="NAME=LO:HI", action="append", default=[], required=True,
                         help="a variable of the deck that is looked for, and its range; all values in it are equally "
                              "likely before (loguniform:LO:HI and the others of `slope study` too)")
@@ -59,8 +60,8 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--set", metavar="NAME=VALUE", action="append", default=[],
                         help="value of another index variable in all runs (default: the deck's)")
     parser.add_argument("--seed", metavar="S", type=int, default=1, help="of the first points (default 1)")
-    repeats.add_arguments(parser)
-    run_arguments_command.add_runs(parser)
+    run_arguments.add_repeats(parser)
+    run_arguments.add_runs(parser)
     return parser
 
 
@@ -87,9 +88,10 @@ def run(args):
         wanted.check_place(terrain)
     settings = {name: [value] for name, value in fixed.items()}
     files = data_files.data_files(args.deck, {**settings, **repeated})
-    if args.road:
-        study.check_road(args, settings)
-    study.check_folder(args, [])
+    setup = run_arguments.setup_of(args)
+    if setup.road:
+        study.check_road(setup, settings)
+    study.check_folder(setup, [])
     about = {**wanted.about, "deck": args.deck.name, "set": fixed, "repeat": repeated,
              "variables": {one.name: one.told for one in variables}, "seed": args.seed}
     ledger = calibration.Ledger(args.output, about, variables)
@@ -100,5 +102,5 @@ def run(args):
         first = backanalysis.first(len(variables), args.seed)[:args.runs - 1]
         print(f"{args.runs} runs: {len(ledger.points) or len(first)} decided on; the others follow from what they give")
         return
-    with study.prepared(args, files, batch) as work:
-        Fit(args, wanted, work_plan, work).do()
+    with study.prepared(setup, files, batch) as work:
+        Fit(setup, wanted, work_plan, work).do()

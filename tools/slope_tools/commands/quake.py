@@ -5,7 +5,7 @@ from pathlib import Path
 from ..errors import SlopeError
 from ..options import number
 from ..survey import quake_motion as motions, quake_records as records
-from ..survey.quake import processed, write
+from ..survey.quake import Processing, processed, write
 
 EPILOG = """\
 RECORD: one file for each component, or one with all of them
@@ -48,7 +48,8 @@ def run(args):
     """Do the command; raises SlopeError on bad input. Prints what the motion is like and the line for the deck."""
     check_output(args)
     components = [component for path in args.records for component in records.read(path, args.unit)]
-    motion, steps = processed(components, args)
+    wanted = Processing(args.azimuth, args.baseline, args.window, args.band, args.peak, args.scale)
+    motion, steps = processed(components, wanted)
     about = {"records": [c.source for c in components], "processing": steps, **motions.measures(motion)}
     write(args.output, motion, about)
     print(text(args.output, about))

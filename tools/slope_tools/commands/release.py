@@ -1,18 +1,13 @@
 """slope release: the body that is released, below a polygon or from a scar, as rasters and lines of a deck."""
 import argparse
-import sys
 from pathlib import Path
 
+from .. import errors
 from ..case import release_files
-from ..errors import SlopeError
 from ..options import number
-from ..provenance import version
-from ..survey import polygons, release_scar, release_solve
-from ..survey.rasters import crs_name
-from ..survey.release import from_scar, from_shape, read_terrain
+from ..survey import release, release_scar
+from ..survey.release import SHAPES
 
-SHAPES = ("sphere", "ellipsoid", "plane", "slbl")
-COARSE = 50     # cells; a body of fewer is drawn with a coarse brush
 EPILOG = """\
 P: polygons as slope polygon takes them (GeoJSON, shapefile, CSV, WKT)
 shapes: sphere (default) through the ends of the fall line in the polygon; ellipsoid, the same, but as wide as the
@@ -63,107 +58,13 @@ def add_parser(commands, **kwargs):
 
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints the body's numbers before it writes any file."""
-    check(args)
-    raster = read_terrain(args.terrain)
-    geometry = None
-    if args.polygon:
-        crs = polygons.as_crs("--crs", args.crs) if args.crs else None
-        geometry = polygons.read_local(args.polygon, raster, local=args.local, crs=crs, terrain=args.terrain)
-    if args.scar:
-        area, surface, choices = from_scar(args, raster, geometry)
-    else:
-        area, surface, choices = from_shape(args, raster, geometry)
-    where = args.polygon or args.scar
-    slip = release_solve.slip_surface(area, release_solve.depths(area, surface), where)
-    found = release_solve.measures(area, slip)
-    print(text(choices, found, area.cell), flush=True)
-    doubts = warnings(choices, found, area.cell)
-    for line in doubts:
-        print(f"slope release: warning: {line}", file=sys.stderr)
-    about = {"slope_version": version(), "terrain": args.terrain, "polygon": args.polygon, **choices,
-             "body": found._asdict(), "cell": area.cell, "crs": crs_name(raster.crs),
-             "origin": {"east": float(raster.offset[0]), "north": float(raster.offset[1])},
-             "warnings": doubts}
-    release_files.write(args.output, args.terrain, raster, area, slip, about, geometry,
-                        f"{args.output.name}: {found.volume:,.0f} m\u00b3, up to {found.largest_depth:.3g} m deep")
-    print(f"wrote {', '.join(path.name for path in release_files.paths(args.output))}")
-
-
-def check(args):
-    """Check what can be checked before any reading; the shape that is not named is set."""
     release_files.check(args.output, [path for path in (args.terrain, args.polygon, args.scar) if path])
-    for name in ("depth", "volume"):
-        value = getattr(args, name)
-        if value is not None and not value > 0:
-            raise SlopeError(f"--{name}", "must be > 0", f"{value:g}")
-    if args.least < 0:
-        raise SlopeError("--least", "must be >= 0", f"{args.least:g}")
-    if args.scar:
-        for name in ("shape", "depth", "volume", "curvature", "dip", "direction"):
-            if getattr(args, name) is not None:
-                raise SlopeError(f"--{name}", "must not be given with --scar, whose depths are what they are")
-        return
-    if not args.polygon:
-        raise SlopeError("--polygon", "must be given, unless --scar says where the body is")
-    if args.shape is None:
-        args.shape = ("plane" if args.dip is not None or args.direction is not None else
-                      "slbl" if args.curvature is not None else "sphere")
-    check_shape(args)
-
-
-def check_shape(args):
-    """What goes with which shape."""
-    if args.shape == "plane":
-        if args.dip is None:
-            raise SlopeError("--dip", "must be given for a plane, degrees below the horizontal")
-        if not 0 < args.dip < 90:
-            raise SlopeError("--dip", "must be > 0 and < 90 degrees", f"{args.dip:g}")
-        if args.direction is not None and not 0 <= args.direction <= 360:
-            raise SlopeError("--direction", "must be a compass bearing, 0 to 360 degrees", f"{args.direction:g}")
-    elif args.dip is not None or args.direction is not None:
-        raise SlopeError("--dip" if args.dip is not None else "--direction", "must be given for a plane only",
-                         f"--shape {args.shape}")
-    if args.curvature is not None and args.shape != "slbl":
-        raise SlopeError("--curvature", "must be given for slbl only", f"--shape {args.shape}")
-    if args.shape != "plane" and args.depth is None and args.volume is None and args.curvature is None:
-        raise SlopeError("--depth", f"or --volume must be given for --shape {args.shape}"
-                         + (", or --curvature" * (args.shape == "slbl")))
-
-
-def text(choices, found, cell):
-    """What the user needs to know of the body before anything is written."""
-    shape = choices["shape"]
-    if shape == "scar":
-        what = f"scar of {choices['scar']} ({choices['scar_is']})"
-    elif shape == "plane":
-        what = (f"plane that dips {choices['dip_degrees']:.4g} degrees towards {choices['direction_degrees']:.4g}, "
-                f"{choices['drop_m']:.4g} m below the highest one")
-    elif shape == "slbl":
-        what = (f"sloping local base level, curvature {choices['curvature_per_m']:.4g} /m (tolerance "
-                f"{choices['tolerance_m']:.4g} m for cells of {cell:g} m)")
-    else:
-        toe, shoulder = (" ".join(f"{value:.1f}" for value in choices[end]) for end in ("toe", "shoulder"))
-        wide = f", {choices['width_m']:.4g} m wide" if shape == "ellipsoid" else ""
-        sagitta = choices["sagitta_m"]
-        what = (f"{shape} through toe {toe} and shoulder {shoulder}, {abs(sagitta):.4g} m "
-                f"{'below' if sagitta > 0 else 'above'} its chord of {choices['chord_m']:.4g} m{wide}")
-    return (f"{what}\n"
-            f"volume {found.volume:.10g} m3, largest depth {found.largest_depth:.4g} m, mean depth "
-            f"{found.mean_depth:.4g} m, area {found.area:.10g} m2 ({found.cells} cells of {cell:g} m)\n"
-            f"mean slope {found.mean_slope:.1f} degrees, of the slip surface {found.slip_slope:.1f}, towards "
-            f"{found.bearing:.0f} degrees from north; ground at {found.lowest:.1f} to {found.highest:.1f} m")
-
-
-def warnings(choices, found, cell):
-    """What makes the body doubtful."""
-    lines = []
-    if choices.get("sagitta_m", 1) < 0:
-        lines.append(f"the ground bulges above the line from toe to shoulder, and so does the {choices['shape']}: a "
-                     "smaller polygon, or --shape slbl?")
-    if found.cells < COARSE:
-        lines.append(f"the body covers {found.cells} cells of {cell:g} m: take a finer terrain")
-    if found.wall > 0.5 * found.largest_depth:
-        lines.append(f"the body is {found.wall:.3g} m deep at the rim of its area, where it ends in a wall: "
-                     + ("a wider polygon, or --shape ellipsoid?" if choices["shape"] == "sphere" else
-                        "is the polygon large enough?"))
-    return lines
+    wanted = release.Wanted(args.terrain, args.polygon, args.shape, args.depth, args.volume, args.curvature, args.dip,
+                            args.direction, args.scar, args.scar_is, args.least, args.crs, args.local)
+    body = release.body_of(wanted)
+    print(release.text(body), flush=True)
+    tell = errors.printer("release")
+    for line in body.warnings:
+        tell(line)
+    release_files.write_body(args.output, wanted, body)
+    print(f"wrote {', '.join(path.name for path in release_files.paths(args.output))}")

@@ -1,14 +1,15 @@
 """slope report: one self-contained HTML page on a study or a run, for the screen and for A4 paper.
 
-Order of the work: find the runs and read their results (report_data.py), find what maps and section share
-(report_ground.py, report_section.py), collect warnings and numbers (report_warnings.py, report_numbers.py), draw
-(report_maps.py, report_charts.py), fill the template (report_page.py), write.
+Order of the work: find the runs and read their results (data.py), find what maps and section share
+(ground.py, section.py), collect warnings and numbers (warnings.py, numbers.py), draw
+(maps_part.py, charts.py), fill the template (page.py), write.
 """
 import argparse
 from pathlib import Path
 
 from .. import disk
 from ..errors import SlopeError
+from ..report.asked import Asked
 from ..report.document import make, write_pictures
 from ..report.section import FALL
 
@@ -66,7 +67,7 @@ def run(args):
         raise SlopeError(args.folder, "must be an existing folder")
     if not output.absolute().parent.is_dir():
         raise SlopeError("-o", "must be in an existing folder", output)
-    page, html = make(args)
+    page, html = make(Asked(args.folder, args.shown, args.section, args.local, args.reference, args.converge))
     tables = {output.with_suffix(".section.csv"): page.section.table(),
               output.with_suffix(".numbers.csv"): page.numbers.table()}
     for path, text in {output: html, **tables}.items():

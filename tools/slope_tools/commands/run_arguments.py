@@ -1,17 +1,21 @@
 """Arguments of the commands that run decks."""
+import argparse
 from pathlib import Path
 
+from ..ensemble import designs
+from ..ensemble.setup import Road, Setup
 from ..options import count, number
 
 
-def add_deck(parser):
-    parser.add_argument("deck", metavar="DECK", type=Path,
-                        help="LAMMPS input deck with one fix deposit/grid; the plain files beside it are its data")
+def add_deck(parser, site=False):
+    parser.add_argument("deck", metavar="DECK|SITE" if site else "DECK", type=Path,
+                        help="LAMMPS input deck with one fix deposit/grid; the plain files beside it are its data"
+                             + "; or the folder that `slope site` made, whose standard study is run" * site)
 
 
-def add_runs(parser, road=False):
+def add_runs(parser, road=False, output=True):
     """Arguments of how the runs are made and what is measured; road: it must be given."""
-    parser.add_argument("-o", dest="output", metavar="DIR", required=True, type=Path, help="the study's folder")
+    parser.add_argument("-o", dest="output", metavar="DIR", required=output, type=Path, help="the study's folder")
     parser.add_argument("--np", type=count, default=1, metavar="N", help="MPI ranks of each run (default 1)")
     parser.add_argument("--jobs", type=count, metavar="J",
                         help="runs at a time (default: as many as the cores of this machine allow)")
@@ -33,3 +37,49 @@ def add_runs(parser, road=False):
                              "see DIR")
     parser.add_argument("--slurm", metavar="OPTIONS", default="",
                         help="options of sbatch for --engine slurm, such as '--partition=long --time=2:00:00'")
+
+
+def add_repeats(parser):
+    """--repeat and --equally-good, of the commands that make runs."""
+    parser.add_argument("--repeat", metavar="NAME=V1,V2,...", action="append", default=[],
+                        help="values of a variable that nobody can prefer, called seed or ...offset: one more run "
+                             "each, which shows the scatter by chance; A:B:STEP stands for A, A + STEP, ... up to B")
+    parser.add_argument("--equally-good", metavar="NAME,...", default="",
+                        help="variables of another name whose values are equally good, so that --repeat takes them")
+
+
+def add_sample(parser) -> None:
+    """--sample, --vary, --design and --seed."""
+    parser.add_argument("--sample", metavar="N", type=int,
+                        help="an ensemble: N points of the distributions of --vary, instead of a product of lists")
+    parser.add_argument("--vary", metavar="NAME=DISTRIBUTION", action="append", default=[],
+                        help="a variable of the ensemble: LO:HI or uniform:LO:HI, loguniform:LO:HI, "
+                             "triangular:LO:MODE:HI, normal:MEAN:DEVIATION:LO:HI, list:V1@WEIGHT,V2@WEIGHT,...")
+    parser.add_argument("--design", choices=designs.KINDS, default=designs.SOBOL,
+                        help="sobol (default): more points can be added, those there are stay; lhs: Latin hypercube, "
+                             "whose number of points is final")
+    parser.add_argument("--seed", metavar="S", type=int, default=1, help="of the design (default 1)")
+
+
+def add_intensity(parser):
+    parser.add_argument("--intensity", metavar="NAME",
+                        help="variable of --set that is the intensity of what sets the mass off (default: the one "
+                             "called peak, pga or ...intensity); needs --road")
+    parser.add_argument("--more-than", metavar="V1,V2,...", type=volumes, default=[],
+                        help="volumes on the road, m3, that are exceeded with a probability at each intensity "
+                             "(default: three round ones)")
+
+
+def volumes(text):
+    """argparse type: different volumes >= 0, rising."""
+    found = [number(part) for part in text.split(",")]
+    if any(one < 0 for one in found) or len(set(found)) < len(found):
+        raise argparse.ArgumentTypeError(f"must be different volumes >= 0, with commas between, got {text!r}")
+    return sorted(found)
+
+
+def setup_of(args) -> Setup:
+    """What these arguments say."""
+    road = Road(args.road, args.cut_angle, args.mesh, args.local) if args.road else None
+    return Setup(args.deck, args.output, args.np, args.jobs, road, args.lmp, args.launcher, args.engine, args.slurm,
+                 args.dry_run)

@@ -9,7 +9,7 @@ from ..case.settings import check_settings, one_value_each
 from ..ensemble import repeats, study
 from ..ensemble.sensitivity import NAMES, OF_ROAD, OF_TRAVEL, collect, plan, quantities
 from ..errors import SlopeError
-from . import run_arguments as run_arguments_command
+from . import run_arguments
 
 EPILOG = """\
 units: metres, seconds, m3 of ground (bulk).
@@ -33,20 +33,20 @@ def add_parser(commands, **kwargs):
         "sensitivity", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
         description="One variable of a deck at a time: what it does to the volumes, and how far one run can be "
                     "trusted.", **kwargs)
-    run_arguments_command.add_deck(parser)
+    run_arguments.add_deck(parser)
     parser.add_argument("--vary", metavar="NAME=V1,V2,...", action="append", default=[],
                         help="values of an index variable of the deck that are a choice, each in a run of its own; "
                              "A:B:STEP stands for A, A + STEP, ... up to B")
     parser.add_argument("--converge", metavar="NAME=V1,V2,...",
                         help="sizes of the balls, or of what else shall be small: a line through the results, and its "
                              "end at 0; with --repeat at each size, without --vary")
-    repeats.add_arguments(parser)
+    run_arguments.add_repeats(parser)
     parser.add_argument("--set", metavar="NAME=VALUE", action="append", default=[],
                         help="value of an index variable in the base run (default: the deck's)")
     parser.add_argument("--of", metavar="NAME,...",
                         help=f"what is looked at (default {OF_ROAD}; {OF_TRAVEL} of --converge without a road), of "
                              f"{', '.join(NAMES)}")
-    run_arguments_command.add_runs(parser)
+    run_arguments.add_runs(parser)
     return parser
 
 
@@ -58,11 +58,14 @@ def run(args):
     for name in kinds["vary"].keys() & repeated.keys():
         raise SlopeError("--repeat", "must not name a variable of --vary", name)
     repeats.check(list(repeated), args.equally_good)
-    of = quantities(args)
+    of = quantities(args.of, args.road is not None, args.converge is not None)
+    setup = run_arguments.setup_of(args)
     if args.converge:
+        if args.vary:
+            raise SlopeError("--converge", "must stand without --vary: a study of one kind at a time", args.vary[0])
         from ..ensemble import size_study
-        return size_study.run(args, base, repeated, of, {name: NAMES[name] for name in of})
-    todo = plan(args, base, kinds)
+        return size_study.run(setup, args.converge, base, repeated, of, {name: NAMES[name] for name in of})
+    todo = plan(setup, base, kinds)
     settings = {name: list(dict.fromkeys(one.chosen[name] for one in todo if name in one.chosen))
                 for name in (*base, *kinds["vary"], *kinds["repeat"])}
-    study.perform(args, settings, todo, lambda todo, work: collect(args, base, of, todo, work))
+    study.perform(setup, settings, todo, lambda todo, work: collect(setup, base, of, todo, work))

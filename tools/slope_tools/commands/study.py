@@ -8,11 +8,11 @@ from pathlib import Path
 
 from ..case import decks
 from ..case.settings import check_settings, one_value_each
-from ..ensemble import intensity, repeats, results, sample
+from ..ensemble import intensity, repeats, results, sample, site_study
 from ..ensemble.size_error import SizeErrors
 from ..ensemble.study import check_names, check_thresholds, perform
 from ..errors import SlopeError
-from .run_arguments import add_deck, add_runs
+from .run_arguments import add_deck, add_intensity, add_repeats, add_runs, add_sample, setup_of
 
 EPILOG = """\
 units: metres, seconds, m3 of ground (bulk); thresholds of --exceed in metres.
@@ -27,6 +27,9 @@ an ensemble: 64 runs with values drawn from distributions, how likely a volume i
   tools/slope study in.collapse --sample 64 --vary friction=20:40 --vary rolling=triangular:0:0:0.2 \\
       --road road.geojson -o out
 
+everything of a site that `slope site ... -o mine` made: rolling resistances, repeats, sizes of balls, the report:
+  tools/slope study mine
+
 Every run has a folder of its own in DIR, and is not repeated once it is finished. Over all runs: DIR/study.csv,
 DIR/combinations.csv (mean and scatter), DIR/study.yaml, and the maps envelope_* (largest thickness) and exceedance_*
 (share of the runs above a thickness).
@@ -38,11 +41,11 @@ def add_parser(commands, **kwargs):
     parser = commands.add_parser(
         "study", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
         description="Run one deck over the product of lists of its variables.", **kwargs)
-    add_deck(parser)
+    add_deck(parser, site=True)
     parser.add_argument("--set", metavar="NAME=V1,V2,...", action="append", default=[],
                         help="values of an index variable of the deck; A:B:STEP stands for A, A + STEP, ... up to B")
-    sample.add_arguments(parser)
-    repeats.add_arguments(parser)
+    add_sample(parser)
+    add_repeats(parser)
     parser.add_argument("--size-error", metavar="FILE", type=Path,
                         help="converge.yaml of `slope sensitivity --converge`: its error at the size of these balls "
                              "counts in the conservative volume")
@@ -55,13 +58,17 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--of", metavar="NAME",
                         help="quantity of the hazard curve of an ensemble, a column of study.csv (default: "
                              "remove_on_road_m3; without a road distance_99_m)")
-    intensity.add_arguments(parser)
-    add_runs(parser)
+    add_intensity(parser)
+    add_runs(parser, output=False)
     return parser
 
 
 def run(args):
     """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
+    if args.deck.is_dir():
+        return run_site(args)
+    if args.output is None:
+        raise SlopeError("-o", "must be given, the study's folder")
     settings = check_settings(args.set, args.deck)
     repeated = check_settings(args.repeat, args.deck, "--repeat")
     repeats.check(list(repeated), args.equally_good)
@@ -80,8 +87,24 @@ def run(args):
             raise SlopeError("--size-error", "needs --road: it is the error of the volume to remove", args.size_error)
         errors = SizeErrors(args.size_error, "remove_m3")
         errors.check(settings, defaults)
-    return perform(args, {**settings, **repeated}, todo,
-                   lambda todo, work: results.collect(args, settings, repeated, errors, todo, work, thresholds))
+    setup = setup_of(args)
+    questions = results.Questions(settings, repeated, thresholds, errors, None, args.intensity, args.more_than)
+    return perform(setup, {**settings, **repeated}, todo,
+                   lambda todo, work: results.collect(setup, questions, todo, work))
+
+
+def run_site(args):
+    """The standard study of a site's folder, and the report."""
+    for option in ("set", "repeat", "vary", "sample", "size_error", "road", "of", "intensity", "equally_good",
+                   "output"):
+        if getattr(args, option):
+            raise SlopeError("-o" if option == "output" else f"--{option.replace('_', '-')}", "must not be given with "
+                             f"the folder of a site: {args.deck / 'site.yaml'} says what is run", getattr(args, option))
+    study = site_study.run(args.deck, setup_of(args))
+    if study:
+        from ..report import document
+        from ..report.asked import Asked
+        print("\n".join(document.write(Asked(study), args.deck / "report.html")))
 
 
 def run_ensemble(args, settings, repeated, thresholds, defaults):
@@ -101,7 +124,7 @@ def run_ensemble(args, settings, repeated, thresholds, defaults):
     check_names(todo)
     sample.check_growth(args.output, plan)
     several = sample.settings_of(todo)
-    perform(args, {**several, **repeated}, todo,
-            lambda todo, work: results.collect(args, several, repeated, None, todo, work, thresholds,
-                                               ensemble.Order(plan, of, levels)),
+    setup = setup_of(args)
+    questions = results.Questions(several, repeated, thresholds, None, ensemble.Order(plan, of, levels))
+    perform(setup, {**several, **repeated}, todo, lambda todo, work: results.collect(setup, questions, todo, work),
             begin=lambda: sample.keep(args.output, plan))

@@ -1,26 +1,10 @@
-"""slope terrain: survey rasters to the plain terrain.asc that `region terrain` reads, with a sidecar.
-
-Order of the work: read, merge, fill holes, crop or resample, move to the local origin, write.
-"""
+"""slope terrain: survey rasters to the plain terrain.asc that `region terrain` reads, with a sidecar."""
 import argparse
-import math
 from pathlib import Path
-
-import numpy as np
-import rasterio
-import rasterio.warp
-from affine import Affine
-from rasterio.crs import CRS
-from rasterio.errors import CRSError
 
 from ..errors import SlopeError
 from ..options import number
-from ..survey import fggml, rasters
-from ..survey.crs import box, require_metres, warn_of_stretch
-from ..survey.holes import fill, small_holes
-from ..survey.rasters import Raster
-from ..survey.resampling import regrid
-from ..survey.terrain import declare, merge, read_fggml
+from ..survey import local_terrain
 
 EPILOG = """\
 units: metres for heights, --cell, and coordinates; N of --fill is a number of cells of the input.
@@ -65,43 +49,14 @@ def add_parser(commands, **kwargs):
 
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints what was done, a summary and the line for the deck."""
-    crs, origin = check(args)
-    steps = []  # what was done, for stdout and the sidecar
-
-    def tell(step):
-        steps.append(step)
-        print(step)
-
-    cell = args.cell
-    if any(map(fggml.is_one, args.inputs)):
-        raster, crs, cell = read_fggml(args.inputs, crs, cell, tell)
-    else:
-        raster = merge([declare(path, crs, tell) for path in args.inputs], args.inputs, tell)
-        crs = crs or raster.crs
-    require_metres(crs, args.inputs[0])
-    if not np.isfinite(raster.z).any():
-        raise SlopeError(", ".join(args.inputs), "must have a height, all cells are NODATA")
-    filled = 0
-    if args.fill:
-        holes, count = small_holes(np.isnan(raster.z), args.fill)
-        filled = int(holes.sum())
-        raster = raster._replace(z=fill(raster.z, holes))
-        tell(f"filled {count} NODATA holes of at most {args.fill} cells, {filled} cells")
-    raster = regrid(raster, crs, cell, args.bounds, tell)
-    if crs is not None:
-        warn_of_stretch(raster)
-
-    z = np.round(raster.z, 3) + 0.0  # as they are written; + 0.0 because of -0.0
-    if origin is None:
-        origin = tuple(math.floor(corner + 1e-6) for corner in raster.transform * (0, len(z)))  # 1e-6: rounding noise
-    local = Raster(z, Affine.translation(-origin[0], -origin[1]) * raster.transform, crs, origin)
-    about = rasters.write_asc_local(args.output, local,
-                                    {"filled_cells": filled, "sources": args.inputs, "steps": steps})
-    print(summary(args.output, about))
+    wanted = check(args)
+    about = local_terrain.make(args.inputs, args.output, wanted, print)
+    quoted = f'"{args.output}"' if " " in str(args.output) else args.output
+    print(f"{local_terrain.summary(args.output, about)}\nregion ground terrain {quoted}")
 
 
 def check(args):
-    """Check what can be checked before any reading; return the wanted CRS and origin, each None if not given."""
+    """Check what can be checked before any reading; return what is wanted."""
     if args.output.suffix != ".asc" or args.output.is_dir():
         raise SlopeError("-o", "must be a file that ends in .asc", args.output)
     if not args.output.parent.is_dir():
@@ -109,20 +64,7 @@ def check(args):
     for path in args.inputs:
         if args.output.exists() and Path(path).exists() and args.output.samefile(path):
             raise SlopeError("-o", "must not be an input", args.output)
-    if args.cell is not None and args.cell <= 0:
-        raise SlopeError("--cell", "must be > 0", f"{args.cell:g}")
-    if args.fill < 0:
-        raise SlopeError("--fill", "must be >= 0", args.fill)
-    if args.bounds and not (args.bounds[0] < args.bounds[2] and args.bounds[1] < args.bounds[3]):
-        raise SlopeError("--bounds", "W S E N must have W < E and S < N", box(args.bounds))
-    crs = origin = None
-    if args.crs:
-        try:
-            with rasterio.Env():  # GDAL's own message is not for stderr
-                crs = CRS.from_user_input(args.crs)
-        except CRSError:
-            raise SlopeError("--crs", "must be a CRS such as EPSG:6677", args.crs) from None
-        require_metres(crs, "--crs")
+    origin = None
     if args.origin != ["auto"]:
         try:
             origin = tuple(map(number, args.origin))
@@ -130,15 +72,6 @@ def check(args):
             origin = ()
         if len(origin) != 2:
             raise SlopeError("--origin", "must be auto or two numbers, E N", " ".join(args.origin))
-    return crs, origin
-
-
-def summary(path, about):
-    """What the user needs to know of the written terrain, and the line for the deck."""
-    size, extent, height, origin = (about[key] for key in ("size", "extent", "height", "origin"))
-    quoted = f'"{path}"' if " " in str(path) else path
-    return (f"{path}: {size['columns']} x {size['rows']} cells of {about['cell']:.6g} m, "
-            f"x {extent['xlo']:.3f} to {extent['xhi']:.3f}, y {extent['ylo']:.3f} to {extent['yhi']:.3f}, "
-            f"z {height['min']:.3f} to {height['max']:.3f} m, {about['nodata_cells']} NODATA cells, "
-            f"0 0 at {origin['east']:.10g} {origin['north']:.10g}\n"
-            f"region ground terrain {quoted}")
+    wanted = local_terrain.Wanted(args.crs, origin, args.cell, args.bounds, args.fill)
+    local_terrain.checked_crs(wanted)
+    return wanted

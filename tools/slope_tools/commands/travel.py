@@ -1,15 +1,11 @@
-"""slope travel: where balls come to rest, as cumulative distributions along and across the slope, over several runs."""
+"""slope travel: where balls come to rest, along and across the slope, over several runs."""
 import argparse
 from pathlib import Path
 
 from .. import disk, errors
-from ..deposit import reach, travel
-from ..deposit.travel import MOVING, distribution, each, plan, read, spread, statistics, write_balls, write_csv
-from ..errors import SlopeError
+from ..deposit import travel
 from ..options import number
-from ..survey import rasters
 
-DIRECTIONS = "along", "across"
 EPILOG = """\
 units: metres, degrees. A dump is text as LAMMPS' dump custom writes it, with the columns id x y z in any place; its
 last snapshot counts. Name DUMPs before other options.
@@ -58,47 +54,10 @@ def axis(text):
 
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints the percentiles."""
-    for name in DIRECTIONS:
-        limits = getattr(args, name)
-        if limits and not limits[0] < limits[1]:
-            raise SlopeError(f"--{name}", "LO must be < HI", f"{limits[0]:g} {limits[1]:g}")
-    if args.start and len(args.start) not in (1, len(args.dumps)):
-        raise SlopeError("--start", f"must be one dump, or one for each of the {len(args.dumps)} runs", len(args.start))
-    if len(set(args.dumps)) < len(args.dumps):
-        raise SlopeError("DUMP", "must be another one for each run")
+    wanted = travel.Wanted(args.axis, args.origin, args.along, args.across, args.type)
+    travel.check(args.dumps, args.start, wanted)
     disk.check_folder(args.output)
-    starts = args.start or [None]
-    starts *= len(args.dumps) // len(starts)
-    arrivals = [read(path, start, args) for path, start in
-                rasters.progress(list(zip(args.dumps, starts)), "reading the dumps")]
-    warnings = []
-    warn = errors.warner("travel", warnings)
-    for one in arrivals:
-        if one.moving:
-            warn(f"{one.name}: {one.moving} of {len(one.id)} balls are faster than {MOVING:g} m/s: they have not "
-                 f"arrived")
-        if one.missing:
-            warn(f"{one.name}: {one.missing} of {one.missing + len(one.id)} balls of the start are not there: left out")
-    tables = {name: distribution(arrivals, name, getattr(args, name), warn) for name in DIRECTIONS}
-    about = {"axis": {"along": args.axis, "across": args.axis + 90, "origin": args.origin}, "types": args.type,
-             "balls": sum(len(one.id) for one in arrivals), "runs": len(arrivals),
-             **{name: statistics([one.at[name] for one in arrivals]) for name in DIRECTIONS}}
-    single = [each(one) for one in arrivals]
-    if args.start:
-        about["travel"] = statistics([plan(one.place - one.start) for one in arrivals])
-        about["runout"] = {key: spread([one["runout"][key] for one in single]) for key in
-                           ("distance", "drop", "reach_angle")}
-        about["runout"]["quantiles"] = [
-            {"share": share, **{key: spread([one["runout"]["quantiles"][k][key] for one in single])
-                                for key in ("distance", "reach_angle")}} for k, share in enumerate(reach.SHARES)]
-    about["each_run"] = single
-    about["warnings"] = warnings
-    with disk.complete(args.output) as new:
-        write_csv(new / "travel.csv", arrivals, tables)
-        write_balls(new / "balls.csv", arrivals)
-        travel.draw(new / "travel.png", arrivals, tables, args)
-        about["files"] = ["travel.csv", "balls.csv", "travel.png", "travel.yaml"]
-        disk.write_yaml(new / "travel.yaml", about, "slope travel: arrival positions; m, degrees")
+    about = travel.of_dumps(args.dumps, args.start, wanted, args.output, errors.printer("travel"))
     print(summary(about, args.output))
 
 

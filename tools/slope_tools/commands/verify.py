@@ -11,7 +11,7 @@ from ..errors import SlopeError
 from ..options import count
 from ..programs import find_lmp
 from ..validation import verification
-from ..validation.verify import NAME, Runner, compared, judge, line, provenance, write
+from ..validation.verify import compared, judge, line, made, NAME, Runner, write
 
 EPILOG = """\
 units: SI; each claim states its own.
@@ -62,7 +62,8 @@ def run(args):
             wanted = [one for claim in claims for one in (*claim.runs, *claim.control.runs)]
             runner.do(wanted, args.jobs or jobs.cores())
             outcomes = [judge(claim, runner) for claim in claims]
-            about = provenance(args, lmp, runner, outcomes, time.monotonic() - began)
+            words = ["tools/slope verify"] + ["--quick"] * args.quick + [f"--only {args.only}"] * bool(args.only)
+            about = made(" ".join(words), lmp, runner, outcomes, time.monotonic() - began)
             write(args.output, outcomes, about, peers)
     except OSError as error:
         raise SlopeError(error.filename or args.output, f"cannot be used: {error.strerror}") from error

@@ -4,7 +4,7 @@ import os
 import re
 import zlib
 from pathlib import Path
-from typing import NamedTuple
+from typing import List, NamedTuple, Tuple
 
 import numpy as np
 
@@ -59,6 +59,16 @@ def last(path, wanted=()):
         raise SlopeError(path, f"must have each ball once at step {step}", f"id {ids[count.argmax()]:g} "
                                                                            f"{count.max()} times")
     return Snapshot(path, step, of)
+
+
+def frames(path) -> List[Tuple[List[str], np.ndarray]]:
+    """All snapshots of a short dump that the tools asked for: names of the columns, a row per ball as in the file."""
+    found = []
+    for part in Path(path).read_text(encoding="ascii").split("ITEM: ATOMS ")[1:]:
+        head, rows = part.split("ITEM:")[0].split("\n", 1)
+        columns = head.split()
+        found.append((columns, np.array(rows.split(), float).reshape(-1, len(columns))))
+    return found
 
 
 def last_text(path):

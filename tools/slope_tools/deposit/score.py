@@ -17,6 +17,7 @@ from . import reach
 from .connected import connected, top
 from .volume_files import text
 
+THRESHOLD = 0.1   # m
 RASTERS = {".tif", ".tiff", ".asc", ".vrt", ".img", ".bil"}
 FULL = 1e-9       # a smaller share of a cell, or of the largest thickness, is rounding
 

@@ -1,19 +1,35 @@
 """Where balls come to rest: cumulative distributions along and across the slope, over several runs."""
 import csv
 import math
-from typing import NamedTuple, Optional
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence
 
 import numpy as np
 
+from .. import disk
 from ..drawing import figures
 from ..drawing.figures import plt
 from ..errors import SlopeError
+from ..survey import rasters
 from . import dumps, reach
 
+DIRECTIONS = "along", "across"
 SHARES = {"min": 0, "p1": 1, "p5": 5, "p10": 10, "p25": 25, "p50": 50, "p75": 75, "p90": 90, "p95": 95, "p99": 99,
           "max": 100}        # percentiles
 MOVING = 0.1                 # m/s; a ball that is faster has not arrived
 POINTS = 200                 # about as many positions in travel.csv per direction
+
+
+class Wanted(NamedTuple):
+    """Of which balls, in which directions."""
+    axis: float = 0.0                                   # degrees from x towards y: along the slope
+    origin: Sequence[float] = (0.0, 0.0)                # where both coordinates are 0, m
+    along: Optional[Sequence[float]] = None             # limits, m; None: all balls
+    across: Optional[Sequence[float]] = None
+    types: Optional[Sequence[int]] = None               # atom types; None: all
+
+    def limits(self, name: str) -> Optional[Sequence[float]]:
+        """Of a direction."""
+        return self.along if name == "along" else self.across
 
 
 class Arrival(NamedTuple):
@@ -30,22 +46,81 @@ class Arrival(NamedTuple):
     missing: int                    # balls of the start that are not there now
 
 
+def check(paths: Sequence[str], starts: Optional[Sequence[str]], wanted: Wanted) -> None:
+    """Raise SlopeError for what can be seen before any reading."""
+    for name in DIRECTIONS:
+        limits = wanted.limits(name)
+        if limits and not limits[0] < limits[1]:
+            raise SlopeError(f"--{name}", "LO must be < HI", f"{limits[0]:g} {limits[1]:g}")
+    if starts and len(starts) not in (1, len(paths)):
+        raise SlopeError("--start", f"must be one dump, or one for each of the {len(paths)} runs", len(starts))
+    if len(set(paths)) < len(paths):
+        raise SlopeError("DUMP", "must be another one for each run")
+
+
+def of_dumps(paths: Sequence[str], starts: Optional[Sequence[str]], wanted: Wanted, folder,
+             tell: Callable[[str], None] = lambda text: None) -> Dict[str, Any]:
+    """Read the dumps of the final states (and of the start), write the folder; return what is in its travel.yaml.
+
+    tell: what gets the warnings.
+    """
+    check(paths, starts, wanted)
+    each_start: List[Optional[str]] = list(starts or [None])
+    each_start *= len(paths) // len(each_start)
+    arrivals = [read(path, start, wanted) for path, start in
+                rasters.progress(list(zip(paths, each_start)), "reading the dumps")]
+    warnings: List[str] = []
+
+    def warn(text):
+        warnings.append(text)
+        tell(text)
+
+    for one in arrivals:
+        if one.moving:
+            warn(f"{one.name}: {one.moving} of {len(one.id)} balls are faster than {MOVING:g} m/s: they have not "
+                 f"arrived")
+        if one.missing:
+            warn(f"{one.name}: {one.missing} of {one.missing + len(one.id)} balls of the start are not there: left out")
+    tables = {name: distribution(arrivals, name, wanted.limits(name), warn) for name in DIRECTIONS}
+    about: Dict[str, Any] = {
+        "axis": {"along": wanted.axis, "across": wanted.axis + 90, "origin": wanted.origin}, "types": wanted.types,
+        "balls": sum(len(one.id) for one in arrivals), "runs": len(arrivals),
+        **{name: statistics([one.at[name] for one in arrivals]) for name in DIRECTIONS}}
+    single = [each(one) for one in arrivals]
+    if starts:
+        about["travel"] = statistics([plan(one.place - one.start) for one in arrivals])
+        about["runout"] = {key: spread([one["runout"][key] for one in single]) for key in
+                           ("distance", "drop", "reach_angle")}
+        about["runout"]["quantiles"] = [
+            {"share": share, **{key: spread([one["runout"]["quantiles"][k][key] for one in single])
+                                for key in ("distance", "reach_angle")}} for k, share in enumerate(reach.SHARES)]
+    about["each_run"] = single
+    about["warnings"] = warnings
+    with disk.complete(folder) as new:
+        write_csv(new / "travel.csv", arrivals, tables)
+        write_balls(new / "balls.csv", arrivals)
+        draw(new / "travel.png", arrivals, tables, wanted)
+        about["files"] = ["travel.csv", "balls.csv", "travel.png", "travel.yaml"]
+        disk.write_yaml(new / "travel.yaml", about, "slope travel: arrival positions; m, degrees")
+    return about
+
+
 # --- the balls ---
 
-def read(path, start, args):
+def read(path, start, wanted: Wanted) -> Arrival:
     """The Arrival of a run."""
-    rest = chosen(dumps.last(path, ("type", "vx", "vy", "vz", "diameter", "radius")), args.type)
+    rest = chosen(dumps.last(path, ("type", "vx", "vy", "vz", "diameter", "radius")), wanted.types)
     place = rest.place
-    turn = math.radians(args.axis)
+    turn = math.radians(wanted.axis)
     way = np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
     way[np.abs(way) < 1e-15] = 0                     # along y is along y
-    along, across = way @ (place[:, :2] - args.origin).T
+    along, across = way @ (place[:, :2] - wanted.origin).T
     moving = None
     if all(key in rest.of for key in ("vx", "vy", "vz")):
         moving = int((np.hypot(np.hypot(rest.of["vx"], rest.of["vy"]), rest.of["vz"]) > MOVING).sum())
     before, top, missing = None, None, 0
     if start:
-        first = chosen(dumps.last(start, ("type",)), args.type)
+        first = chosen(dumps.last(start, ("type",)), wanted.types)
         ids, order = first.of["id"], np.argsort(first.of["id"])
         same = order[np.minimum(np.searchsorted(ids, rest.of["id"], sorter=order), len(ids) - 1)]
         other = rest.of["id"][ids[same] != rest.of["id"]]
@@ -175,7 +250,7 @@ def write_balls(path, arrivals):
                              sorted(zip(one.id.tolist(), np.column_stack(columns))))
 
 
-def draw(path, arrivals, tables, args):
+def draw(path, arrivals, tables, wanted: Wanted) -> None:
     """The distributions, as the paper's Figure 3: a line for the median of the runs, a band from lowest to highest."""
     several = len(arrivals) > 1
     with plt.rc_context(figures.STYLE):
@@ -186,9 +261,9 @@ def draw(path, arrivals, tables, args):
                                   lw=0, label=f"lowest to highest of {len(arrivals)} runs")
             axes.step(at, np.median(shares, axis=0), where="post", color=colour, lw=1.4,
                       label="median of the runs" if several else f"{len(arrivals[0].id)} balls")
-            turn = (args.axis + (90 if name == "across" else 0)) % 360
+            turn = (wanted.axis + (90 if name == "across" else 0)) % 360
             towards = {0: "x", 90: "y", 180: "-x", 270: "-y"}.get(turn, f"{turn:g} degrees from x to y")
-            axes.set(xlim=getattr(args, name) or (at[0], at[-1]), ylim=(0, 1),
+            axes.set(xlim=wanted.limits(name) or (at[0], at[-1]), ylim=(0, 1),
                      xlabel=f"{name} the slope, towards {towards} (m)")
             axes.grid(color="#dddddd", lw=0.5)
             axes.legend(loc="upper left")

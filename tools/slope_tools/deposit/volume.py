@@ -1,16 +1,117 @@
-"""What must be removed from a road, per mesh cell, above a cut surface."""
+"""What must be removed from a road, per mesh cell, above a cut surface.
+
+Order of the work: read the run, the road and its axis; cut (cut.py); sum per mesh cell; write tables and maps.
+"""
 import math
+from pathlib import Path
+from typing import Any, Callable, Dict, List, NamedTuple, Optional
 
 import numpy as np
 
-from .. import geometry
+from .. import disk, geometry
 from ..errors import SlopeError
 from ..geometry import Mesh
-from . import cut
+from ..survey import polygons, rasters
+from ..survey.lines import read_local
+from ..survey.rasters import crs_name
+from . import cut, deposit, volume_files
+from .road_axis import along, eastward, middle, stretches
 
+CUT_ANGLE = 30.0       # degrees
+BLOCKED = 0.1          # m
+MOST_SAMPLES = 32
 SAMPLES = 4            # parts of a cell along a side
 MOST_MESH = 4_000_000  # mesh cells
 EXACT = 1e-13          # of the deposit's volume: volumes are rounded to this once, so that they add up in every output
+
+
+class Wanted(NamedTuple):
+    """What is asked of a deposit: from which road how much must be removed."""
+    road: Path                          # polygon: GeoJSON, shapefile, CSV or WKT
+    mesh: float                         # m, side of the mesh cells
+    cut_angle: float = CUT_ANGLE        # degrees, rise of the cut surface from the road's edges
+    local: bool = False                 # road and axis are in local metres
+    axis: Optional[Path] = None         # of the road; None: its middle
+    bulk: Optional[float] = None        # another bulk factor, for which the volumes are given too
+    blocked: float = BLOCKED            # m; the road is blocked where the deposit is thicker
+    samples: int = SAMPLES              # parts of a cell along a side
+
+
+class Removal(NamedTuple):
+    """What must be removed from a road, and all that write() needs."""
+    run: deposit.Deposit
+    road: Any                           # polygon in local metres, the part of it in the grid
+    axis: Any                           # its lines
+    mesh: Mesh
+    result: "Result"
+    profile: Dict[str, np.ndarray]      # along the axis
+    factor: Optional[float]             # by which the volumes change at the other bulk factor
+    about: Dict[str, Any]               # content of volume.yaml
+
+
+def of_run(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], None] = lambda text: None) -> Removal:
+    """The volume to remove of the run whose fix deposit/grid wrote PREFIX; tell: what gets the warnings.
+
+    terrain: the run's, whose sidecar has the CRS (default: terrain.asc beside PREFIX). Raises SlopeError on bad input.
+    """
+    check(wanted)
+    warnings: List[str] = []
+
+    def warn(text):
+        warnings.append(text)
+        tell(text)
+
+    run = deposit.read(prefix, terrain, warn)
+    mesh = make_mesh(wanted.mesh, run.raster)
+    road = in_grid(polygons.read_local(wanted.road, run.raster, wanted.local), run.raster, wanted.road, warn)
+    if wanted.axis:
+        axis, source = eastward(read_local(wanted.axis, run.raster, wanted.local, "axis")), str(wanted.axis)
+    else:
+        axis, source = middle(road)
+    try:
+        result = evaluate(run, road, wanted.cut_angle, mesh, wanted.samples)
+    except cut.NoGround as error:
+        x, y = run.raster.transform * error.args[0]
+        raise SlopeError(wanted.road, "ground at the edge of the road must have a height, it has none at",
+                         f"{x:.3f} {y:.3f} (local metres)") from None
+    profile = along(axis, run, result.removed, wanted.blocked, wanted.axis or wanted.road)
+    about = totals(wanted, run, mesh, result, profile, source)
+    if result.unknown > 0:
+        warn(f"{result.unknown:.6g} m3 lie on cells without ground, beside the road: not counted as to be removed")
+        about["volume"]["unknown"] = result.unknown
+    about["warnings"] = warnings
+    return Removal(run, road, axis, mesh, result, profile, wanted.bulk / run.bulk if wanted.bulk else None, about)
+
+
+def write(found: Removal, folder: Path, picture: bool = True) -> None:
+    """Tables, rasters, GeoJSON, map and volume.yaml, all of them or none; found.about gets their names."""
+    run, mesh, result, about = found.run, found.mesh, found.result, found.about
+    with disk.complete(folder) as new:
+        volume_files.write_csv(new / "volume.csv", run, mesh, result, found.factor)
+        volume_files.write_geojson(new / "volume.geojson", run, mesh, result, found.factor)
+        rasters.write_geotiff(new / "volume.tif", {"thickness to remove (m)": np.where(
+            np.isfinite(run.base) | (run.raster.z > 0), result.removed, np.nan)}, run.raster)
+        rasters.write_geotiff(new / "volume_mesh.tif", {"volume to remove (m3)": result.volume},
+                              run.raster._replace(transform=mesh.transform))
+        volume_files.write_profile(new / "axis.csv", run, found.profile)
+        if picture:
+            volume_files.draw(new / "volume.png", run, found.road, found.axis, mesh, result, about)
+        about["files"] = sorted(path.name for path in new.iterdir()) + ["volume.yaml"]
+        disk.write_yaml(new / "volume.yaml", about, "slope volume: what must be removed; m, m2, m3, degrees")
+
+
+def check(wanted: Wanted) -> None:
+    """Check what can be checked before any reading."""
+    if not 0 < wanted.cut_angle < 90:
+        raise SlopeError("--cut-angle", "must be > 0 and < 90 degrees", f"{wanted.cut_angle:g}")
+    if wanted.mesh <= 0:
+        raise SlopeError("--mesh", "must be > 0", f"{wanted.mesh:g}")
+    if wanted.bulk is not None and wanted.bulk <= 0:
+        raise SlopeError("--bulk", "must be > 0", f"{wanted.bulk:g}")
+    if wanted.blocked < 0:
+        raise SlopeError("--blocked", "must be >= 0", f"{wanted.blocked:g}")
+    if not (2 <= wanted.samples <= MOST_SAMPLES and wanted.samples % 2 == 0):
+        raise SlopeError("--samples", f"must be even, 2 to {MOST_SAMPLES}", wanted.samples)
 
 
 def make_mesh(size, raster):
@@ -67,3 +168,45 @@ def evaluate(run_, road, angle, mesh, samples=SAMPLES):
     removed = cut.removed(run_.raster.z, cut.Ground(run_.base), geometry.to_index(road, run_.raster), tangent, mesh,
                           samples)
     return Result(run_, road, mesh, removed)
+
+
+def totals(wanted: Wanted, run_, mesh, result, profile, source) -> Dict[str, Any]:
+    """The content of volume.yaml."""
+    place = run_.raster
+    volume = {
+        "deposit": result.total(result.deposit),
+        "remove": result.total(result.volume),
+        "remove_on_road": result.total(result.road),
+        "remove_beside_road": result.total(result.beside),
+        "remove_where_cut_below_ground": result.steep,
+    }
+    volume["stays"] = round(volume["deposit"] - volume["remove"], result.digits)
+    thickest = int(np.argmax(profile["thickness"]))
+    blocked = stretches(profile)
+    about = {
+        "prefix": run_.prefix, "road": wanted.road, "cut_angle": wanted.cut_angle,
+        "terrain": run_.terrain, "crs": None if place.crs is None else crs_name(place.crs),
+        "origin": {"east": place.offset[0], "north": place.offset[1]},
+        "run": {"slope_version": run_.summary.get("slope_version"), "time": run_.summary["time"],
+                "moving": run_.summary["moving"]},
+        "grid": {"cell": run_.cell, "samples": wanted.samples},
+        "mesh": {"size": mesh.size, "cells": len(result.listed), "cells_to_clear": int((result.volume > 0).sum())},
+        "bulk_factor": run_.bulk,
+        "volume": volume,
+    }
+    if wanted.bulk:
+        about["other_bulk_factor"] = wanted.bulk
+        about["volume_at_other_bulk_factor"] = {key: round(value * wanted.bulk / run_.bulk, result.digits)
+                                                for key, value in volume.items()}
+    about["road_area"] = result.total(result.road_area)
+    about["largest_removed_thickness"] = round(float(result.removed.max()), 6)
+    about["axis"] = {
+        "source": source,
+        "length": round(profile["to"][-1], 6),
+        "blocked_above": wanted.blocked,
+        "blocked_length": round(math.fsum(to - start for start, to in blocked), 6),
+        "blocked_stretches": [[round(start, 6), round(to, 6)] for start, to in blocked],
+        "largest_thickness": round(profile["thickness"][thickest], 6),
+        "largest_thickness_at": [round(profile[key][thickest], 3) for key in ("x", "y")],
+    }
+    return about

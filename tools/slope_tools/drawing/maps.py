@@ -7,7 +7,7 @@ import numpy as np
 matplotlib.use("Agg")  # no display is needed
 
 from matplotlib import pyplot as plt  # noqa: E402  (after the backend is set)
-from matplotlib.colors import LightSource, ListedColormap  # noqa: E402, F401
+from matplotlib.colors import BoundaryNorm, ListedColormap  # noqa: E402
 
 from ..geometry import extent, polygons_of  # noqa: E402
 
@@ -38,6 +38,23 @@ def part(raster, values, shown):
     return values, (t.c + left * t.a, t.c + right * t.a, t.f + bottom * t.e, t.f + top * t.e)
 
 
+def shade(z, step):
+    """Shaded relief, light from the north-west at 45 degrees; flat ground is 0.71 whatever else is on the map.
+
+    matplotlib's stretches what it finds to 0 to 1, so that a map of nearly flat ground looks like mountains.
+    """
+    south, east = np.gradient(z, step)
+    azimuth, altitude = math.radians(315), math.radians(45)
+    light = math.sin(azimuth) * math.cos(altitude), math.cos(azimuth) * math.cos(altitude), math.sin(altitude)
+    return np.clip((-east * light[0] + south * light[1] + light[2]) / np.sqrt(1 + east ** 2 + south ** 2), 0, 1)
+
+
+def scheme(name, bounds, low=0.15, high=1.0):
+    """Colour map and norm of classes; the lightest tones of the colour map are left out."""
+    colours = plt.get_cmap(name)(np.linspace(low, high, len(bounds) - 1))
+    return ListedColormap(colours), BoundaryNorm(bounds, len(bounds) - 1)
+
+
 def relief(raster, base, shown, title):
     """A figure with the shaded relief of the ground and axes in local metres: figure, axes."""
     width, height = shown[2] - shown[0], shown[3] - shown[1]
@@ -46,8 +63,8 @@ def relief(raster, base, shown, title):
     step = (where[1] - where[0]) / z.shape[1]
     if min(z.shape) >= 2:
         filled = np.where(np.isfinite(z), z, np.nanmean(z) if np.isfinite(z).any() else 0)
-        shade = LightSource(315, 45).hillshade(filled, dx=step, dy=step)
-        axes.imshow(np.where(np.isfinite(z), shade, np.nan), cmap="gray", extent=where, vmin=-0.4, vmax=1.1)
+        axes.imshow(np.where(np.isfinite(z), shade(filled, step), np.nan), cmap="gray", extent=where, vmin=-0.6,
+                    vmax=1.0)
     axes.set(xlim=(shown[0], shown[2]), ylim=(shown[1], shown[3]), xlabel="x (m)", ylabel="y (m)", aspect="equal")
     axes.set_title(title, fontsize=10)
     axes.ticklabel_format(useOffset=False, style="plain")

@@ -11,6 +11,7 @@ from .. import disk, provenance
 from ..case import run_folders
 from ..deposit import deposit, score
 from . import backanalysis, calibration, jobs, observations, repeats, results, sensitivity, study
+from .setup import Setup
 
 TABLE, ABOUT, CHART, MAP = "calibrate.csv", "calibrate.yaml", "calibrate.png", "predicted.png"
 
@@ -18,8 +19,8 @@ TABLE, ABOUT, CHART, MAP = "calibrate.csv", "calibrate.yaml", "calibrate.png", "
 class Fit:
     """A calibration under way: makes its runs, measures them, and writes what came out."""
 
-    def __init__(self, args, wanted: observations.Wanted, plan: calibration.Calibration, work: jobs.Work):
-        self.args, self.wanted, self.plan, self.work = args, wanted, plan, work
+    def __init__(self, setup: Setup, wanted: observations.Wanted, plan: calibration.Calibration, work: jobs.Work):
+        self.setup, self.wanted, self.plan, self.work = setup, wanted, plan, work
         self.observed = observations.Observations(wanted)
         self.rows: Dict[str, Mapping[str, Any]] = {}
 
@@ -34,11 +35,11 @@ class Fit:
     def evaluate(self, todo: Sequence[repeats.Repeat]) -> List[Optional[np.ndarray]]:
         """Run what is not finished, and measure all."""
         study.check_names(todo)
-        study.check_folder(self.args, todo)
+        study.check_folder(self.setup, todo)
         for one in todo:
-            jobs.check_finished(one, self.args.deck, self.work.digests)
+            jobs.check_finished(one, self.setup.deck, self.work.digests)
         self.work.do(todo)
-        rows, _ = results.rows_of(self.args, todo, results.Maps(()), pictures=False)
+        rows, _ = results.rows_of(self.setup, todo, results.Maps(()), pictures=False)
         found: List[Optional[np.ndarray]] = []
         for one, row in zip(todo, rows):
             self.rows[one.name] = row
@@ -46,7 +47,7 @@ class Fit:
         return found
 
     def summary(self, row: Mapping[str, Any]) -> Path:
-        return self.args.output / row["summary"]
+        return self.setup.output / row["summary"]
 
     @staticmethod
     def terrain(one: repeats.Repeat) -> Optional[Path]:
@@ -57,7 +58,7 @@ class Fit:
 
     def write(self, found: backanalysis.Posterior) -> None:
         """Table, YAML, chart, and the map of the run at the best values."""
-        output, plan, targets = self.args.output, self.plan, self.observed.targets
+        output, plan, targets = self.setup.output, self.plan, self.observed.targets
         best = plan.runs[plan.number - 1]
         predicted = plan.outputs[plan.number - 1]
         words = backanalysis.judgement(found, self.variables)
@@ -88,7 +89,7 @@ class Fit:
                    + yaml.safe_dump(about, sort_keys=False))
         from . import calibrate_charts
         calibrate_charts.draw(output / CHART, found, self.variables, plan.ledger.places(plan.finished()),
-                              f"{self.args.deck.name}: {len(plan.finished())} runs")
+                              f"{self.setup.deck.name}: {len(plan.finished())} runs")
         names = [TABLE, ABOUT, CHART]
         if self.wanted.observed is not None and predicted is not None:
             self.draw_map(output / MAP, best)

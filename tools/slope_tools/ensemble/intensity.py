@@ -4,11 +4,11 @@ An intensity is a variable of the study such as the peak acceleration of an eart
 as all values of --set; what differs by chance at one of them are the repeats. Of n runs at an intensity, k with more
 than a volume v: P(V > v) is k/n, with the interval of Clopper and Pearson (Biometrika 26, 1934, 404).
 """
-import argparse
 import csv
 import io
 import math
 import re
+from pathlib import Path
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from rich.table import Table
@@ -17,7 +17,6 @@ from scipy import stats
 from .. import disk
 from ..case.settings import as_number
 from ..errors import SlopeError
-from ..options import number
 from . import study_table
 from .combinations import Group
 
@@ -29,23 +28,6 @@ FILE = "intensity.csv"
 STANDS = 0.01           # of the released volume: less on the road, and the mass has not failed
 
 Settings = Mapping[str, Sequence[str]]
-
-
-def add_arguments(parser):
-    parser.add_argument("--intensity", metavar="NAME",
-                        help="variable of --set that is the intensity of what sets the mass off (default: the one "
-                             "called peak, pga or ...intensity); needs --road")
-    parser.add_argument("--more-than", metavar="V1,V2,...", type=volumes_of, default=[],
-                        help="volumes on the road, m3, that are exceeded with a probability at each intensity "
-                             "(default: three round ones)")
-
-
-def volumes_of(text):
-    """argparse type: different volumes >= 0, rising."""
-    found = [number(part) for part in text.split(",")]
-    if any(one < 0 for one in found) or len(set(found)) < len(found):
-        raise argparse.ArgumentTypeError(f"must be different volumes >= 0, with commas between, got {text!r}")
-    return sorted(found)
 
 
 def check(named: Optional[str], settings: Settings, road: bool) -> Optional[str]:
@@ -164,14 +146,13 @@ def show(about: Mapping[str, Any]) -> None:
     study_table.show(shown)
 
 
-def collect(args, settings: Settings, groups: Sequence[Group]) -> Optional[Dict[str, Any]]:
+def collect(output: Path, named: Optional[str], more_than: Sequence[float], settings: Settings, road: bool,
+            groups: Sequence[Group]) -> Optional[Dict[str, Any]]:
     """The entry of study.yaml, None without an intensity; writes intensity.csv and prints the table."""
-    if getattr(args, "sample", None) is not None:
-        return None     # of values that are drawn, each has one run
-    name = check(args.intensity, settings, bool(args.road))
-    about = entry(name, groups, args.more_than) if name else None
+    name = check(named, settings, road)
+    about = entry(name, groups, more_than) if name else None
     if about:
-        disk.write(args.output / FILE, table(about))
+        disk.write(output / FILE, table(about))
         show(about)
-        print(f"{args.output / FILE}: volume on the road against {name}, and how likely more is")
+        print(f"{output / FILE}: volume on the road against {name}, and how likely more is")
     return about

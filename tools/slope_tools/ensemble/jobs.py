@@ -6,21 +6,19 @@ import os
 import re
 import shutil
 import signal
-import subprocess
 import time
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Dict, Optional
 
 import yaml
-from .. import disk, provenance
+from .. import disk, processes, provenance
 from ..case import decks, last_words, logs, restarts, run_folders
 from ..errors import SlopeError
 from . import launcher
 from .job_display import Display
 
 POLL = 0.1              # s between two looks at the runs
-PATIENCE = 10.0         # s that a run gets to end after SIGTERM
 SCREEN = "screen.txt"
 KILLED = {base for code in (signal.SIGKILL, signal.SIGTERM) for base in (-code, 128 + code)}     # lmp, or mpirun of it
 CONTINUES = "read_restart ${restart}"      # what a deck that can be continued has in it
@@ -37,16 +35,6 @@ def physical_cores():
     siblings = {path.read_text(encoding="ascii") for path in
                 Path("/sys/devices/system/cpu").glob("cpu[0-9]*/topology/thread_siblings_list")}
     return min(len(siblings) or 1, cores())
-
-
-def environment():
-    """Of a program that may be run by mpirun."""
-    values = {**os.environ, "OMP_NUM_THREADS": "1"}
-    # Open MPI on one machine: what a rank sends each step goes at once, without a handshake
-    values.setdefault("OMPI_MCA_btl_vader_eager_limit", "131072")
-    if os.geteuid() == 0:
-        values.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-    return values
 
 
 class Run:
@@ -222,14 +210,9 @@ class Work:
         """Start a run, from its last restart file if there is one; returns what to say of it."""
         try:
             said = self._prepare(one)
-            # a run does not outlive a study that was killed
-            before = ["setpriv", "--pdeathsig", "TERM"] if shutil.which("setpriv") else []
             with open(one.folder / SCREEN, "ab" if one.restart else "wb") as screen:
                 one.heard = screen.tell()
-                # a session of its own: Ctrl-C reaches the study, which then ends the run
-                process = subprocess.Popen([*before, *self._line(one)], cwd=one.folder, env=environment(),
-                                           stdin=subprocess.DEVNULL, stdout=screen, stderr=subprocess.STDOUT,
-                                           start_new_session=True)
+                process = processes.start(self._line(one), one.folder, screen)
         except OSError as error:
             raise SlopeError(one.folder, f"cannot be run: {error.strerror} ({error.filename})") from error
         self.active.append(Active(one, process, time.monotonic()))
@@ -340,13 +323,5 @@ class Work:
 
     def _stop(self):
         """End the runs under way, each by its own process id."""
-        for active in self.active:
-            active.process.terminate()
-        deadline = time.monotonic() + PATIENCE
-        for active in self.active:
-            try:
-                active.process.wait(max(0.1, deadline - time.monotonic()))
-            except subprocess.TimeoutExpired:
-                active.process.kill()
-                active.process.wait()
+        processes.stop(active.process for active in self.active)
         self.active.clear()

@@ -33,15 +33,6 @@ def key_of(repeat: Mapping[str, str]) -> str:
     return " ".join(f"{name} {value}" for name, value in repeat.items()) or FIRST
 
 
-def add_arguments(parser):
-    """--repeat and --equally-good, of the commands that make runs."""
-    parser.add_argument("--repeat", metavar="NAME=V1,V2,...", action="append", default=[],
-                        help="values of a variable that nobody can prefer, called seed or ...offset: one more run "
-                             "each, which shows the scatter by chance; A:B:STEP stands for A, A + STEP, ... up to B")
-    parser.add_argument("--equally-good", metavar="NAME,...", default="",
-                        help="variables of another name whose values are equally good, so that --repeat takes them")
-
-
 def check(names: Sequence[str], equally_good: str) -> None:
     """Raise SlopeError unless the variables of --repeat are chance, by name or because --equally-good says so."""
     also = [name for name in equally_good.split(",") if name]

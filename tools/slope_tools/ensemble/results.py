@@ -1,8 +1,6 @@
 """What came out of the runs of a study: their numbers, the table, the maps over all runs, the conservative volume."""
-import argparse
-import contextlib
-import io
 import sys
+from typing import Any, Dict, Mapping, NamedTuple, Optional, Sequence
 
 import numpy as np
 import yaml
@@ -12,6 +10,8 @@ from ..case import run_folders
 from ..deposit import rest, travel_shares
 from ..survey import rasters
 from . import combinations, intensity, repeats, structures, study_table
+from .setup import Road, Setup
+from .size_error import SizeErrors
 from .study_file import read_study      # noqa: F401  (for those who work on with a study)
 from .study_maps import Maps
 
@@ -24,16 +24,25 @@ def warn(text):
     print(f"slope study: warning: {text}", file=sys.stderr)
 
 
-def collect(args, settings, repeated, errors, todo, work, thresholds, order=None):
-    """Table, maps and study.yaml over all runs that finished; errors: a SizeErrors or None.
+class Questions(NamedTuple):
+    """What is asked of the runs of a study together."""
+    settings: Mapping[str, Sequence[str]]           # of --set: choices
+    repeated: Mapping[str, Sequence[str]]           # of --repeat: chance
+    thresholds: Sequence[float]                     # m, of the maps of exceedance
+    errors: Optional[SizeErrors] = None             # by the size of the balls
+    order: Any = None                               # the ensemble.Order that the runs were made for, None of lists
+    intensity: Optional[str] = None                 # variable that is one; None: the one that is called so
+    more_than: Sequence[float] = ()                 # m3, volumes exceeded at each intensity
 
-    order: the ensemble.Order that the runs were made for, or None of lists.
-    """
-    output, deck = args.output, args.deck
+
+def collect(setup: Setup, questions: Questions, todo, work) -> None:
+    """Table, maps and study.yaml over all runs that finished."""
+    settings, repeated, thresholds, errors, order = questions[:5]
+    output, deck = setup.output, setup.deck
     if order and all(one.error for one in todo):
         return      # study.perform says so
     maps = Maps(thresholds)
-    rows, thickness = rows_of(args, todo, maps, pictures=order is None)
+    rows, thickness = rows_of(setup, todo, maps, pictures=order is None)
     warnings = doubts(rows)
     if maps.problem:
         warnings.append(maps.problem)
@@ -54,18 +63,20 @@ def collect(args, settings, repeated, errors, todo, work, thresholds, order=None
         "scatter": {name: one and {"deviation": one.deviation, "degrees_of_freedom": one.degrees_of_freedom}
                     for name, one in scatters.items()},
         "combinations": combinations.entries(groups, names), **written, "warnings": warnings, "runs": rows}
-    if args.road and finished:
-        about["study"]["road"] = write_road(args, first, thickness)
+    if setup.road and finished:
+        about["study"]["road"] = write_road(output, setup.road, first, thickness)
     if order:
         from . import ensemble
         about["ensemble"] = ensemble.evaluate(order, rows, output, first and terrain_place(first), maps.problem)
-    elif args.road and finished:
+    elif setup.road and finished:
         best = about["conservative"] = combinations.conservative(settings, rows, groups, errors)
         if errors:
             best["doubts"] += errors.doubts(deck.name, {**work.defaults, **best["set"]}, [*settings, *repeated],
                                             about["study"]["road"])
         best["doubts"] += unseen(repeated, work.defaults)
-    about["intensity"] = intensity.collect(args, settings, groups) if finished else None
+    about["intensity"] = intensity.collect(
+        output, questions.intensity, questions.more_than, settings, bool(setup.road), groups) \
+        if finished and not order else None      # of values that are drawn, each has one run
     if about["intensity"]:
         about["conservative"]["doubts"] += intensity.doubts(about["intensity"])
     structures.collect(output, finished)
@@ -97,7 +108,7 @@ def unseen(repeated, defaults):
             f"{'was' if len(offsets) == 1 else 'were'} not repeated"] if offsets else []
 
 
-def rows_of(args, todo, maps, pictures=True):
+def rows_of(setup: Setup, todo, maps, pictures=True):
     """A row for each run, finished or failed, and the final thickness of the last one that finished.
 
     pictures: whether `slope volume` draws its map of each, which takes longest.
@@ -110,8 +121,8 @@ def rows_of(args, todo, maps, pictures=True):
             rows.append({**row, "error": one.error, "log_warnings": one.log.warnings})
             continue
         row, thickness = result(one, row, maps)
-        if args.road:
-            row.update(on_road(one, args, args.output / row["summary"], thickness, pictures))
+        if setup.road:
+            row.update(on_road(one, setup.road, setup.output / row["summary"], thickness, pictures))
         rows.append(row)
     return rows, thickness
 
@@ -194,24 +205,19 @@ def whole_deposit(prefix, thickness, summary):
     return {"connected_m": found and found.distance, "connected_deg": found and found.reach_angle}
 
 
-def on_road(one, args, summary, thickness, picture=True):
+def on_road(one, road: Road, summary, thickness, picture=True) -> Dict[str, Any]:
     """What `slope volume` says of a run, all of which goes to the folder volume of the run; and what lies beyond."""
-    from ..commands import volume as volume_command
+    from ..deposit import volume
     from ..survey import polygons
-    parser = argparse.ArgumentParser()
-    volume_command.add_parser(parser.add_subparsers())
     prefix = run_folders.prefix_of(summary)
-    words = ["volume", str(prefix), "--road", str(args.road), "--cut-angle", str(args.cut_angle),
-             "--mesh", str(args.mesh), "-o", str(one.folder / "volume")]
-    if one.log.terrain:
-        words += ["--terrain", str(one.folder / one.log.terrain)]
-    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
-        volume_command.run(parser.parse_args(words + ["--local"] * args.local + ["--no-picture"] * (not picture)))
-    about = disk.load_yaml(one.folder / "volume" / "volume.yaml", "what `slope volume` wrote")
+    terrain = one.folder / one.log.terrain if one.log.terrain else None
+    found = volume.of_run(str(prefix), volume.Wanted(road.file, road.mesh, road.cut_angle, road.local), terrain)
+    volume.write(found, one.folder / "volume", picture)
+    about = disk.plain(found.about)       # numpy has no place in study.yaml
     return {"remove_m3": about["volume"]["remove"], "remove_on_road_m3": about["volume"]["remove_on_road"],
             "remove_beside_road_m3": about["volume"]["remove_beside_road"],
             "beyond_road_m3": beyond(thickness, run_folders.load_raster(prefix, "arrival").z == 0,
-                                     polygons.read_local(args.road, placed(thickness, one), args.local)),
+                                     polygons.read_local(road.file, placed(thickness, one), road.local)),
             "blocked_m": about["axis"]["blocked_length"], "axis_thickness_m": about["axis"]["largest_thickness"],
             # what it says of the summary is in the table
             "road_warnings": [text.replace(f"{one.folder}/", "") for text in about["warnings"]
@@ -242,12 +248,12 @@ def placed(raster, one):
     return raster._replace(crs=place.crs, offset=place.offset) if place else raster
 
 
-def write_road(args, one, thickness):
+def write_road(output, road: Road, one, thickness) -> Dict[str, Any]:
     """Keep the road, in local metres, with the study; what study.yaml says of it."""
     from ..survey import polygons
     raster = placed(thickness, one)
-    polygons.write(args.output / "road.csv", polygons.read_local(args.road, raster, args.local), raster)
-    return {"file": args.road.name, "local": "road.csv", "cut_angle": args.cut_angle, "mesh": args.mesh}
+    polygons.write(output / "road.csv", polygons.read_local(road.file, raster, road.local), raster)
+    return {"file": road.file.name, "local": "road.csv", "cut_angle": road.cut_angle, "mesh": road.mesh}
 
 
 def terrain_place(one):

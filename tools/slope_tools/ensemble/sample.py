@@ -46,19 +46,6 @@ class Sample:
         return designs.snapped(self.variables, u)
 
 
-def add_arguments(parser) -> None:
-    """--sample, --vary, --design and --seed."""
-    parser.add_argument("--sample", metavar="N", type=int,
-                        help="an ensemble: N points of the distributions of --vary, instead of a product of lists")
-    parser.add_argument("--vary", metavar="NAME=DISTRIBUTION", action="append", default=[],
-                        help="a variable of the ensemble: LO:HI or uniform:LO:HI, loguniform:LO:HI, "
-                             "triangular:LO:MODE:HI, normal:MEAN:DEVIATION:LO:HI, list:V1@WEIGHT,V2@WEIGHT,...")
-    parser.add_argument("--design", choices=designs.KINDS, default=designs.SOBOL,
-                        help="sobol (default): more points can be added, those there are stay; lhs: Latin hypercube, "
-                             "whose number of points is final")
-    parser.add_argument("--seed", metavar="S", type=int, default=1, help="of the design (default 1)")
-
-
 def check(number: int, kind: str, seed: int, vary: Sequence[str], deck: Path, fixed: Mapping[str, str],
           repeated: Mapping[str, Sequence[str]]) -> Sample:
     """The Sample of the options; SlopeError if they do not go together."""

@@ -3,6 +3,7 @@ import csv
 import math
 import statistics
 import sys
+from typing import List, Mapping, Optional
 
 import io
 import yaml
@@ -16,6 +17,7 @@ from ..deposit import travel_shares
 from ..errors import SlopeError
 from . import jobs, results, study, study_table
 from .headline import Scatter
+from .setup import Setup
 
 OF_ROAD = "remove_m3,remove_on_road_m3"
 OF_TRAVEL = f"{travel_shares.DISTANCE},centroid_m"      # without a road
@@ -33,38 +35,45 @@ NAMES = {"remove_m3": ("to remove", "m3"), "remove_on_road_m3": ("on the road", 
          "centroid_m": ("travel of the centroid", "m"), "thickness_m": ("largest thickness", "m")}
 
 
-def quantities(args):
+class Trial(jobs.Run):
+    """A run that differs from the base run in one variable; kind: base, vary or repeat."""
+
+    def __init__(self, output, chosen, kind: str, variable: Optional[str] = None):
+        super().__init__(output, chosen)
+        self.kind, self.variable = kind, variable
+        if variable:
+            self.varied = f"{variable} {chosen[variable]}"
+
+
+def quantities(wanted: Optional[str], road: bool, converge: bool) -> List[str]:
     """The columns of --of, those of a road only if there is one."""
-    of = (args.of or (OF_ROAD if args.road or not args.converge else OF_TRAVEL)).split(",")
+    of = (wanted or (OF_ROAD if road or not converge else OF_TRAVEL)).split(",")
     for name in of:
         if name not in NAMES or of.count(name) > 1:
-            raise SlopeError("--of", f"must be different ones of {', '.join(NAMES)}", args.of)
-        if name in study_table.ROAD_COLUMNS and not args.road:
+            raise SlopeError("--of", f"must be different ones of {', '.join(NAMES)}", wanted)
+        if name in study_table.ROAD_COLUMNS and not road:
             raise SlopeError("--road", f"must be given for {name} (--of takes others)")
     return of
 
 
-def plan(args, base, kinds):
+def plan(setup: Setup, base: Mapping[str, str], kinds) -> List[Trial]:
     """The base run, and one for each value of each variable that is not the base's."""
-    first = jobs.Run(args.output, base)
-    first.kind, first.variable = "base", None
-    defaults = {**decks.index_variables(args.deck), **base}
+    first = Trial(setup.output, base, "base")
+    defaults = {**decks.index_variables(setup.deck), **base}
     todo = [first]
     for kind, variables in kinds.items():
         for name, several in variables.items():
             for value in several:
                 if as_number(value) == as_number(defaults[name]):
                     continue
-                one = jobs.Run(args.output, {**base, name: value})
-                one.kind, one.variable, one.varied = kind, name, f"{name} {value}"
-                todo.append(one)
+                todo.append(Trial(setup.output, {**base, name: value}, kind, name))
     if len(todo) == 1:
         raise SlopeError("--vary, --repeat", "must give a value that is not the base's")
     study.check_names(todo)
     return todo
 
 
-def collect(args, base, of, todo, work):
+def collect(setup: Setup, base, of, todo, work):
     """Table, chart and sensitivity.yaml over all runs that finished."""
     defaults = {**work.defaults, **base}
     maps = results.Maps(())
@@ -76,8 +85,8 @@ def collect(args, base, of, todo, work):
             warnings.append(f"{one.name}: failed: {one.error}")
             continue
         found, thickness = results.result(one, row, maps)
-        if args.road:
-            found.update(results.on_road(one, args, args.output / found["summary"], thickness))
+        if setup.road:
+            found.update(results.on_road(one, setup.road, setup.output / found["summary"], thickness))
         rows.append(found)
     if not rows or rows[0]["kind"] != "base":
         return      # nothing to hold the others against; which run failed is told
@@ -87,23 +96,22 @@ def collect(args, base, of, todo, work):
                 raise SlopeError("--of", f"must be known of every run; {name} is not of {row['run']}")
     warnings += results.moving_told(rows)
     scatter = {name: spread(rows, name) for name in of}
-    about = {"study": {"deck": args.deck.name, "base": defaults, "runs": len(todo), "finished": len(rows),
+    about = {"study": {"deck": setup.deck.name, "base": defaults, "runs": len(todo), "finished": len(rows),
                        "ranks": work.ranks, "package": work.package, "collected": provenance.now(),
                        "machine": provenance.machine(),
-                       "road": {"file": args.road.name, "cut_angle": args.cut_angle, "mesh": args.mesh}
-                       if args.road else None},
+                       "road": setup.road.about() if setup.road else None},
              "scatter": scatter, "trust": [trust(rows, name, scatter[name]) for name in of], "warnings": warnings}
     for text in warnings:
         print(f"slope sensitivity: warning: {text}", flush=True)
-    disk.write(args.output / "sensitivity.csv", table(rows, of, scatter, defaults))
-    disk.write(args.output / "sensitivity.yaml", "# slope sensitivity: volumes in m3 of ground (bulk), lengths in m, "
+    disk.write(setup.output / "sensitivity.csv", table(rows, of, scatter, defaults))
+    disk.write(setup.output / "sensitivity.yaml", "# slope sensitivity: volumes in m3 of ground (bulk), lengths in m, "
                "angles in degrees\n" + yaml.safe_dump(about, sort_keys=False))
     from ..drawing import figures
-    figures.tornado(args.output / "sensitivity.png", panels(rows, of, scatter), bars(rows, defaults),
-                    f"{args.deck.name}: one variable at a time, {len(rows)} runs")
-    show(rows, of, scatter, defaults, args.deck.name)
-    print(f"{args.output / 'sensitivity.csv'}, {args.output / 'sensitivity.yaml'}, "
-          f"{args.output / 'sensitivity.png'}: all numbers, and the chart")
+    figures.tornado(setup.output / "sensitivity.png", panels(rows, of, scatter), bars(rows, defaults),
+                    f"{setup.deck.name}: one variable at a time, {len(rows)} runs")
+    show(rows, of, scatter, defaults, setup.deck.name)
+    print(f"{setup.output / 'sensitivity.csv'}, {setup.output / 'sensitivity.yaml'}, "
+          f"{setup.output / 'sensitivity.png'}: all numbers, and the chart")
     print("\n".join(about["trust"]))
 
 

@@ -14,34 +14,33 @@ from ..case import decks
 from ..case.settings import as_number, check_settings
 from ..errors import SlopeError
 from . import combinations, convergence, headline, repeats, results, study, study_table
+from .setup import Setup
 
 OPTION = "--converge"
 
 
-def run(args, base, repeated, of, names):
+def run(setup: Setup, converge: str, base, repeated, of, names) -> None:
     """Do it; base: {name: value} of all runs, of: columns of the study's table, names: {column: (name, unit)}."""
-    if args.vary:
-        raise SlopeError(OPTION, "must stand without --vary: a study of one kind at a time", args.vary[0])
-    [(variable, values)] = check_settings([args.converge], args.deck, OPTION).items()
+    [(variable, values)] = check_settings([converge], setup.deck, OPTION).items()
     for value in values:
         number = as_number(value)
         if not (isinstance(number, float) and 0 < number < float("inf")):
             raise SlopeError(OPTION, f"must give numbers > 0 for {variable}, which is led to 0", value)
     if len(values) < 2:
-        raise SlopeError(OPTION, "must give two values at least, and three to see whether a line holds", args.converge)
+        raise SlopeError(OPTION, "must give two values at least, and three to see whether a line holds", converge)
     for other, option in ((base, "--set"), (repeated, "--repeat")):
         if variable in other:
             raise SlopeError(OPTION, f"must not name a variable of {option}", variable)
     settings = {**{name: [value] for name, value in base.items()}, variable: values}
-    todo = repeats.plan(args.output, settings, repeated, decks.index_variables(args.deck))
+    todo = repeats.plan(setup.output, settings, repeated, decks.index_variables(setup.deck))
     study.check_names(todo)
-    study.perform(args, {**settings, **repeated}, todo,
-                  lambda todo, work: collect(args, settings, repeated, variable, of, names, todo, work))
+    study.perform(setup, {**settings, **repeated}, todo,
+                  lambda todo, work: collect(setup, settings, repeated, variable, of, names, todo, work))
 
 
-def collect(args, settings, repeated, variable, of, names, todo, work):
+def collect(setup: Setup, settings, repeated, variable, of, names, todo, work):
     """Fit and write what the finished runs tell."""
-    rows, _ = results.rows_of(args, todo, results.Maps(()))
+    rows, _ = results.rows_of(setup, todo, results.Maps(()))
     finished = [row for row in rows if row["status"] == "finished"]
     groups = combinations.grouped(rows)
     if len(groups) < 2:
@@ -61,27 +60,26 @@ def collect(args, settings, repeated, variable, of, names, todo, work):
     sentences = {name: convergence.words(fit, variable, *names[name], writer(fit)) for name, fit in fits.items()}
     base = {**work.defaults, **{name: several[0] for name, several in settings.items() if name != variable}}
     base.pop(variable)
-    about = {"study": {"deck": args.deck.name, "variable": variable, "values": settings[variable], "base": base,
+    about = {"study": {"deck": setup.deck.name, "variable": variable, "values": settings[variable], "base": base,
                        "repeat": repeated, "runs": len(rows), "finished": len(finished), "ranks": work.ranks,
                        "package": work.package, "collected": provenance.now(), "machine": provenance.machine(),
-                       "road": {"file": args.road.name, "cut_angle": args.cut_angle, "mesh": args.mesh}
-                       if args.road else None},
+                       "road": setup.road.about() if setup.road else None},
              "quantities": {name: entry(fit, names[name], sentences[name]) for name, fit in fits.items()},
              "warnings": warnings}
     for text in warnings:
         print(f"slope sensitivity: warning: {text}", flush=True)
-    disk.write(args.output / "converge.csv", table(fits, variable))
-    disk.write(args.output / "converge_runs.csv", study_table.table(settings, repeated, rows, work.defaults))
-    disk.write(args.output / "converge.yaml", f"# slope sensitivity --converge: a line V0 + b {variable} through the "
+    disk.write(setup.output / "converge.csv", table(fits, variable))
+    disk.write(setup.output / "converge_runs.csv", study_table.table(settings, repeated, rows, work.defaults))
+    disk.write(setup.output / "converge.yaml", f"# slope sensitivity --converge: a line V0 + b {variable} through the "
                "values; volumes in m3 of ground (bulk), lengths in m\n" + yaml.safe_dump(about, sort_keys=False))
     from . import convergence_chart
     convergence_chart.draw(
-        args.output / "converge.png", variable, [(*names[name], fits[name], [
+        setup.output / "converge.png", variable, [(*names[name], fits[name], [
             (float(group.set[variable]), row[name]) for group in groups for row in group.rows]) for name in of],
-        f"{args.deck.name}: {len(finished)} runs, {len(groups)} values of {variable}")
-    show(fits, variable, names, args.deck.name)
-    print(", ".join(str(args.output / f"converge.{kind}") for kind in ("yaml", "csv", "png"))
-          + f", {args.output / 'converge_runs.csv'}: all numbers, the chart, and the runs")
+        f"{setup.deck.name}: {len(finished)} runs, {len(groups)} values of {variable}")
+    show(fits, variable, names, setup.deck.name)
+    print(", ".join(str(setup.output / f"converge.{kind}") for kind in ("yaml", "csv", "png"))
+          + f", {setup.output / 'converge_runs.csv'}: all numbers, the chart, and the runs")
     print("\n".join(text for several in sentences.values() for text in several))
 
 

@@ -12,54 +12,55 @@ from ..options import number
 from ..programs import find_lmp
 from ..survey import rasters
 from . import jobs, launcher, results, slurm
+from .setup import Setup
 
 MOST_LETTERS = 200      # of a folder's name; file systems take 255
 
 
-def perform(args, settings, todo, collect, begin=None):
+def perform(setup: Setup, settings, todo, collect, begin=None):
     """Run what is not finished of todo, then collect(todo, work); SlopeError after that if a run failed.
 
     begin: called once the folder is there, before the first run.
     """
-    files = data_files(args.deck, settings)
-    if args.road:
-        check_road(args, settings)
-    check_folder(args, todo)
-    if args.dry_run:
+    files = data_files(setup.deck, settings)
+    if setup.road:
+        check_road(setup, settings)
+    check_folder(setup, todo)
+    if setup.dry_run:
         return list_runs(todo)
-    with prepared(args, files, len(todo)) as work:
+    with prepared(setup, files, len(todo)) as work:
         for one in todo:
-            jobs.check_finished(one, args.deck, work.digests)
+            jobs.check_finished(one, setup.deck, work.digests)
         if begin:
             begin()
         work.do(todo)
         collect(todo, work)
-    raise_failed(args.output, todo)
+    raise_failed(setup.output, todo)
 
 
 @contextlib.contextmanager
-def prepared(args, files, number):
+def prepared(setup: Setup, files, number):
     """The jobs.Work of so many runs, while the output folder is ours; files: of data_files()."""
-    lmp = find_lmp(args.lmp)
+    lmp = find_lmp(setup.lmp)
     cores = jobs.cores()
-    most = args.jobs or max(1, cores // args.np)
+    most = setup.jobs or max(1, cores // setup.ranks)
     make = jobs.Work
-    launcher.check(args.launcher, args.np)
-    if args.engine == "slurm":
-        slurm.check(args.slurm)
-        make = functools.partial(slurm.Work, options=args.slurm, throttle=args.jobs)
-    elif args.slurm:
-        raise SlopeError("--slurm", "must be given with --engine slurm", args.slurm)
-    elif min(most, number) * args.np > cores:
-        results.warn(f"{min(most, number)} runs of {args.np} ranks at a time on {cores} cores: they slow each other "
-                     "down")
+    launcher.check(setup.launcher, setup.ranks)
+    if setup.engine == "slurm":
+        slurm.check(setup.slurm)
+        make = functools.partial(slurm.Work, options=setup.slurm, throttle=setup.jobs)
+    elif setup.slurm:
+        raise SlopeError("--slurm", "must be given with --engine slurm", setup.slurm)
+    elif min(most, number) * setup.ranks > cores:
+        results.warn(f"{min(most, number)} runs of {setup.ranks} ranks at a time on {cores} cores: they slow each "
+                     "other down")
     try:
-        args.output.mkdir(parents=True, exist_ok=True)
-        inputs = args.output / ".inputs"
-        with jobs.alone_in(args.output), jobs.signals_interrupt(), jobs.copied(files, inputs) as digests:
-            yield make(args.deck, digests, inputs, lmp, args.np, most, args.launcher)
+        setup.output.mkdir(parents=True, exist_ok=True)
+        inputs = setup.output / ".inputs"
+        with jobs.alone_in(setup.output), jobs.signals_interrupt(), jobs.copied(files, inputs) as digests:
+            yield make(setup.deck, digests, inputs, lmp, setup.ranks, most, setup.launcher)
     except OSError as error:
-        place = error.filename2 or error.filename or args.output        # of a copy, the second is where it goes
+        place = error.filename2 or error.filename or setup.output        # of a copy, the second is where it goes
         raise SlopeError(place, f"cannot be used: {error.strerror}") from error
 
 
@@ -88,18 +89,18 @@ def check_thresholds(text, option="--exceed", what="thicknesses"):
     return found
 
 
-def check_road(args, settings):
+def check_road(setup: Setup, settings) -> None:
     """Raise SlopeError now if the road cannot be used after the runs, as far as the deck names its terrain."""
     from ..survey import polygons
-    if not args.road.is_file():
-        raise SlopeError("--road", "must be an existing file", args.road)
-    if not 0 < args.cut_angle < 90:
-        raise SlopeError("--cut-angle", "must be > 0 and < 90 degrees", f"{args.cut_angle:g}")
-    if args.mesh <= 0:
-        raise SlopeError("--mesh", "must be > 0", f"{args.mesh:g}")
-    path = terrain_of(args.deck, {name: several[0] for name, several in settings.items()})
+    if not setup.road.file.is_file():
+        raise SlopeError("--road", "must be an existing file", setup.road.file)
+    if not 0 < setup.road.cut_angle < 90:
+        raise SlopeError("--cut-angle", "must be > 0 and < 90 degrees", f"{setup.road.cut_angle:g}")
+    if setup.road.mesh <= 0:
+        raise SlopeError("--mesh", "must be > 0", f"{setup.road.mesh:g}")
+    path = terrain_of(setup.deck, {name: several[0] for name, several in settings.items()})
     if path:
-        polygons.read_local(args.road, rasters.read_place(path), args.local)
+        polygons.read_local(setup.road.file, rasters.read_place(path), setup.road.local)
 
 
 def terrain_of(deck, chosen):
@@ -124,12 +125,12 @@ def check_names(todo):
         names[one.name] = one.chosen
 
 
-def check_folder(args, todo):
+def check_folder(setup: Setup, todo) -> None:
     """Raise SlopeError unless the output is a folder, or can become one, whose run folders are this study's."""
-    if args.output.exists() and not args.output.is_dir():
-        raise SlopeError("-o", "must be a folder", args.output)
-    if args.output.exists() and args.output.samefile(args.deck.parent):
-        raise SlopeError("-o", "must not be the folder of the deck", args.output)
+    if setup.output.exists() and not setup.output.is_dir():
+        raise SlopeError("-o", "must be a folder", setup.output)
+    if setup.output.exists() and setup.output.samefile(setup.deck.parent):
+        raise SlopeError("-o", "must not be the folder of the deck", setup.output)
     for one in todo:
         if not one.folder.exists():
             continue

@@ -2,9 +2,11 @@
 import base64
 import re
 from pathlib import Path
+from typing import List
 
 from .. import disk
 from ..errors import SlopeError
+from .asked import Asked
 
 
 def write_pictures(output, html):
@@ -15,15 +17,26 @@ def write_pictures(output, html):
     print(f"{output.with_suffix('.1.png')} to {len(pictures)}: its maps")
 
 
-def make(args):
+def write(asked: Asked, output: Path) -> List[str]:
+    """Write the page and its tables; returns lines for the user."""
+    page, html = make(asked)
+    tables = {output.with_suffix(".section.csv"): page.section.table(),
+              output.with_suffix(".numbers.csv"): page.numbers.table()}
+    for path, text in {output: html, **tables}.items():
+        disk.write(path, text)
+    return [f"{output}: {len(html) / 1e6:.1f} MB, {page.pictures} pictures; {', '.join(map(str, tables))}",
+            *(f"{'WARNING' if level == 'red' else 'note'}: {text}" for level, text in page.warnings)]
+
+
+def make(asked: Asked):
     """The Page and its HTML. What `slope study` wrote is trusted to be of the right kind: if it is not, one line."""
     import jinja2
     from .page import Page
     try:
-        page = Page(args)
+        page = Page(asked)
         return page, render(page.content())
     except (jinja2.TemplateError, ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
-        raise SlopeError(args.folder, "must hold what a run or `slope study` wrote, unchanged",
+        raise SlopeError(asked.folder, "must hold what a run or `slope study` wrote, unchanged",
                          f"{type(error).__name__}: {error}"[:200]) from error
 
 

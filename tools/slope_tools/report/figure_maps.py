@@ -3,12 +3,12 @@ import math
 from typing import NamedTuple, Optional, Tuple
 
 import numpy as np
-from matplotlib.colors import BoundaryNorm, LinearSegmentedColormap, ListedColormap
+from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.patches import Rectangle
 
 from ..drawing import figures
 from ..drawing.figures import FULL, HALF, RELEASE, ROAD, SECTION, STYLE, TITLE, classes_of, plt, text_width, wrapped
-from ..drawing.maps import outline, part
+from ..drawing.maps import outline, part, scheme, shade
 from ..geometry import polygons_of
 from . import sheets
 from .sheets import Box, Entry, Frame
@@ -29,23 +29,6 @@ class Layers(NamedTuple):
     road: object = None                  # polygon
     section: Optional[np.ndarray] = None     # points of the line, rows of x y
     interval: float = 5.0                # of the contours, m
-
-
-def shade(z, step):
-    """Shaded relief, light from the north-west at 45 degrees; flat ground is 0.71 whatever else is on the map.
-
-    matplotlib's stretches what it finds to 0 to 1, so that a map of nearly flat ground looks like mountains.
-    """
-    south, east = np.gradient(z, step)
-    azimuth, altitude = math.radians(315), math.radians(45)
-    light = math.sin(azimuth) * math.cos(altitude), math.cos(azimuth) * math.cos(altitude), math.sin(altitude)
-    return np.clip((-east * light[0] + south * light[1] + light[2]) / np.sqrt(1 + east ** 2 + south ** 2), 0, 1)
-
-
-def scheme(name, bounds, low=0.15, high=1.0):
-    """Colour map and norm of classes; the lightest tones of the colour map are left out."""
-    colours = plt.get_cmap(name)(np.linspace(low, high, len(bounds) - 1))
-    return ListedColormap(colours), BoundaryNorm(bounds, len(bounds) - 1)
 
 
 # --- what is drawn into the axes of a map ---

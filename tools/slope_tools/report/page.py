@@ -5,6 +5,7 @@ from .. import provenance
 from ..case import decks
 from ..survey.rasters import crs_name
 from . import charts as report_charts, convergence_part, intensity_part, numbers as report_numbers
+from .asked import Asked
 from .charts import Charts, REMOVE
 from .data import Data, find_deck
 from .ground import Ground
@@ -28,12 +29,12 @@ MEANS = (("to remove", "m3", "remove_m3"), ("on the road", "m3", "remove_on_road
 class Page:
     """A page: data, ground, section, warnings (red or amber, text), and the number of pictures."""
 
-    def __init__(self, args):
-        self.data = Data(args.folder, args.shown)
+    def __init__(self, asked: Asked):
+        self.data = Data(asked.folder, asked.shown)
         self.ground = Ground(self.data)
-        self.section = Section(self.data, self.ground, args.section, args.local)
-        self.reference = args.reference and read_reference(args.reference, report_charts.quantities(self.data))
-        path = convergence_part.find(args.converge, self.data)
+        self.section = Section(self.data, self.ground, asked.section, asked.local)
+        self.reference = asked.reference and read_reference(asked.reference, report_charts.quantities(self.data))
+        path = convergence_part.find(asked.converge, self.data)
         self.sizes = path and convergence_part.Sizes(path)
         self.warnings = warnings(self.data)
         self.numbers = report_numbers.Numbers((self.data.study or {}).get("scatter"))

@@ -1,5 +1,6 @@
 """A ground motion from records of its components, and its files."""
 import os
+from typing import NamedTuple, Optional, Sequence
 
 import numpy as np
 import yaml
@@ -9,31 +10,41 @@ from . import quake_motion as motions, quake_records as records
 from .quake_records import GAL
 
 
-def processed(components, args):
+class Processing(NamedTuple):
+    """What is done to a record."""
+    azimuth: float = 90.0                       # compass bearing of the deck's x axis
+    baseline: str = "rest"                      # or mean, or none
+    window: Optional[Sequence[float]] = None    # s, begin and end
+    band: Optional[Sequence[float]] = None      # Hz, low and high
+    peak: Optional[float] = None                # gal, largest horizontal acceleration
+    scale: Optional[float] = None               # or a factor
+
+
+def processed(components, wanted: Processing):
     """The motion, and what was done to it, in order."""
-    motion = motions.combine(components, args.azimuth)
-    steps = [f"x axis towards {args.azimuth:g} degrees"]
-    if args.baseline != "none":
+    motion = motions.combine(components, wanted.azimuth)
+    steps = [f"x axis towards {wanted.azimuth:g} degrees"]
+    if wanted.baseline != "none":
         motion = motions.without_mean(motion)
         steps.append("mean taken off")
-    if args.window:
-        motion = motions.window(motion, *args.window)
-        steps.append(f"{args.window[0]:g} to {args.window[1]:g} s")
-    if args.band:
-        motion = motions.band_pass(motion, *args.band)
-        steps.append(f"band-pass {args.band[0]:g} to {args.band[1]:g} Hz")
-    if args.baseline == "rest":
+    if wanted.window:
+        motion = motions.window(motion, *wanted.window)
+        steps.append(f"{wanted.window[0]:g} to {wanted.window[1]:g} s")
+    if wanted.band:
+        motion = motions.band_pass(motion, *wanted.band)
+        steps.append(f"band-pass {wanted.band[0]:g} to {wanted.band[1]:g} Hz")
+    if wanted.baseline == "rest":
         motion = motions.at_rest(motion)
         steps.append("straight line taken off: ends at rest where it began")
     most = motions.peak(motion)
     if not most > 0:
         raise SlopeError(components[0].source, "must hold a motion, the acceleration is constant")
-    factor = args.peak * GAL / most if args.peak else args.scale or 1.0
+    factor = wanted.peak * GAL / most if wanted.peak else wanted.scale or 1.0
     if factor != 1.0:
         motion = motions.scaled(motion, factor)
         steps.append(f"scaled by {factor:.6g}")
     if motions.peak(motion) > records.MOST:
-        raise SlopeError("--peak" if args.peak else "--scale",
+        raise SlopeError("--peak" if wanted.peak else "--scale",
                          f"a largest acceleration of at most {records.MOST / GAL:g} gal is believed",
                          f"{motions.peak(motion) / GAL:.6g}")
     return motion, steps

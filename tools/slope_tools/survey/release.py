@@ -1,10 +1,98 @@
 """The body that is released, below a polygon or from a scar."""
 from pathlib import Path
+from typing import Any, Dict, List, NamedTuple, Optional
 
 import numpy as np
 
 from ..errors import SlopeError
 from . import polygons, rasters, release_area, release_bodies, release_scar, release_solve
+
+
+SHAPES = ("sphere", "ellipsoid", "plane", "slbl")
+COARSE = 50     # cells; a body of fewer is drawn with a coarse brush
+
+
+class Wanted(NamedTuple):
+    """Which body: below a polygon, or a scar."""
+    terrain: str                        # the ground before
+    polygon: Optional[str] = None
+    shape: Optional[str] = None         # of SHAPES; None: what the numbers below belong to
+    depth: Optional[float] = None       # m
+    volume: Optional[float] = None      # m3
+    curvature: Optional[float] = None   # 1/m, of slbl
+    dip: Optional[float] = None         # degrees, of a plane
+    direction: Optional[float] = None   # degrees from north, of a plane
+    scar: Optional[str] = None          # raster
+    scar_is: str = "surface"            # or depth
+    least: float = 0.0                  # m; a scar is where it is deeper
+    crs: Optional[str] = None           # of the polygon
+    local: bool = False                 # the polygon is in local metres
+
+
+class Body(NamedTuple):
+    """A body that is released."""
+    raster: rasters.Raster              # the ground before
+    geometry: Any                       # the polygon, in local metres; None without
+    area: release_area.Area
+    slip: np.ndarray                    # m, on the nodes of the area
+    choices: Dict[str, Any]             # shape and its numbers
+    measures: release_solve.Measures
+    warnings: List[str]
+
+
+def body_of(wanted: Wanted) -> Body:
+    """The body; raises SlopeError on bad input."""
+    wanted = check(wanted)
+    raster = read_terrain(wanted.terrain)
+    geometry = None
+    if wanted.polygon:
+        crs = polygons.as_crs("--crs", wanted.crs) if wanted.crs else None
+        geometry = polygons.read_local(wanted.polygon, raster, local=wanted.local, crs=crs, terrain=wanted.terrain)
+    area, surface, choices = (from_scar if wanted.scar else from_shape)(wanted, raster, geometry)
+    slip = release_solve.slip_surface(area, release_solve.depths(area, surface), wanted.polygon or wanted.scar)
+    found = release_solve.measures(area, slip)
+    return Body(raster, geometry, area, slip, choices, found, warnings(choices, found, area.cell))
+
+
+def check(wanted: Wanted) -> Wanted:
+    """Check what can be checked before any reading; the same, with the shape that is not named."""
+    for name in ("depth", "volume"):
+        value = getattr(wanted, name)
+        if value is not None and not value > 0:
+            raise SlopeError(f"--{name}", "must be > 0", f"{value:g}")
+    if wanted.least < 0:
+        raise SlopeError("--least", "must be >= 0", f"{wanted.least:g}")
+    if wanted.scar:
+        for name in ("shape", "depth", "volume", "curvature", "dip", "direction"):
+            if getattr(wanted, name) is not None:
+                raise SlopeError(f"--{name}", "must not be given with --scar, whose depths are what they are")
+        return wanted
+    if not wanted.polygon:
+        raise SlopeError("--polygon", "must be given, unless --scar says where the body is")
+    if wanted.shape is None:
+        plane = wanted.dip is not None or wanted.direction is not None
+        wanted = wanted._replace(shape="plane" if plane else "slbl" if wanted.curvature is not None else "sphere")
+    check_shape(wanted)
+    return wanted
+
+
+def check_shape(wanted: Wanted) -> None:
+    """What goes with which shape."""
+    if wanted.shape == "plane":
+        if wanted.dip is None:
+            raise SlopeError("--dip", "must be given for a plane, degrees below the horizontal")
+        if not 0 < wanted.dip < 90:
+            raise SlopeError("--dip", "must be > 0 and < 90 degrees", f"{wanted.dip:g}")
+        if wanted.direction is not None and not 0 <= wanted.direction <= 360:
+            raise SlopeError("--direction", "must be a compass bearing, 0 to 360 degrees", f"{wanted.direction:g}")
+    elif wanted.dip is not None or wanted.direction is not None:
+        raise SlopeError("--dip" if wanted.dip is not None else "--direction", "must be given for a plane only",
+                         f"--shape {wanted.shape}")
+    if wanted.curvature is not None and wanted.shape != "slbl":
+        raise SlopeError("--curvature", "must be given for slbl only", f"--shape {wanted.shape}")
+    if wanted.shape != "plane" and wanted.depth is None and wanted.volume is None and wanted.curvature is None:
+        raise SlopeError("--depth", f"or --volume must be given for --shape {wanted.shape}"
+                         + (", or --curvature" * (wanted.shape == "slbl")))
 
 
 def read_terrain(path):
@@ -16,44 +104,84 @@ def read_terrain(path):
     return raster
 
 
-def from_scar(args, raster, geometry):
+def from_scar(wanted: Wanted, raster, geometry):
     """Area, slip surface on its nodes and choices of a body that a raster gives."""
-    depth = release_scar.depths(args.scar, args.scar_is, raster, args.least)
+    depth = release_scar.depths(wanted.scar, wanted.scar_is, raster, wanted.least)
     if geometry is not None:
         depth = np.where(release_area.nodes_inside(raster, geometry), depth, 0.0)
         if not depth.any():
-            raise SlopeError(args.polygon, f"must hold some of the scar in {args.scar}")
-    area = release_area.area_of(raster, depth > 0, args.polygon or args.scar, args.terrain)
+            raise SlopeError(wanted.polygon, f"must hold some of the scar in {wanted.scar}")
+    area = release_area.area_of(raster, depth > 0, wanted.polygon or wanted.scar, wanted.terrain)
     row, column = area.corner
     part = depth[row:row + area.z.shape[0], column:column + area.z.shape[1]]
-    return area, area.z - part, {"shape": "scar", "scar": args.scar, "scar_is": args.scar_is, "least": args.least}
+    return area, area.z - part, {"shape": "scar", "scar": wanted.scar, "scar_is": wanted.scar_is, "least": wanted.least}
 
 
-def from_shape(args, raster, geometry):
+def from_shape(wanted: Wanted, raster, geometry):
     """The same of a body below a polygon."""
-    area = release_area.area_of(raster, release_area.nodes_inside(raster, geometry), args.polygon, args.terrain)
-    release_area.require_slope(area, args.polygon)
+    area = release_area.area_of(raster, release_area.nodes_inside(raster, geometry), wanted.polygon, wanted.terrain)
+    release_area.require_slope(area, wanted.polygon)
     parts = len(polygons.polygons_of(geometry))
-    if args.shape != "slbl" and parts > 1:
-        raise SlopeError(args.polygon, f"must be one polygon for --shape {args.shape}; slbl takes several", parts)
-    if args.shape == "sphere":
-        shape = release_bodies.sphere_shape(area, geometry, args.polygon)
-    elif args.shape == "ellipsoid":
-        shape = release_bodies.ellipsoid_shape(area, geometry, args.polygon)
-    elif args.shape == "plane":
-        direction = release_bodies.bearing(area.downhill) if args.direction is None else args.direction
-        shape = release_bodies.plane_shape(area, args.dip, direction)
+    if wanted.shape != "slbl" and parts > 1:
+        raise SlopeError(wanted.polygon, f"must be one polygon for --shape {wanted.shape}; slbl takes several", parts)
+    if wanted.shape == "sphere":
+        shape = release_bodies.sphere_shape(area, geometry, wanted.polygon)
+    elif wanted.shape == "ellipsoid":
+        shape = release_bodies.ellipsoid_shape(area, geometry, wanted.polygon)
+    elif wanted.shape == "plane":
+        direction = release_bodies.bearing(area.downhill) if wanted.direction is None else wanted.direction
+        shape = release_bodies.plane_shape(area, wanted.dip, direction)
     else:
         shape = release_bodies.slbl_shape(area)
-    if args.depth is not None:
-        free = release_solve.to_depth(area, shape, args.depth)
-    elif args.volume is not None:
-        free = release_solve.to_volume(area, shape, args.volume)
+    if wanted.depth is not None:
+        free = release_solve.to_depth(area, shape, wanted.depth)
+    elif wanted.volume is not None:
+        free = release_solve.to_volume(area, shape, wanted.volume)
     else:
-        free = shape.most if args.shape == "plane" else args.curvature
-    choices = {"shape": shape.name, "given": {"depth_m": args.depth, "volume_m3": args.volume,
-                                              "curvature_per_m": args.curvature},
+        free = shape.most if wanted.shape == "plane" else wanted.curvature
+    choices = {"shape": shape.name, "given": {"depth_m": wanted.depth, "volume_m3": wanted.volume,
+                                              "curvature_per_m": wanted.curvature},
                shape.number: free, **shape.about}
-    if args.shape == "slbl":
+    if wanted.shape == "slbl":
         choices["tolerance_m"] = free * area.cell ** 2 / 4
     return area, shape.surface(free), choices
+
+
+def warnings(choices, found, cell):
+    """What makes the body doubtful."""
+    lines = []
+    if choices.get("sagitta_m", 1) < 0:
+        lines.append(f"the ground bulges above the line from toe to shoulder, and so does the {choices['shape']}: a "
+                     "smaller polygon, or --shape slbl?")
+    if found.cells < COARSE:
+        lines.append(f"the body covers {found.cells} cells of {cell:g} m: take a finer terrain")
+    if found.wall > 0.5 * found.largest_depth:
+        lines.append(f"the body is {found.wall:.3g} m deep at the rim of its area, where it ends in a wall: "
+                     + ("a wider polygon, or --shape ellipsoid?" if choices["shape"] == "sphere" else
+                        "is the polygon large enough?"))
+    return lines
+
+
+def text(body: Body) -> str:
+    """What the user needs to know of the body before anything is written."""
+    choices, found, cell = body.choices, body.measures, body.area.cell
+    shape = choices["shape"]
+    if shape == "scar":
+        what = f"scar of {choices['scar']} ({choices['scar_is']})"
+    elif shape == "plane":
+        what = (f"plane that dips {choices['dip_degrees']:.4g} degrees towards {choices['direction_degrees']:.4g}, "
+                f"{choices['drop_m']:.4g} m below the highest one")
+    elif shape == "slbl":
+        what = (f"sloping local base level, curvature {choices['curvature_per_m']:.4g} /m (tolerance "
+                f"{choices['tolerance_m']:.4g} m for cells of {cell:g} m)")
+    else:
+        toe, shoulder = (" ".join(f"{value:.1f}" for value in choices[end]) for end in ("toe", "shoulder"))
+        wide = f", {choices['width_m']:.4g} m wide" if shape == "ellipsoid" else ""
+        sagitta = choices["sagitta_m"]
+        what = (f"{shape} through toe {toe} and shoulder {shoulder}, {abs(sagitta):.4g} m "
+                f"{'below' if sagitta > 0 else 'above'} its chord of {choices['chord_m']:.4g} m{wide}")
+    return (f"{what}\n"
+            f"volume {found.volume:.10g} m3, largest depth {found.largest_depth:.4g} m, mean depth "
+            f"{found.mean_depth:.4g} m, area {found.area:.10g} m2 ({found.cells} cells of {cell:g} m)\n"
+            f"mean slope {found.mean_slope:.1f} degrees, of the slip surface {found.slip_slope:.1f}, towards "
+            f"{found.bearing:.0f} degrees from north; ground at {found.lowest:.1f} to {found.highest:.1f} m")

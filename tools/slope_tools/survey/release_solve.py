@@ -38,11 +38,11 @@ def depths(area: Area, surface: np.ndarray) -> np.ndarray:
 
 
 def volume(depth: np.ndarray, cell: float) -> float:
-    """Volume (m3) between two terrains whose nodes differ by depth (m), 0 on the outermost two: exact, as a bilinear
+    """Volume (m3) between two terrains whose nodes differ by depth (m; NaN: none), 0 on the outermost two.
 
-    patch has the mean of its four corners.
+    Exact, as a bilinear patch has the mean of its four corners.
     """
-    return float(depth.sum()) * cell ** 2
+    return float(np.nansum(depth)) * cell ** 2
 
 
 def solved(area: Area, shape: Shape, wanted: float, measure: Callable[[np.ndarray], float], option: str,
@@ -86,7 +86,7 @@ def slip_surface(area: Area, depth: np.ndarray, where: str) -> np.ndarray:
 
 def measures(area: Area, slip: np.ndarray) -> Measures:
     """The numbers of the body between the ground and a slip surface."""
-    depth = area.z - slip
+    depth = np.where(np.isnan(area.z), 0.0, area.z - slip)      # NODATA beside the body
     body = depth > 0
     rim = area.inside & ~binary_erosion(area.inside)
     east = area.downhill

@@ -5,7 +5,7 @@ import numpy as np
 from affine import Affine
 
 from ..errors import SlopeError
-from . import fggml, rasters
+from . import fggml, japan, rasters
 from .crs import same_crs, warn
 from .rasters import Raster, crs_name
 from .resampling import STRIP, footprint, sample
@@ -47,9 +47,9 @@ def read_fggml(paths, crs, cell, tell):
         raster = enlarge(raster, coarse)
         tell(f"where there was no height: bilinear from the tiles of {seconds(group[0])}")
     if crs is None:
-        number, crs = fggml.zone(raster, tiles[0].datum)
+        number, crs = japan.zone(raster, tiles[0].datum)
         tell(f"CRS {crs_name(crs)}, zone {number} of the plane rectangular system, the site's; --crs names another")
-    return raster, crs, cell or fggml.nominal_cell(min(footprint(raster, crs)[1]))
+    return raster, crs, cell or japan.nominal_cell(min(footprint(raster, crs)[1]))
 
 
 def seconds(tile):

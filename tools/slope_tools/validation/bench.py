@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from .. import disk
-from . import peers
+from . import peer_runs, peers
 from .bench_report import BUSY, TARGETS, report
 from .bench_scenes import BALLS, CASE, D, DENSITY, PREPARED, SKIN, collapse, contacts, copies, time_step, write_terrain
 from .peers import Scene
@@ -100,7 +100,7 @@ class Plan:
         folder = self.folder(name)
         write_terrain(folder / "terrain.asc", self.size, factor)
         disk.write(folder / peers.DECK, collapse(self.size, steps))
-        result = peers.run(self.ours, folder)
+        result = peer_runs.run(self.ours, folder)
         self.versions["slope"] = f"LAMMPS {result.version}"
         fixed = {kind: np.loadtxt(folder / f"fixed.{kind}.xyz") for kind in (2, 3)}
         return Scene(D, DENSITY, result.final, fixed, contacts(), time_step(), SKIN * D)
@@ -114,7 +114,7 @@ class Plan:
         """A timed run of a scene that is written in a folder."""
         self.say(f"{part}: {code.title}" + (f", {ranks} ranks" if ranks > 1 else "")
                  + f", {len(scene.moving):,} moving balls")
-        result = peers.run(code, folder, ranks)
+        result = peer_runs.run(code, folder, ranks)
         return self.keep(part, code, scene, steps, ranks, result)
 
     def keep(self, part, code, scene, steps, ranks, result):
@@ -195,7 +195,7 @@ class Plan:
         folder = self.folder(f"rest_{ranks}")
         for path in (CASE, CASE.with_name("terrain.asc")):
             shutil.copy(path, folder)
-        steps, seconds = peers.run_deck(self.lmp, folder, CASE.name, ranks)
+        steps, seconds = peer_runs.run_deck(self.lmp, folder, CASE.name, ranks)
         self.cases.append({"ranks": ranks, "steps": steps, "seconds": seconds})
         self.bar.update(self.task, advance=1, refresh=self.live)
         return seconds / steps
@@ -208,7 +208,7 @@ class Plan:
             alone = self.measure("throughput", self.ours, here, self.scene, self.steps)
             self.say("throughput: two runs side by side")
             both = [self.keep("throughput", self.ours, self.scene, self.steps, 1, result)
-                    for result in peers.run_together(self.ours, [here, there])]
+                    for result in peer_runs.run_together(self.ours, [here, there])]
             ratios.append(2 * alone.result.seconds / (sum(one.result.seconds for one in both) / 2))
         self.set("throughput", "throughput of two runs side by side / one", ratios)
 

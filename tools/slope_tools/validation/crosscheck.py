@@ -11,7 +11,7 @@ import numpy as np
 from .. import disk
 from ..case.data_files import data_files
 from ..errors import SlopeError
-from . import peers
+from . import peer_runs, peers
 from .peers import Contact, Scene
 
 INPUTS = Path(__file__).resolve().parents[3] / "inputs"
@@ -75,8 +75,9 @@ print "SCENE dt $(dt:%.17g)"
 write_dump all custom {START} id {peers.COLUMNS} modify sort id format float %.17g
 write_dump all custom kinds.dump id type diameter mass x y z vx vy vz modify sort id format float %.17g
 """)
-    log = folder / peers.LOG
-    peers.run_deck(lmp, folder, deck.name, 1, [word for pair in settings.items() for word in ("-var", *map(str, pair))])
+    log = folder / peer_runs.LOG
+    options = [word for pair in settings.items() for word in ("-var", *map(str, pair))]
+    peer_runs.run_deck(lmp, folder, deck.name, 1, options)
     text = log.read_text(encoding="utf-8", errors="replace")
     done = [line.split() for line in text.splitlines() if line.split() and "$" not in line]
     moving = peers.read_dump(folder / START)[0]
@@ -169,7 +170,7 @@ class Work:
             self.say(f"{name}: {code.title}")
             folder = self.folder(f"{name}.{code.name}")
             code.write(scene, folder, steps, every)
-            result = peers.run(code, folder)
+            result = peer_runs.run(code, folder)
             self.versions[code.name] = result.version
             found[code.name] = result.final, code.series(folder) if every else None
         return found

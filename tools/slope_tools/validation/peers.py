@@ -6,22 +6,14 @@ pair gran/restitution as its start-up table prints them; how a peer differs from
 import math
 import re
 import shutil
-import subprocess
-import time
-from pathlib import Path
 from typing import Dict, NamedTuple, Optional
 
 import numpy as np
 
 from .. import disk
-from ..case import last_words, logs
-from ..ensemble import jobs
 from ..errors import SlopeError
+from .peer_runs import COLUMNS, DATA, DECK, FINAL, LOG, LOOP, SCREEN, SERIES, failure, read_dump, read_text
 
-DATA, DECK, LOG, SCREEN, FINAL, SERIES = "balls.data", "in.scene", "log.scene", "screen.txt", "final.txt", "series.txt"
-COLUMNS = "x y z vx vy vz omegax omegay omegaz"
-LOOP = r"^Loop time of (\S+) on \d+ procs for (\d+) steps"
-POLL = 0.05         # s between two looks at a run
 MANY = 100          # moving balls from which on the box follows them
 
 
@@ -387,8 +379,6 @@ def write_rows(path, rows):
     disk.write(path, "".join(" ".join(f"{value:.12g}" for value in row) + "\n" for row in rows.tolist()))
 
 
-# --- running and reading ---
-
 def chosen(option, text, known):
     """The words of an option that names some of the known ones; all without it."""
     words = text.split(",") if text else list(known)
@@ -396,82 +386,3 @@ def chosen(option, text, known):
         if word not in known:
             raise SlopeError(option, f"must be of {', '.join(known)}", word)
     return words
-
-
-def launch(words, folder, ranks):
-    """Start a program in a folder; what it says goes to SCREEN."""
-    if ranks > 1:
-        words = ["mpirun", "-np", str(ranks), "--bind-to", "none", "--oversubscribe", *words]
-    try:
-        with open(folder / SCREEN, "wb") as screen:
-            return subprocess.Popen(words, cwd=folder, env=jobs.environment(), stdin=subprocess.DEVNULL, stdout=screen,
-                                    stderr=subprocess.STDOUT, start_new_session=True)
-    except OSError as error:
-        raise SlopeError(words[0], f"cannot be run: {error.strerror}") from error
-
-
-def wait(processes):
-    """Wait for processes that launch() started; the largest resident memory of each, bytes. Leaves none behind.
-
-    Looked up while they run: what wait4() tells includes this program's own, from before the exec.
-    """
-    peaks = [0] * len(processes)
-    try:
-        while any(process.poll() is None for process in processes):
-            for i, process in enumerate(processes):
-                found = re.search(r"VmHWM:\s*(\d+) kB", read_text(f"/proc/{process.pid}/status"))
-                peaks[i] = max(peaks[i], int(found[1]) * 1024 if found else 0)
-            time.sleep(POLL)
-    finally:
-        for process in processes:
-            if process.poll() is None:
-                process.terminate()
-                process.wait()
-    return peaks
-
-
-def run_together(code, folders, ranks=1):
-    """Run scenes that are written in folders at the same time; their Results."""
-    for folder in folders:
-        for name in (LOG, FINAL, SERIES):
-            (folder / name).unlink(missing_ok=True)
-    peaks = wait([launch(code.command(), folder, ranks) for folder in folders])
-    return [code.read(folder, peak) for folder, peak in zip(folders, peaks)]
-
-
-def run(code, folder, ranks=1):
-    """Run a scene that is written in a folder; its Result."""
-    return run_together(code, [folder], ranks)[0]
-
-
-def run_deck(lmp, folder, deck, ranks, options=()):
-    """Run a deck that is in a folder; its steps and the seconds of its run loops."""
-    wait([launch([str(lmp), "-in", deck, "-log", LOG, "-screen", "none", *options], folder, ranks)])
-    text = read_text(folder / LOG)
-    loops = re.findall(LOOP, text, re.MULTILINE)
-    if not loops or "Total wall time" not in text:
-        raise SlopeError(folder / LOG, "did not end well", failure(text, folder))
-    return sum(int(steps) for _, steps in loops), sum(float(seconds) for seconds, _ in loops)
-
-
-def read_dump(path):
-    """States in a dump of id and COLUMNS, one array per snapshot, ordered by id."""
-    found, words = [], path.read_text(encoding="ascii").split("ITEM: ATOMS")
-    for part in words[1:]:
-        body = part.split("ITEM:")[0].split("\n", 1)[1]
-        values = np.array(body.split(), float).reshape(-1, 10)
-        found.append(values[:, 1:])
-    return found
-
-
-def read_text(path):
-    try:
-        return Path(path).read_text(encoding="utf-8", errors="replace")
-    except OSError:
-        return ""
-
-
-def failure(log, folder):
-    """Why a run failed, in one line."""
-    error = re.search(r"^.*ERROR.*$", log, re.MULTILINE)
-    return logs.told(error[0]) if error else last_words.Screen(folder / SCREEN).words() or "no word"

@@ -1,13 +1,11 @@
 """Runs that check claims, and their report."""
 import csv
-import os
 import platform
 import shutil
-import subprocess
 import sys
 import time
 from pathlib import Path
-from typing import NamedTuple, Union
+from typing import Any, Dict, NamedTuple, Union
 
 import io
 import numpy as np
@@ -15,7 +13,7 @@ import yaml
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from .. import disk, provenance
+from .. import disk, processes, provenance
 from ..case import last_words, logs
 from ..ensemble import jobs
 from ..errors import SlopeError
@@ -69,19 +67,15 @@ class Runner:
                             self.results[one] = self.ended(one, process.returncode)
                             bar.step()
             finally:
-                for process in active.values():
-                    process.terminate()
-                    process.wait()
+                processes.stop(active.values())
 
     def start(self, one):
         folder = self.folder / one.name
         shutil.rmtree(folder, ignore_errors=True)
         one.write(folder)
-        guard = ["setpriv", "--pdeathsig", "TERM"] if shutil.which("setpriv") else []   # does not outlive us
+        words = [str(self.lmp), "-in", one.source.name, "-log", logs.LOG, *one.options]
         with open(folder / jobs.SCREEN, "wb") as screen:
-            return subprocess.Popen([*guard, str(self.lmp), "-in", one.source.name, "-log", logs.LOG, *one.options],
-                                    cwd=folder, env={**os.environ, "OMP_NUM_THREADS": "1"}, stdin=subprocess.DEVNULL,
-                                    stdout=screen, stderr=subprocess.STDOUT, start_new_session=True)
+            return processes.start(words, folder, screen)
 
     def ended(self, one, status):
         folder = self.folder / one.name
@@ -171,12 +165,11 @@ def line(outcome):
 
 # --- the report ---
 
-def origin(args, lmp, runner, outcomes, seconds):
+def made(words: str, lmp, runner, outcomes, seconds) -> Dict[str, Any]:
     """Everything that the report says of how it was made."""
     log = logs.Log(next(iter(runner.results.values())).folder / logs.LOG).update()
-    words = ["tools/slope verify"] + ["--quick"] * args.quick + [f"--only {args.only}"] * bool(args.only)
     machine = provenance.machine()
-    return {"date": provenance.now(), "command": " ".join(words), "package": provenance.package_version(),
+    return {"date": provenance.now(), "command": words, "package": provenance.package_version(),
             "lammps": log.lammps, "lmp_sha256": jobs.sha256(lmp),
             "python": platform.python_version(), "numpy": np.__version__,
             "processor": machine["processor"], "cores": machine["cores"], "system": platform.system(),

@@ -8,6 +8,7 @@ from typing import Callable, NamedTuple, Tuple, Union
 import numpy as np
 
 from ...case import logs
+from ...deposit import dumps
 from ...errors import SlopeError
 
 INPUTS = Path(__file__).resolve().parents[4] / "inputs"
@@ -116,10 +117,8 @@ def number(name, line):
 
 def read_frames(path):
     """See Result.frames."""
-    parts = path.read_text(encoding="ascii").split("ITEM: ATOMS ")[1:]
-    columns = parts[0].split("\n", 1)[0].split()
-    rows = [part.split("ITEM:")[0].split("\n", 1)[1].split() for part in parts]
-    values = np.array(rows, float).reshape(len(parts), -1, len(columns))
+    found = dumps.frames(path)
+    columns, values = found[0][0], np.array([values for _, values in found])
     return {column: values[:, :, i] for i, column in enumerate(columns)}
 
 

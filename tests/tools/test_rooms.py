@@ -1,0 +1,99 @@
+"""The rooms of the Python package: see doc/src/architecture.rst."""
+import ast
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from run_helpers import TOOLS
+
+sys.path.insert(0, str(TOOLS))
+
+from slope_tools import cli  # noqa: E402  (after the path is set)
+
+PACKAGE = TOOLS / "slope_tools"
+MODULES = sorted(PACKAGE.rglob("*.py"))
+LONGEST = 400       # lines
+ROOMS = ("", "drawing", "survey", "case", "deposit", "ensemble", "report", "validation", "commands")    # from below
+
+
+def imported(text, path):
+    """Modules of the package that a module imports, as tuples of words; a name in one of them counts as one, too."""
+    here = path.relative_to(PACKAGE).parts[:-1]
+    found = set()
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.ImportFrom) and node.level:
+            base = here[:len(here) - node.level + 1] + tuple(node.module.split(".") if node.module else ())
+        elif isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "slope_tools":
+            base = tuple(node.module.split(".")[1:])
+        else:
+            continue
+        found |= {(*base, name.name) for name in node.names}
+    return found
+
+
+def room(words):
+    return words[0] if words[0] in ROOMS else ""
+
+
+def upwards(text, path):
+    """Imports from a room above the module's own; cli.py, which takes commands by name, needs none."""
+    mine = ROOMS.index(room(path.relative_to(PACKAGE).parts))
+    return sorted(".".join(words) for words in imported(text, path) if ROOMS.index(room(words)) > mine)
+
+
+def other_commands(text, path):
+    """Commands that a command imports."""
+    return sorted(".".join(words) for words in imported(text, path)
+                  if words[0] == "commands" and words[1] in cli.COMMANDS and words[1] != path.stem)
+
+
+def test_what_is_wrong_is_found():
+    survey, volume = PACKAGE / "survey" / "rasters.py", PACKAGE / "commands" / "volume.py"
+    assert upwards("from ..deposit import cut\nfrom .crs import box\nfrom .. import errors\n", survey) == ["deposit.cut"]
+    assert upwards("def f():\n    from ..commands.volume import run\n", survey) == ["commands.volume.run"]
+    assert upwards("from slope_tools.report import page\n", survey) == ["report.page"]
+    assert other_commands("from . import run_arguments, study\n", volume) == ["commands.study"]
+    assert other_commands("from .score import THRESHOLD\n", volume) == ["commands.score.THRESHOLD"]
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_a_module(path):
+    text = path.read_text(encoding="utf-8")
+    assert text.count("\n") <= LONGEST
+    assert upwards(text, path) == []
+    if path.parent.name == "commands":
+        assert other_commands(text, path) == []
+
+
+def test_every_command_is_a_module_and_every_module_in_a_room():
+    commands = {path.stem for path in (PACKAGE / "commands").glob("*.py")}
+    assert set(cli.COMMANDS) <= commands
+    assert {path.name for path in PACKAGE.iterdir() if (path / "__init__.py").is_file()} == {*ROOMS[1:]}
+
+
+def test_rooms_take_no_arguments_of_the_command_line():
+    """Functions below commands/ have parameters of their own, not argparse's namespace."""
+    for path in MODULES:
+        if path.parent.name == "commands" or path.name in ("cli.py", "options.py"):
+            continue
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, (ast.FunctionDef, ast.Lambda)):
+                assert "args" not in [one.arg for one in (*node.args.args, *node.args.kwonlyargs)], f"{path}: {node}"
+            assert not (isinstance(node, ast.Attribute) and node.attr in ("parse_args", "ArgumentParser")), path
+
+
+@pytest.mark.parametrize("name", ["study", "volume", "polygon"])
+def test_a_command_loads_only_what_it_needs(name):
+    """Other commands, and rooms that it does not need, stay unloaded."""
+    code = (f"import sys; sys.path.insert(0, {str(TOOLS)!r})\nfrom slope_tools import cli\n"
+            f"try:\n    cli.main([{name!r}, '--help'])\nexcept SystemExit:\n    pass\n"
+            "print('loaded', *(one for one in sys.modules if one.startswith('slope_tools.')))")
+    done = subprocess.run([sys.executable, "-c", code], text=True, capture_output=True, check=True, env=os.environ)
+    loaded = done.stdout.split("loaded ")[1].split()
+    others = {f"slope_tools.commands.{other}" for other in cli.COMMANDS} - {f"slope_tools.commands.{name}"}
+    assert f"slope_tools.commands.{name}" in loaded
+    assert not others & set(loaded)
+    assert not [one for one in loaded if one.startswith(("slope_tools.report.", "slope_tools.validation."))]

@@ -1,0 +1,409 @@
+"""tools/slope site and slope study FOLDER: from a GeoTIFF and two layers of a GIS to a report; what is refused."""
+import json
+import os
+import re
+import shutil
+import struct
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import rasterio
+import yaml
+from affine import Affine
+from rasterio.warp import transform as warp
+from shapely.geometry import LineString, Polygon, mapping
+
+from tiny_collapse import LMP, TOP
+
+TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
+sys.path.insert(0, str(TOOLS))
+
+from slope_tools.case import decks, site_budget, site_choices  # noqa: E402  (after the path is set)
+from slope_tools.errors import SlopeError  # noqa: E402
+
+DATA = Path(os.environ.get("SLOPE_DATA", TOP.parent.parent / "shared" / "data"))
+EAST, NORTH, CELL, COLUMNS, ROWS = -12000.0, 34000.0, 2.0, 60, 40      # of the survey, m, zone IX of Japan
+RELEASE = [(52, 20), (86, 20), (90, 40), (86, 60), (52, 60), (48, 40)]  # local m
+ROAD = [(20, 0), (36, 0), (36, 80), (20, 80)]
+BALLS = 150
+
+
+def height(x):
+    """Of the ground, m: level, a face of 31 degrees, a plateau."""
+    return np.interp(x, [0, 40, 100, 120], [0.0, 0.0, 36.0, 37.0])
+
+
+def write_dem(path, crs="EPSG:6677", z=None):
+    if z is None:
+        z = np.broadcast_to(100 + height((np.arange(COLUMNS) + 0.5) * CELL), (ROWS, COLUMNS))
+    with rasterio.open(path, "w", driver="GTiff", width=COLUMNS, height=ROWS, count=1, dtype="float64", crs=crs,
+                       nodata=-9999, transform=Affine(CELL, 0, EAST, 0, -CELL, NORTH + ROWS * CELL)) as out:
+        out.write(z.astype(float), 1)
+
+
+def write_layer(path, points, crs="EPSG:6677", kind=Polygon):
+    """Points in local metres as GeoJSON in a CRS; None: a shapefile's part of none is made by the caller."""
+    points = np.array(points, float) + (EAST, NORTH)
+    if crs != "EPSG:6677":
+        points = np.transpose(warp("EPSG:6677", crs, *points.T))
+    about = {"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {},
+                                                        "geometry": mapping(kind(points))}]}
+    if crs != "EPSG:4326":
+        about["crs"] = {"type": "name", "properties": {"name": f"urn:ogc:def:crs:EPSG::{crs.split(':')[1]}"}}
+    path.write_text(json.dumps(about))
+
+
+def write_wall(path, x=38.0, low=(30, 50)):
+    """A wall of two triangles, binary STL, in local metres."""
+    a, b = (x, low[0], 98), (x, low[1], 98)
+    c, d = (x, low[1], 104), (x, low[0], 104)
+    records = b"".join(struct.pack("<12fH", 0, 0, 0, *one, *two, *three, 0)
+                       for one, two, three in ((a, b, c), (a, c, d)))
+    path.write_bytes(b"\0" * 80 + struct.pack("<I", 2) + records)
+
+
+def slope(folder, *words, **environment):
+    """Run tools/slope; gives the finished process."""
+    return subprocess.run([sys.executable, str(TOOLS / "slope"), *map(str, words)], cwd=folder, text=True,
+                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False,
+                          env={**os.environ, "LMP": str(Path(LMP).absolute()), **environment}, timeout=1200)
+
+
+def make(folder, *words, **environment):
+    """A site in folder/mine from the standard files; more words may follow."""
+    return slope(folder, "site", "--terrain", "dem.tif", "--release", "release.geojson", *words, "-o", "mine",
+                 **environment)
+
+
+@pytest.fixture
+def gis(tmp_path):
+    """dem.tif, release.geojson (in degrees), road.geojson."""
+    write_dem(tmp_path / "dem.tif")
+    write_layer(tmp_path / "release.geojson", RELEASE, "EPSG:4326")
+    write_layer(tmp_path / "road.geojson", ROAD)
+    return tmp_path
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory):
+    """The two commands of a new user; gives the folder and what both printed."""
+    folder = tmp_path_factory.mktemp("site")
+    write_dem(folder / "dem.tif")
+    write_layer(folder / "release.geojson", RELEASE, "EPSG:4326")
+    write_layer(folder / "road.geojson", ROAD)
+    first = make(folder, "--shape", "ellipsoid", "--depth", "5", "--road", "road.geojson", "--balls", BALLS,
+                 "--author", "A. N. Engineer")
+    assert first.returncode == 0, first.stderr
+    second = slope(folder, "study", "mine")
+    assert second.returncode == 0, second.stderr
+    return folder, first.stdout, second.stdout
+
+
+# --- two commands ---
+
+def test_two_commands_lead_from_gis_files_to_a_report(done):
+    folder, first, second = done
+    mine = folder / "mine"
+    for name in ("terrain.asc", "release.slip.asc", "release.csv", "road.csv", "in.site", "site.yaml", "map.png",
+                 "release.png", "report.html"):
+        assert (mine / name).stat().st_size > 0, name
+    study = yaml.safe_load((mine / "study" / "study.yaml").read_text())
+    assert study["study"]["finished"] == 9 and study["study"]["set"] == {"rolling": ["0", "0.05", "0.1"]}
+    assert study["conservative"]["kind"] == "prediction" and study["conservative"]["volume_m3"] > 0
+    assert yaml.safe_load((mine / "sizes" / "converge.yaml").read_text())["study"]["finished"] == 9
+    assert "report.html" in second and "conservative" in second
+    assert not list(folder.glob(".mine*"))
+    assert str(folder) not in (mine / "release.yaml").read_text() + (mine / "site.yaml").read_text()
+    about = site_choices.read(mine)
+    assert about["project"]["author"] == "A. N. Engineer" and about["balls"]["number"] == BALLS
+    assert f"{round(site_choices.found(mine)['balls'])}" in first.replace(",", "")
+
+
+def test_the_study_is_resumed(done):
+    folder, _, _ = done
+    before = {path: path.stat().st_mtime_ns for path in (folder / "mine").rglob("finished.yaml")}
+    again = slope(folder, "study", "mine")
+    assert again.returncode == 0, again.stderr
+    assert len(before) == 18 and "started" not in again.stdout
+    assert before == {path: path.stat().st_mtime_ns for path in before}
+
+
+def test_the_deck_by_hand_gives_the_numbers_of_the_study(done, tmp_path):
+    folder, _, _ = done
+    hand = tmp_path / "hand"
+    hand.mkdir()
+    for name in ("in.site", "terrain.asc", "terrain.yaml", "release.slip.asc", "road.csv"):
+        shutil.copy(folder / "mine" / name, hand)
+    subprocess.run([LMP, "-in", "in.site", "-var", "rolling", "0.05", "-var", "xoffset", "0.25"], cwd=hand, check=True,
+                   stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+    volume = slope(hand, "volume", "site", "--road", "road.csv", "--cut-angle", "30", "--mesh", "10", "-o", "removal")
+    assert volume.returncode == 0, volume.stderr
+    by_hand = yaml.safe_load((hand / "removal" / "volume.yaml").read_text())["volume"]
+    run = folder / "mine" / "study" / "rolling_0.05_xoffset_0.25" / "volume" / "volume.yaml"
+    assert by_hand == yaml.safe_load(run.read_text())["volume"] and by_hand["remove"] > 0
+    other = folder / "mine" / "study" / "rolling_0.05" / "volume" / "volume.yaml"
+    assert by_hand != yaml.safe_load(other.read_text())["volume"]
+
+
+def test_what_is_released_is_the_body(done):
+    folder, first, _ = done
+    told = float(re.search(r"^volume (\S+) m3", first, re.MULTILINE)[1])
+    study = yaml.safe_load((folder / "mine" / "study" / "study.yaml").read_text())
+    for row in study["runs"]:
+        assert row["released_m3"] == pytest.approx(told, rel=2e-3)
+
+
+def test_the_folder_is_made_anew_from_its_file(done, tmp_path):
+    shutil.copytree(done[0], tmp_path / "copy")
+    folder = tmp_path / "copy"
+    mine = folder / "mine"
+    keep = ("in.site", "terrain.asc", "release.slip.asc", "road.csv")
+    before = {name: (mine / name).read_bytes() for name in keep}
+    (mine / "map.png").unlink()
+    (mine / "notes.txt").write_text("mine")
+    again = slope(folder, "site", "mine")
+    assert again.returncode == 0, again.stderr
+    assert before == {name: (mine / name).read_bytes() for name in keep}
+    assert (mine / "map.png").exists() and (mine / "notes.txt").read_text() == "mine"
+    assert (mine / "study" / "study.yaml").exists() and not list(folder.glob(".mine*"))
+
+    # another choice in the file, and one on the command line
+    path = mine / "site.yaml"
+    path.write_text(re.sub(r"friction: 30\b", "friction: 25", path.read_text(), count=1))
+    again = slope(folder, "site", "mine", "--balls", "300")
+    assert again.returncode == 0, again.stderr
+    variables = decks.index_variables(mine / "in.site")
+    assert variables["friction"] == "25"
+    volume = site_choices.found(mine)["body"]["volume"]
+    assert volume / float(variables["d"]) ** 3 == pytest.approx(300, rel=0.02)
+    assert variables["field_d"] == variables["d"]
+
+    # the study does not mix runs of two decks
+    study = slope(folder, "study", "mine")
+    assert study.returncode == 2 and "in.site" in study.stderr
+
+    # a deck that was changed by hand is not lost
+    deck = mine / "in.site"
+    deck.write_text(deck.read_text() + "# mine\n")
+    again = slope(folder, "site", "mine")
+    assert again.returncode == 2 and re.match(r"slope site: mine/in\.site: must .*changed by hand", again.stderr)
+    assert deck.read_text().endswith("# mine\n")
+
+
+# --- what lies on the terrain ---
+
+def test_structures_lines_and_a_mapped_deposit(gis):
+    write_wall(gis / "wall.stl")
+    write_layer(gis / "behind.geojson", [(36, 50), (36, 30)], kind=LineString)
+    write_layer(gis / "mapped.geojson", [(25, 25), (60, 25), (60, 55), (25, 55)])
+    site = make(gis, "--shape", "ellipsoid", "--depth", "5", "--balls", "60", "--structure", "wall.stl", "--line",
+                "behind.geojson", "--observed", "mapped.geojson")
+    assert site.returncode == 0, site.stderr
+    mine = gis / "mine"
+    assert (mine / "behind.csv").read_text().splitlines()[1:] == ["36,50", "36,30"]
+    path = mine / "site.yaml"
+    text = re.sub(r"rolling: \[.*?\]", "rolling: [0.05]", path.read_text())
+    path.write_text(re.sub(r"sizes: \[.*?\]", "sizes: []", re.sub(r"xoffset: \[.*?\]", "xoffset: []", text)))
+    study = slope(gis, "study", "mine")
+    assert study.returncode == 0, study.stderr
+    run = mine / "study" / "rolling_0.05"
+    assert "wall" in (mine / "study" / "structures.csv").read_text()
+    assert (run / "site.wall.csv").exists() and (run / "site.behind.line.yaml").exists()
+    score = yaml.safe_load((mine / "score" / "score.yaml").read_text())
+    assert 0 < score["area"]["jaccard"] < 1
+    assert (mine / "report.html").exists()
+
+
+def test_an_earthquake_sets_the_body_off(gis):
+    t = np.arange(0, 4, 0.02)
+    rows = "".join(f"{a:.2f} {4 * np.sin(9 * a):.6f} 0 0\n" for a in t)
+    (gis / "motion.txt").write_text("# t ax ay az\n" + rows)
+    site = make(gis, "--shape", "ellipsoid", "--depth", "5", "--balls", "80", "--motion", "motion.txt")
+    assert site.returncode == 0, site.stderr
+    deck = (gis / "mine" / "in.site").read_text()
+    assert "ground/motion ${motion} scale ${scale}" in deck and "fix         drag" in deck
+    variables = decks.index_variables(gis / "mine" / "in.site")
+    assert float(variables["peak_friction"]) >= 33 and variables["shaking"] == "3.98"
+    found = site_choices.found(gis / "mine")["trial"]
+    assert found["rest"] > 0 and found["balls"] > 40
+
+
+def test_layers_in_other_systems_lie_where_they_belong(done):
+    """The release polygon is in degrees, the road in metres: both at the local metres that they were drawn in."""
+    mine = done[0] / "mine"
+    for name, wanted in (("release.csv", RELEASE), ("road.csv", ROAD)):
+        rows = [line for line in (mine / name).read_text().splitlines() if line and not line.startswith("#")]
+        points = np.array([[float(value) for value in row.split(",")] for row in rows])
+        far = [np.hypot(*(points - one).T).min() for one in wanted]
+        assert max(far) < 0.01
+
+
+def test_a_volume_of_frank_by_polygon(tmp_path):
+    """A body of 1e6 m3 below a polygon on frank's ground: released within 0.2 %, whatever the balls."""
+    frank = DATA / "frank" / "Frankslide_topography.asc"
+    if not frank.is_file():
+        pytest.skip(f"no {frank}: see the README of the data")
+    (tmp_path / "release.csv").write_text("900,900\n1300,900\n1300,1300\n900,1300\n")
+    site = slope(tmp_path, "site", "--terrain", frank, "--release", "release.csv", "--shape", "slbl", "--volume", "1e6",
+                 "--balls", "400", "-o", "mine")
+    assert site.returncode == 0, site.stderr
+    assert site_choices.found(tmp_path / "mine")["body"]["volume"] == pytest.approx(1e6, rel=1e-3)
+    for d in ("20", "14"):
+        subprocess.run([LMP, "-in", "in.site", "-var", "d", d, "-var", "duration", "0.1", "-var", "out", f"d{d}"],
+                       cwd=tmp_path / "mine", check=True, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+        summary = yaml.safe_load((tmp_path / "mine" / f"d{d}.summary.yaml").read_text())
+        assert summary["volume"]["released"] == pytest.approx(1e6, rel=2e-3)
+
+
+# --- the budget ---
+
+def budget(**balls):
+    choices = site_choices.complete({"terrain": {"files": ["dem.tif"]}, "balls": balls})
+    choices["model"].update(speed=47.0, duration=60.0)
+    trial = site_budget.Trial(800, 3.5, 15.0, True, 13.0, 1e-7, 0.5, 2.0, 0.0)
+    return site_budget.size(choices, 35000.0, trial, 2, 6144)
+
+
+def test_the_size_of_the_balls_comes_from_the_budget():
+    assert budget(number=2240).diameter == 2.5
+    assert budget(diameter=2.5, number=7).balls == 2240
+    assert budget().balls == pytest.approx(site_budget.DEFAULT, rel=0.02)
+    some, more = budget(minutes=10), budget(minutes=100)
+    assert 570 < some.seconds <= 600 and 5700 < more.seconds <= 6000
+    assert more.balls / some.balls == pytest.approx(10 ** 0.75, rel=0.3)     # time goes with balls^(4/3)
+    small = budget(memory=1.0)
+    assert 0.97 < small.gigabytes <= 1.0 and small.balls == pytest.approx((0.5 - 0.06) / 800e-9, rel=0.03)
+
+
+@pytest.mark.parametrize("balls, option", [({"minutes": 0.1}, "--minutes"), ({"memory": 0.01}, "--memory"),
+                                           ({"diameter": 1000.0}, "--diameter")])
+def test_a_budget_that_cannot_be_kept(balls, option):
+    with pytest.raises(SlopeError, match=f"^{option}: must "):
+        budget(**balls)
+
+
+def test_the_time_step_is_the_decks(done):
+    """The estimate's time step against that of a run."""
+    folder = done[0] / "mine"
+    variables = decks.index_variables(folder / "in.site")
+    summary = yaml.safe_load((folder / "study" / "rolling_0" / "site.summary.yaml").read_text())
+    wanted = site_budget.time_step(*(float(variables[name]) for name in ("d", "speed", "density")))
+    assert summary["dt"] == pytest.approx(wanted, rel=1e-6)
+
+
+# --- bad input: one line that names file, item, rule and value; no folder ---
+
+def refused(done, start):
+    """Whether it ended with status 2 and one line that begins so."""
+    assert done.returncode == 2, done.stdout + done.stderr
+    last = done.stderr.splitlines()[-1]
+    assert "Traceback" not in done.stderr
+    assert re.match(f"slope (site|study): {start}", last), last
+    return last
+
+
+BODY = ("--shape", "ellipsoid", "--depth", "5")
+
+
+@pytest.mark.parametrize("words, start", [
+    ((), "--depth: .*--volume must be given"),
+    (("--depth", "-1"), "choices: release.depth: must be > 0, got -1"),
+    (("--shape", "ellipsoid", "--volume", "1e9"), "--volume: must be at most .*got 1000000000"),
+    ((*BODY, "--road", "missing.geojson"), "missing.geojson: must be an existing file"),
+    ((*BODY, "--cut-angle", "95"), "choices: road.cut_angle: must be < 90, got 95"),
+    ((*BODY, "--structure", "dem.tif"), "dem.tif: must be an STL file"),
+    ((*BODY, "--motion", "road.geojson"), "road.geojson: line 1: must be four numbers"),
+    ((*BODY, "--minutes", "0.001"), "--minutes: must be at least .* got 0.001"),
+])
+def test_refused(gis, words, start):
+    refused(make(gis, *words), start)
+    assert not list(gis.glob("*mine*")) and not list(gis.glob(".mine*"))
+
+
+def test_refused_files(gis):
+    def outside():
+        write_layer(gis / "release.geojson", np.array(RELEASE) + 5000)
+
+    def flat():
+        write_dem(gis / "dem.tif", z=np.full((ROWS, COLUMNS), 5.0))
+
+    def empty():
+        write_dem(gis / "dem.tif", z=np.full((ROWS, COLUMNS), -9999.0))
+
+    def nowhere():
+        write_dem(gis / "dem.tif", crs=None)
+
+    def wall():
+        write_wall(gis / "wall.stl", x=1e6)
+
+    original = {name: (gis / name).read_bytes() for name in ("dem.tif", "release.geojson")}
+    for spoil, start in ((outside, "release.geojson: must overlap the terrain"),
+                         (flat, "release.geojson: .*must fall by at least 1 degree, got .*flat"),
+                         (empty, "dem.tif: must have a height, all cells are NODATA"),
+                         (nowhere, "(dem.tif|terrain.asc): must have a CRS.*none"),
+                         (wall, "wall.stl: must lie within the terrain")):
+        spoil()
+        words = ("--structure", "wall.stl") if spoil is wall else ()
+        refused(make(gis, *BODY, *words), start)
+        assert not list(gis.glob("*mine*")) and not list(gis.glob(".mine*"))
+        for name, content in original.items():
+            (gis / name).write_bytes(content)
+
+
+def test_a_layer_without_crs(gis):
+    fiona = pytest.importorskip("fiona")
+    points = (np.array(ROAD, float) + (EAST, NORTH)).tolist()
+    with fiona.open(gis / "road.shp", "w", "ESRI Shapefile", {"geometry": "Polygon", "properties": {}}) as out:
+        out.write({"geometry": {"type": "Polygon", "coordinates": [points + points[:1]]}, "properties": {}})
+    refused(make(gis, *BODY, "--road", "road.shp"), "road.shp: must have a CRS.*none")
+    assert not (gis / "mine").exists()
+
+
+def test_a_file_of_another_version(done, tmp_path):
+    good = (done[0] / "mine" / "site.yaml").read_text()
+    for old, new, rule in (("slope_site: 1", "slope_site: 2", " slope_site: must be 1.*got 2"),
+                           ("slope_site: 1", "slope: 1", " must be .*slope_site"),
+                           ("mesh: 10", "mash: 10", " road: must have no mash"),
+                           ("spacing: 1", "spacing: -1", r" model\.spacing: must be > 0, got -1"),
+                           (good, "a: [", " must be")):
+        mine = tmp_path / "mine"
+        mine.mkdir(exist_ok=True)
+        for name in ("in.site", "site.yaml"):
+            shutil.copy(done[0] / "mine" / name, mine)
+        assert old in good
+        (mine / "site.yaml").write_text(good.replace(old, new))
+        for command in ("site", "study"):
+            refused(slope(tmp_path, command, "mine"), f"mine/site.yaml:{rule}")
+
+
+def test_folders_that_are_no_sites(gis, done):
+    refused(slope(gis, "study", "."), r"\.: must be a folder with site.yaml")
+    refused(slope(gis, "site", "."), r"\.: must be a folder with site.yaml")
+    refused(slope(gis, "site", "-o", "mine"), "--terrain: must be given")
+    refused(slope(gis, "site", "--terrain", "dem.tif", *BODY, "-o", "mine"), "--release: must be given")
+    refused(slope(done[0], "site", "--terrain", "dem.tif", "--release", "release.geojson", *BODY, "-o", "mine"),
+            "-o: must be a new folder; `slope site mine`")
+    refused(slope(done[0], "study", "mine", "--set", "rolling=0"), "--set: must not be given with the folder of a site")
+    refused(slope(done[0], "study", "mine/in.site", "--set", "rolling=0"), "-o: must be given")
+
+
+def test_without_lammps_the_folder_is_made_and_that_is_said(gis):
+    site = make(gis, *BODY, "--balls", "100", LMP="/nowhere/lmp")
+    assert site.returncode == 0, site.stderr
+    assert "no LAMMPS program" in site.stderr and (gis / "mine" / "in.site").exists()
+
+
+# --- the page ---
+
+def test_the_page_names_every_key_and_option():
+    page = (TOP / "doc" / "src" / "tool_site.rst").read_text(encoding="ascii")
+    for section, about in site_choices.sections():
+        assert f"*{section}*" in page, section
+        for key in about["properties"]:
+            assert re.search(rf"\*{key}\*|\*--{key.replace('_', '-')}\*", page), (section, key)
+    help_ = slope(TOP, "site", "--help").stdout
+    for option in set(re.findall(r"--[a-z-]+", help_)) - {"--help"}:
+        assert f"*{option}*" in page, option

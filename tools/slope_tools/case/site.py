@@ -1,0 +1,253 @@
+"""A site's folder: terrain, body, layers, deck, map and site.yaml; all of it or nothing.
+
+Order of the work: terrain and body (survey), layers (site_inputs), trial run and size of the balls (site_budget), deck
+(site_deck), map (site_map), site.yaml (site_choices). It is built in a folder beside, which is then renamed.
+"""
+import hashlib
+import os
+import shutil
+from pathlib import Path
+from typing import Any, Callable, List, NamedTuple, Optional, Set
+
+import numpy as np
+
+from .. import disk, provenance
+from ..errors import SlopeError
+from ..survey import local_terrain, polygons, rasters, release
+from ..survey.rasters import Raster, crs_name
+from . import release_files, site_budget, site_choices, site_deck
+from .site_budget import Size, Trial
+from .site_choices import Choices
+from .site_layers import Layers, Shown, read_layers
+
+MAP = "map.png"
+TERRAIN = "terrain.asc"
+BODY = "release"        # first part of the names of the body's files
+
+
+class Machine(NamedTuple):
+    """With what a site is tried, and its study will run."""
+    lmp: Optional[Path]     # None: there is none, nothing is tried
+    jobs: int               # runs at a time
+
+
+class Made(NamedTuple):
+    """What was made."""
+    folder: Path
+    files: List[str]
+    size: Size
+
+
+def check_target(folder: Path, again: bool) -> None:
+    """Raise SlopeError unless a site can be made in a folder; again: made anew, from its own site.yaml."""
+    if not folder.absolute().parent.is_dir():
+        raise SlopeError("-o", "must be in an existing folder", folder)
+    if again:
+        deck = folder / site_deck.NAME
+        known = site_choices.found(folder).get("deck_sha256")
+        if deck.is_file() and known != digest(deck):
+            raise SlopeError(deck, "must not have been changed by hand, that would be lost: rename or remove it first")
+    elif (folder / site_choices.NAME).is_file():
+        raise SlopeError("-o", f"must be a new folder; `slope site {folder}` makes this one anew from its "
+                         f"{site_choices.NAME}", folder)
+    elif folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise SlopeError("-o", "must be a new folder, or an empty one", folder)
+
+
+def digest(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+Draw = Callable[[Path, Shown, str], None]       # of the map: file, what it shows, title
+
+
+def make(choices: Choices, folder: Path, machine: Machine, tell: Callable[[str], Any],
+         warn: Callable[[str], Any], draw: Draw) -> Made:
+    """Make a site's folder, or make it anew, from complete choices whose files are seen from the working folder.
+
+    tell and warn are called with lines for the user, draw draws the map. Raises SlopeError on bad input; the
+    folder is then as it was.
+    """
+    again = (folder / site_choices.NAME).is_file()
+    check_target(folder, again)
+    old = set(site_choices.found(folder).get("files") or ()) if again else set()
+    new = folder.absolute().with_name(f".{folder.absolute().name}.{os.getpid()}.new")
+    try:
+        new.mkdir()
+        try:
+            made = built(choices, new, folder, machine, tell, warn, draw)
+            exchange(new, folder.absolute(), old)
+        finally:
+            shutil.rmtree(new, ignore_errors=True)
+    except OSError as error:
+        raise SlopeError(folder, f"cannot be written: {error.strerror or error}") from None
+    return made
+
+
+def built(choices: Choices, new: Path, folder: Path, machine: Machine, tell, warn, draw: Draw) -> Made:
+    """build(), whose messages do not name the folder that is not there afterwards."""
+    try:
+        return build(choices, new, folder, machine, tell, warn, draw)
+    except SlopeError as error:
+        error.args = (str(error).replace(f"{new}/", ""),)
+        raise
+
+
+def exchange(new: Path, folder: Path, old: Set[str]) -> None:
+    """Put a new folder in the place of one; what the old one has beside its old files (studies) goes along."""
+    if not folder.is_dir():
+        new.rename(folder)
+        return
+    aside = folder.with_name(f".{folder.name}.{os.getpid()}.old")
+    folder.rename(aside)
+    new.rename(folder)
+    for path in sorted(aside.iterdir()):
+        if path.name not in old and not (folder / path.name).exists():
+            path.rename(folder / path.name)
+    shutil.rmtree(aside)
+
+
+def build(choices: Choices, new: Path, folder: Path, machine: Machine, tell, warn, draw: Draw) -> Made:
+    """Everything, into the folder `new`, which will be `folder`."""
+    choices = {name: dict(section) for name, section in choices.items()}
+    wanted = wanted_body(choices, new)
+    raster = terrain(choices, new, tell)
+    found = release.body_of(wanted)
+    tell(release.text(found))
+    for line in found.warnings:
+        warn(line)
+    body = write_body(new, wanted, found)
+    layers = read_layers(choices, raster, new, tell, warn)
+    title = choices["project"]["name"] or folder.absolute().name
+    parts = site_deck.Parts(title, ", ".join(Path(name).name for name in choices["terrain"]["files"]), body,
+                            layers.structures, layers.lines, layers.motion)
+    trial, reached = tried(choices, parts, found, new, machine, tell, warn)
+    size = settle(choices, parts, found, trial, machine, raster)
+    say_size(choices, size, trial, found, machine, tell, warn)
+    deck = site_deck.text(choices, parts, numbers(choices, trial, size))
+    disk.write(new / site_deck.NAME, deck)
+    draw(new / MAP, shown(found, layers, reached), f"{title}: {found.measures.volume:,.0f} m\u00b3")
+    files = sorted([path.name for path in new.iterdir()] + [site_choices.NAME])
+    about = {"slope_version": provenance.version(), "made": provenance.now(), "files": files,
+             "deck_sha256": digest(new / site_deck.NAME), "crs": crs_name(raster.crs),
+             "origin": {"east": float(raster.offset[0]), "north": float(raster.offset[1])},
+             "body": found.measures._asdict(), "balls": size.balls,
+             "trial": trial and trial._asdict(), "study": {"runs": size.runs, "seconds": size.seconds,
+                                                           "gigabytes": size.gigabytes, "at_a_time": machine.jobs}}
+    disk.write(new / site_choices.NAME, site_choices.text(choices, about, folder.absolute()))
+    return Made(folder, files, size)
+
+
+# --- ground ---
+
+def wanted_body(choices: Choices, new: Path) -> release.Wanted:
+    """What is asked of the body, checked before anything is read."""
+    given = choices["release"]
+    if not (given["polygon"] or given["scar"]):
+        raise SlopeError("--release", "must be given, a polygon, or --scar, a raster")
+    wanted = release.check(release.Wanted(str(new / TERRAIN), **given))
+    given["shape"] = wanted.shape
+    return wanted
+
+
+def terrain(choices: Choices, new: Path, tell) -> Raster:
+    """Write the terrain and read it back, as the deck will."""
+    given = choices["terrain"]
+    wanted = local_terrain.Wanted(given["crs"], None, given["cell"], given["bounds"], given["fill"])
+    about = local_terrain.make(given["files"], new / TERRAIN, wanted, tell)
+    tell(local_terrain.summary(TERRAIN, about))
+    return rasters.read_asc_local(new / TERRAIN)
+
+
+def write_body(new: Path, wanted: release.Wanted, found: release.Body):
+    """The body's files, and what the deck needs to know of it."""
+    name = new / BODY
+    release_files.write_body(name, wanted._replace(terrain=TERRAIN), found)
+    name.with_name(f"{BODY}.deck.txt").unlink()     # its lines are in the deck
+    if found.geometry is not None:
+        polygons.write(new / f"{BODY}.csv", found.geometry, found.raster)
+    return release_files.deck_body(name, wanted.terrain, found.raster, found.area, found.slip)
+
+
+# --- balls ---
+
+def numbers(choices: Choices, trial: Optional[Trial], size: Optional[Size], diameter: Optional[float] = None):
+    """What the choices leave open, for the deck."""
+    model = choices["model"]
+    d = diameter or size.diameter
+    seconds = None
+    if trial and size:
+        steps = trial.rest / site_budget.time_step(d, model["speed"], model["density"])
+        seconds = trial.setup + steps * size.balls * trial.cost
+    return site_deck.Numbers(d, model["field_diameter"] or d, model["speed"] or site_budget.SPEED,
+                             model["duration"] or site_budget.LONGEST, model["cell"] or 1.0,
+                             choices["motion"]["peak_friction"] or site_deck.LEAST_PEAK, trial and trial.rest, seconds)
+
+
+def tried(choices: Choices, parts: site_deck.Parts, found: release.Body, new: Path, machine: Machine, tell, warn):
+    """The Trial of a run with coarse balls, and its largest thickness; None, None where there is no LAMMPS."""
+    if choices["motion"]["peak_friction"] is None and parts.motion:
+        choices["motion"]["peak_friction"] = site_deck.peak_friction(found.measures.slip_slope)
+    if machine.lmp is None:
+        return None, None
+    d = site_budget.trial_diameter(choices, parts.body.volume)
+    coarse = {**choices, "model": {**choices["model"], "field_diameter": d, "cell": max(found.area.cell, d / 2)}}
+    folder = new / "trial"
+    folder.mkdir()
+    for path in list(new.iterdir()):
+        if path.suffix in (".asc", ".stl", ".csv", ".txt"):
+            os.symlink(f"../{path.name}", folder / path.name)
+    disk.write(folder / site_deck.NAME, site_deck.text(coarse, parts, numbers(coarse, None, None, d)))
+    trial = site_budget.measure(folder, site_deck.NAME, machine.lmp)._replace(diameter=d)
+    reached = rasters.read(next(iter(folder.glob("*.max_thickness.asc"))), heights=False)
+    shutil.rmtree(folder)
+    tell(f"trial run, {trial.balls} balls of {d:g} m: {'at rest' if trial.at_rest else 'not at rest'} after "
+         f"{trial.rest:.0f} s, up to {trial.speed:.0f} m/s; {trial.seconds:.1f} s of this machine")
+    if trial.left > 0.001:
+        warn(f"{100 * trial.left:.2g} % of the mass left the terrain in the trial run: take a larger one")
+    if not trial.at_rest:
+        warn(f"the trial run was not at rest after {trial.rest:.0f} s: the run time of the study is a guess")
+    return trial, reached
+
+
+def settle(choices: Choices, parts: site_deck.Parts, found: release.Body, trial: Optional[Trial], machine: Machine,
+           raster: Raster) -> Size:
+    """Fill in what the choices leave open, and with it the size of the balls."""
+    model, balls = choices["model"], choices["balls"]
+    model["speed"] = model["speed"] or site_budget.stiff_to(trial)
+    model["duration"] = model["duration"] or site_budget.duration(trial)
+    size = site_budget.size(choices, parts.body.volume, trial, machine.jobs, raster.z.size)
+    balls["diameter"] = size.diameter
+    model["field_diameter"] = model["field_diameter"] or size.diameter
+    model["cell"] = model["cell"] or max(found.area.cell, site_budget.three_digits(size.diameter / 2))
+    return size
+
+
+def say_size(choices: Choices, size: Size, trial: Optional[Trial], found: release.Body, machine: Machine, tell, warn):
+    """What the user needs to know of the balls, and of what the study takes."""
+    thick = found.measures.mean_depth / size.diameter, found.measures.largest_depth / size.diameter
+    tell(f"balls of {size.diameter:g} m: {size.balls:,} of them, the body is {thick[0]:.1f} of them thick on the mean, "
+         f"{thick[1]:.1f} at the most")
+    study = choices["study"]
+    each = 1 + len(study["xoffset"])
+    runs = f"{size.runs} runs: {len(study['rolling'])} rolling resistances x {each} places of the lattice"
+    if study["sizes"]:
+        runs += f", {len(study['sizes'])} sizes of balls x {each}"
+    took = "" if size.seconds is None else f", about {site_budget.told(size.seconds)} if nothing else runs"
+    tell(f"the study: {runs}; {machine.jobs} at a time{took}, {size.gigabytes:.2g} GB")
+    if trial is None:
+        warn("no LAMMPS program (LMP, --lmp, build/lmp): the deck was not tried, time and speeds are not known")
+    if thick[1] < 3:
+        warn("the body is thinner than 3 balls everywhere: the numbers will be rough; more --balls or --minutes")
+
+
+# --- map ---
+
+def shown(found: release.Body, layers: Layers, reached: Optional[Raster]) -> Shown:
+    """What the map shows; reached: the largest thickness of the trial run."""
+    depth = np.zeros(found.raster.z.shape)
+    row, column = found.area.corner
+    rows, columns = found.slip.shape
+    depth[row:row + rows, column:column + columns] = np.nan_to_num(found.area.z - found.slip)
+    return Shown(found.raster, depth, found.geometry, layers.road, layers.observed, layers.structures, layers.lines,
+                 reached)

@@ -1,0 +1,209 @@
+"""How large the balls of a site are: from a budget, and a trial run with coarse balls that measures this machine.
+
+A run takes (steps) x (balls) x (time of a ball and step). The trial run measures the last one, as processor time, the
+seconds until the mass is at rest, and the largest speed, which sets the stiffness and with it the step. Times in s,
+lengths in m.
+"""
+import math
+import os
+import re
+import resource
+import subprocess
+from pathlib import Path
+from typing import Callable, List, NamedTuple, Optional, Sequence, Tuple
+
+from .. import disk
+from ..case import last_words, logs
+from ..errors import SlopeError
+from .site_choices import Choices
+
+DEFAULT = 4000          # balls, if no budget is given
+TRIAL = 800             # balls of the trial run
+FEWEST = 100            # balls that a budget must allow for
+MOST = 10 ** 9          # LAMMPS counts atoms of a group further; nobody has the memory
+PER_BALL = 800e-9       # GB, see the page on scaling
+PER_RUN = 0.06          # GB, program and libraries
+PER_CELL = 16e-9        # GB, two terrains of doubles; the deposit's rasters are there where balls were
+COLLECT = 3.0           # s of a run after it: volume, maps
+REPORT = 15.0           # s of the report
+SPEED = 47.0            # m/s that the paper's stiffness is good for
+AIR = 1.2               # stiffness is made for the trial's largest speed times this
+PATIENCE = 3.0          # duration: times the trial's time to rest
+LEAST_DURATION = 60.0   # s
+LONGEST = 600.0         # s of a collapse in the trial run
+TRIAL_LIMIT = 600.0     # s of waiting for it
+
+
+LOOP = re.compile(r"^Loop time of (\S+) on \d+ procs for (\d+) steps with (\d+) atoms", re.MULTILINE)
+SHARE = re.compile(r"^(\S+)% CPU use", re.MULTILINE)
+
+
+class Trial(NamedTuple):
+    """What a run with coarse balls measured."""
+    balls: int
+    diameter: float
+    rest: float             # s of the collapse, until it is at rest or the run ends
+    at_rest: bool
+    speed: float            # largest, m/s
+    cost: float             # s of a core of this machine for a ball and a step
+    setup: float            # s of a core for what does not go with the balls and steps
+    seconds: float          # s of a core that it took
+    left: float             # share of the mass that left the terrain
+
+
+class Size(NamedTuple):
+    """The balls of a site, and what the standard study then takes."""
+    diameter: float
+    balls: int
+    runs: int
+    seconds: Optional[float]    # of the whole study on this machine; None without a trial run
+    gigabytes: float            # of the runs that go on at a time
+
+
+def time_step(d: float, speed: float, density: float) -> float:
+    """The deck's time step (s) for balls of diameter d (m)."""
+    stiffness = 1.96e9 * d / 1.25 * (speed / 47) ** 2
+    return 0.25 * math.sqrt(density * math.pi / 6 * d ** 3 / stiffness)
+
+
+def three_digits(value: float) -> float:
+    return float(f"{value:.3g}")
+
+
+# --- the trial run ---
+
+def trial_diameter(choices: Choices, volume: float) -> float:
+    """Of the trial's balls (m): TRIAL of them, or fewer if the site has fewer."""
+    balls = choices["balls"]
+    number = TRIAL
+    if balls["diameter"]:
+        number = min(number, volume / balls["diameter"] ** 3)
+    elif balls["number"]:
+        number = min(number, balls["number"])
+    return three_digits((volume / max(number, 1)) ** (1 / 3))
+
+
+def measure(folder: Path, deck: str, lmp: Path) -> Trial:
+    """Run a site's deck in its folder and read what it measured; SlopeError with LAMMPS' own words if it fails.
+
+    The diameter is left to the caller, as is what the run leaves in the folder.
+    """
+    log = folder / "log.lammps"
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    with open(folder / "screen.txt", "wb") as screen:
+        try:
+            status = subprocess.run([str(lmp), "-in", deck, "-log", log.name], cwd=folder, stdin=subprocess.DEVNULL,
+                                    stdout=screen, stderr=subprocess.STDOUT, check=False, timeout=TRIAL_LIMIT,
+                                    env={**os.environ, "OMP_NUM_THREADS": "1"}).returncode
+        except subprocess.TimeoutExpired:
+            raise SlopeError("trial run", f"must end within {TRIAL_LIMIT:g} s of waiting") from None
+        except OSError as error:
+            raise SlopeError(lmp, f"cannot be run: {error.strerror}") from None
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    summaries = sorted(folder.glob("*.summary.yaml"))
+    if status != 0 or not summaries:
+        words = last_words.reason(logs.Log(log).update(), last_words.Screen(folder / "screen.txt", 0))
+        raise SlopeError("trial run", f"must end well: {words or f'ended with status {status}'}")
+    about = disk.load_yaml(summaries[0], "a summary that fix deposit/grid wrote")
+    text = log.read_text(encoding="utf-8", errors="replace")
+    loops = LOOP.findall(text)
+    work = sum(int(steps) * int(atoms) for _, steps, atoms in loops)
+    computed = sum(float(took) * float(share) / 100 for (took, _, _), share in zip(loops, SHARE.findall(text)))
+    volume = about["volume"]
+    return Trial(int(about["balls"]["released"]), 0.0, float(about["stop"]["time"]),
+                 "halt" in str(about["stop"]["reason"]), float(about["largest"]["max_speed"]), computed / max(work, 1),
+                 seconds - computed, seconds, (volume["off_grid"] + volume["lost"]) / volume["released"])
+
+
+# --- the size ---
+
+def plan(choices: Choices) -> List[Tuple[float, int]]:
+    """The runs of the standard study: (diameter as a factor of the site's, number of runs) of each part."""
+    study = choices["study"]
+    each = 1 + len(study["xoffset"])
+    return [(1.0, each * len(study["rolling"])), *((float(factor), each) for factor in study["sizes"])]
+
+
+def study_seconds(d: float, volume: float, trial: Trial, speed: float, density: float,
+                  parts: Sequence[Tuple[float, int]], jobs: int) -> float:
+    """What the standard study takes on this machine, with balls of diameter d in a body of that volume (m3)."""
+    total = 0.0
+    for factor, runs in parts:
+        size = factor * d
+        steps = trial.rest / time_step(size, speed, density)
+        total += runs * (trial.setup + COLLECT + steps * volume / size ** 3 * trial.cost)
+    return total / jobs + REPORT
+
+
+def gigabytes(d: float, volume: float, cells: int, jobs: int) -> float:
+    """What the runs that go on at a time take together."""
+    return jobs * (PER_RUN + PER_CELL * cells + PER_BALL * volume / d ** 3)
+
+
+def fit(budget: float, cost: Callable[[float], float], volume: float, option: str, unit: str) -> float:
+    """The smallest diameter (m) whose cost(d), which falls with d, is within a budget; SlopeError if none is."""
+    low, high = (volume / MOST) ** (1 / 3), (volume / FEWEST) ** (1 / 3)
+    if cost(high) > budget:
+        raise SlopeError(option, f"must be at least {cost(high):.3g} {unit}, which a study with {FEWEST} balls takes",
+                         f"{budget:g}")
+    if cost(low) <= budget:
+        return low
+    for _ in range(60):
+        middle = math.sqrt(low * high)
+        low, high = (middle, high) if cost(middle) > budget else (low, middle)
+    return high
+
+
+def stiff_to(trial: Optional[Trial]) -> float:
+    """The speed (m/s) that the stiffness is made for: the paper's, or more where the trial run was faster."""
+    return max(SPEED, float(f"{AIR * trial.speed:.2g}")) if trial else SPEED
+
+
+def duration(trial: Optional[Trial]) -> float:
+    """The most that is run, s."""
+    return max(LEAST_DURATION, 10.0 * math.ceil(PATIENCE * trial.rest / 10)) if trial else LONGEST
+
+
+def size(choices: Choices, volume: float, trial: Optional[Trial], jobs: int, cells: int) -> Size:
+    """The balls by the first of diameter, number, minutes, memory that is given; SlopeError if there are none such.
+
+    volume: of the body, m3; cells: of the terrain. The choices hold speed and density.
+    """
+    balls, model, parts = choices["balls"], choices["model"], plan(choices)
+
+    def seconds(d: float) -> float:
+        return study_seconds(d, volume, trial, model["speed"], model["density"], parts, jobs)
+
+    if balls["diameter"]:
+        d = balls["diameter"]
+    elif balls["number"]:
+        d = three_digits((volume / balls["number"]) ** (1 / 3))
+    elif balls["minutes"]:
+        if trial is None:
+            raise SlopeError("--minutes", "needs a LAMMPS program (LMP, --lmp) to measure this machine, --balls "
+                             "does not", f"{balls['minutes']:g}")
+        d = up(fit(60 * balls["minutes"], seconds, volume, "--minutes", "s"))
+    elif balls["memory"]:
+        d = up(fit(balls["memory"], lambda one: gigabytes(one, volume, cells, jobs), volume, "--memory", "GB"))
+    else:
+        balls["number"] = DEFAULT
+        d = three_digits((volume / DEFAULT) ** (1 / 3))
+    number = round(volume / d ** 3)
+    if not 1 <= number <= MOST:
+        raise SlopeError("--diameter" if balls["diameter"] else "--balls", f"must make 1 to {MOST:,} balls of a "
+                         f"body of {volume:.6g} m3", f"{number:,} of {d:g} m")
+    return Size(d, number, sum(runs for _, runs in parts), trial and seconds(d), gigabytes(d, volume, cells, jobs))
+
+
+def up(value: float) -> float:
+    """Three digits, not less than the value."""
+    rounded = three_digits(value)
+    return rounded if rounded >= value else three_digits(value * 1.005)
+
+
+def told(seconds: float) -> str:
+    """A time in words."""
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} minutes" if seconds < 5400 else f"{seconds / 3600:.1f} hours"

@@ -1,0 +1,139 @@
+"""site.yaml: every choice of a site, read, checked against its schema, and written with a comment on each.
+
+site_schema.json beside this module has the keys, their ranges, defaults and meaning; nothing else has them.
+"""
+import copy
+import functools
+import json
+import os
+from pathlib import Path
+from typing import Any, Dict, Iterator, List, Tuple
+
+import jsonschema
+import yaml
+
+from .. import disk
+from ..errors import SlopeError
+
+NAME = "site.yaml"
+VERSION = 1             # of site.yaml, also in its schema
+SCHEMA = Path(__file__).with_name("site_schema.json")
+WHAT = "a site.yaml of `slope site`"
+# keys that hold one file, and lists of files
+FILES = (("terrain", "files"), ("release", "polygon"), ("release", "scar"), ("road", "file"), ("structures", "files"),
+         ("lines", "files"), ("motion", "file"), ("observed", "file"))
+
+Choices = Dict[str, Any]        # {section: {key: value}}, complete
+
+
+@functools.lru_cache
+def schema() -> Dict[str, Any]:
+    """The JSON schema of site.yaml."""
+    return json.loads(SCHEMA.read_text(encoding="utf-8"))
+
+
+def sections() -> Iterator[Tuple[str, Dict[str, Any]]]:
+    """(name, schema) of the sections that hold choices."""
+    for name, about in schema()["properties"].items():
+        if "properties" in about:
+            yield name, about
+
+
+def defaults() -> Choices:
+    """The choices of a site of which nothing is given; files of the terrain are missing."""
+    return {name: {key: copy.deepcopy(entry["default"]) for key, entry in about["properties"].items()
+                   if "default" in entry} for name, about in sections()}
+
+
+def complete(given: Choices) -> Choices:
+    """Choices with the defaults of all that is not given."""
+    return {name: {**entries, **(given.get(name) or {})} for name, entries in defaults().items()}
+
+
+def check(given: Any, where: str) -> None:
+    """Raise SlopeError, which names the key, unless it is a site.yaml of this version."""
+    if not isinstance(given, dict) or "slope_site" not in given:
+        raise SlopeError(where, f"must be {WHAT}, with slope_site")
+    if given["slope_site"] != VERSION:
+        raise SlopeError(f"{where}: slope_site", f"must be {VERSION}, the version that this program reads: make the "
+                         "site anew from its files, or take the program that made it", given["slope_site"])
+    validator = jsonschema.Draft202012Validator(schema())
+    errors = sorted(validator.iter_errors(given), key=lambda error: [str(part) for part in error.absolute_path])
+    if errors:
+        key = ".".join(str(part) for part in errors[0].absolute_path)
+        raise SlopeError(f"{where}: {key}" if key else where, rule_of(errors[0]))
+
+
+def rule_of(error: jsonschema.ValidationError) -> str:
+    """What a validation error says, as a rule."""
+    if error.validator == "additionalProperties":
+        extra = sorted(set(error.instance) - set(error.schema["properties"]))
+        return f"must have no {', '.join(extra)}, which is unknown; keys are {', '.join(error.schema['properties'])}"
+    if error.validator == "required":
+        return f"must have {' and '.join(key for key in error.validator_value if key not in error.instance)}"
+    rules = {"type": "be of type {}", "exclusiveMinimum": "be > {}", "minimum": "be >= {}",
+             "exclusiveMaximum": "be < {}", "maximum": "be <= {}", "enum": "be one of {}",
+             "minItems": "have at least {} items", "maxItems": "have at most {} items"}
+    if error.validator in rules:
+        value = error.validator_value
+        told = ", ".join(str(one) for one in value) if isinstance(value, list) else value
+        return f"must {rules[error.validator].format(told)}, got {error.instance!r}"
+    return f"must be valid: {error.message}"
+
+
+def read(folder: Path) -> Choices:
+    """The complete choices of a site's folder; files as seen from the working folder."""
+    path = folder / NAME
+    if not path.is_file():
+        raise SlopeError(folder, f"must be a folder with {NAME}, which slope site makes")
+    given = disk.parse_yaml(path, WHAT)
+    check(given, str(path))
+    return with_files(complete(given), lambda name: os.path.normpath(folder / name))
+
+
+def found(folder: Path) -> Dict[str, Any]:
+    """What slope site found when it made a folder."""
+    return disk.load_yaml(folder / NAME, WHAT).get("found") or {}
+
+
+def with_files(choices: Choices, change) -> Choices:
+    """The choices with all names of files changed by a function."""
+    new = copy.deepcopy(choices)
+    for section, key in FILES:
+        value = new[section].get(key)
+        new[section][key] = [change(one) for one in value] if isinstance(value, list) else value and change(value)
+    return new
+
+
+def source_files(choices: Choices) -> List[str]:
+    """All files that the choices name."""
+    named: List[str] = []
+    for section, key in FILES:
+        value = choices[section].get(key)
+        named += value if isinstance(value, list) else [value] if value else []
+    return named
+
+
+def text(choices: Choices, found_: Dict[str, Any], folder: Path) -> str:
+    """site.yaml for a folder: the choices, each with its meaning, and what was found; checked before it is given."""
+    seen = with_files(choices, lambda name: Path(os.path.relpath(name, folder)).as_posix())
+    about = schema()
+    lines = [f"# {about['description']}.", "# `slope site FOLDER` makes the folder anew from it, `slope study FOLDER` "
+             "runs it.", "", f"slope_site: {VERSION}    # version of this file"]
+    for name, section in sections():
+        lines += ["", f"{name}:    # {section['description']}"]
+        for key, entry in section["properties"].items():
+            comment = f"    # {entry['description']}" if "description" in entry else ""
+            lines.append(f"  {key}: {flow(seen[name][key])}{comment}")
+    lines += ["", f"found:    # {about['properties']['found']['description']}"]
+    lines += [f"  {line}" for line in yaml.safe_dump(disk.plain(found_), sort_keys=False, allow_unicode=True,
+                                                     width=1000).splitlines()]
+    whole = "\n".join(lines) + "\n"
+    check(yaml.safe_load(whole), NAME)
+    return whole
+
+
+def flow(value: Any) -> str:
+    """A value as YAML on one line."""
+    return yaml.safe_dump(disk.plain(value), default_flow_style=True, allow_unicode=True,
+                          width=10 ** 9).strip().removesuffix("...").strip()

@@ -1,0 +1,99 @@
+"""What lies on a site's terrain: road, structures, control lines, a mapped deposit, and the motion of the ground."""
+from pathlib import Path
+from typing import List, NamedTuple, Optional, Sequence, Set
+
+import numpy as np
+from shapely.geometry import box
+from shapely.geometry.base import BaseGeometry
+
+from ..errors import SlopeError
+from ..geometry import extent
+from ..survey import polygons, rasters
+from ..survey.crs import same_crs
+from ..survey.rasters import Raster, crs_name
+from . import site_inputs
+from .site_choices import Choices
+from .site_inputs import Line, Motion, Structure
+
+ROAD = "road.csv"
+OBSERVED = "observed"       # .csv of an outline, .tif of a raster
+RASTERS = {".tif", ".tiff", ".asc", ".vrt", ".img", ".bil"}
+
+
+class Layers(NamedTuple):
+    """What was read and written into the folder; geometries in local metres."""
+    road: Optional[BaseGeometry]
+    observed: Optional[BaseGeometry]        # None of a raster, too
+    structures: List[Structure]
+    lines: List[Line]
+    motion: Optional[Motion]
+
+
+class Shown(NamedTuple):
+    """What the map of a site shows; geometries in local metres."""
+    raster: Raster                      # the ground before
+    depth: np.ndarray                   # of the body on its nodes, m, 0 where there is none
+    release: Optional[BaseGeometry]
+    road: Optional[BaseGeometry]
+    observed: Optional[BaseGeometry]
+    structures: Sequence[Structure]
+    lines: Sequence[Line]
+    reached: Optional[Raster]           # largest thickness of the trial run, m
+
+
+def read_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> Layers:
+    """Read all layers of the choices, and write what the deck and the study need into a folder.
+
+    Raises SlopeError, which names the file, if one does not fit the terrain.
+    """
+    terrain = choices["terrain"]["files"][0]
+    road = polygon_layer(choices["road"]["file"], raster, folder / ROAD, terrain, tell, warn)
+    observed = observed_layer(choices["observed"]["file"], raster, folder, terrain, tell, warn)
+    taken: Set[str] = set(site_inputs.TAKEN)
+    structures = site_inputs.structures(choices["structures"]["files"], raster, folder, taken)
+    lines = site_inputs.control_lines(choices["lines"]["files"], raster, folder, taken)
+    motion = site_inputs.motion(choices["motion"]["file"], folder) if choices["motion"]["file"] else None
+    for one in structures:
+        tell(one.told)
+    for line in lines:
+        tell(f"{line.file}: control line of {len(line.points)} points")
+    if motion:
+        tell(f"{motion.file}: {motion.length:g} s, up to {100 * motion.peak * choices['motion']['scale']:.4g} gal "
+             "horizontally")
+    return Layers(road, observed, structures, lines, motion)
+
+
+def polygon_layer(path: Optional[str], raster: Raster, target: Path, terrain: str, tell, warn):
+    """A polygon in local metres, written for the deck; None if there is none."""
+    if not path:
+        return None
+    geometry = polygons.read_local(path, raster, terrain=terrain)
+    beyond = 1 - geometry.intersection(box(*extent(raster))).area / geometry.area
+    if beyond > 1e-9:
+        warn(f"{path}: {100 * beyond:.2g} % of the area lie outside of the terrain")
+    geometry = polygons.write(target, geometry, raster)
+    tell(f"{target.name}: {len(polygons.polygons_of(geometry))} polygon, {geometry.area:,.0f} m2")
+    return geometry
+
+
+def observed_layer(path: Optional[str], raster: Raster, folder: Path, terrain: str, tell, warn):
+    """The mapped deposit: an outline in local metres, or None after a raster was copied."""
+    if not path:
+        return None
+    if Path(path).suffix.lower() not in RASTERS:
+        return polygon_layer(path, raster, folder / f"{OBSERVED}.csv", terrain, tell, warn)
+    mapped = rasters.read(path, heights=False)
+    if mapped.crs is None:
+        mapped = mapped._replace(crs=raster.crs)
+        warn(f"{path} has no CRS: taken to be in that of the terrain")
+    if not same_crs(mapped.crs, raster.crs):
+        raise SlopeError(path, f"must be in the CRS of the terrain, {crs_name(raster.crs)} (gdalwarp -t_srs "
+                         "reprojects)", crs_name(mapped.crs))
+    wrong = np.argwhere(mapped.z < 0)
+    if len(wrong) or not np.nansum(mapped.z) > 0:
+        raise SlopeError(path, "must be thicknesses >= 0, somewhere > 0",
+                         f"{mapped.z[tuple(wrong[0])]:g}" if len(wrong) else "none")
+    target = folder / f"{OBSERVED}.tif"
+    rasters.write_geotiff(target, {"thickness": mapped.z}, mapped)
+    tell(f"{target.name}: thickness, {mapped.z.shape[1]} x {mapped.z.shape[0]} cells")
+    return None

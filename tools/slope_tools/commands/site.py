@@ -1,0 +1,164 @@
+"""slope site: from the files of a GIS to a folder with terrain, body, deck and map, which `slope study` runs."""
+import argparse
+from pathlib import Path
+
+from ..case import site, site_choices
+from ..ensemble import jobs
+from ..errors import SlopeError, printer
+from ..options import count, number
+from ..programs import find_lmp
+from ..report import site_map
+from ..survey.release import SHAPES
+from ..survey.release_scar import KINDS
+
+# option -> section and key of site.yaml
+OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"), "bounds": ("terrain", "bounds"),
+           "cell": ("terrain", "cell"), "fill": ("terrain", "fill"), "release": ("release", "polygon"),
+           "shape": ("release", "shape"), "depth": ("release", "depth"), "volume": ("release", "volume"),
+           "curvature": ("release", "curvature"), "dip": ("release", "dip"), "direction": ("release", "direction"),
+           "scar": ("release", "scar"), "scar_is": ("release", "scar_is"), "least": ("release", "least"),
+           "road": ("road", "file"), "cut_angle": ("road", "cut_angle"), "mesh": ("road", "mesh"),
+           "structure": ("structures", "files"), "line": ("lines", "files"), "motion": ("motion", "file"),
+           "observed": ("observed", "file"), "diameter": ("balls", "diameter"), "balls": ("balls", "number"),
+           "minutes": ("balls", "minutes"), "memory": ("balls", "memory"), "name": ("project", "name"),
+           "client": ("project", "client"), "author": ("project", "author")}
+# of these, one that is given takes the place of the others
+ONE_OF = (("depth", "volume", "curvature"), ("diameter", "balls", "minutes", "memory"))
+
+EPILOG = """\
+units: metres, m3, degrees; minutes of the whole study on this machine, GB of the runs that go on at a time.
+
+examples: from three files of a GIS to a folder, then to a report:
+  tools/slope site --terrain dem.tif --release release.geojson --depth 12 --road road.geojson -o mine
+  tools/slope study mine
+
+a scar of two surveys; a wall, an earthquake and a line behind the wall; finer balls for a site that is there:
+  tools/slope site --terrain before.tif --scar after.tif --least 0.5 --road road.shp -o scar
+  tools/slope site --terrain dem.tif --release release.shp --volume 50000 --structure wall.stl --line behind.geojson \\
+      --motion motion.txt -o quake
+  tools/slope site mine --minutes 60
+
+FOLDER/site.yaml holds every choice, and what each means; change it and give FOLDER alone to make the folder anew.
+"""
+
+
+def add_parser(commands, **kwargs):
+    """Add `site` and its arguments to argparse's commands; return its parser."""
+    parser = commands.add_parser(
+        "site", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
+        description="A folder for a site: terrain, body, layers, deck, map, and site.yaml with every choice.", **kwargs)
+    parser.add_argument("folder", metavar="FOLDER", type=Path, nargs="?",
+                        help="a site's folder that is made anew from its site.yaml; options change its choices")
+    parser.add_argument("-o", dest="output", metavar="FOLDER", type=Path, help="the new folder")
+    add_ground(parser.add_argument_group("ground and body"))
+    add_layers(parser.add_argument_group("what lies on it"))
+    add_size(parser.add_argument_group("size of the balls", "One of these (default: --balls 4000)."))
+    about = parser.add_argument_group("report")
+    about.add_argument("--name", help="of the site (default: of the folder)")
+    about.add_argument("--client", help="for whom the report is")
+    about.add_argument("--author", help="who answers for it")
+    parser.add_argument("--lmp", metavar="FILE", help="the LAMMPS program that tries the deck (default: LMP of the "
+                        "environment, then build/lmp beside tools/)")
+    parser.add_argument("--jobs", type=count, metavar="J", help="runs at a time, for the estimate (default: "
+                        "as many as the cores)")
+    return parser
+
+
+def add_ground(group):
+    group.add_argument("--terrain", metavar="DEM", nargs="+",
+                       help="elevation model, as slope terrain takes it: GeoTIFF, ESRI ASCII grid, FG-GML; several are "
+                            "merged")
+    group.add_argument("--crs", metavar="EPSG:n", help="wanted CRS, in metres; an elevation model without one is in it")
+    group.add_argument("--bounds", nargs=4, type=number, metavar=("W", "S", "E", "N"), help="take this part, m")
+    group.add_argument("--cell", type=number, metavar="S", help="wanted cell size, m")
+    group.add_argument("--fill", type=int, metavar="N", help="fill NODATA holes of at most N cells")
+    group.add_argument("--release", metavar="P", help="polygon of the ground that is released, in any CRS: GeoJSON, "
+                       "shapefile, CSV or WKT; with --scar, what of the scar counts")
+    group.add_argument("--shape", choices=SHAPES, help="of the slip surface, see slope release (default sphere)")
+    size = group.add_mutually_exclusive_group()
+    size.add_argument("--depth", metavar="D", type=number, help="largest depth of the body, vertical, m")
+    size.add_argument("--volume", metavar="V", type=number, help="volume of the body, m3")
+    size.add_argument("--curvature", metavar="K", type=number, help="of slbl, 1/m")
+    group.add_argument("--dip", metavar="A", type=number, help="of a plane, degrees below the horizontal")
+    group.add_argument("--direction", metavar="B", type=number, help="compass bearing to which the plane dips, degrees")
+    group.add_argument("--scar", metavar="RASTER", help="the body is what this raster says, see --scar-is")
+    group.add_argument("--scar-is", choices=KINDS, help="surface: heights after the event (default); depth; change")
+    group.add_argument("--least", metavar="D", type=number, help="depths of a scar below this count as none, m")
+
+
+def add_layers(group):
+    group.add_argument("--road", metavar="P", help="polygon of the road, for the volume to remove")
+    group.add_argument("--cut-angle", metavar="DEG", type=number, help="rise of the cut from its edges (default 30)")
+    group.add_argument("--mesh", metavar="SIZE", type=number, help="side of the cells of the sheet, m (default 10)")
+    group.add_argument("--structure", metavar="STL", action="append",
+                       help="a wall or building of triangles, m, in local coordinates or the terrain's CRS; may be "
+                            "given several times")
+    group.add_argument("--line", metavar="LINE", action="append", help="control line: what passes it is counted; may "
+                       "be given several times")
+    group.add_argument("--motion", metavar="FILE", help="motion of the ground of slope quake: the body stands, is "
+                       "shaken, and fails when it has moved")
+    group.add_argument("--observed", metavar="P|RASTER", help="a mapped deposit, outline or thickness: the run of the "
+                       "report is held against it")
+
+
+def add_size(group):
+    size = group.add_mutually_exclusive_group()
+    size.add_argument("--balls", metavar="N", type=count, help="so many balls in the body")
+    size.add_argument("--minutes", metavar="M", type=number, help="so that the study takes M minutes on this machine")
+    size.add_argument("--memory", metavar="GB", type=number, help="so that the runs at a time take so much memory")
+    size.add_argument("--diameter", metavar="D", type=number, help="of the balls, m")
+
+
+def run(args):
+    """Do the command; raises SlopeError on bad input. Prints what was read, found and written."""
+    folder, choices = chosen(args)
+    cores = args.jobs or jobs.cores()
+    made = site.make(choices, folder, site.Machine(program(args.lmp), cores), lambda line: print(line, flush=True),
+                     printer("site"), site_map.draw)
+    print(f"written to {folder}: {' '.join(made.files)}")
+    print(f"look at {folder / site.MAP}, then: tools/slope study {folder}")
+
+
+def chosen(args):
+    """The folder, and the choices of the command line, or of the folder with those of the command line."""
+    given = {option: value for option in OPTIONS if (value := getattr(args, option)) is not None}
+    if args.folder is not None:
+        if args.output is not None:
+            raise SlopeError("-o", f"must not be given with the folder of a site, {args.folder}, which is made anew",
+                             args.output)
+        folder, choices = args.folder, site_choices.read(args.folder)
+    else:
+        for option in ("terrain", "output"):
+            if getattr(args, option) is None:
+                raise SlopeError("-o" if option == "output" else "--terrain", "must be given, or the folder of a site")
+        folder, choices = args.output, site_choices.complete({})
+    replace(choices, given)
+    site_choices.check({"slope_site": site_choices.VERSION, **choices}, "choices")
+    return folder, choices
+
+
+def replace(choices, given):
+    """Put options in their places; what one of them replaces goes."""
+    for group in ONE_OF:
+        if any(option in given for option in group):
+            old = choices["balls"]["diameter"]
+            for option in group:
+                section, key = OPTIONS[option]
+                choices[section][key] = None
+            if "balls" in group and choices["model"]["field_diameter"] == old:
+                choices["model"]["field_diameter"] = None
+    if "scar" in given:
+        choices["release"].update(shape=None, depth=None, volume=None, curvature=None, dip=None, direction=None)
+    for option, value in given.items():
+        section, key = OPTIONS[option]
+        choices[section][key] = value
+
+
+def program(option):
+    """The LAMMPS program, None where there is none and none was named."""
+    try:
+        return find_lmp(option)
+    except SlopeError:
+        if option is not None:
+            raise
+        return None

@@ -1,0 +1,80 @@
+"""A run's deposit against a mapped one: all that `slope score` does."""
+from pathlib import Path
+from typing import Optional
+
+from .. import disk, errors
+from ..errors import SlopeError
+from ..survey.rasters import crs_name
+from . import deposit
+from .score import (THRESHOLD, balls, connected_runout, draw, mesh_table, overlap, read_observed, runout, volumes,
+                    write_csv)
+from .volume import make_mesh
+
+
+def make(prefix: str, mapped: Path, folder: Path, threshold: float = THRESHOLD, mesh: Optional[float] = None,
+         terrain: Optional[Path] = None, local: bool = False) -> str:
+    """Write score.yaml, score.csv and score.png of a run to a folder; returns what the user needs to know.
+
+    mapped: a file, outline or raster; threshold: m; mesh: side of the cells of score.csv, m, None: the run's; terrain:
+    whose sidecar has the CRS; local: mapped is in local metres. Raises SlopeError on bad input.
+    """
+    if threshold < 0:
+        raise SlopeError("--threshold", "must be >= 0", f"{threshold:g}")
+    if mesh is not None and mesh <= 0:
+        raise SlopeError("--mesh", "must be > 0", f"{mesh:g}")
+    warnings = []
+    warn = errors.warner("score", warnings)
+    run_ = deposit.read(prefix, terrain, warn)
+    disk.check_folder(folder)
+    squares = make_mesh(mesh or run_.cell, run_.raster)
+    observed = read_observed(mapped, run_.raster, threshold, local)
+    if observed.outside > 0:
+        warn(f"{mapped}: {observed.outside:.6g} m2 of it lie outside of the grid of the run: counted as not met")
+    simulated = run_.raster.z > threshold
+    if not simulated.any():
+        warn(f"{run_.prefix}.thickness.asc is nowhere thicker than {threshold:g} m")
+    about = {"prefix": run_.prefix, "observed": mapped, "terrain": run_.terrain,
+             "crs": None if run_.raster.crs is None else crs_name(run_.raster.crs),
+             "run": {"slope_version": run_.summary.get("slope_version"), "time": run_.summary["time"],
+                     "moving": run_.summary["moving"]},
+             "threshold": threshold, "cell": run_.cell, "mesh": squares.size,
+             "area": overlap(simulated, observed, run_.cell),
+             "runout": {**runout(run_, simulated, observed), "balls": balls(run_),
+                        "connected": connected_runout(run_, threshold, observed)}}
+    table = mesh_table(run_, simulated, observed, squares)
+    if observed.thickness is not None:
+        about["bulk_factor"] = run_.bulk
+        about["volume"] = volumes(run_, observed, table)
+    about["warnings"] = warnings
+    with disk.complete(folder) as new:
+        write_csv(new / "score.csv", run_, squares, table)
+        draw(new / "score.png", run_, simulated, observed, about)
+        about["files"] = ["score.csv", "score.png", "score.yaml"]
+        disk.write_yaml(new / "score.yaml", about, "slope score: simulated against mapped; m, m2, m3, degrees")
+    return summary(about, folder)
+
+
+def summary(about, folder):
+    """What the user needs to know."""
+    area, out = about["area"], about["runout"]
+    jaccard = "none" if area["jaccard"] is None else f"{area['jaccard']:.3f}"
+    lines = [f"thicker than {about['threshold']:g} m: {area['true_positive']:.1f} m2 in both, "
+             f"{area['false_positive']:.1f} m2 simulated only, {area['false_negative']:.1f} m2 mapped only; "
+             f"Jaccard {jaccard}"]
+    if out["difference"] is not None:
+        lines.append(f"run-out: {out['simulated']:.1f} m simulated, {out['observed']:.1f} m mapped: "
+                     f"{out['difference']:+.1f} m")
+    if out["connected"] is not None and "difference" in out["connected"]:
+        part = out["connected"]
+        lines.append(f"connected deposit, {100 * part['share_of_volume']:.1f} % of the volume: "
+                     f"{part['distance']:.1f} m, {part['difference']:+.1f} m")
+    if out.get("quantiles"):
+        most = out["quantiles"][-1]
+        lines.append(f"{100 * most['share']:g} % of the {out['quantiles_of']}: within {most['simulated']:.1f} m "
+                     f"simulated, {most['observed']:.1f} m mapped: {most['difference']:+.1f} m")
+    if "volume" in about:
+        volume = about["volume"]
+        lines.append(f"volume: {volume['simulated']:.1f} m3 simulated (bulk factor {about['bulk_factor']:.6g}), "
+                     f"{volume['observed']:.1f} m3 mapped: {volume['error']:+.1f} m3")
+    lines.append(f"written to {folder}: {' '.join(about['files'])}")
+    return "\n".join(lines)

@@ -1,0 +1,29 @@
+"""What is asked for when runs are made: of which deck, where, how, and what is measured of each."""
+from pathlib import Path
+from typing import Any, Dict, NamedTuple, Optional
+
+
+class Road(NamedTuple):
+    """A road, and how the volume to remove from it is measured; see deposit.volume.Wanted."""
+    file: Path
+    cut_angle: float = 30.0     # degrees
+    mesh: float = 10.0          # m
+    local: bool = False         # in local metres
+
+    def about(self) -> Dict[str, Any]:
+        """What a study keeps of it."""
+        return {"file": self.file.name, "cut_angle": self.cut_angle, "mesh": self.mesh}
+
+
+class Setup(NamedTuple):
+    """How the runs of a deck are made."""
+    deck: Path
+    output: Path                        # folder of the study
+    ranks: int = 1                      # MPI ranks of each run
+    jobs: Optional[int] = None          # runs at a time; None: as many as the cores allow
+    road: Optional[Road] = None
+    lmp: Optional[str] = None           # the LAMMPS program; None: programs.find_lmp
+    launcher: Optional[str] = None      # what starts the ranks; None: mpirun
+    engine: str = "local"               # or slurm
+    slurm: str = ""                     # options of sbatch
+    dry_run: bool = False               # only list the runs

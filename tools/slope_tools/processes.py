@@ -1,0 +1,46 @@
+"""Programs that run beside the tools: how they are started and ended. The one place that knows."""
+import errno
+import os
+import shutil
+import subprocess
+import time
+from pathlib import Path
+from typing import Dict, Iterable, Sequence
+
+PATIENCE = 10.0         # s that a program gets to end after SIGTERM
+
+
+def environment() -> Dict[str, str]:
+    """Of a program that may be run by mpirun."""
+    values = {**os.environ, "OMP_NUM_THREADS": "1"}
+    # Open MPI on one machine: what a rank sends each step goes at once, without a handshake
+    values.setdefault("OMPI_MCA_btl_vader_eager_limit", "131072")
+    if os.geteuid() == 0:
+        values.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+    return values
+
+
+def start(words: Sequence[str], folder: Path, screen) -> subprocess.Popen:
+    """Start a program in a folder; what it says goes to the open file `screen`. OSError if it is not there.
+
+    It has a session of its own: Ctrl-C reaches the tools, which then end it. It does not outlive them.
+    """
+    if shutil.which(words[0]) is None:
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), words[0])
+    guard = ["setpriv", "--pdeathsig", "TERM"] if shutil.which("setpriv") else []
+    return subprocess.Popen([*guard, *words], cwd=folder, env=environment(), stdin=subprocess.DEVNULL, stdout=screen,
+                            stderr=subprocess.STDOUT, start_new_session=True)
+
+
+def stop(running: Iterable) -> None:
+    """End programs, each by its own process id; those that do not listen are killed."""
+    waiting = [one for one in running if one.poll() is None]
+    for one in waiting:
+        one.terminate()
+    deadline = time.monotonic() + PATIENCE
+    for one in waiting:
+        try:
+            one.wait(max(0.1, deadline - time.monotonic()))
+        except subprocess.TimeoutExpired:
+            one.kill()
+            one.wait()

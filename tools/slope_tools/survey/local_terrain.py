@@ -1,0 +1,92 @@
+"""Survey rasters to one terrain in local metres.
+
+Order of the work: read, merge, fill holes, crop or resample, move to the local origin, write.
+"""
+import math
+from pathlib import Path
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
+
+import numpy as np
+from affine import Affine
+from rasterio.crs import CRS
+
+from ..errors import SlopeError
+from . import fggml, rasters
+from .crs import box, require_metres, warn_of_stretch
+from .holes import fill, small_holes
+from .polygons import as_crs
+from .rasters import Raster
+from .resampling import regrid
+from .terrain import declare, merge, read_fggml
+
+
+class Wanted(NamedTuple):
+    """How the terrain shall be; None: as it is in the files."""
+    crs: Optional[str] = None           # such as EPSG:6677
+    origin: Optional[Tuple[float, float]] = None    # E N of local 0 0; None: the lower left corner, whole metres
+    cell: Optional[float] = None        # m
+    bounds: Optional[Sequence[float]] = None        # W S E N, m
+    fill: int = 0                       # holes of at most this many cells are filled
+
+
+def checked_crs(wanted: Wanted) -> Optional[CRS]:
+    """The wanted CRS; SlopeError, which names the option, if something is wrong before any file is read."""
+    if wanted.cell is not None and wanted.cell <= 0:
+        raise SlopeError("--cell", "must be > 0", f"{wanted.cell:g}")
+    if wanted.fill < 0:
+        raise SlopeError("--fill", "must be >= 0", wanted.fill)
+    if wanted.bounds and not (wanted.bounds[0] < wanted.bounds[2] and wanted.bounds[1] < wanted.bounds[3]):
+        raise SlopeError("--bounds", "W S E N must have W < E and S < N", box(wanted.bounds))
+    if not wanted.crs:
+        return None
+    crs = as_crs("--crs", wanted.crs)
+    require_metres(crs, "--crs")
+    return crs
+
+
+def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[str], Any]) -> Dict[str, Any]:
+    """Write the terrain of survey files to output (.asc, with its sidecar); returns the sidecar.
+
+    tell is called with a line for each thing that was done. Raises SlopeError on bad input.
+    """
+    crs = checked_crs(wanted)
+    steps: List[str] = []
+
+    def keep(step: str) -> None:
+        steps.append(step)
+        tell(step)
+
+    cell = wanted.cell
+    if any(map(fggml.is_one, inputs)):
+        raster, crs, cell = read_fggml(inputs, crs, cell, keep)
+    else:
+        raster = merge([declare(path, crs, keep) for path in inputs], inputs, keep)
+        crs = crs or raster.crs
+    require_metres(crs, inputs[0])
+    if not np.isfinite(raster.z).any():
+        raise SlopeError(", ".join(inputs), "must have a height, all cells are NODATA")
+    filled = 0
+    if wanted.fill:
+        holes, count = small_holes(np.isnan(raster.z), wanted.fill)
+        filled = int(holes.sum())
+        raster = raster._replace(z=fill(raster.z, holes))
+        keep(f"filled {count} NODATA holes of at most {wanted.fill} cells, {filled} cells")
+    raster = regrid(raster, crs, cell, wanted.bounds, keep)
+    if crs is not None:
+        warn_of_stretch(raster)
+    z = np.round(raster.z, 3) + 0.0  # as they are written; + 0.0 because of -0.0
+    origin = wanted.origin
+    if origin is None:
+        east, north = raster.transform * (0, len(z))
+        origin = math.floor(east + 1e-6), math.floor(north + 1e-6)  # 1e-6: rounding noise
+    local = Raster(z, Affine.translation(-origin[0], -origin[1]) * raster.transform, crs, origin)
+    return rasters.write_asc_local(output, local, {"filled_cells": filled, "sources": list(inputs), "steps": steps})
+
+
+def summary(name: object, about: Dict[str, Any]) -> str:
+    """What the user needs to know of a terrain."""
+    size, extent, height, origin = (about[key] for key in ("size", "extent", "height", "origin"))
+    return (f"{name}: {size['columns']} x {size['rows']} cells of {about['cell']:.6g} m, "
+            f"x {extent['xlo']:.3f} to {extent['xhi']:.3f}, y {extent['ylo']:.3f} to {extent['yhi']:.3f}, "
+            f"z {height['min']:.3f} to {height['max']:.3f} m, {about['nodata_cells']} NODATA cells, "
+            f"0 0 at {origin['east']:.10g} {origin['north']:.10g}")
