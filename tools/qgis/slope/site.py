@@ -49,7 +49,7 @@ class Site(Algorithm):
     outputs = (("raster", "DEPTH_LAYER", "Depth of the body (m)"), ("raster", "TERRAIN_LAYER", "Terrain (m)"),
                ("number", "RELEASED", "Volume of the body (m3)"), ("number", "NUMBER_OF_BALLS", "Balls in the body"),
                ("number", "STUDY_MINUTES", "Estimated time of the study (minutes)"),
-               ("file", "SITE", "site.yaml, for the algorithm Study"), ("file", "PICTURE", "Map"))
+               ("file", "SITE", "Choices of the site (site.yaml), for the algorithm Study"), ("file", "PICTURE", "Map"))
 
     def work(self, asked, results):
         keep = Path(f"{asked.output('OUTPUT')}.layers")
