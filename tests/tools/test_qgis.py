@@ -218,17 +218,17 @@ def test_release_from_an_elevation_model_and_from_a_terrain(qgis, inside, place)
     assert shown["styles"][results["DEPTH_LAYER"]]["labels"][-1].endswith(" m")
     assert shown["styles"][results["SLIP_LAYER"]]["renderer"] == "QgsHillshadeRenderer"
     # a terrain of the algorithm Terrain is taken as it is, from its layer
-    status, made, _, err = qgis("terrain", DEM="dem.tif", CELL=0.5, OUTPUT="fine.asc",
+    status, made, _, err = qgis("terrain", DEM="dem.tif", OUTPUT="part.asc",
                                 BOUNDS=f"{EAST + 10},{EAST + 40},{NORTH},{NORTH + 24} [{CRS_M}]")
     assert status == 0, err
     assert where(made["LAYER"]) == (HERE[0], in_survey((10, 0, 40, 24)))
-    assert np.array_equal(values(made["LAYER"]), read_asc("fine.asc"))
-    status, finer, log, err = qgis("release", DEM=made["LAYER"], POLYGON="release.geojson", SHAPE="slbl", DEPTH=2,
-                                   OUTPUT="finer")
-    assert status == 0 and not Path("finer/terrain.asc").exists(), err
-    assert any("slope release" in line and " fine.asc " in line for line in log["info"])
-    assert finer["LARGEST_DEPTH"] == pytest.approx(2, abs=1e-3)
-    assert yaml.safe_load(Path("finer/release.yaml").read_text())["shape"] == "slbl"
+    assert np.array_equal(values(made["LAYER"]), read_asc("part.asc"))
+    status, again, log, err = qgis("release", DEM=made["LAYER"], POLYGON="release.geojson", SHAPE="slbl", DEPTH=2,
+                                   OUTPUT="again")
+    assert status == 0 and not Path("again/terrain.asc").exists(), err
+    assert any("slope release" in line and " part.asc " in line for line in log["info"])
+    assert again["LARGEST_DEPTH"] == pytest.approx(2, abs=1e-3)
+    assert yaml.safe_load(Path("again/release.yaml").read_text())["shape"] == "slbl"
 
 
 def test_study_and_report(qgis, inside, place):

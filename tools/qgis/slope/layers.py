@@ -18,7 +18,9 @@ def vector_file(asked, key):
     if isinstance(value, str) and Path(value).suffix.lower() in TEXT and Path(value).is_file():
         return value
     selected = isinstance(value, QgsProcessingFeatureSourceDefinition) and value.selectedFeaturesOnly
-    layer = asked.algorithm.parameterAsVectorLayer(*asked.of(key))
+    if isinstance(value, QgsProcessingFeatureSourceDefinition):
+        value, _ = value.source.valueAsString(asked.context.expressionContext(), "")
+    layer = asked.algorithm.parameterAsVectorLayer({**asked.parameters, key: value}, key, asked.context)
     if layer is None or not layer.isValid():
         raise QgsProcessingException(f"{key}: must be a vector layer, got {asked.text(key)}")
     # a CRS that was set in QGIS is not in the file, and a filter is not either
