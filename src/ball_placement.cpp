@@ -93,7 +93,7 @@ void BallPlacement::check_regions() const
 {
   std::string changed;
   if (!ground->stands(changed))
-    error->all(FLERR, "{}: region {} must stay as it was when these balls were defined", caller,
+    error->all(FLERR, "{}: region {} must not change after these balls are defined", caller,
                changed);
 }
 
@@ -189,7 +189,7 @@ void BallPlacement::make(int tile, std::vector<PlacedBall> &balls)
   }
   std::string changed;
   if (!ground->stands(changed))
-    error->one(FLERR, "{}: region {} must stay as it was when these balls were defined", caller,
+    error->one(FLERR, "{}: region {} must not change after these balls are defined", caller,
                changed);
   SurfaceCounts unused;
   try {
@@ -382,7 +382,7 @@ std::string BallPlacement::unlike(const std::vector<double> &there)
 {
   const std::vector<double> &here = fingerprint();
   const double d = arguments.diameter;
-  if (there.size() < 2) return "nothing known of them";
+  if (there.size() < 2) return "no data of them";
   if (there[0] >= 0.0 && here[0] >= 0.0 && there[0] != here[0])
     return fmt::format("{:.0f} there, {:.0f} here", there[0], here[0]);
   if (std::fabs(there[1] - d) > 1.0e-9 * d)

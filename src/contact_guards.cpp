@@ -94,8 +94,8 @@ void ContactGuards::check_timestep()
          dt, dt / bound, bound, iworst, jworst);
   else
     warn("time step {:.4g} s is {:.3g} times the largest with which the dashpots of scheme plain "
-         "let "
-         "a heap come to rest, 0.15 m_min/cn = {:.4g} s (types {} {})",
+         "allow "
+         "a heap to come to rest, 0.15 m_min/cn = {:.4g} s (types {} {})",
          dt, dt / bound, bound, iworst, jworst);
 }
 
@@ -185,7 +185,8 @@ void ContactGuards::record_overlap(int i, double overlap, double radius)
 void ContactGuards::watch_energy(double elastic)
 {
   if (energy.check(elastic))
-    warn("the energy of the balls grew by {:.3g} % of the largest energy of motion until step {}, "
+    warn("the energy of the balls grew by {:.3g} % of the largest kinetic and spring energy until "
+         "step {}, "
          "with "
          "nothing but contacts and gravity at work: the time step is too large, or contacts were "
          "found "
@@ -227,13 +228,13 @@ void ContactGuards::report()
          f.deep, 100.0 * DEEP, 100.0 * all.most, where[0], where[1]);
   }
   if (f.energy_grew > 1)
-    warn("the energy of the balls had grown at {} of the looks every {} steps, by {:.3g} % of the "
+    warn("the energy of the balls had grown at {} of the checks every {} steps, by {:.3g} % of the "
          "largest "
-         "energy of motion",
+         "kinetic and spring energy",
          f.energy_grew, +EVERY, 100.0 * f.energy_growth);
   if (f.dangerous_builds)
     warn("{} neighbor lists came late (dangerous builds): balls went farther than half the skin "
          "{:g} in "
-         "one step, and contacts may have begun too deep",
+         "one step, and contacts may have started too deep",
          f.dangerous_builds, neighbor->skin);
 }

@@ -385,9 +385,8 @@ void ContactTable::read_settings(FILE *fp)
   MPI_Bcast(values, 5, MPI_INT, 0, world);
   if (values[0] != FORMAT)
     error->all(FLERR,
-               "Pair gran/restitution: restart file must have contacts of format {}, got {}: begin "
-               "anew, or "
-               "go on with the version of the package that wrote it",
+               "Pair gran/restitution: restart file must have contacts of format {}, got {}: start "
+               "again, or continue with the version of the package that wrote it",
                FORMAT, values[0] > 1 ? std::to_string(values[0]) : "one of an earlier version");
   mass_ball = values[1];
   limit_damping = values[2];

@@ -88,7 +88,7 @@ void DeleteBalls::command(int narg, char **arg)
   if (share > MUCH && comm->me == 0)
     error->warning(
         FLERR,
-        "Delete_balls: {:.0f} % of the volume of group {} is removed, of smaller balls it "
-        "would be less",
+        "Delete_balls: {:.0f} % of the volume of group {} is removed: smaller balls lose "
+        "less",
         100.0 * share, name);
 }

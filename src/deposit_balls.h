@@ -15,7 +15,7 @@
 
 namespace LAMMPS_NS {
 
-// The balls of the group of fix deposit/grid, where they are now. A ball stands for a cube of
+// The balls of the group of fix deposit/grid, where they are now. A ball represents a cube of
 // ground, whose volume is that of the ball times the bulk factor.
 class DepositBalls : protected Pointers {
  public:

@@ -14,7 +14,7 @@
 
 namespace Slope {
 
-// Balls of a deposit in the cells of a plan grid. A ball stands for a cube of ground; the cube's
+// Balls of a deposit in the cells of a plan grid. A ball represents a cube of ground; the cube's
 // square in plan is cut exactly by the cells, so that no volume is lost on any grid.
 class DepositBins {
  public:

@@ -87,7 +87,9 @@ void DepositGround::check(const DepositBalls &balls)
   MPI_Bcast(worst, 5, MPI_DOUBLE, rank, world);
   error->all(FLERR,
              "Fix deposit/grid terrain region {} must have a height within one diameter {:g} of "
-             "every released ball, got none at ball {:.0f}, {:.8g} {:.8g} {:.8g} (too deep: "
-             "larger depth of region terrain; a small hole: tools/slope terrain --fill)",
+             "every released ball, got none at ball {:.0f}, {:.8g} {:.8g} {:.8g}: there the slip "
+             "surface reaches below the bottom of the ground (check its toe and depth, or give "
+             "region terrain a larger depth), or the survey has a hole (tools/slope terrain "
+             "--fill)",
              region, worst[4], worst[0], worst[1], worst[2], worst[3]);
 }

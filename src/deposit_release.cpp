@@ -148,8 +148,7 @@ Region *DepositRelease::body() const
   if (!region) error->all(FLERR, "Fix deposit/grid bulk region {} does not exist", id);
   region->init();
   if (region->dynamic_check())
-    error->all(FLERR,
-               "Fix deposit/grid bulk region {} must stand still, got one that moves or varies",
+    error->all(FLERR, "Fix deposit/grid bulk region {} must not move, got one that moves or varies",
                id);
   if (region->openflag)
     error->all(FLERR, "Fix deposit/grid bulk region {} must have no open faces, got some", id);

@@ -127,7 +127,7 @@ void DepositRestart::check_key(const std::string &fix_id, const Key &found) cons
     error->all(
         FLERR,
         "Fix deposit/grid {} must have restart data of format {:.0f}, got {:.0f}: the file is "
-        "of another version of SLOPE, which must continue it, or the run begins anew",
+        "of another version of SLOPE: continue with that version, or start again",
         fix_id, key.format, found.format);
   if (memcmp(&found, &key, sizeof(Key)) == 0) return;
   auto text = [](const Key &k) {

@@ -130,7 +130,8 @@ void DepositSummary::write_motion(std::string &s) const
 void DepositSummary::write_findings(std::string &s) const
 {
   if (guards.known) {
-    s += "guards:  # overlap: of the smaller radius; growth: of the largest energy of motion\n";
+    s += "guards:  # overlap: of the smaller radius; growth: of the largest kinetic and spring "
+         "energy\n";
     line(s, "  largest_overlap", real(guards.deepest));
     line(s, "  deep_contacts", std::to_string(guards.deep));
     line(s, "  energy_growth", real(guards.energy_growth));

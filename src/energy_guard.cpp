@@ -65,7 +65,7 @@ void EnergyGuard::check_finite() const
     if (!std::isfinite(sum))
       error->one(
           FLERR,
-          "Pair gran/restitution: ball {} has a place, velocity or force that is not finite at "
+          "Pair gran/restitution: ball {} has a position, velocity or force that is not finite at "
           "step {}: x {:.6g} {:.6g} {:.6g}, v {:.6g} {:.6g} {:.6g}, f {:.6g} {:.6g} {:.6g}",
           atom->tag[i], update->ntimestep, x[0], x[1], x[2], v[0], v[1], v[2], f[0], f[1], f[2]);
   }
@@ -108,7 +108,7 @@ bool EnergyGuard::check(double elastic)
   MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_SUM, world);
   const double energy = all[0] + all[1] - all[2];
 
-  // balls that came or went and gravity that turns change the energy: begin anew
+  // balls that came or went and gravity that turns change the energy: start again
 
   if (!begun || number != atom->natoms || !std::equal(gravity, gravity + 3, pull)) lowest = energy;
   begun = true;

@@ -18,7 +18,7 @@ namespace LAMMPS_NS {
 class EnergyGuard : protected Pointers {
  public:
   static constexpr int EVERY = 50;         // steps between two looks
-  static constexpr double GROWTH = 0.1;    // of the largest energy of motion, that is not sensible
+  static constexpr double GROWTH = 0.1;    // of the largest of motion and springs: not sensible
 
   explicit EnergyGuard(LAMMPS *);
 
@@ -29,13 +29,13 @@ class EnergyGuard : protected Pointers {
   // grown more than is sensible for the first time in this run.
   bool check(double elastic);
 
-  double growth() const { return grown; }    // most so far, of the largest energy of motion
+  double growth() const { return grown; }    // most so far, of the largest of both
   bigint seen() const { return count; }      // looks at which it was not sensible
 
  private:
   bool known;    // all that does work
   bool begun;
-  double lowest, motion;    // energy so far, J; largest energy of motion and springs
+  double lowest, motion;    // energy so far, J; largest of motion and springs
   double grown;
   bigint count;
   bigint number;     // of balls, when lowest began

@@ -38,7 +38,7 @@ void FastBalls::record(int i, double speed, double stiffness)
   if (count++ == 0)
     error->warning(
         FLERR,
-        "{}: ball {} comes at {:.4g} m/s at step {}, {:.3g} times the speed up to which nothing "
+        "{}: ball {} hits at {:.4g} m/s at step {}, {:.3g} times the speed up to which no ball "
         "passes, {:g} R sqrt(kn/m): the contacts need a larger stiffness",
         caller, atom->tag[i], speed, update->ntimestep, share, +DEEPEST);
   if (share > worst.share)
@@ -60,8 +60,8 @@ void FastBalls::report(ContactGuards &guards)
   MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
   MPI_Bcast(&worst, sizeof(worst), MPI_BYTE, most.rank, world);
   guards.say(fmt::format(
-      "{}: a ball came too fast for it {} times, the worst at {:.4g} m/s (ball {:.0f}, step "
-      "{:.0f}), {:.3g} times the speed up to which nothing passes, {:g} R sqrt(kn/m): the "
+      "{}: balls hit it too fast {} times, the worst at {:.4g} m/s (ball {:.0f}, step "
+      "{:.0f}), {:.3g} times the speed up to which no ball passes, {:g} R sqrt(kn/m): the "
       "contacts need a larger stiffness",
       caller, all, worst.speed, worst.ball, worst.step, worst.share, +DEEPEST));
 }

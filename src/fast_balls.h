@@ -29,7 +29,7 @@ class FastBalls : protected Pointers {
  private:
   std::string caller;
   struct Worst {
-    double share;    // of the speed up to which nothing passes
+    double share;    // of the speed up to which no ball passes
     double speed, ball, step;
   } worst;
   bigint count;

@@ -3,7 +3,7 @@
    Distributed under the GNU General Public License, version 2
 ------------------------------------------------------------------------- */
 
-/* What crosses a line: the path of every ball in every step is held against the vertical plane over
+/* What crosses a line: the path of every ball in every step is tested against the vertical plane over
    the line, right after the balls have moved, before LAMMPS deletes those that left the box. */
 
 #include "fix_control_line.h"
@@ -118,8 +118,8 @@ void FixControlLine::init()
 {
   for (Fix *fix : compat::fixes_of_style(lmp, "control/line"))
     if (fix != this && static_cast<FixControlLine *>(fix)->prefix == prefix)
-      error->all(FLERR, "Fix control/line output must be another than that of fix {}, got {}",
-                 fix->id, prefix);
+      error->all(FLERR, "Fix control/line output must differ from that of fix {}, got {}", fix->id,
+                 prefix);
   require_verlet(lmp, "Fix control/line");
   find_deposit();
   ground.reset(
@@ -131,7 +131,7 @@ void FixControlLine::init()
 }
 
 /* ----------------------------------------------------------------------
-   the fix that knows the ground and what a ball's volume stands for; the only one needs no name
+   the fix that knows the ground and the volume that a ball represents; the only one needs no name
 ------------------------------------------------------------------------- */
 
 void FixControlLine::find_deposit()

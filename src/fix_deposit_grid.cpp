@@ -94,8 +94,8 @@ void FixDepositGrid::init()
 {
   for (Fix *fix : compat::fixes_of_style(lmp, "deposit/grid"))
     if (fix != this && static_cast<FixDepositGrid *>(fix)->options.prefix == options.prefix)
-      error->all(FLERR, "Fix deposit/grid output must be another than that of fix {}, got {}",
-                 fix->id, options.prefix);
+      error->all(FLERR, "Fix deposit/grid output must differ from that of fix {}, got {}", fix->id,
+                 options.prefix);
   report.begin_run();
   sampled = -1;
 
@@ -244,7 +244,8 @@ void FixDepositGrid::check_balance()
   warned = true;
   report.warn(fmt::format(
       "the volume balance does not close at step {}: released {:.10g}, on the grid {:.10g}, off "
-      "the grid {:.10g}, lost {:.10g}, residual {:.3g}: balls came or went other than by leaving "
+      "the grid {:.10g}, lost {:.10g}, residual {:.3g}: balls were added or removed other than by "
+      "leaving "
       "the box",
       sampled, value[Result::RELEASED], value[Result::ON_GRID], value[Result::OFF_GRID],
       value[Result::LOST], value[Result::RESIDUAL]));

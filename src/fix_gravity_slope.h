@@ -16,7 +16,7 @@ FixStyle(gravity/slope,FixGravitySlope);
 
 namespace LAMMPS_NS {
 
-// fix gravity, four balls at a time; its energy when somebody asks for it
+// fix gravity, four balls at a time; its energy on request
 class FixGravitySlope : public FixGravity {
  public:
   using FixGravity::FixGravity;

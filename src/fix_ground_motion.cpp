@@ -100,8 +100,8 @@ void FixGroundMotion::announce() const
   if (record.peak() > DOUBTED && strcmp(update->unit_style, "si") == 0)
     error->warning(
         FLERR,
-        "Fix ground/motion {}: a largest acceleration of at most {:g} m/s2 is believed, got "
-        "{:.6g} from {}: numbers in gal need scale 0.01",
+        "Fix ground/motion {}: the largest acceleration should be at most {:g} m/s2, got {:.6g} "
+        "from {}: numbers in gal need scale 0.01",
         id, DOUBTED, record.peak(), file);
 }
 
@@ -148,8 +148,8 @@ void FixGroundMotion::check_integrators()
   if (all[1] > 0 && comm->me == 0)
     error->warning(
         FLERR,
-        "Fix ground/motion {}: only balls that fix nve/sphere integrates feel the ground's "
-        "motion, {} of {} balls of the group are not and do not",
+        "Fix ground/motion {}: {} of {} balls of the group are not integrated by fix nve/sphere, "
+        "and are not shaken",
         id, all[1], all[0]);
 }
 

@@ -73,7 +73,7 @@ void FixWallGranMesh::init()
   for (Fix *fix : compat::fixes_of_style(lmp, style)) {
     const auto other = static_cast<FixWallGranMesh *>(fix);
     if (other != this && recorder && other->recorder && other->recorder->prefix == recorder->prefix)
-      error->all(FLERR, "{} output must be another than that of fix {}, got {}", caller, fix->id,
+      error->all(FLERR, "{} output must differ from that of fix {}, got {}", caller, fix->id,
                  recorder->prefix);
   }
   fast.start();

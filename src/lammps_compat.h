@@ -91,6 +91,10 @@ inline void request_history_list(Neighbor *neighbor, Pair *pair, int instance)
 #endif
 }
 
+// neighbor lists of spheres leave out bonded pairs whose factor in special_bonds is 0; before 2022 they
+// are as those of all others, whatever special_bonds says
+static constexpr bool LISTS_OF_SPHERES_KNOW_BONDS = SLOPE_LAMMPS_VERSION >= 20220623;
+
 // values of ghost atoms from, and to, those that own them, by a pair style's pack and unpack
 inline void forward_comm(Comm *comm, Pair *pair)
 {

@@ -39,7 +39,7 @@ RegionSurface::RegionSurface(LAMMPS *lmp, const std::string &caller, const char 
   region->init();
 
   if (region->dynamic_check())
-    error->all(FLERR, "{} region {} must stand still, got one that moves or varies", caller,
+    error->all(FLERR, "{} region {} must not move, got one that moves or varies", caller,
                region_id);
   if (region->openflag)
     error->all(FLERR, "{} region {} must have no open faces, got some", caller, region_id);

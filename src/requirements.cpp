@@ -9,6 +9,7 @@
 #include "error.h"
 #include "fix.h"
 #include "force.h"
+#include "lammps_compat.h"
 #include "modify.h"
 #include "update.h"
 
@@ -46,8 +47,9 @@ void LAMMPS_NS::require_single_balls(LAMMPS *lmp, const std::string &caller)
 }
 
 /* ----------------------------------------------------------------------
-   A factor of 0 takes a pair out of the neighbor list and of 1 leaves it there, as for every pair
-   style; with anything else LAMMPS marks it, for a pair style that scales its force.
+   A factor of 0 takes a pair out of the neighbor list, where LAMMPS does that for spheres, and of 1
+   leaves it there, as for every pair style; with anything else LAMMPS marks it, for a pair style that
+   scales its force.
 ------------------------------------------------------------------------- */
 
 void LAMMPS_NS::require_whole_contacts(LAMMPS *lmp, const std::string &caller)
@@ -61,4 +63,10 @@ void LAMMPS_NS::require_whole_contacts(LAMMPS *lmp, const std::string &caller)
           "{}: special_bonds must be 0 or 1, the same for lj and coul, as balls that are bonded "
           "touch fully or not at all, got lj {:g} {:g} {:g} coul {:g} {:g} {:g}",
           caller, lj[1], lj[2], lj[3], coul[1], coul[2], coul[3]);
+    else if (lj[k] == 0.0 && !compat::LISTS_OF_SPHERES_KNOW_BONDS)
+      lmp->error->all(FLERR,
+                      "{}: special_bonds must be lj/coul 1 1 1 where balls have bonds, as LAMMPS "
+                      "before 23Jun2022 "
+                      "keeps bonded spheres in its neighbor lists, got lj {:g} {:g} {:g}",
+                      caller, lj[1], lj[2], lj[3]);
 }

@@ -105,7 +105,7 @@ class Words {
     if (!next(word)) end(what);
     if (word == what) return;
     if (at == text.size() && std::string(what).compare(0, word.size(), word) == 0) end(what);
-    fail(std::string(what) + " must stand here, got " + excerpt(word));
+    fail(std::string(what) + " is expected here, got " + excerpt(word));
   }
 
   double number(const char *what)
@@ -123,7 +123,7 @@ class Words {
   void fail(const std::string &what) const { throw error(what); }
   void end(const char *what) const
   {
-    throw error(std::string("the file is cut short: it ends where ") + what + " must stand");
+    throw error(std::string("the file is cut short: it ends where ") + what + " is expected");
   }
 
  private:
@@ -159,12 +159,12 @@ static std::vector<Triangle> read_text(const std::string &path, const std::strin
   Words words(path, text);
   std::string word;
   while (words.next(word)) {    // a solid
-    if (word != "solid") words.fail("solid must stand here, got " + excerpt(word));
+    if (word != "solid") words.fail("solid is expected here, got " + excerpt(word));
     words.rest_of_line();    // its name
     while (true) {
       if (!words.next(word)) words.end("facet or endsolid");
       if (word == "endsolid") break;
-      if (word != "facet") words.fail("facet or endsolid must stand here, got " + excerpt(word));
+      if (word != "facet") words.fail("facet or endsolid is expected here, got " + excerpt(word));
       list.push_back(read_facet(words));
     }
     words.rest_of_line();

@@ -4,6 +4,9 @@
 set -euo pipefail
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+if [[ ! -x $top/build/lmp ]]; then
+  echo "demo: the first time set-up and build take 10 to 25 minutes: LAMMPS is compiled. Then the study: half a minute"
+fi
 "$top/tools/build.sh"
 
 out=$top/build/demo

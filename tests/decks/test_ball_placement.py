@@ -183,7 +183,7 @@ BAD = [
     ("surface gone upper spacing 1", "w region gone does not exist"),
     ("surface outer upper spacing 1", "w region outer must have a bounding box, style block has none here"),
     ("surface ball upper spacing 1 outside plane", "w region plane must have a bounding box, style plane"),
-    ("surface moving upper spacing 1", "w region moving must stand still, got one that moves or varies"),
+    ("surface moving upper spacing 1", "w region moving must not move, got one that moves or varies"),
     ("surface open upper spacing 1", "w region open must have no open faces, got some"),
     ("surface bottomless lower spacing 1", "w region bottomless must have a lower boundary, got INF"),
     ("surface none upper spacing 1", "w: the surface of region none holds no balls"),

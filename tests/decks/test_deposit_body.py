@@ -232,7 +232,7 @@ def read_asc_centred(path):
     ({"bulk": "region above"}, "Fix deposit/grid bulk region above must be bounded on all sides, got one without an "
                                "end (the body is the intersection of ground and slip surface)"),
     ({"bulk": "region outside"}, "Fix deposit/grid bulk region outside must be bounded on all sides"),
-    ({"bulk": "region moves"}, "Fix deposit/grid bulk region moves must stand still, got one that moves or varies"),
+    ({"bulk": "region moves"}, "Fix deposit/grid bulk region moves must not move, got one that moves or varies"),
     ({"bulk": "region opened"}, "Fix deposit/grid bulk region opened must have no open faces, got some"),
     ({"bulk": "region beside"}, "Fix deposit/grid bulk region beside must be the body that the balls fill: at most 5 % "
                                 "of them may lie farther than a diameter from it, got 519 of 519"),

@@ -157,7 +157,7 @@ def test_regions_must_stay(tmp_path):
     write_asc(tmp_path / "ground.asc", heights(), 0.0, 0.0, 2.0)
     for gone in ("region pit delete\nrun 1", "region pit delete\nregion pit block 30 40 20 30 -20 50 units box\nrun 1"):
         run_deck(deck() + gone + "\n", tmp_path, expect_error=(
-            "Fix wall/gran/balls wall: region pit must stay as it was when these balls were defined"))
+            "Fix wall/gran/balls wall: region pit must not change"))
 
 
 def test_a_raster_beyond_the_free_memory_ends_all_ranks(tmp_path):

@@ -70,7 +70,7 @@ def test_growing_energy(tmp_path):
     warnings, summary = run(tmp_path, e=1.0, z=4.0, skin=0.0, neigh="neigh_modify every 8 delay 8 check no", dt=1.5e-3,
                             steps=3000)
     told, = (w for w in warnings if "the energy of the balls grew by" in w)
-    assert float(re.search(r"grew by (\S+) % of the largest energy of motion until step \d+", told)[1]) > 10
+    assert float(re.search(r"grew by (\S+) % of the largest .* until step \d+", told)[1]) > 10
     assert summary["guards"]["energy_growth"] > 0.1
     assert told in summary["warnings"]
 
@@ -115,7 +115,7 @@ def test_wall_type_without_coefficients(tmp_path):
 
 
 def test_force_that_is_no_number(tmp_path):
-    run(tmp_path, expect_error="ball 1 has a place, velocity or force that is not finite at step 50", steps=100,
+    run(tmp_path, expect_error="velocity or force that is not finite at step 50", steps=100,
         extra="variable huge equal 1e308*(step==50)\nfix push ball addforce v_huge v_huge 0\n"
               "fix push2 ball addforce v_huge 0 0")
 

@@ -48,5 +48,4 @@ def test_restart_file_of_another_format(tmp_path, other, name):
     (tmp_path / "cut.10.restart").write_bytes(data.replace(struct.pack("<i", FORMAT), struct.pack("<i", other)))
     run_deck("read_restart cut.10.restart\n", tmp_path,
              expect_error="Pair gran/restitution: restart file must have "
-             f"contacts of format {FORMAT}, got {name}: begin anew, or go on with the version of the package "
-             "that wrote it")
+             f"contacts of format {FORMAT}, got {name}")

@@ -106,8 +106,8 @@ def test_what_is_faster_is_warned_of(tmp_path):
     write_case(tmp_path, plane(10), [(0.3, 0.2, 1.2), (3.0, 0.2, 1.2)], [(0, 0, -1.2 * LIMIT), (0, 0, -0.95 * LIMIT)])
     rows, frames, log = run_case(tmp_path, "run 120", coeff="restitution 1")
     said = [line for line in log.splitlines() if "Fix wall/gran/mesh wall: " in line and "WARNING" in line]
-    assert "ball 1 comes at" in said[0] and "1.2 times the speed up to which nothing passes" in said[0]
-    assert "a ball came too fast" in said[-1] and "(ball 1, step " in said[-1]
+    assert "ball 1 " in said[0] and " 1.2 times the speed" in said[0]
+    assert "too fast" in said[-1] and "(ball 1, step " in said[-1] and " 1.2 times the speed" in said[-1]
     assert not any("ball 2" in line for line in said)
     assert frames[-1, :, 6] == pytest.approx([1.2 * LIMIT, 0.95 * LIMIT], rel=1e-3)
 
@@ -209,7 +209,7 @@ def test_two_fixes_cannot_write_the_same_files(tmp_path):
     write_case(tmp_path, plane(1), (0.3, 0.2, 1.6), (0, 0, -1))
     keywords = f"output out 10\n{START.replace('wall', 'other', 1)} 2 mesh.stl output out 10"
     run_deck(mesh_deck("run 1", keywords=keywords), tmp_path,
-             expect_error="Fix wall/gran/mesh wall output must be another than that of fix other, got out")
+             expect_error="Fix wall/gran/mesh wall output must differ from that of fix other, got out")
 
 
 def test_reduced_output_of_terrain_has_the_touched_triangles_alone(tmp_path):

@@ -140,11 +140,22 @@ run          0
 """
 
 
-@pytest.mark.parametrize("special, force", [("lj/coul 0 1 1", 0.0), ("lj/coul 1 1 1", 1000.0)])
-def test_bonded_balls_touch_or_do_not(tmp_path, special, force):
+def test_bonded_balls_touch(tmp_path):
     needs("MOLECULE")
-    log = run_deck(BONDS.format(special=special), tmp_path)
-    assert float(re.search(r"^ +0 +(\S+)\s*$", log, re.MULTILINE)[1]) == pytest.approx(force, rel=1e-6)
+    log = run_deck(BONDS.format(special="lj/coul 1 1 1"), tmp_path)
+    assert float(re.search(r"^ +0 +(\S+)\s*$", log, re.MULTILINE)[1]) == pytest.approx(1000.0, rel=1e-6)
+
+
+def test_bonded_balls_do_not_touch_where_lammps_can_leave_them_out(tmp_path):
+    """LAMMPS before 23Jun2022 would make them touch: the run ends."""
+    needs("MOLECULE")
+    date = re.search(r"(\d+) (\w{3}) (\d{4})", help_text())
+    if int(date[3]) < 2022:
+        run_deck(BONDS.format(special="lj/coul 0 1 1"), tmp_path,
+                 expect_error="special_bonds must be lj/coul 1 1 1 where balls have bonds")
+        return
+    log = run_deck(BONDS.format(special="lj/coul 0 1 1"), tmp_path)
+    assert float(re.search(r"^ +0 +(\S+)\s*$", log, re.MULTILINE)[1]) == pytest.approx(0.0, abs=1e-6)
 
 
 @pytest.mark.parametrize("special, values", [("lj/coul 0.5 1 1", "lj 0.5 1 1 coul 0.5 1 1"),

@@ -393,14 +393,14 @@ SETUPS = [
     ({"more walls": "fix more soil wall/gran/balls 2 500.0 file balls.txt"},
      "Delete_balls: no ball of group soil is left"),
     ({"terrain": "variable up equal 0.1\n" + DECK["terrain"] + " move NULL NULL v_up"},
-     "Fix wall/gran/balls wall region ground must stand still, got one that moves or varies"),
+     "Fix wall/gran/balls wall region ground must not move, got one that moves or varies"),
     ({"box": "region big block 0 8 0 8 -1e20 1e20\ncreate_box 3 big"},
      "Region polygon road has no end in z: the simulation box needs one"),
     ({"deposit": DECK["deposit"] + "\n"
       + DECK["deposit"].replace("deposit soil", "other soil").replace("cell 1.0", "cell 2")},
-     "Fix deposit/grid output must be another than that of fix other, got out"),
+     "Fix deposit/grid output must differ from that of fix other, got out"),
     ({"line": DECK["line"] + "\n" + DECK["line"].replace("line soil", "other soil")},
-     "Fix control/line output must be another than that of fix other, got out"),
+     "Fix control/line output must differ from that of fix other, got out"),
     ({"line": "fix line soil control/line fence.csv output out",
       "deposit": DECK["deposit"] + "\n" + DECK["deposit"].replace("deposit soil", "other soil") + "2"},
      "Fix control/line line needs deposit ID, the fix deposit/grid that has the bulk factor, where there is not "

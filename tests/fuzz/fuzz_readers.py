@@ -40,7 +40,7 @@ sys.path[:0] = [str(TOOLS), str(HERE.parent / "tools")]
 from slope_tools.case import run_folders  # noqa: E402
 from slope_tools.deposit import deposit, dumps  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
-from slope_tools.survey import fggml, polygons, rasters  # noqa: E402
+from slope_tools.survey import crs, fggml, polygons, rasters  # noqa: E402
 
 SLOW = 10.0                    # s
 MEMORY = 8_000_000_000         # bytes of address space
@@ -222,7 +222,7 @@ def geotiff():
     from affine import Affine
     with tempfile.TemporaryDirectory() as folder:
         rasters.write_geotiff(f"{folder}/a.tif", {"height": np.arange(12.0).reshape(3, 4)},
-                              rasters.Raster(None, Affine(2, 0, 10, 0, -2, 20), polygons.as_crs("", "EPSG:6677")))
+                              rasters.Raster(None, Affine(2, 0, 10, 0, -2, 20), crs.as_crs("", "EPSG:6677")))
         return Path(folder, "a.tif").read_bytes()
 
 
@@ -231,7 +231,7 @@ def sidecar():
     from affine import Affine
     with tempfile.TemporaryDirectory() as folder:
         rasters.write_asc_local(f"{folder}/a.asc", rasters.Raster(
-            np.ones((3, 4)), Affine(2, 0, 0, 0, -2, 6), polygons.as_crs("", "EPSG:6677"), (1e4, 2e4)), {})
+            np.ones((3, 4)), Affine(2, 0, 0, 0, -2, 6), crs.as_crs("", "EPSG:6677"), (1e4, 2e4)), {})
         return {path.name: path.read_bytes() for path in Path(folder).iterdir()}
 
 

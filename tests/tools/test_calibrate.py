@@ -20,7 +20,7 @@ TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
 from slope_tools import cli  # noqa: E402
-from slope_tools.ensemble import backanalysis, calibration, distributions  # noqa: E402
+from slope_tools.ensemble import backanalysis, calibration, designs, distributions, emulator  # noqa: E402
 from slope_tools.survey import rasters  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
@@ -195,15 +195,25 @@ def test_numbers_alone_with_a_failing_run(slope, here):
     deck.write_text(deck.read_text().replace("group       soil", 'if "${friction} > 37" then "nonsense"\n'
                                              "group       soil"))
     status, out, err = slope(f"calibrate case/in.tiny --front 14 --area 180 --volume 40 --road case/road.csv --local "
-                             f"{WORDS} --runs 12 --set steps=300 -o out")
+                             f"{WORDS} --tolerance area=0.2 --runs 12 --set steps=300 -o out")
     assert status == 0, err
     about, table = load()
+    assert [entry["tolerance"] for entry in about["targets"]] == pytest.approx([0.05 * 14, 0.2 * 180, 0.05 * 40])
     failed = [row for row in table if row["status"] == "failed"]
     assert failed and all(float(row["friction"]) > 37 and row["score"] == "" for row in failed)
     assert f"doubt: {len(failed)} of 12 runs failed and say nothing" in out
     assert [entry["name"] for entry in about["targets"]] == ["99 % of the volume within", "area covered",
                                                              "volume on the road"]
     assert not Path("out/predicted.png").exists()
+
+
+def test_chance_that_few_runs_cannot_show_is_doubted():
+    """A smooth function without chance, and the same with: the emulator tells which."""
+    points = designs.points(designs.SOBOL, 3, 24, 1)
+    smooth = points @ [1.0, 2.0, 0.5] + points[:, 0] ** 2
+    noisy = smooth + 0.2 * np.random.default_rng(1).normal(size=len(smooth))
+    assert not emulator.Emulator(points, smooth).noise_seen
+    assert emulator.Emulator(points, noisy).noise_seen
 
 
 def test_outlines(slope, here):
@@ -234,6 +244,10 @@ def test_all_runs_failed_is_one_line(slope, here):
     (f"{WORDS} --runs 20 --front -3", "--front: must be > 0, got -3"),
     (f"{WORDS} --runs 20 --volume 40", "--volume: needs --road"),
     (f"{WORDS} --runs 20 --front 9 --tolerance 2", "--tolerance: must be a share"),
+    (f"{WORDS} --runs 20 --front 9 --tolerance front=1", "--tolerance: must be a share, >= 0 and < 1, got 1"),
+    (f"{WORDS} --runs 20 --front 9 --tolerance area=0.1", "--tolerance: must be of what is observed: needs --area"),
+    (f"{WORDS} --runs 20 --front 9 --tolerance far=0.1",
+     "argument --tolerance: must name one of observed, front, area, volume, got 'far'"),
     (f"{WORDS} --runs 20 --front 9 --set friction=3", "--vary: must not name a variable of --set, got friction"),
     (f"{WORDS} --runs 20 --front 9 --repeat cell=2", "--repeat: must name what is chance"),
     (f"{WORDS} --runs 20 --observed none.tif", "--observed: must be an existing file, got none.tif"),

@@ -145,6 +145,8 @@ TEXT_CSV = "\n\n".join("\n".join(f"{x + EAST!r},{y + NORTH!r}" for x, y in ring.
     ("a.geojson", lambda path: geojson(path, moved(ROAD), crs=CRS_M), ""),
     ("a.geojson", lambda path: geojson(path, None, moved(ROAD, WGS)), ""),
     ("a.geojson", lambda path: geojson(path, moved(ROAD)), "--crs EPSG:6677"),
+    ("a.geojson", lambda path: geojson(path, moved(ROAD)), "--assign-crs EPSG:6677"),
+    ("a.geojson", lambda path: geojson(path, moved(ROAD), crs="EPSG:6676"), "--assign-crs EPSG:6677"),
     ("a.geojson", lambda path: geojson(path, ROAD), "--local"),
     ("a.shp", lambda path: shapefile(path, moved(ROAD), crs=CRS_M), ""),
     ("a.shp", lambda path: shapefile(path, moved(ROAD, "EPSG:6676"), crs="EPSG:6676"), ""),
@@ -326,7 +328,8 @@ SQUARE = "10,10\n20,10\n20,20\n10,20\n"
      "a.wkt: line 1: must be polygons that do not cross or touch themselves, got Self-intersection at 15 15"),
     ("a.geojson", lambda path: geojson(path), "", "a.geojson: must hold a polygon, it is empty"),
     ("a.geojson", lambda path: geojson(path, moved(ROAD)), "", "a.geojson: coordinates in EPSG:4326 must be longitude "
-     "and latitude (which a GeoJSON has that names no other CRS), got -11990 34010"),
+     "and latitude; --assign-crs EPSG:n of slope terrain and slope polygon overrides a tag that is wrong or missing, "
+     "got -11990 34010"),
     ("a.geojson", lambda path: geojson(path, moved(ROAD), moved(BOW), crs=CRS_M), "", "a.geojson: feature 1: must be "
      "polygons that do not cross or touch themselves, got Self-intersection at -11985 34015"),
     ("a.geojson", lambda path: geojson(path, Point(1, 2)), "", "a.geojson: feature 0: must be a polygon, got Point"),
@@ -335,7 +338,7 @@ SQUARE = "10,10\n20,10\n20,20\n10,20\n"
     ("a.shp", lambda path: shapefile(path, moved(ROAD)), "", "a.shp: must have a CRS, so that polygon and terrain can "
      "be brought together (a .prj file beside a shapefile, slope terrain --crs for a terrain; --local if"),
     ("a.shp", wkt("no shapes"), "", "a.shp: must be polygons that GDAL can read"),
-    ("a.wkt", wkt(moved(ROAD).wkt), "--crs EPSG:1", "--crs: must be a CRS such as EPSG:6677, got EPSG:1"),
+    ("a.wkt", wkt(moved(ROAD).wkt), "--assign-crs EPSG:1", "--assign-crs: must be a CRS such as EPSG:6677, got EPSG:1"),
     ("a.wkt", wkt(moved(ROAD).wkt), "--crs EPSG:6668", "a.wkt: coordinates in EPSG:6668 must be longitude and "
      "latitude"),
 ])
@@ -355,7 +358,8 @@ def test_bad_input_is_one_line_and_nothing_is_written(slope, here, name, make, o
     ("b.csv -o b.csv", "t.asc", "-o: must not be the input, got b.csv"),
     ("a.wkt -o out.csv", "none.asc", "none.asc: must be an existing file"),
     ("a.wkt -o out.csv", "a.wkt", "a.wkt: must be a raster that GDAL can read"),
-    ("a.wkt -o out.csv --local --crs EPSG:6677", "t.asc", "argument --crs: not allowed with argument --local"),
+    ("a.wkt -o out.csv --local --crs EPSG:6677", "t.asc", "argument --assign-crs/--crs: not allowed with argument "
+     "--local"),
 ])
 def test_bad_arguments(slope, here, arguments, terrain, message):
     (here / "a.wkt").write_text(moved(ROAD).wkt)

@@ -91,6 +91,19 @@ def ramp(degrees, direction=270.0, top=500.0):
 # --- closed forms ---
 
 
+def test_a_body_beside_nodata_has_numbers(body):
+    """NODATA in a corner of the body's rectangle, far from its polygon: the same body as without."""
+    whole = terrain(ramp(30))
+    polygon(Polygon([(120, 60), (160, 100), (120, 140), (80, 100)]))
+    wanted, _ = body("t.asc --polygon p.csv --depth 6")
+    corner = (np.abs(whole[0] - 84) < 4) & (np.abs(whole[1] - 64) < 4)
+    slope_of = ramp(30)
+    terrain(lambda x, y: np.where(corner, np.nan, slope_of(x, y)))
+    found, _ = body("t.asc --polygon p.csv --depth 6")
+    assert found == pytest.approx(wanted, rel=1e-9) and found["volume"] > 1000
+    assert "nan" not in Path("r.deck.txt").read_text()
+
+
 @pytest.mark.parametrize("degrees, direction", [(30, 270), (40, 180), (25, 45), (33, 110)])
 @pytest.mark.parametrize("stretch", [1, 0.6])
 def test_a_sphere_on_a_plane_slope_is_a_cap(body, degrees, direction, stretch):
@@ -392,7 +405,7 @@ def test_layers_that_do_not_fit(refused):
     terrain(hill, "plain.asc", crs=None, offset=(0, 0))
     write_geojson("p.geojson", box(EAST + 60, NORTH + 60, EAST + 160, NORTH + 140), crs=CRS_M)
     refused("plain.asc --polygon p.geojson --depth 5", "plain.asc: must have a CRS", "got none")
-    refused("t.asc --polygon p.geojson --depth 5 --crs EPSG:0", "--crs: must be a CRS such as EPSG:6677")
+    refused("t.asc --polygon p.geojson --depth 5 --assign-crs EPSG:0", "--assign-crs: must be a CRS such as EPSG:6677")
 
 
 def test_bad_input(refused):

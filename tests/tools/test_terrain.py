@@ -126,6 +126,28 @@ def test_the_file_to_the_letter(slope, here):
     assert sorted(os.listdir()) == ["dem.asc", "out.asc", "out.yaml"]
 
 
+def test_an_assigned_crs_overrides_the_tag(slope, written, here):
+    """A wrong tag, a missing one, and the sidecar of an .asc; --crs then reprojects from the assigned CRS."""
+    z, transform = survey()
+    write_tif("right.tif", z, transform)
+    right = slope("right.tif -o right.asc")
+    assert (right[0], right[2]) == (0, "")
+    write_tif("wrong.tif", z, transform, crs="EPSG:6676")
+    status, out, err = slope(f"wrong.tif -o wrong.asc --assign-crs {CRS_M}")
+    assert (status, err) == (0, "") and out.splitlines()[0] == f"wrong.tif says EPSG:6676: taken as {CRS_M}"
+    assert (here / "wrong.asc").read_bytes() == (here / "right.asc").read_bytes()
+    assert yaml.safe_load((here / "wrong.yaml").read_text())["crs"]["epsg"] == 6677
+    (here / "none.asc").write_text(asc_text(z, EAST, NORTH, 5.0))
+    assert slope(f"none.asc -o none_out.asc --assign-crs {CRS_M}")[0] == 0
+    assert yaml.safe_load((here / "none_out.yaml").read_text())["crs"]["epsg"] == 6677
+    assert slope("right.asc -o moved.asc --assign-crs EPSG:6676")[0] == 0
+    moved = yaml.safe_load((here / "moved.yaml").read_text())
+    assert moved["crs"]["epsg"] == 6676 and moved["origin"]["east"] == EAST
+    about = written(f"wrong.tif --assign-crs {CRS_M} --crs EPSG:32654")[3]
+    direct = written("right.tif --crs EPSG:32654")[3]
+    assert about["origin"] == direct["origin"] != moved["origin"]
+
+
 def test_corner_and_center_headers_and_geotiff_are_one_raster(slope, here):
     z, transform = survey()
     z[3, 4] = np.nan
@@ -512,8 +534,17 @@ BAD = {
                 "bad.tif: CRS must be in metres; give --crs EPSG:n of a projected one, got EPSG:6668 in degrees"),
     "feet": (bad_tif(crs="EPSG:2263"), "bad.tif -o out.asc",
              "bad.tif: CRS must be in metres; give --crs EPSG:n of a projected one, got EPSG:2263 in US survey foot"),
-    "outside its CRS": (bad_tif(crs="EPSG:4326", transform=Affine(1e-4, 0, 10, 0, -1e-4, 95)),
-                        f"bad.tif -o out.asc --crs {CRS_M}", "--crs: must cover the input, which is in EPSG:4326"),
+    "no degrees": (bad_tif(crs="EPSG:4326", transform=Affine(1e-4, 0, 10, 0, -1e-4, 95)),
+                   f"bad.tif -o out.asc --crs {CRS_M}",
+                   "bad.tif: coordinates in EPSG:4326 must be longitude and latitude; --assign-crs EPSG:n of"),
+    "assigned degrees": (bad_tif(), f"bad.tif -o out.asc --assign-crs EPSG:4326 --crs {CRS_M}",
+                         "bad.tif: coordinates in EPSG:4326 must be longitude and latitude"),
+    "outside its CRS": (bad_tif(transform=Affine(5, 0, 1e9, 0, -5, 1e9)), "bad.tif -o out.asc --crs EPSG:32654",
+                        "--crs: must cover the input, whose coordinates are in EPSG:6677 (--assign-crs EPSG:n"),
+    "assigned CRS unknown": (no_input, OK + "--assign-crs EPSG:999999",
+                             "--assign-crs: must be a CRS such as EPSG:6677, got EPSG:999999"),
+    "assigned CRS of degrees": (bad_tif(transform=Affine(1e-4, 0, 139, 0, -1e-4, 36)),
+                                "bad.tif -o out.asc --assign-crs EPSG:6668", "bad.tif: CRS must be in metres"),
     "CRS of degrees": (no_input, OK + "--crs EPSG:6668", "--crs: CRS must be in metres"),
     "CRS of space": (no_input, OK + "--crs EPSG:4978", "--crs: CRS must be in metres"),
     "CRS unknown": (no_input, OK + "--crs EPSG:999999", "--crs: must be a CRS such as EPSG:6677, got EPSG:999999"),

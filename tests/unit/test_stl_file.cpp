@@ -150,7 +150,7 @@ TEST(StlFile, SaysWhatIsWrongWithText)
   for (const size_t n : {10, 40, 60, 91})
     EXPECT_SAYS("solid x\n" + ONE.substr(0, n), "the file is cut short");
   EXPECT_SAYS("solid x\nendsolid x\n", "must be a triangle with an area, got no triangles");
-  EXPECT_SAYS("solid\n" + ONE + "vertex 1 1 1\nendsolid", "line 9: facet or endsolid must stand here, got vertex");
+  EXPECT_SAYS("solid\n" + ONE + "vertex 1 1 1\nendsolid", "line 9: facet or endsolid is expected here, got vertex");
   std::string text = "solid x\n" + ONE + "endsolid x\n";
   text.replace(text.find("2 0 0"), 5, "2 x 0");
   EXPECT_SAYS(text, "line 5: a coordinate must be a finite number, got x");
@@ -159,7 +159,7 @@ TEST(StlFile, SaysWhatIsWrongWithText)
   EXPECT_SAYS(text, "line 5: a coordinate must be a finite number, got inf");
   text = "solid x\n" + ONE + "endsolid x\n";
   text.replace(text.find(" endloop"), 8, "  vertex 1 1 1\n endloop");
-  EXPECT_SAYS(text, "line 7: endloop must stand here, got vertex");
+  EXPECT_SAYS(text, "line 7: endloop is expected here, got vertex");
 }
 
 TEST(StlFile, SaysWhatIsWrongWithBinary)

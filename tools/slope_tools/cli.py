@@ -45,7 +45,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def main(argv=None):
-    """Run one subcommand on argv (default: the command line); return the status: 0, 1 a bug, 2 bad input, 130 interrupted."""
+    """Run one subcommand on argv (default: the command line); the status is 0, 1 (a bug), 2 (bad input) or 130."""
     argv = sys.argv[1:] if argv is None else argv
     parser = Parser(prog="slope", description="Tools of the SLOPE package: what goes into a deck and what comes out.",
                     epilog="`slope COMMAND --help` explains a command, with units and an example.")

@@ -10,7 +10,7 @@ from pathlib import Path
 def version():
     """The version of the package, from the one place that has it."""
     header = Path(__file__).resolve().parents[2] / "src" / "slope_version.h"
-    return re.search(r'SLOPE_VERSION "(.*)"', header.read_text(encoding="ascii"))[1]
+    return re.findall(r'SLOPE_VERSION "(.*)"', header.read_text(encoding="ascii"))[0]
 
 
 def now():

@@ -1,6 +1,7 @@
 """Which files a deck needs in the folder where it runs."""
 import os
 import re
+from typing import Set
 
 from .. import disk
 from ..errors import SlopeError
@@ -8,7 +9,8 @@ from . import decks, run_folders
 
 # what runs, and the tools after them, leave in the deck's folder; a file that the deck reads is copied all the same
 OUTPUTS = re.compile(r"^\.|^core|^log\.|\.(restart|dump|lammpstrj|vtp|vts|pvd)(\.gz)?$|\.(yaml|csv|tif)\.new$"
-                     r"|\.summary\.yaml$|\.(png|jpe?g|svg|pdf|html|tif)$|~$", re.IGNORECASE)
+                     r"|\.summary\.yaml$|^report\.(section|numbers)\.csv$|\.(png|jpe?g|svg|pdf|html|tif)$|~$",
+                     re.IGNORECASE)
 
 
 def data_files(deck, settings):
@@ -20,7 +22,7 @@ def data_files(deck, settings):
     folder = deck.parent
     words, written = decks.named_files(deck)
     words.update(value for several in settings.values() for value in several)
-    left = set()
+    left: Set[str] = set()
     for summary in run_folders.summaries(folder):
         left.update(map(str, disk.load_yaml(summary, "a summary of fix deposit/grid").get("files") or ()))
     found = {}

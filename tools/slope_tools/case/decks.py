@@ -1,6 +1,7 @@
 """LAMMPS input decks: the commands, variables and files of one."""
 import re
 from pathlib import Path
+from typing import Dict, Set, Tuple
 
 from ..errors import SlopeError
 
@@ -26,7 +27,7 @@ def commands(deck):
                 if match.lastindex == 4 and "#" in match[4]:
                     words += [match[4].split("#")[0]] * (not match[4].startswith("#"))
                     break
-                words.append(match[match.lastindex])
+                words.append(match[match.lastindex or 0])
             if not words:
                 continue
             found.append(words)
@@ -38,7 +39,7 @@ def commands(deck):
 
 def variables(deck):
     """{name: (style, text)} of a deck's `variable` commands; the first of a name counts, as for index variables."""
-    found = {}
+    found: Dict[str, Tuple[str, str]] = {}
     for words in commands(deck):
         if words[0] == "variable" and len(words) > 2:
             found.setdefault(words[1], (words[2], " ".join(words[3:])))
@@ -56,7 +57,8 @@ def named_files(deck):
     def fill(word):
         return re.sub(r"\$(?:\{(\w+)\}|(\w))", lambda match: values.get(match[1] or match[2], match[0]), word)
 
-    read, written = set(), set()
+    read: Set[str] = set()
+    written: Set[str] = set()
     for words in commands(deck):
         first, last = WRITTEN_AT.get(words[0], (0, 0))
         for k, word in enumerate(words):

@@ -1,6 +1,7 @@
 """What the log of a run says."""
 import re
 from pathlib import Path
+from typing import List
 
 from ..survey import rasters
 
@@ -26,7 +27,8 @@ class Log:
         self.parts = None         # logs of the parts before this one, as long as they are not read
         self.halted, self.reading = None, False
         self.lammps = self.wall = self.error = self.step = self.time = self.last = self.terrain = None
-        self.first, self.steps, self.thermo, self.header = 0, None, 0, None
+        self.first, self.steps, self.thermo = 0, None, 0
+        self.header: List[str] = []           # words of the thermo output under way
         self.warnings, self.settings, self.notes, self.table = [], [], [], []
         self.names = set()        # words of the commands: which files they name
         self.in_table = False
@@ -34,8 +36,8 @@ class Log:
     def update(self):
         """Read on; a log that is not there yet is an empty one."""
         if self.parts is None:
-            self.parts = parts(self.path)
-            for path in self.parts:
+            self.parts = earlier = parts(self.path)
+            for path in earlier:
                 self._read(path)
                 self.place, self.rest = 0, ""
                 self._new_part()
@@ -56,7 +58,8 @@ class Log:
 
     def _new_part(self):
         """Forget what counts only if it is the last that was heard."""
-        self.error = self.header = self.steps = self.last = None
+        self.error = self.steps = self.last = None
+        self.header = []
         self.thermo, self.reading = 0, False
 
     def _line(self, line):
@@ -87,7 +90,7 @@ class Log:
         elif words[0] == "Step":
             self.header, self.thermo = words, 0
         elif words[0] == "Loop":
-            self.header = None
+            self.header = []
         else:
             self._command(words, line)
 

@@ -153,7 +153,8 @@ def wanted_body(choices: Choices, new: Path) -> release.Wanted:
 def terrain(choices: Choices, new: Path, tell) -> Raster:
     """Write the terrain and read it back, as the deck will."""
     given = choices["terrain"]
-    wanted = local_terrain.Wanted(given["crs"], None, given["cell"], given["bounds"], given["fill"])
+    wanted = local_terrain.Wanted(given["crs"], None, given["cell"], given["bounds"], given["fill"],
+                                  given["assign_crs"])
     about = local_terrain.make(given["files"], new / TERRAIN, wanted, tell)
     tell(local_terrain.summary(TERRAIN, about))
     return rasters.read_asc_local(new / TERRAIN)
@@ -174,7 +175,7 @@ def write_body(new: Path, wanted: release.Wanted, found: release.Body):
 def numbers(choices: Choices, trial: Optional[Trial], size: Optional[Size], diameter: Optional[float] = None):
     """What the choices leave open, for the deck."""
     model = choices["model"]
-    d = diameter or size.diameter
+    d = diameter or (size.diameter if size else 0.0)
     seconds = None
     if trial and size:
         steps = trial.rest / site_budget.time_step(d, model["speed"], model["density"])

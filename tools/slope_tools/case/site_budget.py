@@ -173,6 +173,7 @@ def size(choices: Choices, volume: float, trial: Optional[Trial], jobs: int, cel
     balls, model, parts = choices["balls"], choices["model"], plan(choices)
 
     def seconds(d: float) -> float:
+        assert trial is not None
         return study_seconds(d, volume, trial, model["speed"], model["density"], parts, jobs)
 
     if balls["diameter"]:
@@ -183,7 +184,7 @@ def size(choices: Choices, volume: float, trial: Optional[Trial], jobs: int, cel
         if trial is None:
             raise SlopeError("--minutes", "needs a LAMMPS program (LMP, --lmp) to measure this machine, --balls "
                              "does not", f"{balls['minutes']:g}")
-        d = up(fit(60 * balls["minutes"], seconds, volume, "--minutes", "s"))
+        d = up(fit(balls["minutes"], lambda one: seconds(one) / 60, volume, "--minutes", "minutes"))
     elif balls["memory"]:
         d = up(fit(balls["memory"], lambda one: gigabytes(one, volume, cells, jobs), volume, "--memory", "GB"))
     else:

@@ -66,18 +66,19 @@ def check(given: Any, where: str) -> None:
 
 def rule_of(error: jsonschema.ValidationError) -> str:
     """What a validation error says, as a rule."""
-    if error.validator == "additionalProperties":
+    rule = str(error.validator)
+    if rule == "additionalProperties":
         extra = sorted(set(error.instance) - set(error.schema["properties"]))
         return f"must have no {', '.join(extra)}, which is unknown; keys are {', '.join(error.schema['properties'])}"
-    if error.validator == "required":
+    if rule == "required":
         return f"must have {' and '.join(key for key in error.validator_value if key not in error.instance)}"
     rules = {"type": "be of type {}", "exclusiveMinimum": "be > {}", "minimum": "be >= {}",
              "exclusiveMaximum": "be < {}", "maximum": "be <= {}", "enum": "be one of {}",
              "minItems": "have at least {} items", "maxItems": "have at most {} items"}
-    if error.validator in rules:
+    if rule in rules:
         value = error.validator_value
         told = ", ".join(str(one) for one in value) if isinstance(value, list) else value
-        return f"must {rules[error.validator].format(told)}, got {error.instance!r}"
+        return f"must {rules[rule].format(told)}, got {error.instance!r}"
     return f"must be valid: {error.message}"
 
 

@@ -1,7 +1,8 @@
 """The deck of a site: in.site.j2 filled in, plain LAMMPS with every number an index variable."""
 import math
+import re
 from pathlib import Path
-from typing import Any, Dict, List, NamedTuple, Optional, Sequence
+from typing import Any, Dict, NamedTuple, Optional, Sequence
 
 import jinja2
 
@@ -11,6 +12,7 @@ from .site_inputs import Line, Motion, Structure
 
 NAME = "in.site"
 TEMPLATE = "in.site.j2"
+KNOB = re.compile(r"variable +\w+ +index ")
 FRAMES = 40             # snapshots of a run, about
 STEEPER = 7.0           # degrees: default of a strength that holds a body, above the slope of its slip surface
 LEAST_PEAK, MOST_PEAK = 33.0, 80.0
@@ -100,13 +102,7 @@ def run_time(seconds: Optional[float]) -> str:
 
 def aligned(deck: str) -> str:
     """The comments behind the index variables on the deck's top in one column."""
-    lines: List[str] = []
-    for line in deck.splitlines():
-        code, mark, comment = line.partition("    # ")
-        if mark and line.startswith("variable  ") and " index " in code:
-            line = f"{code.rstrip():<33} # {comment.strip()}"
-        elif line.startswith("variable  ") and " index " in line and "  # " in line:
-            code, _, comment = line.partition("  # ")
-            line = f"{code.rstrip():<33} # {comment.strip()}"
-        lines.append(line)
-    return "\n".join(lines) + "\n"
+    parts = [line.partition("  # ") if KNOB.match(line) else (line, "", "") for line in deck.splitlines()]
+    wide = max(len(code.rstrip()) for code, mark, _ in parts if mark)
+    return "".join(f"{code.rstrip():<{wide}}  # {comment.strip()}\n" if mark else f"{code}\n"
+                   for code, mark, comment in parts)

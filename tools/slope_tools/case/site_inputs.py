@@ -106,8 +106,8 @@ def structure(path: str, raster: Raster, folder: Path, taken: Set[str]) -> Struc
                          f"{a[2]:.6g} to {b[2]:.6g}")
     name = unused(Path(path).stem, taken)
     copy(path, folder / f"{name}.stl")
-    point = ((a[0] + b[0]) / 2, (a[1] + b[1]) / 2, float(a[2]))
-    return Structure(name, f"{name}.stl", move, tuple(float(value) for value in point), a, b, len(points))
+    point = float(a[0] + b[0]) / 2, float(a[1] + b[1]) / 2, float(a[2])
+    return Structure(name, f"{name}.stl", move, point, a, b, len(points))
 
 
 # --- lines ---

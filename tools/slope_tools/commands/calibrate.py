@@ -48,9 +48,10 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--area", metavar="A", type=number,
                         help="area that the mass ever covered, thicker than --threshold, m2")
     parser.add_argument("--volume", metavar="V", type=number, help="volume on the road of --road, m3")
-    parser.add_argument("--tolerance", metavar="SHARE", type=number, default=TOLERANCE,
+    parser.add_argument("--tolerance", metavar="[NAME=]SHARE", type=tolerance, action="append", default=[],
                         help="standard deviation of what was observed, as a share of it "
-                             f"(default {TOLERANCE:g}); chance comes on top")
+                             f"(default {TOLERANCE:g}); chance comes on top. NAME=SHARE: of one observation, observed, "
+                             "front, area or volume; may be repeated")
     parser.add_argument("--threshold", metavar="T", type=number, default=THRESHOLD,
                         help=f"a deposit is where it is thicker than this, m (default {THRESHOLD:g})")
     parser.add_argument("--vary", metavar="NAME=LO:HI", action="append", default=[], required=True,
@@ -65,10 +66,19 @@ def add_parser(commands, **kwargs):
     return parser
 
 
+def tolerance(text):
+    """argparse type: (name of an observation or None, share)."""
+    name, equals, share = text.rpartition("=")
+    if equals and name not in observations.KINDS:
+        raise argparse.ArgumentTypeError(f"must name one of {', '.join(observations.KINDS)}, got {name!r}")
+    return name or None, number(share)
+
+
 def run(args):
     """Do the command; raises SlopeError on bad input, and where too few runs finished."""
-    wanted = observations.Wanted(args.observed, args.front, args.area, args.volume, args.tolerance, args.threshold,
-                                 args.local)
+    shares = dict(args.tolerance)
+    wanted = observations.Wanted(args.observed, args.front, args.area, args.volume, shares.pop(None, TOLERANCE),
+                                 args.threshold, args.local, shares)
     variables = distributions.parse(args.vary, args.deck, ranges_only=True)
     fixed = one_value_each(check_settings(args.set, args.deck), "--set", "--vary")
     repeated = check_settings(args.repeat, args.deck, "--repeat")
@@ -90,7 +100,7 @@ def run(args):
     files = data_files.data_files(args.deck, {**settings, **repeated})
     setup = run_arguments.setup_of(args)
     if setup.road:
-        study.check_road(setup, settings)
+        study.check_road(setup.road, setup.deck, settings)
     study.check_folder(setup, [])
     about = {**wanted.about, "deck": args.deck.name, "set": fixed, "repeat": repeated,
              "variables": {one.name: one.told for one in variables}, "seed": args.seed}

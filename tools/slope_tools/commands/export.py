@@ -1,6 +1,7 @@
 """slope export: every raster of a run as a GeoTIFF in the coordinates of the survey, for a GIS."""
 import argparse
 from pathlib import Path
+from typing import List
 
 from .. import disk, errors
 from ..deposit import deposit
@@ -34,7 +35,7 @@ def add_parser(commands, **kwargs):
 
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints what was written."""
-    warnings = []
+    warnings: List[str] = []
     warn = errors.warner("export", warnings)
     run_ = deposit.read(args.prefix, args.terrain, warn)
     folder = args.output or Path(f"{args.prefix}.export")

@@ -8,6 +8,7 @@ from shapely.geometry import box
 
 from ..errors import SlopeError
 from ..survey import polygons, rasters
+from ..survey.crs import as_crs
 
 SLOW = 5.0     # s; a run that took longer says so
 EPILOG = """\
@@ -17,7 +18,7 @@ IN: GeoJSON, shapefile, or another format of GDAL with one layer; or text (.csv,
   WKT such as POLYGON ((x y, x y, x y, x y))
 coordinates: of a file with a CRS, in that one (GeoJSON that names none: longitude, latitude), reprojected to the
   terrain's; of text (CSV, WKT), in the terrain's CRS (east, north), but of a file that this command wrote, local;
-  --crs and --local say otherwise. OUT.csv is in the terrain's local metres.
+  --assign-crs and --local override this. OUT.csv is in the terrain's local metres.
 
 example:
   tools/slope polygon road.geojson -o road.csv --terrain terrain.asc
@@ -35,7 +36,8 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--terrain", metavar="TERRAIN.asc", required=True,
                         help="terrain that `slope terrain` wrote; its sidecar TERRAIN.yaml has CRS and origin")
     place = parser.add_mutually_exclusive_group()
-    place.add_argument("--crs", metavar="EPSG:n", help="the coordinates of IN are in this CRS, whatever IN says")
+    place.add_argument("--assign-crs", "--crs", dest="crs", metavar="EPSG:n",
+                       help="the coordinates of IN are in this CRS, whatever IN says")
     place.add_argument("--local", action="store_true",
                        help="the coordinates of IN are the terrain's local metres, whatever IN says")
     return parser
@@ -50,7 +52,7 @@ def run(args):
         raise SlopeError("-o", "must be in an existing folder", args.output)
     if args.output.exists() and Path(args.input).exists() and args.output.samefile(args.input):
         raise SlopeError("-o", "must not be the input", args.output)
-    crs = polygons.as_crs("--crs", args.crs) if args.crs else None
+    crs = as_crs("--assign-crs", args.crs) if args.crs else None
     place = rasters.read_place(args.terrain)
     geometry = polygons.read_local(args.input, place, local=args.local, crs=crs)
     beyond = 1 - geometry.intersection(box(*place.extent)).area / geometry.area

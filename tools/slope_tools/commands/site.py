@@ -12,7 +12,8 @@ from ..survey.release import SHAPES
 from ..survey.release_scar import KINDS
 
 # option -> section and key of site.yaml
-OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"), "bounds": ("terrain", "bounds"),
+OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
+           "assign_crs": ("terrain", "assign_crs"), "bounds": ("terrain", "bounds"),
            "cell": ("terrain", "cell"), "fill": ("terrain", "fill"), "release": ("release", "polygon"),
            "shape": ("release", "shape"), "depth": ("release", "depth"), "volume": ("release", "volume"),
            "curvature": ("release", "curvature"), "dip": ("release", "dip"), "direction": ("release", "direction"),
@@ -69,6 +70,7 @@ def add_ground(group):
                        help="elevation model, as slope terrain takes it: GeoTIFF, ESRI ASCII grid, FG-GML; several are "
                             "merged")
     group.add_argument("--crs", metavar="EPSG:n", help="wanted CRS, in metres; an elevation model without one is in it")
+    group.add_argument("--assign-crs", metavar="EPSG:n", help="the elevation model is in this CRS, whatever it says")
     group.add_argument("--bounds", nargs=4, type=number, metavar=("W", "S", "E", "N"), help="take this part, m")
     group.add_argument("--cell", type=number, metavar="S", help="wanted cell size, m")
     group.add_argument("--fill", type=int, metavar="N", help="fill NODATA holes of at most N cells")

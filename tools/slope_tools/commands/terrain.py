@@ -35,6 +35,9 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--crs", metavar="EPSG:n",
                         help="wanted CRS, in metres: an input in another CRS is reprojected to it (bilinear); an input "
                              "without a CRS cannot be, and is taken to be in this one")
+    parser.add_argument("--assign-crs", metavar="EPSG:n",
+                        help="the coordinates of the inputs are in this CRS, whatever their tags say (not of FG-GML); "
+                             "--crs may then reproject them")
     parser.add_argument("--bounds", nargs=4, type=number, metavar=("W", "S", "E", "N"),
                         help="crop to this box, in the output's CRS, m")
     parser.add_argument("--cell", type=number, metavar="S",
@@ -67,11 +70,10 @@ def check(args):
     origin = None
     if args.origin != ["auto"]:
         try:
-            origin = tuple(map(number, args.origin))
-        except argparse.ArgumentTypeError:
-            origin = ()
-        if len(origin) != 2:
-            raise SlopeError("--origin", "must be auto or two numbers, E N", " ".join(args.origin))
-    wanted = local_terrain.Wanted(args.crs, origin, args.cell, args.bounds, args.fill)
+            east, north = map(number, args.origin)
+        except (argparse.ArgumentTypeError, ValueError):
+            raise SlopeError("--origin", "must be auto or two numbers, E N", " ".join(args.origin)) from None
+        origin = east, north
+    wanted = local_terrain.Wanted(args.crs, origin, args.cell, args.bounds, args.fill, args.assign_crs)
     local_terrain.checked_crs(wanted)
     return wanted

@@ -55,7 +55,7 @@ def connected(deposit, threshold=THRESHOLD):
     mask = labels == 1 + int(np.argmax(volume))
     highest = top(deposit)
     rows, columns = np.nonzero(mask)
-    x, y = np.moveaxis([deposit.raster.transform * (columns + i, rows + j) for i, j in CORNERS], 1, 0)
+    x, y = np.moveaxis(np.array([deposit.raster.transform * (columns + i, rows + j) for i, j in CORNERS]), 1, 0)
     distances = np.hypot(x - highest.x, y - highest.y)     # of each corner of each cell
     corner, far = np.unravel_index(distances.argmax(), distances.shape)
     distance = float(distances[corner, far])
@@ -74,7 +74,7 @@ def top(deposit):
     """
     told = (deposit.summary.get("travel") or {}).get("top")
     if isinstance(told, list) and len(told) == 3 and all(isinstance(v, (int, float)) for v in told):
-        return Top(*map(float, told), "summary: highest released ball")
+        return Top(float(told[0]), float(told[1]), float(told[2]), "summary: highest released ball")
     name = f"{deposit.prefix}.max_thickness.asc"
     source, thickness = "highest cell of the deposit", deposit.raster.z
     if Path(name).is_file():

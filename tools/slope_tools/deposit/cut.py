@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 from shapely.affinity import translate
-from shapely.geometry import box
+from shapely.geometry import Point, box
 from shapely.ops import triangulate
 
 from ..geometry import Lines, coverage, edges, polygons_of
@@ -137,7 +137,7 @@ class Edge:
         length s it is at most s^2 / 4 less than at the piece's ends.
         """
         middle = np.array([[(left + right) / 2], [(top + bottom) / 2]])
-        square, share = self.squares(*middle, which)
+        square, share = self.squares(middle[0], middle[1], which)
         first = square[0].argmin()
         r = self.start[which[first]] + share[0, first] * self.along[which[first]]
         corners = np.array([(x, y) for x in (left, right) for y in (top, bottom)]) - r
@@ -191,6 +191,13 @@ def linear_mean(a, b, c, d, t):
                              - positive_mean(*(-corner for corner in corners)))
         mean[bent] = np.clip(total / 4, 0, t)
     return mean
+
+
+def heights(road, ground, tangent, x, y):
+    """Height of the cut (m) at points x, y in index coordinates, NaN in the road; other arguments as of removed()."""
+    edge = Edge(road, ground, tangent)
+    z = edge.cut(x, y, np.arange(len(edge.start)))
+    return np.where([road.contains(Point(place)) for place in zip(x, y)], np.nan, z)
 
 
 def removed(thickness, ground, road, tangent, mesh, k):
@@ -316,7 +323,8 @@ class _Work:
         # cells of which all, or nothing, lies above the cut need no more than their distance from the edge
         t = self.t[top:bottom, left:right]
         at = slice(top - self.corner[0], bottom - self.corner[0]), slice(left - self.corner[1], right - self.corner[1])
-        distance = self.edge.nearest(*np.meshgrid(np.arange(left, right) + 0.5, np.arange(top, bottom) + 0.5), near)
+        middle_x, middle_y = np.meshgrid(np.arange(left, right) + 0.5, np.arange(top, bottom) + 0.5)
+        distance = self.edge.nearest(middle_x, middle_y, near)
         below = self.edge.high[near].max() + self.tangent * (distance + HALF_DIAGONAL) <= self.low[at]
         above = self.edge.low[near].min() + self.tangent * (distance - HALF_DIAGONAL) >= self.high[at]
         open_ = (~(below | above) & (t > 0))[fine] & (on_road < area)
@@ -330,9 +338,9 @@ class _Work:
             h = np.full(corners.shape, np.nan)
             j, i = np.nonzero(corners)
             h[corners] = self.above_ground(x[i], y[j], near)
-            h = [part[open_] for part in (h[:-1, :-1], h[:-1, 1:], h[1:, 1:], h[1:, :-1])]
-            mean[open_] = linear_mean(*h, t[open_])
-            below[open_] = sum(h) < 0
+            four = [part[open_] for part in (h[:-1, :-1], h[:-1, 1:], h[1:, 1:], h[1:, :-1])]
+            mean[open_] = linear_mean(four[0], four[1], four[2], four[3], t[open_])
+            below[open_] = sum(four) < 0
             mixed = open_ & (on_road > 0)
             if mixed.any():
                 # where h is linear beside the edge, its mean is its value at the centre of what is beside
@@ -370,7 +378,8 @@ class _Work:
         number, corners = (np.array(values) for values in zip(*triangles))
         (ax, ay), (bx, by), (cx, cy) = corners.transpose(1, 2, 0)
         area = np.abs((bx - ax) * (cy - ay) - (cx - ax) * (by - ay))
-        h = self.above_ground(*corners.reshape(-1, 2).T, near).reshape(-1, 3).T
+        every = corners.reshape(-1, 2)
+        h = self.above_ground(every[:, 0], every[:, 1], near).reshape(-1, 3).T
         volume = (positive_mean(*(t[number] - h)) - positive_mean(*-h)) * area
         total, area = (np.bincount(number, values, len(parts)) for values in (volume, area))
         return np.clip(np.divide(total, area, out=np.zeros(len(parts)), where=area > 0), 0, t)

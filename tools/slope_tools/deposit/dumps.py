@@ -4,7 +4,7 @@ import os
 import re
 import zlib
 from pathlib import Path
-from typing import List, NamedTuple, Tuple
+from typing import BinaryIO, List, NamedTuple, Tuple, cast
 
 import numpy as np
 
@@ -79,7 +79,7 @@ def last_text(path):
     have = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     kept, lines = bytearray(), 0
     try:
-        with (gzip.open if path.suffix == ".gz" else open)(path, "rb") as file:
+        with cast(BinaryIO, gzip.open(path, "rb") if path.suffix == ".gz" else open(path, "rb")) as file:
             while chunk := file.read(CHUNK):
                 unseen = max(len(kept) - len(BEGIN), 0)
                 kept += chunk

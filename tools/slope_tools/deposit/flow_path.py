@@ -7,7 +7,7 @@ middles no longer follow each other, as among stray balls.
 """
 import math
 import re
-from typing import List, NamedTuple, Optional
+from typing import Dict, List, NamedTuple, Optional, Tuple
 
 import numpy as np
 from scipy import ndimage, sparse
@@ -39,8 +39,9 @@ def path(result, ground):
         start = bands.start
         points = followed(start[None, :], bands.points) if start is not None else np.empty((0, 2))
     else:
-        track = smooth(track)
-        at = bands.distance(*track[-1])
+        track = np.asarray(smooth(track))
+        x, y = track[-1]
+        at = bands.distance(x, y)
         beyond = bands.points[bands.at > at + bands.width] if at is not None else np.empty((0, 2))
         points = followed(track, beyond)
     if len(points) < 2:
@@ -195,10 +196,10 @@ def centroids(result) -> Optional[np.ndarray]:
 
 def snapshots(folder, last):
     """Text dumps of a run whose names differ in the step only, in the order of the steps, up to the last."""
-    series = {}
+    series: Dict[Tuple[str, str], List[Tuple[int, Path]]] = {}
     for path in folder.glob("*.dump*"):
         match = re.fullmatch(r"(.*?)(\d+)(\.dump(?:\.gz)?)", path.name)
         if match and int(match[2]) <= last:
             series.setdefault((match[1], match[3]), []).append((int(match[2]), path))
-    longest = max(series.values(), key=len, default=[])
+    longest: List[Tuple[int, Path]] = max(series.values(), key=len, default=[])
     return [path for _, path in sorted(longest)]

@@ -63,7 +63,7 @@ def along(axis, run_, removed, blocked, path):
     beside = 1e-6 * ((b - a) / length[:, None])[:, ::-1] * [1, -1]
     sides = [np.clip((centre + way * beside).astype(int), 0, np.array(shape[::-1]) - 1) for way in (1, -1)]
     thickness = [run_.raster.z[side[:, 1], side[:, 0]] for side in sides]
-    column, row = np.where((thickness[0] >= thickness[1])[:, None], *sides).T
+    column, row = np.where((thickness[0] >= thickness[1])[:, None], sides[0], sides[1]).T
     length = length * run_.cell
     to = np.cumsum(length)
     x, y = run_.raster.transform * tuple(centre.T)

@@ -1,7 +1,7 @@
 """A run's deposit against a mapped one."""
 import csv
 import math
-from typing import NamedTuple, Optional
+from typing import List, NamedTuple, Optional, Tuple
 
 import numpy as np
 from affine import Affine
@@ -256,7 +256,7 @@ def draw(path, run_, simulated, observed, about):
     raster = run_.raster
     kind = np.where(simulated, np.where(observed.share >= 0.5, 1, 2), np.where(observed.share >= 0.5, 3, 0))
     row, column = np.nonzero(kind > 0)
-    bounds = []
+    bounds: List[Tuple] = []
     if len(row):
         t = raster.transform
         bounds.append((t.c + column.min() * t.a, t.f + (row.max() + 1) * t.e, t.c + (column.max() + 1) * t.a,

@@ -1,6 +1,6 @@
 """A run's deposit against a mapped one: all that `slope score` does."""
 from pathlib import Path
-from typing import Optional
+from typing import List, Optional
 
 from .. import disk, errors
 from ..errors import SlopeError
@@ -22,7 +22,7 @@ def make(prefix: str, mapped: Path, folder: Path, threshold: float = THRESHOLD, 
         raise SlopeError("--threshold", "must be >= 0", f"{threshold:g}")
     if mesh is not None and mesh <= 0:
         raise SlopeError("--mesh", "must be > 0", f"{mesh:g}")
-    warnings = []
+    warnings: List[str] = []
     warn = errors.warner("score", warnings)
     run_ = deposit.read(prefix, terrain, warn)
     disk.check_folder(folder)

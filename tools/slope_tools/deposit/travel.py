@@ -65,7 +65,7 @@ def of_dumps(paths: Sequence[str], starts: Optional[Sequence[str]], wanted: Want
     tell: what gets the warnings.
     """
     check(paths, starts, wanted)
-    each_start: List[Optional[str]] = list(starts or [None])
+    each_start: List[Optional[str]] = list(starts) if starts else [None]
     each_start *= len(paths) // len(each_start)
     arrivals = [read(path, start, wanted) for path, start in
                 rasters.progress(list(zip(paths, each_start)), "reading the dumps")]
@@ -262,7 +262,7 @@ def draw(path, arrivals, tables, wanted: Wanted) -> None:
             axes.step(at, np.median(shares, axis=0), where="post", color=colour, lw=1.4,
                       label="median of the runs" if several else f"{len(arrivals[0].id)} balls")
             turn = (wanted.axis + (90 if name == "across" else 0)) % 360
-            towards = {0: "x", 90: "y", 180: "-x", 270: "-y"}.get(turn, f"{turn:g} degrees from x to y")
+            towards = {0.0: "x", 90.0: "y", 180.0: "-x", 270.0: "-y"}.get(turn, f"{turn:g} degrees from x to y")
             axes.set(xlim=wanted.limits(name) or (at[0], at[-1]), ylim=(0, 1),
                      xlabel=f"{name} the slope, towards {towards} (m)")
             axes.grid(color="#dddddd", lw=0.5)

@@ -80,7 +80,8 @@ def of_run(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], None] = l
         warn(f"{result.unknown:.6g} m3 lie on cells without ground, beside the road: not counted as to be removed")
         about["volume"]["unknown"] = result.unknown
     about["warnings"] = warnings
-    return Removal(run, road, axis, mesh, result, profile, wanted.bulk / run.bulk if wanted.bulk else None, about)
+    return Removal(run, road, axis, mesh, result, profile, wanted.bulk / run.bulk if wanted.bulk else None,
+                   disk.plain(about))
 
 
 def write(found: Removal, folder: Path, picture: bool = True) -> None:

@@ -1,6 +1,7 @@
 """The files of a volume: tables, GeoJSON, a map."""
 import csv
 import json
+from typing import Any, Dict, Tuple
 
 import numpy as np
 import rasterio.warp
@@ -55,7 +56,7 @@ def write_geojson(path, run_, mesh, result, factor):
             ring = list(zip(*rasterio.warp.transform(crs, WGS84, *zip(*ring))))
         features.append({"type": "Feature", "properties": values,
                          "geometry": {"type": "Polygon", "coordinates": [ring]}})
-    collection = {"type": "FeatureCollection", "name": "volume"}
+    collection: Dict[str, Any] = {"type": "FeatureCollection", "name": "volume"}
     if known:
         collection["crs"] = {"type": "name", "properties": {"name": f"urn:ogc:def:crs:EPSG::{known}"}}
     with open(path, "w", encoding="ascii") as out:
@@ -77,7 +78,7 @@ def write_profile(path, run_, profile):
 def draw(path, run_, road, axis, mesh, result, about):
     raster = run_.raster
     full = np.argwhere(result.deposit > 0)
-    deposited = ()
+    deposited: Tuple = ()
     if len(full):
         (top, left), (bottom, right) = full.min(axis=0), full.max(axis=0)
         deposited = *mesh.corner(bottom, left), *np.add(mesh.corner(top, right), mesh.size)

@@ -2,6 +2,7 @@
 import base64
 import io
 import math
+from typing import Any, Dict, List
 
 import matplotlib
 import numpy as np
@@ -18,12 +19,13 @@ FULL, WIDE, HALF = 7.0, 4.6, 3.42    # inches: the width of a page's text, of tw
 DPI = 200
 GRAY, ROAD, RELEASE, SECTION = "#444444", "#0057a8", "#7a0019", "#111111"
 COLOURS = ("#1b6ca8", "#d1603d", "#3c8d53", "#8a5aa8", "#b8860b", "#4d4d4d", "#c2558c", "#2a9d9d", "#7f7f00")
-STYLE = {"font.size": 7.5, "axes.titlesize": 8.5, "axes.titleweight": "bold", "axes.linewidth": 0.6,
-         "axes.edgecolor": GRAY, "xtick.color": GRAY, "ytick.color": GRAY, "xtick.labelsize": 6.5,
-         "ytick.labelsize": 6.5, "xtick.major.width": 0.5, "ytick.major.width": 0.5, "xtick.major.size": 2.5,
-         "ytick.major.size": 2.5, "legend.fontsize": 6.8, "legend.framealpha": 0.9, "legend.edgecolor": "#bbbbbb",
-         "figure.constrained_layout.use": True, "svg.hashsalt": "slope"}
-TITLE = STYLE["axes.titlesize"]     # points
+STYLE: Dict[str, Any] = {
+    "font.size": 7.5, "axes.titlesize": 8.5, "axes.titleweight": "bold", "axes.linewidth": 0.6,
+    "axes.edgecolor": GRAY, "xtick.color": GRAY, "ytick.color": GRAY, "xtick.labelsize": 6.5,
+    "ytick.labelsize": 6.5, "xtick.major.width": 0.5, "ytick.major.width": 0.5, "xtick.major.size": 2.5,
+    "ytick.major.size": 2.5, "legend.fontsize": 6.8, "legend.framealpha": 0.9, "legend.edgecolor": "#bbbbbb",
+    "figure.constrained_layout.use": True, "svg.hashsalt": "slope"}
+TITLE: float = STYLE["axes.titlesize"]     # points
 LINE = 1.25     # of a letter's size: from one line to the next
 
 
@@ -66,7 +68,7 @@ def shortened(text, inches, size, bold=False):
 
 def wrapped(text, inches, size, bold=False, most=3):
     """The text in at most so many lines of a width; what does not fit is cut, with dots."""
-    lines = []
+    lines: List[str] = []
     for word in text.split():
         if lines and text_width(f"{lines[-1]} {word}", size, bold) <= inches:
             lines[-1] += f" {word}"

@@ -54,7 +54,7 @@ class Calibration:
     def __init__(self, ledger: Ledger, output: Path, fixed: Mapping[str, str], chances: Sequence[Mapping[str, str]],
                  seed: int, number: int, batch: int):
         self.ledger, self.output, self.fixed, self.seed = ledger, output, dict(fixed), seed
-        self.chances = [{}, *map(dict, chances)]
+        self.chances: List[Dict[str, str]] = [{}, *(dict(one) for one in chances)]
         self.number, self.batch = number, batch
         self.outputs: Dict[int, Any] = {}       # number of the run -> its outputs, None of one that failed
         self.runs: List[repeats.Repeat] = []

@@ -102,7 +102,8 @@ def straight(settings: Mapping[str, Sequence[str]], groups: Sequence[Group], cho
 def conservative(settings, rows, groups: Sequence[Group], errors: Optional[SizeErrors] = None) -> Dict[str, Any]:
     """What study.yaml says of the conservative volume: its parts, what it rests on, what speaks against it (doubts)."""
     parts = [group.of("remove_m3") for group in groups]
-    sizes = errors and {group.name: errors.at(str(group.rows[0]["variables"][errors.variable])) for group in groups}
+    sizes = {group.name: errors.at(str(group.rows[0]["variables"][errors.variable])) for group in groups} \
+        if errors else None
     best = headline.headline(parts, sizes)
     governing = next(group for group in groups if group.name == best.combination)
     largest = max(governing.rows, key=lambda row: row["remove_m3"])

@@ -7,7 +7,7 @@ m, V and s in the quantity's (m3 of ground, m, degrees); any other variable in p
 pure.
 """
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
@@ -162,15 +162,19 @@ def fit(runs: Sequence[Tuple[float, Sequence[float]]]) -> Convergence:
         variance = (repeats + about) / total if total else None
     else:
         total, variance = of_line, about / of_line
-    deviations = [None, None] if variance is None else [float(one) for one in np.sqrt(variance * np.diag(unit))]
+    deviations: List[Optional[float]] = [None, None]
+    if variance is not None:
+        deviations = [float(one) for one in np.sqrt(variance * np.diag(unit))]
     small = Estimate(float(found[0]), deviations[0])
+    curved = parabola(d, means, weights, repeats, free)
     result = Convergence(
         small, Estimate(float(found[1]), deviations[1]), None if variance is None else float(variance * unit[0, 1]),
         total, p, None if variance is None else math.sqrt(variance), lack,
-        *parabola(d, means, weights, repeats, free), ())
-    sizes = [size_of(result, *each, variance) for each in zip(
-        runs, *(one.tolist() for one in (means, means - residuals, spread / counts, influence[0])))]
-    return Convergence(**{**result.__dict__, "sizes": tuple(sizes)})
+        curved[0], curved[1], curved[2], ())
+    columns = (one.tolist() for one in (means, means - residuals, spread / counts, influence[0]))
+    sizes = [size_of(result, run, mean, fitted, unit_, one, variance)
+             for run, mean, fitted, unit_, one in zip(runs, *columns)]
+    return replace(result, sizes=tuple(sizes))
 
 
 def without_rounding(values: Sequence[float]) -> Sequence[float]:
@@ -225,18 +229,18 @@ def words(result: Convergence, name: str, what: str, unit: str, number) -> List[
     found = [text]
     if result.known:
         found.append(f"{what}: error and its standard error at " + ", ".join(
-            f"{name} {size.d:g} {100 * size.error:+.1f}"
+            f"{name} {size.d:g} {100 * (size.error or 0.0):+.1f}"
             + (f" +- {100 * size.standard_error:.1f}" if size.standard_error is not None else "") + " %"
             for size in result.sizes))
     else:
         found.append(f"{what}: the value for small {name} is not clearly above 0, so errors cannot be shares of it")
-    if result.supported is False:
+    if result.supported is False and result.lack:
         found.append(f"{what}: the line is not supported: the means of the sizes lie {math.sqrt(result.lack[0]):.2g} "
                      f"times as far from it as the scatter of the repeats makes them (probability {result.lack[1]:.2g}"
                      "); standard errors are from these residuals")
     elif result.supported is None:
         found.append(f"{what}: whether a line holds is not known: that takes three sizes, and repeats")
-    if result.curve_is_clear:
+    if result.curve_is_clear and result.curved_small:
         found.append(f"{what}: a parabola fits clearly better, and gives {number(result.curved_small.value)} {unit} "
                      f"for small {name}")
     return found

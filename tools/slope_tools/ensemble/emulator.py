@@ -30,7 +30,7 @@ SEED = 1
 class Emulator:
     """The process fitted to values (n) at points (n, d). noise: standard deviation of a run by chance."""
 
-    def __init__(self, points: np.ndarray, values: Sequence[float], kernel=None, restarts: int = 1):
+    def __init__(self, points: np.ndarray, values: np.ndarray, kernel=None, restarts: int = 1):
         points, values = np.asarray(points, float), np.asarray(values, float)
         self.mean, self.scale = float(values.mean()), float(values.std()) or 1.0
         kernels = [kernel] if kernel else [
@@ -50,6 +50,11 @@ class Emulator:
     @property
     def noise(self) -> float:
         return self.scale * math.sqrt(self.kernel.k2.noise_level)
+
+    @property
+    def noise_seen(self) -> bool:
+        """Whether the values show any; few of them in many dimensions can all be taken for the smooth part."""
+        return bool(self.kernel.k2.noise_level > 100 * NOISE[0])
 
     def at(self, points: np.ndarray) -> np.ndarray:
         """Mean of the process."""
@@ -111,18 +116,20 @@ def folds(point: np.ndarray) -> List[np.ndarray]:
     return [order[index] % number == k for k in range(number)]
 
 
-def analyse(names: Sequence[str], points: np.ndarray, values: Sequence[float], point: Sequence[int],
+def analyse(names: Sequence[str], points: np.ndarray, values: np.ndarray, point: Sequence[int],
             snap=lambda u: u) -> Analysis:
     """Influence of each variable on values of runs at points (n, d); point: which point of the design each run is of.
 
     snap: moves places in the cube to where runs can be, for variables of a list.
     """
-    points, values, of = np.asarray(points, float), np.asarray(values, float), np.asarray(point)
+    points, of = np.asarray(points, float), np.asarray(point)
+    values = np.asarray(values, float)
     different = len(np.unique(of))
     ranks = [rank(points[:, i], values) for i in range(len(names))]
 
     def without(told: str, check: Optional[Check] = None) -> Analysis:
-        return Analysis(check, [Influence(name, *one, None, None, None, None) for name, one in zip(names, ranks)], told)
+        return Analysis(check, [Influence(name, one[0], one[1], None, None, None, None)
+                                for name, one in zip(names, ranks)], told)
 
     if np.ptp(values) <= 1e-9 * max(1e-300, float(np.abs(values).max())):
         return without("it is the same in all runs")
@@ -145,8 +152,8 @@ def analyse(names: Sequence[str], points: np.ndarray, values: Sequence[float], p
     told = f"the emulator explains {percent(check.explained)} of the variance of runs that it has not seen"
     if check.verdict == "rough":
         told += ": take the indices as rough"
-    return Analysis(check, [Influence(name, *ranks[i], float(first[i]), float(errors[0][i]), float(total[i]),
-                                      float(errors[1][i])) for i, name in enumerate(names)], told)
+    return Analysis(check, [Influence(name, ranks[i][0], ranks[i][1], float(first[i]), float(errors[0][i]),
+                                      float(total[i]), float(errors[1][i])) for i, name in enumerate(names)], told)
 
 
 def rank(places: np.ndarray, values: np.ndarray):

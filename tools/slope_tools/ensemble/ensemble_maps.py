@@ -72,7 +72,7 @@ class Stack:
         self.file = None
         if 4 * cells * self.runs > IN_MEMORY:
             self.file = tempfile.TemporaryFile(dir=folder)     # goes with the Stack
-            self.values = np.memmap(self.file, np.float32, "w+", shape=(self.runs, cells))
+            self.values: np.ndarray = np.memmap(self.file, np.float32, "w+", shape=(self.runs, cells))
         else:
             self.values = np.empty((self.runs, cells), np.float32)
         for i, prefix in enumerate(prefixes):
@@ -122,9 +122,10 @@ def of_kind(folder: Path, kind: Kind, stack: Stack, grid, failed: int, effect: f
     for about, name, told in central:
         z = bands[told]
         path = folder / f"{kind.name}_{name}.asc"
-        entry = {"file": f"{folder.name}/{path.name}", "raster": kind.name, "what": f"{told}, {kind.unit}"
-                 if "quantile" in about else told, "unit": kind.unit, **about,
-                 "bounds": f"{folder.name}/{kind.name}.tif"}
+        entry: Dict[str, Any] = {
+            "file": f"{folder.name}/{path.name}", "raster": kind.name,
+            "what": f"{told}, {kind.unit}" if "quantile" in about else told, "unit": kind.unit, **about,
+            "bounds": f"{folder.name}/{kind.name}.tif"}
         if not np.isfinite(z).any():        # so many runs never arrive anywhere
             continue
         rasters.write_asc_local(path, grid._replace(z=z), {"what": entry["what"]})

@@ -61,16 +61,9 @@ class Fit:
         output, plan, targets = self.setup.output, self.plan, self.observed.targets
         best = plan.runs[plan.number - 1]
         predicted = plan.outputs[plan.number - 1]
-        words = backanalysis.judgement(found, self.variables)
+        words, doubts = backanalysis.judgement(found, self.variables), self.doubts(found)
         failed = [one.name for one in plan.runs if one.error]
-        doubts = [f"{len(failed)} of {len(plan.runs)} runs failed and say nothing: {', '.join(failed[:3])}"] \
-            if failed else []
-        if len(targets) < len(self.variables):
-            doubts.append(f"{len(targets)} observed numbers cannot tell {len(self.variables)} variables")
-        moving = sum(not row["at_rest"] for row in self.rows.values() if row["status"] == "finished")
-        if moving:
-            doubts.append(f"{moving} deposits are not at rest")
-        about = {
+        about: Dict[str, Any] = {
             "calibration": {**plan.ledger.about, "runs": plan.number, "failed": len(failed), "package":
                             self.work.package, "collected": provenance.now(), "machine": provenance.machine()},
             "best": {"set": plan.ledger.points[plan.number - 1], "run": best.name,
@@ -96,6 +89,22 @@ class Fit:
             names.append(MAP)
         print("\n".join([*words, *self.told(about["targets"]), *(f"doubt: {text}" for text in doubts)]))
         print(f"best values: run {best.name}; written to {output}: {' '.join(names)}")
+
+    def doubts(self, found: backanalysis.Posterior) -> List[str]:
+        """Why the result may not be believed."""
+        plan, targets = self.plan, self.observed.targets
+        failed = [one.name for one in plan.runs if one.error]
+        doubts = [f"{len(failed)} of {len(plan.runs)} runs failed and say nothing: {', '.join(failed[:3])}"] \
+            if failed else []
+        if len(targets) < len(self.variables):
+            doubts.append(f"{len(targets)} observed numbers cannot tell {len(self.variables)} variables")
+        blind = [target.name for target, one in zip(targets, found.emulators) if not one.noise_seen]
+        if blind:
+            doubts.append(f"too few runs to show the chance of {', '.join(blind)}: the region may be too narrow")
+        moving = sum(not row["at_rest"] for row in self.rows.values() if row["status"] == "finished")
+        if moving:
+            doubts.append(f"{moving} deposits are not at rest")
+        return doubts
 
     def known(self, found: backanalysis.Posterior, i: int) -> Dict[str, Any]:
         """What is known of a variable."""

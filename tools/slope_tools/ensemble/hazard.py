@@ -7,11 +7,12 @@ given anything: in a lower bound they do not exceed a value, in an upper one the
 """
 import math
 from dataclasses import dataclass
-from typing import List, NamedTuple, Optional, Sequence, Tuple
+from typing import List, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from scipy import stats
 
+Values = Union[Sequence[float], np.ndarray]
 CONFIDENCE = 0.9                # of bounds, two-sided: 5 % beyond either
 SHARES = 0.5, 0.9, 0.95, 0.99   # of the quantiles
 
@@ -102,7 +103,7 @@ def effect_of(exceeding: np.ndarray, point: np.ndarray) -> float:
     return min(max(1.0, between / (share * (1 - share) / n)), several)
 
 
-def quantiles(values: Sequence[float], point: Sequence[int], failed: int = 0,
+def quantiles(values: Values, point: Sequence[int], failed: int = 0,
               shares: Sequence[float] = SHARES) -> List[Quantile]:
     """Quantiles of finished runs; point: which point of the design each run is of; failed: runs that gave none."""
     given = np.asarray(values, float)
@@ -116,7 +117,7 @@ def quantiles(values: Sequence[float], point: Sequence[int], failed: int = 0,
     return found
 
 
-def curve(values: Sequence[float], point: Sequence[int], failed: int = 0) -> Curve:
+def curve(values: Values, point: Sequence[int], failed: int = 0) -> Curve:
     """The share of the runs above each of their values, and above what lies below all of them.
 
     It begins at 0, or, where there are negative values, below the lowest one.

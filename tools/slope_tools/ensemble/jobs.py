@@ -9,7 +9,7 @@ import signal
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, Optional
+from typing import Any, Dict, List, Optional
 
 import yaml
 from .. import disk, processes, provenance
@@ -158,7 +158,7 @@ class Work:
         self.defaults = decks.index_variables(inputs / deck.name)
         self.continues = any(CONTINUES in word for words in decks.commands(inputs / deck.name)
                              for word in (*words, " ".join(words)))
-        self.active = []
+        self.active: List[Active] = []
 
     def do(self, todo):
         """Run what is not finished. On an interruption, end the runs under way and leave their folders unfinished."""

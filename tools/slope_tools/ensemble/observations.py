@@ -6,9 +6,9 @@ each of ZONES bands of that distance, which hold equal shares of the mapped volu
 distances of 50 and 90 % of it. Single numbers: the distance of 99 % of the volume (front), the area ever covered, the
 volume on the road.
 """
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Optional
+from typing import Any, Dict, List, Mapping, Optional, Tuple
 
 import numpy as np
 
@@ -21,11 +21,15 @@ from .backanalysis import Target
 ZONES = 6
 SHARES = {True: (0.5, 0.9, 0.99), False: (0.99,)}      # of an outline, of a raster
 ROAD = "remove_on_road_m3"
+KINDS = ("observed", "front", "area", "volume")     # what can be observed, as the options call it
 
 
 @dataclass(frozen=True)
 class Wanted:
-    """The options: a mapped deposit, and single numbers (m, m2, m3); tolerance: by what share they may be wrong."""
+    """The options: a mapped deposit, and single numbers (m, m2, m3).
+
+    tolerance: by what share they may be wrong; own: of one of KINDS, where that is another share.
+    """
     observed: Optional[Path]
     front: Optional[float]
     area: Optional[float]
@@ -33,6 +37,11 @@ class Wanted:
     tolerance: float
     threshold: float            # m; thinner is no deposit
     local: bool                 # the mapped deposit is in local metres
+    own: Mapping[str, float] = field(default_factory=dict)
+
+    def share(self, kind: str) -> float:
+        """The tolerance of a kind."""
+        return self.own.get(kind, self.tolerance)
 
     def check(self, road: bool) -> None:
         """Raise SlopeError unless something is observed, and every number can be."""
@@ -46,8 +55,12 @@ class Wanted:
             raise SlopeError("--volume", "needs --road: it is the volume on it")
         if self.observed is not None and not self.observed.is_file():
             raise SlopeError("--observed", "must be an existing file", self.observed)
-        if not 0 <= self.tolerance < 1:
-            raise SlopeError("--tolerance", "must be a share, >= 0 and < 1", f"{self.tolerance:g}")
+        for value in (self.tolerance, *self.own.values()):
+            if not 0 <= value < 1:
+                raise SlopeError("--tolerance", "must be a share, >= 0 and < 1", f"{value:g}")
+        for kind in self.own:
+            if getattr(self, kind) is None:
+                raise SlopeError("--tolerance", f"must be of what is observed: needs --{kind}")
         if self.threshold < 0:
             raise SlopeError("--threshold", "must be >= 0", f"{self.threshold:g}")
 
@@ -55,7 +68,8 @@ class Wanted:
     def about(self) -> Dict[str, Any]:
         """For the result, and to tell whether another call is of the same observation."""
         return {"observed": None if self.observed is None else self.observed.name, "front": self.front,
-                "area": self.area, "volume": self.volume, "tolerance": self.tolerance, "threshold": self.threshold}
+                "area": self.area, "volume": self.volume, "threshold": self.threshold,
+                "tolerance": {"all": self.tolerance, **self.own} if self.own else self.tolerance}
 
     def check_place(self, terrain: Path) -> None:
         """Raise SlopeError before the first run if the mapped deposit lies elsewhere, or in another CRS."""
@@ -70,16 +84,17 @@ class Observations:
         self.wanted = wanted
         self.targets: List[Target] = []
         self.mapped: Optional[score.Observed] = None
-        self.grid = self.edges = None
+        self.shape: Tuple[int, ...] = ()        # of the grid of the first run
+        self.edges = np.empty(0)                # of the bands of distance, m
 
     def measure(self, summary: Path, terrain: Optional[Path], row: Mapping[str, Any]) -> np.ndarray:
         """The outputs of a run, in the order of the targets; row: of the table of `slope study`."""
         run_ = deposit.read(run_folders.prefix_of(summary), terrain, lambda text: None)
         if not self.targets:
             self._set_targets(run_)
-        elif self.grid.shape != run_.raster.z.shape or not self.transform.almost_equals(run_.raster.transform):
+        elif self.shape != run_.raster.z.shape or not self.transform.almost_equals(run_.raster.transform):
             raise SlopeError(summary, "must have the grid of the other runs: cells cannot be varied here")
-        outputs = self._of_map(run_) if self.mapped is not None else []
+        outputs = self._of_map(run_, self.mapped) if self.mapped is not None else []
         if self.wanted.front is not None:
             if row.get(travel_shares.DISTANCE) is None:
                 raise SlopeError(summary, "must tell the distance of 99 % of the volume (travel: quantiles)")
@@ -92,42 +107,43 @@ class Observations:
         return np.array(outputs, float)
 
     def _set_targets(self, run_: deposit.Deposit) -> None:
-        wanted, found = self.wanted, []
-        self.grid, self.transform = run_.raster.z, run_.raster.transform
+        wanted = self.wanted
+        found: List[Target] = []
+        self.shape, self.transform = run_.raster.z.shape, run_.raster.transform
 
-        def relative(name, unit, value, whole=None):
+        def relative(name, unit, value, whole=None, kind="observed"):
             scale = value if whole is None else whole
-            found.append(Target(name, unit, float(value), float(wanted.tolerance * scale)))
+            found.append(Target(name, unit, float(value), float(wanted.share(kind) * scale)))
 
         if wanted.observed is not None:
-            self.mapped = score.read_observed(wanted.observed, run_.raster, wanted.threshold, wanted.local)
-            if not self.mapped.share.any():
+            mapped = self.mapped = score.read_observed(wanted.observed, run_.raster, wanted.threshold, wanted.local)
+            if not mapped.share.any():
                 raise SlopeError(wanted.observed, f"must be somewhere thicker than {wanted.threshold:g} m on the grid")
-            found.append(Target("lack of overlap", "1 - CSI", None, wanted.tolerance))
+            found.append(Target("lack of overlap", "1 - CSI", None, wanted.share("observed")))
             distance = self.distance = distances(run_)
-            outline = self.mapped.thickness is None
-            weight = self.mapped.share if outline else self.mapped.thickness
+            outline = mapped.thickness is None
+            weight: np.ndarray = mapped.share if mapped.thickness is None else mapped.thickness
             of = distance[weight > 0], weight[weight > 0]
             for share in SHARES[outline]:
                 relative(f"{100 * share:g} % of the {'area' if outline else 'volume'} within", "m",
                          reach.within(*of, share))
             if outline:
-                relative("area", "m2", float(weight.sum()) * run_.cell ** 2 + self.mapped.outside)
+                relative("area", "m2", float(weight.sum()) * run_.cell ** 2 + mapped.outside)
             else:
                 self.edges = np.array([reach.within(*of, k / ZONES) for k in range(1, ZONES)])
                 total = float(weight.sum()) * run_.cell ** 2
                 for k, volume in enumerate(self._zones(weight, run_.cell)):
                     relative(f"volume in zone {k + 1}", "m3", volume, total)
-        for name, unit, value in (("99 % of the volume within", "m", wanted.front), ("area covered", "m2", wanted.area),
-                                  ("volume on the road", "m3", wanted.volume)):
-            if value is not None:
-                relative(name, unit, value)
+        for name, unit, kind in (("99 % of the volume within", "m", "front"), ("area covered", "m2", "area"),
+                                 ("volume on the road", "m3", "volume")):
+            if getattr(wanted, kind) is not None:
+                relative(name, unit, getattr(wanted, kind), kind=kind)
         self.targets = found
 
-    def _of_map(self, run_: deposit.Deposit) -> List[float]:
+    def _of_map(self, run_: deposit.Deposit, mapped: score.Observed) -> List[float]:
         simulated = run_.raster.z > self.wanted.threshold
-        overlap = score.overlap(simulated, self.mapped, run_.cell)
-        outline = self.mapped.thickness is None
+        overlap = score.overlap(simulated, mapped, run_.cell)
+        outline = mapped.thickness is None
         weight = simulated.astype(float) if outline else run_.raster.z
         outputs = [1 - (overlap["jaccard"] or 0.0)]
         there = weight > 0

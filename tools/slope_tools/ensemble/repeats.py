@@ -13,6 +13,7 @@ OFFSET = re.compile(r"\w*offset")
 FIRST = "base"                              # the repeat that has the deck's values
 
 Settings = Mapping[str, Sequence[str]]
+NONE: Dict[str, str] = {}
 
 
 class Repeat(jobs.Run):
@@ -78,7 +79,7 @@ def with_repeats(output, combinations: Iterable[Dict[str, str]], chances: Sequen
     """The runs of combinations, each followed by its repeats; varied: names of what differs between them."""
     todo = []
     for combination in combinations:
-        for repeat in ({}, *chances):
+        for repeat in [NONE, *chances]:
             one = Repeat(output, combination, repeat)
             told = [f"{name} {one.chosen[name]}" for name in varied]
             one.varied = ", ".join(told + [key_of(repeat)] * bool(repeat)) or one.name

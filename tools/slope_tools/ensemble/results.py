@@ -1,6 +1,6 @@
 """What came out of the runs of a study: their numbers, the table, the maps over all runs, the conservative volume."""
 import sys
-from typing import Any, Dict, Mapping, NamedTuple, Optional, Sequence
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
 
 import numpy as np
 import yaml
@@ -149,7 +149,7 @@ def doubts(rows):
         if not abs(row["mass_error"]) <= BALANCE:
             warnings.append(f"{row['run']}: the volume in the thickness raster differs from released - off the grid - "
                             f"lost by {row['mass_error']:.1e} of the released volume")
-    of_road = {}
+    of_road: Dict[str, List[str]] = {}
     for row in finished:
         for text in row.get("road_warnings", ()):
             of_road.setdefault(text, []).append(row["run"])

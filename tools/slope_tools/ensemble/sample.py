@@ -1,7 +1,7 @@
 """The plan of an ensemble: how many runs, where they lie in the distributions of --vary, what may be added later."""
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, Sequence, Tuple
 
 import numpy as np
 import yaml
@@ -89,7 +89,7 @@ def check_growth(folder: Path, sample: Sample) -> None:
     path = folder / FILE
     if not path.is_file():
         return
-    before: Optional[Mapping[str, Any]] = disk.load_yaml(path, WHAT)
+    before: Mapping[str, Any] = disk.load_yaml(path, WHAT)
     if designs.LHS in (before.get("kind"), sample.kind) and before != sample.about:
         raise SlopeError("--design", f"lhs cannot grow or change: {folder} has {before.get('points')} points of "
                          f"{before.get('kind')} with seed {before.get('seed')}; give another -o, or take sobol",

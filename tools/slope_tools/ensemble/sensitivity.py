@@ -3,7 +3,7 @@ import csv
 import math
 import statistics
 import sys
-from typing import List, Mapping, Optional
+from typing import Any, Dict, List, Mapping, Optional
 
 import io
 import yaml
@@ -207,7 +207,7 @@ def panels(rows, of, scatter):
     """For the chart: (title, unit, scatter, {variable: [(value of the variable, what came out), ...]})."""
     found = []
     for name in of:
-        values = {}
+        values: Dict[str, List[Any]] = {}
         for row in rows:
             if row["variable"]:
                 values.setdefault(row["variable"], []).append((row["value"], row[name]))

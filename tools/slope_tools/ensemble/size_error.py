@@ -73,7 +73,7 @@ class SizeErrors:
 
     def check(self, settings: Mapping[str, Sequence[str]], defaults: Mapping[str, str]) -> None:
         """Raise SlopeError unless the variable is one of the deck, and the error of all its values is known."""
-        if self.variable not in {**defaults, **settings}:
+        if self.variable not in defaults and self.variable not in settings:
             raise SlopeError("--size-error", f"must be of a variable of the deck; {self.path} is of", self.variable)
         for value in settings.get(self.variable) or [defaults[self.variable]]:
             self.at(value)

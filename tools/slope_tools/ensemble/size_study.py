@@ -57,7 +57,8 @@ def collect(setup: Setup, settings, repeated, variable, of, names, todo, work):
     for name in of:
         fits[name] = convergence.fit([(float(group.set[variable]), list(group.of(name).volumes.values()))
                                       for group in groups])
-    sentences = {name: convergence.words(fit, variable, *names[name], writer(fit)) for name, fit in fits.items()}
+    sentences = {name: convergence.words(fit, variable, names[name][0], names[name][1], writer(fit))
+                 for name, fit in fits.items()}
     base = {**work.defaults, **{name: several[0] for name, several in settings.items() if name != variable}}
     base.pop(variable)
     about = {"study": {"deck": setup.deck.name, "variable": variable, "values": settings[variable], "base": base,

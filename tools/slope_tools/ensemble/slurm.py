@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 from typing import Dict, List, Optional
 
-from .. import disk
+from .. import disk, processes
 from ..errors import SlopeError
 from . import jobs
 
@@ -171,7 +171,7 @@ class Work(jobs.Work):
         """Cancel arrays, and wait until they are gone."""
         for number in arrays:
             subprocess.run(["scancel", number], stdin=subprocess.DEVNULL, capture_output=True, check=False)
-        end = time.monotonic() + 10 * jobs.PATIENCE
+        end = time.monotonic() + 10 * processes.PATIENCE
         while arrays and time.monotonic() < end:
             left = call("squeue", "-h", "-r", "-o", "%F").split()
             if not set(left) & set(arrays):

@@ -3,6 +3,8 @@ import argparse
 import contextlib
 import functools
 import re
+from pathlib import Path
+from typing import Callable, Dict
 
 from .. import disk
 from ..case import decks, run_folders
@@ -12,7 +14,7 @@ from ..options import number
 from ..programs import find_lmp
 from ..survey import rasters
 from . import jobs, launcher, results, slurm
-from .setup import Setup
+from .setup import Road, Setup
 
 MOST_LETTERS = 200      # of a folder's name; file systems take 255
 
@@ -24,7 +26,7 @@ def perform(setup: Setup, settings, todo, collect, begin=None):
     """
     files = data_files(setup.deck, settings)
     if setup.road:
-        check_road(setup, settings)
+        check_road(setup.road, setup.deck, settings)
     check_folder(setup, todo)
     if setup.dry_run:
         return list_runs(todo)
@@ -44,7 +46,7 @@ def prepared(setup: Setup, files, number):
     lmp = find_lmp(setup.lmp)
     cores = jobs.cores()
     most = setup.jobs or max(1, cores // setup.ranks)
-    make = jobs.Work
+    make: Callable[..., jobs.Work] = jobs.Work
     launcher.check(setup.launcher, setup.ranks)
     if setup.engine == "slurm":
         slurm.check(setup.slurm)
@@ -89,18 +91,18 @@ def check_thresholds(text, option="--exceed", what="thicknesses"):
     return found
 
 
-def check_road(setup: Setup, settings) -> None:
+def check_road(road: Road, deck: Path, settings) -> None:
     """Raise SlopeError now if the road cannot be used after the runs, as far as the deck names its terrain."""
     from ..survey import polygons
-    if not setup.road.file.is_file():
-        raise SlopeError("--road", "must be an existing file", setup.road.file)
-    if not 0 < setup.road.cut_angle < 90:
-        raise SlopeError("--cut-angle", "must be > 0 and < 90 degrees", f"{setup.road.cut_angle:g}")
-    if setup.road.mesh <= 0:
-        raise SlopeError("--mesh", "must be > 0", f"{setup.road.mesh:g}")
-    path = terrain_of(setup.deck, {name: several[0] for name, several in settings.items()})
+    if not road.file.is_file():
+        raise SlopeError("--road", "must be an existing file", road.file)
+    if not 0 < road.cut_angle < 90:
+        raise SlopeError("--cut-angle", "must be > 0 and < 90 degrees", f"{road.cut_angle:g}")
+    if road.mesh <= 0:
+        raise SlopeError("--mesh", "must be > 0", f"{road.mesh:g}")
+    path = terrain_of(deck, {name: several[0] for name, several in settings.items()})
     if path:
-        polygons.read_local(setup.road.file, rasters.read_place(path), setup.road.local)
+        polygons.read_local(road.file, rasters.read_place(path), road.local)
 
 
 def terrain_of(deck, chosen):
@@ -115,7 +117,7 @@ def terrain_of(deck, chosen):
 
 def check_names(todo):
     """Raise SlopeError unless each run has a folder of its own."""
-    names = {}
+    names: Dict[str, Dict[str, str]] = {}
     for one in todo:
         if len(one.name) > MOST_LETTERS:
             raise SlopeError("--set", f"must make folder names of at most {MOST_LETTERS} letters", one.name)

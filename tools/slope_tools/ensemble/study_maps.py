@@ -1,4 +1,7 @@
 """The maps over all runs of a study: the largest thickness, and how many runs exceed a thickness."""
+from pathlib import Path
+from typing import Any, Dict, Set
+
 import numpy as np
 
 from ..survey import rasters
@@ -35,13 +38,13 @@ class Maps:
 
     def write(self, output, place):
         """Write all rasters, remove those of an earlier call; what study.yaml says of them."""
-        written = {"envelope": None, "exceedance": None}
-        kept = set()
+        written: Dict[str, Any] = {"envelope": None, "exceedance": None}
+        kept: Set[Path] = set()
         if self.grid is not None and not self.problem:
-            area = self.grid.transform.a ** 2
+            grid, area = self.grid, self.grid.transform.a ** 2
 
             def write(name, z, what):
-                raster = self.grid._replace(z=z)
+                raster = grid._replace(z=z)
                 if place:
                     raster = raster._replace(crs=place.crs, offset=place.offset)
                 path = output / f"{name}.asc"

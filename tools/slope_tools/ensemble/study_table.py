@@ -2,6 +2,7 @@
 import csv
 import io
 import sys
+from typing import Any, Dict, Tuple
 
 from rich.console import Console
 from rich.table import Table
@@ -17,13 +18,15 @@ ROAD_COLUMNS = ("remove_m3", "remove_on_road_m3", "remove_beside_road_m3", "beyo
 MAYBE = (*travel_shares.COLUMNS, "connected_m", "connected_deg", "wall_s", "beyond_road_m3")     # that may be unknown
 ANSWER = {True: "yes", False: "no"}
 
-SHOWN = {"released_m3": ("released", "{:,.0f}"), "on_grid_m3": ("on grid", "{:,.0f}"), "lost_m3": ("lost", "{:,.0f}"),
-         travel_shares.DISTANCE: ("99 % within m", "{:.1f}"),
-         travel_shares.REACH: ("deg", "{:.1f}"), "connected_m": ("connected m", "{:.1f}"),
-         "front_m": ("farthest ball m", "{:.1f}"), "stop_time_s": ("stop s", "{:.1f}"), "end_short": ("end", "{}"),
-         "moves_share": ("moves", rest.percent), "wall_s": ("wall s", "{:.0f}")}
-SHOWN_ROAD = {"remove_m3": ("to remove", None), "remove_on_road_m3": ("on the road", None),
-              "beyond_road_m3": ("beyond it", None), "blocked_m": ("blocked m", "{:.0f}")}
+SHOWN: Dict[str, Tuple[str, Any]] = {      # head, format
+    "released_m3": ("released", "{:,.0f}"), "on_grid_m3": ("on grid", "{:,.0f}"), "lost_m3": ("lost", "{:,.0f}"),
+    travel_shares.DISTANCE: ("99 % within m", "{:.1f}"), travel_shares.REACH: ("deg", "{:.1f}"),
+    "connected_m": ("connected m", "{:.1f}"), "front_m": ("farthest ball m", "{:.1f}"),
+    "stop_time_s": ("stop s", "{:.1f}"), "end_short": ("end", "{}"), "moves_share": ("moves", rest.percent),
+    "wall_s": ("wall s", "{:.0f}")}
+SHOWN_ROAD: Dict[str, Tuple[str, Any]] = {
+    "remove_m3": ("to remove", None), "remove_on_road_m3": ("on the road", None),
+    "beyond_road_m3": ("beyond it", None), "blocked_m": ("blocked m", "{:.0f}")}
 
 
 def table(settings, repeated, rows, defaults):

@@ -1,4 +1,6 @@
 """The charts of a study: its values against the first variable that it varies, and what chance makes of them."""
+from typing import Any, Dict
+
 from ..deposit import travel_shares
 from ..drawing.figures import FULL, HALF, WIDE
 from ..ensemble import headline, sensitivity
@@ -79,7 +81,7 @@ class Charts:
         """A quantity against a variable: a line where the differences are larger than chance."""
         data, title = self.data, self.title(key)
         scatter = self.scatter_of(key)
-        lines = {}
+        lines: Dict[Any, Any] = {}
         for row in data.finished:
             rest = ", ".join(f"{other} {row['set'][other]}" for other, several in data.settings.items()
                              if other != name and len(several) > 1)
@@ -135,7 +137,7 @@ class Charts:
 
 def combinations(rows, key):
     """{values of what was chosen: headline.Combination of a column}."""
-    found = {}
+    found: Dict[Any, Any] = {}
     for row in rows:
         found.setdefault(tuple(row["set"].items()), {})[key_of(row.get("repeat") or {})] = row[key]
     return {chosen: headline.Combination(str(chosen), volumes) for chosen, volumes in found.items()}

@@ -1,7 +1,7 @@
 """What a report is made of: the finished runs of a study, or one run, read back."""
 import math
 from pathlib import Path
-from typing import NamedTuple, Optional
+from typing import Any, Dict, List, NamedTuple, Optional
 
 import numpy as np
 from affine import Affine
@@ -205,7 +205,7 @@ class Data:
 
     def combinations(self):
         """{values of what was chosen: the finished runs}, which differ by what is repeated; in their order."""
-        found = {}
+        found: Dict[tuple, List[Dict[str, Any]]] = {}
         for row in self.finished:
             found.setdefault(tuple(row["set"].items()), []).append(row)
         return found
@@ -215,7 +215,9 @@ class Data:
 
         Of an ensemble the one at the 90 % quantile of what counts.
         """
-        best, ensemble = self.study["conservative"], self.study.get("ensemble")
+        study = self.study or {}
+        best = study["conservative"]
+        ensemble: Any = study.get("ensemble")
         if ensemble and ensemble["of"]:
             # a quantile is the value of a run
             at = {one["share"]: one["value"] for one in ensemble["quantities"][ensemble["of"]]["quantiles"]}[0.9]

@@ -73,13 +73,14 @@ class Ensemble:
                      for one in self.entry["quantiles"]]
         title = f"Hazard curve: {self.entry['name']}"
         return self.picture(
-            ensemble_charts.hazard_curve(*points, quantiles, f"{self.entry['name']} ({self.entry['unit']})", title),
+            ensemble_charts.hazard_curve(points[0], points[1], points[2], points[3], quantiles,
+                                         f"{self.entry['name']} ({self.entry['unit']})", title),
             title, f"The hazard curve: share of the runs in which the quantity is larger, with its "
             f"{100 * self.about['confidence']:g} % bounds; dots: what 50, 90, 95 and 99 % of the runs stay within.")
 
     def indices(self) -> List[Dict[str, str]]:
         """A chart for each quantity whose emulator says something, the one that counts first, three at most."""
-        found = []
+        found: List[Dict[str, str]] = []
         for name, entry in self.about["influence"].items():
             variables = entry["variables"]
             if len(found) == 3 or any(one["total"] is None for one in variables.values()):

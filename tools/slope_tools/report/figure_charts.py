@@ -104,7 +104,8 @@ def panel(sheet, left, size, name, s, limits, road, bends, corners=True):
     wide = text_width(label(round(s[-1])), TICK) + 0.25
     axes.set_xticks(at := ticks(s[0], s[-1], max(1, min(9, int(size[0] / wide)))), [label(value) for value in at])
     keep_in(axes.get_xticklabels(), at, s[0], s[-1], size[0])
-    axes.set_yticks(at := ticks(*limits, max(1, min(8, int(size[1] / 0.22)))), [label(value) for value in at])
+    axes.set_yticks(at := ticks(limits[0], limits[1], max(1, min(8, int(size[1] / 0.22)))),
+                    [label(value) for value in at])
     axes.tick_params(labelsize=TICK)
     found = []
     for start, end in road:
@@ -170,7 +171,7 @@ def chart(series, x_label, y_label, title, others=(), levels=(), mark: Optional[
     with plt.rc_context(STYLE):
         sheet = Sheet(width)
         every = np.concatenate([[0.0], *(one.y for one in (*series, *others)), [y for _, y in levels],
-                                [mark[1]] if mark else [], *([*one.y] + np.float64(one.scatter or 0)
+                                [mark[1]] if mark else [], *(np.asarray(one.y) + (one.scatter or 0)
                                                              for one in series)]).astype(float)
         low, high = 1.08 * min(0.0, every.min()), 1.08 * max(every.max(), 1e-9)
         grid = ticks(low, high, 6)
@@ -186,9 +187,9 @@ def chart(series, x_label, y_label, title, others=(), levels=(), mark: Optional[
             found.append(Entry(one.name, {"color": "#999999", "marker": style[0], "ls": style[1:], "mfc": "white",
                                           "ms": 4, "lw": 1.0}))
         for k, (text, y) in enumerate(levels):
-            style = {"color": "#777777", "lw": 0.9, "ls": (0, (1, 1 + k))}
-            axes.axhline(y, **style)
-            found.append(Entry(text, style))
+            look = {"color": "#777777", "lw": 0.9, "ls": (0, (1, 1 + k))}
+            axes.axhline(y, **look)
+            found.append(Entry(text, look))
         for i, one in enumerate(series):
             found += draw_series(axes, one, COLOURS[i % len(COLOURS)], len(series) > 1 or bool(others))
         if mark:

@@ -1,6 +1,6 @@
 """The maps of a report on a shaded relief, as data URIs."""
 import math
-from typing import NamedTuple, Optional, Tuple
+from typing import Any, NamedTuple, Optional, Tuple
 
 import numpy as np
 from matplotlib.colors import LinearSegmentedColormap
@@ -22,11 +22,11 @@ TINTS = LinearSegmentedColormap.from_list(
 
 class Layers(NamedTuple):
     """What is drawn over every map; geometries are in local metres."""
-    raster: object                       # grid, CRS and offset of the deposit
+    raster: Any                          # grid, CRS and offset of the deposit
     ground: np.ndarray                   # the ground before
     shown: Tuple                         # local xlo, ylo, xhi, yhi of the maps
     release: Optional[np.ndarray] = None     # mask: cells that held balls at the start
-    road: object = None                  # polygon
+    road: Any = None                     # polygon
     section: Optional[np.ndarray] = None     # points of the line, rows of x y
     interval: float = 5.0                # of the contours, m
 
@@ -182,7 +182,8 @@ def small_maps(layers, panels, bar, bounds, colours):
         columns, size = sheets.layout(len(panels), frame, FULL - left - right - beside, 1.5 * TALL[FULL])
         rows = math.ceil(len(panels) / columns)
         step = max(size[0], sheets.NARROW) + 0.1
-        top, image = sheet.bottom, None
+        top: float = sheet.bottom
+        image: Any = None
         for row in range(rows):
             titles = [wrapped(title, step - 0.1, TITLE - 1.5, True) for title, _ in
                       panels[row * columns:(row + 1) * columns]]

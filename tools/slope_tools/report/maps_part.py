@@ -1,4 +1,6 @@
 """The maps of a report: of the shown run, and over all runs of a study."""
+from typing import Any, Dict
+
 import numpy as np
 
 from .. import geometry
@@ -90,7 +92,7 @@ class Maps:
     def over_all(self):
         """Maps of a study over all of its runs."""
         data, layers = self.data, self.layers._replace(section=None)
-        found = {"runs": None, "envelope": None, "exceedance": []}
+        found: Dict[str, Any] = {"runs": None, "envelope": None, "exceedance": []}
         if not data.study or len(data.finished) < 2:
             return found
         if len(data.drawn) > 1:

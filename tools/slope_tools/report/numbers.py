@@ -28,7 +28,7 @@ class Numbers:
     def place(self, value, key=None):
         """The power of ten that a number is rounded to."""
         deviation = (self.scatter.get(key) or {}).get("deviation")
-        if disk.is_number(deviation) and deviation > EXACT * abs(value):
+        if deviation is not None and disk.is_number(deviation) and deviation > EXACT * abs(value):
             return headline.place(deviation)
         return headline.place_of_digits(value)
 

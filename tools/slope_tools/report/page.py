@@ -1,5 +1,6 @@
 """All that a report shows, read, computed and drawn, as the template takes it."""
 import re
+from typing import Any, Dict, List
 
 from .. import provenance
 from ..case import decks
@@ -33,7 +34,8 @@ class Page:
         self.data = Data(asked.folder, asked.shown)
         self.ground = Ground(self.data)
         self.section = Section(self.data, self.ground, asked.section, asked.local)
-        self.reference = asked.reference and read_reference(asked.reference, report_charts.quantities(self.data))
+        self.reference = read_reference(asked.reference, report_charts.quantities(self.data)) \
+            if asked.reference else None
         path = convergence_part.find(asked.converge, self.data)
         self.sizes = path and convergence_part.Sizes(path)
         self.warnings = warnings(self.data)
@@ -135,7 +137,9 @@ class Page:
 
     def reference_tables(self):
         """Numbers from elsewhere: of each quantity a table, with the runs' own beside them where they can be held."""
-        tables = []
+        tables: List[Dict[str, Any]] = []
+        if self.reference is None:
+            return None
         own = self.data.finished or [report_charts.single_row(self.data)]
         for key, quantity in self.reference.quantities.items():
             what, unit = report_charts.sensitivity.NAMES[key]

@@ -3,13 +3,13 @@ import csv
 import io
 import math
 from pathlib import Path
+from typing import Union
 
 import numpy as np
 from shapely.geometry import LineString, Point, box
-from shapely.ops import nearest_points
 
 from .. import geometry
-from ..deposit import flow_path
+from ..deposit import cut, flow_path
 from ..errors import SlopeError
 from ..options import number
 from ..survey import lines
@@ -46,7 +46,8 @@ class Section:
             except Exception as error:
                 raise SlopeError("--section", "must be X1 Y1 X2 Y2 (finite numbers, local m), the file of a line, or "
                                  f"{FALL}", " ".join(asked)) from error
-            where, how = "--section", "as --section asked"
+            where: Union[str, Path] = "--section"
+            how = "as --section asked"
             if (points[0] == points[1]).all():
                 raise SlopeError("--section", "must have two different ends", " ".join(f"{v:g}" for v in points.flat))
         elif len(asked) == 1:
@@ -150,27 +151,27 @@ class Section:
         for part in lines.lines_of(self.line.intersection(road)).geoms:
             spans.append(sorted(self.line.project(Point(end)) for end in (part.coords[0], part.coords[-1])))
         tangent = math.tan(math.radians(self.data.study["study"]["road"]["cut_angle"]))
-        edge, cut = road.boundary, np.full(self.s.shape, np.nan)
-        for i, point in enumerate(map(Point, self.xy)):
-            if road.contains(point):
-                continue
-            near = nearest_points(edge, point)[0]
-            height = self.ground.along(self.ground.base, np.array([near.x]), np.array([near.y]))[0]
-            cut[i] = height + tangent * near.distance(point)
-        return spans, cut
+        raster = self.ground.raster
+        inside = geometry.to_index(geometry.as_multi(road.intersection(geometry.box_of(raster))), raster)
+        try:
+            height = cut.heights(inside, cut.Ground(self.ground.base), tangent * self.ground.cell,
+                                 *(~raster.transform * tuple(self.xy.T)))
+        except cut.NoGround:
+            height = np.full(self.s.shape, np.nan)
+        return spans, height
 
     def picture(self):
         """The picture's data URI, what it shows, and its caption."""
-        spans, cut = self.road() if self.data.road is not None else ([], None)
+        spans, height = self.road() if self.data.road is not None else ([], None)
         uri, factor, thickness_factor = figure_charts.section(
-            self.s, self.before, self.base, self.runs, spans, cut, "Section A-A'", self.bends)
+            self.s, self.before, self.base, self.runs, spans, height, "Section A-A'", self.bends)
         (x1, y1), (x2, y2) = self.points[0], self.points[-1]
         caption = (f"Section from A ({x1:.1f}, {y1:.1f}) to A' ({x2:.1f}, {y2:.1f}), local metres, {self.how}; "
                    + ("heights not exaggerated" if factor == 1 else f"heights exaggerated {factor:g} times"))
         if thickness_factor:
             caption += (f"; below, the thickness on a scale of its own, exaggerated {thickness_factor:g} times: it is "
                         "too small for the heights")
-        if cut is not None:
+        if height is not None:
             caption += (f"; cut surface rising at {self.data.study['study']['road']['cut_angle']:g} degrees from the "
                         "road's edges")
         return uri, "Section through the slope before and after", caption + "."

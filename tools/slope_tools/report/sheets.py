@@ -4,7 +4,7 @@ All places are in inches from the upper left corner of the sheet. Text is measur
 gets what is left of the width, and the sheet is as tall as that makes it.
 """
 import math
-from typing import NamedTuple, Tuple
+from typing import NamedTuple, Optional, Tuple
 
 from matplotlib.lines import Line2D
 
@@ -40,7 +40,7 @@ class Frame(NamedTuple):
     """What a map shows, and how its sides are labelled."""
     shown: Tuple[float, float, float, float]    # local xlo, ylo, xhi, yhi
     names: bool = True                          # whether the axes are named
-    offset: Tuple[float, float] = None          # east, north of local 0 0: coordinates on the other sides, too
+    offset: Optional[Tuple[float, float]] = None      # east, north of local 0 0: coordinates on the other sides
     crs: str = ""
 
     @property
@@ -268,11 +268,12 @@ def single(width, frame, title, tallest, bar=None):
     return sheet, axes, size, beside, below
 
 
-def layout(count, frame, width, tallest):
+def layout(count, frame, width, tallest) -> Tuple[int, Tuple[float, float]]:
     """Columns and size of several maps of one frame in width x tallest: large enough to read, and then low."""
     found = []
     for columns in range(1, min(count, int(width / (NARROW + 0.1)), 4) + 1):
         rows = math.ceil(count / columns)
         size = map_size(frame, width / columns - 0.1, tallest / rows)
         found.append((min(size[0] * size[1], ENOUGH), -rows * size[1], columns, size))
-    return max(found)[2:]
+    _, _, columns, size = max(found)
+    return columns, size

@@ -1,6 +1,7 @@
 """What a report shows of structures and control lines: forces against time, the largest pressures, energies."""
 from pathlib import Path
 from xml.etree import ElementTree
+from typing import Any, Dict
 
 import numpy as np
 
@@ -56,7 +57,7 @@ class Structures:
 
     def by_name(self, style):
         """{ID: [(run, PREFIX)]} of the runs that are drawn."""
-        found = {}
+        found: Dict[str, Any] = {}
         for run in self.runs:
             for name, prefix in structures.outputs(run.log.settings, style).items():
                 found.setdefault(name, []).append((run, prefix))

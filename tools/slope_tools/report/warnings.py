@@ -1,5 +1,6 @@
 """What speaks against the numbers of a report: one line for each kind of warning, with the runs that it is of."""
 import re
+from typing import Any, Dict
 
 SMALL = 1e-6            # of the released volume
 NAMED = 4               # runs that a line names
@@ -99,7 +100,7 @@ def kinds(entries):
 
     only are of one kind.
     """
-    found = {}
+    found: Dict[str, Any] = {}
     for text, name in entries:
         found.setdefault(NUMBER.sub("#", text), (text, []))[1].append(name)
     return found
@@ -107,7 +108,7 @@ def kinds(entries):
 
 def by_kind(entries, runs):
     """A line for each kind; runs: how many there are."""
-    texts = {}
+    texts: Dict[str, Any] = {}
     for text, _ in entries:
         texts.setdefault(NUMBER.sub("#", text), set()).add(text)
     found = []

@@ -1,5 +1,4 @@
 """Coordinate reference systems: are two the same, is a metre a metre."""
-import math
 import sys
 
 import numpy as np
@@ -22,6 +21,15 @@ def warn(text):
     print(f"slope terrain: warning: {text}", file=sys.stderr)
 
 
+def as_crs(option, name):
+    """The CRS that an option names; SlopeError if there is none of that name."""
+    try:
+        with rasterio.Env():  # GDAL's own message is not for stderr
+            return CRS.from_user_input(name)
+    except CRSError:
+        raise SlopeError(option, "must be a CRS such as EPSG:6677", name) from None
+
+
 def same_crs(a, b):
     """Whether two CRS (or None) are one, however they are spelt."""
     return a == b or (a is not None and b is not None and epsg(a) is not None and epsg(a) == epsg(b))
@@ -42,15 +50,13 @@ def require_metres(crs, where):
 
 def warn_of_stretch(raster):
     """Warn where a metre of the CRS is not a metre on the ground (Web Mercator at 37 N: 0.8 m), by more than 1 %."""
+    from pyproj import Proj
     x, y = raster.transform * (raster.z.shape[1] / 2, raster.z.shape[0] / 2)
-    lon, lat = np.radians(transform(raster.crs, CRS.from_epsg(4326), x + np.array([0, 1, 0]), y + np.array([0, 0, 1])))
-    a, e2 = 6378137.0, 0.00669438  # WGS 84: half axis (m), eccentricity squared
-    n = a / math.sqrt(1 - e2 * math.sin(lat[0]) ** 2)  # radii of curvature, m: prime vertical, meridian
-    m = n ** 3 * (1 - e2) / a ** 2
-    for i in (1, 2):
-        metre = math.hypot(n * math.cos(lat[0]) * (lon[i] - lon[0]), m * (lat[i] - lat[0]))
-        if not abs(metre - 1) < STRETCH:
-            return warn(f"a metre in {crs_name(raster.crs)} is {metre:.3f} m on the ground: choose a local CRS")
+    projection = Proj(raster.crs.to_wkt())
+    factors = projection.get_factors(*projection(x, y, inverse=True))
+    for scale in (factors.parallel_scale, factors.meridional_scale):
+        if not abs(1 / scale - 1) < STRETCH:
+            return warn(f"a metre in {crs_name(raster.crs)} is {1 / scale:.3f} m on the ground: choose a local CRS")
 
 
 def transform(source, target, x, y):
@@ -63,4 +69,15 @@ def transform(source, target, x, y):
 
 
 def not_covered(source, target):
-    return SlopeError("--crs", f"must cover the input, which is in {crs_name(source)}", crs_name(target))
+    return SlopeError("--crs", f"must cover the input, whose coordinates are in {crs_name(source)} "
+                      "(--assign-crs EPSG:n overrides a wrong tag)", crs_name(target))
+
+
+def require_degrees(crs, bounds, where):
+    """Raise SlopeError unless coordinates (west, south, east, north) can be those of a CRS in degrees."""
+    if crs is None or not crs.is_geographic:
+        return
+    west, south, east, north = bounds
+    if max(-west, east) > 360 or max(-south, north) > 90:
+        raise SlopeError(where, f"coordinates in {crs_name(crs)} must be longitude and latitude; --assign-crs EPSG:n "
+                         "of slope terrain and slope polygon overrides a tag that is wrong or missing", box(bounds))

@@ -13,7 +13,7 @@ import re
 import warnings
 import zipfile
 import zlib
-from typing import NamedTuple
+from typing import List, NamedTuple
 from xml.parsers import expat
 
 import numpy as np
@@ -110,7 +110,7 @@ def _read_zip(source, where, room=None):
             raise SlopeError(name, "must not be encrypted")
         if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):   # lzma asks for memory as it likes
             raise SlopeError(name, "must be packed by deflate, or not at all",
-                             zipfile.compressor_names.get(member.compress_type, member.compress_type))
+                             f"method {member.compress_type}")
         try:
             with archive.open(member) as inner:
                 if kind == ".xml":
@@ -188,7 +188,7 @@ class _Parser:
         if name in ("shift_jis", "sjis", "x_sjis", "windows_31j", "cp932", "ms932"):
             return codecs.getincrementaldecoder("cp932")()
         if name not in ("utf_8", "utf8", "us_ascii", "ascii"):
-            raise SlopeError(f"{self.where}: line 1", "encoding must be UTF-8 or Shift_JIS", declared.group(1).decode())
+            raise SlopeError(f"{self.where}: line 1", "encoding must be UTF-8 or Shift_JIS", name)
         return None
 
     def doctype(self, name, *_):
@@ -345,7 +345,7 @@ def spacing(tile):
 
 def by_resolution(tiles):
     """Lists of tiles of one spacing each, the finest first; in each they keep their order."""
-    groups = []
+    groups: List[List[Tile]] = []
     for tile in tiles:
         for group in groups:
             if np.allclose(spacing(tile), spacing(group[0]), rtol=1e-4, atol=0):

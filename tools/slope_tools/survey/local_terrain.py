@@ -12,9 +12,8 @@ from rasterio.crs import CRS
 
 from ..errors import SlopeError
 from . import fggml, rasters
-from .crs import box, require_metres, warn_of_stretch
+from .crs import as_crs, box, require_metres, warn_of_stretch
 from .holes import fill, small_holes
-from .polygons import as_crs
 from .rasters import Raster
 from .resampling import regrid
 from .terrain import declare, merge, read_fggml
@@ -27,21 +26,24 @@ class Wanted(NamedTuple):
     cell: Optional[float] = None        # m
     bounds: Optional[Sequence[float]] = None        # W S E N, m
     fill: int = 0                       # holes of at most this many cells are filled
+    assigned: Optional[str] = None      # CRS that the files are in, whatever they say
 
 
-def checked_crs(wanted: Wanted) -> Optional[CRS]:
-    """The wanted CRS; SlopeError, which names the option, if something is wrong before any file is read."""
+def checked_crs(wanted: Wanted) -> Tuple[Optional[CRS], Optional[CRS]]:
+    """The wanted CRS and that of the files, None if not given; SlopeError, which names the option, if one is wrong."""
     if wanted.cell is not None and wanted.cell <= 0:
         raise SlopeError("--cell", "must be > 0", f"{wanted.cell:g}")
     if wanted.fill < 0:
         raise SlopeError("--fill", "must be >= 0", wanted.fill)
     if wanted.bounds and not (wanted.bounds[0] < wanted.bounds[2] and wanted.bounds[1] < wanted.bounds[3]):
         raise SlopeError("--bounds", "W S E N must have W < E and S < N", box(wanted.bounds))
-    if not wanted.crs:
-        return None
-    crs = as_crs("--crs", wanted.crs)
-    require_metres(crs, "--crs")
-    return crs
+    crs = assigned = None
+    if wanted.crs:
+        crs = as_crs("--crs", wanted.crs)
+        require_metres(crs, "--crs")
+    if wanted.assigned:
+        assigned = as_crs("--assign-crs", wanted.assigned)
+    return crs, assigned
 
 
 def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[str], Any]) -> Dict[str, Any]:
@@ -49,7 +51,7 @@ def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[st
 
     tell is called with a line for each thing that was done. Raises SlopeError on bad input.
     """
-    crs = checked_crs(wanted)
+    crs, assigned = checked_crs(wanted)
     steps: List[str] = []
 
     def keep(step: str) -> None:
@@ -58,9 +60,11 @@ def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[st
 
     cell = wanted.cell
     if any(map(fggml.is_one, inputs)):
+        if assigned is not None:
+            raise SlopeError("--assign-crs", "must not be given for FG-GML, which has its CRS", wanted.assigned)
         raster, crs, cell = read_fggml(inputs, crs, cell, keep)
     else:
-        raster = merge([declare(path, crs, keep) for path in inputs], inputs, keep)
+        raster = merge([declare(path, crs, keep, assigned) for path in inputs], inputs, keep)
         crs = crs or raster.crs
     require_metres(crs, inputs[0])
     if not np.isfinite(raster.z).any():

@@ -9,13 +9,12 @@ import logging
 import os
 import re
 from pathlib import Path
+from typing import List, Tuple
 
 import fiona
 import numpy as np
-import rasterio
 import rasterio.warp
 from rasterio.crs import CRS
-from rasterio.errors import CRSError
 from shapely import wkt
 from shapely.errors import ShapelyError
 from shapely.geometry import MultiPolygon, Polygon, box, shape
@@ -24,7 +23,7 @@ from shapely.validation import explain_validity
 
 from ..errors import SlopeError
 from ..geometry import extent, polygons_of
-from .crs import same_crs
+from .crs import require_degrees, same_crs
 from .rasters import crs_name
 
 FARTHEST = 1e12    # m or degrees: larger coordinates are mistakes, region polygon refuses them, too
@@ -78,15 +77,6 @@ def _read_local(path, raster, local, crs, terrain):
 
 def numbers(values):
     return " ".join(f"{value:.10g}" for value in values)
-
-
-def as_crs(option, name):
-    """The CRS that an option names; SlopeError if there is none of that name."""
-    try:
-        with rasterio.Env():  # GDAL's own message is not for stderr
-            return CRS.from_user_input(name)
-    except CRSError:
-        raise SlopeError(option, "must be a CRS such as EPSG:6677", name) from None
 
 
 def read_text(path):
@@ -190,7 +180,9 @@ def crossing(where, geometry):
 
 def _read_rings(path, text):
     """The polygons that the rings of a text in the deck's format make by the even-odd rule."""
-    rings, points, first = [], [], 0  # rings: the line it starts at, its polygon
+    rings: List[Tuple[int, Polygon]] = []       # the line it starts at, its polygon
+    points: List[Tuple[float, ...]] = []
+    first = 0
 
     def close():
         if points:
@@ -235,7 +227,8 @@ def _even_odd(path, rings):
     """Polygons of the rings (line, polygon): one inside of another is a hole, one inside of the hole an island."""
     rings.sort(key=lambda ring: -ring[1].area)  # what contains a ring comes before it
     bounds = np.array([polygon.bounds for _, polygon in rings])
-    depth, holes = [], [[] for _ in rings]
+    depth: List[int] = []
+    holes: List[List[int]] = [[] for _ in rings]
     for i, (line, polygon) in enumerate(rings):
         low, high = bounds[:i, :2] < bounds[i, 2:], bounds[:i, 2:] > bounds[i, :2]
         around = []
@@ -288,11 +281,7 @@ def _to_local(path, geometry, crs, raster, plain, terrain):
                 raise SlopeError(where, "must have a CRS, so that polygon and terrain can be brought together (a .prj "
                                  "file beside a shapefile, slope terrain --crs for a terrain; --local if the polygon "
                                  "is in the terrain's local metres)", "none")
-        if crs.is_geographic:
-            west, south, east, north = geometry.bounds
-            if max(-west, east) > 360 or max(-south, north) > 90:
-                raise SlopeError(path, f"coordinates in {crs_name(crs)} must be longitude and latitude (which a "
-                                 "GeoJSON has that names no other CRS)", numbers(geometry.bounds))
+        require_degrees(crs, geometry.bounds, path)
     if not (plain or same_crs(crs, raster.crs)):
         geometry = _reproject(path, geometry, crs, raster.crs)
     return map_points(geometry, lambda points: points - raster.offset)
@@ -316,8 +305,8 @@ def map_points(geometry, function):
     parts = polygons_of(geometry)
     rings = [np.asarray(ring.coords)[:, :2] for part in parts for ring in (part.exterior, *part.interiors)]
     points = function(np.concatenate(rings))
-    rings = iter(np.split(points, np.cumsum([len(ring) for ring in rings])[:-1]))
-    new = [Polygon(next(rings), [next(rings) for _ in part.interiors]) for part in parts]
+    moved = iter(np.split(points, np.cumsum([len(ring) for ring in rings])[:-1]))
+    new = [Polygon(next(moved), [next(moved) for _ in part.interiors]) for part in parts]
     return new[0] if len(new) == 1 else MultiPolygon(new)
 
 

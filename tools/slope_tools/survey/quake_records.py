@@ -3,6 +3,7 @@ import math
 import re
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -121,7 +122,8 @@ def at2(path, lines):
         raise SlopeError(f"{path}, line 4", "must be NPTS= n, DT= s SEC", repr(lines[3].strip()))
     word = re.split(r"[,\s]+", lines[1].strip().upper())[-1]
     if word in ("UP", "DWN", "DOWN", "VER", "VERT", "V", "UD"):
-        direction, sign = UP, -1.0 if word in ("DWN", "DOWN") else 1.0
+        direction: Any = UP
+        sign = -1.0 if word in ("DWN", "DOWN") else 1.0
     elif re.fullmatch(r"\d{1,3}", word) and int(word) <= 360:
         direction, sign = float(int(word) % 360), 1.0
     elif word in ("N", "NS", "N-S", "E", "EW", "E-W"):

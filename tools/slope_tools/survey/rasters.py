@@ -101,7 +101,8 @@ def _read(path, source):
         raise SlopeError(path, "must have one band, the heights", f"{source.count} bands")
     if source.units[0] not in METRES:
         raise SlopeError(path, "heights must be in metres", source.units[0])
-    check_memory(*source.shape, path)
+    rows, columns = source.shape
+    check_memory(rows, columns, path)
     if source.driver == "AAIGrid":
         z = _read_ascii_heights(path, *source.shape)
     else:
@@ -207,12 +208,13 @@ def read_sidecar(path):
     try:
         about = yaml.safe_load(sidecar.read_text(encoding="utf-8"))
         offset = float(about["origin"]["east"]), float(about["origin"]["north"])
-        place = tuple(float(about["extent"][side]) for side in ("xlo", "ylo", "xhi", "yhi"))
-        if not np.isfinite((*offset, *place)).all():
+        xlo, ylo, xhi, yhi = (float(about["extent"][side]) for side in ("xlo", "ylo", "xhi", "yhi"))
+        if not np.isfinite((*offset, xlo, ylo, xhi, yhi)).all():
             raise ValueError("origin and extent must be finite")
         with rasterio.Env():  # GDAL's own messages are not for stderr
             crs = about["crs"] and CRS.from_wkt(about["crs"]["wkt"])
-        return Place(crs, offset, (about["size"]["rows"], about["size"]["columns"]), place)
+        return Place(crs, offset, (about["size"]["rows"], about["size"]["columns"]),
+                     (xlo, ylo, xhi, yhi))
     except (OSError, ValueError, KeyError, TypeError, OverflowError, RecursionError, yaml.YAMLError,
             CRSError) as error:
         raise SlopeError(sidecar, f"must be a sidecar that `slope terrain` wrote ({error!r})") from error
@@ -229,7 +231,8 @@ def read_place(path):
         with warnings.catch_warnings(), rasterio.Env():
             warnings.simplefilter("ignore", NotGeoreferencedWarning)
             with rasterio.open(path) as source:
-                return Place(source.crs, (0.0, 0.0), source.shape, tuple(source.bounds))
+                return Place(source.crs, (0.0, 0.0), source.shape,
+                             (source.bounds.left, source.bounds.bottom, source.bounds.right, source.bounds.top))
     except (RasterioError, OSError) as error:
         raise SlopeError(path, f"must be a raster that GDAL can read ({error})") from error
 
@@ -260,7 +263,8 @@ def write_asc_local(path, raster, about, exact=False):
     new_yaml = new_asc.with_suffix(".new_yaml")
     try:
         with open(new_asc, "w", encoding="ascii") as out:
-            digits, form = (15, repr) if exact else (12, "{:.3f}".format)
+            digits = 15 if exact else 12
+            form = "{!r}".format if exact else "{:.3f}".format
             out.write(f"ncols {columns}\nnrows {rows}\nxllcorner {xlo:.{digits}g}\nyllcorner {ylo:.{digits}g}\n"
                       f"cellsize {cell:.{digits}g}\nNODATA_value {NODATA}\n")
             for row in progress(raster.z, f"writing {path}"):

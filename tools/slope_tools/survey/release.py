@@ -6,7 +6,7 @@ import numpy as np
 
 from ..errors import SlopeError
 from . import polygons, rasters, release_area, release_bodies, release_scar, release_solve
-
+from .crs import as_crs
 
 SHAPES = ("sphere", "ellipsoid", "plane", "slbl")
 COARSE = 50     # cells; a body of fewer is drawn with a coarse brush
@@ -28,6 +28,11 @@ class Wanted(NamedTuple):
     crs: Optional[str] = None           # of the polygon
     local: bool = False                 # the polygon is in local metres
 
+    @property
+    def where(self) -> str:
+        """What messages name: the file that says where the body is."""
+        return self.polygon or self.scar or "--polygon"
+
 
 class Body(NamedTuple):
     """A body that is released."""
@@ -46,10 +51,10 @@ def body_of(wanted: Wanted) -> Body:
     raster = read_terrain(wanted.terrain)
     geometry = None
     if wanted.polygon:
-        crs = polygons.as_crs("--crs", wanted.crs) if wanted.crs else None
+        crs = as_crs("--assign-crs", wanted.crs) if wanted.crs else None
         geometry = polygons.read_local(wanted.polygon, raster, local=wanted.local, crs=crs, terrain=wanted.terrain)
     area, surface, choices = (from_scar if wanted.scar else from_shape)(wanted, raster, geometry)
-    slip = release_solve.slip_surface(area, release_solve.depths(area, surface), wanted.polygon or wanted.scar)
+    slip = release_solve.slip_surface(area, release_solve.depths(area, surface), wanted.where)
     found = release_solve.measures(area, slip)
     return Body(raster, geometry, area, slip, choices, found, warnings(choices, found, area.cell))
 
@@ -106,12 +111,13 @@ def read_terrain(path):
 
 def from_scar(wanted: Wanted, raster, geometry):
     """Area, slip surface on its nodes and choices of a body that a raster gives."""
+    assert wanted.scar
     depth = release_scar.depths(wanted.scar, wanted.scar_is, raster, wanted.least)
     if geometry is not None:
         depth = np.where(release_area.nodes_inside(raster, geometry), depth, 0.0)
         if not depth.any():
             raise SlopeError(wanted.polygon, f"must hold some of the scar in {wanted.scar}")
-    area = release_area.area_of(raster, depth > 0, wanted.polygon or wanted.scar, wanted.terrain)
+    area = release_area.area_of(raster, depth > 0, wanted.where, wanted.terrain)
     row, column = area.corner
     part = depth[row:row + area.z.shape[0], column:column + area.z.shape[1]]
     return area, area.z - part, {"shape": "scar", "scar": wanted.scar, "scar_is": wanted.scar_is, "least": wanted.least}
@@ -119,16 +125,17 @@ def from_scar(wanted: Wanted, raster, geometry):
 
 def from_shape(wanted: Wanted, raster, geometry):
     """The same of a body below a polygon."""
-    area = release_area.area_of(raster, release_area.nodes_inside(raster, geometry), wanted.polygon, wanted.terrain)
-    release_area.require_slope(area, wanted.polygon)
+    area = release_area.area_of(raster, release_area.nodes_inside(raster, geometry), wanted.where, wanted.terrain)
+    release_area.require_slope(area, wanted.where)
     parts = len(polygons.polygons_of(geometry))
     if wanted.shape != "slbl" and parts > 1:
         raise SlopeError(wanted.polygon, f"must be one polygon for --shape {wanted.shape}; slbl takes several", parts)
     if wanted.shape == "sphere":
-        shape = release_bodies.sphere_shape(area, geometry, wanted.polygon)
+        shape = release_bodies.sphere_shape(area, geometry, wanted.where)
     elif wanted.shape == "ellipsoid":
-        shape = release_bodies.ellipsoid_shape(area, geometry, wanted.polygon)
+        shape = release_bodies.ellipsoid_shape(area, geometry, wanted.where)
     elif wanted.shape == "plane":
+        assert wanted.dip is not None       # check() has seen to it
         direction = release_bodies.bearing(area.downhill) if wanted.direction is None else wanted.direction
         shape = release_bodies.plane_shape(area, wanted.dip, direction)
     else:
@@ -138,7 +145,7 @@ def from_shape(wanted: Wanted, raster, geometry):
     elif wanted.volume is not None:
         free = release_solve.to_volume(area, shape, wanted.volume)
     else:
-        free = shape.most if wanted.shape == "plane" else wanted.curvature
+        free = shape.most if wanted.curvature is None else wanted.curvature
     choices = {"shape": shape.name, "given": {"depth_m": wanted.depth, "volume_m3": wanted.volume,
                                               "curvature_per_m": wanted.curvature},
                shape.number: free, **shape.about}

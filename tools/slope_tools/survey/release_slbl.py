@@ -3,6 +3,8 @@
 M. Jaboyedoff et al., Testing a failure surface prediction and deposit reconstruction method for a landslide cluster
 that occurred during Typhoon Talas (Japan), Earth Surf. Dynam. 7, 439-458, 2019, doi:10.5194/esurf-7-439-2019.
 """
+from typing import Optional
+
 import numpy as np
 from scipy.sparse import coo_matrix, identity
 from scipy.sparse.linalg import splu
@@ -34,12 +36,13 @@ def base_level(z: np.ndarray, inside: np.ndarray, cell: float, curvature: float)
     matrix = identity(len(row), format="csr") - mean
 
     ground = z[row, column]
-    heights, free = ground.copy(), None
+    heights = ground.copy()
+    before: Optional[np.ndarray] = None
     for _ in range(MOST):       # from the surface that knows no ground above it
-        lower = np.full(len(row), True) if free is None else mean @ heights + fixed < ground
-        if free is not None and (lower == free).all():
+        lower = np.full(len(row), True) if before is None else mean @ heights + fixed < ground
+        if before is not None and (lower == before).all():
             break
-        free = lower
+        before = free = lower
         heights = ground.copy()
         if free.any():
             right = fixed[free] - (matrix[free][:, ~free] @ ground[~free])

@@ -6,17 +6,27 @@ from affine import Affine
 
 from ..errors import SlopeError
 from . import fggml, japan, rasters
-from .crs import same_crs, warn
+from .crs import require_degrees, same_crs, warn
 from .rasters import Raster, crs_name
 from .resampling import STRIP, footprint, sample
 
 ON_GRID = 0.01         # cells; grids of two files that differ by less than this are the same grid
 
 
-def declare(path, crs, tell):
-    """Read a raster, in coordinates of its CRS; one without is taken to be in crs, or warned of if that is None."""
+def declare(path, crs, tell, assigned=None):
+    """Read a raster, in coordinates of its CRS; one without is taken to be in crs, or warned of if that is None.
+
+    assigned: the CRS of its coordinates, whatever the file says.
+    """
     local = rasters.read_asc_local(path)
     raster = Raster(local.z, Affine.translation(*local.offset) * local.transform, local.crs)
+    if assigned is not None:
+        if raster.crs is not None and not same_crs(raster.crs, assigned):
+            tell(f"{path} says {crs_name(raster.crs)}: taken as {crs_name(assigned)}")
+        raster = raster._replace(crs=assigned)
+    rows, columns = raster.z.shape
+    corners = [raster.transform * corner for corner in ((0, rows), (columns, 0))]
+    require_degrees(raster.crs, [*corners[0], *corners[1]], path)
     if raster.crs is None and crs is not None:
         tell(f"{path} has no CRS: taken as {crs_name(crs)}")
         return raster._replace(crs=crs)

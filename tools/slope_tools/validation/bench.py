@@ -4,7 +4,7 @@ import os
 import shutil
 import sys
 from statistics import median
-from typing import NamedTuple
+from typing import Any, Dict, List, NamedTuple
 
 import numpy as np
 from rich.console import Console
@@ -133,17 +133,17 @@ class Plan:
     def peers(self, names):
         """Ours, a peer, ours, the next peer, and so on: the ratios of neighbouring runs."""
         codes = []
-        for code in peers.ALL[1:]:
-            if code.name in names:
-                one = code(self.programs.get(code.name, self.lmp))
+        for kind in peers.ALL[1:]:
+            if kind.name in names:
+                one = kind(self.programs.get(kind.name, self.lmp))
                 missing = one.missing()
                 if missing:
-                    self.notes.append(f"{code.title}: not measured: {missing}")
+                    self.notes.append(f"{one.title}: not measured: {missing}")
                 else:
                     codes.append(one)
         ours = self.write(self.ours, "slope", self.scene, self.steps)
         folders = {code.name: self.write(code, code.name, self.scene, self.steps) for code in codes}
-        ratios = {code.name: [] for code in codes}
+        ratios: Dict[str, List[float]] = {code.name: [] for code in codes}
         for _ in range(self.repeat):
             for code in codes:
                 mine = self.measure("peers", self.ours, ours, self.scene, self.steps)
@@ -221,7 +221,7 @@ class Plan:
         steps = max(100, self.steps // 5)
         here = self.write(self.ours, "slope_short", self.scene, steps)
         there = self.write(self.ours, "slope_many", many, steps)
-        ratios = {ranks: [] for ranks in (1, *several)}
+        ratios: Dict[Any, List[float]] = {ranks: [] for ranks in (1, *several)}
         extra, told = [], []
         for _ in range(self.repeat):
             for ranks, ratio in ratios.items():

@@ -3,6 +3,7 @@ import csv
 import math
 import sys
 from statistics import median
+from typing import Any, Dict
 
 import io
 import numpy as np
@@ -25,7 +26,7 @@ LOOSE = {"hooke": 10.0}                 # times that for a peer without a smooth
 
 def same_scene(plan):
     """{code: kinetic energy and way of the centroid against ours, and whether it is the same scene}."""
-    found = {}
+    found: Dict[str, Any] = {}
     if not plan.states:
         return found
     mass = plan.scene.mass
@@ -111,7 +112,7 @@ def show(about, folder):
         for head, side in (("code", "left"), ("version", "left"), ("loop s", "right"), ("ns/ball/step", "right"),
                            ("time / ours", "right"), ("range", "right"), ("target", "right"), ("met", "right"),
                            ("energy / ours", "right"), ("way off %", "right")):
-            shown.add_column(head, justify=side)
+            shown.add_column(head, justify="left" if side == "left" else "right")
         for name, code in about["codes"].items():
             ratio, same = measures.get(name), about["same_scene"].get(name)
             shown.add_row(code["title"], code["version"].split(",")[0].removeprefix("Version "),
@@ -124,7 +125,7 @@ def show(about, folder):
         shown = Table(title="terrain, ranks, more balls")
         for head, side in (("what", "left"), ("value", "right"), ("range", "right"), ("target", "right"),
                            ("met", "right")):
-            shown.add_column(head, justify=side)
+            shown.add_column(head, justify="left" if side == "left" else "right")
         for value in rest.values():
             shown.add_row(value["what"], *against(value))
         console.print(shown)

@@ -4,7 +4,7 @@ import re
 import shutil
 import sys
 from pathlib import Path
-from typing import NamedTuple, Optional
+from typing import Any, Dict, List, NamedTuple, Optional, Tuple
 
 import numpy as np
 
@@ -43,9 +43,9 @@ class Check(NamedTuple):
     case: str
     quantity: str
     code: str
-    value: object
+    value: Any                      # a number or a word
     against: str
-    expected: object
+    expected: Any
     tolerance: Optional[float]      # absolute; None: for information
     reason: str                     # for the tolerance
 
@@ -88,17 +88,16 @@ write_dump all custom kinds.dump id type diameter mass x y z vx vy vz modify sor
     style = next(words for words in done if words[0] == "pair_style")
     laws = {int(words[2]): words[3:] for words in done if words[0] == "pair_coeff" and words[1] == "1"}
     wall = {words[1]: int(words[4]) for words in done if words[0] == "fix" and words[3] == "wall/gran/balls"}
-    fixed = {}
+    points: Dict[int, List[np.ndarray]] = {}
     for name in walls:
-        points = np.loadtxt(folder / f"ground.{name}.xyz", ndmin=2)
-        fixed.setdefault(wall[name], []).append(points)
-    fixed = {kind: np.concatenate(several) for kind, several in sorted(fixed.items())}
+        points.setdefault(wall[name], []).append(np.loadtxt(folder / f"ground.{name}.xyz", ndmin=2))
+    fixed = {kind: np.concatenate(several) for kind, several in sorted(points.items())}
     ball = style[style.index("mass") + 1] == "ball" if "mass" in style else False
     contacts = {kind: contact(laws[kind], mass / 2 if kind == 1 and not ball else mass) for kind in (1, *fixed)}
     check_printed(log, text, contacts)
     weight = next(words for words in done if words[0] == "fix" and words[3] == "gravity")
     reach = next(words for words in done if words[0] == "neighbor")
-    dt = float(re.search(r"^SCENE dt (\S+)", text, re.MULTILINE)[1])
+    dt = float(re.findall(r"^SCENE dt (\S+)", text, re.MULTILINE)[0])
     return Scene(diameter, mass / (math.pi / 6 * diameter ** 3), moving, fixed, contacts, dt, float(reach[1]),
                  float(weight[4]))
 
@@ -200,7 +199,7 @@ def restitution(zeta, pulls):
     return math.exp(-zeta / root * turn)
 
 
-def rebound(scene, final):
+def rebound(scene, final) -> np.ndarray:
     """Observed restitution of each ball from its energy in flight after the first bounce."""
     h1 = scene.moving[:, 2] - scene.diameter
     h2 = final[:, 2] - scene.diameter + final[:, 5] ** 2 / (2 * scene.gravity)
@@ -233,9 +232,9 @@ def bounce(work, case):
     ground[:, 0] += 10 * scene.diameter * np.arange(n)
     many = scene._replace(moving=moving, fixed={2: ground}, dt=dt)
     found = work.run(f"{case}_rule", many, math.ceil(1.02 * fall / dt))
-    values = {name: rebound(many, final) for name, (final, _) in found.items()}
-    mean = {name: float(value.mean()) for name, value in values.items()}
-    spread = {name: float(np.ptp(value)) for name, value in values.items()}
+    every = {name: rebound(many, final) for name, (final, _) in found.items()}
+    mean = {name: float(value.mean()) for name, value in every.items()}
+    spread = {name: float(np.ptp(value)) for name, value in every.items()}
     reason = ("velocity Verlet with the same half-step velocities gives the same bounce, drop by drop; leapfrog may "
               "differ in the step in which the contact begins")
     work.twins(case, "restitution, dt of the rule, mean", mean, {"granular": 0.002, "liggghts": 0.002, "yade": 0.01},
@@ -322,7 +321,7 @@ def collapse(work, case):
         for name, final in found.items():
             value = deposit(scene, final)[quantity]
             if name == "slope":
-                check = "SLOPE, mean of 4", middle, None, ""
+                check: Tuple = ("SLOPE, mean of 4", middle, None, "")
             elif name in OTHER_ROLLING:
                 check = ("SLOPE, mu_r 0 to 0.1", (low + high) / 2, (high - low) / 2 + share * middle,
                          f"another law of rolling: the range of ours, and {100 * share:.0f} % for chance")

@@ -36,7 +36,7 @@ def report(work):
     shown = Table(title="the same scenes in other codes")
     for head, side in (("case", "left"), ("quantity", "left"), ("code", "left"), ("value", "right"),
                        ("expected", "right"), ("of", "left"), ("+-", "right"), ("agrees", "right")):
-        shown.add_column(head, justify=side)
+        shown.add_column(head, justify="left" if side == "left" else "right")
     last = None
     for check in work.checks:
         new, last = (check.case, check.quantity) != last, (check.case, check.quantity)

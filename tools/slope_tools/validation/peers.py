@@ -6,7 +6,7 @@ pair gran/restitution as its start-up table prints them; how a peer differs from
 import math
 import re
 import shutil
-from typing import Dict, NamedTuple, Optional
+from typing import Dict, NamedTuple, Optional, Sequence
 
 import numpy as np
 
@@ -73,7 +73,7 @@ class Code:
     """A program that can run a scene."""
     name = title = ""
     is_lammps = True
-    differs = ()        # sentences: in what its physics is not that of pair gran/restitution
+    differs: Sequence[str] = ()     # sentences: in what its physics is not that of pair gran/restitution
 
     def __init__(self, lmp):
         self.lmp = lmp

@@ -52,7 +52,7 @@ class Runner:
                 self.results[one] = Result(self.folder / one.name)
                 self.kept += 1
         waiting = [one for one in dict.fromkeys(wanted) if one not in self.results]
-        active = {}
+        active: Dict[Any, Any] = {}
         with Bar(len(waiting)) as bar:
             try:
                 while waiting or active:

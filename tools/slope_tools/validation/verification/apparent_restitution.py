@@ -18,6 +18,7 @@ SOURCE = "paper, section 3: e cos^2(b) - sin^2(b) after a frictionless impact at
 def drops(result):
     """What the case's own plot.py reads."""
     spec = importlib.util.spec_from_file_location("plot_apparent_restitution", INPUTS / CASE / "plot.py")
+    assert spec and spec.loader
     plot = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(plot)
     return plot.read(str(result.folder / "bounce"))

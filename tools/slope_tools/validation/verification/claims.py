@@ -112,7 +112,7 @@ class Result:
 
 def number(name, line):
     """The number after a name in a line."""
-    return float(re.search(rf"\b{name} (\S+)", line)[1].rstrip(":"))
+    return float(re.findall(rf"\b{name} (\S+)", line)[0].rstrip(":"))
 
 
 def read_frames(path):

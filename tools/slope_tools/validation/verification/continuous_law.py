@@ -11,7 +11,7 @@ The law is linear in the speed, so all is in units of the ball: its mass, its ra
 by scipy, from one change between sticking and sliding to the next. A test holds the two against each other.
 """
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -20,23 +20,23 @@ STEPS = 1000        # in a contact: beta is right to 2e-4
 
 class Case(NamedTuple):
     """What hits what, and how: numbers, or arrays that broadcast."""
-    angle: object                   # degrees between velocity and normal
-    friction: object                # degrees
-    e: object                       # restitution
-    tangential: object = 1.0        # kt/kn, and kr/kn
-    mass: object = math.inf         # of the partner; infinite: fixed
-    radius: object = 1.0            # of the partner
-    spin: object = 0.0              # R w/v of the ball before the impact, the partner has none
-    rolling: object = 0.0           # rolling resistance coefficient
+    angle: Any                      # degrees between velocity and normal
+    friction: Any                   # degrees
+    e: Any                          # restitution
+    tangential: Any = 1.0        # kt/kn, and kr/kn
+    mass: Any = math.inf         # of the partner; infinite: fixed
+    radius: Any = 1.0            # of the partner
+    spin: Any = 0.0              # R w/v of the ball before the impact, the partner has none
+    rolling: Any = 0.0           # rolling resistance coefficient
 
 
 class Outcome(NamedTuple):
     """After the impact."""
-    beta: object                    # tangential velocity at the contact, after / before
-    spin: object                    # of the ball: R w over the size of that velocity before
-    partner_spin: object            # of the partner: R_j w_j over the same
-    restitution: object             # normal velocity after / before
-    energy: object                  # of motion and spin, after / before
+    beta: Any                       # tangential velocity at the contact, after / before
+    spin: Any                       # of the ball: R w over the size of that velocity before
+    partner_spin: Any               # of the partner: R_j w_j over the same
+    restitution: Any                # normal velocity after / before
+    energy: Any                     # of motion and spin, after / before
 
 
 class _Motion:
@@ -204,7 +204,7 @@ def one_impact(case, tolerance=1e-11):
         for i in range(2):
             def event(t, y, i=i):
                 return room(t, y, sliding, i)
-            event.terminal, event.direction = True, -1
+            event.terminal, event.direction = True, -1      # type: ignore[attr-defined]  # of solve_ivp
             events.append(event)
         found = solve_ivp(lambda t, y: rates(t, y, sliding), (t, last), y, method="DOP853", rtol=tolerance,
                           atol=tolerance, events=events, max_step=last / 50)

@@ -25,7 +25,7 @@ def gas(result):
     """Of a run of in.rough_gas, frame by frame: motion and springs together, over that at the start."""
     balls = result.frames("rough_gas.dump")
     line, = result.printed("rough gas:")
-    edge, kn = (float(re.search(rf"{name} (\S+)", line)[1]) for name in ("edge", "kn"))
+    edge, kn = (float(re.findall(rf"{name} (\S+)", line)[0]) for name in ("edge", "kn"))
     places = np.stack([balls[name] for name in ("xu", "yu", "zu")], axis=2)
     total = of_motion(balls).sum(axis=1) + [of_springs(x, r, kn, edge) for x, r in zip(places, balls["radius"])]
     return total / total[0]
@@ -35,7 +35,7 @@ def gaps(result):
     """Of the balls of a run of in.slot, over the overlap at which an impact of their speed ends."""
     balls = result.frames("slot.dump")
     line, = result.printed("slot:")
-    kn = float(re.search(r"kn (\S+)", line)[1])
+    kn = float(re.findall(r"kn (\S+)", line)[0])
     return 2 * balls["v_half"][0] / (balls["vx"][0] * np.sqrt(balls["mass"][0] / kn))
 
 
@@ -43,7 +43,7 @@ def slot(result):
     """Of a run of in.slot: frames by balls, motion and springs together, over that at the start."""
     balls = result.frames("slot.dump")
     line, = result.printed("slot:")
-    kn = float(re.search(r"kn (\S+)", line)[1])
+    kn = float(re.findall(r"kn (\S+)", line)[0])
     total = of_motion(balls) + sum(0.5 * kn * np.maximum(side * balls["x"] - balls["v_half"], 0) ** 2
                                    for side in (1, -1))
     return total / total[0]

@@ -28,7 +28,8 @@ def tops(balls):
 
 def angle_of(balls):
     """Degrees."""
-    return -np.degrees(np.arctan(np.polyfit(*tops(balls).T, 1)[0]))
+    x, z = tops(balls).T
+    return -np.degrees(np.arctan(np.polyfit(x, z, 1)[0]))
 
 
 def angle(result):

@@ -1,0 +1,36 @@
+# What a package has besides the files of cmake --install. CPACK_TEMPORARY_INSTALL_DIRECTORY is its root.
+set(root "${CPACK_TEMPORARY_INSTALL_DIRECTORY}")
+
+if(CPACK_GENERATOR STREQUAL "DEB")
+  file(MAKE_DIRECTORY "${root}/usr/bin" "${root}/usr/share/doc/slope")
+  foreach(pair slope:slope dump2vtk:dump2vtk lmp:slope-lmp)
+    string(REPLACE ":" ";" pair "${pair}")
+    list(GET pair 0 program)
+    list(GET pair 1 name)
+    if(EXISTS "${root}/opt/slope/bin/${program}")
+      file(CREATE_LINK "../../opt/slope/bin/${program}" "${root}/usr/bin/${name}" SYMBOLIC)
+    endif()
+  endforeach()
+  file(CREATE_LINK "../../../../opt/slope/share/slope/LICENSE" "${root}/usr/share/doc/slope/copyright" SYMBOLIC)
+  return()
+endif()
+
+# The .tar.gz: the packages that it needs, as those of the .deb; dpkg-shlibdeps wants a source package around it
+file(GLOB programs "${root}/bin/lmp" "${root}/bin/dump2vtk" "${root}/lib/*.so")
+set(work "${CPACK_TOPLEVEL_DIRECTORY}/shlibdeps")
+file(MAKE_DIRECTORY "${work}/debian")
+file(WRITE "${work}/debian/control" "Source: slope\n\nPackage: slope\nArchitecture: any\n")
+execute_process(COMMAND dpkg-shlibdeps -O --ignore-missing-info ${programs} WORKING_DIRECTORY "${work}"
+  RESULT_VARIABLE status OUTPUT_VARIABLE libraries ERROR_VARIABLE problems)
+if(NOT status EQUAL 0)
+  message(FATAL_ERROR "dpkg-shlibdeps: ${problems}")
+endif()
+string(REGEX REPLACE ".*Depends=" "" libraries "${libraries}")
+set(needs "${CPACK_DEBIAN_PACKAGE_DEPENDS}, ${libraries}")
+string(REGEX REPLACE " *\\([^)]*\\)| *\\|[^,]*" "" needs "${needs}") # versions, alternatives
+string(REGEX REPLACE "[, \n]+" ";" needs "${needs}")
+list(REMOVE_ITEM needs "")
+list(SORT needs)
+list(REMOVE_DUPLICATES needs)
+list(JOIN needs "\n" needs)
+file(WRITE "${root}/share/slope/needs.txt" "${needs}\n")
