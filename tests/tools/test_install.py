@@ -47,7 +47,8 @@ def test_everything_is_there(prefix):
     names = ["inputs/20_embankment/in.embankment", "doc/src/theory.rst", "tools/slope", "LICENSE"]
     if shutil.which("git"):                       # not on a machine that has nothing but what set-up installs
         tracked = subprocess.run(["git", "-C", str(TOP), "ls-files", "inputs", "doc", "tools/slope_tools",
-                                  "tools/slope", "README.md", "LICENSE"], text=True, capture_output=True)
+                                  "tools/slope", "tools/qgis", "README.md", "LICENSE"], text=True,
+                                 capture_output=True)
         names = tracked.stdout.split() or names
     assert not [name for name in names if not (share / name).is_file()]
     assert not list(prefix.rglob("__pycache__")) and not list(share.rglob("log.*"))

@@ -1,0 +1,68 @@
+"""The body that is released: slope release."""
+from pathlib import Path
+
+from . import layers, process, terrain
+from .algorithm import Algorithm
+from .options import Option
+from .results import NewFolder, load
+
+TERRAIN_FILES = ("terrain.asc", "terrain.yaml")
+SHAPES = ("sphere", "ellipsoid", "plane", "slbl")
+DEM = Option("DEM", "", "raster", "Elevation model or terrain (heights in m)", needed=True, own=True)
+SHAPE = (
+    Option("SHAPE", "--shape", "choice", "Shape of the slip surface (default: sphere; plane with a dip)",
+           choices=SHAPES),
+    Option("DEPTH", "--depth", "number", "Largest depth of the slip surface below the ground (m)"),
+    Option("VOLUME", "--volume", "number", "Volume of the body (m3)"),
+    Option("CURVATURE", "--curvature", "number", "Curvature of the base level slbl (1/m)", advanced=True, least=-1e6),
+    Option("DIP", "--dip", "number", "Dip of the plane, below the horizontal (degrees)"),
+    Option("DIRECTION", "--direction", "number",
+           "Compass bearing to which the plane dips (degrees; default: fall line)"))
+SCAR = (
+    Option("SCAR", "--scar", "raster", "Scar: a second elevation model (m), or depths (m), instead of a shape"),
+    Option("SCAR_IS", "--scar-is", "choice", "What the scar raster holds (default: surface)",
+           choices=("surface", "depth", "change")),
+    Option("LEAST", "--least", "number", "Depths of the scar below this are none (m)", advanced=True))
+
+
+class Release(Algorithm):
+    """slope release"""
+
+    command = "release"
+    title = "Body that is released"
+    about = """
+    The body that is released: a slip surface below a polygon, to a largest depth (m) or to a volume (m3), or
+    the scar of a past event.
+
+    Shapes: sphere through toe and shoulder of the polygon; ellipsoid, as wide as the polygon; plane by its dip
+    and the bearing to which it dips (degrees); slbl, the sloping local base level.
+
+    Layers: the depth of the body (m), and the ground without it (m, shaded relief). Also a picture with a
+    section, the numbers (release.yaml), and the lines of the deck (release.deck.txt). The terrain is made first
+    if the raster is not one of SLOPE."""
+    options = (
+        DEM, Option("POLYGON", "--polygon", "polygons", "Polygon where the mass is released"), *SHAPE, *SCAR,
+        Option("LOCAL", "--local", "switch", "The polygon is in the terrain's local metres, not in a CRS",
+               advanced=True),
+        Option("OUTPUT", "-o", "new folder", "Folder for the results", own=True))
+    outputs = (("raster", "DEPTH_LAYER", "Depth of the body (m)"),
+               ("raster", "SLIP_LAYER", "Ground without the body (m)"),
+               ("number", "RELEASED", "Volume of the body (m3)"), ("number", "LARGEST_DEPTH", "Largest depth (m)"),
+               ("number", "MEAN_DEPTH", "Mean depth (m)"), ("number", "AREA", "Area (m2)"),
+               ("file", "DECK_LINES", "Lines of the deck"), ("file", "PICTURE", "Map and section"))
+
+    def work(self, asked, results):
+        source = layers.raster_file(asked, "DEM")
+        ground = layers.slope_terrain(source)
+        words = self.words(asked)
+        with NewFolder(asked.output("OUTPUT"), () if ground else TERRAIN_FILES) as folder:
+            if not ground:
+                ground = str(folder / TERRAIN_FILES[0])
+                terrain.make(source, ground, asked.feedback)
+            process.run(["release", ground, *words, "-o", folder / "release"], asked.feedback)
+        terrain.show(results, "SLIP_LAYER", folder / "release.slip.asc", "ground", "ground without the body")
+        terrain.show(results, "DEPTH_LAYER", folder / "release.depth.asc", "depth", "depth of the body (m)")
+        body = load(Path(folder) / "release.yaml")["body"]
+        results.put(OUTPUT=str(folder), RELEASED=body["volume"], LARGEST_DEPTH=body["largest_depth"],
+                    MEAN_DEPTH=body["mean_depth"], AREA=body["area"], DECK_LINES=str(folder / "release.deck.txt"),
+                    PICTURE=str(folder / "release.png"))

@@ -1,0 +1,73 @@
+"""A site's folder from layers: slope site."""
+import shutil
+from pathlib import Path
+
+from . import process, terrain
+from .algorithm import Algorithm
+from .options import Option
+from .release import SCAR, SHAPE
+from .results import load
+from .volume import CUT_ANGLE, MESH
+
+
+class Site(Algorithm):
+    """slope site"""
+
+    command = "site"
+    title = "Site from layers"
+    about = """
+    The folder of a site, from an elevation model (heights in m), the release polygon and the road: terrain, body,
+    deck, map, and site.yaml, which holds every choice. A trial run with coarse balls finds the run time. The
+    algorithm Study takes site.yaml and makes the standard study: rolling resistances, repeats, sizes of balls.
+
+    The body is a slip surface below the polygon, to a largest depth (m) or to a volume (m3), or a scar; see the
+    algorithm for the body. The balls are as many as wanted, or as the study may take minutes on this machine, or
+    memory (GB), or of a diameter (m). One of these is given.
+
+    Layers that are no files of their own, or whose CRS was set in QGIS, are kept in a folder beside that of the
+    site, FOLDER.layers, to which site.yaml refers."""
+    options = (
+        Option("DEM", "--terrain", "raster", "Elevation model (heights in m)", needed=True),
+        Option("RELEASE", "--release", "polygons", "Polygon where the mass is released"),
+        *SHAPE,
+        Option("ROAD", "--road", "polygons", "Road (polygons): the volume to remove from it"),
+        CUT_ANGLE, MESH,
+        Option("STRUCTURE", "--structure", "file", "Wall or building (STL, m)", filter="STL (*.stl)"),
+        Option("LINE", "--line", "line", "Control line: what passes it is counted"),
+        Option("MOTION", "--motion", "file", "Motion of the ground, as slope quake wrote it (s, m/s2)"),
+        Option("OBSERVED", "--observed", "polygons", "Mapped deposit, outline"),
+        Option("OBSERVED_THICKNESS", "--observed", "raster", "Mapped deposit, thickness (m)", advanced=True),
+        *terrain.GROUND, *SCAR,
+        Option("BALLS", "--balls", "whole", "Balls in the body (default: 4000)", least=1),
+        Option("MINUTES", "--minutes", "number", "Minutes that the study may take"),
+        Option("MEMORY", "--memory", "number", "Memory that the study may take (GB)", advanced=True),
+        Option("DIAMETER", "--diameter", "number", "Diameter of the balls (m)", advanced=True),
+        Option("NAME", "--name", "text", "Name of the site, for the report"),
+        Option("CLIENT", "--client", "text", "Client, for the report"),
+        Option("AUTHOR", "--author", "text", "Author, for the report"),
+        Option("OUTPUT", "-o", "new folder", "New folder of the site"))
+    outputs = (("raster", "DEPTH_LAYER", "Depth of the body (m)"), ("raster", "TERRAIN_LAYER", "Terrain (m)"),
+               ("number", "RELEASED", "Volume of the body (m3)"), ("number", "NUMBER_OF_BALLS", "Balls in the body"),
+               ("number", "STUDY_MINUTES", "Estimated time of the study (minutes)"),
+               ("file", "SITE", "Choices of the site (site.yaml), for the algorithm Study"), ("file", "PICTURE", "Map"))
+
+    def work(self, asked, results):
+        keep = Path(f"{asked.output('OUTPUT')}.layers")
+        asked.keep, there = keep, keep.exists()
+        try:
+            process.run([self.command, *self.words(asked), *terrain.bounds(asked, "DEM")], asked.feedback)
+        except Exception:
+            if keep.exists() and not there:     # the failed call's own copies
+                shutil.rmtree(keep)
+            raise
+        self.collect(asked, results)
+
+    def collect(self, asked, results):
+        folder = Path(asked.output("OUTPUT"))
+        terrain.show(results, "TERRAIN_LAYER", folder / "terrain.asc", "ground", "terrain")
+        terrain.show(results, "DEPTH_LAYER", folder / "release.depth.asc", "depth", "depth of the body (m)")
+        found = load(folder / "site.yaml")["found"]
+        seconds = found["study"]["seconds"]
+        results.put(OUTPUT=str(folder), RELEASED=found["body"]["volume"], NUMBER_OF_BALLS=found["balls"],
+                    STUDY_MINUTES=None if seconds is None else seconds / 60, SITE=str(folder / "site.yaml"),
+                    PICTURE=str(folder / "map.png"))

@@ -1,0 +1,86 @@
+"""A deck, or a site, over lists of values: slope study."""
+from pathlib import Path
+
+from qgis.core import QgsProcessingException
+
+from .algorithm import Algorithm
+from .options import Option
+from .results import load
+from .volume import CUT_ANGLE, MESH
+
+DECK = Option("DECK", "", "file", "Deck, or site.yaml of a site", needed=True)
+WITH_A_SITE = ("RANKS", "JOBS")     # all other choices are in its site.yaml
+
+
+class Study(Algorithm):
+    """slope study"""
+
+    command = "study"
+    title = "Study"
+    about = """
+    One deck over lists of its variables, several runs at a time; each run has a folder of its own, and the same
+    call goes on after an interruption.
+
+    Values: one NAME=V1,V2,... per line; A:B:STEP stands for A, A + STEP, ... up to B. Repeats name what is
+    chance (a variable called seed or ...offset), and give the scatter. Of a site, take site.yaml: it says all of
+    this, and the site's folder gets the results.
+
+    Layers: largest thickness over all runs (m), and the share of the runs with a deposit thicker than 0.1, 0.5,
+    1 m. Tables study.csv and combinations.csv: volumes in m3 of ground, lengths in m, times in s."""
+    options = (
+        DECK,
+        Option("SET", "--set", "words", "Values of the deck's variables, one NAME=V1,V2,... per line"),
+        Option("REPEAT", "--repeat", "words", "Repeats, one NAME=V1,V2,... per line"),
+        Option("ROAD", "--road", "polygons", "Road (polygons): the volume to remove from it"),
+        CUT_ANGLE, MESH,
+        Option("RANKS", "--np", "whole", "MPI ranks of each run", 1, least=1),
+        Option("JOBS", "--jobs", "whole", "Runs at a time (default: as many as the cores allow)", least=1),
+        Option("EXCEED", "--exceed", "text", "Thicknesses of the maps of exceedance, with commas between (m)",
+               "0.1,0.5,1", advanced=True),
+        Option("LOCAL", "--local", "switch", "The road is in the local metres of the run, not in a CRS", advanced=True),
+        Option("OUTPUT", "-o", "new folder", "Folder of the study"))
+    outputs = (("raster", "THICKNESS", "Largest final thickness over all runs (m)"),
+               ("raster", "MAX_THICKNESS", "Largest thickness over all runs and times (m)"),
+               ("number", "CONSERVATIVE", "Conservative volume to remove (m3)"), ("file", "TABLE", "Table of all runs"),
+               ("file", "REPORT", "Report of a site"))
+
+    def site(self, asked):
+        """The folder of the site if the deck is a site.yaml, else None."""
+        path = Path(asked.text(DECK.key))
+        return path.parent if path.name == "site.yaml" else None
+
+    def words(self, asked):
+        folder = self.site(asked)
+        if folder is None:
+            return super().words(asked)
+        for option in self.options:
+            value = asked.parameters.get(option.key)
+            if option.key not in (DECK.key, "OUTPUT", *WITH_A_SITE) and value not in (None, "", False, option.default):
+                raise QgsProcessingException(f"{option.key}: must not be given with a site, whose site.yaml has it")
+        return [str(folder), *(word for option in self.options if option.key in WITH_A_SITE
+                               for word in option.words(asked)), *self.extra(asked)]
+
+    def collect(self, asked, results):
+        folder = self.site(asked)
+        show(folder / "study" if folder else Path(asked.output("OUTPUT")), results)
+        if folder:
+            page = next((path for path in (folder / "report.html", folder / "study" / "report.html") if path.exists()),
+                        None)
+            results.put(REPORT=page and str(page))
+
+
+def show(folder, results):
+    """The layers and numbers of a study's folder."""
+    about = load(folder / "study.yaml")
+    for one in reversed(about["exceedance"] or []):
+        results.layer(None, place(folder, one), "exceedance", f"share of runs above {one['threshold_m']:g} m")
+    for kind, one in (about["envelope"] or {}).items():
+        results.layer(kind.upper(), place(folder, one), "thickness", one["what"])
+    results.put(OUTPUT=str(folder), TABLE=str(folder / "study.csv"),
+                CONSERVATIVE=(about.get("conservative") or {}).get("volume_m3"))
+
+
+def place(folder, one):
+    """The GeoTIFF of a map where the study's place is known, else the .asc."""
+    path = folder / one["file"]
+    return path.with_suffix(".tif") if path.with_suffix(".tif").is_file() else path
