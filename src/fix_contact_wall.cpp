@@ -19,7 +19,7 @@ using namespace LAMMPS_NS;
 
 FixContactWall::FixContactWall(LAMMPS *lmp, int narg, char **arg, int keys) :
     Fix(lmp, narg, arg), caller(fmt::format("Fix {} {}", style, id)), pair(nullptr), wall_type(0),
-    records(keys), contacts_in_lists(false)
+    records(keys), contacts_in_lists(false), kept_by_atom(false)
 {
   scalar_flag = vector_flag = 1;
   extscalar = extvector = 1;
@@ -27,16 +27,23 @@ FixContactWall::FixContactWall(LAMMPS *lmp, int narg, char **arg, int keys) :
   restart_global = restart_peratom = 1;
   create_attribute = 1;
   maxexchange_dynamic = 1;
-
-  records.resize(atom->nmax);
-  atom->add_callback(Atom::GROW);
-  atom->add_callback(Atom::RESTART);
 }
 
 FixContactWall::~FixContactWall()
 {
+  if (!kept_by_atom) return;
   atom->delete_callback(id, Atom::GROW);
   atom->delete_callback(id, Atom::RESTART);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixContactWall::keep_by_atom()
+{
+  records.resize(atom->nmax);
+  atom->add_callback(Atom::GROW);
+  atom->add_callback(Atom::RESTART);
+  kept_by_atom = true;
 }
 
 /* ---------------------------------------------------------------------- */

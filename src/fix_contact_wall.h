@@ -12,6 +12,7 @@
 #include "contact_records.h"
 
 #include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -45,6 +46,9 @@ class FixContactWall : public Fix, public ContactHolder {
   Slope::ContactRecords records;
   bool contacts_in_lists;    // contacts have been updated since they were last stored by atom
 
+  // the last that a constructor does: LAMMPS cannot undo it for a fix whose constructor has failed
+  void keep_by_atom();
+
   // from the lists, which may hold balls that have been deleted, to the records, which are empty
   virtual void take_contacts() = 0;
 
@@ -52,6 +56,7 @@ class FixContactWall : public Fix, public ContactHolder {
   virtual std::vector<double> restart_values() = 0;
 
  private:
+  bool kept_by_atom;
   void store_contacts();
 };
 

@@ -62,6 +62,7 @@ FixWallGranBalls::FixWallGranBalls(LAMMPS *lmp, int narg, char **arg) :
   size_vector = 3;
   for (int k = 0; k < 3; k++) force_mine[k] = force_all[k] = 0.0;
   force_ready = 0;
+  keep_by_atom();
 }
 
 /* ---------------------------------------------------------------------- */

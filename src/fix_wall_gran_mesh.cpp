@@ -56,6 +56,7 @@ FixWallGranMesh::FixWallGranMesh(LAMMPS *lmp, int narg, char **arg) :
     nevery = options.every;
     recorder.reset(new SurfaceRecorder(lmp, caller, options.output, options.every, *surface));
   }
+  keep_by_atom();
 }
 
 /* ---------------------------------------------------------------------- */
