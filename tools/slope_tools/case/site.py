@@ -62,13 +62,12 @@ Draw = Callable[[Path, Shown, str], None]       # of the map: file, what it show
 
 
 def make(choices: Choices, folder: Path, machine: Machine, tell: Callable[[str], Any],
-         warn: Callable[[str], Any], draw: Draw) -> Made:
+         warn: Callable[[str], Any], draw: Draw, again: bool = False) -> Made:
     """Make a site's folder, or make it anew, from complete choices whose files are seen from the working folder.
 
-    tell and warn are called with lines for the user, draw draws the map. Raises SlopeError on bad input; the
-    folder is then as it was.
+    tell and warn are called with lines for the user, draw draws the map; again: the folder is a site, which is made
+    anew. Raises SlopeError on bad input; the folder is then as it was.
     """
-    again = (folder / site_choices.NAME).is_file()
     check_target(folder, again)
     old = set(site_choices.found(folder).get("files") or ()) if again else set()
     new = folder.absolute().with_name(f".{folder.absolute().name}.{os.getpid()}.new")

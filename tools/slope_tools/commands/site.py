@@ -116,7 +116,7 @@ def run(args):
     folder, choices = chosen(args)
     cores = args.jobs or jobs.cores()
     made = site.make(choices, folder, site.Machine(program(args.lmp), cores), lambda line: print(line, flush=True),
-                     printer("site"), site_map.draw)
+                     printer("site"), site_map.draw, again=args.folder is not None)
     print(f"written to {folder}: {' '.join(made.files)}")
     print(f"look at {folder / site.MAP}, then: tools/slope study {folder}")
 
