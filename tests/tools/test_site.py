@@ -115,6 +115,7 @@ def test_two_commands_lead_from_gis_files_to_a_report(done):
     assert study["conservative"]["kind"] == "prediction" and study["conservative"]["volume_m3"] > 0
     assert yaml.safe_load((mine / "sizes" / "converge.yaml").read_text())["study"]["finished"] == 9
     assert "report.html" in second and "conservative" in second
+    assert (mine / "report.mp4").exists() == bool(shutil.which("ffmpeg"))
     assert not list(folder.glob(".mine*"))
     assert str(folder) not in (mine / "release.yaml").read_text() + (mine / "site.yaml").read_text()
     about = site_choices.read(mine)

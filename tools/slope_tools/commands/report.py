@@ -7,10 +7,9 @@ Order of the work: find the runs and read their results (data.py), find what map
 import argparse
 from pathlib import Path
 
-from .. import disk
 from ..errors import SlopeError
+from ..report import document
 from ..report.asked import Asked
-from ..report.document import make, write_pictures
 from ..report.heading import SITE
 from ..report.section import FALL
 
@@ -76,20 +75,11 @@ def run(args):
         raise SlopeError("-o", "must be in an existing folder", output)
     asked = Asked(args.folder, args.shown, args.section, args.local, args.reference, args.converge, args.project,
                   args.client, args.author, None if args.no_film else output.with_suffix(".mp4"))
-    page, html = make(asked)
-    tables = {output.with_suffix(".section.csv"): page.section.table(),
-              output.with_suffix(".numbers.csv"): page.numbers.table()}
-    films = {asked.film: page.film.content} if page.film.content else {}
-    for path, text in {output: html, **tables, **films}.items():
-        disk.write(path, text)
-    view = ", a 3-D view" if 'id="scene"' in html else ""
-    print(f"{output}: {len(html) / 1e6:.1f} MB, {page.pictures} pictures{view}; "
-          f"{', '.join(map(str, [*tables, *films]))}")
+    first, *notes = document.write(asked, output)
+    print(first)
     if args.pictures:
-        write_pictures(output, html)
+        document.write_pictures(output)
     if args.no_paper:
         print("note: --no-paper is the default now; --reference FILE.yaml brings other numbers in")
-    if page.film.text and not films:
-        print(f"note: {page.film.text}")
-    for level, text in page.warnings:
-        print(f"{'WARNING' if level == 'red' else 'note'}: {text}")
+    for line in notes:
+        print(line)

@@ -104,7 +104,8 @@ def run_site(args):
     if study:
         from ..report import document
         from ..report.asked import Asked
-        print("\n".join(document.write(Asked(study), args.deck / "report.html")))
+        report = args.deck / "report.html"
+        print("\n".join(document.write(Asked(study, film=report.with_suffix(".mp4")), report)))
 
 
 def run_ensemble(args, settings, repeated, thresholds, defaults):

@@ -9,22 +9,26 @@ from ..errors import SlopeError
 from .asked import Asked
 
 
-def write_pictures(output, html):
-    """The page's PNG pictures, its maps, as files beside it."""
-    pictures = re.findall(r"data:image/png;base64,([A-Za-z0-9+/=]+)", html)
+def write_pictures(output):
+    """The written page's PNG pictures, its maps, as files beside it."""
+    pictures = re.findall(r"data:image/png;base64,([A-Za-z0-9+/=]+)", output.read_text(encoding="utf-8"))
     for place, picture in enumerate(pictures, 1):
         disk.write(output.with_suffix(f".{place}.png"), base64.b64decode(picture))
     print(f"{output.with_suffix('.1.png')} to {len(pictures)}: its maps")
 
 
 def write(asked: Asked, output: Path) -> List[str]:
-    """Write the page and its tables; returns lines for the user."""
+    """Write the page, its tables and its film, if one is asked for; returns lines for the user, the files first."""
     page, html = make(asked)
     tables = {output.with_suffix(".section.csv"): page.section.table(),
               output.with_suffix(".numbers.csv"): page.numbers.table()}
-    for path, text in {output: html, **tables}.items():
+    films = {asked.film: page.film.content} if asked.film and page.film.content else {}
+    for path, text in {output: html, **tables, **films}.items():
         disk.write(path, text)
-    return [f"{output}: {len(html) / 1e6:.1f} MB, {page.pictures} pictures; {', '.join(map(str, tables))}",
+    view = ", a 3-D view" if 'id="scene"' in html else ""
+    written = (f"{output}: {len(html) / 1e6:.1f} MB, {page.pictures} pictures{view}; "
+               f"{', '.join(map(str, [*tables, *films]))}")
+    return [written, *([f"note: {page.film.text}"] if page.film.text and not films else []),
             *(f"{'WARNING' if level == 'red' else 'note'}: {text}" for level, text in page.warnings)]
 
 

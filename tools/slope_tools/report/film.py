@@ -115,7 +115,7 @@ class Picture:
             self.clock.set_animated(True)
             self.figure.canvas.draw()
         self.still = self.figure.canvas.copy_from_bbox(self.figure.bbox)
-        self.size = self.figure.canvas.get_width_height()
+        self.size: Tuple[int, int] = self.figure.canvas.get_width_height()
         self.panels = [Panel(axis, self.size[1]) for axis in axes[:2]]
 
     def sheet(self, layers):
