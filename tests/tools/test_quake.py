@@ -305,7 +305,7 @@ def test_window(slope):
     ("--window 6 5", "--window: must be within"), ("--band 0.1 60", "--band: must be 0 < LOW < HIGH < 50 Hz"),
     ("--band 5 1", "--band: must be 0 < LOW < HIGH"), ("--peak 0", "--peak: must be > 0, got 0"),
     ("--scale 0", "--scale: must not be 0, got 0"),
-    ("--peak 6000", "--peak: a largest acceleration of at most 5000 gal"),
+    ("--peak 6000", "--peak: must give a largest acceleration of at most 5000 gal"),
     ("--scale 100", "--scale: must give a largest acceleration of at most 5000 gal"),
     ("--peak x", "must be a finite number, got 'x'")])
 def test_options_that_are_wrong(slope, options, message):
