@@ -6,7 +6,7 @@ finished (jobs.py), collect (results.py), combine (combinations.py, headline.py)
 import argparse
 from pathlib import Path
 
-from ..case import decks
+from ..case import decks, site_choices
 from ..case.settings import check_settings, one_value_each
 from ..ensemble import intensity, repeats, results, sample, site_study
 from ..ensemble.size_error import SizeErrors
@@ -65,7 +65,7 @@ def add_parser(commands, **kwargs):
 
 def run(args):
     """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
-    if args.deck.is_dir():
+    if args.deck.is_dir() and (args.deck / site_choices.NAME).exists():
         return run_site(args)
     if args.output is None:
         raise SlopeError("-o", "must be given, the study's folder")

@@ -27,7 +27,10 @@ SCRIPT = """\
 line=$(sed -n "$((SLURM_ARRAY_TASK_ID + 1))p" {runs})
 cd "$(cut -f 1 <<< "$line")" || exit
 eval "$(cut -f 2- <<< "$line")" {screen} 2>&1 < /dev/null
-echo $? > {status}.new && mv {status}.new {status}
+ended=$?
+if ((ended != 143)); then   # by SIGTERM: cancelled, and the program may end before this script does
+  echo $ended > {status}.new && mv {status}.new {status}
+fi
 """
 
 
