@@ -352,7 +352,7 @@ class _Work:
                 mean[mixed] = np.clip(t[mixed] - centre, 0, t[mixed])
                 below[mixed] = centre < 0
                 # not so where the cut leaves the deposit, above or below, next to the edge
-                low, high = np.min(h, axis=0)[mixed[open_]], np.max(h, axis=0)[mixed[open_]]
+                low, high = np.min(four, axis=0)[mixed[open_]], np.max(four, axis=0)[mixed[open_]]
                 bent = (low < 0) | (high > t[mixed])
                 parts = [box(x[a], y[b], x[a + 1], y[b + 1]).difference(road) for a, b in zip(i[bent], j[bent])]
                 mean[j[bent], i[bent]] = self.mean_in(parts, t[j[bent], i[bent]], near)
