@@ -299,11 +299,11 @@ def test_layers_come_into_the_project_with_their_styles(inside, place):
 
 
 def test_a_study_is_cancelled_and_goes_on(inside, place):
-    stopped, ended = inside("study", "deck/in.tiny", "[2/3] rolling_0.1: started", "rolling=0,0.1,0.2", "steps=600")
+    stopped, ended = inside("study", "deck/in.tiny", "[2/3] rolling_0.1_steps_600: started", "rolling=0,0.1,0.2", "steps=600")
     assert stopped["results"] == {"error": "slope study: stopped"} and 100 not in stopped["percents"]
-    assert any("the same command goes on" in line for line in stopped["lines"])
-    assert stopped["folders"] == ["rolling_0_steps_600", "rolling_0.1_steps_600"][::-1] or len(stopped["folders"]) == 2
-    assert not processes_in(place)
+    assert any("same command" in line for line in stopped["lines"]), stopped["lines"]
+    assert len(stopped["folders"]) == 2
+    assert set(processes_in(place)) <= {os.getpid()}      # the test itself stands there
     assert ended["percents"][-1] == 100 and ended["percents"] == sorted(ended["percents"]) and ended["percents"][0] > 30
     assert len(ended["folders"]) == 3 and Path(ended["results"]["TABLE"]).is_file()
     assert any(line.startswith("1 of 3 runs are finished already") for line in ended["lines"])

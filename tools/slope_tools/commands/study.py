@@ -65,7 +65,7 @@ def add_parser(commands, **kwargs):
 
 def run(args):
     """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
-    if args.deck.is_dir() and (args.deck / site_choices.NAME).exists():
+    if args.deck.is_dir() and (args.output is None or (args.deck / site_choices.NAME).exists()):
         return run_site(args)
     if args.output is None:
         raise SlopeError("-o", "must be given, the study's folder")
