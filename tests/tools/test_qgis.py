@@ -299,7 +299,8 @@ def test_layers_come_into_the_project_with_their_styles(inside, place):
 
 
 def test_a_study_is_cancelled_and_goes_on(inside, place):
-    stopped, ended = inside("study", "deck/in.tiny", "[2/3] rolling_0.1_steps_600: started", "rolling=0,0.1,0.2", "steps=600")
+    stopped, ended = inside("study", "deck/in.tiny", "[2/3] rolling_0.1_steps_600: started", "rolling=0,0.1,0.2",
+                            "steps=600")
     assert stopped["results"] == {"error": "slope study: stopped"} and 100 not in stopped["percents"]
     assert any("same command" in line for line in stopped["lines"]), stopped["lines"]
     assert len(stopped["folders"]) == 2
