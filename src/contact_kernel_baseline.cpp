@@ -3,7 +3,7 @@
    Distributed under the GNU General Public License, version 2
 ------------------------------------------------------------------------- */
 
-#define SLOPE_INSTRUCTIONS baseline    // what the compiler is told for all sources
+#define SLOPE_INSTRUCTIONS baseline    // the compiler options of all other sources
 
 #include "contact_passes.h"
 

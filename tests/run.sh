@@ -16,7 +16,7 @@ counted=0
 if (($# == 0)) && /usr/bin/python3 -c "import coverage" 2>/dev/null; then
   counted=1
   export SLOPE_TOOLS_SOURCE=$top/tools/slope_tools SLOPE_COVERAGE=$top/build/coverage
-  export COVERAGE_PROCESS_START=$top/tests/coverage/coverage.ini PYTHONPATH=$top/tests/coverage${PYTHONPATH:+:$PYTHONPATH}
+  export COVERAGE_PROCESS_START=$top/tests/coverage/coverage.ini
   rm -rf "$SLOPE_COVERAGE"
   mkdir -p "$SLOPE_COVERAGE"
 fi

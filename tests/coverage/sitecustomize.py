@@ -1,4 +1,4 @@
-"""Python reads this file first where tests/run.sh puts its folder on PYTHONPATH: lines that run are counted then."""
+"""Python reads this file first where its folder is on PYTHONPATH, as in the tests: lines that run are counted then."""
 try:
     import coverage
 except ImportError:

@@ -14,55 +14,26 @@ import subprocess
 import time
 from pathlib import Path
 
-DECK = """# a sheet of balls on a slope of 30 degrees
-units si
-suffix slope
-atom_style sphere
-boundary s s fs
-comm_modify vel yes
-processors 1 * 1
-region ground terrain slope.asc depth 40 headroom 60
-region all block 0 400 0 ${width} -40 340 units box
+from slope_scene import BODY, START, write_slopes
+
+DECK = f"""# a sheet of balls on a slope of 30 degrees
+{START}region all block 0 400 0 ${{width}} -40 340 units box
 region under terrain bed.asc depth 100
 region above terrain bed.asc depth 100 side out
 region sheet terrain top.asc depth 100
 region plan block 100 350 10 $(v_width-10) -40 340 units box
 region body intersect 3 plan sheet above
-create_box 3 all
-lattice sc 0.9995    # touching
-create_atoms 1 region body
-group soil type 1
-set group soil diameter 1.0 density 2700
-pair_style gran/restitution
-pair_coeff * * stiffness 1e8 1e8 restitution 0.5 friction 30 rolling 0.05
-fix bed soil wall/gran/balls 3 1.0 surface ground upper spacing 1.0
-delete_balls soil overlap 0.0
-neighbor 0.2 bin
-neigh_modify every 1 delay 0 check yes binsize 1.2
-atom_modify sort 1000 20
-timestep 9e-4
-fix spread all balance 1000 1.01 shift xy 10 1.01
-fix move soil nve/sphere
-fix weight soil gravity 9.80665 vector 0 0 -1
-fix deposit soil deposit/grid ${half} ${steps} cell 2.5 terrain ground output sheet bulk 1.9
-thermo ${steps}
+{BODY}fix spread all balance 1000 1.01 shift xy 10 1.01
+fix deposit soil deposit/grid ${{half}} ${{steps}} cell 2.5 terrain ground output sheet bulk 1.9
+thermo ${{steps}}
 thermo_modify lost ignore
-run ${steps}
+run ${{steps}}
 """
-
-
-def write_slopes(folder, width):
-    """The slope, and what is 1 and 21 m above it: 10 m cells, falling in -x."""
-    rows = round(width / 10) + 1
-    for name, lift in (("slope", 0.0), ("bed", 1.5), ("top", 21.5)):
-        row = " ".join(f"{0.57735 * 10 * i + lift:.4f}" for i in range(41))
-        (folder / f"{name}.asc").write_text(f"ncols 41\nnrows {rows}\nxllcorner -5\nyllcorner -5\ncellsize 10\n"
-                                            "NODATA_value -9999\n" + "\n".join([row] * rows) + "\n")
 
 
 def run(lmp, folder, balls, ranks, steps):
     width = 10 * round(balls / (250 * 20) / 10) + 20
-    write_slopes(folder, width)
+    write_slopes(folder, width, cell=10, columns=41, top=21.5)
     (folder / "in.sheet").write_text(DECK)
     command = [lmp, "-in", "in.sheet", "-screen", "none"]
     for name, value in {"width": width, "steps": steps, "half": steps // 2}.items():

@@ -16,47 +16,18 @@ import time
 from pathlib import Path
 from statistics import mean, median
 
-DECK = """# a body on a slope, on a terrain of any width
-units si
-suffix slope
-atom_style sphere
-boundary s s fs
-comm_modify vel yes
-processors 1 * 1
-region ground terrain slope.asc depth 40 headroom 60
-region all block 0 590 0 ${width} -40 400 units box
+from slope_scene import BODY, START, write_slopes
+
+DECK = f"""# a body on a slope, on a terrain of any width
+{START}region all block 0 590 0 ${{width}} -40 400 units box
 region bed terrain bed.asc depth 100 side out
 region sheet terrain top.asc depth 100
 region plan block 300 500 220 270 -40 400 units box
 region body intersect 3 plan sheet bed
-create_box 3 all
-lattice sc 0.9995
-create_atoms 1 region body
-group soil type 1
-set group soil diameter 1.0 density 2700
-pair_style gran/restitution
-pair_coeff * * stiffness 1e8 1e8 restitution 0.5 friction 30 rolling 0.05
-fix bed soil wall/gran/balls 3 1.0 surface ground upper spacing 1.0
-delete_balls soil overlap 0.0
-neighbor 0.2 bin
-neigh_modify every 1 delay 0 check yes binsize 1.2
-atom_modify sort 1000 20
-timestep 9e-4
-fix move soil nve/sphere
-fix weight soil gravity 9.80665 vector 0 0 -1
-thermo ${steps}
+{BODY}thermo ${{steps}}
 thermo_modify flush yes lost ignore
-run ${steps}
+run ${{steps}}
 """
-
-
-def write_slopes(folder, width):
-    """The slope, and what is 1.5 and 3.5 m above it: cells of 5 m, falling in -x."""
-    rows = width // 5 + 1
-    for name, lift in (("slope", 0.0), ("bed", 1.5), ("top", 3.5)):
-        row = " ".join(f"{0.57735 * 5 * i + lift:.4f}" for i in range(120))
-        (folder / f"{name}.asc").write_text(f"ncols 120\nnrows {rows}\nxllcorner -2.5\nyllcorner -2.5\ncellsize 5\n"
-                                            "NODATA_value -9999\n" + "\n".join([row] * rows) + "\n")
 
 
 def pss(folder):
@@ -110,7 +81,7 @@ def main():
         folders[width].mkdir(parents=True, exist_ok=True)
         (folders[width] / "in.slope").write_text(DECK)
         (folders[width] / "width").write_text(str(width))
-        write_slopes(folders[width], width)
+        write_slopes(folders[width], width, cell=5, columns=120, top=3.5)
     for program in args.lmp:
         lmp = str(Path(program).absolute())
         memory, setup, step = ({width: [] for width in folders} for _ in range(3))

@@ -3,7 +3,7 @@ import sys
 
 
 class SlopeError(Exception):
-    """Bad input, told in one line: `where: rule, got value`.
+    """Bad input, reported in one line: `where: rule, got value`.
 
     where is the file and the place in it (`dem.asc: line 8`) or the option (`--cell`); rule says what must hold;
     got is the offending value, if there is one to show. cli.main prints the line and exits with status 2. What files

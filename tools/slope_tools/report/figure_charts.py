@@ -163,6 +163,35 @@ def means(series):
     return x, np.array([np.mean([value for at, value in zip(series.x, series.y) if at == one]) for one in x])
 
 
+def panel_width(width, left):
+    """Of the axes of a chart whose numbers end at left, inches."""
+    return width - left - 0.12
+
+
+def value_panel(sheet, values, y_label, title, width, tall):
+    """Axes below a title, with room for all values and zero; the ticks of y, and where the axes begin, inches."""
+    low, high = 1.08 * min(0.0, values.min()), 1.08 * max(values.max(), 1e-9)
+    grid = ticks(low, high, 6)
+    left = EDGE + OUT + max(text_width(f"{value:,.6g}", TICK) for value in grid) + 0.02
+    sheet.title(title, left)
+    sheet.write(y_label, left, sheet.bottom + 0.02, LABEL)
+    axes = sheet.axes(Box(left, sheet.bottom + 0.05, panel_width(width, left), tall))
+    axes.set(ylim=(low, high))
+    return axes, grid, left
+
+
+def label_axes(sheet, axes, grid, left, x_label, at, limits):
+    """Ticks of both axes with their numbers, lines at those of y, and the name of x below."""
+    axes.set_xticks(at, [label(value) for value in at])
+    axes.set_xlim(*limits)
+    axes.set_yticks(grid, [f"{value:,.6g}" for value in grid])
+    axes.tick_params(labelsize=TICK)
+    axes.grid(axis="y", color="#dddddd", lw=0.5)
+    axes.spines[["top", "right"]].set_visible(False)
+    sheet.bottom += TICKS
+    sheet.write(x_label, left, sheet.bottom, LABEL)
+
+
 def chart(series, x_label, y_label, title, others=(), levels=(), mark: Optional[Tuple] = None, width=FULL):
     """Values against a variable. others: Series from elsewhere, in grey; levels: list of (label, y);
 
@@ -173,14 +202,7 @@ def chart(series, x_label, y_label, title, others=(), levels=(), mark: Optional[
         every = np.concatenate([[0.0], *(one.y for one in (*series, *others)), [y for _, y in levels],
                                 [mark[1]] if mark else [], *(np.asarray(one.y) + (one.scatter or 0)
                                                              for one in series)]).astype(float)
-        low, high = 1.08 * min(0.0, every.min()), 1.08 * max(every.max(), 1e-9)
-        grid = ticks(low, high, 6)
-        left = EDGE + OUT + max(text_width(f"{value:,.6g}", TICK) for value in grid) + 0.02
-        sheet.title(title, left)
-        sheet.write(y_label, left, sheet.bottom + 0.02, LABEL)
-        size = width - left - 0.12, 2.2 if width > HALF else 1.6
-        axes = sheet.axes(Box(left, sheet.bottom + 0.05, *size))
-        axes.set(ylim=(low, high))
+        axes, grid, left = value_panel(sheet, every, y_label, title, width, 2.2 if width > HALF else 1.6)
         found = []
         for one, style in zip(others, ("s--", "D:", "^-.", "v--") * len(others)):
             axes.plot(one.x, one.y, style, color="#999999", mfc="white", ms=5, lw=1.0)
@@ -199,14 +221,8 @@ def chart(series, x_label, y_label, title, others=(), levels=(), mark: Optional[
         axes.margins(x=0.08)
         xlo, xhi = axes.get_xlim()
         wide = max(text_width(label(value), TICK) for value in ticks(xlo, xhi, 6)) + 0.2
-        axes.set_xticks(at := ticks(xlo, xhi, max(1, min(7, int(size[0] / wide)))), [label(value) for value in at])
-        axes.set_xlim(xlo, xhi)
-        axes.set_yticks(grid, [f"{value:,.6g}" for value in grid])
-        axes.tick_params(labelsize=TICK)
-        axes.grid(axis="y", color="#dddddd", lw=0.5)
-        axes.spines[["top", "right"]].set_visible(False)
-        sheet.bottom += TICKS
-        sheet.write(x_label, left, sheet.bottom, LABEL)
+        most = max(1, min(7, int(panel_width(width, left) / wide)))
+        label_axes(sheet, axes, grid, left, x_label, ticks(xlo, xhi, most), (xlo, xhi))
         if found:
             place_entries(sheet, found, left, left, sheet.bottom + 0.05)
         return figures.data_uri(sheet.finish(), "svg")
@@ -245,13 +261,7 @@ def convergence(found, x_label, y_label, title, width=HALF):
         means_ = np.asarray(found.means, float)
         every = np.concatenate([[0.0], means_ + deviations, means_ - deviations, [found.small],
                                 [value for value in (found.low, found.high) if value is not None]])
-        low, high = 1.08 * min(0.0, every.min()), 1.08 * max(every.max(), 1e-9)
-        grid = ticks(low, high, 6)
-        left = EDGE + OUT + max(text_width(f"{value:,.6g}", TICK) for value in grid) + 0.02
-        sheet.title(title, left)
-        sheet.write(y_label, left, sheet.bottom + 0.02, LABEL)
-        size = width - left - 0.12, 1.7
-        axes = sheet.axes(Box(left, sheet.bottom + 0.05, *size))
+        axes, grid, left = value_panel(sheet, every, y_label, title, width, 1.7)
         end = 1.05 * max(found.sizes)
         line = {"color": COLOURS[0], "lw": 1.2, "ls": "-" if found.supported is not False else ":"}
         axes.plot([0, end], [found.small, found.small + end * found.slope], **line)
@@ -263,14 +273,7 @@ def convergence(found, x_label, y_label, title, width=HALF):
         if found.low is not None:
             axes.errorbar([0], [found.small], [[found.small - found.low], [found.high - found.small]], fmt="none",
                           ecolor=COLOURS[0], elinewidth=1.1, capsize=3, zorder=5)[2][0].set_clip_on(False)
-        axes.set(xlim=(0, end), ylim=(low, high))
-        axes.set_xticks(at := ticks(0, end, 6), [label(value) for value in at])
-        axes.set_yticks(grid, [f"{value:,.6g}" for value in grid])
-        axes.tick_params(labelsize=TICK)
-        axes.grid(axis="y", color="#dddddd", lw=0.5)
-        axes.spines[["top", "right"]].set_visible(False)
-        sheet.bottom += TICKS
-        sheet.write(x_label, left, sheet.bottom, LABEL)
+        label_axes(sheet, axes, grid, left, x_label, ticks(0, end, 6), (0, end))
         entries = [Entry("means", dots),
                    Entry("line" if found.supported is not False else "line, not supported by the runs", line),
                    Entry("small balls" + (", 95 % interval" if found.low is not None else ""),
