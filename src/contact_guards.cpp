@@ -94,8 +94,7 @@ void ContactGuards::check_timestep()
          dt, dt / bound, bound, iworst, jworst);
   else
     warn("time step {:.4g} s is {:.3g} times the largest with which the dashpots of scheme plain "
-         "allow "
-         "a heap to come to rest, 0.15 m_min/cn = {:.4g} s (types {} {})",
+         "allow a heap to come to rest, 0.15 m_min/cn = {:.4g} s (types {} {})",
          dt, dt / bound, bound, iworst, jworst);
 }
 
@@ -127,10 +126,9 @@ void ContactGuards::check_dashpots(int i, int j)
   const double zeta = cn / (2.0 * sqrt(table.coeff(i, j).kn * lightest));
   if (zeta > ZETA_FOLLOWED && !table.is_plain())
     warn("damping ratio of types {} and {} must be <= {:g} to be followed in time, got {:.4g} (cn "
-         "{:.4g} N s/m, "
-         "lightest ball {:.4g} kg): these contacts do not rebound and rest at the right overlap, "
-         "but reach it "
-         "too fast",
+         "{:.4g} N s/m, lightest ball {:.4g} kg): these contacts do not rebound and rest at the "
+         "right overlap, "
+         "but reach it too fast",
          i, j, ZETA_FOLLOWED, zeta, cn, lightest);
 }
 
@@ -142,8 +140,7 @@ void ContactGuards::check_neighbor_lists()
 {
   if (neighbor->delay == 0 && neighbor->every == 1 && neighbor->dist_check) return;
   warn("with neigh_modify every {} delay {} check {} contacts may be found late and rebound too "
-       "fast; "
-       "every 1 delay 0 check yes finds them in time",
+       "fast; every 1 delay 0 check yes finds them in time",
        neighbor->every, neighbor->delay, neighbor->dist_check ? "yes" : "no");
 }
 
@@ -164,8 +161,7 @@ void ContactGuards::check_fixed_balls(int freeze_group_bit)
   MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (all)
     warn("no integrator moves {} balls and no fix freeze holds them: without it a fixed ball has "
-         "the "
-         "dashpots of a moving one",
+         "the dashpots of a moving one",
          all);
 }
 
@@ -186,11 +182,9 @@ void ContactGuards::watch_energy(double elastic)
 {
   if (energy.check(elastic))
     warn("the energy of the balls grew by {:.3g} % of the largest kinetic and spring energy until "
-         "step {}, "
-         "with "
+         "step {}, with "
          "nothing but contacts and gravity at work: the time step is too large, or contacts were "
-         "found "
-         "late",
+         "found late",
          100.0 * energy.growth(), update->ntimestep);
 }
 
@@ -222,19 +216,17 @@ void ContactGuards::report()
     MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
     bigint where[2] = {overlaps.ball, overlaps.step};
     MPI_Bcast(where, 2, MPI_LMP_BIGINT, all.rank, world);
-    warn("{} contacts were seen deeper than {:g} % of the smaller radius, the deepest {:.3g} % "
-         "(ball {}, "
-         "step {}): the stiffness is too small for the speeds, or the time step too large",
-         f.deep, 100.0 * DEEP, 100.0 * all.most, where[0], where[1]);
+    warn(
+        "{} contacts were seen deeper than {:g} % of the smaller radius, the deepest {:.3g} % "
+        "(ball {}, step {}): the stiffness is too small for the speeds, or the time step too large",
+        f.deep, 100.0 * DEEP, 100.0 * all.most, where[0], where[1]);
   }
   if (f.energy_grew > 1)
     warn("the energy of the balls had grown at {} of the checks every {} steps, by {:.3g} % of the "
-         "largest "
-         "kinetic and spring energy",
+         "largest kinetic and spring energy",
          f.energy_grew, +EVERY, 100.0 * f.energy_growth);
   if (f.dangerous_builds)
     warn("{} neighbor lists came late (dangerous builds): balls went farther than half the skin "
-         "{:g} in "
-         "one step, and contacts may have started too deep",
+         "{:g} in one step, and contacts may have started too deep",
          f.dangerous_builds, neighbor->skin);
 }

@@ -214,5 +214,5 @@ void DepositOptions::make_grid()
                "Fix deposit/grid cell must give rows of which {} fit into the {:.0f} bytes that a "
                "fix has in a restart file, got {:.0f} bytes in {} columns: a larger cell, or a "
                "smaller extent along x",
-               Slope::DepositBands::ROWS, DepositRestart::MOST_BYTES, band, grid.n[0]);
+               +Slope::DepositBands::ROWS, +DepositRestart::MOST_BYTES, band, grid.n[0]);
 }

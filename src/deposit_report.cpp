@@ -17,7 +17,6 @@
 #include "timer.h"
 #include "update.h"
 
-#include <algorithm>
 #include <stdexcept>
 
 using namespace LAMMPS_NS;

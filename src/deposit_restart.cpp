@@ -41,7 +41,7 @@ double DepositRestart::most_bytes(LAMMPS *lmp)
   if (smaller) bytes = utils::is_double(smaller) ? strtod(smaller, nullptr) : 0.0;
   MPI_Bcast(&bytes, 1, MPI_DOUBLE, 0, lmp->world);
   if (!(bytes > 0.0)) lmp->error->all(FLERR, "SLOPE_RESTART_PIECE must be a number of bytes > 0");
-  return std::min(bytes, MOST_BYTES);
+  return std::min(bytes, +MOST_BYTES);
 }
 
 /* ---------------------------------------------------------------------- */

@@ -66,6 +66,17 @@ void FixContactWall::init()
   }
 }
 
+/* ---------------------------------------------------------------------- */
+
+const Slope::ContactLaw &FixContactWall::law_of(int type) const
+{
+  const Slope::ContactLaw *law = pair->law(type, wall_type);
+  if (!law)    // a type that came after init(), by fix pour or fix deposit
+    error->one(FLERR, "{}: pair_coeff {} {} is not set (moving type {}, wall type {})", caller,
+               std::min(type, wall_type), std::max(type, wall_type), type, wall_type);
+  return *law;
+}
+
 /* ----------------------------------------------------------------------
    contacts from the lists to storage by atom: before atoms migrate or are sorted, before a
    restart file, at the end of a run
@@ -145,7 +156,7 @@ void FixContactWall::unpack_restart(int i, int nth)
   const double *extra = atom->extra[i];
   int m = 0;
   for (int k = 0; k < nth; k++) m += static_cast<int>(extra[m]);
-  records.unpack(i, &extra[m + 1]);
+  maxexchange = std::max(maxexchange, records.unpack(i, &extra[m + 1]));
 }
 
 int FixContactWall::size_restart(int i)

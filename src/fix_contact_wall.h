@@ -46,6 +46,9 @@ class FixContactWall : public Fix, public ContactHolder {
   Slope::ContactRecords records;
   bool contacts_in_lists;    // contacts have been updated since they were last stored by atom
 
+  // law of balls of a type on the wall
+  const Slope::ContactLaw &law_of(int type) const;
+
   // the last that a constructor does: LAMMPS cannot undo it for a fix whose constructor has failed
   void keep_by_atom();
 

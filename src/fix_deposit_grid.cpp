@@ -17,7 +17,6 @@
 #include "error.h"
 #include "update.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -245,8 +244,7 @@ void FixDepositGrid::check_balance()
   report.warn(fmt::format(
       "the volume balance does not close at step {}: released {:.10g}, on the grid {:.10g}, off "
       "the grid {:.10g}, lost {:.10g}, residual {:.3g}: balls were added or removed other than by "
-      "leaving "
-      "the box",
+      "leaving the box",
       sampled, value[Result::RELEASED], value[Result::ON_GRID], value[Result::OFF_GRID],
       value[Result::LOST], value[Result::RESIDUAL]));
 }

@@ -240,11 +240,7 @@ void FixWallGranBalls::apply(bool starting)
   for (int type = 1; type <= atom->ntypes; type++) {
     ContactList &l = lists[type];
     if (l.entries.empty()) continue;
-    const ContactLaw *law = pair->law(type, wall_type);
-    if (!law)    // a type that came after init(), by fix pour or fix deposit
-      error->one(FLERR, "{}: pair_coeff {} {} is not set (moving type {}, wall type {})", caller,
-                 std::min(type, wall_type), std::max(type, wall_type), type, wall_type);
-    l.apply(*law, update->dt, starting, moving, fixed, &tally);
+    l.apply(law_of(type), update->dt, starting, moving, fixed, &tally);
   }
 
   force_mine[0] = -tally.force.x;
@@ -263,7 +259,7 @@ double FixWallGranBalls::elastic_energy() const
   double energy = 0.0;
   for (size_t type = 1; type < lists.size(); type++)
     if (!lists[type].entries.empty())
-      energy += Slope::elastic_energy(lists[type], *pair->law(type, wall_type), moving, fixed,
+      energy += Slope::elastic_energy(lists[type], law_of(type), moving, fixed,
                                       [this](const ContactList::Entry &e, double overlap) {
                                         pair->guards.record_overlap(
                                             e.i, overlap, std::min(atom->radius[e.i], radius));

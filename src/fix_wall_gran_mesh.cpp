@@ -84,13 +84,9 @@ void FixWallGranMesh::init()
    law for balls of a type on the surface, where the rolling radius is the ball's
 ------------------------------------------------------------------------- */
 
-ContactLaw FixWallGranMesh::law_of(int type) const
+ContactLaw FixWallGranMesh::smooth_law(int type) const
 {
-  const ContactLaw *law = pair->law(type, wall_type);
-  if (!law)    // a type that came after init(), by fix pour or fix deposit
-    error->one(FLERR, "{}: pair_coeff {} {} is not set (moving type {}, wall type {})", caller,
-               std::min(type, wall_type), std::max(type, wall_type), type, wall_type);
-  ContactLaw smooth = *law;
+  ContactLaw smooth = law_of(type);
   smooth.rolling_factor = 2.0;    // of the two radii's r r/(r + r)
   return smooth;
 }
@@ -119,7 +115,7 @@ void FixWallGranMesh::take_contacts()
   visit([&](const ContactList &l, size_t k) {
     const SurfaceWatch::Slot &slot = watch.slots[l.entries[k].j];
     const int ball = l.entries[k].i, n = count[slot.ball]++;
-    memcpy(records.key(ball, n), &slot.at.normal, sizeof(Vector));
+    memcpy(records.key(ball, n), &slot.contact.at.normal, sizeof(Vector));
     std::copy_n(l.histories[k], HISTORY, records.history(ball, n));
   });
 }
@@ -203,8 +199,9 @@ void FixWallGranMesh::find_features()
   centres.resize(n);
   for (size_t s = 0; s < n; s++) {
     const SurfaceWatch::Slot &slot = watch.slots[s];
-    centres[s] = moved(slot.centre, slot.radius - radii[s], slot.at.normal);    // fix adapt
-    if (slot.touches) check_speed(watch.number_of(slot.ball), slot.at.normal);
+    const Vector &normal = slot.contact.at.normal;
+    centres[s] = moved(slot.centre, slot.radius - radii[s], normal);    // fix adapt
+    if (slot.touches) check_speed(watch.number_of(slot.ball), normal);
   }
 }
 
@@ -269,9 +266,10 @@ void FixWallGranMesh::find_contacts(bool starting, bool lists_new)
     ContactList &l = entry.second;
     const FixedPartners phantoms(centres.data(), entry.first.radius);
     if (starting)
-      l.adopt_overlaps(moving, phantoms, [&](const ContactList::Entry &e, double overlap) {
-        initial.record(overlap, atom->radius[e.i], atom->tag[e.i], atom->x[e.i],
-                       fmt::format("triangle {}", watch.slots[e.j].at.triangle + 1));
+      l.adopt_overlaps(moving, phantoms, [&](const ContactList::Entry &e, double) {
+        const SurfaceWatch::Slot &slot = watch.slots[e.j];
+        initial.record(slot.depth(), atom->radius[e.i], atom->tag[e.i], atom->x[e.i],
+                       fmt::format("triangle {}", slot.contact.at.triangle + 1));
       });
     l.find(starting, lists_new, moving, phantoms);
   }
@@ -287,8 +285,8 @@ Vector FixWallGranMesh::force_of_law(const SurfaceWatch::Slot &slot, double phas
                                      const Vector &v, const ImpactForce &impact) const
 {
   if (phase == ENDED) return {0.0, 0.0, 0.0};
-  const Vector &n = slot.at.normal;
-  const double d = slot.radius - slot.at.distance, V = -dot(v, n) * update->dt;
+  const Vector &n = slot.contact.at.normal;
+  const double d = slot.contact.overlap, V = -dot(v, n) * update->dt;
   const Vector along = moved(f, -dot(f, n), n);
   const double share = impact.tangential(phase, d, V);
   return moved({share * along.x, share * along.y, share * along.z}, impact.normal(phase, d, V), n);
@@ -315,7 +313,7 @@ void FixWallGranMesh::apply(bool starting)
 
   for (auto &entry : lists) {
     const FixedPartners phantoms(centres.data(), entry.first.radius);
-    const ContactLaw law = law_of(entry.first.type);
+    const ContactLaw law = smooth_law(entry.first.type);
     std::unique_ptr<ImpactForce> impact;
     auto add = [&](int i, int j, const Vector &f, const Vector &) {
       const SurfaceWatch::Slot &slot = watch.slots[j];
@@ -327,8 +325,8 @@ void FixWallGranMesh::apply(bool starting)
           impact.reset(new ImpactForce(law, atom->rmass[i], update->dt));
         shown = force_of_law(slot, phase, f, moving.v[i], *impact);
       }
-      const Vector arm = {-slot.radius * slot.at.normal.x, -slot.radius * slot.at.normal.y,
-                          -slot.radius * slot.at.normal.z};
+      const SurfacePoint &touched = slot.contact.at;
+      const Vector arm = moved({0.0, 0.0, 0.0}, -slot.radius, touched.normal);
       const Vector at = moved(vector_of(atom->x[i]), 1.0, arm);
       const Vector torque = cross(arm, f);    // on the ball
       momentum = moved(momentum, -1.0, f);
@@ -337,8 +335,8 @@ void FixWallGranMesh::apply(bool starting)
       moment = moved(moment, 1.0, torque);
       contacts += !ended;
       if (recorder && !starting)
-        recorder->add(slot.at.triangle, dot(shown, slot.at.normal),
-                      dot(f, slot.at.normal) * update->dt);
+        recorder->add(touched.triangle, dot(shown, touched.normal),
+                      dot(f, touched.normal) * update->dt);
     };
     ContactTally tally = tally_of(add);
     entry.second.apply(law, update->dt, starting, moving, phantoms, &tally);
@@ -357,13 +355,22 @@ void FixWallGranMesh::apply(bool starting)
 
 double FixWallGranMesh::elastic_energy() const
 {
+  // phantoms where each overlaps as far as the contact's spring is compressed
+
+  std::vector<Vector> places;
+  places.reserve(centres.size() + 1);    // as centres
+  for (size_t k = 0; k < centres.size(); k++) {
+    const SurfaceContact &c = watch.slots[k].contact;
+    places.push_back(moved(centres[k], c.spring - c.overlap, c.at.normal));
+  }
   const MovingBalls moving = pair->moving_balls();
   double energy = 0.0;
   for (const auto &entry : lists)
-    energy += Slope::elastic_energy(entry.second, law_of(entry.first.type), moving,
-                                    FixedPartners(centres.data(), entry.first.radius),
-                                    [this](const ContactList::Entry &e, double overlap) {
-                                      pair->guards.record_overlap(e.i, overlap, atom->radius[e.i]);
+    energy += Slope::elastic_energy(entry.second, smooth_law(entry.first.type), moving,
+                                    FixedPartners(places.data(), entry.first.radius),
+                                    [this](const ContactList::Entry &e, double) {
+                                      pair->guards.record_overlap(e.i, watch.slots[e.j].depth(),
+                                                                  atom->radius[e.i]);
                                     });
   return energy;
 }

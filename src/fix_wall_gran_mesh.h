@@ -89,7 +89,7 @@ class FixWallGranMesh : public FixContactWall {
 
   FastBalls fast;
 
-  Slope::ContactLaw law_of(int type) const;
+  Slope::ContactLaw smooth_law(int type) const;
   void add_contact(int slot, const double *from);
   void find_features();
   void check_speed(int i, const Slope::Vector &normal);

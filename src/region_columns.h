@@ -9,7 +9,6 @@
 #include "intervals.h"
 
 #include <memory>
-#include <vector>
 
 namespace LAMMPS_NS {
 class LAMMPS;

@@ -12,7 +12,6 @@
 #include "style_argument.h"
 
 #include <cstring>
-#include <exception>
 #include <vector>
 
 using namespace LAMMPS_NS;

@@ -13,7 +13,6 @@
 
 #include <cmath>
 #include <cstring>
-#include <exception>
 #include <new>
 #include <vector>
 
@@ -159,8 +158,7 @@ int RegTerrain::surface_exterior(double * /*x*/, double /*cutoff*/)
 int RegTerrain::no_contacts()
 {
   error->one(FLERR,
-             "Region terrain {} has no smooth wall: the ground is made of balls, see fix "
-             "wall/gran/balls",
+             "Region terrain {} makes no wall: take fix wall/gran/balls or fix wall/gran/mesh",
              id);
   return 0;
 }

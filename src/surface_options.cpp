@@ -105,7 +105,10 @@ std::unique_ptr<TouchedSurface> SurfaceOptions::read_stl() const
   const int width = sizeof(Triangle) / sizeof(double), most = MAXSMALLINT / 16 / width;
   for (int k = 0; k < n[0]; k += most)
     MPI_Bcast(&stl.triangles[k], std::min(n[0] - k, most) * width, MPI_DOUBLE, 0, world);
-  std::unique_ptr<TouchedSurface> made(new TriangleMesh(stl.triangles));
+  std::unique_ptr<TouchedSurface> made;
+  on_all_ranks(lmp, caller, [&]() {
+    made.reset(new TriangleMesh(stl.triangles));
+  });
 
   double area = 0.0;
   for (const Triangle &t : stl.triangles) area += t.area();
@@ -133,15 +136,15 @@ std::unique_ptr<TouchedSurface> SurfaceOptions::read_terrain() const
   double place[3] = {grid.xlo, grid.ylo, grid.cell};
   MPI_Bcast(size, 2, MPI_INT, 0, world);
   MPI_Bcast(place, 3, MPI_DOUBLE, 0, world);
-  if (comm->me > 0) grid = ElevationGrid(size[0], size[1], place[0], place[1], place[2], 0.0);
+  on_all_ranks(lmp, caller, [&]() {
+    if (comm->me > 0) grid = ElevationGrid(size[0], size[1], place[0], place[1], place[2], 0.0);
+  });
   for (int j = 0; j < grid.ny; j++) MPI_Bcast(&grid.at(0, j), grid.nx, MPI_DOUBLE, 0, world);
 
   std::unique_ptr<TouchedSurface> made;
-  try {
+  on_all_ranks(lmp, caller, [&]() {
     made.reset(new TerrainSurface(grid, file));
-  } catch (std::exception &e) {    // on all ranks alike
-    error->all(FLERR, "{}: {}", caller, e.what());
-  }
+  });
   const Vector &low = made->low(), &high = made->high();
   if (comm->me == 0)
     utils::logmesg(
@@ -170,7 +173,7 @@ void SurfaceOptions::check_place(const TouchedSurface &made) const
           FLERR,
           "{}: the surface of {} must reach into the box, {} {:.6g} to {:.6g}, got {:.6g} to "
           "{:.6g}: is it in other units (scale 0.001) or another place (move)?",
-          caller, file, "xyz"[d], domain -> boxlo[d], domain -> boxhi[d], low[d], high[d]);
+          caller, file, "xyz"[d], domain->boxlo[d], domain->boxhi[d], low[d], high[d]);
   }
   if (size > TOO_LARGE * box)
     error->all(FLERR,

@@ -7,6 +7,7 @@
 
 #include "atomic_file.h"
 #include "file_set.h"
+#include "gather_records.h"
 #include "rank_zero.h"
 
 #include "comm.h"
@@ -70,14 +71,7 @@ void SurfaceRecorder::send()
         std::sqrt(sums[k] * sums[k] + sums[k + 1] * sums[k + 1] + sums[k + 2] * sums[k + 2]));
   forces.clear();
 
-  const int n = SurfaceLoads::NUMBERS * static_cast<int>(fresh.size());
-  std::vector<int> counts(comm->nprocs), starts(comm->nprocs, 0);
-  MPI_Gather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, world);
-  for (int k = 1; k < comm->nprocs; k++) starts[k] = starts[k - 1] + counts[k - 1];
-  std::vector<SurfaceLoads::Record> all;
-  if (comm->me == 0) all.resize((starts.back() + counts.back()) / SurfaceLoads::NUMBERS);
-  MPI_Gatherv(fresh.data(), n, MPI_DOUBLE, all.data(), counts.data(), starts.data(), MPI_DOUBLE, 0,
-              world);
+  std::vector<SurfaceLoads::Record> all = gather_records(world, fresh);
   fresh.clear();
   loads.take(all);
 }

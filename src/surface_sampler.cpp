@@ -11,7 +11,6 @@
 #include <cstddef>
 #include <limits>
 #include <stdexcept>
-#include <utility>
 
 using namespace Slope;
 

@@ -13,6 +13,13 @@
 
 namespace Slope {
 
+// A contact of a ball with a surface
+struct SurfaceContact {
+  SurfacePoint at;
+  double overlap;    // that gives its force, m
+  double spring;     // compression of its spring in the energy, m
+};
+
 // Which points of a surface balls touch, followed from step to step.
 //
 // A ball's contacts are the nearest point of the surface, and such others as stand out from those
@@ -22,12 +29,13 @@ namespace Slope {
 class SurfaceWatch {
  public:
   struct Slot {
-    SurfacePoint at;    // the contact
-    Vector centre;     // of a phantom ball of the ball's own size that touches it at the same point
+    SurfaceContact contact;
+    Vector centre;     // of a phantom ball of the ball's size that overlaps it as the contact does
     double radius;     // of the ball, m
     int ball, next;    // next slot of the ball, -1: none
-    bool on;           // has a point now
-    bool touches;      // and the ball touches it
+    bool touches;      // the ball touches the contact's point now
+
+    double depth() const { return radius - contact.at.distance; }    // of the point in the ball, m
   };
 
   SurfaceWatch() { clear(); }
@@ -43,12 +51,12 @@ class SurfaceWatch {
   void find_features(int ball, const Vector &x, double radius, double step,
                      const TouchedSurface &surface);
 
-  // Of points: keeps, in front and by distance, those that are contacts of their own, and returns how
-  // many these are; their distances become those that give the contact its overlap. A point is none
-  // if a nearer one has it on or below its tangent plane: then the ball's cap beyond that plane holds
-  // it already. This removes every point that is no local minimum of the distance: a triangle that
-  // goes on beyond it has a nearer point, and lies below the tangent plane of that.
-  static size_t choose(std::vector<SurfacePoint> &points, double radius);
+  // Of points, which it sorts by distance: those that are contacts of their own, the nearest one first.
+  // A point is none if a nearer one has it on or below its tangent plane: then the ball's cap beyond
+  // that plane holds it already. This removes every point that is no local minimum of the distance: a
+  // triangle that goes on beyond it has a nearer point, and lies below the tangent plane of that.
+  static void choose(std::vector<SurfacePoint> &points, double radius,
+                     std::vector<SurfaceContact> &own);
 
   std::vector<Slot> slots;
   int balls() const { return static_cast<int>(watched.size()); }
@@ -73,13 +81,13 @@ class SurfaceWatch {
   std::vector<int> listed;
   std::vector<Ball> watched;
   std::vector<SurfacePoint> points;    // of one ball, while it is looked at
+  std::vector<SurfaceContact> own;
   std::vector<char> taken;
 
   void find_near(Ball &ball, const Vector &x, double radius, double step,
                  const TouchedSurface &surface);
-  void hand_out(int ball, size_t count, const Vector &x, double radius);
-  static void share_overlaps(std::vector<SurfacePoint> &own, double radius);
-  void set(Slot &slot, const SurfacePoint &at, const Vector &x, double radius);
+  void hand_out(int ball, const Vector &x, double radius);
+  void set(Slot &slot, const SurfaceContact &contact, const Vector &x, double radius);
   int new_slot(int ball);
 };
 

@@ -53,9 +53,13 @@ struct Triangle {
 
 // A point of a surface, and how another point x sees it: distance (m), unit normal from it to x
 struct SurfacePoint {
+  enum Feature { CORNER, SIDE, FACE };
+
   Vector point, normal;
   double distance;
   int triangle;
+  Feature on;
+  Vector side;    // along it, of any length, if the point is on one
 };
 
 // The point of a triangle that is nearest to x, by the region of the triangle's plane over which x
@@ -70,10 +74,16 @@ inline SurfacePoint nearest_point(const Triangle &t, int number, const Vector &x
   const double d5 = dot(ab, cx), d6 = dot(ac, cx);
   const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
 
-  SurfacePoint p;
+  SurfacePoint p = {};
   p.triangle = number;
   const Vector across = cross(ab, ac);
   const Vector up = moved({0.0, 0.0, 0.0}, 1.0 / size_of(across), across);
+  auto on_side = [&p](const Vector &from, double share, const Vector &side) {
+    p.on = SurfacePoint::SIDE;
+    p.side = side;
+    p.point = moved(from, share, side);
+  };
+  p.on = SurfacePoint::CORNER;
   if (d1 <= 0.0 && d2 <= 0.0)
     p.point = t.a;
   else if (d3 >= 0.0 && d4 <= d3)
@@ -81,12 +91,13 @@ inline SurfacePoint nearest_point(const Triangle &t, int number, const Vector &x
   else if (d6 >= 0.0 && d5 <= d6)
     p.point = t.c;
   else if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0)
-    p.point = moved(t.a, d1 / (d1 - d3), ab);
+    on_side(t.a, d1 / (d1 - d3), ab);
   else if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0)
-    p.point = moved(t.a, d2 / (d2 - d6), ac);
+    on_side(t.a, d2 / (d2 - d6), ac);
   else if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0)
-    p.point = moved(t.b, (d4 - d3) / ((d4 - d3) + (d5 - d6)), minus(t.c, t.b));
+    on_side(t.b, (d4 - d3) / ((d4 - d3) + (d5 - d6)), minus(t.c, t.b));
   else {    // the plane itself: its normal has no rounding of the distance
+    p.on = SurfacePoint::FACE;
     const double height = dot(ax, up);
     p.distance = std::fabs(height);
     p.normal = height < 0.0 ? Vector{-up.x, -up.y, -up.z} : up;

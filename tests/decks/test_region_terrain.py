@@ -108,8 +108,8 @@ fix nve all nve/sphere
 fix w all wall/gran/region hooke/history 1e5 NULL 10 NULL 0.5 1 region ground
 run 1
 """
-    run_deck(text, tmp_path, expect_error="Region terrain ground has no smooth wall: the ground is "
-             "made of balls, see fix wall/gran/balls")
+    run_deck(text, tmp_path, expect_error="Region terrain ground makes no wall: take fix wall/gran/balls "
+             "or fix wall/gran/mesh")
 
 
 GOOD = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n"

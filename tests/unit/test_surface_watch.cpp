@@ -36,15 +36,16 @@ static std::vector<Triangle> cube(int n = 1)
   return list;
 }
 
-static std::vector<SurfacePoint> contacts(const std::vector<Triangle> &list, const Vector &x, double r = R)
+static std::vector<SurfaceContact> contacts(const std::vector<Triangle> &list, const Vector &x, double r = R)
 {
   std::vector<SurfacePoint> points;
   for (size_t k = 0; k < list.size(); k++) {
     const SurfacePoint p = nearest_point(list[k], static_cast<int>(k), x);
     if (p.distance < r) points.push_back(p);
   }
-  points.resize(SurfaceWatch::choose(points, r));
-  return points;
+  std::vector<SurfaceContact> own;
+  SurfaceWatch::choose(points, r, own);
+  return own;
 }
 
 static void expect_vector(const Vector &a, double x, double y, double z)
@@ -91,8 +92,8 @@ TEST(Choose, AFaceCountsOnceWhateverItsTriangles)
     for (const Vector &x : {Vector{1.0, 1.0, 2.4}, Vector{0.7, 1.3, 2.1}, Vector{1.0, 0.4, 2.3}, Vector{1, 1, 2.05}}) {
       const auto found = contacts(cube(n), x);
       ASSERT_EQ(found.size(), 1u) << n;
-      EXPECT_NEAR(found[0].distance, x.z - 2.0, 1e-12);
-      expect_vector(found[0].normal, 0, 0, 1);
+      EXPECT_NEAR(found[0].at.distance, x.z - 2.0, 1e-12);
+      expect_vector(found[0].at.normal, 0, 0, 1);
     }
 }
 
@@ -101,15 +102,15 @@ TEST(Choose, AnEdgeAndACornerCountOnceFromOutside)
   for (const int n : {1, 3}) {
     auto found = contacts(cube(n), {2.2, 1.0, 2.2});
     ASSERT_EQ(found.size(), 1u);
-    expect_vector(found[0].point, 2, 1, 2);
-    expect_vector(found[0].normal, std::sqrt(0.5), 0, std::sqrt(0.5));
+    expect_vector(found[0].at.point, 2, 1, 2);
+    expect_vector(found[0].at.normal, std::sqrt(0.5), 0, std::sqrt(0.5));
     found = contacts(cube(n), {2.2, -0.2, 2.2});
     ASSERT_EQ(found.size(), 1u);
-    expect_vector(found[0].point, 2, 0, 2);
+    expect_vector(found[0].at.point, 2, 0, 2);
     // beside an edge the face alone
     found = contacts(cube(n), {1.95, 1.0, 2.3});
     ASSERT_EQ(found.size(), 1u);
-    expect_vector(found[0].normal, 0, 0, 1);
+    expect_vector(found[0].at.normal, 0, 0, 1);
   }
 }
 
@@ -121,8 +122,8 @@ TEST(Choose, FromInsideTheFacesCountAndNoEdge)
     const auto found = contacts(cube(n), {1.6, 0.45, 0.4});
     ASSERT_EQ(found.size(), 3u);
     std::set<int> axes;
-    for (const SurfacePoint &p : found)
-      axes.insert(std::fabs(p.normal.x) > 0.9 ? 0 : std::fabs(p.normal.y) > 0.9 ? 1 : 2);
+    for (const SurfaceContact &c : found)
+      axes.insert(std::fabs(c.at.normal.x) > 0.9 ? 0 : std::fabs(c.at.normal.y) > 0.9 ? 1 : 2);
     EXPECT_EQ(axes.size(), 3u);
   }
 }
@@ -158,9 +159,43 @@ static std::vector<Triangle> bowl(double radius, int n)
 static Vector force(const std::vector<Triangle> &list, const Vector &x)
 {
   Vector sum = {0, 0, 0};
-  for (const SurfacePoint &p : contacts(list, x))
-    if (p.distance < R) sum = moved(sum, R - p.distance, p.normal);
+  for (const SurfaceContact &c : contacts(list, x)) sum = moved(sum, std::max(c.overlap, 0.0), c.at.normal);
   return sum;
+}
+
+static double energy(const std::vector<Triangle> &list, const Vector &x)
+{
+  double sum = 0.0;
+  for (const SurfaceContact &c : contacts(list, x)) sum += 0.5 * c.spring * c.spring;
+  return sum;
+}
+
+// a step of height h along x = 0: its foot in the plane, its edge above
+static std::vector<Triangle> kerb(double h)
+{
+  std::vector<Triangle> list;
+  add_square(list, {-4, -4, 0}, {4, 0, 0}, {0, 8, 0});
+  add_square(list, {0, -4, 0}, {0, 8, 0}, {0, 0, h});
+  add_square(list, {0, -4, h}, {4, 0, 0}, {0, 8, 0});
+  return list;
+}
+
+// a flat hexagon, and six faces that rise by an angle from its sides
+static std::vector<Triangle> pit(double half_width, double angle)
+{
+  std::vector<Triangle> list;
+  const double pi = std::acos(-1.0), out = half_width / std::cos(pi / 6), far = 4.0;
+  auto at = [&](int k, double r, double z) {
+    return Vector{r * std::cos(k * pi / 3), r * std::sin(k * pi / 3), z};
+  };
+  for (int k = 0; k < 6; k++) {
+    const double up = (far - out) * std::cos(pi / 6) * std::tan(angle);
+    const Vector a = at(k, out, 0), b = at(k + 1, out, 0), c = at(k + 1, far, up), d = at(k, far, up);
+    list.push_back({{0, 0, 0}, a, b});
+    list.push_back({a, b, c});
+    list.push_back({a, c, d});
+  }
+  return list;
 }
 
 TEST(Choose, AConcaveEdgeHasAContactWithEachFace)
@@ -170,8 +205,8 @@ TEST(Choose, AConcaveEdgeHasAContactWithEachFace)
     const double h = 0.999 * R;    // both overlap alike
     const auto found = contacts(kink(a), {-h * std::tan(0.5 * a), 0.3, h});
     ASSERT_EQ(found.size(), 2u) << degrees;
-    EXPECT_NEAR(found[0].distance, h, 1e-9);
-    EXPECT_NEAR(found[1].distance, h, 1e-9);
+    EXPECT_NEAR(found[0].at.distance, h, 1e-9);
+    EXPECT_NEAR(found[1].at.distance, h, 1e-9);
   }
 }
 
@@ -202,7 +237,8 @@ TEST(Choose, AClosedPathTakesNoWork)
   const double degree = std::acos(-1.0) / 180.0;
   const Case cases[] = {{kink(5 * degree), {-0.02, 0.3, 0.46}},  {kink(12 * degree), {-0.05, 0.3, 0.46}},
                         {kink(25 * degree), {-0.1, 0.3, 0.46}},  {kink(40 * degree), {-0.15, 0.3, 0.46}},
-                        {bowl(2.0, 12), {0.5, 0.1, -1.41}},      {bowl(0.9, 12), {0.1, 0.1, -0.4}}};
+                        {bowl(2.0, 12), {0.5, 0.1, -1.41}},      {bowl(0.9, 12), {0.1, 0.1, -0.4}},
+                      {pit(0.05, 8 * degree), {0, 0, 0.46}},   {kerb(0.01), {-0.1, 0.3, 0.46}}};
   for (const Case &c : cases) {
     const int n = 20000;
     const double pi = std::acos(-1.0), reach = 0.07;
@@ -218,7 +254,64 @@ TEST(Choose, AClosedPathTakesNoWork)
       most = std::max(most, work);
     }
     EXPECT_GT(most - least, 1e-3);    // a path over hill and valley
-    EXPECT_LT(std::fabs(work), 0.05 * (most - least)) << &c - cases;
+    EXPECT_LT(std::fabs(work), 0.02 * (most - least)) << &c - cases;
+  }
+}
+
+// The force is the gradient of the energy, whatever is touched: faces, sides and corners, one or many.
+TEST(Choose, TheForceIsTheGradientOfTheEnergy)
+{
+  const double degree = std::acos(-1.0) / 180.0;
+  std::vector<Triangle> ridge;    // a convex edge that rises out of a plane
+  add_square(ridge, {-4, -4, 0}, {8, 0, 0}, {0, 8, 0});
+  ridge.push_back({{-1, 0, 0}, {3, 0, 0.12}, {3, 0.1, -0.5}});
+  ridge.push_back({{-1, 0, 0}, {3, -0.1, -0.5}, {3, 0, 0.12}});
+  auto spike = [degree](double foot) {    // a corner that stands out of a plane
+    std::vector<Triangle> list;
+    add_square(list, {-4, -4, 0}, {8, 0, 0}, {0, 8, 0});
+    auto at = [&](int k) {
+      return Vector{foot * std::cos(120 * degree * k), foot * std::sin(120 * degree * k), 0};
+    };
+    for (int k = 0; k < 3; k++) list.push_back({{0, 0, 0.03}, at(k), at(k + 1)});
+    return list;
+  };
+  struct Case {
+    const char *name;
+    std::vector<Triangle> list;
+    Vector middle;
+  };
+  const Case cases[] = {{"kink 3", kink(3 * degree), {0, 0, 0.48}},
+                        {"kink 12", kink(12 * degree), {-0.05, 0, 0.47}},
+                        {"kink 60", kink(60 * degree), {-0.28, 0, 0.47}},
+                        {"bowl", bowl(1.5, 12), {0.3, 0.2, -0.97}},
+                        {"tight bowl", bowl(0.9, 12), {0.1, 0.1, -0.4}},
+                        {"pit", pit(0.05, 8 * degree), {0, 0, 0.48}},
+                        {"kerb", kerb(0.01), {-0.1, 0, 0.485}},
+                        {"ridge", ridge, {0.5, 0.15, 0.485}},
+                        {"spike", spike(0.3), {0.15, 0.05, 0.485}},
+                        {"needle", spike(0.01), {0.15, 0.05, 0.48}}};
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> any(-0.05, 0.05);
+  for (const Case &c : cases) {
+    int shared = 0, off = 0;
+    double sum = 0.0;
+    for (int n = 0; n < 2000; n++) {
+      const Vector x = {c.middle.x + any(random), c.middle.y + any(random), c.middle.z + any(random)};
+      if (contacts(c.list, x).size() < 2) continue;
+      const double step = 1e-6;
+      auto slope = [&](const Vector &way) {
+        return (energy(c.list, moved(x, step, way)) - energy(c.list, moved(x, -step, way))) / (2 * step);
+      };
+      const Vector f = force(c.list, x);
+      const Vector wanted = {-slope({1, 0, 0}), -slope({0, 1, 0}), -slope({0, 0, 1})};
+      const double error = size_of(minus(f, wanted)) / std::max(size_of(wanted), 1e-3 * R);
+      shared++;
+      off += error > 0.02;
+      sum += error;
+    }
+    EXPECT_GT(shared, 100) << c.name;
+    EXPECT_LT(sum, 0.01 * shared) << c.name;
+    EXPECT_LT(off, 0.005 * shared) << c.name;    // where a contact comes within a step of the difference
   }
 }
 
@@ -238,7 +331,7 @@ TEST(Choose, AnOpenEdgeCounts)
   add_square(list, {0, 0, 0}, {2, 0, 0}, {0, 2, 0}, 3);
   const auto found = contacts(list, {-0.3, 1.0, 0.0});
   ASSERT_EQ(found.size(), 1u);
-  expect_vector(found[0].normal, -1, 0, 0);
+  expect_vector(found[0].at.normal, -1, 0, 0);
 }
 
 // --- followed from step to step ---
@@ -284,7 +377,7 @@ TEST(SurfaceWatch, APhantomTouchesTheBallWhereTheSurfaceDoes)
   const SurfaceWatch::Slot &slot = f.watch.slots[0];
   const Vector way = minus(Vector{2.2, 1.0, 2.3}, slot.centre);
   EXPECT_NEAR(2 * R - size_of(way), R - std::sqrt(0.13), 1e-12);
-  expect_vector(slot.at.normal, way.x / size_of(way), 0, way.z / size_of(way));
+  expect_vector(slot.contact.at.normal, way.x / size_of(way), 0, way.z / size_of(way));
 }
 
 TEST(SurfaceWatch, ASecondContactGetsASlotAndItIsUsedAgain)
@@ -292,16 +385,15 @@ TEST(SurfaceWatch, ASecondContactGetsASlotAndItIsUsedAgain)
   Followed f(cube());
   EXPECT_EQ(f.touching({1.0, 1.0, 0.49}), 1);
   EXPECT_EQ(f.touching({1.51, 1.0, 0.49}), 2);    // from inside, floor and wall
-  EXPECT_EQ(f.watch.slots[1].at.normal.x, -1.0);
+  EXPECT_EQ(f.watch.slots[1].contact.at.normal.x, -1.0);
   EXPECT_EQ(f.touching({1.49, 1.0, 0.49}), 1);
-  EXPECT_TRUE(f.watch.slots[1].on);    // left in this step: its place is known
-  EXPECT_NEAR(f.watch.slots[1].at.distance, 0.51, 1e-12);
+  EXPECT_LT(f.watch.slots[1].centre.x, 1e9);    // left in this step: its place is known
+  EXPECT_NEAR(f.watch.slots[1].contact.at.distance, 0.51, 1e-12);
   EXPECT_EQ(f.touching({1.49, 1.0, 0.49}), 1);
-  EXPECT_FALSE(f.watch.slots[1].on);
   EXPECT_GT(f.watch.slots[1].centre.x, 1e9);
   EXPECT_EQ(f.touching({0.49, 1.0, 0.49}), 2);
   EXPECT_EQ(f.watch.slots.size(), 2u);
-  EXPECT_EQ(f.watch.slots[1].at.normal.x, 1.0);
+  EXPECT_EQ(f.watch.slots[1].contact.at.normal.x, 1.0);
 }
 
 TEST(SurfaceWatch, AStoredContactIsFoundByItsNormal)
@@ -311,8 +403,8 @@ TEST(SurfaceWatch, AStoredContactIsFoundByItsNormal)
   f.watch.add_slot(0, {0, 0, 1});
   EXPECT_EQ(f.touching({1.51, 1.0, 0.49}), 2);
   EXPECT_EQ(f.watch.slots.size(), 2u);
-  EXPECT_EQ(f.watch.slots[0].at.normal.x, -1.0);
-  EXPECT_EQ(f.watch.slots[1].at.normal.z, 1.0);
+  EXPECT_EQ(f.watch.slots[0].contact.at.normal.x, -1.0);
+  EXPECT_EQ(f.watch.slots[1].contact.at.normal.z, 1.0);
 }
 
 TEST(SurfaceWatch, FarJumpsAndSmallStepsFindTheSame)
