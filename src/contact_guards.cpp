@@ -127,8 +127,7 @@ void ContactGuards::check_dashpots(int i, int j)
   if (zeta > ZETA_FOLLOWED && !table.is_plain())
     warn("damping ratio of types {} and {} must be <= {:g} to be followed in time, got {:.4g} (cn "
          "{:.4g} N s/m, lightest ball {:.4g} kg): these contacts do not rebound and rest at the "
-         "right overlap, "
-         "but reach it too fast",
+         "right overlap, but reach it too fast",
          i, j, ZETA_FOLLOWED, zeta, cn, lightest);
 }
 
@@ -182,9 +181,8 @@ void ContactGuards::watch_energy(double elastic)
 {
   if (energy.check(elastic))
     warn("the energy of the balls grew by {:.3g} % of the largest kinetic and spring energy until "
-         "step {}, with "
-         "nothing but contacts and gravity at work: the time step is too large, or contacts were "
-         "found late",
+         "step {}, with nothing but contacts and gravity at work: the time step is too large, or "
+         "contacts were found late",
          100.0 * energy.growth(), update->ntimestep);
 }
 

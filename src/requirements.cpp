@@ -64,8 +64,9 @@ void LAMMPS_NS::require_whole_contacts(LAMMPS *lmp, const std::string &caller)
           "touch fully or not at all, got lj {:g} {:g} {:g} coul {:g} {:g} {:g}",
           caller, lj[1], lj[2], lj[3], coul[1], coul[2], coul[3]);
     else if (lj[k] == 0.0 && !compat::LISTS_OF_SPHERES_KNOW_BONDS)
-      lmp->error->all(FLERR,
-                      "{}: special_bonds must be lj/coul 1 1 1 where balls have bonds, as LAMMPS "
-                      "before 23Jun2022 keeps bonded spheres in its neighbor lists, got lj {:g} {:g} {:g}",
-                      caller, lj[1], lj[2], lj[3]);
+      lmp->error->all(
+          FLERR,
+          "{}: special_bonds must be lj/coul 1 1 1 where balls have bonds, as LAMMPS "
+          "before 23Jun2022 keeps bonded spheres in its neighbor lists, got lj {:g} {:g} {:g}",
+          caller, lj[1], lj[2], lj[3]);
 }

@@ -168,12 +168,13 @@ void SurfaceOptions::check_place(const TouchedSurface &made) const
     size = std::max(size, high[d] - low[d]);
     box = std::max(box, domain->boxhi[d] - domain->boxlo[d]);
     const bool fixed = domain->boundary[d][0] < 2 && domain->boundary[d][1] < 2;
-    if (fixed && (high[d] < domain->boxlo[d] || low[d] > domain->boxhi[d]))
+    const double from = domain->boxlo[d], to = domain->boxhi[d];
+    if (fixed && (high[d] < from || low[d] > to))
       error->all(
           FLERR,
           "{}: the surface of {} must reach into the box, {} {:.6g} to {:.6g}, got {:.6g} to "
           "{:.6g}: is it in other units (scale 0.001) or another place (move)?",
-          caller, file, "xyz"[d], domain->boxlo[d], domain->boxhi[d], low[d], high[d]);
+          caller, file, "xyz"[d], from, to, low[d], high[d]);
   }
   if (size > TOO_LARGE * box)
     error->all(FLERR,

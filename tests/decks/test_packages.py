@@ -4,6 +4,7 @@ import functools
 import os
 import re
 import subprocess
+from datetime import datetime
 
 import deck_helpers
 import numpy
@@ -149,8 +150,8 @@ def test_bonded_balls_touch(tmp_path):
 def test_bonded_balls_do_not_touch_where_lammps_can_leave_them_out(tmp_path):
     """LAMMPS before 23Jun2022 would make them touch: the run ends."""
     needs("MOLECULE")
-    date = re.search(r"(\d+) (\w{3}) (\d{4})", help_text())
-    if int(date[3]) < 2022:
+    date = re.search(r"\d+ \w{3} \d{4}", help_text())[0]
+    if datetime.strptime(date, "%d %b %Y") < datetime(2022, 6, 23):
         run_deck(BONDS.format(special="lj/coul 0 1 1"), tmp_path,
                  expect_error="special_bonds must be lj/coul 1 1 1 where balls have bonds")
         return
