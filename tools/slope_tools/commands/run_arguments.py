@@ -14,16 +14,16 @@ def add_deck(parser, site=False):
 
 
 def add_runs(parser, road=False, output=True):
-    """Arguments of how the runs are made and what is measured; road: it must be given."""
+    """Arguments of how the runs are made and what is measured; road: it must be given. Defaults: see Road."""
     parser.add_argument("-o", dest="output", metavar="DIR", required=output, type=Path, help="the study's folder")
     parser.add_argument("--np", type=count, default=1, metavar="N", help="MPI ranks of each run (default 1)")
     parser.add_argument("--jobs", type=count, metavar="J",
                         help="runs at a time (default: as many as the cores of this machine allow)")
     parser.add_argument("--road", metavar="POLYGON", type=Path, required=road,
                         help="tell the volume to remove from this road too: GeoJSON, shapefile, CSV or WKT")
-    parser.add_argument("--cut-angle", metavar="DEG", type=number, default=30.0,
+    parser.add_argument("--cut-angle", metavar="DEG", type=number,
                         help="rise of the cut surface from the road's edges, degrees (default 30); see `slope volume`")
-    parser.add_argument("--mesh", metavar="SIZE", type=number, default=10.0,
+    parser.add_argument("--mesh", metavar="SIZE", type=number,
                         help="side of the mesh cells of that volume, m (default 10)")
     parser.add_argument("--local", action="store_true", help="the road is in local metres, not in a CRS")
     parser.add_argument("--lmp", metavar="FILE", help="the LAMMPS program (default: LMP of the environment, then "
@@ -55,10 +55,10 @@ def add_sample(parser) -> None:
     parser.add_argument("--vary", metavar="NAME=DISTRIBUTION", action="append", default=[],
                         help="a variable of the ensemble: LO:HI or uniform:LO:HI, loguniform:LO:HI, "
                              "triangular:LO:MODE:HI, normal:MEAN:DEVIATION:LO:HI, list:V1@WEIGHT,V2@WEIGHT,...")
-    parser.add_argument("--design", choices=designs.KINDS, default=designs.SOBOL,
+    parser.add_argument("--design", choices=designs.KINDS,
                         help="sobol (default): more points can be added, those there are stay; lhs: Latin hypercube, "
                              "whose number of points is final")
-    parser.add_argument("--seed", metavar="S", type=int, default=1, help="of the design (default 1)")
+    parser.add_argument("--seed", metavar="S", type=int, help="seed of the design (default 1)")
 
 
 def add_intensity(parser):
@@ -80,6 +80,7 @@ def volumes(text):
 
 def setup_of(args) -> Setup:
     """What these arguments say."""
-    road = Road(args.road, args.cut_angle, args.mesh, args.local) if args.road else None
+    given = {name: value for name in ("cut_angle", "mesh") if (value := getattr(args, name)) is not None}
+    road = Road(args.road, **given, local=args.local) if args.road else None
     return Setup(args.deck, args.output, args.np, args.jobs, road, args.lmp, args.launcher, args.engine, args.slurm,
                  args.dry_run)
