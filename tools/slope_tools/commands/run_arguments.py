@@ -10,7 +10,7 @@ from ..options import count, number
 def add_deck(parser, site=False):
     parser.add_argument("deck", metavar="DECK|SITE" if site else "DECK", type=Path,
                         help="LAMMPS input deck with one fix deposit/grid; the plain files beside it are its data"
-                             + "; or the folder that `slope site` made, whose standard study is run" * site)
+                             + "; or a folder made by `slope site`: its standard study is run" * site)
 
 
 def add_runs(parser, road=False, output=True):
@@ -20,7 +20,7 @@ def add_runs(parser, road=False, output=True):
     parser.add_argument("--jobs", type=count, metavar="J",
                         help="runs at a time (default: as many as the cores of this machine allow)")
     parser.add_argument("--road", metavar="POLYGON", type=Path, required=road,
-                        help="tell the volume to remove from this road too: GeoJSON, shapefile, CSV or WKT")
+                        help="also compute the volume to remove from this road: GeoJSON, shapefile, CSV or WKT")
     parser.add_argument("--cut-angle", metavar="DEG", type=number,
                         help="rise of the cut surface from the road's edges, degrees (default 30); see `slope volume`")
     parser.add_argument("--mesh", metavar="SIZE", type=number,
@@ -42,8 +42,9 @@ def add_runs(parser, road=False, output=True):
 def add_repeats(parser):
     """--repeat and --equally-good, of the commands that make runs."""
     parser.add_argument("--repeat", metavar="NAME=V1,V2,...", action="append", default=[],
-                        help="values of a variable that nobody can prefer, called seed or ...offset: one more run "
-                             "each, which shows the scatter by chance; A:B:STEP stands for A, A + STEP, ... up to B")
+                        help="values of a variable whose value is arbitrary, called seed or ...offset: one more run "
+                             "for each, which shows the scatter by chance; A:B:STEP stands for A, A + STEP, ... up to "
+                             "B")
     parser.add_argument("--equally-good", metavar="NAME,...", default="",
                         help="variables of another name whose values are equally good, so that --repeat takes them")
 
@@ -63,10 +64,10 @@ def add_sample(parser) -> None:
 
 def add_intensity(parser):
     parser.add_argument("--intensity", metavar="NAME",
-                        help="variable of --set that is the intensity of what sets the mass off (default: the one "
-                             "called peak, pga or ...intensity); needs --road")
+                        help="variable of --set that is the intensity of the trigger (default: the one called peak, "
+                             "pga or ...intensity); needs --road")
     parser.add_argument("--more-than", metavar="V1,V2,...", type=volumes, default=[],
-                        help="volumes on the road, m3, that are exceeded with a probability at each intensity "
+                        help="volumes on the road, m3, whose probability of exceedance is given at each intensity "
                              "(default: three round ones)")
 
 
