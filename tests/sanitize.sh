@@ -2,7 +2,8 @@
 # Runs the tests with what finds errors of memory and undefined behaviour: the unit and deck tests
 # under AddressSanitizer and UndefinedBehaviorSanitizer (a build of LAMMPS and package of its own),
 # a deck run twice in a process under LeakSanitizer, and the unit tests, a small collapse, its
-# restart and two ranks under valgrind. An hour, not part of ctest. A build that is there goes on.
+# restart and two ranks under valgrind. Several hours on two cores, not part of ctest. A build that is
+# there goes on.
 #
 #   tests/sanitize.sh [--only PART]... [--tests REGEX] [-o DIR]
 #

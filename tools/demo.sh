@@ -5,7 +5,8 @@ set -euo pipefail
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 if [[ ! -x $top/build/lmp ]]; then
-  echo "demo: the first time set-up and build take 10 to 25 minutes: LAMMPS is compiled. Then the study: half a minute"
+  echo "demo: the first time set-up takes a few minutes and the build of LAMMPS 5 to 10 on two cores. Then a small study" \
+    "of three collapses: half a minute"
 fi
 "$top/tools/build.sh"
 

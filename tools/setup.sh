@@ -77,7 +77,8 @@ if ((${#missing[@]})); then
     as_root=(sudo "DEBIAN_FRONTEND=$DEBIAN_FRONTEND")
   fi
   say "packages that are missing: ${#missing[@]}; apt-get installs them${as_root:+, and sudo may ask for your password}." \
-    "On a machine that has nothing: 650 to 750 MB to download, 3 GB on disk, a few minutes"
+    "On a machine that has nothing, with the LAMMPS source and the build: about 720 MB (Debian 12) or 790 MB (Debian 13)" \
+    "to download, 3.3 or 3.6 GB of disk"
   # what failed may have nothing to do with us: install tells
   update "${as_root[@]}" apt-get -qq || say "apt-get update failed, trying to go on"
 

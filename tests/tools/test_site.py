@@ -391,6 +391,21 @@ def test_folders_that_are_no_sites(gis, done):
     refused(slope(done[0], "study", "mine/in.site", "--set", "rolling=0"), "-o: must be given")
 
 
+def test_a_site_has_its_own_choices(tmp_path):
+    """What site.yaml says is refused as an option, its default too: nothing is ignored without a word."""
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "site.yaml").touch()
+    for option, *values in (("--set", "rolling=0"), ("--repeat", "xoffset=0.5"), ("--vary", "rolling=0:1"),
+                            ("--sample", "8"), ("--equally-good", "d"), ("--size-error", "converge.yaml"),
+                            ("--intensity", "peak"), ("--more-than", "10"), ("--exceed", "0.1,0.5,1"),
+                            ("--exceed-speed", "5"), ("--exceed-energy", "100000"), ("--design", "sobol"),
+                            ("--seed", "0"), ("--of", "front_m"), ("--road", "road.geojson"), ("--cut-angle", "30"),
+                            ("--mesh", "10"), ("--local",), ("-o", "out")):
+        line = refused(slope(tmp_path, "study", "mine", option, *values),
+                       f"{option}: must not be given with the folder of a site: mine/site.yaml")
+        assert line.endswith(f", got {values[0]}" if values else "is run")
+
+
 def test_without_lammps_the_folder_is_made_and_that_is_said(gis):
     site = make(gis, *BODY, "--balls", "100", LMP="/nowhere/lmp")
     assert site.returncode == 0, site.stderr

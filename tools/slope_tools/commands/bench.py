@@ -42,7 +42,7 @@ def add_parser(commands, **kwargs):
                         help="a small scene, few steps and repeats, without 1e6 balls and runs to rest; two minutes")
     parser.add_argument("--balls", type=count, metavar="N", help=f"moving balls, about (default {BALLS}; --quick 8000)")
     parser.add_argument("--field-factor", type=number, default=1.0, metavar="F",
-                        help="area of the terrain, times that of the scene (default 1: about 27,000 fixed balls)")
+                        help="area of the terrain, times that of the scene (default 1: about 28,000 fixed balls)")
     parser.add_argument("--steps", type=count, metavar="N", help="timed steps of a run (default 1000; --quick 300)")
     parser.add_argument("--repeat", type=count, metavar="N", help="runs of each kind (default 5; --quick 3)")
     parser.add_argument("--np", default="2", metavar="N1,N2,...",

@@ -46,7 +46,7 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--front", metavar="L", type=number,
                         help="distance in plan from the highest released ball that 99 %% of the volume stays within, m")
     parser.add_argument("--area", metavar="A", type=number,
-                        help="area that the mass ever covered, thicker than --threshold, m2")
+                        help="total area that was covered at any time by more than --threshold, m2")
     parser.add_argument("--volume", metavar="V", type=number, help="volume on the road of --road, m3")
     parser.add_argument("--tolerance", metavar="[NAME=]SHARE", type=tolerance, action="append", default=[],
                         help="standard deviation of what was observed, as a share of it "
@@ -55,12 +55,12 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--threshold", metavar="T", type=number, default=THRESHOLD,
                         help=f"a deposit is where it is thicker than this, m (default {THRESHOLD:g})")
     parser.add_argument("--vary", metavar="NAME=LO:HI", action="append", default=[], required=True,
-                        help="a variable of the deck that is looked for, and its range; all values in it are equally "
+                        help="variable of the deck to be calibrated, and its range; all values in it are equally "
                              "likely before (loguniform:LO:HI and the others of `slope study` too)")
-    parser.add_argument("--runs", metavar="N", type=options.count, required=True, help="how many runs, all in all")
+    parser.add_argument("--runs", metavar="N", type=options.count, required=True, help="total number of runs")
     parser.add_argument("--set", metavar="NAME=VALUE", action="append", default=[],
                         help="value of another index variable in all runs (default: the deck's)")
-    parser.add_argument("--seed", metavar="S", type=int, default=1, help="of the first points (default 1)")
+    parser.add_argument("--seed", metavar="S", type=int, default=1, help="seed of the first points (default 1)")
     run_arguments.add_repeats(parser)
     run_arguments.add_runs(parser)
     return parser

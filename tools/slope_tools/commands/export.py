@@ -29,7 +29,7 @@ def add_parser(commands, **kwargs):
     parser.add_argument("-o", dest="output", metavar="DIR", type=Path,
                         help="folder for the results (default PREFIX.export)")
     parser.add_argument("--terrain", metavar="TERRAIN.asc", type=Path,
-                        help="the run's terrain, whose sidecar tells the CRS (default: terrain.asc beside PREFIX)")
+                        help="the run's terrain, whose sidecar holds the CRS (default: terrain.asc beside PREFIX)")
     return parser
 
 

@@ -9,8 +9,8 @@ from ..survey.quake import Processing, processed, write
 
 EPILOG = """\
 RECORD: one file for each component, or one with all of them
-  K-NET, KiK-net ASCII (.EW .NS .UD, .EW2 .NS2 .UD2, ...): direction, factor to gal and length are in the head
-  PEER AT2: direction (azimuth or UP), unit and length are in the head
+  K-NET, KiK-net ASCII (.EW .NS .UD, .EW2 .NS2 .UD2, ...): direction, factor to gal and length are in the header
+  PEER AT2: direction (azimuth or UP), unit and length are in the header
   CSV: a first line such as "time,EW (gal),NS (gal),UD (gal)"; units gal, g, m/s2; times (s) evenly spaced
 OUT.txt has lines "t ax ay az" (s, m/s2) along the deck's axes: x towards --azimuth, y 90 degrees to the left, z up.
 
@@ -37,9 +37,9 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--window", metavar=("BEGIN", "END"), type=number, nargs=2,
                         help="this part of the record only (s)")
     parser.add_argument("--band", metavar=("LOW", "HIGH"), type=number, nargs=2,
-                        help=f"band-pass (Hz): Butterworth of order {motions.ORDER}, forth and back")
+                        help=f"band-pass (Hz): Butterworth of order {motions.ORDER}, forwards and backwards")
     parser.add_argument("--baseline", choices=("rest", "mean", "none"), default="rest",
-                        help="rest: the ground ends at rest where it began (default); mean: take off the mean; none")
+                        help="rest: the ground ends at rest where it began (default); mean: subtract the mean; none")
     parser.add_argument("--unit", choices=("gal", "g", "m/s2"), help="unit of a CSV that names none")
     return parser
 

@@ -33,7 +33,8 @@ def add_parser(commands, **kwargs):
     parser.add_argument("terrain", metavar="TERRAIN.asc", help="the ground before, as slope terrain wrote it")
     parser.add_argument("-o", dest="output", metavar="NAME", required=True, type=Path,
                         help="first part of the names of all files")
-    parser.add_argument("--polygon", metavar="P", help="where it is released; with --scar, what of the scar counts")
+    parser.add_argument("--polygon", metavar="P", help="where it is released; with --scar, only the part of "
+                        "the scar inside it is used")
     parser.add_argument("--shape", choices=SHAPES, help="of the slip surface")
     size = parser.add_mutually_exclusive_group()
     size.add_argument("--depth", metavar="D", type=number, help="largest depth below the ground, vertical, m")

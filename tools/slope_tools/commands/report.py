@@ -40,10 +40,10 @@ def add_parser(commands, **kwargs):
                              "(default: along the path of the mass, or the fall line where that is about the same)")
     parser.add_argument("--local", action="store_true", help="the line of --section is in local metres, not in a CRS")
     parser.add_argument("--run", dest="shown", metavar="NAME",
-                        help="the run of a study whose maps are shown (default: the one that the conservative volume "
-                             "rests on, else the one that goes farthest)")
+                        help="the run of a study whose maps are shown (default: the run that determines the "
+                             "conservative volume, or, without a road, the one with the longest run-out)")
     parser.add_argument("--reference", metavar="FILE.yaml", type=Path,
-                        help="numbers from elsewhere, published or measured, that stand beside those of the runs")
+                        help="numbers from elsewhere, published or measured, shown beside those of the runs")
     parser.add_argument("--converge", metavar="DIR", type=Path,
                         help="what the size of the balls does: the folder of `slope sensitivity --converge`, or its "
                              "converge.yaml (default: the one that the study took its size error from)")

@@ -10,20 +10,20 @@ from ..options import count, number
 def add_deck(parser, site=False):
     parser.add_argument("deck", metavar="DECK|SITE" if site else "DECK", type=Path,
                         help="LAMMPS input deck with one fix deposit/grid; the plain files beside it are its data"
-                             + "; or the folder that `slope site` made, whose standard study is run" * site)
+                             + "; or a folder made by `slope site`: its standard study is run" * site)
 
 
 def add_runs(parser, road=False, output=True):
-    """Arguments of how the runs are made and what is measured; road: it must be given."""
+    """Arguments of how the runs are made and what is measured; road: it must be given. Defaults: see Road."""
     parser.add_argument("-o", dest="output", metavar="DIR", required=output, type=Path, help="the study's folder")
     parser.add_argument("--np", type=count, default=1, metavar="N", help="MPI ranks of each run (default 1)")
     parser.add_argument("--jobs", type=count, metavar="J",
                         help="runs at a time (default: as many as the cores of this machine allow)")
     parser.add_argument("--road", metavar="POLYGON", type=Path, required=road,
-                        help="tell the volume to remove from this road too: GeoJSON, shapefile, CSV or WKT")
-    parser.add_argument("--cut-angle", metavar="DEG", type=number, default=30.0,
+                        help="also compute the volume to remove from this road: GeoJSON, shapefile, CSV or WKT")
+    parser.add_argument("--cut-angle", metavar="DEG", type=number,
                         help="rise of the cut surface from the road's edges, degrees (default 30); see `slope volume`")
-    parser.add_argument("--mesh", metavar="SIZE", type=number, default=10.0,
+    parser.add_argument("--mesh", metavar="SIZE", type=number,
                         help="side of the mesh cells of that volume, m (default 10)")
     parser.add_argument("--local", action="store_true", help="the road is in local metres, not in a CRS")
     parser.add_argument("--lmp", metavar="FILE", help="the LAMMPS program (default: LMP of the environment, then "
@@ -42,8 +42,9 @@ def add_runs(parser, road=False, output=True):
 def add_repeats(parser):
     """--repeat and --equally-good, of the commands that make runs."""
     parser.add_argument("--repeat", metavar="NAME=V1,V2,...", action="append", default=[],
-                        help="values of a variable that nobody can prefer, called seed or ...offset: one more run "
-                             "each, which shows the scatter by chance; A:B:STEP stands for A, A + STEP, ... up to B")
+                        help="values of a variable whose value is arbitrary, called seed or ...offset: one more run "
+                             "for each, which shows the scatter by chance; A:B:STEP stands for A, A + STEP, ... up to "
+                             "B")
     parser.add_argument("--equally-good", metavar="NAME,...", default="",
                         help="variables of another name whose values are equally good, so that --repeat takes them")
 
@@ -55,18 +56,18 @@ def add_sample(parser) -> None:
     parser.add_argument("--vary", metavar="NAME=DISTRIBUTION", action="append", default=[],
                         help="a variable of the ensemble: LO:HI or uniform:LO:HI, loguniform:LO:HI, "
                              "triangular:LO:MODE:HI, normal:MEAN:DEVIATION:LO:HI, list:V1@WEIGHT,V2@WEIGHT,...")
-    parser.add_argument("--design", choices=designs.KINDS, default=designs.SOBOL,
+    parser.add_argument("--design", choices=designs.KINDS,
                         help="sobol (default): more points can be added, those there are stay; lhs: Latin hypercube, "
                              "whose number of points is final")
-    parser.add_argument("--seed", metavar="S", type=int, default=1, help="of the design (default 1)")
+    parser.add_argument("--seed", metavar="S", type=int, help="seed of the design (default 1)")
 
 
 def add_intensity(parser):
     parser.add_argument("--intensity", metavar="NAME",
-                        help="variable of --set that is the intensity of what sets the mass off (default: the one "
-                             "called peak, pga or ...intensity); needs --road")
+                        help="variable of --set that is the intensity of the trigger (default: the one called peak, "
+                             "pga or ...intensity); needs --road")
     parser.add_argument("--more-than", metavar="V1,V2,...", type=volumes, default=[],
-                        help="volumes on the road, m3, that are exceeded with a probability at each intensity "
+                        help="volumes on the road, m3, whose probability of exceedance is given at each intensity "
                              "(default: three round ones)")
 
 
@@ -80,6 +81,7 @@ def volumes(text):
 
 def setup_of(args) -> Setup:
     """What these arguments say."""
-    road = Road(args.road, args.cut_angle, args.mesh, args.local) if args.road else None
+    given = {name: value for name in ("cut_angle", "mesh") if (value := getattr(args, name)) is not None}
+    road = Road(args.road, **given, local=args.local) if args.road else None
     return Setup(args.deck, args.output, args.np, args.jobs, road, args.lmp, args.launcher, args.engine, args.slurm,
                  args.dry_run)

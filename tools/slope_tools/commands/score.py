@@ -38,7 +38,7 @@ def add_parser(commands, **kwargs):
                         help="side of the mesh cells of score.csv, m; their corners are at multiples of it in local x "
                              "and y (default: the cells of the run)")
     parser.add_argument("--terrain", metavar="TERRAIN.asc", type=Path,
-                        help="the run's terrain, whose sidecar tells the CRS (default: terrain.asc beside PREFIX)")
+                        help="the run's terrain, whose sidecar holds the CRS (default: terrain.asc beside PREFIX)")
     parser.add_argument("--local", action="store_true", help="the mapped deposit is in local metres, not in a CRS")
     return parser
 

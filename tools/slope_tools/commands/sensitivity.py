@@ -38,13 +38,13 @@ def add_parser(commands, **kwargs):
                         help="values of an index variable of the deck that are a choice, each in a run of its own; "
                              "A:B:STEP stands for A, A + STEP, ... up to B")
     parser.add_argument("--converge", metavar="NAME=V1,V2,...",
-                        help="sizes of the balls, or of what else shall be small: a line through the results, and its "
-                             "end at 0; with --repeat at each size, without --vary")
+                        help="sizes of the balls, or another variable that should tend to zero; fits a line and gives "
+                             "its value at 0; with --repeat at each size, without --vary")
     run_arguments.add_repeats(parser)
     parser.add_argument("--set", metavar="NAME=VALUE", action="append", default=[],
                         help="value of an index variable in the base run (default: the deck's)")
     parser.add_argument("--of", metavar="NAME,...",
-                        help=f"what is looked at (default {OF_ROAD}; {OF_TRAVEL} of --converge without a road), of "
+                        help=f"quantities to examine (default {OF_ROAD}; {OF_TRAVEL} of --converge without a road), of "
                              f"{', '.join(NAMES)}")
     run_arguments.add_runs(parser)
     return parser

@@ -27,7 +27,7 @@ OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
 ONE_OF = (("depth", "volume", "curvature"), ("diameter", "balls", "minutes", "memory"))
 
 EPILOG = """\
-units: metres, m3, degrees; minutes of the whole study on this machine, GB of the runs that go on at a time.
+units: metres, m3, degrees; minutes of the whole study on this machine, GB of all runs that are active at a time.
 
 examples: from three files of a GIS to a folder, then to a report:
   tools/slope site --terrain dem.tif --release release.geojson --depth 12 --road road.geojson -o mine
@@ -57,7 +57,7 @@ def add_parser(commands, **kwargs):
     about = parser.add_argument_group("report")
     about.add_argument("--name", help="of the site (default: of the folder)")
     about.add_argument("--client", help="for whom the report is")
-    about.add_argument("--author", help="who answers for it")
+    about.add_argument("--author", help="the person responsible")
     parser.add_argument("--lmp", metavar="FILE", help="the LAMMPS program that tries the deck (default: LMP of the "
                         "environment, then build/lmp beside tools/)")
     parser.add_argument("--jobs", type=count, metavar="J", help="runs at a time, for the estimate (default: "
@@ -75,7 +75,7 @@ def add_ground(group):
     group.add_argument("--cell", type=number, metavar="S", help="wanted cell size, m")
     group.add_argument("--fill", type=int, metavar="N", help="fill NODATA holes of at most N cells")
     group.add_argument("--release", metavar="P", help="polygon of the ground that is released, in any CRS: GeoJSON, "
-                       "shapefile, CSV or WKT; with --scar, what of the scar counts")
+                       "shapefile, CSV or WKT; with --scar, only the part of the scar inside it is used")
     group.add_argument("--shape", choices=SHAPES, help="of the slip surface, see slope release (default sphere)")
     size = group.add_mutually_exclusive_group()
     size.add_argument("--depth", metavar="D", type=number, help="largest depth of the body, vertical, m")
@@ -97,17 +97,19 @@ def add_layers(group):
                             "given several times")
     group.add_argument("--line", metavar="LINE", action="append", help="control line: what passes it is counted; may "
                        "be given several times")
-    group.add_argument("--motion", metavar="FILE", help="motion of the ground of slope quake: the body stands, is "
-                       "shaken, and fails when it has moved")
-    group.add_argument("--observed", metavar="P|RASTER", help="a mapped deposit, outline or thickness: the run of the "
-                       "report is held against it")
+    group.add_argument("--motion", metavar="FILE", help="ground motion written by slope quake: the body stands, is "
+                       "shaken, and loses its strength once it has moved far enough")
+    group.add_argument("--observed", metavar="P|RASTER", help="a mapped deposit, outline or thickness, with which the "
+                       "run shown in the report is compared")
 
 
 def add_size(group):
     size = group.add_mutually_exclusive_group()
-    size.add_argument("--balls", metavar="N", type=count, help="so many balls in the body")
-    size.add_argument("--minutes", metavar="M", type=number, help="so that the study takes M minutes on this machine")
-    size.add_argument("--memory", metavar="GB", type=number, help="so that the runs at a time take so much memory")
+    size.add_argument("--balls", metavar="N", type=count, help="number of balls in the body")
+    size.add_argument("--minutes", metavar="M", type=number,
+                      help="choose the size so that the study takes M minutes on this machine")
+    size.add_argument("--memory", metavar="GB", type=number,
+                      help="choose the size so that the active runs together take this much memory")
     size.add_argument("--diameter", metavar="D", type=number, help="of the balls, m")
 
 

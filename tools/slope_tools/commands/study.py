@@ -8,12 +8,16 @@ from pathlib import Path
 
 from ..case import decks, site_choices
 from ..case.settings import check_settings, one_value_each
-from ..ensemble import intensity, repeats, results, sample, site_study
+from ..ensemble import designs, intensity, repeats, results, sample, site_study
 from ..ensemble.size_error import SizeErrors
 from ..ensemble.study import check_names, check_thresholds, perform
 from ..errors import SlopeError
 from .run_arguments import add_deck, add_intensity, add_repeats, add_runs, add_sample, setup_of
 
+# of options; the parser has None, so that an option that is given can be told from one that is not
+DEFAULTS = {"exceed": "0.1,0.5,1", "exceed_speed": "5", "exceed_energy": "100000", "design": designs.SOBOL, "seed": 1}
+NOT_OF_A_SITE = ("set", "repeat", "vary", "sample", "size_error", "road", "of", "intensity", "equally_good", "output",
+                 "cut_angle", "mesh", "local", "more_than", *DEFAULTS)
 EPILOG = """\
 units: metres, seconds, m3 of ground (bulk); thresholds of --exceed in metres.
 
@@ -49,11 +53,11 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--size-error", metavar="FILE", type=Path,
                         help="converge.yaml of `slope sensitivity --converge`: its error at the size of these balls "
                              "counts in the conservative volume")
-    parser.add_argument("--exceed", default="0.1,0.5,1", metavar="T1,T2,...",
+    parser.add_argument("--exceed", metavar="T1,T2,...",
                         help="thicknesses of the maps of exceedance, m (default 0.1,0.5,1)")
-    parser.add_argument("--exceed-speed", default="5", metavar="V1,V2,...",
+    parser.add_argument("--exceed-speed", metavar="V1,V2,...",
                         help="speeds of the maps of exceedance of an ensemble, m/s (default 5)")
-    parser.add_argument("--exceed-energy", default="100000", metavar="E1,E2,...",
+    parser.add_argument("--exceed-energy", metavar="E1,E2,...",
                         help="energies of a ball for the same, J (default 100000)")
     parser.add_argument("--of", metavar="NAME",
                         help="quantity of the hazard curve of an ensemble, a column of study.csv (default: "
@@ -69,6 +73,9 @@ def run(args):
         return run_site(args)
     if args.output is None:
         raise SlopeError("-o", "must be given, the study's folder")
+    for name, value in DEFAULTS.items():
+        if getattr(args, name) is None:
+            setattr(args, name, value)
     settings = check_settings(args.set, args.deck)
     repeated = check_settings(args.repeat, args.deck, "--repeat")
     repeats.check(list(repeated), args.equally_good)
@@ -95,11 +102,13 @@ def run(args):
 
 def run_site(args):
     """The standard study of a site's folder, and the report."""
-    for option in ("set", "repeat", "vary", "sample", "size_error", "road", "of", "intensity", "equally_good",
-                   "output"):
-        if getattr(args, option):
+    for option in NOT_OF_A_SITE:
+        value = getattr(args, option)
+        if value is not None and value is not False and value not in ("", []):
+            first = value[0] if isinstance(value, list) else value
             raise SlopeError("-o" if option == "output" else f"--{option.replace('_', '-')}", "must not be given with "
-                             f"the folder of a site: {args.deck / 'site.yaml'} says what is run", getattr(args, option))
+                             f"the folder of a site: {args.deck / 'site.yaml'} says what is run",
+                             None if first is True else f"{first:g}" if isinstance(first, float) else first)
     study = site_study.run(args.deck, setup_of(args))
     if study:
         from ..report import document

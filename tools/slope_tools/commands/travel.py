@@ -38,7 +38,7 @@ def add_parser(commands, **kwargs):
                         help="only balls of these atom types (default: all)")
     parser.add_argument("--start", metavar="DUMP", nargs="+",
                         help="dump of the start, one for all runs or one for each: adds travelled distances, run-out "
-                             "and reach angle, and tells how many balls are missing at the end")
+                             "and reach angle, and the number of balls that are missing at the end")
     parser.add_argument("-o", dest="output", metavar="DIR", type=Path, default=Path("travel"),
                         help="folder for the results (default travel)")
     return parser

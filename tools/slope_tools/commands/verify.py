@@ -31,9 +31,9 @@ def add_parser(commands, **kwargs):
     """Add `verify` and its arguments to argparse's commands; return its parser."""
     parser = commands.add_parser(
         "verify", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
-        description="Run the cases of inputs/, hold them against closed forms and published numbers, write a report.",
+        description="Run the cases of inputs/, compare them with closed forms and published numbers, write a report.",
         **kwargs)
-    parser.add_argument("--quick", action="store_true", help="only what takes seconds")
+    parser.add_argument("--quick", action="store_true", help="only runs that take seconds")
     parser.add_argument("--only", metavar="CASE,...",
                         help="these folders of inputs/, such as 01_restitution (default all)")
     parser.add_argument("--jobs", type=count, metavar="J", help="runs at a time (default: the cores of the machine)")

@@ -37,11 +37,11 @@ def add_parser(commands, **kwargs):
     parser.add_argument("-o", dest="output", metavar="DIR", type=Path,
                         help="folder for the results (default PREFIX.volume)")
     parser.add_argument("--terrain", metavar="TERRAIN.asc", type=Path,
-                        help="the run's terrain, whose sidecar tells the CRS (default: terrain.asc beside PREFIX)")
+                        help="the run's terrain, whose sidecar holds the CRS (default: terrain.asc beside PREFIX)")
     parser.add_argument("--local", action="store_true",
                         help="the road and the axis are in local metres, not in a CRS")
     parser.add_argument("--bulk", metavar="FACTOR", type=number,
-                        help="tell the volumes for this bulk factor too (volume of ground / volume of the balls)")
+                        help="also give the volumes for this bulk factor (volume of ground / volume of the balls)")
     parser.add_argument("--axis", metavar="LINE", type=Path,
                         help="the road's axis: GeoJSON, shapefile, CSV or WKT (default: the road's middle)")
     parser.add_argument("--blocked", metavar="T", type=number, default=BLOCKED,

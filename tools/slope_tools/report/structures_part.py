@@ -120,4 +120,5 @@ class Structures:
         title = f"Energies at the line {name}"
         return self.picture(figure_structures.curves(curves, "energy of a ball (kJ)", "share with more (-)", title,
                                                      falling=True), title,
-                            f"{title}: share of the forward crossings with more than an energy of motion and spin.")
+                            f"{title}: share of the forward crossings with more than an energy (translation and "
+                            "rotation).")
