@@ -18,7 +18,8 @@ TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
 from slope_tools import cli  # noqa: E402
-from slope_tools.ensemble import launcher  # noqa: E402
+from slope_tools.errors import SlopeError  # noqa: E402
+from slope_tools.ensemble import launcher, slurm as engine  # noqa: E402
 
 PROGRAM = [sys.executable, str(TOOLS / "slope")]
 PATH = f"{os.environ['PATH']}:/usr/sbin:/sbin"
@@ -160,6 +161,49 @@ def test_an_interruption_cancels_the_array(cluster, here):
     process.terminate()
     assert process.wait(90) == 130
     assert not states()
+
+
+# --- a queue that does not answer ---
+
+@pytest.fixture
+def queue(monkeypatch):
+    """A Queue whose squeue answers with what is put into `says`: text, or None where it fails."""
+    one = engine.Queue()
+    one.says = None
+
+    def call(*words):
+        if one.says is None:
+            raise SlopeError("--engine slurm", f"{words[0]} failed: Socket timed out on send/recv operation")
+        return one.says
+    monkeypatch.setattr(engine, "call", call)
+    monkeypatch.setattr(engine, "LOOK", -1.0)
+    return one
+
+
+def test_a_queue_that_is_silent_for_a_while_cancels_nothing(queue, tmp_path, monkeypatch):
+    monkeypatch.setattr(engine, "PATIENCE", -1.0)
+    known, new = (engine.Task(name, tmp_path / name, queue) for name in ("7_0", "8_0"))
+    queue.says = "7_0 RUNNING\n"
+    assert known.poll() is None and known.running
+    queue.says = None
+    for _ in range(3):      # the new one was never seen, which is no sign that it left the queue
+        assert known.poll() is None and new.poll() is None and known.running and not new.lost
+    queue.says = "7_0 RUNNING\n8_0 PENDING\n"
+    assert new.poll() is None and queue.states()["8_0"] == "PENDING" and queue.silent is None
+    queue.says = "8_0 PENDING\n"
+    assert [known.poll(), known.poll()][-1] == -9 and known.lost and new.poll() is None
+
+
+def test_a_queue_that_is_silent_for_long_ends_the_study(queue, monkeypatch):
+    assert queue.states() == {}
+    monkeypatch.setattr(engine, "SILENCE", -1.0)
+    with pytest.raises(SlopeError, match="squeue failed: Socket timed out"):
+        queue.states()
+
+
+def test_cancelling_does_not_hide_the_first_error(queue, monkeypatch):
+    monkeypatch.setattr(engine.processes, "PATIENCE", 0.1)
+    engine.Work._cancel(["7", "8"])
 
 
 # --- what starts the ranks ---
