@@ -225,6 +225,14 @@ def test_a_run_is_started_by_the_launcher(here):
     assert (here / "out" / "steps_20" / "started").read_text().startswith(f"-n 1 {LMP} -in in.tiny")
 
 
+def test_a_launcher_of_the_working_folder_is_found_from_that_of_a_run(here, monkeypatch):
+    Path("mine.sh").write_text("#!/bin/sh\nshift 2\nexec \"$@\"\n")
+    Path("mine.sh").chmod(0o755)
+    assert launcher.words("./mine.sh --fast", 2, 2) == [f"{here}/mine.sh", "--fast", "-n", "2"]
+    assert launcher.words("./mine.sh {np}", 2, 2) == [f"{here}/mine.sh", "2"]
+    assert cli.main(shlex.split("study case/in.tiny --set steps=20 --launcher ./mine.sh -o out")) == 0
+
+
 @pytest.mark.parametrize("words, message", [
     ("--launcher nonsense", "--launcher: must begin with a program on the PATH, got nonsense"),
     ("--launcher '\"'", "--launcher: must be a command"),
