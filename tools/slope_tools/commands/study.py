@@ -12,7 +12,7 @@ from ..ensemble import intensity, repeats, results, sample, site_study
 from ..ensemble.size_error import SizeErrors
 from ..ensemble.study import check_names, check_thresholds, perform
 from ..errors import SlopeError
-from .run_arguments import add_deck, add_intensity, add_repeats, add_runs, add_sample, setup_of
+from .run_arguments import add_deck, add_intensity, add_repeats, add_runs, add_sample, settle_kind, setup_of
 
 EPILOG = """\
 units: metres, seconds, m3 of ground (bulk); thresholds of --exceed in metres.
@@ -51,9 +51,9 @@ def add_parser(commands, **kwargs):
                              "counts in the conservative volume")
     parser.add_argument("--exceed", default="0.1,0.5,1", metavar="T1,T2,...",
                         help="thicknesses of the maps of exceedance, m (default 0.1,0.5,1)")
-    parser.add_argument("--exceed-speed", default="5", metavar="V1,V2,...",
+    parser.add_argument("--exceed-speed", metavar="V1,V2,...",
                         help="speeds of the maps of exceedance of an ensemble, m/s (default 5)")
-    parser.add_argument("--exceed-energy", default="100000", metavar="E1,E2,...",
+    parser.add_argument("--exceed-energy", metavar="E1,E2,...",
                         help="energies of a ball for the same, J (default 100000)")
     parser.add_argument("--of", metavar="NAME",
                         help="quantity of the hazard curve of an ensemble, a column of study.csv (default: "
@@ -74,6 +74,7 @@ def run(args):
     repeats.check(list(repeated), args.equally_good)
     thresholds = check_thresholds(args.exceed)
     defaults = decks.index_variables(args.deck)
+    settle_kind(args, sample=args.sample is not None or bool(args.vary))
     if args.sample is not None or args.vary:
         return run_ensemble(args, settings, repeated, thresholds, defaults)
     if not settings:
