@@ -136,6 +136,9 @@ def test_two_materials_of_yade_give_the_wanted_contact():
     ("--lmp one --lmp two", "--lmp: must name one program for all, others as CODE=FILE, got two"),
     ("--peers build", "--peers: must be of granular, hooke, liggghts, yade, got build"),
     ("-o file", "-o: must be a folder, got file"),
+    ("--quick --only weak", "--only: must name a part with runs to time: weak has none with --quick, got weak"),
+    ("--only ranks --np 1", "--only: must name a part with runs to time: ranks has none with --np 1, got ranks"),
+    ("--quick --only weak,ranks --np 1", "weak has none with --quick"),
 ])
 def test_bad_input_is_one_line(slope, arguments, message):
     Path("file").touch()

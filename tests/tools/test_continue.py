@@ -311,3 +311,13 @@ def test_the_embankment_can_be_continued(here):
     done = run(here / "part", "2.2", "-var", "restart", "../tiny.restart")
     assert done.returncode == 0, done.stdout
     assert_same(numbers(here / "whole"), numbers(here / "part"))
+
+
+def test_a_run_that_is_made_anew_tells_its_own_error(slope, here):
+    deck = here / "case" / "in.tiny"
+    whole = deck.read_text()
+    for command in ("first_nonsense 1 2 3 4 5 6 7 8 9", "second_nonsense"):     # the second log is the shorter one
+        deck.write_text(whole.replace("thermo      50\n", f"{command}\n"))
+        status, out, err = slope(arguments())
+        assert status == 2 and f"Unknown command: {command}" in err, err
+    assert "starts again: it was started with another in.tiny" in out

@@ -395,6 +395,13 @@ def test_a_latin_hypercube_does_not_grow(slope):
     ("--sample 20000 --vary friction=1:2", "--sample: must make at most 10000 runs, got 20000"),
     ("--sample 8 --vary friction=1:2 --exceed-speed x", "--exceed-speed: must be different speeds >= 0"),
     ("", "--set: must be given, or --sample with --vary"),
+    ("--sample 8 --vary friction=1:2 --intensity friction", "--intensity: must not be given with --sample, got fric"),
+    ("--sample 8 --vary friction=1:2 --more-than 5,10", "--more-than: must not be given with --sample, got 5,10"),
+    ("--set friction=20 --of front_m", "--of: must be given with --sample only, got front_m"),
+    ("--set friction=20 --exceed-speed 5", "--exceed-speed: must be given with --sample only, got 5"),
+    ("--set friction=20 --exceed-energy 10", "--exceed-energy: must be given with --sample only, got 10"),
+    ("--set friction=20 --design sobol", "--design: must be given with --sample only, got sobol"),
+    ("--set friction=20 --seed 0", "--seed: must be given with --sample only, got 0"),
 ])
 def test_wrong_ensembles_are_one_line(slope, arguments, message):
     status, out, err = slope(f"{arguments} -o out")

@@ -18,7 +18,8 @@ TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
 from slope_tools import cli  # noqa: E402
-from slope_tools.ensemble import launcher  # noqa: E402
+from slope_tools.errors import SlopeError  # noqa: E402
+from slope_tools.ensemble import launcher, slurm as engine  # noqa: E402
 
 PROGRAM = [sys.executable, str(TOOLS / "slope")]
 PATH = f"{os.environ['PATH']}:/usr/sbin:/sbin"
@@ -162,6 +163,49 @@ def test_an_interruption_cancels_the_array(cluster, here):
     assert not states()
 
 
+# --- a queue that does not answer ---
+
+@pytest.fixture
+def queue(monkeypatch):
+    """A Queue whose squeue answers with what is put into `says`: text, or None where it fails."""
+    one = engine.Queue()
+    one.says = None
+
+    def call(*words):
+        if one.says is None:
+            raise SlopeError("--engine slurm", f"{words[0]} failed: Socket timed out on send/recv operation")
+        return one.says
+    monkeypatch.setattr(engine, "call", call)
+    monkeypatch.setattr(engine, "LOOK", -1.0)
+    return one
+
+
+def test_a_queue_that_is_silent_for_a_while_cancels_nothing(queue, tmp_path, monkeypatch):
+    monkeypatch.setattr(engine, "PATIENCE", -1.0)
+    known, new = (engine.Task(name, tmp_path / name, queue) for name in ("7_0", "8_0"))
+    queue.says = "7_0 RUNNING\n"
+    assert known.poll() is None and known.running
+    queue.says = None
+    for _ in range(3):      # the new one was never seen, which is no sign that it left the queue
+        assert known.poll() is None and new.poll() is None and known.running and not new.lost
+    queue.says = "7_0 RUNNING\n8_0 PENDING\n"
+    assert new.poll() is None and queue.states()["8_0"] == "PENDING" and queue.silent is None
+    queue.says = "8_0 PENDING\n"
+    assert [known.poll(), known.poll()][-1] == -9 and known.lost and new.poll() is None
+
+
+def test_a_queue_that_is_silent_for_long_ends_the_study(queue, monkeypatch):
+    assert queue.states() == {}
+    monkeypatch.setattr(engine, "SILENCE", -1.0)
+    with pytest.raises(SlopeError, match="squeue failed: Socket timed out"):
+        queue.states()
+
+
+def test_cancelling_does_not_hide_the_first_error(queue, monkeypatch):
+    monkeypatch.setattr(engine.processes, "PATIENCE", 0.1)
+    engine.Work._cancel(["7", "8"])
+
+
 # --- what starts the ranks ---
 
 @pytest.mark.parametrize("start, ranks, expected", [
@@ -179,6 +223,14 @@ def test_a_run_is_started_by_the_launcher(here):
     Path("mine").chmod(0o755)
     assert cli.main(shlex.split(f"study case/in.tiny --set steps=20 --launcher {here}/mine -o out")) == 0
     assert (here / "out" / "steps_20" / "started").read_text().startswith(f"-n 1 {LMP} -in in.tiny")
+
+
+def test_a_launcher_of_the_working_folder_is_found_from_that_of_a_run(here, monkeypatch):
+    Path("mine.sh").write_text("#!/bin/sh\nshift 2\nexec \"$@\"\n")
+    Path("mine.sh").chmod(0o755)
+    assert launcher.words("./mine.sh --fast", 2, 2) == [f"{here}/mine.sh", "--fast", "-n", "2"]
+    assert launcher.words("./mine.sh {np}", 2, 2) == [f"{here}/mine.sh", "2"]
+    assert cli.main(shlex.split("study case/in.tiny --set steps=20 --launcher ./mine.sh -o out")) == 0
 
 
 @pytest.mark.parametrize("words, message", [

@@ -5,6 +5,7 @@ import re
 import shlex
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -192,6 +193,21 @@ def test_a_mesh_file_that_is_none(tmp_path, text):
     (tmp_path / "a.vtp").write_text(text)
     with pytest.raises(errors.SlopeError, match="a.vtp: must be what fix wall/gran/mesh wrote"):
         report_structures.polydata(tmp_path / "a.vtp")
+
+
+def test_a_series_of_a_run_without_output(tmp_path):
+    """Its head alone: no force, and no end of the study."""
+    (tmp_path / "a.csv").write_text(",".join(structures.SERIES) + "\n")
+    (tmp_path / "a.triangles.csv").write_text("x,y,z,largest_pressure\n")
+    numbers = structures.of_structure(tmp_path, "a")
+    assert numbers["largest_force_n"] == numbers["mean_force_n"] == 0 and numbers["at_s"] is None
+    (tmp_path / "a.vtp").write_text("<VTKFile><DataArray Name='corners'>0 0 0 0 2 0 0 0 1</DataArray>"
+                                    "<DataArray Name='largest_pressure'>5</DataArray></VTKFile>")
+    data = SimpleNamespace(result=SimpleNamespace(folder=tmp_path), drawn=[])
+    part = report_structures.Structures(data, None, lambda picture, title, text: title)
+    assert part.pressures(("wall", "a")) == "Largest pressure on wall"
+    data.drawn.append(SimpleNamespace(folder=tmp_path))
+    assert part.forces("wall", [(data.drawn[0], "a")]) == "Force on wall"
 
 
 @pytest.mark.parametrize("text", ["", "time,fx\n1,2\n", "left by an earlier run\n", "not,text\n\x00\n"])

@@ -70,6 +70,7 @@ def run(args):
     ranks = [rank for rank in whole_numbers("--np", args.np) if rank > 1]
     if ranks and {"ranks", "weak"} & set(parts) and not shutil.which("mpirun"):
         raise SlopeError("--np", "needs mpirun, which is not on the PATH", args.np)
+    check_timed(parts, ranks, args)
     balls = args.balls or (8000 if args.quick else BALLS)
     if balls < 100:
         raise SlopeError("--balls", "must be >= 100", balls)
@@ -83,6 +84,15 @@ def run(args):
             plan.do(parts, names, ranks)
     except OSError as error:
         raise SlopeError(error.filename or args.output, f"cannot be used: {error.strerror}") from error
+
+
+def check_timed(parts, ranks, args):
+    """Raise SlopeError if no part has a run to time."""
+    without = {"weak": args.quick and "weak has none with --quick",
+               "ranks": not ranks and f"ranks has none with --np {args.np}"}
+    if all(without.get(part) for part in parts):
+        raise SlopeError("--only", f"must name a part with runs to time: {', '.join(without[part] for part in parts)}",
+                         args.only)
 
 
 def whole_numbers(option, text):

@@ -4,6 +4,7 @@ from pathlib import Path
 
 from ..ensemble import designs
 from ..ensemble.setup import Road, Setup
+from ..errors import SlopeError
 from ..options import count, number
 
 
@@ -66,9 +67,26 @@ def add_intensity(parser):
     parser.add_argument("--intensity", metavar="NAME",
                         help="variable of --set that is the intensity of the trigger (default: the one called peak, "
                              "pga or ...intensity); needs --road")
-    parser.add_argument("--more-than", metavar="V1,V2,...", type=volumes, default=[],
+    parser.add_argument("--more-than", metavar="V1,V2,...", type=volumes,
                         help="volumes on the road, m3, whose probability of exceedance is given at each intensity "
                              "(default: three round ones)")
+
+
+# options of one kind of study: whether they go with --sample, and their default
+OF_A_KIND = {"intensity": (False, None), "more_than": (False, ()), "of": (True, None), "exceed_speed": (True, "5"),
+             "exceed_energy": (True, "100000"), "design": (True, designs.SOBOL), "seed": (True, 1)}
+
+
+def settle_kind(args, sample):
+    """Give the options of a study, with --sample or without it, their defaults; SlopeError on one of the other kind."""
+    for name, (with_sample, default) in OF_A_KIND.items():
+        value = getattr(args, name)
+        if value is None:
+            setattr(args, name, default)
+        elif with_sample != sample:
+            raise SlopeError(f"--{name.replace('_', '-')}", "must be given with --sample only" if with_sample else
+                             "must not be given with --sample",
+                             ",".join(f"{one:g}" for one in value) if isinstance(value, list) else value)
 
 
 def volumes(text):

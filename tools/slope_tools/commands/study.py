@@ -8,16 +8,15 @@ from pathlib import Path
 
 from ..case import decks, site_choices
 from ..case.settings import check_settings, one_value_each
-from ..ensemble import designs, intensity, repeats, results, sample, site_study
+from ..ensemble import intensity, repeats, results, sample, site_study
 from ..ensemble.size_error import SizeErrors
 from ..ensemble.study import check_names, check_thresholds, perform
 from ..errors import SlopeError
-from .run_arguments import add_deck, add_intensity, add_repeats, add_runs, add_sample, setup_of
+from .run_arguments import OF_A_KIND, add_deck, add_intensity, add_repeats, add_runs, add_sample, settle_kind, setup_of
 
-# of options; the parser has None, so that an option that is given can be told from one that is not
-DEFAULTS = {"exceed": "0.1,0.5,1", "exceed_speed": "5", "exceed_energy": "100000", "design": designs.SOBOL, "seed": 1}
-NOT_OF_A_SITE = ("set", "repeat", "vary", "sample", "size_error", "road", "of", "intensity", "equally_good", "output",
-                 "cut_angle", "mesh", "local", "more_than", *DEFAULTS)
+THICKNESSES = "0.1,0.5,1"      # of the maps of exceedance, m; the parser has None, as for all that a site refuses
+NOT_OF_A_SITE = ("set", "repeat", "vary", "sample", "size_error", "road", "equally_good", "output", "cut_angle", "mesh",
+                 "local", "exceed", *OF_A_KIND)
 EPILOG = """\
 units: metres, seconds, m3 of ground (bulk); thresholds of --exceed in metres.
 
@@ -73,14 +72,12 @@ def run(args):
         return run_site(args)
     if args.output is None:
         raise SlopeError("-o", "must be given, the study's folder")
-    for name, value in DEFAULTS.items():
-        if getattr(args, name) is None:
-            setattr(args, name, value)
     settings = check_settings(args.set, args.deck)
     repeated = check_settings(args.repeat, args.deck, "--repeat")
     repeats.check(list(repeated), args.equally_good)
-    thresholds = check_thresholds(args.exceed)
+    thresholds = check_thresholds(THICKNESSES if args.exceed is None else args.exceed)
     defaults = decks.index_variables(args.deck)
+    settle_kind(args, sample=args.sample is not None or bool(args.vary))
     if args.sample is not None or args.vary:
         return run_ensemble(args, settings, repeated, thresholds, defaults)
     if not settings:

@@ -297,6 +297,7 @@ class Work:
             one.folder.rename(old)
         new.rename(one.folder)
         shutil.rmtree(old, ignore_errors=True)
+        one.log = logs.Log(one.log.path)        # what was read of the old run's says nothing of this one
 
     def _ended(self, active):
         """Mark the run as finished, or keep why it is not."""

@@ -1,4 +1,5 @@
 """How the ranks of a run are started: by mpirun, or by what --launcher names. The one place that knows."""
+import os
 import shlex
 import shutil
 from typing import List, Optional
@@ -12,6 +13,9 @@ def words(start: Optional[str], ranks: int, slots: int) -> List[str]:
     """The words before the program; start: of --launcher, or None; slots: what mpirun takes as its number of slots."""
     if start:
         given = shlex.split(start)
+        found = shutil.which(given[0])
+        if found and not os.path.isabs(found):      # a run is started in a folder of its own
+            given[0] = os.path.abspath(found)
         if any(RANKS in word for word in given):
             return [word.replace(RANKS, str(ranks)) for word in given]
         return [*given, "-n", str(ranks)]

@@ -4,6 +4,7 @@ Each array is a file with one run a line; its tasks leave the status of their pr
 the queue without a status, because it was cancelled or its node went down, is submitted again, and continues from its
 last restart file where the deck can do that.
 """
+import contextlib
 import shlex
 import shutil
 import subprocess
@@ -22,6 +23,7 @@ STATUS = "slurm_status"     # in a run's folder: how its program ended
 LOOK = 2.0                  # s between two looks at the queue
 PATIENCE = 6.0              # s that a task may be out of the queue without a status: folders of other nodes lag behind
 TRIES = 5                   # times that a run is submitted
+SILENCE = 600.0             # s that the queue may fail to answer: slurmctld is busy, or is restarted
 SCRIPT = """\
 #!/bin/bash
 line=$(sed -n "$((SLURM_ARRAY_TASK_ID + 1))p" {runs})
@@ -48,7 +50,10 @@ def check(options: str) -> None:
 
 def call(*words: str) -> str:
     """What a program of Slurm says; SlopeError if it fails."""
-    done = subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
+    try:
+        done = subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
+    except OSError as error:
+        raise SlopeError("--engine slurm", f"{words[0]} cannot be run: {error.strerror}") from error
     if done.returncode:
         last = (done.stderr or done.stdout).strip().splitlines() or ["no word of it"]
         raise SlopeError("--engine slurm", f"{words[0]} failed: {last[-1]}")
@@ -77,7 +82,7 @@ class Task:
         return self.returncode
 
     def _look(self) -> None:
-        if self.name in self.queue.states():
+        if self.name in self.queue.states() or self.queue.silent is not None:
             self.missing = None
             return
         now = time.monotonic()
@@ -87,16 +92,29 @@ class Task:
 
 
 class Queue:
-    """The states of our tasks, asked for now and then: {array_task: state}."""
+    """The states of our tasks, asked for now and then: {array_task: state}.
+
+    silent: since when the queue has not answered, None if it did; the states are then those that were heard last.
+    """
 
     def __init__(self):
         self.asked, self.known, self.arrays = -1e9, {}, []
+        self.silent: Optional[float] = None
 
     def states(self) -> Dict[str, str]:
+        """As last heard; SlopeError once the queue has not answered for long."""
         if time.monotonic() - self.asked > LOOK:
-            lines = call("squeue", "-h", "-r", "-o", "%F_%K %T").splitlines()
-            self.known = {name: state for name, state in (line.split()[:2] for line in lines)
-                          if state not in ("COMPLETED", "CANCELLED", "FAILED", "NODE_FAIL", "TIMEOUT")}
+            try:
+                lines = call("squeue", "-h", "-r", "-o", "%F_%K %T").splitlines()
+            except SlopeError:
+                now = time.monotonic()
+                self.silent = now if self.silent is None else self.silent
+                if now - self.silent > SILENCE:
+                    raise
+            else:
+                self.silent = None
+                self.known = {name: state for name, state in (line.split()[:2] for line in lines)
+                              if state not in ("COMPLETED", "CANCELLED", "FAILED", "NODE_FAIL", "TIMEOUT")}
             self.asked = time.monotonic()
         return self.known
 
@@ -171,12 +189,13 @@ class Work(jobs.Work):
 
     @staticmethod
     def _cancel(arrays: List[str]) -> None:
-        """Cancel arrays, and wait until they are gone."""
+        """Cancel arrays, and wait until they are gone. Raises nothing: it must not hide why they are cancelled."""
         for number in arrays:
-            subprocess.run(["scancel", number], stdin=subprocess.DEVNULL, capture_output=True, check=False)
+            with contextlib.suppress(SlopeError):
+                call("scancel", number)
         end = time.monotonic() + 10 * processes.PATIENCE
         while arrays and time.monotonic() < end:
-            left = call("squeue", "-h", "-r", "-o", "%F").split()
-            if not set(left) & set(arrays):
-                return
+            with contextlib.suppress(SlopeError):
+                if not set(call("squeue", "-h", "-r", "-o", "%F").split()) & set(arrays):
+                    return
             time.sleep(0.5)

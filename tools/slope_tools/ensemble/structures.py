@@ -33,6 +33,8 @@ class Series:
 
     def mean_force(self, window=WINDOW):
         """Times, and size of the mean force over the window (s) that ends then: the change of the impulse over it."""
+        if not len(self.time):      # a run that was stopped before its first output
+            return self.time, np.zeros(0)
         begin = self.time - window
         before = np.stack([np.interp(begin, self.time, column, left=0.0) for column in self.impulse.T], axis=-1)
         return self.time, np.linalg.norm(self.impulse - before, axis=1) / window

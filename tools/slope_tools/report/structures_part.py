@@ -98,7 +98,7 @@ class Structures:
         corners, pressure = polydata(folder / f"{prefix}.vtp")
         if not pressure.any():
             return None
-        load = structures.series(folder, prefix).impulse[-1]
+        load = structures.series(folder, prefix).impulse[-1:].sum(axis=0)       # none without any output
         direction = load if np.hypot(*load[:2]) > 1e-6 * np.linalg.norm(load) else np.array([1.0, 0.0, 0.0])
         title = f"Largest pressure on {name}"
         return self.picture(figure_structures.pressure_map(corners, pressure / 1e3, direction, title), title,
