@@ -9,7 +9,7 @@ from .. import disk, provenance
 from ..case import run_folders
 from ..deposit import rest, travel_shares
 from ..survey import rasters
-from . import combinations, intensity, repeats, structures, study_table
+from . import combinations, ensemble, intensity, repeats, structures, study_table
 from .setup import Road, Setup
 from .size_error import SizeErrors
 from .study_file import read_study      # noqa: F401  (for those who work on with a study)
@@ -66,7 +66,6 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
     if setup.road and finished:
         about["study"]["road"] = write_road(output, setup.road, first, thickness)
     if order:
-        from . import ensemble
         about["ensemble"] = ensemble.evaluate(order, rows, output, first and terrain_place(first), maps.problem)
     elif setup.road and finished:
         best = about["conservative"] = combinations.conservative(settings, rows, groups, errors)

@@ -3,7 +3,8 @@ from typing import Any, Dict
 
 from ..deposit import travel_shares
 from ..drawing.figures import FULL, HALF, WIDE
-from ..ensemble import headline, sensitivity
+from ..ensemble import headline
+from ..ensemble.quantities import NAMES
 from ..ensemble.repeats import key_of
 from . import figure_charts
 from .data import is_number
@@ -22,7 +23,7 @@ TITLES = {REMOVE: "Volume to remove from the road", "remove_on_road_m3": "Volume
 def quantities(data):
     """{column: what it is} of those that all finished runs have a number of; of a single run, of its summary."""
     rows = data.finished or [single_row(data)]
-    return {name: label for name, (label, _) in sensitivity.NAMES.items()
+    return {name: label for name, (label, _) in NAMES.items()
             if all(row.get(name) is not None for row in rows)}
 
 
@@ -37,7 +38,7 @@ def single_row(data):
 
 
 def unit(name):
-    return sensitivity.NAMES[name][1]
+    return NAMES[name][1]
 
 
 class Charts:
@@ -66,11 +67,11 @@ class Charts:
         return [self.bars(key) if name is None else self.chart(key, name) for key in wanted]
 
     def title(self, key):
-        what = sensitivity.NAMES[key][0]
+        what = NAMES[key][0]
         return TITLES.get(key, what[0].upper() + what[1:])
 
     def label(self, key):
-        return f"{sensitivity.NAMES[key][0]} ({unit(key)})"
+        return f"{NAMES[key][0]} ({unit(key)})"
 
     def bars(self, key):
         rows, title = self.data.finished, self.title(key)

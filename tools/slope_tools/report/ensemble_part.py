@@ -5,7 +5,7 @@ from typing import Any, Dict, List, Mapping
 import numpy as np
 
 from ..drawing import figures
-from ..ensemble import ensemble, sensitivity
+from ..ensemble import ensemble, quantities
 from ..errors import SlopeError
 from . import ensemble_charts, figure_maps
 from .charts import AXIS
@@ -116,7 +116,7 @@ class Ensemble:
         rows = []
         for name, entry in self.about["quantities"].items():
             found = self.about["influence"].get(name)
-            cells = [sensitivity.number(one["value"]) for one in entry["quantiles"]]
+            cells = [quantities.number(one["value"]) for one in entry["quantiles"]]
             of_variables = []
             for key in self.about["design"]["variables"]:
                 one = found and found["variables"][key]
