@@ -1,4 +1,5 @@
 """What came out of the runs of a study: their numbers, the table, the maps over all runs, the conservative volume."""
+import os
 import sys
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
 
@@ -70,6 +71,8 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
     elif setup.road and finished:
         best = about["conservative"] = combinations.conservative(settings, rows, groups, errors)
         if errors:
+            # from the folder of study.yaml, so that both may move together
+            best["size"]["file"] = os.path.relpath(errors.path.resolve(), output.resolve())
             best["doubts"] += errors.doubts(deck.name, {**work.defaults, **best["set"]}, [*settings, *repeated],
                                             about["study"]["road"])
         best["doubts"] += unseen(repeated, work.defaults)

@@ -16,7 +16,7 @@ from .numbers import Numbers, answer, balance, cards, travel_rows
 from .reference import read as read_reference
 from .section import Section
 from .structures_part import Structures
-from .warnings import warnings
+from .warnings import AMBER, warnings
 
 # columns of a study's table: head, unit, key
 COLUMNS = (("released", "m3", "released_m3"), ("99 % within", "m", "distance_99_m"),
@@ -38,9 +38,9 @@ class Page:
         self.section = Section(self.data, self.ground, asked.section, asked.local)
         self.reference = read_reference(asked.reference, quantities(self.data)) \
             if asked.reference else None
-        path = convergence_part.find(asked.converge, self.data)
+        path, missing = convergence_part.find(asked.converge, self.data)
         self.sizes = path and convergence_part.Sizes(path)
-        self.warnings = warnings(self.data)
+        self.warnings = [*warnings(self.data), *([(AMBER, missing)] if missing else [])]
         self.numbers = Numbers((self.data.study or {}).get("scatter"))
         self.heading = heading.heading(asked.folder, {name: getattr(asked, name) for name in heading.FIELDS})
         self.frames, self.no_frames = frames.read(self.data.result)
