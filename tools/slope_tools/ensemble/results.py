@@ -79,7 +79,9 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
     about["intensity"] = intensity.collect(
         output, questions.intensity, questions.more_than, settings, bool(setup.road), groups) \
         if finished and not order else None      # of values that are drawn, each has one run
-    if about["intensity"]:
+    if not about["intensity"]:
+        (output / intensity.FILE).unlink(missing_ok=True)       # of a study before this one in the folder
+    else:
         about["conservative"]["doubts"] += intensity.doubts(about["intensity"])
     structures.collect(output, finished)
     for text in warnings:
