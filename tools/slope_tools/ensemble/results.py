@@ -13,7 +13,6 @@ from ..survey import rasters
 from . import combinations, ensemble, intensity, repeats, structures, study_table
 from .setup import Road, Setup
 from .size_error import SizeErrors
-from .study_file import read_study      # noqa: F401  (for those who work on with a study)
 from .study_maps import Maps
 
 BALANCE = 1e-9          # of the released volume

@@ -91,7 +91,7 @@ class Charts:
         series, clear = [], []
         for rest, rows in lines.items():
             rows = sorted(rows, key=lambda row: float(row["set"][name]))
-            clear.append(self.is_clear(key, name, rows, scatter))
+            clear.append(self.is_clear(key, rows, scatter))
             series.append(Series(rest or ("this study" if own else ""), [float(row["set"][name]) for row in rows],
                                  [row[key] for row in rows], scatter and scatter.deviation, bool(clear[-1])))
         others, levels, mark = [], [], None
@@ -128,8 +128,8 @@ class Charts:
             return headline.Scatter(found["deviation"], found["degrees_of_freedom"])
         return headline.pooled(list(combinations(self.data.finished, key).values()))
 
-    def is_clear(self, key, name, rows, scatter):
-        """Whether the means differ by more than chance over the values of a variable; None if nobody knows."""
+    def is_clear(self, key, rows, scatter):
+        """Whether the means of rows, which differ in one variable, differ by more than chance; None if nobody knows."""
         line = list(combinations(rows, key).values())
         if scatter is None or len(line) < 2:
             return None
