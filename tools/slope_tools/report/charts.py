@@ -42,7 +42,7 @@ def unit(name):
 
 
 class Charts:
-    """Draws the charts of a report.Data; reference: a reference.Reference or None; picture makes the template's."""
+    """Draws the charts of a data.Data; reference: a reference.Reference or None; picture makes the template's."""
 
     def __init__(self, data, reference, picture):
         self.data, self.reference, self.picture = data, reference, picture

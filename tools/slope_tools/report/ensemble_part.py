@@ -16,7 +16,7 @@ ODDS = [0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 1.0]
 
 
 class Ensemble:
-    """Of a report.Data whose study is an ensemble; numbers writes and keeps them, picture makes the template's."""
+    """Of a data.Data whose study is an ensemble; numbers writes and keeps them, picture makes the template's."""
 
     def __init__(self, data, numbers, picture):
         self.data, self.numbers, self.picture = data, numbers, picture
@@ -151,7 +151,7 @@ class Ensemble:
 
 
 def draw(entries, maps):
-    """The pictures of (entry, values), by a report_maps.Maps."""
+    """The pictures of (entry, values), by a maps_part.Maps."""
     pictures = []
     layers = maps.layers._replace(section=None)
     for entry, values in entries:
