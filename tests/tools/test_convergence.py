@@ -310,6 +310,7 @@ def test_the_size_error_counts_in_the_conservative_volume(slope):
     found = SizeErrors(Path("converge.yaml"), "remove_m3").at("1.0")
     assert found.share == pytest.approx(-0.2, abs=0.01)
     assert best["size"]["error_percent"] == pytest.approx(100 * found.share) and best["size"]["value"] == "1.0"
+    assert best["size"]["file"] == "../converge.yaml"       # from study.yaml, wherever the command is given
     assert best["mean_m3"] > 1 and best["chance_m3"] > 0.1
     lacking = best["mean_m3"] * (1 / (1 + found.share) - 1)
     half = best["mean_m3"] * found.half / (1 + found.share) ** 2

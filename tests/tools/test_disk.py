@@ -4,6 +4,8 @@ Three ways to make a disk full: a limit on the size of files (RLIMIT_FSIZE, for 
 own (tmpfs, for root; else skipped), and no folder at all.
 """
 import contextlib
+import csv
+import json
 import os
 import random
 import re
@@ -14,8 +16,11 @@ import sys
 import time
 from pathlib import Path
 
+import matplotlib.image
 import numpy as np
 import pytest
+import rasterio
+import yaml
 
 from tiny_collapse import DECK, LMP, TOP, read_asc, write_case
 
@@ -31,6 +36,7 @@ WRITES = ("restart     50 ${out}.1.restart ${out}.2.restart\n"
           "dump all all custom 50 ${out}.dump id type diameter x y z\n"
           "run         ${steps}\n")
 KILLS = 8
+KEPT = {"study": "out", "sensitivity": "sensitivity", "calibrate": "calibrate"}     # commands with runs: their folders
 
 
 @pytest.fixture(scope="module")
@@ -39,10 +45,11 @@ def case(tmp_path_factory):
     folder = tmp_path_factory.mktemp("case")
     deck = write_case(folder / "case")
     deck.write_text(DECK.replace("run         ${steps}\n", WRITES))
-    environment = {**os.environ, "LMP": LMP}
-    subprocess.run([sys.executable, TOOLS / "slope", "study", "case/in.tiny", "--set", "rolling=0,0.1", "-o", "out",
-                    "--road", "case/road.csv", "--local"], cwd=folder, env=environment, check=True, capture_output=True)
     (folder / "mapped.csv").write_text("5,2\n30,2\n30,20\n5,20\n")
+    environment = {**os.environ, "LMP": LMP}
+    for name, kept in KEPT.items():
+        subprocess.run([sys.executable, TOOLS / "slope", *TOOLS_OUTPUTS[name][0].format(kept).split()], cwd=folder,
+                       env=environment, check=True, capture_output=True)
     return folder
 
 
@@ -112,6 +119,10 @@ TOOLS_OUTPUTS = {
     "travel": ["travel out/rolling_0/tiny.dump -o {0}", "--axis 30"],
     "report": ["report out/rolling_0 --pictures -o {0}/report.html", "--section 2 12 38 12"],
     "study": ["study case/in.tiny --set rolling=0,0.1 --road case/road.csv --local -o {0}", "--cut-angle 20"],
+    "sensitivity": ["sensitivity case/in.tiny --set rolling=0 --vary friction=25 --road case/road.csv --local -o {0}",
+                    "--cut-angle 20"],
+    "calibrate": ["calibrate case/in.tiny --observed mapped.csv --local --volume 5 --road case/road.csv "
+                  "--vary rolling=0:0.1 --runs 5 -o {0}", "--cut-angle 20"],
 }
 
 
@@ -124,11 +135,45 @@ def slope(command, folder, more=""):
 def before(here):
     """before(name, folder): what the command leaves in the folder, undisturbed."""
     def make(name, folder):
-        if name == "study":
-            subprocess.run(["cp", "-a", f"{(here / 'out').resolve()}/.", folder], check=True)
+        if name in KEPT:
+            subprocess.run(["cp", "-a", f"{(here / KEPT[name]).resolve()}/.", folder], check=True)
         assert slope(TOOLS_OUTPUTS[name][0], folder) == 0
         return contents(folder)
     return make
+
+
+def check_whole(path, before):
+    """That a file is no half of one, by what its kind must have; before: another one of that name."""
+    data = path.read_bytes()
+    if path.suffix == ".png":
+        matplotlib.image.imread(path)
+    elif path.suffix == ".html":
+        assert data.rstrip().endswith(b"</html>")
+    elif path.suffix in (".tif", ".asc"):
+        with rasterio.open(path) as raster:
+            raster.read()
+    elif path.suffix == ".csv":
+        with open(path, newline="", encoding="utf-8") as lines:
+            assert len({len(row) for row in csv.reader(lines) if row and not row[0].startswith("#")}) == 1
+        assert data.endswith(b"\n")
+    elif path.suffix == ".geojson":
+        assert json.loads(data).keys() == json.loads(before).keys()
+    elif path.suffix == ".yaml":
+        assert data.endswith(b"\n") and yaml.safe_load(data).keys() == yaml.safe_load(before).keys()
+    else:
+        raise AssertionError(f"{path}: nothing says when it is whole")
+
+
+def test_half_a_file_is_noticed(case, before, here):
+    """What check_whole says of files that end early."""
+    (here / "results").mkdir()
+    whole = before("sensitivity", "results")
+    for path in map(Path, ("sensitivity.png", "sensitivity.csv", "sensitivity.yaml", "rolling_0/volume/volume.tif")):
+        check_whole("results" / path, whole[str(path)])
+        data = ("results" / path).read_bytes()
+        ("results" / path).write_bytes(data[:len(data) // 2])
+        with pytest.raises(Exception):
+            check_whole("results" / path, whole[str(path)])
 
 
 @pytest.mark.parametrize("name", TOOLS_OUTPUTS)
@@ -142,14 +187,21 @@ def test_a_tool_and_a_file_that_does_not_fit(before, here, capsys, name):
     err = capsys.readouterr().err.splitlines()
     assert status == 2
     assert re.fullmatch(rf"slope {name}: results\S*: cannot be (written|used): .*File too large.*", err[-1]), err
-    assert contents("results") == whole or (name in ("study", "report") and whole.keys() == contents("results").keys())
+    found = contents("results")
+    if name in KEPT or name == "report":        # a file at a time: each is the one before or the one after
+        assert found.keys() == whole.keys()
+        for path in found:
+            if found[path] != whole[path]:
+                check_whole(Path("results", path), whole[path])
+    else:
+        assert found == whole
     # and all is well when there is room again
     assert slope(TOOLS_OUTPUTS[name][0], "results") == 0 and contents("results") == whole
 
 
 @pytest.mark.parametrize("name", TOOLS_OUTPUTS)
 def test_a_tool_on_a_full_disk(before, small_disk, here, capsys, name):
-    disk = small_disk(8000)
+    disk = small_disk(20000)
     whole = before(name, disk)
     fill(disk, 0)
     capsys.readouterr()
@@ -196,7 +248,7 @@ def test_a_tool_that_is_killed(before, here, name):
         found = contents("results")
         assert found.keys() >= one.keys()
         for path, data in found.items():
-            if path.endswith((".png", ".html", "study.yaml")):      # with times or sizes that differ
+            if path.endswith((".png", ".html", f"{name}.yaml")):    # with times or sizes that differ
                 assert data[-8:] in (one[path][-8:], other[path][-8:]), path
             else:
                 assert data in (one.get(path), other[path]), path

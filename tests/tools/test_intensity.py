@@ -94,7 +94,8 @@ def test_a_scatter_of_failing_is_doubted():
                                              ({"rolling": ["0", "1"], "pga": ["1", "2"]}, "pga"),
                                              ({"rolling": ["0", "1"]}, None), ({"peaks": ["0", "1"]}, None),
                                              ({"shake_intensity": ["1", "2"]}, "shake_intensity"),
-                                             ({"peak": ["a", "b"]}, None)])
+                                             ({"peak": ["a", "b"]}, None), ({"peak": ["0", "nan"]}, None),
+                                             ({"peak": ["0", "inf"], "pga": ["1", "2"]}, "pga")])
 def test_which_variable_is_an_intensity(settings, found):
     assert intensity.check(None, settings, True) == found
 
@@ -103,6 +104,7 @@ def test_which_variable_is_an_intensity(settings, found):
     ("pea", {"peak": ["0", "1"]}, True, ("--intensity", "--set", "pea")),
     ("peak", {"peak": ["0", "1"]}, False, ("--intensity", "--road", "peak")),
     ("peak", {"peak": ["0", "low"]}, True, ("--intensity", "numbers", "0,low")),
+    ("peak", {"peak": ["0", "nan"]}, True, ("--intensity", "numbers", "0,nan")),
     ("peak", {"peak": ["0"]}, True, ("--intensity", "several", "0"))])
 def test_wrong_intensity(named, settings, road, words):
     with pytest.raises(errors.SlopeError) as error:
@@ -162,8 +164,10 @@ def test_report_has_the_table_and_the_charts(studied, monkeypatch, capsys):
 
 
 def test_no_intensity_without_its_name(studied, monkeypatch, capsys):
-    """A study of another variable has neither table nor section."""
+    """A study of another variable has neither table nor section, and leaves none of an earlier study."""
     monkeypatch.chdir(studied)
+    Path("other").mkdir()
+    Path("other/intensity.csv").write_text("old\n")
     monkeypatch.setenv("LMP", LMP)
     status, _, err = slope("study case/in.tiny --set rolling=0,0.1 --set steps=50 --road case/road.csv --local "
                            "-o other", capsys)

@@ -647,9 +647,17 @@ def test_the_report_takes_the_convergence_in(slope, here):
     assert len(reader.pictures) == pages[0] - 1 and "To remove against d" not in reader.alt
     # the file that the study took its size error from is found
     about = yaml.safe_load(Path("out/study.yaml").read_text())
-    about["conservative"]["size"] = {"file": "sizes/converge.yaml", "variable": "d", "value": "1"}
-    Path("out/study.yaml").write_text(yaml.safe_dump(about))
-    assert slope("out")[0] == 0 and "To remove against d" in read("out/report.html")[1].alt
+    for name in ("../sizes/converge.yaml", "sizes/converge.yaml"):      # the latter in older files
+        about["conservative"]["size"] = {"file": name, "variable": "d", "value": "1"}
+        Path("out/study.yaml").write_text(yaml.safe_dump(about))
+        assert slope("out")[0] == 0
+        page, reader = read("out/report.html")
+        assert "To remove against d" in reader.alt and "is not there" not in page
+    Path("sizes/converge.yaml").unlink()
+    assert slope("out")[0] == 0
+    page, reader = read("out/report.html")
+    assert "To remove against d" not in reader.alt
+    assert "sizes/converge.yaml, from which the study has its size error, is not there" in " ".join(page.split())
 
 
 # --- the section ---

@@ -96,3 +96,35 @@ def test_a_command_loads_only_what_it_needs(name):
     assert f"slope_tools.commands.{name}" in loaded
     assert not others & set(loaded)
     assert not [one for one in loaded if one.startswith(("slope_tools.report.", "slope_tools.validation."))]
+
+
+def imports_of_modules(texts):
+    """{module: the modules that it imports anywhere, inside functions too}; texts: {path: source}."""
+    names = {path.relative_to(PACKAGE).with_suffix("").parts: path for path in texts}
+    return {".".join(mine): {".".join(part) for words in imported(texts[path], path)
+                             for part in (words, words[:-1]) if part in names and part != mine}
+            for mine, path in names.items()}
+
+
+def circle(graph):
+    """A circle of modules, each importing the next one; an empty list without any."""
+    done = set()
+
+    def follow(module, way):
+        if module in way:
+            return way[way.index(module):] + [module]
+        if module in done:
+            return []
+        done.add(module)
+        return next(filter(None, (follow(other, [*way, module]) for other in sorted(graph.get(module, ())))), [])
+
+    return next(filter(None, (follow(module, []) for module in sorted(graph))), [])
+
+
+def test_no_circle_of_imports():
+    """An import inside a function may save time, not hide that two modules need each other."""
+    one, other = PACKAGE / "ensemble" / "results.py", PACKAGE / "ensemble" / "study.py"
+    assert circle(imports_of_modules({one: "def f():\n    from . import study\n", other: "from .results import f\n"})) \
+        == ["ensemble.results", "ensemble.study", "ensemble.results"]
+    assert circle(imports_of_modules({one: "", other: "from .results import f\n"})) == []
+    assert circle(imports_of_modules({path: path.read_text(encoding="utf-8") for path in MODULES})) == []

@@ -16,7 +16,7 @@ TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
 from slope_tools import cli  # noqa: E402
-from slope_tools.ensemble import sensitivity  # noqa: E402
+from slope_tools.ensemble import quantities, sensitivity  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 T = 4.302652729911275       # t(0.975) of three runs
@@ -80,7 +80,7 @@ def test_one_variable_at_a_time_against_the_scatter_of_equivalent_runs(slope):
         most = max(names[1:4], key=lambda run: abs(values[run] - mean))
         text = about["trust"][i]
         assert text in out
-        assert f"trust one run to +- {sensitivity.number(T * deviation)} m3" in text
+        assert f"trust one run to +- {quantities.number(T * deviation)} m3" in text
         assert f"{most.split('_', 2)[2].replace('_', ' ')} changes it most" in text
     assert Path("out/sensitivity.png").read_bytes()[:4] == b"\x89PNG"
 

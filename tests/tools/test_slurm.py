@@ -19,7 +19,7 @@ sys.path.insert(0, str(TOOLS))
 
 from slope_tools import cli  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
-from slope_tools.ensemble import launcher, slurm as engine  # noqa: E402
+from slope_tools.ensemble import job_display, jobs, launcher, slurm as engine  # noqa: E402
 
 PROGRAM = [sys.executable, str(TOOLS / "slope")]
 PATH = f"{os.environ['PATH']}:/usr/sbin:/sbin"
@@ -73,6 +73,30 @@ def here(tmp_path, monkeypatch):
     monkeypatch.setenv("LMP", LMP)
     write_case(tmp_path / "case")
     return tmp_path
+
+
+class Stub:
+    """Of a task of an array: whether it runs."""
+
+    def __init__(self, running):
+        self.running = running
+
+
+def test_the_end_of_all_is_reckoned_with_the_tasks_that_run(here):
+    """Not with the cores of this machine; --jobs, which study.yaml has, stays what it was."""
+    program = here / "lmp"
+    program.write_bytes(b"")
+    (here / "out").mkdir()
+    (here / "out" / ".inputs").symlink_to(here / "case")
+    work = engine.Work(here / "case" / "in.tiny", {}, here / "out" / ".inputs", program, 1, 2)
+    todo = [jobs.Run(here / "out", {"rolling": str(i)}) for i in range(30)]
+    display = job_display.Display(todo, todo, work.at_a_time)
+    display.walls = [60.0, 120.0]
+    for running, ends in ((0, 1800), (6, 300), (10, 180)):
+        work.active = [jobs.Active(one, Stub(i < running), 0.0) for i, one in enumerate(todo)]
+        assert len(work._shown()) == running
+        assert display._ends(20) == pytest.approx(ends)
+        assert work.jobs == 2
 
 
 @pytest.fixture

@@ -54,7 +54,7 @@ def load_yaml(path, what):
 @contextmanager
 def complete(folder):
     """A folder to write results into; when all are there they move to `folder`, by renames, else nothing changes."""
-    told, folder = folder, Path(folder).resolve()
+    asked, folder = folder, Path(folder).resolve()
     # on the disk of the folder, so that renames do
     new = (folder if folder.is_dir() else folder.parent) / f".{folder.name}.{os.getpid()}.new"
     try:
@@ -64,7 +64,12 @@ def complete(folder):
         for path in sorted(new.iterdir()):
             os.replace(path, folder / path.name)
     except OSError as error:
-        raise SlopeError(told, f"cannot be written: {error.strerror or error}") from error
+        raise SlopeError(asked, f"cannot be written: {error.strerror or error}") from error
+    except SlopeError as error:
+        # of write(), which names the file on its way: the user knows the folder that it goes to
+        if isinstance(error.__cause__, OSError) and str(error).startswith(f"{new}{os.sep}"):
+            raise SlopeError(asked, f"cannot be written: {error.__cause__.strerror}") from error.__cause__
+        raise
     finally:
         shutil.rmtree(new, ignore_errors=True)
 

@@ -32,12 +32,6 @@ def to_index(geometry, raster):
     return affine_transform(geometry, [t.a, t.b, t.d, t.e, t.c, t.f])
 
 
-def to_local(geometry, raster):
-    """A geometry in index coordinates to local metres."""
-    t = raster.transform
-    return affine_transform(geometry, [t.a, t.b, t.d, t.e, t.c, t.f])
-
-
 def polygons_of(geometry):
     """The polygons in a geometry, as a list; lines and points in it are dropped."""
     if geometry.geom_type == "Polygon":

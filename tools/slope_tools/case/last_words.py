@@ -58,14 +58,14 @@ def is_error(line):
 
 
 def reason(log, screen):
-    """Why a run ended, from its runs.Log and its Screen: the ERROR line of its log, else what was last heard of it."""
+    """Why a run ended, from its logs.Log and its Screen: the ERROR line of its log, else what was last heard of it."""
     return log.error or screen.words()
 
 
 def spoiled_restart(log, screen, crashed):
     """Whether LAMMPS ended because of the restart file from which it was to go on.
 
-    log: runs.Log; screen: Screen; both of what was said since it began. crashed: ended by a signal, but not killed.
+    log: logs.Log; screen: Screen; both of what was said since it began. crashed: ended by a signal, but not killed.
     LAMMPS that meets nonsense ends with an ERROR line while it reads, or crashes, or, since 2023, runs out of memory
     and catches that; then the rest of its log is lost, and so is what it was doing.
     """

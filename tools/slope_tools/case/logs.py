@@ -3,7 +3,6 @@ import re
 from pathlib import Path
 from typing import List
 
-from ..survey import rasters
 
 LOG = "log.lammps"
 # what our styles and LAMMPS say of what they made
@@ -148,9 +147,3 @@ def part(path):
 def told(line):
     """A message of LAMMPS without the place in its source."""
     return INPUT_PLACE.sub("", line.strip())
-
-
-def load_terrain(folder, log):
-    """The terrain of a run, with its sidecar; None if the log names none or the file is not in reach."""
-    path = log.terrain and Path(folder) / log.terrain
-    return rasters.read_asc_local(path) if path and path.is_file() else None

@@ -1,7 +1,7 @@
 """The picture of a body that is released: map with its depths, and a section along the fall line."""
 import numpy as np
 
-from ..drawing import figures
+from ..drawing import figures, pictures
 from ..drawing.figures import FULL, RELEASE, SECTION, STYLE, plt
 from ..drawing.maps import outline, part, scheme, shade, window
 from ..survey.rasters import Raster
@@ -46,8 +46,7 @@ def draw(path, raster: Raster, area: Area, slip: np.ndarray, geometry, title: st
         section.set(xlabel="A to A', down the fall line (m)", ylabel="height (m)", aspect="equal", xlim=(0, length))
         section.legend(loc="upper right")
         section.grid(color="#dddddd", lw=0.4)
-        figure.savefig(path, dpi=150, metadata={"Software": None}, format="png")
-        plt.close(figure)
+        pictures.save(figure, path)
 
 
 def section_line(area: Area, row: np.ndarray, column: np.ndarray):

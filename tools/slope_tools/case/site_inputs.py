@@ -17,7 +17,6 @@ from ..survey.rasters import Raster, crs_name
 # names of the deck's own fixes and groups, and of files that a run writes beside them
 TAKEN = {"all", "soil", "slip", "field", "spread", "move", "weight", "deposit", "rest", "shake", "drag", "stands",
          "fails", "balls", "road", "release", "terrain", "body", "ground", "base", "summary"}
-CHECK = 1e-9            # s, relative: times of a motion that are one
 
 
 class Structure(NamedTuple):

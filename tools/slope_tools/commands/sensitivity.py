@@ -7,7 +7,8 @@ import argparse
 
 from ..case.settings import check_settings, one_value_each
 from ..ensemble import repeats, study
-from ..ensemble.sensitivity import NAMES, OF_ROAD, OF_TRAVEL, collect, plan, quantities
+from ..ensemble.quantities import NAMES
+from ..ensemble.sensitivity import OF_ROAD, OF_TRAVEL, collect, plan, quantities
 from ..errors import SlopeError
 from . import run_arguments
 

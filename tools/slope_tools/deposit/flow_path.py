@@ -1,12 +1,13 @@
 """The line that the mass took, in plan: the path of its centroid, continued to the front.
 
-The dumps of a run tell where the centroid was. Beyond the last one, and where there are no dumps, the line goes through
-the middles of bands across the flow: cells at the same distance from the release, measured within the cells that the
-mass touched, so that it follows a valley around its bends. It ends where next to nothing lies farther on, or where the
-middles no longer follow each other, as among stray balls.
+Where the centroid was is known from the dumps of a run. Beyond the last one, and where there are no dumps, the line
+goes through the middles of bands across the flow: cells at the same distance from the release, measured within the
+cells that the mass touched, so that it follows a valley around its bends. It ends where next to nothing lies farther
+on, or where the middles no longer follow each other, as among stray balls.
 """
 import math
 import re
+from pathlib import Path
 from typing import Dict, List, NamedTuple, Optional, Tuple
 
 import numpy as np
@@ -25,14 +26,14 @@ MOST_BYTES = 2e8        # of dumps that are read
 MOST_DUMPS = 24
 
 
-class Path(NamedTuple):
-    """Points of a line, rows of local x y, down the slope; dumped: whether dumps told the centroid."""
+class FlowPath(NamedTuple):
+    """Points of a line, rows of local x y, down the slope; dumped: whether the centroid is from dumps."""
     points: np.ndarray
     dumped: bool
 
 
 def path(result, ground):
-    """The Path of a run's mass; None where it has none: it did not move, or touched next to nothing."""
+    """The FlowPath of a run's mass; None where it has none: it did not move, or touched next to nothing."""
     track = centroids(result)
     bands = Bands(ground, result.thickness)
     if track is None:
@@ -49,7 +50,7 @@ def path(result, ground):
     line = LineString(smooth(points)).simplify(ground.cell / 2)
     if line.length < 3 * ground.cell:
         return None
-    return Path(np.asarray(line.coords)[:, :2], track is not None)
+    return FlowPath(np.asarray(line.coords)[:, :2], track is not None)
 
 
 def followed(points, others):
@@ -194,7 +195,7 @@ def centroids(result) -> Optional[np.ndarray]:
     return np.array(places)
 
 
-def snapshots(folder, last):
+def snapshots(folder: Path, last: int) -> List[Path]:
     """Text dumps of a run whose names differ in the step only, in the order of the steps, up to the last."""
     series: Dict[Tuple[str, str], List[Tuple[int, Path]]] = {}
     for path in folder.glob("*.dump*"):

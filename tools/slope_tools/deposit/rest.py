@@ -52,7 +52,7 @@ def percent(share: float) -> str:
 
 
 def state(summary: Mapping[str, Any], where: Any) -> Rest:
-    """The state of a run by its summary (runs.load_summary); where: the file, for messages.
+    """The state of a run by its summary (run_folders.load_summary); where: the file, for messages.
 
     At rest is a deposit whose run ended by the deck's criterion of rest, and of which less than 1 % is faster than
     0.1 m/s; a summary without fast_share has only the share that is faster than a threshold of the deck's.

@@ -221,7 +221,7 @@ def mesh_table(run_, simulated, observed, mesh):
     return table
 
 
-def volumes(run_, observed, table):
+def volumes(observed, table):
     """Volumes (m3) and their errors; per mesh cell: mean of the absolute errors over those with a deposit, and RMS."""
     ours = math.fsum(table["simulated_volume"].ravel())
     theirs = math.fsum(table["observed_volume"].ravel()) + observed.volume_outside

@@ -44,7 +44,7 @@ def make(prefix: str, mapped: Path, folder: Path, threshold: float = THRESHOLD, 
     table = mesh_table(run_, simulated, observed, squares)
     if observed.thickness is not None:
         about["bulk_factor"] = run_.bulk
-        about["volume"] = volumes(run_, observed, table)
+        about["volume"] = volumes(observed, table)
     about["warnings"] = warnings
     with disk.complete(folder) as new:
         write_csv(new / "score.csv", run_, squares, table)

@@ -6,7 +6,7 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence
 import numpy as np
 
 from .. import disk
-from ..drawing import figures
+from ..drawing import figures, pictures
 from ..drawing.figures import plt
 from ..errors import SlopeError
 from ..survey import rasters
@@ -268,5 +268,4 @@ def draw(path, arrivals, tables, wanted: Wanted) -> None:
             axes.grid(color="#dddddd", lw=0.5)
             axes.legend(loc="upper left")
         panels[0].set_ylabel("cumulative share of the balls")
-        figure.savefig(path, dpi=figures.DPI)
-        plt.close(figure)
+        pictures.save(figure, path, dpi=figures.DPI)

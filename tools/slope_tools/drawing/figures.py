@@ -15,6 +15,8 @@ from matplotlib.textpath import TextToPath  # noqa: E402
 from matplotlib.ticker import MaxNLocator  # noqa: E402
 from matplotlib.transforms import Bbox  # noqa: E402
 
+from . import pictures  # noqa: E402
+
 FULL, WIDE, HALF = 7.0, 4.6, 3.42    # inches: the width of a page's text, of two thirds, of one of two side by side
 DPI = 200
 GRAY, ROAD, RELEASE, SECTION = "#444444", "#0057a8", "#7a0019", "#111111"
@@ -208,8 +210,7 @@ def tornado(path, panels, variables, title):
         if panels[0][2]["standard_deviation"] is not None:
             title += "; grey: runs that are equally good, and two of their standard deviations"
         figure.suptitle(title, fontsize=7.5, x=0.01, ha="left")
-        figure.savefig(path, dpi=150, metadata={"Software": None})
-        plt.close(figure)
+        pictures.save(figure, path)
 
 
 def label_ends(axis, y, mean, found):

@@ -10,6 +10,7 @@ from matplotlib import pyplot as plt  # noqa: E402  (after the backend is set)
 from matplotlib.colors import BoundaryNorm, ListedColormap  # noqa: E402
 
 from ..geometry import extent, polygons_of  # noqa: E402
+from . import pictures  # noqa: E402
 
 SIDE = 8.0      # inches, width of a map
 PIXELS = 1200   # a raster is thinned out to at most this many cells along a side
@@ -90,6 +91,5 @@ def outline(axes, geometry, **style):
 
 
 def save(figure, path):
-    """Write the figure; close it."""
-    figure.savefig(path, bbox_inches="tight")
-    plt.close(figure)
+    """Write the figure, cut to what is drawn; close it."""
+    pictures.save(figure, path, dpi="figure", bbox_inches="tight")

@@ -1,6 +1,6 @@
 """Which values of a model's variables give what was observed: a sequential search with Gaussian processes.
 
-The model is anything that gives numbers at points of the unit cube: runs of a deck (calibrate.py), a Python function.
+The model is anything that gives numbers at points of the unit cube: runs of a deck (fit.py), a Python function.
 Each number is emulated with the noise of chance (emulator.py). What is observed is one outcome of chance, too, and
 known to a tolerance; so a point c is as likely as
 

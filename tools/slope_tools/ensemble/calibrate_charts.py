@@ -4,6 +4,7 @@ from typing import Sequence
 
 import numpy as np
 
+from ..drawing import pictures
 from ..drawing.figures import COLOURS, FULL, GRAY, STYLE, plt
 from .backanalysis import Posterior, SHARE
 
@@ -31,8 +32,7 @@ def draw(path: Path, found: Posterior, variables: Sequence, runs: np.ndarray, ti
                     axis.set_ylabel(variables[row].name)
         figure.suptitle(f"{title}; coloured: the {100 * SHARE:g} % region; cross: best values; dots: runs", fontsize=7,
                         x=0.01, ha="left")
-        figure.savefig(path, dpi=150, metadata={"Software": None})
-        plt.close(figure)
+        pictures.save(figure, path)
 
 
 def values(variable, places: np.ndarray) -> np.ndarray:

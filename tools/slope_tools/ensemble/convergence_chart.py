@@ -2,6 +2,7 @@
 import matplotlib
 import numpy as np
 
+from ..drawing import pictures
 from ..drawing.figures import COLOURS, FULL, GRAY, STYLE, plt
 
 NAMES = {"d": "diameter of the balls d (m)"}
@@ -39,5 +40,4 @@ def draw(path, variable, panels, title):
             axis.spines[["top", "right"]].set_visible(False)
             axis.legend(loc="best")
         figure.suptitle(title, fontsize=7.5, x=0.01, ha="left")
-        figure.savefig(path, dpi=150, metadata={"Software": None})
-        plt.close(figure)
+        pictures.save(figure, path)

@@ -15,13 +15,13 @@ from .. import disk
 from ..case import run_folders
 from ..deposit import travel_shares
 from ..errors import SlopeError
-from . import emulator, ensemble_maps, hazard, sensitivity, study_table
+from . import emulator, ensemble_maps, hazard, quantities, study_table
 from .sample import Sample
 
 MAPS = "ensemble"           # folder of the maps
 HAZARD, INFLUENCE = "hazard.csv", "influence.csv"
 ON_ROAD = "remove_on_road_m3"
-QUANTITIES = {**sensitivity.NAMES, "max_thickness_m": ("largest thickness at any time", "m"),
+QUANTITIES = {**quantities.NAMES, "max_thickness_m": ("largest thickness at any time", "m"),
               "max_speed_m_s": ("largest speed", "m/s"), "stop_time_s": ("end of the run", "s")}
 # those whose dependence on the variables is looked at
 MAIN = ("remove_m3", ON_ROAD, "beyond_road_m3", "blocked_m", travel_shares.DISTANCE, "connected_m", "centroid_m",
@@ -173,7 +173,7 @@ def told(about: Mapping[str, Any]) -> List[str]:
 
 
 def quantile_told(one: Mapping[str, Any], unit: str) -> str:
-    number = sensitivity.number
+    number = quantities.number
     low = "?" if one["low"] is None else number(one["low"])
     high = "?" if one["high"] is None else number(one["high"])
     return f"{100 * one['share']:g} % of the runs stay within {number(one['value'])} {unit} ({low} to {high})"

@@ -10,7 +10,7 @@ import yaml
 from .. import disk, provenance
 from ..case import run_folders
 from ..deposit import deposit, score
-from . import backanalysis, calibration, jobs, observations, repeats, results, sensitivity, study
+from . import backanalysis, calibration, jobs, observations, quantities, repeats, results, study
 from .setup import Setup
 
 TABLE, ABOUT, CHART, MAP = "calibrate.csv", "calibrate.yaml", "calibrate.png", "predicted.png"
@@ -155,7 +155,7 @@ class Fit:
     @staticmethod
     def told(targets: Sequence[Mapping[str, Any]]) -> List[str]:
         """Predicted against observed, a line each."""
-        number_ = sensitivity.number
+        number_ = quantities.number
         lines = []
         for one in targets:
             goal = f"{number_(one['attainable'])} at the least" if one["observed"] is None else number_(one["observed"])

@@ -38,8 +38,7 @@ def check(named: Optional[str], settings: Settings, road: bool) -> Optional[str]
         raise SlopeError("--intensity", "must name a variable of --set", named)
     if not road:
         raise SlopeError("--intensity", "needs --road: what counts is the volume on it", named)
-    words = [value for value in settings[named] if not isinstance(as_number(value), float)]
-    if words or len(settings[named]) < 2:
+    if not numbers(settings[named]) or len(settings[named]) < 2:
         raise SlopeError("--intensity", "must have several values, all of them numbers", ",".join(settings[named]))
     return named
 
@@ -47,9 +46,15 @@ def check(named: Optional[str], settings: Settings, road: bool) -> Optional[str]
 def find(settings: Settings) -> Optional[str]:
     """The first variable of several numbers that is called like an intensity."""
     for name, several in settings.items():
-        if NAME.fullmatch(name) and len(several) > 1 and all(isinstance(as_number(one), float) for one in several):
+        if NAME.fullmatch(name) and len(several) > 1 and numbers(several):
             return name
     return None
+
+
+def numbers(several: Sequence[str]) -> bool:
+    """Whether all are numbers that can be points of an axis; as_number takes nan and inf for numbers, too."""
+    found = [as_number(one) for one in several]
+    return all(isinstance(one, float) and math.isfinite(one) for one in found)
 
 
 def round_volumes(largest: float) -> List[float]:

@@ -14,8 +14,9 @@ TELL = 30.0             # s between two lines about a run, where there is no ter
 class Display:
     """Shows how far the runs are: a table that renews itself on a terminal, else a line now and then."""
 
-    def __init__(self, todo, waiting, jobs):
-        self.total, self.waiting, self.jobs = len(todo), len(waiting), jobs
+    def __init__(self, todo, waiting, at_a_time):
+        """at_a_time(): how many runs go on beside each other now."""
+        self.total, self.waiting, self.at_a_time = len(todo), len(waiting), at_a_time
         self.numbers = {one.name: i for i, one in enumerate(todo, 1)}
         self.ended_runs = self.failed = 0
         self.walls = []
@@ -73,7 +74,7 @@ class Display:
 
     def _ends(self, left):
         """Seconds that so many runs take, as those before did."""
-        return sum(self.walls) / len(self.walls) * left / self.jobs
+        return sum(self.walls) / len(self.walls) * left / self.at_a_time()
 
     def update(self, active, waiting):
         if self.live:

@@ -163,7 +163,7 @@ class Work:
     def do(self, todo):
         """Run what is not finished. On an interruption, end the runs under way and leave their folders unfinished."""
         waiting = [one for one in todo if not one.marker.exists()]
-        with Display(todo, waiting, self.jobs) as display:
+        with Display(todo, waiting, self.at_a_time) as display:
             try:
                 while waiting or self.active:
                     for one, said in self._begin(waiting):
@@ -182,6 +182,10 @@ class Work:
             except BaseException:
                 self._stop()
                 raise
+
+    def at_a_time(self):
+        """How many runs go on beside each other now."""
+        return self.jobs
 
     def _begin(self, waiting):
         """Start what may run now, taking it from waiting; (run, what to say of it) of each."""

@@ -1,4 +1,5 @@
 """What came out of the runs of a study: their numbers, the table, the maps over all runs, the conservative volume."""
+import os
 import sys
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
 
@@ -9,10 +10,9 @@ from .. import disk, provenance
 from ..case import run_folders
 from ..deposit import rest, travel_shares
 from ..survey import rasters
-from . import combinations, intensity, repeats, structures, study_table
+from . import combinations, ensemble, intensity, repeats, structures, study_table
 from .setup import Road, Setup
 from .size_error import SizeErrors
-from .study_file import read_study      # noqa: F401  (for those who work on with a study)
 from .study_maps import Maps
 
 BALANCE = 1e-9          # of the released volume
@@ -66,18 +66,21 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
     if setup.road and finished:
         about["study"]["road"] = write_road(output, setup.road, first, thickness)
     if order:
-        from . import ensemble
         about["ensemble"] = ensemble.evaluate(order, rows, output, first and terrain_place(first), maps.problem)
     elif setup.road and finished:
         best = about["conservative"] = combinations.conservative(settings, rows, groups, errors)
         if errors:
+            # from the folder of study.yaml, so that both may move together
+            best["size"]["file"] = os.path.relpath(errors.path.resolve(), output.resolve())
             best["doubts"] += errors.doubts(deck.name, {**work.defaults, **best["set"]}, [*settings, *repeated],
                                             about["study"]["road"])
         best["doubts"] += unseen(repeated, work.defaults)
     about["intensity"] = intensity.collect(
         output, questions.intensity, questions.more_than, settings, bool(setup.road), groups) \
         if finished and not order else None      # of values that are drawn, each has one run
-    if about["intensity"]:
+    if not about["intensity"]:
+        (output / intensity.FILE).unlink(missing_ok=True)       # of a study before this one in the folder
+    else:
         about["conservative"]["doubts"] += intensity.doubts(about["intensity"])
     structures.collect(output, finished)
     for text in warnings:

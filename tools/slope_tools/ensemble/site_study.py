@@ -14,7 +14,8 @@ from ..case.site_choices import Choices
 from ..case.site_layers import OBSERVED, ROAD
 from ..errors import SlopeError
 from . import repeats, results, size_study, study
-from .sensitivity import NAMES, quantities
+from .quantities import NAMES
+from .sensitivity import quantities
 from .setup import Road, Setup
 from .size_error import SizeErrors
 

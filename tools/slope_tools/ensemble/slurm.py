@@ -127,11 +127,16 @@ class Work(jobs.Work):
         self.options, self.throttle, self.queue = shlex.split(options), throttle, Queue()
         self.folder = self.inputs.parent / FOLDER
         self.tries: Dict[str, int] = {}
+        self.running = 0        # tasks, when they were last looked at
         self.folder.mkdir(exist_ok=True)
         known = self.folder / KNOWN
         if known.is_file():         # of a study that was killed: nobody waits for them any more
             self._cancel(known.read_text(encoding="ascii").split())
             known.unlink()
+
+    def at_a_time(self):
+        """As many as the cluster lets run, which is not known before the first of them do."""
+        return max(1, self.running)
 
     def _begin(self, waiting):
         """Submit all that waits as one array."""
@@ -177,7 +182,7 @@ class Work(jobs.Work):
 
     def _shown(self):
         running = [active for active in self.active if active.process.running]
-        self.jobs = max(1, len(running))
+        self.running = len(running)
         for active in self.active:
             if not active.process.running and active.run.log.thermo == 0:
                 active.began = time.monotonic()     # it waits: its wall time has not begun

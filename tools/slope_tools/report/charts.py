@@ -3,7 +3,8 @@ from typing import Any, Dict
 
 from ..deposit import travel_shares
 from ..drawing.figures import FULL, HALF, WIDE
-from ..ensemble import headline, sensitivity
+from ..ensemble import headline
+from ..ensemble.quantities import NAMES
 from ..ensemble.repeats import key_of
 from . import figure_charts
 from .data import is_number
@@ -22,7 +23,7 @@ TITLES = {REMOVE: "Volume to remove from the road", "remove_on_road_m3": "Volume
 def quantities(data):
     """{column: what it is} of those that all finished runs have a number of; of a single run, of its summary."""
     rows = data.finished or [single_row(data)]
-    return {name: label for name, (label, _) in sensitivity.NAMES.items()
+    return {name: label for name, (label, _) in NAMES.items()
             if all(row.get(name) is not None for row in rows)}
 
 
@@ -37,11 +38,11 @@ def single_row(data):
 
 
 def unit(name):
-    return sensitivity.NAMES[name][1]
+    return NAMES[name][1]
 
 
 class Charts:
-    """Draws the charts of a report.Data; reference: a reference.Reference or None; picture makes the template's."""
+    """Draws the charts of a data.Data; reference: a reference.Reference or None; picture makes the template's."""
 
     def __init__(self, data, reference, picture):
         self.data, self.reference, self.picture = data, reference, picture
@@ -66,11 +67,11 @@ class Charts:
         return [self.bars(key) if name is None else self.chart(key, name) for key in wanted]
 
     def title(self, key):
-        what = sensitivity.NAMES[key][0]
+        what = NAMES[key][0]
         return TITLES.get(key, what[0].upper() + what[1:])
 
     def label(self, key):
-        return f"{sensitivity.NAMES[key][0]} ({unit(key)})"
+        return f"{NAMES[key][0]} ({unit(key)})"
 
     def bars(self, key):
         rows, title = self.data.finished, self.title(key)
@@ -90,7 +91,7 @@ class Charts:
         series, clear = [], []
         for rest, rows in lines.items():
             rows = sorted(rows, key=lambda row: float(row["set"][name]))
-            clear.append(self.is_clear(key, name, rows, scatter))
+            clear.append(self.is_clear(key, rows, scatter))
             series.append(Series(rest or ("this study" if own else ""), [float(row["set"][name]) for row in rows],
                                  [row[key] for row in rows], scatter and scatter.deviation, bool(clear[-1])))
         others, levels, mark = [], [], None
@@ -127,8 +128,8 @@ class Charts:
             return headline.Scatter(found["deviation"], found["degrees_of_freedom"])
         return headline.pooled(list(combinations(self.data.finished, key).values()))
 
-    def is_clear(self, key, name, rows, scatter):
-        """Whether the means differ by more than chance over the values of a variable; None if nobody knows."""
+    def is_clear(self, key, rows, scatter):
+        """Whether the means of rows, which differ in one variable, differ by more than chance; None if nobody knows."""
         line = list(combinations(rows, key).values())
         if scatter is None or len(line) < 2:
             return None

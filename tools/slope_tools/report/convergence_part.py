@@ -14,15 +14,24 @@ PLUS = "\N{PLUS-MINUS SIGN}"
 
 
 def find(asked, data):
-    """The file: what --converge names, itself or its folder; else what the study took its size error from, if there."""
+    """The file, or None: what --converge names, itself or its folder; else what the study took its size error from.
+
+    With the warning that there is none where the study names it, or None.
+    """
     if asked:
         path = asked / FILE if asked.is_dir() else asked
         if not path.is_file():
             raise SlopeError("--converge", f"must be {WHAT}, or its folder", asked)
-        return path
+        return path, None
     size = ((data.study or {}).get("conservative") or {}).get("size") or {}
-    path = Path(str(size["file"])) if size.get("file") else None
-    return path if path and path.is_file() else None
+    if not size.get("file"):
+        return None, None
+    named = Path(str(size["file"]))
+    for path in (data.folder / named, named):       # older files name it from where `slope study` was called
+        if path.is_file():
+            return path, None
+    return None, (f"The size of the balls: {data.folder / named}, from which the study has its size error, is not "
+                  "there, so there are no charts of it; --converge names another place")
 
 
 class Sizes:

@@ -9,6 +9,7 @@ from affine import Affine
 from .. import disk
 from ..case import logs, run_folders
 from ..deposit import deposit, rest
+from ..ensemble.study_file import read_study
 from ..errors import SlopeError
 from ..survey import rasters
 from .release_part import release
@@ -100,9 +101,8 @@ class Data:
             self._read_single(shown)
 
     def _read_study(self, shown):
-        from ..ensemble import results
         path = self.folder / "study.yaml"
-        self.study = results.read_study(path)
+        self.study = read_study(path)
         self.rows = self.study["runs"]
         self.finished = [row for row in self.rows if row["status"] == "finished"]
         about = self.study["study"]
@@ -247,10 +247,6 @@ class Data:
     def label_of(self, row):
         repeat = [f"{name} {value}" for name, value in (row.get("repeat") or {}).items()]
         return ", ".join(self.varied(row) + repeat) or row["run"]
-
-    def label_of_combination(self, row):
-        """The same without what is chance."""
-        return ", ".join(self.varied(row)) or ("all runs" if self.repeats else row["run"])
 
     def varied(self, row):
         return [f"{name} {value}" for name, value in row["set"].items() if len(self.settings.get(name) or ()) > 1]

@@ -5,7 +5,7 @@ from typing import Any, Dict, List, Mapping
 import numpy as np
 
 from ..drawing import figures
-from ..ensemble import ensemble, sensitivity
+from ..ensemble import ensemble, quantities
 from ..errors import SlopeError
 from . import ensemble_charts, figure_maps
 from .charts import AXIS
@@ -16,7 +16,7 @@ ODDS = [0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 1.0]
 
 
 class Ensemble:
-    """Of a report.Data whose study is an ensemble; numbers writes and keeps them, picture makes the template's."""
+    """Of a data.Data whose study is an ensemble; numbers writes and keeps them, picture makes the template's."""
 
     def __init__(self, data, numbers, picture):
         self.data, self.numbers, self.picture = data, numbers, picture
@@ -116,7 +116,7 @@ class Ensemble:
         rows = []
         for name, entry in self.about["quantities"].items():
             found = self.about["influence"].get(name)
-            cells = [sensitivity.number(one["value"]) for one in entry["quantiles"]]
+            cells = [quantities.number(one["value"]) for one in entry["quantiles"]]
             of_variables = []
             for key in self.about["design"]["variables"]:
                 one = found and found["variables"][key]
@@ -151,7 +151,7 @@ class Ensemble:
 
 
 def draw(entries, maps):
-    """The pictures of (entry, values), by a report_maps.Maps."""
+    """The pictures of (entry, values), by a maps_part.Maps."""
     pictures = []
     layers = maps.layers._replace(section=None)
     for entry, values in entries:

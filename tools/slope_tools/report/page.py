@@ -4,18 +4,19 @@ from typing import Any, Dict, List
 
 from .. import provenance
 from ..case import decks
+from ..ensemble.quantities import NAMES
 from ..survey.rasters import crs_name
-from . import charts as report_charts, convergence_part, film, frames, heading, intensity_part, limits_part
-from . import numbers as report_numbers, view
+from . import convergence_part, film, frames, heading, intensity_part, limits_part, view
 from .asked import Asked
-from .charts import Charts, REMOVE
+from .charts import Charts, REMOVE, differences, quantities, single_row
 from .data import Data, find_deck
 from .ground import Ground
 from .maps_part import Maps
+from .numbers import Numbers, answer, balance, cards, travel_rows
 from .reference import read as read_reference
 from .section import Section
 from .structures_part import Structures
-from .warnings import warnings
+from .warnings import AMBER, warnings
 
 # columns of a study's table: head, unit, key
 COLUMNS = (("released", "m3", "released_m3"), ("99 % within", "m", "distance_99_m"),
@@ -35,12 +36,12 @@ class Page:
         self.data = Data(asked.folder, asked.shown)
         self.ground = Ground(self.data)
         self.section = Section(self.data, self.ground, asked.section, asked.local)
-        self.reference = read_reference(asked.reference, report_charts.quantities(self.data)) \
+        self.reference = read_reference(asked.reference, quantities(self.data)) \
             if asked.reference else None
-        path = convergence_part.find(asked.converge, self.data)
+        path, missing = convergence_part.find(asked.converge, self.data)
         self.sizes = path and convergence_part.Sizes(path)
-        self.warnings = warnings(self.data)
-        self.numbers = report_numbers.Numbers((self.data.study or {}).get("scatter"))
+        self.warnings = [*warnings(self.data), *([(AMBER, missing)] if missing else [])]
+        self.numbers = Numbers((self.data.study or {}).get("scatter"))
         self.heading = heading.heading(asked.folder, {name: getattr(asked, name) for name in heading.FIELDS})
         self.frames, self.no_frames = frames.read(self.data.result)
         self.film_file, self.film = asked.film, film.Film(None, "")
@@ -63,10 +64,10 @@ class Page:
             "made": provenance.now(), "study": study, "single": not study, "one": one, "summary": one.summary,
             "label": data.label(one), "settings": data.settings, "repeats": data.repeats,
             "varied": [key for key, several in data.settings.items() if len(several) > 1],
-            "warnings": self.warnings, "answer": report_numbers.answer(data, numbers),
-            "cards": report_numbers.cards(data, numbers), "travel": report_numbers.travel_rows(data, numbers),
-            "balance": report_numbers.balance(data), "rows": self.rows(), "columns": self.columns(),
-            "means": self.means(), "differences": report_charts.differences(data, numbers),
+            "warnings": self.warnings, "answer": answer(data, numbers),
+            "cards": cards(data, numbers), "travel": travel_rows(data, numbers),
+            "balance": balance(data), "rows": self.rows(), "columns": self.columns(),
+            "means": self.means(), "differences": differences(data, numbers),
             "maps": maps.of_run(), "section": self.picture(*self.section.picture()), "charts": charts.all(),
             "intensity": intensity_part.content(data, numbers, self.picture),
             "hit": Structures(data, numbers, self.picture).content(),
@@ -148,9 +149,9 @@ class Page:
         tables: List[Dict[str, Any]] = []
         if self.reference is None:
             return None
-        own = self.data.finished or [report_charts.single_row(self.data)]
+        own = self.data.finished or [single_row(self.data)]
         for key, quantity in self.reference.quantities.items():
-            what, unit = report_charts.sensitivity.NAMES[key]
+            what, unit = NAMES[key]
             xs = sorted({x for points in quantity.series.values() for x, _ in points})
             series = [(name, [f"{dict(points)[x]:,.6g}" if x in dict(points) else "-" for x in xs])
                       for name, points in quantity.series.items()]

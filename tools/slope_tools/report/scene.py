@@ -29,7 +29,7 @@ MOVES = 0.1             # m/s
 
 def scene(data, ground, section, frames: Frames) -> Dict[str, Any]:
     """What the viewer takes, ready for JSON; lengths in m, relative to x y of `centre` and to height 0."""
-    box = shown(data, ground)
+    box = shown(ground)
     places, low, span = quantised(frames.place)
     top = fastest(frames.speed)
     with np.errstate(invalid="ignore"):
@@ -85,7 +85,7 @@ def packed(values, kind):
 
 # --- ground ---
 
-def shown(data, ground):
+def shown(ground):
     """Local xlo, ylo, xhi, yhi of the ground that is shown: what the mass touched, the road beside it, and room."""
     xlo, ylo, xhi, yhi = box_of(ground.raster, ground.touched | ground.source)
     room = ROOM * max(xhi - xlo, yhi - ylo)

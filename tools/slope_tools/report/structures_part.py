@@ -35,7 +35,7 @@ def polydata(path):
 
 
 class Structures:
-    """Draws what hit the structures of a report.Data, and what crossed its lines; picture makes the template's."""
+    """Draws what hit the structures of a data.Data, and what crossed its lines; picture makes the template's."""
 
     def __init__(self, data, numbers, picture):
         self.data, self.numbers, self.picture = data, numbers, picture

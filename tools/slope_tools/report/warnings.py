@@ -12,7 +12,7 @@ RED, AMBER = "red", "amber"
 
 
 def warnings(data):
-    """(red or amber, text) of a report.Data, the gravest first."""
+    """(red or amber, text) of a data.Data, the gravest first."""
     found = failures(data)
     found += not_at_rest(data)
     found += lost(data)

@@ -5,6 +5,7 @@ matplotlib.use("Agg")  # no display is needed
 
 from matplotlib import pyplot as plt  # noqa: E402  (after the backend is set)
 
+from ..drawing import pictures  # noqa: E402
 from ..drawing.figures import COLOURS, DPI, STYLE  # noqa: E402
 from .quake_motion import AXES, DAMPING, PERIODS, husid, integrals, spectrum  # noqa: E402
 from .quake_records import GAL  # noqa: E402
@@ -29,5 +30,4 @@ def draw(path, motion, title):
                       ylabel=f"response acceleration, {100 * DAMPING:g} % (gal)")
         axes["s"].legend()
         figure.suptitle(title, fontsize=8.5)
-        figure.savefig(path, dpi=DPI, format="png")
-        plt.close(figure)
+        pictures.save(figure, path, dpi=DPI)

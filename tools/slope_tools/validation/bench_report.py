@@ -152,7 +152,7 @@ def against(value):
 
 def draw(path, about):
     """The codes against ours with their targets, the other measures, and where our time goes."""
-    from ..drawing import figures
+    from ..drawing import figures, pictures
     from ..drawing.figures import plt
     measures, codes, parts = about["measures"], about["codes"], about["breakdown_seconds"]
     with plt.rc_context(figures.STYLE):
@@ -186,7 +186,4 @@ def draw(path, about):
             axes[1].annotate(f"{100 * parts[name] / total:.0f}", (100 * parts[name] / total, i), xytext=(3, 0),
                              textcoords="offset points", va="center", fontsize=6.5)
         axes[1].set_title("Where our time goes", loc="left")
-        new = path.with_name(f".{path.name}.new.png")
-        figure.savefig(new, dpi=figures.DPI, metadata={"Software": None})
-        plt.close(figure)
-        new.replace(path)
+        pictures.save(figure, path, dpi=figures.DPI)

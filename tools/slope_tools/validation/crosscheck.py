@@ -72,7 +72,7 @@ def scene_of(lmp, deck, settings, folder):
                     lambda found: f"{found[1].rstrip()} write ground.{found[2]}.xyz ", before, flags=re.MULTILINE)
     disk.write(folder / deck.name, before + "run 0\n" f"""
 print "SCENE dt $(dt:%.17g)"
-write_dump all custom {START} id {peers.COLUMNS} modify sort id format float %.17g
+write_dump all custom {START} id {peer_runs.COLUMNS} modify sort id format float %.17g
 write_dump all custom kinds.dump id type diameter mass x y z vx vy vz modify sort id format float %.17g
 """)
     log = folder / peer_runs.LOG
@@ -80,8 +80,8 @@ write_dump all custom kinds.dump id type diameter mass x y z vx vy vz modify sor
     peer_runs.run_deck(lmp, folder, deck.name, 1, options)
     text = log.read_text(encoding="utf-8", errors="replace")
     done = [line.split() for line in text.splitlines() if line.split() and "$" not in line]
-    moving = peers.read_dump(folder / START)[0]
-    kinds = peers.read_dump(folder / "kinds.dump")[0]
+    moving = peer_runs.read_dump(folder / START)[0]
+    kinds = peer_runs.read_dump(folder / "kinds.dump")[0]
     if np.ptp(kinds[:, :3], axis=0).any() or kinds[0, 0] != 1:
         raise SlopeError(deck, "must have equal balls of type 1")
     diameter, mass = kinds[0, 1:3].tolist()

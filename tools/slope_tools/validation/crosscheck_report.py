@@ -62,7 +62,7 @@ def cell(value):
 
 def draw(path, work):
     """The deposit of every code along x, with the road."""
-    from ..drawing import figures
+    from ..drawing import figures, pictures
     from ..drawing.figures import plt
     with plt.rc_context(figures.STYLE):
         figure, axes = plt.subplots(figsize=(figures.FULL, 2.7))
@@ -78,7 +78,4 @@ def draw(path, work):
         axes.set_title(f"Deposit after {work.about_collapse['seconds']:g} s, {work.about_collapse['balls']:,} balls of "
                        f"{work.about_collapse['d']:g} m", loc="left")
         axes.legend(loc="upper left")
-        new = path.with_name(f".{path.name}.new.png")
-        figure.savefig(new, dpi=figures.DPI, metadata={"Software": None})
-        plt.close(figure)
-        new.replace(path)
+        pictures.save(figure, path, dpi=figures.DPI)
