@@ -1,0 +1,137 @@
+"""slope site FOLDER over a folder that is there: what of it stays, what is found anew, what is refused, kills."""
+import shlex
+from pathlib import Path
+
+import pytest
+import yaml
+from shapely.geometry import LineString
+
+from test_site import BODY, ROAD, gis, slope, write_layer  # noqa: F401
+from tiny_collapse import LMP
+
+from slope_tools import cli, programs
+from slope_tools.case import site_choices, site_deck, site_folder
+from slope_tools.errors import SlopeError
+
+
+@pytest.fixture
+def inside(gis, monkeypatch, capsys):  # noqa: F811
+    """Run `slope site ARGUMENTS` in the folder of the GIS files, without a LAMMPS program; gives stdout and stderr."""
+    monkeypatch.chdir(gis)
+    monkeypatch.delenv("LMP", raising=False)
+    monkeypatch.setattr(programs, "BESIDE", gis / "nowhere")
+
+    def run(arguments, status=0):
+        capsys.readouterr()
+        found = cli.main(["site", *shlex.split(arguments)])
+        told = capsys.readouterr()
+        assert found == status, told
+        return told
+    return run
+
+
+@pytest.fixture
+def mine(inside, gis):  # noqa: F811
+    """A site of the standard files, without a trial run."""
+    inside(f"--terrain dem.tif --release release.geojson {shlex.join(BODY)} --road road.geojson -o mine")
+    return gis / "mine"
+
+
+def contents(folder):
+    return {path.relative_to(folder): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+# --- what is the user's ---
+
+def test_a_users_file_is_not_overwritten(inside, mine):
+    """Neither an input of that name, nor any other file; it is said before anything is built."""
+    write_layer(mine / "own.geojson", ROAD)
+    (mine / "observed.csv").write_text("20,0\n36,0\n36,80\n")
+    (mine / "behind.csv").write_text("36,50\n36,30\n")
+    before = contents(mine)
+    for words, file in (("--road mine/road.csv", "mine/road.csv"), ("--line mine/behind.csv", "mine/behind.csv"),
+                        ("--observed mine/observed.csv", "mine/observed.csv"),
+                        ("--observed mine/own.geojson", "mine/observed.csv")):
+        out, err = inside(f"mine {words}", 2)
+        assert err.startswith(f"slope site: {file}: must not ") and err.count("\n") == 1 and out == "", err
+        assert contents(mine) == before
+    inside("mine --road mine/own.geojson")      # the name is no matter
+    assert (mine / "own.geojson").read_bytes() == before[Path("own.geojson")]
+
+
+def test_names_of_the_files_are_known_before(inside, mine):
+    write_layer(mine.parent / "observed.geojson", [(36, 50), (36, 30)], kind=LineString)
+    write_layer(mine.parent / "mapped.geojson", [(25, 25), (60, 25), (60, 55), (25, 55)])
+    inside("mine --line observed.geojson --observed mapped.geojson")
+    assert site_folder.planned(site_choices.read(mine)) == set(site_choices.found(mine)["files"]) == {
+        path.name for path in mine.iterdir()}
+
+
+def test_a_line_called_observed_is_not_the_mapped_deposit(inside, mine):
+    write_layer(mine.parent / "observed.geojson", [(36, 50), (36, 30)], kind=LineString)
+    write_layer(mine.parent / "mapped.geojson", [(25, 25), (60, 25), (60, 55), (25, 55)])
+    inside("mine --line observed.geojson --observed mapped.geojson")
+    assert len((mine / "observed.csv").read_text().splitlines()) >= 5
+    assert (mine / "observed_2.csv").read_text().splitlines()[1:] == ["36,50", "36,30"]
+
+
+@pytest.mark.parametrize("after", range(1, 9))
+def test_killed_while_the_files_are_exchanged(tmp_path, monkeypatch, after):
+    """Studies stay where they are; the next call makes the folder whole."""
+    folder = tmp_path / "mine"
+    (folder / "study").mkdir(parents=True)
+    (folder / "study" / "study.yaml").write_text("hours\n")
+    for name in ("in.site", "site.yaml", "terrain.asc", "road.csv", "notes.txt"):
+        (folder / name).write_text("old\n")
+    old = {"in.site", "site.yaml", "terrain.asc", "road.csv"}
+    made = {"in.site", "site.yaml", "terrain.asc", "observed.csv"}
+
+    def new():
+        place = folder / ".mine.1.new"
+        place.mkdir(exist_ok=True)
+        for name in made:
+            (place / name).write_text("new\n")
+        return place
+
+    left = after
+
+    def dies(do):
+        def one(*words, **more):
+            nonlocal left
+            left -= 1
+            if not left:
+                raise KeyboardInterrupt
+            return do(*words, **more)
+        return one
+    first = new()
+    with monkeypatch.context() as patch:
+        for name in ("replace", "unlink", "rename", "rmdir"):
+            patch.setattr(Path, name, dies(getattr(Path, name)))
+        try:
+            site_folder.exchange(first, folder, old)
+        except KeyboardInterrupt:
+            pass
+    assert (folder / "study" / "study.yaml").read_text() == "hours\n"
+    if (folder / "in.site").exists():       # then it is all the old or all the new site
+        assert {path.read_text() for path in folder.glob("*.*") if path.is_file() and path.name != "notes.txt"} == {
+            (folder / "in.site").read_text()}
+    if (folder / "site.yaml").read_text() == "new\n":
+        old = made
+    site_folder.exchange(new(), folder, old)
+    assert all((folder / name).read_text() == "new\n" for name in made)
+    assert (folder / "notes.txt").read_text() == "old\n" and (folder / "study" / "study.yaml").exists()
+
+
+def test_a_folder_without_its_deck_is_made_anew(inside, mine):
+    (mine / site_deck.NAME).unlink()
+    inside("mine")
+    assert (mine / site_deck.NAME).is_file() and not list(mine.parent.rglob(".mine*"))
+
+
+def test_exchange_takes_no_file_that_was_not_planned(tmp_path):
+    for name in ("mine", "new"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "surprise").write_text(name)
+    with pytest.raises(SlopeError, match="mine/surprise: must not be there"):
+        site_folder.exchange(tmp_path / "new", tmp_path / "mine", set())
+    assert (tmp_path / "mine" / "surprise").read_text() == "mine"
