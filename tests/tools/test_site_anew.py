@@ -135,3 +135,56 @@ def test_exchange_takes_no_file_that_was_not_planned(tmp_path):
     with pytest.raises(SlopeError, match="mine/surprise: must not be there"):
         site_folder.exchange(tmp_path / "new", tmp_path / "mine", set())
     assert (tmp_path / "mine" / "surprise").read_text() == "mine"
+
+
+# --- what is found anew ---
+
+def edit(mine, section, **values):
+    """What a user writes into site.yaml."""
+    path = mine / "site.yaml"
+    about = yaml.safe_load(path.read_text())
+    about[section].update(values)
+    path.write_text(yaml.safe_dump(about))
+
+
+def test_another_body_gets_balls_of_its_own(inside, mine):
+    first = site_choices.read(mine)
+    inside("mine --volume 500")
+    second = site_choices.read(mine)
+    assert second["balls"]["number"] == first["balls"]["number"] and second["release"]["depth"] is None
+    assert second["balls"]["diameter"] < first["balls"]["diameter"] / 1.5
+    assert second["model"]["field_diameter"] == second["balls"]["diameter"]
+    assert site_choices.found(mine)["balls"] == pytest.approx(4000, rel=0.02)
+    for key in ("speed", "duration"):       # a trial run of the other body may have been slower
+        edit(mine, "model", **{key: 99.0})
+        about = yaml.safe_load((mine / "site.yaml").read_text())
+        about["found"]["derived"][f"model.{key}"] = 99.0
+        (mine / "site.yaml").write_text(yaml.safe_dump(about))
+    inside("mine --client somebody")
+    assert site_choices.read(mine)["model"]["speed"] == site_choices.read(mine)["model"]["duration"] == 99
+    inside("mine --depth 4")
+    model = site_choices.read(mine)["model"]
+    assert (model["speed"], model["duration"]) == (47, 600)
+
+
+def test_what_the_user_chose_stays(inside, mine):
+    diameter = site_choices.read(mine)["balls"]["diameter"]
+    inside(f"mine --diameter {diameter}")       # the same, but chosen now
+    edit(mine, "model", speed=60.0, cell=3.0)
+    inside("mine")
+    inside("mine --volume 500")
+    choices = site_choices.read(mine)
+    assert choices["balls"]["diameter"] == diameter and choices["balls"]["number"] is None
+    assert choices["model"]["speed"] == 60 and choices["model"]["cell"] == 3
+
+
+def test_a_shape_that_nobody_named_is_none(inside, gis):  # noqa: F811
+    inside("--terrain dem.tif --release release.geojson --volume 400 -o mine")
+    for words, shape in (("", "sphere"), ("--dip 30", "plane"), ("--dip 28", "plane")):
+        if words:
+            inside(f"mine {words}")
+        assert site_choices.read(gis / "mine")["release"]["shape"] is None
+        assert yaml.safe_load((gis / "mine" / "release.yaml").read_text())["shape"] == shape
+    inside("--terrain dem.tif --release release.geojson --volume 400 -o other")
+    inside("other --curvature 0.002")
+    assert yaml.safe_load((gis / "other" / "release.yaml").read_text())["shape"] == "slbl"
