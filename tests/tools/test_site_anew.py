@@ -6,7 +6,7 @@ import pytest
 import yaml
 from shapely.geometry import LineString
 
-from test_site import BODY, ROAD, gis, slope, write_layer  # noqa: F401
+from test_site import BODY, ROAD, gis, refused, slope, write_layer  # noqa: F401
 from tiny_collapse import LMP
 
 from slope_tools import cli, programs
@@ -188,3 +188,12 @@ def test_a_shape_that_nobody_named_is_none(inside, gis):  # noqa: F811
     inside("--terrain dem.tif --release release.geojson --volume 400 -o other")
     inside("other --curvature 0.002")
     assert yaml.safe_load((gis / "other" / "release.yaml").read_text())["shape"] == "slbl"
+
+
+# --- the program ---
+
+def test_a_program_that_is_named_must_be_there(gis):  # noqa: F811
+    site = slope(gis, "site", "--terrain", "dem.tif", "--release", "release.geojson", *BODY, "-o", "mine",
+                 LMP="/nowhere/lmp")
+    refused(site, "LMP in the environment: must lead to the LAMMPS program, got /nowhere/lmp")
+    assert not (gis / "mine").exists()

@@ -1,5 +1,6 @@
 """slope site: from the files of a GIS to a folder with terrain, body, deck and map, which `slope study` runs."""
 import argparse
+import os
 from pathlib import Path
 
 from ..case import site, site_choices
@@ -167,6 +168,6 @@ def program(option):
     try:
         return find_lmp(option)
     except SlopeError:
-        if option is not None:
+        if option or os.environ.get("LMP"):
             raise
         return None
