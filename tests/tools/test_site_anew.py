@@ -1,13 +1,18 @@
 """slope site FOLDER over a folder that is there: what of it stays, what is found anew, what is refused, kills."""
+import os
 import shlex
+import signal
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import pytest
 import yaml
 from shapely.geometry import LineString
 
-from test_site import BODY, ROAD, gis, refused, slope, write_layer  # noqa: F401
-from tiny_collapse import LMP
+from test_site import BODY, ROAD, TOOLS, gis, refused, slope, write_layer  # noqa: F401
+from tiny_collapse import LMP, processes_in
 
 from slope_tools import cli, programs
 from slope_tools.case import site_choices, site_deck, site_folder
@@ -197,3 +202,20 @@ def test_a_program_that_is_named_must_be_there(gis):  # noqa: F811
                  LMP="/nowhere/lmp")
     refused(site, "LMP in the environment: must lead to the LAMMPS program, got /nowhere/lmp")
     assert not (gis / "mine").exists()
+
+
+def test_an_end_from_outside_ends_the_trial_run(gis):  # noqa: F811
+    (gis / "slow").write_text("#!/bin/bash\ntrap 'exit 1' TERM\nwhile :; do sleep 0.1; done\n")
+    (gis / "slow").chmod(0o755)
+    words = ["site", "--terrain", "dem.tif", "--release", "release.geojson", *BODY, "-o", "mine", "--lmp", "./slow"]
+    process = subprocess.Popen([sys.executable, str(TOOLS / "slope"), *words], cwd=gis, stdout=subprocess.DEVNULL,
+                               stderr=subprocess.PIPE, text=True, env=dict(os.environ))
+    end = time.monotonic() + 120
+    while not list(gis.glob(".mine*/trial/screen.txt")):
+        assert time.monotonic() < end and process.poll() is None
+        time.sleep(0.05)
+    process.send_signal(signal.SIGTERM)
+    err = process.communicate(timeout=120)[1]
+    assert process.returncode == 130 and err.endswith("slope site: interrupted\n"), err
+    assert not list(gis.glob("*mine*")) + list(gis.glob(".mine*"))
+    assert not processes_in(gis)

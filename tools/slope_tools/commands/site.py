@@ -118,9 +118,10 @@ def run(args):
     """Do the command; raises SlopeError on bad input. Prints what was read, found and written."""
     folder, choices, known = chosen(args)
     cores = args.jobs or jobs.cores()
-    made = site.make(choices, folder, site.Machine(program(args.lmp), cores), lambda line: print(line, flush=True),
-                     printer("site"), site_map.draw, again=args.folder is not None,
-                     known=known)
+    with jobs.signals_interrupt():
+        made = site.make(choices, folder, site.Machine(program(args.lmp), cores), lambda line: print(line, flush=True),
+                         printer("site"), site_map.draw, again=args.folder is not None,
+                         known=known)
     print(f"written to {folder}: {' '.join(made.files)}")
     print(f"look at {folder / site.MAP}, then: tools/slope study {folder}")
 
