@@ -219,3 +219,21 @@ def test_an_end_from_outside_ends_the_trial_run(gis):  # noqa: F811
     assert process.returncode == 130 and err.endswith("slope site: interrupted\n"), err
     assert not list(gis.glob("*mine*")) + list(gis.glob(".mine*"))
     assert not processes_in(gis)
+
+
+# --- a study of which a run fails ---
+
+def test_a_failed_run_leaves_score_and_report_of_the_others(inside, mine, monkeypatch, capsys):
+    write_layer(mine.parent / "mapped.geojson", [(25, 25), (60, 25), (60, 55), (25, 55)])
+    inside("mine --observed mapped.geojson --balls 60")
+    edit(mine, "study", rolling=[0.05, 0.1], xoffset=[], sizes=[])
+    Path("some").write_text(f"""#!/bin/sh\ncase "$*" in *"rolling 0.1"*) exit 1;; esac\nexec {LMP} "$@"\n""")
+    Path("none").write_text("#!/bin/sh\nexit 1\n")
+    for name in ("some", "none"):
+        Path(name).chmod(0o755)
+    assert cli.main(["study", "mine", "--lmp", "./none"]) == 2
+    assert not (mine / "report.html").exists() and "2 of 2 runs failed" in capsys.readouterr().err
+    assert cli.main(["study", "mine", "--lmp", "./some"]) == 2
+    out, err = capsys.readouterr()
+    assert err.splitlines()[-1].startswith("slope study: mine/study: 1 of 2 runs failed: rolling_0.1: ")
+    assert "report.html" in out and (mine / "report.html").is_file() and (mine / "score" / "score.yaml").is_file()
