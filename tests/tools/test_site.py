@@ -21,7 +21,8 @@ from tiny_collapse import LMP, TOP
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools.case import decks, site_budget, site_choices  # noqa: E402  (after the path is set)
+from slope_tools import cli, programs  # noqa: E402  (after the path is set)
+from slope_tools.case import decks, site_budget, site_choices  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
 
 DATA = Path(os.environ.get("SLOPE_DATA", TOP.parent.parent / "shared" / "data"))
@@ -406,10 +407,13 @@ def test_a_site_has_its_own_choices(tmp_path):
         assert line.endswith(f", got {values[0]}" if values else "is run")
 
 
-def test_without_lammps_the_folder_is_made_and_that_is_said(gis):
-    site = make(gis, *BODY, "--balls", "100", LMP="/nowhere/lmp")
-    assert site.returncode == 0, site.stderr
-    assert "no LAMMPS program" in site.stderr and (gis / "mine" / "in.site").exists()
+def test_without_lammps_the_folder_is_made_and_that_is_said(gis, monkeypatch, capsys):
+    monkeypatch.chdir(gis)
+    monkeypatch.delenv("LMP", raising=False)
+    monkeypatch.setattr(programs, "BESIDE", gis / "nowhere")
+    assert cli.main(["site", "--terrain", "dem.tif", "--release", "release.geojson", *BODY, "--balls", "100", "-o",
+                     "mine"]) == 0
+    assert "no LAMMPS program" in capsys.readouterr().err and (gis / "mine" / "in.site").exists()
 
 
 # --- the page ---

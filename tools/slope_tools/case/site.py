@@ -1,13 +1,14 @@
 """A site's folder: terrain, body, layers, deck, map and site.yaml; all of it or nothing.
 
 Order of the work: terrain and body (survey), layers (site_inputs), trial run and size of the balls (site_budget), deck
-(site_deck), map (site_map), site.yaml (site_choices). It is built in a folder beside, which is then renamed.
+(site_deck), map (site_map), site.yaml (site_choices). It is built in a folder of its own; then its files take their
+places (site_folder).
 """
 import hashlib
 import os
 import shutil
 from pathlib import Path
-from typing import Any, Callable, List, NamedTuple, Optional, Set
+from typing import Any, Callable, List, NamedTuple, Optional
 
 import numpy as np
 
@@ -15,14 +16,11 @@ from .. import disk, provenance
 from ..errors import SlopeError
 from ..survey import local_terrain, polygons, rasters, release
 from ..survey.rasters import Raster, crs_name
-from . import release_files, site_budget, site_choices, site_deck
+from . import release_files, site_budget, site_choices, site_deck, site_folder
 from .site_budget import Size, Trial
-from .site_choices import Choices
+from .site_choices import Choices, Derived
+from .site_folder import BODY, BODY_DECK, MAP, TERRAIN
 from .site_layers import Layers, Shown, read_layers
-
-MAP = "map.png"
-TERRAIN = "terrain.asc"
-BODY = "release"        # first part of the names of the body's files
 
 
 class Machine(NamedTuple):
@@ -62,20 +60,25 @@ Draw = Callable[[Path, Shown, str], None]       # of the map: file, what it show
 
 
 def make(choices: Choices, folder: Path, machine: Machine, tell: Callable[[str], Any],
-         warn: Callable[[str], Any], draw: Draw, again: bool = False) -> Made:
+         warn: Callable[[str], Any], draw: Draw, again: bool = False,
+         known: Optional[Derived] = None) -> Made:
     """Make a site's folder, or make it anew, from complete choices whose files are seen from the working folder.
 
     tell and warn are called with lines for the user, draw draws the map; again: the folder is a site, which is made
-    anew. Raises SlopeError on bad input; the folder is then as it was.
+    anew; known: what of the choices was found when it was made before. Raises SlopeError on bad input; the folder is
+    then as it was.
     """
     check_target(folder, again)
     old = set(site_choices.found(folder).get("files") or ()) if again else set()
-    new = folder.absolute().with_name(f".{folder.absolute().name}.{os.getpid()}.new")
+    site_folder.check(choices, folder, old)
+    place = folder.absolute()
+    # on the disk of the folder, so that renames do
+    new = (place if place.is_dir() else place.parent) / f".{place.name}.{os.getpid()}.new"
     try:
         new.mkdir()
         try:
-            made = built(choices, new, folder, machine, tell, warn, draw)
-            exchange(new, folder.absolute(), old)
+            made = built(choices, known or {}, new, folder, machine, tell, warn, draw)
+            site_folder.exchange(new, place, old)
         finally:
             shutil.rmtree(new, ignore_errors=True)
     except OSError as error:
@@ -83,32 +86,19 @@ def make(choices: Choices, folder: Path, machine: Machine, tell: Callable[[str],
     return made
 
 
-def built(choices: Choices, new: Path, folder: Path, machine: Machine, tell, warn, draw: Draw) -> Made:
+def built(choices: Choices, known: Derived, new: Path, folder: Path, machine: Machine, tell, warn,
+          draw: Draw) -> Made:
     """build(), whose messages do not name the folder that is not there afterwards."""
     try:
-        return build(choices, new, folder, machine, tell, warn, draw)
+        return build(choices, known, new, folder, machine, tell, warn, draw)
     except SlopeError as error:
         error.args = (str(error).replace(f"{new}/", ""),)
         raise
 
 
-def exchange(new: Path, folder: Path, old: Set[str]) -> None:
-    """Put a new folder in the place of one; what the old one has beside its old files (studies) goes along."""
-    if not folder.is_dir():
-        new.rename(folder)
-        return
-    aside = folder.with_name(f".{folder.name}.{os.getpid()}.old")
-    folder.rename(aside)
-    new.rename(folder)
-    for path in sorted(aside.iterdir()):
-        if path.name not in old and not (folder / path.name).exists():
-            path.rename(folder / path.name)
-    shutil.rmtree(aside)
-
-
-def build(choices: Choices, new: Path, folder: Path, machine: Machine, tell, warn, draw: Draw) -> Made:
+def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Machine, tell, warn, draw: Draw) -> Made:
     """Everything, into the folder `new`, which will be `folder`."""
-    choices = {name: dict(section) for name, section in choices.items()}
+    choices = {name: dict(section) for name, section in given.items()}
     wanted = wanted_body(choices, new)
     raster = terrain(choices, new, tell)
     found = release.body_of(wanted)
@@ -128,6 +118,7 @@ def build(choices: Choices, new: Path, folder: Path, machine: Machine, tell, war
     draw(new / MAP, shown(found, layers, reached), f"{title}: {found.measures.volume:,.0f} m\u00b3")
     files = sorted([path.name for path in new.iterdir()] + [site_choices.NAME])
     about = {"slope_version": provenance.version(), "made": provenance.now(), "files": files,
+             "derived": site_choices.derived(given, choices, known),
              "deck_sha256": digest(new / site_deck.NAME), "crs": crs_name(raster.crs),
              "origin": {"east": float(raster.offset[0]), "north": float(raster.offset[1])},
              "body": found.measures._asdict(), "balls": size.balls,
@@ -144,9 +135,7 @@ def wanted_body(choices: Choices, new: Path) -> release.Wanted:
     given = choices["release"]
     if not (given["polygon"] or given["scar"]):
         raise SlopeError("--release", "must be given, a polygon, or --scar, a raster")
-    wanted = release.check(release.Wanted(str(new / TERRAIN), **given))
-    given["shape"] = wanted.shape
-    return wanted
+    return release.check(release.Wanted(str(new / TERRAIN), **given))
 
 
 def terrain(choices: Choices, new: Path, tell) -> Raster:
@@ -163,7 +152,7 @@ def write_body(new: Path, wanted: release.Wanted, found: release.Body):
     """The body's files, and what the deck needs to know of it."""
     name = new / BODY
     release_files.write_body(name, wanted._replace(terrain=TERRAIN), found)
-    name.with_name(f"{BODY}.deck.txt").unlink()     # its lines are in the deck
+    name.with_name(BODY_DECK).unlink()
     if found.geometry is not None:
         polygons.write(new / f"{BODY}.csv", found.geometry, found.raster)
     return release_files.deck_body(name, wanted.terrain, found.raster, found.area, found.slip)

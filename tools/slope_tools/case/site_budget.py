@@ -5,14 +5,13 @@ seconds until the mass is at rest, and the largest speed, which sets the stiffne
 lengths in m.
 """
 import math
-import os
 import re
 import resource
 import subprocess
 from pathlib import Path
 from typing import Callable, List, NamedTuple, Optional, Sequence, Tuple
 
-from .. import disk
+from .. import disk, processes
 from ..case import last_words, logs
 from ..errors import SlopeError
 from .site_choices import Choices
@@ -92,13 +91,15 @@ def measure(folder: Path, deck: str, lmp: Path) -> Trial:
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     with open(folder / "screen.txt", "wb") as screen:
         try:
-            status = subprocess.run([str(lmp), "-in", deck, "-log", log.name], cwd=folder, stdin=subprocess.DEVNULL,
-                                    stdout=screen, stderr=subprocess.STDOUT, check=False, timeout=TRIAL_LIMIT,
-                                    env={**os.environ, "OMP_NUM_THREADS": "1"}).returncode
-        except subprocess.TimeoutExpired:
-            raise SlopeError("trial run", f"must end within {TRIAL_LIMIT:g} s of waiting") from None
+            process = processes.start([str(lmp), "-in", deck, "-log", log.name], folder, screen)
         except OSError as error:
             raise SlopeError(lmp, f"cannot be run: {error.strerror}") from None
+        try:
+            status = process.wait(TRIAL_LIMIT)
+        except subprocess.TimeoutExpired:
+            raise SlopeError("trial run", f"must end within {TRIAL_LIMIT:g} s of waiting") from None
+        finally:
+            processes.stop([process])
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
     summaries = sorted(folder.glob("*.summary.yaml"))

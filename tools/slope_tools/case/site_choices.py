@@ -23,7 +23,12 @@ WHAT = "a site.yaml of `slope site`"
 FILES = (("terrain", "files"), ("release", "polygon"), ("release", "scar"), ("road", "file"), ("structures", "files"),
          ("lines", "files"), ("motion", "file"), ("observed", "file"))
 
+# keys that slope site fills in with what it finds
+DERIVED = (("balls", "diameter"), ("balls", "number"), ("model", "field_diameter"), ("model", "speed"),
+           ("model", "duration"), ("model", "cell"), ("motion", "peak_friction"))
+
 Choices = Dict[str, Any]        # {section: {key: value}}, complete
+Derived = Dict[str, Any]        # {"section.key": value} of DERIVED
 
 
 @functools.lru_cache
@@ -95,6 +100,21 @@ def read(folder: Path) -> Choices:
 def found(folder: Path) -> Dict[str, Any]:
     """What slope site found when it made a folder."""
     return disk.load_yaml(folder / NAME, WHAT).get("found") or {}
+
+
+def derived(before: Choices, after: Choices, known: Derived) -> Derived:
+    """What of the choices was not chosen, but found: now, or earlier (known) and not changed since."""
+    names = {f"{section}.{key}": (before[section][key], after[section][key]) for section, key in DERIVED}
+    return {name: now for name, (was, now) in names.items()
+            if now is not None and (was is None or (name in known and known[name] == now))}
+
+
+def forget(choices: Choices, known: Derived) -> None:
+    """Make null what was found and not changed since, so that it is found anew."""
+    for section, key in DERIVED:
+        name = f"{section}.{key}"
+        if name in known and known[name] == choices[section][key]:
+            choices[section][key] = None
 
 
 def with_files(choices: Choices, change) -> Choices:

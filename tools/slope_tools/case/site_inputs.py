@@ -16,7 +16,8 @@ from ..survey.rasters import Raster, crs_name
 
 # names of the deck's own fixes and groups, and of files that a run writes beside them
 TAKEN = {"all", "soil", "slip", "field", "spread", "move", "weight", "deposit", "rest", "shake", "drag", "stands",
-         "fails", "balls", "road", "release", "terrain", "body", "ground", "base", "summary"}
+         "fails", "balls", "road", "release", "observed", "terrain", "body", "ground", "base", "summary"}
+MOTION = "motion.txt"
 
 
 class Structure(NamedTuple):
@@ -159,8 +160,8 @@ def motion(path: str, folder: Path) -> Motion:
     peak = float(np.hypot(values[:, 1], values[:, 2]).max())
     if not peak > 0:
         raise SlopeError(path, "must hold a motion, all horizontal accelerations are 0")
-    copy(path, folder / "motion.txt")
-    return Motion("motion.txt", float(values[-1, 0]), peak)
+    copy(path, folder / MOTION)
+    return Motion(MOTION, float(values[-1, 0]), peak)
 
 
 def copy(source: str, target: Path) -> None:

@@ -88,9 +88,12 @@ def run(args):
 
 def check_timed(parts, ranks, args):
     """Raise SlopeError if no part has a run to time."""
-    without = {"weak": args.quick and "weak has none with --quick",
-               "ranks": not ranks and f"ranks has none with --np {args.np}"}
-    if all(without.get(part) for part in parts):
+    without = {}
+    if args.quick:
+        without["weak"] = "weak has none with --quick"
+    if not ranks:
+        without["ranks"] = f"ranks has none with --np {args.np}"
+    if all(part in without for part in parts):
         raise SlopeError("--only", f"must name a part with runs to time: {', '.join(without[part] for part in parts)}",
                          args.only)
 

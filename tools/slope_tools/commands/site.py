@@ -1,5 +1,6 @@
 """slope site: from the files of a GIS to a folder with terrain, body, deck and map, which `slope study` runs."""
 import argparse
+import os
 from pathlib import Path
 
 from ..case import site, site_choices
@@ -23,6 +24,8 @@ OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
            "observed": ("observed", "file"), "diameter": ("balls", "diameter"), "balls": ("balls", "number"),
            "minutes": ("balls", "minutes"), "memory": ("balls", "memory"), "name": ("project", "name"),
            "client": ("project", "client"), "author": ("project", "author")}
+# those that change neither the body nor how it runs: what was found for it stays
+BESIDE = {"road", "cut_angle", "mesh", "line", "observed", "name", "client", "author"}
 # of these, one that is given takes the place of the others
 ONE_OF = (("depth", "volume", "curvature"), ("diameter", "balls", "minutes", "memory"))
 
@@ -115,42 +118,47 @@ def add_size(group):
 
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints what was read, found and written."""
-    folder, choices = chosen(args)
+    folder, choices, known = chosen(args)
     cores = args.jobs or jobs.cores()
-    made = site.make(choices, folder, site.Machine(program(args.lmp), cores), lambda line: print(line, flush=True),
-                     printer("site"), site_map.draw, again=args.folder is not None)
+    with jobs.signals_interrupt():
+        made = site.make(choices, folder, site.Machine(program(args.lmp), cores), lambda line: print(line, flush=True),
+                         printer("site"), site_map.draw, again=args.folder is not None,
+                         known=known)
     print(f"written to {folder}: {' '.join(made.files)}")
     print(f"look at {folder / site.MAP}, then: tools/slope study {folder}")
 
 
 def chosen(args):
-    """The folder, and the choices of the command line, or of the folder with those of the command line."""
+    """The folder; the choices of the command line, or of the folder with those of the command line; and what of them
+    was found before.
+    """
     given = {option: value for option in OPTIONS if (value := getattr(args, option)) is not None}
     if args.folder is not None:
         if args.output is not None:
             raise SlopeError("-o", f"must not be given with the folder of a site, {args.folder}, which is made anew",
                              args.output)
         folder, choices = args.folder, site_choices.read(args.folder)
+        known = site_choices.found(folder).get("derived") or {}
+        if given.keys() - BESIDE:
+            site_choices.forget(choices, known)
+            known = {}
     else:
         for option in ("terrain", "output"):
             if getattr(args, option) is None:
                 raise SlopeError("-o" if option == "output" else "--terrain", "must be given, or the folder of a site")
-        folder, choices = args.output, site_choices.complete({})
+        folder, choices, known = args.output, site_choices.complete({}), {}
     replace(choices, given)
     site_choices.check({"slope_site": site_choices.VERSION, **choices}, "choices")
-    return folder, choices
+    return folder, choices, known
 
 
 def replace(choices, given):
     """Put options in their places; what one of them replaces goes."""
     for group in ONE_OF:
         if any(option in given for option in group):
-            old = choices["balls"]["diameter"]
             for option in group:
                 section, key = OPTIONS[option]
                 choices[section][key] = None
-            if "balls" in group and choices["model"]["field_diameter"] == old:
-                choices["model"]["field_diameter"] = None
     if "scar" in given:
         choices["release"].update(shape=None, depth=None, volume=None, curvature=None, dip=None, direction=None)
     for option, value in given.items():
@@ -163,6 +171,6 @@ def program(option):
     try:
         return find_lmp(option)
     except SlopeError:
-        if option is not None:
+        if option or os.environ.get("LMP"):
             raise
         return None

@@ -106,12 +106,14 @@ def run_site(args):
             raise SlopeError("-o" if option == "output" else f"--{option.replace('_', '-')}", "must not be given with "
                              f"the folder of a site: {args.deck / 'site.yaml'} says what is run",
                              None if first is True else f"{first:g}" if isinstance(first, float) else first)
-    study = site_study.run(args.deck, setup_of(args))
-    if study:
+    done = site_study.run(args.deck, setup_of(args))
+    if done.study:
         from ..report import document
         from ..report.asked import Asked
         report = args.deck / "report.html"
-        print("\n".join(document.write(Asked(study, film=report.with_suffix(".mp4")), report)))
+        print("\n".join(document.write(Asked(done.study, film=report.with_suffix(".mp4")), report)))
+    if done.failed:
+        raise done.failed
 
 
 def run_ensemble(args, settings, repeated, thresholds, defaults):

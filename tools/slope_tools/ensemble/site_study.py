@@ -5,7 +5,7 @@ answer rests on. Every part is resumed by the same call.
 """
 import sys
 from pathlib import Path
-from typing import Dict, Iterable, List, Optional
+from typing import Dict, Iterable, List, NamedTuple, Optional
 
 from .. import disk
 from ..case import decks, site_choices, site_deck
@@ -28,11 +28,17 @@ def words(numbers: Iterable[float]) -> List[str]:
     return [f"{value:.10g}" for value in numbers]
 
 
-def run(folder: Path, engine: Setup) -> Optional[Path]:
-    """Make or go on with all runs of a site, and all that comes out of them; the study's folder, None of a dry run.
+class Done(NamedTuple):
+    """What was made."""
+    study: Optional[Path]                   # its folder, None of a dry run
+    failed: Optional[study.RunsFailed]      # that runs failed, to be raised once the report is there
 
-    engine: how the runs are made; its deck, output and road do not count. Raises SlopeError on bad input, and after all
-    other runs when one of the study failed.
+
+def run(folder: Path, engine: Setup) -> Done:
+    """Make or go on with all runs of a site, and all that comes out of them.
+
+    engine: how the runs are made; its deck, output and road do not count. Raises SlopeError on bad input, and if no run
+    of the study finished.
     """
     choices = site_choices.read(folder)
     deck = folder / site_deck.NAME
@@ -49,13 +55,19 @@ def run(folder: Path, engine: Setup) -> Optional[Path]:
     todo = repeats.plan(setup.output, settings, repeated, decks.index_variables(deck))
     study.check_names(todo)
     questions = results.Questions(settings, repeated, THRESHOLDS, errors)
-    study.perform(setup, {**settings, **repeated}, todo,
-                  lambda todo, work: results.collect(setup, questions, todo, work))
+    failed = None
+    try:
+        study.perform(setup, {**settings, **repeated}, todo,
+                      lambda todo, work: results.collect(setup, questions, todo, work))
+    except study.RunsFailed as error:
+        if all(one.error for one in todo):
+            raise
+        failed = error
     if setup.dry_run:
-        return None
+        return Done(None, failed)
     if choices["observed"]["file"]:
         scored(folder, setup)
-    return setup.output
+    return Done(setup.output, failed)
 
 
 def sizes(setup: Setup, choices: Choices, repeated: Dict[str, List[str]]) -> Optional[SizeErrors]:

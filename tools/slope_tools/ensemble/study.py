@@ -20,7 +20,7 @@ MOST_LETTERS = 200      # of a folder's name; file systems take 255
 
 
 def perform(setup: Setup, settings, todo, collect, begin=None):
-    """Run what is not finished of todo, then collect(todo, work); SlopeError after that if a run failed.
+    """Run what is not finished of todo, then collect(todo, work); RunsFailed after that if a run failed.
 
     begin: called once the folder is there, before the first run.
     """
@@ -66,12 +66,16 @@ def prepared(setup: Setup, files, number):
         raise SlopeError(place, f"cannot be used: {error.strerror}") from error
 
 
+class RunsFailed(SlopeError):
+    """Runs failed; all others were made and collected."""
+
+
 def raise_failed(output, todo):
-    """SlopeError if runs failed, with the first of them."""
+    """RunsFailed if runs failed, with the first of them."""
     failed = [one for one in todo if one.error]
     if failed:
         more = f" and {len(failed) - 1} more" if len(failed) > 1 else ""
-        raise SlopeError(output, f"{len(failed)} of {len(todo)} runs failed: {failed[0].name}{more}: "
+        raise RunsFailed(output, f"{len(failed)} of {len(todo)} runs failed: {failed[0].name}{more}: "
                          f"{failed[0].error}")
 
 

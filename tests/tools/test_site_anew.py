@@ -1,0 +1,239 @@
+"""slope site FOLDER over a folder that is there: what of it stays, what is found anew, what is refused, kills."""
+import os
+import shlex
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+import yaml
+from shapely.geometry import LineString
+
+from test_site import BODY, ROAD, TOOLS, gis, refused, slope, write_layer  # noqa: F401
+from tiny_collapse import LMP, processes_in
+
+from slope_tools import cli, programs
+from slope_tools.case import site_choices, site_deck, site_folder
+from slope_tools.errors import SlopeError
+
+
+@pytest.fixture
+def inside(gis, monkeypatch, capsys):  # noqa: F811
+    """Run `slope site ARGUMENTS` in the folder of the GIS files, without a LAMMPS program; gives stdout and stderr."""
+    monkeypatch.chdir(gis)
+    monkeypatch.delenv("LMP", raising=False)
+    monkeypatch.setattr(programs, "BESIDE", gis / "nowhere")
+
+    def run(arguments, status=0):
+        capsys.readouterr()
+        found = cli.main(["site", *shlex.split(arguments)])
+        told = capsys.readouterr()
+        assert found == status, told
+        return told
+    return run
+
+
+@pytest.fixture
+def mine(inside, gis):  # noqa: F811
+    """A site of the standard files, without a trial run."""
+    inside(f"--terrain dem.tif --release release.geojson {shlex.join(BODY)} --road road.geojson -o mine")
+    return gis / "mine"
+
+
+def contents(folder):
+    return {path.relative_to(folder): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+# --- what is the user's ---
+
+def test_a_users_file_is_not_overwritten(inside, mine):
+    """Neither an input of that name, nor any other file; it is said before anything is built."""
+    write_layer(mine / "own.geojson", ROAD)
+    (mine / "observed.csv").write_text("20,0\n36,0\n36,80\n")
+    (mine / "behind.csv").write_text("36,50\n36,30\n")
+    before = contents(mine)
+    for words, file in (("--road mine/road.csv", "mine/road.csv"), ("--line mine/behind.csv", "mine/behind.csv"),
+                        ("--observed mine/observed.csv", "mine/observed.csv"),
+                        ("--observed mine/own.geojson", "mine/observed.csv")):
+        out, err = inside(f"mine {words}", 2)
+        assert err.startswith(f"slope site: {file}: must not ") and err.count("\n") == 1 and out == "", err
+        assert contents(mine) == before
+    inside("mine --road mine/own.geojson")      # the name is no matter
+    assert (mine / "own.geojson").read_bytes() == before[Path("own.geojson")]
+
+
+def test_names_of_the_files_are_known_before(inside, mine):
+    write_layer(mine.parent / "observed.geojson", [(36, 50), (36, 30)], kind=LineString)
+    write_layer(mine.parent / "mapped.geojson", [(25, 25), (60, 25), (60, 55), (25, 55)])
+    inside("mine --line observed.geojson --observed mapped.geojson")
+    assert site_folder.planned(site_choices.read(mine)) == set(site_choices.found(mine)["files"]) == {
+        path.name for path in mine.iterdir()}
+
+
+def test_a_line_called_observed_is_not_the_mapped_deposit(inside, mine):
+    write_layer(mine.parent / "observed.geojson", [(36, 50), (36, 30)], kind=LineString)
+    write_layer(mine.parent / "mapped.geojson", [(25, 25), (60, 25), (60, 55), (25, 55)])
+    inside("mine --line observed.geojson --observed mapped.geojson")
+    assert len((mine / "observed.csv").read_text().splitlines()) >= 5
+    assert (mine / "observed_2.csv").read_text().splitlines()[1:] == ["36,50", "36,30"]
+
+
+@pytest.mark.parametrize("after", range(1, 9))
+def test_killed_while_the_files_are_exchanged(tmp_path, monkeypatch, after):
+    """Studies stay where they are; the next call makes the folder whole."""
+    folder = tmp_path / "mine"
+    (folder / "study").mkdir(parents=True)
+    (folder / "study" / "study.yaml").write_text("hours\n")
+    for name in ("in.site", "site.yaml", "terrain.asc", "road.csv", "notes.txt"):
+        (folder / name).write_text("old\n")
+    old = {"in.site", "site.yaml", "terrain.asc", "road.csv"}
+    made = {"in.site", "site.yaml", "terrain.asc", "observed.csv"}
+
+    def new():
+        place = folder / ".mine.1.new"
+        place.mkdir(exist_ok=True)
+        for name in made:
+            (place / name).write_text("new\n")
+        return place
+
+    left = after
+
+    def dies(do):
+        def one(*words, **more):
+            nonlocal left
+            left -= 1
+            if not left:
+                raise KeyboardInterrupt
+            return do(*words, **more)
+        return one
+    first = new()
+    with monkeypatch.context() as patch:
+        for name in ("replace", "unlink", "rename", "rmdir"):
+            patch.setattr(Path, name, dies(getattr(Path, name)))
+        try:
+            site_folder.exchange(first, folder, old)
+        except KeyboardInterrupt:
+            pass
+    assert (folder / "study" / "study.yaml").read_text() == "hours\n"
+    if (folder / "in.site").exists():       # then it is all the old or all the new site
+        assert {path.read_text() for path in folder.glob("*.*") if path.is_file() and path.name != "notes.txt"} == {
+            (folder / "in.site").read_text()}
+    if (folder / "site.yaml").read_text() == "new\n":
+        old = made
+    site_folder.exchange(new(), folder, old)
+    assert all((folder / name).read_text() == "new\n" for name in made)
+    assert (folder / "notes.txt").read_text() == "old\n" and (folder / "study" / "study.yaml").exists()
+
+
+def test_a_folder_without_its_deck_is_made_anew(inside, mine):
+    (mine / site_deck.NAME).unlink()
+    inside("mine")
+    assert (mine / site_deck.NAME).is_file() and not list(mine.parent.rglob(".mine*"))
+
+
+def test_exchange_takes_no_file_that_was_not_planned(tmp_path):
+    for name in ("mine", "new"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "surprise").write_text(name)
+    with pytest.raises(SlopeError, match="mine/surprise: must not be there"):
+        site_folder.exchange(tmp_path / "new", tmp_path / "mine", set())
+    assert (tmp_path / "mine" / "surprise").read_text() == "mine"
+
+
+# --- what is found anew ---
+
+def edit(mine, section, **values):
+    """What a user writes into site.yaml."""
+    path = mine / "site.yaml"
+    about = yaml.safe_load(path.read_text())
+    about[section].update(values)
+    path.write_text(yaml.safe_dump(about))
+
+
+def test_another_body_gets_balls_of_its_own(inside, mine):
+    first = site_choices.read(mine)
+    inside("mine --volume 500")
+    second = site_choices.read(mine)
+    assert second["balls"]["number"] == first["balls"]["number"] and second["release"]["depth"] is None
+    assert second["balls"]["diameter"] < first["balls"]["diameter"] / 1.5
+    assert second["model"]["field_diameter"] == second["balls"]["diameter"]
+    assert site_choices.found(mine)["balls"] == pytest.approx(4000, rel=0.02)
+    for key in ("speed", "duration"):       # a trial run of the other body may have been slower
+        edit(mine, "model", **{key: 99.0})
+        about = yaml.safe_load((mine / "site.yaml").read_text())
+        about["found"]["derived"][f"model.{key}"] = 99.0
+        (mine / "site.yaml").write_text(yaml.safe_dump(about))
+    inside("mine --client somebody")
+    assert site_choices.read(mine)["model"]["speed"] == site_choices.read(mine)["model"]["duration"] == 99
+    inside("mine --depth 4")
+    model = site_choices.read(mine)["model"]
+    assert (model["speed"], model["duration"]) == (47, 600)
+
+
+def test_what_the_user_chose_stays(inside, mine):
+    diameter = site_choices.read(mine)["balls"]["diameter"]
+    inside(f"mine --diameter {diameter}")       # the same, but chosen now
+    edit(mine, "model", speed=60.0, cell=3.0)
+    inside("mine")
+    inside("mine --volume 500")
+    choices = site_choices.read(mine)
+    assert choices["balls"]["diameter"] == diameter and choices["balls"]["number"] is None
+    assert choices["model"]["speed"] == 60 and choices["model"]["cell"] == 3
+
+
+def test_a_shape_that_nobody_named_is_none(inside, gis):  # noqa: F811
+    inside("--terrain dem.tif --release release.geojson --volume 400 -o mine")
+    for words, shape in (("", "sphere"), ("--dip 30", "plane"), ("--dip 28", "plane")):
+        if words:
+            inside(f"mine {words}")
+        assert site_choices.read(gis / "mine")["release"]["shape"] is None
+        assert yaml.safe_load((gis / "mine" / "release.yaml").read_text())["shape"] == shape
+    inside("--terrain dem.tif --release release.geojson --volume 400 -o other")
+    inside("other --curvature 0.002")
+    assert yaml.safe_load((gis / "other" / "release.yaml").read_text())["shape"] == "slbl"
+
+
+# --- the program ---
+
+def test_a_program_that_is_named_must_be_there(gis):  # noqa: F811
+    site = slope(gis, "site", "--terrain", "dem.tif", "--release", "release.geojson", *BODY, "-o", "mine",
+                 LMP="/nowhere/lmp")
+    refused(site, "LMP in the environment: must lead to the LAMMPS program, got /nowhere/lmp")
+    assert not (gis / "mine").exists()
+
+
+def test_an_end_from_outside_ends_the_trial_run(gis):  # noqa: F811
+    (gis / "slow").write_text("#!/bin/bash\ntrap 'exit 1' TERM\nwhile :; do sleep 0.1; done\n")
+    (gis / "slow").chmod(0o755)
+    words = ["site", "--terrain", "dem.tif", "--release", "release.geojson", *BODY, "-o", "mine", "--lmp", "./slow"]
+    process = subprocess.Popen([sys.executable, str(TOOLS / "slope"), *words], cwd=gis, stdout=subprocess.DEVNULL,
+                               stderr=subprocess.PIPE, text=True, env=dict(os.environ))
+    end = time.monotonic() + 120
+    while not list(gis.glob(".mine*/trial/screen.txt")):
+        assert time.monotonic() < end and process.poll() is None
+        time.sleep(0.05)
+    process.send_signal(signal.SIGTERM)
+    err = process.communicate(timeout=120)[1]
+    assert process.returncode == 130 and err.endswith("slope site: interrupted\n"), err
+    assert not list(gis.glob("*mine*")) + list(gis.glob(".mine*"))
+    assert not processes_in(gis)
+
+
+# --- a study of which a run fails ---
+
+def test_a_failed_run_leaves_score_and_report_of_the_others(inside, mine, monkeypatch, capsys):
+    write_layer(mine.parent / "mapped.geojson", [(25, 25), (60, 25), (60, 55), (25, 55)])
+    inside("mine --observed mapped.geojson --balls 60")
+    edit(mine, "study", rolling=[0.05, 0.1], xoffset=[], sizes=[])
+    Path("some").write_text(f"""#!/bin/sh\ncase "$*" in *"rolling 0.1"*) exit 1;; esac\nexec {LMP} "$@"\n""")
+    Path("none").write_text("#!/bin/sh\nexit 1\n")
+    for name in ("some", "none"):
+        Path(name).chmod(0o755)
+    assert cli.main(["study", "mine", "--lmp", "./none"]) == 2
+    assert not (mine / "report.html").exists() and "2 of 2 runs failed" in capsys.readouterr().err
+    assert cli.main(["study", "mine", "--lmp", "./some"]) == 2
+    out, err = capsys.readouterr()
+    assert err.splitlines()[-1].startswith("slope study: mine/study: 1 of 2 runs failed: rolling_0.1: ")
+    assert "report.html" in out and (mine / "report.html").is_file() and (mine / "score" / "score.yaml").is_file()

@@ -1,0 +1,68 @@
+"""The files of a site's folder: which ones slope site makes, and how new ones take the place of old ones."""
+from pathlib import Path
+from typing import List, Set
+
+from ..errors import SlopeError
+from . import release_files, site_choices, site_deck, site_inputs
+from .site_choices import Choices
+from .site_layers import OBSERVED, RASTERS, ROAD
+
+MAP = "map.png"
+TERRAIN = "terrain.asc"
+BODY = "release"        # first part of the names of the body's files
+BODY_DECK = f"{BODY}.deck.txt"      # is not kept: its lines are in the deck
+
+
+def planned(choices: Choices) -> Set[str]:
+    """Names of the files that will be made."""
+    names = {MAP, TERRAIN, Path(TERRAIN).with_suffix(".yaml").name, f"{BODY}.csv", site_deck.NAME, site_choices.NAME,
+             *(path.name for path in release_files.paths(Path(BODY)))} - {BODY_DECK}
+    observed = choices["observed"]["file"]
+    if observed:
+        names.add(OBSERVED + (".tif" if Path(observed).suffix.lower() in RASTERS else ".csv"))
+    if choices["road"]["file"]:
+        names.add(ROAD)
+    if choices["motion"]["file"]:
+        names.add(site_inputs.MOTION)
+    taken = set(site_inputs.TAKEN)
+    for section, suffix in (("structures", ".stl"), ("lines", ".csv")):
+        names |= {site_inputs.unused(Path(file).stem, taken) + suffix for file in choices[section]["files"]}
+    return names
+
+
+def check(choices: Choices, folder: Path, old: Set[str]) -> None:
+    """Raise SlopeError if making a folder anew would take a file of the user's; old: names that slope site made."""
+    names = planned(choices)
+    for source in map(Path, site_choices.source_files(choices)):
+        if source.name in names | old and source.parent.resolve() == folder.resolve():
+            raise SlopeError(source, f"must not have a name of the files that slope site makes in {folder}: rename it, "
+                             "or move it out of there")
+    check_free(names, folder, old)
+
+
+def check_free(names: Set[str], folder: Path, old: Set[str]) -> None:
+    """Raise SlopeError if one of the names is that of a file which slope site did not make."""
+    for path in (folder / name for name in sorted(names)):
+        if path.is_dir() or (path.exists() and path.name not in old):
+            raise SlopeError(path, "must not be there, slope site makes a file of that name: rename or move it")
+
+
+def exchange(new: Path, folder: Path, old: Set[str]) -> None:
+    """Move new files into a folder, instead of those with old names; all else there, such as studies, stays.
+
+    The deck goes first and comes last: where this was killed, there is none, and slope site makes the folder anew.
+    """
+    if not folder.is_dir():
+        new.rename(folder)
+        return
+    made = {path.name for path in new.iterdir()}
+    check_free(made, folder, old)
+    (folder / site_deck.NAME).unlink(missing_ok=True)
+    order: List[str] = [site_choices.NAME, *sorted(made - {site_choices.NAME, site_deck.NAME}), site_deck.NAME]
+    (new / order[0]).replace(folder / order[0])     # now it is known which files are slope site's
+    for path in sorted(folder.iterdir()):
+        if path.name in old - made and path.is_file():
+            path.unlink()
+    for name in order[1:]:
+        (new / name).replace(folder / name)
+    new.rmdir()
