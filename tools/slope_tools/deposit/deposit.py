@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import disk
 from ..errors import SlopeError
-from ..geometry import box, extent
+from ..geometry import extent, numbers
 from ..survey import rasters
 from ..survey.rasters import Raster
 
@@ -124,8 +124,8 @@ def find_terrain(prefix, terrain, raster, warn):
     slack = np.array([slack, slack, raster.transform.a, raster.transform.a])
     outside = np.subtract(place.extent, grid) * [1, 1, -1, -1] > slack
     if outside.any():
-        raise SlopeError(found, f"must be the terrain of the run, whose grid is {box(grid)}; --terrain names another",
-                         box(place.extent))
+        raise SlopeError(found, f"must be the terrain of the run, whose grid is {numbers(grid)}; --terrain names "
+                         "another", numbers(place.extent))
     if place.crs is None:
         warn(f"{found} has no CRS: coordinates are metres as in that file" if place.offset != (0, 0) else
              f"{found} has no CRS: coordinates are the local metres of the run")
