@@ -58,7 +58,7 @@ def run(args):
     geometry = polygons.read_local(args.input, place, local=args.local, crs=crs)
     beyond = 1 - geometry.intersection(box(*place.extent)).area / geometry.area
     if beyond > 1e-9:
-        print(f"slope polygon: warning: {args.input}: {100 * beyond:.2g} % of the area lie outside of {args.terrain}",
+        print(f"slope polygon: warning: {args.input}: {100 * beyond:.2g} % of the area lies outside of {args.terrain}",
               file=sys.stderr)
     geometry = polygons.write(args.output, geometry, place)
     print(summary(args.output, geometry))

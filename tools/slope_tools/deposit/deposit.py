@@ -64,9 +64,9 @@ def read(prefix, terrain, warn):
     terrain, place = find_terrain(prefix, terrain, thickness, warn)
     raster = thickness._replace(crs=place.crs, offset=place.offset) if place else thickness
     deposit = Deposit(str(prefix), raster, read_base(prefix, thickness, surface), summary, terrain)
-    told = summary["volume"]["on_grid"]
-    if abs(deposit.volume - told) > SAME_BALANCE * max(told, 1e-30):
-        raise SlopeError(names[0], f"must hold the volume that {names[2]} tells, {told:.10g} m3: are they of one run?",
+    reported = summary["volume"]["on_grid"]
+    if abs(deposit.volume - reported) > SAME_BALANCE * max(reported, 1e-30):
+        raise SlopeError(names[0], f"must hold the volume of {names[2]}, {reported:.10g} m3: are they of one run?",
                          f"{deposit.volume:.10g} m3")
     if summary["moving"]:
         warn(f"{names[2]}: the mass was still moving at {summary['time']:g} s: these are not final numbers")

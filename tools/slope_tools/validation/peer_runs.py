@@ -81,4 +81,4 @@ def read_text(path):
 def failure(log, folder):
     """Why a run failed, in one line."""
     error = re.search(r"^.*ERROR.*$", log, re.MULTILINE)
-    return logs.told(error[0]) if error else last_words.Screen(folder / SCREEN).words() or "no word"
+    return logs.message(error[0]) if error else last_words.Screen(folder / SCREEN).words() or "no word"
