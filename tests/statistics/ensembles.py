@@ -24,7 +24,7 @@ def indices(seeds=5):
         points = designs.points(designs.SOBOL, 3, 256, seed)
         found = emulator.analyse("abc", points, ishigami(points), range(256))
         mine = np.array([one.first for one in found.influences] + [one.total for one in found.influences])
-        print(f"indices, seed {seed}: largest error {np.abs(mine - exact).max():.4f}; {found.told}", flush=True)
+        print(f"indices, seed {seed}: largest error {np.abs(mine - exact).max():.4f}; {found.text}", flush=True)
 
 
 def bands(repetitions=40, rounds=10):

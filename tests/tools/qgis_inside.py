@@ -169,8 +169,8 @@ def project(prefix, road):
 def progress(*lines):
     """Percent after each line."""
     from slope.process import Progress
-    heard = Progress().heard
-    return [heard(line) for line in lines]
+    update = Progress().update
+    return [update(line) for line in lines]
 
 
 def study(deck, word, *settings):

@@ -26,7 +26,7 @@ def slope(here, capsys, monkeypatch):  # noqa: F811
 
 
 def test_every_code_runs_the_same_collapse(slope):
-    """From the same state, 40 steps: energy and way of the centroid agree; nothing is left unwritten."""
+    """From the same state, 40 steps: energy and displacement of the centroid agree; nothing is left unwritten."""
     status, out, err = slope(f"{SMALL} --only peers")
     assert status == 0, err
     about = yaml.safe_load(Path("bench/bench.yaml").read_text())
@@ -38,8 +38,8 @@ def test_every_code_runs_the_same_collapse(slope):
         assert state["same"], (name, state)
         if name not in bench_report.LOOSE:
             assert state["kinetic_energy_to_ours"] == pytest.approx(1, abs=0.02), name
-            assert state["way_off"] < 0.02, name
-    assert about["same_scene"]["slope"]["way_of_centroid"][0] < -0.01        # m: the mass moves
+            assert state["centroid_off"] < 0.02, name
+    assert about["same_scene"]["slope"]["centroid_displacement"][0] < -0.01        # m: the mass moves
     rows = list(csv.DictReader(open("bench/bench.csv", encoding="ascii")))
     assert len(rows) == 2 * (len(installed) - 1) and all(float(row["loop_s"]) > 0 for row in rows)
     assert Path("bench/bench.png").stat().st_size > 10_000
@@ -76,7 +76,7 @@ def test_terrain_and_throughput(slope):
     status, _, err = slope(f"{SMALL} --only terrain,throughput")
     assert status == 0, err
     measures = yaml.safe_load(Path("bench/bench.yaml").read_text())["measures"]
-    assert set(measures) == {"terrain_time", "terrain_bytes", "terrain_bytes_told", "throughput"}
+    assert set(measures) == {"terrain_time", "terrain_bytes", "terrain_bytes_reported", "throughput"}
     rows = list(csv.DictReader(open("bench/bench.csv", encoding="ascii")))
     fixed = sorted({int(row["fixed"]) for row in rows if row["part"] == "terrain"})
     assert len(fixed) == 2 and fixed[1] > 4 * fixed[0]
@@ -93,7 +93,7 @@ def test_more_balls_on_one_rank_and_on_two(slope, monkeypatch):
     status, _, err = slope("--only weak --balls 300 --steps 40 --repeat 1 --np 2")
     assert status == 0, err
     measures = yaml.safe_load(Path("bench/bench.yaml").read_text())["measures"]
-    assert set(measures) == {"weak_time", "weak_time_2", "weak_bytes", "weak_bytes_told"}
+    assert set(measures) == {"weak_time", "weak_time_2", "weak_bytes", "weak_bytes_reported"}
     assert all(measures[name]["target"] == "<= 1.3" for name in ("weak_time", "weak_time_2"))
     rows = [row for row in csv.DictReader(open("bench/bench.csv", encoding="ascii")) if row["part"] == "weak"]
     few, many = int(rows[0]["moving"]), int(rows[1]["moving"])

@@ -104,7 +104,7 @@ def test_deposit_by_hand():
     scene = peers.Scene(2.0, 1.0, moving, {2: np.zeros((1, 3))}, {}, 1.0, 0.1)
     found = crosscheck.deposit(scene, final)
     assert found["volume on the road m3"] == pytest.approx(2 * 8)
-    assert found["way of the centroid m"] == pytest.approx((150 + 120 + 110 - 90 - 70 - 61) / 3)
+    assert found["displacement of the centroid m"] == pytest.approx((150 + 120 + 110 - 90 - 70 - 61) / 3)
     assert found["run-out m"] == pytest.approx(89, abs=0.3)
     edges, values = crosscheck.profile(scene, final)
     assert sum(values) * 5 == pytest.approx(3 * 8) and values[edges.index(60)] == pytest.approx(8 / 5)

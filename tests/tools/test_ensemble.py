@@ -4,6 +4,7 @@ import math
 import os
 import shlex
 import sys
+import types
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +21,7 @@ sys.path.insert(0, str(TOOLS))
 from slope_tools import cli  # noqa: E402
 from slope_tools.case import deck_ranges  # noqa: E402
 from slope_tools.ensemble import designs, distributions, emulator, ensemble, hazard, sample  # noqa: E402
+from slope_tools.report import ensemble_part  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 ROAD = "--road case/road.csv --local"
@@ -72,7 +74,7 @@ def test_a_deck_has_ranges(tmp_path):
     assert set(found) == {"a", "b", "e"}
     assert [found["a"].holds(value) for value in (-0.1, 0, 0.5, 1)] == [False, True, True, False]
     assert [found["b"].holds(value) for value in (0, 89.9, 90)] == [True, True, False]
-    assert found["e"].told == "> 0 and <= 1" and found["a"].told == ">= 0 and < 1"
+    assert found["e"].text == "> 0 and <= 1" and found["a"].text == ">= 0 and < 1"
 
 
 # --- designs ---
@@ -191,11 +193,11 @@ def test_the_noise_of_chance_is_seen_and_idle_variables_too():
 def test_an_emulator_that_explains_nothing_gives_no_indices():
     points = designs.points(designs.SOBOL, 2, 40, 1)
     found = emulator.analyse("ab", points, np.random.default_rng(3).normal(0, 1, 40), range(40))
-    assert found.check.verdict == "bad" and "no indices" in found.told
+    assert found.check.verdict == "bad" and "no indices" in found.text
     assert all(one.first is None and one.total is None for one in found.influences)
     few = emulator.analyse("ab", points[:5], points[:5, 0], range(5))
-    assert few.check is None and "5 points are too few for an emulator of 2 variables" in few.told
-    assert "same in all runs" in emulator.analyse("ab", points, np.ones(40), range(40)).told
+    assert few.check is None and "5 points are too few for an emulator of 2 variables" in few.text
+    assert "same in all runs" in emulator.analyse("ab", points, np.ones(40), range(40)).text
 
 
 def test_runs_of_a_point_are_left_out_together():
@@ -283,8 +285,8 @@ def test_an_ensemble_grows_and_its_tables_are_those_of_the_runs(slope):
         with rasterio.open(f"out/ensemble/{raster}.tif") as tif:
             assert tif.count == 3 * (4 + len(levels))
             bands = {name: tif.read(i + 1) for i, name in enumerate(tif.descriptions)}
-        told = next(name for name in bands if "> 0.1 m" in name or "> 2 m/s" in name)
-        plain = told.split(",")[0]
+        what = next(name for name in bands if "> 0.1 m" in name or "> 2 m/s" in name)
+        plain = what.split(",")[0]
         assert (bands[f"{plain}, lower bound"] <= bands[plain]).all()
         assert (bands[f"{plain}, upper bound"] >= bands[plain]).all()
     arrival = np.array([read_asc(f"out/{name}/tiny.arrival.asc") for name in names])
@@ -413,15 +415,24 @@ def test_what_an_ensemble_says_in_words():
     about = {"finished": 5, "points": 5, "confidence": 0.9, "of": "front_m", "doubts": ["why"], "quantities": {
         "front_m": {"name": "farthest ball", "unit": "m", "quantiles": [{"share": 0.9, "value": 120.0, "low": 100.0,
                                                                          "high": None}]}},
-             "influence": {"front_m": {"told": "so", "variables": {
+             "influence": {"front_m": {"text": "so", "variables": {
                  "a": {"rank": 0.1, "first": 0.1, "first_error": 0.0, "total": 0.2, "total_error": 0.05},
                  "b": {"rank": -0.7, "first": 0.7, "first_error": 0.0, "total": 0.9, "total_error": 0.01}}}}}
-    assert ensemble.told(about) == [
+    assert ensemble.describe(about) == [
         "ensemble: 5 runs of 5 points; bounds hold with 90 %",
         "farthest ball: 90 % of the runs stay within 120 m (100 to ?)",
         "farthest ball depends on b (0.70 alone, 0.90 with others, +- 0.01), a (0.10 alone, 0.20 with others, +- "
         "0.05); so",
         "doubt: why"]
+
+
+@pytest.mark.parametrize("key", ["text", "told"])       # the latter in older files
+def test_a_report_says_what_the_emulator_is_worth(key):
+    entry = {key: "as it is", "variables": {"a": dict.fromkeys(ensemble.SIGN, 0.5)}}
+    study = {"ensemble": {"of": None, "quantities": {"front_m": {"name": "farthest ball"}},
+                          "influence": {"front_m": entry}}}
+    part = ensemble_part.Ensemble(types.SimpleNamespace(study=study), None, lambda uri, title, caption: caption)
+    assert part.indices() == ["Sobol indices for farthest ball, with the error of the total ones; as it is."]
 
 
 def test_points_of_the_design_are_found_in_the_rows():

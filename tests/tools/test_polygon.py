@@ -242,7 +242,7 @@ def test_a_terrain_without_crs(written, slope):
 def test_partly_outside_is_a_warning(slope):
     Path("a.wkt").write_text(moved(box(90, 10, 110, 20)).wkt)
     status, _, err = slope("a.wkt -o out.csv")
-    assert status == 0 and err == "slope polygon: warning: a.wkt: 50 % of the area lie outside of t.asc\n"
+    assert status == 0 and err == "slope polygon: warning: a.wkt: 50 % of the area lies outside of t.asc\n"
     assert len(rings("out.csv")[0]) == 4
 
 

@@ -177,7 +177,7 @@ def test_a_difference_below_chance_is_no_trend_and_no_doubt():
     [entry] = best["differences"]
     assert (entry["largest_at"], entry["smallest_at"], entry["clear"]) == ("1", "0", False) and entry["by_m3"] == 4
     assert best["doubts"] == []
-    assert any("no more than chance makes" in line for line in combinations.told(best))
+    assert any("no more than chance makes" in line for line in combinations.describe(best))
 
 
 def test_a_difference_larger_than_chance_at_the_end_of_a_range_is_a_doubt():
@@ -305,7 +305,7 @@ def test_wrong_motion_is_one_line():
 
 def test_few_of_many_deposits_that_move_are_named():
     several = [{"run": f"a{i}", "at_rest": i == 0, "stop_time_s": 2.0, "end": "stopped"} for i in range(9)]
-    [text] = results.moving_told(several)
+    [text] = results.moving_warnings(several)
     assert text.startswith("8 of 9 deposits are not at rest at the end: a1 at 2.0 s (stopped); ")
     assert text.endswith("a3 at 2.0 s (stopped); and 5 more")
-    assert results.moving_told(several[:1]) == []
+    assert results.moving_warnings(several[:1]) == []

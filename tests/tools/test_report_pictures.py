@@ -232,7 +232,7 @@ def test_a_line_is_drawn_only_for_a_trend(drawn, joined):
 def test_classes_hold_the_largest(largest):
     bounds = figures.classes(largest)
     assert bounds == sorted(set(bounds)) and 3 <= len(bounds) <= 12
-    assert bounds[-1] >= largest > bounds[-2] or len(bounds) <= 9
+    assert bounds[-1] >= largest > bounds[-2]
     assert 0 < bounds[0] <= largest / 2
 
 

@@ -25,7 +25,7 @@ sys.path.insert(0, str(TOOLS))
 from slope_tools import cli  # noqa: E402
 from slope_tools.case import decks, logs, settings  # noqa: E402
 from slope_tools.commands import study as study_command  # noqa: E402
-from slope_tools.ensemble import convergence, headline, job_display, results, size_study  # noqa: E402
+from slope_tools.ensemble import convergence, headline, job_display, results, size_study, study  # noqa: E402
 from slope_tools.survey import rasters  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
@@ -417,6 +417,21 @@ def test_files_that_a_deck_reads_and_writes(here):
     assert {"slip.xyz", "both.xyz", "first.restart"} <= read
     assert written == {"field.xyz", "both.xyz", "ave.txt", "steps.txt", "${out}.1", "heap.1", "$out.2", "heap.*.dump",
                        "${out}.*.dump", "last.txt"}
+
+
+def test_the_terrain_of_a_deck_by_its_variables(here):
+    """As LAMMPS fills them in: ${name}, and $x of one letter."""
+    deck = Path("case/in.tiny")
+    deck.write_text("variable t index terrain\nvariable ending index txt\nregion ground terrain $t.${ending}\n")
+    assert study.terrain_of(deck, {}) is None
+    assert study.terrain_of(deck, {"ending": "asc"}) == Path("case/terrain.asc")
+
+
+@pytest.mark.parametrize("path, word", [("a.asc", "a.asc"), ("a b.asc", '"a b.asc"'), ("a\tb.asc", '"a\tb.asc"')])
+def test_a_path_is_one_word_of_a_deck(tmp_path, path, word):
+    assert decks.quoted(path) == word
+    (tmp_path / "in.deck").write_text(f"region ground terrain {word}\n")
+    assert decks.commands(tmp_path / "in.deck")[0][3] == path
 
 
 def test_an_edit_while_the_study_runs_does_not_reach_later_runs(slope, here, kept):

@@ -22,8 +22,9 @@ def box_of(raster):
     return shapely.geometry.box(*extent(raster))
 
 
-def box(bounds):
-    return " ".join(f"{value:.10g}" for value in bounds)
+def numbers(values):
+    """Coordinates or bounds in a message."""
+    return " ".join(f"{value:.10g}" for value in values)
 
 
 def to_index(geometry, raster):

@@ -47,7 +47,7 @@ class Progress:
     def __init__(self):
         self.shares, self.before = {}, 0
 
-    def heard(self, line):
+    def update(self, line):
         """Percent after this line; None if it says nothing of it."""
         before, run = BEFORE.match(line), RUN.match(line)
         if before:
@@ -64,16 +64,16 @@ class Progress:
 
 def listen(process):
     """A queue of (whether it is of standard error, line) of a process; (None, None) at the end of each of both."""
-    heard = queue.Queue()
+    lines = queue.Queue()
 
     def read(stream, is_error):
         for line in stream:
-            heard.put((is_error, line.rstrip("\n")))
-        heard.put((None, None))
+            lines.put((is_error, line.rstrip("\n")))
+        lines.put((None, None))
 
     for stream, is_error in ((process.stdout, False), (process.stderr, True)):
         threading.Thread(target=read, args=(stream, is_error), daemon=True).start()
-    return heard
+    return lines
 
 
 def run(words, feedback):
@@ -98,7 +98,7 @@ def run(words, feedback):
 
 def follow(process, feedback):
     """Hand on what a process says until it ends; gives its last line on standard error if that is why it failed."""
-    heard, progress = listen(process), Progress()
+    lines, progress = listen(process), Progress()
     left, last, asked = 2, "", None
     while left:
         if asked is None and feedback.isCanceled():
@@ -107,7 +107,7 @@ def follow(process, feedback):
         if asked is not None and time.monotonic() > asked + PATIENCE:
             os.killpg(process.pid, signal.SIGKILL)      # its own session, see Popen above
         try:
-            is_error, line = heard.get(timeout=POLL)
+            is_error, line = lines.get(timeout=POLL)
         except queue.Empty:
             continue
         if is_error is None:
@@ -117,7 +117,7 @@ def follow(process, feedback):
             last = line
         else:
             feedback.pushInfo(line)
-            percent = progress.heard(line)
+            percent = progress.update(line)
             if percent is not None:
                 feedback.setProgress(percent)
     if process.wait() == 0 or feedback.isCanceled():

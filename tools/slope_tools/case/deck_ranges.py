@@ -29,7 +29,7 @@ class Bounds:
         return above and (value < self.high or (self.with_high and value == self.high))
 
     @property
-    def told(self) -> str:
+    def text(self) -> str:
         parts = [f"{'>=' if self.with_low else '>'} {self.low:g}"] * math.isfinite(self.low)
         parts += [f"{'<=' if self.with_high else '<'} {self.high:g}"] * math.isfinite(self.high)
         return " and ".join(parts)

@@ -1,7 +1,7 @@
 """LAMMPS input decks: the commands, variables and files of one."""
 import re
 from pathlib import Path
-from typing import Dict, Set, Tuple
+from typing import Dict, Mapping, Set, Tuple
 
 from ..errors import SlopeError
 
@@ -46,6 +46,16 @@ def variables(deck):
     return found
 
 
+def quoted(path: str) -> str:
+    """A path as one word of a deck."""
+    return f'"{path}"' if any(c.isspace() for c in path) else path
+
+
+def filled(word: str, values: Mapping[str, str]) -> str:
+    """A word with the values of the variables that it names, as ${name} or, of one letter, as $x."""
+    return re.sub(r"\$(?:\{(\w+)\}|(\w))", lambda match: values.get(match[1] or match[2], match[0]), word)
+
+
 def named_files(deck):
     """Words of a deck that may name files which it reads, and those with which it names files that it writes.
 
@@ -53,9 +63,6 @@ def named_files(deck):
     """
     values = {name: text for name, (style, text) in variables(deck).items() if style == "string"}
     values |= index_variables(deck)
-
-    def fill(word):
-        return re.sub(r"\$(?:\{(\w+)\}|(\w))", lambda match: values.get(match[1] or match[2], match[0]), word)
 
     read: Set[str] = set()
     written: Set[str] = set()
@@ -65,7 +72,7 @@ def named_files(deck):
             keyword = words[k - 1] if k and words[0] in ("fix", "print") else ""
             writes = first <= k < last or keyword in ("write", "append") or (
                 keyword == "file" and (words[0] == "print" or re.match("ave/|print|vector", " ".join(words[3:4]))))
-            (written if writes else read).update((word, fill(word)))
+            (written if writes else read).update((word, filled(word, values)))
     return read, written
 
 

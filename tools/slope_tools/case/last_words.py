@@ -38,7 +38,7 @@ class Screen:
 
     def _line(self, line, boxed):
         if is_error(line):      # in whatever company
-            self.error = self.error or logs.told(line)
+            self.error = self.error or logs.message(line)
         elif EXCEPTION.match(line):
             if not self.exception or self.exception.startswith("terminate called"):
                 self.exception = line.strip()
@@ -58,7 +58,7 @@ def is_error(line):
 
 
 def reason(log, screen):
-    """Why a run ended, from its logs.Log and its Screen: the ERROR line of its log, else what was last heard of it."""
+    """Why a run ended, from its logs.Log and its Screen: the ERROR line of its log, else the last of its output."""
     return log.error or screen.words()
 
 

@@ -56,7 +56,7 @@ class Log:
             self._line(line)
 
     def _new_part(self):
-        """Forget what counts only if it is the last that was heard."""
+        """Forget what counts only in the last line of the log."""
         self.error = self.steps = self.last = None
         self.header = []
         self.thermo, self.reading = 0, False
@@ -75,9 +75,9 @@ class Log:
             self.lammps = self.lammps or line.strip()
             self._new_part()
         elif words[0] == "ERROR:" or line.startswith("ERROR on proc"):
-            self.error = self.error or told(line)
+            self.error = self.error or message(line)
         elif words[0] == "WARNING:":
-            add(self.warnings, told(line).removeprefix("WARNING: "))
+            add(self.warnings, message(line).removeprefix("WARNING: "))
         elif line.startswith("Pair gran/restitution: contact coefficients"):
             self.table, self.in_table = [line], True
         elif line.startswith("Total wall time:"):
@@ -144,6 +144,6 @@ def part(path):
     path.rename(path.with_name(f"{path.stem}.{len(parts(path)) + 1}{path.suffix}"))
 
 
-def told(line):
+def message(line):
     """A message of LAMMPS without the place in its source."""
     return INPUT_PLACE.sub("", line.strip())

@@ -2,6 +2,8 @@
 import math
 from typing import NamedTuple, Tuple
 
+from .decks import quoted
+
 BALLS = 20000       # that the suggested diameter makes of the body
 
 
@@ -56,8 +58,3 @@ delete_balls soil overlap 0.0
 fix         deposit soil deposit/grid 100 0 cell {body.cell:.10g} terrain base output {quoted(body.output)} &
             bulk region slip
 """
-
-
-def quoted(path: str) -> str:
-    """A path as one word of a deck."""
-    return f'"{path}"' if any(c.isspace() for c in path) else path

@@ -70,7 +70,7 @@ def polygon_layer(path: Optional[str], raster: Raster, target: Path, terrain: st
     geometry = polygons.read_local(path, raster, terrain=terrain)
     beyond = 1 - geometry.intersection(box(*extent(raster))).area / geometry.area
     if beyond > 1e-9:
-        warn(f"{path}: {100 * beyond:.2g} % of the area lie outside of the terrain")
+        warn(f"{path}: {100 * beyond:.2g} % of the area lies outside of the terrain")
     geometry = polygons.write(target, geometry, raster)
     tell(f"{target.name}: {len(polygons.polygons_of(geometry))} polygon, {geometry.area:,.0f} m2")
     return geometry

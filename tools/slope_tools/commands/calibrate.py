@@ -103,7 +103,7 @@ def run(args):
         study.check_road(setup.road, setup.deck, settings)
     study.check_folder(setup, [])
     about = {**wanted.about, "deck": args.deck.name, "set": fixed, "repeat": repeated,
-             "variables": {one.name: one.told for one in variables}, "seed": args.seed}
+             "variables": {one.name: one.text for one in variables}, "seed": args.seed}
     ledger = calibration.Ledger(args.output, about, variables)
     chances = repeats.chances_of(repeated, {**decks.index_variables(args.deck), **fixed})
     batch = args.jobs or max(1, jobs.cores() // args.np)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from shapely.geometry import box
 
+from ..case.decks import quoted
 from ..errors import SlopeError
 from ..survey import polygons, rasters
 from ..survey.crs import as_crs
@@ -57,7 +58,7 @@ def run(args):
     geometry = polygons.read_local(args.input, place, local=args.local, crs=crs)
     beyond = 1 - geometry.intersection(box(*place.extent)).area / geometry.area
     if beyond > 1e-9:
-        print(f"slope polygon: warning: {args.input}: {100 * beyond:.2g} % of the area lie outside of {args.terrain}",
+        print(f"slope polygon: warning: {args.input}: {100 * beyond:.2g} % of the area lies outside of {args.terrain}",
               file=sys.stderr)
     geometry = polygons.write(args.output, geometry, place)
     print(summary(args.output, geometry))
@@ -70,11 +71,10 @@ def summary(path, geometry):
     rings = polygons.rings_of(geometry)
     parts = polygons.polygons_of(geometry)
     xlo, ylo, xhi, yhi = geometry.bounds
-    quoted = f'"{path}"' if " " in str(path) else path
     return (f"{path}: {count(len(parts), 'polygon')}, {count(len(rings), 'ring')} "
             f"({count(len(rings) - len(parts), 'hole')}), {sum(map(len, rings))} vertices, "
             f"x {xlo:.3f} to {xhi:.3f}, y {ylo:.3f} to {yhi:.3f}, area {geometry.area:.3f} m2\n"
-            f"region {path.stem if path.stem.isidentifier() else 'road'} polygon {quoted}")
+            f"region {path.stem if path.stem.isidentifier() else 'road'} polygon {quoted(str(path))}")
 
 
 def count(number, what):

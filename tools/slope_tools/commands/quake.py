@@ -2,6 +2,7 @@
 import argparse
 from pathlib import Path
 
+from ..case.decks import quoted
 from ..errors import SlopeError
 from ..options import number
 from ..survey import quake_motion as motions, quake_records as records
@@ -81,5 +82,4 @@ def text(path, about):
         lines.append(f"{axis:<5} {a['acceleration_gal']:<9.4g} {a['velocity']:<9.4g} {a['displacement']:<9.4g} "
                      f"{a['end_velocity']:<9.2g} {a['end_displacement']:<10.2g} {a['arias']:<10.4g} "
                      f"{a['duration_5_95']:.4g}")
-    quoted = f'"{path}"' if " " in str(path) else path
-    return "\n".join([*lines, f"fix shake soil ground/motion {quoted}"])
+    return "\n".join([*lines, f"fix shake soil ground/motion {quoted(str(path))}"])

@@ -2,6 +2,7 @@
 import argparse
 from pathlib import Path
 
+from ..case.decks import quoted
 from ..errors import SlopeError
 from ..options import number
 from ..survey import local_terrain
@@ -54,8 +55,7 @@ def run(args):
     """Do the command; raises SlopeError on bad input. Prints what was done, a summary and the line for the deck."""
     wanted = check(args)
     about = local_terrain.make(args.inputs, args.output, wanted, print)
-    quoted = f'"{args.output}"' if " " in str(args.output) else args.output
-    print(f"{local_terrain.summary(args.output, about)}\nregion ground terrain {quoted}")
+    print(f"{local_terrain.summary(args.output, about)}\nregion ground terrain {quoted(str(args.output))}")
 
 
 def check(args):

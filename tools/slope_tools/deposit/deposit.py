@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import disk
 from ..errors import SlopeError
-from ..geometry import box, extent
+from ..geometry import extent, numbers
 from ..survey import rasters
 from ..survey.rasters import Raster
 
@@ -64,9 +64,9 @@ def read(prefix, terrain, warn):
     terrain, place = find_terrain(prefix, terrain, thickness, warn)
     raster = thickness._replace(crs=place.crs, offset=place.offset) if place else thickness
     deposit = Deposit(str(prefix), raster, read_base(prefix, thickness, surface), summary, terrain)
-    told = summary["volume"]["on_grid"]
-    if abs(deposit.volume - told) > SAME_BALANCE * max(told, 1e-30):
-        raise SlopeError(names[0], f"must hold the volume that {names[2]} tells, {told:.10g} m3: are they of one run?",
+    reported = summary["volume"]["on_grid"]
+    if abs(deposit.volume - reported) > SAME_BALANCE * max(reported, 1e-30):
+        raise SlopeError(names[0], f"must hold the volume of {names[2]}, {reported:.10g} m3: are they of one run?",
                          f"{deposit.volume:.10g} m3")
     if summary["moving"]:
         warn(f"{names[2]}: the mass was still moving at {summary['time']:g} s: these are not final numbers")
@@ -124,8 +124,8 @@ def find_terrain(prefix, terrain, raster, warn):
     slack = np.array([slack, slack, raster.transform.a, raster.transform.a])
     outside = np.subtract(place.extent, grid) * [1, 1, -1, -1] > slack
     if outside.any():
-        raise SlopeError(found, f"must be the terrain of the run, whose grid is {box(grid)}; --terrain names another",
-                         box(place.extent))
+        raise SlopeError(found, f"must be the terrain of the run, whose grid is {numbers(grid)}; --terrain names "
+                         "another", numbers(place.extent))
     if place.crs is None:
         warn(f"{found} has no CRS: coordinates are metres as in that file" if place.offset != (0, 0) else
              f"{found} has no CRS: coordinates are the local metres of the run")

@@ -52,7 +52,7 @@ def along(axis, run_, removed, blocked, path):
     shape = run_.raster.z.shape
     inside = lines_of(axis.intersection(geometry.box_of(run_.raster)))
     if inside.is_empty:
-        raise SlopeError(path, "axis of the road must lie in the grid of the run", geometry.box(axis.bounds))
+        raise SlopeError(path, "axis of the road must lie in the grid of the run", geometry.numbers(axis.bounds))
     parts = [np.asarray(line.coords)[:, :2] for line in geometry.to_index(eastward(inside), run_.raster).geoms]
     start, end = np.concatenate([part[:-1] for part in parts]), np.concatenate([part[1:] for part in parts])
     _, a, b = geometry.pieces(np.arange(shape[1] + 1.0), np.arange(shape[0] + 1.0), start, end)

@@ -78,8 +78,8 @@ def from_raster(path, mapped, raster, threshold, local):
     x = to_index.c + to_index.a * np.arange(thickness.shape[1] + 1)
     y = to_index.f + to_index.e * np.arange(thickness.shape[0] + 1)
     if x[0] >= shape[1] or x[-1] <= 0 or y[0] >= shape[0] or y[-1] <= 0:
-        raise SlopeError(path, f"must overlap the grid of the run, {geometry.box(extent(raster))} (local metres)",
-                         geometry.box(extent(Raster(thickness, there, None))))
+        raise SlopeError(path, f"must overlap the grid of the run, {geometry.numbers(extent(raster))} (local metres)",
+                         geometry.numbers(extent(Raster(thickness, there, None))))
     thick = thickness > threshold
     share = np.clip(spread(thick.astype(float), x, y, shape), 0, 1)
     share[share < FULL] = 0

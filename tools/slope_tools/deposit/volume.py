@@ -130,8 +130,8 @@ def in_grid(polygon, raster, path, warn):
     grid = geometry.box_of(raster)
     inside = polygon if grid.covers(polygon) else geometry.as_multi(polygon.intersection(grid))
     if inside.area <= 0:
-        raise SlopeError(path, f"must lie in the grid of the run, {geometry.box(geometry.extent(raster))} (local "
-                         "metres)", geometry.box(polygon.bounds))
+        raise SlopeError(path, f"must lie in the grid of the run, {geometry.numbers(geometry.extent(raster))} (local "
+                         "metres)", geometry.numbers(polygon.bounds))
     outside = 1 - inside.area / polygon.area
     if outside > 1e-9:
         warn(f"{path}: {100 * outside:.3g} % of the polygon lies outside of the grid of the run: cut off")

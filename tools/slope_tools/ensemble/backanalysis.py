@@ -25,7 +25,7 @@ from .emulator import Emulator
 CLOUD = 4096            # points that stand for the cube
 ENOUGH = 300.0          # of them that must count, or a smaller box is looked at
 ROUNDS = 8              # boxes, each within the one before
-SHARE = 0.9             # of the region that cannot be told apart from the best
+SHARE = 0.9             # of the region that is as good as the best
 BINS = 24               # of a map over a pair, along a side of the box
 APART = 0.2             # least distance of points of a batch, in widths of the box
 LEAST_NOISE = 1e-3      # of the deviation of an output over all runs
@@ -228,7 +228,7 @@ def misfits(outputs: np.ndarray, found: Posterior, targets: Sequence[Target]) ->
 
 def judgement(found: Posterior, variables: Sequence) -> List[str]:
     """In plain words: how well each variable (distributions.Range) is known, and which make up for each other."""
-    told, loose = [], []
+    lines, loose = [], []
     for i, one in enumerate(variables):
         low, high = found.interval(i)
         width = high - low
@@ -240,19 +240,19 @@ def judgement(found: Posterior, variables: Sequence) -> List[str]:
         elif width > ROUGH:
             loose.append(one.name)
             text += f": roughly known, {100 * width:.0f} % of its range"
-        told.append(text)
+        lines.append(text)
     correlation = found.correlation()
     for i, one in enumerate(variables):
         for j in range(i + 1, len(variables)):
             other = variables[j].name
             if abs(correlation[i, j]) >= TIED and {one.name, other} & set(loose):
                 more = "less" if correlation[i, j] < 0 else "more"
-                told.append(f"{one.name} and {other} are not identifiable apart from each other: more {one.name} with "
-                            f"{more} {other} gives the same")
+                lines.append(f"{one.name} and {other} are not identifiable apart from each other: more {one.name} with "
+                             f"{more} {other} gives the same")
     if found.misfit > 1:
-        told.append("no values of these variables reach the observation: the closest are "
-                    f"{math.sqrt(found.misfit):.1f} times as far from it as chance and tolerance make likely")
-    return told
+        lines.append("no values of these variables reach the observation: the closest are "
+                     f"{math.sqrt(found.misfit):.1f} times as far from it as chance and tolerance make likely")
+    return lines
 
 
 def shown(variable, u: float) -> str:

@@ -173,7 +173,7 @@ def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline, dif
     return found
 
 
-def told(best: Mapping[str, Any]) -> List[str]:
+def describe(best: Mapping[str, Any]) -> List[str]:
     """The conservative volume and its parts, rounded to what is known, what differs, and the doubts; a line each."""
     def number(value):
         return headline.text(value, best["place_m3"])

@@ -54,10 +54,6 @@ class Range:
     def bounds(self) -> Tuple[float, ...]:
         return self.low, self.high
 
-    @property
-    def told(self) -> str:
-        return self.text
-
 
 @dataclass(frozen=True)
 class Listed:
@@ -87,10 +83,6 @@ class Listed:
     def bounds(self) -> Tuple[float, ...]:
         return tuple(float(value) for value in self.values if isinstance(settings.as_number(value), float))
 
-    @property
-    def told(self) -> str:
-        return self.text
-
 
 def parse(options: Sequence[str], deck, option: str = "--vary", ranges_only: bool = False) -> List[Any]:
     """The variables (Range or Listed) of the options NAME=DISTRIBUTION, in their order.
@@ -111,7 +103,7 @@ def parse(options: Sequence[str], deck, option: str = "--vary", ranges_only: boo
         if name in known:
             for value in one.bounds:
                 if not known[name].holds(value):
-                    raise SlopeError(option, f"{name} must stay within the deck's range, {known[name].told}", words)
+                    raise SlopeError(option, f"{name} must stay within the deck's range, {known[name].text}", words)
         found.append(one)
     return found
 

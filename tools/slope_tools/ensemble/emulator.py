@@ -102,10 +102,10 @@ class Influence:
 
 @dataclass(frozen=True)
 class Analysis:
-    """Which variables a quantity depends on; check is None, and told says why, where no emulator was made."""
+    """Which variables a quantity depends on; check is None, and text says why, where no emulator was made."""
     check: Optional[Check]
     influences: List[Influence]
-    told: str
+    text: str
 
 
 def folds(point: np.ndarray) -> List[np.ndarray]:
@@ -127,9 +127,9 @@ def analyse(names: Sequence[str], points: np.ndarray, values: np.ndarray, point:
     different = len(np.unique(of))
     ranks = [rank(points[:, i], values) for i in range(len(names))]
 
-    def without(told: str, check: Optional[Check] = None) -> Analysis:
+    def without(text: str, check: Optional[Check] = None) -> Analysis:
         return Analysis(check, [Influence(name, one[0], one[1], None, None, None, None)
-                                for name, one in zip(names, ranks)], told)
+                                for name, one in zip(names, ranks)], text)
 
     if np.ptp(values) <= 1e-9 * max(1e-300, float(np.abs(values).max())):
         return without("it is the same in all runs")
@@ -149,11 +149,11 @@ def analyse(names: Sequence[str], points: np.ndarray, values: np.ndarray, point:
     first, total = indices(whole, len(names), snap)
     many = np.array([indices(part, len(names), snap, BASE_OF_FOLD) for part in parts])
     errors = np.sqrt((len(parts) - 1) / len(parts) * ((many - many.mean(axis=0)) ** 2).sum(axis=0))     # jackknife
-    told = f"the emulator explains {percent(check.explained)} of the variance of runs that it has not seen"
+    text = f"the emulator explains {percent(check.explained)} of the variance of runs that it has not seen"
     if check.verdict == "rough":
-        told += ": take the indices as rough"
+        text += ": take the indices as rough"
     return Analysis(check, [Influence(name, ranks[i][0], ranks[i][1], float(first[i]), float(errors[0][i]),
-                                      float(total[i]), float(errors[1][i])) for i, name in enumerate(names)], told)
+                                      float(total[i]), float(errors[1][i])) for i, name in enumerate(names)], text)
 
 
 def rank(places: np.ndarray, values: np.ndarray):

@@ -104,7 +104,7 @@ def numbers(finished, name: str, point: Sequence[int], failed: int) -> Dict[str,
 def influence(analysis: emulator.Analysis) -> Dict[str, Any]:
     """Of a quantity: what the emulator is worth, and each variable's rank correlation and indices."""
     check = analysis.check
-    return {"told": analysis.told,
+    return {"text": analysis.text,
             "emulator": check and {"verdict": check.verdict, "explained": check.explained, "error": check.error,
                                    "noise": check.noise, "standard_deviation": check.deviation},
             "variables": {one.name: {"rank": one.rank, "rank_clear": one.rank_clear,
@@ -127,7 +127,7 @@ def doubts(about: Mapping[str, Any]) -> List[str]:
                          f"{about['quantities'][of]['name']}")
         one = about["influence"][of]
         if one["emulator"] and one["emulator"]["verdict"] != "good":
-            found.append(f"{about['quantities'][of]['name']}: {one['told']}")
+            found.append(f"{about['quantities'][of]['name']}: {one['text']}")
     return found
 
 
@@ -160,31 +160,31 @@ def influence_table(analyses: Mapping[str, emulator.Analysis]) -> str:
 
 # --- words ---
 
-def told(about: Mapping[str, Any]) -> List[str]:
+def describe(about: Mapping[str, Any]) -> List[str]:
     """The ensemble in a few lines: the quantiles of the quantity that counts, what it depends on, the doubts."""
     lines = [f"ensemble: {about['finished']} runs of {about['points']} points; bounds hold with "
              f"{100 * about['confidence']:g} %"]
     of = about["of"]
     if of:
         entry = about["quantities"][of]
-        lines.append(f"{entry['name']}: " + "; ".join(quantile_told(one, entry["unit"]) for one in entry["quantiles"]))
-        lines.append(f"{entry['name']} depends on " + depends_told(about["influence"][of]))
+        lines.append(f"{entry['name']}: " + "; ".join(quantile_text(one, entry["unit"]) for one in entry["quantiles"]))
+        lines.append(f"{entry['name']} depends on " + dependence_text(about["influence"][of]))
     return lines + [f"doubt: {text}" for text in about["doubts"]]
 
 
-def quantile_told(one: Mapping[str, Any], unit: str) -> str:
+def quantile_text(one: Mapping[str, Any], unit: str) -> str:
     number = quantities.number
     low = "?" if one["low"] is None else number(one["low"])
     high = "?" if one["high"] is None else number(one["high"])
     return f"{100 * one['share']:g} % of the runs stay within {number(one['value'])} {unit} ({low} to {high})"
 
 
-def depends_told(entry: Mapping[str, Any]) -> str:
+def dependence_text(entry: Mapping[str, Any]) -> str:
     """The variables, the one that matters most first."""
     variables = entry["variables"]
     if all(one["total"] is None for one in variables.values()):
         order = sorted(variables, key=lambda name: -abs(variables[name]["rank"]))
-        return ", ".join(f"{name} (rank {variables[name]['rank']:+.2f})" for name in order) + f"; {entry['told']}"
+        return ", ".join(f"{name} (rank {variables[name]['rank']:+.2f})" for name in order) + f"; {entry['text']}"
     order = sorted(variables, key=lambda name: -variables[name]["total"])
     return ", ".join(f"{name} ({variables[name]['first']:.2f} alone, {variables[name]['total']:.2f} with others, +- "
-                     f"{variables[name]['total_error']:.2f})" for name in order) + f"; {entry['told']}"
+                     f"{variables[name]['total_error']:.2f})" for name in order) + f"; {entry['text']}"

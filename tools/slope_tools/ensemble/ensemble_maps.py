@@ -105,26 +105,26 @@ def of_kind(folder: Path, kind: Kind, stack: Stack, grid, failed: int, effect: f
             above[level][part] = (np.isfinite(block) if kind.early else block > level).sum(axis=0)
     bands, central = {}, []
     for share in hazard.SHARES:
-        told = quantile_told(kind, share)
+        text = quantile_text(kind, share)
         for side in SIDES:
             z = of_quantiles[share, side].reshape(stack.shape)
-            bands[f"{told}{(BOUND_EARLY if kind.early else BOUND)[side]}"] = np.where(np.isfinite(z), z, np.nan)
-        central.append(({"quantile": share, "bounded": at[share].high is not None}, f"q{100 * share:g}", told))
+            bands[f"{text}{(BOUND_EARLY if kind.early else BOUND)[side]}"] = np.where(np.isfinite(z), z, np.nan)
+        central.append(({"quantile": share, "bounded": at[share].high is not None}, f"q{100 * share:g}", text))
     for level in levels:
-        told = f"share of the runs with a {kind.what} > {level:g} {kind.unit}" if not kind.early else \
+        text = f"share of the runs with a {kind.what} > {level:g} {kind.unit}" if not kind.early else \
             "share of the runs that arrive"
         low, high = hazard.share_bounds(above[level], n, failed, effect)
         for side, z in (("value", above[level] / n), ("low", low), ("high", high)):
-            bands[f"{told}{BOUND[side]}"] = z.reshape(stack.shape)
-        central.append(({"threshold": level}, f"above_{level:g}" if not kind.early else "reached", told))
+            bands[f"{text}{BOUND[side]}"] = z.reshape(stack.shape)
+        central.append(({"threshold": level}, f"above_{level:g}" if not kind.early else "reached", text))
     rasters.write_geotiff(folder / f"{kind.name}.tif", bands, grid)
     found = []
-    for about, name, told in central:
-        z = bands[told]
+    for about, name, text in central:
+        z = bands[text]
         path = folder / f"{kind.name}_{name}.asc"
         entry: Dict[str, Any] = {
             "file": f"{folder.name}/{path.name}", "raster": kind.name,
-            "what": f"{told}, {kind.unit}" if "quantile" in about else told, "unit": kind.unit, **about,
+            "what": f"{text}, {kind.unit}" if "quantile" in about else text, "unit": kind.unit, **about,
             "bounds": f"{folder.name}/{kind.name}.tif"}
         if not np.isfinite(z).any():        # so many runs never arrive anywhere
             continue
@@ -133,7 +133,7 @@ def of_kind(folder: Path, kind: Kind, stack: Stack, grid, failed: int, effect: f
     return found
 
 
-def quantile_told(kind: Kind, share: float) -> str:
+def quantile_text(kind: Kind, share: float) -> str:
     if kind.early:
         return f"{kind.what}: {100 * (1 - share):.3g} % of the runs are earlier"
     return f"{kind.what} that {100 * share:.3g} % of the runs stay within"

@@ -87,7 +87,7 @@ class Fit:
         if self.wanted.observed is not None and predicted is not None:
             self.draw_map(output / MAP, best)
             names.append(MAP)
-        print("\n".join([*words, *self.told(about["targets"]), *(f"doubt: {text}" for text in doubts)]))
+        print("\n".join([*words, *self.comparison(about["targets"]), *(f"doubt: {text}" for text in doubts)]))
         print(f"best values: run {best.name}; written to {output}: {' '.join(names)}")
 
     def doubts(self, found: backanalysis.Posterior) -> List[str]:
@@ -97,7 +97,7 @@ class Fit:
         doubts = [f"{len(failed)} of {len(plan.runs)} runs failed and say nothing: {', '.join(failed[:3])}"] \
             if failed else []
         if len(targets) < len(self.variables):
-            doubts.append(f"{len(targets)} observed numbers cannot tell {len(self.variables)} variables")
+            doubts.append(f"{len(targets)} observed numbers cannot determine {len(self.variables)} variables")
         blind = [target.name for target, one in zip(targets, found.emulators) if not one.noise_seen]
         if blind:
             doubts.append(f"too few runs to show the chance of {', '.join(blind)}: the region may be too narrow")
@@ -153,7 +153,7 @@ class Fit:
         score.draw(path, run_, simulated, mapped, about)
 
     @staticmethod
-    def told(targets: Sequence[Mapping[str, Any]]) -> List[str]:
+    def comparison(targets: Sequence[Mapping[str, Any]]) -> List[str]:
         """Predicted against observed, a line each."""
         number_ = quantities.number
         lines = []

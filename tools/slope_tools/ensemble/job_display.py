@@ -20,7 +20,7 @@ class Display:
         self.numbers = {one.name: i for i, one in enumerate(todo, 1)}
         self.ended_runs = self.failed = 0
         self.walls = []
-        self.told = {}      # name -> when the last line about it was printed
+        self.printed = {}      # name -> when the last line about it was printed
         self.live = None
         if sys.stderr.isatty():
             # without auto_refresh there is no thread, and the study may fork
@@ -51,7 +51,7 @@ class Display:
         return f"[{self.numbers[one.name]}/{self.total}] {one.name}"
 
     def started(self, one, said):
-        self.told[one.name] = time.monotonic()
+        self.printed[one.name] = time.monotonic()
         if not self.live or said != "started":
             self.say(f"{self.label(one)}: {said}")
 
@@ -80,8 +80,8 @@ class Display:
         if self.live:
             return self.live.update(self._table(active, waiting), refresh=True)
         for job in active:
-            if time.monotonic() - self.told[job.run.name] > TELL:
-                self.told[job.run.name] = time.monotonic()
+            if time.monotonic() - self.printed[job.run.name] > TELL:
+                self.printed[job.run.name] = time.monotonic()
                 _, text, end = self._progress(job)
                 self.say(f"{self.label(job.run)}: {text}" + (f", ends by {end}" if end else ""))
         return None

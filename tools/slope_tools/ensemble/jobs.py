@@ -49,7 +49,7 @@ class Run:
         self.log = logs.Log(self.folder / logs.LOG)
         self.restart = None         # step and path of the restart file that it goes on from
         self.refused = set()        # restart files that LAMMPS could not read
-        self.heard = 0              # bytes on its screen that are of the parts before this one
+        self.output_before = 0              # bytes on its screen that are of the parts before this one
 
     @property
     def marker(self):
@@ -71,7 +71,7 @@ class Run:
 
     def screen(self):
         """What it said since it was started."""
-        return last_words.Screen(self.folder / SCREEN, self.heard)
+        return last_words.Screen(self.folder / SCREEN, self.output_before)
 
 
 # --- folders ---
@@ -215,7 +215,7 @@ class Work:
         try:
             said = self._prepare(one)
             with open(one.folder / SCREEN, "ab" if one.restart else "wb") as screen:
-                one.heard = screen.tell()
+                one.output_before = screen.tell()
                 process = processes.start(self._line(one), one.folder, screen)
         except OSError as error:
             raise SlopeError(one.folder, f"cannot be run: {error.strerror} ({error.filename})") from error

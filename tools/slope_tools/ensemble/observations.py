@@ -97,7 +97,7 @@ class Observations:
         outputs = self._of_map(run_, self.mapped) if self.mapped is not None else []
         if self.wanted.front is not None:
             if row.get(travel_shares.DISTANCE) is None:
-                raise SlopeError(summary, "must tell the distance of 99 % of the volume (travel: quantiles)")
+                raise SlopeError(summary, "must have the distance of 99 % of the volume (travel: quantiles)")
             outputs.append(row[travel_shares.DISTANCE])
         if self.wanted.area is not None:
             covered = run_folders.load_raster(run_.prefix, "max_thickness").z > self.wanted.threshold

@@ -81,8 +81,8 @@ def with_repeats(output, combinations: Iterable[Dict[str, str]], chances: Sequen
     for combination in combinations:
         for repeat in [NONE, *chances]:
             one = Repeat(output, combination, repeat)
-            told = [f"{name} {one.chosen[name]}" for name in varied]
-            one.varied = ", ".join(told + [key_of(repeat)] * bool(repeat)) or one.name
+            parts = [f"{name} {one.chosen[name]}" for name in varied]
+            one.varied = ", ".join(parts + [key_of(repeat)] * bool(repeat)) or one.name
             todo.append(one)
     return todo
 

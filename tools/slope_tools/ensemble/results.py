@@ -95,9 +95,9 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         study_table.print_combinations(settings, groups, scatters)
     print(f"{output / 'study.yaml'}, {output / 'study.csv'}, {output / 'combinations.csv'}: all numbers")
     if about["conservative"]:
-        print("\n".join(combinations.told(about["conservative"])))
+        print("\n".join(combinations.describe(about["conservative"])))
     if about["ensemble"]:
-        print("\n".join(ensemble.told(about["ensemble"])))
+        print("\n".join(ensemble.describe(about["ensemble"])))
         print(f"{output / ensemble.HAZARD}, {output / ensemble.INFLUENCE}: all curves and indices; "
               f"{output / ensemble.MAPS}: {len(about['ensemble']['maps'])} maps of quantiles and exceedance")
     for entry in [*(written["envelope"] or {}).values(), *(written["exceedance"] or ())]:
@@ -130,7 +130,7 @@ def rows_of(setup: Setup, todo, maps, pictures=True):
     return rows, thickness
 
 
-def moving_told(finished):
+def moving_warnings(finished):
     """The warning of those deposits that are not at rest, in a list; an empty one without any."""
     moving = [row for row in finished if not row["at_rest"]]
     if not moving:
@@ -144,7 +144,7 @@ def doubts(rows):
     """Warnings about runs."""
     warnings = [f"{row['run']}: failed: {row['error']}" for row in rows if row["status"] == "failed"]
     finished = [row for row in rows if row["status"] == "finished"]
-    warnings += moving_told(finished)
+    warnings += moving_warnings(finished)
     for row in finished:
         left = row["off_grid_m3"] + row["lost_m3"]
         if left > 1e-6 * row["released_m3"]:

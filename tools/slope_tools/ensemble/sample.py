@@ -31,7 +31,7 @@ class Sample:
     def about(self) -> Dict[str, Any]:
         """What design.yaml and study.yaml say of it."""
         return {"kind": self.kind, "seed": self.seed, "points": self.number,
-                "variables": {one.name: one.told for one in self.variables}}
+                "variables": {one.name: one.text for one in self.variables}}
 
     def combinations(self) -> List[Dict[str, str]]:
         """The values of each point."""

@@ -78,12 +78,12 @@ def collect(setup: Setup, base, of, todo, work):
             found.update(results.on_road(one, setup.road, setup.output / found["summary"], thickness))
         rows.append(found)
     if not rows or rows[0]["kind"] != "base":
-        return      # nothing to hold the others against; which run failed is told
+        return      # nothing to hold the others against; which run failed is said at the end
     for name in of:
         for row in rows:
             if row[name] is None:
                 raise SlopeError("--of", f"must be known of every run; {name} is not of {row['run']}")
-    warnings += results.moving_told(rows)
+    warnings += results.moving_warnings(rows)
     scatter = {name: spread(rows, name) for name in of}
     about = {"study": {"deck": setup.deck.name, "base": defaults, "runs": len(todo), "finished": len(rows),
                        "ranks": work.ranks, "package": work.package, "collected": provenance.now(),

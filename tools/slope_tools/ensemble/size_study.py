@@ -25,7 +25,7 @@ def run(setup: Setup, converge: str, base, repeated, of, names) -> None:
     for value in values:
         number = as_number(value)
         if not (isinstance(number, float) and 0 < number < float("inf")):
-            raise SlopeError(OPTION, f"must give numbers > 0 for {variable}, which is led to 0", value)
+            raise SlopeError(OPTION, f"must give numbers > 0 for {variable}, which tends to 0", value)
     if len(values) < 2:
         raise SlopeError(OPTION, "must give two values at least, and three to see whether a line holds", converge)
     for other, option in ((base, "--set"), (repeated, "--repeat")):

@@ -150,7 +150,7 @@ class Work(jobs.Work):
             (one.folder / STATUS).unlink(missing_ok=True)
             screen = one.folder / jobs.SCREEN
             screen.touch()
-            one.heard = screen.stat().st_size
+            one.output_before = screen.stat().st_size
             lines.append(f"{one.folder.absolute()}\t{shlex.join(self._line(one))}\n")
             self.tries[one.name] = self.tries.get(one.name, 0) + 1
         array = self._submit(lines)

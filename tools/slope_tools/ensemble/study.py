@@ -2,7 +2,6 @@
 import argparse
 import contextlib
 import functools
-import re
 from pathlib import Path
 from typing import Callable, Dict
 
@@ -114,7 +113,7 @@ def terrain_of(deck, chosen):
     known = {**decks.index_variables(deck), **chosen}
     for words in decks.commands(deck):
         if words[0] == "region" and words[2:3] == ["terrain"] and len(words) > 3:
-            path = deck.parent / re.sub(r"\$\{(\w+)\}", lambda match: known.get(match[1], match[0]), words[3])
+            path = deck.parent / decks.filled(words[3], known)
             return path if path.is_file() else None
     return None
 

@@ -98,7 +98,7 @@ class Charts:
         several = any(len(rows) > 1 for rows in data.combinations().values())
         caption = (f"{title} against {name}; {'dots: runs, ' * several}{'larger dots: means' * several}"
                    f"{', bars: one standard deviation of a run' * bool(scatter and scatter.deviation)}"
-                   f"{'; ' * several}{chance_told(clear)}.")
+                   f"{'; ' * several}{chance_text(clear)}.")
         if key == REMOVE:
             mark, level = self.mark(name)
             levels += level
@@ -144,7 +144,7 @@ def combinations(rows, key):
     return {chosen: headline.Combination(str(chosen), volumes) for chosen, volumes in found.items()}
 
 
-def chance_told(clear):
+def chance_text(clear):
     """What a chart says of its differences."""
     if all(one is None for one in clear):
         return "one run each, so that chance is not known and no line is drawn"

@@ -62,8 +62,8 @@ class Section:
             raise SlopeError("--section", f"must be X1 Y1 X2 Y2, the file of a line, or {FALL}", " ".join(asked))
         if not LineString(points).intersection(box(*bounds)).length > 0:
             got = " ".join(f"{v:g}" for v in points.flat) if len(points) == 2 else \
-                geometry.box(LineString(points).bounds)
-            raise SlopeError(where, f"must cross the grid of the run, {geometry.box(bounds)} (local metres)", got)
+                geometry.numbers(LineString(points).bounds)
+            raise SlopeError(where, f"must cross the grid of the run, {geometry.numbers(bounds)} (local metres)", got)
         return points, how
 
     def _default(self):

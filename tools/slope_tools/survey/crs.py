@@ -8,13 +8,10 @@ from rasterio.crs import CRS
 from rasterio.errors import CRSError
 
 from ..errors import SlopeError
+from ..geometry import numbers
 from .rasters import crs_name, epsg
 
 STRETCH = 0.01         # relative error of lengths in a CRS from which on the user is warned
-
-
-def box(bounds):
-    return " ".join(f"{value:.10g}" for value in bounds)
 
 
 def warn(text):
@@ -80,4 +77,4 @@ def require_degrees(crs, bounds, where):
     west, south, east, north = bounds
     if max(-west, east) > 360 or max(-south, north) > 90:
         raise SlopeError(where, f"coordinates in {crs_name(crs)} must be longitude and latitude; --assign-crs EPSG:n "
-                         "of slope terrain and slope polygon overrides a tag that is wrong or missing", box(bounds))
+                         "of slope terrain and slope polygon overrides a tag that is wrong or missing", numbers(bounds))

@@ -11,8 +11,9 @@ from affine import Affine
 from rasterio.crs import CRS
 
 from ..errors import SlopeError
+from ..geometry import numbers
 from . import fggml, rasters
-from .crs import as_crs, box, require_metres, warn_of_stretch
+from .crs import as_crs, require_metres, warn_of_stretch
 from .holes import fill, small_holes
 from .rasters import Raster
 from .resampling import regrid
@@ -36,7 +37,7 @@ def checked_crs(wanted: Wanted) -> Tuple[Optional[CRS], Optional[CRS]]:
     if wanted.fill < 0:
         raise SlopeError("--fill", "must be >= 0", wanted.fill)
     if wanted.bounds and not (wanted.bounds[0] < wanted.bounds[2] and wanted.bounds[1] < wanted.bounds[3]):
-        raise SlopeError("--bounds", "W S E N must have W < E and S < N", box(wanted.bounds))
+        raise SlopeError("--bounds", "W S E N must have W < E and S < N", numbers(wanted.bounds))
     crs = assigned = None
     if wanted.crs:
         crs = as_crs("--crs", wanted.crs)

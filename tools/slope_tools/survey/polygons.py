@@ -22,7 +22,7 @@ from shapely.ops import unary_union
 from shapely.validation import explain_validity
 
 from ..errors import SlopeError
-from ..geometry import extent, polygons_of
+from ..geometry import extent, numbers, polygons_of
 from .crs import require_degrees, same_crs
 from .rasters import crs_name
 
@@ -73,10 +73,6 @@ def _read_local(path, raster, local, crs, terrain):
         hint = " (with --local it would)" if plain and as_it_stands.intersection(box(*bounds)).area > 0 else ""
         raise SlopeError(path, f"must overlap the terrain{hint}, local x y {numbers(bounds)}", numbers(geometry.bounds))
     return geometry
-
-
-def numbers(values):
-    return " ".join(f"{value:.10g}" for value in values)
 
 
 def read_text(path):

@@ -7,8 +7,9 @@ import rasterio.warp
 from affine import Affine
 
 from ..errors import SlopeError
+from ..geometry import numbers
 from . import rasters
-from .crs import box, not_covered, same_crs, transform, warn
+from .crs import not_covered, same_crs, transform, warn
 from .rasters import Raster, crs_name
 
 SAME_CELL = 1e-6       # relative; a smaller difference of cell sizes is noise of the header's digits
@@ -33,9 +34,9 @@ def regrid(raster, crs, cell, bounds, tell):
     if bounds:
         wanted = *np.maximum(bounds[:2], extent[:2]), *np.minimum(bounds[2:], extent[2:])
         if wanted[0] >= wanted[2] or wanted[1] >= wanted[3]:
-            raise SlopeError("--bounds", f"must overlap the input, {box(extent)}", box(bounds))
+            raise SlopeError("--bounds", f"must overlap the input, {numbers(extent)}", numbers(bounds))
         if not np.allclose(wanted, bounds, rtol=0, atol=cell * SAME_CELL):
-            warn(f"--bounds reaches beyond the input, {box(extent)}: cut to it")
+            warn(f"--bounds reaches beyond the input, {numbers(extent)}: cut to it")
 
     t = raster.transform
     square = t.b == t.d == 0 and t.a > 0 and abs(t.a + t.e) <= SAME_CELL * t.a

@@ -95,7 +95,7 @@ class Plan:
         return sum(each[part] for part in parts)
 
     def prepare(self, name, factor, steps):
-        """Let the mass go and run it; the scene that it has become."""
+        """Release the mass and run it; the scene that it has become."""
         self.say(f"making the {name}")
         folder = self.folder(name)
         write_terrain(folder / "terrain.asc", self.size, factor)
@@ -163,17 +163,17 @@ class Plan:
         wide = self.scene._replace(fixed={2: self.scene.fixed[2], 3: wide.fixed[3]})
         here = self.write(self.ours, "slope", self.scene, self.steps)
         there = self.write(self.ours, "slope_wide", wide, self.steps)
-        ratios, extra, told = [], [], []
+        ratios, extra, reported = [], [], []
         for _ in range(2 * self.repeat):
             one = self.measure("terrain", self.ours, here, self.scene, self.steps)
             other = self.measure("terrain", self.ours, there, wide, self.steps)
             ratios.append(other.result.seconds / one.result.seconds)
             more = other.fixed - one.fixed
             extra.append((other.result.peak - one.result.peak) / more)
-            told.append((other.result.told - one.result.told) / more)
+            reported.append((other.result.reported - one.result.reported) / more)
         self.set("terrain_time", "time per step, terrain ten times larger / as it is", ratios)
         self.set("terrain_bytes", "bytes per extra fixed ball and rank, largest resident", extra)
-        self.set("terrain_bytes_told", "bytes per extra fixed ball and rank, as LAMMPS counts", told)
+        self.set("terrain_bytes_reported", "bytes per extra fixed ball and rank, as LAMMPS counts", reported)
 
     def ranks(self, several):
         """The moving mass, and without --quick case 20 from start to rest, as its deck balances it."""
@@ -222,7 +222,7 @@ class Plan:
         here = self.write(self.ours, "slope_short", self.scene, steps)
         there = self.write(self.ours, "slope_many", many, steps)
         ratios: Dict[Any, List[float]] = {ranks: [] for ranks in (1, *several)}
-        extra, told = [], []
+        extra, reported = [], []
         for _ in range(self.repeat):
             for ranks, ratio in ratios.items():
                 one = self.measure("weak", self.ours, here, self.scene, steps, ranks)
@@ -231,13 +231,13 @@ class Plan:
                 if ranks == 1:
                     more = other.moving - one.moving
                     extra.append((other.result.peak - one.result.peak) / more)
-                    told.append((other.result.told - one.result.told) / more)
+                    reported.append((other.result.reported - one.result.reported) / more)
         what = f"time per ball-step, {len(many.moving):,} moving balls / {len(self.scene.moving):,}"
         self.set("weak_time", what, ratios.pop(1))
         for ranks, ratio in ratios.items():
             self.set(f"weak_time_{ranks}", f"{what}, both on {ranks} ranks", ratio)
         self.set("weak_bytes", "bytes per moving ball with its fixed ones, largest resident", extra)
-        self.set("weak_bytes_told", "bytes per moving ball with its fixed ones, as LAMMPS counts", told)
+        self.set("weak_bytes_reported", "bytes per moving ball with its fixed ones, as LAMMPS counts", reported)
 
     def set(self, name, what, several):
         """Keep the median of some values, and whether it meets its target."""

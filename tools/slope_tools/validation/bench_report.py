@@ -20,12 +20,12 @@ TARGETS = {"build": (">=", 0.95), "granular": (">=", 4.0), "hooke": (">=", 2.5),
            "yade": (">=", 25.0), "terrain_time": ("<=", 1.05), "terrain_bytes": ("<=", 60.0), "ranks_2": (">=", 1.85),
            "rest_2": (">=", 1.85), "throughput": (">=", 1.9), "weak_time": ("<=", 1.3), "weak_time_2": ("<=", 1.3)}
 BUSY = 0.5              # load of the machine, from which on the numbers are doubtful
-SAME_ENERGY, SAME_WAY = 0.05, 0.02      # peers with the same coefficients: kinetic energy, way of the centroid
+SAME_ENERGY, SAME_WAY = 0.05, 0.02      # peers with the same coefficients: kinetic energy, displacement of centroid
 LOOSE = {"hooke": 10.0}                 # times that for a peer without a smooth slip surface
 
 
 def same_scene(plan):
-    """{code: kinetic energy and way of the centroid against ours, and whether it is the same scene}."""
+    """{code: kinetic energy and displacement of the centroid against ours, and whether it is the same scene}."""
     found: Dict[str, Any] = {}
     if not plan.states:
         return found
@@ -43,7 +43,7 @@ def same_scene(plan):
         off = float(np.linalg.norm(way(balls) - way(ours)) / np.linalg.norm(way(ours)))
         loose = LOOSE.get(name, 1.0)
         found[name] = {"kinetic_energy": energy(balls), "kinetic_energy_to_ours": other,
-                       "way_of_centroid": [round(value, 6) for value in way(balls).tolist()], "way_off": off,
+                       "centroid_displacement": [round(value, 6) for value in way(balls).tolist()], "centroid_off": off,
                        "same": len(balls) == len(ours) and abs(other - 1) <= loose * SAME_ENERGY
                        and off <= loose * SAME_WAY}
     return found
@@ -77,8 +77,8 @@ def report(plan):
     for name, state in about["same_scene"].items():
         if not state["same"]:
             plan.notes.append(f"{codes[name]['title']} ran another collapse: kinetic energy "
-                              f"{state['kinetic_energy_to_ours']:.3f} of ours, way of the centroid off by "
-                              f"{100 * state['way_off']:.1f} %")
+                              f"{state['kinetic_energy_to_ours']:.3f} of ours, displacement of the centroid off by "
+                              f"{100 * state['centroid_off']:.1f} %")
     disk.write(plan.output / "bench.csv", table(plan.runs))
     disk.write(plan.output / "bench.yaml", "# slope bench: s, m, J, bytes; ratios are medians of neighbouring runs\n"
                + yaml.safe_dump(about, sort_keys=False))
@@ -111,14 +111,14 @@ def show(about, folder):
         shown = Table(title="one core, the same balls, the same step")
         for head, side in (("code", "left"), ("version", "left"), ("loop s", "right"), ("ns/ball/step", "right"),
                            ("time / ours", "right"), ("range", "right"), ("target", "right"), ("met", "right"),
-                           ("energy / ours", "right"), ("way off %", "right")):
+                           ("energy / ours", "right"), ("centroid off %", "right")):
             shown.add_column(head, justify="left" if side == "left" else "right")
         for name, code in about["codes"].items():
             ratio, same = measures.get(name), about["same_scene"].get(name)
             shown.add_row(code["title"], code["version"].split(",")[0].removeprefix("Version "),
                           f"{code['loop_seconds']:.2f}", f"{code['ns_per_ball_step']:.1f}", *against(ratio),
                           f"{same['kinetic_energy_to_ours']:.3f}" if ratio else "",
-                          f"{100 * same['way_off']:.2f}" if ratio else "")
+                          f"{100 * same['centroid_off']:.2f}" if ratio else "")
         console.print(shown)
     rest = {name: value for name, value in measures.items() if name not in about["codes"]}
     if rest:

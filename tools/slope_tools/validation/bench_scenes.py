@@ -48,7 +48,7 @@ def time_step():
 
 
 def collapse(size, steps):
-    """The deck that lets the mass go and runs it for some steps."""
+    """The deck that releases the mass and runs it for some steps."""
     chord = math.hypot(SHOULDER - TOE, RISE)
     radius = (chord ** 2 / 4 + DEPTH ** 2) / (2 * DEPTH)
     sphere = " ".join(repr(size * value) for value in (

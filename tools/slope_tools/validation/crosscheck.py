@@ -314,7 +314,8 @@ def collapse(work, case):
     work.profiles = {name: profile(scene, final) for name, final in found.items()}
     work.about_collapse = {"d": d, "balls": len(scene.moving), "fixed": len(scene.ground), "seconds": duration,
                            "ours": several, "ours_without_and_with_twice_the_rolling_resistance": range_}
-    chance = {"run-out m": 0.10, "way of the centroid m": 0.03, "volume on the road m3": 0.30 if work.quick else 0.15}
+    chance = {"run-out m": 0.10, "displacement of the centroid m": 0.03,
+              "volume on the road m3": 0.30 if work.quick else 0.15}
     for quantity, share in chance.items():
         middle = float(np.mean([one[quantity] for one in several]))
         low, high = (pick(middle, *(one[quantity] for one in range_)) for pick in (min, max))
@@ -332,7 +333,7 @@ def collapse(work, case):
 
 
 def deposit(scene, final):
-    """Run-out, way of the centroid, volume on the road: from the centres of the balls."""
+    """Run-out, displacement of the centroid, volume on the road: from the centres of the balls."""
     road = road_corners()
     (xlo, ylo), (xhi, yhi) = road.min(axis=0), road.max(axis=0)     # a rectangle
     top = scene.moving[np.argmax(scene.moving[:, 2]), :2]
@@ -340,7 +341,7 @@ def deposit(scene, final):
     on = (x >= xlo) & (x <= xhi) & (y >= ylo) & (y <= yhi)
     ball = BULK * math.pi / 6 * scene.diameter ** 3
     return {"run-out m": float(np.percentile(np.hypot(x - top[0], y - top[1]), 99)),
-            "way of the centroid m": float(np.linalg.norm((final[:, :3].mean(0) - scene.moving[:, :3].mean(0))[:2])),
+            "displacement of the centroid m": float(np.hypot(*(final[:, :2].mean(0) - scene.moving[:, :2].mean(0)))),
             "volume on the road m3": float(on.sum() * ball)}
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from .. import processes
 from ..case import last_words, logs
 from ..deposit import dumps
+from ..ensemble import launcher
 from ..errors import SlopeError
 
 DATA, DECK, LOG, SCREEN, FINAL, SERIES = "balls.data", "in.scene", "log.scene", "screen.txt", "final.txt", "series.txt"
@@ -16,8 +17,7 @@ POLL = 0.05         # s between two looks at a run
 
 def launch(words, folder, ranks):
     """Start a program in a folder; what it says goes to SCREEN."""
-    if ranks > 1:
-        words = ["mpirun", "-np", str(ranks), "--bind-to", "none", "--oversubscribe", *words]
+    words = [*launcher.words(None, ranks, 0), *words]       # no slots: other runs may hold all cores
     try:
         with open(folder / SCREEN, "wb") as screen:
             return processes.start(words, folder, screen)
@@ -81,4 +81,4 @@ def read_text(path):
 def failure(log, folder):
     """Why a run failed, in one line."""
     error = re.search(r"^.*ERROR.*$", log, re.MULTILINE)
-    return logs.told(error[0]) if error else last_words.Screen(folder / SCREEN).words() or "no word"
+    return logs.message(error[0]) if error else last_words.Screen(folder / SCREEN).words() or "no word"

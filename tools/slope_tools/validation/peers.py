@@ -64,7 +64,7 @@ class Result(NamedTuple):
     final: np.ndarray               # as Scene.moving, ordered by ball; a lost ball is missing
     breakdown: Dict[str, float]     # part of the loop -> s; empty if the code does not tell
     peak: int                       # bytes, largest resident memory of the process
-    told: Optional[float] = None    # bytes per rank that LAMMPS itself counts
+    reported: Optional[float] = None    # bytes per rank that LAMMPS itself counts
 
 
 # --- the codes ---
@@ -99,10 +99,10 @@ class Code:
             raise SlopeError(folder / LOG, f"{self.title} did not end well", failure(text, folder))
         breakdown = {name: float(seconds) for name, seconds in
                      re.findall(r"^(Pair|Neigh|Comm|Output|Modify|Other) +\|[^|]*\| (\S+) +\|", text, re.MULTILINE)}
-        told = re.search(r"Per MPI rank memory allocation \(min/avg/max\) = \S+ \| \S+ \| (\S+) Mbytes", text)
+        memory = re.search(r"Per MPI rank memory allocation \(min/avg/max\) = \S+ \| \S+ \| (\S+) Mbytes", text)
         version = re.search(r"^(LAMMPS|LIGGGHTS) \((.*)\)", text, re.MULTILINE)
         return Result(float(loop[0][0]), version[2] if version else "unknown", read_dump(folder / FINAL)[-1],
-                      breakdown, peak, float(told[1]) * 2**20 if told else None)
+                      breakdown, peak, float(memory[1]) * 2**20 if memory else None)
 
     def series(self, folder):
         """States at the steps 0, every, 2 every, ...: an array (step, ball, column)."""
@@ -307,10 +307,10 @@ class Yade(Code):
 
     def read(self, folder, peak):
         text = read_text(folder / SCREEN)
-        told = re.search(r"^SLOPE-YADE (\S+) (\S+)$", text, re.MULTILINE)
-        if not told:
+        timing = re.search(r"^SLOPE-YADE (\S+) (\S+)$", text, re.MULTILINE)
+        if not timing:
             raise SlopeError(folder / SCREEN, f"{self.title} did not end well", failure(text, folder))
-        return Result(float(told[2]), told[1], np.loadtxt(folder / FINAL, ndmin=2), {}, peak)
+        return Result(float(timing[2]), timing[1], np.loadtxt(folder / FINAL, ndmin=2), {}, peak)
 
     def series(self, folder):
         return np.load(folder / "series.npy")

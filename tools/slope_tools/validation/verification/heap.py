@@ -43,7 +43,7 @@ def smallest_step(*results):
 
 
 def creep_of(before, after):
-    """Median way of the balls that are still there, in diameters: a single ball that drops later is no creep."""
+    """Median displacement of the balls still there, in diameters: a single ball that drops later is no creep."""
     same = np.isin(before["id"][0], after["id"][0])
     way = [before[key][0][same] - after[key][0] for key in "xz"]
     return np.median(np.hypot(*way)) / D
