@@ -158,7 +158,6 @@ int RegTerrain::surface_exterior(double * /*x*/, double /*cutoff*/)
 int RegTerrain::no_contacts()
 {
   error->one(FLERR,
-             "Region terrain {} makes no wall: take fix wall/gran/balls or fix wall/gran/mesh",
-             id);
+             "Region terrain {} makes no wall: take fix wall/gran/balls or fix wall/gran/mesh", id);
   return 0;
 }
