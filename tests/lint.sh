@@ -27,11 +27,11 @@ same_layout() {
 # --- layout: src/.clang-format ---
 
 files=()
-has clang-format "the layout of the C++" && same_layout && files=(src/*.h src/*.cpp src/plugin/*.cpp)
+has clang-format "the layout of the C++" && same_layout && files=({src,tools/dump2vtk}/*.h {src,src/plugin,tools/dump2vtk}/*.cpp)
 for file in "${files[@]}"; do
-  if ! clang-format --style=file --dry-run -Werror "$file" >/dev/null 2>&1; then
-    echo "lint: $file: run clang-format -i on it; it would change"
-    clang-format --style=file "$file" | diff "$file" - | head -n 20 || true
+  if ! clang-format --style=file:src/.clang-format --dry-run -Werror "$file" >/dev/null 2>&1; then
+    echo "lint: $file: run clang-format -i --style=file:src/.clang-format on it; it would change"
+    clang-format --style=file:src/.clang-format "$file" | diff "$file" - | head -n 20 || true
     failed=1
   fi
 done

@@ -106,8 +106,8 @@ def main():
               f"{widths.round(3)}: {'recovered' if hit[can].all() else 'not recovered'} where identifiable "
               f"({can.tolist()}); inside its 90 % intervals {within.tolist()}; words: "
               f"{found['words']}", flush=True)
-    print(f"{good} of {judged} recovered where identifiable; {inside} of {judged * len(RANGES)} hidden values inside their "
-          f"90 % intervals; package {provenance.package_version()}")
+    print(f"{good} of {judged} recovered where identifiable; {inside} of {judged * len(RANGES)} hidden values inside "
+          f"their 90 % intervals; package {provenance.package_version()}")
 
 
 if __name__ == "__main__":

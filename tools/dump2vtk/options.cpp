@@ -22,7 +22,7 @@ and from the terrain, rasters and fixed balls of the same run. Lengths are metre
 and speeds m/s where the run is in units si; the values are not converted.
 
   DUMP...             dumps, with one or several snapshots each, in any order
-  -o OUT              begin of the names of all files, may contain a folder that exists
+  -o OUT              start of the names of all files, may contain a folder that exists
 
   --deposit PREFIX    what fix deposit/grid wrote: as --terrain PREFIX.base.asc (the ground without
                       the body: the scar shows) --raster PREFIX.thickness.asc
