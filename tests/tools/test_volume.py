@@ -548,7 +548,7 @@ def broken(path, change):
     ("run.summary.yaml", lambda text: "balls: [", "run.summary.yaml: must be a summary that fix deposit/grid wrote"),
     ("run.summary.yaml", lambda text: text.replace("bulk_factor", "factor"), "must be a summary that fix deposit/grid"),
     ("run.summary.yaml", lambda text: re.sub("on_grid: .*", "on_grid: 29999.0", text),
-     "run.thickness.asc: must hold the volume that run.summary.yaml tells, 29999 m3: are they of one run?, got 30000"),
+     "run.thickness.asc: must hold the volume of run.summary.yaml, 29999 m3: are they of one run?, got 30000"),
     ("run.thickness.asc", lambda text: text[:2000], "run.thickness.asc: values: must be 80 rows of 100"),
     ("run.thickness.asc", lambda text: text.replace("3.0", "-3.0", 1), "must be a thickness >= 0, got -3"),
     ("run.surface.asc", lambda text: text.replace("cellsize 2.5", "cellsize 2.6"),
