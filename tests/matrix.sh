@@ -54,17 +54,20 @@ out=$(realpath "$out")
 
 # --- sources that Debian has ---
 
+# shellcheck source=/dev/null
+. "$top/tools/upstream_source.sh"
+
 # fetch SUITE -> DIR/source/SUITE, by apt with its state in a temporary folder. The upstream
-# tarball alone: Debian's changes to it are none that matter here.
+# archive alone: Debian's changes to it are none that matter here.
 fetch() {
-  local suite=$1 tmp target=$out/source/$1 mirror uri file sum
+  local suite=$1 tmp target=$out/source/$1 mirror
   [[ -d $target ]] && return
   echo "matrix: fetching the LAMMPS source of Debian $suite (up to 220 MB)"
   mkdir -p "$out/source"
   tmp=$(mktemp -d "$out/source/tmp.XXXXXX")
   # shellcheck disable=SC2064 # this folder
   trap "rm -rf '$tmp'" RETURN EXIT
-  mkdir -p "$tmp/lists/partial" "$tmp/sources" "$tmp/tree"
+  mkdir -p "$tmp/lists/partial" "$tmp/sources"
 
   # shellcheck disable=SC2016 # apt expands these
   mirror=$(apt-get indextargets --format '$(ORIGIN) $(CODENAME) $(REPO_URI)' 'Created-By: Packages' |
@@ -77,18 +80,8 @@ fetch() {
     -o APT::Sandbox::User=root -o APT::Update::Error-Mode=any
     -o Dir::Etc::sourcelist=/dev/null -o Dir::Etc::sourceparts="$tmp/sources")
   apt-get "${apt[@]}" update >"$tmp/log" 2>&1 || die "Debian $suite: $(grep -m1 '^E:' "$tmp/log")"
-  read -r uri file _ sum < <(apt-get "${apt[@]}" source --print-uris "lammps/$suite" | grep '\.orig\.tar') ||
-    die "Debian $suite has no LAMMPS source package"
-  uri=${uri#\'}
-  /usr/lib/apt/apt-helper "${apt[@]}" download-file "${uri%\'}" "$tmp/$file" "$sum" >"$tmp/log" 2>&1 ||
-    die "Debian $suite: $(grep -m1 '^E:' "$tmp/log")"
-  # most of the size is examples and potentials
-  tar -xf "$tmp/$file" -C "$tmp/tree" --no-same-owner --exclude='examples/*' --exclude='potentials/*' \
-    --exclude='bench/*' --exclude='unittest/*' --exclude='doc/src/*'
-  # with or without a folder around it
-  local found=("$tmp"/tree/cmake "$tmp"/tree/*/cmake)
-  [[ -d ${found[0]} ]] || found=("${found[@]:1}")
-  mv -T "$(dirname "${found[0]}")" "$target"
+  upstream_source "lammps/$suite" "$tmp" "${apt[@]}" || die "Debian $suite: $(grep -m1 '^E:' "$tmp/log")"
+  mv -T "$tmp/tree" "$target"
 }
 
 for suite in "${suites[@]}"; do

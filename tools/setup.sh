@@ -11,6 +11,8 @@ source_dir=$top/.lammps/source
 
 say() { echo "setup: $*"; }
 die() { echo "setup: error: $*" >&2; exit 1; }
+# shellcheck source=/dev/null
+. "$top/tools/upstream_source.sh"
 # a mirror may be slow for a moment
 update() { "$@" update || { say "apt-get update failed, trying again"; sleep 5; "$@" update; }; }
 
@@ -150,10 +152,9 @@ mkdir -p "$tmp/lists/partial" "$tmp/sources" "$tmp/work"
 
 # apt with its state in $tmp: needs no root, and changes nothing on the machine. As root, apt
 # would download as another user, who cannot write there.
-apt_get() {
-  apt-get -qq -o Dir::State::lists="$tmp/lists" -o Dir::Cache::pkgcache= \
-    -o Dir::Cache::srcpkgcache= -o APT::Sandbox::User=root -o APT::Update::Error-Mode=any "$@"
-}
+apt_options=(-qq -o Dir::State::lists="$tmp/lists" -o Dir::Cache::pkgcache= -o Dir::Cache::srcpkgcache=
+  -o APT::Sandbox::User=root -o APT::Update::Error-Mode=any)
+apt_get() { apt-get "${apt_options[@]}" "$@"; }
 
 # "file:number" of each Debian or Ubuntu entry in the machine's list of sources
 entries() {
@@ -185,7 +186,14 @@ done <<<"$entries"
 from_source=(-o Dir::Etc::sourcelist=/dev/null -o Dir::Etc::sourceparts="$tmp/sources")
 update apt_get "${from_source[@]}" || die "apt-get update for source packages failed"
 # apt checks the checksums, dpkg-source unpacks and applies Debian's patches
-(cd "$tmp/work" && apt_get "${from_source[@]}" source lammps >"$tmp/log" 2>&1) ||
-  die "apt-get source lammps failed: $(tail -n 1 "$tmp/log")"
-mv -T "$tmp"/work/lammps-*/ "$source_dir"
+if (cd "$tmp/work" && apt_get "${from_source[@]}" source lammps >"$tmp/log" 2>&1); then
+  mv -T "$tmp"/work/lammps-*/ "$source_dir"
+else
+  # a mirror that lost a file of the package may still have LAMMPS' own archive
+  why=$(sed -n 's/^E: //p' "$tmp/log" | head -n 1)
+  say "apt-get source lammps failed ($why), trying the upstream archive alone, without Debian's patches"
+  upstream_source lammps "$tmp" "${apt_options[@]}" "${from_source[@]}" ||
+    die "apt-get source lammps failed: $why; the upstream archive: $(sed -n 's/^E: //p' "$tmp/log" | head -n 1)"
+  mv -T "$tmp/tree" "$source_dir"
+fi
 say "LAMMPS source: $source_dir"

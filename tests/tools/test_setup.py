@@ -1,10 +1,12 @@
 """tools/setup.sh where apt-get refuses or fails: by an apt-get of our own on PATH; see doc/src/build.rst."""
 
+import hashlib
 import os
 import re
 import shutil
 import subprocess
 import sys
+import tarfile
 from pathlib import Path
 
 import pytest
@@ -24,6 +26,15 @@ with state.joinpath("calls").open("a") as calls:
     print(*words, file=calls)
 if "update" in words:
     sys.exit("update" in lines["failing"] and "E: no network")
+if "indextargets" in words:
+    print(f"Debian {{state / 'own.list'}}:1")
+    sys.exit(0)
+if "source" in words and "--print-uris" in words:
+    print(state.joinpath("uris").read_text())
+    sys.exit(0)
+if "source" in words:
+    print("E: Failed to fetch lammps_1.dsc  404  Not Found", "E: Failed to fetch some archives.", sep="\\n", file=sys.stderr)
+    sys.exit(100)
 names = words[words.index("install") + 1:]
 bad = [name for name in names if name in refused]
 if bad:
@@ -66,17 +77,18 @@ def machine(tmp_path):
     for folder in (tools, programs, state, tmp_path / "lammps" / "cmake"):
         folder.mkdir(parents=True)
     (tmp_path / "lammps" / "cmake" / "CMakeLists.txt").touch()
-    shutil.copy(TOP / "tools" / "setup.sh", tools)
+    for name in ("setup.sh", "upstream_source.sh"):
+        shutil.copy(TOP / "tools" / name, tools)
     (tools / "packages.txt").write_text(PACKAGES.format(suite=SUITE))
     for name, text in (("apt-get", APT_GET), ("dpkg-query", DPKG_QUERY), ("sudo", '#!/bin/sh\nexec env "$@"\n')):
         (programs / name).write_text(text.format(python=sys.executable, state=str(state)) if "{" in text else text)
         (programs / name).chmod(0o755)
 
-    def run(installed=(), refused=(), failing=(), conflicts=""):
+    def run(installed=(), refused=(), failing=(), conflicts="", source=tmp_path / "lammps"):
         for name, lines in (("installed", installed), ("refused", refused), ("failing", failing), ("calls", ())):
             (state / name).write_text("".join(line + "\n" for line in lines))
         (state / "conflicts").write_text(conflicts)
-        environment = {**os.environ, "PATH": f"{programs}:/usr/bin:/bin", "LAMMPS_SOURCE_DIR": str(tmp_path / "lammps")}
+        environment = {**os.environ, "PATH": f"{programs}:/usr/bin:/bin", "LAMMPS_SOURCE_DIR": str(source)}
         done = subprocess.run([tools / "setup.sh"], stdin=subprocess.DEVNULL, capture_output=True, text=True,
                               check=False, env=environment)
         return done.stdout.splitlines(), done.stderr.splitlines(), done.returncode
@@ -152,6 +164,38 @@ def test_failure_while_one_is_installed_that_set_up_does_without(machine):
     said, errors, status = machine(failing=["film-dev"])
     assert (errors, status) == ([], 0)
     assert "setup: film-dev could not be installed (apt-get ended with status 100): no films are made" in said
+
+
+def lammps_archive(folder, within, checksum=None):
+    """An archive of a LAMMPS source tree, and the line of apt-get source --print-uris for it."""
+    archive = folder / "lammps_1.orig.tar.xz"
+    with tarfile.open(archive, "w:xz") as tar:
+        for name in ("cmake/CMakeLists.txt", "src/version.h", "examples/melt/in.melt"):
+            tar.addfile(tarfile.TarInfo(f"{within}{name}"))
+    checksum = checksum or hashlib.sha256(archive.read_bytes()).hexdigest()
+    return f"'file://{archive}' {archive.name} {archive.stat().st_size} SHA256:{checksum}\n"
+
+
+@pytest.mark.parametrize("within", ["", "lammps-1/"])
+def test_mirror_without_a_file_of_the_source_package(machine, tmp_path, within):
+    (machine.state / "own.list").write_text("deb file:///nowhere suite main\n")
+    (machine.state / "uris").write_text(lammps_archive(tmp_path, within))
+    said, errors, status = machine(installed=["needed", "film-dev", "new-name", "lint"], source="")
+    assert (errors, status) == ([], 0)
+    assert any("404  Not Found" in line and "upstream archive alone" in line for line in said)
+    source = tmp_path / ".lammps" / "source"
+    assert said[-1] == f"setup: LAMMPS source: {source}"
+    assert (source / "cmake" / "CMakeLists.txt").exists() and (source / "src" / "version.h").exists()
+    assert not list(source.glob("examples/*")) and [entry.name for entry in source.parent.iterdir()] == ["source"]
+
+
+@pytest.mark.parametrize("uris, why", [("", "no upstream archive of lammps"), ("0" * 64, "Hash Sum mismatch")])
+def test_no_source_of_lammps(machine, tmp_path, uris, why):
+    (machine.state / "own.list").write_text("deb file:///nowhere suite main\n")
+    (machine.state / "uris").write_text(uris and lammps_archive(tmp_path, "", uris))
+    _, errors, status = machine(installed=["needed", "film-dev", "new-name", "lint"], source="")
+    assert status == 1 and len(errors) == 1 and "404  Not Found; the upstream archive: " in errors[0] and why in errors[0]
+    assert not list((tmp_path / ".lammps").iterdir())
 
 
 def test_no_root_and_no_sudo(machine, tmp_path):
