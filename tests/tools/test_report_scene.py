@@ -16,7 +16,7 @@ import pytest
 import yaml
 from scipy.interpolate import RegularGridInterpolator
 
-from tiny_collapse import LMP, TOP, height, read_asc, write_case
+from tiny_collapse import LMP, TOP, height, read_asc, write_case, write_stl
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
@@ -24,6 +24,7 @@ sys.path.insert(0, str(TOOLS))
 from slope_tools import cli  # noqa: E402
 from slope_tools.report import figure_charts, figure_maps, film, frames, scene, view  # noqa: E402
 from slope_tools.report.data import Data  # noqa: E402
+from slope_tools.report.ground import Ground, box_of  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 library = pytest.mark.skipif(view.library() is None, reason="libjs-three is not installed")
@@ -217,6 +218,60 @@ def test_a_text_does_not_end_the_script(page, case):
     assert "MIT licence" in scripts[1] and "THE SOFTWARE IS PROVIDED" in scripts[1]
 
 
+# --- structures ---
+
+@pytest.fixture(scope="module")
+def walled(tmp_path_factory):
+    """The run with a wall across the slope, a post, and a structure without an output."""
+    folder = tmp_path_factory.mktemp("walled") / "case"
+    folder.mkdir()
+    write_stl(folder / "wall.stl", (12, 1, -1), (13, 23, 2))
+    write_stl(folder / "post.stl", (2, 11, -1), (3, 12, 2))
+    walls = "".join(f"fix {name} soil wall/gran/mesh 3 {file}.stl{more}\n" for name, file, more in (
+        ("wall", "wall", " output ${out}.wall 10"), ("post", "post", " output ${out}.post 10"), ("silent", "post", "")))
+    return run_case(folder, walls + DUMP)
+
+
+@library
+def test_structures_in_the_page_are_those_of_the_run(walled):
+    assert cli.main(["report", str(walled), "--no-film", "-o", str(walled / "numbers.html")]) == 0
+    one, post = scene_of(walled / "numbers.html")["structures"]
+    assert post["name"] == "post"
+    corners = numbers(one["corners"], "<f4").reshape(-1, 3, 3)
+    assert (one["name"], one["triangles"]) == ("wall", 12) and len(corners) == 12
+    assert corners.reshape(-1, 3).min(axis=0).tolist() == [12, 1, -1]
+    assert corners.reshape(-1, 3).max(axis=0).tolist() == [13, 23, 2]
+
+
+@pytest.mark.parametrize("box, inside", [((0, 0, 2.5, 24), True), ((3.5, 0, 11, 24), False), ((0, 12.5, 9, 24), False),
+                                         ((2.5, 11.5, 2.6, 11.6), True)])
+def test_structures_in_the_ground_that_is_shown(box, inside):
+    assert scene.meets(np.array([[[2, 11, 0], [3, 11, 0], [3, 12, 5]]], float), box) == inside
+
+
+def test_the_ground_that_is_shown_reaches_to_structures_nearby(ran):
+    """Near is what is no farther than the mass is long; what lies beyond the terrain does not count."""
+    ground = Ground(Data(ran))
+    alone = scene.shown(ground, {})
+    box = box_of(ground.raster, ground.touched | ground.source)
+    size = max(box[2] - box[0], box[3] - box[1])
+
+    def post(x):
+        return {"post": np.array([[[x, 12, 0], [x + 0.5, 12, 0], [x, 12, 1]]], float)}
+    assert scene.shown(ground, post(box[0] + 1)).tolist() == alone.tolist()
+    assert scene.shown(ground, post(box[0] - 2 * size)).tolist() == alone.tolist()
+    assert scene.shown(ground, post(max(1, box[0] - 0.9 * size)))[0] <= 1 < alone[0]
+
+
+@library
+def test_a_structure_of_too_many_triangles_is_left_out_and_said(walled, monkeypatch):
+    monkeypatch.setattr(scene, "MOST_TRIANGLES", 11)
+    assert cli.main(["report", str(walled), "--no-film", "-o", str(walled / "large.html")]) == 0
+    assert "Not drawn, for its size: wall, post." in html.unescape((walled / "large.html").read_text())
+    found = scene_of(walled / "large.html")["structures"]
+    assert [(one["triangles"], one["corners"]) for one in found] == 2 * [(0, "")]
+
+
 # --- where there is no view ---
 
 @library
@@ -339,6 +394,25 @@ def test_the_canvas_shows_balls_that_move(page, browser):
     console, urls = said(driver)
     assert console == []
     assert {url for url in urls if not url.startswith("data:")} == {page.as_uri()}
+
+
+@library
+def test_the_canvas_shows_a_wall(page, walled, browser):
+    """What is bluish grey, which nothing else is, from above."""
+    assert cli.main(["report", str(walled), "--no-film", "-o", str(walled / "drawn.html")]) == 0
+    found = []
+    for one in (page, walled / "drawn.html"):
+        driver = browser(*SOFTWARE)
+        driver.get(one.as_uri())
+        driver.execute_script("document.getElementById('view').scrollIntoView()")
+        legend = driver.find_element("id", "view-legend").text
+        act(driver, "document.getElementById('view-overlay').style.display = 'none';"
+                    "document.getElementById('view-above').click();")
+        seen = at(driver, 0)
+        found.append(("structure" in legend, np.count_nonzero(seen[..., 2] - seen[..., 0] > 24)))
+        assert said(driver)[0] == []
+    (without, none), (shown, pixels) = found
+    assert not without and shown and pixels > 500 and none < 0.02 * pixels, found
 
 
 def test_play_orbit_and_buttons(page, browser):

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import yaml
 
-from tiny_collapse import LMP, TOP, write_case
+from tiny_collapse import LMP, TOP, write_case, write_stl
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
@@ -39,19 +39,6 @@ def slope(arguments, capsys):
     except SystemExit as error:
         status = error.code
     return status, *capsys.readouterr()
-
-
-def write_stl(path, low, high):
-    """The twelve triangles of a box."""
-    corners = np.array([[(low, high)[k >> d & 1][d] for d in range(3)] for k in range(8)], float)
-    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    with open(path, "w", encoding="ascii") as out:
-        out.write("solid box\n")
-        for a, b, c, d in faces:
-            for triangle in ((a, b, c), (a, c, d)):
-                out.write("facet normal 0 0 0\nouter loop\n" + "".join(
-                    "vertex {:g} {:g} {:g}\n".format(*corners[k]) for k in triangle) + "endloop\nendfacet\n")
-        out.write("endsolid box\n")
 
 
 def write_structures(folder):
@@ -192,7 +179,7 @@ def test_structures_are_known_from_the_log(line, found):
 def test_a_mesh_file_that_is_none(tmp_path, text):
     (tmp_path / "a.vtp").write_text(text)
     with pytest.raises(errors.SlopeError, match="a.vtp: must be what fix wall/gran/mesh wrote"):
-        report_structures.polydata(tmp_path / "a.vtp")
+        structures.polydata(tmp_path / "a.vtp")
 
 
 def test_a_series_of_a_run_without_output(tmp_path):

@@ -70,6 +70,19 @@ def height(x):
     return np.interp(x, [0.0, TOE, SHOULDER, COLUMNS], [0.0, 0.0, HEIGHT, HEIGHT])
 
 
+def write_stl(path, low, high):
+    """The twelve triangles of a box."""
+    corners = np.array([[(low, high)[k >> d & 1][d] for d in range(3)] for k in range(8)], float)
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    with open(path, "w", encoding="ascii") as out:
+        out.write("solid box\n")
+        for a, b, c, d in faces:
+            for triangle in ((a, b, c), (a, c, d)):
+                out.write("facet normal 0 0 0\nouter loop\n" + "".join(
+                    "vertex {:g} {:g} {:g}\n".format(*corners[k]) for k in triangle) + "endloop\nendfacet\n")
+        out.write("endsolid box\n")
+
+
 def write_case(folder):
     """in.tiny, terrain.asc and road.csv in that folder; the path of the deck."""
     folder = Path(folder)

@@ -78,6 +78,6 @@ def slope_terrain(path):
     """The .asc with a sidecar that `slope terrain` wrote, if that is what a raster file is or shows; else None."""
     path = Path(path)
     dataset = gdal.Open(str(path))
-    told = dataset.GetMetadataItem(TERRAIN_TAG) if dataset else None
-    asc = path if path.suffix == ".asc" else path.with_name(told) if told else None
+    name = dataset.GetMetadataItem(TERRAIN_TAG) if dataset else None
+    asc = path if path.suffix == ".asc" else path.with_name(name) if name else None
     return str(asc) if asc and asc.is_file() and asc.with_suffix(".yaml").is_file() else None

@@ -222,7 +222,7 @@ def say_size(choices: Choices, size: Size, trial: Optional[Trial], found: releas
     runs = f"{size.runs} runs: {len(study['rolling'])} rolling resistances x {each} places of the lattice"
     if study["sizes"]:
         runs += f", {len(study['sizes'])} sizes of balls x {each}"
-    took = "" if size.seconds is None else f", about {site_budget.told(size.seconds)} if nothing else runs"
+    took = "" if size.seconds is None else f", about {site_budget.duration_text(size.seconds)} if nothing else runs"
     tell(f"the study: {runs}; {machine.jobs} at a time{took}, {size.gigabytes:.2g} GB")
     if trial is None:
         warn("no LAMMPS program (LMP, --lmp, build/lmp): the deck was not tried, time and speeds are not known")

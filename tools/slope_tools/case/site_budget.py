@@ -204,7 +204,7 @@ def up(value: float) -> float:
     return rounded if rounded >= value else three_digits(value * 1.005)
 
 
-def told(seconds: float) -> str:
+def duration_text(seconds: float) -> str:
     """A time in words."""
     if seconds < 90:
         return f"{seconds:.0f} s"

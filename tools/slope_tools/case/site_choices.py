@@ -82,8 +82,8 @@ def rule_of(error: jsonschema.ValidationError) -> str:
              "minItems": "have at least {} items", "maxItems": "have at most {} items"}
     if rule in rules:
         value = error.validator_value
-        told = ", ".join(str(one) for one in value) if isinstance(value, list) else value
-        return f"must {rules[rule].format(told)}, got {error.instance!r}"
+        values = ", ".join(str(one) for one in value) if isinstance(value, list) else value
+        return f"must {rules[rule].format(values)}, got {error.instance!r}"
     return f"must be valid: {error.message}"
 
 

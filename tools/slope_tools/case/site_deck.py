@@ -52,7 +52,7 @@ def values(choices: Choices, parts: Parts, numbers: Numbers) -> Dict[str, Any]:
     """What the template is filled in with."""
     model, motion, body = choices["model"], choices["motion"], parts.body
     balls = body.volume / numbers.diameter ** 3
-    told: Dict[str, Any] = {
+    parameters: Dict[str, Any] = {
         "title": parts.title, "terrain": parts.terrain, "deck": NAME, "volume": f"{body.volume:,.0f}",
         "balls": f"about {balls:,.0f}", "rest": "some" if numbers.rest is None else f"{numbers.rest:.0f}",
         "run_time": run_time(numbers.run_seconds), "lower": math.ceil(body.lower),
@@ -61,7 +61,7 @@ def values(choices: Choices, parts: Parts, numbers: Numbers) -> Dict[str, Any]:
         "structures": [{"name": one.name, "file": one.file, "point": words(one.point),
                         "move": f" move {words(one.move)}" if any(one.move) else ""} for one in parts.structures],
         "lines": parts.lines, "motion": parts.motion.file if parts.motion else "", }
-    told.update({name: plain(value) for name, value in (
+    parameters.update({name: plain(value) for name, value in (
         ("d", numbers.diameter), ("field_d", numbers.field_diameter), ("spacing", model["spacing"]),
         ("rolling", choices["study"]["rolling"][0]), ("friction", model["friction"]), ("slip", model["slip_friction"]),
         ("restitution", model["restitution"]), ("field_e", model["field_restitution"]), ("density", model["density"]),
@@ -70,7 +70,7 @@ def values(choices: Choices, parts: Parts, numbers: Numbers) -> Dict[str, Any]:
         ("scale", motion["scale"]), ("shaking", parts.motion.length if parts.motion else 0),
         ("peak_friction", numbers.peak_friction), ("peak_rolling", motion["peak_rolling"]),
         ("trigger", motion["trigger"]))})
-    return told
+    return parameters
 
 
 def plain(value: float) -> str:

@@ -31,7 +31,7 @@ class Structure(NamedTuple):
     triangles: int
 
     @property
-    def told(self) -> str:
+    def summary(self) -> str:
         where = "local metres" if not any(self.move) else "coordinates of the terrain's CRS"
         size = " x ".join(f"{side:.4g}" for side in self.high - self.low)
         return f"{self.file}: {self.triangles} triangles in {where}, {size} m"

@@ -54,7 +54,7 @@ def read_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> L
     lines = site_inputs.control_lines(choices["lines"]["files"], raster, folder, taken)
     motion = site_inputs.motion(choices["motion"]["file"], folder) if choices["motion"]["file"] else None
     for one in structures:
-        tell(one.told)
+        tell(one.summary)
     for line in lines:
         tell(f"{line.file}: control line of {len(line.points)} points")
     if motion:

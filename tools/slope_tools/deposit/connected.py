@@ -72,9 +72,9 @@ def top(deposit):
     A summary of an older run does not tell it. Then it is the centre of the highest cell that the mass was ever in, or,
     without PREFIX.max_thickness.asc, of the deposit, which is lower on the slope.
     """
-    told = (deposit.summary.get("travel") or {}).get("top")
-    if isinstance(told, list) and len(told) == 3 and all(isinstance(v, (int, float)) for v in told):
-        return Top(float(told[0]), float(told[1]), float(told[2]), "summary: highest released ball")
+    top = (deposit.summary.get("travel") or {}).get("top")
+    if isinstance(top, list) and len(top) == 3 and all(isinstance(v, (int, float)) for v in top):
+        return Top(float(top[0]), float(top[1]), float(top[2]), "summary: highest released ball")
     name = f"{deposit.prefix}.max_thickness.asc"
     source, thickness = "highest cell of the deposit", deposit.raster.z
     if Path(name).is_file():

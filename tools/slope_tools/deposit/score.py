@@ -194,8 +194,8 @@ def connected_runout(run_, threshold, observed):
 
 def balls(run_):
     """Distance (m) and reach angle (degrees) that shares of the balls' volume stay within; None of an older run."""
-    told = (run_.summary.get("travel") or {}).get("quantiles")
-    return told if isinstance(told, list) else None
+    quantiles = (run_.summary.get("travel") or {}).get("quantiles")
+    return quantiles if isinstance(quantiles, list) else None
 
 
 def centroid(observed, raster):

@@ -8,6 +8,7 @@ import io
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Sequence, Tuple
+from xml.etree import ElementTree
 
 import numpy as np
 from rich.table import Table
@@ -74,6 +75,19 @@ def series(folder: Path, prefix: str) -> Series:
 def pressures(folder: Path, prefix: str) -> Dict[str, np.ndarray]:
     """Of the triangles that were touched: middle x, y, z (m) and largest pressure (Pa)."""
     return table_of(folder / f"{prefix}.triangles.csv", ("x", "y", "z", "largest_pressure"))
+
+
+def polydata(path: Path) -> Tuple[np.ndarray, np.ndarray]:
+    """Corners of the triangles (n, 3, 3), m, and their largest pressure (n), Pa, of the .vtp that the fix wrote."""
+    try:
+        arrays = {one.get("Name"): np.array(one.text.split(), float)
+                  for one in ElementTree.parse(path).iter("DataArray") if one.text}
+        corners, pressure = arrays["corners"].reshape(-1, 3, 3), arrays["largest_pressure"]
+        if len(corners) != len(pressure):
+            raise ValueError(f"{len(corners)} triangles, {len(pressure)} pressures")
+    except (OSError, ElementTree.ParseError, KeyError, ValueError) as error:
+        raise SlopeError(path, f"must be what fix wall/gran/mesh wrote ({error})") from error
+    return corners, pressure
 
 
 def crossings(folder: Path, prefix: str) -> Dict[str, np.ndarray]:

@@ -149,7 +149,7 @@ def check_folder(setup: Setup, todo) -> None:
 
 def list_runs(todo):
     for one in todo:
-        told = " ".join(f"{name} {value}" for name, value in one.chosen.items())
-        print(f"{one.name}: {told}, {one.state()}")
+        values = " ".join(f"{name} {value}" for name, value in one.chosen.items())
+        print(f"{one.name}: {values}, {one.state()}")
     done = sum(one.marker.exists() for one in todo)
     print(f"{len(todo)} runs, {done} of them finished")

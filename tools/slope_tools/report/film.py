@@ -69,13 +69,13 @@ def fewer(frames: Frames) -> Tuple[Frames, str]:
 def encode(program: str, picture: "Picture", times: np.ndarray) -> bytes:
     """The MP4 of a picture at times."""
     wide, tall = picture.size
-    with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile() as told:
+    with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile() as errors:
         path = Path(folder) / "film.mp4"
         command = [program, "-nostdin", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgba", "-s",
                    f"{wide}x{tall}", "-r", str(RATE), "-i", "-", "-c:v", "libx264", "-preset", "fast", "-crf", "24",
                    "-pix_fmt", "yuv420p", "-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2", "-movflags", "+faststart",
                    "-threads", "1", "-y", str(path)]
-        with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=told) as process:
+        with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=errors) as process:
             assert process.stdin is not None
             try:
                 for time in times:
@@ -87,8 +87,8 @@ def encode(program: str, picture: "Picture", times: np.ndarray) -> bytes:
                 process.kill()
                 raise
         if process.returncode != 0 or not path.is_file():
-            told.seek(0)
-            raise OSError(told.read().decode("utf-8", "replace") or f"status {process.returncode}")
+            errors.seek(0)
+            raise OSError(errors.read().decode("utf-8", "replace") or f"status {process.returncode}")
         return path.read_bytes()
 
 

@@ -4,6 +4,7 @@ Heights and places are 16-bit shares of the box that they lie in, in base64: a s
 """
 import base64
 import math
+from pathlib import Path
 from typing import Any, Dict
 
 import contourpy
@@ -12,6 +13,7 @@ from matplotlib import colormaps
 from matplotlib.colors import to_hex
 
 from ..drawing import figures
+from ..ensemble import structures
 from ..geometry import polygons_of
 from ..survey import rasters
 from ..survey.resampling import sample
@@ -19,9 +21,11 @@ from .frames import Frames
 from .ground import box_of
 
 MOST_NODES = 60_000     # of the ground
+MOST_TRIANGLES = 20_000     # of one structure: 1 MB
 ROOM = 0.3              # of what the mass touched, shown around it
 FULL = 65_534           # the largest number of a place or a height; one more: nothing there
 COLOURS = {"speed": "YlOrRd", "height": "viridis"}
+STRUCTURE = "#7d8fa3"
 TONES = 9               # of a scale of colours
 FASTEST = 99.5          # percentile of the speeds of moving balls that the scale ends at
 MOVES = 0.1             # m/s
@@ -29,7 +33,8 @@ MOVES = 0.1             # m/s
 
 def scene(data, ground, section, frames: Frames) -> Dict[str, Any]:
     """What the viewer takes, ready for JSON; lengths in m, relative to x y of `centre` and to height 0."""
-    box = shown(ground)
+    walls = structures_of(data.result)
+    box = shown(ground, walls)
     places, low, span = quantised(frames.place)
     top = fastest(frames.speed)
     with np.errstate(invalid="ignore"):
@@ -42,13 +47,16 @@ def scene(data, ground, section, frames: Frames) -> Dict[str, Any]:
         "falls": falls(section),
         "road": [np.round(ring, 2).tolist() for ring in rings(data.road)],
         "release": [np.round(line, 2).tolist() for line in outlines(ground)],
+        "structures": [packed_structure(name, corners)
+                       for name, corners in walls.items() if meets(corners, box)],
         "balls": {"count": frames.place.shape[1], "places": packed(balls, "<u2"), "low": low.tolist(),
                   "span": span.tolist(),
                   "diameter": float(sizes[0]) if len(sizes) == 1 else packed(frames.diameter, "<f4")},
         "times": np.round(frames.time, 4).tolist(),
         "speed": {"top": top, "colours": tones("speed")},
         "height": {"low": float(start.min()), "top": float(start.max()), "colours": tones("height")},
-        "colours": {"road": figures.ROAD, "release": figures.RELEASE, "section": figures.SECTION}}
+        "colours": {"road": figures.ROAD, "release": figures.RELEASE, "section": figures.SECTION,
+                    "structure": STRUCTURE}}
 
 
 # --- balls ---
@@ -83,16 +91,42 @@ def packed(values, kind):
     return base64.b64encode(np.ascontiguousarray(values, kind).tobytes()).decode("ascii")
 
 
+# --- structures ---
+
+def structures_of(run) -> Dict[str, np.ndarray]:
+    """Corners of the triangles (n, 3, 3) of each structure, by its name."""
+    return {name: structures.polydata(Path(run.folder) / f"{prefix}.vtp")[0]
+            for name, prefix in structures.outputs(run.log.settings, "wall/gran/mesh").items()}
+
+
+def meets(corners, box):
+    """Whether a structure reaches into the box."""
+    places = corners[..., :2].reshape(-1, 2)
+    return bool((places.max(axis=0) >= box[:2]).all() and (places.min(axis=0) <= box[2:]).all())
+
+
+def packed_structure(name, corners):
+    """Name and triangles; none of one that has too many."""
+    corners = corners if len(corners) <= MOST_TRIANGLES else corners[:0]
+    return {"name": name, "triangles": len(corners), "corners": packed(corners, "<f4")}
+
+
 # --- ground ---
 
-def shown(ground):
-    """Local xlo, ylo, xhi, yhi of the ground that is shown: what the mass touched, the road beside it, and room."""
-    xlo, ylo, xhi, yhi = box_of(ground.raster, ground.touched | ground.source)
-    room = ROOM * max(xhi - xlo, yhi - ylo)
-    whole = ground.extent
+def shown(ground, walls):
+    """Local xlo, ylo, xhi, yhi of the ground that is shown: what the mass touched, the road beside it, structures that
+    are no farther from that than it is long, and room."""
+    box = np.array(box_of(ground.raster, ground.touched | ground.source))
+    size = max(box[2:] - box[:2])
+    for corners in walls.values():
+        places = corners[..., :2].reshape(-1, 2)
+        near = places[((places >= box[:2] - size) & (places <= box[2:] + size)).all(axis=1)]
+        if len(near):
+            box = np.concatenate([np.minimum(box[:2], near.min(axis=0)), np.maximum(box[2:], near.max(axis=0))])
+    room = ROOM * max(box[2:] - box[:2])
     half = ground.cell / 2      # heights are known up to the middles of the outermost cells
-    return (max(xlo - room, whole[0] + half), max(ylo - room, whole[1] + half),
-            min(xhi + room, whole[2] - half), min(yhi + room, whole[3] - half))
+    low, high = (np.array(side) for side in (ground.extent[:2], ground.extent[2:]))
+    return np.concatenate([np.maximum(box[:2] - room, low + half), np.minimum(box[2:] + room, high - half)])
 
 
 def ground_of(data, ground, box):

@@ -1,12 +1,10 @@
 """What a report shows of structures and control lines: forces against time, the largest pressures, energies."""
 from pathlib import Path
-from xml.etree import ElementTree
 from typing import Any, Dict
 
 import numpy as np
 
 from ..ensemble import structures
-from ..errors import SlopeError
 from . import figure_structures
 
 COLUMNS = {
@@ -19,19 +17,6 @@ COLUMNS = {
               ("first", "s", "first_s", 1), ("speed 95 %", "m/s", "speed_95_m_s", 1),
               ("height 95 %", "m", "height_95_m", 1), ("energy 50 %", "kJ", "energy_50_j", 1e3),
               ("energy 95 %", "kJ", "energy_95_j", 1e3), ("largest energy", "kJ", "largest_energy_j", 1e3))}
-
-
-def polydata(path):
-    """Corners of the triangles (n, 3, 3), m, and their largest pressure (n), Pa, of a .vtp that the fix wrote."""
-    try:
-        arrays = {one.get("Name"): np.array(one.text.split(), float)
-                  for one in ElementTree.parse(path).iter("DataArray") if one.text}
-        corners, pressure = arrays["corners"].reshape(-1, 3, 3), arrays["largest_pressure"]
-        if len(corners) != len(pressure):
-            raise ValueError(f"{len(corners)} triangles, {len(pressure)} pressures")
-    except (OSError, ElementTree.ParseError, KeyError, ValueError) as error:
-        raise SlopeError(path, f"must be what fix wall/gran/mesh wrote ({error})") from error
-    return corners, pressure
 
 
 class Structures:
@@ -95,7 +80,7 @@ class Structures:
         """The map of the largest pressure on a structure of the shown run; None where nothing touched it."""
         name, prefix = item
         folder = Path(self.data.result.folder)
-        corners, pressure = polydata(folder / f"{prefix}.vtp")
+        corners, pressure = structures.polydata(folder / f"{prefix}.vtp")
         if not pressure.any():
             return None
         load = structures.series(folder, prefix).impulse[-1:].sum(axis=0)       # none without any output

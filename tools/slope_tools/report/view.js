@@ -42,6 +42,7 @@
     box.append(swatch('background: #c6ad9a', 'slip surface'));
     if (scene.road.length) box.append(swatch(`border: 2px solid ${scene.colours.road}; background: ${scene.colours.road}40`, 'road'));
     if (scene.release.length) box.append(swatch(`height: 0; border-top: 2px dashed ${scene.colours.release}`, 'released mass'));
+    if (scene.structures.some((one) => one.triangles > 0)) box.append(swatch(`background: ${scene.colours.structure}`, 'structure'));
     box.append(swatch(`height: 0; border-top: 2px dotted ${scene.colours.section}`, "section A-A'"));
   }
 
@@ -60,7 +61,7 @@
     const world = new THREE.Scene();
     world.background = new THREE.Color('#dfe7ee');
     const ground = SlopeWorld.groundOf(scene, centre), balls = SlopeWorld.ballsOf(scene, centre, renderer);
-    world.add(...ground.parts, balls.points);
+    world.add(...ground.parts, ...SlopeWorld.structuresOf(scene, centre), balls.points);
 
     const size = Math.hypot(box[2] - box[0], box[3] - box[1]);
     const camera = new THREE.PerspectiveCamera(FIELD_OF_VIEW, 1.6, size / 300, 12 * size);

@@ -62,10 +62,12 @@ def caption(data, about, frames: Frames) -> str:
         (f"{shown:,} of the {frames.balls:,} balls, chosen at random; each stands for {frames.factor:.3g} and is drawn "
          f"with their volume, {frames.factor ** (1 / 3):.2g} times as wide")
     every = f"all {times} snapshots" if times == frames.dumped else f"{times} of the {frames.dumped} snapshots"
+    left_out = [one["name"] for one in about["structures"] if not one["triangles"]]
+    walls = f" Not drawn, for its size: {', '.join(left_out)}." if left_out else ""
     gap = (frames.time[-1] - frames.time[0]) / max(1, times - 1)
     run = f"Run: {data.label(data.result)}. " if data.study else ""
     return (f"{run}{balls}, at {every} that the run wrote, {gap:.2g} s apart on average; between two of them each ball "
             f"is drawn on a straight line. The ground is the one without the body, so that the slip surface shows; "
             f"heights are not exaggerated; contours every {about['ground']['interval']:g} m, grid of "
             f"{about['ground']['grid']:g} m. Drag turns the view, with the right button it moves, the wheel zooms "
-            "after a click. The scale holds at the middle of the view.")
+            f"after a click. The scale holds at the middle of the view.{walls}")

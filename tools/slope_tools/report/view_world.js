@@ -1,5 +1,6 @@
-/* What the 3-D view of a report shows: ground and balls, made of the scene that scene.py wrote. Needs THREE
-   before it on the page; leaves SlopeWorld, with groundOf(scene, centre) and ballsOf(scene, centre, renderer).
+/* What the 3-D view of a report shows: ground, structures and balls, made of the scene that scene.py wrote.
+   Needs THREE before it on the page; leaves SlopeWorld, with groundOf(scene, centre), structuresOf(scene, centre) and
+   ballsOf(scene, centre, renderer).
    Axes as in the run: x east, y north, z up; lengths in m, heights not exaggerated. */
 const SlopeWorld = (function () {
   'use strict';
@@ -173,6 +174,35 @@ const SlopeWorld = (function () {
             pictures};
   }
 
+  // --- structures: each triangle in one tone, by how it faces the light from either side ---
+
+  function structuresOf(scene, centre) {
+    const parts = [];
+    for (const about of scene.structures.filter((one) => one.triangles > 0)) {
+      const places = new Float32Array(bytes(about.corners)), tones = new Float32Array(places.length);
+      const colour = new THREE.Color(scene.colours.structure), triangle = new THREE.Triangle(), outwards = new THREE.Vector3();
+      for (let n = 0; n < places.length; n += 3) {
+        places[n] -= centre.x;
+        places[n + 1] -= centre.y;
+      }
+      for (let n = 0; n < places.length; n += 9) {
+        triangle.a.fromArray(places, n);
+        triangle.b.fromArray(places, n + 3);
+        triangle.c.fromArray(places, n + 6);
+        triangle.getNormal(outwards);
+        const tone = colour.clone().multiplyScalar(0.55 + 0.6 * Math.abs(outwards.dot(NORTH_WEST)));
+        for (const k of [n, n + 3, n + 6]) tone.toArray(tones, k);
+      }
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute('position', new THREE.BufferAttribute(places, 3));
+      geometry.setAttribute('color', new THREE.BufferAttribute(tones, 3));
+      parts.push(new THREE.Mesh(geometry, new THREE.MeshBasicMaterial(
+        {vertexColors: THREE.VertexColors || true, side: THREE.DoubleSide})));
+      parts.push(new THREE.LineSegments(new THREE.EdgesGeometry(geometry, 20), new THREE.LineBasicMaterial({color: '#39424d'})));
+    }
+    return parts;
+  }
+
   // --- balls: points that are drawn as lit spheres, with the depth of a sphere ---
 
   const BALL_VERTEX = `
@@ -258,5 +288,5 @@ const SlopeWorld = (function () {
     }};
   }
 
-  return {groundOf, ballsOf, NORTH_WEST, AT_REST};
+  return {groundOf, structuresOf, ballsOf, NORTH_WEST, AT_REST};
 }());

@@ -48,15 +48,15 @@ def not_at_rest(data):
         if not mine:
             continue
         worst = max(mine, key=lambda end: end.share)
-        told = f"{worst.text}, at {worst.time:.1f} s."
+        moment = f"{worst.text}, at {worst.time:.1f} s."
         if not data.study:
-            found.append((level, f"The deposit is not at rest: {told}{note}"))
+            found.append((level, f"The deposit is not at rest: {moment}{note}"))
             continue
         cut = sum(end.cut for end in mine)
         who = f"{len(mine)} of {plural(len(ends), 'deposit')} not at rest at the end"
         who += f", {cut} of them stopped at their duration" if cut and len(mine) > 1 else ""
         found.append((level, f"{who}{of_runs([end.name for end in mine], None) if len(mine) < len(ends) else ''}: "
-                             f"{'most moves in ' * (len(mine) > 1)}{worst.name}: {told}{note}"))
+                             f"{'most moves in ' * (len(mine) > 1)}{worst.name}: {moment}{note}"))
     return found
 
 
@@ -89,8 +89,9 @@ def from_logs(data, released):
             entries += [(f"LAMMPS: {text}", data.label_of(row)) for text in row.get("log_warnings") or ()]
     else:
         entries = [(f"LAMMPS: {text}", None) for text in data.result.log.warnings]
-    told = "LAMMPS: Delete_balls" if released else None
-    return by_kind([(text, name) for text, name in entries if not (told and text.startswith(told))], len(data.rows))
+    expected = "LAMMPS: Delete_balls" if released else None
+    entries = [(text, name) for text, name in entries if not (expected and text.startswith(expected))]
+    return by_kind(entries, len(data.rows))
 
 
 # --- kinds ---
@@ -127,9 +128,9 @@ def of_runs(names, runs, more=""):
     """Which runs, in brackets; runs: how many there are, None if the number stands before."""
     if runs is not None and len(names) == runs:
         return f" (all {runs} runs{more})" if runs > 1 else ""
-    told = "; ".join(names[:NAMED]) + (f"; and {len(names) - NAMED} more" if len(names) > NAMED else "")
+    named = "; ".join(names[:NAMED]) + (f"; and {len(names) - NAMED} more" if len(names) > NAMED else "")
     count = "" if runs is None else f"{len(names)} of {plural(runs, 'run')}: "
-    return f" ({count}{told}{more})"
+    return f" ({count}{named}{more})"
 
 
 def plural(number, what):

@@ -184,12 +184,12 @@ class _Parser:
     def decoder(self, head):
         """What makes text of the file's bytes if expat cannot (Shift_JIS), else None."""
         declared = re.match(rb"""(?:\xef\xbb\xbf)?\s*<\?xml[^>]*?encoding\s*=\s*["']([A-Za-z0-9._-]+)""", head)
-        told = declared.group(1).decode() if declared else "UTF-8"
-        name = told.lower().replace("-", "_")
+        encoding = declared.group(1).decode() if declared else "UTF-8"
+        name = encoding.lower().replace("-", "_")
         if name in ("shift_jis", "sjis", "x_sjis", "windows_31j", "cp932", "ms932"):
             return codecs.getincrementaldecoder("cp932")()
         if name not in ("utf_8", "utf8", "us_ascii", "ascii"):
-            raise SlopeError(f"{self.where}: line 1", "encoding must be UTF-8 or Shift_JIS", told)
+            raise SlopeError(f"{self.where}: line 1", "encoding must be UTF-8 or Shift_JIS", encoding)
         return None
 
     def doctype(self, name, *_):

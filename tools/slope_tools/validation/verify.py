@@ -100,7 +100,7 @@ class Bar:
 
     def __init__(self, total):
         self.live = sys.stderr.isatty() and total > 1
-        self.told = total > 1 and not self.live
+        self.as_lines = total > 1 and not self.live
         self.bar = Progress(TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(),
                             console=Console(stderr=True), transient=True)
         self.task = self.bar.add_task("", total=total)
@@ -116,7 +116,7 @@ class Bar:
 
     def say(self, what):
         self.bar.update(self.task, description=what)
-        if self.told:
+        if self.as_lines:
             print(f"slope verify: {what}", file=sys.stderr, flush=True)
 
     def step(self):

@@ -55,7 +55,7 @@ def creep(result):
 
 
 def _keeps(name, which, deck, **more):
-    return Claim(name, f"{which}: median way of the balls between the two measurements over their diameter", "", AI,
+    return Claim(name, f"{which}: median path of the balls between the two measurements over their diameter", "", AI,
                  (deck(rolling=0.2),), creep, AtMost(1e-3), Control(NO_SPRING, (deck(rolling=0.2, spring=0),)), **more)
 
 
