@@ -51,7 +51,7 @@ if has cppcheck "the C++"; then
   cppcheck --std=c++11 --language=c++ -j "${JOBS:-2}" --cppcheck-build-dir=build/cppcheck \
     --enable=warning,style,performance,portability --suppressions-list=tests/cppcheck.txt --quiet --error-exitcode=1 \
     -I src --suppress=missingInclude --suppress=missingIncludeSystem --suppress=unmatchedSuppression \
-    --template='lint: {file}:{line}: {severity}: {message} ({id})' src || failed=1
+    --template='lint: {file}:{line}: {severity}: {message} ({id})' src tools/dump2vtk || failed=1
 fi
 
 ((failed)) || { ((skipped)) && echo "lint: clean, but for what was not looked at" || echo "lint: clean"; }

@@ -4,8 +4,8 @@
 
 For each seed a run with hidden values and another lattice is the truth; `slope calibrate` looks for the values by so
 many runs, and its 90 % intervals should hold them in 9 of 10 cases. What can be known at all is what --direct runs, the
-same for all seeds, say of each truth. About an hour and a half on two cores that have other work, not a part of the test suite; started again, it
-goes on.
+same for all seeds, say of each truth. About an hour and a half on two cores that have other work, not a part of the
+test suite; started again, it goes on.
 """
 import argparse
 import os

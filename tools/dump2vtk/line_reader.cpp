@@ -82,7 +82,7 @@ bool LineReader::next()
     const char *from = buffer.data() + begin;
     const void *at = memchr(from + seen, '\n', end - begin - seen);
     if (at) {
-      text = std::string_view(from, (const char *) at - from);
+      text = std::string_view(from, static_cast<const char *>(at) - from);
       begin += text.size() + 1;
       ended = true;
       nline++;
