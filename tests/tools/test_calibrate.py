@@ -249,7 +249,7 @@ def test_all_runs_failed_is_one_line(slope, here):
     (f"{WORDS} --runs 20 --front 9 --tolerance far=0.1",
      "argument --tolerance: must name one of observed, front, area, volume, got 'far'"),
     (f"{WORDS} --runs 20 --front 9 --set friction=3", "--vary: must not name a variable of --set, got friction"),
-    (f"{WORDS} --runs 20 --front 9 --repeat cell=2", "--repeat: must name what is chance"),
+    (f"{WORDS} --runs 20 --front 9 --repeat cell=2", "--repeat: must name a variable that differs by chance alone"),
     (f"{WORDS} --runs 20 --observed none.tif", "--observed: must be an existing file, got none.tif"),
     (f"{WORDS} --runs 20 --observed far.tif", "far.tif: must overlap the grid of the run"),
     (f"{WORDS} --runs 20 --observed other.tif", "other.tif: must be in the CRS of the run, EPSG:6677"),

@@ -126,7 +126,7 @@ def test_without_a_road_there_are_means_and_no_headline(slope):
 
 
 @pytest.mark.parametrize("arguments, message", [
-    ("--set rolling=0 --repeat friction=20,30", "--repeat: must name what is chance, a variable called seed or "
+    ("--set rolling=0 --repeat friction=20,30", "--repeat: must name a variable that differs by chance alone, seed or "
      "...offset; if the values of friction are equally good, say --equally-good friction, got friction"),
     ("--set rolling=0 --repeat colour=1", "--repeat: must name an index variable of case/in.tiny"),
     ("--set rolling=0 --equally-good friction", "--equally-good: must name variables of --repeat, got friction"),

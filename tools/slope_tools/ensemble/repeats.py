@@ -39,8 +39,8 @@ def check(names: Sequence[str], equally_good: str) -> None:
     also = [name for name in equally_good.split(",") if name]
     for name in names:
         if not (CHANCE.fullmatch(name) or name in also):
-            raise SlopeError("--repeat", "must name what is chance, a variable called seed or ...offset; if the values "
-                             f"of {name} are equally good, say --equally-good {name}", name)
+            raise SlopeError("--repeat", "must name a variable that differs by chance alone, seed or ...offset; if the "
+                             f"values of {name} are equally good, say --equally-good {name}", name)
     for name in also:
         if name not in names:
             raise SlopeError("--equally-good", "must name variables of --repeat", name)
