@@ -11,13 +11,15 @@
 #include <cstring>
 #include <stdexcept>
 #include <string>
+#include <sys/stat.h>
 
 namespace Slope {
 
 // A text file that appears under its name only when it is complete: it is written beside, as
 // PATH.tmp, and commit() renames it. Without commit(), or after an error, nothing is left
 // behind and an older file of that name stays as it was. Of several files that belong together,
-// close() all, which is the last that a full disk can refuse, before the first commit().
+// close() all, which is the last that a full disk or a folder of that name can refuse, before the
+// first commit().
 // Errors are std::runtime_error with one line that names the path.
 class AtomicFile {
  public:
@@ -25,6 +27,7 @@ class AtomicFile {
       path(_path), beside(_path + ".tmp"), fp(fopen(beside.c_str(), "w")), there(fp != nullptr)
   {
     if (!fp) fail();
+    look();
   }
 
   ~AtomicFile() { discard(); }
@@ -41,6 +44,7 @@ class AtomicFile {
     FILE *closing = fp;
     fp = nullptr;
     if (closing && fclose(closing) != 0) fail();
+    look();
   }
 
   void commit()
@@ -57,6 +61,13 @@ class AtomicFile {
 
   AtomicFile(const AtomicFile &) = delete;
   AtomicFile &operator=(const AtomicFile &) = delete;
+
+  void look()    // what rename() would refuse
+  {
+    struct stat info;
+    errno = EISDIR;
+    if (lstat(path.c_str(), &info) == 0 && S_ISDIR(info.st_mode)) fail();
+  }
 
   void discard()
   {

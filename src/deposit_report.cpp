@@ -43,7 +43,10 @@ DepositReport::DepositReport(LAMMPS *lmp, const std::string &id, const DepositOp
 void DepositReport::begin_run()
 {
   on_rank_zero(lmp, "Fix deposit/grid", [this]() {
-    AtomicFile(options.prefix + ".summary.yaml");    // opened beside, and removed
+    std::vector<std::string> paths = {options.prefix + ".summary.yaml"};
+    for (const DepositWriter::File &file : DepositWriter::files(options.prefix, ""))
+      paths.push_back(file.path);
+    FileSet::probe(paths);
   });
   limit = timer->get_timeout_remain();    // fix halt ends a run as a time limit does
   limit_set = MPI_Wtime();

@@ -26,7 +26,7 @@ class DepositReport : protected Pointers {
   DepositReport(class LAMMPS *, const std::string &fix_id, const DepositOptions &,
                 const class DepositBalls &);
 
-  // a folder that is not there ends the run before it begins, not at its end
+  // files that cannot be written end the run before it begins, not at its end
   void begin_run();
 
   // why a run ended

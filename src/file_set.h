@@ -14,9 +14,16 @@
 
 namespace Slope {
 
-// Files that appear together: on a full disk either all of them are new, or none.
+// Files that appear together: on a full disk, or where one of them cannot be, either all of them are
+// new, or none.
 class FileSet {
  public:
+  // whether all could be written: each is opened beside, and removed
+  static void probe(const std::vector<std::string> &paths)
+  {
+    for (const std::string &path : paths) AtomicFile file(path);
+  }
+
   AtomicFile &add(const std::string &path)
   {
     files.emplace_back(new AtomicFile(path));

@@ -126,7 +126,7 @@ void FixControlLine::init()
       new RegionSurface(lmp, "Fix control/line", deposit->terrain().c_str(), RegionSurface::UPPER));
   check_line();
   on_rank_zero(lmp, "Fix control/line", [this]() {
-    Slope::AtomicFile(prefix + ".line.csv");    // opened beside, and removed
+    Slope::FileSet::probe({prefix + ".line.csv", prefix + ".line.yaml"});
   });
 }
 

@@ -5,7 +5,6 @@
 
 #include "surface_recorder.h"
 
-#include "atomic_file.h"
 #include "file_set.h"
 #include "gather_records.h"
 #include "rank_zero.h"
@@ -22,7 +21,7 @@ using namespace Slope;
 static constexpr double GROWN = 1.5;    // rows over those in the file that make it worth writing
 
 /* ----------------------------------------------------------------------
-   a folder that does not exist is noticed here, not at the end of the run
+   files that cannot be written are noticed here, not at the end of the run
 ------------------------------------------------------------------------- */
 
 SurfaceRecorder::SurfaceRecorder(LAMMPS *lmp, const std::string &_caller,
@@ -33,8 +32,8 @@ SurfaceRecorder::SurfaceRecorder(LAMMPS *lmp, const std::string &_caller,
     written(0.0), last_row(-1)
 {
   on_rank_zero(lmp, caller, [this]() {
-    AtomicFile(prefix + ".csv");
-  });    // opened beside, and removed
+    FileSet::probe({prefix + ".csv", prefix + ".triangles.csv", prefix + ".vtp"});
+  });
 }
 
 /* ---------------------------------------------------------------------- */
