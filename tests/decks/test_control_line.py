@@ -1,6 +1,8 @@
 """Fix control/line: what crosses a line, in closed form and against the ledger of fix deposit/grid."""
 
 import csv
+import functools
+import sys
 
 import numpy as np
 import pytest
@@ -197,6 +199,15 @@ def test_other_line_in_the_restart(tmp_path):
     text = collapse_deck("run 1", begin="read_restart cut.restart")
     text = text.replace("\nthermo 1000", "\nfix line soil control/line line.csv output out\nthermo 1000", 1)
     run_deck(text, tmp_path, expect_error="Fix control/line line must have the line of the restart file, 3 points")
+
+
+@pytest.mark.parametrize("np_, name", [(1, "out.line.csv"), (2, "out.line.yaml"), (1, "out.line.yaml.tmp")])
+def test_a_folder_where_a_file_must_be(tmp_path, monkeypatch, np_, name):
+    (tmp_path / name).mkdir()
+    monkeypatch.setattr(sys.modules[__name__], "run_deck", functools.partial(
+        run_deck, expect_error=f"Fix control/line: cannot write {name.removesuffix('.tmp')}: Is a directory"))
+    log = fly(tmp_path, [[-1, 0, 8]], [[3, 0, 0]], "0 -9\n0 9\n", "run 500\n", np_=np_)
+    assert "Step" not in log and [path.name for path in tmp_path.glob("out.line*")] == [name]
 
 
 def test_doc_examples(tmp_path):

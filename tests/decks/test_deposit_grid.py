@@ -392,6 +392,26 @@ run 10
     assert "Step" not in log
 
 
+@pytest.mark.parametrize("np_, name", [(1, "out.summary.yaml"), (2, "out.last_motion.asc"), (1, "out.base.asc.tmp")])
+def test_a_folder_where_a_file_must_be(tmp_path, np_, name):
+    flat(tmp_path, 10)
+    write_balls(tmp_path / "balls.data", [[5, 5, 5]], 0.5, None, [(0.0, 10.0)] * 3)
+    (tmp_path / name).mkdir()
+    log = run_deck(head() + "fix dep all deposit/grid 1 0 cell 1 terrain ground output out\nrun 10\n", tmp_path, np=np_,
+                   expect_error=f"Fix deposit/grid: cannot write {name.removesuffix('.tmp')}: Is a directory")
+    assert "Step" not in log and [path.name for path in tmp_path.glob("out*")] == [name]
+
+
+@pytest.mark.parametrize("np_", [1, 2])
+def test_a_folder_that_comes_in_the_run_leaves_all_files_as_they_were(tmp_path, np_):
+    flat(tmp_path, 10)
+    write_balls(tmp_path / "balls.data", [[5, 5, 5]], 0.5, [[1, 0, 0]], [(0.0, 10.0)] * 3)
+    run_deck(head() + "fix dep all deposit/grid 1 2 cell 1 terrain ground series yes output out\nrun 2\n"
+             "shell mkdir out.4.thickness.asc\nrun 10\n", tmp_path, np=np_,
+             expect_error="Fix deposit/grid: cannot write out.4.thickness.asc: Is a directory")
+    assert summary(tmp_path)["step"] == 2 and not list(tmp_path.glob("*.tmp"))
+
+
 def test_clear_and_again(tmp_path):
     flat(tmp_path, 10)
     write_balls(tmp_path / "balls.data", [[5, 5, 5]], 0.5, [[1, 0, 0]], [(0.0, 10.0)] * 3)
