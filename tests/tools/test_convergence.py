@@ -174,7 +174,7 @@ def test_size_errors_are_those_of_the_fit(tmp_path):
 
 
 def test_what_speaks_against_a_size_error(tmp_path):
-    write_converge(tmp_path / "c.yaml", [(4.0, [10.0, 11.0]), (2.0, [13.0, 13.5])], base={
+    write_converge(tmp_path / "c.yaml", [(4.0, [10.0, 11.0]), (1.0, [13.0, 13.5])], base={
         "rolling": "0", "field_d": "1.25", "out": "a", "xoffset": "0.5"}, road={"cut_angle": 30.0, "mesh": 10.0})
     errors = SizeErrors(tmp_path / "c.yaml", "remove_m3")
     same = {"rolling": "0", "field_d": "1.250", "out": "b", "xoffset": "0"}
@@ -184,6 +184,20 @@ def test_what_speaks_against_a_size_error(tmp_path):
                          {"cut_angle": 35.0, "mesh": 10.0}) == [
         "the size error is that of another deck, in.tiny",
         "the size error was found with field_d 1.25 instead of 0.9, cut angle 30 instead of 35"]
+
+
+@pytest.mark.parametrize("runs, field, d, words", [
+    ([(4.0, [88.0, 89.0]), (2.0, [94.0, 95.0]), (1.0, [97.0, 97.5])], "1.25", "1.0", []),
+    ([(4.0, [88.0, 89.0]), (2.0, [94.0, 95.0]), (1.0, [97.0, 97.5])], "1.0", "1.0", ["smaller than the field's, 1 m"]),
+    ([(4.0, [40.0, 41.0]), (2.0, [70.0, 71.0]), (1.0, [85.0, 86.0])], "1.25", "2.0", ["the size error is -30 %"]),
+    ([(4.0, [0.0, 0.0]), (2.0, [45.0, 50.0]), (1.0, [75.0, 76.0])], "1.25", "1.0", [
+        "nothing to remove, at d 4", "the size error is -"])])
+def test_a_size_error_of_balls_that_are_too_large_is_doubted(tmp_path, runs, field, d, words):
+    base = {"rolling": "0", "field_d": field}
+    write_converge(tmp_path / "c.yaml", runs, base=base)
+    found = SizeErrors(tmp_path / "c.yaml", "remove_m3").doubts("in.tiny", {**base, "d": d}, [], {})
+    found = [text for text in found if "do not support" not in text]
+    assert len(found) == len(words) and all(word in text for word, text in zip(words, found)), found
 
 
 # --- the command ---

@@ -160,7 +160,7 @@ def rows(*several, names=("rolling",), rest=True):
         for i, volume in enumerate(volumes):
             found.append({"run": f"{'_'.join(chosen)}_{i}", "status": "finished", "set": dict(zip(names, chosen)),
                           "repeat": {"seed": str(i)} if i else {}, "remove_m3": volume, "at_rest": rest,
-                          "released_m3": 100.0, "centroid_m": 5 + volume / 7, "front_m": 50.0, "max_speed_m_s": 9.0})
+                          "released_m3": 1000.0, "centroid_m": 5 + volume / 7, "front_m": 50.0, "max_speed_m_s": 9.0})
     return found
 
 
@@ -211,6 +211,25 @@ def test_other_doubts():
     loud = rows((("1",), (90.0, 120, 150)), (("0",), (100.0, 101, 102)))
     assert any(text.startswith("its runs scatter more than the others, by 30.0 instead of 1.0 m3")
                for text in conservative({"rolling": ["1", "0"]}, loud)["doubts"])
+
+
+def test_more_than_is_released_is_doubted():
+    several = rows((("0",), (700.0, 900, 800)), (("1",), (710.0, 890, 805)))
+    found = conservative({"rolling": ["0", "1"]}, several)
+    assert found["volume_m3"] > 1000 and any("more than the 1,000 m3 that are released" in text
+                                             for text in found["doubts"])
+    for row in several:
+        row["released_m3"] = 2000.0
+    assert conservative({"rolling": ["0", "1"]}, several)["doubts"] == []
+
+
+def test_runs_of_another_outcome_are_doubted():
+    """One of three stands: its 0 m3 are no chance of a volume."""
+    found = conservative({"rolling": ["0", "1"]}, rows((("0",), (500.0, 0, 520)), (("1",), (400.0, 420, 410))))
+    assert any(text.startswith("1 of the 3 runs of rolling_0 have less than 5 % of the volume of the others")
+               or text.startswith("1 of the 3 runs of ") for text in found["doubts"])
+    none = conservative({"rolling": ["0", "1"]}, rows((("0",), (0.0, 0, 0)), (("1",), (400.0, 420, 410))))
+    assert not any("of the others" in text for text in none["doubts"])
 
 
 @pytest.mark.parametrize("value, scatter, expected", [

@@ -14,8 +14,9 @@ from shapely.geometry import LineString
 from test_site import BODY, ROAD, TOOLS, gis, refused, slope, write_layer  # noqa: F401
 from tiny_collapse import LMP, processes_in
 
-from slope_tools import cli, programs
+from slope_tools import cli, disk, programs
 from slope_tools.case import site_choices, site_deck, site_folder
+from slope_tools.ensemble import site_study
 from slope_tools.errors import SlopeError
 
 
@@ -69,7 +70,7 @@ def test_names_of_the_files_are_known_before(inside, mine):
     write_layer(mine.parent / "mapped.geojson", [(25, 25), (60, 25), (60, 55), (25, 55)])
     inside("mine --line observed.geojson --observed mapped.geojson")
     assert site_folder.planned(site_choices.read(mine)) == set(site_choices.found(mine)["files"]) == {
-        path.name for path in mine.iterdir()}
+        path.name for path in mine.iterdir() if path.name != ".lock"}
 
 
 def test_a_line_called_observed_is_not_the_mapped_deposit(inside, mine):
@@ -237,3 +238,47 @@ def test_a_failed_run_leaves_score_and_report_of_the_others(inside, mine, monkey
     out, err = capsys.readouterr()
     assert err.splitlines()[-1].startswith("slope study: mine/study: 1 of 2 runs failed: rolling_0.1: ")
     assert "report.html" in out and (mine / "report.html").is_file() and (mine / "score" / "score.yaml").is_file()
+
+
+# --- the study of what is there ---
+
+def test_a_changed_site_is_not_run_with_the_old_deck(inside, mine, gis):  # noqa: F811
+    """What the deck was made of; rolling, cut angle and the report's fields are read when they are needed."""
+    text = (mine / "site.yaml").read_text()
+    for old, new in (("  rolling: [0, 0.05, 0.1]", "  rolling: [0, 0.2]"), ("  cut_angle: 30", "  cut_angle: 40"),
+                     ("  client: null", "  client: Me")):
+        assert old in text
+        text = text.replace(old, new)
+    (mine / "site.yaml").write_text(text)
+    assert cli.main(["study", "mine", "--dry-run"]) == 0
+    for old, new in (("  friction: 30", "  friction: 20"), ("  depth: ", "  depth: 1"),
+                     ("file: ../road.geojson", "file: ../other.geojson")):
+        assert old in text
+        (mine / "site.yaml").write_text(text.replace(old, new, 1))
+        refused(slope(gis, "study", "mine", "--dry-run"), "mine/site.yaml: must not have been changed since in.site "
+                "was made of it: `slope site mine` makes the deck anew")
+    (mine / "site.yaml").write_text(text.replace("  friction: 30", "  friction: 20"))
+    inside("mine")
+    assert cli.main(["study", "mine", "--dry-run"]) == 0
+
+
+@pytest.mark.parametrize("name", ["in.site", "terrain.asc", "release.slip.asc", "road.csv"])
+def test_a_site_without_one_of_its_files(mine, gis, name):  # noqa: F811
+    (mine / name).unlink()
+    refused(slope(gis, "study", "mine", "--dry-run"), f"mine/{name}: must be there; `slope site mine` makes it anew")
+    assert not (mine / "study").exists()
+
+
+def test_one_command_at_a_time_works_in_a_site(inside, mine, gis):  # noqa: F811
+    before = contents(mine)
+    with disk.alone_in(mine):
+        refused(slope(gis, "study", "mine"), "mine: must not be in use by another study: wait for it, or end it")
+        _, err = inside("mine --client Me", 2)
+        assert "mine: must not be in use by another study" in err
+    assert contents(mine) == {**before, Path(".lock"): b""}
+
+
+def test_warnings_of_a_site_are_those_of_its_study(tmp_path):
+    assert site_study.warnings_of(tmp_path) == []
+    (tmp_path / "warnings.yaml").write_text("# slope site\n- too thin\n")
+    assert site_study.warnings_of(tmp_path) == ["too thin"]

@@ -380,10 +380,13 @@ def test_finished_runs_of_another_deck_are_not_taken(slope, here):
     assert slope("case/in.tiny --set rolling=0 --set steps=20 -o out")[0] == 0
     (here / "case" / "notes.txt").write_text("not named by the deck\n")
     assert slope("case/in.tiny --set rolling=0 --set steps=20 -o out")[0] == 0
+    edit("case/in.tiny", "group       soil", "# a comment alone\ngroup   soil")
+    assert slope("case/in.tiny --set rolling=0 --set steps=20 -o out")[0] == 0
     edit("case/in.tiny", "0.1 friction", "0.2 friction")
-    assert slope("case/in.tiny --set rolling=0 --set steps=20 -o out")[::2] == (
-        2, "slope study: out/rolling_0_steps_20: was run with another in.tiny than that of case: remove the folder to "
-           "run it again, or give another -o\n")
+    for words in ("", " --dry-run"):
+        assert slope(f"case/in.tiny --set rolling=0 --set steps=20 -o out{words}")[::2] == (
+            2, "slope study: out/rolling_0_steps_20: was run with another in.tiny than that of case: remove the folder "
+               "to run it again (or out, for all of them), or give another -o\n")
 
 
 def test_what_the_deck_writes_is_no_data(slope, here):
@@ -447,7 +450,7 @@ def test_two_studies_do_not_share_a_folder(slope, here, kept):
                              stdout=subprocess.DEVNULL)
     wait_for((here / "out" / "rolling_0" / "began").exists, "the first study")
     assert slope(f"case/in.tiny --set rolling=0.1 -o out --lmp {lmp}")[::2] == (
-        2, "slope study: out: must not be in use by another study\n")
+        2, "slope study: out: must not be in use by another study: wait for it, or end it\n")
     (here / "go").touch()
     assert first.wait(20) == 0
 

@@ -1,4 +1,5 @@
 """Reading YAML, and writing files whole or not at all."""
+import fcntl
 import math
 import os
 import shutil
@@ -49,6 +50,17 @@ def load_yaml(path, what):
     if not isinstance(about, dict):
         raise SlopeError(path, f"must be {what}")
     return about
+
+
+@contextmanager
+def alone_in(folder, what="study"):
+    """No other process works in a folder meanwhile; the lock goes when the process does. SlopeError if one does."""
+    with open(Path(folder) / ".lock", "w", encoding="ascii") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise SlopeError(folder, f"must not be in use by another {what}: wait for it, or end it") from None
+        yield
 
 
 @contextmanager

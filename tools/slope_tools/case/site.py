@@ -4,6 +4,7 @@ Order of the work: terrain and body (survey), layers (site_inputs), trial run an
 (site_deck), map (site_map), site.yaml (site_choices). It is built in a folder of its own; then its files take their
 places (site_folder).
 """
+import contextlib
 import hashlib
 import os
 import shutil
@@ -75,12 +76,13 @@ def make(choices: Choices, folder: Path, machine: Machine, tell: Callable[[str],
     # on the disk of the folder, so that renames do
     new = (place if place.is_dir() else place.parent) / f".{place.name}.{os.getpid()}.new"
     try:
-        new.mkdir()
-        try:
-            made = built(choices, known or {}, new, folder, machine, tell, warn, draw)
-            site_folder.exchange(new, place, old)
-        finally:
-            shutil.rmtree(new, ignore_errors=True)
+        with disk.alone_in(folder) if again else contextlib.nullcontext():
+            new.mkdir()
+            try:
+                made = built(choices, known or {}, new, folder, machine, tell, warn, draw)
+                site_folder.exchange(new, place, old)
+            finally:
+                shutil.rmtree(new, ignore_errors=True)
     except OSError as error:
         raise SlopeError(folder, f"cannot be written: {error.strerror or error}") from None
     return made
@@ -119,7 +121,8 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
     files = sorted([path.name for path in new.iterdir()] + [site_choices.NAME])
     about = {"slope_version": provenance.version(), "made": provenance.now(), "files": files,
              "derived": site_choices.derived(given, choices, known),
-             "deck_sha256": digest(new / site_deck.NAME), "crs": crs_name(raster.crs),
+             "deck_sha256": digest(new / site_deck.NAME), "choices_sha256": site_choices.fingerprint(choices),
+             "crs": crs_name(raster.crs),
              "origin": {"east": float(raster.offset[0]), "north": float(raster.offset[1])},
              "body": found.measures._asdict(), "balls": size.balls,
              "trial": trial and trial._asdict(), "study": {"runs": size.runs, "seconds": size.seconds,

@@ -4,6 +4,7 @@ site_schema.json beside this module has the keys, their ranges, defaults and mea
 """
 import copy
 import functools
+import hashlib
 import json
 import os
 from pathlib import Path
@@ -26,6 +27,9 @@ FILES = (("terrain", "files"), ("release", "polygon"), ("release", "scar"), ("ro
 # keys that slope site fills in with what it finds
 DERIVED = (("balls", "diameter"), ("balls", "number"), ("model", "field_diameter"), ("model", "speed"),
            ("model", "duration"), ("model", "cell"), ("motion", "peak_friction"))
+
+# sections that `slope study` and the report read when they run, except for files, of which the folder has copies
+READ_LATER = ("project", "road", "study")
 
 Choices = Dict[str, Any]        # {section: {key: value}}, complete
 Derived = Dict[str, Any]        # {"section.key": value} of DERIVED
@@ -100,6 +104,14 @@ def read(folder: Path) -> Choices:
 def found(folder: Path) -> Dict[str, Any]:
     """What slope site found when it made a folder."""
     return disk.load_yaml(folder / NAME, WHAT).get("found") or {}
+
+
+def fingerprint(choices: Choices) -> str:
+    """Of all choices that the deck and its data depend on; not of those that `slope study` reads from site.yaml."""
+    made = with_files(choices, lambda name: Path(name).name)      # folders are seen from elsewhere
+    for name in READ_LATER:
+        made[name] = {key: value for key, value in made[name].items() if (name, key) in FILES}
+    return hashlib.sha256(json.dumps(disk.plain(made), sort_keys=True).encode("utf-8")).hexdigest()
 
 
 def derived(before: Choices, after: Choices, known: Derived) -> Derived:

@@ -7,6 +7,7 @@ import argparse
 import shutil
 from pathlib import Path
 
+from .. import disk
 from ..ensemble import jobs
 from ..errors import SlopeError
 from ..options import count, number
@@ -80,7 +81,7 @@ def run(args):
                 args.repeat or (3 if args.quick else 5), balls, args.field_factor, args.quick)
     try:
         args.output.mkdir(parents=True, exist_ok=True)
-        with jobs.alone_in(args.output), jobs.signals_interrupt(), plan:
+        with disk.alone_in(args.output), jobs.signals_interrupt(), plan:
             plan.do(parts, names, ranks)
     except OSError as error:
         raise SlopeError(error.filename or args.output, f"cannot be used: {error.strerror}") from error

@@ -8,6 +8,7 @@ limit_damping yes). What remains is explained in Code.differs; what ours does di
 import argparse
 from pathlib import Path
 
+from .. import disk
 from ..ensemble import jobs
 from ..errors import SlopeError
 from ..programs import find_lmp
@@ -53,7 +54,7 @@ def run(args):
     work = Work(args.output, find_lmp(args.lmp), names, args.quick)
     try:
         args.output.mkdir(parents=True, exist_ok=True)
-        with jobs.alone_in(args.output), jobs.signals_interrupt():
+        with disk.alone_in(args.output), jobs.signals_interrupt():
             for case in cases:
                 CASES[case](work, case)
             report(work)

@@ -6,6 +6,7 @@ import argparse
 import time
 from pathlib import Path
 
+from .. import disk
 from ..ensemble import jobs
 from ..errors import SlopeError
 from ..options import count
@@ -57,7 +58,7 @@ def run(args):
     began = time.monotonic()
     try:
         args.output.mkdir(parents=True, exist_ok=True)
-        with jobs.alone_in(args.output), jobs.signals_interrupt():
+        with disk.alone_in(args.output), jobs.signals_interrupt():
             runner = Runner(args.output / "runs", lmp)
             wanted = [one for claim in claims for one in (*claim.runs, *claim.control.runs)]
             runner.do(wanted, args.jobs or jobs.cores())

@@ -99,6 +99,9 @@ def straight(settings: Mapping[str, Sequence[str]], groups: Sequence[Group], cho
                          if all(group.set[other] == value for other, value in rest.items())]
 
 
+FEW = 0.05      # of the largest volume of runs that differ by chance alone: less is another outcome
+
+
 def conservative(settings, rows, groups: Sequence[Group], errors: Optional[SizeErrors] = None) -> Dict[str, Any]:
     """What study.yaml says of the conservative volume: its parts, what it rests on, what speaks against it (doubts)."""
     parts = [group.of("remove_m3") for group in groups]
@@ -161,6 +164,17 @@ def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline, dif
         found.append(f"what was repeated changes nothing: {', '.join(same[:3])}{' and more' * (len(same) > 3)} "
                      f"{'is' if len(same) == 1 else 'are'} the same as another run to the last digit, and count"
                      f"{'s' * (len(same) == 1)} for nothing")
+    released = max(row["released_m3"] for row in finished)
+    if best.volume > released:
+        found.append(f"it is more than the {headline.text(released, best.place)} m3 that are released, and no more can "
+                     "lie anywhere: chance or the size of the balls are too uncertain for a number")
+    for group in groups:
+        volumes = list(group.of("remove_m3").volumes.values())
+        few = sum(volume < FEW * max(volumes) for volume in volumes)
+        if few:
+            found.append(f"{few} of the {len(volumes)} runs of {group.name} have less than {100 * FEW:g} % of the "
+                         "volume of the others: that is no chance as its scatter has it (did the slope fail in some "
+                         "alone?)")
     above = max(finished, key=lambda row: row["remove_m3"])
     if above["remove_m3"] > best.volume:
         found.append(f"{above['run']} gave more, {headline.text(above['remove_m3'], best.place)} m3")

@@ -1,6 +1,5 @@
 """The runs of a study: their folders, their processes, and how far they are."""
 import contextlib
-import fcntl
 import hashlib
 import os
 import re
@@ -13,7 +12,7 @@ from typing import Any, Dict, List, Optional
 
 import yaml
 from .. import disk, processes, provenance
-from ..case import decks, last_words, logs, restarts, run_folders
+from ..case import decks, last_words, logs, restarts, run_folders, site_choices
 from ..errors import SlopeError
 from . import launcher
 from .job_display import Display
@@ -93,13 +92,20 @@ def copied(files, folder):
 
 
 def check_finished(one, deck, digests):
-    """Raise SlopeError if a finished run was made from files that are not the present ones."""
+    """Raise SlopeError if a finished run was made from files that are not the present ones; comments do not count."""
     if not one.marker.exists():
         return
     for name, digest in (disk.load_yaml(one.marker, "what `slope study` wrote").get("inputs") or {}).items():
-        if digests.get(name, digest) != digest:
-            raise SlopeError(one.folder, f"was run with another {name} than that of {deck.parent}: remove the folder "
-                             "to run it again, or give another -o")
+        if digests.get(name, digest) == digest or (name == deck.name and same_commands(one.folder / name, deck)):
+            continue
+        other = "" if (deck.parent / site_choices.NAME).is_file() else ", or give another -o"
+        raise SlopeError(one.folder, f"was run with another {name} than that of {deck.parent}: remove the folder to "
+                         f"run it again (or {one.folder.parent}, for all of them){other}")
+
+
+def same_commands(path, deck):
+    """Whether a run's copy of a deck differs from it in comments and blanks at most."""
+    return path.is_file() and decks.commands(path) == decks.commands(deck)
 
 
 def sha256(path):
@@ -109,17 +115,6 @@ def sha256(path):
         for block in iter(lambda: data.read(1 << 20), b""):
             digest.update(block)
     return digest.hexdigest()
-
-
-@contextlib.contextmanager
-def alone_in(folder):
-    """No other study works in the folder meanwhile; the lock goes when the process does."""
-    with open(folder / ".lock", "w", encoding="ascii") as lock:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            raise SlopeError(folder, "must not be in use by another study") from None
-        yield
 
 
 # --- processes ---

@@ -33,6 +33,8 @@ class Questions(NamedTuple):
     order: Any = None                               # the ensemble.Order that the runs were made for, None of lists
     intensity: Optional[str] = None                 # variable that is one; None: the one that is called so
     more_than: Sequence[float] = ()                 # m3, volumes exceeded at each intensity
+    notes: Sequence[str] = ()                       # warnings of what was before the study, which go into its results
+    size_error_unusable: Optional[str] = None       # why the error of the size, which was looked for, is not in use
 
 
 def collect(setup: Setup, questions: Questions, todo, work) -> None:
@@ -43,7 +45,7 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         return      # study.perform says so
     maps = Maps(thresholds)
     rows, thickness = rows_of(setup, todo, maps, pictures=order is None)
-    warnings = doubts(rows)
+    warnings = [*questions.notes, *doubts(rows)]
     if maps.problem:
         warnings.append(maps.problem)
     finished = [row for row in rows if row["status"] == "finished"]
@@ -59,7 +61,7 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
                   "ranks": work.ranks, "jobs": work.jobs, "package": work.package, "collected": provenance.now(),
                   "machine": provenance.machine()},
         "largest": {key: largest(finished, key) for key in keys if finished},
-        "conservative": None, "ensemble": None,
+        "conservative": None, "size_error_unusable": questions.size_error_unusable, "ensemble": None,
         "scatter": {name: one and {"deviation": one.deviation, "degrees_of_freedom": one.degrees_of_freedom}
                     for name, one in scatters.items()},
         "combinations": combinations.entries(groups, names), **written, "warnings": warnings, "runs": rows}

@@ -5,7 +5,7 @@ answer rests on. Every part is resumed by the same call.
 """
 import sys
 from pathlib import Path
-from typing import Dict, Iterable, List, NamedTuple, Optional
+from typing import Dict, Iterable, List, NamedTuple, Optional, Sequence
 
 from .. import disk
 from ..case import decks, site_choices, site_deck
@@ -17,7 +17,7 @@ from . import repeats, results, size_study, study
 from .quantities import NAMES
 from .sensitivity import quantities
 from .setup import Road, Setup
-from .size_error import SizeErrors
+from .size_error import SizeErrors, WHAT
 
 SIZES, STUDY, SCORE = "sizes", "study", "score"         # folders in the site's
 THRESHOLDS = (0.1, 0.5, 1.0)        # m, of the maps of exceedance
@@ -41,20 +41,39 @@ def run(folder: Path, engine: Setup) -> Done:
     of the study finished.
     """
     choices = site_choices.read(folder)
+    check(folder, choices)
+    with disk.alone_in(folder):
+        return run_alone(folder, choices, engine)
+
+
+def check(folder: Path, choices: Choices) -> None:
+    """Raise SlopeError unless the files of a site are there, and are those of its choices."""
+    found = site_choices.found(folder)
+    for name in (site_deck.NAME, *(found.get("files") or ())):
+        if not (folder / name).is_file():
+            raise SlopeError(folder / name, f"must be there; `slope site {folder}` makes it anew")
+    if found.get("choices_sha256", "") not in ("", site_choices.fingerprint(choices)):
+        raise SlopeError(folder / site_choices.NAME, f"must not have been changed since {site_deck.NAME} was made of "
+                         f"it: `slope site {folder}` makes the deck anew (project, road and study may change)")
+
+
+def run_alone(folder: Path, choices: Choices, engine: Setup) -> Done:
+    """run(), of what is in order, while nobody else works in the folder."""
     deck = folder / site_deck.NAME
-    if not deck.is_file():
-        raise SlopeError(deck, f"must be there; `slope site {folder}` makes it anew")
     road = choices["road"]
     setup = engine._replace(deck=deck, output=folder / STUDY, road=None)
     if road["file"]:
         setup = setup._replace(road=Road(folder / ROAD, road["cut_angle"], road["mesh"]))
     several = choices["study"]
     repeated = {"xoffset": words(several["xoffset"])} if several["xoffset"] else {}
-    errors = sizes(setup._replace(output=folder / SIZES), choices, repeated) if len(several["sizes"]) > 1 else None
+    found = Sizes(None, (), None)
+    if len(several["sizes"]) > 1:
+        found = sizes(setup._replace(output=folder / SIZES), choices, repeated)
     settings = {"rolling": words(several["rolling"])}
     todo = repeats.plan(setup.output, settings, repeated, decks.index_variables(deck))
     study.check_names(todo)
-    questions = results.Questions(settings, repeated, THRESHOLDS, errors)
+    questions = results.Questions(settings, repeated, THRESHOLDS, found.errors, size_error_unusable=found.unusable,
+                                  notes=(*warnings_of(folder), *found.warnings))
     failed = None
     try:
         study.perform(setup, {**settings, **repeated}, todo,
@@ -70,8 +89,21 @@ def run(folder: Path, engine: Setup) -> Done:
     return Done(setup.output, failed)
 
 
-def sizes(setup: Setup, choices: Choices, repeated: Dict[str, List[str]]) -> Optional[SizeErrors]:
-    """The runs with balls of several sizes, and the error that they find; None if they find none, which is said."""
+def warnings_of(folder: Path) -> List[str]:
+    """What `slope site` warned of, which its results should say as well; nothing of a site of an older version."""
+    path = folder / "warnings.yaml"
+    return [str(text) for text in disk.parse_yaml(path, "what `slope site` wrote") or ()] if path.is_file() else []
+
+
+class Sizes(NamedTuple):
+    """What the runs with balls of several sizes found."""
+    errors: Optional[SizeErrors]
+    warnings: Sequence[str]         # of these runs
+    unusable: Optional[str]         # why there are no errors, though they were looked for
+
+
+def sizes(setup: Setup, choices: Choices, repeated: Dict[str, List[str]]) -> Sizes:
+    """The runs with balls of several sizes, and the error that they find."""
     variables = decks.index_variables(setup.deck)
     diameter = float(variables["d"])
     values = words(diameter if factor == 1 else three_digits(factor * diameter) for factor in choices["study"]["sizes"])
@@ -80,14 +112,27 @@ def sizes(setup: Setup, choices: Choices, repeated: Dict[str, List[str]]) -> Opt
     try:
         size_study.run(setup, "d=" + ",".join(values), {"rolling": rolling[len(rolling) // 2]}, repeated, of,
                        {name: NAMES[name] for name in of})
-        if setup.dry_run or not setup.road:
-            return None
-        errors = SizeErrors(setup.output / "converge.yaml", "remove_m3")
-        errors.check({}, variables)
-        return errors
+    except study.RunsFailed as error:
+        print(f"slope study: warning: sizes of balls: {error}", file=sys.stderr)
     except SlopeError as error:
-        print(f"slope study: warning: the error of the size of the balls is not known: {error}", file=sys.stderr)
-        return None
+        return unusable(str(error))
+    path = setup.output / "converge.yaml"
+    if setup.dry_run or not setup.road:
+        return Sizes(None, (), None)
+    if not path.is_file():
+        return unusable("too few of its runs finished")
+    said = [f"sizes of balls: {text}" for text in disk.load_yaml(path, WHAT).get("warnings") or ()]
+    try:
+        errors = SizeErrors(path, "remove_m3")
+        errors.check({}, variables)
+    except SlopeError as error:
+        return unusable(str(error))._replace(warnings=said)
+    return Sizes(errors, said, None)
+
+
+def unusable(why: str) -> Sizes:
+    print(f"slope study: warning: the error of the size of the balls is not known: {why}", file=sys.stderr)
+    return Sizes(None, (), f"The error of the size of the balls was looked for, but is not usable: {why}")
 
 
 def scored(folder: Path, setup: Setup) -> None:

@@ -11,6 +11,7 @@ from .headline import SizeError
 WHAT = "a converge.yaml of `slope sensitivity --converge`"
 # what may differ between the runs of the fit and those of the study without a word
 UNIMPORTANT = {"out", "ranks", "seed"}
+TRUSTED = 0.15          # share: a larger error is that of balls which are too large, however narrow its interval
 
 
 class SizeErrors:
@@ -84,6 +85,18 @@ class SizeErrors:
         found = []
         if self.supported is False:
             found.append("the size error rests on a line that its own runs do not support")
+        if any(entry["mean"] == 0 for entry in self.sizes):
+            found.append(f"the size error rests on runs with nothing to remove, at {self.variable} "
+                         + ", ".join(f"{entry['value']:g}" for entry in self.sizes if entry["mean"] == 0))
+        share = self.at(str(variables[self.variable])).share if self.variable in variables else 0.0
+        if abs(share) > TRUSTED:
+            found.append(f"the size error is {100 * share:.0f} %: beyond {100 * TRUSTED:.0f} % a line through such "
+                         "sizes says little; use smaller balls")
+        field = as_number(self.base.get("field_d", ""))
+        smallest = min(entry["value"] for entry in self.sizes)
+        if self.variable == "d" and isinstance(field, float) and smallest >= field * (1 - 1e-9):
+            found.append(f"no run of the size error has balls smaller than the field's, {field:g} m, below which the "
+                         "trend may turn round")
         if self.deck != deck:
             found.append(f"the size error is that of another deck, {self.deck}")
         other = [f"{name} {value} instead of {variables[name]}" for name, value in self.base.items()

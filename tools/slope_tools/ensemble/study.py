@@ -28,6 +28,9 @@ def perform(setup: Setup, settings, todo, collect, begin=None):
         check_road(setup.road, setup.deck, settings)
     check_folder(setup, todo)
     if setup.dry_run:
+        digests = {name: jobs.sha256(source) for name, source in files.items()}
+        for one in todo:
+            jobs.check_finished(one, setup.deck, digests)
         return list_runs(todo)
     with prepared(setup, files, len(todo)) as work:
         for one in todo:
@@ -58,7 +61,7 @@ def prepared(setup: Setup, files, number):
     try:
         setup.output.mkdir(parents=True, exist_ok=True)
         inputs = setup.output / ".inputs"
-        with jobs.alone_in(setup.output), jobs.signals_interrupt(), jobs.copied(files, inputs) as digests:
+        with disk.alone_in(setup.output), jobs.signals_interrupt(), jobs.copied(files, inputs) as digests:
             yield make(setup.deck, digests, inputs, lmp, setup.ranks, most, setup.launcher)
     except OSError as error:
         place = error.filename2 or error.filename or setup.output        # of a copy, the second is where it goes
