@@ -60,7 +60,8 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--runs", metavar="N", type=options.count, required=True, help="total number of runs")
     parser.add_argument("--set", metavar="NAME=VALUE", action="append", default=[],
                         help="value of another index variable in all runs (default: the deck's)")
-    parser.add_argument("--seed", metavar="S", type=int, default=1, help="seed of the first points (default 1)")
+    parser.add_argument("--seed", metavar="S", type=options.whole, default=1,
+                        help="seed of the first points (default 1)")
     run_arguments.add_repeats(parser)
     run_arguments.add_runs(parser)
     return parser
