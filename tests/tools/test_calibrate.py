@@ -250,6 +250,8 @@ def test_all_runs_failed_is_one_line(slope, here):
     ("--vary friction=40:5 --runs 20 --front 10", "--vary: friction must have its lower bound first"),
     ("--vary friction=5:95 --runs 20 --front 10", "--vary: friction must stay within the deck's range, >= 0 and < 90"),
     ("--vary friction=list:5,10 --runs 20 --front 10", "--vary: must be a range here, NAME=LO:HI"),
+    ("--vary out=1:2 --runs 20 --front 10 --dry-run", "--vary: must not vary out, which only names the files that a"),
+    (f"{WORDS} --runs 20 --front 9 --set cell=0 --dry-run", "--set: cell must stay within the deck's range, > 0, got"),
     (f"{WORDS} --runs 20 --front -3", "--front: must be > 0, got -3"),
     (f"{WORDS} --runs 20 --volume 40", "--volume: needs --road"),
     (f"{WORDS} --runs 20 --front 9 --tolerance 2", "--tolerance: must be a share"),

@@ -2,7 +2,8 @@
 import argparse
 from pathlib import Path
 
-from ..ensemble import designs
+from ..case.settings import check_settings
+from ..ensemble import designs, intensity
 from ..ensemble.setup import Road, Setup
 from ..errors import SlopeError
 from ..options import count, number, whole
@@ -87,6 +88,9 @@ def settle_kind(args, sample):
             raise SlopeError(f"--{name.replace('_', '-')}", "must be given with --sample only" if with_sample else
                              "must not be given with --sample",
                              ",".join(f"{one:g}" for one in value) if isinstance(value, list) else value)
+    if args.more_than and not intensity.check(args.intensity, check_settings(args.set, args.deck), bool(args.road)):
+        raise SlopeError("--more-than", "needs an intensity (--intensity, or a variable of several values called peak, "
+                         "pga or ...intensity) and --road", ",".join(f"{one:g}" for one in args.more_than))
 
 
 def volumes(text):
