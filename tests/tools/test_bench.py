@@ -130,6 +130,7 @@ def test_two_materials_of_yade_give_the_wanted_contact():
     ("--balls 5", "--balls: must be >= 100, got 5"),
     ("--np 2,x", "--np: must be a whole number >= 1, got 'x'"),
     ("--steps 0", "argument --steps: must be a whole number >= 1, got '0'"),
+    ("--balls 1000000001", "argument --balls: must be a whole number <= 1000000000, got '1000000001'"),
     ("--lmp none", "--lmp: must lead to the LAMMPS program"),
     ("--lmp granular=none", "--lmp: must lead to the LAMMPS program"),
     ("--lmp yade=lmp", "--lmp: must be FILE, or CODE=FILE with CODE of build, granular, hooke, got yade=lmp"),

@@ -228,6 +228,15 @@ def test_outlines(slope, here):
     assert about["targets"][-1]["observed"] == pytest.approx(144)
 
 
+def test_a_raster_without_a_crs_is_taken_to_be_in_that_of_the_terrain(slope, here):
+    with rasterio.open("mapped.tif", "w", driver="GTiff", width=40, height=24, count=1, dtype="float64",
+                       transform=rasterio.transform.from_origin(-12000.0, 34024.0, 1, 1)) as out:
+        out.write(np.ones((24, 40)), 1)
+    status, _, err = slope(f"calibrate case/in.tiny --observed mapped.tif {WORDS} --runs 20 -o out --dry-run")
+    assert status == 0 and err.count("\n") == 1
+    assert err.startswith("slope calibrate: warning: mapped.tif has no CRS: taken to be in that of the terrain")
+
+
 def test_all_runs_failed_is_one_line(slope, here):
     Path("case/in.tiny").write_text("nonsense\n" + Path("case/in.tiny").read_text())
     status, _, err = slope(f"calibrate case/in.tiny --front 14 {WORDS} --runs 7 -o out")
@@ -241,6 +250,8 @@ def test_all_runs_failed_is_one_line(slope, here):
     ("--vary friction=40:5 --runs 20 --front 10", "--vary: friction must have its lower bound first"),
     ("--vary friction=5:95 --runs 20 --front 10", "--vary: friction must stay within the deck's range, >= 0 and < 90"),
     ("--vary friction=list:5,10 --runs 20 --front 10", "--vary: must be a range here, NAME=LO:HI"),
+    ("--vary out=1:2 --runs 20 --front 10 --dry-run", "--vary: must not vary out, which only names the files that a"),
+    (f"{WORDS} --runs 20 --front 9 --set cell=0 --dry-run", "--set: cell must stay within the deck's range, > 0, got"),
     (f"{WORDS} --runs 20 --front -3", "--front: must be > 0, got -3"),
     (f"{WORDS} --runs 20 --volume 40", "--volume: needs --road"),
     (f"{WORDS} --runs 20 --front 9 --tolerance 2", "--tolerance: must be a share"),

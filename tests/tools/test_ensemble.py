@@ -387,6 +387,8 @@ def test_a_latin_hypercube_does_not_grow(slope):
     ("--sample 8 --vary friction=normal:0:1:20:40", "--vary: normal must have a part of it between LO and HI"),
     ("--sample 8 --vary friction=list:20@0,30", "--vary: must be NAME=list:V1@WEIGHT,V2@WEIGHT,... with weights > 0"),
     ("--sample 8 --vary friction=list:20", "--vary: friction must have several values"),
+    ("--sample 8 --vary friction=list:20,a", "--vary: friction must be a number, >= 0 and < 90, got friction=list:"),
+    ("--sample 8 --vary rolling=0:1 --vary out=list:a,b", "--vary: must not vary out, which only names the files"),
     ("--sample 8 --vary friction=list:20,30", "--vary: must have a range among its variables"),
     ("--sample 8 --vary friction=1:2 --vary friction=2:3", "--vary: must name a variable once, got friction twice"),
     ("--sample 8 --vary friction=1:2 --set friction=3", "--vary: must not name a variable of --set, got friction"),

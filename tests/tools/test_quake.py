@@ -307,10 +307,33 @@ def test_window(slope):
     ("--scale 0", "--scale: must not be 0, got 0"),
     ("--peak 6000", "--peak: must give a largest acceleration of at most 5000 gal"),
     ("--scale 100", "--scale: must give a largest acceleration of at most 5000 gal"),
-    ("--peak x", "must be a finite number, got 'x'")])
+    ("--peak x", "must be a finite number, got 'x'"),
+    ("--azimuth 400", "--azimuth: must be a compass bearing, 0 to 360 degrees, got 400"),
+    ("--azimuth=-1", "--azimuth: must be a compass bearing, 0 to 360 degrees, got -1"),
+    ("--unit g", "--unit: must be given for a CSV that names no unit")])
 def test_options_that_are_wrong(slope, options, message):
     knet("a.EW", EW, "E-W")
     refused(slope, f"a.EW {options} -o motion.txt", message)
+
+
+def test_a_vertical_component_alone_has_no_horizontal_peak(slope):
+    knet("a.UD", UD, "U-D")
+    refused(slope, "a.UD --peak 300 -o motion.txt", "--peak: needs a horizontal component", "got a.UD (up)")
+    status, out, err = slope("a.UD --scale 2 --baseline mean -o motion.txt")
+    about = yaml.safe_load(Path("motion.yaml").read_text())
+    assert status == 0 and err == "" and "no horizontal component" in out and "largest horizontal" not in out
+    assert about["peak_gal"] == 0 == about["arias_horizontal"]
+    assert read_motion()[:, 3] == pytest.approx(2 * (UD - UD.mean()), abs=1e-4)
+    refused(slope, "a.UD --scale 100 -o x.txt", "--scale: must give a largest acceleration of at most 5000 gal, got 9")
+
+
+def test_the_unit_is_of_the_csv_among_the_records(slope):
+    knet("a.EW", EW, "E-W", **{"Record Time": ""})
+    Path("b.csv").write_text("time,UD\n" + "\n".join(f"{t:.2f},{a:.9g}" for t, a in zip(T, UD / GAL)) + "\n")
+    assert slope("a.EW b.csv --unit gal --baseline none -o motion.txt")[0] == 0
+    assert read_motion()[:, 3] == pytest.approx(UD, abs=1e-7)
+    at2("c.AT2", EW, "090")
+    refused(slope, "c.AT2 --unit g -o x.txt", "--unit: must be given for a CSV", "got g")
 
 
 def test_output_that_is_wrong(slope):

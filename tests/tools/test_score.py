@@ -161,6 +161,26 @@ def test_place_of_a_raster(slope, no_map):
     assert rows("run.score/score.csv")[0]["east"] == EAST + 40
 
 
+def test_a_raster_without_a_crs_is_taken_to_be_in_that_of_the_terrain(slope, no_map):
+    """As slope site does it; a terrain without one is not taken to be in that of the raster."""
+    write_run(square(), 0.0, 2.5)
+    place = Affine(2.5, 0, EAST, 0, -2.5, NORTH + 100)
+    write_tif("mapped.tif", square(), place)
+    status, _, err = slope("run --observed mapped.tif")
+    assert status == 2 and "--terrain: must have a CRS" in err
+    write_sidecar(40, 60, 2.5)
+    write_tif("nocrs.tif", square(), place, None)
+    status, out, err = slope("run --observed nocrs.tif")
+    assert status == 0 and "Jaccard 1.000" in out
+    assert err.startswith("slope score: warning: nocrs.tif has no CRS: taken to be in that of the terrain")
+    assert err.count("\n") == 1 and yaml.safe_load(Path("run.score/score.yaml").read_text())["warnings"] == [
+        err[len("slope score: warning: "):-1]]
+    write_asc("local.asc", square(), 2.5)       # in local metres, but --local was not said
+    status, out, err = slope("run --observed local.asc")
+    assert (status, out) == (2, "") and "warning: local.asc has no CRS" in err and "--local" in err
+    assert err.splitlines()[-1].startswith("slope score: local.asc: must overlap the grid of the run, 0 0 150 100")
+
+
 # --- run-out ---
 
 def test_run_out(scored):
@@ -250,7 +270,6 @@ def test_files_and_warnings(slope):
     ("run --observed none.tif", "none.tif: must be an existing file"),
     ("run --observed none.geojson", "none.geojson: must be an existing file"),
     ("run --observed away.tif", "away.tif: must overlap the grid of the run, 0 0 150 100 (local metres), got 500 0"),
-    ("run --observed nocrs.tif", "nocrs.tif: must have a CRS"),
     ("run --observed zone8.tif", "zone8.tif: must be in the CRS of the run, EPSG:6677"),
     ("run --observed negative.tif", "negative.tif: row 1 column 1: must be a thickness >= 0, got -1"),
     ("run --observed turned.tif", "turned.tif: must be a raster with rows from west to east"),
@@ -265,7 +284,6 @@ def test_bad_input_is_one_line(slope, no_map, here, arguments, message):  # noqa
     place = Affine(2.5, 0, EAST, 0, -2.5, NORTH + 100)
     write_tif("mapped.tif", square(), place)
     write_tif("away.tif", square(), Affine.translation(500, 0) * place)
-    write_tif("nocrs.tif", square(), place, None)
     write_tif("zone8.tif", square(), place, "EPSG:6676")
     write_tif("negative.tif", square() - np.eye(40, 60), place)
     write_tif("turned.tif", square(), place * Affine.rotation(10))

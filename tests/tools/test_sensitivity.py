@@ -3,6 +3,7 @@ import csv
 import math
 import os
 import shlex
+import shutil
 import statistics
 import sys
 from pathlib import Path
@@ -109,9 +110,10 @@ def test_without_repeats_the_scatter_is_said_to_be_unknown(slope):
 
 
 def test_a_failed_run_is_told_and_the_others_are_collected(slope):
-    status, _, err = slope(f"--vary friction=20,95 --set steps=100 {ROAD} -o out")
-    assert status == 2 and "steps_100_friction_95: ERROR: Pair gran/restitution friction" in err
-    assert [row["value"] for row in rows()] == ["", "20"]
+    shutil.copy("case/terrain.asc", "case/same.asc")
+    status, _, err = slope(f"--vary terrain=same.asc,none.asc --set steps=100 {ROAD} -o out")
+    assert status == 2 and "steps_100_terrain_none.asc: ERROR: Region terrain" in err
+    assert [row["value"] for row in rows()] == ["", "same.asc"]
 
 
 @pytest.mark.parametrize("arguments, message", [
@@ -121,7 +123,9 @@ def test_a_failed_run_is_told_and_the_others_are_collected(slope):
     ("--set friction=20,25", "--set: must give one value"),
     ("--vary friction=30", "--vary, --repeat: must give a value that is not the base's"),
     ("--vary friction=20 --of colour", "--of: must be different ones of remove_m3, "),
-    ("--vary out=../x,..-x", "must not give two runs the folder out_..-x"),
+    ("--vary terrain=../x,..-x", "must not give two runs the folder terrain_..-x"),
+    ("--vary friction=20,95", "--vary: friction must stay within the deck's range, >= 0 and < 90, got friction=20,95"),
+    ("--vary out=x", "--vary: must not vary out, which only names the files that a run writes"),
 ])
 def test_wrong_input_is_one_line(slope, arguments, message):
     status, _, err = slope(f"{arguments} {ROAD} -o out")

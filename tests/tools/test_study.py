@@ -5,6 +5,7 @@ import os
 import pty
 import re
 import shlex
+import shutil
 import signal
 import subprocess
 import sys
@@ -138,6 +139,25 @@ def test_the_product_has_a_folder_per_run_with_all_that_it_needs(slope, here):
         assert set(yaml.safe_load((folder / "finished.yaml").read_text())["inputs"]) == {
             "in.tiny", "terrain.asc", "data/extra.txt"}
     assert not list((here / "out").glob(".inputs")) and not list((here / "out").glob(".*.new"))
+
+
+@pytest.mark.parametrize("words", [
+    "out=other", "terrain=a.asc,b.asc", "ranks='2 * *,* * *'", "bulk='region slip,1.9'", "law=none,sds", "steps=10,x"])
+def test_values_of_which_the_deck_does_not_say_what_they_are(slope, words):
+    """Text where the deck has text, numbers or text where no range is known."""
+    edit("case/in.tiny", "variable  kn ", "variable  ranks index *\nvariable  bulk index 6/pi\n"
+         "variable  law index none\npair_coeff  2 2 rolling ${law}\nvariable  kn ")
+    status, out, err = slope(f"case/in.tiny --set {words} -o out --dry-run")
+    assert (status, err) == (0, "") and f"{words.count(',') + 1} run" in out
+
+
+def test_which_variables_only_name_outputs(here):
+    path = Path("names")
+    path.write_text("variable out index a\nvariable base index b\nvariable d index 1\nvariable n index 2\n"
+                    "fix f all deposit/grid 1 1 cell 1 terrain base output ${out}_${d}\nset group all diameter ${d}\n"
+                    "dump d all custom 9 ${out}.dump id\nprint 'this is ${out}, $n'\nwrite_data ${base}.data\n"
+                    "read_data ${base}.old\nlog log.$n\nvariable half equal v_d/2\n")
+    assert decks.only_in_outputs(path) == {"out", "n"}
 
 
 def test_dry_run_lists_and_makes_nothing(slope, here):
@@ -458,20 +478,21 @@ def test_two_studies_do_not_share_a_folder(slope, here, kept):
 # --- runs that fail ---
 
 def test_a_failing_run_is_told_and_the_others_go_on(slope, here):
-    status, out, err = slope("case/in.tiny --set friction=30,95,20 --set steps=20 -o out")
+    shutil.copy("case/terrain.asc", "case/same.asc")
+    status, out, err = slope("case/in.tiny --set terrain=terrain.asc,none.asc,same.asc --set steps=20 -o out")
     assert status == 2
     assert err.splitlines()[-1].startswith(
-        "slope study: out: 1 of 3 runs failed: friction_95_steps_20: ERROR: Pair gran/restitution friction must be >= "
-        "0 and < 90 degrees, got 95 (ended with status 1; see out/friction_95_steps_20/log.lammps)")
-    assert "[2/3] friction_95_steps_20: failed: ERROR: Pair gran/restitution friction" in out
+        "slope study: out: 1 of 3 runs failed: terrain_none.asc_steps_20: ERROR: Region terrain: ")
+    assert err.endswith("(ended with status 1; see out/terrain_none.asc_steps_20/log.lammps)\n")
+    assert "[2/3] terrain_none.asc_steps_20: failed: ERROR: Region terrain" in out
     about, table = load(here / "out")
     assert [line["status"] for line in table] == ["finished", "failed", "finished"]
-    assert "must be >= 0 and < 90" in table[1]["error"] and table[1]["released_m3"] == ""
+    assert "none.asc" in table[1]["error"] and table[1]["released_m3"] == ""
     assert about["study"]["finished"] == 2 and about["exceedance"][0]["area_in_every_run_m2"] > 0
     # it is tried again, and only it
-    edit(here / "out" / "friction_30_steps_20" / "variables.yaml", "package:", "kept: true\npackage:")
-    assert slope("case/in.tiny --set friction=30,95,20 --set steps=20 -o out")[0] == 2
-    assert "kept: true" in (here / "out" / "friction_30_steps_20" / "variables.yaml").read_text()
+    edit(here / "out" / "terrain_terrain.asc_steps_20" / "variables.yaml", "package:", "kept: true\npackage:")
+    assert slope("case/in.tiny --set terrain=terrain.asc,none.asc,same.asc --set steps=20 -o out")[0] == 2
+    assert "kept: true" in (here / "out" / "terrain_terrain.asc_steps_20" / "variables.yaml").read_text()
 
 
 @pytest.mark.parametrize("body, message", [
@@ -593,6 +614,22 @@ def nothing():
 
 OK = "case/in.tiny --set rolling=0 -o out"
 BAD = {
+    "out of range": (nothing, "case/in.tiny --set friction=20,95 -o out",
+                     "--set: friction must stay within the deck's range, >= 0 and < 90, got friction=20,95"),
+    "out of range, dry": (nothing, "case/in.tiny --set cell=0 -o out --dry-run",
+                          "--set: cell must stay within the deck's range, > 0, got cell=0"),
+    "infinite": (nothing, "case/in.tiny --set rolling=inf -o out", "--set: rolling must be a number, >= 0, got roll"),
+    "no number": (nothing, "case/in.tiny --set rolling=0,a -o out", "--set: rolling must be a number, >= 0, got roll"),
+    "stated range": (deck(lambda text: "variable xoffset index 0 # 0 <= offset < 1\n" + text),
+                     "case/in.tiny --set rolling=0 --repeat xoffset=0.5,1 -o out",
+                     "--repeat: xoffset must stay within the deck's range, >= 0 and < 1, got xoffset=0.5,1"),
+    "names of files": (nothing, "case/in.tiny --set out=a,b -o out --dry-run",
+                       "--set: must not vary out, which only names the files that a run writes"),
+    "volumes without an intensity": (nothing, OK + " --road case/road.csv --more-than 5 --dry-run",
+                                     "--more-than: needs an intensity"),
+    "volumes without a road": (deck(lambda text: "variable peak index 1\n" + text),
+                               "case/in.tiny --set peak=1,2 -o out --more-than 5,10",
+                               "--more-than: needs an intensity"),
     "unknown variable": (nothing, "case/in.tiny --set colour=1 -o out",
                          "--set: must name an index variable of case/in.tiny (cell, friction, out, rolling, steps, "
                          "terrain), got colour"),

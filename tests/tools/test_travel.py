@@ -225,6 +225,18 @@ def test_columns_by_name_and_the_last_snapshot(travelled):
     assert travelled("u.dump")["along"]["all"]["max"] == 104
 
 
+def test_lines_that_end_as_those_of_windows(slope, no_picture):  # noqa: F811
+    good = Path(write("good.dump", FOUR)).read_bytes()
+    Path("windows.dump").write_bytes(b"ITEM: TIMESTEP\r\n0\r\n" + good.replace(b"\n", b"\r\n"))
+    slope("good.dump -o good")
+    status, _, err = slope("windows.dump -o windows")
+    assert (status, err) == (0, "")
+    balls = [Path(name, "balls.csv").read_text().replace(f"{name}.dump", "") for name in ("good", "windows")]
+    assert balls[0] == balls[1] and balls[0].count("\n") == 5
+    Path("word.dump").write_bytes(good.replace(b" 20 ", b" 2O ").replace(b"\n", b"\r\n"))
+    assert slope("word.dump")[2] == "slope travel: word.dump: line 11: y must be a finite number, got 2O\n"
+
+
 def test_moving_balls_are_told(travelled, capsys):
     write("a.dump", FOUR, columns="id x y z vx vy vz", vx=[0, 0.05, 0, 0.09], vz=[0, 0, -0.11, 0.09])
     about = travelled("a.dump")

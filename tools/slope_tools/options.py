@@ -3,6 +3,8 @@ import argparse
 import math
 import re
 
+MOST = 10 ** 9      # of whatever is counted; nobody has the memory, or the time, for more
+
 
 def number(text):
     """argparse type: a finite number."""
@@ -15,8 +17,17 @@ def number(text):
     return value
 
 
+def whole(text):
+    """argparse type: a whole number, of either sign."""
+    if not re.fullmatch(r"[-+]?0*[0-9]{1,18}", text):
+        raise argparse.ArgumentTypeError(f"must be a whole number of at most 18 digits, got {text!r}")
+    return int(text)
+
+
 def count(text):
-    """argparse type: a whole number from 1 on."""
-    if not re.fullmatch(r"0*[1-9][0-9]{0,5}", text):
+    """argparse type: a whole number from 1 to MOST."""
+    if not re.fullmatch(r"0*[1-9][0-9]*", text):
         raise argparse.ArgumentTypeError(f"must be a whole number >= 1, got {text!r}")
+    if len(text.lstrip("0")) > len(str(MOST)) or int(text) > MOST:
+        raise argparse.ArgumentTypeError(f"must be a whole number <= {MOST}, got {text!r}")
     return int(text)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Dict, Optional
 
+from ..errors import SlopeError
 from . import decks
 
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
@@ -61,3 +62,37 @@ def ranges(deck: Path) -> Dict[str, Bounds]:
             low, first, second, high = stated.groups()
             found[name] = Bounds(float(low), float(high), first == "<=", second == "<=")
     return found
+
+
+class Checks:
+    """What the values of a deck's variables must be, as far as the deck shows it."""
+
+    def __init__(self, deck: Path):
+        self.ranges = ranges(deck)
+        self.own = decks.index_variables(deck)
+        self.outputs = decks.only_in_outputs(deck)
+
+    def vary(self, option: str, name: str, words: str) -> None:
+        """Raise SlopeError if a variable that is to have several values only names files that runs write."""
+        if name in self.outputs:
+            raise SlopeError(option, f"must not vary {name}, which only names the files that a run writes: every run "
+                             "has a folder of its own", words)
+
+    def value(self, option: str, name: str, value: str, words: str) -> None:
+        """Raise SlopeError if a value leaves the range of a variable, or is no number although it has one.
+
+        A variable whose own value in the deck is no number may have others: it is not said what they stand for.
+        """
+        bounds = self.ranges.get(name)
+        if bounds is None:
+            return
+        if is_number(value):
+            if not bounds.holds(float(value)):
+                raise SlopeError(option, f"{name} must stay within the deck's range, {bounds.text}", words)
+        elif is_number(self.own.get(name, "")):
+            raise SlopeError(option, f"{name} must be a number, {bounds.text}", words)
+
+
+def is_number(text: str) -> bool:
+    """Whether LAMMPS takes a text for a number, a finite one."""
+    return bool(re.fullmatch(NUMBER, text)) and math.isfinite(float(text))

@@ -6,6 +6,8 @@ from typing import Dict, Mapping, Set, Tuple
 from ..errors import SlopeError
 
 WORD = re.compile(r'"""(.*?)"""|"([^"]*)"|\'([^\']*)\'|(\S+)')
+# where a variable is used: ${name}, $x, v_name
+USED = re.compile(r"\$\{(\w+)\}|\$(\w)|\bv_(\w+)")
 # words of a command that name files which it writes
 WRITTEN_AT = {"restart": (2, 4), "write_restart": (1, 2), "write_data": (1, 2), "write_dump": (3, 4), "dump": (5, 6),
               "log": (1, 2)}
@@ -67,13 +69,32 @@ def named_files(deck):
     read: Set[str] = set()
     written: Set[str] = set()
     for words in commands(deck):
-        first, last = WRITTEN_AT.get(words[0], (0, 0))
         for k, word in enumerate(words):
-            keyword = words[k - 1] if k and words[0] in ("fix", "print") else ""
-            writes = first <= k < last or keyword in ("write", "append") or (
-                keyword == "file" and (words[0] == "print" or re.match("ave/|print|vector", " ".join(words[3:4]))))
-            (written if writes else read).update((word, filled(word, values)))
+            (written if names_output(words, k) else read).update((word, filled(word, values)))
     return read, written
+
+
+def names_output(words, k):
+    """Whether word k of a command names a file that the command writes."""
+    first, last = WRITTEN_AT.get(words[0], (0, 0))
+    keyword = words[k - 1] if k and words[0] in ("fix", "print") else ""
+    return first <= k < last or keyword in ("write", "append") or (
+        keyword == "file" and (words[0] == "print" or bool(re.match("ave/|print|vector", " ".join(words[3:4])))))
+
+
+def only_in_outputs(deck) -> Set[str]:
+    """The variables that stand in names, or prefixes, of files that a deck writes, and in nothing else that matters."""
+    there: Set[str] = set()
+    elsewhere: Set[str] = set()
+    for words in commands(deck):
+        for k, word in enumerate(words):
+            of_output = names_output(words, k) or (words[0] == "fix" and words[k - 1] == "output")
+            names = {match[1] or match[2] or match[3] for match in USED.finditer(word)}
+            if of_output:
+                there |= names
+            elif words[0] != "print":
+                elsewhere |= names
+    return there - elsewhere
 
 
 def index_variables(deck):

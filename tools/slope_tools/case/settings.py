@@ -2,7 +2,7 @@
 import decimal
 
 from ..errors import SlopeError
-from . import decks
+from . import deck_ranges, decks
 
 MOST_RUNS = 10_000
 
@@ -35,9 +35,20 @@ def check_names(names, deck, option, options):
 
 
 def check_settings(options, deck, option="--set"):
-    """{name: [values]} of the options NAME=VALUES, in their order; every name must be an index variable of the deck."""
+    """{name: [values]} of the options NAME=VALUES, in their order.
+
+    Every name must be an index variable of the deck, and no value may leave the range that the deck has for it.
+    """
     names = check_names([words.partition("=")[0] for words in options], deck, option, options)
-    return {name: values(words, words.partition("=")[2], option) for name, words in zip(names, options)}
+    checks = deck_ranges.Checks(deck)
+    found = {}
+    for name, words in zip(names, options):
+        found[name] = values(words, words.partition("=")[2], option)
+        if option != "--set" or len(found[name]) > 1:
+            checks.vary(option, name, words)
+        for value in found[name]:
+            checks.value(option, name, value, words)
+    return found
 
 
 def values(words, text, option="--set"):

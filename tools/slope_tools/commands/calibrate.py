@@ -6,7 +6,7 @@ Order of the work: check what was observed (observations.py), make runs batch af
 import argparse
 from pathlib import Path
 
-from .. import options
+from .. import errors, options
 from ..case import data_files, decks
 from ..case.settings import check_settings, one_value_each
 from ..deposit.score import THRESHOLD
@@ -60,7 +60,8 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--runs", metavar="N", type=options.count, required=True, help="total number of runs")
     parser.add_argument("--set", metavar="NAME=VALUE", action="append", default=[],
                         help="value of another index variable in all runs (default: the deck's)")
-    parser.add_argument("--seed", metavar="S", type=int, default=1, help="seed of the first points (default 1)")
+    parser.add_argument("--seed", metavar="S", type=options.whole, default=1,
+                        help="seed of the first points (default 1)")
     run_arguments.add_repeats(parser)
     run_arguments.add_runs(parser)
     return parser
@@ -95,7 +96,7 @@ def run(args):
     wanted.check(args.road is not None)
     terrain = study.terrain_of(args.deck, fixed)
     if terrain:
-        wanted.check_place(terrain)
+        wanted.check_place(terrain, errors.printer("calibrate"))
     settings = {name: [value] for name, value in fixed.items()}
     files = data_files.data_files(args.deck, {**settings, **repeated})
     setup = run_arguments.setup_of(args)

@@ -47,8 +47,11 @@ def add_parser(commands, **kwargs):
 
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints what the motion is like and the line for the deck."""
-    check_output(args)
+    check(args)
     components = [component for path in args.records for component in records.read(path, args.unit)]
+    if args.unit and all(component.unit_in_head for component in components):
+        raise SlopeError("--unit", "must be given for a CSV that names no unit: K-NET, KiK-net and PEER files have "
+                         "theirs in their heads", args.unit)
     wanted = Processing(args.azimuth, args.baseline, args.window, args.band, args.peak, args.scale)
     motion, steps = processed(components, wanted)
     about = {"records": [c.source for c in components], "processing": steps, **motions.measures(motion)}
@@ -56,8 +59,8 @@ def run(args):
     print(text(args.output, about))
 
 
-def check_output(args):
-    """What would be overwritten, and where nothing can be written, before there is any work."""
+def check(args):
+    """The numbers, what would be overwritten, and where nothing can be written, before there is any work."""
     if args.output.suffix != ".txt" or args.output.is_dir():
         raise SlopeError("-o", "must be a file that ends in .txt", args.output)
     if not args.output.parent.is_dir():
@@ -69,6 +72,8 @@ def check_output(args):
         value = getattr(args, name)
         if value is not None and not (value > 0 if name == "peak" else value != 0):
             raise SlopeError(f"--{name}", "must be > 0" if name == "peak" else "must not be 0", f"{value:g}")
+    if not 0 <= args.azimuth <= 360:
+        raise SlopeError("--azimuth", "must be a compass bearing, 0 to 360 degrees", f"{args.azimuth:g}")
 
 
 def text(path, about):
@@ -76,7 +81,8 @@ def text(path, about):
     lines = [f"{path}: {about['points']} points every {about['dt']:g} s, {about['length']:g} s; "
              f"{'; '.join(about['processing'])}",
              f"largest horizontal acceleration {about['peak_gal']:.5g} gal, Arias intensity "
-             f"{about['arias_horizontal']:.4g} m/s, D5-95 {about['duration_5_95_horizontal']:.4g} s",
+             f"{about['arias_horizontal']:.4g} m/s, D5-95 {about['duration_5_95_horizontal']:.4g} s"
+             if about["peak_gal"] > 0 else "no horizontal component: the ground moves up and down only",
              "axis  acc. gal  vel. m/s  disp. m   end vel.  end disp.  Arias m/s  D5-95 s"]
     for axis, a in about["axes"].items():
         lines.append(f"{axis:<5} {a['acceleration_gal']:<9.4g} {a['velocity']:<9.4g} {a['displacement']:<9.4g} "

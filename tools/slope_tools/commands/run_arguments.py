@@ -2,10 +2,11 @@
 import argparse
 from pathlib import Path
 
-from ..ensemble import designs
+from ..case.settings import check_settings
+from ..ensemble import designs, intensity
 from ..ensemble.setup import Road, Setup
 from ..errors import SlopeError
-from ..options import count, number
+from ..options import count, number, whole
 
 
 def add_deck(parser, site=False):
@@ -52,7 +53,7 @@ def add_repeats(parser):
 
 def add_sample(parser) -> None:
     """--sample, --vary, --design and --seed."""
-    parser.add_argument("--sample", metavar="N", type=int,
+    parser.add_argument("--sample", metavar="N", type=whole,
                         help="an ensemble: N points of the distributions of --vary, instead of a product of lists")
     parser.add_argument("--vary", metavar="NAME=DISTRIBUTION", action="append", default=[],
                         help="a variable of the ensemble: LO:HI or uniform:LO:HI, loguniform:LO:HI, "
@@ -60,7 +61,7 @@ def add_sample(parser) -> None:
     parser.add_argument("--design", choices=designs.KINDS,
                         help="sobol (default): more points can be added, those there are stay; lhs: Latin hypercube, "
                              "whose number of points is final")
-    parser.add_argument("--seed", metavar="S", type=int, help="seed of the design (default 1)")
+    parser.add_argument("--seed", metavar="S", type=whole, help="seed of the design (default 1)")
 
 
 def add_intensity(parser):
@@ -87,6 +88,9 @@ def settle_kind(args, sample):
             raise SlopeError(f"--{name.replace('_', '-')}", "must be given with --sample only" if with_sample else
                              "must not be given with --sample",
                              ",".join(f"{one:g}" for one in value) if isinstance(value, list) else value)
+    if args.more_than and not intensity.check(args.intensity, check_settings(args.set, args.deck), bool(args.road)):
+        raise SlopeError("--more-than", "needs an intensity (--intensity, or a variable of several values called peak, "
+                         "pga or ...intensity) and --road", ",".join(f"{one:g}" for one in args.more_than))
 
 
 def volumes(text):

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from ..case.decks import quoted
 from ..errors import SlopeError
-from ..options import number
+from ..options import number, whole
 from ..survey import local_terrain
 
 EPILOG = """\
@@ -46,7 +46,7 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--origin", nargs="+", default=["auto"], metavar=("auto|E", "N"),
                         help="what becomes 0 0: auto (default), the lower left corner rounded down to whole metres; "
                              "or E N, in the output's CRS, m")
-    parser.add_argument("--fill", type=int, default=0, metavar="N",
+    parser.add_argument("--fill", type=whole, default=0, metavar="N",
                         help="fill NODATA holes of at most N cells (default 0: none); holes at the edge stay")
     return parser
 

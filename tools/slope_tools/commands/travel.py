@@ -4,7 +4,7 @@ from pathlib import Path
 
 from .. import disk, errors
 from ..deposit import travel
-from ..options import number
+from ..options import number, whole
 
 EPILOG = """\
 units: metres, degrees. A dump is text as LAMMPS' dump custom writes it, with the columns id x y z in any place; its
@@ -34,7 +34,7 @@ def add_parser(commands, **kwargs):
                         help="limits of the axis along the slope, m (default: all balls)")
     parser.add_argument("--across", metavar=("LO", "HI"), nargs=2, type=number,
                         help="limits of the axis across the slope, m (default: all balls)")
-    parser.add_argument("--type", metavar="N", nargs="+", type=int,
+    parser.add_argument("--type", metavar="N", nargs="+", type=whole,
                         help="only balls of these atom types (default: all)")
     parser.add_argument("--start", metavar="DUMP", nargs="+",
                         help="dump of the start, one for all runs or one for each: adds travelled distances, run-out "

@@ -8,7 +8,7 @@ from pathlib import Path
 from .. import disk, errors
 from ..deposit import volume
 from ..deposit.volume import BLOCKED, CUT_ANGLE, SAMPLES
-from ..options import number
+from ..options import number, whole
 
 EPILOG = """\
 units: metres, m3, degrees. PREFIX is what fix deposit/grid was given as output.
@@ -46,7 +46,7 @@ def add_parser(commands, **kwargs):
                         help="the road's axis: GeoJSON, shapefile, CSV or WKT (default: the road's middle)")
     parser.add_argument("--blocked", metavar="T", type=number, default=BLOCKED,
                         help=f"the road is blocked where the deposit on the axis is thicker, m (default {BLOCKED:g})")
-    parser.add_argument("--samples", metavar="K", type=int, default=SAMPLES,
+    parser.add_argument("--samples", metavar="K", type=whole, default=SAMPLES,
                         help=f"parts of a cell along a side for round corners and rough ground, even (default "
                              f"{SAMPLES}); planes are exact with any")
     parser.add_argument("--no-picture", action="store_true", help="without volume.png, which takes longest")

@@ -97,7 +97,8 @@ def last_text(path):
                                      f"{MEMORY * len(kept) / 1e9:.3g} GB")
     except (OSError, EOFError, zlib.error) as error:
         raise SlopeError(path, f"must be a LAMMPS dump ({getattr(error, 'strerror', None) or error})") from error
-    return kept.decode("ascii", "replace"), lines
+    text = kept.decode("ascii", "replace")
+    return text.replace("\r\n", "\n") if b"\r" in kept else text, lines
 
 
 def numbers_only(rows, columns):

@@ -34,12 +34,16 @@ class Observed(NamedTuple):
 
 # --- the mapped deposit ---
 
-def read_observed(path, raster, threshold, local):
-    """The Observed of a file, on the grid of a run's thickness raster."""
+def read_observed(path, raster, threshold, local, warn=None):
+    """The Observed of a file, on the grid of a run's thickness raster; warn: called with what was taken for granted."""
     if path.suffix.lower() not in RASTERS:
         polygon = polygons.read_local(path, raster, local)
         return from_polygon(polygon, raster)
     mapped = rasters.read_asc_local(path) if path.suffix == ".asc" else rasters.read(path)
+    if mapped.crs is None and raster.crs is not None and not local:
+        mapped = mapped._replace(crs=raster.crs)
+        if warn:
+            warn(f"{path} has no CRS: taken to be in that of the terrain (--local if it is in the run's local metres)")
     return from_raster(path, mapped, raster, threshold, local)
 
 
@@ -60,9 +64,9 @@ def from_raster(path, mapped, raster, threshold, local):
         raise SlopeError(path, "must be a raster with rows from west to east and columns from north to south")
     if local:
         mapped = mapped._replace(crs=raster.crs, offset=raster.offset)
-    elif (mapped.crs is None) != (raster.crs is None):
-        raise SlopeError(path if mapped.crs is None else "--terrain", "must have a CRS, so that both can be brought "
-                         "together (--local if the mapped deposit is in the run's local metres)", "none")
+    elif raster.crs is None and mapped.crs is not None:
+        raise SlopeError("--terrain", "must have a CRS, so that both can be brought together (--local if the mapped "
+                         "deposit is in the run's local metres)", "none")
     elif not same_crs(mapped.crs, raster.crs):
         raise SlopeError(path, f"must be in the CRS of the run, {crs_name(raster.crs)} (gdalwarp -t_srs reprojects)",
                          crs_name(mapped.crs))

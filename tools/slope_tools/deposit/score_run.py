@@ -27,7 +27,7 @@ def make(prefix: str, mapped: Path, folder: Path, threshold: float = THRESHOLD, 
     run_ = deposit.read(prefix, terrain, warn)
     disk.check_folder(folder)
     squares = make_mesh(mesh or run_.cell, run_.raster)
-    observed = read_observed(mapped, run_.raster, threshold, local)
+    observed = read_observed(mapped, run_.raster, threshold, local, warn)
     if observed.outside > 0:
         warn(f"{mapped}: {observed.outside:.6g} m2 of it lie outside of the grid of the run: counted as not met")
     simulated = run_.raster.z > threshold

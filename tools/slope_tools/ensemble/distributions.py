@@ -51,8 +51,9 @@ class Range:
         return u
 
     @property
-    def bounds(self) -> Tuple[float, ...]:
-        return self.low, self.high
+    def limits(self) -> Tuple[str, ...]:
+        """Values between which, or at which, all of them are."""
+        return repr(self.low), repr(self.high)
 
 
 @dataclass(frozen=True)
@@ -80,8 +81,8 @@ class Listed:
         return ((edges[:-1] + edges[1:]) / 2)[self._index(u)]
 
     @property
-    def bounds(self) -> Tuple[float, ...]:
-        return tuple(float(value) for value in self.values if isinstance(settings.as_number(value), float))
+    def limits(self) -> Tuple[str, ...]:
+        return self.values
 
 
 def parse(options: Sequence[str], deck, option: str = "--vary", ranges_only: bool = False) -> List[Any]:
@@ -94,16 +95,15 @@ def parse(options: Sequence[str], deck, option: str = "--vary", ranges_only: boo
         if "=" not in words:
             raise SlopeError(option, MUST, words)
     names = settings.check_names([words.partition("=")[0] for words in options], deck, option, options)
-    known = deck_ranges.ranges(deck)
+    checks = deck_ranges.Checks(deck)
     found = []
     for name, words in zip(names, options):
         one = distribution(name, words.partition("=")[2], option, words)
         if ranges_only and isinstance(one, Listed):
             raise SlopeError(option, "must be a range here, NAME=LO:HI", words)
-        if name in known:
-            for value in one.bounds:
-                if not known[name].holds(value):
-                    raise SlopeError(option, f"{name} must stay within the deck's range, {known[name].text}", words)
+        checks.vary(option, name, words)
+        for value in one.limits:
+            checks.value(option, name, value, words)
         found.append(one)
     return found
 

@@ -8,7 +8,7 @@ volume on the road.
 """
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Optional, Tuple
+from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
 
 import numpy as np
 
@@ -71,10 +71,10 @@ class Wanted:
                 "area": self.area, "volume": self.volume, "threshold": self.threshold,
                 "tolerance": {"all": self.tolerance, **self.own} if self.own else self.tolerance}
 
-    def check_place(self, terrain: Path) -> None:
+    def check_place(self, terrain: Path, warn: Callable[[str], None]) -> None:
         """Raise SlopeError before the first run if the mapped deposit lies elsewhere, or in another CRS."""
         if self.observed is not None:
-            score.read_observed(self.observed, rasters.read_asc_local(terrain), self.threshold, self.local)
+            score.read_observed(self.observed, rasters.read_asc_local(terrain), self.threshold, self.local, warn)
 
 
 class Observations:

@@ -36,17 +36,19 @@ def processed(components, wanted: Processing):
     if wanted.baseline == "rest":
         motion = motions.at_rest(motion)
         steps.append("straight line taken off: ends at rest where it began")
-    most = motions.peak(motion)
-    if not most > 0:
+    if not motions.largest(motion) > 0:
         raise SlopeError(components[0].source, "must hold a motion, the acceleration is constant")
-    factor = wanted.peak * GAL / most if wanted.peak else wanted.scale or 1.0
+    if wanted.peak and not motions.peak(motion) > 0:
+        raise SlopeError("--peak", "needs a horizontal component, whose acceleration it is (--scale takes any)",
+                         ", ".join(f"{one.source} ({one.name})" for one in components))
+    factor = wanted.peak * GAL / motions.peak(motion) if wanted.peak else wanted.scale or 1.0
     if factor != 1.0:
         motion = motions.scaled(motion, factor)
         steps.append(f"scaled by {factor:.6g}")
-    if motions.peak(motion) > records.MOST:
+    if motions.largest(motion) > records.MOST:
         raise SlopeError("--peak" if wanted.peak else "--scale",
                          f"must give a largest acceleration of at most {records.MOST / GAL:g} gal",
-                         f"{motions.peak(motion) / GAL:.6g}")
+                         f"{motions.largest(motion) / GAL:.6g}")
     return motion, steps
 
 
@@ -67,7 +69,9 @@ def write(path, motion, about):
     try:
         for final, content in texts.items():
             beside[final].write_text(content, encoding="utf-8")
-        quake_charts.draw(beside[picture], motion, f"{path.name}: {about['peak_gal']:.4g} gal")
+        title = (f"{about['peak_gal']:.4g} gal" if about["peak_gal"] > 0 else
+                 f"vertical only, {about['axes']['z']['acceleration_gal']:.4g} gal")
+        quake_charts.draw(beside[picture], motion, f"{path.name}: {title}")
         for final, part in beside.items():
             os.replace(part, final)
     except OSError as error:

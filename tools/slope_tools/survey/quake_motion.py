@@ -101,9 +101,13 @@ def scaled(motion, factor):
 
 
 def peak(motion):
-    """Largest horizontal acceleration, of both components together; of the vertical one if there is no other. m/s2."""
-    flat = np.hypot(motion.a[:, 0], motion.a[:, 1]).max()
-    return float(flat if flat > 0 else np.abs(motion.a[:, 2]).max())
+    """Largest horizontal acceleration, of both components together, m/s2."""
+    return float(np.hypot(motion.a[:, 0], motion.a[:, 1]).max())
+
+
+def largest(motion):
+    """Largest acceleration, horizontal or vertical, m/s2."""
+    return max(peak(motion), float(np.abs(motion.a[:, 2]).max()))
 
 
 # --- what describes a motion ---

@@ -30,6 +30,7 @@ class Component:
     dt: float
     values: np.ndarray
     begin: str = ""        # date and time as the file has them
+    unit_in_head: bool = False      # as its format has it: --unit is not for it
 
     @property
     def name(self):
@@ -104,7 +105,7 @@ def knet(path, lines):
     if largest and abs(most - float(largest[1])) > 0.02 * most + 0.2:
         raise SlopeError(path, f"the largest acceleration must be the head's Max. Acc., {largest[1]} gal",
                          f"{most:.5g} gal")
-    return Component(str(path), KNET[code], 1 / rate, values, head.get("record time", ""))
+    return Component(str(path), KNET[code], 1 / rate, values, head.get("record time", ""), True)
 
 
 # --- PEER ---
@@ -131,7 +132,7 @@ def at2(path, lines):
     else:
         raise SlopeError(f"{path}, line 2", "must end in the direction, an azimuth or UP", repr(lines[1].strip()))
     values = values_of(path, lines, 4, int(size[1])) * (sign * UNITS[unit[1].lower().rstrip(".,")])
-    return Component(str(path), direction, number(size[2]), values)
+    return Component(str(path), direction, number(size[2]), values, unit_in_head=True)
 
 
 def number(text):

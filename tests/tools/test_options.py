@@ -1,0 +1,44 @@
+"""Types of options on the command line: what they take, and the one line for what they do not."""
+import argparse
+import re
+
+import pytest
+
+import run_helpers  # noqa: F401  (finds slope_tools)
+
+from slope_tools import cli, options  # noqa: E402
+
+
+@pytest.mark.parametrize("text, value", [("1", 1), ("007", 7), ("1000000", 1000000), ("1000000000", 10 ** 9)])
+def test_count(text, value):
+    assert options.count(text) == value
+
+
+@pytest.mark.parametrize("text, rule", [("0", ">= 1"), ("-3", ">= 1"), ("1.5", ">= 1"), ("1e3", ">= 1"), ("", ">= 1"),
+                                        ("1000000001", "<= 1000000000"), ("9" * 5000, "<= 1000000000")])
+def test_no_count(text, rule):
+    with pytest.raises(argparse.ArgumentTypeError, match=re.escape(f"must be a whole number {rule}, got {text!r}")):
+        options.count(text)
+
+
+@pytest.mark.parametrize("text, value", [("0", 0), ("-12", -12), ("+4", 4), ("4294967295", 2 ** 32 - 1)])
+def test_whole(text, value):
+    assert options.whole(text) == value
+
+
+@pytest.mark.parametrize("text", ["1e3", "x", "2.0", "1_000", " 1", "", "9" * 19])
+def test_not_whole(text):
+    with pytest.raises(argparse.ArgumentTypeError, match=re.escape(f"must be a whole number of at most 18 digits, got "
+                                                                   f"{text!r}")):
+        options.whole(text)
+
+
+@pytest.mark.parametrize("words", [
+    "terrain dem.tif -o terrain.asc --fill 1e3", "calibrate in.x --vary a=0:1 --runs 9 -o out --seed 1e3",
+    "study in.x --sample 1e3 -o out", "study in.x --seed 1e3 -o out", "travel a.dump --type 1e3",
+    "volume run --road r.csv --mesh 5 --samples 1e3"])
+def test_no_option_has_the_words_of_argparse(words, capsys):
+    with pytest.raises(SystemExit) as ended:
+        cli.main(words.split())
+    err = capsys.readouterr().err
+    assert ended.value.code == 2 and err.count("\n") == 1 and "must be a whole number" in err and "'1e3'" in err
