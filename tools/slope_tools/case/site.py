@@ -20,7 +20,7 @@ from . import release_files, site_budget, site_choices, site_deck, site_folder, 
 from .site_budget import Size, Trial
 from .site_choices import Choices, Derived
 from .site_folder import BODY, BODY_DECK, MAP, TERRAIN
-from .site_layers import Layers, Shown, read_layers
+from .site_layers import Layers, Shown, advice, read_layers
 
 
 class Machine(NamedTuple):
@@ -143,7 +143,7 @@ def wanted_body(choices: Choices, new: Path) -> release.Wanted:
     given = choices["release"]
     if not (given["polygon"] or given["scar"]):
         raise SlopeError("--release", "must be given, a polygon, or --scar, a raster")
-    return release.check(release.Wanted(str(new / TERRAIN), **given))
+    return release.check(release.Wanted(str(new / TERRAIN), **given, advice=advice(choices)))
 
 
 def terrain(choices: Choices, new: Path, tell) -> Raster:
