@@ -328,7 +328,7 @@ SQUARE = "10,10\n20,10\n20,20\n10,20\n"
      "a.wkt: line 1: must be polygons that do not cross or touch themselves, got Self-intersection at 15 15"),
     ("a.geojson", lambda path: geojson(path), "", "a.geojson: must hold a polygon, it is empty"),
     ("a.geojson", lambda path: geojson(path, moved(ROAD)), "", "a.geojson: coordinates in EPSG:4326 must be longitude "
-     "and latitude; --assign-crs EPSG:n of slope terrain and slope polygon overrides a tag that is wrong or missing, "
+     "and latitude; --assign-crs EPSG:n overrides a CRS that is wrong or missing, "
      "got -11990 34010"),
     ("a.geojson", lambda path: geojson(path, moved(ROAD), moved(BOW), crs=CRS_M), "", "a.geojson: feature 1: must be "
      "polygons that do not cross or touch themselves, got Self-intersection at -11985 34015"),
@@ -336,7 +336,7 @@ SQUARE = "10,10\n20,10\n20,20\n10,20\n"
     ("a.geojson", wkt('{"type": "Polygon", "coordinates": [[[1'), "", "a.geojson: must be polygons that GDAL can read"),
     ("a.geojson", lambda path: geojson(path, box(139.0, 36.0, 139.1, 36.1)), "", "a.geojson: must overlap the terrain"),
     ("a.shp", lambda path: shapefile(path, moved(ROAD)), "", "a.shp: must have a CRS, so that polygon and terrain can "
-     "be brought together (a .prj file beside a shapefile, slope terrain --crs for a terrain; --local if"),
+     "be brought together (--assign-crs EPSG:n; a .prj file beside a shapefile; --local if"),
     ("a.shp", wkt("no shapes"), "", "a.shp: must be polygons that GDAL can read"),
     ("a.wkt", wkt(moved(ROAD).wkt), "--assign-crs EPSG:1", "--assign-crs: must be a CRS such as EPSG:6677, got EPSG:1"),
     ("a.wkt", wkt(moved(ROAD).wkt), "--crs EPSG:6668", "a.wkt: coordinates in EPSG:6668 must be longitude and "

@@ -368,7 +368,8 @@ def test_a_scar_that_is_none(refused):
     refused("t.asc --scar none.asc", "none.asc: must be an existing file")
     refused("t.asc --scar higher.asc --volume 100", "--volume: must not be given with --scar")
     terrain(ramp(30, top=499), "lower.asc")
-    refused("t.asc --scar lower.asc", "lower.asc: must lie 2 cells within the heights of t.asc")
+    refused("t.asc --scar lower.asc", "lower.asc: must stay at least 2 cells away from NODATA and from the edge of "
+            "t.asc")
     polygon(box(10, 10, 40, 40))
     refused("t.asc --scar change.asc --scar-is change --polygon p.csv", "p.csv: must hold some of the scar")
 
@@ -433,8 +434,10 @@ def test_bad_input(refused):
 
 @pytest.mark.parametrize("geometry, parts", [
     (box(300, 60, 400, 140), ["p.csv: must overlap the terrain"]),
-    (box(200, 60, 300, 140), ["p.csv: must lie 2 cells within the heights of t.asc, got its edge at local x y 2"]),
-    (box(20, 60, 80, 140), ["p.csv: must lie 2 cells within the heights of t.asc, got NODATA at local x y 47 9"]),
+    (box(200, 60, 300, 140), ["p.csv: must stay at least 2 cells away from NODATA and from the edge of t.asc",
+                              "got its edge at east "]),
+    (box(20, 60, 80, 140), ["p.csv: must stay at least 2 cells away from NODATA and from the edge of t.asc",
+                            f"got NODATA at east {EAST + 47:.1f} north "]),
     (box(100, 60, 104, 64), ["p.csv: must hold at least 9 centres of the cells of t.asc, which are 2 m", "got 4"]),
     (box(60, 60, 90, 140).union(box(100, 60, 160, 140)), ["p.csv: must be one polygon for --shape sphere", "got 2"]),
     (box(160, 20, 230, 60), ["p.csv: the ground in it must fall by at least 1 degree, got", "flat"])])

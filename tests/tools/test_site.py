@@ -312,13 +312,14 @@ BODY = ("--shape", "ellipsoid", "--depth", "5")
 
 @pytest.mark.parametrize("words, start", [
     ((), "--depth: .*--volume must be given"),
-    (("--depth", "-1"), "choices: release.depth: must be > 0, got -1"),
+    (("--depth", "-1"), "--depth: must be > 0, got -1"),
     (("--shape", "ellipsoid", "--volume", "1e9"), "--volume: must be at most .*got 1000000000"),
     ((*BODY, "--road", "missing.geojson"), "missing.geojson: must be an existing file"),
-    ((*BODY, "--cut-angle", "95"), "choices: road.cut_angle: must be < 90, got 95"),
+    ((*BODY, "--cut-angle", "95"), "--cut-angle: must be < 90, got 95"),
     ((*BODY, "--structure", "dem.tif"), "dem.tif: must be an STL file"),
     ((*BODY, "--motion", "road.geojson"), "road.geojson: line 1: must be four numbers"),
     ((*BODY, "--minutes", "0.001"), "--minutes: must be at least .* got 0.001"),
+    ((*BODY, "--diameter", "500"), "--diameter: must make 1 to .* balls .*smaller ones, got 0 of 500 m"),
 ])
 def test_refused(gis, words, start):
     refused(make(gis, *words), start)
@@ -345,7 +346,7 @@ def test_refused_files(gis):
     for spoil, start in ((outside, "release.geojson: must overlap the terrain"),
                          (flat, "release.geojson: .*must fall by at least 1 degree, got .*flat"),
                          (empty, "dem.tif: must have a height, all cells are NODATA"),
-                         (nowhere, "(dem.tif|terrain.asc): must have a CRS.*none"),
+                         (nowhere, r"dem.tif: must have a CRS.*\(--crs EPSG:n gives it one\), got none"),
                          (wall, "wall.stl: must lie within the terrain")):
         spoil()
         words = ("--structure", "wall.stl") if spoil is wall else ()
@@ -355,12 +356,27 @@ def test_refused_files(gis):
             (gis / name).write_bytes(content)
 
 
+def test_a_layer_in_a_wrong_crs(gis):
+    """What can be done is named, of slope site's own options; the CRS that was read is, too."""
+    write_layer(gis / "release.geojson", RELEASE, "EPSG:6676")
+    text = (gis / "release.geojson").read_text()
+    (gis / "release.geojson").write_text(text.replace("EPSG::6676", "EPSG::6677"))
+    refused(make(gis, *BODY), r"release.geojson: must overlap the terrain, local x y 0 0 120 80, got [-\d.]+ [-\d.]+ "
+            r"[-\d.]+ [-\d.]+, read as EPSG:6677: is that right\? The terrain is in EPSG:6677$")
+    about = json.loads(text)
+    del about["crs"]
+    (gis / "release.geojson").write_text(json.dumps(about))
+    line = refused(make(gis, *BODY), "release.geojson: coordinates in EPSG:4326 must be longitude and latitude")
+    assert "save it with its CRS" in line and "--assign-crs" not in line
+
+
 def test_a_layer_without_crs(gis):
     fiona = pytest.importorskip("fiona")
     points = (np.array(ROAD, float) + (EAST, NORTH)).tolist()
     with fiona.open(gis / "road.shp", "w", "ESRI Shapefile", {"geometry": "Polygon", "properties": {}}) as out:
         out.write({"geometry": {"type": "Polygon", "coordinates": [points + points[:1]]}, "properties": {}})
-    refused(make(gis, *BODY, "--road", "road.shp"), "road.shp: must have a CRS.*none")
+    line = refused(make(gis, *BODY, "--road", "road.shp"), "road.shp: must have a CRS.*none")
+    assert ".prj" in line and "--local" not in line and "--assign-crs" not in line
     assert not (gis / "mine").exists()
 
 
@@ -370,6 +386,9 @@ def test_a_file_of_another_version(done, tmp_path):
                            ("slope_site: 1", "slope: 1", " must be .*slope_site"),
                            ("mesh: 10", "mash: 10", " road: must have no mash"),
                            ("spacing: 1", "spacing: -1", r" model\.spacing: must be > 0, got -1"),
+                           ("rolling: [0", "rolling: 0.05 #", r" study\.rolling: must be a list in brackets, such as "
+                            r"\[0\.05\], got 0\.05"),
+                           ("rolling: [0.0, ", "rolling: [0.0, x, ", " study.rolling: second value: must be a number"),
                            (good, "a: [", " must be")):
         mine = tmp_path / "mine"
         mine.mkdir(exist_ok=True)
@@ -382,6 +401,7 @@ def test_a_file_of_another_version(done, tmp_path):
 
 
 def test_folders_that_are_no_sites(gis, done):
+    refused(slope(gis, "study", "nope"), "nope: must be a deck or the folder of a site")
     refused(slope(gis, "study", "."), r"\.: must be a folder with site.yaml")
     refused(slope(gis, "site", "."), r"\.: must be a folder with site.yaml")
     refused(slope(gis, "site", "-o", "mine"), "--terrain: must be given")

@@ -15,7 +15,7 @@ from test_site import BODY, ROAD, TOOLS, gis, refused, slope, write_layer  # noq
 from tiny_collapse import LMP, processes_in
 
 from slope_tools import cli, disk, programs
-from slope_tools.case import site_choices, site_deck, site_folder
+from slope_tools.case import site_choices, site_deck, site_folder, site_warnings
 from slope_tools.ensemble import site_study
 from slope_tools.errors import SlopeError
 
@@ -194,6 +194,37 @@ def test_a_shape_that_nobody_named_is_none(inside, gis):  # noqa: F811
     inside("--terrain dem.tif --release release.geojson --volume 400 -o other")
     inside("other --curvature 0.002")
     assert yaml.safe_load((gis / "other" / "release.yaml").read_text())["shape"] == "slbl"
+
+
+# --- warnings ---
+
+def kept(mine):
+    return yaml.safe_load((mine / site_warnings.NAME).read_text())
+
+
+@pytest.mark.parametrize("mean, largest, words", [
+    (0.4, 2.0, "0.4 balls thick on average, below 3"), (1.5, 5.2, "1.5 balls thick on average, below 3"),
+    (2.9, 12.0, "2.9 balls thick on average, below 3"), (3.1, 9.9, "9.9 balls thick at most, below 10")])
+def test_a_thin_body_is_warned_of_by_its_mean_thickness(mean, largest, words):
+    line, = site_warnings.of_thickness(mean, largest)
+    assert words in line and "more balls (--balls, --minutes)" in line
+
+
+def test_a_thick_body_is_not_warned_of():
+    assert site_warnings.of_thickness(3.1, 10.0) == []
+
+
+def test_all_warnings_are_kept_in_the_folder(inside, mine):
+    """Those of layers and balls; anew with the other files."""
+    write_layer(mine.parent / "road.geojson", [(20, -40), (36, -40), (36, 80), (20, 80)])
+    err = inside("mine --balls 60 --road road.geojson").err
+    lines = kept(mine)
+    assert err.splitlines() == [f"slope site: warning: {line}" for line in lines]
+    assert [next(word for word in ("outside", "LAMMPS", "thick") if word in line) for line in lines] == [
+        "outside", "LAMMPS", "thick"]
+    inside("mine --balls 100000")
+    assert not any("thick" in line for line in kept(mine)) and len(kept(mine)) == 2
+    assert site_warnings.NAME in site_choices.found(mine)["files"]
 
 
 # --- the program ---

@@ -17,11 +17,11 @@ from .. import disk, provenance
 from ..errors import SlopeError
 from ..survey import local_terrain, polygons, rasters, release
 from ..survey.rasters import Raster, crs_name
-from . import release_files, site_budget, site_choices, site_deck, site_folder
+from . import release_files, site_budget, site_choices, site_deck, site_folder, site_warnings
 from .site_budget import Size, Trial
 from .site_choices import Choices, Derived
 from .site_folder import BODY, BODY_DECK, MAP, TERRAIN
-from .site_layers import Layers, Shown, read_layers
+from .site_layers import Layers, Shown, advice, read_layers
 
 
 class Machine(NamedTuple):
@@ -100,21 +100,29 @@ def built(choices: Choices, known: Derived, new: Path, folder: Path, machine: Ma
 
 def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Machine, tell, warn, draw: Draw) -> Made:
     """Everything, into the folder `new`, which will be `folder`."""
+    doubts: List[str] = []
+
+    def doubt(line: str) -> None:
+        doubts.append(line)
+        warn(line)
     choices = {name: dict(section) for name, section in given.items()}
     wanted = wanted_body(choices, new)
     raster = terrain(choices, new, tell)
     found = release.body_of(wanted)
     tell(release.text(found))
     for line in found.warnings:
-        warn(line)
+        doubt(line)
     body = write_body(new, wanted, found)
-    layers = read_layers(choices, raster, new, tell, warn)
+    layers = read_layers(choices, raster, new, tell, doubt)
     title = choices["project"]["name"] or folder.absolute().name
     parts = site_deck.Parts(title, ", ".join(Path(name).name for name in choices["terrain"]["files"]), body,
                             layers.structures, layers.lines, layers.motion)
-    trial, reached = tried(choices, parts, found, new, machine, tell, warn)
+    trial, reached = tried(choices, parts, found, new, machine, tell)
     size = settle(choices, parts, found, trial, machine, raster)
-    say_size(choices, size, trial, found, machine, tell, warn)
+    say_size(choices, size, found, machine, tell)
+    for line in site_warnings.site_warnings(found.measures, size, trial):
+        doubt(line)
+    site_warnings.write(new, doubts)
     deck = site_deck.text(choices, parts, numbers(choices, trial, size))
     disk.write(new / site_deck.NAME, deck)
     draw(new / MAP, shown(found, layers, reached), f"{title}: {found.measures.volume:,.0f} m\u00b3")
@@ -138,7 +146,7 @@ def wanted_body(choices: Choices, new: Path) -> release.Wanted:
     given = choices["release"]
     if not (given["polygon"] or given["scar"]):
         raise SlopeError("--release", "must be given, a polygon, or --scar, a raster")
-    return release.check(release.Wanted(str(new / TERRAIN), **given))
+    return release.check(release.Wanted(str(new / TERRAIN), **given, advice=advice(choices)))
 
 
 def terrain(choices: Choices, new: Path, tell) -> Raster:
@@ -176,7 +184,7 @@ def numbers(choices: Choices, trial: Optional[Trial], size: Optional[Size], diam
                              choices["motion"]["peak_friction"] or site_deck.LEAST_PEAK, trial and trial.rest, seconds)
 
 
-def tried(choices: Choices, parts: site_deck.Parts, found: release.Body, new: Path, machine: Machine, tell, warn):
+def tried(choices: Choices, parts: site_deck.Parts, found: release.Body, new: Path, machine: Machine, tell):
     """The Trial of a run with coarse balls, and its largest thickness; None, None where there is no LAMMPS."""
     if choices["motion"]["peak_friction"] is None and parts.motion:
         choices["motion"]["peak_friction"] = site_deck.peak_friction(found.measures.slip_slope)
@@ -194,11 +202,7 @@ def tried(choices: Choices, parts: site_deck.Parts, found: release.Body, new: Pa
     reached = rasters.read(next(iter(folder.glob("*.max_thickness.asc"))), heights=False)
     shutil.rmtree(folder)
     tell(f"trial run, {trial.balls} balls of {d:g} m: {'at rest' if trial.at_rest else 'not at rest'} after "
-         f"{trial.rest:.0f} s, up to {trial.speed:.0f} m/s; {trial.seconds:.1f} s of this machine")
-    if trial.left > 0.001:
-        warn(f"{100 * trial.left:.2g} % of the mass left the terrain in the trial run: take a larger one")
-    if not trial.at_rest:
-        warn(f"the trial run was not at rest after {trial.rest:.0f} s: the run time of the study is a guess")
+         f"{trial.rest:.0f} s, up to {trial.speed:.0f} m/s; took {trial.seconds:.1f} s")
     return trial, reached
 
 
@@ -215,22 +219,18 @@ def settle(choices: Choices, parts: site_deck.Parts, found: release.Body, trial:
     return size
 
 
-def say_size(choices: Choices, size: Size, trial: Optional[Trial], found: release.Body, machine: Machine, tell, warn):
+def say_size(choices: Choices, size: Size, found: release.Body, machine: Machine, tell):
     """What the user needs to know of the balls, and of what the study takes."""
     thick = found.measures.mean_depth / size.diameter, found.measures.largest_depth / size.diameter
-    tell(f"balls of {size.diameter:g} m: {size.balls:,} of them, the body is {thick[0]:.1f} of them thick on the mean, "
-         f"{thick[1]:.1f} at the most")
+    tell(f"balls of {size.diameter:g} m: {size.balls:,} of them, the body is {thick[0]:.1f} balls thick on average, "
+         f"{thick[1]:.1f} at most")
     study = choices["study"]
     each = 1 + len(study["xoffset"])
-    runs = f"{size.runs} runs: {len(study['rolling'])} rolling resistances x {each} places of the lattice"
+    runs = f"{size.runs} runs: {len(study['rolling'])} rolling resistances x {each} lattice positions"
     if study["sizes"]:
         runs += f", {len(study['sizes'])} sizes of balls x {each}"
     took = "" if size.seconds is None else f", about {site_budget.duration_text(size.seconds)} if nothing else runs"
     tell(f"the study: {runs}; {machine.jobs} at a time{took}, {size.gigabytes:.2g} GB")
-    if trial is None:
-        warn("no LAMMPS program (LMP, --lmp, build/lmp): the deck was not tried, time and speeds are not known")
-    if thick[1] < 3:
-        warn("the body is thinner than 3 balls everywhere: the numbers will be rough; more --balls or --minutes")
 
 
 # --- map ---

@@ -31,7 +31,7 @@ PATIENCE = 3.0          # duration: times the trial's time to rest
 LEAST_DURATION = 60.0   # s
 LONGEST = 600.0         # s of a collapse in the trial run
 TRIAL_LIMIT = 600.0     # s of waiting for it
-
+TOO_LARGE = "box size << cutoff"        # LAMMPS, of a ball that is as large as the terrain
 
 LOOP = re.compile(r"^Loop time of (\S+) on \d+ procs for (\d+) steps with (\d+) atoms", re.MULTILINE)
 SHARE = re.compile(r"^(\S+)% CPU use", re.MULTILINE)
@@ -76,6 +76,7 @@ def trial_diameter(choices: Choices, volume: float) -> float:
     balls = choices["balls"]
     number = TRIAL
     if balls["diameter"]:
+        number_of(choices, volume, balls["diameter"])
         number = min(number, volume / balls["diameter"] ** 3)
     elif balls["number"]:
         number = min(number, balls["number"])
@@ -105,6 +106,9 @@ def measure(folder: Path, deck: str, lmp: Path) -> Trial:
     summaries = sorted(folder.glob("*.summary.yaml"))
     if status != 0 or not summaries:
         words = last_words.reason(logs.Log(log).update(), last_words.Screen(folder / "screen.txt", 0))
+        if words and TOO_LARGE in words:
+            raise SlopeError("trial run", "must have balls that are much smaller than the terrain: use more balls "
+                             "(--balls), or a smaller --diameter, balls.diameter of site.yaml")
         raise SlopeError("trial run", f"must end well: {words or f'ended with status {status}'}")
     about = disk.load_yaml(summaries[0], "a summary that fix deposit/grid wrote")
     text = log.read_text(encoding="utf-8", errors="replace")
@@ -191,11 +195,18 @@ def size(choices: Choices, volume: float, trial: Optional[Trial], jobs: int, cel
     else:
         balls["number"] = DEFAULT
         d = three_digits((volume / DEFAULT) ** (1 / 3))
+    return Size(d, number_of(choices, volume, d), sum(runs for _, runs in parts), trial and seconds(d),
+                gigabytes(d, volume, cells, jobs))
+
+
+def number_of(choices: Choices, volume: float, d: float) -> int:
+    """The balls of diameter d (m) that a body (m3) is made of; SlopeError if they are too large or too many."""
     number = round(volume / d ** 3)
     if not 1 <= number <= MOST:
-        raise SlopeError("--diameter" if balls["diameter"] else "--balls", f"must make 1 to {MOST:,} balls of a "
-                         f"body of {volume:.6g} m3", f"{number:,} of {d:g} m")
-    return Size(d, number, sum(runs for _, runs in parts), trial and seconds(d), gigabytes(d, volume, cells, jobs))
+        raise SlopeError("--diameter" if choices["balls"]["diameter"] else "--balls", f"must make 1 to {MOST:,} balls "
+                         f"of a body of {volume:,.6g} m3: {'smaller' if number < 1 else 'larger'} ones",
+                         f"{number:,} of {d:g} m")
+    return number
 
 
 def up(value: float) -> float:

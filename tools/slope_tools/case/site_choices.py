@@ -8,7 +8,7 @@ import hashlib
 import json
 import os
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Tuple
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Tuple
 
 import jsonschema
 import yaml
@@ -30,6 +30,10 @@ DERIVED = (("balls", "diameter"), ("balls", "number"), ("model", "field_diameter
 
 # sections that `slope study` and the report read when they run, except for files, of which the folder has copies
 READ_LATER = ("project", "road", "study")
+NTH = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
+# types of a JSON schema
+TYPES = {"array": "a list in brackets", "string": "a text", "number": "a number", "integer": "a whole number",
+         "object": "a section with keys", "boolean": "true or false"}
 
 Choices = Dict[str, Any]        # {section: {key: value}}, complete
 Derived = Dict[str, Any]        # {"section.key": value} of DERIVED
@@ -59,8 +63,11 @@ def complete(given: Choices) -> Choices:
     return {name: {**entries, **(given.get(name) or {})} for name, entries in defaults().items()}
 
 
-def check(given: Any, where: str) -> None:
-    """Raise SlopeError, which names the key, unless it is a site.yaml of this version."""
+def check(given: Any, where: str, options: Optional[Mapping[Tuple[str, str], str]] = None) -> None:
+    """Raise SlopeError, which names the key, unless it is a site.yaml of this version.
+
+    options: what to name instead of a section and key, such as an option that gave it.
+    """
     if not isinstance(given, dict) or "slope_site" not in given:
         raise SlopeError(where, f"must be {WHAT}, with slope_site")
     if given["slope_site"] != VERSION:
@@ -69,8 +76,16 @@ def check(given: Any, where: str) -> None:
     validator = jsonschema.Draft202012Validator(schema())
     errors = sorted(validator.iter_errors(given), key=lambda error: [str(part) for part in error.absolute_path])
     if errors:
-        key = ".".join(str(part) for part in errors[0].absolute_path)
-        raise SlopeError(f"{where}: {key}" if key else where, rule_of(errors[0]))
+        place = list(errors[0].absolute_path)
+        key = ".".join(str(part) for part in place if isinstance(part, str))
+        at = "".join(f": {nth(part)} value" for part in place if isinstance(part, int))
+        option = (options or {}).get((str(place[0]), str(place[1])) if len(place) > 1 else ("", ""))
+        raise SlopeError((option or (f"{where}: {key}" if key else where)) + at, rule_of(errors[0]))
+
+
+def nth(index: int) -> str:
+    """The place of a list's item in words."""
+    return NTH[index] if index < len(NTH) else f"{index + 1}th"
 
 
 def rule_of(error: jsonschema.ValidationError) -> str:
@@ -81,7 +96,12 @@ def rule_of(error: jsonschema.ValidationError) -> str:
         return f"must have no {', '.join(extra)}, which is unknown; keys are {', '.join(error.schema['properties'])}"
     if rule == "required":
         return f"must have {' and '.join(key for key in error.validator_value if key not in error.instance)}"
-    rules = {"type": "be of type {}", "exclusiveMinimum": "be > {}", "minimum": "be >= {}",
+    if rule == "type":
+        types = error.validator_value if isinstance(error.validator_value, list) else [error.validator_value]
+        words = " or ".join(TYPES.get(one, one) for one in types)
+        example = f", such as [{flow(error.instance)}]" if "array" in types and disk.is_number(error.instance) else ""
+        return f"must be {words}{example}, got {error.instance!r}"
+    rules = {"exclusiveMinimum": "be > {}", "minimum": "be >= {}",
              "exclusiveMaximum": "be < {}", "maximum": "be <= {}", "enum": "be one of {}",
              "minItems": "have at least {} items", "maxItems": "have at most {} items"}
     if rule in rules:

@@ -3,7 +3,7 @@ from pathlib import Path
 from typing import List, Set
 
 from ..errors import SlopeError
-from . import release_files, site_choices, site_deck, site_inputs
+from . import release_files, site_choices, site_deck, site_inputs, site_warnings
 from .site_choices import Choices
 from .site_layers import OBSERVED, RASTERS, ROAD
 
@@ -16,7 +16,7 @@ BODY_DECK = f"{BODY}.deck.txt"      # is not kept: its lines are in the deck
 def planned(choices: Choices) -> Set[str]:
     """Names of the files that will be made."""
     names = {MAP, TERRAIN, Path(TERRAIN).with_suffix(".yaml").name, f"{BODY}.csv", site_deck.NAME, site_choices.NAME,
-             *(path.name for path in release_files.paths(Path(BODY)))} - {BODY_DECK}
+             site_warnings.NAME, *(path.name for path in release_files.paths(Path(BODY)))} - {BODY_DECK}
     observed = choices["observed"]["file"]
     if observed:
         names.add(OBSERVED + (".tif" if Path(observed).suffix.lower() in RASTERS else ".csv"))

@@ -112,11 +112,12 @@ def structure(path: str, raster: Raster, folder: Path, taken: Set[str]) -> Struc
 
 # --- lines ---
 
-def control_lines(paths: Iterable[str], raster: Raster, folder: Path, taken: Set[str]) -> List[Line]:
+def control_lines(paths: Iterable[str], raster: Raster, folder: Path, taken: Set[str],
+                  advice: polygons.Advice = polygons.ADVICE) -> List[Line]:
     """Write control lines in local metres into a folder."""
     found = []
     for path in paths:
-        parts = lines.read_local(Path(path), raster, False).geoms
+        parts = lines.read_local(Path(path), raster, False, advice=advice).geoms
         if len(parts) != 1:
             raise SlopeError(path, "must hold one line", f"{len(parts)} that do not meet")
         points = np.round(np.asarray(parts[0].coords)[:, :2], 4) + 0.0

@@ -46,12 +46,12 @@ def read_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> L
 
     Raises SlopeError, which names the file, if one does not fit the terrain.
     """
-    terrain = choices["terrain"]["files"][0]
-    road = polygon_layer(choices["road"]["file"], raster, folder / ROAD, terrain, tell, warn)
-    observed = observed_layer(choices["observed"]["file"], raster, folder, terrain, tell, warn)
+    help_ = advice(choices)
+    road = polygon_layer(choices["road"]["file"], raster, folder / ROAD, help_, tell, warn)
+    observed = observed_layer(choices["observed"]["file"], raster, folder, help_, tell, warn)
     taken: Set[str] = set(site_inputs.TAKEN)
     structures = site_inputs.structures(choices["structures"]["files"], raster, folder, taken)
-    lines = site_inputs.control_lines(choices["lines"]["files"], raster, folder, taken)
+    lines = site_inputs.control_lines(choices["lines"]["files"], raster, folder, taken, help_)
     motion = site_inputs.motion(choices["motion"]["file"], folder) if choices["motion"]["file"] else None
     for one in structures:
         tell(one.summary)
@@ -63,11 +63,18 @@ def read_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> L
     return Layers(road, observed, structures, lines, motion)
 
 
-def polygon_layer(path: Optional[str], raster: Raster, target: Path, terrain: str, tell, warn):
+def advice(choices: Choices) -> polygons.Advice:
+    """What can be done in slope site where a polygon does not fit the terrain."""
+    own = "save it with its CRS; a GeoJSON that names none is in longitude and latitude"
+    return polygons.Advice(choices["terrain"]["files"][0], "--crs EPSG:n gives it one",
+                           f"a .prj file beside a shapefile: {own}", own)
+
+
+def polygon_layer(path: Optional[str], raster: Raster, target: Path, help_: polygons.Advice, tell, warn):
     """A polygon in local metres, written for the deck; None if there is none."""
     if not path:
         return None
-    geometry = polygons.read_local(path, raster, terrain=terrain)
+    geometry = polygons.read_local(path, raster, advice=help_)
     beyond = 1 - geometry.intersection(box(*extent(raster))).area / geometry.area
     if beyond > 1e-9:
         warn(f"{path}: {100 * beyond:.2g} % of the area lies outside of the terrain")
@@ -76,12 +83,12 @@ def polygon_layer(path: Optional[str], raster: Raster, target: Path, terrain: st
     return geometry
 
 
-def observed_layer(path: Optional[str], raster: Raster, folder: Path, terrain: str, tell, warn):
+def observed_layer(path: Optional[str], raster: Raster, folder: Path, help_: polygons.Advice, tell, warn):
     """The mapped deposit: an outline in local metres, or None after a raster was copied."""
     if not path:
         return None
     if Path(path).suffix.lower() not in RASTERS:
-        return polygon_layer(path, raster, folder / f"{OBSERVED}.csv", terrain, tell, warn)
+        return polygon_layer(path, raster, folder / f"{OBSERVED}.csv", help_, tell, warn)
     mapped = rasters.read(path, heights=False)
     if mapped.crs is None:
         mapped = mapped._replace(crs=raster.crs)

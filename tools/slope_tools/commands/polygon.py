@@ -55,7 +55,7 @@ def run(args):
         raise SlopeError("-o", "must not be the input", args.output)
     crs = as_crs("--assign-crs", args.crs) if args.crs else None
     place = rasters.read_place(args.terrain)
-    geometry = polygons.read_local(args.input, place, local=args.local, crs=crs)
+    geometry = polygons.read_local(args.input, place, local=args.local, crs=crs, advice=polygons.OF_ASSIGN_CRS)
     beyond = 1 - geometry.intersection(box(*place.extent)).area / geometry.area
     if beyond > 1e-9:
         print(f"slope polygon: warning: {args.input}: {100 * beyond:.2g} % of the area lies outside of {args.terrain}",

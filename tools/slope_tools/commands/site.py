@@ -148,7 +148,8 @@ def chosen(args):
                 raise SlopeError("-o" if option == "output" else "--terrain", "must be given, or the folder of a site")
         folder, choices, known = args.output, site_choices.complete({}), {}
     replace(choices, given)
-    site_choices.check({"slope_site": site_choices.VERSION, **choices}, "choices")
+    site_choices.check({"slope_site": site_choices.VERSION, **choices}, str(folder / site_choices.NAME),
+                       {OPTIONS[option]: f"--{option.replace('_', '-')}" for option in given})
     return folder, choices, known
 
 

@@ -70,6 +70,8 @@ def run(args):
     """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
     if args.deck.is_dir() and (args.output is None or (args.deck / site_choices.NAME).exists()):
         return run_site(args)
+    if args.output is None and not args.deck.exists():
+        raise SlopeError(args.deck, "must be a deck or the folder of a site, there is none of that name")
     if args.output is None:
         raise SlopeError("-o", "must be given, the study's folder")
     settings = check_settings(args.set, args.deck)

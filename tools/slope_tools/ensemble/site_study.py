@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Dict, Iterable, List, NamedTuple, Optional, Sequence
 
 from .. import disk
-from ..case import decks, site_choices, site_deck
+from ..case import decks, site_choices, site_deck, site_warnings
 from ..case.site_budget import three_digits
 from ..case.site_choices import Choices
 from ..case.site_layers import OBSERVED, ROAD
@@ -91,7 +91,7 @@ def run_alone(folder: Path, choices: Choices, engine: Setup) -> Done:
 
 def warnings_of(folder: Path) -> List[str]:
     """What `slope site` warned of, which its results should say as well; nothing of a site of an older version."""
-    path = folder / "warnings.yaml"
+    path = folder / site_warnings.NAME
     return [str(text) for text in disk.parse_yaml(path, "what `slope site` wrote") or ()] if path.is_file() else []
 
 

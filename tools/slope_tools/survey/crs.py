@@ -70,11 +70,11 @@ def not_covered(source, target):
                       "(--assign-crs EPSG:n overrides a wrong tag)", crs_name(target))
 
 
-def require_degrees(crs, bounds, where):
+def require_degrees(crs, bounds, where, remedy="--assign-crs EPSG:n overrides a CRS that is wrong or missing"):
     """Raise SlopeError unless coordinates (west, south, east, north) can be those of a CRS in degrees."""
     if crs is None or not crs.is_geographic:
         return
     west, south, east, north = bounds
     if max(-west, east) > 360 or max(-south, north) > 90:
-        raise SlopeError(where, f"coordinates in {crs_name(crs)} must be longitude and latitude; --assign-crs EPSG:n "
-                         "of slope terrain and slope polygon overrides a tag that is wrong or missing", numbers(bounds))
+        raise SlopeError(where, f"coordinates in {crs_name(crs)} must be longitude and latitude; {remedy}",
+                         numbers(bounds))

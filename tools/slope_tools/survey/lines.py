@@ -26,11 +26,12 @@ def lines_of(geometry):
     return MultiLineString(lines)
 
 
-def read_local(path, raster, local, what="line"):
+def read_local(path, raster, local, what="line", advice=None):
     """The lines in a file, a MultiLineString in the local metres of a run, drawn in the file's direction.
 
     A CSV (x,y in its lines) or WKT is in the CRS of the run's terrain; local: coordinates of any file are local metres
-    already. what: what the line is, for messages. Raises SlopeError, which names the file.
+    already. what: what the line is, for messages; advice: a polygons.Advice for those on a missing CRS. Raises
+    SlopeError, which names the file.
     """
     if not path.is_file():
         raise SlopeError(path, "must be an existing file")
@@ -56,8 +57,11 @@ def read_local(path, raster, local, what="line"):
     if local:
         return MultiLineString(points)
     if text_ is None and (crs is None or raster.crs is None):
-        raise SlopeError(path if crs is None else "--terrain", f"must have a CRS, so that {what} and deposit can be "
-                         f"brought together (--local if the {what} is in the run's local metres)", "none")
+        where, remedy = "--terrain", f"--local if the {what} is in the run's local metres"
+        if advice:
+            where, remedy = advice.terrain, advice.polygon_crs if crs is None else advice.terrain_crs
+        raise SlopeError(path if crs is None else where, f"must have a CRS, so that {what} and deposit can be brought "
+                         f"together ({remedy})", "none")
     if not same_crs(crs, raster.crs):
         points = [np.transpose(transform(crs, raster.crs, *line.T)) for line in points]
         if not all(np.isfinite(line).all() for line in points):

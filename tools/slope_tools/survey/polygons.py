@@ -9,7 +9,7 @@ import logging
 import os
 import re
 from pathlib import Path
-from typing import List, Tuple
+from typing import List, NamedTuple, Tuple
 
 import fiona
 import numpy as np
@@ -31,29 +31,42 @@ DIGITS = 6     # decimals of a written coordinate, m: beyond them is the noise o
 PLACE = re.compile(r"^# local metres: .+", re.MULTILINE)
 WKT = re.compile(r"[A-Za-z]+\s*(?:Z|M|ZM)?\s*(?:\(|EMPTY)", re.IGNORECASE)
 
+
+class Advice(NamedTuple):
+    """What messages call the terrain, and what a user of the command can do."""
+    terrain: str = "--terrain"
+    terrain_crs: str = "slope terrain --crs gives it one; --local if all is in the terrain's local metres"
+    polygon_crs: str = "a .prj file beside a shapefile; --local if it is in the terrain's local metres"
+    wrong_crs: str = "--assign-crs EPSG:n of slope polygon overrides a CRS that is wrong or missing"
+
+
+ADVICE = Advice()
+OF_ASSIGN_CRS = Advice(polygon_crs=f"--assign-crs EPSG:n; {ADVICE.polygon_crs}",      # of commands with that option
+                       wrong_crs="--assign-crs EPSG:n overrides a CRS that is wrong or missing")
+
 for library in ("fiona", "shapely"):  # what they log is in the exceptions as well, or of no interest
     logging.getLogger(library).setLevel(logging.CRITICAL + 1)
 
 
-def read_local(path, raster, local=False, crs=None, terrain="--terrain"):
+def read_local(path, raster, local=False, crs=None, advice=ADVICE):
     """Polygons of a file in the local metres of a terrain: a valid, not empty shapely Polygon or MultiPolygon.
 
     raster: the terrain, a Raster of rasters.read_asc_local() or a Place of rasters.read_place(). Format by content and
     suffix: the deck's format (.csv), text with WKT, else what fiona opens. Coordinates of a file with a CRS are
     reprojected to the terrain's; those of CSV and WKT are taken to be in the terrain's CRS, but of a file that write()
     wrote, which are local already. local=True: the file's coordinates are local, whatever CRS it names. crs: the CRS of
-    the file, whatever it names. terrain: what messages call the terrain. Polygons that overlap or touch become one.
-    Raises SlopeError, which names file and place.
+    the file, whatever it names. Polygons that overlap or touch become one. Raises SlopeError, which names file and
+    place.
     """
     if not Path(path).is_file():
         raise SlopeError(path, "must be an existing file")
     try:
-        return _read_local(path, raster, local, crs, terrain)
+        return _read_local(path, raster, local, crs, advice)
     except ShapelyError as error:     # GEOS gives up on coordinates such as 1e-320 among others
         raise SlopeError(path, "must be polygons whose points differ by more than rounding") from error
 
 
-def _read_local(path, raster, local, crs, terrain):
+def _read_local(path, raster, local, crs, advice):
     text = read_text(path)
     if text is None:
         polygons, own = _read_fiona(path)
@@ -66,13 +79,21 @@ def _read_local(path, raster, local, crs, terrain):
     plain = not local and text is not None and crs is None      # numbers of which no file says what they are
     as_it_stands = geometry.envelope
     if not local:
-        geometry = _to_local(path, geometry, crs or own, raster, plain, terrain)
+        geometry = _to_local(path, geometry, crs or own, raster, plain, advice)
     geometry = _checked(path, geometry)
     bounds = getattr(raster, "extent", None) or extent(raster)
     if geometry.intersection(box(*bounds)).area == 0:
         hint = " (with --local it would)" if plain and as_it_stands.intersection(box(*bounds)).area > 0 else ""
-        raise SlopeError(path, f"must overlap the terrain{hint}, local x y {numbers(bounds)}", numbers(geometry.bounds))
+        read_as = "" if local or plain else (f", read as {crs_name(crs or own)}: is that right? The terrain is in "
+                                             f"{crs_name(raster.crs)}")
+        raise SlopeError(path, f"must overlap the terrain{hint}, local x y {decimetres(bounds)}",
+                         decimetres(geometry.bounds) + read_as)
     return geometry
+
+
+def decimetres(values):
+    """Coordinates or bounds (m) in a message that says where something lies."""
+    return numbers(round(float(value), 1) + 0.0 for value in values)
 
 
 def read_text(path):
@@ -269,15 +290,15 @@ def _place_line(raster):
 
 # --- coordinates ---
 
-def _to_local(path, geometry, crs, raster, plain, terrain):
+def _to_local(path, geometry, crs, raster, plain, advice):
     """A geometry in a CRS to the local metres of the terrain. plain: text, which is in the terrain's CRS."""
     if not plain:
-        for where, missing in ((path, crs), (terrain, raster.crs)):
+        for where, missing, remedy in ((path, crs, advice.polygon_crs),
+                                       (advice.terrain, raster.crs, advice.terrain_crs)):
             if missing is None:
-                raise SlopeError(where, "must have a CRS, so that polygon and terrain can be brought together (a .prj "
-                                 "file beside a shapefile, slope terrain --crs for a terrain; --local if the polygon "
-                                 "is in the terrain's local metres)", "none")
-        require_degrees(crs, geometry.bounds, path)
+                raise SlopeError(where, "must have a CRS, so that polygon and terrain can be brought together "
+                                 f"({remedy})", "none")
+        require_degrees(crs, geometry.bounds, path, advice.wrong_crs)
     if not (plain or same_crs(crs, raster.crs)):
         geometry = _reproject(path, geometry, crs, raster.crs)
     return map_points(geometry, lambda points: points - raster.offset)

@@ -27,6 +27,7 @@ class Wanted(NamedTuple):
     least: float = 0.0                  # m; a scar is where it is deeper
     crs: Optional[str] = None           # of the polygon
     local: bool = False                 # the polygon is in local metres
+    advice: Optional[polygons.Advice] = None        # for messages on the polygon's place
 
     @property
     def where(self) -> str:
@@ -52,7 +53,8 @@ def body_of(wanted: Wanted) -> Body:
     geometry = None
     if wanted.polygon:
         crs = as_crs("--assign-crs", wanted.crs) if wanted.crs else None
-        geometry = polygons.read_local(wanted.polygon, raster, local=wanted.local, crs=crs, terrain=wanted.terrain)
+        geometry = polygons.read_local(wanted.polygon, raster, local=wanted.local, crs=crs,
+                                       advice=wanted.advice or polygons.OF_ASSIGN_CRS._replace(terrain=wanted.terrain))
     area, surface, choices = (from_scar if wanted.scar else from_shape)(wanted, raster, geometry)
     slip = release_solve.slip_surface(area, release_solve.depths(area, surface), wanted.where)
     found = release_solve.measures(area, slip)

@@ -1,0 +1,48 @@
+"""What makes a site doubtful, in words: slope site prints it, and keeps it in the folder for the report."""
+from pathlib import Path
+from typing import List, Optional, Sequence
+
+import yaml
+
+from .. import disk
+from ..survey.release_solve import Measures
+from .site_budget import Size, Trial
+
+NAME = "warnings.yaml"
+ROUGH = 3.0             # balls, mean thickness of the body: below, the numbers are rough
+THICK = 10.0            # balls, largest thickness: below, a site should be repeated with more balls
+LOST = 0.001            # share of the mass that may leave the terrain
+MORE = "use more balls (--balls, --minutes)"
+
+
+def site_warnings(found: Measures, size: Size, trial: Optional[Trial]) -> List[str]:
+    """Warnings on a body and its balls; trial: None where there is no LAMMPS program."""
+    return [*of_trial(trial), *of_thickness(found.mean_depth / size.diameter, found.largest_depth / size.diameter)]
+
+
+def of_trial(trial: Optional[Trial]) -> List[str]:
+    """What the trial run showed."""
+    if trial is None:
+        return ["no LAMMPS program (LMP, --lmp, build/lmp): the deck was not tried, time and speeds are not known"]
+    lines = []
+    if trial.left > LOST:
+        lines.append(f"{100 * trial.left:.2g} % of the mass left the terrain in the trial run: use a larger elevation "
+                     "model")
+    if not trial.at_rest:
+        lines.append(f"the trial run was not at rest after {trial.rest:.0f} s: the run time of the study is a guess")
+    return lines
+
+
+def of_thickness(mean: float, largest: float) -> List[str]:
+    """Whether the body is thick enough; mean and largest thickness in balls."""
+    if mean < ROUGH:
+        return [f"the body is {mean:.1f} balls thick on average, below {ROUGH:g}: the numbers will be rough; {MORE}"]
+    if largest < THICK:
+        return [f"the body is {largest:.1f} balls thick at most, below {THICK:g}: a first look; to repeat it, {MORE}"]
+    return []
+
+
+def write(folder: Path, lines: Sequence[str]) -> None:
+    """All warnings of a site into its folder: a YAML list, empty if there are none."""
+    about = "# slope site: what makes this site doubtful\n"
+    disk.write(folder / NAME, about + yaml.safe_dump(list(lines), allow_unicode=True, width=1000))
