@@ -576,6 +576,23 @@ def test_lost_mass_is_told(slope, here):
     assert text.startswith("up to 2.5 m3") and text.endswith("(all 2 runs)")
 
 
+def test_what_lies_above_a_cut_below_the_ground_is_told(slope, here):
+    """In the answer; with a warning where it is more than 10 % of the volume to remove."""
+    path = Path("out") / yaml.safe_load(Path("out/study.yaml").read_text())["conservative"]["run"] / "volume/volume.yaml"
+    about = yaml.safe_load(path.read_text())
+    for share, warned in ((0, False), (0.05, False), (0.6, True)):
+        about["volume"]["remove_where_cut_below_ground"] = share * about["volume"]["remove"]
+        path.write_text(yaml.safe_dump(about))
+        assert slope("out")[0] == 0
+        page, reader = read("out/report.html")
+        top = page[page.index('<div class="card main'):page.index('<div class="card">')]
+        assert ("where the cut surface is below the ground" in top) == (share > 0)
+        found = [text for _, text in reader.warnings if "where the cut surface is below the ground" in text]
+        assert bool(found) == warned and all("60 % of it" in text for text in found)
+    path.unlink()       # of an older version
+    assert slope("out")[0] == 0
+
+
 # --- numbers from elsewhere ---
 
 REFERENCE = """\

@@ -81,7 +81,19 @@ def answer(data, numbers):
     title = "Conservative volume to remove from the road" if predicted else \
         f"Volume to remove from the road: {best['kind']}"
     return {"number": part("volume_m3"), "title": title, "parts": parts, "predicted": predicted, "road": road,
-            "who": who, "only": not predicted and best["size_m3"] is None}
+            "below": below_ground(data, numbers), "who": who, "only": not predicted and best["size_m3"] is None}
+
+
+def below_ground(data, numbers):
+    """A sentence on what is to be removed where the cut lies below the ground; "" where it does not."""
+    found = data.below_ground()
+    if found is None:
+        return ""
+    below, whole, name = found[0], data.volumes["remove"], data.label(data.result)
+    texts = [numbers(what, "m3", value, "remove_m3", name)
+             for what, value in (("to remove where the cut is below the ground", below), ("to remove", whole))]
+    return (f"{texts[0]} m3 of the {texts[1]} m3 of the run {name} lie where the cut surface is below the ground "
+            "before the collapse.")
 
 
 def size_part(best, number):

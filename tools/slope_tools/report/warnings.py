@@ -2,6 +2,9 @@
 import re
 from typing import Any, Dict
 
+from ..deposit.volume import MUCH_BELOW
+from ..ensemble import headline
+
 SMALL = 1e-6            # of the released volume
 NAMED = 4               # runs that a line names
 NUMBER = re.compile(r"\d[\d.,]*(?:[eE][+-]?\d+)?")
@@ -17,6 +20,7 @@ def warnings(data):
     found += not_at_rest(data)
     found += lost(data)
     found += releases(data)
+    found += below_ground(data)
     if data.study:
         for text in (data.study["conservative"] or {}).get("doubts") or ():
             if not SAID_TOO.search(text):
@@ -79,6 +83,19 @@ def releases(data):
     """Doubts about the released mass."""
     entries = [(release.doubt, name) for name, release in data.releases() if release.doubt]
     return by_kind(entries, len(data.finished))
+
+
+def below_ground(data):
+    """A cut that is flatter than the hillside: much of what it takes lies where it is below the ground."""
+    below, share = data.below_ground() or (0, 0)
+    if share <= MUCH_BELOW:
+        return []
+    volume = headline.text(below, headline.place_of_digits(below))
+    angle = data.study["study"]["road"]["cut_angle"]
+    return [(AMBER, f"The volume to remove: {100 * share:.0f} % of it ({volume} m3 in the run {data.label(data.result)}) "
+                    "lies where the cut surface is below the ground before the collapse. The hillside is about as steep "
+                    f"as the cut of {angle:g} degrees there, or steeper, so that all of the deposit on it is counted; a "
+                    "steeper cut angle gives less.")]
 
 
 def from_logs(data, released):
