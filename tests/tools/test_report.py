@@ -576,9 +576,62 @@ def test_lost_mass_is_told(slope, here):
     assert text.startswith("up to 2.5 m3") and text.endswith("(all 2 runs)")
 
 
+def test_the_fix_s_lines_of_lost_balls_are_folded_into_that(slope, here):
+    about = yaml.safe_load(Path("out/study.yaml").read_text())
+    for row in about["runs"]:
+        row["log_warnings"] = ["Fix deposit/grid deposit: ball 805 left the box at 1 2 3, step 4, lost so far: 1"]
+    for lost, said in ((0.0, "ball 805"), (12.5, "left the grid or the box")):
+        about["runs"][0]["lost_m3"] = lost
+        Path("out/study.yaml").write_text(yaml.safe_dump(about))
+        assert slope("out")[0] == 0
+        [text] = [text for _, text in read("out/report.html")[1].warnings if "left the" in text]
+        assert said in text
+
+
+def test_warnings_of_the_study_s_tools_are_shown_each(slope, here):
+    """Those of the study as a whole are in red, above all others; those of runs of its own are folded as they were."""
+    texts = ["the body is thinner than 3 balls everywhere: the numbers will be rough",
+             "runs of several sizes: d_1.5: 149.673 m3 left the grid or the box",
+             "runs of several sizes: d_3: 23.1 m3 left the grid or the box",
+             "the error of the size of the balls is not known: got -2.53e+06"]
+    set_moving(here / "out", 0.0)
+    without_log_warnings(here / "out")
+    about = yaml.safe_load(Path("out/study.yaml").read_text())
+    about["warnings"] = [*texts, "rolling_0_steps_1200: 3 m3 left the grid or the box",
+                         "2 of 2 deposits are not at rest at the end: all"]
+    about["size_error_unusable"] = "small balls would give -2.53e+06 m3"
+    Path("out/study.yaml").write_text(yaml.safe_dump(about))
+    status, out, _ = slope("out")
+    page, reader = read("out/report.html")
+    assert status == 0 and [text for level, text in reader.warnings if level == "red"] == texts
+    assert [level for level, _ in reader.warnings if level] == ["red"] * 4
+    assert all(f"WARNING: {text}" in out for text in texts)
+    # measured, and useless: not "not measured"
+    assert "measured, but not usable: small balls would give -2.53e+06 m3" in page and "not measured" not in page
+    assert "What smaller balls would give was measured, but is not usable: small balls would give -2.53e+06 m3" in page
+
+
+@pytest.mark.parametrize("folder", ["out", "one"])
+def test_a_mass_of_a_million_m3_is_said_to_run_farther(slope, here, folder):
+    for volume, said in ((0.99e6, False), (1e6, True), (36e6, True)):
+        def set_it(summary, volume=volume):
+            summary["volume"]["released"] = volume
+        change(here / folder, set_it)
+        if folder == "out":
+            about = yaml.safe_load(Path("out/study.yaml").read_text())
+            about["runs"][0]["released_m3"] = volume
+            Path("out/study.yaml").write_text(yaml.safe_dump(about))
+        assert slope(folder)[0] == 0
+        page, reader = read(f"{folder}/report.html")
+        found = [text for level, text in reader.warnings if level == "amber" and text.startswith("The run-out: ")]
+        assert bool(found) == said == ("Masses of 1 million m3 and more" in page)
+        assert all(f"{volume / 1e6:.3g} million m3" in text for text in found)
+
+
 def test_what_lies_above_a_cut_below_the_ground_is_told(slope, here):
     """In the answer; with a warning where it is more than 10 % of the volume to remove."""
-    path = Path("out") / yaml.safe_load(Path("out/study.yaml").read_text())["conservative"]["run"] / "volume/volume.yaml"
+    best = yaml.safe_load(Path("out/study.yaml").read_text())["conservative"]
+    path = Path("out") / best["run"] / "volume" / "volume.yaml"
     about = yaml.safe_load(path.read_text())
     for share, warned in ((0, False), (0.05, False), (0.6, True)):
         about["volume"]["remove_where_cut_below_ground"] = share * about["volume"]["remove"]

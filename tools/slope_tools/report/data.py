@@ -87,8 +87,8 @@ class Data:
     study: study.yaml, None of a single run; rows: its runs, finished: those that finished; settings: its variables;
     repeats: the variables that are chance; result: the run of the maps, drawn: those beside it on maps and
     section, the same one among them; road: a polygon or None; removed: what is to be removed in the shown run, its
-    thickness in the cells and a Raster of volumes in a mesh; volumes: those of its volume.yaml; over_all: {file: values}
-    of the maps over all runs.
+    thickness in the cells and a Raster of volumes in a mesh; volumes: those of its volume.yaml; over_all: {file:
+    values} of the maps over all runs.
     """
 
     def __init__(self, folder, shown=None):
@@ -163,6 +163,10 @@ class Data:
         if raster.z.shape != self.result.thickness.shape:
             raise SlopeError(path, f"must have the grid of {self.result.prefix}.thickness.asc")
         return np.where(np.isfinite(raster.z), raster.z, 0)
+
+    def largest_release(self):
+        """The released volume (m3), the largest of all runs."""
+        return max((row["released_m3"] for row in self.finished), default=self.result.summary["volume"]["released"])
 
     def below_ground(self):
         """Volume (m3) to remove in the shown run where the cut lies below the ground, and its share of all; or None."""

@@ -77,7 +77,7 @@ def answer(data, numbers):
     else:
         parts.append({"sign": "+", "number": UNKNOWN, "what": "chance",
                       "note": "no run was repeated (study --repeat seed=..., xoffset=...)"})
-    parts.append(size_part(best, part("size_m3")))
+    parts.append(size_part(best, part("size_m3"), data.study.get("size_error_unusable")))
     title = "Conservative volume to remove from the road" if predicted else \
         f"Volume to remove from the road: {best['kind']}"
     return {"number": part("volume_m3"), "title": title, "parts": parts, "predicted": predicted, "road": road,
@@ -96,11 +96,13 @@ def below_ground(data, numbers):
             "before the collapse.")
 
 
-def size_part(best, number):
+def size_part(best, number, unusable=None):
+    """What the size of the balls adds; unusable: why an error that was measured is none, a text."""
     size = best.get("size") or {}
     if number is None:
         return {"sign": "+", "number": UNKNOWN, "what": "size of the balls",
-                "note": "not measured (sensitivity --converge, study --size-error)"}
+                "note": f"measured, but not usable: {unusable}" if unusable else
+                        "not measured (sensitivity --converge, study --size-error)"}
     note = f"at {size.get('variable')} {size.get('value')}"
     if disk.is_number(size.get("error_percent")):
         side = "small" if size["error_percent"] < 0 else "large"
