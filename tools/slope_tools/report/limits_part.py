@@ -28,8 +28,9 @@ def uncertainty(data, numbers) -> CONTENT:
         found.append(f"Another run with the same values gives {low} to {high} m3 to remove, in 95 % of cases.")
     key = travel_shares.DISTANCE
     deviation = ((study and study.get("scatter") or {}).get(key) or {}).get("deviation")
-    if disk.is_number(deviation):
-        text = numbers("scatter of a run: 99 % within", "m", deviation)
+    if deviation is not None and disk.is_number(deviation):
+        text = headline.text(deviation, 10 * headline.place_of_digits(deviation))       # two digits
+        numbers.rows.append(("scatter of a run: 99 % within", "m", "", text, deviation))
         found.append(f"The distance that 99 % of the volume stays within differs by {text} m from run to run "
                      "(standard deviation).")
     if not found:

@@ -72,7 +72,7 @@ def answer(data, numbers):
         parts.append({
             "sign": "+", "number": part("chance_m3"), "what": "chance",
             "note": f"97.5 % of single runs lie below: t {best['quantile']:.3g} x standard deviation of a run "
-                    f"{headline.text(scatter, headline.place(scatter) if scatter else 1)} m3 x sqrt(1 + 1/"
+                    f"{headline.text(scatter, headline.place_of_digits(scatter))} m3 x sqrt(1 + 1/"
                     f"{best['repeats']}), {best['degrees_of_freedom']:.3g} degrees of freedom"})
     else:
         parts.append({"sign": "+", "number": UNKNOWN, "what": "chance",
@@ -106,9 +106,15 @@ def size_part(best, number, unusable=None):
     note = f"at {size.get('variable')} {size.get('value')}"
     if disk.is_number(size.get("error_percent")):
         side = "small" if size["error_percent"] < 0 else "large"
-        note += f" the volume is {abs(size['error_percent']):.2g} % too {side}"
+        note += f" the volume is {abs(size['error_percent']):.3g} % too {side}"
         if disk.is_number(size.get("half_percent")):
-            note += f", known to {size['half_percent']:.2g} %"
+            note += f" (\N{PLUS-MINUS SIGN} {size['half_percent']:.2g} percentage points)"
+        share = size["error_percent"] / 100
+        if -1 < share < 0:
+            lacking = best["mean_m3"] / (1 + share) - best["mean_m3"]
+            texts = [headline.text(value, best["place_m3"]) for value in (lacking, max(0, best["size_m3"] - lacking))]
+            note += (f": mean/(1 - {-share:.3g}) - mean = {texts[0]} m3, and {texts[1]} m3 by which the uncertainty of "
+                     "that widens the chance")
     return {"sign": "+", "number": number, "what": "size of the balls", "note": note}
 
 
@@ -126,7 +132,7 @@ def released_card(data, numbers):
         if release.body is not None:
             numbers.whole("body", "m3", release.body, name or "")
     return {"what": "Released", "number": " - ".join(texts), "unit": "m3",
-            "note": over_runs([release for _, release in releases])}
+            "note": over_runs([release for _, release in releases], False)}
 
 
 def travel_card(data, numbers):
@@ -215,11 +221,22 @@ def travel_rows(data, numbers):
     return rows
 
 
-def balance(data):
-    """The release of the shown run and how it ended, for a table."""
+def balance(data, numbers):
+    """The release of the shown run, how it ended, and what else a table says of it."""
     release = next((release for name, release in data.releases()
                     if name is None or name == data.label(data.result)), None)
     one = data.result
     state = rest.state(one.summary, one.path)
     return {"release": release.text if release else UNKNOWN, "rest": state.text,
-            "status": "rest" if state.at_rest else "moving" if one.summary["moving"] else "doubt"}
+            "status": "rest" if state.at_rest else "moving" if one.summary["moving"] else "doubt",
+            "energy": energy(one.summary["largest"]["max_energy"]),
+            "front_at_release": numbers("farthest ball at release", "m", one.summary["travel"]["front_at_release"]),
+            "centroid": numbers("centroid moved", "m", one.summary["travel"]["centroid"], "centroid_m")}
+
+
+def energy(joules):
+    """An energy with three digits, in the unit that suits it."""
+    unit, factor = next(((unit, factor) for unit, factor in (("TJ", 1e12), ("GJ", 1e9), ("MJ", 1e6), ("kJ", 1e3))
+                         if joules >= factor), ("J", 1))
+    value = joules / factor
+    return f"{headline.text(value, headline.place_of_digits(value))} {unit}"
