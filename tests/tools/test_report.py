@@ -29,7 +29,7 @@ from slope_tools.commands import report as report_command  # noqa: E402
 from slope_tools.drawing import figures  # noqa: E402
 from slope_tools.ensemble import results  # noqa: E402
 from slope_tools.report import (data as report_data, figure_charts, figure_maps, ground as report_ground,  # noqa: E402
-                                section as report_section)
+                                numbers as report_numbers, section as report_section)
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 
@@ -69,8 +69,9 @@ def here(made, tmp_path, monkeypatch):
 @pytest.fixture
 def slope(capsys, monkeypatch):
     """Run `slope report ARGUMENTS`; gives status, stdout, stderr. Pictures are blank, as drawing takes its time."""
-    for name in ("value_map", "terrain_map", "mesh_map", "small_maps"):
+    for name in ("value_map", "terrain_map", "small_maps"):
         monkeypatch.setattr(figure_maps, name, lambda *_, **__: "data:image/png;base64,AAAA")
+    monkeypatch.setattr(figure_maps, "mesh_map", lambda *_, **__: ("data:image/png;base64,AAAA", False))
     for name in ("chart", "bars", "convergence"):
         monkeypatch.setattr(figure_charts, name, lambda *_, **__: "data:image/svg+xml;base64,AAAA")
     monkeypatch.setattr(figure_charts, "section", lambda *_: ("data:image/svg+xml;base64,AAAA", 1, None))
@@ -344,12 +345,15 @@ def test_the_size_part(slope, here):
     Path("repeated/study.yaml").write_text(yaml.safe_dump(about))
     assert slope("repeated")[0] == 0
     page = Path("repeated/report.html").read_text()
-    assert "at d 1.0 the volume is 12 % too small, known to 3 %" in page
+    lacking = best["mean_m3"] / 0.875 - best["mean_m3"]
+    assert "at d 1.0 the volume is 12.5 % too small (\N{PLUS-MINUS SIGN} 3 percentage points): mean/(1 - 0.125)" in page
+    assert float(re.search(r"- mean = ([\d.,]+) m3", page)[1].replace(",", "")) == pytest.approx(
+        lacking, abs=best["place_m3"])
     assert re.search(r'<div class="sum">\+ 40[.0]* m3</div><div class="name">size of the balls', page)
 
 
 @pytest.mark.parametrize("by, chance, clear, told", [
-    (30.0, 100.0, False, "no more than chance makes"), (300.0, 100.0, True, "more than the 100"),
+    (30.0, 100.0, False, "within chance (100"), (300.0, 100.0, True, "more than chance (100"),
     (30.0, None, None, "chance unknown")])
 def test_differences_are_told_against_chance(slope, here, by, chance, clear, told):
     about = yaml.safe_load(Path("repeated/study.yaml").read_text())
@@ -420,7 +424,7 @@ def test_a_study_of_an_older_version_is_one_line(slope, here):
 
 
 @pytest.mark.parametrize("body, factor, words, doubt", [
-    (1000.0, 6 / np.pi, ("body 1,000 m3", "bulk factor 1.91, 6/pi"), False),
+    (1000.0, 6 / np.pi, ("body 1,000 m3", "bulk factor 1.91, 6/pi "), False),
     (1000.0, 1.14 * 6 / np.pi, ("14 % above 6/pi",), False),
     (1000.0, 1.16 * 6 / np.pi, ("16 % above 6/pi",), True), (1000.0, 0.8 * 6 / np.pi, ("20 % below 6/pi",), True),
     (None, 6 / np.pi, ("body unknown",), False)])
@@ -435,10 +439,12 @@ def test_the_released_mass_and_its_body(slope, here, body, factor, words, doubt)
     assert slope("one")[0] == 0
     page, reader = read("one/report.html")
     note = cards(page)["Released"][1]
+    table = next(row[1] for table in reader.tables for row in table if row[0] == "the released mass")
     for word in words:
-        assert word.replace("1,000", cards(page)["Released"][0].split()[0]) in note
+        assert word.replace("1,000", cards(page)["Released"][0].split()[0]) in table
+    assert "bulk factor" not in note and "body" in note
     assert any("released mass is doubtful" in text for _, text in reader.warnings) == doubt
-    assert ("0 % of it left out" in note) == (body is not None)
+    assert ("all of it released" in note) == (body is not None)
 
 
 def test_many_balls_removed_without_a_body_are_doubted(slope, here):
@@ -451,7 +457,7 @@ def test_many_balls_removed_without_a_body_are_doubted(slope, here):
         log.write_text(text.replace("Fix deposit/grid", f"{told}\nFix deposit/grid", 1))
         assert slope("one")[0] == 0
         page, reader = read("one/report.html")
-        assert f"{gone} % of the balls removed at the start" in cards(page)["Released"][1]
+        assert f"{gone} % of the balls overlapped the slip surface or the ground" in cards(page)["Released"][1]
         assert any("released mass is doubtful" in text for _, text in reader.warnings) == doubt
 
 
@@ -576,6 +582,88 @@ def test_lost_mass_is_told(slope, here):
     assert text.startswith("up to 2.5 m3") and text.endswith("(all 2 runs)")
 
 
+def test_what_lies_beyond_the_road_is_explained(slope, here):
+    assert slope("out")[0] == 0
+    assert "the two overlap and cannot be added" in Path("out/report.html").read_text()
+    about = yaml.safe_load(Path("out/study.yaml").read_text())
+    for row in about["runs"]:
+        row["beyond_road_m3"] = None
+    Path("out/study.yaml").write_text(yaml.safe_dump(about))
+    assert slope("out")[0] == 0
+    page = Path("out/report.html").read_text()
+    assert "How much lies beyond the road is unknown" in page and "--line" in page and "cannot be added" not in page
+
+
+def test_the_fix_s_lines_of_lost_balls_are_folded_into_that(slope, here):
+    about = yaml.safe_load(Path("out/study.yaml").read_text())
+    for row in about["runs"]:
+        row["log_warnings"] = ["Fix deposit/grid deposit: ball 805 left the box at 1 2 3, step 4, lost so far: 1"]
+    for lost, said in ((0.0, "ball 805"), (12.5, "left the grid or the box")):
+        about["runs"][0]["lost_m3"] = lost
+        Path("out/study.yaml").write_text(yaml.safe_dump(about))
+        assert slope("out")[0] == 0
+        [text] = [text for _, text in read("out/report.html")[1].warnings if "left the" in text]
+        assert said in text
+
+
+def test_warnings_of_the_study_s_tools_are_shown_each(slope, here):
+    """Those of the study as a whole are in red, above all others; those of runs of its own are folded as they were."""
+    texts = ["the body is thinner than 3 balls everywhere: the numbers will be rough",
+             "runs of several sizes: d_1.5: 149.673 m3 left the grid or the box",
+             "runs of several sizes: d_3: 23.1 m3 left the grid or the box",
+             "the error of the size of the balls is not known: got -2.53e+06"]
+    set_moving(here / "out", 0.0)
+    without_log_warnings(here / "out")
+    about = yaml.safe_load(Path("out/study.yaml").read_text())
+    about["warnings"] = [*texts, "rolling_0_steps_1200: 3 m3 left the grid or the box",
+                         "2 of 2 deposits are not at rest at the end: all"]
+    about["size_error_unusable"] = "small balls would give -2.53e+06 m3"
+    Path("out/study.yaml").write_text(yaml.safe_dump(about))
+    status, out, _ = slope("out")
+    page, reader = read("out/report.html")
+    assert status == 0 and [text for level, text in reader.warnings if level == "red"] == texts
+    assert [level for level, _ in reader.warnings if level] == ["red"] * 4
+    assert all(f"WARNING: {text}" in out for text in texts)
+    # measured, and useless: not "not measured"
+    assert "measured, but not usable: small balls would give -2.53e+06 m3" in page and "not measured" not in page
+    assert "What smaller balls would give was measured, but is not usable: small balls would give -2.53e+06 m3" in page
+
+
+@pytest.mark.parametrize("folder", ["out", "one"])
+def test_a_mass_of_a_million_m3_is_said_to_run_farther(slope, here, folder):
+    for volume, said in ((0.99e6, False), (1e6, True), (36e6, True)):
+        def set_it(summary, volume=volume):
+            summary["volume"]["released"] = volume
+        change(here / folder, set_it)
+        if folder == "out":
+            about = yaml.safe_load(Path("out/study.yaml").read_text())
+            about["runs"][0]["released_m3"] = volume
+            Path("out/study.yaml").write_text(yaml.safe_dump(about))
+        assert slope(folder)[0] == 0
+        page, reader = read(f"{folder}/report.html")
+        found = [text for level, text in reader.warnings if level == "amber" and text.startswith("The run-out: ")]
+        assert bool(found) == said == ("Masses of 1 million m3 and more" in page)
+        assert all(f"{volume / 1e6:.3g} million m3" in text for text in found)
+
+
+def test_what_lies_above_a_cut_below_the_ground_is_told(slope, here):
+    """In the answer; with a warning where it is more than 10 % of the volume to remove."""
+    best = yaml.safe_load(Path("out/study.yaml").read_text())["conservative"]
+    path = Path("out") / best["run"] / "volume" / "volume.yaml"
+    about = yaml.safe_load(path.read_text())
+    for share, warned in ((0, False), (0.05, False), (0.6, True)):
+        about["volume"]["remove_where_cut_below_ground"] = share * about["volume"]["remove"]
+        path.write_text(yaml.safe_dump(about))
+        assert slope("out")[0] == 0
+        page, reader = read("out/report.html")
+        top = page[page.index('<div class="card main'):page.index('<div class="card">')]
+        assert ("where the cut surface is below the ground" in top) == (share > 0)
+        found = [text for _, text in reader.warnings if "where the cut surface is below the ground" in text]
+        assert bool(found) == warned and all("60 % of it" in text for text in found)
+    path.unlink()       # of an older version
+    assert slope("out")[0] == 0
+
+
 # --- numbers from elsewhere ---
 
 REFERENCE = """\
@@ -681,6 +769,11 @@ def test_the_section_goes_through_the_centroid_along_the_fall_line(slope, here):
     columns = np.flatnonzero((thickness > 0).any(axis=0))
     assert line["x"][0] <= columns[0] and line["x"][-1] >= columns[-1] + 1
     assert line["distance"] == pytest.approx(np.hypot(line["x"] - line["x"][0], line["y"] - line["y"][0]), abs=2e-4)
+
+
+def test_energies_have_a_unit_that_suits_them():
+    found = [report_numbers.energy(joules) for joules in (0.0, 12.34, 6543.2, 453853610e3)]
+    assert found == ["0 J", "12.3 J", "6.54 kJ", "454 GJ"]
 
 
 def test_heights_of_a_section_by_hand(slope, here):
@@ -888,7 +981,7 @@ def test_a_run_by_hand_without_terrain_in_reach(slope, here):
     status, _, err = slope("one")
     assert (status, err) == (0, "")
     page, _ = read("one/report.html")
-    assert "Slope collapse: run of tiny" in page and "Map of the slip surface" not in page
+    assert "<h1>one</h1>" in page and "Map of the slip surface" not in page
 
 
 def test_cells_that_reach_beyond_the_terrain(slope, here):

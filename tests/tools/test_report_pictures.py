@@ -131,6 +131,17 @@ def test_the_terrain_and_the_mesh(drawn, name):
         check_layout(figure)
 
 
+def test_the_numbers_of_a_mesh_are_drawn_where_they_can_be_read(drawn):
+    layers, thickness = site(next(iter(SITES)))
+    xlo, _, xhi, yhi = layers.shown
+    for parts, read in ((12, True), (80, False)):
+        side = (xhi - xlo) / parts
+        mesh = Raster(np.full((3, 4), 1234.0), Affine(side, 0, xlo, 0, -side, yhi), None)
+        assert figure_maps.mesh_map(layers, thickness, mesh, LONG, "")[1] == read
+        texts = [text.get_text() for axes in drawn[-1].axes for text in axes.texts]
+        assert texts.count("1,234") == (12 if read else 0)
+
+
 @pytest.mark.parametrize("count", [2, 3, 5, 9])
 @pytest.mark.parametrize("name", SITES)
 def test_maps_of_several_runs(drawn, name, count):

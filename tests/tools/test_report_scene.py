@@ -62,7 +62,8 @@ def page(ran):
 @pytest.fixture(autouse=True)
 def blank_pictures(monkeypatch):
     """Maps and charts, which take their time, are blank but in `page`."""
-    for name in ("value_map", "terrain_map", "mesh_map", "small_maps"):
+    monkeypatch.setattr(figure_maps, "mesh_map", lambda *_, **__: ("data:image/png;base64,AAAA", False))
+    for name in ("value_map", "terrain_map", "small_maps"):
         monkeypatch.setattr(figure_maps, name, lambda *_, **__: "data:image/png;base64,AAAA")
     for name in ("chart", "bars", "convergence"):
         monkeypatch.setattr(figure_charts, name, lambda *_, **__: "data:image/svg+xml;base64,AAAA")
@@ -473,7 +474,7 @@ def test_the_film_shows_the_run(case, capsys):
     # 1.8 s at a quarter of the pace, and the last picture for a second
     assert stream["codec_name"] == "h264" and pictures == pytest.approx(film.RATE * (1.8 / 0.25 + film.HOLD), abs=1)
     text = html.unescape((case / "report.html").read_text())
-    assert "report.mp4, beside this page" in text and "0.25 s of the run in each" in text
+    assert "report.mp4, beside this page" in text and "4 times slower than real time" in text
     raw = subprocess.run(["ffmpeg", "-nostdin", "-loglevel", "error", "-i", "case/report.mp4", "-f", "rawvideo",
                           "-pix_fmt", "gray", "-"], check=True, capture_output=True).stdout
     gray = np.frombuffer(raw, np.uint8).reshape(pictures, stream["height"], stream["width"]).astype(int)
@@ -522,7 +523,7 @@ def plain(case):
 def test_project_client_and_author_from_options(plain):
     assert cli.main(["report", "case", "--project", "Cut <4> & 5", "--client", "Road office", "--author", "A. B."]) == 0
     text = (plain / "report.html").read_text()
-    assert "<h1>Cut &lt;4&gt; &amp; 5</h1>" in text and "<b>Slope collapse: run of in.tiny</b>" in text
+    assert "<h1>Cut &lt;4&gt; &amp; 5</h1>" in text and "<b>Slope collapse, one run</b>" in text
     assert "<small>Client</small> Road office" in text and "<small>Author</small> A. B." in text
 
 
@@ -536,6 +537,21 @@ def test_project_client_and_author_from_the_site(plain):
     (plain / "site.yaml").write_text(yaml.safe_dump({**about, "project": {"name": "Inside"}}))
     assert cli.main(["report", "case"]) == 0
     assert "<h1>Inside</h1>" in (plain / "report.html").read_text()
+    # a site without a name has that of its folder, and its survey is named
+    (plain / "site.yaml").write_text(yaml.safe_dump({"project": {"name": None}, "terrain": {"files": ["../dem.tif"]}}))
+    assert cli.main(["report", "case"]) == 0
+    text = (plain / "report.html").read_text()
+    assert "<h1>case</h1>" in text and "<small>Survey</small> dem.tif" in text
+    assert re.search(r"Report made \d{4}-\d\d-\d\d \d\d:\d\d UTC", text)
+
+
+def test_only_the_first_line_of_the_deck_s_head_is_the_purpose(plain):
+    deck = plain / "in.tiny"
+    first, rest = deck.read_text().split("\n", 1)
+    deck.write_text(f"{first}\n# By hand: lmp -in in.tiny\n{rest}")
+    assert cli.main(["report", "case"]) == 0
+    text = (plain / "report.html").read_text()
+    assert f'<p class="purpose">{first.lstrip("# ")}</p>' in text and "By hand" not in text.split("<h2")[0]
 
 
 @pytest.mark.parametrize("options, site, where", [

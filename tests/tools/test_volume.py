@@ -130,6 +130,17 @@ def test_the_command_gives_the_prism_and_the_wedges(cleared):
     assert about["cut_angle"] == 40 and about["mesh"]["size"] == 7
 
 
+def test_what_a_flat_cut_takes_from_a_steep_hillside_is_printed(slope, no_map):
+    """Ground that rises across the road by 45 degrees: above it, all of the deposit is to be removed at 30 degrees."""
+    write_run(strip(), 100 + centres(80, 100, 2.5)[0], 2.5)
+    write_geojson("road.geojson", box(91.3, 0, 108.9, 200))
+    for angle, said in ((30, True), (60, False)):
+        status, out, _ = slope(f"run --road road.geojson --mesh 10 --local --no-picture --cut-angle {angle} -o removal")
+        below = yaml.safe_load(Path("removal/volume.yaml").read_text())["volume"]["remove_where_cut_below_ground"]
+        assert status == 0 and (below > 0) == said
+        assert (f"{below:.1f} m3 of that" in out and "is the cut angle right?" in out) == said
+
+
 def test_round_corners_converge(cleared):
     """A deposit all over the grid: beside the corners of the road the cut is a cone."""
     write_run(np.full((80, 80), 3.0), 0.0, 2.5)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from .. import disk, errors
 from ..deposit import volume
-from ..deposit.volume import BLOCKED, CUT_ANGLE, SAMPLES
+from ..deposit.volume import BLOCKED, CUT_ANGLE, MUCH_BELOW, SAMPLES
 from ..options import number, whole
 
 EPILOG = """\
@@ -68,10 +68,16 @@ def run(args):
 def summary(about, folder):
     """What the user needs to know."""
     volume, axis = about["volume"], about["axis"]
+    below = volume["remove_where_cut_below_ground"]
     lines = [f"to remove: {volume['remove']:.1f} m3 of {volume['deposit']:.1f} m3: {volume['remove_on_road']:.1f} m3 "
              f"on the road, {volume['remove_beside_road']:.1f} m3 beside it above a cut of "
-             f"{about['cut_angle']:g} degrees",
-             f"bulk factor {about['bulk_factor']:.6g}, the run's"]
+             f"{about['cut_angle']:g} degrees"]
+    if below > 0:
+        share = below / volume["remove"]
+        lines.append(f"{below:.1f} m3 of that ({100 * share:.3g} %) where the cut surface lies below the ground before "
+                     f"the collapse, which is steeper than {about['cut_angle']:g} degrees there"
+                     + (": is the cut angle right?" if share > MUCH_BELOW else ""))
+    lines.append(f"bulk factor {about['bulk_factor']:.6g}, the run's")
     if "other_bulk_factor" in about:
         lines[-1] += (f"; at {about['other_bulk_factor']:.6g}: {about['volume_at_other_bulk_factor']['remove']:.1f} m3 "
                       "to remove")

@@ -13,6 +13,11 @@ from .figure_charts import Series
 AXIS = {"rolling": "rolling resistance (-)", "friction": "friction angle (degrees)", "restitution": "restitution (-)",
         "d": "diameter of the balls (m)", "field_d": "diameter of the field balls (m)",
         "peak": "peak acceleration (gal)"}
+TERMS = {"rolling": "coefficient of rolling resistance of the balls", "friction": AXIS["friction"], "d": AXIS["d"],
+         "field_d": "diameter of the balls that the ground is made of (m)",
+         "xoffset": "where the lattice that the balls start from begins, in its spacings",
+         "yoffset": "the same along y", "zoffset": "the same along z",
+         "seed": "of the random numbers, such as those that displace the balls at the start"}
 REMOVE = "remove_m3"
 TITLES = {REMOVE: "Volume to remove from the road", "remove_on_road_m3": "Volume on the road",
           "front_m": "Distance of the farthest ball",
@@ -119,7 +124,7 @@ class Charts:
         if best["chance_m3"] is None and best["size_m3"] is None:
             return (x, best["mean_m3"], f"{best['kind'].split(';')[0]}, {number} m3"), []
         what = "conservative volume" if best["chance_m3"] is not None else "with the size of the balls"
-        return (x, best["mean_m3"], "mean that it rests on"), [(f"{what}, {number} m3", best["volume_m3"])]
+        return (x, best["mean_m3"], "governing mean"), [(f"{what}, {number} m3", best["volume_m3"])]
 
     def scatter_of(self, key):
         """The scatter of a run in a column; None without repeats."""
@@ -161,13 +166,13 @@ def differences(data, numbers):
     found = []
     for entry in (best or {}).get("differences") or ():
         by = numbers(f"difference over {entry['variable']}", "m3", entry["by_m3"], REMOVE)
-        text = (f"{entry['variable']}: {by} m3 to remove between {entry['smallest_at']} and {entry['largest_at']} "
-                "(the largest)")
+        text = (f"{entry['variable']}: the means at {entry['smallest_at']} and {entry['largest_at']} (the largest) "
+                f"differ by {by} m3")
         if entry["clear"] is None:
             text += ", of one run each: chance unknown"
         else:
             chance = numbers(f"chance over {entry['variable']}", "m3", entry["chance_m3"], REMOVE)
-            text += (f", more than the {chance} m3 that chance makes" if entry["clear"] else
-                     f", no more than chance makes ({chance} m3): no trend")
+            text += f", {'more than' if entry['clear'] else 'within'} chance ({chance} m3)"
+            text += "" if entry["clear"] else ": no trend"
         found.append(text + ".")
     return found

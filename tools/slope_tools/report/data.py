@@ -87,14 +87,15 @@ class Data:
     study: study.yaml, None of a single run; rows: its runs, finished: those that finished; settings: its variables;
     repeats: the variables that are chance; result: the run of the maps, drawn: those beside it on maps and
     section, the same one among them; road: a polygon or None; removed: what is to be removed in the shown run, its
-    thickness in the cells and a Raster of volumes in a mesh; over_all: {file: values} of the maps over all runs.
+    thickness in the cells and a Raster of volumes in a mesh; volumes: those of its volume.yaml; over_all: {file:
+    values} of the maps over all runs.
     """
 
     def __init__(self, folder, shown=None):
         self.folder, self.study = folder, None
         self.rows, self.finished, self.settings, self.repeats = [], [], {}, {}
         self.road = self.removed = self._connected = self._releases = None
-        self.over_all = {}
+        self.over_all, self.volumes = {}, {}
         if (folder / "study.yaml").is_file():
             self._read_study(shown)
         else:
@@ -123,7 +124,10 @@ class Data:
         if len(self.finished) > 1 and self.study.get("envelope"):
             for entry in (self.study["envelope"]["max_thickness"], *(self.study.get("exceedance") or ())):
                 self.over_all[entry["file"]] = self.read_map(entry["file"])
-        self.removed = self._removed() if road else None
+        if road:
+            self.removed = self._removed()
+            volume = self.result.folder / "volume" / "volume.yaml"
+            self.volumes = disk.load_yaml(volume, "what `slope volume` wrote")["volume"] if volume.is_file() else {}
 
     def _read_single(self, shown):
         if shown:
@@ -159,6 +163,15 @@ class Data:
         if raster.z.shape != self.result.thickness.shape:
             raise SlopeError(path, f"must have the grid of {self.result.prefix}.thickness.asc")
         return np.where(np.isfinite(raster.z), raster.z, 0)
+
+    def largest_release(self):
+        """The released volume (m3), the largest of all runs."""
+        return max((row["released_m3"] for row in self.finished), default=self.result.summary["volume"]["released"])
+
+    def below_ground(self):
+        """Volume (m3) to remove in the shown run where the cut lies below the ground, and its share of all; or None."""
+        below, whole = (self.volumes.get(key) for key in ("remove_where_cut_below_ground", "remove"))
+        return (below, below / whole) if below and whole else None
 
     # --- how the runs began and ended ---
 

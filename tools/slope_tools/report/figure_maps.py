@@ -14,6 +14,7 @@ from . import sheets
 from .sheets import Box, Entry, Frame
 
 TALL = {FULL: 5.2, HALF: 3.7}       # inches: the tallest map
+MESH_FONT, LEAST_FONT = 6.5, 4.0    # points, of the numbers in a mesh: as a rule, and the smallest that can be read
 SECTION_LINE = {"color": SECTION, "lw": 0.9, "ls": (0, (6, 2, 1, 2))}
 RELEASE_LINE = {"color": RELEASE, "lw": 0.9, "ls": "--"}
 TINTS = LinearSegmentedColormap.from_list(
@@ -131,7 +132,10 @@ def value_map(layers, values, title, bar, bounds, colours, width=HALF, crs_name=
 
 
 def mesh_map(layers, removed, mesh, title, crs_name):
-    """What must be removed: its thickness, and its volume (m3) in the cells of a mesh, a Raster in local metres."""
+    """What must be removed: its thickness, and its volume (m3) in the cells of a mesh, a Raster in local metres.
+
+    The data URI, and whether the mesh is drawn: only where its numbers can be read.
+    """
     layers = layers._replace(section=None)
     with plt.rc_context(STYLE):
         frame, bounds = frame_of(layers, True, crs_name), classes_of(removed)
@@ -140,17 +144,18 @@ def mesh_map(layers, removed, mesh, title, crs_name):
         image = draw_values(axes, layers, removed, bounds, "YlOrBr", alpha=0.75)
         side = mesh.transform.a
         inches = side * size[0] / frame.width
+        widest = max((text_width(f"{value:,.0f}", MESH_FONT) for value in mesh.z[mesh.z >= 0.5]), default=0)
+        font = MESH_FONT * min(1, 0.9 * inches / max(widest, 1e-9))
+        if font < LEAST_FONT:
+            mesh = mesh._replace(z=np.zeros_like(mesh.z))
         for row, column in np.argwhere(mesh.z >= 0.5):
             x, y = mesh.transform * (column, row + 1)
             axes.add_patch(Rectangle((x, y), side, side, fill=False, lw=0.35, edgecolor="#222222", zorder=6))
-            text = f"{mesh.z[row, column]:,.0f}"
-            font = min(6.5, 6.5 * 0.9 * inches / text_width(text, 6.5))
-            if font >= 2.5:
-                axes.text(x + side / 2, y + side / 2, text, fontsize=font, ha="center", va="center", zorder=7,
-                          clip_on=True)
+            axes.text(x + side / 2, y + side / 2, f"{mesh.z[row, column]:,.0f}", fontsize=font, ha="center",
+                      va="center", zorder=7, clip_on=True)
         sheets.draw_axes(axes, frame, size)
         sheets.colour_bar(sheet, image, bounds, "thickness to remove (m)", beside, below)
-        return finish(sheet, layers, size, sheets.margins(frame)[0])
+        return finish(sheet, layers, size, sheets.margins(frame)[0]), font >= LEAST_FONT
 
 
 def terrain_map(layers, detail, crs_name):

@@ -51,8 +51,13 @@ def film(data, ground, section, layers, frames: Optional[Frames], name: str) -> 
         return Film(None, f"No film: ffmpeg could not make it ({' '.join(str(error).split())[:200]}).")
     finally:
         plt.close(picture.figure)
-    return Film(content, f"The same as a film, in plan and along the section, {len(times) / RATE:.0f} s"
-                         f"{'' if pace == 1 else f', {pace:g} s of the run in each'}{note}: {name}, beside this page.")
+    return Film(content, f"The same as a film, in plan and along the section, {len(times) / RATE:.0f} s "
+                         f"long{'' if pace == 1 else f', {speed(pace)} real time'}{note}: {name}, beside this page.")
+
+
+def speed(pace: float) -> str:
+    """How fast a film is, against real time."""
+    return f"{pace:g} times as fast as" if pace > 1 else f"{1 / pace:g} times slower than"
 
 
 def fewer(frames: Frames) -> Tuple[Frames, str]:
@@ -146,8 +151,9 @@ class Picture:
         figure_maps.draw_section_line(axis, layers, axis.get_window_extent().size / DPI)
         axis.set(xlim=(shown[0], shown[2]), ylim=(shown[1], shown[3]), xlabel="x (m)", ylabel="y (m)")
         axis.tick_params(labelsize=6)
-        axis.annotate("N", (0.975, 0.955), (0.975, 0.84), "axes fraction", ha="center", va="center", fontsize=8,
-                      fontweight="bold", arrowprops={"arrowstyle": "-|>", "color": "black", "lw": 1})
+        if layers.raster.crs is not None:
+            axis.annotate("N", (0.975, 0.955), (0.975, 0.84), "axes fraction", ha="center", va="center", fontsize=8,
+                          fontweight="bold", arrowprops={"arrowstyle": "-|>", "color": "black", "lw": 1})
 
     def profile(self, axis):
         """The ground before and without the body along the section."""

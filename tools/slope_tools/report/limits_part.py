@@ -5,6 +5,7 @@ from typing import List, Tuple
 from .. import disk
 from ..deposit import travel_shares
 from ..ensemble import headline
+from .warnings import LARGE
 
 CONTENT = List[Tuple[str, str]]
 
@@ -27,15 +28,20 @@ def uncertainty(data, numbers) -> CONTENT:
         found.append(f"Another run with the same values gives {low} to {high} m3 to remove, in 95 % of cases.")
     key = travel_shares.DISTANCE
     deviation = ((study and study.get("scatter") or {}).get(key) or {}).get("deviation")
-    if disk.is_number(deviation):
-        text = numbers("scatter of a run: 99 % within", "m", deviation)
+    if deviation is not None and disk.is_number(deviation):
+        text = headline.text(deviation, 10 * headline.place_of_digits(deviation))       # two digits
+        numbers.rows.append(("scatter of a run: 99 % within", "m", "", text, deviation))
         found.append(f"The distance that 99 % of the volume stays within differs by {text} m from run to run "
                      "(standard deviation).")
     if not found:
         found = ["Unknown: no run was repeated, and two runs that are equally good may differ by several percent "
                  "(study --repeat)."] if not (study and study.get("ensemble")) else []
     chance = [("Chance", " ".join(found))] if found else []
-    if best and best["size_m3"] is None or not study:
+    unusable = study and study.get("size_error_unusable")
+    if unusable and not (best and best["size_m3"] is not None):
+        chance.append(("Size of the balls",
+                       f"What smaller balls would give was measured, but is not usable: {unusable}"))
+    elif best and best["size_m3"] is None or not study:
         chance.append(("Size of the balls", "What smaller balls would give is unknown "
                                             "(sensitivity --converge, study --size-error)."))
     return chance
@@ -45,10 +51,10 @@ def varied(data) -> str:
     """Which variables the runs differ in; nothing else is in the spread of the numbers."""
     several = {name: values for name, values in data.settings.items() if len(values) > 1}
     if not several:
-        return ("Nothing: one set of values. What friction, restitution, the roughness of the ground or another slip "
-                "surface would change is not in the numbers.")
+        return ("Nothing: one set of values. The effect of other values of friction, restitution and roughness of the "
+                "ground, or of another slip surface, is not included.")
     ranges = ", ".join(f"{name} {shortly(values)}" for name, values in several.items())
-    return (f"{ranges}. What other variables, or another slip surface, would change is not in the numbers.")
+    return f"{ranges}. The effect of other variables, or of another slip surface, is not included."
 
 
 def shortly(values) -> str:
@@ -68,10 +74,14 @@ def model(data) -> CONTENT:
     about = data.result.summary
     ball = about["volume"]["released"] / about["balls"]["released"]
     side = headline.text(ball ** (1 / 3), 10.0 ** (math.floor(math.log10(ball) / 3) - 2))
+    large = data.largest_release() >= LARGE
     return [
+        *([("Large masses", f"Masses of {LARGE / 1e6:g} million m3 and more are known to run farther than laboratory "
+                            "friction suggests, so that the default parameters are not conservative for the run-out: "
+                            "calibrate them with a past event (page on events of the documentation).")] * large),
         ("The body", "Its slip surface and volume were given, not computed: the report does not say whether, or how "
-                     "likely, the slope fails. The body starts to move as a whole and without a cause, unless the deck "
-                     "shakes it."),
+                     "likely, the slope fails. The body is released at once; no trigger is modelled, except with an "
+                     "earthquake."),
         ("The mass", f"Equal balls, each for {headline.text(ball, headline.place_of_digits(ball))} m3 of ground, a "
                      f"cube of {side} m: a parameter of the model, not the size of blocks. Speeds and energies of "
                      "single balls are those of such a block. Dry: no water, no pore pressure, no liquefaction. No "

@@ -83,11 +83,14 @@ class Maps:
         removed, mesh = data.removed
         layers = self.layers._replace(shown=self.ground.window(box_of(self.layers.raster, removed > 0)))
         road = data.study["study"]["road"]
+        uri, numbered = figure_maps.mesh_map(layers, removed, mesh, "Volume to remove", self.crs)
+        squares = f", and its volume in m3 in squares of {mesh.transform.a:g} m" if numbered else ""
+        more = "" if numbered else (f" The volumes in squares of {mesh.transform.a:g} m are too many to be read here: "
+                                    "they are in volume/volume.csv and volume.geojson of the run.")
         return self.picture(
-            figure_maps.mesh_map(layers, removed, mesh, "Volume to remove", self.crs), "Map of the volume to remove",
+            uri, "Map of the volume to remove",
             f"Thickness of what lies on the road and above a cut rising at {road['cut_angle']:g} degrees from its "
-            f"edges, and its volume in m3 in squares of {mesh.transform.a:g} m; together {volume} m3; run: "
-            f"{data.label(data.result)}.")
+            f"edges{squares}; together {volume} m3; run: {data.label(data.result)}.{more}")
 
     def over_all(self):
         """Maps of a study over all of its runs."""
@@ -109,15 +112,19 @@ class Maps:
             found["envelope"] = self.thickness(
                 data.over_all[envelope["max_thickness"]["file"]], "Envelope of all runs", "Envelope",
                 f"Largest thickness over all {len(data.finished)} runs and all times.", layers=layers)
+        volume, balls = data.result.summary["volume"]["released"], data.result.summary["balls"]["released"]
+        side = (volume / balls) ** (1 / 3)
         for entry in data.study.get("exceedance") or ():
             if entry["file"] not in data.over_all:
                 continue
             values = data.over_all[entry["file"]]
+            single = f" One ball of the model, a cube of {side:.2g} m, is much thicker than that." \
+                if side > 10 * entry["threshold_m"] else ""
             found["exceedance"].append(self.picture(
                 figure_maps.value_map(layers, values, f"Thicker than {entry['threshold_m']:g} m", "share of the runs",
                                       [0.0, 0.2, 0.4, 0.6, 0.8, 1.0], "RdPu", mask=values > 0),
                 f"Share of the runs thicker than {entry['threshold_m']:g} m",
                 f"Share of the {len(data.finished)} runs with a final thickness > {entry['threshold_m']:g} m: in every "
                 f"run on {entry['area_in_every_run_m2']:,.0f} m2, in any run on "
-                f"{entry['area_in_any_run_m2']:,.0f} m2."))
+                f"{entry['area_in_any_run_m2']:,.0f} m2.{single}"))
         return found

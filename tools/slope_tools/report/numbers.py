@@ -72,29 +72,49 @@ def answer(data, numbers):
         parts.append({
             "sign": "+", "number": part("chance_m3"), "what": "chance",
             "note": f"97.5 % of single runs lie below: t {best['quantile']:.3g} x standard deviation of a run "
-                    f"{headline.text(scatter, headline.place(scatter) if scatter else 1)} m3 x sqrt(1 + 1/"
+                    f"{headline.text(scatter, headline.place_of_digits(scatter))} m3 x sqrt(1 + 1/"
                     f"{best['repeats']}), {best['degrees_of_freedom']:.3g} degrees of freedom"})
     else:
         parts.append({"sign": "+", "number": UNKNOWN, "what": "chance",
                       "note": "no run was repeated (study --repeat seed=..., xoffset=...)"})
-    parts.append(size_part(best, part("size_m3")))
+    parts.append(size_part(best, part("size_m3"), data.study.get("size_error_unusable")))
     title = "Conservative volume to remove from the road" if predicted else \
         f"Volume to remove from the road: {best['kind']}"
     return {"number": part("volume_m3"), "title": title, "parts": parts, "predicted": predicted, "road": road,
-            "who": who, "only": not predicted and best["size_m3"] is None}
+            "below": below_ground(data, numbers), "who": who, "only": not predicted and best["size_m3"] is None}
 
 
-def size_part(best, number):
+def below_ground(data, numbers):
+    """A sentence on what is to be removed where the cut lies below the ground; "" where it does not."""
+    found = data.below_ground()
+    if found is None:
+        return ""
+    below, whole, name = found[0], data.volumes["remove"], data.label(data.result)
+    texts = [numbers(what, "m3", value, "remove_m3", name)
+             for what, value in (("to remove where the cut is below the ground", below), ("to remove", whole))]
+    return (f"{texts[0]} m3 of the {texts[1]} m3 of the run {name} lie where the cut surface is below the ground "
+            "before the collapse.")
+
+
+def size_part(best, number, unusable=None):
+    """What the size of the balls adds; unusable: why an error that was measured is none, a text."""
     size = best.get("size") or {}
     if number is None:
         return {"sign": "+", "number": UNKNOWN, "what": "size of the balls",
-                "note": "not measured (sensitivity --converge, study --size-error)"}
+                "note": f"measured, but not usable: {unusable}" if unusable else
+                        "not measured (sensitivity --converge, study --size-error)"}
     note = f"at {size.get('variable')} {size.get('value')}"
     if disk.is_number(size.get("error_percent")):
         side = "small" if size["error_percent"] < 0 else "large"
-        note += f" the volume is {abs(size['error_percent']):.2g} % too {side}"
+        note += f" the volume is {abs(size['error_percent']):.3g} % too {side}"
         if disk.is_number(size.get("half_percent")):
-            note += f", known to {size['half_percent']:.2g} %"
+            note += f" (\N{PLUS-MINUS SIGN} {size['half_percent']:.2g} percentage points)"
+        share = size["error_percent"] / 100
+        if -1 < share < 0:
+            lacking = best["mean_m3"] / (1 + share) - best["mean_m3"]
+            texts = [headline.text(value, best["place_m3"]) for value in (lacking, max(0, best["size_m3"] - lacking))]
+            note += (f": mean/(1 - {-share:.3g}) - mean = {texts[0]} m3, and {texts[1]} m3 by which the uncertainty of "
+                     "that widens the chance")
     return {"sign": "+", "number": number, "what": "size of the balls", "note": note}
 
 
@@ -112,7 +132,7 @@ def released_card(data, numbers):
         if release.body is not None:
             numbers.whole("body", "m3", release.body, name or "")
     return {"what": "Released", "number": " - ".join(texts), "unit": "m3",
-            "note": over_runs([release for _, release in releases])}
+            "note": over_runs([release for _, release in releases], False)}
 
 
 def travel_card(data, numbers):
@@ -201,11 +221,22 @@ def travel_rows(data, numbers):
     return rows
 
 
-def balance(data):
-    """The release of the shown run and how it ended, for a table."""
+def balance(data, numbers):
+    """The release of the shown run, how it ended, and what else a table says of it."""
     release = next((release for name, release in data.releases()
                     if name is None or name == data.label(data.result)), None)
     one = data.result
     state = rest.state(one.summary, one.path)
     return {"release": release.text if release else UNKNOWN, "rest": state.text,
-            "status": "rest" if state.at_rest else "moving" if one.summary["moving"] else "doubt"}
+            "status": "rest" if state.at_rest else "moving" if one.summary["moving"] else "doubt",
+            "energy": energy(one.summary["largest"]["max_energy"]),
+            "front_at_release": numbers("farthest ball at release", "m", one.summary["travel"]["front_at_release"]),
+            "centroid": numbers("centroid moved", "m", one.summary["travel"]["centroid"], "centroid_m")}
+
+
+def energy(joules):
+    """An energy with three digits, in the unit that suits it."""
+    unit, factor = next(((unit, factor) for unit, factor in (("TJ", 1e12), ("GJ", 1e9), ("MJ", 1e6), ("kJ", 1e3))
+                         if joules >= factor), ("J", 1))
+    value = joules / factor
+    return f"{headline.text(value, headline.place_of_digits(value))} {unit}"

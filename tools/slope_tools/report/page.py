@@ -1,5 +1,5 @@
 """All that a report shows, read, computed and drawn, as the template takes it."""
-import re
+import datetime
 from typing import Any, Dict, List
 
 from .. import provenance
@@ -8,7 +8,7 @@ from ..ensemble.quantities import NAMES
 from ..survey.rasters import crs_name
 from . import convergence_part, film, frames, heading, intensity_part, limits_part, view
 from .asked import Asked
-from .charts import Charts, REMOVE, differences, quantities, single_row
+from .charts import Charts, REMOVE, TERMS, differences, quantities, single_row
 from .data import Data, find_deck
 from .ground import Ground
 from .maps_part import Maps
@@ -61,24 +61,25 @@ class Page:
             self.film = film.film(data, self.ground, self.section, maps.layers, self.frames, self.film_file.name)
         removal = numbers("to remove", "m3", one.row[REMOVE], REMOVE, data.label(one)) if REMOVE in one.row else ""
         found = {
-            "made": provenance.now(), "study": study, "single": not study, "one": one, "summary": one.summary,
+            "made": utc(provenance.now()), "study": study, "single": not study, "one": one, "summary": one.summary,
             "label": data.label(one), "settings": data.settings, "repeats": data.repeats,
             "varied": [key for key, several in data.settings.items() if len(several) > 1],
             "warnings": self.warnings, "answer": answer(data, numbers),
             "cards": cards(data, numbers), "travel": travel_rows(data, numbers),
-            "balance": balance(data), "rows": self.rows(), "columns": self.columns(),
+            "balance": balance(data, numbers), "rows": self.rows(), "columns": self.columns(),
             "means": self.means(), "differences": differences(data, numbers),
             "maps": maps.of_run(), "section": self.picture(*self.section.picture()), "charts": charts.all(),
             "intensity": intensity_part.content(data, numbers, self.picture),
             "hit": Structures(data, numbers, self.picture).content(),
             "road_chart": REMOVE in one.row, "removal": maps.removal(removal), "over_all": maps.over_all(),
+            "beyond": self.beyond(),
             "reference": self.reference and self.reference_tables(),
             "sizes": self.sizes and {"charts": self.sizes.pictures(self.picture), "rows": self.sizes.rows(numbers),
                                      "variable": self.sizes.variable, "deck": self.sizes.deck},
             "mass_error": (one.deposit.volume - one.summary["volume"]["released"] + one.summary["volume"]["off_grid"]
                            + one.summary["volume"]["lost"]) / one.summary["volume"]["released"],
             "view": view.content(data, self.ground, self.section, self.frames, self.no_frames, self.film.text),
-            "heading": self.heading, "limits": limits_part.content(data, numbers),
+            "heading": self.heading, "terms": self.terms(), "limits": limits_part.content(data, numbers),
             "place": self.place(), "ensemble": None}
         if study and study.get("ensemble"):
             from . import ensemble_part
@@ -95,6 +96,21 @@ class Page:
         same = len({round(row["released_m3"], 3) for row in data.finished}) == 1
         return [(head, unit, key) for head, unit, key in wanted
                 if any(row.get(key) is not None for row in data.finished) and not (same and key == "released_m3")]
+
+    def beyond(self):
+        """What the table says of the volume beyond the road; "" without a road."""
+        if self.data.road is None:
+            return ""
+        if any(row.get("beyond_road_m3") is not None for row in self.data.finished):
+            return ("Beyond it: all of the deposit on the side of the road that the mass did not come from. What is "
+                    "cut there is counted in \"to remove\" too: the two overlap and cannot be added.")
+        return ("How much lies beyond the road is unknown, because the road does not divide the grid; a control line "
+                "(slope site --line) counts what passes it.")
+
+    def terms(self):
+        """What the usual variables mean, of those that the study has."""
+        named = [*self.data.settings, *self.data.repeats]
+        return "; ".join(f"{name}: {TERMS[name]}" for name in dict.fromkeys(named) if name in TERMS)
 
     def rows(self):
         """The study's table: of each run its variables, its cells, or why it failed, and whether it is in doubt."""
@@ -164,17 +180,19 @@ class Page:
     # --- what was run ---
 
     def what_was_run(self):
-        """Title, purpose, deck, variables, and what the log says of the model."""
+        """Name, title, purpose, deck, variables, and what the log says of the model."""
         data, one = self.data, self.data.result
         deck = find_deck(one)
         text = deck.read_text(encoding="utf-8", errors="replace") if deck else ""
-        # the head of a deck: purpose; expected result and run time are for those who run it
-        purpose = re.match(r"(?:#(?! *(?:Expected|Run time)).*\n)+", text)
-        name = data.study["study"]["deck"] if data.study else deck.name if deck else one.prefix.name
+        # the first line of a deck is its purpose; the others are for those who run it
+        first = text.split("\n", 1)[0]
+        name = self.heading["project"] or data.folder.absolute().name
+        deck_name = data.study["study"]["deck"] if data.study else deck.name if deck else one.prefix.name
         variables = data.study and one.row.get("variables") or one.about.get("variables") or deck_variables(deck)
         digests = (one.marker.get("inputs") or {}) if deck else {}
-        return {"title": f"Slope collapse: {'study' if data.study else 'run'} of {name}", "deck_name": name,
-                "purpose": " ".join(line.lstrip("# ") for line in purpose[0].splitlines()) if purpose else "",
+        runs = f"study of {len(data.rows)} run{'s' * (len(data.rows) != 1)}" if data.study else "one run"
+        return {"name": name, "title": f"Slope collapse: {name}", "what": f"Slope collapse, {runs}",
+                "deck_name": deck_name, "purpose": first.lstrip("# ") if first.startswith("#") else "",
                 "deck": text, "variables": variables or {}, "settings_lines": one.log.settings, "notes": one.log.notes,
                 "table": "\n".join(one.log.table),
                 "sources": [{"name": file, "sha256": digest} for file, digest in digests.items()]}
@@ -184,7 +202,7 @@ class Page:
         return {"machine": one.marker.get("machine"), "here": provenance.machine(), "package": one.about.get("package"),
                 "packages": sorted({str(row.get("package")) for row in self.data.finished}),
                 "command": one.about.get("command"), "wall": one.marker.get("wall_seconds"),
-                "started": one.about.get("started"), "ended": one.marker.get("finished"),
+                "started": utc(one.about.get("started")), "ended": utc(one.marker.get("finished")),
                 "lmp_sha256": one.about.get("lmp_sha256")}
 
     def place(self):
@@ -193,6 +211,14 @@ class Page:
         if raster.crs is None:
             return None
         return {"crs": crs_name(raster.crs), "east": raster.offset[0], "north": raster.offset[1]}
+
+
+def utc(text):
+    """An ISO time, with its zone, to the minute; what is none stays."""
+    try:
+        return datetime.datetime.fromisoformat(text).astimezone(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC")
+    except (TypeError, ValueError):
+        return text
 
 
 def deck_variables(deck):

@@ -26,7 +26,7 @@ class Release(NamedTuple):
 
     @property
     def text(self):
-        """What stands beside the released volume."""
+        """What a table says of it."""
         return over_runs([self])
 
     @property
@@ -48,22 +48,29 @@ class Release(NamedTuple):
         return None
 
 
-def over_runs(releases):
-    """The same for several runs: body, share left out, balls removed and bulk factor, the range of each."""
-    bodies = [f"body {one.body:,.0f} m3, {percent(one.left_out)} of it left out" for one in releases
-              if one.body is not None]
+def over_runs(releases, factor=True):
+    """The same for several runs: body, share left out, balls removed and bulk factor (or not), the range of each."""
+    bodies = [f"body {one.body:,.0f} m3, {released_share(one.left_out)}" for one in releases if one.body is not None]
     about = [span(bodies)] if bodies and len(bodies) == len(releases) else ["body unknown"]
     removed = sorted(one.removed for one in releases if one.removed is not None)
-    if removed:
-        about.append(f"{span([percent(removed[0]), percent(removed[-1])])} of the balls removed at the start")
-    if releases:
+    if removed and removed[-1] > 0:
+        about.append(f"{span([percent(removed[0]), percent(removed[-1])])} of the balls overlapped the slip surface or "
+                     "the ground and were removed")
+    if releases and factor:
         factors = sorted(one.factor for one in releases)
         farthest = max(releases, key=lambda one: abs(one.from_cubic)).from_cubic
         side = f"{percent(abs(farthest))} {'above' if farthest > 0 else 'below'} 6/pi"
         most = "at most " if factors[0] < factors[-1] else ""
         about.append(f"bulk factor {span([f'{factors[0]:.4g}', f'{factors[-1]:.4g}'])}, "
-                     + ("6/pi" if abs(farthest) < 5e-4 else most + side))
+                     + ("6/pi" if abs(farthest) < 5e-4 else most + side) + " (6/pi: balls in a cubic lattice)")
     return "; ".join(about)
+
+
+def released_share(left_out):
+    """What became of the body; left_out: the share of it that is not released, < 0 if more is."""
+    if percent(abs(left_out)) == "0 %":
+        return "all of it released"
+    return f"{percent(left_out)} of it not released" if left_out > 0 else f"{percent(-left_out)} more released"
 
 
 def span(texts):

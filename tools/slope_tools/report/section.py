@@ -82,20 +82,21 @@ class Section:
         if self._westward(points[-1] - points[0]):
             points = points[::-1]
         how = "along the path of the centroid, " if path.dumped else "along the middle of the flow, "
-        return points, how + "straight on to the head of the scar, and as far as the mass lies"
+        return points, how + "straight on through the scar and the rest of the deposit"
 
     def _westward(self, way):
         return way[np.argmax(np.abs(way))] < 0
 
     def _continued(self, points, room):
-        """The line, straight on at both ends through what the release holds there, and some room."""
+        """The line, straight on at both ends through what release and deposit hold there, and some room."""
         ends = []
+        held_at = (self.ground.source | (self.data.result.thickness > 0)).astype(float)
         for point, before in ((points[0], points[1]), (points[-1], points[-2])):
             way = (point - before) / np.hypot(*(point - before))
             most = max(0.0, inside(point, way, self.ground.extent)[1])
             steps = np.arange(0, most, self.ground.cell / 2)
             places = point[:, None] + way[:, None] * steps
-            held = np.nan_to_num(self.ground.along(self.ground.source.astype(float), *places)) > 0.5
+            held = np.nan_to_num(self.ground.along(held_at, *places)) > 0.5
             far = steps[np.argmin(held)] if held.any() and not held.all() and held[0] else 0.0
             ends.append(point + min(far + room, most) * way)
         return np.concatenate([ends[:1], points, ends[1:]])
@@ -169,8 +170,8 @@ class Section:
         caption = (f"Section from A ({x1:.1f}, {y1:.1f}) to A' ({x2:.1f}, {y2:.1f}), local metres, {self.how}; "
                    + ("heights not exaggerated" if factor == 1 else f"heights exaggerated {factor:g} times"))
         if thickness_factor:
-            caption += (f"; below, the thickness on a scale of its own, exaggerated {thickness_factor:g} times: it is "
-                        "too small for the heights")
+            caption += (f"; below, the thickness on a scale of its own, exaggerated {thickness_factor:g} times, "
+                        "because it would not show at the scale of the heights")
         if height is not None:
             caption += (f"; cut surface rising at {self.data.study['study']['road']['cut_angle']:g} degrees from the "
                         "road's edges")

@@ -70,4 +70,4 @@ def caption(data, about, frames: Frames) -> str:
             f"is drawn on a straight line. The ground is the one without the body, so that the slip surface shows; "
             f"heights are not exaggerated; contours every {about['ground']['interval']:g} m, grid of "
             f"{about['ground']['grid']:g} m. Drag turns the view, with the right button it moves, the wheel zooms "
-            f"after a click. The scale holds at the middle of the view.{walls}")
+            f"after a click. The scale bar is valid at the centre of the view.{walls}")

@@ -2,11 +2,17 @@
 import re
 from typing import Any, Dict
 
+from ..deposit.volume import MUCH_BELOW
+from ..ensemble import headline
+
 SMALL = 1e-6            # of the released volume
+LARGE = 1e6             # m3 released, from which on friction in the laboratory is too much
 NAMED = 4               # runs that a line names
 NUMBER = re.compile(r"\d[\d.,]*(?:[eE][+-]?\d+)?")
-# what stands in words of our own here, or beside the maps
-SAID = (" failed: ", "still moves", "not at rest at the end", "left the grid or the box", "has no CRS")
+# what stands in words of our own here, or beside the maps: of single runs, and of all of them
+SAID_OF_RUNS = ("failed: ", "still moves", "left the grid or the box", "has no CRS")
+SAID_OF_ALL = re.compile(r"\d+ of \d+ deposits are not at rest at the end|.*has no CRS")
+LEFT = "left the box"     # in the lines of fix deposit/grid
 SAID_TOO = re.compile(r"runs failed$|deposits are not at rest$")
 RED, AMBER = "red", "amber"
 
@@ -15,21 +21,32 @@ def warnings(data):
     """(red or amber, text) of a data.Data, the gravest first."""
     found = failures(data)
     found += not_at_rest(data)
-    found += lost(data)
+    found += (gone := lost(data))
     found += releases(data)
+    found += below_ground(data)
+    found += large(data)
     if data.study:
         for text in (data.study["conservative"] or {}).get("doubts") or ():
             if not SAID_TOO.search(text):
                 found.append((AMBER, f"The volume to remove: {text}"))
         found += [(AMBER, f"The ensemble: {text}") for text in (data.study.get("ensemble") or {}).get("doubts") or ()]
-        names = {row["run"]: data.label_of(row) for row in data.rows}
-        entries = []
-        for text in data.study.get("warnings") or ():
-            if not any(said in text for said in SAID):
-                who, colon, rest = text.partition(": ")
-                entries.append((rest, names[who]) if colon and who in names else (text, None))
-        found += by_kind(entries, len(data.finished))
-    return found + from_logs(data, any("released mass" in text for _, text in found))
+        found += of_study(data)
+    found += from_logs(data, any("released mass" in text for _, text in found), bool(gone))
+    return sorted(found, key=lambda one: one[0] != RED)
+
+
+def of_study(data):
+    """The warnings of study.yaml: those of the study as a whole, each in red, and those of single runs."""
+    names = {row["run"]: data.label_of(row) for row in data.rows}
+    whole, entries = [], []
+    for text in map(str, data.study.get("warnings") or ()):
+        who, colon, rest = text.partition(": ")
+        runs = who.split(", ")
+        if not (colon and all(run in names for run in runs)):
+            whole += [] if SAID_OF_ALL.match(text) else [(RED, text)]
+        elif not any(said in rest for said in SAID_OF_RUNS):
+            entries += [(rest, names[run]) for run in runs]
+    return [*dict.fromkeys(whole), *by_kind(entries, len(data.finished))]
 
 
 def failures(data):
@@ -81,16 +98,39 @@ def releases(data):
     return by_kind(entries, len(data.finished))
 
 
-def from_logs(data, released):
-    """The warnings of LAMMPS and its styles; released: whether the released mass is doubted already."""
+def large(data):
+    """A mass whose run-out the defaults underestimate."""
+    volume = data.largest_release()
+    if volume < LARGE:
+        return []
+    return [(AMBER, f"The run-out: {volume / 1e6:,.3g} million m3 are released, and such masses are known to run "
+                    "farther than laboratory friction suggests. With the default parameters the run-out is not "
+                    "conservative; calibrate them with a past event (page on events of the documentation).")]
+
+
+def below_ground(data):
+    """A cut that is flatter than the hillside: much of what it takes lies where it is below the ground."""
+    below, share = data.below_ground() or (0, 0)
+    if share <= MUCH_BELOW:
+        return []
+    volume = headline.text(below, headline.place_of_digits(below))
+    angle = data.study["study"]["road"]["cut_angle"]
+    return [(AMBER, f"The volume to remove: {100 * share:.0f} % of it ({volume} m3 in the run "
+                    f"{data.label(data.result)}) lies where the cut surface is below the ground before the collapse. "
+                    f"The hillside is about as steep as the cut of {angle:g} degrees there, or steeper, so that all of "
+                    "the deposit on it is counted; a steeper cut angle gives less.")]
+
+
+def from_logs(data, released, gone):
+    """The warnings of LAMMPS and its styles; released, gone: whether released and lost mass are spoken of already."""
     entries = []
     if data.study:
         for row in data.rows:
             entries += [(f"LAMMPS: {text}", data.label_of(row)) for text in row.get("log_warnings") or ()]
     else:
         entries = [(f"LAMMPS: {text}", None) for text in data.result.log.warnings]
-    expected = "LAMMPS: Delete_balls" if released else None
-    entries = [(text, name) for text, name in entries if not (expected and text.startswith(expected))]
+    entries = [(text, name) for text, name in entries
+               if not (released and text.startswith("LAMMPS: Delete_balls") or gone and LEFT in text)]
     return by_kind(entries, len(data.rows))
 
 
