@@ -294,7 +294,8 @@ def test_a_failed_size_is_told_and_the_others_are_fitted(slope):
 
 @pytest.mark.parametrize("arguments, message", [
     ("--converge d=1", "--converge: must give two values at least, and three to see whether a line holds, got d=1"),
-    ("--converge d=1,0", "--converge: must give numbers > 0 for d, which tends to 0, got 0"),
+    ("--converge d=1,0", "--converge: d must stay within the deck's range, > 0, got d=1,0"),
+    ("--converge steps=1,0", "--converge: must give numbers > 0 for steps, which tends to 0, got 0"),
     ("--converge terrain=a.asc,b.asc", "--converge: must give numbers > 0 for terrain"),
     ("--converge colour=1,2", "--converge: must name an index variable of case/in.tiny"),
     ("--converge d=1,2 --vary friction=20", "--converge: must be given without --vary"),
