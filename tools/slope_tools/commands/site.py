@@ -6,7 +6,7 @@ from pathlib import Path
 from ..case import site, site_choices
 from ..ensemble import jobs
 from ..errors import SlopeError, printer
-from ..options import count, number
+from ..options import count, number, whole
 from ..programs import find_lmp
 from ..report import site_map
 from ..survey.release import SHAPES
@@ -76,7 +76,7 @@ def add_ground(group):
     group.add_argument("--assign-crs", metavar="EPSG:n", help="the elevation model is in this CRS, whatever it says")
     group.add_argument("--bounds", nargs=4, type=number, metavar=("W", "S", "E", "N"), help="take this part, m")
     group.add_argument("--cell", type=number, metavar="S", help="wanted cell size, m")
-    group.add_argument("--fill", type=int, metavar="N", help="fill NODATA holes of at most N cells")
+    group.add_argument("--fill", type=whole, metavar="N", help="fill NODATA holes of at most N cells")
     group.add_argument("--release", metavar="P", help="polygon of the ground that is released, in any CRS: GeoJSON, "
                        "shapefile, CSV or WKT; with --scar, only the part of the scar inside it is used")
     group.add_argument("--shape", choices=SHAPES, help="of the slip surface, see slope release (default sphere)")

@@ -155,4 +155,4 @@ def list_runs(todo):
         values = " ".join(f"{name} {value}" for name, value in one.chosen.items())
         print(f"{one.name}: {values}, {one.state()}")
     done = sum(one.marker.exists() for one in todo)
-    print(f"{len(todo)} runs, {done} of them finished")
+    print(f"{len(todo)} run{'s' * (len(todo) != 1)}, {done} of them finished")
