@@ -92,7 +92,8 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
     disk.write(output / "study.yaml", "# slope study: volumes in m3 of ground (bulk), lengths in m, times in s\n"
                + yaml.safe_dump(about, sort_keys=False))
     if not order or len(rows) <= SHOWN:
-        study_table.print_runs(settings, rows, scatters, f"{deck.name}: {len(rows)} run{'s' * (len(rows) != 1)}, volumes in m3 of ground")
+        study_table.print_runs(settings, rows, scatters,
+                               f"{deck.name}: {len(rows)} run{'s' * (len(rows) != 1)}, volumes in m3 of ground")
     if any(scatters.values()) and not order:
         study_table.print_combinations(settings, groups, scatters)
     print(f"{output / 'study.yaml'}, {output / 'study.csv'}, {output / 'combinations.csv'}: all numbers")
