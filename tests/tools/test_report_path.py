@@ -181,6 +181,16 @@ def test_the_section_follows_a_mass_around_a_bend():
     assert found.bends == []        # a curve has none
 
 
+def test_the_section_goes_on_through_the_deposit():
+    """From where the path ends, straight on as far as the deposit is contiguous, and some room."""
+    ground, result = site()
+    found = section(ground, result)
+    path = np.array([(20.0, 180.0), (100.0, 180.0), (100.0, 100.0)])
+    assert found._continued(path, 4.0)[-1][1] < 20
+    result.thickness = np.where(ground.y > 90, result.thickness, 0)
+    assert found._continued(path, 4.0)[-1] == pytest.approx((100, 86), abs=CELL)
+
+
 def test_a_straight_path_gives_the_fall_line():
     ground, result = site(LineString([(20, 100), (180, 100)]))
     found = section(ground, result)
