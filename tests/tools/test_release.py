@@ -242,6 +242,26 @@ def test_a_sphere_bulges_where_the_ground_does(slope, body):
     assert any("bulges" in line for line in about["warnings"])
 
 
+def test_a_depth_that_no_sphere_on_bulging_ground_has(refused):
+    terrain(lambda x, y: ramp(30)(x, y) + 60 * np.exp(-((x - 120) ** 2 + (y - 100) ** 2) / 100))
+    polygon(box(100, 80, 140, 120))
+    refused("t.asc --polygon p.csv --depth 1", "--depth: must be at least ", "bulges above the line from toe to "
+            "shoulder", "take --shape slbl or a smaller polygon, got 1")
+
+
+def test_a_base_level_below_a_part_of_the_polygon_is_warned_of(body):
+    terrain(lambda x, y: 200 - 0.004 * (x - 240) ** 2 - 0.003 * (y - 100) ** 2)
+    polygon(box(40, 60, 200, 140))
+    found, about = body("t.asc --polygon p.csv --shape slbl --depth 1")
+    assert about["curvature_per_m"] < 0
+    line, = about["warnings"]
+    inside = 80 * 40      # cells of 2 m
+    assert "bulges" in line and f"takes {100 * found['cells'] / inside:.0f} % of the polygon" in line
+    assert f"{found['mean_depth']:.3g} m deep on average" in line
+    _, about = body("t.asc --polygon p.csv --shape slbl --depth 20")
+    assert about["curvature_per_m"] > 0 and not any("base level" in one for one in about["warnings"])
+
+
 def test_a_target_out_of_reach(refused):
     terrain(ramp(30))
     polygon(box(60, 60, 140, 140))

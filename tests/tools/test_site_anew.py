@@ -214,6 +214,24 @@ def test_a_thick_body_is_not_warned_of():
     assert site_warnings.of_thickness(3.1, 10.0) == []
 
 
+def test_a_large_body_needs_a_past_event():
+    assert site_warnings.of_volume(9.9e5) == []
+    line, = site_warnings.of_volume(3.6e7)
+    assert "36 million m3" in line and "farther" in line and "slope calibrate" in line
+
+
+def test_the_balls_of_the_ground_are_named(inside, mine):
+    """And that they follow those of the soil, unless they were chosen."""
+    out = inside("mine --balls 60").out
+    diameter = site_choices.read(mine)["balls"]["diameter"]
+    line, = [line for line in out.splitlines() if "field_diameter" in line]
+    assert f" {diameter:g} m" in line and "unless you set it" in line
+    edit(mine, "model", field_diameter=2.5)
+    out = inside("mine --balls 90").out
+    line, = [line for line in out.splitlines() if "field_diameter" in line]
+    assert " 2.5 m" in line and "unless" not in line
+
+
 def test_all_warnings_are_kept_in_the_folder(inside, mine):
     """Those of layers and balls; anew with the other files."""
     write_layer(mine.parent / "road.geojson", [(20, -40), (36, -40), (36, 80), (20, 80)])

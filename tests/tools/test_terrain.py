@@ -115,7 +115,7 @@ def test_the_file_to_the_letter(slope, here):
     assert out.splitlines() == [
         "dem.asc has no CRS: taken as EPSG:6677",
         "out.asc: 3 x 2 cells of 2.5 m, x 0.250 to 7.750, y 0.500 to 5.500, z 0.000 to 1234.568 m, 1 NODATA cells, "
-        "0 0 at 100 -8",
+        "local origin at east 100, north -8",
         "region ground terrain out.asc"]
     about = yaml.safe_load((here / "out.yaml").read_text())
     assert about.pop("crs")["epsg"] == 6677

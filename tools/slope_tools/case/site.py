@@ -119,7 +119,8 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
                             layers.structures, layers.lines, layers.motion)
     trial, reached = tried(choices, parts, found, new, machine, tell)
     size = settle(choices, parts, found, trial, machine, raster)
-    say_size(choices, size, found, machine, tell)
+    derived = site_choices.derived(given, choices, known)
+    say_size(choices, size, found, machine, "model.field_diameter" in derived, tell)
     for line in site_warnings.site_warnings(found.measures, size, trial):
         doubt(line)
     site_warnings.write(new, doubts)
@@ -128,7 +129,7 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
     draw(new / MAP, shown(found, layers, reached), f"{title}: {found.measures.volume:,.0f} m\u00b3")
     files = sorted([path.name for path in new.iterdir()] + [site_choices.NAME])
     about = {"slope_version": provenance.version(), "made": provenance.now(), "files": files,
-             "derived": site_choices.derived(given, choices, known),
+             "derived": derived,
              "deck_sha256": digest(new / site_deck.NAME), "choices_sha256": site_choices.fingerprint(choices),
              "crs": crs_name(raster.crs),
              "origin": {"east": float(raster.offset[0]), "north": float(raster.offset[1])},
@@ -219,11 +220,16 @@ def settle(choices: Choices, parts: site_deck.Parts, found: release.Body, trial:
     return size
 
 
-def say_size(choices: Choices, size: Size, found: release.Body, machine: Machine, tell):
-    """What the user needs to know of the balls, and of what the study takes."""
+def say_size(choices: Choices, size: Size, found: release.Body, machine: Machine, follows: bool, tell):
+    """What the user needs to know of the balls, and of what the study takes.
+
+    follows: the size of the ground's balls is that of the soil's, nobody chose it.
+    """
     thick = found.measures.mean_depth / size.diameter, found.measures.largest_depth / size.diameter
     tell(f"balls of {size.diameter:g} m: {size.balls:,} of them, the body is {thick[0]:.1f} balls thick on average, "
          f"{thick[1]:.1f} at most")
+    tell(f"balls of the ground of {choices['model']['field_diameter']:g} m (field_diameter), its roughness"
+         + ("; another number of balls changes it, too, unless you set it in site.yaml" if follows else ""))
     study = choices["study"]
     each = 1 + len(study["xoffset"])
     runs = f"{size.runs} runs: {len(study['rolling'])} rolling resistances x {each} lattice positions"

@@ -11,13 +11,15 @@ from .site_budget import Size, Trial
 NAME = "warnings.yaml"
 ROUGH = 3.0             # balls, mean thickness of the body: below, the numbers are rough
 THICK = 10.0            # balls, largest thickness: below, a site should be repeated with more balls
+LARGE = 1e6             # m3: larger masses run farther than laboratory friction gives
 LOST = 0.001            # share of the mass that may leave the terrain
 MORE = "use more balls (--balls, --minutes)"
 
 
 def site_warnings(found: Measures, size: Size, trial: Optional[Trial]) -> List[str]:
     """Warnings on a body and its balls; trial: None where there is no LAMMPS program."""
-    return [*of_trial(trial), *of_thickness(found.mean_depth / size.diameter, found.largest_depth / size.diameter)]
+    return [*of_trial(trial), *of_volume(found.volume),
+            *of_thickness(found.mean_depth / size.diameter, found.largest_depth / size.diameter)]
 
 
 def of_trial(trial: Optional[Trial]) -> List[str]:
@@ -31,6 +33,14 @@ def of_trial(trial: Optional[Trial]) -> List[str]:
     if not trial.at_rest:
         lines.append(f"the trial run was not at rest after {trial.rest:.0f} s: the run time of the study is a guess")
     return lines
+
+
+def of_volume(volume: float) -> List[str]:
+    """Whether the default friction can be that of so large a mass (m3)."""
+    if volume < LARGE:
+        return []
+    return [f"the body has {volume / 1e6:.3g} million m3: masses of {LARGE / 1e6:g} million m3 and more run farther "
+            "than the default friction gives; calibrate it with a past event of that size (slope calibrate)"]
 
 
 def of_thickness(mean: float, largest: float) -> List[str]:

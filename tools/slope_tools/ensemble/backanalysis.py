@@ -233,7 +233,7 @@ def judgement(found: Posterior, variables: Sequence) -> List[str]:
         low, high = found.interval(i)
         width = high - low
         best, least, most = (shown(one, u) for u in (float(found.best[i]), low, high))
-        text = f"{one.name}: {best}, {least} to {most} with {100 * SHARE:g} %"
+        text = f"{one.name}: {best}, {least} to {most} ({100 * SHARE:g} %)"
         if width > UNKNOWN:
             loose.append(one.name)
             text += f": not identifiable, the observation allows {100 * width:.0f} % of its range"

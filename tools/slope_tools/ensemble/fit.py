@@ -16,6 +16,11 @@ from .setup import Setup
 TABLE, ABOUT, CHART, MAP = "calibrate.csv", "calibrate.yaml", "calibrate.png", "predicted.png"
 
 
+def in_words(number: int) -> str:
+    """A small number as a sentence has it."""
+    return ("no", "one", "two", "three", "four", "five", "six")[number] if number < 7 else str(number)
+
+
 class Fit:
     """A calibration under way: makes its runs, measures them, and writes what came out."""
 
@@ -97,7 +102,9 @@ class Fit:
         doubts = [f"{len(failed)} of {len(plan.runs)} runs failed and say nothing: {', '.join(failed[:3])}"] \
             if failed else []
         if len(targets) < len(self.variables):
-            doubts.append(f"{len(targets)} observed numbers cannot determine {len(self.variables)} variables")
+            known, asked = len(targets), len(self.variables)
+            doubts.append(f"{in_words(known)} observed number{'s' * (known > 1)} cannot determine {in_words(asked)} "
+                          "variables")
         blind = [target.name for target, one in zip(targets, found.emulators) if not one.noise_seen]
         if blind:
             doubts.append(f"too few runs to show the chance of {', '.join(blind)}: the region may be too narrow")

@@ -94,4 +94,4 @@ def summary(name: object, about: Dict[str, Any]) -> str:
     return (f"{name}: {size['columns']} x {size['rows']} cells of {about['cell']:.6g} m, "
             f"x {extent['xlo']:.3f} to {extent['xhi']:.3f}, y {extent['ylo']:.3f} to {extent['yhi']:.3f}, "
             f"z {height['min']:.3f} to {height['max']:.3f} m, {about['nodata_cells']} NODATA cells, "
-            f"0 0 at {origin['east']:.10g} {origin['north']:.10g}")
+            f"local origin at east {origin['east']:.10g}, north {origin['north']:.10g}")

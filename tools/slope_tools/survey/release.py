@@ -9,6 +9,7 @@ from . import polygons, rasters, release_area, release_bodies, release_scar, rel
 from .crs import as_crs
 
 SHAPES = ("sphere", "ellipsoid", "plane", "slbl")
+LITTLE = 0.75   # share of the polygon; a base level that takes less of it is a doubtful body
 COARSE = 50     # cells; a body of fewer is drawn with a coarse brush
 
 
@@ -58,7 +59,7 @@ def body_of(wanted: Wanted) -> Body:
     area, surface, choices = (from_scar if wanted.scar else from_shape)(wanted, raster, geometry)
     slip = release_solve.slip_surface(area, release_solve.depths(area, surface), wanted.where)
     found = release_solve.measures(area, slip)
-    return Body(raster, geometry, area, slip, choices, found, warnings(choices, found, area.cell))
+    return Body(raster, geometry, area, slip, choices, found, warnings(choices, found, area))
 
 
 def check(wanted: Wanted) -> Wanted:
@@ -156,14 +157,20 @@ def from_shape(wanted: Wanted, raster, geometry):
     return area, shape.surface(free), choices
 
 
-def warnings(choices, found, cell):
+def warnings(choices, found, area):
     """What makes the body doubtful."""
     lines = []
     if choices.get("sagitta_m", 1) < 0:
         lines.append(f"the ground bulges above the line from toe to shoulder, and so does the {choices['shape']}: a "
                      "smaller polygon, or --shape slbl?")
+    share = found.cells / int(area.inside.sum())
+    curvature = choices.get("curvature_per_m", 0)
+    if choices["shape"] == "slbl" and (curvature < 0 or share < LITTLE):
+        what = f"bulges (curvature {curvature:.3g} /m) and " if curvature < 0 else ""
+        lines.append(f"the base level {what}takes {100 * share:.0f} % of the polygon, {found.mean_depth:.3g} m deep on "
+                     "average: is that the body you mean? A larger depth or a smaller polygon gives another one")
     if found.cells < COARSE:
-        lines.append(f"the body covers {found.cells} cells of {cell:g} m: take a finer terrain")
+        lines.append(f"the body covers {found.cells} cells of {area.cell:g} m: take a finer terrain")
     if found.wall > 0.5 * found.largest_depth:
         lines.append(f"the body is {found.wall:.3g} m deep at the rim of its area, where it ends in a wall: "
                      + ("a wider polygon, or --shape ellipsoid?" if choices["shape"] == "sphere" else
@@ -179,7 +186,7 @@ def text(body: Body) -> str:
         what = f"scar of {choices['scar']} ({choices['scar_is']})"
     elif shape == "plane":
         what = (f"plane that dips {choices['dip_degrees']:.4g} degrees towards {choices['direction_degrees']:.4g}, "
-                f"{choices['drop_m']:.4g} m below the highest one")
+                f"{choices['drop_m']:.4g} m below the plane that touches the highest ground")
     elif shape == "slbl":
         what = (f"sloping local base level, curvature {choices['curvature_per_m']:.4g} /m (tolerance "
                 f"{choices['tolerance_m']:.4g} m for cells of {cell:g} m)")

@@ -59,9 +59,11 @@ def solved(area: Area, shape: Shape, wanted: float, measure: Callable[[np.ndarra
         raise SlopeError(option, f"must be at most {found.max() + wanted:.6g} {unit}, that of {what} within the "
                          "release polygon: take a larger polygon or another shape", f"{wanted:.10g}")
     if not len(rises):
-        raise SlopeError(option, f"must be at least {found.min() + wanted:.6g} {unit}, that of the smallest "
-                         f"{shape.name} within the release polygon: take a smaller polygon or another shape",
-                         f"{wanted:.10g}")
+        why = f"that of the smallest {shape.name} within the release polygon: take a smaller polygon or another shape"
+        if "toe" in shape.about and "shoulder" in shape.about:
+            why = ("as the ground in the release polygon bulges above the line from toe to shoulder, so that no "
+                   f"smaller {shape.name} goes through both: take --shape slbl or a smaller polygon")
+        raise SlopeError(option, f"must be at least {found.min() + wanted:.6g} {unit}, {why}", f"{wanted:.10g}")
     low, high = tried[rises[-1]], tried[rises[-1] + 1]
     return float(brentq(miss, low, high, xtol=EXACT * max(abs(low), abs(high)), rtol=1e-14))
 
