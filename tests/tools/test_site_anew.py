@@ -240,8 +240,10 @@ def test_all_warnings_are_kept_in_the_folder(inside, mine):
     assert err.splitlines() == [f"slope site: warning: {line}" for line in lines]
     assert [next(word for word in ("outside", "LAMMPS", "thick") if word in line) for line in lines] == [
         "outside", "LAMMPS", "thick"]
+    inside("mine --bounds -12000 33000 -11890 35000")
+    assert "--bounds reaches beyond the input" in kept(mine)[0]
     inside("mine --balls 100000")
-    assert not any("thick" in line for line in kept(mine)) and len(kept(mine)) == 2
+    assert not any("thick" in line for line in kept(mine)) and len(kept(mine)) == 3
     assert site_warnings.NAME in site_choices.found(mine)["files"]
 
 

@@ -107,7 +107,7 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
         warn(line)
     choices = {name: dict(section) for name, section in given.items()}
     wanted = wanted_body(choices, new)
-    raster = terrain(choices, new, tell)
+    raster = terrain(choices, new, tell, doubt)
     found = release.body_of(wanted)
     tell(release.text(found))
     for line in found.warnings:
@@ -150,12 +150,12 @@ def wanted_body(choices: Choices, new: Path) -> release.Wanted:
     return release.check(release.Wanted(str(new / TERRAIN), **given, advice=advice(choices)))
 
 
-def terrain(choices: Choices, new: Path, tell) -> Raster:
+def terrain(choices: Choices, new: Path, tell, warn) -> Raster:
     """Write the terrain and read it back, as the deck will."""
     given = choices["terrain"]
     wanted = local_terrain.Wanted(given["crs"], None, given["cell"], given["bounds"], given["fill"],
                                   given["assign_crs"])
-    about = local_terrain.make(given["files"], new / TERRAIN, wanted, tell)
+    about = local_terrain.make(given["files"], new / TERRAIN, wanted, tell, warn)
     tell(local_terrain.summary(TERRAIN, about))
     return rasters.read_asc_local(new / TERRAIN)
 

@@ -3,7 +3,7 @@ import argparse
 from pathlib import Path
 
 from ..case.decks import quoted
-from ..errors import SlopeError
+from ..errors import SlopeError, printer
 from ..options import number, whole
 from ..survey import local_terrain
 
@@ -54,7 +54,7 @@ def add_parser(commands, **kwargs):
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints what was done, a summary and the line for the deck."""
     wanted = check(args)
-    about = local_terrain.make(args.inputs, args.output, wanted, print)
+    about = local_terrain.make(args.inputs, args.output, wanted, print, printer("terrain"))
     print(f"{local_terrain.summary(args.output, about)}\nregion ground terrain {quoted(str(args.output))}")
 
 

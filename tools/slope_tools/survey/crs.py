@@ -1,5 +1,4 @@
 """Coordinate reference systems: are two the same, is a metre a metre."""
-import sys
 
 import numpy as np
 import rasterio
@@ -12,10 +11,6 @@ from ..geometry import numbers
 from .rasters import crs_name, epsg
 
 STRETCH = 0.01         # relative error of lengths in a CRS from which on the user is warned
-
-
-def warn(text):
-    print(f"slope terrain: warning: {text}", file=sys.stderr)
 
 
 def as_crs(option, name):
@@ -45,7 +40,7 @@ def require_metres(crs, where):
                          f"{crs_name(crs)} in {unit}")
 
 
-def warn_of_stretch(raster):
+def warn_of_stretch(raster, warn):
     """Warn where a metre of the CRS is not a metre on the ground (Web Mercator at 37 N: 0.8 m), by more than 1 %."""
     from pyproj import Proj
     x, y = raster.transform * (raster.z.shape[1] / 2, raster.z.shape[0] / 2)

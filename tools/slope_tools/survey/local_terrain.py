@@ -47,10 +47,11 @@ def checked_crs(wanted: Wanted) -> Tuple[Optional[CRS], Optional[CRS]]:
     return crs, assigned
 
 
-def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[str], Any]) -> Dict[str, Any]:
+def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[str], Any],
+         warn: Callable[[str], Any]) -> Dict[str, Any]:
     """Write the terrain of survey files to output (.asc, with its sidecar); returns the sidecar.
 
-    tell is called with a line for each thing that was done. Raises SlopeError on bad input.
+    tell is called with a line for each thing that was done, warn with warnings. Raises SlopeError on bad input.
     """
     crs, assigned = checked_crs(wanted)
     steps: List[str] = []
@@ -63,9 +64,9 @@ def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[st
     if any(map(fggml.is_one, inputs)):
         if assigned is not None:
             raise SlopeError("--assign-crs", "must not be given for FG-GML, which has its CRS", wanted.assigned)
-        raster, crs, cell = read_fggml(inputs, crs, cell, keep)
+        raster, crs, cell = read_fggml(inputs, crs, cell, keep, warn)
     else:
-        raster = merge([declare(path, crs, keep, assigned) for path in inputs], inputs, keep)
+        raster = merge([declare(path, crs, keep, warn, assigned) for path in inputs], inputs, keep)
         crs = crs or raster.crs
     require_metres(crs, inputs[0])
     if not np.isfinite(raster.z).any():
@@ -76,9 +77,9 @@ def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[st
         filled = int(holes.sum())
         raster = raster._replace(z=fill(raster.z, holes))
         keep(f"filled {count} NODATA holes of at most {wanted.fill} cells, {filled} cells")
-    raster = regrid(raster, crs, cell, wanted.bounds, keep)
+    raster = regrid(raster, crs, cell, wanted.bounds, keep, warn)
     if crs is not None:
-        warn_of_stretch(raster)
+        warn_of_stretch(raster, warn)
     z = np.round(raster.z, 3) + 0.0  # as they are written; + 0.0 because of -0.0
     origin = wanted.origin
     if origin is None:

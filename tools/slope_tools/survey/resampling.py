@@ -9,7 +9,7 @@ from affine import Affine
 from ..errors import SlopeError
 from ..geometry import numbers
 from . import rasters
-from .crs import not_covered, same_crs, transform, warn
+from .crs import not_covered, same_crs, transform
 from .rasters import Raster, crs_name
 
 SAME_CELL = 1e-6       # relative; a smaller difference of cell sizes is noise of the header's digits
@@ -17,7 +17,7 @@ FINEST = 100           # a wanted cell may be this many times smaller than the i
 STRIP = 250_000        # points resampled at a time
 
 
-def regrid(raster, crs, cell, bounds, tell):
+def regrid(raster, crs, cell, bounds, tell, warn):
     """The raster in crs, on square cells, inside bounds: the input's own cells where that suffices, else resampled.
 
     cell and bounds may be None: then the input's, or in a new CRS its cell at the middle of the raster to three digits.

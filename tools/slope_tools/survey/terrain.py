@@ -6,14 +6,14 @@ from affine import Affine
 
 from ..errors import SlopeError
 from . import fggml, japan, rasters
-from .crs import require_degrees, same_crs, warn
+from .crs import require_degrees, same_crs
 from .rasters import Raster, crs_name
 from .resampling import STRIP, footprint, sample
 
 ON_GRID = 0.01         # cells; grids of two files that differ by less than this are the same grid
 
 
-def declare(path, crs, tell, assigned=None):
+def declare(path, crs, tell, warn, assigned=None):
     """Read a raster, in coordinates of its CRS; one without is taken to be in crs, or warned of if that is None.
 
     assigned: the CRS of its coordinates, whatever the file says.
@@ -35,7 +35,7 @@ def declare(path, crs, tell, assigned=None):
     return raster
 
 
-def read_fggml(paths, crs, cell, tell):
+def read_fggml(paths, crs, cell, tell, warn):
     """One raster in degrees of all FG-GML tiles in the files, and the wanted CRS and cell, found if they are None."""
     tiles = []
     for path in paths:
