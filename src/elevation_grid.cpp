@@ -112,6 +112,7 @@ class GridText {
     }
     fclose(fp);
     if (!reason.empty()) throw std::runtime_error(reason);
+    if (text.compare(0, 3, "\xef\xbb\xbf") == 0) pos = 3;    // a mark of UTF-8
   }
 
   size_t size() const { return text.size(); }

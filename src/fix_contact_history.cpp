@@ -28,7 +28,7 @@ static constexpr double ROUNDING = 1.0e-10;    // of the largest force
 
 FixContactHistory::FixContactHistory(LAMMPS *lmp, int narg, char **arg) :
     FixNeighHistory(lmp, narg, arg), lists_new(true), lists_used(false), force(nullptr),
-    forces_taken_back(false), force_step(-1), force_dt(0.0)
+    forces_taken_back(false), force_step(-1), force_dt(0.0), restart_extra(lmp)
 {
   nevery = ContactGuards::EVERY;
   FixContactHistory::grow_arrays(atom->nmax);
@@ -67,6 +67,12 @@ void FixContactHistory::post_neighbor()
 int FixContactHistory::setmask()
 {
   return FixNeighHistory::setmask() | INITIAL_INTEGRATE | END_OF_STEP;
+}
+
+void FixContactHistory::init()
+{
+  restart_extra.check("Pair gran/restitution");
+  FixNeighHistory::init();
 }
 
 void FixContactHistory::setup(int)
@@ -215,12 +221,10 @@ int FixContactHistory::pack_restart(int i, double *buf)
 
 void FixContactHistory::unpack_restart(int i, int nth)
 {
+  const double *list = restart_extra.find(i, nth, 2 + FORCE, 1 + dnum);
+  if (!list) return;
   FixNeighHistory::unpack_restart(i, nth);
-  const double *extra = atom->extra[i];
-  int m = 0;
-  for (int k = 0; k < nth; k++) m += static_cast<int>(extra[m]);
-  m += static_cast<int>(extra[m]) - FORCE;
-  memcpy(force[i], &extra[m], FORCE * sizeof(double));
+  memcpy(force[i], list + static_cast<int>(list[0]) - FORCE, FORCE * sizeof(double));
 }
 
 int FixContactHistory::size_restart(int i)

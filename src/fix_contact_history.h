@@ -14,6 +14,8 @@ FixStyle(CONTACT_HISTORY,FixContactHistory);
 
 #include "fix_neigh_history.h"
 
+#include "restart_extra.h"
+
 namespace LAMMPS_NS {
 
 class FixContactHistory : public FixNeighHistory {
@@ -21,6 +23,7 @@ class FixContactHistory : public FixNeighHistory {
   FixContactHistory(class LAMMPS *, int, char **);
   ~FixContactHistory() override;
   int setmask() override;
+  void init() override;
   void setup(int) override;
   void initial_integrate(int) override;
   void pre_exchange() override;
@@ -53,6 +56,7 @@ class FixContactHistory : public FixNeighHistory {
  private:
   bigint force_step;    // the step that they belong to
   double force_dt;      // and its length
+  RestartExtra restart_extra;
 
   void keep_forces();
 };

@@ -19,7 +19,7 @@ using namespace LAMMPS_NS;
 
 FixContactWall::FixContactWall(LAMMPS *lmp, int narg, char **arg, int keys) :
     Fix(lmp, narg, arg), caller(fmt::format("Fix {} {}", style, id)), pair(nullptr), wall_type(0),
-    records(keys), contacts_in_lists(false), kept_by_atom(false)
+    records(keys), contacts_in_lists(false), kept_by_atom(false), restart_extra(lmp)
 {
   scalar_flag = vector_flag = 1;
   extscalar = extvector = 1;
@@ -50,6 +50,7 @@ void FixContactWall::keep_by_atom()
 
 void FixContactWall::init()
 {
+  restart_extra.check(caller);
   pair = PairGranRestitution::of(lmp);
   if (!pair)
     error->all(FLERR, "{}: requires pair_style gran/restitution, which holds its coefficients",
@@ -153,10 +154,9 @@ int FixContactWall::pack_restart(int i, double *buf)
 
 void FixContactWall::unpack_restart(int i, int nth)
 {
-  const double *extra = atom->extra[i];
-  int m = 0;
-  for (int k = 0; k < nth; k++) m += static_cast<int>(extra[m]);
-  maxexchange = std::max(maxexchange, records.unpack(i, &extra[m + 1]));
+  const int none = records.packed(0);
+  const double *list = restart_extra.find(i, nth, 1 + none, records.packed(1) - none);
+  if (list) maxexchange = std::max(maxexchange, records.unpack(i, list + 1));
 }
 
 int FixContactWall::size_restart(int i)

@@ -10,6 +10,7 @@
 
 #include "contact_holder.h"
 #include "contact_records.h"
+#include "restart_extra.h"
 
 #include <string>
 #include <vector>
@@ -60,6 +61,7 @@ class FixContactWall : public Fix, public ContactHolder {
 
  private:
   bool kept_by_atom;
+  RestartExtra restart_extra;
   void store_contacts();
 };
 

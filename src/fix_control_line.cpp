@@ -24,6 +24,7 @@
 #include "domain.h"
 #include "error.h"
 #include "force.h"
+#include "group.h"
 #include "modify.h"
 #include "update.h"
 
@@ -172,6 +173,10 @@ void FixControlLine::check_line() const
 void FixControlLine::setup(int /*vflag*/)
 {
   clock.begin(update->ntimestep, update->dt);
+  if (group->count(igroup) == 0 && comm->me == 0)
+    error->warning(
+        FLERR, "Fix control/line {}: the group should have balls, got none at the start of the run",
+        id);
   remember();
 }
 

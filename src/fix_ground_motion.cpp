@@ -145,6 +145,10 @@ void FixGroundMotion::check_integrators()
     if (!follows(atom->mask[i]) && !(atom->mask[i] & frozen)) mine[1]++;
   }
   MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all[0] == 0 && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix ground/motion {}: the group should have balls, got none: nothing is shaken",
+                   id);
   if (all[1] > 0 && comm->me == 0)
     error->warning(
         FLERR,

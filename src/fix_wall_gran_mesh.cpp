@@ -17,6 +17,8 @@
 #include "lammps_compat.h"
 #include "neighbor.h"
 #include "pair_gran_restitution.h"
+#include "rank_zero.h"
+#include "text_file.h"
 #include "update.h"
 
 #include <algorithm>
@@ -43,7 +45,8 @@ static Vector vector_of(const double *x)
 
 FixWallGranMesh::FixWallGranMesh(LAMMPS *lmp, int narg, char **arg) :
     FixContactWall(lmp, narg, arg, 3), options(lmp, caller, narg - 3, arg + 3),
-    surface(options.surface()), all_ready(false), first_step(false), fast(lmp, caller)
+    surface(options.surface()), all_ready(false), first_step(false), started(false),
+    fast(lmp, caller)
 {
   wall_type = options.type;
   size_vector = IMPULSE + 3;
@@ -214,9 +217,50 @@ void FixWallGranMesh::check_speed(int i, const Vector &normal)
   if (law && towards > 0.0) fast.record(i, towards, law->kn);
 }
 
+/* ----------------------------------------------------------------------
+   balls inside a closed surface stay there: right in a container, and wrong in a structure
+------------------------------------------------------------------------- */
+
+void FixWallGranMesh::warn_of_enclosed()
+{
+  int held = 0;
+  for (Fix *fix : compat::fixes_of_style(lmp, "freeze")) held |= fix->groupbit;
+  const Vector &low = surface->low(), &high = surface->high();
+  std::vector<Vector> near;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const Vector x = vector_of(atom->x[i]);
+    if ((atom->mask[i] & groupbit) && !(atom->mask[i] & held) && x.x > low.x && x.x < high.x &&
+        x.y > low.y && x.y < high.y && x.z > low.z && x.z < high.z)
+      near.push_back(x);
+  }
+  bigint found = near.size(), total;
+  MPI_Allreduce(&found, &total, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (total == 0) return;
+
+  int closed = 0;
+  on_rank_zero(lmp, caller, [&]() {
+    closed = surface->closed();
+  });
+  MPI_Bcast(&closed, 1, MPI_INT, 0, world);
+  if (!closed) return;
+  found = std::count_if(near.begin(), near.end(), [this](const Vector &x) {
+    return surface->encloses(x);
+  });
+  MPI_Allreduce(&found, &total, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (total)
+    pair->guards.say(
+        fmt::format("{}: a closed surface should hold no balls at the start, unless it is a "
+                    "container, got {} inside: move it, or remove them with delete_atoms region",
+                    caller, counted(total, "ball")));
+}
+
+/* ---------------------------------------------------------------------- */
+
 void FixWallGranMesh::setup(int)
 {
   clock.begin(update->ntimestep, update->dt);
+  if (!started) warn_of_enclosed();
+  started = true;
   apply(true);
   first_step = true;
 }
@@ -273,7 +317,8 @@ void FixWallGranMesh::find_contacts(bool starting, bool lists_new)
       });
     l.find(starting, lists_new, moving, phantoms);
   }
-  if (starting) initial.check(caller);
+  if (starting)
+    initial.check(caller, "move the surface, or remove the balls there with delete_atoms region");
 }
 
 /* ----------------------------------------------------------------------
@@ -464,10 +509,8 @@ void FixWallGranMesh::restart(char *buf)
                caller);
   if (list[1] != surface->count() ||
       std::fabs(list[2] - surface->checksum()) > SAME_SURFACE * std::fabs(surface->checksum()))
-    error->all(
-        FLERR,
-        "{}: the restart file was written with another surface ({:.0f} triangles there, {} here)",
-        caller, list[1], surface->count());
+    error->all(FLERR, "{}: the restart file was written with another surface ({} there, {} here)",
+               caller, counted(list[1], "triangle"), counted(surface->count(), "triangle"));
   for (int d = 0; d < 3 && comm->me == 0; d++) {
     mine[IMPULSE + d] = list[3 + d];
     last[d] = list[6 + d];

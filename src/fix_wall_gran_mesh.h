@@ -86,12 +86,14 @@ class FixWallGranMesh : public FixContactWall {
       last[3];    // and in a step that ended a run, which the set-up of the next one only estimates
   bigint last_step;
   bool first_step;
+  bool started;    // with the first run
 
   FastBalls fast;
 
   Slope::ContactLaw smooth_law(int type) const;
   void add_contact(int slot, const double *from);
   void find_features();
+  void warn_of_enclosed();
   void check_speed(int i, const Slope::Vector &normal);
   void take_contacts() override;
   std::vector<double> restart_values() override;

@@ -28,7 +28,7 @@ void InitialOverlap::record(double overlap, double radius, tagint ball, const do
 
 /* ---------------------------------------------------------------------- */
 
-void InitialOverlap::check(const std::string &caller)
+void InitialOverlap::check(const std::string &caller, const std::string &remedy)
 {
   bigint total;
   MPI_Allreduce(&count, &total, 1, MPI_LMP_BIGINT, MPI_SUM, world);
@@ -49,6 +49,6 @@ void InitialOverlap::check(const std::string &caller)
 
   error->all(FLERR,
              "{}: {} pairs overlap at the start by more than {:g} % of the radius, worst {:.4g} % "
-             "between {} (see delete_balls)",
-             caller, total, 100.0 * LIMIT, 100.0 * all.value, buffer);
+             "between {} ({})",
+             caller, total, 100.0 * LIMIT, 100.0 * all.value, buffer, remedy);
 }

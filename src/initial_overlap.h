@@ -27,7 +27,7 @@ class InitialOverlap : protected Pointers {
               const std::string &partner);
 
   // collective: ends the run if any rank saw an overlap above the limit
-  void check(const std::string &caller);
+  void check(const std::string &caller, const std::string &remedy = "see delete_balls");
 
  private:
   double worst;        // overlap / radius

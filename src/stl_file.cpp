@@ -54,6 +54,17 @@ static bool begins_with_solid(const std::string &bytes)
 
 /* ---------------------------------------------------------------------- */
 
+static bool is_elevation_grid(const std::string &bytes)
+{
+  size_t k = bytes.compare(0, 3, "\xef\xbb\xbf") == 0 ? 3 : 0;
+  while (k < bytes.size() && is_space(bytes[k])) k++;
+  std::string word;
+  for (; k < bytes.size() && word.size() < 5; k++) word += static_cast<char>(bytes[k] | 0x20);
+  return word == "ncols" || word == "nrows";
+}
+
+/* ---------------------------------------------------------------------- */
+
 static std::vector<Triangle> read_binary(const std::string &path, const std::string &bytes)
 {
   const size_t n = number_at(bytes, 80);
@@ -187,16 +198,21 @@ StlFile StlFile::read(const std::string &path, double scale, const Vector &move)
   StlFile file;
   const bool text = begins_with_solid(bytes) && bytes.find('\0') == std::string::npos;
   file.binary = fits || !text;
+  if (!fits && is_elevation_grid(bytes))
+    throw std::runtime_error(path + ": must be an STL file, got an elevation grid: terrain " +
+                             path + " takes one");
   if (file.binary && bytes.size() < HEADER)
     throw std::runtime_error(path +
                              ": an STL file begins with solid, or has at least 84 bytes, got " +
                              std::to_string(bytes.size()));
   if (file.binary && bytes.size() < HEADER + RECORD * n)
-    throw std::runtime_error(path + ": the file is cut short, or no STL: " + std::to_string(n) +
-                             " triangles need " + std::to_string(HEADER + RECORD * n) +
+    throw std::runtime_error(path +
+                             ": the file is cut short, or no STL: " + counted(n, "triangle") +
+                             (n == 1 ? " needs " : " need ") + std::to_string(HEADER + RECORD * n) +
                              " bytes, got " + std::to_string(bytes.size()));
   const std::vector<Triangle> all = file.binary ? read_binary(path, bytes) : read_text(path, bytes);
 
+  file.surplus = file.binary ? static_cast<double>(bytes.size() - HEADER - RECORD * n) : 0.0;
   file.skipped = 0;
   for (const Triangle &t : all) {
     const double side = t.longest_side();

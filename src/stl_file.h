@@ -20,11 +20,12 @@ namespace Slope {
 // text file may hold several solids.
 //
 // Errors are std::runtime_error with one line: file, line or triangle in it, rule, value. They are: a
-// file that is cut short, text that is no STL, a coordinate that is not finite, no triangle with an area.
+// file that is cut short, text that is no STL, an elevation grid, a coordinate that is not finite, no triangle with an area.
 struct StlFile {
   std::vector<Triangle> triangles;    // those that have an area
   int skipped;                        // those without: two corners, or all three on a line
   bool binary;
+  double surplus;    // bytes after the last triangle of a binary file, which are not read
 
   // coordinates times scale, then moved
   static StlFile read(const std::string &path, double scale = 1.0,

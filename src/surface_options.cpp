@@ -10,6 +10,7 @@
 #include "stl_file.h"
 #include "style_argument.h"
 #include "terrain_surface.h"
+#include "text_file.h"
 #include "triangle_mesh.h"
 
 #include "atom.h"
@@ -114,14 +115,20 @@ std::unique_ptr<TouchedSurface> SurfaceOptions::read_stl() const
   for (const Triangle &t : stl.triangles) area += t.area();
   const Vector &low = made->low(), &high = made->high();
   if (comm->me == 0) {
-    utils::logmesg(
-        lmp,
-        "{}: {} triangles, area {:.6g}, x {:.6g} to {:.6g}, y {:.6g} to {:.6g}, z {:.6g} to "
-        "{:.6g}\n",
-        caller, n[0], area, low.x, high.x, low.y, high.y, low.z, high.z);
+    utils::logmesg(lmp,
+                   "{}: {}, area {:.6g}, x {:.6g} to {:.6g}, y {:.6g} to {:.6g}, z {:.6g} to "
+                   "{:.6g}\n",
+                   caller, counted(n[0], "triangle"), area, low.x, high.x, low.y, high.y, low.z,
+                   high.z);
     if (n[1])
       error->warning(FLERR, "{}: {} of the {} triangles of {} have no area and are skipped", caller,
                      n[1], n[0] + n[1], file);
+    if (stl.surplus > 0.0)
+      error->warning(
+          FLERR,
+          "{}: {} should end after the {} that its head says, got {} more, which {} not read",
+          caller, file, counted(n[0] + n[1], "triangle"), counted(stl.surplus, "byte"),
+          stl.surplus == 1.0 ? "is" : "are");
   }
   return made;
 }

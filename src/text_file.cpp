@@ -47,6 +47,13 @@ std::string Slope::excerpt(const std::string &text)
   return found;
 }
 
+std::string Slope::counted(double number, const std::string &what)
+{
+  char text[32];
+  snprintf(text, sizeof(text), "%.0f ", number);
+  return text + what + (number == 1.0 ? "" : "s");
+}
+
 std::string Slope::number_text(double value)
 {
   char text[32];

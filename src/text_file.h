@@ -25,6 +25,9 @@ std::runtime_error line_error(const std::string &path, int line, const std::stri
 // short and printable
 std::string excerpt(const std::string &text);
 
+// "1 ball", "2 balls"
+std::string counted(double number, const std::string &what);
+
 // a number to ten digits
 std::string number_text(double value);
 

@@ -26,6 +26,8 @@ class TouchedSurface {
   virtual bool sparse() const = 0;          // too many to be written all
   virtual const Vector &low() const = 0;    // corners of a box around it, m
   virtual const Vector &high() const = 0;
+  virtual bool closed() const { return false; }                    // has an inside; takes time
+  virtual bool encloses(const Vector &) const { return false; }    // of a closed one: x is inside
   virtual double checksum() const = 0;        // another surface has another one
   virtual double memory_usage() const = 0;    // bytes
 };

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 using namespace Slope;
 
@@ -99,6 +100,79 @@ void TriangleMesh::find_near(const Vector &x, double reach, std::vector<int> &nu
       numbers.insert(numbers.end(), order.begin() + box.first, order.begin() + box.last);
     }
   }
+}
+
+/* ----------------------------------------------------------------------
+   corners are the same if their coordinates are
+------------------------------------------------------------------------- */
+
+bool TriangleMesh::closed() const
+{
+  const int ncorner = 3 * count();
+  auto corner = [this](int k) -> const Vector & {
+    const Triangle &t = triangles[k / 3];
+    return k % 3 == 0 ? t.a : k % 3 == 1 ? t.b : t.c;
+  };
+  auto before = [&corner](int k, int l) {
+    const Vector &a = corner(k), &b = corner(l);
+    return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+  };
+  std::vector<int> sorted(ncorner), name(ncorner);
+  for (int k = 0; k < ncorner; k++) sorted[k] = k;
+  std::sort(sorted.begin(), sorted.end(), before);
+  for (int k = 1; k < ncorner; k++)
+    name[sorted[k]] = name[sorted[k - 1]] + before(sorted[k - 1], sorted[k]);
+
+  std::vector<std::pair<int, int>> edges(ncorner);
+  for (int k = 0; k < ncorner; k++)
+    edges[k] = std::minmax({name[k], name[k % 3 == 2 ? k - 2 : k + 1]});
+  std::sort(edges.begin(), edges.end());
+  for (int k = 0; k < ncorner; k += 2)
+    if (k + 1 == ncorner || edges[k] != edges[k + 1] ||
+        (k + 2 < ncorner && edges[k] == edges[k + 2]))
+      return false;
+  return true;
+}
+
+/* ----------------------------------------------------------------------
+   whether the triangle is above x. Seen from above, a point on an edge is in one of its two triangles:
+   the same numbers decide for both.
+------------------------------------------------------------------------- */
+
+static bool above(const Triangle &t, const Vector &x)
+{
+  auto beyond = [&x](const Vector &p, const Vector &q) {
+    if ((p.y > x.y) == (q.y > x.y)) return false;
+    const Vector &low = p.y < q.y ? p : q, &high = p.y < q.y ? q : p;
+    return x.x < low.x + (x.y - low.y) * ((high.x - low.x) / (high.y - low.y));
+  };
+  if ((beyond(t.a, t.b) != beyond(t.b, t.c)) == beyond(t.c, t.a)) return false;
+  const Vector n = t.twice_area();
+  const double z = n.z == 0.0 ? t.middle().z
+                              : t.a.z - (n.x * (x.x - t.a.x) + n.y * (x.y - t.a.y)) / n.z;
+  return z > x.z;
+}
+
+bool TriangleMesh::encloses(const Vector &x) const
+{
+  bool inside = false;
+  int todo[64], ntodo = 1;    // as in find_near()
+  todo[0] = 0;
+  while (ntodo) {
+    const int number = todo[--ntodo];
+    const Box &box = boxes[number];
+    if (x.x < box.low.x || x.x > box.high.x || x.y < box.low.y || x.y > box.high.y ||
+        x.z > box.high.z)
+      continue;
+    if (box.other) {
+      todo[ntodo++] = box.other;
+      todo[ntodo++] = number + 1;
+    } else {
+      for (int k = box.first; k < box.last; k++)
+        if (above(triangles[order[k]], x)) inside = !inside;
+    }
+  }
+  return inside;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -25,6 +25,8 @@ class TriangleMesh : public TouchedSurface {
   bool sparse() const override { return false; }
   const Vector &low() const override { return boxes[0].low; }
   const Vector &high() const override { return boxes[0].high; }
+  bool closed() const override;                     // each edge is that of two triangles
+  bool encloses(const Vector &x) const override;    // in a time as that of find_near()
   double checksum() const override { return sum; }
   double memory_usage() const override;
 

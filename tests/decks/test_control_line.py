@@ -201,6 +201,14 @@ def test_other_line_in_the_restart(tmp_path):
     run_deck(text, tmp_path, expect_error="Fix control/line line must have the line of the restart file, 3 points")
 
 
+@pytest.mark.parametrize("np_", [1, 2])
+def test_a_group_without_balls_is_told(tmp_path, np_):
+    log = fly(tmp_path, [[-1, 0, 8]], [[3, 0, 0]], "0 -9\n0 9\n",
+              "group none empty\nfix empty none control/line line.csv deposit deposit output none\nrun 1\n", np_=np_)
+    assert "WARNING: Fix control/line empty: the group should have balls, got none" in log
+    assert "Fix control/line line: the group" not in log
+
+
 @pytest.mark.parametrize("np_, name", [(1, "out.line.csv"), (2, "out.line.yaml"), (1, "out.line.yaml.tmp")])
 def test_a_folder_where_a_file_must_be(tmp_path, monkeypatch, np_, name):
     (tmp_path / name).mkdir()

@@ -134,6 +134,17 @@ def test_bodies_that_do_not_feel_it_are_told(tmp_path):
     assert re.search("WARNING: Fix ground/motion shake: .*2 of 3 balls of the group are not", log)
 
 
+def test_a_group_without_balls_is_told(tmp_path):
+    text = "group none empty\nfix shake {} ground/motion motion.txt"
+    random_motion(tmp_path)
+    write_asc(tmp_path / "ground.asc", np.zeros((20, 20)), -100, -100, 10)
+    write_balls(tmp_path / "balls.data", [[0, 0, 1]], 1.0, None, [(-9, 9)] * 3)
+    for group in ("none", "all"):
+        log = run_deck(flight_head() + text.format(group) + "\nrun 3", tmp_path)
+        said = "WARNING: Fix ground/motion shake: the group should have balls, got none" in log
+        assert said == (group == "none")
+
+
 # --- Newmark: a ball that cannot roll on a frozen one of 2 km slides as a block ---
 
 BLOCK = """

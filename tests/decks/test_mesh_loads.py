@@ -1,6 +1,7 @@
 """Fix wall/gran/mesh: forces, moments, pressures and files; heaps at rest; nothing passes; what is refused."""
 
 import os
+import struct
 import xml.etree.ElementTree as ElementTree
 
 import numpy as np
@@ -160,6 +161,10 @@ WRONG = {
                   "the surface of mesh.stl must reach into the box, y -14 to 14"),
     "in a ball": (dict(data=stl_bytes(plane(1) + (0, 0, 1.3))),
                   "1 pairs overlap at the start by more than 5 % of the radius"),
+    "in a ball: what to do": (dict(data=stl_bytes(plane(1) + (0, 0, 1.3))),
+                              "(move the surface, or remove the balls there with delete_atoms region)"),
+    "grid": (dict(wall=f"{START} 2 ground.asc"), "ground.asc: must be an STL file, got an elevation grid: terrain"),
+    "one, cut": (dict(data=stl_bytes(plane(1)[:1])[:-7]), "1 triangle needs 134 bytes"),
     "no file": (dict(wall=f"{START} 2 none.stl"), "cannot read none.stl: No such file"),
     "no grid": (dict(wall=f"{START} 2 terrain none.asc"), "cannot read none.asc"),
     "terrain moved": (dict(wall=f"{START} 2 terrain mesh.stl scale 2"), "scale is for STL files"),
@@ -182,6 +187,7 @@ def test_what_is_wrong_ends_the_run_with_one_line(tmp_path, change, message):
     write_case(tmp_path, plane(1), (0.3, 0.2, 1.6), (0, 0, -1))
     if "data" in change:
         (tmp_path / "mesh.stl").write_bytes(change["data"])
+    write_asc(tmp_path / "ground.asc", np.zeros((20, 20)), -10.0, -10.0)
     deck = mesh_deck("run 1", **{key: value for key, value in change.items() if key != "data"})
     run_deck(deck, tmp_path, expect_error=message)
     assert not list(tmp_path.glob("out*"))
@@ -207,6 +213,15 @@ def test_triangles_without_an_area_are_said_and_skipped(tmp_path):
     log = run_case(tmp_path, "run 1")[2]
     assert "WARNING: Fix wall/gran/mesh wall: 1 of the 3 triangles of mesh.stl have no area and are skipped" in log
     assert "Fix wall/gran/mesh wall: 2 triangles" in log
+
+
+def test_what_follows_the_last_triangle_is_said(tmp_path):
+    write_case(tmp_path, plane(1), (0.3, 0.2, 1.6), (0, 0, -1))
+    (tmp_path / "mesh.stl").write_bytes(stl_bytes(plane(1))[:80] + struct.pack("<I", 1) + stl_bytes(plane(1))[84:])
+    log = run_case(tmp_path, "run 1")[2]
+    assert ("WARNING: Fix wall/gran/mesh wall: mesh.stl should end after the 1 triangle that its head says, "
+            "got 50 bytes more, which are not read") in log
+    assert "Fix wall/gran/mesh wall: 1 triangle, area" in log
 
 
 def test_a_mesh_much_larger_than_the_box_is_doubted(tmp_path):

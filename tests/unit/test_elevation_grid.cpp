@@ -88,6 +88,13 @@ TEST_F(Grid, ReadsRowsFromTheNorth)
   EXPECT_EQ(g.yhi(), 24.0);
 }
 
+TEST_F(Grid, TakesAMarkOfUtf8)
+{
+  const std::string text = "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n";
+  EXPECT_EQ(read("\xef\xbb\xbf" + text).at(1, 0), 2.0);
+  EXPECT_EQ(error("\xef\xbb\xbf"), "a.asc is empty");
+}
+
 TEST_F(Grid, CornerAndCenterHeadersAreTheSamePlace)
 {
   const ElevationGrid corner = read(std::string(HEADER) + "1 2 3 4 5 6");

@@ -111,6 +111,7 @@ TEST(StlFile, ReadsBinaryWhateverItsHeader)
   }
   write(binary(3) + "more");    // what some programs append
   EXPECT_EQ(StlFile::read(PATH).triangles.size(), 3u);
+  EXPECT_EQ(StlFile::read(PATH).surplus, 4.0);
 }
 
 TEST(StlFile, ScalesThenMoves)
