@@ -407,9 +407,9 @@ def test_a_folder_that_comes_in_the_run_leaves_all_files_as_they_were(tmp_path, 
     flat(tmp_path, 10)
     write_balls(tmp_path / "balls.data", [[5, 5, 5]], 0.5, [[1, 0, 0]], [(0.0, 10.0)] * 3)
     run_deck(head() + "fix dep all deposit/grid 1 2 cell 1 terrain ground series yes output out\nrun 2\n"
-             "shell mkdir out.4.thickness.asc\nrun 10\n", tmp_path, np=np_,
-             expect_error="Fix deposit/grid: cannot write out.4.thickness.asc: Is a directory")
-    assert summary(tmp_path)["step"] == 2 and not list(tmp_path.glob("*.tmp"))
+             "run 2 pre no post no every 1 'shell rm -f out.last_motion.asc' 'shell mkdir -p out.last_motion.asc'\n",
+             tmp_path, np=np_, expect_error="Fix deposit/grid: cannot write out.last_motion.asc: Is a directory")
+    assert summary(tmp_path)["step"] == 3 and not list(tmp_path.glob("*.4.*")) and not list(tmp_path.glob("*.tmp"))
 
 
 def test_clear_and_again(tmp_path):
