@@ -250,7 +250,7 @@ def quarters(shape=(10, 12), spacing=0.2, south=CENTRE[0], west=CENTRE[1]):
 
 
 def merged(paths):
-    raster, crs, cell = terrain.read_fggml(paths, None, None, lambda step: None)
+    raster, crs, cell = terrain.read_fggml(paths, None, None, tell=lambda step: None, warn=pytest.fail)
     return raster, crs, cell
 
 
