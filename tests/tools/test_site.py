@@ -388,7 +388,7 @@ def test_a_file_of_another_version(done, tmp_path):
                            ("spacing: 1", "spacing: -1", r" model\.spacing: must be > 0, got -1"),
                            ("rolling: [0", "rolling: 0.05 #", r" study\.rolling: must be a list in brackets, such as "
                             r"\[0\.05\], got 0\.05"),
-                           ("rolling: [0.0, ", "rolling: [0.0, x, ", " study.rolling: second value: must be a number"),
+                           ("rolling: [0, ", "rolling: [0, x, ", " study.rolling: second value: must be a number"),
                            (good, "a: [", " must be")):
         mine = tmp_path / "mine"
         mine.mkdir(exist_ok=True)

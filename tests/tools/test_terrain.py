@@ -536,7 +536,7 @@ BAD = {
              "bad.tif: CRS must be in metres; give --crs EPSG:n of a projected one, got EPSG:2263 in US survey foot"),
     "no degrees": (bad_tif(crs="EPSG:4326", transform=Affine(1e-4, 0, 10, 0, -1e-4, 95)),
                    f"bad.tif -o out.asc --crs {CRS_M}",
-                   "bad.tif: coordinates in EPSG:4326 must be longitude and latitude; --assign-crs EPSG:n of"),
+                   "bad.tif: coordinates in EPSG:4326 must be longitude and latitude"),
     "assigned degrees": (bad_tif(), f"bad.tif -o out.asc --assign-crs EPSG:4326 --crs {CRS_M}",
                          "bad.tif: coordinates in EPSG:4326 must be longitude and latitude"),
     "outside its CRS": (bad_tif(transform=Affine(5, 0, 1e9, 0, -5, 1e9)), "bad.tif -o out.asc --crs EPSG:32654",
