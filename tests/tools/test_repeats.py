@@ -102,7 +102,7 @@ def test_what_a_repeat_does_not_change_counts_once(slope):
     assert status == 0, err
     best = load()[0]["conservative"]
     assert best["kind"] == "largest of 2 runs; chance unknown" and best["repeats"] == 1
-    assert any(text.startswith("what was repeated changes nothing: rolling_0_unused_2, ") for text in best["doubts"])
+    assert any(text.startswith("a repeated variable has no effect: rolling_0_unused_2, ") for text in best["doubts"])
 
 
 def test_a_failed_repeat_leaves_the_others(slope):
@@ -114,7 +114,7 @@ def test_a_failed_repeat_leaves_the_others(slope):
     assert [entry["repeats"] for entry in about["combinations"]] == [3, 3]
     assert "2 of 8 runs failed" in about["conservative"]["doubts"]
     # seeds alone were repeated, although the deck has a lattice to move
-    assert "the chance of seed alone is known: xoffset of the deck was not repeated" in about["conservative"]["doubts"]
+    assert "the scatter is that of seed alone: xoffset of the deck was not repeated" in about["conservative"]["doubts"]
 
 
 def test_without_a_road_there_are_means_and_no_headline(slope):
@@ -177,7 +177,7 @@ def test_a_difference_below_chance_is_no_trend_and_no_doubt():
     [entry] = best["differences"]
     assert (entry["largest_at"], entry["smallest_at"], entry["clear"]) == ("1", "0", False) and entry["by_m3"] == 4
     assert best["doubts"] == []
-    assert any("no more than chance makes" in line for line in combinations.describe(best))
+    assert any("no more than expected by chance" in line for line in combinations.describe(best))
 
 
 def test_a_difference_larger_than_chance_at_the_end_of_a_range_is_a_doubt():
@@ -201,7 +201,7 @@ def test_differences_are_those_of_the_governing_line():
 
 def test_other_doubts():
     alone = rows((("0",), (5.0,)))
-    assert conservative({"rolling": ["0"]}, alone)["doubts"] == ["nothing was varied, it is of one run"]
+    assert conservative({"rolling": ["0"]}, alone)["doubts"] == ["nothing was varied: it comes from a single run"]
     still = rows(*SMALL, rest=False)
     assert conservative({"rolling": ["0", "1"]}, still)["doubts"] == ["6 of 6 deposits are not at rest"]
     above = rows((("0",), [100.0] * 7 + [101.0] * 7 + [120.0]), (("1",), [100.0 + i / 100 for i in range(30)]))

@@ -626,7 +626,7 @@ def test_warnings_of_the_study_s_tools_are_shown_each(slope, here):
     assert all(f"WARNING: {text}" in out for text in texts)
     # measured, and useless: not "not measured"
     assert "measured, but not usable: small balls would give -2.53e+06 m3" in page and "not measured" not in page
-    assert "What smaller balls would give was measured, but is not usable: small balls would give -2.53e+06 m3" in page
+    assert "The effect of smaller balls was measured, but is not usable: small balls would give -2.53e+06 m3" in page
 
 
 @pytest.mark.parametrize("folder", ["out", "one"])

@@ -225,7 +225,7 @@ def words(result: Convergence, name: str, what: str, unit: str, number) -> List[
         text += (f", 95 % interval {number(interval[0])} to {number(interval[1])} (standard error "
                  f"{number(small.standard_error)})")
     else:
-        text += ", standard error unknown: two sizes with a run each are a line without any doubt"
+        text += ", standard error unknown: a line through two sizes with one run each always fits"
     found = [text]
     if result.known:
         found.append(f"{what}: error and its standard error at " + ", ".join(

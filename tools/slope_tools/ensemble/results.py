@@ -108,9 +108,9 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
 
 
 def unseen(repeated, defaults):
-    """The doubt that chance was not seen in full: seeds alone were repeated, though the deck has a lattice to move."""
+    """The caveat that the scatter is incomplete: only seeds were repeated, though the deck can move its lattice."""
     offsets = repeats.only_seeds(repeated, defaults)
-    return [f"the chance of {', '.join(repeated)} alone is known: {', '.join(offsets)} of the deck "
+    return [f"the scatter is that of {', '.join(repeated)} alone: {', '.join(offsets)} of the deck "
             f"{'was' if len(offsets) == 1 else 'were'} not repeated"] if offsets else []
 
 

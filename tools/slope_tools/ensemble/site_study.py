@@ -47,18 +47,18 @@ def run(folder: Path, engine: Setup) -> Done:
 
 
 def check(folder: Path, choices: Choices) -> None:
-    """Raise SlopeError unless the files of a site are there, and are those of its choices."""
+    """Raise SlopeError unless all files of a site exist and match its choices."""
     found = site_choices.found(folder)
     for name in (site_deck.NAME, *(found.get("files") or ())):
         if not (folder / name).is_file():
-            raise SlopeError(folder / name, f"must be there; `slope site {folder}` makes it anew")
+            raise SlopeError(folder / name, f"must exist; `slope site {folder}` rebuilds it")
     if found.get("choices_sha256", "") not in ("", site_choices.fingerprint(choices)):
-        raise SlopeError(folder / site_choices.NAME, f"must not have been changed since {site_deck.NAME} was made of "
-                         f"it: `slope site {folder}` makes the deck anew (project, road and study may change)")
+        raise SlopeError(folder / site_choices.NAME, f"must not have been changed since {site_deck.NAME} was made from "
+                         f"it: `slope site {folder}` rebuilds the deck (project, road and study may change)")
 
 
 def run_alone(folder: Path, choices: Choices, engine: Setup) -> Done:
-    """run(), of what is in order, while nobody else works in the folder."""
+    """run() after its checks, with the folder locked."""
     deck = folder / site_deck.NAME
     road = choices["road"]
     setup = engine._replace(deck=deck, output=folder / STUDY, road=None)

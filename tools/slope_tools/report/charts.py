@@ -152,7 +152,7 @@ def combinations(rows, key):
 def chance_text(clear):
     """What a chart says of its differences."""
     if all(one is None for one in clear):
-        return "one run each, so that chance is not known and no line is drawn"
+        return "one run each, so chance is unknown and no line is drawn"
     if all(clear):
         return "the differences are larger than chance"
     if not any(clear):
