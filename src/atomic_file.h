@@ -27,7 +27,7 @@ class AtomicFile {
       path(_path), beside(_path + ".tmp"), fp(fopen(beside.c_str(), "w")), there(fp != nullptr)
   {
     if (!fp) fail();
-    look();
+    check_target();
   }
 
   ~AtomicFile() { discard(); }
@@ -44,7 +44,7 @@ class AtomicFile {
     FILE *closing = fp;
     fp = nullptr;
     if (closing && fclose(closing) != 0) fail();
-    look();
+    check_target();
   }
 
   void commit()
@@ -62,7 +62,7 @@ class AtomicFile {
   AtomicFile(const AtomicFile &) = delete;
   AtomicFile &operator=(const AtomicFile &) = delete;
 
-  void look()    // what rename() would refuse
+  void check_target()    // fails where rename() would
   {
     struct stat info;
     errno = EISDIR;

@@ -86,7 +86,7 @@ def test_a_scatter_of_failing_is_doubted():
     rows = [row("0", "0", "", 0.0), row("0", "0", "0.5", 10.0), row("300", "0", "", 5.0), row("300", "0", "0.5", 60.0),
             row("600", "0", "", 40.0), row("600", "0", "0.5", 60.0)]
     text, = intensity.doubts(intensity.entry("peak", combinations.grouped(rows), []))
-    assert text.startswith("at peak 300 some runs fail")
+    assert text.startswith("at peak 300 the slope fails in some runs")
     assert not intensity.doubts(intensity.entry("peak", combinations.grouped(rows[:2] + rows[4:]), []))
 
 

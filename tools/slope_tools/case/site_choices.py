@@ -142,7 +142,7 @@ def derived(before: Choices, after: Choices, known: Derived) -> Derived:
 
 
 def forget(choices: Choices, known: Derived) -> None:
-    """Set to null what the command determined and nobody changed since, so that it is determined again."""
+    """Set to null what the command determined and the user did not change, so that it is determined again."""
     for section, key in DERIVED:
         name = f"{section}.{key}"
         if name in known and known[name] == choices[section][key]:

@@ -31,7 +31,7 @@ def planned(choices: Choices) -> Set[str]:
 
 
 def check(choices: Choices, folder: Path, old: Set[str]) -> None:
-    """Raise SlopeError if making a folder anew would take a file of the user's; old: names that slope site made."""
+    """Raise SlopeError if rebuilding a folder would replace a file of the user's; old: names that slope site made."""
     names = planned(choices)
     for source in map(Path, site_choices.source_files(choices)):
         if source.name in names | old and source.parent.resolve() == folder.resolve():

@@ -59,7 +59,7 @@ def add_parser(commands, **kwargs):
     add_size(parser.add_argument_group("size of the balls", "One of these (default: --balls 4000)."))
     about = parser.add_argument_group("report")
     about.add_argument("--name", help="of the site (default: of the folder)")
-    about.add_argument("--client", help="for whom the report is")
+    about.add_argument("--client", help="recipient of the report")
     about.add_argument("--author", help="the person responsible")
     parser.add_argument("--lmp", metavar="FILE", help="the LAMMPS program that tries the deck (default: LMP of the "
                         "environment, then build/lmp beside tools/)")

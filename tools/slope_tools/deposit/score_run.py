@@ -1,4 +1,4 @@
-"""A run's deposit against a mapped one: all that `slope score` does."""
+"""Comparison of a run's deposit with a mapped one: all that `slope score` does."""
 from pathlib import Path
 from typing import List, Optional
 

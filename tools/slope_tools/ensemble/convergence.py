@@ -1,4 +1,4 @@
-"""What the size of the balls makes of a quantity: a line through its values, the value for small balls, the errors.
+"""Effect of the size of the balls on a quantity: a line through its values, the value for small balls, the errors.
 
 V(d) = V0 + b d: the first term that a finite size can have. What a size d changes, at the slip surface, on the ground
 and at the rim of the deposit, happens in a layer of a few d, and a layer's share of a body grows with d. The line is

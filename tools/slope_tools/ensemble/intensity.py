@@ -1,4 +1,4 @@
-"""Volume on the road against the intensity of what sets the mass off, and how likely a volume is exceeded at each.
+"""Volume on the road against the intensity of the trigger, and the probability that a volume is exceeded at each.
 
 An intensity is a variable of the study such as the peak acceleration of an earthquake (gal). Its values are choices,
 as all values of --set; what differs by chance at one of them are the repeats. Of n runs at an intensity, k with more

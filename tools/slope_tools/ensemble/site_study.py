@@ -35,7 +35,7 @@ class Done(NamedTuple):
 
 
 def run(folder: Path, engine: Setup) -> Done:
-    """Make or go on with all runs of a site, and all that comes out of them.
+    """Make or continue all runs of a site, and their results.
 
     engine: how the runs are made; its deck, output and road do not count. Raises SlopeError on bad input, and if no run
     of the study finished.

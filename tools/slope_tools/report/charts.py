@@ -1,4 +1,4 @@
-"""The charts of a study: its values against the first variable that it varies, and what chance makes of them."""
+"""The charts of a study: its values against the first variable that it varies, compared with chance."""
 from typing import Any, Dict
 
 from ..deposit import travel_shares
@@ -134,7 +134,7 @@ class Charts:
         return headline.pooled(list(combinations(self.data.finished, key).values()))
 
     def is_clear(self, key, rows, scatter):
-        """Whether the means of rows, which differ in one variable, differ by more than chance; None if nobody knows."""
+        """Whether the means of rows, which differ in one variable, differ by more than chance; None if unknown."""
         line = list(combinations(rows, key).values())
         if scatter is None or len(line) < 2:
             return None

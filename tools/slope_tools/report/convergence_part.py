@@ -1,4 +1,4 @@
-"""What the size of the balls makes of the numbers: converge.yaml of `slope sensitivity --converge`, for a report."""
+"""Effect of the size of the balls on the numbers: converge.yaml of `slope sensitivity --converge`, for a report."""
 from pathlib import Path
 
 from .. import disk

@@ -18,7 +18,7 @@ def content(data, numbers) -> CONTENT:
 # --- uncertainty ---
 
 def uncertainty(data, numbers) -> CONTENT:
-    """By how much a run differs by chance, and what the size of the balls does."""
+    """How far a run differs by chance, and the effect of the size of the balls."""
     study = data.study
     best = study and study["conservative"]
     found = []
@@ -87,5 +87,6 @@ def model(data) -> CONTENT:
                      "energies of single balls are those of such a block. Dry: no water, no pore pressure, no "
                      "liquefaction. No cohesion, no breakage, no bulking on the way."),
         ("The ground", f"That of the elevation model; the deposit is sampled in cells of {data.result.deposit.cell:g} "
-                       "m. Anything narrower than a cell or a ball, such as a ditch, has no effect. There is no erosion "
-                       "or entrainment; there are no trees, and no walls or buildings except those in the deck.")]
+                       "m. Anything narrower than a cell or a ball, such as a ditch, has no effect. There is no "
+                       "erosion or entrainment; there are no trees, and no walls or buildings except those in the "
+                       "deck.")]

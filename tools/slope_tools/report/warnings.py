@@ -59,8 +59,8 @@ def failures(data):
 def not_at_rest(data):
     """Deposits that move when their runs end, or whose runs reached their time limit."""
     found, ends = [], data.ends()
-    for level, moving, note in ((RED, True, " More than 10 % of the volume is in motion: these numbers are not those of "
-                                            "a deposit."), (AMBER, False, "")):
+    for level, moving, note in ((RED, True, " More than 10 % of the volume is in motion: these numbers are not those "
+                                            "of a deposit."), (AMBER, False, "")):
         mine = [end for end in ends if not end.at_rest and end.moving == moving]
         if not mine:
             continue
@@ -122,7 +122,7 @@ def below_ground(data):
 
 
 def from_logs(data, released, gone):
-    """The warnings of LAMMPS and its styles; released, gone: whether other lines cover released and lost mass already."""
+    """The warnings of LAMMPS and its styles; released, gone: whether other lines cover released and lost mass."""
     entries = []
     if data.study:
         for row in data.rows:
