@@ -57,7 +57,7 @@ class AtomicFile {
  private:
   std::string path, beside;
   FILE *fp;
-  bool there;    // beside, and not complete or without its name yet
+  bool there;    // the temporary file exists
 
   AtomicFile(const AtomicFile &) = delete;
   AtomicFile &operator=(const AtomicFile &) = delete;
