@@ -14,12 +14,12 @@ import rasterio
 import yaml
 
 import twins
+from run_helpers import called
 from tiny_collapse import LMP, TOP, write_case
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli  # noqa: E402
 from slope_tools.ensemble import backanalysis, calibration, designs, distributions, emulator  # noqa: E402
 from slope_tools.survey import rasters  # noqa: E402
 
@@ -115,12 +115,7 @@ def here(tmp_path, monkeypatch):
 def slope(here, capsys):
     """Run `slope ARGUMENTS` in the test's folder; gives status, stdout, stderr."""
     def run(arguments):
-        capsys.readouterr()
-        try:
-            status = cli.main(shlex.split(arguments))
-        except SystemExit as error:
-            status = error.code
-        return status, *capsys.readouterr()
+        return called(capsys, shlex.split(arguments))
     return run
 
 
@@ -301,8 +296,5 @@ def test_every_example_of_the_pages_is_understood(line, here, capsys):
     words = shlex.split(line.replace("in.collapse", "case/in.collapse"))
     if "--help" not in words:
         words += ["--dry-run", *(["--local"] if "--local" not in words else [])]
-    try:
-        status = cli.main(words)
-    except SystemExit as error:
-        status = error.code
-    assert status == 0, capsys.readouterr().err
+    status, _, err = called(capsys, words)
+    assert status == 0, err

@@ -12,12 +12,12 @@ import pytest
 import yaml
 from scipy import stats
 
+from run_helpers import called
 from tiny_collapse import LMP, TOP, write_case
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli  # noqa: E402
 from slope_tools.ensemble import convergence, size_study  # noqa: E402
 from slope_tools.ensemble.size_error import SizeErrors  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
@@ -218,12 +218,7 @@ def slope(tmp_path, monkeypatch, capsys):
     deck.write_text(text)
 
     def run(arguments, command="sensitivity"):
-        capsys.readouterr()
-        try:
-            status = cli.main([command, "case/in.tiny", *shlex.split(arguments)])
-        except SystemExit as error:
-            status = error.code
-        return status, *capsys.readouterr()
+        return called(capsys, [command, "case/in.tiny", *shlex.split(arguments)])
     return run
 
 

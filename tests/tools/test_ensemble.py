@@ -13,6 +13,7 @@ import rasterio
 import yaml
 from scipy import stats
 
+from run_helpers import called
 from tiny_collapse import LMP, TOP, read_asc, write_case
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
@@ -218,12 +219,7 @@ def slope(tmp_path, monkeypatch, capsys):
     Path("case/road.csv").write_text("13,0\n18,0\n18,24\n13,24\n")
 
     def run(arguments):
-        capsys.readouterr()
-        try:
-            status = cli.main(["study", "case/in.tiny", *shlex.split(arguments)])
-        except SystemExit as error:
-            status = error.code
-        return status, *capsys.readouterr()
+        return called(capsys, ["study", "case/in.tiny", *shlex.split(arguments)])
     return run
 
 

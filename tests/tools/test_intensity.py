@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 import yaml
 
+from run_helpers import called
 from tiny_collapse import LMP, TOP, write_case
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
@@ -23,12 +24,7 @@ STUDY = "case/in.tiny --set peak=0,300,900 --repeat xoffset=0.25 --road case/roa
 
 def slope(arguments, capsys):
     """Run `slope ARGUMENTS`; gives status, stdout, stderr."""
-    capsys.readouterr()
-    try:
-        status = cli.main(shlex.split(arguments))
-    except SystemExit as error:
-        status = error.code
-    return status, *capsys.readouterr()
+    return called(capsys, shlex.split(arguments))
 
 
 def write_quake(folder):

@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 import yaml
 
+from run_helpers import called
 from tiny_collapse import LMP, TOP, write_case
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli  # noqa: E402
 from slope_tools.deposit import rest, travel_shares  # noqa: E402
 from slope_tools.ensemble import combinations, headline, repeats, results, study_file, study_table  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
@@ -40,12 +40,7 @@ def slope(tmp_path, monkeypatch, capsys):
     Path("case/road.csv").write_text("13,0\n18,0\n18,24\n13,24\n")
 
     def run(arguments):
-        capsys.readouterr()
-        try:
-            status = cli.main(["study", "case/in.tiny", *shlex.split(arguments)])
-        except SystemExit as error:
-            status = error.code
-        return status, *capsys.readouterr()
+        return called(capsys, ["study", "case/in.tiny", *shlex.split(arguments)])
     return run
 
 

@@ -19,12 +19,12 @@ import yaml
 from rasterio.crs import CRS
 from rasterio.warp import transform
 
+from run_helpers import called
 from tiny_collapse import LMP, TOP, height, read_asc, write_case
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli  # noqa: E402
 from slope_tools.commands import report as report_command  # noqa: E402
 from slope_tools.drawing import figures  # noqa: E402
 from slope_tools.ensemble import results  # noqa: E402
@@ -87,12 +87,7 @@ def drawing_slope(capsys, monkeypatch):
 
 def real_slope(capsys):
     def run(arguments):
-        capsys.readouterr()
-        try:
-            status = cli.main(["report", *shlex.split(arguments)])
-        except SystemExit as error:
-            status = error.code
-        return status, *capsys.readouterr()
+        return called(capsys, ["report", *shlex.split(arguments)])
     return run
 
 
@@ -943,9 +938,9 @@ BAD = {
     "reference without a title": (text_of("r.yaml", "quantities: {front_m: {levels: {a: 1}}}"),
                                   "out --reference r.yaml", "r.yaml: must have a title"),
     "unknown quantity": (text_of("r.yaml", "title: T\nquantities: {volume: {levels: {a: 1}}}"),
-                         "out --reference r.yaml", "r.yaml: quantities: must be of what the runs have a number of, "),
+                         "out --reference r.yaml", "r.yaml: quantities: must be columns that all runs have, "),
     "quantity of a road, without one": (text_of("r.yaml", "title: T\nquantities: {remove_m3: {levels: {a: 1}}}"),
-                                        "one --reference r.yaml", "r.yaml: quantities: must be of what the runs have"),
+                                        "one --reference r.yaml", "r.yaml: quantities: must be columns that all runs have"),
     "reference level of words": (text_of("r.yaml", "title: T\nquantities: {front_m: {levels: {a: b}}}"),
                                  "out --reference r.yaml", "r.yaml: quantities: front_m: levels: must be NAME: finite"),
     "reference without variable": (text_of("r.yaml", "title: T\nquantities: {front_m: {series: {a: {0: 1}}}}"),

@@ -236,10 +236,10 @@ def words(result: Convergence, name: str, what: str, unit: str, number) -> List[
         found.append(f"{what}: the value for small {name} is not clearly above 0, so errors cannot be shares of it")
     if result.supported is False and result.lack:
         found.append(f"{what}: the line is not supported: the means of the sizes lie {math.sqrt(result.lack[0]):.2g} "
-                     f"times as far from it as the scatter of the repeats makes them (probability {result.lack[1]:.2g}"
+                     f"times as far from it as the scatter of the repeats explains (probability {result.lack[1]:.2g}"
                      "); standard errors are from these residuals")
     elif result.supported is None:
-        found.append(f"{what}: whether a line holds is not known: that takes three sizes, and repeats")
+        found.append(f"{what}: it is unknown whether a line holds: this needs three sizes, and repeats")
     if result.curve_is_clear and result.curved_small:
         found.append(f"{what}: a parabola fits clearly better, and gives {number(result.curved_small.value)} {unit} "
                      f"for small {name}")

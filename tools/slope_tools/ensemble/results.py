@@ -34,7 +34,7 @@ class Questions(NamedTuple):
     intensity: Optional[str] = None                 # variable that is one; None: the one that is called so
     more_than: Sequence[float] = ()                 # m3, volumes exceeded at each intensity
     notes: Sequence[str] = ()                       # warnings of what was before the study, which go into its results
-    size_error_unusable: Optional[str] = None       # why the error of the size, which was looked for, is not in use
+    size_error_unusable: Optional[str] = None       # why the size error, which was to be measured, is not used
 
 
 def collect(setup: Setup, questions: Questions, todo, work) -> None:

@@ -90,7 +90,7 @@ def run_alone(folder: Path, choices: Choices, engine: Setup) -> Done:
 
 
 def warnings_of(folder: Path) -> List[str]:
-    """What `slope site` warned of, which its results should say as well; nothing of a site of an older version."""
+    """The warnings of `slope site`, which the results repeat; none for a site of an older version."""
     path = folder / site_warnings.NAME
     return [str(text) for text in disk.parse_yaml(path, "what `slope site` wrote") or ()] if path.is_file() else []
 
@@ -99,7 +99,7 @@ class Sizes(NamedTuple):
     """What the runs with balls of several sizes found."""
     errors: Optional[SizeErrors]
     warnings: Sequence[str]         # of these runs
-    unusable: Optional[str]         # why there are no errors, though they were looked for
+    unusable: Optional[str]         # why there are no errors although they were to be measured
 
 
 def sizes(setup: Setup, choices: Choices, repeated: Dict[str, List[str]]) -> Sizes:
@@ -131,12 +131,12 @@ def sizes(setup: Setup, choices: Choices, repeated: Dict[str, List[str]]) -> Siz
 
 
 def unusable(why: str) -> Sizes:
-    print(f"slope study: warning: the error of the size of the balls is not known: {why}", file=sys.stderr)
-    return Sizes(None, (), f"The error of the size of the balls was looked for, but is not usable: {why}")
+    print(f"slope study: warning: the size error is unknown: {why}", file=sys.stderr)
+    return Sizes(None, (), why)
 
 
 def scored(folder: Path, setup: Setup) -> None:
-    """Hold the run that the answer rests on against the mapped deposit."""
+    """Compare the governing run with the mapped deposit."""
     from ..deposit import score_run
     about = disk.load_yaml(setup.output / "study.yaml", "what `slope study` wrote")
     best = about["conservative"] or about["largest"]["front_m"]
