@@ -333,3 +333,9 @@ def test_warnings_of_a_site_are_those_of_its_study(tmp_path):
     assert site_study.warnings_of(tmp_path) == []
     (tmp_path / "warnings.yaml").write_text("# slope site\n- too thin\n")
     assert site_study.warnings_of(tmp_path) == ["too thin"]
+
+
+def test_a_size_error_that_is_not_usable_has_its_reason_alone(capsys):
+    """The report itself says that the size error was measured and is not usable."""
+    assert site_study.unusable("too few runs") == site_study.Sizes(None, (), "too few runs")
+    assert "size error is unknown: too few runs" in capsys.readouterr().err
