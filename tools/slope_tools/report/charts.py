@@ -14,10 +14,10 @@ AXIS = {"rolling": "rolling resistance (-)", "friction": "friction angle (degree
         "d": "diameter of the balls (m)", "field_d": "diameter of the field balls (m)",
         "peak": "peak acceleration (gal)"}
 TERMS = {"rolling": "coefficient of rolling resistance of the balls", "friction": AXIS["friction"], "d": AXIS["d"],
-         "field_d": "diameter of the balls that the ground is made of (m)",
-         "xoffset": "where the lattice that the balls start from begins, in its spacings",
+         "field_d": "diameter of the field balls, which make the ground (m)",
+         "xoffset": "shift along x of the lattice on which the balls start, in lattice spacings",
          "yoffset": "the same along y", "zoffset": "the same along z",
-         "seed": "of the random numbers, such as those that displace the balls at the start"}
+         "seed": "seed of random numbers, such as those that displace the balls at the start"}
 REMOVE = "remove_m3"
 TITLES = {REMOVE: "Volume to remove from the road", "remove_on_road_m3": "Volume on the road",
           "front_m": "Distance of the farthest ball",

@@ -89,8 +89,8 @@ class Maps:
                                     "they are in volume/volume.csv and volume.geojson of the run.")
         return self.picture(
             uri, "Map of the volume to remove",
-            f"Thickness of the deposit on the road and above a cut rising at {road['cut_angle']:g} degrees from its "
-            f"edges{squares}; together {volume} m3; run: {data.label(data.result)}.{more}")
+            "Thickness of the deposit on the road, and beside it above a cut rising at "
+            f"{road['cut_angle']:g} degrees from its edges{squares}; together {volume} m3; run: {data.label(data.result)}.{more}")
 
     def over_all(self):
         """Maps of a study over all of its runs."""
