@@ -90,7 +90,8 @@ class Maps:
         return self.picture(
             uri, "Map of the volume to remove",
             "Thickness of the deposit on the road, and beside it above a cut rising at "
-            f"{road['cut_angle']:g} degrees from its edges{squares}; together {volume} m3; run: {data.label(data.result)}.{more}")
+            f"{road['cut_angle']:g} degrees from its edges{squares}; together {volume} m3; run: "
+            f"{data.label(data.result)}.{more}")
 
     def over_all(self):
         """Maps of a study over all of its runs."""
