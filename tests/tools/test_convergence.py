@@ -130,7 +130,7 @@ def test_what_is_not_known_is_said_so(runs, quantile, supported):
     assert fit.supported is supported and fit.quantile == (quantile and pytest.approx(quantile, rel=1e-5))
     assert (fit.interval is None) == (quantile is None)
     text = " ".join(convergence.words(fit, "d", "to remove", "m3", "{:,.2f}".format))
-    assert ("standard error unknown" in text) == (quantile is None) and "whether a line holds is not known" in text
+    assert ("standard error unknown" in text) == (quantile is None) and "it is unknown whether a line holds" in text
 
 
 def test_without_a_value_above_0_there_are_no_shares():
@@ -232,7 +232,7 @@ def test_the_command_fits_what_its_runs_gave(slope):
              f"{ROAD}")
     status, out, err = slope(words)
     assert status == 0, err
-    assert "whether a line holds is not known" in out
+    assert "it is unknown whether a line holds" in out
     # a value added later: what is finished is kept
     status, out, err = slope(words.replace("0.7", "0.7,1"))
     assert status == 0 and "6 of 9 runs are finished already" in out, err

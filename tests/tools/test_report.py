@@ -606,7 +606,7 @@ def test_warnings_of_the_study_s_tools_are_shown_each(slope, here):
     texts = ["the body is thinner than 3 balls everywhere: the numbers will be rough",
              "runs of several sizes: d_1.5: 149.673 m3 left the grid or the box",
              "runs of several sizes: d_3: 23.1 m3 left the grid or the box",
-             "the error of the size of the balls is not known: got -2.53e+06"]
+             "the size error is unknown: got -2.53e+06"]
     set_moving(here / "out", 0.0)
     without_log_warnings(here / "out")
     about = yaml.safe_load(Path("out/study.yaml").read_text())
@@ -743,7 +743,7 @@ def test_the_report_takes_the_convergence_in(slope, here):
     assert slope("out")[0] == 0
     page, reader = read("out/report.html")
     assert "To remove against d" not in reader.alt
-    assert "sizes/converge.yaml, from which the study has its size error, is not there" in " ".join(page.split())
+    assert "sizes/converge.yaml, from which the study took its size error, does not exist" in " ".join(page.split())
 
 
 # --- the section ---

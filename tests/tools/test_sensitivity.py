@@ -100,7 +100,7 @@ def test_what_is_clear_depends_on_the_number_of_equivalent_runs():
 def test_without_repeats_the_scatter_is_said_to_be_unknown(slope):
     status, out, err = slope(f"--vary rolling=0.2 --set steps=100 {ROAD} -o out")
     assert status == 0, err
-    assert "without --repeat its scatter is not known" in out
+    assert "without --repeat its scatter is unknown" in out
     assert [row["clear_of_remove_m3"] for row in rows()] == ["", ""]
 
 
