@@ -27,7 +27,7 @@ class AtomicFile {
       path(_path), beside(_path + ".tmp"), fp(fopen(beside.c_str(), "w")), there(fp != nullptr)
   {
     if (!fp) fail();
-    look();
+    check_target();
   }
 
   ~AtomicFile() { discard(); }
@@ -44,7 +44,7 @@ class AtomicFile {
     FILE *closing = fp;
     fp = nullptr;
     if (closing && fclose(closing) != 0) fail();
-    look();
+    check_target();
   }
 
   void commit()
@@ -57,12 +57,12 @@ class AtomicFile {
  private:
   std::string path, beside;
   FILE *fp;
-  bool there;    // beside, and not complete or without its name yet
+  bool there;    // the temporary file exists
 
   AtomicFile(const AtomicFile &) = delete;
   AtomicFile &operator=(const AtomicFile &) = delete;
 
-  void look()    // what rename() would refuse
+  void check_target()    // fails where rename() would
   {
     struct stat info;
     errno = EISDIR;

@@ -29,7 +29,7 @@ class BallGround : protected Pointers {
   std::vector<Sunk> bodies;    // sunk ones that the filter leaves out
   std::string outside;         // region, empty if the arguments say how it is sunk
 
-  // All ranks: look at what is sunk. false if the plan is empty. May throw.
+  // All ranks: find the sunk surfaces. false if the plan is empty. May throw.
   bool build();
   Slope::NodeGrid grid() const { return plan; }
 

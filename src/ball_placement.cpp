@@ -312,7 +312,7 @@ void BallPlacement::bcast(void *data, size_t bytes, int from) const
 }
 
 /* ----------------------------------------------------------------------
-   what rank 0 says of the ground
+   the message on the ground, printed by rank 0
 ------------------------------------------------------------------------- */
 
 void BallPlacement::report(const SurfaceCounts &counts, bool known) const

@@ -13,7 +13,7 @@
 
 namespace Slope {
 
-// Volume of a body of which is known no more than whether a point is inside, from columns at
+// Volume of a body, given only a test of whether a point is inside, from columns at
 // random places in square cells. Cells that hold some of it, and their neighbours, are split in
 // four until the sum no longer changes. A column is searched from a random height on in steps, and
 // what begins or ends between two of them by bisection.
@@ -38,7 +38,7 @@ class BodyVolume {
   void mark(double x, double y);
 
   // To 1e-3 of itself, three standard deviations; 0 for no body. std::runtime_error if the sum
-  // goes on changing.
+  // does not settle.
   double volume();
 
  private:

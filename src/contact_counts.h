@@ -18,7 +18,7 @@ struct ContactCounts {
   using Counts = std::vector<unsigned char>;    // of each ball, ghosts included; up to 255
 
   // what is communicated. The numbers of a step ago are complete already, unless they have been
-  // counted anew with a new list.
+  // counted again with a new list.
   enum Which { NOW, BOTH, ESTIMATED };
 
   Counts now, before, estimated;

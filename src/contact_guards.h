@@ -22,7 +22,7 @@ class ContactTable;
 
 class ContactGuards : protected Pointers {
  public:
-  static constexpr int EVERY = EnergyGuard::EVERY;    // steps between two looks
+  static constexpr int EVERY = EnergyGuard::EVERY;    // steps between two checks
 
   ContactGuards(LAMMPS *, const ContactTable &);
 

@@ -8,7 +8,7 @@
 
 namespace LAMMPS_NS {
 
-// Who holds contacts of the balls beside the pair style: the walls. Each announces itself in its
+// Holders of contacts besides the pair style: the walls. Each registers in its
 // init(); the pair style asks all of them for their contacts before any force is computed.
 class ContactHolder {
  public:

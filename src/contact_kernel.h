@@ -40,7 +40,7 @@ struct ContactView {
   double radius_i, radius_j, mass_i, mass_j;
 };
 
-// What a second pass says of the contacts: the sum of the forces on the balls i, N; and each contact to
+// Results of a second pass: the sum of the forces on the balls i, N; and each contact to
 // visit(visitor, i, j, force on i, vector j -> i), if that is set
 struct ContactTally {
   typedef void (*Visit)(void *, int, int, const Vector &, const Vector &);
@@ -76,8 +76,8 @@ struct ContactKernel {
     find_fixed(v, repeat, first, b, p);
   }
 
-  // Second pass: adds the forces to the balls, whose numbers of contacts are complete. tally: nullptr if
-  // nobody asks
+  // Second pass: adds the forces to the balls, whose numbers of contacts are complete. tally: nullptr
+  // if not needed
   void apply(const ContactView &v, const ContactLaw &law, double dt, bool repeat,
              const MovingBalls &b, const MovingPartners &p, ContactTally *tally) const
   {

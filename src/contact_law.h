@@ -93,7 +93,7 @@ struct Sides {
 };
 
 // ----------------------------------------------------------------------
-// what a contact remembers
+// the history of a contact
 // ----------------------------------------------------------------------
 
 // Values carried from step to step: sliding spring (3, m), rolling spring (3, m), phase. Seen from

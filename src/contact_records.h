@@ -16,7 +16,7 @@
 
 namespace Slope {
 
-// A record is what the contact is found by again, a number or more, and its history.
+// A record is the identity of a contact, one or more numbers, and its history.
 class ContactRecords {
  public:
   explicit ContactRecords(int keys_in) : keys(keys_in), width(keys_in + HISTORY) {}

@@ -113,7 +113,7 @@ void DepositBins::cut(int dim, double centre, double side, double &beyond)
     return;
   }
 
-  // what is out of the periodic box goes on at its other side
+  // parts beyond the periodic box continue at its other side
 
   const double prd = boxhi[dim] - boxlo[dim];
   if (a < boxlo[dim]) {

@@ -26,7 +26,7 @@ class DepositBins {
 
   void set_grid(const PlanGrid &);
 
-  // squares that reach out of this box along an axis go on at its other side
+  // squares that reach beyond this box along an axis continue at its other side
   void set_period(int dim, bool periodic, double boxlo, double boxhi);
 
   void clear() { bins.clear(); }

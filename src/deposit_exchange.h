@@ -16,7 +16,7 @@
 
 namespace LAMMPS_NS {
 
-// How the ranks of fix deposit/grid pass on what they have of the plan grid. All methods are
+// How the ranks of fix deposit/grid exchange their parts of the plan grid. All methods are
 // collective. No message has more than MOST_BYTES, whatever the size of the grid, and what a rank
 // keeps for them does not grow with its rows.
 class DepositExchange : protected Pointers {
@@ -30,7 +30,7 @@ class DepositExchange : protected Pointers {
   typedef std::function<void(int column, int band, const double *values)> TakeBlock;
   void to_owners(const Slope::DepositBlocks &, const Slope::DepositBands &, const TakeBlock &take);
 
-  // What is to be said of the bands from ... to, one way or the other: make() is called on the rank
+  // Data of the bands from ... to, in ascending or descending order: make() is called on the rank
   // that holds the band, take() on rank 0, band by band in this order. take() must not throw.
   typedef std::function<std::string(int band)> MakeBytes;
   typedef std::function<void(const std::string &)> TakeBytes;

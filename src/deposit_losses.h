@@ -14,7 +14,7 @@
 
 namespace LAMMPS_NS {
 
-// Balls that LAMMPS deletes because they left the box, counted where LAMMPS does it.
+// Balls that LAMMPS deletes because they left the box, counted when LAMMPS does it.
 class DepositLosses : protected Pointers {
  public:
   DepositLosses(class LAMMPS *lmp, const class DepositBalls &balls_in) :
@@ -28,7 +28,7 @@ class DepositLosses : protected Pointers {
   void end_command();
 
   // LAMMPS is about to send every ball to the rank that owns its place. A ball that is beyond a fixed
-  // side of the box has no owner and is deleted without a word.
+  // side of the box has no owner and is deleted without a message.
   void before_exchange();
 
   // collective: what all ranks lost since the last time; returns lines on the first balls

@@ -16,7 +16,7 @@
 namespace Slope {
 
 // The rasters of a deposit, the rows of one rank: the ground without the body, the thickness now, and
-// what each cell saw so far. A sample is clear(), add() of all blocks of bins, finish().
+// the records of each cell so far. A sample is clear(), add() of all blocks of bins, finish().
 class DepositRasters {
  public:
   enum Name { THICKNESS, MAX_THICKNESS, MAX_SPEED, MAX_ENERGY, ARRIVAL, LAST_MOTION, SNAPSHOT };

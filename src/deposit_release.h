@@ -13,7 +13,7 @@
 namespace LAMMPS_NS {
 
 // What fix deposit/grid finds out about the balls of its group when they are released. All
-// methods are collective; what must not be ends the run with one line.
+// methods are collective; an invalid release ends the run with one line.
 class DepositRelease : protected Pointers {
  public:
   struct Mass {    // of all ranks; numbers only, for restart files

@@ -74,7 +74,7 @@ void DepositReport::warn(const std::string &line)
 }
 
 /* ----------------------------------------------------------------------
-   the run may end here: what is beside the files must be gone by then
+   the run may end here: temporary files must be removed before
 ------------------------------------------------------------------------- */
 
 template <typename Work> void DepositReport::on_files(Work work)
@@ -120,7 +120,7 @@ void DepositReport::write(const std::string &why, const DepositResults &results,
 }
 
 /* ----------------------------------------------------------------------
-   the rows begin in the north; ranks go on sending when the disk is full
+   the rows start in the north; ranks keep sending when the disk is full
 ------------------------------------------------------------------------- */
 
 void DepositReport::write_raster(const std::string &path, const std::string &header,

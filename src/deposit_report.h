@@ -20,7 +20,7 @@
 
 namespace LAMMPS_NS {
 
-// What fix deposit/grid tells: warnings, rasters and summary. All methods are collective.
+// The output of fix deposit/grid: warnings, rasters and summary. All methods are collective.
 class DepositReport : protected Pointers {
  public:
   DepositReport(class LAMMPS *, const std::string &fix_id, const DepositOptions &,

@@ -10,7 +10,7 @@
 
 namespace LAMMPS_NS {
 
-// What fix deposit/grid knows of the mass after a sample, the same on all ranks.
+// State of the mass after a sample of fix deposit/grid, the same on all ranks.
 struct DepositResults {
   enum {    // the fix's vector
     RELEASED,

@@ -14,8 +14,8 @@
 
 namespace Slope {
 
-// What PREFIX.summary.yaml says of a deposit. Units are those of the run, angles in degrees,
-// volumes bulk where nothing else is said.
+// Content of PREFIX.summary.yaml. Units are those of the run, angles in degrees,
+// volumes are bulk unless stated otherwise.
 struct DepositSummary {
   static constexpr double MOVING_SHARE = 0.1;    // of the volume: more is a mass in motion
   static constexpr double REST_SHARE = 0.01;     // of the volume: less may be fast in one at rest
@@ -74,7 +74,7 @@ struct DepositSummary {
   // the run ended by its criterion of rest and little is fast; a run that was cut never is at rest
   bool at_rest() const { return reason == "halted" && motion.fast_share < REST_SHARE; }
 
-  // --- what was found wrong ---
+  // --- findings of the guards, warnings ---
 
   struct Guards {
     bool known;

@@ -446,7 +446,7 @@ bool ElevationGrid::nodata_within(double x, double y, double r) const
   const int jlo = std::max(0, within(std::floor(v - reach - 1.5), ny));
   const int jhi = std::min(ny - 1, within(std::ceil(v + reach + 1.5), ny));
 
-  // distance from a coordinate to what one NODATA centre spoils
+  // distance from a coordinate to the area that one NODATA centre makes unknown
 
   auto distance = [](double at, int i, int n) {
     const double lo = i <= 1 ? -0.5 : i - 1;

@@ -41,13 +41,13 @@ class ElevationGrid {
   void write(const std::string &path, int digits = 9) const;
   void write(AtomicFile &, int digits = 9) const;    // which the caller commits
 
-  // the text of such a file in parts, for those who have the rows elsewhere: header, then the rows
-  // from north to south, each appended to what is there
+  // the text of such a file in parts, for callers that keep the rows elsewhere: header, then the rows
+  // from north to south, each appended to the text
   static std::string header(int nx, int ny, double xlo, double ylo, double cell);
   static void append_row(std::string &text, const double *row, int nx, int digits);
 
   // Height at a point, bilinear between the four cell centres around it; in the half cell along
-  // the raster's edge the same plane goes on, so that a plane is exact up to the edge. NaN outside
+  // the raster's edge the surface is extrapolated, so that a plane is exact up to the edge. NaN outside
   // of the raster, and where a centre that has a weight is NODATA.
   double height(double x, double y) const;
 
@@ -63,14 +63,14 @@ class ElevationGrid {
   double &at(int i, int j) { return z[(size_t) j * nx + i]; }
   double at(int i, int j) const { return values()[(size_t) j * nx + i]; }
 
-  // take the values of somebody else, nx * ny of them, who keeps them as long as this grid and its
-  // copies are used: for reading only
+  // use nx * ny values of the caller, which must exist as long as this grid and its
+  // copies: for reading only
   void refer_to(const double *values);
   const double *values() const { return elsewhere ? elsewhere : z.data(); }
 
   int nx, ny;               // columns, rows
   double xlo, ylo, cell;    // south-west corner of the raster, size of a cell
-  std::vector<double> z;    // own values, row by row from the south; public for those who send it
+  std::vector<double> z;    // own values, row by row from the south; public for sending
 
  private:
   const double *elsewhere;

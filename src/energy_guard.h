@@ -17,7 +17,7 @@ namespace LAMMPS_NS {
 
 class EnergyGuard : protected Pointers {
  public:
-  static constexpr int EVERY = 50;         // steps between two looks
+  static constexpr int EVERY = 50;         // steps between two checks
   static constexpr double GROWTH = 0.1;    // of the largest of motion and springs: not sensible
 
   explicit EnergyGuard(LAMMPS *);
@@ -30,7 +30,7 @@ class EnergyGuard : protected Pointers {
   bool check(double elastic);
 
   double growth() const { return grown; }    // most so far, of the largest of both
-  bigint seen() const { return count; }      // looks at which it was not sensible
+  bigint seen() const { return count; }      // checks at which it was not sensible
 
  private:
   bool known;    // all that does work

@@ -12,8 +12,8 @@
 
 namespace LAMMPS_NS {
 
-// The guard against balls that come so fast that they may pass through a surface. A ball that comes along
-// the normal at v gets as deep as v sqrt(m/kn), undamped. Up to a quarter of its radius nothing
+// The guard against balls so fast that they may pass through a surface. A ball that hits along
+// the normal at v penetrates to v sqrt(m/kn), undamped. Up to a quarter of its radius no ball
 // passes, whatever the edges that it meets.
 class FastBalls : protected Pointers {
  public:

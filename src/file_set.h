@@ -14,7 +14,7 @@
 
 namespace Slope {
 
-// Files that appear together: on a full disk, or where one of them cannot be, either all of them are
+// Files that appear together: on a full disk, or where one of them cannot be written, either all are
 // new, or none.
 class FileSet {
  public:

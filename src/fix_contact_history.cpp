@@ -4,7 +4,7 @@
 ------------------------------------------------------------------------- */
 
 /* What pair gran/restitution remembers: LAMMPS' own neighbor history for the contacts and, for
-   each ball, force and torque of the last step, so that a run that goes on starts from those, and
+   each ball, force and torque of the last step, so that a continued run starts from those, and
    from the half-step velocities, with which the one before ended. Made by the pair style. */
 
 #include "fix_contact_history.h"
@@ -110,7 +110,7 @@ void FixContactHistory::keep_forces()
 }
 
 /* ----------------------------------------------------------------------
-   Before the first step of a run that goes on: the set-up has found the forces of the last step
+   Before the first step of a continued run: the set-up has found the forces of the last step
    once more, to rounding, or has said that it could only estimate them. With the very same ones
    the run is the uncut one to the bit. If they differ by more, something has been changed in
    between, and those of the set-up stand.

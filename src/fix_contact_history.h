@@ -44,7 +44,7 @@ class FixContactHistory : public FixNeighHistory {
   int size_restart(int) override;
   int maxsize_restart() override;
 
-  bool lists_new;     // the neighbor list has been built anew
+  bool lists_new;     // the neighbor list has been rebuilt
   bool lists_used;    // its histories are newer than those stored by atom
 
   // force (3) and torque (3) on each ball in the last step of a run, or when a restart file is written

@@ -134,7 +134,7 @@ void FixContactWall::write_restart(FILE *fp)
 {
   const bool in_use = contacts_in_lists;
   store_contacts();
-  contacts_in_lists = in_use;    // the run goes on with the lists
+  contacts_in_lists = in_use;    // the run continues with the lists
   const std::vector<double> list = restart_values();
   if (comm->me > 0) return;
   if (list.size() * sizeof(double) > MAXSMALLINT)

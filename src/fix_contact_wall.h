@@ -17,7 +17,7 @@
 
 namespace LAMMPS_NS {
 
-// What the walls have in common: the law of pair gran/restitution, and contacts that are kept by atom
+// Common part of the walls: the law of pair gran/restitution, and contacts that are stored by atom
 // between one neighbor list and the next, while atoms migrate or are sorted, and in restart files.
 // In between they are in lists, which a wall has in its own way.
 class FixContactWall : public Fix, public ContactHolder {
@@ -50,7 +50,7 @@ class FixContactWall : public Fix, public ContactHolder {
   // law of balls of a type on the wall
   const Slope::ContactLaw &law_of(int type) const;
 
-  // the last that a constructor does: LAMMPS cannot undo it for a fix whose constructor has failed
+  // the last call of a constructor: LAMMPS cannot undo it for a fix whose constructor has failed
   void keep_by_atom();
 
   // from the lists, which may hold balls that have been deleted, to the records, which are empty

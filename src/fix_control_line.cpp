@@ -90,7 +90,7 @@ void FixControlLine::read_keywords(int narg, char **arg)
 }
 
 /* ----------------------------------------------------------------------
-   one rank reads; what went wrong there ends the run on all of them
+   one rank reads; its errors end the run on all ranks
 ------------------------------------------------------------------------- */
 
 void FixControlLine::read_line()
@@ -248,7 +248,7 @@ void FixControlLine::note(int i, const double *from, const double *to, const Pla
 }
 
 /* ----------------------------------------------------------------------
-   collective: what all ranks have seen goes to rank 0, and the results to all
+   collective: the crossings of all ranks go to rank 0, and the results to all
 ------------------------------------------------------------------------- */
 
 void FixControlLine::collect()

@@ -66,7 +66,7 @@ void FixGroundMotion::read_keywords(int narg, char **arg)
 }
 
 /* ----------------------------------------------------------------------
-   one rank reads; what went wrong there ends the run on all of them
+   one rank reads; its errors end the run on all ranks
 ------------------------------------------------------------------------- */
 
 void FixGroundMotion::read_record()
@@ -133,7 +133,7 @@ void FixGroundMotion::init()
 }
 
 /* ----------------------------------------------------------------------
-   rigid bodies and balls on a prescribed path do not feel a kick: better said than found out later
+   rigid bodies and balls on a prescribed path are not affected: warn of them
 ------------------------------------------------------------------------- */
 
 void FixGroundMotion::check_integrators()

@@ -218,7 +218,7 @@ void FixWallGranMesh::check_speed(int i, const Vector &normal)
 }
 
 /* ----------------------------------------------------------------------
-   balls inside a closed surface stay there: right in a container, and wrong in a structure
+   balls inside a closed surface stay there: intended in a container, a mistake in a structure
 ------------------------------------------------------------------------- */
 
 void FixWallGranMesh::warn_of_enclosed()

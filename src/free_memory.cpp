@@ -39,7 +39,7 @@ double number_in(const std::string &path)
   return (file >> value) ? value : NAN;
 }
 
-// what the group and those above it leave; their pages of files that nobody uses can be had, too
+// what the group and those above it leave; their unused cached file pages are available, too
 
 double left_in_groups(const std::string &root)
 {

@@ -47,7 +47,7 @@ class MassLedger {
 
   // --- of all ranks ---
 
-  void take_here(const Mass &of_all_ranks);    // the sum of all lost_here(), which begin anew
+  void take_here(const Mass &of_all_ranks);    // the sum of all lost_here(), which restart at 0
   bool must_log() const { return nlogged < MAXLOGGED; }
 
   // Lines on the first balls that were lost: notes of all ranks, before: number lost until then.

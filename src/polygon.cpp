@@ -76,7 +76,7 @@ Rings read_rings(const std::string &path)
   const std::string text = text_of(path);
 
   Rings rings;
-  bool open = false;    // the last ring goes on
+  bool open = false;    // the last ring continues
   int line = 0;
   for (size_t pos = 0; pos < text.size();) {
     const size_t end = std::min(text.find('\n', pos), text.size());

@@ -20,7 +20,7 @@ using Slope::Interval;
 using Slope::Intervals;
 
 static constexpr int LOOKS = 64;        // columns in which a region is held against its intervals
-static constexpr double FAR = 1.0e6;    // where a region goes on without end it is not looked at
+static constexpr double FAR = 1.0e6;    // beyond this an unbounded region is not examined
 static constexpr double CLOSE = 1.0e-6;    // to an end, of the region's size: rounding may decide
 
 /* ---------------------------------------------------------------------- */

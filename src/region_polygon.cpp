@@ -73,7 +73,7 @@ void RegPolygon::init()
 }
 
 /* ----------------------------------------------------------------------
-   one rank reads; what went wrong there ends the run on all of them
+   one rank reads; its errors end the run on all ranks
 ------------------------------------------------------------------------- */
 
 void RegPolygon::read(const char *path)

@@ -47,7 +47,7 @@ class RegionSurface : protected Pointers {
   static bool is_fit(const class Region *, int side, double xlo, double xhi, double ylo,
                      double yhi);
 
-  // false if the region goes on beyond any box on this side (INF): no boundary there
+  // false if the region is unbounded on this side (INF): no boundary there
   bool has_boundary() const { return bounded; }
 
   // whether the region, and all that it is made of, is still the one of the constructor; if not, the

@@ -90,7 +90,7 @@ RegTerrain::RegTerrain(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
 RegTerrain::~RegTerrain() = default;
 
 /* ----------------------------------------------------------------------
-   one rank reads; what went wrong there ends the run on all of them
+   one rank reads; its errors end the run on all ranks
 ------------------------------------------------------------------------- */
 
 void RegTerrain::read(const char *path)

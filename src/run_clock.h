@@ -11,7 +11,7 @@
 namespace Slope {
 
 // Time that a fix counts from its first run on, whatever the deck does to steps and time step in
-// between. A run that goes on with the same time step counts from the same step as before, so that
+// between. A run that continues with the same time step counts from the same step as before, so that
 // its times are those of the uncut run, to the bit.
 class RunClock {
  public:
@@ -20,7 +20,7 @@ class RunClock {
   bool started() const { return on; }
   double dt() const { return step_size; }
 
-  // Set-up of a run at a step. Returns true if it goes on where the last one ended.
+  // Set-up of a run at a step. Returns true if it continues where the last one ended.
   bool begin(int64_t step, double dt)
   {
     const bool goes_on = on && step == last && dt == step_size;

@@ -20,7 +20,7 @@ class SunkSurface;
 namespace LAMMPS_NS {
 
 // The boundary of a region sunk along its normal, doc/src/surface_sampling.rst. The lower boundary is
-// that of a body: it goes on beyond the body's rim, up to the ground, which is the region whose upper
+// that of a body: it continues beyond the body's rim, up to the ground, which is the region whose upper
 // boundary is that of the body, too, the widest of these in plan.
 class SunkRegion : protected Pointers {
  public:

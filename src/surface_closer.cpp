@@ -16,13 +16,13 @@ using namespace Slope;
 
 static constexpr double COVER = 1.85;       // wanted distance to the nearest ball, 2 lets one pass
 static constexpr double PITCH = 0.1;        // between samples of the surface
-static constexpr double SUBGRID = 0.25;     // between columns looked at where the surface ends
-static constexpr double LOW_SCARP = 0.5;    // a gap no higher than this is no way through
+static constexpr double SUBGRID = 0.25;     // between columns examined where the surface ends
+static constexpr double LOW_SCARP = 0.5;    // no ball passes a gap no higher than this
 
 static constexpr double LEVEL_SPARE = 1.05;    // lets ground with wide spacing be almost level
 static constexpr int MAX_SUBGRID = 64;         // columns per cell side
 static constexpr int RIM_STEPS = 8;            // halvings between two columns
-static constexpr size_t BATCH = 5000;          // samples looked at together
+static constexpr size_t BATCH = 5000;          // samples examined together
 static constexpr size_t GLANCE = 100;          // the same where one that is not covered is enough
 static constexpr double ROUND_OFF = PlanNodes::ROUND_OFF;
 

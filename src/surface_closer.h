@@ -53,7 +53,7 @@ class SurfaceCloser {
   };
   Columns columns_of(int i, int j) const;
 
-  // cells in range next to this one into which the rim goes on
+  // cells in range next to this one into which the rim continues
   std::vector<int64_t> rim_goes_on(int i, int j, const Columns &) const;
 
   // add what these need beyond the nodes and the balls added since start()

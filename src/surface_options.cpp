@@ -84,7 +84,7 @@ int SurfaceOptions::read_keyword(int narg, char **arg)
 }
 
 /* ----------------------------------------------------------------------
-   one rank reads; what went wrong there ends the run on all of them
+   one rank reads; its errors end the run on all ranks
 ------------------------------------------------------------------------- */
 
 std::unique_ptr<TouchedSurface> SurfaceOptions::surface() const

@@ -38,7 +38,7 @@ int SurfaceWatch::add_ball(int i, const std::vector<int> &triangles)
   ball.last = listed.size();
   ball.first_slot = -1;
   ball.seen = {0.0, 0.0, 0.0};
-  ball.free = -1.0;    // not looked at yet
+  ball.free = -1.0;    // not examined yet
   watched.push_back(ball);
   return balls() - 1;
 }

@@ -54,7 +54,7 @@ class SurfaceWatch {
   // Of points, which it sorts by distance: those that are contacts of their own, the nearest one first.
   // A point is none if a nearer one has it on or below its tangent plane: then the ball's cap beyond
   // that plane holds it already. This removes every point that is no local minimum of the distance: a
-  // triangle that goes on beyond it has a nearer point, and lies below the tangent plane of that.
+  // triangle that extends beyond it has a nearer point, and lies below the tangent plane of that.
   static void choose(std::vector<SurfacePoint> &points, double radius,
                      std::vector<SurfaceContact> &own);
 

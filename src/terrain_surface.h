@@ -15,7 +15,7 @@
 namespace Slope {
 
 // The ground of an elevation grid as triangles, which are made when they are asked for. Their corners
-// are the centres of the cells, and where the same plane goes on to the raster's edge the points there;
+// are the centres of the cells, and, where the plane is extended to the raster's edge, the points there;
 // between four of them are two triangles, divided by the diagonal whose ends differ less in height.
 // None has a corner without a value.
 class TerrainSurface : public TouchedSurface {

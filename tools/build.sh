@@ -6,7 +6,7 @@ set -euo pipefail
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
 "$top/tools/setup.sh"
-# the source is named each time, or cmake would go on with the one of the build before
+# the source is named each time, or cmake would keep that of the previous build
 cmake -S "$top" -B "$top/build" \
   -D LAMMPS_SOURCE_DIR="$(realpath "${LAMMPS_SOURCE_DIR:-$top/.lammps/source}")" "$@"
 cmake --build "$top/build" -j "${JOBS:-2}"

@@ -12,7 +12,7 @@ fi
 
 out=$top/build/demo
 deck=$top/inputs/20_embankment
-rm -rf "$out"    # it shows the program and the deck as they are now
+rm -rf "$out"    # so that all runs are made with the present program and deck
 LMP=$top/build/lmp "$top/tools/slope" study "$deck/in.embankment" --set d=2.5 \
   --set rolling=0,0.05,0.10 --road "$deck/road.csv" --local -o "$out"
 "$top/tools/slope" report "$out" --reference "$deck/reference.yaml" --pictures

@@ -1,7 +1,7 @@
 #!/bin/bash
 # Makes a Debian or Ubuntu machine ready to build: installs what is missing of tools/packages.txt, then
-# fetches the LAMMPS source of the running release into .lammps/source. Removes no package; what is not
-# needed by all goes missing with a word.
+# fetches the LAMMPS source of the running release into .lammps/source. Removes no package; an optional
+# package that cannot be installed is skipped with a message.
 # LAMMPS_SOURCE_DIR=<tree> in the environment: that tree is used, and none is fetched.
 set -euo pipefail
 export LC_ALL=C DEBIAN_FRONTEND=noninteractive
@@ -79,10 +79,10 @@ if ((${#missing[@]})); then
     as_root=(sudo "DEBIAN_FRONTEND=$DEBIAN_FRONTEND")
   fi
   say "packages that are missing: ${#missing[@]}; apt-get installs them${as_root:+, and sudo may ask for your password}." \
-    "On a machine that has nothing, with the LAMMPS source and the build: about 720 MB (Debian 12) or 790 MB (Debian 13)" \
+    "On a bare machine, with the LAMMPS source and the build: about 720 MB (Debian 12) or 790 MB (Debian 13)" \
     "to download, 3.3 or 3.6 GB of disk"
-  # what failed may have nothing to do with us: install tells
-  update "${as_root[@]}" apt-get -qq || say "apt-get update failed, trying to go on"
+  # the failure may concern other packages only: the installation below will show
+  update "${as_root[@]}" apt-get -qq || say "apt-get update failed, trying to continue"
 
   # as many as can be had: first what all need, then one by one what set-up does without
   wanted=("${missing[@]}")
@@ -165,7 +165,7 @@ entries() {
 
 entries=$(entries apt-get)
 if [[ -z $entries ]]; then # apt knows the origin only after an update
-  update apt_get || say "apt-get update failed, trying to go on"
+  update apt_get || say "apt-get update failed, trying to continue"
   entries=$(entries apt_get)
 fi
 [[ -n $entries ]] || die "no entry of Debian or Ubuntu among apt's sources"

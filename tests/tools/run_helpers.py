@@ -66,14 +66,19 @@ def write_geojson(path, *geometries, crs=None):
     return path
 
 
-def run_command(command, arguments, capsys):
-    """Run `slope COMMAND ARGUMENTS`; gives status, stdout, stderr."""
+def called(capsys, words):
+    """Run `slope WORDS` in this process; gives status, stdout, stderr."""
     capsys.readouterr()
     try:
-        status = cli.main([command, *shlex.split(arguments)])
+        status = cli.main(words)
     except SystemExit as error:
         status = error.code
     return status, *capsys.readouterr()
+
+
+def run_command(command, arguments, capsys):
+    """Run `slope COMMAND ARGUMENTS`; gives status, stdout, stderr."""
+    return called(capsys, [command, *shlex.split(arguments)])
 
 
 @pytest.fixture

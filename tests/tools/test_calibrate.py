@@ -14,12 +14,12 @@ import rasterio
 import yaml
 
 import twins
+from run_helpers import called
 from tiny_collapse import LMP, TOP, write_case
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli  # noqa: E402
 from slope_tools.ensemble import backanalysis, calibration, designs, distributions, emulator  # noqa: E402
 from slope_tools.survey import rasters  # noqa: E402
 
@@ -53,7 +53,7 @@ def test_two_variables_that_make_up_for_each_other_are_said_to():
     outputs = (points.sum(axis=1) + rng.normal(0, 0.01, len(points)))[:, None]
     found = backanalysis.posterior(points, outputs, [backanalysis.Target("sum", "", 1.0, 0.0)])
     assert found.correlation()[0, 1] < -0.9
-    assert any(text.startswith("a and b are not identifiable apart from each other: more a with less b")
+    assert any(text.startswith("a and b cannot be identified separately: more a with less b")
                for text in backanalysis.judgement(found, variables))
     region = found.pair(0, 1)
     assert region.holds([0.3, 0.7]) and region.holds([0.7, 0.3]) and not region.holds([0.9, 0.9])
@@ -81,7 +81,7 @@ def test_what_the_model_cannot_reach_is_said():
     found = backanalysis.posterior(points, outputs, targets)
     variables = [distributions.distribution(name, "0:1", "", "") for name in "ab"]
     assert found.misfit > 2
-    assert any("no values of these variables reach the observation" in text
+    assert any("no values of these variables reproduce the observation" in text
                for text in backanalysis.judgement(found, variables))
 
 
@@ -115,12 +115,7 @@ def here(tmp_path, monkeypatch):
 def slope(here, capsys):
     """Run `slope ARGUMENTS` in the test's folder; gives status, stdout, stderr."""
     def run(arguments):
-        capsys.readouterr()
-        try:
-            status = cli.main(shlex.split(arguments))
-        except SystemExit as error:
-            status = error.code
-        return status, *capsys.readouterr()
+        return called(capsys, shlex.split(arguments))
     return run
 
 
@@ -201,7 +196,7 @@ def test_numbers_alone_with_a_failing_run(slope, here):
     assert [entry["tolerance"] for entry in about["targets"]] == pytest.approx([0.05 * 14, 0.2 * 180, 0.05 * 40])
     failed = [row for row in table if row["status"] == "failed"]
     assert failed and all(float(row["friction"]) > 37 and row["score"] == "" for row in failed)
-    assert f"doubt: {len(failed)} of 12 runs failed and say nothing" in out
+    assert f"caveat: {len(failed)} of 12 runs failed and are left out" in out
     assert [entry["name"] for entry in about["targets"]] == ["99 % of the volume within", "area covered",
                                                              "volume on the road"]
     assert not Path("out/predicted.png").exists()
@@ -301,8 +296,5 @@ def test_every_example_of_the_pages_is_understood(line, here, capsys):
     words = shlex.split(line.replace("in.collapse", "case/in.collapse"))
     if "--help" not in words:
         words += ["--dry-run", *(["--local"] if "--local" not in words else [])]
-    try:
-        status = cli.main(words)
-    except SystemExit as error:
-        status = error.code
-    assert status == 0, capsys.readouterr().err
+    status, _, err = called(capsys, words)
+    assert status == 0, err

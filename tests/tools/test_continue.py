@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 import yaml
 
+from run_helpers import called
 from tiny_collapse import DECK, LMP, TOP, processes_in, read_asc, serial, write_case
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli  # noqa: E402
 from slope_tools.case import logs, restarts, run_folders  # noqa: E402
 from slope_tools.ensemble import jobs  # noqa: E402
 
@@ -75,12 +75,7 @@ def make(folder):
 def slope(here, capsys):
     """Run `slope study ARGUMENTS` in the test's folder; gives status, stdout, stderr."""
     def run(arguments):
-        capsys.readouterr()
-        try:
-            status = cli.main(["study", *shlex.split(arguments)])
-        except SystemExit as error:
-            status = error.code
-        return status, *capsys.readouterr()
+        return called(capsys, ["study", *shlex.split(arguments)])
     return run
 
 

@@ -12,12 +12,12 @@ import pytest
 import yaml
 from scipy import stats
 
+from run_helpers import called
 from tiny_collapse import LMP, TOP, write_case
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli  # noqa: E402
 from slope_tools.ensemble import convergence, size_study  # noqa: E402
 from slope_tools.ensemble.size_error import SizeErrors  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
@@ -130,7 +130,7 @@ def test_what_is_not_known_is_said_so(runs, quantile, supported):
     assert fit.supported is supported and fit.quantile == (quantile and pytest.approx(quantile, rel=1e-5))
     assert (fit.interval is None) == (quantile is None)
     text = " ".join(convergence.words(fit, "d", "to remove", "m3", "{:,.2f}".format))
-    assert ("standard error unknown" in text) == (quantile is None) and "whether a line holds is not known" in text
+    assert ("standard error unknown" in text) == (quantile is None) and "it is unknown whether a line holds" in text
 
 
 def test_without_a_value_above_0_there_are_no_shares():
@@ -218,12 +218,7 @@ def slope(tmp_path, monkeypatch, capsys):
     deck.write_text(text)
 
     def run(arguments, command="sensitivity"):
-        capsys.readouterr()
-        try:
-            status = cli.main([command, "case/in.tiny", *shlex.split(arguments)])
-        except SystemExit as error:
-            status = error.code
-        return status, *capsys.readouterr()
+        return called(capsys, [command, "case/in.tiny", *shlex.split(arguments)])
     return run
 
 
@@ -237,7 +232,7 @@ def test_the_command_fits_what_its_runs_gave(slope):
              f"{ROAD}")
     status, out, err = slope(words)
     assert status == 0, err
-    assert "whether a line holds is not known" in out
+    assert "it is unknown whether a line holds" in out
     # a value added later: what is finished is kept
     status, out, err = slope(words.replace("0.7", "0.7,1"))
     assert status == 0 and "6 of 9 runs are finished already" in out, err
@@ -281,7 +276,7 @@ def test_what_a_repeat_does_not_change_counts_once(slope):
     deck.write_text(deck.read_text().replace("variable  xoffset", "variable  seed index 0\nvariable  xoffset"))
     status, out, err = slope("--converge d=1.25,1 --set steps=100 --repeat seed=1,2 --of centroid_m -o out")
     assert status == 0, err
-    assert "what was repeated changes nothing, to the last digit, in steps_100_d_1.25_seed_1, " in out
+    assert "a repeated variable has no effect, to the last digit, in steps_100_d_1.25_seed_1, " in out
     sizes = yaml.safe_load(Path("out/converge.yaml").read_text())["quantities"]["centroid_m"]["sizes"]
     assert [size["runs"] for size in sizes] == [1, 1]
 

@@ -13,6 +13,7 @@ import rasterio
 import yaml
 from scipy import stats
 
+from run_helpers import called
 from tiny_collapse import LMP, TOP, read_asc, write_case
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
@@ -218,12 +219,7 @@ def slope(tmp_path, monkeypatch, capsys):
     Path("case/road.csv").write_text("13,0\n18,0\n18,24\n13,24\n")
 
     def run(arguments):
-        capsys.readouterr()
-        try:
-            status = cli.main(["study", "case/in.tiny", *shlex.split(arguments)])
-        except SystemExit as error:
-            status = error.code
-        return status, *capsys.readouterr()
+        return called(capsys, ["study", "case/in.tiny", *shlex.split(arguments)])
     return run
 
 
@@ -313,6 +309,8 @@ def test_an_ensemble_grows_and_its_tables_are_those_of_the_runs(slope):
     page = Path("out/report.html").read_text()
     for text in ("How likely", "hazard curve", "90 % of the runs stay within", "friction", "ensemble of 12 points"):
         assert text in page, text
+    name = found["quantities"][found["of"]]["name"]
+    assert f"<b>{name[0].upper()}{name[1:]}: 90 % of the runs stay within</b>" in page
 
 
 def test_repeats_of_points_and_a_list(slope):
@@ -340,7 +338,7 @@ def test_a_failed_run_is_kept_out_and_counted(slope):
     assert f"slope study: out: {failed} of 8 runs failed: steps_300_friction_" in err.splitlines()[-1]
     found = about["ensemble"]
     assert (found["finished"], found["failed"]) == (8 - failed, failed)
-    assert f"doubt: {failed} of 8 runs failed: they are kept out of the estimates and may be anything" in out
+    assert f"caveat: {failed} of 8 runs failed: the estimates exclude them" in out
     volumes = sorted(float(row["remove_on_road_m3"]) for row in table if row["status"] == "finished")
     _, exceeded, _, high = curves()["remove_on_road_m3"]
     assert exceeded[-1] == 0 and high[-1] == pytest.approx(hazard.share_bounds(failed, 8)[1])
@@ -425,7 +423,7 @@ def test_what_an_ensemble_says_in_words():
         "farthest ball: 90 % of the runs stay within 120 m (100 to ?)",
         "farthest ball depends on b (0.70 alone, 0.90 with others, +- 0.01), a (0.10 alone, 0.20 with others, +- "
         "0.05); so",
-        "doubt: why"]
+        "caveat: why"]
 
 
 @pytest.mark.parametrize("key", ["text", "told"])       # the latter in older files

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 import yaml
 
+from run_helpers import called
 from tiny_collapse import LMP, TOP, write_case
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
@@ -23,12 +24,7 @@ STUDY = "case/in.tiny --set peak=0,300,900 --repeat xoffset=0.25 --road case/roa
 
 def slope(arguments, capsys):
     """Run `slope ARGUMENTS`; gives status, stdout, stderr."""
-    capsys.readouterr()
-    try:
-        status = cli.main(shlex.split(arguments))
-    except SystemExit as error:
-        status = error.code
-    return status, *capsys.readouterr()
+    return called(capsys, shlex.split(arguments))
 
 
 def write_quake(folder):
@@ -86,7 +82,7 @@ def test_a_scatter_of_failing_is_doubted():
     rows = [row("0", "0", "", 0.0), row("0", "0", "0.5", 10.0), row("300", "0", "", 5.0), row("300", "0", "0.5", 60.0),
             row("600", "0", "", 40.0), row("600", "0", "0.5", 60.0)]
     text, = intensity.doubts(intensity.entry("peak", combinations.grouped(rows), []))
-    assert text.startswith("at peak 300 some runs fail")
+    assert text.startswith("at peak 300 the slope fails in some runs")
     assert not intensity.doubts(intensity.entry("peak", combinations.grouped(rows[:2] + rows[4:]), []))
 
 

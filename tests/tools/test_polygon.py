@@ -15,6 +15,8 @@ from affine import Affine
 from rasterio.crs import CRS
 from shapely.geometry import MultiPolygon, Point, Polygon, box, mapping
 
+from run_helpers import called
+
 TOP = Path(__file__).resolve().parents[2]
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
@@ -40,12 +42,7 @@ def here(tmp_path, monkeypatch):
 def slope(here, capsys):
     """Run `slope polygon ARGUMENTS --terrain t.asc`; gives status, stdout, stderr."""
     def run(arguments, terrain="t.asc"):
-        capsys.readouterr()
-        try:
-            status = cli.main(["polygon", *shlex.split(arguments), "--terrain", terrain])
-        except SystemExit as error:
-            status = error.code
-        return status, *capsys.readouterr()
+        return called(capsys, ["polygon", *shlex.split(arguments), "--terrain", terrain])
     return run
 
 

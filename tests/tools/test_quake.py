@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 import yaml
 
-from run_helpers import TOP
+from run_helpers import TOP, called
 
-from slope_tools import cli  # noqa: E402
 from slope_tools.commands import quake as quake_command  # noqa: E402
 from slope_tools.survey import quake_motion, quake_records  # noqa: E402
 
@@ -33,12 +32,7 @@ def slope(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
 
     def run(arguments):
-        capsys.readouterr()
-        try:
-            status = cli.main(["quake", *shlex.split(arguments)])
-        except SystemExit as error:
-            status = error.code
-        return status, *capsys.readouterr()
+        return called(capsys, ["quake", *shlex.split(arguments)])
     return run
 
 

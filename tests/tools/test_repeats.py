@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 import yaml
 
+from run_helpers import called
 from tiny_collapse import LMP, TOP, write_case
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli  # noqa: E402
 from slope_tools.deposit import rest, travel_shares  # noqa: E402
 from slope_tools.ensemble import combinations, headline, repeats, results, study_file, study_table  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
@@ -40,12 +40,7 @@ def slope(tmp_path, monkeypatch, capsys):
     Path("case/road.csv").write_text("13,0\n18,0\n18,24\n13,24\n")
 
     def run(arguments):
-        capsys.readouterr()
-        try:
-            status = cli.main(["study", "case/in.tiny", *shlex.split(arguments)])
-        except SystemExit as error:
-            status = error.code
-        return status, *capsys.readouterr()
+        return called(capsys, ["study", "case/in.tiny", *shlex.split(arguments)])
     return run
 
 
@@ -102,7 +97,7 @@ def test_what_a_repeat_does_not_change_counts_once(slope):
     assert status == 0, err
     best = load()[0]["conservative"]
     assert best["kind"] == "largest of 2 runs; chance unknown" and best["repeats"] == 1
-    assert any(text.startswith("what was repeated changes nothing: rolling_0_unused_2, ") for text in best["doubts"])
+    assert any(text.startswith("a repeated variable has no effect: rolling_0_unused_2, ") for text in best["doubts"])
 
 
 def test_a_failed_repeat_leaves_the_others(slope):
@@ -114,7 +109,7 @@ def test_a_failed_repeat_leaves_the_others(slope):
     assert [entry["repeats"] for entry in about["combinations"]] == [3, 3]
     assert "2 of 8 runs failed" in about["conservative"]["doubts"]
     # seeds alone were repeated, although the deck has a lattice to move
-    assert "the chance of seed alone is known: xoffset of the deck was not repeated" in about["conservative"]["doubts"]
+    assert "the scatter is that of seed alone: xoffset of the deck was not repeated" in about["conservative"]["doubts"]
 
 
 def test_without_a_road_there_are_means_and_no_headline(slope):
@@ -177,7 +172,7 @@ def test_a_difference_below_chance_is_no_trend_and_no_doubt():
     [entry] = best["differences"]
     assert (entry["largest_at"], entry["smallest_at"], entry["clear"]) == ("1", "0", False) and entry["by_m3"] == 4
     assert best["doubts"] == []
-    assert any("no more than chance makes" in line for line in combinations.describe(best))
+    assert any("no more than expected by chance" in line for line in combinations.describe(best))
 
 
 def test_a_difference_larger_than_chance_at_the_end_of_a_range_is_a_doubt():
@@ -201,7 +196,7 @@ def test_differences_are_those_of_the_governing_line():
 
 def test_other_doubts():
     alone = rows((("0",), (5.0,)))
-    assert conservative({"rolling": ["0"]}, alone)["doubts"] == ["nothing was varied, it is of one run"]
+    assert conservative({"rolling": ["0"]}, alone)["doubts"] == ["nothing was varied: it comes from a single run"]
     still = rows(*SMALL, rest=False)
     assert conservative({"rolling": ["0", "1"]}, still)["doubts"] == ["6 of 6 deposits are not at rest"]
     above = rows((("0",), [100.0] * 7 + [101.0] * 7 + [120.0]), (("1",), [100.0 + i / 100 for i in range(30)]))

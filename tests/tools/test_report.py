@@ -19,12 +19,12 @@ import yaml
 from rasterio.crs import CRS
 from rasterio.warp import transform
 
+from run_helpers import called
 from tiny_collapse import LMP, TOP, height, read_asc, write_case
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli  # noqa: E402
 from slope_tools.commands import report as report_command  # noqa: E402
 from slope_tools.drawing import figures  # noqa: E402
 from slope_tools.ensemble import results  # noqa: E402
@@ -87,12 +87,7 @@ def drawing_slope(capsys, monkeypatch):
 
 def real_slope(capsys):
     def run(arguments):
-        capsys.readouterr()
-        try:
-            status = cli.main(["report", *shlex.split(arguments)])
-        except SystemExit as error:
-            status = error.code
-        return status, *capsys.readouterr()
+        return called(capsys, ["report", *shlex.split(arguments)])
     return run
 
 
@@ -611,7 +606,7 @@ def test_warnings_of_the_study_s_tools_are_shown_each(slope, here):
     texts = ["the body is thinner than 3 balls everywhere: the numbers will be rough",
              "runs of several sizes: d_1.5: 149.673 m3 left the grid or the box",
              "runs of several sizes: d_3: 23.1 m3 left the grid or the box",
-             "the error of the size of the balls is not known: got -2.53e+06"]
+             "the size error is unknown: got -2.53e+06"]
     set_moving(here / "out", 0.0)
     without_log_warnings(here / "out")
     about = yaml.safe_load(Path("out/study.yaml").read_text())
@@ -626,7 +621,7 @@ def test_warnings_of_the_study_s_tools_are_shown_each(slope, here):
     assert all(f"WARNING: {text}" in out for text in texts)
     # measured, and useless: not "not measured"
     assert "measured, but not usable: small balls would give -2.53e+06 m3" in page and "not measured" not in page
-    assert "What smaller balls would give was measured, but is not usable: small balls would give -2.53e+06 m3" in page
+    assert "The effect of smaller balls was measured, but is not usable: small balls would give -2.53e+06 m3" in page
 
 
 @pytest.mark.parametrize("folder", ["out", "one"])
@@ -748,7 +743,7 @@ def test_the_report_takes_the_convergence_in(slope, here):
     assert slope("out")[0] == 0
     page, reader = read("out/report.html")
     assert "To remove against d" not in reader.alt
-    assert "sizes/converge.yaml, from which the study has its size error, is not there" in " ".join(page.split())
+    assert "sizes/converge.yaml, from which the study took its size error, does not exist" in " ".join(page.split())
 
 
 # --- the section ---
@@ -943,9 +938,10 @@ BAD = {
     "reference without a title": (text_of("r.yaml", "quantities: {front_m: {levels: {a: 1}}}"),
                                   "out --reference r.yaml", "r.yaml: must have a title"),
     "unknown quantity": (text_of("r.yaml", "title: T\nquantities: {volume: {levels: {a: 1}}}"),
-                         "out --reference r.yaml", "r.yaml: quantities: must be of what the runs have a number of, "),
+                         "out --reference r.yaml", "r.yaml: quantities: must be columns that all runs have"),
     "quantity of a road, without one": (text_of("r.yaml", "title: T\nquantities: {remove_m3: {levels: {a: 1}}}"),
-                                        "one --reference r.yaml", "r.yaml: quantities: must be of what the runs have"),
+                                        "one --reference r.yaml",
+                                        "r.yaml: quantities: must be columns that all runs have"),
     "reference level of words": (text_of("r.yaml", "title: T\nquantities: {front_m: {levels: {a: b}}}"),
                                  "out --reference r.yaml", "r.yaml: quantities: front_m: levels: must be NAME: finite"),
     "reference without variable": (text_of("r.yaml", "title: T\nquantities: {front_m: {series: {a: {0: 1}}}}"),

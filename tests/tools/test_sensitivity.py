@@ -11,12 +11,12 @@ from pathlib import Path
 import pytest
 import yaml
 
+from run_helpers import called
 from tiny_collapse import LMP, TOP, write_case
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli  # noqa: E402
 from slope_tools.ensemble import quantities, sensitivity  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
@@ -35,12 +35,7 @@ def slope(tmp_path, monkeypatch, capsys):
     deck.write_text(text.replace("lattice     sc 1.0", "lattice     sc 1.0 origin ${xoffset} 0 0"))
 
     def run(arguments):
-        capsys.readouterr()
-        try:
-            status = cli.main(["sensitivity", "case/in.tiny", *shlex.split(arguments)])
-        except SystemExit as error:
-            status = error.code
-        return status, *capsys.readouterr()
+        return called(capsys, ["sensitivity", "case/in.tiny", *shlex.split(arguments)])
     return run
 
 
@@ -81,7 +76,7 @@ def test_one_variable_at_a_time_against_the_scatter_of_equivalent_runs(slope):
         most = max(names[1:4], key=lambda run: abs(values[run] - mean))
         text = about["trust"][i]
         assert text in out
-        assert f"trust one run to +- {quantities.number(T * deviation)} m3" in text
+        assert f"one run is accurate to +- {quantities.number(T * deviation)} m3" in text
         assert f"{most.split('_', 2)[2].replace('_', ' ')} changes it most" in text
     assert Path("out/sensitivity.png").read_bytes()[:4] == b"\x89PNG"
 
@@ -105,7 +100,7 @@ def test_what_is_clear_depends_on_the_number_of_equivalent_runs():
 def test_without_repeats_the_scatter_is_said_to_be_unknown(slope):
     status, out, err = slope(f"--vary rolling=0.2 --set steps=100 {ROAD} -o out")
     assert status == 0, err
-    assert "without --repeat its scatter is not known" in out
+    assert "without --repeat its scatter is unknown" in out
     assert [row["clear_of_remove_m3"] for row in rows()] == ["", ""]
 
 

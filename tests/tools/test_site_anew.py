@@ -138,7 +138,7 @@ def test_exchange_takes_no_file_that_was_not_planned(tmp_path):
     for name in ("mine", "new"):
         (tmp_path / name).mkdir()
         (tmp_path / name / "surprise").write_text(name)
-    with pytest.raises(SlopeError, match="mine/surprise: must not be there"):
+    with pytest.raises(SlopeError, match="mine/surprise: must not exist"):
         site_folder.exchange(tmp_path / "new", tmp_path / "mine", set())
     assert (tmp_path / "mine" / "surprise").read_text() == "mine"
 
@@ -307,7 +307,7 @@ def test_a_changed_site_is_not_run_with_the_old_deck(inside, mine, gis):  # noqa
         assert old in text
         (mine / "site.yaml").write_text(text.replace(old, new, 1))
         refused(slope(gis, "study", "mine", "--dry-run"), "mine/site.yaml: must not have been changed since in.site "
-                "was made of it: `slope site mine` makes the deck anew")
+                "was made from it: `slope site mine` rebuilds the deck")
     (mine / "site.yaml").write_text(text.replace("  friction: 30", "  friction: 20"))
     inside("mine")
     assert cli.main(["study", "mine", "--dry-run"]) == 0
@@ -316,7 +316,7 @@ def test_a_changed_site_is_not_run_with_the_old_deck(inside, mine, gis):  # noqa
 @pytest.mark.parametrize("name", ["in.site", "terrain.asc", "release.slip.asc", "road.csv"])
 def test_a_site_without_one_of_its_files(mine, gis, name):  # noqa: F811
     (mine / name).unlink()
-    refused(slope(gis, "study", "mine", "--dry-run"), f"mine/{name}: must be there; `slope site mine` makes it anew")
+    refused(slope(gis, "study", "mine", "--dry-run"), f"mine/{name}: must exist; `slope site mine` rebuilds it")
     assert not (mine / "study").exists()
 
 
@@ -333,3 +333,9 @@ def test_warnings_of_a_site_are_those_of_its_study(tmp_path):
     assert site_study.warnings_of(tmp_path) == []
     (tmp_path / "warnings.yaml").write_text("# slope site\n- too thin\n")
     assert site_study.warnings_of(tmp_path) == ["too thin"]
+
+
+def test_a_size_error_that_is_not_usable_has_its_reason_alone(capsys):
+    """The report itself says that the size error was measured and is not usable."""
+    assert site_study.unusable("too few runs") == site_study.Sizes(None, (), "too few runs")
+    assert "size error is unknown: too few runs" in capsys.readouterr().err

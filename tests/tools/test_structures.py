@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import yaml
 
+from run_helpers import called
 from tiny_collapse import LMP, TOP, write_case, write_stl
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
@@ -33,12 +34,7 @@ run         ${steps}"""
 
 
 def slope(arguments, capsys):
-    capsys.readouterr()
-    try:
-        status = cli.main(shlex.split(arguments))
-    except SystemExit as error:
-        status = error.code
-    return status, *capsys.readouterr()
+    return called(capsys, shlex.split(arguments))
 
 
 def write_structures(folder):

@@ -18,12 +18,12 @@ import rasterio
 import yaml
 from shapely.geometry import Polygon
 
+from run_helpers import called
 from tiny_collapse import LMP, TOP, processes_in, read_asc, serial, write_case
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli  # noqa: E402
 from slope_tools.case import decks, logs, settings  # noqa: E402
 from slope_tools.commands import study as study_command  # noqa: E402
 from slope_tools.ensemble import convergence, headline, job_display, results, size_study, study  # noqa: E402
@@ -48,12 +48,7 @@ def slope(here, capsys):
     def run(arguments):
         if re.search(r"--np [2-9]", arguments) and serial():
             pytest.skip("LMP is serial: built with BUILD_MPI=OFF")
-        capsys.readouterr()
-        try:
-            status = cli.main(["study", *shlex.split(arguments)])
-        except SystemExit as error:
-            status = error.code
-        return status, *capsys.readouterr()
+        return called(capsys, ["study", *shlex.split(arguments)])
     return run
 
 
@@ -262,7 +257,7 @@ def test_without_repeats_the_largest_volume_is_called_that(finished):
     assert f"{best['kind']}: {upward:,} m3 to remove; run {best['run']}" in out
     assert "conservative volume" not in out
     [doubt] = [text for text in best["doubts"] if "by chance" in text]
-    assert doubt.startswith("without repeats nobody knows by how much runs differ by chance")
+    assert doubt.startswith("without repeats the scatter by chance is unknown")
     ends = {name for name in ("rolling", "friction") if best["set"][name] != "0" and all(
         float(line["remove_m3"]) <= largest for line in table)}
     assert set(re.findall(r"at the end of the range of (\w+)", doubt)) == ends

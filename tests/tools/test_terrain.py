@@ -15,11 +15,12 @@ import yaml
 from affine import Affine
 from rasterio.crs import CRS
 
+from run_helpers import called
+
 TOP = Path(__file__).resolve().parents[2]
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli  # noqa: E402
 from slope_tools.commands import terrain as terrain_command  # noqa: E402
 from slope_tools.survey import holes as small_holes, rasters  # noqa: E402
 
@@ -75,12 +76,7 @@ def here(tmp_path, monkeypatch):
 def slope(here, capsys):
     """Run `slope terrain ARGUMENTS`, in the test's folder; gives status, stdout, stderr."""
     def run(arguments):
-        capsys.readouterr()
-        try:
-            status = cli.main(["terrain", *shlex.split(arguments)])
-        except SystemExit as error:
-            status = error.code
-        return status, *capsys.readouterr()
+        return called(capsys, ["terrain", *shlex.split(arguments)])
     return run
 
 

@@ -174,7 +174,7 @@ def test_quick_leaves_out_what_takes_minutes(slope):
 def test_a_run_that_fails_is_one_line(slope):
     status, out, err = slope("--jobs 1", claim(e="none"))
     assert (status, out) == (2, "") and err.splitlines()[-1].startswith(
-        "slope verify: verification/runs/01_restitution.restitution_e_none/log.lammps: must end well: "
+        "slope verify: verification/runs/01_restitution.restitution_e_none/log.lammps: must end without an error: "
         "ERROR: there is no e, got status 1")
     assert not Path("verification/verification.yaml").exists()
 

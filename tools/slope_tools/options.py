@@ -3,7 +3,7 @@ import argparse
 import math
 import re
 
-MOST = 10 ** 9      # of whatever is counted; nobody has the memory, or the time, for more
+MOST = 10 ** 9      # of anything counted; more exceeds any memory or time
 
 
 def number(text):

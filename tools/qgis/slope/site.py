@@ -33,7 +33,7 @@ class Site(Algorithm):
         Option("ROAD", "--road", "polygons", "Road (polygons): the volume to remove from it"),
         CUT_ANGLE, MESH,
         Option("STRUCTURE", "--structure", "file", "Wall or building (STL, m)", filter="STL (*.stl)"),
-        Option("LINE", "--line", "line", "Control line: what passes it is counted"),
+        Option("LINE", "--line", "line", "Control line: what crosses it is counted"),
         Option("MOTION", "--motion", "file", "Motion of the ground, as slope quake wrote it (s, m/s2)"),
         Option("OBSERVED", "--observed", "polygons", "Mapped deposit, outline"),
         Option("OBSERVED_THICKNESS", "--observed", "raster", "Mapped deposit, thickness (m)", advanced=True),

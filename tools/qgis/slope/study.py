@@ -19,7 +19,7 @@ class Study(Algorithm):
     title = "Study"
     about = """
     One deck over lists of its variables, several runs at a time; each run has a folder of its own, and the same
-    call goes on after an interruption.
+    call continues after an interruption.
 
     Values: one NAME=V1,V2,... per line; A:B:STEP stands for A, A + STEP, ... up to B. Repeats name what is
     chance (a variable called seed or ...offset), and give the scatter. Of a site, take site.yaml: it says all of

@@ -1,4 +1,4 @@
-"""The range that a deck has for a variable: where the variable stands in a command of ours, and what its comment says.
+"""The range that a deck allows for a variable: from the commands of SLOPE that use it, and from its comment.
 
 A comment such as `# of the lattice; 0 <= offset < 1` on the line of an index variable states its range; the word in the
 middle may be any.

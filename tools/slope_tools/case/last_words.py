@@ -63,7 +63,7 @@ def reason(log, screen):
 
 
 def spoiled_restart(log, screen, crashed):
-    """Whether LAMMPS ended because of the restart file from which it was to go on.
+    """Whether LAMMPS ended because of the restart file from which it was to continue.
 
     log: logs.Log; screen: Screen; both of what was said since it began. crashed: ended by a signal, but not killed.
     LAMMPS that meets nonsense ends with an ERROR line while it reads, or crashes, or, since 2023, runs out of memory

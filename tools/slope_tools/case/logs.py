@@ -5,9 +5,9 @@ from typing import List
 
 
 LOG = "log.lammps"
-# what our styles and LAMMPS say of what they made
+# lines in which SLOPE's styles and LAMMPS report what they made
 NOTES = ("Region terrain", "Fix wall/gran/balls", "Fix deposit/grid", "Delete_balls:", "Create_balls:", "Created ")
-TIMES = ("Time", "v_time")             # thermo columns; LAMMPS' own time begins anew after read_restart
+TIMES = ("Time", "v_time")             # thermo columns; LAMMPS' own time restarts at 0 after read_restart
 INPUT_PLACE = re.compile(r"\s*\([^()]*\.(?:cpp|h):\d+\)\s*$")     # LAMMPS names its source line at the end of a message
 
 
@@ -139,7 +139,7 @@ def parts(path):
 
 
 def part(path):
-    """Put a log aside, log.lammps as log.1.lammps and so on: the run goes on with a new one."""
+    """Rename a log, log.lammps to log.1.lammps and so on: the run continues with a new one."""
     path = Path(path)
     path.rename(path.with_name(f"{path.stem}.{len(parts(path)) + 1}{path.suffix}"))
 

@@ -1,4 +1,4 @@
-"""What --set, --vary, --repeat and --converge stand for: variables of a deck and lists of their values."""
+"""The meaning of --set, --vary, --repeat and --converge: variables of a deck and lists of their values."""
 import decimal
 
 from ..errors import SlopeError

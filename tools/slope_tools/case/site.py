@@ -38,16 +38,17 @@ class Made(NamedTuple):
 
 
 def check_target(folder: Path, again: bool) -> None:
-    """Raise SlopeError unless a site can be made in a folder; again: made anew, from its own site.yaml."""
+    """Raise SlopeError unless a site can be made in a folder; again: rebuilt from its own site.yaml."""
     if not folder.absolute().parent.is_dir():
         raise SlopeError("-o", "must be in an existing folder", folder)
     if again:
         deck = folder / site_deck.NAME
         known = site_choices.found(folder).get("deck_sha256")
         if deck.is_file() and known != digest(deck):
-            raise SlopeError(deck, "must not have been changed by hand, that would be lost: rename or remove it first")
+            raise SlopeError(deck, "must not have been changed by hand, the changes would be lost: rename or remove it "
+                             "first")
     elif (folder / site_choices.NAME).is_file():
-        raise SlopeError("-o", f"must be a new folder; `slope site {folder}` makes this one anew from its "
+        raise SlopeError("-o", f"must be a new folder; `slope site {folder}` rebuilds this one from its "
                          f"{site_choices.NAME}", folder)
     elif folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise SlopeError("-o", "must be a new folder, or an empty one", folder)
@@ -63,11 +64,11 @@ Draw = Callable[[Path, Shown, str], None]       # of the map: file, what it show
 def make(choices: Choices, folder: Path, machine: Machine, tell: Callable[[str], Any],
          warn: Callable[[str], Any], draw: Draw, again: bool = False,
          known: Optional[Derived] = None) -> Made:
-    """Make a site's folder, or make it anew, from complete choices whose files are seen from the working folder.
+    """Make a site's folder, or rebuild it, from complete choices whose paths are relative to the working folder.
 
-    tell and warn are called with lines for the user, draw draws the map; again: the folder is a site, which is made
-    anew; known: what of the choices was found when it was made before. Raises SlopeError on bad input; the folder is
-    then as it was.
+    tell and warn are called with lines for the user, draw draws the map; again: the folder is a site, which is
+    rebuilt; known: the choices that were determined when it was made before. Raises SlopeError on bad input; the folder
+    is then as it was.
     """
     check_target(folder, again)
     old = set(site_choices.found(folder).get("files") or ()) if again else set()
@@ -90,7 +91,7 @@ def make(choices: Choices, folder: Path, machine: Machine, tell: Callable[[str],
 
 def built(choices: Choices, known: Derived, new: Path, folder: Path, machine: Machine, tell, warn,
           draw: Draw) -> Made:
-    """build(), whose messages do not name the folder that is not there afterwards."""
+    """build(), whose messages do not name the temporary folder."""
     try:
         return build(choices, known, new, folder, machine, tell, warn, draw)
     except SlopeError as error:
@@ -100,20 +101,20 @@ def built(choices: Choices, known: Derived, new: Path, folder: Path, machine: Ma
 
 def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Machine, tell, warn, draw: Draw) -> Made:
     """Everything, into the folder `new`, which will be `folder`."""
-    doubts: List[str] = []
+    warnings: List[str] = []
 
-    def doubt(line: str) -> None:
-        doubts.append(line)
+    def keep(line: str) -> None:
+        warnings.append(line)
         warn(line)
     choices = {name: dict(section) for name, section in given.items()}
     wanted = wanted_body(choices, new)
-    raster = terrain(choices, new, tell, doubt)
+    raster = terrain(choices, new, tell, keep)
     found = release.body_of(wanted)
     tell(release.text(found))
     for line in found.warnings:
-        doubt(line)
+        keep(line)
     body = write_body(new, wanted, found)
-    layers = read_layers(choices, raster, new, tell, doubt)
+    layers = read_layers(choices, raster, new, tell, keep)
     title = choices["project"]["name"] or folder.absolute().name
     parts = site_deck.Parts(title, ", ".join(Path(name).name for name in choices["terrain"]["files"]), body,
                             layers.structures, layers.lines, layers.motion)
@@ -122,8 +123,8 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
     derived = site_choices.derived(given, choices, known)
     say_size(choices, size, found, machine, "model.field_diameter" in derived, tell)
     for line in site_warnings.site_warnings(found.measures, size, trial):
-        doubt(line)
-    site_warnings.write(new, doubts)
+        keep(line)
+    site_warnings.write(new, warnings)
     deck = site_deck.text(choices, parts, numbers(choices, trial, size))
     disk.write(new / site_deck.NAME, deck)
     draw(new / MAP, shown(found, layers, reached), f"{title}: {found.measures.volume:,.0f} m\u00b3")
@@ -221,15 +222,15 @@ def settle(choices: Choices, parts: site_deck.Parts, found: release.Body, trial:
 
 
 def say_size(choices: Choices, size: Size, found: release.Body, machine: Machine, follows: bool, tell):
-    """What the user needs to know of the balls, and of what the study takes.
+    """Tell the user the size of the balls, and the time and memory of the study.
 
-    follows: the size of the ground's balls is that of the soil's, nobody chose it.
+    follows: the user did not choose the size of the field balls, it is that of the soil's.
     """
     thick = found.measures.mean_depth / size.diameter, found.measures.largest_depth / size.diameter
     tell(f"balls of {size.diameter:g} m: {size.balls:,} of them, the body is {thick[0]:.1f} balls thick on average, "
          f"{thick[1]:.1f} at most")
-    tell(f"balls of the ground of {choices['model']['field_diameter']:g} m (field_diameter), its roughness"
-         + ("; another number of balls changes it, too, unless you set it in site.yaml" if follows else ""))
+    tell(f"field balls of {choices['model']['field_diameter']:g} m (field_diameter): the roughness of the ground"
+         + ("; it changes with the number of balls unless you set it in site.yaml" if follows else ""))
     study = choices["study"]
     each = 1 + len(study["xoffset"])
     runs = f"{size.runs} runs: {len(study['rolling'])} rolling resistances x {each} lattice positions"

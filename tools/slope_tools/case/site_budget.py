@@ -19,14 +19,14 @@ from .site_choices import Choices
 DEFAULT = 4000          # balls, if no budget is given
 TRIAL = 800             # balls of the trial run
 FEWEST = 100            # balls that a budget must allow for
-MOST = 10 ** 9          # LAMMPS counts atoms of a group further; nobody has the memory
+MOST = 10 ** 9          # far below LAMMPS' own limit, and more than any memory holds
 PER_BALL = 800e-9       # GB, see the page on scaling
 PER_RUN = 0.06          # GB, program and libraries
-PER_CELL = 16e-9        # GB, two terrains of doubles; the deposit's rasters are there where balls were
+PER_CELL = 16e-9        # GB, two terrains of doubles; the deposit's rasters only cover where balls were
 COLLECT = 3.0           # s of a run after it: volume, maps
 REPORT = 15.0           # s of the report
-SPEED = 47.0            # m/s that the paper's stiffness is good for
-AIR = 1.2               # stiffness is made for the trial's largest speed times this
+SPEED = 47.0            # m/s for which the paper's stiffness is sufficient
+AIR = 1.2               # margin of the stiffness over the trial run's largest speed
 PATIENCE = 3.0          # duration: times the trial's time to rest
 LEAST_DURATION = 60.0   # s
 LONGEST = 600.0         # s of a collapse in the trial run
@@ -44,19 +44,19 @@ class Trial(NamedTuple):
     rest: float             # s of the collapse, until it is at rest or the run ends
     at_rest: bool
     speed: float            # largest, m/s
-    cost: float             # s of a core of this machine for a ball and a step
-    setup: float            # s of a core for what does not go with the balls and steps
+    cost: float             # s of a core of this machine per ball and step
+    setup: float            # s of a core for what does not depend on balls and steps
     seconds: float          # s of a core that it took
     left: float             # share of the mass that left the terrain
 
 
 class Size(NamedTuple):
-    """The balls of a site, and what the standard study then takes."""
+    """The balls of a site, and the time and memory of its standard study."""
     diameter: float
     balls: int
     runs: int
     seconds: Optional[float]    # of the whole study on this machine; None without a trial run
-    gigabytes: float            # of the runs that go on at a time
+    gigabytes: float            # of all runs that are active at a time
 
 
 def time_step(d: float, speed: float, density: float) -> float:
@@ -84,9 +84,9 @@ def trial_diameter(choices: Choices, volume: float) -> float:
 
 
 def measure(folder: Path, deck: str, lmp: Path) -> Trial:
-    """Run a site's deck in its folder and read what it measured; SlopeError with LAMMPS' own words if it fails.
+    """Run a site's deck in its folder and read what it measured; SlopeError with LAMMPS' own message if it fails.
 
-    The diameter is left to the caller, as is what the run leaves in the folder.
+    The caller sets the diameter and removes the files of the run.
     """
     log = folder / "log.lammps"
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -98,7 +98,7 @@ def measure(folder: Path, deck: str, lmp: Path) -> Trial:
         try:
             status = process.wait(TRIAL_LIMIT)
         except subprocess.TimeoutExpired:
-            raise SlopeError("trial run", f"must end within {TRIAL_LIMIT:g} s of waiting") from None
+            raise SlopeError("trial run", f"must end within {TRIAL_LIMIT:g} s") from None
         finally:
             processes.stop([process])
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -109,7 +109,7 @@ def measure(folder: Path, deck: str, lmp: Path) -> Trial:
         if words and TOO_LARGE in words:
             raise SlopeError("trial run", "must have balls that are much smaller than the terrain: use more balls "
                              "(--balls), or a smaller --diameter, balls.diameter of site.yaml")
-        raise SlopeError("trial run", f"must end well: {words or f'ended with status {status}'}")
+        raise SlopeError("trial run", f"must end without an error: {words or f'ended with status {status}'}")
     about = disk.load_yaml(summaries[0], "a summary that fix deposit/grid wrote")
     text = log.read_text(encoding="utf-8", errors="replace")
     loops = LOOP.findall(text)
@@ -142,7 +142,7 @@ def study_seconds(d: float, volume: float, trial: Trial, speed: float, density: 
 
 
 def gigabytes(d: float, volume: float, cells: int, jobs: int) -> float:
-    """What the runs that go on at a time take together."""
+    """The memory of all runs that are active at a time."""
     return jobs * (PER_RUN + PER_CELL * cells + PER_BALL * volume / d ** 3)
 
 
@@ -161,12 +161,12 @@ def fit(budget: float, cost: Callable[[float], float], volume: float, option: st
 
 
 def stiff_to(trial: Optional[Trial]) -> float:
-    """The speed (m/s) that the stiffness is made for: the paper's, or more where the trial run was faster."""
+    """The speed (m/s) for which the stiffness must be sufficient: the paper's, or more if the trial run was faster."""
     return max(SPEED, float(f"{AIR * trial.speed:.2g}")) if trial else SPEED
 
 
 def duration(trial: Optional[Trial]) -> float:
-    """The most that is run, s."""
+    """The time limit of a run, s."""
     return max(LEAST_DURATION, 10.0 * math.ceil(PATIENCE * trial.rest / 10)) if trial else LONGEST
 
 

@@ -71,8 +71,8 @@ def check(given: Any, where: str, options: Optional[Mapping[Tuple[str, str], str
     if not isinstance(given, dict) or "slope_site" not in given:
         raise SlopeError(where, f"must be {WHAT}, with slope_site")
     if given["slope_site"] != VERSION:
-        raise SlopeError(f"{where}: slope_site", f"must be {VERSION}, the version that this program reads: make the "
-                         "site anew from its files, or take the program that made it", given["slope_site"])
+        raise SlopeError(f"{where}: slope_site", f"must be {VERSION}, the version that this program reads: make a new "
+                         "site from its files, or use the program that made it", given["slope_site"])
     validator = jsonschema.Draft202012Validator(schema())
     errors = sorted(validator.iter_errors(given), key=lambda error: [str(part) for part in error.absolute_path])
     if errors:
@@ -112,7 +112,7 @@ def rule_of(error: jsonschema.ValidationError) -> str:
 
 
 def read(folder: Path) -> Choices:
-    """The complete choices of a site's folder; files as seen from the working folder."""
+    """The complete choices of a site's folder; paths of files relative to the working folder."""
     path = folder / NAME
     if not path.is_file():
         raise SlopeError(folder, f"must be a folder with {NAME}, which slope site makes")
@@ -128,21 +128,21 @@ def found(folder: Path) -> Dict[str, Any]:
 
 def fingerprint(choices: Choices) -> str:
     """Of all choices that the deck and its data depend on; not of those that `slope study` reads from site.yaml."""
-    made = with_files(choices, lambda name: Path(name).name)      # folders are seen from elsewhere
+    made = with_files(choices, lambda name: Path(name).name)      # the path depends on the working folder
     for name in READ_LATER:
         made[name] = {key: value for key, value in made[name].items() if (name, key) in FILES}
     return hashlib.sha256(json.dumps(disk.plain(made), sort_keys=True).encode("utf-8")).hexdigest()
 
 
 def derived(before: Choices, after: Choices, known: Derived) -> Derived:
-    """What of the choices was not chosen, but found: now, or earlier (known) and not changed since."""
+    """The choices that the user left open and the command determined: now, or earlier (known) and unchanged since."""
     names = {f"{section}.{key}": (before[section][key], after[section][key]) for section, key in DERIVED}
     return {name: now for name, (was, now) in names.items()
             if now is not None and (was is None or (name in known and known[name] == now))}
 
 
 def forget(choices: Choices, known: Derived) -> None:
-    """Make null what was found and not changed since, so that it is found anew."""
+    """Set to null what the command determined and the user did not change, so that it is determined again."""
     for section, key in DERIVED:
         name = f"{section}.{key}"
         if name in known and known[name] == choices[section][key]:
@@ -171,7 +171,7 @@ def text(choices: Choices, found_: Dict[str, Any], folder: Path) -> str:
     """site.yaml for a folder: the choices, each with its meaning, and what was found; checked before it is given."""
     seen = with_files(choices, lambda name: Path(os.path.relpath(name, folder)).as_posix())
     about = schema()
-    lines = [f"# {about['description']}.", "# `slope site FOLDER` makes the folder anew from it, `slope study FOLDER` "
+    lines = [f"# {about['description']}.", "# `slope site FOLDER` rebuilds the folder from it, `slope study FOLDER` "
              "runs it.", "", f"slope_site: {VERSION}    # version of this file"]
     for name, section in sections():
         lines += ["", f"{name}:    # {section['description']}"]

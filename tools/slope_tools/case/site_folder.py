@@ -31,12 +31,12 @@ def planned(choices: Choices) -> Set[str]:
 
 
 def check(choices: Choices, folder: Path, old: Set[str]) -> None:
-    """Raise SlopeError if making a folder anew would take a file of the user's; old: names that slope site made."""
+    """Raise SlopeError if rebuilding a folder would replace a file of the user's; old: names that slope site made."""
     names = planned(choices)
     for source in map(Path, site_choices.source_files(choices)):
         if source.name in names | old and source.parent.resolve() == folder.resolve():
-            raise SlopeError(source, f"must not have a name of the files that slope site makes in {folder}: rename it, "
-                             "or move it out of there")
+            raise SlopeError(source, f"must not have the name of a file that slope site makes in {folder}: rename it, "
+                             "or move it elsewhere")
     check_free(names, folder, old)
 
 
@@ -44,7 +44,7 @@ def check_free(names: Set[str], folder: Path, old: Set[str]) -> None:
     """Raise SlopeError if one of the names is that of a file which slope site did not make."""
     for path in (folder / name for name in sorted(names)):
         if path.is_dir() or (path.exists() and path.name not in old):
-            raise SlopeError(path, "must not be there, slope site makes a file of that name: rename or move it")
+            raise SlopeError(path, "must not exist, slope site makes a file of that name: rename or move it")
 
 
 def exchange(new: Path, folder: Path, old: Set[str]) -> None:

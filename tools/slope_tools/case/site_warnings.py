@@ -1,4 +1,4 @@
-"""What makes a site doubtful, in words: slope site prints it, and keeps it in the folder for the report."""
+"""The warnings of a site: slope site prints them, and keeps them in the folder for the report."""
 from pathlib import Path
 from typing import List, Optional, Sequence
 
@@ -11,7 +11,7 @@ from .site_budget import Size, Trial
 NAME = "warnings.yaml"
 ROUGH = 3.0             # balls, mean thickness of the body: below, the numbers are rough
 THICK = 10.0            # balls, largest thickness: below, a site should be repeated with more balls
-LARGE = 1e6             # m3: larger masses run farther than laboratory friction gives
+LARGE = 1e6             # m3: larger masses run farther than laboratory friction suggests
 LOST = 0.001            # share of the mass that may leave the terrain
 MORE = "use more balls (--balls, --minutes)"
 
@@ -25,7 +25,7 @@ def site_warnings(found: Measures, size: Size, trial: Optional[Trial]) -> List[s
 def of_trial(trial: Optional[Trial]) -> List[str]:
     """What the trial run showed."""
     if trial is None:
-        return ["no LAMMPS program (LMP, --lmp, build/lmp): the deck was not tried, time and speeds are not known"]
+        return ["no LAMMPS program (LMP, --lmp, build/lmp): no trial run, time and speeds are unknown"]
     lines = []
     if trial.left > LOST:
         lines.append(f"{100 * trial.left:.2g} % of the mass left the terrain in the trial run: use a larger elevation "

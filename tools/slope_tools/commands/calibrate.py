@@ -28,7 +28,7 @@ from numbers alone, such as those of a report:
   tools/slope calibrate in.collapse --front 2000 --area 850000 --vary friction=10:35 --vary rolling=0:0.2 \\
       --runs 40 -o fit
 
-The same command goes on after an interruption; more --runs add to those there are. Writes DIR/calibrate.csv,
+The same command continues after an interruption; a larger --runs adds to the existing runs. Writes DIR/calibrate.csv,
 DIR/calibrate.yaml, the regions over pairs of variables DIR/calibrate.png, and, with --observed, predicted against
 mapped DIR/predicted.png.
 """
@@ -53,7 +53,7 @@ def add_parser(commands, **kwargs):
                              f"(default {TOLERANCE:g}); chance comes on top. NAME=SHARE: of one observation, observed, "
                              "front, area or volume; may be repeated")
     parser.add_argument("--threshold", metavar="T", type=number, default=THRESHOLD,
-                        help=f"a deposit is where it is thicker than this, m (default {THRESHOLD:g})")
+                        help=f"thickness above which a cell counts as deposit, m (default {THRESHOLD:g})")
     parser.add_argument("--vary", metavar="NAME=LO:HI", action="append", default=[], required=True,
                         help="variable of the deck to be calibrated, and its range; all values in it are equally "
                              "likely before (loguniform:LO:HI and the others of `slope study` too)")

@@ -30,10 +30,11 @@ def add_parser(commands, **kwargs):
         "release", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
         description="The body that is released: a slip surface below a polygon, or a scar, to a depth or volume.",
         **kwargs)
-    parser.add_argument("terrain", metavar="TERRAIN.asc", help="the ground before, as slope terrain wrote it")
+    parser.add_argument("terrain", metavar="TERRAIN.asc",
+                        help="the ground before the collapse, as slope terrain wrote it")
     parser.add_argument("-o", dest="output", metavar="NAME", required=True, type=Path,
                         help="first part of the names of all files")
-    parser.add_argument("--polygon", metavar="P", help="where it is released; with --scar, only the part of "
+    parser.add_argument("--polygon", metavar="P", help="the release area; with --scar, only the part of "
                         "the scar inside it is used")
     parser.add_argument("--shape", choices=SHAPES, help="of the slip surface")
     size = parser.add_mutually_exclusive_group()

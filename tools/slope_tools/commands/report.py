@@ -45,10 +45,10 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--reference", metavar="FILE.yaml", type=Path,
                         help="numbers from elsewhere, published or measured, shown beside those of the runs")
     parser.add_argument("--converge", metavar="DIR", type=Path,
-                        help="what the size of the balls does: the folder of `slope sensitivity --converge`, or its "
+                        help="effect of the size of the balls: the folder of `slope sensitivity --converge`, or its "
                              "converge.yaml (default: the one that the study took its size error from)")
     for name, what in (("project", "name of the project or the site, the title of the page"),
-                       ("client", "for whom the report is"), ("author", "who made it")):
+                       ("client", "recipient of the report"), ("author", "author of the report")):
         parser.add_argument(f"--{name}", metavar="TEXT", help=f"{what} (default: what {SITE} says, in DIR or above it)")
     parser.add_argument("--no-film", action="store_true",
                         help="make no film of the balls, REPORT.mp4 (default: one, where the run wrote dumps and "

@@ -59,7 +59,7 @@ def add_sample(parser) -> None:
                         help="a variable of the ensemble: LO:HI or uniform:LO:HI, loguniform:LO:HI, "
                              "triangular:LO:MODE:HI, normal:MEAN:DEVIATION:LO:HI, list:V1@WEIGHT,V2@WEIGHT,...")
     parser.add_argument("--design", choices=designs.KINDS,
-                        help="sobol (default): more points can be added, those there are stay; lhs: Latin hypercube, "
+                        help="sobol (default): more points can be added later; lhs: Latin hypercube, "
                              "whose number of points is final")
     parser.add_argument("--seed", metavar="S", type=whole, help="seed of the design (default 1)")
 

@@ -25,7 +25,7 @@ def add_parser(commands, **kwargs):
     """Add `score` and its arguments to argparse's commands; return its parser."""
     parser = commands.add_parser(
         "score", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
-        description="A run's deposit against a mapped one: overlap, run-out, volume.", **kwargs)
+        description="Compare a run's deposit with a mapped one: overlap, run-out, volume.", **kwargs)
     parser.add_argument("prefix", metavar="PREFIX", help="output of fix deposit/grid: PREFIX.thickness.asc and so on")
     parser.add_argument("--observed", metavar="POLYGON|RASTER", required=True, type=Path,
                         help="the mapped deposit: its outline (GeoJSON, shapefile, CSV, WKT), or its thickness in "
@@ -33,7 +33,7 @@ def add_parser(commands, **kwargs):
     parser.add_argument("-o", dest="output", metavar="DIR", type=Path,
                         help="folder for the results (default PREFIX.score)")
     parser.add_argument("--threshold", metavar="T", type=number, default=THRESHOLD,
-                        help=f"a deposit is where it is thicker than this, m (default {THRESHOLD:g})")
+                        help=f"thickness above which a cell counts as deposit, m (default {THRESHOLD:g})")
     parser.add_argument("--mesh", metavar="SIZE", type=number,
                         help="side of the mesh cells of score.csv, m; their corners are at multiples of it in local x "
                              "and y (default: the cells of the run)")

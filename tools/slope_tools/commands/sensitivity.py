@@ -19,7 +19,7 @@ example: what the size of the balls and the time step do, against the scatter ov
   tools/slope sensitivity inputs/20_embankment/in.embankment --road inputs/20_embankment/road.csv --local \\
       --set d=2.5 --vary d=1.25 --vary step=0.5 --repeat xoffset=0.25,0.5,0.75 -o out
 
-what the size of the balls does, with field balls that keep theirs: the value for small balls, the error of each size:
+the effect of the size of the balls, with constant field balls: the value for small balls, the error of each size:
   tools/slope sensitivity inputs/20_embankment/in.embankment --road inputs/20_embankment/road.csv --local \\
       --converge d=4,2.5,1.25 --set field_d=1.25 --repeat xoffset=0.25,0.5 -o sizes
 

@@ -24,9 +24,9 @@ OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
            "observed": ("observed", "file"), "diameter": ("balls", "diameter"), "balls": ("balls", "number"),
            "minutes": ("balls", "minutes"), "memory": ("balls", "memory"), "name": ("project", "name"),
            "client": ("project", "client"), "author": ("project", "author")}
-# those that change neither the body nor how it runs: what was found for it stays
+# options that change neither the body nor its runs: what was determined for these is kept
 BESIDE = {"road", "cut_angle", "mesh", "line", "observed", "name", "client", "author"}
-# of these, one that is given takes the place of the others
+# of each group, an option that is given replaces the others
 ONE_OF = (("depth", "volume", "curvature"), ("diameter", "balls", "minutes", "memory"))
 
 EPILOG = """\
@@ -36,13 +36,13 @@ examples: from three files of a GIS to a folder, then to a report:
   tools/slope site --terrain dem.tif --release release.geojson --depth 12 --road road.geojson -o mine
   tools/slope study mine
 
-a scar of two surveys; a wall, an earthquake and a line behind the wall; finer balls for a site that is there:
+a scar from two surveys; a wall, an earthquake and a line behind the wall; finer balls for an existing site:
   tools/slope site --terrain before.tif --scar after.tif --least 0.5 --road road.shp -o scar
   tools/slope site --terrain dem.tif --release release.shp --volume 50000 --structure wall.stl --line behind.geojson \\
       --motion motion.txt -o quake
   tools/slope site mine --minutes 60
 
-FOLDER/site.yaml holds every choice, and what each means; change it and give FOLDER alone to make the folder anew.
+FOLDER/site.yaml holds every choice, and what each means; change it and give FOLDER alone to rebuild the folder.
 """
 
 
@@ -52,14 +52,14 @@ def add_parser(commands, **kwargs):
         "site", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
         description="A folder for a site: terrain, body, layers, deck, map, and site.yaml with every choice.", **kwargs)
     parser.add_argument("folder", metavar="FOLDER", type=Path, nargs="?",
-                        help="a site's folder that is made anew from its site.yaml; options change its choices")
+                        help="a site's folder that is rebuilt from its site.yaml; options change its choices")
     parser.add_argument("-o", dest="output", metavar="FOLDER", type=Path, help="the new folder")
     add_ground(parser.add_argument_group("ground and body"))
     add_layers(parser.add_argument_group("what lies on it"))
     add_size(parser.add_argument_group("size of the balls", "One of these (default: --balls 4000)."))
     about = parser.add_argument_group("report")
     about.add_argument("--name", help="of the site (default: of the folder)")
-    about.add_argument("--client", help="for whom the report is")
+    about.add_argument("--client", help="recipient of the report")
     about.add_argument("--author", help="the person responsible")
     parser.add_argument("--lmp", metavar="FILE", help="the LAMMPS program that tries the deck (default: LMP of the "
                         "environment, then build/lmp beside tools/)")
@@ -94,11 +94,11 @@ def add_ground(group):
 def add_layers(group):
     group.add_argument("--road", metavar="P", help="polygon of the road, for the volume to remove")
     group.add_argument("--cut-angle", metavar="DEG", type=number, help="rise of the cut from its edges (default 30)")
-    group.add_argument("--mesh", metavar="SIZE", type=number, help="side of the cells of the sheet, m (default 10)")
+    group.add_argument("--mesh", metavar="SIZE", type=number, help="side of the mesh cells, m (default 10)")
     group.add_argument("--structure", metavar="STL", action="append",
                        help="a wall or building of triangles, m, in local coordinates or the terrain's CRS; may be "
                             "given several times")
-    group.add_argument("--line", metavar="LINE", action="append", help="control line: what passes it is counted; may "
+    group.add_argument("--line", metavar="LINE", action="append", help="control line: what crosses it is counted; may "
                        "be given several times")
     group.add_argument("--motion", metavar="FILE", help="ground motion written by slope quake: the body stands, is "
                        "shaken, and loses its strength once it has moved far enough")
@@ -135,7 +135,7 @@ def chosen(args):
     given = {option: value for option in OPTIONS if (value := getattr(args, option)) is not None}
     if args.folder is not None:
         if args.output is not None:
-            raise SlopeError("-o", f"must not be given with the folder of a site, {args.folder}, which is made anew",
+            raise SlopeError("-o", f"must not be given with the folder of a site, {args.folder}, which is rebuilt",
                              args.output)
         folder, choices = args.folder, site_choices.read(args.folder)
         known = site_choices.found(folder).get("derived") or {}
@@ -154,7 +154,7 @@ def chosen(args):
 
 
 def replace(choices, given):
-    """Put options in their places; what one of them replaces goes."""
+    """Enter options in the choices; those that one of them replaces become null."""
     for group in ONE_OF:
         if any(option in given for option in group):
             for option in group:

@@ -26,7 +26,7 @@ example: six runs, as many at a time as there are cores; the same command contin
 with a conservative volume that counts the chance: every combination three times, from other offsets of the lattice:
   tools/slope study in.collapse --set rolling=0,0.1 --repeat xoffset=0.25,0.5 --road road.geojson -o out
 
-an ensemble: 64 runs with values drawn from distributions, how likely a volume is exceeded, which variable matters:
+an ensemble: 64 runs with values drawn from distributions, the probability of a volume, the variables that matter:
   tools/slope study in.collapse --sample 64 --vary friction=20:40 --vary rolling=triangular:0:0:0.2 \\
       --road road.geojson -o out
 
@@ -43,7 +43,7 @@ def add_parser(commands, **kwargs):
     """Add `study` and its arguments to argparse's commands; return its parser."""
     parser = commands.add_parser(
         "study", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
-        description="Run one deck over the product of lists of its variables.", **kwargs)
+        description="Run one deck for all combinations of values of its variables, or for an ensemble.", **kwargs)
     add_deck(parser, site=True)
     parser.add_argument("--set", metavar="NAME=V1,V2,...", action="append", default=[],
                         help="values of an index variable of the deck; A:B:STEP stands for A, A + STEP, ... up to B")

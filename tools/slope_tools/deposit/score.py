@@ -1,4 +1,4 @@
-"""A run's deposit against a mapped one."""
+"""Comparison of a run's deposit with a mapped one."""
 import csv
 import math
 from typing import List, NamedTuple, Optional, Tuple

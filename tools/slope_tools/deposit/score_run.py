@@ -1,4 +1,4 @@
-"""A run's deposit against a mapped one: all that `slope score` does."""
+"""Comparison of a run's deposit with a mapped one: all that `slope score` does."""
 from pathlib import Path
 from typing import List, Optional
 
@@ -29,7 +29,7 @@ def make(prefix: str, mapped: Path, folder: Path, threshold: float = THRESHOLD, 
     squares = make_mesh(mesh or run_.cell, run_.raster)
     observed = read_observed(mapped, run_.raster, threshold, local, warn)
     if observed.outside > 0:
-        warn(f"{mapped}: {observed.outside:.6g} m2 of it lie outside of the grid of the run: counted as not met")
+        warn(f"{mapped}: {observed.outside:.6g} m2 of it lie outside of the grid of the run: counted as false negative")
     simulated = run_.raster.z > threshold
     if not simulated.any():
         warn(f"{run_.prefix}.thickness.asc is nowhere thicker than {threshold:g} m")

@@ -78,7 +78,7 @@ def of_run(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], None] = l
     profile = along(axis, run, result.removed, wanted.blocked, wanted.axis or wanted.road)
     about = totals(wanted, run, mesh, result, profile, source)
     if result.unknown > 0:
-        warn(f"{result.unknown:.6g} m3 lie on cells without ground, beside the road: not counted as to be removed")
+        warn(f"{result.unknown:.6g} m3 lie on cells without ground, beside the road: not in the volume to remove")
         about["volume"]["unknown"] = result.unknown
     about["warnings"] = warnings
     return Removal(run, road, axis, mesh, result, profile, wanted.bulk / run.bulk if wanted.bulk else None,

@@ -227,7 +227,7 @@ def misfits(outputs: np.ndarray, found: Posterior, targets: Sequence[Target]) ->
 # --- words ---
 
 def judgement(found: Posterior, variables: Sequence) -> List[str]:
-    """In plain words: how well each variable (distributions.Range) is known, and which make up for each other."""
+    """In sentences: how well each variable (distributions.Range) is known, and which compensate each other."""
     lines, loose = [], []
     for i, one in enumerate(variables):
         low, high = found.interval(i)
@@ -247,11 +247,11 @@ def judgement(found: Posterior, variables: Sequence) -> List[str]:
             other = variables[j].name
             if abs(correlation[i, j]) >= TIED and {one.name, other} & set(loose):
                 more = "less" if correlation[i, j] < 0 else "more"
-                lines.append(f"{one.name} and {other} are not identifiable apart from each other: more {one.name} with "
-                             f"{more} {other} gives the same")
+                lines.append(f"{one.name} and {other} cannot be identified separately: more {one.name} with "
+                             f"{more} {other} gives the same result")
     if found.misfit > 1:
-        lines.append("no values of these variables reach the observation: the closest are "
-                     f"{math.sqrt(found.misfit):.1f} times as far from it as chance and tolerance make likely")
+        lines.append("no values of these variables reproduce the observation: the closest are "
+                     f"{math.sqrt(found.misfit):.1f} times as far from it as chance and tolerance explain")
     return lines
 
 

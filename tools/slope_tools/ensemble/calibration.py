@@ -1,4 +1,4 @@
-"""The runs of a calibration, one batch after the other: what was proposed is kept in a ledger, so that it can go on."""
+"""The runs of a calibration, batch by batch: a ledger keeps the proposed points, so that it can be continued."""
 from pathlib import Path
 from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence
 
@@ -75,7 +75,7 @@ class Calibration:
         return self.runs
 
     def do(self, evaluate: Callable, targets: Callable, say: Callable[[str], None]) -> backanalysis.Posterior:
-        """All runs; what they say of the variables but for the last one, which only shows what the best values give."""
+        """Make all runs; returns what they show of the variables, without the last one, which uses the best values."""
         self.begin()
         found = None
         while True:

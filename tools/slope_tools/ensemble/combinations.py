@@ -103,7 +103,7 @@ FEW = 0.05      # of the largest volume of runs that differ by chance alone: les
 
 
 def conservative(settings, rows, groups: Sequence[Group], errors: Optional[SizeErrors] = None) -> Dict[str, Any]:
-    """What study.yaml says of the conservative volume: its parts, what it rests on, what speaks against it (doubts)."""
+    """The entry of the conservative volume in study.yaml: its parts, what it is based on, its caveats (doubts)."""
     parts = [group.of("remove_m3") for group in groups]
     sizes = {group.name: errors.at(str(group.rows[0]["variables"][errors.variable])) for group in groups} \
         if errors else None
@@ -126,7 +126,7 @@ def conservative(settings, rows, groups: Sequence[Group], errors: Optional[SizeE
         "label": label(governing.set, settings), "repeats": best.repeats, "runs": best.runs,
         "combinations": len(groups), "scatter_m3": scatter and scatter.deviation,
         "degrees_of_freedom": scatter and scatter.degrees_of_freedom, "quantile": scatter and scatter.quantile,
-        # the run whose maps stand for it
+        # the run whose maps represent it
         "run": largest["run"], "remove_m3": largest["remove_m3"],
         "size": size and errors and {
             "file": str(errors.path), "variable": errors.variable,
@@ -136,11 +136,11 @@ def conservative(settings, rows, groups: Sequence[Group], errors: Optional[SizeE
 
 
 def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline, differences) -> List[str]:
-    """What speaks against taking the headline as the largest volume."""
+    """The caveats: reasons why the volume may be larger than the headline."""
     found = []
     finished = [row for row in rows if row["status"] == "finished"]
     if len(rows) == 1:
-        found.append("nothing was varied, it is of one run")
+        found.append("nothing was varied: it comes from a single run")
     if len(finished) < len(rows):
         found.append(f"{len(rows) - len(finished)} of {len(rows)} runs failed")
     moving = sum(not row["at_rest"] for row in finished)
@@ -158,23 +158,23 @@ def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline, dif
     if best.chance is not None:
         found += ends
     elif len(rows) > 1:
-        found.append("; ".join(["without repeats nobody knows by how much runs differ by chance", *ends]))
+        found.append("; ".join(["without repeats the scatter by chance is unknown", *ends]))
     same = [row["run"] for group in groups for row in group.same]
     if same:
-        found.append(f"what was repeated changes nothing: {', '.join(same[:3])}{' and more' * (len(same) > 3)} "
-                     f"{'is' if len(same) == 1 else 'are'} the same as another run to the last digit, and count"
-                     f"{'s' * (len(same) == 1)} for nothing")
+        found.append(f"a repeated variable has no effect: {', '.join(same[:3])}{' and more' * (len(same) > 3)} "
+                     f"{'is' if len(same) == 1 else 'are'} identical to another run to the last digit and "
+                     f"{'is' if len(same) == 1 else 'are'} not counted")
     released = max(row["released_m3"] for row in finished)
     if best.volume > released:
-        found.append(f"it is more than the {headline.text(released, best.place)} m3 that are released, and no more can "
-                     "lie anywhere: chance or the size of the balls are too uncertain for a number")
+        found.append(f"it is more than the {headline.text(released, best.place)} m3 that are released, which is "
+                     "impossible: the scatter or the size error is too uncertain to give a number")
     for group in groups:
         volumes = list(group.of("remove_m3").volumes.values())
         few = sum(volume < FEW * max(volumes) for volume in volumes)
         if few:
             found.append(f"{few} of the {len(volumes)} runs of {group.name} have less than {100 * FEW:g} % of the "
-                         "volume of the others: that is no chance as its scatter has it (did the slope fail in some "
-                         "alone?)")
+                         "volume of the others, which the scatter by chance does not describe (did the slope fail in "
+                         "some runs only?)")
     above = max(finished, key=lambda row: row["remove_m3"])
     if above["remove_m3"] > best.volume:
         found.append(f"{above['run']} gave more, {headline.text(above['remove_m3'], best.place)} m3")
@@ -188,7 +188,7 @@ def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline, dif
 
 
 def describe(best: Mapping[str, Any]) -> List[str]:
-    """The conservative volume and its parts, rounded to what is known, what differs, and the doubts; a line each."""
+    """The conservative volume and its parts, rounded to what is known, differences and caveats; a line each."""
     def number(value):
         return headline.text(value, best["place_m3"])
 
@@ -210,6 +210,6 @@ def describe(best: Mapping[str, Any]) -> List[str]:
             word = "more than" if entry["clear"] else "no more than"
             by, chance = (headline.text(entry[key], headline.place_of_digits(entry["chance_m3"]))
                           for key in ("by_m3", "chance_m3"))
-            lines.append(f"{entry['variable']}: {by} m3 between {entry['smallest_at']} and {entry['largest_at']} are "
-                         f"{word} chance makes, {chance}")
+            lines.append(f"{entry['variable']}: {by} m3 between {entry['smallest_at']} and {entry['largest_at']}, "
+                         f"{word} expected by chance, {chance} m3")
     return lines + [f"it may be exceeded: {doubt}" for doubt in best["doubts"]]

@@ -1,4 +1,4 @@
-"""What the size of the balls makes of a quantity: a line through its values, the value for small balls, the errors.
+"""Effect of the size of the balls on a quantity: a line through its values, the value for small balls, the errors.
 
 V(d) = V0 + b d: the first term that a finite size can have. What a size d changes, at the slip surface, on the ground
 and at the rim of the deposit, happens in a layer of a few d, and a layer's share of a body grows with d. The line is
@@ -225,7 +225,7 @@ def words(result: Convergence, name: str, what: str, unit: str, number) -> List[
         text += (f", 95 % interval {number(interval[0])} to {number(interval[1])} (standard error "
                  f"{number(small.standard_error)})")
     else:
-        text += ", standard error unknown: two sizes with a run each are a line without any doubt"
+        text += ", standard error unknown: a line through two sizes with one run each always fits"
     found = [text]
     if result.known:
         found.append(f"{what}: error and its standard error at " + ", ".join(
@@ -236,10 +236,10 @@ def words(result: Convergence, name: str, what: str, unit: str, number) -> List[
         found.append(f"{what}: the value for small {name} is not clearly above 0, so errors cannot be shares of it")
     if result.supported is False and result.lack:
         found.append(f"{what}: the line is not supported: the means of the sizes lie {math.sqrt(result.lack[0]):.2g} "
-                     f"times as far from it as the scatter of the repeats makes them (probability {result.lack[1]:.2g}"
+                     f"times as far from it as the scatter of the repeats explains (probability {result.lack[1]:.2g}"
                      "); standard errors are from these residuals")
     elif result.supported is None:
-        found.append(f"{what}: whether a line holds is not known: that takes three sizes, and repeats")
+        found.append(f"{what}: it is unknown whether a line holds: this needs three sizes, and repeats")
     if result.curve_is_clear and result.curved_small:
         found.append(f"{what}: a parabola fits clearly better, and gives {number(result.curved_small.value)} {unit} "
                      f"for small {name}")

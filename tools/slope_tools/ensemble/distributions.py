@@ -1,4 +1,4 @@
-"""What --vary stands for in an ensemble: variables of a deck, and the distributions that their values come from."""
+"""The meaning of --vary in an ensemble: variables of a deck, and the distributions of their values."""
 import decimal
 import math
 import re

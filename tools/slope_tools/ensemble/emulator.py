@@ -1,4 +1,4 @@
-"""A Gaussian process that stands for the runs of an ensemble, its own error, and which variables matter by it.
+"""A Gaussian process that replaces the runs of an ensemble, its own error, and the variables that matter by it.
 
 Points lie in the unit cube (designs). The process has a smooth part with a length for each variable, of a Matern 5/2
 or a Gaussian kernel, whichever the runs make likelier, and the noise of chance. Its error is that of a
@@ -69,7 +69,7 @@ class Emulator:
 
 @dataclass(frozen=True)
 class Check:
-    """What a cross-validation says of an emulator.
+    """Result of the cross-validation of an emulator.
 
     explained: share of the variance of the runs left out that it explains (1 is perfect, 0 is the mean of all runs);
     error: root mean square of what it is wrong by; noise: standard deviation of a run by chance, as the process has it;

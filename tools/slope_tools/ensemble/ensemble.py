@@ -112,12 +112,12 @@ def influence(analysis: emulator.Analysis) -> Dict[str, Any]:
 
 
 def doubts(about: Mapping[str, Any]) -> List[str]:
-    """What speaks against the numbers."""
+    """The caveats on the numbers."""
     found = []
     if about["failed"]:
         share = about["failed"] / about["runs"]
-        found.append(f"{about['failed']} of {about['runs']} runs failed: they are kept out of the estimates and may be "
-                     "anything in the bounds" + (", which are wide" if share > FEW else ""))
+        found.append(f"{about['failed']} of {about['runs']} runs failed: the estimates exclude them, and the bounds "
+                     "allow any value for them" + (", so they are wide" if share > FEW else ""))
     of = about["of"]
     if of:
         open_ = [entry["share"] for entry in about["quantities"][of]["quantiles"] if entry["high"] is None]
@@ -161,7 +161,7 @@ def influence_table(analyses: Mapping[str, emulator.Analysis]) -> str:
 # --- words ---
 
 def describe(about: Mapping[str, Any]) -> List[str]:
-    """The ensemble in a few lines: the quantiles of the quantity that counts, what it depends on, the doubts."""
+    """The ensemble in a few lines: the quantiles of the main quantity, what it depends on, the caveats."""
     lines = [f"ensemble: {about['finished']} runs of {about['points']} points; bounds hold with "
              f"{100 * about['confidence']:g} %"]
     of = about["of"]
@@ -169,7 +169,7 @@ def describe(about: Mapping[str, Any]) -> List[str]:
         entry = about["quantities"][of]
         lines.append(f"{entry['name']}: " + "; ".join(quantile_text(one, entry["unit"]) for one in entry["quantiles"]))
         lines.append(f"{entry['name']} depends on " + dependence_text(about["influence"][of]))
-    return lines + [f"doubt: {text}" for text in about["doubts"]]
+    return lines + [f"caveat: {text}" for text in about["doubts"]]
 
 
 def quantile_text(one: Mapping[str, Any], unit: str) -> str:

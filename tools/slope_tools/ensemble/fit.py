@@ -92,14 +92,14 @@ class Fit:
         if self.wanted.observed is not None and predicted is not None:
             self.draw_map(output / MAP, best)
             names.append(MAP)
-        print("\n".join([*words, *self.comparison(about["targets"]), *(f"doubt: {text}" for text in doubts)]))
+        print("\n".join([*words, *self.comparison(about["targets"]), *(f"caveat: {text}" for text in doubts)]))
         print(f"best values: run {best.name}; written to {output}: {' '.join(names)}")
 
     def doubts(self, found: backanalysis.Posterior) -> List[str]:
-        """Why the result may not be believed."""
+        """The caveats on the result."""
         plan, targets = self.plan, self.observed.targets
         failed = [one.name for one in plan.runs if one.error]
-        doubts = [f"{len(failed)} of {len(plan.runs)} runs failed and say nothing: {', '.join(failed[:3])}"] \
+        doubts = [f"{len(failed)} of {len(plan.runs)} runs failed and are left out: {', '.join(failed[:3])}"] \
             if failed else []
         if len(targets) < len(self.variables):
             known, asked = len(targets), len(self.variables)
@@ -107,7 +107,8 @@ class Fit:
                           "variables")
         blind = [target.name for target, one in zip(targets, found.emulators) if not one.noise_seen]
         if blind:
-            doubts.append(f"too few runs to show the chance of {', '.join(blind)}: the region may be too narrow")
+            doubts.append(f"too few runs to measure the scatter by chance of {', '.join(blind)}: the region may be too "
+                          "narrow")
         moving = sum(not row["at_rest"] for row in self.rows.values() if row["status"] == "finished")
         if moving:
             doubts.append(f"{moving} deposits are not at rest")

@@ -1,9 +1,9 @@
-"""The one number that is signed: a volume that the next run stays below, from runs that differ by choice and by chance.
+"""The conservative volume: one that the next run stays below, from runs that differ by choice and by chance.
 
-The runs of a study are combinations of choices (rolling resistance, friction), each of them run several times with what
-nobody can prefer (a seed, where the lattice begins). The model of the scatter: run i of combination k gives
+The runs of a study are combinations of choices (rolling resistance, friction), each repeated with values of no
+preference (a seed, the position of the lattice). The model of the scatter: run i of combination k gives
 V = M_k + L_i + e, a mean of the combination, a part L_i that the runs i of all combinations have in common because they
-begin from the same lattice (it may be 0), and a part of each run's own; both are normal, with the same standard
+start from the same lattice (it may be 0), and a part of each run's own; both are normal, with the same standard
 deviations in all combinations. All volumes are in m3 of ground (bulk); every function is pure.
 """
 import math
@@ -13,9 +13,9 @@ from typing import Dict, List, Optional, Sequence, Tuple
 from scipy import stats
 
 CONFIDENCE = 0.975      # of the next single run: it is below the headline in 39 of 40 studies
-DIFFERENT = 0.95        # a difference is called one if chance makes it in fewer than one of twenty studies
-DIGITS = 3              # of a volume whose scatter is not known
-ROUNDING = 1e-9         # of a volume: what differs by less does not differ
+DIFFERENT = 0.95        # a difference is clear if chance gives it in fewer than one of twenty studies
+DIGITS = 3              # of a volume whose scatter is unknown
+ROUNDING = 1e-9         # of a volume: smaller differences are rounding
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Combination:
 
 @dataclass(frozen=True)
 class Scatter:
-    """Standard deviation (m3) of a run by chance, and the degrees of freedom that it is known with."""
+    """Standard deviation (m3) of a run by chance, and its degrees of freedom."""
     deviation: float
     degrees_of_freedom: float
 
@@ -66,7 +66,7 @@ class Scatter:
 
 @dataclass(frozen=True)
 class SizeError:
-    """What balls of one size make of a volume: (V(d) - V0)/V0, V0 that of small balls.
+    """The error of a volume due to balls of one size: (V(d) - V0)/V0, V0 that of small balls.
 
     half: half the width of its 95 % interval, a share of V0 too; None if it is not known.
     """
@@ -76,7 +76,7 @@ class SizeError:
 
 @dataclass(frozen=True)
 class Headline:
-    """volume = mean + chance + size (m3); chance is None without repeats, size None if nothing is known of it."""
+    """volume = mean + chance + size (m3); chance is None without repeats, size None if it is unknown."""
     volume: float
     mean: float
     chance: Optional[float]
@@ -88,14 +88,14 @@ class Headline:
 
     @property
     def kind(self) -> str:
-        """What the volume may be called."""
+        """How the volume is to be called."""
         if self.chance is not None:
             return "prediction"
         return f"largest of {self.runs} run{'s' * (self.runs > 1)}; chance unknown"
 
     @property
     def place(self) -> float:
-        """To which power of ten (m3) the volume is known."""
+        """The power of ten (m3) to which the volume is known."""
         if self.scatter is None:
             return place_of_digits(self.volume)
         return place(self.scatter.deviation) if self.scatter.deviation > 0 else place_of_digits(self.volume)
@@ -110,7 +110,7 @@ class Headline:
 
 @dataclass(frozen=True)
 class Difference:
-    """Between the largest and the smallest mean (m3) of several combinations, and what chance makes of so many."""
+    """Between the largest and the smallest mean (m3) of several combinations, and the range expected by chance."""
     largest: str
     smallest: str
     by: float
@@ -166,7 +166,7 @@ def shared(combinations: Sequence[Combination]) -> float:
 
 
 def odd_one(combinations: Sequence[Combination], name: str) -> Optional[Tuple[float, float]]:
-    """s (m3) of a combination and that of the others, if its own is larger than chance makes it.
+    """s (m3) of a combination and that of the others, if its own is larger than chance explains.
 
     A common scatter is then too small for it. F test, one of twenty.
     """
@@ -184,9 +184,9 @@ def odd_one(combinations: Sequence[Combination], name: str) -> Optional[Tuple[fl
 def size_part(mean: float, chance: Optional[float], error: SizeError) -> float:
     """What must be added (m3) for the size of the balls, 0 if they make the volume too large.
 
-    The volume of small balls is mean/(1 + e): the difference is added as it is. What that is uncertain by (its 95 %
-    interval) has nothing to do with chance: the two are added as squares, and by what the sum exceeds the chance, that
-    counts.
+    The volume of small balls is mean/(1 + e): the difference is added as it is. Its uncertainty (half the 95 %
+    interval) is independent of chance: the two are combined by the root of the sum of squares, and the excess of that
+    over the chance is added.
     """
     lacking = mean / (1 + error.share) - mean
     half = 0.0 if error.half is None else abs(mean) * error.half / (1 + error.share) ** 2
@@ -195,11 +195,11 @@ def size_part(mean: float, chance: Optional[float], error: SizeError) -> float:
 
 
 def headline(combinations: Sequence[Combination], errors: Optional[Dict[str, SizeError]] = None) -> Headline:
-    """The volume that the next run stays below, and of what it is made; errors: {combination: error of its size}.
+    """The volume that the next run stays below, and its parts; errors: {combination: error of its size}.
 
-    Of all combinations the one counts whose mean, chance and size are largest together; with as many runs in each, and
-    balls of one size, that is the one with the largest mean. If several means are about the same, the largest is one
-    that chance has lifted: the headline is then the safer (see the page on `slope study`).
+    The combination with the largest sum of mean, chance and size governs; with equal numbers of runs and balls of one
+    size that is the one with the largest mean. If several means are about the same, the largest is high by chance, so
+    the headline is conservative (see the page on `slope study`).
     """
     scatter = pooled(combinations)
     found: List[Headline] = []
@@ -225,7 +225,7 @@ def difference(line: Sequence[Combination], scatter: Optional[Scatter]) -> Diffe
 
 
 def is_clear(line: Sequence[Combination], scatter: Scatter) -> bool:
-    """What difference() says of it, without its chance: many times as fast."""
+    """Whether difference() is clear, without computing its chance: many times as fast."""
     top, low, unit = ends(line)
     by = top.mean - low.mean
     if by == 0 or scatter.deviation == 0:
@@ -240,7 +240,7 @@ def ends(line: Sequence[Combination]) -> Tuple[Combination, Combination, float]:
     return top, low, math.sqrt((1 / top.runs + 1 / low.runs) / 2)
 
 
-# --- what is known of a number ---
+# --- rounding ---
 
 def place(uncertainty: float) -> float:
     """The power of ten that a number with this standard deviation (> 0) is rounded to: a 5th to a 50th of it."""
@@ -253,7 +253,7 @@ def place_of_digits(value: float) -> float:
 
 
 def up(value: float, step: float) -> float:
-    """A value rounded up to a multiple of a power of ten; what is one but for rounding stays."""
+    """A value rounded up to a multiple of a power of ten; a value within rounding of a multiple stays there."""
     return nearest(math.ceil(value / step - 1e-9) * step, step)
 
 

@@ -1,4 +1,4 @@
-"""Volume on the road against the intensity of what sets the mass off, and how likely a volume is exceeded at each.
+"""Volume on the road against the intensity of the trigger, and the probability that a volume is exceeded at each.
 
 An intensity is a variable of the study such as the peak acceleration of an earthquake (gal). Its values are choices,
 as all values of --set; what differs by chance at one of them are the repeats. Of n runs at an intensity, k with more
@@ -109,11 +109,11 @@ def point(at: float, group: Group, volumes: Sequence[float]) -> Dict[str, Any]:
 
 
 def doubts(about: Mapping[str, Any]) -> List[str]:
-    """What speaks against a common scatter of all runs: chance decides whether the mass fails at all."""
+    """The caveat on a common scatter of all runs: chance decides whether the slope fails at all."""
     mixed = sorted({f"{one['at']:g}" for line in about["lines"] for one in line["points"]
                     if one["smallest_m3"] <= STANDS * one["released_m3"] < one["largest_m3"]}, key=float)
-    return [f"at {about['variable']} {', '.join(mixed)} some runs fail and others stand: the scatter is that "
-            "of failing, not of a volume; take the probabilities at each intensity"] if mixed else []
+    return [f"at {about['variable']} {', '.join(mixed)} the slope fails in some runs and stands in others: the scatter "
+            "is that between the two, not that of a volume; use the probabilities at each intensity"] if mixed else []
 
 
 def table(about: Mapping[str, Any]) -> str:

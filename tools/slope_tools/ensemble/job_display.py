@@ -15,7 +15,7 @@ class Display:
     """Shows how far the runs are: a table that renews itself on a terminal, else a line now and then."""
 
     def __init__(self, todo, waiting, at_a_time):
-        """at_a_time(): how many runs go on beside each other now."""
+        """at_a_time(): how many runs may be active at a time."""
         self.total, self.waiting, self.at_a_time = len(todo), len(waiting), at_a_time
         self.numbers = {one.name: i for i, one in enumerate(todo, 1)}
         self.ended_runs = self.failed = 0
@@ -88,7 +88,7 @@ class Display:
 
     @staticmethod
     def _progress(job):
-        """Share done (None if not known), what to say of it, and when it will have ended at the latest."""
+        """Share done (None if unknown), a text for the user, and the latest time of its end."""
         log = job.run.log
         if log.thermo == 0:
             return None, "setting up", ""

@@ -46,9 +46,9 @@ class Run:
         self.varied = self.name     # for a narrow terminal: the values that differ
         self.error = None
         self.log = logs.Log(self.folder / logs.LOG)
-        self.restart = None         # step and path of the restart file that it goes on from
+        self.restart = None         # step and path of the restart file from which it continues
         self.refused = set()        # restart files that LAMMPS could not read
-        self.output_before = 0              # bytes on its screen that are of the parts before this one
+        self.output_before = 0              # bytes of screen output of its earlier parts
 
     @property
     def marker(self):
@@ -91,16 +91,16 @@ def copied(files, folder):
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def check_finished(one, deck, digests):
+def check_finished(run, deck, digests):
     """Raise SlopeError if a finished run was made from files that are not the present ones; comments do not count."""
-    if not one.marker.exists():
+    if not run.marker.exists():
         return
-    for name, digest in (disk.load_yaml(one.marker, "what `slope study` wrote").get("inputs") or {}).items():
-        if digests.get(name, digest) == digest or (name == deck.name and same_commands(one.folder / name, deck)):
+    for name, digest in (disk.load_yaml(run.marker, "what `slope study` wrote").get("inputs") or {}).items():
+        if digests.get(name, digest) == digest or (name == deck.name and same_commands(run.folder / name, deck)):
             continue
         other = "" if (deck.parent / site_choices.NAME).is_file() else ", or give another -o"
-        raise SlopeError(one.folder, f"was run with another {name} than that of {deck.parent}: remove the folder to "
-                         f"run it again (or {one.folder.parent}, for all of them){other}")
+        raise SlopeError(run.folder, f"was run with another {name} than that of {deck.parent}: remove the folder to "
+                         f"run it again (or {run.folder.parent}, for all of them){other}")
 
 
 def same_commands(path, deck):
@@ -135,7 +135,7 @@ def signals_interrupt():
 
 @dataclass
 class Active:
-    """A run under way; process: of subprocess, or what stands for one elsewhere."""
+    """An active run; process: a subprocess.Popen, or an object with its interface."""
     run: Run
     process: Any
     began: float            # time.monotonic()
@@ -157,12 +157,12 @@ class Work:
 
     def do(self, todo):
         """Run what is not finished. On an interruption, end the runs under way and leave their folders unfinished."""
-        waiting = [one for one in todo if not one.marker.exists()]
+        waiting = [run for run in todo if not run.marker.exists()]
         with Display(todo, waiting, self.at_a_time) as display:
             try:
                 while waiting or self.active:
-                    for one, said in self._begin(waiting):
-                        display.started(one, said)
+                    for run, said in self._begin(waiting):
+                        display.started(run, said)
                     time.sleep(POLL)
                     for active in list(self.active):
                         active.run.log.update()
@@ -179,14 +179,14 @@ class Work:
                 raise
 
     def at_a_time(self):
-        """How many runs go on beside each other now."""
+        """How many runs may be active at a time."""
         return self.jobs
 
     def _begin(self, waiting):
-        """Start what may run now, taking it from waiting; (run, what to say of it) of each."""
+        """Start what may run now, taking it from waiting; (run, line for the user) of each."""
         while waiting and len(self.active) < self.jobs:
-            one = waiting.pop(0)
-            yield one, self._start(one)
+            run = waiting.pop(0)
+            yield run, self._start(run)
 
     def _again(self, active):
         """Whether a run that ended is to be started once more."""
@@ -196,129 +196,129 @@ class Work:
         """The runs that the display shows as under way."""
         return self.active
 
-    def command(self, one):
+    def command(self, run):
         """Arguments of lmp."""
         words = ["-in", self.deck.name, "-log", logs.LOG]
-        for name, value in one.chosen.items():
+        for name, value in run.chosen.items():
             words += ["-var", name, value]
-        if one.restart:
-            words += ["-var", "restart", str(one.restart[1].relative_to(one.folder))]
+        if run.restart:
+            words += ["-var", "restart", str(run.restart[1].relative_to(run.folder))]
         return words
 
-    def _start(self, one):
-        """Start a run, from its last restart file if there is one; returns what to say of it."""
+    def _start(self, run):
+        """Start a run, from its last restart file if there is one; returns a line for the user."""
         try:
-            said = self._prepare(one)
-            with open(one.folder / SCREEN, "ab" if one.restart else "wb") as screen:
-                one.output_before = screen.tell()
-                process = processes.start(self._line(one), one.folder, screen)
+            said = self._prepare(run)
+            with open(run.folder / SCREEN, "ab" if run.restart else "wb") as screen:
+                run.output_before = screen.tell()
+                process = processes.start(self._line(run), run.folder, screen)
         except OSError as error:
-            raise SlopeError(one.folder, f"cannot be run: {error.strerror} ({error.filename})") from error
-        self.active.append(Active(one, process, time.monotonic()))
+            raise SlopeError(run.folder, f"cannot be run: {error.strerror} ({error.filename})") from error
+        self.active.append(Active(run, process, time.monotonic()))
         return said
 
-    def _prepare(self, one):
-        """Make the folder of a run, or make it ready to go on; returns what to say of it."""
+    def _prepare(self, run):
+        """Make the folder of a run, or prepare it for a continuation; returns a line for the user."""
         said = "started"
-        if one.folder.exists():
-            one.restart, why = self._last_restart(one)
+        if run.folder.exists():
+            run.restart, why = self._last_restart(run)
             said = f"starts again: {why}"
-        if one.restart:
-            step, path = one.restart
+        if run.restart:
+            step, path = run.restart
             said = f"continues at step {step}, from {path}"
-            self._reopen_folder(one)
+            self._reopen_folder(run)
         else:
-            self._make_folder(one)
+            self._make_folder(run)
         return said
 
-    def _line(self, one):
+    def _line(self, run):
         """The whole command of a run."""
-        return [*launcher.words(self.start, self.ranks, physical_cores()), str(self.lmp), *self.command(one)]
+        return [*launcher.words(self.start, self.ranks, physical_cores()), str(self.lmp), *self.command(run)]
 
-    def _last_restart(self, one):
-        """Step and path of the restart file from which an unfinished run can go on, or None; and why it cannot."""
+    def _last_restart(self, run):
+        """Step and path of the restart file from which an unfinished run can continue, or None; and why it cannot."""
         if not self.continues:
             return None, f"{self.deck.name} has no {CONTINUES}"
-        about = disk.load_yaml(one.folder / run_folders.VARIABLES, "what `slope study` wrote")
+        about = disk.load_yaml(run.folder / run_folders.VARIABLES, "what `slope study` wrote")
         for key, now, what in (("lmp_sha256", self.lmp_digest, "another LAMMPS program"),
                                ("package", self.package, "another version of the package")):
             if about.get(key) != now:
                 return None, f"it was started with {what}"
-        one.log.update()
-        for name in self._inputs_of(one):
-            if not (one.folder / name).is_file() or sha256(one.folder / name) != self.digests[name]:
+        run.log.update()
+        for name in self._inputs_of(run):
+            if not (run.folder / name).is_file() or sha256(run.folder / name) != self.digests[name]:
                 return None, f"it was started with another {name}"
-        for step, path in restarts.restarts(one.folder):
-            # at a restart file of the end, or after it, LAMMPS would go on and not know that it had halted
-            if (path not in one.refused and str(path.relative_to(one.folder)) not in self.digests
-                    and (one.log.halted is None or step < one.log.halted)):
+        for step, path in restarts.restarts(run.folder):
+            # from a restart file at or after its halt a run would continue, as LAMMPS does not know that it halted
+            if (path not in run.refused and str(path.relative_to(run.folder)) not in self.digests
+                    and (run.log.halted is None or step < run.log.halted)):
                 return (step, path), None
         return None, "it left no complete restart file"
 
-    def _inputs_of(self, one):
+    def _inputs_of(self, run):
         """Names of the deck and of the data files that it named, as far as its log goes."""
-        return [name for name in self.digests if name == self.deck.name or name in one.log.names]
+        return [name for name in self.digests if name == self.deck.name or name in run.log.names]
 
-    def _reopen_folder(self, one):
-        """Make the folder of a run that was cut ready to go on."""
-        about = disk.load_yaml(one.folder / run_folders.VARIABLES, "what `slope study` wrote")
+    def _reopen_folder(self, run):
+        """Prepare the folder of an interrupted run for its continuation."""
+        about = disk.load_yaml(run.folder / run_folders.VARIABLES, "what `slope study` wrote")
         about["ranks"] = self.ranks
-        step, path = one.restart
-        about.setdefault("continued", []).append({"step": step, "restart": str(path.relative_to(one.folder)),
+        step, path = run.restart
+        about.setdefault("continued", []).append({"step": step, "restart": str(path.relative_to(run.folder)),
                                                   "ranks": self.ranks, "started": provenance.now()})
-        disk.write(one.folder / run_folders.VARIABLES, yaml.safe_dump(about, sort_keys=False))
-        if one.log.path.exists():
-            logs.part(one.log.path)
-        one.log = logs.Log(one.log.path)
+        disk.write(run.folder / run_folders.VARIABLES, yaml.safe_dump(about, sort_keys=False))
+        if run.log.path.exists():
+            logs.part(run.log.path)
+        run.log = logs.Log(run.log.path)
 
     @staticmethod
-    def _refused(one, status):
-        """Whether LAMMPS could not read the restart file, complete as it looked: then it is not tried again."""
-        if status == 0 or status in KILLED or not one.restart:
+    def _refused(run, status):
+        """Whether LAMMPS could not read the restart file although it looked complete: then it is not used again."""
+        if status == 0 or status in KILLED or not run.restart:
             return False
-        if not last_words.spoiled_restart(one.log.update(), one.screen(), crashed=status < 0 or status > 128):
+        if not last_words.spoiled_restart(run.log.update(), run.screen(), crashed=status < 0 or status > 128):
             return False
-        one.refused.add(one.restart[1])
+        run.refused.add(run.restart[1])
         return True
 
-    def _make_folder(self, one):
-        """The folder with all that goes into the run, instead of one of an unfinished run."""
-        new = one.folder.with_name(f".{one.name}.new")
-        old = one.folder.with_name(f".{one.name}.old")
+    def _make_folder(self, run):
+        """Make the folder with all input of the run, in place of that of an unfinished run."""
+        new = run.folder.with_name(f".{run.name}.new")
+        old = run.folder.with_name(f".{run.name}.old")
         for rest in (new, old):
             shutil.rmtree(rest, ignore_errors=True)
         shutil.copytree(self.inputs, new)
-        about = {"deck": self.deck.name, "set": one.chosen, "variables": {**self.defaults, **one.chosen},
-                 "command": " ".join([self.lmp.name, *self.command(one)]), "ranks": self.ranks,
+        about = {"deck": self.deck.name, "set": run.chosen, "variables": {**self.defaults, **run.chosen},
+                 "command": " ".join([self.lmp.name, *self.command(run)]), "ranks": self.ranks,
                  "package": self.package, "lmp_sha256": self.lmp_digest, "started": provenance.now()}
         disk.write(new / run_folders.VARIABLES, yaml.safe_dump(about, sort_keys=False))
-        if one.folder.exists():
-            one.folder.rename(old)
-        new.rename(one.folder)
+        if run.folder.exists():
+            run.folder.rename(old)
+        new.rename(run.folder)
         shutil.rmtree(old, ignore_errors=True)
-        one.log = logs.Log(one.log.path)        # what was read of the old run's says nothing of this one
+        run.log = logs.Log(run.log.path)        # what was read so far belongs to the old run
 
     def _ended(self, active):
         """Mark the run as finished, or keep why it is not."""
-        one, status = active.run, active.process.returncode
-        summaries = run_folders.summaries(one.folder)
+        run, status = active.run, active.process.returncode
+        summaries = run_folders.summaries(run.folder)
         if status != 0 or len(summaries) != 1:
-            return one.fail(status)
+            return run.fail(status)
         try:
             summary = run_folders.load_summary(summaries[0])
             if summary["ranks"] != self.ranks:
                 raise SlopeError(self.lmp, f"must be built with MPI to run on {self.ranks} ranks", summary["ranks"])
         except SlopeError as error:
-            one.error = str(error)
+            run.error = str(error)
             return None
-        one.log.update()
+        run.log.update()
         # what the run used, and did not overwrite
-        inputs = {name: self.digests[name] for name in self._inputs_of(one)
-                  if (one.folder / name).is_file() and sha256(one.folder / name) == self.digests[name]}
+        inputs = {name: self.digests[name] for name in self._inputs_of(run)
+                  if (run.folder / name).is_file() and sha256(run.folder / name) == self.digests[name]}
         about = {"finished": provenance.now(), "wall_seconds": round(time.monotonic() - active.began, 1),
                  "summary": summaries[0].name, "machine": provenance.machine(),
                  "inputs": inputs}
-        disk.write(one.marker, yaml.safe_dump(about, sort_keys=False))
+        disk.write(run.marker, yaml.safe_dump(about, sort_keys=False))
         return None
 
     def _stop(self):

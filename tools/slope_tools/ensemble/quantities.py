@@ -1,4 +1,4 @@
-"""The numbers of a run that studies look at, by their columns in the tables: names, units, and how they are written."""
+"""The quantities of a run that studies evaluate, by their columns in the tables: names, units, and format."""
 from ..deposit import travel_shares
 
 NAMES = {"remove_m3": ("to remove", "m3"), "remove_on_road_m3": ("on the road", "m3"),

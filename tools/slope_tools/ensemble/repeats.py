@@ -8,7 +8,7 @@ from ..case.settings import MOST_RUNS, as_number
 from ..errors import SlopeError
 from . import jobs
 
-CHANCE = re.compile(r"seed|\w*offset")      # names of variables whose values nobody can prefer
+CHANCE = re.compile(r"seed|\w*offset")      # names of variables without a preferred value
 OFFSET = re.compile(r"\w*offset")
 FIRST = "base"                              # the repeat that has the deck's values
 

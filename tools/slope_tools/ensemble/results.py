@@ -34,14 +34,14 @@ class Questions(NamedTuple):
     intensity: Optional[str] = None                 # variable that is one; None: the one that is called so
     more_than: Sequence[float] = ()                 # m3, volumes exceeded at each intensity
     notes: Sequence[str] = ()                       # warnings of what was before the study, which go into its results
-    size_error_unusable: Optional[str] = None       # why the error of the size, which was looked for, is not in use
+    size_error_unusable: Optional[str] = None       # why the size error, which was to be measured, is not used
 
 
 def collect(setup: Setup, questions: Questions, todo, work) -> None:
     """Table, maps and study.yaml over all runs that finished."""
     settings, repeated, thresholds, errors, order = questions[:5]
     output, deck = setup.output, setup.deck
-    if order and all(one.error for one in todo):
+    if order and all(run.error for run in todo):
         return      # study.perform says so
     maps = Maps(thresholds)
     rows, thickness = rows_of(setup, todo, maps, pictures=order is None)
@@ -52,7 +52,7 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
     groups = combinations.grouped(rows)
     names = combinations.quantities(groups)
     scatters = combinations.scatters(groups)
-    first = next((one for one in todo if not one.error), None)
+    first = next((run for run in todo if not run.error), None)
     written = maps.write(output, terrain_place(first) if first else None)
     keys = ["front_m", "thickness_m", "max_thickness_m", "max_speed_m_s"]
     keys += [key for key in (travel_shares.DISTANCE, "connected_m") if key in names]
@@ -62,8 +62,8 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
                   "machine": provenance.machine()},
         "largest": {key: largest(finished, key) for key in keys if finished},
         "conservative": None, "size_error_unusable": questions.size_error_unusable, "ensemble": None,
-        "scatter": {name: one and {"deviation": one.deviation, "degrees_of_freedom": one.degrees_of_freedom}
-                    for name, one in scatters.items()},
+        "scatter": {name: known and {"deviation": known.deviation, "degrees_of_freedom": known.degrees_of_freedom}
+                    for name, known in scatters.items()},
         "combinations": combinations.entries(groups, names), **written, "warnings": warnings, "runs": rows}
     if setup.road and finished:
         about["study"]["road"] = write_road(output, setup.road, first, thickness)
@@ -108,9 +108,9 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
 
 
 def unseen(repeated, defaults):
-    """The doubt that chance was not seen in full: seeds alone were repeated, though the deck has a lattice to move."""
+    """The caveat that the scatter is incomplete: only seeds were repeated, though the deck can move its lattice."""
     offsets = repeats.only_seeds(repeated, defaults)
-    return [f"the chance of {', '.join(repeated)} alone is known: {', '.join(offsets)} of the deck "
+    return [f"the scatter is that of {', '.join(repeated)} alone: {', '.join(offsets)} of the deck "
             f"{'was' if len(offsets) == 1 else 'were'} not repeated"] if offsets else []
 
 
@@ -120,15 +120,15 @@ def rows_of(setup: Setup, todo, maps, pictures=True):
     pictures: whether `slope volume` draws its map of each, which takes longest.
     """
     rows, thickness = [], None
-    for one in rasters.progress(todo, "collecting the runs"):
-        row = {"run": one.name, "status": "failed" if one.error else "finished", "set": one.combination,
-               "repeat": one.repeat}
-        if one.error:
-            rows.append({**row, "error": one.error, "log_warnings": one.log.warnings})
+    for run in rasters.progress(todo, "collecting the runs"):
+        row = {"run": run.name, "status": "failed" if run.error else "finished", "set": run.combination,
+               "repeat": run.repeat}
+        if run.error:
+            rows.append({**row, "error": run.error, "log_warnings": run.log.warnings})
             continue
-        row, thickness = result(one, row, maps)
+        row, thickness = result(run, row, maps)
         if setup.road:
-            row.update(on_road(one, setup.road, setup.output / row["summary"], thickness, pictures))
+            row.update(on_road(run, setup.road, setup.output / row["summary"], thickness, pictures))
         rows.append(row)
     return rows, thickness
 
@@ -168,16 +168,16 @@ def doubts(rows):
     return warnings
 
 
-def result(one, row, maps):
+def result(run, row, maps):
     """The row of a finished run, and its final thickness; adds its rasters to the maps."""
-    marker = disk.load_yaml(one.marker, "what `slope study` wrote")
-    path = one.folder / str(marker.get("summary"))
-    about = disk.load_yaml(one.folder / run_folders.VARIABLES, "what `slope study` wrote")
+    marker = disk.load_yaml(run.marker, "what `slope study` wrote")
+    path = run.folder / str(marker.get("summary"))
+    about = disk.load_yaml(run.folder / run_folders.VARIABLES, "what `slope study` wrote")
     summary = run_folders.load_summary(path)
     prefix = run_folders.prefix_of(path)
     thickness = run_folders.load_raster(prefix, "thickness")
-    maps.add(one.name, thickness, run_folders.load_raster(prefix, "max_thickness"))
-    one.log.update()
+    maps.add(run.name, thickness, run_folders.load_raster(prefix, "max_thickness"))
+    run.log.update()
     volume, travel = summary["volume"], summary["travel"]
     stays = volume["released"] - volume["off_grid"] - volume["lost"]
     on_grid = float(np.nansum(thickness.z)) * thickness.transform.a ** 2
@@ -196,10 +196,10 @@ def result(one, row, maps):
            "fast_volume_m3": summary["motion"].get("fast_volume"),
            "fast_speed_m_s": summary["motion"].get("fast_speed"),
            "change_rate": summary.get("change_rate"),
-           "wall_s": marker.get("wall_seconds"), "summary": f"{one.name}/{path.name}",
+           "wall_s": marker.get("wall_seconds"), "summary": f"{run.name}/{path.name}",
            "slope_version": summary["slope_version"], "lammps_version": summary["lammps_version"],
-           "lmp_sha256": about.get("lmp_sha256"), "log_warnings": one.log.warnings,
-           **structures.of_run(one.folder, one.log.settings)}
+           "lmp_sha256": about.get("lmp_sha256"), "log_warnings": run.log.warnings,
+           **structures.of_run(run.folder, run.log.settings)}
     return row, thickness
 
 
@@ -211,22 +211,22 @@ def whole_deposit(prefix, thickness, summary):
     return {"connected_m": found and found.distance, "connected_deg": found and found.reach_angle}
 
 
-def on_road(one, road: Road, summary, thickness, picture=True) -> Dict[str, Any]:
+def on_road(run, road: Road, summary, thickness, picture=True) -> Dict[str, Any]:
     """What `slope volume` says of a run, all of which goes to the folder volume of the run; and what lies beyond."""
     from ..deposit import volume
     from ..survey import polygons
     prefix = run_folders.prefix_of(summary)
-    terrain = one.folder / one.log.terrain if one.log.terrain else None
+    terrain = run.folder / run.log.terrain if run.log.terrain else None
     found = volume.of_run(str(prefix), volume.Wanted(road.file, road.mesh, road.cut_angle, road.local), terrain)
-    volume.write(found, one.folder / "volume", picture)
+    volume.write(found, run.folder / "volume", picture)
     about = disk.plain(found.about)       # numpy has no place in study.yaml
     return {"remove_m3": about["volume"]["remove"], "remove_on_road_m3": about["volume"]["remove_on_road"],
             "remove_beside_road_m3": about["volume"]["remove_beside_road"],
             "beyond_road_m3": beyond(thickness, run_folders.load_raster(prefix, "arrival").z == 0,
-                                     polygons.read_local(road.file, placed(thickness, one), road.local)),
+                                     polygons.read_local(road.file, placed(thickness, run), road.local)),
             "blocked_m": about["axis"]["blocked_length"], "axis_thickness_m": about["axis"]["largest_thickness"],
             # what it says of the summary is in the table
-            "road_warnings": [text.replace(f"{one.folder}/", "") for text in about["warnings"]
+            "road_warnings": [text.replace(f"{run.folder}/", "") for text in about["warnings"]
                               if not text.startswith(f"{summary}:")]}
 
 
@@ -248,23 +248,23 @@ def beyond(thickness, released, road):
     return float(sum((share * thickness.z).sum() for share in shares[:-1]) * thickness.transform.a ** 2)
 
 
-def placed(raster, one):
+def placed(raster, run):
     """The raster with the CRS and the offset of the run's terrain."""
-    place = terrain_place(one)
+    place = terrain_place(run)
     return raster._replace(crs=place.crs, offset=place.offset) if place else raster
 
 
-def write_road(output, road: Road, one, thickness) -> Dict[str, Any]:
+def write_road(output, road: Road, run, thickness) -> Dict[str, Any]:
     """Keep the road, in local metres, with the study; what study.yaml says of it."""
     from ..survey import polygons
-    raster = placed(thickness, one)
+    raster = placed(thickness, run)
     polygons.write(output / "road.csv", polygons.read_local(road.file, raster, road.local), raster)
     return {"file": road.file.name, "local": "road.csv", "cut_angle": road.cut_angle, "mesh": road.mesh}
 
 
-def terrain_place(one):
+def terrain_place(run):
     """CRS and offset of the runs' local metres, from the sidecar of their terrain; None without one."""
-    return one.log.terrain and rasters.read_sidecar(one.folder / one.log.terrain)
+    return run.log.terrain and rasters.read_sidecar(run.folder / run.log.terrain)
 
 
 def largest(rows, key):

@@ -136,13 +136,13 @@ def trust(rows, name, about):
     what, unit = NAMES[name]
     mean, deviation = about["mean"], about["standard_deviation"]
     if deviation is None:
-        text = f"{what}: {number(mean)} {unit} in the base run; without --repeat its scatter is not known"
+        text = f"{what}: {number(mean)} {unit} in the base run; without --repeat its scatter is unknown"
     else:
         one = scatter_of(about).quantile * deviation
         text = (f"{what}: {about['runs']} equivalent runs give {number(about['smallest'])} to "
                 f"{number(about['largest'])} {unit}, mean {number(mean)}, standard deviation {number(deviation)}"
-                f"{share(deviation, mean)}: trust one run to +- {number(one)} {unit}"
-                f"{share(one, mean)}, and take two runs for different only if they differ by more "
+                f"{share(deviation, mean)}: one run is accurate to +- {number(one)} {unit}"
+                f"{share(one, mean)}, and two runs are different only if they differ by more "
                 f"than {number(math.sqrt(2) * one)} {unit}")
     varied = [row for row in rows if row["kind"] == "vary"]
     if varied:

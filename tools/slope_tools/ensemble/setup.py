@@ -1,4 +1,4 @@
-"""What is asked for when runs are made: of which deck, where, how, and what is measured of each."""
+"""The request for a set of runs: deck, folder, program, and what is measured of each run."""
 from pathlib import Path
 from typing import Any, Dict, NamedTuple, Optional
 

@@ -35,7 +35,7 @@ class Done(NamedTuple):
 
 
 def run(folder: Path, engine: Setup) -> Done:
-    """Make or go on with all runs of a site, and all that comes out of them.
+    """Make or continue all runs of a site, and their results.
 
     engine: how the runs are made; its deck, output and road do not count. Raises SlopeError on bad input, and if no run
     of the study finished.
@@ -47,18 +47,18 @@ def run(folder: Path, engine: Setup) -> Done:
 
 
 def check(folder: Path, choices: Choices) -> None:
-    """Raise SlopeError unless the files of a site are there, and are those of its choices."""
+    """Raise SlopeError unless all files of a site exist and match its choices."""
     found = site_choices.found(folder)
     for name in (site_deck.NAME, *(found.get("files") or ())):
         if not (folder / name).is_file():
-            raise SlopeError(folder / name, f"must be there; `slope site {folder}` makes it anew")
+            raise SlopeError(folder / name, f"must exist; `slope site {folder}` rebuilds it")
     if found.get("choices_sha256", "") not in ("", site_choices.fingerprint(choices)):
-        raise SlopeError(folder / site_choices.NAME, f"must not have been changed since {site_deck.NAME} was made of "
-                         f"it: `slope site {folder}` makes the deck anew (project, road and study may change)")
+        raise SlopeError(folder / site_choices.NAME, f"must not have been changed since {site_deck.NAME} was made from "
+                         f"it: `slope site {folder}` rebuilds the deck (project, road and study may change)")
 
 
 def run_alone(folder: Path, choices: Choices, engine: Setup) -> Done:
-    """run(), of what is in order, while nobody else works in the folder."""
+    """run() after its checks, with the folder locked."""
     deck = folder / site_deck.NAME
     road = choices["road"]
     setup = engine._replace(deck=deck, output=folder / STUDY, road=None)
@@ -90,7 +90,7 @@ def run_alone(folder: Path, choices: Choices, engine: Setup) -> Done:
 
 
 def warnings_of(folder: Path) -> List[str]:
-    """What `slope site` warned of, which its results should say as well; nothing of a site of an older version."""
+    """The warnings of `slope site`, which the results repeat; none for a site of an older version."""
     path = folder / site_warnings.NAME
     return [str(text) for text in disk.parse_yaml(path, "what `slope site` wrote") or ()] if path.is_file() else []
 
@@ -99,7 +99,7 @@ class Sizes(NamedTuple):
     """What the runs with balls of several sizes found."""
     errors: Optional[SizeErrors]
     warnings: Sequence[str]         # of these runs
-    unusable: Optional[str]         # why there are no errors, though they were looked for
+    unusable: Optional[str]         # why there are no errors although they were to be measured
 
 
 def sizes(setup: Setup, choices: Choices, repeated: Dict[str, List[str]]) -> Sizes:
@@ -131,12 +131,12 @@ def sizes(setup: Setup, choices: Choices, repeated: Dict[str, List[str]]) -> Siz
 
 
 def unusable(why: str) -> Sizes:
-    print(f"slope study: warning: the error of the size of the balls is not known: {why}", file=sys.stderr)
-    return Sizes(None, (), f"The error of the size of the balls was looked for, but is not usable: {why}")
+    print(f"slope study: warning: the size error is unknown: {why}", file=sys.stderr)
+    return Sizes(None, (), why)
 
 
 def scored(folder: Path, setup: Setup) -> None:
-    """Hold the run that the answer rests on against the mapped deposit."""
+    """Compare the governing run with the mapped deposit."""
     from ..deposit import score_run
     about = disk.load_yaml(setup.output / "study.yaml", "what `slope study` wrote")
     best = about["conservative"] or about["largest"]["front_m"]

@@ -81,7 +81,7 @@ class SizeErrors:
 
     def doubts(self, deck: str, variables: Mapping[str, str], free: Sequence[str],
                road: Mapping[str, Any]) -> List[str]:
-        """What speaks against taking these errors for runs with these variables; free: names that may differ."""
+        """The caveats on these errors for runs with these variables; free: names that may differ."""
         found = []
         if self.supported is False:
             found.append("the size error rests on a line that its own runs do not support")
@@ -90,13 +90,13 @@ class SizeErrors:
                          + ", ".join(f"{entry['value']:g}" for entry in self.sizes if entry["mean"] == 0))
         share = self.at(str(variables[self.variable])).share if self.variable in variables else 0.0
         if abs(share) > TRUSTED:
-            found.append(f"the size error is {100 * share:.0f} %: beyond {100 * TRUSTED:.0f} % a line through such "
-                         "sizes says little; use smaller balls")
+            found.append(f"the size error is {100 * share:.0f} %: beyond {100 * TRUSTED:.0f} % a line through these "
+                         "sizes is not reliable; use smaller balls")
         field = as_number(self.base.get("field_d", ""))
         smallest = min(entry["value"] for entry in self.sizes)
         if self.variable == "d" and isinstance(field, float) and smallest >= field * (1 - 1e-9):
             found.append(f"no run of the size error has balls smaller than the field's, {field:g} m, below which the "
-                         "trend may turn round")
+                         "trend may reverse")
         if self.deck != deck:
             found.append(f"the size error is that of another deck, {self.deck}")
         other = [f"{name} {value} instead of {variables[name]}" for name, value in self.base.items()

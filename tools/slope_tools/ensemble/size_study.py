@@ -52,7 +52,7 @@ def collect(setup: Setup, settings, repeated, variable, of, names, todo, work):
     warnings = results.doubts(rows)
     same = [row["run"] for group in groups for row in group.same]
     if same:
-        warnings.append(f"what was repeated changes nothing, to the last digit, in {', '.join(same)}: left out")
+        warnings.append(f"a repeated variable has no effect, to the last digit, in {', '.join(same)}: left out")
     fits = {}
     for name in of:
         fits[name] = convergence.fit([(float(group.set[variable]), list(group.of(name).volumes.values()))

@@ -37,7 +37,7 @@ fi
 
 
 def check(options: str) -> None:
-    """Raise SlopeError unless Slurm's programs are there and answer."""
+    """Raise SlopeError unless Slurm's programs are installed and answer."""
     for name in PROGRAMS:
         if not shutil.which(name):
             raise SlopeError("--engine slurm", f"needs {name} of Slurm, which is not on the PATH")
@@ -61,7 +61,7 @@ def call(*words: str) -> str:
 
 
 class Task:
-    """A task of an array, with the face of a subprocess.Popen. queue: what squeue says of all tasks."""
+    """A task of an array, with the interface of subprocess.Popen. queue: the answers of squeue on all tasks."""
 
     def __init__(self, name: str, status: Path, queue: "Queue"):
         self.name, self.status, self.queue = name, status, queue
@@ -78,10 +78,10 @@ class Task:
             try:
                 self.returncode = int(self.status.read_text(encoding="ascii"))
             except (OSError, ValueError):
-                self._look()
+                self._check_queue()
         return self.returncode
 
-    def _look(self) -> None:
+    def _check_queue(self) -> None:
         if self.name in self.queue.states() or self.queue.silent is not None:
             self.missing = None
             return
@@ -145,19 +145,19 @@ class Work(jobs.Work):
         todo, said = list(waiting), []
         waiting.clear()
         lines = []
-        for one in todo:
-            said.append((one, self._prepare(one)))
-            (one.folder / STATUS).unlink(missing_ok=True)
-            screen = one.folder / jobs.SCREEN
+        for run in todo:
+            said.append((run, self._prepare(run)))
+            (run.folder / STATUS).unlink(missing_ok=True)
+            screen = run.folder / jobs.SCREEN
             screen.touch()
-            one.output_before = screen.stat().st_size
-            lines.append(f"{one.folder.absolute()}\t{shlex.join(self._line(one))}\n")
-            self.tries[one.name] = self.tries.get(one.name, 0) + 1
+            run.output_before = screen.stat().st_size
+            lines.append(f"{run.folder.absolute()}\t{shlex.join(self._line(run))}\n")
+            self.tries[run.name] = self.tries.get(run.name, 0) + 1
         array = self._submit(lines)
-        for i, one in enumerate(todo):
-            task = Task(f"{array}_{i}", one.folder / STATUS, self.queue)
-            self.active.append(jobs.Active(one, task, time.monotonic()))
-        return [(one, f"{text}, task {i} of Slurm's array {array}") for i, (one, text) in enumerate(said)]
+        for i, run in enumerate(todo):
+            task = Task(f"{array}_{i}", run.folder / STATUS, self.queue)
+            self.active.append(jobs.Active(run, task, time.monotonic()))
+        return [(run, f"{text}, task {i} of Slurm's array {array}") for i, (run, text) in enumerate(said)]
 
     def _submit(self, lines: List[str]) -> str:
         """Submit an array of commands; its number."""

@@ -1,4 +1,4 @@
-"""The charts of a study: its values against the first variable that it varies, and what chance makes of them."""
+"""The charts of a study: its values against the first variable that it varies, compared with chance."""
 from typing import Any, Dict
 
 from ..deposit import travel_shares
@@ -14,10 +14,10 @@ AXIS = {"rolling": "rolling resistance (-)", "friction": "friction angle (degree
         "d": "diameter of the balls (m)", "field_d": "diameter of the field balls (m)",
         "peak": "peak acceleration (gal)"}
 TERMS = {"rolling": "coefficient of rolling resistance of the balls", "friction": AXIS["friction"], "d": AXIS["d"],
-         "field_d": "diameter of the balls that the ground is made of (m)",
-         "xoffset": "where the lattice that the balls start from begins, in its spacings",
+         "field_d": "diameter of the field balls, which make the ground (m)",
+         "xoffset": "shift along x of the lattice on which the balls start, in lattice spacings",
          "yoffset": "the same along y", "zoffset": "the same along z",
-         "seed": "of the random numbers, such as those that displace the balls at the start"}
+         "seed": "seed of random numbers, such as those that displace the balls at the start"}
 REMOVE = "remove_m3"
 TITLES = {REMOVE: "Volume to remove from the road", "remove_on_road_m3": "Volume on the road",
           "front_m": "Distance of the farthest ball",
@@ -134,7 +134,7 @@ class Charts:
         return headline.pooled(list(combinations(self.data.finished, key).values()))
 
     def is_clear(self, key, rows, scatter):
-        """Whether the means of rows, which differ in one variable, differ by more than chance; None if nobody knows."""
+        """Whether the means of rows, which differ in one variable, differ by more than chance; None if unknown."""
         line = list(combinations(rows, key).values())
         if scatter is None or len(line) < 2:
             return None
@@ -152,7 +152,7 @@ def combinations(rows, key):
 def chance_text(clear):
     """What a chart says of its differences."""
     if all(one is None for one in clear):
-        return "one run each, so that chance is not known and no line is drawn"
+        return "one run each, so chance is unknown and no line is drawn"
     if all(clear):
         return "the differences are larger than chance"
     if not any(clear):

@@ -1,4 +1,4 @@
-"""What the size of the balls makes of the numbers: converge.yaml of `slope sensitivity --converge`, for a report."""
+"""Effect of the size of the balls on the numbers: converge.yaml of `slope sensitivity --converge`, for a report."""
 from pathlib import Path
 
 from .. import disk
@@ -30,8 +30,8 @@ def find(asked, data):
     for path in (data.folder / named, named):       # older files name it from where `slope study` was called
         if path.is_file():
             return path, None
-    return None, (f"The size of the balls: {data.folder / named}, from which the study has its size error, is not "
-                  "there, so there are no charts of it; --converge names another place")
+    return None, (f"The size of the balls: {data.folder / named}, from which the study took its size error, does not "
+                  "exist, so there are no charts of it; --converge names another place")
 
 
 class Sizes:

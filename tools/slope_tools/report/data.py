@@ -224,7 +224,7 @@ class Data:
         return found
 
     def governing(self):
-        """The run that stands for the headline; else the one of which 99 % of the volume goes farthest.
+        """The run that represents the headline; else the one with the longest 99 % distance.
 
         Of an ensemble the one at the 90 % quantile of what counts.
         """

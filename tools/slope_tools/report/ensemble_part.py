@@ -33,9 +33,9 @@ class Ensemble:
         for one in self.entry["quantiles"]:
             low, high = ("?" if one[side] is None else self.number(f"{100 * one['share']:g} % {side}", unit, one[side])
                          for side in ("low", "high"))
-            what = f"{100 * one['share']:g} % of the runs stay within"
-            parts.append({"number": self.number(what, unit, one["value"]), "what": what,
-                          "note": f"{low} to {high} with {100 * self.about['confidence']:g} %"})
+            share = f"{100 * one['share']:g} % of the runs stay within"
+            parts.append({"number": self.number(share, unit, one["value"]), "what": share,
+                          "note": f"{low} to {high} with {100 * self.about['confidence']:g} % confidence"})
         shown = next((part for part, one in zip(parts, self.entry["quantiles"]) if one["share"] == 0.9), parts[-1])
         return {"title": f"{what[0].upper()}{what[1:]}: 90 % of the runs stay within", "number": shown["number"],
                 "unit": unit, "parts": parts, "note": self.design()}
@@ -47,7 +47,7 @@ class Ensemble:
         design = self.about["design"]
         distributions = "; ".join(f"{name} {text}" for name, text in design["variables"].items())
         return (f"An ensemble of {design['points']} points ({design['kind']}, seed {design['seed']}), "
-                f"{self.about['finished']} runs: {distributions}. It is as good as these distributions.")
+                f"{self.about['finished']} runs: {distributions}. It is only as good as these distributions.")
 
     def content(self):
         """What the template takes."""

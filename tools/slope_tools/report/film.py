@@ -98,7 +98,7 @@ def encode(program: str, picture: "Picture", times: np.ndarray) -> bytes:
 
 
 class Picture:
-    """Plan above, section below; only the balls and the time are drawn anew."""
+    """Plan above, section below; between frames only the balls and the time are redrawn."""
 
     def __init__(self, data, ground, section, layers, frames):
         self.frames, self.section = frames, section

@@ -1,4 +1,4 @@
-"""What a report says of itself: project, client, author and survey, from the command line or from the site's file."""
+"""The heading of a report: project, client, author and survey, from the command line or from the site's file."""
 from pathlib import Path
 from typing import Any, Dict, Optional
 

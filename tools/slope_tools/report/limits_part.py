@@ -1,4 +1,4 @@
-"""What stands beside the numbers of a report: how uncertain they are, and what is not in them."""
+"""The table of a report on how uncertain its numbers are, and what they do not include."""
 import math
 from typing import List, Tuple
 
@@ -18,7 +18,7 @@ def content(data, numbers) -> CONTENT:
 # --- uncertainty ---
 
 def uncertainty(data, numbers) -> CONTENT:
-    """By how much a run differs by chance, and what the size of the balls does."""
+    """How far a run differs by chance, and the effect of the size of the balls."""
     study = data.study
     best = study and study["conservative"]
     found = []
@@ -34,21 +34,21 @@ def uncertainty(data, numbers) -> CONTENT:
         found.append(f"The distance that 99 % of the volume stays within differs by {text} m from run to run "
                      "(standard deviation).")
     if not found:
-        found = ["Unknown: no run was repeated, and two runs that are equally good may differ by several percent "
-                 "(study --repeat)."] if not (study and study.get("ensemble")) else []
+        found = ["Unknown: no run was repeated, and equivalent runs may differ by several percent (study --repeat)."] \
+            if not (study and study.get("ensemble")) else []
     chance = [("Chance", " ".join(found))] if found else []
     unusable = study and study.get("size_error_unusable")
     if unusable and not (best and best["size_m3"] is not None):
         chance.append(("Size of the balls",
-                       f"What smaller balls would give was measured, but is not usable: {unusable}"))
+                       f"The effect of smaller balls was measured, but is not usable: {unusable}"))
     elif best and best["size_m3"] is None or not study:
-        chance.append(("Size of the balls", "What smaller balls would give is unknown "
+        chance.append(("Size of the balls", "The effect of smaller balls is unknown "
                                             "(sensitivity --converge, study --size-error)."))
     return chance
 
 
 def varied(data) -> str:
-    """Which variables the runs differ in; nothing else is in the spread of the numbers."""
+    """Which variables the runs differ in; nothing else contributes to the spread of the numbers."""
     several = {name: values for name, values in data.settings.items() if len(values) > 1}
     if not several:
         return ("Nothing: one set of values. The effect of other values of friction, restitution and roughness of the "
@@ -82,10 +82,11 @@ def model(data) -> CONTENT:
         ("The body", "Its slip surface and volume were given, not computed: the report does not say whether, or how "
                      "likely, the slope fails. The body is released at once; no trigger is modelled, except with an "
                      "earthquake."),
-        ("The mass", f"Equal balls, each for {headline.text(ball, headline.place_of_digits(ball))} m3 of ground, a "
-                     f"cube of {side} m: a parameter of the model, not the size of blocks. Speeds and energies of "
-                     "single balls are those of such a block. Dry: no water, no pore pressure, no liquefaction. No "
-                     "cohesion, no breakage, no change of volume on the way."),
-        ("The ground", f"As the elevation model has it; the deposit in cells of {data.result.deposit.cell:g} m. What "
-                       "is narrower than a cell or a ball, such as a ditch, has no effect. Nothing is eroded or taken "
-                       "along; there are no trees, and no walls or buildings but those that the deck names.")]
+        ("The mass", f"Equal balls, each representing {headline.text(ball, headline.place_of_digits(ball))} m3 of "
+                     f"ground, a cube of {side} m: a parameter of the model, not the size of blocks. Speeds and "
+                     "energies of single balls are those of such a block. Dry: no water, no pore pressure, no "
+                     "liquefaction. No cohesion, no breakage, no bulking on the way."),
+        ("The ground", f"That of the elevation model; the deposit is sampled in cells of {data.result.deposit.cell:g} "
+                       "m. Anything narrower than a cell or a ball, such as a ditch, has no effect. There is no "
+                       "erosion or entrainment; there are no trees, and no walls or buildings except those in the "
+                       "deck.")]

@@ -55,8 +55,8 @@ class Maps:
             found["slip"] = self.picture(
                 figure_maps.value_map(layers._replace(ground=ground.base), ground.slip_depth, "Slip surface",
                                       "depth below the ground (m)", figures.classes_of(ground.slip_depth), "PuBu"),
-                "Map of the slip surface", "Depth of the slip surface below the ground before; relief and contours are "
-                "those of the ground without the body.")
+                "Map of the slip surface", "Depth of the slip surface below the ground before the collapse; relief and "
+                "contours are those of the ground without the body.")
         found["max_thickness"] = self.thickness(
             ground.max_thickness, "Largest thickness in the run", "Map of the largest thickness",
             "Largest thickness that a cell ever had.")
@@ -89,8 +89,9 @@ class Maps:
                                     "they are in volume/volume.csv and volume.geojson of the run.")
         return self.picture(
             uri, "Map of the volume to remove",
-            f"Thickness of what lies on the road and above a cut rising at {road['cut_angle']:g} degrees from its "
-            f"edges{squares}; together {volume} m3; run: {data.label(data.result)}.{more}")
+            "Thickness of the deposit on the road, and beside it above a cut rising at "
+            f"{road['cut_angle']:g} degrees from its edges{squares}; together {volume} m3; run: "
+            f"{data.label(data.result)}.{more}")
 
     def over_all(self):
         """Maps of a study over all of its runs."""

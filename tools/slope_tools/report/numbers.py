@@ -97,7 +97,7 @@ def below_ground(data, numbers):
 
 
 def size_part(best, number, unusable=None):
-    """What the size of the balls adds; unusable: why an error that was measured is none, a text."""
+    """What the size of the balls adds; unusable: why a measured error is not used, a text."""
     size = best.get("size") or {}
     if number is None:
         return {"sign": "+", "number": UNKNOWN, "what": "size of the balls",
@@ -113,8 +113,8 @@ def size_part(best, number, unusable=None):
         if -1 < share < 0:
             lacking = best["mean_m3"] / (1 + share) - best["mean_m3"]
             texts = [headline.text(value, best["place_m3"]) for value in (lacking, max(0, best["size_m3"] - lacking))]
-            note += (f": mean/(1 - {-share:.3g}) - mean = {texts[0]} m3, and {texts[1]} m3 by which the uncertainty of "
-                     "that widens the chance")
+            note += (f": mean/(1 - {-share:.3g}) - mean = {texts[0]} m3, and {texts[1]} m3 by which its uncertainty "
+                     "increases the part of chance")
     return {"sign": "+", "number": number, "what": "size of the balls", "note": note}
 
 

@@ -90,7 +90,7 @@ class Page:
     # --- tables ---
 
     def columns(self):
-        """Heads of the study's table: those of which anything is known."""
+        """Heads of the study's table, without columns that have no value."""
         data = self.data
         wanted = COLUMNS + (ROAD_COLUMNS if data.road is not None else ())
         same = len({round(row["released_m3"], 3) for row in data.finished}) == 1
@@ -98,12 +98,12 @@ class Page:
                 if any(row.get(key) is not None for row in data.finished) and not (same and key == "released_m3")]
 
     def beyond(self):
-        """What the table says of the volume beyond the road; "" without a road."""
+        """The note below the table on the volume beyond the road; "" without a road."""
         if self.data.road is None:
             return ""
         if any(row.get("beyond_road_m3") is not None for row in self.data.finished):
-            return ("Beyond it: all of the deposit on the side of the road that the mass did not come from. What is "
-                    "cut there is counted in \"to remove\" too: the two overlap and cannot be added.")
+            return ("Beyond it: all of the deposit on the far side of the road. What is cut there is counted in \"to "
+                    "remove\" too: the two overlap and cannot be added.")
         return ("How much lies beyond the road is unknown, because the road does not divide the grid; a control line "
                 "(slope site --line) counts what passes it.")
 
@@ -113,7 +113,7 @@ class Page:
         return "; ".join(f"{name}: {TERMS[name]}" for name in dict.fromkeys(named) if name in TERMS)
 
     def rows(self):
-        """The study's table: of each run its variables, its cells, or why it failed, and whether it is in doubt."""
+        """The study's table: for each run its variables, its cells or why it failed, and whether it is at rest."""
         data, best = self.data, (self.data.study or {}).get("conservative") or {}
         varied = [key for key, several in data.settings.items() if len(several) > 1] or list(data.settings)
         found = []
@@ -161,7 +161,7 @@ class Page:
         return {"heads": heads, "rows": rows}
 
     def reference_tables(self):
-        """Numbers from elsewhere: of each quantity a table, with the runs' own beside them where they can be held."""
+        """Numbers from elsewhere: a table for each quantity, with the runs' own range beside them."""
         tables: List[Dict[str, Any]] = []
         if self.reference is None:
             return None
@@ -214,7 +214,7 @@ class Page:
 
 
 def utc(text):
-    """An ISO time, with its zone, to the minute; what is none stays."""
+    """An ISO time in UTC, to the minute; any other value is returned as it is."""
     try:
         return datetime.datetime.fromisoformat(text).astimezone(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC")
     except (TypeError, ValueError):

@@ -44,8 +44,8 @@ def read(path, available):
     found = {}
     for name, entry in entries.items():
         if name not in available:
-            raise SlopeError(f"{path}: quantities", "must be of what the runs have a number of, "
-                             + ", ".join(available), name)
+            raise SlopeError(f"{path}: quantities", "must be columns that all runs have, " + ", ".join(available),
+                             name)
         found[name] = quantity(f"{path}: quantities: {name}", entry)
     return Reference(" ".join(about["title"].split()), " ".join(remark.split()), found)
 

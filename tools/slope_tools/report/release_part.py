@@ -1,4 +1,4 @@
-"""What a run released, against the body that it stands for."""
+"""What a run released, compared with the body that it represents."""
 import math
 import re
 from typing import NamedTuple, Optional
@@ -44,7 +44,7 @@ class Release(NamedTuple):
                     f"{'less' if self.left_out > 0 else 'more'} than the body of {self.body:,.0f} m3")
         if self.body is None and self.removed is not None and 1 / (1 - self.removed) > 1 + DOUBTFUL:
             return (f"The released mass is doubtful: {percent(self.removed)} of the balls were removed at the start, "
-                    "and no body is known that the others stand for (fix deposit/grid ... bulk region)")
+                    "and the body that the others represent is unknown (fix deposit/grid ... bulk region)")
         return None
 
 

@@ -73,8 +73,8 @@ class Structures:
             curves.append((self.label(run), time, force / 1e6))
         title = f"Force on {name}"
         return self.picture(figure_structures.curves(curves, "time (s)", "force (MN)", title), title,
-                            f"{title}, its mean over the {structures.WINDOW:g} s before: what lasts. Single impacts "
-                            "are those of the model's balls; the table has the largest.")
+                            f"{title}, its mean over the preceding {structures.WINDOW:g} s. Single impacts depend on "
+                            "the size of the model's balls; the table has the largest.")
 
     def pressures(self, item):
         """The map of the largest pressure on a structure of the shown run; None where nothing touched it."""

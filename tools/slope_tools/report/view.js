@@ -199,12 +199,12 @@
   }
 
   if (!hasWebGL()) {
-    say('This browser shows no 3-D graphics (WebGL is missing or switched off). All else on this page works.');
+    say('This browser shows no 3-D graphics (WebGL is missing or switched off). Everything else on this page works.');
   } else {
     try {
       start(JSON.parse(element('scene').textContent));
     } catch (error) {
-      say(`The 3-D view could not start: ${error.message}. All else on this page works.`);
+      say(`The 3-D view could not start: ${error.message}. Everything else on this page works.`);
     }
   }
 }());

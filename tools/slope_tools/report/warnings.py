@@ -1,4 +1,4 @@
-"""What speaks against the numbers of a report: one line for each kind of warning, with the runs that it is of."""
+"""The warnings of a report: one line for each kind, with the runs concerned."""
 import re
 from typing import Any, Dict
 
@@ -6,10 +6,10 @@ from ..deposit.volume import MUCH_BELOW
 from ..ensemble import headline
 
 SMALL = 1e-6            # of the released volume
-LARGE = 1e6             # m3 released, from which on friction in the laboratory is too much
+LARGE = 1e6             # m3 released, above which laboratory friction is too high
 NAMED = 4               # runs that a line names
 NUMBER = re.compile(r"\d[\d.,]*(?:[eE][+-]?\d+)?")
-# what stands in words of our own here, or beside the maps: of single runs, and of all of them
+# what the page says in its own words here, or beside the maps: about single runs, and about all of them
 SAID_OF_RUNS = ("failed: ", "still moves", "left the grid or the box", "has no CRS")
 SAID_OF_ALL = re.compile(r"\d+ of \d+ deposits are not at rest at the end|.*has no CRS")
 LEFT = "left the box"     # in the lines of fix deposit/grid
@@ -18,7 +18,7 @@ RED, AMBER = "red", "amber"
 
 
 def warnings(data):
-    """(red or amber, text) of a data.Data, the gravest first."""
+    """(red or amber, text) of a data.Data, the most serious first."""
     found = failures(data)
     found += not_at_rest(data)
     found += (gone := lost(data))
@@ -50,17 +50,17 @@ def of_study(data):
 
 
 def failures(data):
-    """Runs that failed, by what they failed of."""
+    """Runs that failed, by their error."""
     failed = [(str(row.get("error")), data.label_of(row)) for row in data.rows if row["status"] != "finished"]
     return [(RED, f"{plural(len(names), 'run')} failed: {text}" + of_runs(names, None))
             for text, names in kinds(failed).values()]
 
 
 def not_at_rest(data):
-    """Deposits that move when their runs end, or whose runs were cut."""
+    """Deposits that move when their runs end, or whose runs reached their time limit."""
     found, ends = [], data.ends()
-    for level, moving, note in ((RED, True, " More than 10 % of the volume is in motion: these are no numbers of a "
-                                            "deposit."), (AMBER, False, "")):
+    for level, moving, note in ((RED, True, " More than 10 % of the volume is in motion: these numbers are not those "
+                                            "of a deposit."), (AMBER, False, "")):
         mine = [end for end in ends if not end.at_rest and end.moving == moving]
         if not mine:
             continue
@@ -78,7 +78,7 @@ def not_at_rest(data):
 
 
 def lost(data):
-    """Mass that is in no map."""
+    """Mass that is not on the maps."""
     rows = [(row["off_grid_m3"] + row["lost_m3"], row["released_m3"], data.label_of(row)) for row in data.finished]
     if not data.study:
         volume = data.result.summary["volume"]
@@ -88,12 +88,12 @@ def lost(data):
         return []
     left, released, _ = max(gone)
     text = (f"{'up to ' * (len(gone) > 1)}{left:,.1f} m3 ({100 * left / released:.2g} % of the released volume) left "
-            "the grid or the box and are in no map")
+            "the grid or the box and are not on the maps")
     return [(AMBER, text + of_runs([name for *_, name in gone], len(rows)) if data.study else text)]
 
 
 def releases(data):
-    """Doubts about the released mass."""
+    """Reasons why the released mass may not be the body."""
     entries = [(release.doubt, name) for name, release in data.releases() if release.doubt]
     return by_kind(entries, len(data.finished))
 
@@ -109,7 +109,7 @@ def large(data):
 
 
 def below_ground(data):
-    """A cut that is flatter than the hillside: much of what it takes lies where it is below the ground."""
+    """A cut surface flatter than the hillside: much of the volume lies where that surface is below the ground."""
     below, share = data.below_ground() or (0, 0)
     if share <= MUCH_BELOW:
         return []
@@ -122,7 +122,7 @@ def below_ground(data):
 
 
 def from_logs(data, released, gone):
-    """The warnings of LAMMPS and its styles; released, gone: whether released and lost mass are spoken of already."""
+    """The warnings of LAMMPS and its styles; released, gone: whether other lines cover released and lost mass."""
     entries = []
     if data.study:
         for row in data.rows:
@@ -137,9 +137,8 @@ def from_logs(data, released, gone):
 # --- kinds ---
 
 def kinds(entries):
-    """{kind: (its first text, names of the runs that it is of)} of (text, name or None); texts that differ in numbers
-
-    only are of one kind.
+    """{kind: (its first text, names of its runs)} of (text, name or None); texts that differ only in numbers are of one
+    kind.
     """
     found: Dict[str, Any] = {}
     for text, name in entries:

@@ -73,7 +73,7 @@ def check(wanted: Wanted) -> Wanted:
     if wanted.scar:
         for name in ("shape", "depth", "volume", "curvature", "dip", "direction"):
             if getattr(wanted, name) is not None:
-                raise SlopeError(f"--{name}", "must not be given with --scar, whose depths are what they are")
+                raise SlopeError(f"--{name}", "must not be given with --scar, whose depths are not changed")
         return wanted
     if not wanted.polygon:
         raise SlopeError("--polygon", "must be given, unless --scar says where the body is")
@@ -168,9 +168,9 @@ def warnings(choices, found, area):
     if choices["shape"] == "slbl" and (curvature < 0 or share < LITTLE):
         what = f"bulges (curvature {curvature:.3g} /m) and " if curvature < 0 else ""
         lines.append(f"the base level {what}takes {100 * share:.0f} % of the polygon, {found.mean_depth:.3g} m deep on "
-                     "average: is that the body you mean? A larger depth or a smaller polygon gives another one")
+                     "average: is this the intended body? A larger depth or a smaller polygon gives another one")
     if found.cells < COARSE:
-        lines.append(f"the body covers {found.cells} cells of {area.cell:g} m: take a finer terrain")
+        lines.append(f"the body covers {found.cells} cells of {area.cell:g} m: use a finer terrain")
     if found.wall > 0.5 * found.largest_depth:
         lines.append(f"the body is {found.wall:.3g} m deep at the rim of its area, where it ends in a wall: "
                      + ("a wider polygon, or --shape ellipsoid?" if choices["shape"] == "sphere" else

@@ -34,16 +34,17 @@ def same_scene(plan):
     def energy(balls):
         return 0.5 * mass * float((balls[:, 3:6] ** 2).sum())
 
-    def way(balls):
+    def displacement(balls):
         return balls[:, :3].mean(axis=0) - plan.scene.moving[:, :3].mean(axis=0)
 
     ours = plan.states["slope"]
     for name, balls in plan.states.items():
         other = energy(balls) / energy(ours)
-        off = float(np.linalg.norm(way(balls) - way(ours)) / np.linalg.norm(way(ours)))
+        off = float(np.linalg.norm(displacement(balls) - displacement(ours)) / np.linalg.norm(displacement(ours)))
         loose = LOOSE.get(name, 1.0)
         found[name] = {"kinetic_energy": energy(balls), "kinetic_energy_to_ours": other,
-                       "centroid_displacement": [round(value, 6) for value in way(balls).tolist()], "centroid_off": off,
+                       "centroid_displacement": [round(value, 6) for value in displacement(balls).tolist()],
+                       "centroid_off": off,
                        "same": len(balls) == len(ours) and abs(other - 1) <= loose * SAME_ENERGY
                        and off <= loose * SAME_WAY}
     return found

@@ -39,58 +39,59 @@ class Runner:
         self.kept = 0
         self.program = jobs.sha256(lmp)
 
-    def result(self, one):
+    def result(self, run):
         """The Result of a run; it is run now if it was not before."""
-        if one not in self.results:
-            self.do([one], 1)
-        return self.results[one]
+        if run not in self.results:
+            self.do([run], 1)
+        return self.results[run]
 
     def do(self, wanted, most):
         """Run what has not been run, some at a time. On an interruption, end the runs under way."""
-        for one in dict.fromkeys(wanted):
-            if one not in self.results and self.is_finished(one):
-                self.results[one] = Result(self.folder / one.name)
+        for run in dict.fromkeys(wanted):
+            if run not in self.results and self.is_finished(run):
+                self.results[run] = Result(self.folder / run.name)
                 self.kept += 1
-        waiting = [one for one in dict.fromkeys(wanted) if one not in self.results]
+        waiting = [run for run in dict.fromkeys(wanted) if run not in self.results]
         active: Dict[Any, Any] = {}
         with Bar(len(waiting)) as bar:
             try:
                 while waiting or active:
                     while waiting and len(active) < most:
-                        one = waiting.pop(0)
-                        active[one] = self.start(one)
-                        bar.say(one.name)
+                        run = waiting.pop(0)
+                        active[run] = self.start(run)
+                        bar.say(run.name)
                     time.sleep(0.02)
-                    for one, process in list(active.items()):
+                    for run, process in list(active.items()):
                         if process.poll() is not None:
-                            del active[one]
-                            self.results[one] = self.ended(one, process.returncode)
+                            del active[run]
+                            self.results[run] = self.ended(run, process.returncode)
                             bar.step()
             finally:
                 processes.stop(active.values())
 
-    def start(self, one):
-        folder = self.folder / one.name
+    def start(self, run):
+        folder = self.folder / run.name
         shutil.rmtree(folder, ignore_errors=True)
-        one.write(folder)
-        words = [str(self.lmp), "-in", one.source.name, "-log", logs.LOG, *one.options]
+        run.write(folder)
+        words = [str(self.lmp), "-in", run.source.name, "-log", logs.LOG, *run.options]
         with open(folder / jobs.SCREEN, "wb") as screen:
             return processes.start(words, folder, screen)
 
-    def ended(self, one, status):
-        folder = self.folder / one.name
+    def ended(self, run, status):
+        folder = self.folder / run.name
         if status:
             words = last_words.reason(logs.Log(folder / logs.LOG).update(), last_words.Screen(folder / jobs.SCREEN))
-            raise SlopeError(folder / logs.LOG, f"must end well: {words or 'no word'}", f"status {status}")
-        (folder / FINISHED).write_text(self.identity(one))
+            raise SlopeError(folder / logs.LOG, f"must end without an error: {words or 'no message'}",
+                             f"status {status}")
+        (folder / FINISHED).write_text(self.identity(run))
         return Result(folder)
 
-    def identity(self, one):
-        return f"{self.program} {one.identity}\n"
+    def identity(self, run):
+        return f"{self.program} {run.identity}\n"
 
-    def is_finished(self, one):
+    def is_finished(self, run):
         try:
-            return (self.folder / one.name / FINISHED).read_text() == self.identity(one)
+            return (self.folder / run.name / FINISHED).read_text() == self.identity(run)
         except OSError:
             return False
 
@@ -126,7 +127,7 @@ class Bar:
 # --- judgement ---
 
 class Outcome(NamedTuple):
-    """What came of a claim."""
+    """The result of a claim and of its control."""
     claim: object
     got: Union[float, str]
     passed: bool
@@ -140,7 +141,7 @@ class Outcome(NamedTuple):
 
 def value(claim, wanted, runner):
     """What a claim's runs, or its control's, give."""
-    got = claim.got(*(runner.result(one) for one in wanted))
+    got = claim.got(*(runner.result(run) for run in wanted))
     return got if isinstance(got, str) else float(got)
 
 
@@ -166,7 +167,7 @@ def line(outcome):
 # --- the report ---
 
 def made(words: str, lmp, runner, outcomes, seconds) -> Dict[str, Any]:
-    """Everything that the report says of how it was made."""
+    """How the report was made: versions, machine, counts."""
     log = logs.Log(next(iter(runner.results.values())).folder / logs.LOG).update()
     machine = provenance.machine()
     return {"date": provenance.now(), "command": words, "package": provenance.package_version(),
@@ -184,7 +185,7 @@ def row(outcome):
     return dict(zip(COLUMNS, (
         claim.case, claim.text, claim.name, claim.source, claim.unit, expected, tolerance, outcome.got, outcome.passed,
         claim.control.broken, outcome.control_got, outcome.control_fails, claim.remark,
-        [one.command for one in claim.runs])))
+        [run.command for run in claim.runs])))
 
 
 def compared(path):
@@ -193,9 +194,9 @@ def compared(path):
     found = disk.load_yaml(path, what)
     try:
         about = found["crosscheck"]
-        rows = [{**one, "value": text(one["value"]), "expected": text(one["expected"]),
-                 "tolerance": "for information" if one["tolerance"] is None else text(one["tolerance"])}
-                for one in found["checks"]]
+        rows = [{**check, "value": text(check["value"]), "expected": text(check["expected"]),
+                 "tolerance": "for information" if check["tolerance"] is None else text(check["tolerance"])}
+                for check in found["checks"]]
         return {"rows": rows, "differs": found["differs"], "versions": about["versions"], "package": about["package"],
                 "date": about["finished"], "compared": about["compared"], "failed": about["failed"]}
     except (AttributeError, KeyError, TypeError, ValueError) as error:
@@ -208,21 +209,22 @@ def write(output, outcomes, about, peers=None):
     table = io.StringIO()
     out = csv.DictWriter(table, COLUMNS, lineterminator="\n")
     out.writeheader()
-    out.writerows({**one, "commands": "; ".join(one["commands"])} for one in rows)
+    out.writerows({**entry, "commands": "; ".join(entry["commands"])} for entry in rows)
 
     def of_module(case):        # several modules may be about one folder
         names = {claim.name for claim in case.CLAIMS}
-        return [one for one in rows if one["name"] in names]
+        return [entry for entry in rows if entry["name"] in names]
 
     cases = [{"folder": case.CASE, "title": case.__doc__.splitlines()[0],
               "intro": " ".join(case.__doc__.split("\n", 1)[1].split()),
-              "rows": [{**one, "got": text(one["got"]), "control_got": text(one["control_got"])}
-                       for one in of_module(case)],
-              "commands": list(dict.fromkeys(command for one in of_module(case) for command in one["commands"]))}
+              "rows": [{**entry, "got": text(entry["got"]), "control_got": text(entry["control_got"])}
+                       for entry in of_module(case)],
+              "commands": list(dict.fromkeys(command for entry in of_module(case) for command in entry["commands"]))}
              for case in verification.cases()]
     content = {"about": about, "peers": peers, "cases": [case for case in cases if case["rows"]],
-               "errata": [{**one._asdict(), "rows": [other for case in cases for other in case["rows"]
-                                                     if other["name"] in one.claims]} for one in errata()]}
+               "errata": [{**erratum._asdict(), "rows": [entry for case in cases for entry in case["rows"]
+                                                         if entry["name"] in erratum.claims]}
+                          for erratum in errata()]}
     whole = yaml.safe_dump({**about, "results": rows}, sort_keys=False)
     for name, data in ((".csv", table.getvalue()), (".yaml", whole),
                        (".rst", render("verify.rst.j2", content)), (".html", render("verify.html.j2", content))):
