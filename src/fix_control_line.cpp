@@ -353,12 +353,13 @@ void FixControlLine::restart(char *buffer)
   memcpy(list, buffer, sizeof(list));
   const double mine[4] = {(double) line.xy.size(), line.length(), line.xlo, line.checksum()};
   if (!std::equal(mine, mine + 4, list))
-    error->all(FLERR,
-               "Fix control/line {} must have the line of the restart file, {:.0f} points, length "
-               "{:.8g} (sum {:.10g}); got "
-               "{:.0f} points, length {:.8g} (sum {:.10g}): another line, or another direction, needs "
-               "another fix ID",
-               id, 0.5 * list[0], list[1], list[3], 0.5 * mine[0], mine[1], mine[3]);
+    error->all(
+        FLERR,
+        "Fix control/line {} must have the line of the restart file, {:.0f} points, length "
+        "{:.8g} (sum {:.10g}); got "
+        "{:.0f} points, length {:.8g} (sum {:.10g}): another line, or another direction, needs "
+        "another fix ID",
+        id, 0.5 * list[0], list[1], list[3], 0.5 * mine[0], mine[1], mine[3]);
   clock.set_state({list[4], list[5], list[6], list[7], list[8]});
   log.events.clear();
   fresh.resize(comm->me == 0 ? (size_t) list[9] : 0);    // collect() brings them, and the results
