@@ -328,7 +328,7 @@ void FixControlLine::write_restart(FILE *fp)
   std::vector<double> list = {(double) line.xy.size(),
                               line.length(),
                               line.xlo,
-                              line.ylo,
+                              line.checksum(),
                               at.base,
                               at.base_step,
                               at.last,
@@ -351,13 +351,15 @@ void FixControlLine::restart(char *buffer)
 {
   double list[BEGIN];
   memcpy(list, buffer, sizeof(list));
-  const double mine[4] = {(double) line.xy.size(), line.length(), line.xlo, line.ylo};
+  const double mine[4] = {(double) line.xy.size(), line.length(), line.xlo, line.checksum()};
   if (!std::equal(mine, mine + 4, list))
-    error->all(FLERR,
-               "Fix control/line {} must have the line of the restart file, {:.0f} points, length "
-               "{:.8g}; got "
-               "{:.0f} points, length {:.8g}: another line needs another fix ID",
-               id, 0.5 * list[0], list[1], 0.5 * mine[0], mine[1]);
+    error->all(
+        FLERR,
+        "Fix control/line {} must have the line of the restart file, {:.0f} points, length "
+        "{:.8g} (sum {:.10g}); got "
+        "{:.0f} points, length {:.8g} (sum {:.10g}): another line, or another direction, needs "
+        "another fix ID",
+        id, 0.5 * list[0], list[1], list[3], 0.5 * mine[0], mine[1], mine[3]);
   clock.set_state({list[4], list[5], list[6], list[7], list[8]});
   log.events.clear();
   fresh.resize(comm->me == 0 ? (size_t) list[9] : 0);    // collect() brings them, and the results

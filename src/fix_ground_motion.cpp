@@ -174,9 +174,22 @@ void FixGroundMotion::setup_pre_force(int)
 
   double **const v = atom->v;
   const int n = atom->nlocal;
-  if (n > 0) kept.assign(v[0], v[0] + 3 * n);
+  if (n > 0 && !others_keep()) kept.assign(v[0], v[0] + 3 * n);
   for (int i = 0; i < n; i++)
     for (int c = 0; c < 3 && follows(atom->mask[i]); c++) v[i][c] -= last_kick[c];
+}
+
+/* ----------------------------------------------------------------------
+   of several such fixes, the first that takes back its kick keeps the velocities for all
+------------------------------------------------------------------------- */
+
+bool FixGroundMotion::others_keep() const
+{
+  for (Fix *fix : compat::fixes_of_style(lmp, "ground/motion")) {
+    if (fix == this) break;
+    if (!static_cast<FixGroundMotion *>(fix)->kept.empty()) return true;
+  }
+  return false;
 }
 
 /* ---------------------------------------------------------------------- */

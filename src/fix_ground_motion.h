@@ -59,6 +59,7 @@ class FixGroundMotion : public Fix {
   void announce() const;
   bool follows(int mask) const { return (mask & groupbit) && (mask & kicked) && !(mask & frozen); }
   void check_integrators();
+  bool others_keep() const;
   void kick_until(double time, bool first_half);
 
   struct Key {

@@ -31,6 +31,8 @@ using namespace FixConst;
 using namespace Slope;
 
 static constexpr double SAME_SURFACE = 1.0e-9;
+static constexpr double COARSE =
+    0.05;    // of the smallest radius, that a file may round coordinates by
 static constexpr double RESTART_FORMAT = 1.0;
 static constexpr int RESTART_SIZE = 16;    // numbers, without those of the recorder
 
@@ -254,12 +256,33 @@ void FixWallGranMesh::warn_of_enclosed()
                     caller, counted(total, "ball")));
 }
 
+/* ----------------------------------------------------------------------
+   a binary STL file has seven digits: far from the origin they are no longer enough
+------------------------------------------------------------------------- */
+
+void FixWallGranMesh::warn_of_rounding()
+{
+  double radius = HUGE_VAL, smallest;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & groupbit) radius = std::min(radius, atom->radius[i]);
+  MPI_Allreduce(&radius, &smallest, 1, MPI_DOUBLE, MPI_MIN, world);
+  if (surface->rounding > COARSE * smallest)
+    pair->guards.say(fmt::format(
+        "{}: a binary STL file should round coordinates by at most {:g} % of the smallest "
+        "radius, {:.4g}, got {:.4g}: write it about an origin of its own, and move it, or "
+        "write it as text",
+        caller, 100.0 * COARSE, smallest, surface->rounding));
+}
+
 /* ---------------------------------------------------------------------- */
 
 void FixWallGranMesh::setup(int)
 {
   clock.begin(update->ntimestep, update->dt);
-  if (!started) warn_of_enclosed();
+  if (!started) {
+    warn_of_enclosed();
+    warn_of_rounding();
+  }
   started = true;
   apply(true);
   first_step = true;

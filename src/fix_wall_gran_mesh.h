@@ -94,6 +94,7 @@ class FixWallGranMesh : public FixContactWall {
   void add_contact(int slot, const double *from);
   void find_features();
   void warn_of_enclosed();
+  void warn_of_rounding();
   void check_speed(int i, const Slope::Vector &normal);
   void take_contacts() override;
   std::vector<double> restart_values() override;

@@ -56,6 +56,21 @@ PlanLine PlanLine::read(const std::string &path)
 }
 
 /* ----------------------------------------------------------------------
+   to tell one line from another, also from the same one in the other direction
+------------------------------------------------------------------------- */
+
+double PlanLine::checksum() const
+{
+  double sum = 0.0, x_weight = 0.0, y_weight = 0.0;
+  for (size_t k = 0; k < xy.size(); k += 2) {
+    x_weight = std::fmod(x_weight + 0.6180339887498949, 1.0);
+    y_weight = std::fmod(y_weight + 0.4142135623730950, 1.0);
+    sum += (1.0 + x_weight) * xy[k] + (1.0 + y_weight) * xy[k + 1];
+  }
+  return sum;
+}
+
+/* ----------------------------------------------------------------------
    twice the area of the triangle a b c: > 0 if c is to the left of the line from a to b
 ------------------------------------------------------------------------- */
 

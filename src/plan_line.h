@@ -11,7 +11,7 @@
 
 namespace Slope {
 
-// An open line of straight pieces in plan, and what crosses the vertical plane over it. Forward is
+// A line of straight pieces in plan, open or closed, and what crosses the vertical plane over it. Forward is
 // from the left-hand side of the line, seen from its first to its last point, to the right-hand
 // side. A place on the line itself belongs to the side to the east of it, on a line along x to the
 // north. So a path that is cut into pieces crosses as often as the whole one, and one through a
@@ -36,6 +36,7 @@ class PlanLine {
   void cross(const double *from, const double *to, std::vector<Crossing> &found) const;
 
   double length() const { return start.empty() ? 0.0 : start.back(); }
+  double checksum() const;    // other points, or another order, have another
 
   std::vector<double> xy;
   double xlo, xhi, ylo, yhi;    // bounding box

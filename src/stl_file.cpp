@@ -7,6 +7,8 @@
 
 #include "text_file.h"
 
+#include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -190,6 +192,18 @@ static Vector placed(const Vector &v, double scale, const Vector &move)
   return {scale * v.x + move.x, scale * v.y + move.y, scale * v.z + move.z};
 }
 
+// half the distance of a float to the next one, for the largest coordinate
+static double rounding_of(const std::vector<Triangle> &list)
+{
+  double most = 0.0;
+  for (const Triangle &t : list)
+    for (const Vector *v : {&t.a, &t.b, &t.c})
+      most = std::max({most, std::fabs(v->x), std::fabs(v->y), std::fabs(v->z)});
+  return most > 0.0 ? std::ldexp(0.5, std::ilogb(most) - (FLT_MANT_DIG - 1)) : 0.0;
+}
+
+/* ---------------------------------------------------------------------- */
+
 StlFile StlFile::read(const std::string &path, double scale, const Vector &move)
 {
   const std::string bytes = bytes_of(path);
@@ -213,6 +227,7 @@ StlFile StlFile::read(const std::string &path, double scale, const Vector &move)
   const std::vector<Triangle> all = file.binary ? read_binary(path, bytes) : read_text(path, bytes);
 
   file.surplus = file.binary ? static_cast<double>(bytes.size() - HEADER - RECORD * n) : 0.0;
+  file.rounding = file.binary ? scale * rounding_of(all) : 0.0;
   file.skipped = 0;
   for (const Triangle &t : all) {
     const double side = t.longest_side();

@@ -26,6 +26,8 @@ struct StlFile {
   int skipped;                        // those without: two corners, or all three on a line
   bool binary;
   double surplus;    // bytes after the last triangle of a binary file, which are not read
+  double
+      rounding;    // half a last digit of a binary file's largest coordinate, times scale; text: 0
 
   // coordinates times scale, then moved
   static StlFile read(const std::string &path, double scale = 1.0,

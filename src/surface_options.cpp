@@ -102,6 +102,7 @@ std::unique_ptr<TouchedSurface> SurfaceOptions::read_stl() const
   });
   int n[2] = {static_cast<int>(stl.triangles.size()), stl.skipped};
   MPI_Bcast(n, 2, MPI_INT, 0, world);
+  MPI_Bcast(&stl.rounding, 1, MPI_DOUBLE, 0, world);
   stl.triangles.resize(n[0]);
   const int width = sizeof(Triangle) / sizeof(double), most = MAXSMALLINT / 16 / width;
   for (int k = 0; k < n[0]; k += most)
@@ -110,14 +111,15 @@ std::unique_ptr<TouchedSurface> SurfaceOptions::read_stl() const
   on_all_ranks(lmp, caller, [&]() {
     made.reset(new TriangleMesh(stl.triangles));
   });
+  made->rounding = stl.rounding;
 
   double area = 0.0;
   for (const Triangle &t : stl.triangles) area += t.area();
   const Vector &low = made->low(), &high = made->high();
   if (comm->me == 0) {
     utils::logmesg(lmp,
-                   "{}: {}, area {:.6g}, x {:.6g} to {:.6g}, y {:.6g} to {:.6g}, z {:.6g} to "
-                   "{:.6g}\n",
+                   "{}: {}, area {:.6g}, x {:.8g} to {:.8g}, y {:.8g} to {:.8g}, z {:.8g} to "
+                   "{:.8g}\n",
                    caller, counted(n[0], "triangle"), area, low.x, high.x, low.y, high.y, low.z,
                    high.z);
     if (n[1])
@@ -156,8 +158,8 @@ std::unique_ptr<TouchedSurface> SurfaceOptions::read_terrain() const
   if (comm->me == 0)
     utils::logmesg(
         lmp,
-        "{}: smooth ground, {} x {} cells of {:.8g}, x {:.6g} to {:.6g}, y {:.6g} to {:.6g}, z "
-        "{:.6g} to {:.6g}\n",
+        "{}: smooth ground, {} x {} cells of {:.8g}, x {:.8g} to {:.8g}, y {:.8g} to {:.8g}, z "
+        "{:.8g} to {:.8g}\n",
         caller, grid.nx, grid.ny, grid.cell, low.x, high.x, low.y, high.y, low.z, high.z);
   return made;
 }
@@ -179,8 +181,8 @@ void SurfaceOptions::check_place(const TouchedSurface &made) const
     if (fixed && (high[d] < from || low[d] > to))
       error->all(
           FLERR,
-          "{}: the surface of {} must reach into the box, {} {:.6g} to {:.6g}, got {:.6g} to "
-          "{:.6g}: is it in other units (scale 0.001) or another place (move)?",
+          "{}: the surface of {} must reach into the box, {} {:.8g} to {:.8g}, got {:.8g} to "
+          "{:.8g}: is it in other units (scale 0.001) or another place (move)?",
           caller, file, "xyz"[d], from, to, low[d], high[d]);
   }
   if (size > TOO_LARGE * box)

@@ -30,6 +30,8 @@ class TouchedSurface {
   virtual bool encloses(const Vector &) const { return false; }    // of a closed one: x is inside
   virtual double checksum() const = 0;        // another surface has another one
   virtual double memory_usage() const = 0;    // bytes
+
+  double rounding = 0.0;    // by how much its file may have rounded coordinates, m
 };
 
 }    // namespace Slope

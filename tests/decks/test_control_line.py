@@ -201,6 +201,31 @@ def test_other_line_in_the_restart(tmp_path):
     run_deck(text, tmp_path, expect_error="Fix control/line line must have the line of the restart file, 3 points")
 
 
+def test_the_other_direction_is_another_line(tmp_path):
+    """Forward would be back."""
+    collapse(tmp_path, "run 10\nwrite_restart cut.restart")
+    (tmp_path / "line.csv").write_text("8 -13\n8 10\n9 20\n")
+    text = collapse_deck("run 1", begin="read_restart cut.restart")
+    text = text.replace("\nthermo 1000", "\nfix line soil control/line line.csv output out\nthermo 1000", 1)
+    run_deck(text, tmp_path, expect_error="Fix control/line line must have the line of the restart file, 3 points")
+
+
+@pytest.mark.parametrize("closed", ["-4 -4\n4 -4\n4 4\n-4 4\n-4 -4\n", "4 4\n4 -4\n-4 -4\n-4 4\n4 4\n"])
+def test_a_closed_line(tmp_path, closed):
+    """Counterclockwise, forward is outwards; volume forward less back is what has left."""
+    rng = np.random.default_rng(8)
+    x = np.column_stack([rng.uniform(-8, 8, (60, 2)), rng.uniform(5, 9, 60)])
+    v = np.column_stack([rng.uniform(-9, 9, (60, 2)), 0 * x[:, 0]])
+    keep = (np.abs(x + 0.5 * v)[:, :2] < 9.5).all(axis=1)
+    fly(tmp_path, x[keep], v[keep], closed, "run 500\n")
+    inside = [(np.abs(at[keep, :2]) < 4).all(axis=1).sum() for at in (x, x + 0.5 * v)]
+    left = inside[0] - inside[1]
+    about = summary(tmp_path)
+    outwards = 1 if closed.startswith("-4 -4") else -1
+    assert about["net_volume"] == pytest.approx(outwards * left * volume(1), abs=1e-9) and left != 0
+    assert min(about["forward"]["crossings"], about["back"]["crossings"]) > 3
+
+
 @pytest.mark.parametrize("np_", [1, 2])
 def test_a_group_without_balls_is_told(tmp_path, np_):
     log = fly(tmp_path, [[-1, 0, 8]], [[3, 0, 0]], "0 -9\n0 9\n",

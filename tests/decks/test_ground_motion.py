@@ -109,6 +109,29 @@ def test_time_goes_on_whatever_the_deck_does(tmp_path):
     assert end[:, 4:] == pytest.approx(v - integrals(t, a, 0.3 + 0.2 + 0.5)[0], abs=1e-11)
 
 
+@pytest.mark.parametrize("pieces", ["run 500", "run 130\nrun 20\nrun 350", "run 130\nrun 370 every 37 NULL"])
+def test_two_motions_add_up(tmp_path, pieces):
+    """A main shock and an aftershock: a free ball loses nothing when a run goes on."""
+    random_motion(tmp_path, seed=4)
+    (tmp_path / "motion.txt").rename(tmp_path / "after.txt")
+    t, a = random_motion(tmp_path)
+    after = np.loadtxt(tmp_path / "after.txt")
+    v = [[1.0, 2.0, 3.0], [-1.0, 0.5, 0.0]]
+    write_asc(tmp_path / "ground.asc", np.zeros((4, 4)), -20, -20, 10)
+    write_balls(tmp_path / "balls.data", [[0, 0, 0], [5, 5, 5]], 1.0, v, [(-20, 20)] * 3)
+    run_deck(flight_head().replace("pair_style none", """comm_modify vel yes
+pair_style gran/restitution
+pair_coeff * * stiffness 1e7 1e7 restitution 0.5""") + f"""
+fix shake all ground/motion motion.txt
+fix again all ground/motion after.txt scale -0.5 start 0.1
+{pieces}
+write_dump all custom end.dump id x y z vx vy vz modify sort id format float %.17g
+""", tmp_path)
+    frame, = read_dump(tmp_path / "end.dump").values()
+    ground = integrals(t, a, 0.5)[0] + integrals(after[:, 0], -0.5 * after[:, 1:], 0.4)[0]
+    assert frame[:, 4:] == pytest.approx(v - ground, abs=1e-12)
+
+
 def test_a_jump_counts_where_it_is(tmp_path):
     """Half a step is as good as any other place for a jump."""
     write_motion(tmp_path, [0.1037, 0.1037, 0.4041, 0.4041], [0, 5, 5, 0])

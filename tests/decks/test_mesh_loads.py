@@ -224,6 +224,21 @@ def test_what_follows_the_last_triangle_is_said(tmp_path):
     assert "Fix wall/gran/mesh wall: 1 triangle, area" in log
 
 
+@pytest.mark.parametrize("text, origin, said", [(False, 3954321.13, True), (True, 3954321.13, False),
+                                                (False, 54321.13, False)])
+def test_a_binary_file_far_from_its_origin_has_too_few_digits(tmp_path, text, origin, said):
+    """Coordinates of a projection in a binary file are rounded to a quarter of a metre."""
+    triangles = plane(1) + [0, origin, 0]
+    write_case(tmp_path, plane(1), (0.3, 0.2, 1.6), (0, 0, -1))
+    (tmp_path / "mesh.stl").write_bytes(stl_text(triangles).encode() if text else stl_bytes(triangles))
+    log = run_case(tmp_path, "run 1\nrun 1", keywords=f"move 0 {-origin} 0")[2]
+    warned = [line for line in log.splitlines() if "WARNING" in line and "digits" not in line]
+    assert len(warned) == said
+    if said:
+        assert "Fix wall/gran/mesh wall: a binary STL file" in warned[0]
+        assert "5 % of the smallest radius, 0.5, got 0.125:" in warned[0]
+
+
 def test_a_mesh_much_larger_than_the_box_is_doubted(tmp_path):
     write_case(tmp_path, plane(1) * 20, (0.3, 0.2, 1.6), (0, 0, -1))
     assert "is 17.9 times as large as the box, 28: is it in other units" in run_case(tmp_path, "run 1")[2]

@@ -110,7 +110,11 @@ def test_kiknet_surface_and_borehole(slope):
     motion = read_motion()
     assert motion[-1, 0] == pytest.approx(999 * 0.005)
     assert motion[:, 1] - motion[:, 1].mean() == pytest.approx(EW[:1000] - EW[:1000].mean(), abs=1e-5)
-    refused(slope, "a.NS2 a.EW2 a.EW1 -o x.txt", "a.EW1: at most two horizontal components")
+    refused(slope, "a.NS2 a.EW2 a.EW1 -o x.txt", "a.EW1: must be of the sensor of a.NS2, at the surface, got in the")
+    knet("a.UD1", UD[:1000], "3", rate=200)
+    refused(slope, "a.NS2 a.EW2 a.UD1 -o x.txt", "a.UD1: must be of the sensor of a.NS2")
+    knet("b.EW2", NS[:1000], "5", rate=200)
+    refused(slope, "a.NS2 a.EW2 b.EW2 -o x.txt", "b.EW2: at most two horizontal components")
 
 
 @pytest.mark.parametrize("change, message", [
@@ -145,7 +149,8 @@ def test_components_of_different_records(slope):
 
 
 @pytest.mark.parametrize("settings", [{}, {"width": 8}, {"width": 1}, {"size": f"  2000    {DT:.4f}    NPTS, DT"},
-                                      {"size": "NPTS=2000, DT=.01 SEC"}, {"unit": "CM/S/S"},
+                                      {"size": "NPTS=2000, DT=.01 SEC"}, {"size": "NPTS= 2000  DT= .01 SEC"},
+                                      {"unit": "CM/S/S"}, {"unit": "CM/SEC2"}, {"unit": "CM/SEC**2"},
                                       {"form": "{:+.7E}"}])    # nothing between two numbers
 def test_at2(slope, settings):
     at2("a.AT2", EW, "090", **settings)
@@ -198,7 +203,8 @@ def test_not_at_right_angles(slope):
 
 @pytest.mark.parametrize("head, unit, option", [
     ("time,EW (gal),NS (gal),UD (gal)", GAL, ""), ("t;e [g];n [g];up [g]", G, ""),
-    ("time\tew\tns\tud", 1.0, "--unit m/s2"),
+    ("time\tew\tns\tud", 1.0, "--unit m/s2"), ("time,E-W (cm/s^2),N-S (cm/s^2),U-D (cm/s^2)", GAL, ""),
+    ('"time","EW (m/s\u00b2)","NS [m/sec2]","UD [m/s**2]"', 1.0, ""),
     ("Time (s) , East ( m/s2 ) , North (m/s2), Vertical (m/s2)", 1.0, "--unit gal")])
 def test_csv(slope, head, unit, option):
     mark = next(mark for mark in ",;\t" if mark in head)
@@ -207,6 +213,36 @@ def test_csv(slope, head, unit, option):
     Path("a.csv").write_text("# a record\n" + head + "\n" + "\n".join(rows) + "\n")
     assert slope(f"a.csv {option} --baseline none -o motion.txt")[0] == 0
     assert read_motion() == pytest.approx(np.column_stack([T, EW, NS, UD]), abs=1e-7)
+
+
+@pytest.mark.parametrize("rate, digits", [(256, 3), (256, 5), (120, 4), (100, 2), (62.5, 3)])
+def test_times_of_a_csv_are_rounded(slope, rate, digits):
+    rows = "".join(f"{k / rate + 3:.{digits}f},{a:.9g}\n" for k, a in enumerate(EW))
+    Path("a.csv").write_text("t,EW (m/s2)\n" + rows)
+    assert slope("a.csv --baseline none -o motion.txt")[0] == 0
+    assert read_motion()[:, 0] == pytest.approx(np.arange(len(EW)) / rate, abs=1.1 * 10.0 ** -digits)
+    lines = Path("a.csv").read_text().splitlines()
+    Path("a.csv").write_text("\n".join(lines[:900] + lines[901:]))
+    refused(slope, "a.csv -o gap.txt", "a.csv, line 901: times must be evenly spaced", "a step of")
+
+
+def test_times_of_a_csv_whose_step_changes(slope):
+    t = np.cumsum(np.where(np.arange(400) < 200, 0.004, 0.003))    # each within the rounding of its neighbours
+    Path("a.csv").write_text("t,EW (m/s2)\n" + "".join(f"{a:.3f},{b:.9g}\n" for a, b in zip(t, EW)))
+    refused(slope, "a.csv -o motion.txt", "a.csv, line 2", "times must be evenly spaced")
+
+
+def test_csv_files_of_one_record_begin_together(slope):
+    for name, begin in (("ew", 0), ("ns", 0), ("ud", 5)):
+        rows = "".join(f"{a:.2f},{b:.9g}\n" for a, b in zip(T + begin, EW))
+        Path(f"{name}.csv").write_text(f"t,{name} (m/s2)\n" + rows)
+    assert slope("ew.csv ns.csv -o motion.txt")[0] == 0
+    refused(slope, "ew.csv ns.csv ud.csv -o x.txt", "ud.csv: must begin when ew.csv does, 0 s, got 5 s")
+
+
+def test_a_file_of_comments(slope):
+    Path("a.csv").write_text("# a record\n\n# to come\n")
+    refused(slope, "a.csv -o motion.txt", "a.csv: must hold a record")
 
 
 LINES = ["0,1", "0.01,2", "0.02,1", "0.03,0", "0.04,1"]
@@ -375,6 +411,32 @@ def test_spectrum_of_a_step_in_closed_form():
     wd = w * np.sqrt(1 - z * z)
     step = 1 - np.exp(-z * w * s) * (np.cos(wd * s) - z * w / wd * np.sin(wd * s))
     assert found == pytest.approx(np.full(3, step.max()), rel=3e-3)
+
+
+def test_the_largest_response_is_found_between_the_points():
+    """A stiff oscillator, 2.5 points of the record per period, against steps of its own in closed form."""
+    rng, dt, period, z = np.random.default_rng(2), 0.02, 0.05, 0.05
+    a = np.column_stack([rng.standard_normal((200, 3))])
+    a[0] = a[-1] = 0
+    h, w = dt / 200, 2 * np.pi / period
+    wd = w * math.sqrt(1 - z * z)
+    largest = np.zeros(3)
+    for c in range(3):
+        fine = np.append(np.interp(np.arange(199 * 200 + 1) * h, dt * np.arange(200), a[:, c]), np.zeros(600))
+        # particular solution of u'' + 2 z w u' + w2 u = -(p + q s), and the free oscillation about it
+        q = np.diff(fine) / h
+        u = v = 0.0
+        cos, sin, decay = math.cos(wd * h), math.sin(wd * h), math.exp(-z * w * h)
+        for p, slope_ in zip(fine, q):
+            b = -slope_ / w ** 2
+            first = -p / w ** 2 + 2 * z * slope_ / w ** 3
+            y, s = u - first, v - b
+            k = (s + z * w * y) / wd
+            u = first + b * h + decay * (y * cos + k * sin)
+            v = b + decay * (s * cos - (z * w * k + wd * y) * sin)
+            largest[c] = max(largest[c], abs(w * w * u + 2 * z * w * v))
+    found = quake_motion.spectrum(quake_motion.Motion(dt, a), z, np.array([period]))[0]
+    assert found == pytest.approx(largest, rel=4e-3)
 
 
 def test_spectrum_file_has_what_is_drawn(slope):

@@ -89,6 +89,14 @@ TEST(PlanLine, BesideTheLineNothingCrosses)
 
 // a step that ends on the line: the ball is to the east of it; the next step brings it further, or back
 
+TEST(PlanLine, ChecksumTellsLinesAndTheirDirectionsApart)
+{
+  const PlanLine line({0.0, 0.0, 5.0, -5.0, 10.0, -10.0});
+  EXPECT_EQ(line.checksum(), PlanLine({0.0, 0.0, 5.0, -5.0, 10.0, -10.0}).checksum());
+  EXPECT_NE(line.checksum(), PlanLine({10.0, -10.0, 5.0, -5.0, 0.0, 0.0}).checksum());
+  EXPECT_NE(line.checksum(), PlanLine({0.0, 0.0, 4.0, -4.0, 10.0, -10.0}).checksum());
+}
+
 TEST(PlanLine, APathInPiecesCrossesAsOften)
 {
   EXPECT_EQ(net(cross(north, 1.0, 1.0, 2.0, 1.0)), 1);

@@ -114,6 +114,16 @@ TEST(StlFile, ReadsBinaryWhateverItsHeader)
   EXPECT_EQ(StlFile::read(PATH).surplus, 4.0);
 }
 
+TEST(StlFile, KnowsHowABinaryFileRounds)
+{
+  float corners[9] = {0.0f, 0.0f, 0.0f, 2.0f, 0.0f, 0.0f, 0.0f, 3954321.25f, 0.0f};
+  write(std::string(80, ' ') + number(1) + record(corners));
+  EXPECT_EQ(StlFile::read(PATH).rounding, 0.125);
+  EXPECT_EQ(StlFile::read(PATH, 0.001, {1.0, 2.0, 3.0}).rounding, 0.000125);
+  write("solid a\n" + ONE + "endsolid a\n");
+  EXPECT_EQ(StlFile::read(PATH).rounding, 0.0);
+}
+
 TEST(StlFile, ScalesThenMoves)
 {
   write(binary(1));

@@ -14,6 +14,7 @@ from .quake_records import G, GAL, UP
 AXES = ("x", "y", "z")
 DAMPING = 0.05
 PERIODS = np.round(np.geomspace(0.05, 10.0, 60), 4)    # s
+POINTS = 40          # per period, at which the response of an oscillator is known: its largest to 0.3 %
 ORDER = 4            # of the Butterworth band-pass, run forth and back
 TAPER = 0.05         # of the record, at each end, before a band-pass
 
@@ -40,6 +41,14 @@ def combine(components, azimuth):
         if other.begin != first.begin:
             raise SlopeError(other.source, f"must begin when {first.source} does, {first.begin or 'without a date'}",
                              other.begin or "no date")
+        if other.sensor != first.sensor:
+            raise SlopeError(other.source, f"must be of the sensor of {first.source}, {first.sensor or 'of K-NET'}",
+                             other.sensor or "of K-NET")
+    timed = [c for c in components if c.first_time is not None]
+    for other in timed[1:]:
+        if abs(other.first_time - timed[0].first_time) > 1e-3 * first.dt:
+            raise SlopeError(other.source, f"must begin when {timed[0].source} does, {timed[0].first_time:g} s",
+                             f"{other.first_time:g} s")
     flat = [c for c in components if c.direction != UP]
     if len(components) - len(flat) > 1 or len(flat) > 2:
         raise SlopeError(components[-1].source, "at most two horizontal components and a vertical one make a motion",
@@ -141,9 +150,13 @@ def spectrum(motion, damping=DAMPING, periods=PERIODS):
     found = np.empty((len(periods), 3))
     for k, period in enumerate(periods):
         w = 2 * np.pi / period
-        b, a, _ = signal.cont2discrete(([2 * damping * w, w * w], [1.0, 2 * damping * w, w * w]), motion.dt, "foh")
-        quiet = np.zeros((int(np.ceil(0.5 * period / motion.dt)), 3))    # the largest may come after the end
-        found[k] = np.abs(signal.lfilter(np.ravel(b), a, np.vstack([motion.a, quiet]), axis=0)).max(axis=0)
+        parts = max(1, int(np.ceil(POINTS * motion.dt / period)))    # the largest may come between two points
+        dt = motion.dt / parts
+        fine = np.arange((len(motion.a) - 1) * parts + 1) / parts
+        a = np.column_stack([np.interp(fine, np.arange(len(motion.a)), values) for values in motion.a.T])
+        quiet = np.zeros((int(np.ceil(0.5 * period / dt)), 3))       # or after the end
+        above, below, _ = signal.cont2discrete(([2 * damping * w, w * w], [1.0, 2 * damping * w, w * w]), dt, "foh")
+        found[k] = np.abs(signal.lfilter(np.ravel(above), below, np.vstack([a, quiet]), axis=0)).max(axis=0)
     return found
 
 

@@ -2,23 +2,25 @@
 import math
 import re
 from dataclasses import dataclass
+from decimal import Decimal
 from pathlib import Path
-from typing import Any
+from typing import Any, Optional
 
 import numpy as np
 
 from ..errors import SlopeError
 
 GAL, G = 0.01, 9.80665      # m/s2
-UNITS = {"gal": GAL, "cm/s2": GAL, "cm/s/s": GAL, "cm/sec/sec": GAL, "g": G, "m/s2": 1.0, "m/s/s": 1.0}
+UNITS = {"gal": GAL, "cm/s2": GAL, "cm/s/s": GAL, "g": G, "m/s2": 1.0, "m/s/s": 1.0}
 UP = "up"
 MOST = 50.0                 # m/s2; no ground has moved with more
-EVEN = 1e-3                 # of a time step, that steps of a CSV may differ; times are rounded
+EVEN = 1e-3                 # of a time step, that steps of a CSV may differ, beside the rounding of its times
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
 KIK_NET = {"1": 0.0, "2": 90.0, "3": UP, "4": 0.0, "5": 90.0, "6": UP}    # 1 to 3: in the borehole
 KNET = {"N-S": 0.0, "E-W": 90.0, "U-D": UP, **KIK_NET}
-COLUMNS = {"ew": 90.0, "e": 90.0, "east": 90.0, "ns": 0.0, "n": 0.0, "north": 0.0, "ud": UP, "u": UP, "up": UP,
-           "vertical": UP}
+SENSORS = {**dict.fromkeys("123", "in the borehole"), **dict.fromkeys("456", "at the surface")}
+COLUMNS = {"ew": 90.0, "e-w": 90.0, "e": 90.0, "east": 90.0, "ns": 0.0, "n-s": 0.0, "n": 0.0, "north": 0.0,
+           "ud": UP, "u-d": UP, "u": UP, "up": UP, "vertical": UP}
 
 
 @dataclass
@@ -31,10 +33,18 @@ class Component:
     values: np.ndarray
     begin: str = ""        # date and time as the file has them
     unit_in_head: bool = False      # as its format has it: --unit is not for it
+    first_time: Optional[float] = None      # s, of a CSV
+    sensor: str = ""       # of KiK-net, which has two
 
     @property
     def name(self):
         return UP if self.direction == UP else f"{self.direction:g} degrees"
+
+
+def unit_of(text):
+    """m/s2 of a unit as it is written, such as cm/sec**2; None of another."""
+    plain = re.sub(r"\*\*|\^", "", text.lower().replace("\u00b2", "2").replace("sec", "s"))
+    return UNITS.get(plain.rstrip(".,"))
 
 
 def read(path, unit=None):
@@ -105,7 +115,8 @@ def knet(path, lines):
     if largest and abs(most - float(largest[1])) > 0.02 * most + 0.2:
         raise SlopeError(path, f"the largest acceleration must be the head's Max. Acc., {largest[1]} gal",
                          f"{most:.5g} gal")
-    return Component(str(path), KNET[code], 1 / rate, values, head.get("record time", ""), True)
+    return Component(str(path), KNET[code], 1 / rate, values, head.get("record time", ""), True,
+                     sensor=SENSORS.get(code, ""))
 
 
 # --- PEER ---
@@ -115,9 +126,10 @@ def at2(path, lines):
     if len(lines) < 5:
         raise SlopeError(path, "must have four lines of head and values (cut short)", f"{len(lines)} lines")
     unit = re.search(r"UNITS? +OF +(\S+)", lines[2].upper())
-    if not unit or unit[1].lower().rstrip(".,") not in UNITS:
-        raise SlopeError(f"{path}, line 3", "must end in UNITS OF G", repr(lines[2].strip()))
-    size = (re.search(r"NPTS *= *(\d+) *, *DT *= *([\d.eE+-]+)", lines[3].upper()) or
+    factor = unit_of(unit[1]) if unit else None
+    if factor is None:
+        raise SlopeError(f"{path}, line 3", "must end in UNITS OF G (or GAL, CM/S2, M/S2)", repr(lines[2].strip()))
+    size = (re.search(r"NPTS *= *(\d+)(?: *, *| +)DT *= *([\d.eE+-]+)", lines[3].upper()) or
             re.match(r" *(\d+) +([\d.eE+-]+) +NPTS", lines[3].upper()))
     if not size or not 0 < number(size[2]) < 10:
         raise SlopeError(f"{path}, line 4", "must be NPTS= n, DT= s SEC", repr(lines[3].strip()))
@@ -131,7 +143,7 @@ def at2(path, lines):
         direction, sign = (0.0 if word[0] == "N" else 90.0), 1.0
     else:
         raise SlopeError(f"{path}, line 2", "must end in the direction, an azimuth or UP", repr(lines[1].strip()))
-    values = values_of(path, lines, 4, int(size[1])) * (sign * UNITS[unit[1].lower().rstrip(".,")])
+    values = values_of(path, lines, 4, int(size[1])) * (sign * factor)
     return Component(str(path), direction, number(size[2]), values, unit_in_head=True)
 
 
@@ -147,13 +159,15 @@ def number(text):
 
 def table(path, lines, unit):
     """Components of a table: a head that names time and directions, then a line per time, evenly spaced."""
-    rows = [(k, line) for k, line in enumerate(lines, 1) if line.split("#")[0].strip()]
+    rows = [(k, line.replace('"', "")) for k, line in enumerate(lines, 1) if line.split("#")[0].strip()]
+    if not rows:
+        raise SlopeError(path, "must hold a record, it has comments only")
     place, head = rows[0]
     mark = next((mark for mark in ";,\t" if mark in head), None)
     names = [name.strip().lower() for name in (head.split(mark) if mark else head.split())]
     columns = {}
     for k, name in enumerate(names):
-        match = re.fullmatch(r"([a-z]+)\s*(?:[(\[]\s*([^)\]]*?)\s*[)\]])?", name)
+        match = re.fullmatch(r"([a-z-]+)\s*(?:[(\[]\s*([^)\]]*?)\s*[)\]])?", name)
         columns[k] = (match[1], match[2]) if match else (name, None)
     if columns[0][0] not in ("t", "time") or len(columns) < 2:
         raise SlopeError(f"{path}, line {place}",
@@ -163,25 +177,38 @@ def table(path, lines, unit):
         name, own = columns[k]
         if name not in COLUMNS:
             raise SlopeError(f"{path}, line {place}", "columns must be time and EW, NS or UD", repr(name))
-        if (own or unit or "").lower() not in UNITS:
+        if unit_of(own or unit or "") is None:
             raise SlopeError(f"{path}, line {place}",
                              f"column {name} needs a unit, gal, g or m/s2, in brackets or by --unit",
                              repr(own) if own else "none")
     values = np.array([row_of(path, place, line, mark, len(columns)) for place, line in rows[1:]])
     if len(values) < 2:
         raise SlopeError(path, "must hold at least two lines of values", len(values))
-    steps = np.diff(values[:, 0])
+    dt = time_step(path, rows[1:], values[:, 0], mark)
+    return [Component(str(path), COLUMNS[columns[k][0]], dt, values[:, k] * unit_of(columns[k][1] or unit),
+                      first_time=float(values[0, 0])) for k in list(columns)[1:]]
+
+
+def time_step(path, rows, times, mark):
+    """The time step of a table, whose times are evenly spaced but for their rounding."""
+    steps = np.diff(times)
     dt = float(np.median(steps))
-    for k, step in enumerate(steps):
-        where = f"{path}, line {rows[k + 2][0]}"
-        if step <= 0:
-            raise SlopeError(where, "times must rise", f"{values[k + 1, 0]:g} after {values[k, 0]:g}")
-        if abs(step - dt) > EVEN * dt + 2e-6:
-            raise SlopeError(where, f"times must be evenly spaced, {dt:g} s here: the record has a gap",
-                             f"a step of {step:g} s")
-    dt = float((values[-1, 0] - values[0, 0]) / len(steps))
-    return [Component(str(path), COLUMNS[columns[k][0]], dt,
-                      values[:, k] * UNITS[(columns[k][1] or unit).lower()]) for k in list(columns)[1:]]
+    for k in np.flatnonzero(steps <= 0):
+        raise SlopeError(f"{path}, line {rows[k + 1][0]}", "times must rise", f"{times[k + 1]:g} after {times[k]:g}")
+    last_digit = min(float(Decimal(1).scaleb(int(Decimal(line.split(mark)[0].strip()).as_tuple().exponent)))
+                     for _, line in rows)
+    rounding = min(last_digit, 0.5 * dt) + EVEN * dt
+    for k in np.flatnonzero(np.abs(steps - dt) > rounding):
+        raise SlopeError(f"{path}, line {rows[k + 1][0]}",
+                         f"times must be evenly spaced, {dt:g} s here: the record has a gap",
+                         f"a step of {steps[k]:g} s")
+    dt = float((times[-1] - times[0]) / len(steps))
+    off = np.abs(times - times[0] - dt * np.arange(len(times)))
+    if off.max() > rounding:
+        worst = int(off.argmax())
+        raise SlopeError(f"{path}, line {rows[worst][0]}", f"times must be evenly spaced, {dt:g} s here",
+                         f"{times[worst]:g}, {off[worst]:g} s beside")
+    return dt
 
 
 def row_of(path, place, line, mark, count):
