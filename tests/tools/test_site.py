@@ -152,7 +152,7 @@ def test_the_deck_by_hand_gives_the_numbers_of_the_study(done, tmp_path):
 
 def test_what_is_released_is_the_body(done):
     folder, first, _ = done
-    told = float(re.search(r"^volume (\S+) m3", first, re.MULTILINE)[1])
+    told = float(re.search(r"^volume (\S+) m3", first, re.MULTILINE)[1].replace(",", ""))
     study = yaml.safe_load((folder / "mine" / "study" / "study.yaml").read_text())
     for row in study["runs"]:
         assert row["released_m3"] == pytest.approx(told, rel=2e-3)
@@ -311,7 +311,9 @@ BODY = ("--shape", "ellipsoid", "--depth", "5")
 
 
 @pytest.mark.parametrize("words, start", [
-    ((), "--depth: .*--volume must be given"),
+    ((), "--depth: must be given .*--volume"),
+    ((*BODY, "--name", "x" * 201), "--name: must be one line of at most 200 letters"),
+    ((*BODY, "--author", "a\nb"), "--author: must be one line"),
     (("--depth", "-1"), "--depth: must be > 0, got -1"),
     (("--shape", "ellipsoid", "--volume", "1e9"), "--volume: must be at most .*got 1000000000"),
     ((*BODY, "--road", "missing.geojson"), "missing.geojson: must be an existing file"),
