@@ -124,6 +124,17 @@ def test_two_commands_lead_from_gis_files_to_a_report(done):
     assert f"{round(site_choices.found(mine)['balls'])}" in first.replace(",", "")
 
 
+def test_the_report_of_a_sites_folder(done, tmp_path):
+    made = slope(done[0], "report", "mine", "--no-film", "-o", tmp_path / "again.html")
+    assert made.returncode == 0 and (tmp_path / "again.html").stat().st_size > 0, made.stderr
+    bare = tmp_path / "bare"
+    bare.mkdir()
+    shutil.copy(done[0] / "mine" / "site.yaml", bare)
+    found = slope(tmp_path, "report", "bare")
+    assert found.returncode == 2 and found.stderr.startswith("slope report: bare: must hold the study of this site")
+    assert "slope study bare" in found.stderr and [path.name for path in bare.iterdir()] == ["site.yaml"]
+
+
 def test_the_study_is_resumed(done):
     folder, _, _ = done
     before = {path: path.stat().st_mtime_ns for path in (folder / "mine").rglob("finished.yaml")}
