@@ -14,13 +14,14 @@ import yaml
 from affine import Affine
 from rasterio.crs import CRS
 from shapely.affinity import rotate
-from shapely.geometry import Polygon, box, mapping
+from shapely.geometry import Point, Polygon, box, mapping
 
 from run_helpers import (CRS_M, EAST, NORTH, TOP, here, run_command, write_asc,  # noqa: F401  (here: a fixture)
                          write_geojson)
 
 from slope_tools.case import release_chart  # noqa: E402
 from slope_tools.commands import release as release_command  # noqa: E402
+from slope_tools.drawing import maps  # noqa: E402
 from slope_tools.survey import (polygons, rasters, release_area, release_bodies, release_slbl,  # noqa: E402
                                 release_solve)
 
@@ -48,7 +49,8 @@ def body(slope, no_picture):
         status, out, err = slope(f"{arguments} -o r")
         assert status == 0, err
         about = yaml.safe_load(Path("r.yaml").read_text())
-        assert f"volume {about['body']['volume']:.10g} m3" in out
+        printed = float(re.search(r"^volume (\S+) m3", out, re.MULTILINE)[1].replace(",", ""))
+        assert printed == pytest.approx(about["body"]["volume"], rel=5e-5)
         return about["body"], about
     return run
 
@@ -249,6 +251,38 @@ def test_a_depth_that_no_sphere_on_bulging_ground_has(refused):
             "shoulder", "take --shape slbl or a smaller polygon, got 1")
 
 
+@pytest.mark.parametrize("shape", ["sphere", "ellipsoid"])
+def test_a_wall_through_one_cell_does_not_jump_over_the_target(body, shape):
+    """In a valley a sphere is cut at its equator, and takes up nodes of 20 m at once: 60 m3, over 1 %."""
+    terrain(lambda x, y: 0.5 * np.abs(x - 120) + 0.35 * y, size=(118, 141), cell=1.7)
+    polygon(rotate(Polygon([(90, 60), (150, 65), (155, 130), (85, 140)]), 20))
+    for wanted in (5000, 5015, 5030):
+        found, _ = body(f"t.asc --polygon p.csv --shape {shape} --volume {wanted}")
+        assert found["volume"] == pytest.approx(wanted, rel=1e-4)
+    found, _ = body(f"t.asc --polygon p.csv --shape {shape} --depth 28")
+    assert found["largest_depth"] == pytest.approx(28, abs=2e-4)
+
+
+def test_a_plane_that_does_not_come_out_downhill_is_warned_of(body):
+    terrain(ramp(30))
+    polygon(box(80, 60, 140, 120))
+    for dip, direction, warned in ((25, 270, False), (40, 270, True), (20, 90, True), (25, 330, True),
+                                   (15, 330, False)):
+        found, about = body(f"t.asc --polygon p.csv --dip {dip} --direction {direction} --depth 3")
+        assert any("cannot slide out" in line for line in about["warnings"]) == warned, (dip, direction)
+
+
+def test_a_body_in_parts_is_warned_of(body):
+    terrain(lambda x, y: 0.5 * x + 12 * np.sin(y / 30), size=(150, 160))
+    polygon(Point(150, 150).buffer(60))
+    _, about = body("t.asc --polygon p.csv --volume 20000")
+    line, = (line for line in about["warnings"] if "parts that do not touch" in line)
+    volumes = [float(text.replace(",", "")) for text in re.findall(r"([0-9.,]*[0-9]) (?:and|m3)", line)]
+    assert len(volumes) == 2 and sum(volumes) == pytest.approx(20000, rel=0.02)
+    _, about = body("t.asc --polygon p.csv --volume 90000")
+    assert not any("do not touch" in line for line in about["warnings"])
+
+
 def test_a_base_level_below_a_part_of_the_polygon_is_warned_of(body):
     terrain(lambda x, y: 200 - 0.004 * (x - 240) ** 2 - 0.003 * (y - 100) ** 2)
     polygon(box(40, 60, 200, 140))
@@ -299,8 +333,10 @@ def test_the_files(slope, here):        # noqa: F811
     status, out, err = slope("t.asc --polygon p.csv --depth 9 -o r")
     assert status == 0 and err.count("\n") == 1 and "m deep at the rim of its area, where it ends in a wall" in err
     assert sorted(path.name for path in here.iterdir()) == sorted([*NAMES, "t.asc", "t.yaml", "p.csv"])
-    printed = float(re.search(r"volume (\S+) m3", out)[1])
-    assert bilinear_volume("r.slip.asc", "t.asc") == pytest.approx(printed, rel=1e-9)
+    about = yaml.safe_load(Path("r.yaml").read_text())
+    volume = about["body"]["volume"]
+    assert float(re.search(r"volume (\S+) m3", out)[1].replace(",", "")) == pytest.approx(volume, rel=5e-5)
+    assert bilinear_volume("r.slip.asc", "t.asc") == pytest.approx(volume, rel=1e-9)
     slip, place = rasters.read_asc_local("r.slip.asc"), rasters.read_sidecar("t.asc")
     assert slip.crs == place.crs and slip.offset == place.offset == (EAST, NORTH)
     raster = rasters.read_asc_local("t.asc")
@@ -308,8 +344,7 @@ def test_the_files(slope, here):        # noqa: F811
     assert np.array_equal(slip.z[away], raster.z[away], equal_nan=True)     # to the last digit
     assert (slip.z[~away] <= raster.z[~away]).all()
     depth = rasters.read_asc_local("r.depth.asc").z
-    assert np.nansum(depth) * 4 == pytest.approx(printed, rel=1e-9) and np.nanmin(depth) > 0
-    about = yaml.safe_load(Path("r.yaml").read_text())
+    assert np.nansum(depth) * 4 == pytest.approx(volume, rel=1e-9) and np.nanmin(depth) > 0
     assert about["body"]["largest_depth"] == pytest.approx(np.nanmax(depth)) == pytest.approx(9, abs=1e-4)
     assert about["body"]["area"] == np.isfinite(depth).sum() * 4 and about["shape"] == "sphere"
     with rasterio.open("r.png") as picture:
@@ -375,6 +410,36 @@ def test_a_scar_on_another_grid_and_in_another_crs(body):
     assert other["volume"] == pytest.approx(found["volume"], rel=5e-3)
 
 
+def test_two_surveys_that_agree_but_for_the_millimetre_of_the_terrain(body):
+    """Heights with more digits than a terrain has: beside the scar the two differ by rounding, which is no body."""
+    def ground(x, y):
+        return ramp(30)(x, y) + 1e-3 * np.sin(x * y)
+    x, y, _ = terrain(ground)
+    dent = np.where(np.hypot(x - 120, y - 100) < 30, 4.0, 0.0)
+    with rasterio.open("after.tif", "w", driver="GTiff", height=100, width=120, count=1, dtype="float64", crs=CRS_M,
+                       transform=Affine(2, 0, EAST, 0, -2, NORTH + 200)) as out:
+        out.write(ground(x, y) - dent, 1)
+    found, _ = body("t.asc --scar after.tif")
+    assert found["volume"] == pytest.approx(dent.sum() * 4, rel=1e-4) and found["cells"] == (dent > 0).sum()
+
+
+@pytest.mark.parametrize("kind, sign", [("depth", 1), ("change", -1)])
+@pytest.mark.parametrize("cropped", [False, True])
+def test_nodata_beside_a_scar_of_coarse_cells_costs_no_volume(body, kind, sign, cropped):
+    """Depths in cells five times as wide as the terrain's, NODATA beside them or no cells at all: their sum is kept."""
+    terrain(ramp(30))
+    depth = np.full((20, 24), np.nan)
+    depth[6:14, 8:17] = sign * np.random.default_rng(4).uniform(1, 9, (8, 9))
+    first = (6, 8) if cropped else (0, 0)
+    part = depth[6:14, 8:17] if cropped else depth
+    with rasterio.open("scar.tif", "w", driver="GTiff", height=part.shape[0], width=part.shape[1], count=1,
+                       dtype="float64", nodata=-9999, crs=CRS_M,
+                       transform=Affine(10, 0, EAST + 10 * first[1], 0, -10, NORTH + 200 - 10 * first[0])) as out:
+        out.write(np.nan_to_num(part, nan=-9999), 1)
+    found, _ = body(f"t.asc --scar scar.tif --scar-is {kind}")
+    assert found["volume"] == pytest.approx(abs(np.nansum(depth)) * 100, rel=1e-4)
+
+
 def test_a_scar_that_is_none(refused):
     terrain(ramp(30))
     terrain(ramp(30, top=501), "higher.asc")
@@ -389,7 +454,12 @@ def test_a_scar_that_is_none(refused):
     refused("t.asc --scar higher.asc --volume 100", "--volume: must not be given with --scar")
     terrain(ramp(30, top=499), "lower.asc")
     refused("t.asc --scar lower.asc", "lower.asc: must stay at least 2 cells away from NODATA and from the edge of "
-            "t.asc")
+            "t.asc", "--least D")
+    with rasterio.open("empty.tif", "w", driver="GTiff", height=100, width=120, count=1, dtype="float64", nodata=-9999,
+                       transform=Affine(2, 0, EAST, 0, -2, NORTH + 200)) as out:
+        out.write(np.full((100, 120), -9999.0), 1)
+    for kind in ("surface", "depth", "change"):
+        refused(f"t.asc --scar empty.tif --scar-is {kind}", "empty.tif: must hold a value, all cells are NODATA")
     polygon(box(10, 10, 40, 40))
     refused("t.asc --scar change.asc --scar-is change --polygon p.csv", "p.csv: must hold some of the scar")
 
@@ -432,7 +502,7 @@ def test_layers_that_do_not_fit(refused):
 def test_bad_input(refused):
     terrain(hill)
     polygon(box(60, 60, 160, 140))
-    refused("t.asc --polygon p.csv", "--depth: or --volume must be given for --shape sphere")
+    refused("t.asc --polygon p.csv", "--depth: must be given for --shape sphere, or --volume")
     refused("t.asc --depth 5", "--polygon: must be given, unless --scar")
     refused("t.asc --polygon p.csv --depth -3", "--depth: must be > 0, got -3")
     refused("t.asc --polygon p.csv --volume 0", "--volume: must be > 0, got 0")
@@ -442,7 +512,11 @@ def test_bad_input(refused):
     refused("t.asc --polygon p.csv --dip 30 --direction 400", "--direction: must be a compass bearing", "got 400")
     refused("t.asc --polygon p.csv --shape slbl --dip 30 --depth 2", "--dip: must be given for a plane only")
     refused("t.asc --polygon p.csv --shape sphere --curvature 0.1", "--curvature: must be given for slbl only")
+    refused("t.asc --polygon p.csv --shape slbl --curvature 1e9", "--curvature: must be >= -", "got 1e+09")
+    refused("t.asc --polygon p.csv --shape slbl --curvature -2.5e1", "--curvature: must be >= -", "got -25")
     refused("t.asc --polygon p.csv --scar t.asc --least -1", "--least: must be >= 0, got -1")
+    refused("t.asc --polygon p.csv --depth 5 --least 1", "--least: must be given with --scar only, got 1")
+    refused("t.asc --polygon p.csv --depth 5 --scar-is depth", "--scar-is: must be given with --scar only, got depth")
     refused("t.asc --polygon p.csv --depth 5 -o nowhere/r", "-o: must be in an existing folder, got nowhere/r")
     refused("none.asc --polygon p.csv --depth 5", "none.asc: must be an existing file")
     (Path() / "t.tif").write_bytes(Path("t.asc").read_bytes())
@@ -602,3 +676,18 @@ def test_every_example_of_the_page_and_the_help_runs(slope, no_picture, command)
         assert "tools/slope release terrain.asc" in out
     else:
         assert status == 0 and "volume" in out and "wrote" in out, err
+
+
+def test_contours_below_the_sea_are_solid_and_their_labels_stand_upwards(here):     # noqa: F811
+    """A ridge that runs from south to north: its contours come down as they go up, and matplotlib dashes those < 0."""
+    x, y = np.meshgrid(np.arange(60.0), np.arange(60.0))
+    figure, axes = maps.plt.subplots()
+    axes.imshow(x, extent=(0, 60, 0, 60))
+    maps.contours(axes, -5 * np.abs(x - 30 + 3 * np.sin(y / 9)), (0, 60, 0, 60), 10.0)
+    turned = [text.get_rotation() for text in axes.texts]
+    turned = [angle - 360 if angle > 180 else angle for angle in turned]
+    assert len(turned) > 4 and any(angle > 90 for angle in turned)
+    assert all(-maps.STANDING <= angle < 180 - maps.STANDING for angle in turned)
+    dashes = [style for lines in axes.collections for style in lines.get_linestyles()]
+    assert dashes and all(pattern is None for _, pattern in dashes)
+    maps.plt.close(figure)

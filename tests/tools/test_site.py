@@ -124,6 +124,17 @@ def test_two_commands_lead_from_gis_files_to_a_report(done):
     assert f"{round(site_choices.found(mine)['balls'])}" in first.replace(",", "")
 
 
+def test_the_report_of_a_sites_folder(done, tmp_path):
+    made = slope(done[0], "report", "mine", "--no-film", "-o", tmp_path / "again.html")
+    assert made.returncode == 0 and (tmp_path / "again.html").stat().st_size > 0, made.stderr
+    bare = tmp_path / "bare"
+    bare.mkdir()
+    shutil.copy(done[0] / "mine" / "site.yaml", bare)
+    found = slope(tmp_path, "report", "bare")
+    assert found.returncode == 2 and found.stderr.startswith("slope report: bare: must hold the study of this site")
+    assert "slope study bare" in found.stderr and [path.name for path in bare.iterdir()] == ["site.yaml"]
+
+
 def test_the_study_is_resumed(done):
     folder, _, _ = done
     before = {path: path.stat().st_mtime_ns for path in (folder / "mine").rglob("finished.yaml")}
@@ -152,7 +163,7 @@ def test_the_deck_by_hand_gives_the_numbers_of_the_study(done, tmp_path):
 
 def test_what_is_released_is_the_body(done):
     folder, first, _ = done
-    told = float(re.search(r"^volume (\S+) m3", first, re.MULTILINE)[1])
+    told = float(re.search(r"^volume (\S+) m3", first, re.MULTILINE)[1].replace(",", ""))
     study = yaml.safe_load((folder / "mine" / "study" / "study.yaml").read_text())
     for row in study["runs"]:
         assert row["released_m3"] == pytest.approx(told, rel=2e-3)
@@ -311,7 +322,9 @@ BODY = ("--shape", "ellipsoid", "--depth", "5")
 
 
 @pytest.mark.parametrize("words, start", [
-    ((), "--depth: .*--volume must be given"),
+    ((), "--depth: must be given .*--volume"),
+    ((*BODY, "--name", "x" * 201), "--name: must be one line of at most 200 letters"),
+    ((*BODY, "--author", "a\nb"), "--author: must be one line"),
     (("--depth", "-1"), "--depth: must be > 0, got -1"),
     (("--shape", "ellipsoid", "--volume", "1e9"), "--volume: must be at most .*got 1000000000"),
     ((*BODY, "--road", "missing.geojson"), "missing.geojson: must be an existing file"),

@@ -3,7 +3,7 @@ import numpy as np
 
 from ..drawing import figures, pictures
 from ..drawing.figures import FULL, RELEASE, SECTION, STYLE, plt
-from ..drawing.maps import outline, part, scheme, shade, window
+from ..drawing.maps import RELIEF, contours, outline, part, scheme, shade, window
 from ..survey.rasters import Raster
 from ..survey.release_area import Area
 from ..survey.resampling import sample
@@ -46,7 +46,7 @@ def draw(path, raster: Raster, area: Area, slip: np.ndarray, geometry, title: st
         section.set(xlabel="A to A', down the fall line (m)", ylabel="height (m)", aspect="equal", xlim=(0, length))
         section.legend(loc="upper right")
         section.grid(color="#dddddd", lw=0.4)
-        pictures.save(figure, path)
+        pictures.save(figure, path, bbox_inches="tight")
 
 
 def section_line(area: Area, row: np.ndarray, column: np.ndarray):
@@ -64,18 +64,16 @@ def draw_map(figure, axes, raster: Raster, depth: np.ndarray, shown, geometry) -
     z, where = part(raster, raster.z, shown)
     known = np.isfinite(z)
     step = (where[1] - where[0]) / z.shape[1]
-    axes.imshow(np.where(known, shade(np.where(known, z, np.nanmean(z)), step), np.nan), cmap="gray", extent=where,
-                vmin=-0.6, vmax=1.0, interpolation="bilinear")
-    interval = figures.contour_interval(z)
-    levels = np.arange(np.floor(np.nanmin(z) / interval), np.ceil(np.nanmax(z) / interval) + 1) * interval
-    lines = axes.contour(z, levels, extent=where, origin="upper", colors="#333333", linewidths=0.35, alpha=0.7)
-    axes.clabel(lines, lines.levels[::2], fontsize=5, fmt="%g")
+    axes.imshow(np.where(known, shade(np.where(known, z, np.nanmean(z)), step), np.nan), extent=where,
+                interpolation="bilinear", **RELIEF)
+    axes.set(xlim=(shown[0], shown[2]), ylim=(shown[1], shown[3]))
+    contours(axes, z, where, figures.contour_interval(z), alpha=0.7)
     values, _ = part(raster, depth, shown)
     bounds = figures.even(float(np.nanmax(depth)))
     colours, norm = scheme("YlOrRd", bounds)
     image = axes.imshow(np.ma.masked_where(~(values > 0), values), cmap=colours, norm=norm, alpha=0.75, extent=where,
                         interpolation="nearest")
-    figure.colorbar(image, ax=axes, label="depth below the ground (m)", shrink=0.9)
+    figure.colorbar(image, cax=axes.inset_axes([1.03, 0.05, 0.05, 0.9]), label="depth below the ground (m)")
     if geometry is not None:
         outline(axes, geometry, color=RELEASE, linewidth=1.0, linestyle="--")
-    axes.set(xlim=(shown[0], shown[2]), ylim=(shown[1], shown[3]), xlabel="x (m)", ylabel="y (m)", aspect="equal")
+    axes.set(xlabel="x (m)", ylabel="y (m)", aspect="equal")

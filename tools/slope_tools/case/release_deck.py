@@ -2,6 +2,7 @@
 import math
 from typing import NamedTuple, Tuple
 
+from ..digits import rounded
 from .decks import quoted
 
 BALLS = 20000       # that the suggested diameter makes of the body
@@ -28,7 +29,7 @@ def text(body: Body) -> str:
     box = " ".join(f"{value:.10g}" for value in body.box)
     bottom = math.ceil(body.lower)
     return f"""\
-# The lines of a deck that release the body, {body.volume:.6g} m3, in their order, for lmp in the folder of this file
+# Lines of a deck that release the body, {rounded(body.volume)} m3, in their order, for lmp in the folder of this file
 
 # --- geometry ---
 

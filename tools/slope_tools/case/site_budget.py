@@ -13,6 +13,7 @@ from typing import Callable, List, NamedTuple, Optional, Sequence, Tuple
 
 from .. import disk, processes
 from ..case import last_words, logs
+from ..digits import rounded
 from ..errors import SlopeError
 from .site_choices import Choices
 
@@ -204,7 +205,7 @@ def number_of(choices: Choices, volume: float, d: float) -> int:
     number = round(volume / d ** 3)
     if not 1 <= number <= MOST:
         raise SlopeError("--diameter" if choices["balls"]["diameter"] else "--balls", f"must make 1 to {MOST:,} balls "
-                         f"of a body of {volume:,.6g} m3: {'smaller' if number < 1 else 'larger'} ones",
+                         f"of a body of {rounded(volume)} m3: {'smaller' if number < 1 else 'larger'} ones",
                          f"{number:,} of {d:g} m")
     return number
 

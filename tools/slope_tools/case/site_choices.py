@@ -18,6 +18,7 @@ from ..errors import SlopeError
 
 NAME = "site.yaml"
 VERSION = 1             # of site.yaml, also in its schema
+LONGEST_TEXT = 200      # letters of a name in the heading of a report
 SCHEMA = Path(__file__).with_name("site_schema.json")
 WHAT = "a site.yaml of `slope site`"
 # keys that hold one file, and lists of files
@@ -81,6 +82,14 @@ def check(given: Any, where: str, options: Optional[Mapping[Tuple[str, str], str
         at = "".join(f": {nth(part)} value" for part in place if isinstance(part, int))
         option = (options or {}).get((str(place[0]), str(place[1])) if len(place) > 1 else ("", ""))
         raise SlopeError((option or (f"{where}: {key}" if key else where)) + at, rule_of(errors[0]))
+    for key, text in (given.get("project") or {}).items():      # now, as the report comes last
+        check_text((options or {}).get(("project", key), f"{where}: project.{key}"), text)
+
+
+def check_text(where: str, text: Any) -> None:
+    """Raise SlopeError unless a text, or None, fits the heading of a report."""
+    if text is not None and not (isinstance(text, str) and text.isprintable() and len(text) <= LONGEST_TEXT):
+        raise SlopeError(where, f"must be one line of at most {LONGEST_TEXT} letters", repr(text))
 
 
 def nth(index: int) -> str:

@@ -7,11 +7,15 @@ Order of the work: find the runs and read their results (data.py), find what map
 import argparse
 from pathlib import Path
 
+from ..case import run_folders
+from ..ensemble import site_study
 from ..errors import SlopeError
 from ..report import document
 from ..report.asked import Asked
 from ..report.heading import SITE
 from ..report.section import FALL
+
+STUDY = "study.yaml"
 
 EPILOG = """\
 units: metres; the ends of --section are local coordinates of the run's terrain.
@@ -31,7 +35,8 @@ def add_parser(commands, **kwargs):
         "report", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
         description="One self-contained HTML page on a study or a run.", **kwargs)
     parser.add_argument("folder", metavar="DIR", type=Path, nargs="?",
-                        help="folder of a study (study.yaml) or of a single run (PREFIX.summary.yaml)")
+                        help="folder of a study (study.yaml), of a site with its study, or of a single run "
+                             "(PREFIX.summary.yaml)")
     parser.add_argument("-o", dest="output", metavar="REPORT.html", type=Path,
                         help="the page (default DIR/report.html)")
     parser.add_argument("--section", nargs="+", metavar="X1 Y1 X2 Y2|LINE",
@@ -60,12 +65,26 @@ def add_parser(commands, **kwargs):
     return parser
 
 
+def study_of(folder: Path) -> Path:
+    """The study inside the folder of a site; any other folder itself, as a site that holds a run made by hand only."""
+    if not (folder / SITE).is_file() or (folder / STUDY).is_file():
+        return folder
+    inside = folder / site_study.STUDY
+    if (inside / STUDY).is_file():
+        return inside
+    if not run_folders.summaries(folder):
+        raise SlopeError(folder, f"must hold the study of this site: `slope study {folder}` makes it and the report",
+                         f"no {inside / STUDY}")
+    return folder
+
+
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints what was written."""
     if args.folder is None:     # behind --section, which takes what comes
         if len(args.section or ()) not in (2, 5):
             raise SlopeError("DIR", "must be given, the folder of a study or of a run")
         args.folder = Path(args.section.pop())
+    folder = study_of(args.folder)
     output = args.output or args.folder / "report.html"
     if output.suffix not in (".html", ".htm") or output.is_dir():
         raise SlopeError("-o", "must be a file that ends in .html", output)
@@ -73,7 +92,7 @@ def run(args):
         raise SlopeError(args.folder, "must be an existing folder")
     if not output.absolute().parent.is_dir():
         raise SlopeError("-o", "must be in an existing folder", output)
-    asked = Asked(args.folder, args.shown, args.section, args.local, args.reference, args.converge, args.project,
+    asked = Asked(folder, args.shown, args.section, args.local, args.reference, args.converge, args.project,
                   args.client, args.author, None if args.no_film else output.with_suffix(".mp4"))
     first, *notes = document.write(asked, output)
     print(first)

@@ -14,6 +14,8 @@ from . import pictures  # noqa: E402
 
 SIDE = 8.0      # inches, width of a map
 PIXELS = 1200   # a raster is thinned out to at most this many cells along a side
+RELIEF = {"cmap": "gray", "vmin": -1.6, "vmax": 1.0}     # of imshow: the relief stays lighter than what is drawn on it
+STANDING = 60   # degrees: a contour's label that falls more steeply is turned, so that all that stand read upwards
 MARGIN = 0.1    # of the shown part around what matters, as a share of its size
 
 
@@ -50,6 +52,22 @@ def shade(z, step):
     return np.clip((-east * light[0] + south * light[1] + light[2]) / np.sqrt(1 + east ** 2 + south ** 2), 0, 1)
 
 
+def contours(axes, z, where, interval, labels=True, **style):
+    """Contours of the ground every `interval` metres in imshow's extent `where`, every second one with its height.
+
+    Solid below sea level, too: matplotlib would dash them. style: of the lines.
+    """
+    known = z[np.isfinite(z)]
+    heights = np.arange(math.floor(known.min() / interval), math.ceil(known.max() / interval) + 1) * interval
+    # a little above the level, or a flat place at just that level would be full of them
+    lines = axes.contour(z, heights + 1e-4 * interval, extent=where, origin="upper", colors="#333333",
+                         linewidths=0.35, linestyles="solid", **style)
+    if labels:
+        for text in axes.clabel(lines, lines.levels[::2], fontsize=5, inline_spacing=2,
+                                fmt=lambda level: f"{interval * round(level / interval):g}"):
+            text.set_rotation((text.get_rotation() + STANDING) % 180 - STANDING)
+
+
 def scheme(name, bounds, low=0.15, high=1.0):
     """Colour map and norm of classes; the lightest tones of the colour map are left out."""
     colours = plt.get_cmap(name)(np.linspace(low, high, len(bounds) - 1))
@@ -64,8 +82,7 @@ def relief(raster, base, shown, title):
     step = (where[1] - where[0]) / z.shape[1]
     if min(z.shape) >= 2:
         filled = np.where(np.isfinite(z), z, np.nanmean(z) if np.isfinite(z).any() else 0)
-        axes.imshow(np.where(np.isfinite(z), shade(filled, step), np.nan), cmap="gray", extent=where, vmin=-0.6,
-                    vmax=1.0)
+        axes.imshow(np.where(np.isfinite(z), shade(filled, step), np.nan), extent=where, **RELIEF)
     axes.set(xlim=(shown[0], shown[2]), ylim=(shown[1], shown[3]), xlabel="x (m)", ylabel="y (m)", aspect="equal")
     axes.set_title(title, fontsize=10)
     axes.ticklabel_format(useOffset=False, style="plain")

@@ -8,7 +8,7 @@ from matplotlib.patches import Rectangle
 
 from ..drawing import figures
 from ..drawing.figures import FULL, HALF, RELEASE, ROAD, SECTION, STYLE, TITLE, classes_of, plt, text_width, wrapped
-from ..drawing.maps import outline, part, scheme, shade
+from ..drawing.maps import RELIEF, contours, outline, part, scheme, shade
 from ..geometry import polygons_of
 from . import sheets
 from .sheets import Box, Entry, Frame
@@ -42,17 +42,9 @@ def base_map(axes, layers, labels=True):
     known = np.isfinite(z)
     if min(z.shape) >= 2 and known.any():
         relief = shade(np.where(known, z, np.nanmean(z)), step)
-        axes.imshow(np.where(known, relief, np.nan), cmap="gray", extent=where, vmin=-0.6, vmax=1.0,
-                    interpolation="bilinear", zorder=1)
+        axes.imshow(np.where(known, relief, np.nan), extent=where, interpolation="bilinear", zorder=1, **RELIEF)
         if np.ptp(z[known]) > layers.interval / 2:
-            heights = np.arange(math.floor(z[known].min() / layers.interval),
-                                math.ceil(z[known].max() / layers.interval) + 1) * layers.interval
-            # a little above the level, or a flat place at just that level would be full of them
-            lines = axes.contour(z, heights + 1e-4 * layers.interval, extent=where, origin="upper", colors="#333333",
-                                 linewidths=0.35, alpha=0.6, zorder=3)
-            if labels:
-                axes.clabel(lines, lines.levels[::2], fontsize=5, inline_spacing=2,
-                            fmt=lambda level: f"{layers.interval * round(level / layers.interval):g}")
+            contours(axes, z, where, layers.interval, labels, alpha=0.6, zorder=3)
     if layers.release is not None and layers.release.any():
         mask, where = part(raster, layers.release.astype(float), shown)
         if min(mask.shape) >= 2 and np.ptp(mask) > 0:

@@ -3,17 +3,17 @@ from pathlib import Path
 from typing import Any, Dict, Optional
 
 from .. import disk
+from ..case.site_choices import check_text
 from ..errors import SlopeError
 
 SITE = "site.yaml"          # of `slope site`; its study is a folder in the site's
 FIELDS = {"project": "name", "client": "client", "author": "author"}      # option: key below `project` in that file
-LONGEST = 200               # letters
 
 
 def heading(folder: Path, given: Dict[str, Optional[str]]) -> Dict[str, Optional[str]]:
     """{field: text, None where unknown} of project, client, author and survey; given: the options, which come first."""
     for name, text in given.items():
-        check(f"--{name}", text)
+        check_text(f"--{name}", text)
     found = of_site(folder)
     return {name: given.get(name) or found.get(name) for name in (*FIELDS, "survey")}
 
@@ -29,7 +29,7 @@ def of_site(folder: Path) -> Dict[str, str]:
         raise SlopeError(path, "project must have name, client and author", repr(about)[:60])
     found = {"project": path.absolute().parent.name, "survey": survey(site)}
     for name, key in FIELDS.items():
-        check(f"{path}: project: {key}", about.get(key))
+        check_text(f"{path}: project: {key}", about.get(key))
         if about.get(key):
             found[name] = about[key]
     return found
@@ -41,8 +41,3 @@ def survey(site: Dict[str, Any]) -> str:
     files = terrain.get("files") if isinstance(terrain, dict) else None
     names = [Path(str(file)).name for file in files] if isinstance(files, list) else []
     return ", ".join(names[:2]) + (f" and {len(names) - 2} more" if len(names) > 2 else "")
-
-
-def check(where: str, text) -> None:
-    if text is not None and not (isinstance(text, str) and text.isprintable() and len(text) <= LONGEST):
-        raise SlopeError(where, f"must be one line of at most {LONGEST} letters", repr(text))

@@ -117,7 +117,8 @@ def _read_fiona(path):
         with contextlib.redirect_stderr(io.StringIO()), fiona.Env():
             layers = fiona.listlayers(path)
             if len(layers) != 1:
-                raise SlopeError(path, "must have one layer of polygons", f"{len(layers)} layers")
+                raise SlopeError(path, "must have one layer of polygons: save it as a file of its own",
+                                 f"{len(layers)} layers")
             with fiona.open(path) as source:
                 features = [(feature["id"], feature["geometry"]) for feature in source]
                 crs = CRS.from_wkt(source.crs_wkt) if source.crs_wkt else None

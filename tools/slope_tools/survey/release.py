@@ -1,15 +1,20 @@
 """The body that is released, below a polygon or from a scar."""
+import math
 from pathlib import Path
 from typing import Any, Dict, List, NamedTuple, Optional
 
 import numpy as np
+from scipy.ndimage import label
 
+from ..digits import rounded
 from ..errors import SlopeError
 from . import polygons, rasters, release_area, release_bodies, release_scar, release_solve
 from .crs import as_crs
 
 SHAPES = ("sphere", "ellipsoid", "plane", "slbl")
 LITTLE = 0.75   # share of the polygon; a base level that takes less of it is a doubtful body
+SCAR_REMEDY = ": --polygon takes a part of the scar, --least D leaves out the noise of two surveys"
+TINY = 0.02     # of the volume; a smaller part of a body is none
 COARSE = 50     # cells; a body of fewer is drawn with a coarse brush
 
 
@@ -59,7 +64,8 @@ def body_of(wanted: Wanted) -> Body:
     area, surface, choices = (from_scar if wanted.scar else from_shape)(wanted, raster, geometry)
     slip = release_solve.slip_surface(area, release_solve.depths(area, surface), wanted.where)
     found = release_solve.measures(area, slip)
-    return Body(raster, geometry, area, slip, choices, found, warnings(choices, found, area))
+    doubts = [*warnings(choices, found, area), *in_parts(area, slip, geometry)]
+    return Body(raster, geometry, area, slip, choices, found, doubts)
 
 
 def check(wanted: Wanted) -> Wanted:
@@ -75,6 +81,9 @@ def check(wanted: Wanted) -> Wanted:
             if getattr(wanted, name) is not None:
                 raise SlopeError(f"--{name}", "must not be given with --scar, whose depths are not changed")
         return wanted
+    for name, value, default in (("least", f"{wanted.least:g}", "0"), ("scar-is", wanted.scar_is, "surface")):
+        if value != default:
+            raise SlopeError(f"--{name}", "must be given with --scar only", value)
     if not wanted.polygon:
         raise SlopeError("--polygon", "must be given, unless --scar says where the body is")
     if wanted.shape is None:
@@ -99,7 +108,7 @@ def check_shape(wanted: Wanted) -> None:
     if wanted.curvature is not None and wanted.shape != "slbl":
         raise SlopeError("--curvature", "must be given for slbl only", f"--shape {wanted.shape}")
     if wanted.shape != "plane" and wanted.depth is None and wanted.volume is None and wanted.curvature is None:
-        raise SlopeError("--depth", f"or --volume must be given for --shape {wanted.shape}"
+        raise SlopeError("--depth", f"must be given for --shape {wanted.shape}, or --volume"
                          + (", or --curvature" * (wanted.shape == "slbl")))
 
 
@@ -120,7 +129,7 @@ def from_scar(wanted: Wanted, raster, geometry):
         depth = np.where(release_area.nodes_inside(raster, geometry), depth, 0.0)
         if not depth.any():
             raise SlopeError(wanted.polygon, f"must hold some of the scar in {wanted.scar}")
-    area = release_area.area_of(raster, depth > 0, wanted.where, wanted.terrain)
+    area = release_area.area_of(raster, depth > 0, wanted.where, wanted.terrain, SCAR_REMEDY)
     row, column = area.corner
     part = depth[row:row + area.z.shape[0], column:column + area.z.shape[1]]
     return area, area.z - part, {"shape": "scar", "scar": wanted.scar, "scar_is": wanted.scar_is, "least": wanted.least}
@@ -144,17 +153,21 @@ def from_shape(wanted: Wanted, raster, geometry):
     else:
         shape = release_bodies.slbl_shape(area)
     if wanted.depth is not None:
-        free = release_solve.to_depth(area, shape, wanted.depth)
+        free, depth = release_solve.to_depth(area, shape, wanted.depth)
     elif wanted.volume is not None:
-        free = release_solve.to_volume(area, shape, wanted.volume)
+        free, depth = release_solve.to_volume(area, shape, wanted.volume)
     else:
         free = shape.most if wanted.curvature is None else wanted.curvature
+        if not shape.least <= free <= shape.most:
+            raise SlopeError("--curvature", f"must be >= {shape.least:.3g} and <= {shape.most:.3g} /m for "
+                             f"{shape.about['length_m']:.4g} m of slope in the release polygon", f"{free:g}")
+        depth = release_solve.depths(area, shape.surface(free))
     choices = {"shape": shape.name, "given": {"depth_m": wanted.depth, "volume_m3": wanted.volume,
                                               "curvature_per_m": wanted.curvature},
                shape.number: free, **shape.about}
     if wanted.shape == "slbl":
         choices["tolerance_m"] = free * area.cell ** 2 / 4
-    return area, shape.surface(free), choices
+    return area, area.z - depth, choices
 
 
 def warnings(choices, found, area):
@@ -165,6 +178,10 @@ def warnings(choices, found, area):
                      "smaller polygon, or --shape slbl?")
     share = found.cells / int(area.inside.sum())
     curvature = choices.get("curvature_per_m", 0)
+    if choices["shape"] == "plane" and (steep := no_way_out(choices, area)) is not None:
+        lines.append(f"the plane dips {choices['dip_degrees']:.3g} degrees towards {choices['direction_degrees']:.3g}, "
+                     f"where the ground falls by {steep:.3g}: it does not come out of the ground below the body, which "
+                     "cannot slide out; a smaller --dip, or another --direction?")
     if choices["shape"] == "slbl" and (curvature < 0 or share < LITTLE):
         what = f"bulges (curvature {curvature:.3g} /m) and " if curvature < 0 else ""
         lines.append(f"the base level {what}takes {100 * share:.0f} % of the polygon, {found.mean_depth:.3g} m deep on "
@@ -176,6 +193,27 @@ def warnings(choices, found, area):
                      + ("a wider polygon, or --shape ellipsoid?" if choices["shape"] == "sphere" else
                         "is the polygon large enough?"))
     return lines
+
+
+def in_parts(area, slip, geometry) -> List[str]:
+    """A warning of a body in more parts than the polygon, None for a scar, has; tiny ones do not count."""
+    if geometry is None:
+        return []
+    depth = np.where(np.isnan(area.z), 0.0, area.z - slip)
+    numbers, count = label(depth > 0, np.ones((3, 3)))
+    volumes = np.sort(np.bincount(numbers.ravel(), depth.ravel(), count + 1)[1:])[::-1] * area.cell ** 2
+    volumes = volumes[volumes > TINY * volumes.sum()]
+    if len(volumes) <= len(polygons.polygons_of(geometry)):
+        return []
+    return [f"the body is in {len(volumes)} parts that do not touch, of " + " and ".join(map(rounded, volumes[:3]))
+            + " m3" + " and less" * (len(volumes) > 3) + ": is that the body you mean?"]
+
+
+def no_way_out(choices, area) -> Optional[float]:
+    """Degrees by which the ground falls in the direction of a plane, if that dips more; else None."""
+    bearing = math.radians(choices["direction_degrees"])
+    fall = math.tan(math.radians(area.slope)) * float(area.downhill @ (math.sin(bearing), math.cos(bearing)))
+    return math.degrees(math.atan(fall)) if math.tan(math.radians(choices["dip_degrees"])) > fall else None
 
 
 def text(body: Body) -> str:
@@ -197,7 +235,7 @@ def text(body: Body) -> str:
         what = (f"{shape} through toe {toe} and shoulder {shoulder}, {abs(sagitta):.4g} m "
                 f"{'below' if sagitta > 0 else 'above'} its chord of {choices['chord_m']:.4g} m{wide}")
     return (f"{what}\n"
-            f"volume {found.volume:.10g} m3, largest depth {found.largest_depth:.4g} m, mean depth "
-            f"{found.mean_depth:.4g} m, area {found.area:.10g} m2 ({found.cells} cells of {cell:g} m)\n"
+            f"volume {rounded(found.volume)} m3, largest depth {found.largest_depth:.4g} m, mean depth "
+            f"{found.mean_depth:.4g} m, area {rounded(found.area)} m2 ({found.cells} cells of {cell:g} m)\n"
             f"mean slope {found.mean_slope:.1f} degrees, of the slip surface {found.slip_slope:.1f}, towards "
             f"{found.bearing:.0f} degrees from north; ground at {found.lowest:.1f} to {found.highest:.1f} m")

@@ -67,8 +67,9 @@ def nodes_inside(raster: Raster, geometry: BaseGeometry) -> np.ndarray:
     return geometry_mask(polygons_of(geometry), raster.z.shape, raster.transform, invert=True)
 
 
-def area_of(raster: Raster, inside: np.ndarray, where: str, terrain: str) -> Area:
-    """The Area of the nodes in a mask; where, terrain: what messages name.
+def area_of(raster: Raster, inside: np.ndarray, where: str, terrain: str, remedy: str = "") -> Area:
+    """The Area of the nodes in a mask; where, terrain: what messages name; remedy: of an area too
+    close to the edge.
 
     Raises SlopeError where there are too few of them, or where they come to the end of the heights: the body would
     have a wall there that is none in nature, and region terrain has no ground beyond.
@@ -91,7 +92,8 @@ def area_of(raster: Raster, inside: np.ndarray, where: str, terrain: str) -> Are
                        if min(r, c) < RIM or r >= rows - RIM or c >= columns - RIM)
         x, y = raster.transform * (bad[1] + 0.5, bad[0] + 0.5)
         east, north = x + raster.offset[0], y + raster.offset[1]
-        raise SlopeError(where, f"must stay at least {RIM} cells away from NODATA and from the edge of {terrain}",
+        raise SlopeError(where, f"must stay at least {RIM} cells away from NODATA and from the edge of {terrain}"
+                         f"{remedy}",
                          f"{'NODATA' if missing.any() else 'its edge'} at east {east:.1f} north {north:.1f}")
     x, _ = raster.transform * (np.arange(part[1].start, part[1].stop) + 0.5, 0.0)
     _, y = raster.transform * (0.0, np.arange(part[0].start, part[0].stop) + 0.5)

@@ -6,6 +6,7 @@ from ..errors import SlopeError
 from . import rasters
 from .crs import same_crs, transform
 from .rasters import Raster, crs_name
+from .release_solve import THINNEST
 from .resampling import sample
 
 KINDS = ("surface", "depth", "change")
@@ -17,7 +18,8 @@ def depths(path: str, kind: str, raster: Raster, least: float) -> np.ndarray:
     kind: "surface", heights after the event; "depth", of the slip surface below the terrain, positive down; "change",
     after minus before, of which what is negative counts. Depths below `least` (m) are 0. The scar's grid may be
     another one: bilinear between its cell centres, and reprojected. A raster without a CRS is taken to be in the
-    terrain's. Raises SlopeError on a raster that is none, lies elsewhere, or holds no depth.
+    terrain's. Depths below a millimetre, to which a terrain's heights are rounded, are none. Raises SlopeError on a
+    raster that is none, lies elsewhere, or holds no depth.
     """
     values = on_nodes(path, raster, heights=kind == "surface")
     if kind == "depth":
@@ -27,7 +29,7 @@ def depths(path: str, kind: str, raster: Raster, least: float) -> np.ndarray:
                              "--scar-is change", f"{wrong:.6g}")
     depth = raster.z - values if kind == "surface" else values if kind == "depth" else -values
     with np.errstate(invalid="ignore"):
-        depth = np.where(depth >= max(least, 0.0), depth, 0.0)      # NaN too
+        depth = np.where(depth >= max(least, THINNEST), depth, 0.0)      # NaN too
     depth = np.maximum(depth, 0.0)
     if not depth.any():
         what = {"surface": "be lower than the terrain", "depth": "hold a depth > 0", "change": "hold a change < 0"}
@@ -36,8 +38,16 @@ def depths(path: str, kind: str, raster: Raster, least: float) -> np.ndarray:
 
 
 def on_nodes(path: str, raster: Raster, heights: bool) -> np.ndarray:
-    """Values of a raster file at the nodes of a terrain, NaN where it has none; bilinear, exact at its own centres."""
+    """Values of a raster file at the nodes of a terrain; bilinear, exact at its own centres.
+
+    Heights are NaN where the raster has none. Depths and changes are 0 there, also between a cell that has one and a
+    cell beyond the raster: what they sum up to does not depend on how the file marks the ground beside the scar.
+    """
     scar = rasters.read_asc_local(path) if heights else _read_values(path)
+    if not np.isfinite(scar.z).any():
+        raise SlopeError(path, "must hold a value, all cells are NODATA")
+    if not heights:
+        scar = scar._replace(z=np.pad(np.nan_to_num(scar.z), 1), transform=scar.transform * Affine.translation(-1, -1))
     rows, columns = raster.z.shape
     x, y = np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
     x, y = Affine.translation(*raster.offset) * raster.transform * (x, y)

@@ -1,11 +1,12 @@
 """From a slip surface to a body: its depths, its numbers, and the free number that makes a depth or a volume."""
 import math
-from typing import Callable, NamedTuple
+from typing import Callable, NamedTuple, Tuple
 
 import numpy as np
 from scipy.ndimage import binary_erosion
 from scipy.optimize import brentq
 
+from ..digits import at_least, at_most
 from ..errors import SlopeError
 from .release_area import Area
 from .release_bodies import Shape
@@ -14,6 +15,7 @@ THINNEST = 1e-3     # m; what is thinner is not in the body
 DECIMALS = 4        # of a written height of the slip surface, m
 LOOKS = 41          # numbers that are tried of a shape whose body does not always grow with it
 EXACT = 1e-12       # relative, of the free number
+MET = 1e-6          # relative: a depth or volume that differs by more is jumped over
 
 
 class Measures(NamedTuple):
@@ -46,35 +48,59 @@ def volume(depth: np.ndarray, cell: float) -> float:
 
 
 def solved(area: Area, shape: Shape, wanted: float, measure: Callable[[np.ndarray], float], option: str,
-           unit: str) -> float:
-    """The free number of a shape at which measure(depths) is what is wanted; SlopeError if there is none."""
+           unit: str) -> Tuple[float, np.ndarray]:
+    """The free number of a shape at which measure(depths) is what is wanted, and the depths.
+
+    Raises SlopeError if there is no such number.
+    """
+    def find(number):
+        return depths(area, shape.surface(number))
+
     def miss(number):
-        return measure(depths(area, shape.surface(number))) - wanted
+        return measure(find(number)) - wanted
 
     tried = np.array([shape.least, shape.most]) if shape.steady else np.linspace(shape.least, shape.most, LOOKS)
     found = np.array([miss(number) for number in tried])
     rises = np.flatnonzero((found[:-1] <= 0) & (found[1:] >= 0))
     if not len(rises) and found.max() < 0:
         what = shape.limit if np.argmax(found) == len(found) - 1 else f"the largest {shape.name}"
-        raise SlopeError(option, f"must be at most {found.max() + wanted:.6g} {unit}, that of {what} within the "
+        raise SlopeError(option, f"must be at most {at_most(found.max() + wanted)} {unit}, that of {what} within the "
                          "release polygon: take a larger polygon or another shape", f"{wanted:.10g}")
     if not len(rises):
         why = f"that of the smallest {shape.name} within the release polygon: take a smaller polygon or another shape"
         if "toe" in shape.about and "shoulder" in shape.about:
             why = ("as the ground in the release polygon bulges above the line from toe to shoulder, so that no "
                    f"smaller {shape.name} goes through both: take --shape slbl or a smaller polygon")
-        raise SlopeError(option, f"must be at least {found.min() + wanted:.6g} {unit}, {why}", f"{wanted:.10g}")
+        raise SlopeError(option, f"must be at least {at_least(found.min() + wanted)} {unit}, {why}", f"{wanted:.10g}")
     low, high = tried[rises[-1]], tried[rises[-1] + 1]
-    return float(brentq(miss, low, high, xtol=EXACT * max(abs(low), abs(high)), rtol=1e-14))
+    close = EXACT * max(abs(low), abs(high))
+    number = float(brentq(miss, low, high, xtol=close, rtol=1e-14))
+    depth = find(number)
+    while abs(measure(depth) - wanted) > MET * wanted:
+        below, above = find(max(low, number - close)), find(min(high, number + close))
+        if measure(below) <= wanted <= measure(above):
+            depth = part_way(below, above, wanted, measure)
+        close *= 4
+    return number, depth
 
 
-def to_depth(area: Area, shape: Shape, depth: float) -> float:
-    """The free number of a shape whose largest depth (m, vertical) is given."""
+def part_way(below: np.ndarray, above: np.ndarray, wanted: float, measure: Callable[[np.ndarray], float]) -> np.ndarray:
+    """Depths between two at which the measure is what is wanted.
+
+    A surface that ends in a wall, such as a sphere at its equator, takes up the next node with all of its depth, and
+    jumps over the target. That node is then taken in part: the wall runs through its cell.
+    """
+    share = brentq(lambda share: measure(below + share * (above - below)) - wanted, 0.0, 1.0)
+    return below + share * (above - below)
+
+
+def to_depth(area: Area, shape: Shape, depth: float) -> Tuple[float, np.ndarray]:
+    """The free number of a shape whose largest depth (m, vertical) is given, and the depths."""
     return solved(area, shape, depth, lambda found: float(found.max()), "--depth", "m")
 
 
-def to_volume(area: Area, shape: Shape, wanted: float) -> float:
-    """The free number of a shape whose volume (m3) is given."""
+def to_volume(area: Area, shape: Shape, wanted: float) -> Tuple[float, np.ndarray]:
+    """The free number of a shape whose volume (m3) is given, and the depths."""
     return solved(area, shape, wanted, lambda found: volume(found, area.cell), "--volume", "m3")
 
 
