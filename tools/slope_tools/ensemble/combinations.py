@@ -158,7 +158,7 @@ def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline, dif
     if best.chance is not None:
         found += ends
     elif len(rows) > 1:
-        found.append("; ".join(["without repeats nobody knows by how much runs differ by chance", *ends]))
+        found.append("; ".join(["without repeats (--repeat) it is unknown by how much runs differ by chance", *ends]))
     same = [row["run"] for group in groups for row in group.same]
     if same:
         found.append(f"what was repeated changes nothing: {', '.join(same[:3])}{' and more' * (len(same) > 3)} "

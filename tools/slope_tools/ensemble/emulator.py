@@ -81,6 +81,12 @@ class Check:
     deviation: float
 
     @property
+    def unseen(self) -> float:
+        """Share of the variance that the variables make, without chance, that it does not explain: from 0 to 1."""
+        wrong, whole = self.error ** 2 - self.noise ** 2, self.deviation ** 2 - self.noise ** 2
+        return min(max(wrong / whole, 0.0), 1.0) if whole > 0 else 1.0
+
+    @property
     def verdict(self) -> str:
         return "good" if self.explained >= GOOD else "rough" if self.explained >= ROUGH else "bad"
 
@@ -89,7 +95,9 @@ class Check:
 class Influence:
     """What a variable does to a quantity. rank: rank correlation; first, total: Sobol indices, with their errors.
 
-    The indices are shares of the variance that the variables make; they are None where the emulator is bad.
+    The indices are shares of the variance that the variables make; they are None where the emulator is bad. An error is
+    that of the jackknife over the folds and the share of the variance that the emulator does not explain, added as
+    squares: all fits may leave out the same variable, and then differ in nothing.
     """
     name: str
     rank: float
@@ -148,7 +156,8 @@ def analyse(names: Sequence[str], points: np.ndarray, values: np.ndarray, point:
                        "the variance", check)
     first, total = indices(whole, len(names), snap)
     many = np.array([indices(part, len(names), snap, BASE_OF_FOLD) for part in parts])
-    errors = np.sqrt((len(parts) - 1) / len(parts) * ((many - many.mean(axis=0)) ** 2).sum(axis=0))     # jackknife
+    jackknife = (len(parts) - 1) / len(parts) * ((many - many.mean(axis=0)) ** 2).sum(axis=0)
+    errors = np.sqrt(jackknife + check.unseen ** 2)
     text = f"the emulator explains {percent(check.explained)} of the variance of runs that it has not seen"
     if check.verdict == "rough":
         text += ": take the indices as rough"
