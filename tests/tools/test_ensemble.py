@@ -36,7 +36,8 @@ def variable(text):
 @pytest.mark.parametrize("text, reference", [
     ("10:40", stats.uniform(10, 30)), ("uniform:-5:5", stats.uniform(-5, 10)),
     ("loguniform:1e-3:10", stats.loguniform(1e-3, 10)), ("triangular:0:1:4", stats.triang(0.25, 0, 4)),
-    ("normal:30:4:25:40", stats.truncnorm(-1.25, 2.5, 30, 4)), ("normal:30:0.02:0:90", stats.norm(30, 0.02)), ("1000:1000.01", stats.uniform(1000, 0.01)),
+    ("normal:30:4:25:40", stats.truncnorm(-1.25, 2.5, 30, 4)),
+    ("normal:30:0.02:0:90", stats.norm(30, 0.02)), ("1000:1000.01", stats.uniform(1000, 0.01)),
 ])
 def test_values_follow_the_distribution_and_come_back(text, reference):
     one = variable(text)
@@ -227,6 +228,18 @@ def test_an_emulator_that_explains_nothing_gives_no_indices():
     assert "same in all runs" in emulator.analyse("ab", points, np.ones(40), range(40)).text
 
 
+def test_repeats_do_not_make_a_rank_clear():
+    """An idle variable beside one that matters, three runs of each point: clear in about one of twenty."""
+    rng = np.random.default_rng(8)
+    point = np.repeat(np.arange(20), 3)
+    clear = 0
+    for _ in range(200):
+        places = rng.random((20, 2))
+        clear += emulator.rank(places[point, 0], places[point, 1] + 0.05 * rng.random(60), point)[1]
+    assert clear <= 22
+    assert emulator.rank(places[point, 0], places[point, 0] + 0.05 * rng.random(60), point)[1]
+
+
 def test_runs_of_a_point_are_left_out_together():
     point = np.repeat(np.arange(11), 3)
     masks = emulator.folds(point)
@@ -408,7 +421,8 @@ def test_a_latin_hypercube_does_not_grow(slope):
     ("--sample 8 --vary colour=1:2", "--vary: must name an index variable of case/in.tiny"),
     ("--sample 8 --vary friction", "--vary: must be NAME=LO:HI or NAME=KIND:..., of uniform:LO:HI"),
     ("--sample 8 --vary friction=-1e308:1e308", "--vary: friction must have bounds whose difference is a number, got "),
-    ("--sample 10000 --vary rolling=triangular:0:0:0.2", "--sample: must make points that differ in the six digits of a value"),
+    ("--sample 10000 --vary rolling=triangular:0:0:0.2",
+     "--sample: must make points that differ in the six digits of a value"),
     ("--sample 8 --vary friction=1:2:3", "--vary: must be NAME=LO:HI or NAME=KIND:..., of uniform:LO:HI"),
     ("--sample 8 --vary friction=loguniform:0:3", "--vary: loguniform must have LO > 0"),
     ("--sample 8 --vary friction=triangular:0:5:3", "--vary: triangular must have LO <= MODE <= HI"),

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import List, Optional, Sequence
 
 import numpy as np
-from scipy import stats
+from scipy import linalg, stats
 from scipy.stats import qmc
 from sklearn.exceptions import ConvergenceWarning
 from sklearn.gaussian_process import GaussianProcessRegressor
@@ -50,6 +50,17 @@ class Emulator:
     @property
     def noise(self) -> float:
         return self.scale * math.sqrt(self.kernel.k2.noise_level)
+
+    @property
+    def freedom(self) -> float:
+        """How many of the runs are left for the noise, after what the smooth part takes of them: more than 0."""
+        inverse = linalg.solve_triangular(self.process.L_, np.eye(len(self.process.L_)), lower=True)
+        return float(self.kernel.k2.noise_level * (inverse ** 2).sum())
+
+    @property
+    def chance(self) -> float:
+        """The noise without the bias of the likelihood, which takes the smooth part for known."""
+        return self.noise * math.sqrt(len(self.process.L_) / self.freedom)
 
     @property
     def noise_seen(self) -> bool:
@@ -133,7 +144,7 @@ def analyse(names: Sequence[str], points: np.ndarray, values: np.ndarray, point:
     points, of = np.asarray(points, float), np.asarray(point)
     values = np.asarray(values, float)
     different = len(np.unique(of))
-    ranks = [rank(points[:, i], values) for i in range(len(names))]
+    ranks = [rank(points[:, i], values, of) for i in range(len(names))]
 
     def without(text: str, check: Optional[Check] = None) -> Analysis:
         return Analysis(check, [Influence(name, one[0], one[1], None, None, None, None)
@@ -165,12 +176,13 @@ def analyse(names: Sequence[str], points: np.ndarray, values: np.ndarray, point:
                                       float(total[i]), float(errors[1][i])) for i, name in enumerate(names)], text)
 
 
-def rank(places: np.ndarray, values: np.ndarray):
-    """Rank correlation (Spearman), and whether it is larger than chance."""
+def rank(places: np.ndarray, values: np.ndarray, point: np.ndarray):
+    """Rank correlation (Spearman), and whether it is larger than chance: that of the means of each point's runs."""
     if np.ptp(places) == 0 or np.ptp(values) == 0:
         return 0.0, False
-    found = stats.spearmanr(places, values)
-    return float(found[0]), bool(found[1] < 0.05)
+    _, index, sizes = np.unique(point, return_inverse=True, return_counts=True)
+    of_points = [np.bincount(index, several) / sizes for several in (places, values)]
+    return float(stats.spearmanr(places, values)[0]), bool(stats.spearmanr(*of_points)[1] < 0.05)
 
 
 def indices(emulator: Emulator, dimensions: int, snap=lambda u: u, base: int = BASE):
