@@ -238,6 +238,7 @@ def test_repeats_do_not_make_a_rank_clear():
         clear += emulator.rank(places[point, 0], places[point, 1] + 0.05 * rng.random(60), point)[1]
     assert clear <= 22
     assert emulator.rank(places[point, 0], places[point, 0] + 0.05 * rng.random(60), point)[1]
+    assert emulator.rank(places[point, 0], np.tile([0.0, 1.0, 2.0], 20), point)[1] is False     # all means are equal
 
 
 def test_runs_of_a_point_are_left_out_together():

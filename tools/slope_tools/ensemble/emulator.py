@@ -182,7 +182,8 @@ def rank(places: np.ndarray, values: np.ndarray, point: np.ndarray):
         return 0.0, False
     _, index, sizes = np.unique(point, return_inverse=True, return_counts=True)
     of_points = [np.bincount(index, several) / sizes for several in (places, values)]
-    return float(stats.spearmanr(places, values)[0]), bool(stats.spearmanr(*of_points)[1] < 0.05)
+    clear = all(np.ptp(several) > 0 for several in of_points) and stats.spearmanr(*of_points)[1] < 0.05
+    return float(stats.spearmanr(places, values)[0]), bool(clear)
 
 
 def indices(emulator: Emulator, dimensions: int, snap=lambda u: u, base: int = BASE):
