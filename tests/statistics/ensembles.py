@@ -1,6 +1,6 @@
 """The long statistics of ensembles and calibrations, on stand-ins that cost nothing: not a part of the test suite.
 
-    /usr/bin/python3 tests/statistics/ensembles.py [indices] [bands] [twins]
+    /usr/bin/python3 tests/statistics/ensembles.py [indices] [bands] [intervals] [twins]
 
 Some minutes on one core. What came out is in doc/src/tool_study.rst and doc/src/tool_calibrate.rst.
 """
@@ -14,7 +14,7 @@ sys.path[:0] = [str(TOP / "tests" / "tools"), str(TOP / "tools")]
 
 import twins  # noqa: E402  (after the path is set)
 from test_ensemble import ishigami, ishigami_indices, noisy  # noqa: E402
-from slope_tools.ensemble import designs, emulator, hazard  # noqa: E402
+from slope_tools.ensemble import backanalysis, designs, emulator, hazard  # noqa: E402
 
 
 def indices(seeds=5):
@@ -46,6 +46,34 @@ def bands(repetitions=40, rounds=10):
               flush=True)
 
 
+def intervals(seeds=20, chance=0.1):
+    """How many 90 % intervals of calibrations hold the hidden values, by the first points alone and by a few more."""
+    for d, number in ((2, 20), (3, 14), (3, 24)):
+        held, pairs = [], 0
+        for seed in range(seeds):
+            rng = np.random.default_rng(seed)
+            noise = chance * smooth(rng.random((2000, d))).std(axis=0)
+            points = designs.points(designs.SOBOL, d, number, seed)
+            outputs = smooth(points)
+            outputs = outputs + noise * rng.normal(size=outputs.shape)
+            hidden = 0.1 + 0.8 * rng.random(d)
+            observed = smooth(hidden[None])[0] + noise * rng.normal(size=len(noise))
+            found = backanalysis.posterior(points, outputs, [backanalysis.Target("", "", float(value), 0.0)
+                                                             for value in observed])
+            held += [low <= x <= high for (low, high), x in zip(map(found.interval, range(d)), hidden)]
+            pairs += found.pair(0, 1).holds(hidden)
+        print(f"intervals, {number} runs of {d} variables: {np.mean(held):.2f} hold the hidden values, of the regions "
+              f"over a pair {pairs / seeds:.2f}", flush=True)
+
+
+def smooth(u):
+    """As many numbers as there are variables, two or three."""
+    found = [100 * (1 - 0.6 * u[:, 0]) * (1 - 0.3 * u[:, 1]), 20 + 15 * u[:, 1] - 5 * u[:, 0] ** 2]
+    if u.shape[1] > 2:
+        found.append(10 * u[:, 2] + 4 * u[:, 0] * u[:, 1])
+    return np.column_stack(found)
+
+
 def twin_experiments(seeds=10, runs=60):
     """Hidden values that can be told apart, and those that cannot."""
     good = 0
@@ -67,7 +95,8 @@ def twin_experiments(seeds=10, runs=60):
 
 
 if __name__ == "__main__":
-    wanted = sys.argv[1:] or ["indices", "bands", "twins"]
-    for name, what in (("indices", indices), ("bands", bands), ("twins", twin_experiments)):
+    wanted = sys.argv[1:] or ["indices", "bands", "intervals", "twins"]
+    for name, what in (("indices", indices), ("bands", bands), ("intervals", intervals),
+                       ("twins", twin_experiments)):
         if name in wanted:
             what()

@@ -20,7 +20,7 @@ from tiny_collapse import LMP, TOP, write_case
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools.ensemble import backanalysis, calibration, designs, distributions, emulator  # noqa: E402
+from slope_tools.ensemble import backanalysis, calibration, designs, distributions, emulator, tempering  # noqa: E402
 from slope_tools.survey import rasters  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
@@ -71,6 +71,51 @@ def test_intervals_of_a_gaussian():
     assert high - low == pytest.approx(2 * 1.645 * 0.05, rel=0.2)
     wide = backanalysis.posterior(points, outputs, [backanalysis.Target("x", "", 0.4, 0.1)]).interval(0)
     assert wide[1] - wide[0] == pytest.approx(2 * 1.645 * np.hypot(0.05, 0.1), rel=0.2)
+
+
+def test_a_thin_sheet_of_equally_good_values_is_found_whole():
+    """Two conditions x0 = x1 and x2 = x3 leave each variable open: its 90 % interval is 0.9 wide, and so is the ridge.
+
+    Of points spread over the cube a handful would be on the sheet, which look like a single solution.
+    """
+    points = np.concatenate([backanalysis.first(4, 1), np.random.default_rng(1).random((30, 4))])
+    outputs = np.column_stack([points[:, 0] - points[:, 1], points[:, 2] - points[:, 3]])
+    outputs += 0.001 * np.random.default_rng(2).normal(size=outputs.shape)
+    found = backanalysis.posterior(points, outputs, [backanalysis.Target(name, "", 0.0, 0.0) for name in "ab"])
+    widths = [np.subtract(*found.interval(i)[::-1]) for i in range(4)]
+    assert widths == pytest.approx([0.9] * 4, abs=0.06) and found.misfit < 0.1
+    ridge = found.pair(0, 1)
+    assert [ridge.holds([u, u, 0, 0]) for u in (0.2, 0.5, 0.8)] == [True] * 3 and not ridge.holds([0.3, 0.7, 0, 0])
+    variables = [distributions.distribution(name, "0:1", "", "") for name in "abcd"]
+    words = backanalysis.judgement(found, variables)
+    assert sum("not identifiable, the observation" in text for text in words) == 4
+    assert sum("not identifiable apart from each other" in text for text in words) == 2
+    assert len(backanalysis.propose(found, points, 4)) == 4
+
+
+def test_best_values_lie_on_a_region_that_is_bent():
+    """A circle of equally good values around the middle, which itself is none."""
+    points = np.concatenate([backanalysis.first(2, 1), np.random.default_rng(1).random((60, 2))])
+    outputs = np.hypot(*(points - 0.5).T)[:, None] ** 2 + 0.001 * np.random.default_rng(2).normal(size=(70, 1))
+    found = backanalysis.posterior(points, outputs, [backanalysis.Target("a", "", 0.09, 0.0)])
+    assert np.hypot(*(found.best - 0.5)) == pytest.approx(0.3, abs=0.02)
+    assert np.abs(np.hypot(*(found.points - 0.5).T) @ found.weights) == pytest.approx(0.3, abs=0.01)
+
+
+def test_points_are_drawn_from_a_likelihood():
+    """A narrow Gaussian askew in the cube: mean and deviations of the points drawn; the least value of its exponent."""
+    turn = np.array([[1, 1], [-1, 1]]) / np.sqrt(2)
+
+    def log_likelihood(points):
+        return -0.5 * ((((points - [0.3, 0.6]) @ turn) / [0.05, 0.0005]) ** 2).sum(axis=1)
+
+    cloud = designs.points(designs.SOBOL, 2, 4096, 1)
+    logs = log_likelihood(cloud)
+    points, there = tempering.draw(log_likelihood, cloud, logs, 1)
+    assert there == pytest.approx(log_likelihood(points)) and len(np.unique(points, axis=0)) > 0.9 * len(points)
+    assert points.mean(axis=0) == pytest.approx([0.3, 0.6], abs=0.004)
+    assert (points @ turn).std(axis=0) == pytest.approx([0.05, 0.0005], rel=0.1)
+    assert -logs.max() > 10 * tempering.least(lambda some: -log_likelihood(some), cloud, -logs, 1)
 
 
 def test_what_the_model_cannot_reach_is_said():
@@ -197,6 +242,7 @@ def test_numbers_alone_with_a_failing_run(slope, here):
     failed = [row for row in table if row["status"] == "failed"]
     assert failed and all(float(row["friction"]) > 37 and row["score"] == "" for row in failed)
     assert f"caveat: {len(failed)} of 12 runs failed and are left out" in out
+    assert sum("xoffset" in text for text in about["doubts"]) == 1        # the deck has it, and nothing moves it
     assert [entry["name"] for entry in about["targets"]] == ["99 % of the volume within", "area covered",
                                                              "volume on the road"]
     assert not Path("out/predicted.png").exists()
@@ -209,6 +255,20 @@ def test_chance_that_few_runs_cannot_show_is_doubted():
     noisy = smooth + 0.2 * np.random.default_rng(1).normal(size=len(smooth))
     assert not emulator.Emulator(points, smooth).noise_seen
     assert emulator.Emulator(points, noisy).noise_seen
+
+
+def test_chance_is_not_underestimated_by_few_runs():
+    """14 runs of three variables: the likeliest noise is 0.8 of the true one, as it takes the smooth part for known."""
+    found = []
+    for seed in range(20):
+        points = designs.points(designs.SOBOL, 3, 14, seed)
+        smooth = 100 * (1 - 0.6 * points[:, 0]) * (1 - 0.3 * points[:, 1])
+        noise = 0.1 * smooth.std()
+        one = emulator.Emulator(points, smooth + noise * np.random.default_rng(seed).normal(size=14))
+        found.append((one.noise / noise, one.chance / noise))
+        assert 0 < one.freedom <= 14
+    likeliest, chance = np.median(found, axis=0)
+    assert likeliest < 0.9 < chance < 1.4, (likeliest, chance)
 
 
 def test_outlines(slope, here):

@@ -257,7 +257,7 @@ def test_without_repeats_the_largest_volume_is_called_that(finished):
     assert f"{best['kind']}: {upward:,} m3 to remove; run {best['run']}" in out
     assert "conservative volume" not in out
     [doubt] = [text for text in best["doubts"] if "by chance" in text]
-    assert doubt.startswith("without repeats the scatter by chance is unknown")
+    assert doubt.startswith("without repeats (--repeat)")
     ends = {name for name in ("rolling", "friction") if best["set"][name] != "0" and all(
         float(line["remove_m3"]) <= largest for line in table)}
     assert set(re.findall(r"at the end of the range of (\w+)", doubt)) == ends

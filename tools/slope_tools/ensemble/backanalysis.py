@@ -4,12 +4,14 @@ The model is anything that gives numbers at points of the unit cube: runs of a d
 Each number is emulated with the noise of chance (emulator.py). What is observed is one outcome of chance, too, and
 known to a tolerance; so a point c is as likely as
 
-    exp(-chi2(c)/2) / sqrt(det S(c)),   chi2 = r S^-1 r,   r = observed - emulated,   S = N + diag(t^2 + s(c)^2)
+    (1 + chi2(c)/f)^(-(f + m)/2) / sqrt(det S(c)),   chi2 = r S^-1 r,   r = observed - emulated (m numbers),
+    S = N + diag(t^2 + s(c)^2)
 
-with N the covariance of chance, t the tolerances and s the emulators' own error. All points of the cube are equally
-likely before. If the smallest chi2 is larger than chance makes in one of twenty cases, the 95 % quantile of its degrees
-of freedom, chi2 is divided by the ratio of both: the model is off by more than chance and tolerance. Every function is
-pure, and random only by the seed.
+with N the covariance of chance, f its degrees of freedom (runs less what the smooth parts take of them; Student's
+distribution, because N is known from few runs), t the tolerances and s the emulators' own error. All points of the cube
+are equally likely before. If the smallest chi2 is larger than chance makes in one of twenty cases, the 95 % quantile of
+its degrees of freedom, chi2 is divided by the ratio of both: the model is off by more than chance and tolerance. Every
+function is pure, and random only by the seed.
 """
 import math
 from dataclasses import dataclass
@@ -19,12 +21,14 @@ import numpy as np
 from scipy import ndimage, stats
 from scipy.stats import qmc
 
-from . import designs
+from . import designs, tempering
 from .emulator import Emulator
 
 CLOUD = 4096            # points that stand for the cube
-ENOUGH = 300.0          # of them that must count, or a smaller box is looked at
-ROUNDS = 8              # boxes, each within the one before
+ENOUGH = 300.0          # of them that must count, or others are drawn where the likelihood is
+LEAST_FREEDOM = 4.0     # degrees, of the noise of chance
+LIKELY = 0.1            # of the largest likelihood: less, and the mean is no best value
+MARGIN = 0.02           # of the drawn points' extent, around them
 SHARE = 0.9             # of the region that is as good as the best
 BINS = 24               # of a map over a pair, along a side of the box
 APART = 0.2             # least distance of points of a batch, in widths of the box
@@ -73,23 +77,13 @@ class Posterior:
     """What the runs say of the variables: points of the cube and their weights (their sum is 1)."""
     points: np.ndarray
     weights: np.ndarray
+    logs: np.ndarray            # logarithms of the points' likelihoods
+    best: np.ndarray            # the mean, or the likeliest point where the mean is unlikely, as of a bent region
     box: Tuple[np.ndarray, np.ndarray]
     emulators: List[Emulator]
     goals: np.ndarray           # the targets' values, the best attainable of those without one
     noise: np.ndarray           # standard deviation of each output by chance
     misfit: float               # smallest chi2 over what chance makes of it; above 1 the model does not get there
-
-    @property
-    def mean(self) -> np.ndarray:
-        return self.weights @ self.points
-
-    @property
-    def best(self) -> np.ndarray:
-        """The mean, or the likeliest point where the mean itself is unlikely, as of a region that is bent."""
-        mean = self.mean
-        nearest = int(np.argmin(((self.points - mean) ** 2).sum(axis=1)))
-        likely = self.weights[nearest] > 0.1 * self.weights.max()
-        return mean if likely else self.points[int(self.weights.argmax())]
 
     def interval(self, i: int, share: float = SHARE) -> Tuple[float, float]:
         """The shortest interval of a variable that holds a share of the weight."""
@@ -147,27 +141,40 @@ def posterior(points: np.ndarray, outputs: np.ndarray, targets: Sequence[Target]
     else:
         emulators = [Emulator(points, column) for column in outputs.T]
     deviation = outputs.std(axis=0)
-    noise = np.maximum([one.noise for one in emulators], np.maximum(LEAST_NOISE * deviation, 1e-12))
+    noise = np.maximum([one.chance for one in emulators], np.maximum(LEAST_NOISE * deviation, 1e-12))
     chance = correlation_of(outputs - np.column_stack([one.at(points) for one in emulators]))
     covariance = chance * np.outer(noise, noise)
     tolerance = np.array([one.deviation for one in targets]) ** 2
     goals = np.array([best_of(emulator) if one.value is None else one.value
                       for one, emulator in zip(targets, emulators)])
     most = float(stats.chi2.ppf(0.95, max(1, len(targets) - dimensions)))
-    low, high = np.zeros(dimensions), np.ones(dimensions)
-    for turn in range(ROUNDS):
-        cloud = low + (high - low) * qmc.Sobol(dimensions, scramble=True, seed=SEED + turn).random(CLOUD)
-        chi2, logdet = distance(cloud, emulators, goals, covariance, tolerance)
-        misfit = float(chi2.min()) / most
-        logs = -0.5 * (chi2 / max(1.0, misfit) + logdet)
-        weights = np.exp(logs - logs.max())
-        weights /= weights.sum()
-        if 1 / (weights ** 2).sum() >= ENOUGH or turn == ROUNDS - 1:
-            break
-        near = cloud[weights > 1e-4 * weights.max()]
-        room = 0.5 * (np.ptp(near, axis=0) + 0.1 * (high - low)) * 0.5
-        low, high = np.maximum(low, near.min(axis=0) - room), np.minimum(high, near.max(axis=0) + room)
-    return Posterior(cloud, weights, (low, high), emulators, goals, noise, misfit)
+
+    def measured(cloud):
+        return distance(cloud, emulators, goals, covariance, tolerance)
+
+    cloud = qmc.Sobol(dimensions, scramble=True, seed=SEED).random(CLOUD)
+    chi2, logdet = measured(cloud)
+    misfit = tempering.least(lambda some: measured(some)[0], cloud, chi2, SEED) / most
+
+    freedom = max(LEAST_FREEDOM, min(one.freedom for one in emulators))
+
+    def log_likelihood(chi2, logdet):
+        tail = (freedom + len(goals)) * np.log1p(chi2 / max(1.0, misfit) / freedom)
+        return -0.5 * (tail + logdet)
+
+    logs = log_likelihood(chi2, logdet)
+    weights = tempering.weights_of(logs)
+    box = np.zeros(dimensions), np.ones(dimensions)
+    if tempering.effective(weights) < ENOUGH:
+        cloud, logs = tempering.draw(lambda some: log_likelihood(*measured(some)), cloud, logs, SEED)
+        weights = np.full(len(cloud), 1 / len(cloud))
+        low, high = cloud.min(axis=0), cloud.max(axis=0)
+        room = MARGIN * (high - low) + 1e-6
+        box = np.maximum(0, low - room), np.minimum(1, high + room)
+    mean = weights @ cloud
+    likely = log_likelihood(*measured(mean[None]))[0] > logs.max() + math.log(LIKELY)
+    return Posterior(cloud, weights, logs, mean if likely else cloud[int(logs.argmax())], box, emulators, goals, noise,
+                     misfit)
 
 
 def correlation_of(residuals: np.ndarray) -> np.ndarray:
@@ -200,7 +207,7 @@ def distance(cloud, emulators, goals, covariance, tolerance):
 
 def propose(found: Posterior, taken: np.ndarray, number: int) -> np.ndarray:
     """The points where runs say most: likely ones at which the emulators are least sure, apart from each other."""
-    likely = np.sqrt(found.weights / found.weights.max())
+    likely = np.exp(0.5 * (found.logs - found.logs.max()))
     unsure = sum((one.spread(found.points)[1] / noise) ** 2 for one, noise in zip(found.emulators, found.noise))
     value = likely * np.sqrt(unsure + 1e-12)
     low, high = found.box
@@ -256,6 +263,6 @@ def judgement(found: Posterior, variables: Sequence) -> List[str]:
 
 
 def shown(variable, u: float) -> str:
-    """A value to a thousandth of its range."""
-    digits = max(0, 3 - math.floor(math.log10(variable.high - variable.low)) - 1)
+    """A value to a thousandth of the width of its distribution."""
+    digits = max(0, 3 - math.floor(math.log10(variable.width)) - 1)
     return f"{float(variable.value(u)):.{digits}f}"

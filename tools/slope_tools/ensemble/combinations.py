@@ -158,7 +158,7 @@ def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline, dif
     if best.chance is not None:
         found += ends
     elif len(rows) > 1:
-        found.append("; ".join(["without repeats the scatter by chance is unknown", *ends]))
+        found.append("; ".join(["without repeats (--repeat) the scatter by chance is unknown", *ends]))
     same = [row["run"] for group in groups for row in group.same]
     if same:
         found.append(f"a repeated variable has no effect: {', '.join(same[:3])}{' and more' * (len(same) > 3)} "

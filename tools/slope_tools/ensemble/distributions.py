@@ -16,6 +16,7 @@ FORMS = {"uniform": "LO:HI", "loguniform": "LO:HI", "triangular": "LO:MODE:HI", 
 MUST = "must be NAME=LO:HI or NAME=KIND:..., of " + ", ".join(f"{kind}:{form}" for kind, form in FORMS.items())
 DIGITS = 6              # of a value, and of its place between the bounds
 LEAST_SHARE = 1e-6      # of a normal distribution that must lie between its bounds
+WIDE = 6.0              # deviations of a normal distribution in which nearly all of it lies
 
 
 @dataclass(frozen=True)
@@ -26,11 +27,12 @@ class Range:
     low: float
     high: float
     frozen: Any
+    width: float            # in which nearly all values lie, at most high - low
 
     @property
     def decimals(self) -> int:
-        """To which decimal values are written: DIGITS of the width of the range."""
-        return max(0, DIGITS - 1 - math.floor(math.log10(self.high - self.low)))
+        """To which decimal values are written: DIGITS of the width."""
+        return max(0, DIGITS - 1 - math.floor(math.log10(self.width)))
 
     def value(self, u: float) -> str:
         """The value (text, for the deck) at which a share u of the distribution lies below."""
@@ -122,11 +124,15 @@ def distribution(name: str, text: str, option: str, words: str):
     if len(numbers) != len(FORMS[kind].split(":")) or not all(map(math.isfinite, numbers)):
         raise SlopeError(option, MUST, words)
     low, high = (numbers[0], numbers[-1]) if kind != "normal" else numbers[2:]
+    if not math.isfinite(high - low):
+        raise SlopeError(option, f"{name} must have bounds whose difference is a number", words)
     if not low < high:
         raise SlopeError(option, f"{name} must have its lower bound first, LO < HI", words)
     if high - low <= 1e-9 * max(abs(low), abs(high)):
         raise SlopeError(option, f"{name} must have bounds that differ by more than rounding", words)
-    return Range(name, f"{kind}:{rest}", low, high, frozen(kind, numbers, option, words))
+    drawn = frozen(kind, numbers, option, words)
+    width = high - low if kind != "normal" else min(high - low, WIDE * numbers[1])
+    return Range(name, f"{kind}:{rest}", low, high, drawn, width)
 
 
 def frozen(kind: str, numbers: Sequence[float], option: str, words: str):

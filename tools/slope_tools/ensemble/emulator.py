@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import List, Optional, Sequence
 
 import numpy as np
-from scipy import stats
+from scipy import linalg, stats
 from scipy.stats import qmc
 from sklearn.exceptions import ConvergenceWarning
 from sklearn.gaussian_process import GaussianProcessRegressor
@@ -52,6 +52,17 @@ class Emulator:
         return self.scale * math.sqrt(self.kernel.k2.noise_level)
 
     @property
+    def freedom(self) -> float:
+        """How many of the runs are left for the noise, after what the smooth part takes of them: more than 0."""
+        inverse = linalg.solve_triangular(self.process.L_, np.eye(len(self.process.L_)), lower=True)
+        return float(self.kernel.k2.noise_level * (inverse ** 2).sum())
+
+    @property
+    def chance(self) -> float:
+        """The noise without the bias of the likelihood, which takes the smooth part for known."""
+        return self.noise * math.sqrt(len(self.process.L_) / self.freedom)
+
+    @property
     def noise_seen(self) -> bool:
         """Whether the values show any; few of them in many dimensions can all be taken for the smooth part."""
         return bool(self.kernel.k2.noise_level > 100 * NOISE[0])
@@ -81,6 +92,12 @@ class Check:
     deviation: float
 
     @property
+    def unseen(self) -> float:
+        """Share of the variance that the variables make, without chance, that it does not explain: from 0 to 1."""
+        wrong, whole = self.error ** 2 - self.noise ** 2, self.deviation ** 2 - self.noise ** 2
+        return min(max(wrong / whole, 0.0), 1.0) if whole > 0 else 1.0
+
+    @property
     def verdict(self) -> str:
         return "good" if self.explained >= GOOD else "rough" if self.explained >= ROUGH else "bad"
 
@@ -89,7 +106,9 @@ class Check:
 class Influence:
     """What a variable does to a quantity. rank: rank correlation; first, total: Sobol indices, with their errors.
 
-    The indices are shares of the variance that the variables make; they are None where the emulator is bad.
+    The indices are shares of the variance that the variables make; they are None where the emulator is bad. An error is
+    that of the jackknife over the folds and the share of the variance that the emulator does not explain, added as
+    squares: all fits may leave out the same variable, and then differ in nothing.
     """
     name: str
     rank: float
@@ -125,7 +144,7 @@ def analyse(names: Sequence[str], points: np.ndarray, values: np.ndarray, point:
     points, of = np.asarray(points, float), np.asarray(point)
     values = np.asarray(values, float)
     different = len(np.unique(of))
-    ranks = [rank(points[:, i], values) for i in range(len(names))]
+    ranks = [rank(points[:, i], values, of) for i in range(len(names))]
 
     def without(text: str, check: Optional[Check] = None) -> Analysis:
         return Analysis(check, [Influence(name, one[0], one[1], None, None, None, None)
@@ -148,7 +167,8 @@ def analyse(names: Sequence[str], points: np.ndarray, values: np.ndarray, point:
                        "the variance", check)
     first, total = indices(whole, len(names), snap)
     many = np.array([indices(part, len(names), snap, BASE_OF_FOLD) for part in parts])
-    errors = np.sqrt((len(parts) - 1) / len(parts) * ((many - many.mean(axis=0)) ** 2).sum(axis=0))     # jackknife
+    jackknife = (len(parts) - 1) / len(parts) * ((many - many.mean(axis=0)) ** 2).sum(axis=0)
+    errors = np.sqrt(jackknife + check.unseen ** 2)
     text = f"the emulator explains {percent(check.explained)} of the variance of runs that it has not seen"
     if check.verdict == "rough":
         text += ": take the indices as rough"
@@ -156,12 +176,14 @@ def analyse(names: Sequence[str], points: np.ndarray, values: np.ndarray, point:
                                       float(total[i]), float(errors[1][i])) for i, name in enumerate(names)], text)
 
 
-def rank(places: np.ndarray, values: np.ndarray):
-    """Rank correlation (Spearman), and whether it is larger than chance."""
+def rank(places: np.ndarray, values: np.ndarray, point: np.ndarray):
+    """Rank correlation (Spearman), and whether it is larger than chance: that of the means of each point's runs."""
     if np.ptp(places) == 0 or np.ptp(values) == 0:
         return 0.0, False
-    found = stats.spearmanr(places, values)
-    return float(found[0]), bool(found[1] < 0.05)
+    _, index, sizes = np.unique(point, return_inverse=True, return_counts=True)
+    of_points = [np.bincount(index, several) / sizes for several in (places, values)]
+    clear = all(np.ptp(several) > 0 for several in of_points) and stats.spearmanr(*of_points)[1] < 0.05
+    return float(stats.spearmanr(places, values)[0]), bool(clear)
 
 
 def indices(emulator: Emulator, dimensions: int, snap=lambda u: u, base: int = BASE):

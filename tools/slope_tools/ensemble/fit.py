@@ -109,6 +109,12 @@ class Fit:
         if blind:
             doubts.append(f"too few runs to measure the scatter by chance of {', '.join(blind)}: the region may be too "
                           "narrow")
+        offsets = repeats.unmoved([*(name for one in plan.chances for name in one),
+                                   *(one.name for one in self.variables)], self.work.defaults)
+        if offsets:
+            doubts.append(f"all runs have the same lattice, {', '.join(offsets)} not being repeated: the scatter by "
+                          "chance (s) lacks what another lattice changes, and the region may be too narrow or beside "
+                          "the truth")
         moving = sum(not row["at_rest"] for row in self.rows.values() if row["status"] == "finished")
         if moving:
             doubts.append(f"{moving} deposits are not at rest")
@@ -168,6 +174,6 @@ class Fit:
         for one in targets:
             goal = f"{number_(one['attainable'])} at the least" if one["observed"] is None else number_(one["observed"])
             predicted = "unknown, the run failed" if one["predicted"] is None else number_(one["predicted"])
-            lines.append(f"{one['name']}: predicted {predicted}, observed {goal} ({one['unit']}; chance "
-                         f"{number_(one['chance'])})")
+            lines.append(f"{one['name']}: predicted {predicted}, observed {goal} ({one['unit']}; s of a run "
+                         f"by chance {number_(one['chance'])})")
         return lines

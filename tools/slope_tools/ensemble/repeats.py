@@ -87,7 +87,12 @@ def with_repeats(output, combinations: Iterable[Dict[str, str]], chances: Sequen
     return todo
 
 
+def unmoved(names: Iterable[str], defaults: Mapping[str, str]) -> List[str]:
+    """The offsets of a deck (its index variables) if none of them is among names, so that all runs have one lattice."""
+    offsets = [name for name in defaults if OFFSET.fullmatch(name)]
+    return [] if set(offsets) & set(names) else offsets
+
+
 def only_seeds(repeated: Settings, defaults: Mapping[str, str]) -> List[str]:
     """The offsets of a deck of which none is repeated, although something else is: their chance is not seen."""
-    offsets = [name for name in defaults if OFFSET.fullmatch(name)]
-    return offsets if repeated and not any(name in repeated for name in offsets) else []
+    return unmoved(repeated, defaults) if repeated else []

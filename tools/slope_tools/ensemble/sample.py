@@ -74,6 +74,9 @@ def plan(output: Path, sample: Sample, fixed: Mapping[str, str], repeated: Mappi
                          sample.number * (1 + len(chances)))
     combinations = [{**fixed, **one} for one in sample.combinations()]
     if len({tuple(one.values()) for one in combinations}) < len(combinations):
+        if any(isinstance(one, distributions.Range) for one in sample.variables):
+            raise SlopeError("--sample", "must make points that differ in the six digits of a value: two are the same, "
+                             "give fewer or another --seed", sample.number)
         raise SlopeError("--vary", "must have a range among its variables, or points would be twice: lists alone are "
                          "what --set is for", ", ".join(sample.names))
     return repeats.with_repeats(output, combinations, chances, sample.names)
