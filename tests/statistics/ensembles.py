@@ -1,6 +1,6 @@
 """The long statistics of ensembles and calibrations, on stand-ins that cost nothing: not a part of the test suite.
 
-    /usr/bin/python3 tests/statistics/ensembles.py [indices] [bands] [intervals] [twins]
+    /usr/bin/python3 tests/statistics/ensembles.py [indices] [bands] [intervals] [ideal] [twins]
 
 Some minutes on one core. What came out is in doc/src/tool_study.rst and doc/src/tool_calibrate.rst.
 """
@@ -74,6 +74,29 @@ def smooth(u):
     return np.column_stack(found)
 
 
+def ideal(seeds=10, draws=3_000_000):
+    """What the observed numbers allow at most: the posterior if the stand-in and its chance are known exactly."""
+    place = twins.LOW + twins.WIDTH * np.random.default_rng(1).random((draws, 3))
+    outputs = twins.expected(place)
+    good = 0
+    for seed in range(seeds):
+        hidden, observed, _ = twins.observation(seed)
+        weight = np.exp(-0.5 * (((outputs - observed) / twins.CHANCE) ** 2).sum(axis=1))
+        weight /= weight.sum()
+        error = weight @ place - hidden
+        half = []
+        for column in place.T:
+            order = np.argsort(column)
+            low, high = np.interp([0.05, 0.95], np.cumsum(weight[order]), column[order])
+            half.append((high - low) / 2)
+        hit = bool((np.abs(error) <= twins.CLOSE).all())
+        good += hit
+        print(f"ideal, seed {seed}: error {error.round(3)}, 90 % intervals +- {np.round(half, 3)}, "
+              f"{'recovered' if hit else 'not recovered'}"
+              f"{', identifiable' * bool((half <= twins.CLOSE).all())}", flush=True)
+    print(f"ideal: {good} of {seeds} recovered to 2 degrees, 0.02 and 0.1 d", flush=True)
+
+
 def twin_experiments(seeds=10, runs=60):
     """Hidden values that can be told apart, and those that cannot."""
     good = 0
@@ -95,8 +118,8 @@ def twin_experiments(seeds=10, runs=60):
 
 
 if __name__ == "__main__":
-    wanted = sys.argv[1:] or ["indices", "bands", "intervals", "twins"]
+    wanted = sys.argv[1:] or ["indices", "bands", "intervals", "ideal", "twins"]
     for name, what in (("indices", indices), ("bands", bands), ("intervals", intervals),
-                       ("twins", twin_experiments)):
+                       ("ideal", ideal), ("twins", twin_experiments)):
         if name in wanted:
             what()

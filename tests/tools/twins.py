@@ -19,24 +19,34 @@ CHANCE = np.array([0.8, 0.25, 0.08, 0.008])     # of the four outputs
 NAMES = ("run-out", "width", "thickness at the toe", "share that stays near")
 
 
-def collapse(values, rng, outputs=range(4)):
-    """Run-out (m), width (m), thickness (m), share that stays near: three of four would do to find the values."""
-    friction, rolling, spacing = values
+def expected(values):
+    """Run-out (m), width (m), thickness (m), share that stays near, without chance: three of four would do to find the
+    values. values: (3,) or (n, 3); shape (4,) or (n, 4)."""
+    friction, rolling, spacing = np.transpose(values)
     slide = np.tan(np.radians(friction))
-    found = np.array([60 / (0.25 + 0.6 * slide + 1.5 * rolling) * (1.25 - 0.25 * spacing),
-                      20 * (1 + 0.5 * (40 - friction) / 25 - 1.2 * rolling),
-                      3 + 6 * rolling + 2 * slide + 0.8 * spacing,
-                      0.5 + 0.4 * (spacing - 1) - 0.5 * rolling])
-    return (found + rng.normal(size=4) * CHANCE)[list(outputs)]
+    return np.transpose([60 / (0.25 + 0.6 * slide + 1.5 * rolling) * (1.25 - 0.25 * spacing),
+                         20 * (1 + 0.5 * (40 - friction) / 25 - 1.2 * rolling),
+                         3 + 6 * rolling + 2 * slide + 0.8 * spacing,
+                         0.5 + 0.4 * (spacing - 1) - 0.5 * rolling])
+
+
+def collapse(values, rng, outputs=range(4)):
+    """One run: the numbers expected, and chance."""
+    return (expected(values) + rng.normal(size=4) * CHANCE)[list(outputs)]
+
+
+def observation(seed, outputs=range(4)):
+    """Hidden values, what was observed of them, and the generator for the runs."""
+    rng = np.random.default_rng(100 + seed)
+    hidden = LOW + WIDTH * (0.2 + 0.6 * rng.random(3))
+    return hidden, collapse(hidden, rng, outputs), rng
 
 
 class Twin:
     """A calibration of the stand-in by so many runs, a batch at a time; hidden: the true values."""
 
     def __init__(self, seed, runs=60, batch=4, outputs=range(4)):
-        rng = np.random.default_rng(100 + seed)
-        self.hidden = LOW + WIDTH * (0.2 + 0.6 * rng.random(3))
-        observed = collapse(self.hidden, rng, outputs)
+        self.hidden, observed, rng = observation(seed, outputs)
         targets = [backanalysis.Target(NAMES[k], "", float(value), 0.0) for k, value in zip(outputs, observed)]
         points = backanalysis.first(3, seed)
         found = np.array([collapse(LOW + WIDTH * point, rng, outputs) for point in points])
