@@ -584,7 +584,7 @@ def test_limits_of_a_run(plain):
     assert list(found) == ["Chance", "Size of the balls", "Varied", "The body", "The mass", "The ground"]
     assert found["Chance"].startswith("Unknown") and found["Varied"].startswith("Nothing")
     # balls of 1 m, of which each stands for a cube: 6/pi of its volume
-    assert "each for 1.00 m3 of ground, a cube of 1.00 m" in found["The mass"] and "Dry" in found["The mass"]
+    assert "1.00 m3 of ground, a cube of 1.00 m" in found["The mass"] and "Dry" in found["The mass"]
     assert "cells of 1 m" in found["The ground"]
 
 
