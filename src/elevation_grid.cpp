@@ -7,6 +7,7 @@
 
 #include "atomic_file.h"
 #include "free_memory.h"
+#include "text_file.h"
 
 #include <algorithm>
 #include <cctype>
@@ -112,7 +113,7 @@ class GridText {
     }
     fclose(fp);
     if (!reason.empty()) throw std::runtime_error(reason);
-    if (text.compare(0, 3, "\xef\xbb\xbf") == 0) pos = 3;    // a mark of UTF-8
+    pos = text_start(text);
   }
 
   size_t size() const { return text.size(); }

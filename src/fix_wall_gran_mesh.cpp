@@ -31,8 +31,7 @@ using namespace FixConst;
 using namespace Slope;
 
 static constexpr double SAME_SURFACE = 1.0e-9;
-static constexpr double COARSE =
-    0.05;    // of the smallest radius, that a file may round coordinates by
+static constexpr double COARSE = 0.05;    // largest rounding of a file, in smallest radii
 static constexpr double RESTART_FORMAT = 1.0;
 static constexpr int RESTART_SIZE = 16;    // numbers, without those of the recorder
 

@@ -47,7 +47,7 @@ static float float_at(const std::string &bytes, size_t at)
 
 static bool begins_with_solid(const std::string &bytes)
 {
-  size_t k = bytes.compare(0, 3, "\xef\xbb\xbf") == 0 ? 3 : 0;
+  size_t k = text_start(bytes);
   while (k < bytes.size() && is_space(bytes[k])) k++;
   for (const char *c = "solid"; *c; c++, k++)
     if (k >= bytes.size() || (bytes[k] | 0x20) != *c) return false;
@@ -58,7 +58,7 @@ static bool begins_with_solid(const std::string &bytes)
 
 static bool is_elevation_grid(const std::string &bytes)
 {
-  size_t k = bytes.compare(0, 3, "\xef\xbb\xbf") == 0 ? 3 : 0;
+  size_t k = text_start(bytes);
   while (k < bytes.size() && is_space(bytes[k])) k++;
   std::string word;
   for (; k < bytes.size() && word.size() < 5; k++) word += static_cast<char>(bytes[k] | 0x20);
@@ -92,7 +92,7 @@ namespace {
 class Words {
  public:
   Words(const std::string &_path, const std::string &_text) :
-      path(_path), text(_text), at(_text.compare(0, 3, "\xef\xbb\xbf") == 0 ? 3 : 0), line(1)
+      path(_path), text(_text), at(text_start(_text)), line(1)
   {
   }
 

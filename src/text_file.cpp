@@ -27,10 +27,15 @@ std::string Slope::bytes_of(const std::string &path)
   return text;
 }
 
+size_t Slope::text_start(const std::string &bytes)
+{
+  return bytes.compare(0, 3, "\xef\xbb\xbf") == 0 ? 3 : 0;
+}
+
 std::string Slope::text_of(const std::string &path)
 {
   std::string text = bytes_of(path);
-  if (text.compare(0, 3, "\xef\xbb\xbf") == 0) text.erase(0, 3);
+  text.erase(0, text_start(text));
   return text;
 }
 

@@ -19,6 +19,9 @@ std::string text_of(const std::string &path);
 // the whole file as it is; errors alike
 std::string bytes_of(const std::string &path);
 
+// where the text begins: after a mark of UTF-8, if there is one
+size_t text_start(const std::string &bytes);
+
 // an error in a line: "PATH, line 7: what"
 std::runtime_error line_error(const std::string &path, int line, const std::string &what);
 

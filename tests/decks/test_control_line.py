@@ -193,18 +193,11 @@ def test_restart(tmp_path):
     close(crossings(tmp_path), collapse(tmp_path, "run 100\nrun 300", 1, out="other", **settings))
 
 
-def test_other_line_in_the_restart(tmp_path):
+@pytest.mark.parametrize("points", ["9 20\n8 10\n", "8 -13\n8 10\n9 20\n"], ids=["other points", "other direction"])
+def test_other_line_in_the_restart(tmp_path, points):
+    """Forward would be back in the other direction."""
     collapse(tmp_path, "run 10\nwrite_restart cut.restart")
-    (tmp_path / "line.csv").write_text("9 20\n8 10\n")
-    text = collapse_deck("run 1", begin="read_restart cut.restart")
-    text = text.replace("\nthermo 1000", "\nfix line soil control/line line.csv output out\nthermo 1000", 1)
-    run_deck(text, tmp_path, expect_error="Fix control/line line must have the line of the restart file, 3 points")
-
-
-def test_the_other_direction_is_another_line(tmp_path):
-    """Forward would be back."""
-    collapse(tmp_path, "run 10\nwrite_restart cut.restart")
-    (tmp_path / "line.csv").write_text("8 -13\n8 10\n9 20\n")
+    (tmp_path / "line.csv").write_text(points)
     text = collapse_deck("run 1", begin="read_restart cut.restart")
     text = text.replace("\nthermo 1000", "\nfix line soil control/line line.csv output out\nthermo 1000", 1)
     run_deck(text, tmp_path, expect_error="Fix control/line line must have the line of the restart file, 3 points")

@@ -9,6 +9,7 @@ import math
 from typing import Callable, Tuple
 
 import numpy as np
+from scipy import optimize
 
 Function = Callable[[np.ndarray], np.ndarray]   # of points (n, d): values (n)
 DRAWN = 2048            # points
@@ -16,8 +17,8 @@ HALF = 0.5              # of the points count after a rise
 MOVED = 3.0             # steps that a point takes after a rise, on average
 MOST_MOVES = 12         # tries for them
 STEPS = 1.0, 0.3, 0.1   # of the best step in a Gaussian: shorter ones where it is bent
-NEAREST = 8             # points from which a smaller value is looked for
-ROUNDS = 12             # of that, each half as far
+POPULATION = 32         # points from which a smaller value is looked for
+ROUNDS = 60             # of that
 
 
 def weights_of(logs: np.ndarray) -> np.ndarray:
@@ -78,14 +79,9 @@ def moved(log_likelihood: Function, points: np.ndarray, logs: np.ndarray, power:
 
 
 def least(function: Function, points: np.ndarray, values: np.ndarray, seed: int) -> float:
-    """The least value of a function in the unit cube, looked for around the least of its values at points."""
-    rng = np.random.default_rng(seed)
-    order = np.argsort(values)[:NEAREST]
-    points, values = points[order], values[order]
-    for turn in range(ROUNDS):
-        around = np.repeat(points, 2 * NEAREST, axis=0)
-        around = np.clip(around + 0.25 * 0.5 ** turn * rng.normal(size=around.shape), 0, 1)
-        points, values = np.vstack([points, around]), np.concatenate([values, function(around)])
-        order = np.argsort(values)[:NEAREST]
-        points, values = points[order], values[order]
-    return float(values[0])
+    """The least value of a function in the unit cube, looked for from the least of its values at points (SciPy)."""
+    near = points[np.argsort(values)[:POPULATION]]
+    found = optimize.differential_evolution(lambda some: function(some.T), [(0, 1)] * points.shape[1], init=near,
+                                            seed=seed, maxiter=ROUNDS, polish=False, updating="deferred",
+                                            vectorized=True)
+    return float(min(found.fun, values.min()))

@@ -3,9 +3,9 @@ import math
 from typing import List, Tuple
 
 from .. import disk
+from ..case.site_warnings import LARGE
 from ..deposit import travel_shares
 from ..ensemble import headline
-from .warnings import LARGE
 
 CONTENT = List[Tuple[str, str]]
 

@@ -2,11 +2,11 @@
 import re
 from typing import Any, Dict
 
+from ..case.site_warnings import LARGE
 from ..deposit.volume import MUCH_BELOW
 from ..ensemble import headline
 
 SMALL = 1e-6            # of the released volume
-LARGE = 1e6             # m3 released, above which laboratory friction is too high
 NAMED = 4               # runs that a line names
 NUMBER = re.compile(r"\d[\d.,]*(?:[eE][+-]?\d+)?")
 # what the page says in its own words here, or beside the maps: about single runs, and about all of them

@@ -79,7 +79,7 @@ def solved(area: Area, shape: Shape, wanted: float, measure: Callable[[np.ndarra
     while abs(measure(depth) - wanted) > MET * wanted:
         below, above = find(max(low, number - close)), find(min(high, number + close))
         if measure(below) <= wanted <= measure(above):
-            depth = part_way(below, above, wanted, measure)
+            return number, part_way(below, above, wanted, measure)
         close *= 4
     return number, depth
 
