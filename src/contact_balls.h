@@ -9,6 +9,7 @@
 #ifndef SLOPE_CONTACT_BALLS_H
 #define SLOPE_CONTACT_BALLS_H
 
+#include "ball_solve.h"
 #include "instruction_set.h"
 
 namespace Slope {
@@ -24,6 +25,10 @@ struct MovingBalls {
   Vector *f, *torque;
   unsigned char *count, *count_before;    // contacts of each ball now, a step ago; up to 255
   unsigned char *estimated;               // at set-up: 1 where a force could only be estimated
+
+  // scheme solved, which has no numbers of contacts
+  const Vector *mean_v, *mean_omega;    // mean of the middles before and after now, as found so far
+  BallDashpots *dashpots;    // of each ball; nullptr at set-up, where velocities are known
 };
 
 // The partners of the moving balls: other moving balls ...

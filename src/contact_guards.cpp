@@ -144,24 +144,40 @@ void ContactGuards::check_neighbor_lists()
 }
 
 /* ----------------------------------------------------------------------
-   warn of balls that nothing moves but that are not frozen: the law would take them for moving
+   warn of balls that do not move freely but are not frozen: the law would take them for free ones
 ------------------------------------------------------------------------- */
 
 void ContactGuards::check_fixed_balls(int freeze_group_bit)
 {
-  int moved = 0;    // group bits
-  for (int k = 0; k < modify->nfix; k++)
-    if (modify->fix[k]->time_integrate) moved |= modify->fix[k]->groupbit;
+  int moved = 0, guided = 0;    // group bits
+  std::string guides;
+  for (int k = 0; k < modify->nfix; k++) {
+    const Fix *fix = modify->fix[k];
+    const bool integrates = fix->time_integrate;
+    if (integrates) moved |= fix->groupbit;
+    if (!(integrates && utils::strmatch(fix->style, "^move")) &&
+        !utils::strmatch(fix->style, "^setforce"))
+      continue;
+    guided |= fix->groupbit;
+    guides += (guides.empty() ? "" : ", ") + std::string(fix->style);
+  }
   if (!moved) return;
 
-  bigint mine = 0, all;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (!(atom->mask[i] & (moved | freeze_group_bit))) mine++;
-  MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (all)
+  bigint mine[2] = {0, 0}, all[2];
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (atom->mask[i] & freeze_group_bit) continue;
+    if (!(atom->mask[i] & moved)) mine[0]++;
+    if (atom->mask[i] & guided) mine[1]++;
+  }
+  MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all[0])
     warn("no integrator moves {} balls and no fix freeze holds them: without it a fixed ball has "
          "the dashpots of a moving one",
-         all);
+         all[0]);
+  if (all[1])
+    warn("{} balls are guided by fix {} and no fix freeze holds them: their contacts have the "
+         "dashpots of free balls, and rebound faster than the restitution says",
+         all[1], guides);
 }
 
 /* ---------------------------------------------------------------------- */

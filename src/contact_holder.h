@@ -16,6 +16,9 @@ class ContactHolder {
   // lists_new: the neighbor list, and so those made with it, has been built since the last step
   virtual void find_contacts(bool starting, bool lists_new) = 0;
 
+  // scheme solved: the sums of the forces once more, with the velocities that the balls have found
+  virtual void sweep_contacts() = 0;
+
   // of the springs of this rank's contacts, J
   virtual double elastic_energy() const = 0;
 

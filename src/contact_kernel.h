@@ -25,6 +25,12 @@ struct ContactEntry {
   int i, j;    // moving ball, partner
 };
 
+// scheme solved: four contacts of a step, count of which are not idle
+struct ActiveContacts {
+  int k[4], count;
+  double n[3][4], overlap[4], weight[4], turn[4], beyond[4];    // as SolvedContactOf
+};
+
 // a contact list as the kernels see it
 struct ContactView {
   static constexpr int BLOCK = 64;
@@ -33,6 +39,7 @@ struct ContactView {
   double *const *histories;    // HISTORY values of each
   size_t size, blocks;
   std::uint64_t *touching, *before, *ended;    // a bit of each contact: see ContactList
+  std::vector<ActiveContacts> *active;
   Sides moves;
 
   // equal: radii (m) and masses (kg) are these for all contacts; otherwise each looks up its own
@@ -49,6 +56,30 @@ struct ContactTally {
   void *visitor;
 };
 
+// scheme solved: balls whose velocities are to be found
+struct BallSolve {
+  double dt;
+  const double *radius, *mass;
+  const Vector *v, *omega, *field;    // velocities before the step's force; gravity, m/s2
+  Vector *mean_v, *mean_omega;        // found so far, replaced
+  BallDashpots *dashpots;
+};
+
+// The passes of scheme solved over a list, after find(), for one kind of partners
+template <class Partners> struct SolvedPasses {
+  // springs grow (not if repeat), dashpots and forces are summed for the balls
+  void (*begin)(const ContactView &, const ContactLaw &, double dt, bool repeat,
+                const MovingBalls &, const Partners &);
+
+  // the sums of the forces once more, with the velocities that the balls have found
+  void (*sweep)(const ContactView &, const ContactLaw &, double dt, const MovingBalls &,
+                const Partners &);
+
+  // adds the forces to the balls. tally: nullptr if not needed
+  void (*finish)(const ContactView &, const ContactLaw &, double dt, const MovingBalls &,
+                 const Partners &, ContactTally *tally);
+};
+
 // the passes compiled for one instruction set, for each kind of partners
 struct ContactKernel {
   template <class Partners>
@@ -62,6 +93,14 @@ struct ContactKernel {
   Find<FixedPartners> find_fixed;
   Apply<MovingPartners> apply_moving;
   Apply<FixedPartners> apply_fixed;
+  SolvedPasses<MovingPartners> solved_moving;
+  SolvedPasses<FixedPartners> solved_fixed;
+
+  // the velocities of balls begin to end from the sums, which are cleared
+  void (*solve)(const BallSolve &, int begin, int end);
+
+  const SolvedPasses<MovingPartners> &solved(const MovingPartners &) const { return solved_moving; }
+  const SolvedPasses<FixedPartners> &solved(const FixedPartners &) const { return solved_fixed; }
 
   // First pass: which contacts touch, as bits, and the balls' numbers of contacts. repeat: what touched in
   // the step that has just ended. first: the list is new, those of the step before are counted, too.

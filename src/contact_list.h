@@ -45,6 +45,7 @@ class ContactList {
     touching.clear();
     before.clear();
     ended.clear();
+    active.clear();
     flags.clear();
     equal = true;
   }
@@ -76,7 +77,8 @@ class ContactList {
   double memory_usage() const
   {
     return entries.capacity() * sizeof(Entry) + histories.capacity() * sizeof(double *) +
-        3 * touching.capacity() * sizeof(std::uint64_t) + flags.capacity() * sizeof(int *);
+        3 * touching.capacity() * sizeof(std::uint64_t) + flags.capacity() * sizeof(int *) +
+        active.capacity() * sizeof(ActiveContacts);
   }
 
   // Contacts that overlap although they did not touch a step ago, before the first step:
@@ -117,6 +119,25 @@ class ContactList {
       ContactKernels::current().apply(view(), law, dt, repeat, balls, partners, tally);
   }
 
+  // scheme solved: see SolvedPasses
+  template <class Partners>
+  void begin(const ContactLaw &law, double dt, bool repeat, const MovingBalls &balls,
+             const Partners &partners)
+  {
+    if (!entries.empty()) solved(partners).begin(view(), law, dt, repeat, balls, partners);
+  }
+  template <class Partners>
+  void sweep(const ContactLaw &law, double dt, const MovingBalls &balls, const Partners &partners)
+  {
+    if (!entries.empty()) solved(partners).sweep(view(), law, dt, balls, partners);
+  }
+  template <class Partners>
+  void finish(const ContactLaw &law, double dt, const MovingBalls &balls, const Partners &partners,
+              ContactTally *tally = nullptr)
+  {
+    if (!entries.empty()) solved(partners).finish(view(), law, dt, balls, partners, tally);
+  }
+
  private:
   static constexpr int BLOCK = ContactView::BLOCK;
 
@@ -124,6 +145,13 @@ class ContactList {
   std::vector<std::uint64_t> touching;    // in the last step
   std::vector<std::uint64_t> before;      // in the one before, in the second pass
   std::vector<std::uint64_t> ended;       // came apart in the last step, and was treated then
+
+  std::vector<ActiveContacts> active;    // scheme solved: of this step
+
+  template <class Partners> static const SolvedPasses<Partners> &solved(const Partners &partners)
+  {
+    return ContactKernels::current().solved(partners);
+  }
 
   static std::uint64_t bit(size_t k) { return std::uint64_t(1) << (k % BLOCK); }
   static bool is_set(const std::vector<std::uint64_t> &bits, size_t k)
@@ -135,8 +163,8 @@ class ContactList {
   ContactView view()
   {
     return {entries.data(), histories.data(), entries.size(), touching.size(), touching.data(),
-            before.data(),  ended.data(),     moves,          equal,           radius_i,
-            radius_j,       mass_i,           mass_j};
+            before.data(),  ended.data(),     &active,        moves,           equal,
+            radius_i,       radius_j,         mass_i,         mass_j};
   }
 };
 

@@ -22,7 +22,7 @@
 namespace Slope {
 inline namespace SLOPE_INSTRUCTIONS {
 
-class ContactPasses : ContactView {
+class ContactPasses : protected ContactView {
  public:
   SLOPE_INLINE explicit ContactPasses(const ContactView &view) : ContactView(view) {}
 
@@ -36,6 +36,7 @@ class ContactPasses : ContactView {
                                 : touching_bits<Four>(block, balls, partners);
         ended[block] = 0;
       }
+      if (!balls.count) continue;    // scheme solved needs no numbers
       if (first) count(block, before[block], balls.count_before, partners);
       count(block, touching[block], balls.count, partners);
     }
@@ -58,7 +59,7 @@ class ContactPasses : ContactView {
     }
   }
 
- private:
+ protected:
   typedef ContactEntry Entry;
   static constexpr int AHEAD = 16;    // contacts found, and fetched from memory, before their turn
 
@@ -471,12 +472,5 @@ void apply_contacts(const ContactView &view, const ContactLaw &law, double dt, b
 
 }    // namespace SLOPE_INSTRUCTIONS
 }    // namespace Slope
-
-// a constant, so that none of this code runs before its kernel has been chosen
-#define SLOPE_CONTACT_KERNEL                                                                     \
-  {                                                                                              \
-    find_contacts<MovingPartners>, find_contacts<FixedPartners>, apply_contacts<MovingPartners>, \
-        apply_contacts<FixedPartners>                                                            \
-  }
 
 #endif

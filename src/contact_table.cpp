@@ -20,7 +20,9 @@
 using namespace LAMMPS_NS;
 using namespace Slope;
 
-static constexpr double STEP_RULE = 0.25;       // dt <= STEP_RULE sqrt(m/kn)
+static constexpr double STEP_RULE = 0.25;    // dt <= STEP_RULE sqrt(m/kn)
+static constexpr double CONTACTS = 12.0;     // of a ball in the densest packing
+static constexpr int MOST_SWEEPS = 10;
 static constexpr double DASHPOT_RULE = 0.15;    // scheme plain: dt <= DASHPOT_RULE m/cn
 static constexpr int FORMAT =
     20261122;    // of what restart files hold, histories of walls included
@@ -28,7 +30,7 @@ static constexpr int FORMAT =
 /* ---------------------------------------------------------------------- */
 
 ContactTable::ContactTable(LAMMPS *lmp) :
-    Pointers(lmp), mass_ball(0), limit_damping(0), rolling_reduced(0), plain(0)
+    Pointers(lmp), mass_ball(0), limit_damping(0), rolling_reduced(0), scheme(EXACT)
 {
 }
 
@@ -53,7 +55,8 @@ int ContactTable::index(int itype, int jtype) const
 
 void ContactTable::read_settings(int narg, char **arg)
 {
-  mass_ball = limit_damping = rolling_reduced = plain = 0;
+  mass_ball = limit_damping = rolling_reduced = 0;
+  scheme = EXACT;
 
   int iarg = 0;
   while (iarg < narg) {
@@ -76,9 +79,14 @@ void ContactTable::read_settings(int narg, char **arg)
       off = "ball";
       on = "reduced";
     } else if (keyword == "scheme") {
-      setting = &plain;
-      off = "exact";
-      on = "plain";
+      const char *const names[] = {"exact", "plain", "solved"};    // as Scheme
+      const auto name = std::find(names, names + 3, value);
+      if (name == names + 3)
+        error->all(FLERR, "Pair gran/restitution scheme must be exact, plain or solved, got {}",
+                   value);
+      scheme = static_cast<int>(name - names);
+      iarg += 2;
+      continue;
     } else {
       error->all(FLERR,
                  "Pair gran/restitution: unknown keyword {}, must be mass, limit_damping, "
@@ -210,7 +218,7 @@ void ContactTable::make_laws()
     law.mass_factor = mass_ball ? 2.0 : 1.0;
     law.rolling_factor = rolling_reduced ? 1.0 : 2.0;
     law.fn_least = limit_damping ? 0.0 : -HUGE_VAL;
-    law.exact = plain ? 0.0 : 1.0;
+    law.exact = scheme == EXACT ? 1.0 : 0.0;
     laws[k] = law;
   }
 }
@@ -293,6 +301,40 @@ double ContactTable::cutoff(int i, int j) const
 }
 
 /* ----------------------------------------------------------------------
+   Sweeps of scheme solved that hold a dense packing of moving balls: theory.rst. Dashpots of CONTACTS
+   sticking contacts take delta of a ball's momentum in half a step; a motion of which they take E, at most
+   2 delta, is found with the error E (1 - (1 + E)/(1 + 2 delta))^n, and is stable with E^2 (...)^n <= 1.
+------------------------------------------------------------------------- */
+
+int ContactTable::sweeps(double dt) const
+{
+  double delta = 0.0;
+  for (int i = 1; i <= atom->ntypes; i++)
+    for (int j = i; j <= atom->ntypes; j++) {
+      const TypeRange &a = range(i), &b = range(j);
+      if (!a.moving || !b.moving || !can_touch(i, j)) continue;
+      const ContactLaw &law = this->law(i, j);
+      const double heaviest = std::max(a.mass_max, b.mass_max);
+      for (const double m : {a.mass_min, b.mass_min}) {
+        const double root = std::sqrt(law.mass(m, heaviest)), half = 0.5 * dt / m;
+        const double normal = std::tanh(half * (law.cn_given + law.cn_root * root));
+        const double sliding = std::tanh(3.5 * half * (law.ct_given + law.ct_root * root)) / 3.5;
+        const double rolling =
+            law.rolling > 0.0 ? std::tanh(2.5 * half * (law.cr_given + law.cr_root * root)) : 0.0;
+        delta = std::max({delta, CONTACTS / 3.0 * (normal + 2.0 * sliding),
+                          CONTACTS * 2.0 / 3.0 * (2.5 * sliding + rolling)});
+      }
+    }
+  for (int n = 1; n < MOST_SWEEPS; n++) {
+    double most = 0.0;
+    for (double e = 0.0; e < 2.0 * delta; e += 0.01 * delta)
+      most = std::max(most, e * e * std::pow(1.0 - (1.0 + e) / (1.0 + 2.0 * delta), n));
+    if (most <= 1.0) return n;
+  }
+  return MOST_SWEEPS;
+}
+
+/* ----------------------------------------------------------------------
    largest step for a type pair: that of its lightest moving ball. Scheme exact follows any
    dashpot; the plain one needs small steps, for the dashpots of several contacts add up.
 ------------------------------------------------------------------------- */
@@ -310,7 +352,7 @@ double ContactTable::spring_bound(int i, int j) const
 double ContactTable::dashpot_bound(int i, int j) const
 {
   const double m = lightest(i, j), cn = law(i, j).cn(m);
-  return plain && cn > 0.0 ? DASHPOT_RULE * m / cn : HUGE_VAL;
+  return is_plain() && cn > 0.0 ? DASHPOT_RULE * m / cn : HUGE_VAL;
 }
 
 double ContactTable::lightest(int i, int j) const
@@ -369,7 +411,7 @@ std::string ContactTable::line(int i, int j, double dt) const
 
 void ContactTable::write_settings(FILE *fp) const
 {
-  const int values[5] = {FORMAT, mass_ball, limit_damping, rolling_reduced, plain};
+  const int values[5] = {FORMAT, mass_ball, limit_damping, rolling_reduced, scheme};
   fwrite(values, sizeof(int), 5, fp);
 }
 
@@ -391,7 +433,7 @@ void ContactTable::read_settings(FILE *fp)
   mass_ball = values[1];
   limit_damping = values[2];
   rolling_reduced = values[3];
-  plain = values[4];
+  scheme = values[4];
 }
 
 void ContactTable::read_coeffs(FILE *fp)

@@ -52,7 +52,8 @@ class ContactTable : protected Pointers {
     return laws[k];
   }    // k: itype * (ntypes + 1) + jtype
   const TypeRange &range(int type) const { return ranges[type]; }
-  bool is_plain() const { return plain; }
+  bool is_plain() const { return scheme == PLAIN; }
+  bool is_solved() const { return scheme == SOLVED; }
 
   // at init: the balls of each type; walls are announced afterwards
   void find_ranges(int freeze_group_bit);
@@ -66,6 +67,7 @@ class ContactTable : protected Pointers {
   double lightest(int itype, int jtype) const;    // mass of the lightest moving ball, kg
   double bound_on_step(int itype, int jtype) const;    // s, the smaller one of:
   double spring_bound(int itype, int jtype) const;
+  int sweeps(double dt) const;                         // of scheme solved
   double dashpot_bound(int itype, int jtype) const;    // infinite with scheme exact
 
   // coefficients for the lightest balls of each pair of types; dt: time step, s
@@ -83,7 +85,8 @@ class ContactTable : protected Pointers {
   int mass_ball;          // mass ball instead of mass pair
   int limit_damping;      // the normal force never pulls
   int rolling_reduced;    // rolling radius RiRj/(Ri+Rj) instead of its double
-  int plain;              // velocities of the dashpots as velocity Verlet has them
+  enum Scheme { EXACT, PLAIN, SOLVED };
+  int scheme;    // which velocities the dashpots have: theory.rst
 
   std::vector<Coeff> coeffs;              // (ntypes+1) x (ntypes+1), both triangles filled
   std::vector<Slope::ContactLaw> laws;    // same layout

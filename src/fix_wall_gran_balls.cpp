@@ -224,7 +224,19 @@ void FixWallGranBalls::find_contacts(bool starting, bool lists_new)
       });
     l.find(starting, lists_new, moving, fixed);
   }
+  if (pair->is_solved())
+    for (int type = 1; type <= atom->ntypes; type++)
+      if (!lists[type].entries.empty())
+        lists[type].begin(law_of(type), update->dt, starting, moving, fixed);
   if (starting) initial.check(caller);
+}
+
+void FixWallGranBalls::sweep_contacts()
+{
+  const MovingBalls moving = pair->moving_balls();
+  const FixedPartners fixed = partners();
+  for (int type = 1; type <= atom->ntypes; type++)
+    if (!lists[type].entries.empty()) lists[type].sweep(law_of(type), update->dt, moving, fixed);
 }
 
 /* ----------------------------------------------------------------------
@@ -240,7 +252,10 @@ void FixWallGranBalls::apply(bool starting)
   for (int type = 1; type <= atom->ntypes; type++) {
     ContactList &l = lists[type];
     if (l.entries.empty()) continue;
-    l.apply(law_of(type), update->dt, starting, moving, fixed, &tally);
+    if (pair->is_solved())
+      l.finish(law_of(type), update->dt, moving, fixed, &tally);
+    else
+      l.apply(law_of(type), update->dt, starting, moving, fixed, &tally);
   }
 
   force_mine[0] = -tally.force.x;

@@ -38,6 +38,7 @@ class FixWallGranBalls : public FixContactWall {
   void restart(char *) override;
 
   void find_contacts(bool starting, bool lists_new) override;
+  void sweep_contacts() override;
   double elastic_energy() const override;
 
   // largest overlap (m) of a ball at x with any fixed ball, <= 0 if it touches none

@@ -338,9 +338,19 @@ void FixWallGranMesh::find_contacts(bool starting, bool lists_new)
                        fmt::format("triangle {}", slot.contact.at.triangle + 1));
       });
     l.find(starting, lists_new, moving, phantoms);
+    if (pair->is_solved())
+      l.begin(smooth_law(entry.first.type), update->dt, starting, moving, phantoms);
   }
   if (starting)
     initial.check(caller, "move the surface, or remove the balls there with delete_atoms region");
+}
+
+void FixWallGranMesh::sweep_contacts()
+{
+  const MovingBalls moving = pair->moving_balls();
+  for (auto &entry : lists)
+    entry.second.sweep(smooth_law(entry.first.type), update->dt, moving,
+                       FixedPartners(centres.data(), entry.first.radius));
 }
 
 /* ----------------------------------------------------------------------
@@ -406,7 +416,10 @@ void FixWallGranMesh::apply(bool starting)
                       dot(f, touched.normal) * update->dt);
     };
     ContactTally tally = tally_of(add);
-    entry.second.apply(law, update->dt, starting, moving, phantoms, &tally);
+    if (pair->is_solved())
+      entry.second.finish(law, update->dt, moving, phantoms, &tally);
+    else
+      entry.second.apply(law, update->dt, starting, moving, phantoms, &tally);
   }
   torque_of_balls(-1.0);
 

@@ -49,6 +49,7 @@ class FixWallGranMesh : public FixContactWall {
   void restart(char *) override;
 
   void find_contacts(bool starting, bool lists_new) override;
+  void sweep_contacts() override;
   double elastic_energy() const override;
 
  private:

@@ -21,6 +21,7 @@
 #include "neigh_list.h"
 #include "neighbor.h"
 #include "requirements.h"
+#include "solved_contact.h"
 #include "update.h"
 
 #include <algorithm>
@@ -48,7 +49,7 @@ PairGranRestitution::PairGranRestitution(LAMMPS *lmp) : Pair(lmp), guards(lmp, t
   finitecutflag = 1;
   nondefault_history_transfer = 1;    // the phase is the same from both sides
   beyond_contact = 1;                 // a contact that has ended keeps its history for a step
-  comm_forward = comm_reverse = 2;    // numbers of contacts
+  comm_forward = comm_reverse = 2;    // numbers of contacts; of scheme solved see init_style()
   single_extra = 10;
   svector = new double[single_extra];
 
@@ -177,6 +178,10 @@ void PairGranRestitution::init_style()
 
   compat::request_history_list(neighbor, this, instance_me);
   dt = update->dt;
+  if (is_solved()) {
+    comm_forward = 6;    // velocities
+    comm_reverse = BallDashpots::SIZE;
+  }
 
   if (!fix_history) {
     fix_history = static_cast<FixContactHistory *>(modify->replace_fix(
@@ -333,7 +338,7 @@ void PairGranRestitution::find_half_step()
 {
   half_v.clear();
   half_omega.clear();
-  if (!fix_history->forces_known()) return;
+  if (is_solved() || !fix_history->forces_known()) return;
 
   const int nlocal = atom->nlocal, nall = nlocal + atom->nghost;
   Vector *const v = vectors(atom->v), *const omega = vectors(atom->omega);
@@ -359,6 +364,7 @@ void PairGranRestitution::find_half_step()
 MovingBalls PairGranRestitution::moving_balls()
 {
   const bool half = !half_v.empty();
+  const bool unknown = !mean_v.empty();    // the mean velocities of scheme solved; known at set-up
   return {vectors(atom->x),
           half ? half_v.data() : vectors(atom->v),
           half ? half_omega.data() : vectors(atom->omega),
@@ -366,9 +372,12 @@ MovingBalls PairGranRestitution::moving_balls()
           atom->rmass,
           vectors(atom->f),
           vectors(atom->torque),
-          counts.now.data(),
-          counts.before.data(),
-          counts.estimated.data()};
+          is_solved() ? nullptr : counts.now.data(),
+          is_solved() ? nullptr : counts.before.data(),
+          is_solved() ? nullptr : counts.estimated.data(),
+          unknown ? mean_v.data() : vectors(atom->v),
+          unknown ? mean_omega.data() : vectors(atom->omega),
+          unknown ? dashpots.data() : nullptr};
 }
 
 /* ----------------------------------------------------------------------
@@ -377,7 +386,10 @@ MovingBalls PairGranRestitution::moving_balls()
 
 void PairGranRestitution::find_contacts(bool lists_new)
 {
-  counts.clear(atom->nlocal + atom->nghost, lists_new, starting);
+  if (is_solved())
+    start_solved();
+  else
+    counts.clear(atom->nlocal + atom->nghost, lists_new, starting);
   const MovingBalls balls = moving_balls();
   const MovingPartners partners = {balls, force->newton_pair ? INT_MAX : atom->nlocal};
   if (starting) {
@@ -391,7 +403,73 @@ void PairGranRestitution::find_contacts(bool lists_new)
   }
   for (ContactList &l : lists) l.find(starting, lists_new, balls, partners);
   for (ContactHolder *wall : walls) wall->find_contacts(starting, lists_new);
+  if (is_solved()) {
+    solve();
+    return;
+  }
   share(lists_new ? ContactCounts::BOTH : ContactCounts::NOW);
+}
+
+/* ----------------------------------------------------------------------
+   Scheme solved: the mean velocities with which the dashpots act. Each ball's own dashpots are solved for,
+   the velocities of its partners are those of the sweep before. At set-up, velocities are those of now.
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::start_solved()
+{
+  mean_v.clear();
+  mean_omega.clear();
+  if (starting) {
+    sweeps = table.sweeps(dt);
+    return;
+  }
+  const int nlocal = atom->nlocal, nall = nlocal + atom->nghost;
+  mean_v.reserve(nall + 1);    // see build_lists()
+  mean_omega.reserve(nall + 1);
+  mean_v.assign(vectors(atom->v), vectors(atom->v) + nall);
+  mean_omega.assign(vectors(atom->omega), vectors(atom->omega) + nall);
+  dashpots.assign(nall, BallDashpots());
+
+  field.assign(nlocal, Vector{0.0, 0.0, 0.0});
+  for (Fix *fix : compat::fixes_of_style(lmp, "gravity")) {
+    int dim;
+    const double *g = static_cast<const double *>(fix->extract("gvec", dim));
+    for (int i = 0; i < nlocal; i++)
+      if (atom->mask[i] & fix->groupbit)
+        field[i] = {field[i].x + g[0], field[i].y + g[1], field[i].z + g[2]};
+  }
+}
+
+void PairGranRestitution::solve()
+{
+  const MovingBalls balls = moving_balls();
+  const MovingPartners partners = {balls, force->newton_pair ? INT_MAX : atom->nlocal};
+  for (size_t k = 0; k < lists.size(); k++)
+    lists[k].begin(table.law(k / 3), dt, starting, balls, partners);
+  if (starting) return;
+  for (int sweep = 0; sweep < sweeps; sweep++) {
+    if (sweep > 0) {
+      for (size_t k = 0; k < lists.size(); k++)
+        lists[k].sweep(table.law(k / 3), dt, balls, partners);
+      for (ContactHolder *wall : walls) wall->sweep_contacts();
+    }
+    if (force->newton_pair) compat::reverse_comm(comm, this);
+    solve_balls();
+    compat::forward_comm(comm, this);
+  }
+}
+
+void PairGranRestitution::solve_balls()
+{
+  const BallSolve balls = {
+      dt,           atom->radius,  atom->rmass,       vectors(atom->v), vectors(atom->omega),
+      field.data(), mean_v.data(), mean_omega.data(), dashpots.data()};
+  ContactKernels::current().solve(balls, 0, atom->nlocal);
+  for (int i = 0; i < atom->nlocal && freeze_group_bit; i++)
+    if (atom->mask[i] & freeze_group_bit) {
+      mean_v[i] = balls.v[i];
+      mean_omega[i] = balls.omega[i];
+    }
 }
 
 /* ----------------------------------------------------------------------
@@ -407,22 +485,45 @@ void PairGranRestitution::share(ContactCounts::Which which)
 
 int PairGranRestitution::pack_forward_comm(int n, int *list, double *buf, int, int *)
 {
-  return counts.pack_forward(n, list, buf);
+  if (!is_solved()) return counts.pack_forward(n, list, buf);
+  for (int k = 0; k < n; k++) {
+    memcpy(buf, &mean_v[list[k]], sizeof(Vector));
+    memcpy(buf + 3, &mean_omega[list[k]], sizeof(Vector));
+    buf += 6;
+  }
+  return 6 * n;
 }
 
 void PairGranRestitution::unpack_forward_comm(int n, int begin, double *buf)
 {
-  counts.unpack_forward(n, begin, buf);
+  if (!is_solved()) {
+    counts.unpack_forward(n, begin, buf);
+    return;
+  }
+  for (int i = begin; i < begin + n; i++, buf += 6) {
+    memcpy(&mean_v[i], buf, sizeof(Vector));
+    memcpy(&mean_omega[i], buf + 3, sizeof(Vector));
+  }
 }
 
 int PairGranRestitution::pack_reverse_comm(int n, int begin, double *buf)
 {
-  return counts.pack_reverse(n, begin, buf);
+  if (!is_solved()) return counts.pack_reverse(n, begin, buf);
+  memcpy(buf, &dashpots[begin], n * sizeof(BallDashpots));
+  std::fill_n(&dashpots[begin], n, BallDashpots());
+  return n * BallDashpots::SIZE;
 }
 
 void PairGranRestitution::unpack_reverse_comm(int n, int *list, double *buf)
 {
-  counts.unpack_reverse(n, list, buf);
+  if (!is_solved()) {
+    counts.unpack_reverse(n, list, buf);
+    return;
+  }
+  for (int k = 0; k < n; k++) {
+    double *const sum = dashpots[list[k]].normal;
+    for (int m = 0; m < BallDashpots::SIZE; m++) sum[m] += *buf++;
+  }
 }
 
 bool PairGranRestitution::force_estimated(int i) const
@@ -476,10 +577,13 @@ void PairGranRestitution::compute(int eflag, int vflag)
   ContactTally tally = tally_of(add_virial);
   for (size_t k = 0; k < lists.size(); k++) {
     const ContactLaw &law = table.law(k / 3);
-    lists[k].apply(law, dt, starting, balls, partners, evflag ? &tally : nullptr);
+    if (is_solved())
+      lists[k].finish(law, dt, balls, partners, evflag ? &tally : nullptr);
+    else
+      lists[k].apply(law, dt, starting, balls, partners, evflag ? &tally : nullptr);
   }
   fix_history->lists_used = true;
-  if (starting) { share(ContactCounts::ESTIMATED); }
+  if (starting && !is_solved()) share(ContactCounts::ESTIMATED);
 }
 
 /* ----------------------------------------------------------------------
@@ -502,9 +606,10 @@ double PairGranRestitution::single(int i, int j, int itype, int jtype, double rs
     if ((jlist[jj] & NEIGHMASK) == j)
       memcpy(history, &fix_history->firstvalue[i][HISTORY * jj], sizeof(history));
 
-  // as the law has it: velocities and overlap of the same time
+  // as the law has it: velocities and overlap of the same time; sliding and rolling springs as they act
 
-  ContactLaw law = table.law(itype, jtype);
+  const ContactLaw &acts = table.law(itype, jtype);
+  ContactLaw law = acts;
   law.exact = 0.0;
   MovingBalls balls = moving_balls();
   balls.v = vectors(atom->v);
@@ -515,10 +620,28 @@ double PairGranRestitution::single(int i, int j, int itype, int jtype, double rs
   Vector delta;
   const MovingPartners partners = {balls, INT_MAX};
   set_contact(law, balls, partners, i, j, contact, delta);
-  const ContactStep step = step_of(moves, law, dt, true, atom->radius[i], atom->radius[j],
-                                   atom->rmass[i], atom->rmass[j]);
+  auto step_with = [&](const ContactLaw &l) {
+    return step_of(moves, l, dt, true, atom->radius[i], atom->radius[j], atom->rmass[i],
+                   atom->rmass[j]);
+  };
+  ContactStep step = step_with(law);
+  const ContactStep acting = step_with(acts);
+  step.kt = acting.kt;
+  step.kr = acting.kr;
   ContactForce c;
-  contact_force(step, contact, 0.0, history, c);
+  if (is_solved()) {
+    SolvedContactOf<double> solved;
+    static_cast<Contact &>(solved) = contact;
+    solved.weight = 1.0;
+    solved.turn = solved.beyond = 0.0;
+    SolvedForceOf<double> force_of_step;
+    solved_force(solved_step_of(moves, law, dt, atom->radius[i], atom->radius[j], atom->rmass[i],
+                                atom->rmass[j]),
+                 solved, history, force_of_step);
+    c = force_of_step;
+  } else {
+    contact_force(step, contact, 0.0, history, c);
+  }
 
   const double *n = contact.n;
   const double fn = c.f[0] * n[0] + c.f[1] * n[1] + c.f[2] * n[2];
@@ -582,6 +705,8 @@ double PairGranRestitution::memory_usage()
   double bytes = table.memory_usage();
   for (const ContactList &l : lists) bytes += l.memory_usage();
   bytes += counts.memory_usage();
+  bytes += (mean_v.capacity() + mean_omega.capacity() + field.capacity()) * sizeof(Vector) +
+      dashpots.capacity() * sizeof(BallDashpots);
   bytes += (half_v.capacity() + half_omega.capacity()) * sizeof(Vector);
   return bytes;
 }

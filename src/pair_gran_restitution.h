@@ -67,6 +67,7 @@ class PairGranRestitution : public Pair {
   Slope::MovingBalls moving_balls();
   void store_flags() const;
   bool force_estimated(int i) const;    // of a ball at set-up: it slid alone, see contact_law.h
+  bool is_solved() const { return table.is_solved(); }    // scheme solved
   bool forces_taken_back() const;    // in the first step of a run: its forces are the last step's
   bool sizes_vary = false;           // between two neighbor lists, by fix adapt
 
@@ -84,6 +85,12 @@ class PairGranRestitution : public Pair {
   std::vector<class ContactHolder *> walls;
   Slope::ContactCounts counts;
   std::vector<Slope::Vector> half_v, half_omega;    // at set-up, where they are known
+
+  // scheme solved, of each ball, ghosts included: see contact_balls.h
+  std::vector<Slope::Vector> mean_v, mean_omega, field;
+  std::vector<Slope::BallDashpots> dashpots;
+  int sweeps = 1;
+
   std::string history_id, dummy_id;
 
   void allocate();
@@ -91,6 +98,9 @@ class PairGranRestitution : public Pair {
   void find_contacts(bool lists_new);
   void share(Slope::ContactCounts::Which);
   void find_half_step();
+  void start_solved();
+  void solve();
+  void solve_balls();
 };
 
 }    // namespace LAMMPS_NS

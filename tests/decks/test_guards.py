@@ -101,6 +101,19 @@ FIXED = "create_atoms 2 single 5 5 0\nset type 2 diameter 1.0 density 2500"
 
 
 @pytest.mark.parametrize("frozen", [False, True])
+@pytest.mark.parametrize("guide", ["move linear 0 0 0", "setforce 0 0 0"])
+def test_guided_balls(tmp_path, guide, frozen):
+    """A ball on a path of its own is as good as infinitely heavy, which the law does not know."""
+    extra = f"group stay type 2\nfix path stay {guide}\n" + ("fix stay stay freeze" if frozen else "")
+    if guide.startswith("setforce"):
+        extra += "\nfix free stay nve/sphere"
+    warnings, summary = run(tmp_path, atoms=FIXED, floor="", extra=extra, steps=10)
+    told = [w for w in warnings if f"1 balls are guided by fix {guide.split()[0]} " in w]
+    assert len(told) == (not frozen)
+    assert all(w in summary["warnings"] for w in told)
+
+
+@pytest.mark.parametrize("frozen", [False, True])
 def test_missing_freeze(tmp_path, frozen):
     extra = "group stay type 2\nfix stay stay freeze" if frozen else ""
     warnings, summary = run(tmp_path, atoms=FIXED, floor="", extra=extra, steps=10)

@@ -464,3 +464,40 @@ def test_atoms_without_radius(tmp_path):
              "create_atoms 1 single 0.5 0.5 0.5\nmass 1 1.0\npair_style gran/restitution\n"
              "pair_coeff 1 1 stiffness 1e6 1e6 restitution 0.5\nrun 0\n", tmp_path,
              expect_error="Pair gran/restitution requires balls: atom_style must be sphere, got atomic")
+
+
+RESTING = """
+units si
+atom_style sphere
+atom_modify map array
+boundary f f f
+comm_modify vel yes
+region box block -4 4 -4 4 -4 4
+create_box 2 box
+create_atoms 2 single 0 0 0
+create_atoms 1 single $(0.9999*sin(25*PI/180)) 0 $(0.9999*cos(25*PI/180))
+set group all diameter 1.0 density 2650
+group held type 2
+group ball type 1
+pair_style gran/restitution scheme {scheme}
+pair_coeff * * stiffness 2e7 2e7 restitution 0.5 friction 35 rolling 2
+neighbor 0.2 bin
+neigh_modify every 1 delay 0 check yes
+variable weight equal 9.81*2650*PI/6
+timestep $(0.25*sqrt(v_weight/9.81/2e7))
+fix held held freeze
+fix weight ball gravity 9.81 vector 0 0 -1
+fix move ball nve/sphere
+compute force all pair/local p4
+compute most all reduce max c_force
+thermo_style custom step c_most
+run 20000
+print "SHARE $(c_most/v_weight/(x[2]/sqrt(x[2]^2+z[2]^2)):%.6f)"
+"""
+
+
+@pytest.mark.parametrize("scheme", ["exact", "plain", "solved"])
+def test_force_of_pair_local_is_the_one_that_acts(tmp_path, scheme):
+    """A ball at rest on a steep contact: friction carries its weight along it."""
+    log = run_deck(RESTING.format(scheme=scheme), tmp_path)
+    assert float(log.split("SHARE ")[-1].split()[0]) == pytest.approx(1.0, abs=1e-3)
