@@ -1,5 +1,7 @@
 """Reading YAML, and writing files whole or not at all."""
 import fcntl
+import functools
+import hashlib
 import math
 import os
 import shutil
@@ -23,6 +25,21 @@ def write(path, content):
         raise SlopeError(path, f"cannot be written: {error.strerror}") from error
     finally:
         new.unlink(missing_ok=True)
+
+
+def sha256(path) -> str:
+    """Of a file, in hexadecimal."""
+    about = os.stat(path)
+    return _sha256(str(path), about.st_dev, about.st_ino, about.st_size, about.st_mtime_ns, about.st_ctime_ns)
+
+
+@functools.lru_cache(maxsize=4096)
+def _sha256(path, *_) -> str:
+    digest = hashlib.sha256()
+    with open(path, "rb") as data:
+        for block in iter(lambda: data.read(1 << 20), b""):
+            digest.update(block)
+    return digest.hexdigest()
 
 
 def parse_yaml(path, what):
