@@ -47,6 +47,7 @@ class Run:
         self.log = logs.Log(self.folder / logs.LOG)
         self.restart = None         # step and path of the restart file from which it continues
         self.refused = set()        # restart files that LAMMPS could not read
+        self.unlaunched: Optional[str] = None       # what was said when it failed before LAMMPS began
         self.output_before = 0              # bytes of screen output of its earlier parts
 
     @property
@@ -174,7 +175,8 @@ class Work:
 
     def _again(self, active):
         """Whether a run that ended is to be started once more."""
-        return self._refused(active.run, active.process.returncode)
+        return (self._refused(active.run, active.process.returncode)
+                or self._unlaunched(active.run, active.process.returncode))
 
     def _shown(self):
         """The runs that the display shows as under way."""
@@ -213,6 +215,8 @@ class Work:
             self._reopen_folder(run)
         else:
             self._make_folder(run)
+        if run.unlaunched:
+            said += f"; its launch failed once: {run.unlaunched}"
         return said
 
     def _line(self, run):
@@ -255,6 +259,14 @@ class Work:
         run.refused.add(run.restart[1])
         return True
 
+    @staticmethod
+    def _unlaunched(run, status):
+        """Whether MPI failed before LAMMPS began: once, the run is started again."""
+        if status == 0 or status in KILLED or run.unlaunched or run.log.path.exists():
+            return False
+        run.unlaunched = run.screen().launcher
+        return run.unlaunched is not None
+
     def _make_folder(self, run):
         """Make the folder with all input of the run, in place of that of an unfinished run."""
         new = run.folder.with_name(f".{run.name}.new")
@@ -295,6 +307,7 @@ class Work:
                  "summary": summaries[0].name, "machine": provenance.machine(),
                  "environment": {**state.environment, **begun["environment"]},
                  "inputs": {name: begun["inputs"].get(name, digest) for name, digest in state.files.items()}}
+        disk.flush_all(run.folder)      # what it says is there, is
         disk.write(run.marker, yaml.safe_dump(about, sort_keys=False))
         return None
 
