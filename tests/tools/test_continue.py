@@ -263,10 +263,11 @@ def edit(path, old, new):
     (lambda cut: edit("case/in.tiny", "restitution 0.1", "restitution 0.2"), "it was started with another in.tiny"),
     (lambda cut: edit("case/terrain.asc", "8.0000 8.0000\n", "8.0000 8.1000\n"),
      "it was started with another terrain.asc"),
-    (lambda cut: edit(cut / "variables.yaml", "lmp_sha256: ", "lmp_sha256: 0"),
+    (lambda cut: edit(cut / "variables.yaml", "LAMMPS program: ", "LAMMPS program: 0"),
      "it was started with another LAMMPS program"),
-    (lambda cut: edit(cut / "variables.yaml", "package: ", "package: x"),
-     "it was started with another version of the package"),
+    (lambda cut: edit(cut / "variables.yaml", "libc.so.6: ", "libc.so.6: 0"), "it was started with another libc.so.6"),
+    (lambda cut: edit(cut / "terrain.asc", "8.0000 8.0000\n", "8.0000 8.1000\n"),     # the copy that it would read
+     "it was started with another terrain.asc"),
     (lambda cut: (edit("case/in.tiny", "read_restart ${restart}", "read_restart none"),
                   edit(cut / "in.tiny", "read_restart ${restart}", "read_restart none")),
      "in.tiny has no read_restart ${restart}"),
@@ -282,6 +283,7 @@ def test_a_run_of_something_else_starts_anew(slope, here, cut, change, why):
 
 def test_what_the_run_does_not_name_may_change(slope, here, cut):
     (here / "case" / "notes.txt").write_text("not named by the deck\n")
+    edit(cut / "variables.yaml", "package: ", "package: x")     # of a commit that changed no program
     assert f"{FOLDER}: continues at step 500" in slope(arguments())[1]
 
 

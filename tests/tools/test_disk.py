@@ -27,7 +27,7 @@ from tiny_collapse import DECK, LMP, TOP, read_asc, write_case
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli  # noqa: E402,F401
+from slope_tools import cli, disk  # noqa: E402,F401
 from slope_tools.case import restarts as files, run_folders  # noqa: E402,F401
 from slope_tools.drawing import figures, maps  # noqa: E402,F401
 from slope_tools.survey import rasters  # noqa: E402,F401
@@ -36,6 +36,7 @@ WRITES = ("restart     50 ${out}.1.restart ${out}.2.restart\n"
           "dump all all custom 50 ${out}.dump id type diameter x y z\n"
           "run         ${steps}\n")
 KILLS = 8
+MARKERS = "volume.yaml", "score.yaml", "travel.yaml", "export.yaml"     # of sets of files that belong together
 KEPT = {"study": "out", "sensitivity": "sensitivity", "calibrate": "calibrate"}     # commands with runs: their folders
 
 
@@ -224,7 +225,10 @@ def test_a_tool_and_no_folder(here, capsys, name):
 
 @pytest.mark.parametrize("name", sorted(TOOLS_OUTPUTS.keys() - {"report"}))      # slow, and written as study's
 def test_a_tool_that_is_killed(before, here, name):
-    """At any moment: every file is the one before or the one after, and no file is half of it."""
+    """At any moment: every file is the one before or the one after, and no file is half of it.
+
+    A set of results that was being exchanged has no yaml any more.
+    """
     (here / "results").mkdir()
     (here / "resultz").mkdir()
     one = before(name, "results")
@@ -246,12 +250,70 @@ def test_a_tool_that_is_killed(before, here, name):
         os.kill(child, signal.SIGKILL)
         os.waitpid(child, 0)
         found = contents("results")
-        assert found.keys() >= one.keys()
+        assert all(path.endswith(MARKERS) for path in one.keys() - found.keys())
         for path, data in found.items():
             if path.endswith((".png", ".html", f"{name}.yaml")):    # with times or sizes that differ
                 assert data[-8:] in (one[path][-8:], other[path][-8:]), path
             else:
                 assert data in (one.get(path), other[path]), path
+
+
+class Killed(BaseException):
+    """By a signal that no program can catch."""
+
+
+@pytest.mark.parametrize("after", range(1, 9))
+def test_a_set_is_whole_or_void(tmp_path, monkeypatch, after):
+    """Killed after so many changes of a folder: with its marker, all files are of one set."""
+    folder, left = tmp_path / "volume", after
+
+    def exchange(text):
+        with disk.complete(folder, "volume.yaml") as new:
+            for name in ("a.csv", "volume.yaml", "z.tif"):
+                (new / name).write_text(text)
+
+    def dies(do):
+        def one(*words, **more):
+            nonlocal left
+            left -= 1
+            if not left:
+                raise Killed
+            return do(*words, **more)
+        return one
+    exchange("old")
+    with monkeypatch.context() as patch:
+        for place, name in ((os, "replace"), (os, "fsync"), (Path, "unlink")):
+            patch.setattr(place, name, dies(getattr(place, name)))
+        with contextlib.suppress(Killed):
+            exchange("new")
+    found = {path.name: path.read_text() for path in folder.glob("*.*") if path.is_file()}
+    assert "volume.yaml" not in found or set(found.values()) in ({"old"}, {"new"})
+    exchange("newer")
+    assert {path.read_text() for path in folder.iterdir()} == {"newer"} and len(list(folder.iterdir())) == 3
+
+
+def test_what_a_marker_promises_is_on_the_disk(tmp_path, monkeypatch):
+    """The files of a set are flushed before its marker appears, and so is every single file before it gets its name."""
+    done = []
+    fsync, replace = os.fsync, os.replace
+
+    def flushed(handle):
+        done.append(Path(os.readlink(f"/proc/self/fd/{handle}")).name)
+        fsync(handle)
+
+    def renamed(old, new):
+        done.append(f"to {Path(new).name}")
+        replace(old, new)
+    monkeypatch.setattr(os, "fsync", flushed)
+    monkeypatch.setattr(os, "replace", renamed)
+    with disk.complete(tmp_path / "set", "m.yaml") as new:
+        for name in ("a.csv", "m.yaml"):
+            (new / name).write_text("text")
+    assert sorted(done[:3]) == sorted(["a.csv", "m.yaml", new.name])
+    assert done[3:] == ["set", "to a.csv", "set", "to m.yaml", "set", tmp_path.name]
+    done.clear()
+    disk.write(tmp_path / "one", "text")
+    assert done == [f".one.{os.getpid()}.new", "to one", tmp_path.name]
 
 
 # --- runs ---

@@ -1,17 +1,21 @@
 """slope site FOLDER over a folder that is there: what of it stays, what is found anew, what is refused, kills."""
 import os
 import shlex
+import shutil
 import signal
 import subprocess
 import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
+import rasterio
 import yaml
+from affine import Affine
 from shapely.geometry import LineString
 
-from test_site import BODY, ROAD, TOOLS, gis, refused, slope, write_layer  # noqa: F401
+from test_site import BODY, EAST, NORTH, ROAD, TOOLS, gis, make, refused, slope, write_layer  # noqa: F401
 from tiny_collapse import LMP, processes_in
 
 from slope_tools import cli, disk, programs
@@ -339,3 +343,71 @@ def test_a_size_error_that_is_not_usable_has_its_reason_alone(capsys):
     """The report itself says that the size error was measured and is not usable."""
     assert site_study.unusable("too few runs") == site_study.Sizes(None, (), "too few runs")
     assert "size error is unknown: too few runs" in capsys.readouterr().err
+
+
+# --- sources that change after the folder was made ---
+
+def told_by_study(capsys):
+    assert cli.main(["study", "mine", "--dry-run"]) == 2
+    return capsys.readouterr().err
+
+
+def test_a_source_of_the_same_name_is_another_one(inside, mine, gis, capsys):  # noqa: F811
+    (gis / "new").mkdir()
+    shutil.copy(gis / "dem.tif", gis / "new" / "dem.tif")
+    edit(mine, "terrain", files=["../new/dem.tif"])
+    assert told_by_study(capsys).startswith("slope study: mine/site.yaml: must not have been changed since in.site ")
+
+
+def test_a_source_that_was_edited(inside, mine, gis, capsys):  # noqa: F811
+    assert cli.main(["study", "mine", "--dry-run"]) == 0
+    with rasterio.open(gis / "dem.tif", "r+") as dem:
+        dem.write(dem.read() + 1)
+    assert told_by_study(capsys).startswith("slope study: mine/../dem.tif: must not have changed since in.site was ")
+    inside("mine")
+    assert cli.main(["study", "mine", "--dry-run"]) == 0
+    (gis / "dem.prj").write_text("another CRS")
+    assert "dem.tif: must not have changed" in told_by_study(capsys)
+
+
+def test_a_folder_without_its_sources(inside, mine, gis, capsys):  # noqa: F811
+    """It may have gone to a cluster alone."""
+    for path in gis.glob("*.*"):
+        path.unlink()
+    assert cli.main(["study", "mine", "--dry-run"]) == 0
+
+
+# --- a mapped deposit that lies elsewhere, and a score that fails ---
+
+def write_mapped(path, east):
+    with rasterio.open(path, "w", driver="GTiff", width=20, height=20, count=1, dtype="float64", crs="EPSG:6677",
+                       nodata=-9999, transform=Affine(2.0, 0, EAST + east, 0, -2.0, NORTH + 60)) as out:
+        out.write(np.ones((20, 20)), 1)
+
+
+@pytest.mark.parametrize("east, fits", [(20, True), (119, True), (121, False), (900000, False)])
+def test_a_mapped_raster_must_lie_on_the_terrain(inside, mine, gis, east, fits):  # noqa: F811
+    """Which ends at 120 m."""
+    write_mapped(gis / "mapped.tif", east)
+    before = contents(mine)
+    out, err = inside("mine --observed mapped.tif", 0 if fits else 2)
+    assert ("observed.tif: thickness" in out) == fits
+    if not fits:
+        assert err.startswith("slope site: mapped.tif: must have thickness on the terrain, got ")
+        assert {**before, Path(".lock"): b""} == contents(mine)
+
+
+def test_the_report_is_written_though_the_score_fails(gis):  # noqa: F811
+    write_layer(gis / "mapped.geojson", [(25, 25), (60, 25), (60, 55), (25, 55)])
+    made = make(gis, "--shape", "ellipsoid", "--depth", "5", "--balls", "60", "--observed", "mapped.geojson")
+    assert made.returncode == 0, made.stderr
+    path = gis / "mine" / "site.yaml"
+    about = yaml.safe_load(path.read_text())
+    about["study"].update(rolling=[0.05], xoffset=[], sizes=[])
+    path.write_text(yaml.safe_dump(about))
+    (gis / "mine" / "score").mkdir()
+    (gis / "mine" / "score" / "score.yaml").write_text("of other runs\n")
+    (gis / "mine" / "observed.csv").write_text("no outline\n")
+    study = slope(gis, "study", "mine")
+    assert study.returncode == 2 and study.stderr.splitlines()[-1].startswith("slope study: mine/observed.csv: "), study
+    assert (gis / "mine" / "report.html").exists() and not (gis / "mine" / "score").exists()

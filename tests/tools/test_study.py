@@ -726,3 +726,36 @@ def test_every_example_of_the_page_and_the_help_runs(slope, here, command):
         "quantities": {"remove_m3": size_study.entry(fit, ("to remove", "m3"), [])}}))
     status, _, err = slope(command.removeprefix("study "))
     assert status == 0, err
+
+
+@pytest.mark.parametrize("times", [1, 2])
+def test_a_launch_that_failed_is_made_again_once(slope, here, monkeypatch, times):
+    """As that of Open MPI 4, now and then, when two programs start at once."""
+    program = here / "lmp"
+    program.write_text(f"""#!/bin/sh
+count=$(cat {here}/count 2>/dev/null || echo 0)
+echo $((count + 1)) > {here}/count
+echo $OMPI_MCA_orte_tmpdir_base >> {here}/sessions
+if [ $count -lt {times} ]; then
+  echo '[host:4711] [[1,0],0] ORTE_ERROR_LOG: Error in file orte_init.c: orte_session_dir failed, File exists'
+  exit 213
+fi
+exec {LMP} "$@"
+""")
+    program.chmod(0o755)
+    monkeypatch.setenv("LMP", str(program))
+    monkeypatch.delenv("OMPI_MCA_orte_tmpdir_base", raising=False)
+    status, out, err = slope("case/in.tiny --set rolling=0 --set steps=20 -o out")
+    assert status == (0 if times == 1 else 2), err
+    assert "its launch failed once: [host:4711]" in out and (here / "count").read_text() == "2\n"
+    sessions = (here / "sessions").read_text().split()
+    assert len(set(sessions)) == 2 and not any(Path(one).exists() for one in sessions)
+
+
+def test_a_program_that_fails_by_itself_is_not_started_again(slope, here, monkeypatch):
+    program = here / "lmp"
+    program.write_text(f"#!/bin/sh\necho x >> {here}/count\necho no such library\nexit 1\n")
+    program.chmod(0o755)
+    monkeypatch.setenv("LMP", str(program))
+    assert slope("case/in.tiny --set rolling=0 --set steps=20 -o out")[0] == 2
+    assert (here / "count").read_text() == "x\n"

@@ -22,7 +22,7 @@ TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
 from slope_tools.commands import terrain as terrain_command  # noqa: E402
-from slope_tools.survey import holes as small_holes, rasters  # noqa: E402
+from slope_tools.survey import crs, holes as small_holes, rasters  # noqa: E402
 
 CRS_M = "EPSG:6677"               # metres, zone IX of Japan
 EAST, NORTH = -12000.0, 34000.0   # lower left corner of the surveys below
@@ -694,3 +694,14 @@ def test_a_real_survey(written):
     assert about["origin"] == {"east": 272768, "north": 357500}
     coarse, _, _, about, _ = written(f"{path} --crs EPSG:31287 --cell 10 --fill 50")
     assert about["cell"] == 10 and abs(np.nanmean(coarse) - np.nanmean(z)) < 2
+
+
+def test_a_copy_of_a_system_in_feet_is_another_system():
+    """PROJ takes it for EPSG:6677 with a confidence of 50."""
+    wkt = CRS.from_epsg(6677).to_wkt().replace('UNIT["metre",1', 'UNIT["US survey foot",0.304800609601219')
+    wkt = wkt.replace(',AUTHORITY["EPSG","6677"]]', "]").replace(',AUTHORITY["EPSG","9001"]', "")
+    feet = CRS.from_wkt(wkt)
+    assert feet.linear_units_factor[1] == pytest.approx(0.3048006, rel=1e-6)
+    assert rasters.epsg(feet) is None and rasters.epsg(CRS.from_epsg(6677)) == 6677
+    assert not crs.same_crs(feet, CRS.from_epsg(6677))
+    assert rasters.epsg(CRS.from_wkt(CRS.from_epsg(6677).to_wkt(version="WKT1_ESRI"))) == 6677

@@ -1,5 +1,7 @@
 """Reading YAML, and writing files whole or not at all."""
 import fcntl
+import functools
+import hashlib
 import math
 import os
 import shutil
@@ -18,11 +20,46 @@ def write(path, content):
     new = path.with_name(f".{path.name}.{os.getpid()}.new")
     try:
         new.write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
+        flush(new)
         os.replace(new, path)
+        flush(path.parent)
     except OSError as error:
         raise SlopeError(path, f"cannot be written: {error.strerror}") from error
     finally:
         new.unlink(missing_ok=True)
+
+
+def sha256(path) -> str:
+    """Of a file, in hexadecimal."""
+    about = os.stat(path)
+    return _sha256(str(path), about.st_dev, about.st_ino, about.st_size, about.st_mtime_ns, about.st_ctime_ns)
+
+
+def flush(path: Path) -> None:
+    """Return when a file, or the names in a folder, outlast a power cut."""
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def flush_all(folder: Path) -> None:
+    """flush() of a folder with all that is in it."""
+    for top, _, names in os.walk(folder):
+        for name in names:
+            if os.path.isfile(os.path.join(top, name)):
+                flush(Path(top, name))
+        flush(Path(top))
+
+
+@functools.lru_cache(maxsize=4096)
+def _sha256(path, *_) -> str:
+    digest = hashlib.sha256()
+    with open(path, "rb") as data:
+        for block in iter(lambda: data.read(1 << 20), b""):
+            digest.update(block)
+    return digest.hexdigest()
 
 
 def parse_yaml(path, what):
@@ -64,17 +101,29 @@ def alone_in(folder, what="study"):
 
 
 @contextmanager
-def complete(folder):
-    """A folder to write results into; when all are there they move to `folder`, by renames, else nothing changes."""
+def complete(folder, marker):
+    """A folder to write a set of results into; when all are there they move to `folder`, else nothing changes.
+
+    marker: the file that makes the set valid. It goes first and comes last: a kill or a power cut between the renames
+    leaves files without it, which are void.
+    """
     asked, folder = folder, Path(folder).resolve()
     # on the disk of the folder, so that renames do
     new = (folder if folder.is_dir() else folder.parent) / f".{folder.name}.{os.getpid()}.new"
     try:
         new.mkdir()
         yield new
+        flush_all(new)
         folder.mkdir(exist_ok=True)
-        for path in sorted(new.iterdir()):
-            os.replace(path, folder / path.name)
+        names = sorted(path.name for path in new.iterdir() if path.name != marker)
+        (folder / marker).unlink(missing_ok=True)
+        flush(folder)
+        for name in names:
+            os.replace(new / name, folder / name)
+        flush(folder)
+        os.replace(new / marker, folder / marker)
+        flush(folder)
+        flush(folder.parent)
     except OSError as error:
         raise SlopeError(asked, f"cannot be written: {error.strerror or error}") from error
     except SlopeError as error:

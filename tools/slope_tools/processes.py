@@ -3,10 +3,13 @@ import errno
 import os
 import shutil
 import subprocess
+import tempfile
 import time
+import weakref
 from pathlib import Path
 from typing import Dict, Iterable, Sequence
 
+SESSION = "OMPI_MCA_orte_tmpdir_base"       # where Open MPI 4 makes its session folders
 PATIENCE = 10.0         # s that a program gets to end after SIGTERM
 
 
@@ -27,9 +30,21 @@ def start(words: Sequence[str], folder: Path, screen) -> subprocess.Popen:
     """
     if shutil.which(words[0]) is None:
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), words[0])
+    values = environment()
+    session = None
+    if SESSION not in values:       # two programs that start at once fail now and then over the folder of both
+        session = values[SESSION] = tempfile.mkdtemp(prefix="slope")       # short: sockets go there
     guard = ["setpriv", "--pdeathsig", "TERM"] if shutil.which("setpriv") else []
-    return subprocess.Popen([*guard, *words], cwd=folder, env=environment(), stdin=subprocess.DEVNULL, stdout=screen,
-                            stderr=subprocess.STDOUT, start_new_session=True)
+    try:
+        process = subprocess.Popen([*guard, *words], cwd=folder, env=values, stdin=subprocess.DEVNULL, stdout=screen,
+                                   stderr=subprocess.STDOUT, start_new_session=True)
+    except BaseException:
+        if session:
+            shutil.rmtree(session, ignore_errors=True)
+        raise
+    if session:
+        weakref.finalize(process, shutil.rmtree, session, ignore_errors=True)
+    return process
 
 
 def stop(running: Iterable) -> None:

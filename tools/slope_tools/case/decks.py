@@ -1,16 +1,37 @@
 """LAMMPS input decks: the commands, variables and files of one."""
 import re
 from pathlib import Path
-from typing import Dict, Mapping, Set, Tuple
+from typing import Dict, Iterable, List, Mapping, Sequence, Set, Tuple
 
 from ..errors import SlopeError
 
 WORD = re.compile(r'"""(.*?)"""|"([^"]*)"|\'([^\']*)\'|(\S+)')
 # where a variable is used: ${name}, $x, v_name
 USED = re.compile(r"\$\{(\w+)\}|\$(\w)|\bv_(\w+)")
+DEEPEST = 10            # variables that name variables
 # words of a command that name files which it writes
 WRITTEN_AT = {"restart": (2, 4), "write_restart": (1, 2), "write_data": (1, 2), "write_dump": (3, 4), "dump": (5, 6),
               "log": (1, 2)}
+
+
+def words_of(line: str) -> List[str]:
+    """The words of a line, without quotes and comment."""
+    words: List[str] = []
+    for match in WORD.finditer(line):
+        if match.lastindex == 4 and "#" in match[4]:
+            return words + [match[4].split("#")[0]] * (not match[4].startswith("#"))
+        words.append(match[match.lastindex or 0])
+    return words
+
+
+def without_comments(deck: Path) -> List[List[str]]:
+    """What tells two decks apart: lines of words without comments and blanks, left as they are where quotes or
+    continued lines make it uncertain what is a comment."""
+    text = deck.read_text(encoding="utf-8", errors="surrogateescape")
+    uncertain = any(line.count('"""') % 2 for line in text.splitlines())        # quotes over several lines
+    lines = [[line] if uncertain or any(c in line for c in "\"'&") else line.split("#")[0].split()
+             for line in text.splitlines()]
+    return [line for line in lines if line]
 
 
 def commands(deck):
@@ -24,12 +45,7 @@ def commands(deck):
         except OSError as error:
             raise SlopeError(path, f"must be a LAMMPS input deck ({error.strerror})") from error
         for line in re.sub(r"&[ \t]*\n", " ", text).splitlines():
-            words = []
-            for match in WORD.finditer(line):
-                if match.lastindex == 4 and "#" in match[4]:
-                    words += [match[4].split("#")[0]] * (not match[4].startswith("#"))
-                    break
-                words.append(match[match.lastindex or 0])
+            words = words_of(line)
             if not words:
                 continue
             found.append(words)
@@ -55,7 +71,12 @@ def quoted(path: str) -> str:
 
 def filled(word: str, values: Mapping[str, str]) -> str:
     """A word with the values of the variables that it names, as ${name} or, of one letter, as $x."""
-    return re.sub(r"\$(?:\{(\w+)\}|(\w))", lambda match: values.get(match[1] or match[2], match[0]), word)
+    for _ in range(DEEPEST):
+        before = word
+        word = re.sub(r"\$(?:\{(\w+)\}|(\w))", lambda match: values.get(match[1] or match[2], match[0]), word)
+        if word == before:
+            break
+    return word
 
 
 def named_files(deck):
@@ -72,6 +93,11 @@ def named_files(deck):
         for k, word in enumerate(words):
             (written if names_output(words, k) else read).update((word, filled(word, values)))
     return read, written
+
+
+def read_words(found: Iterable[Sequence[str]]) -> Set[str]:
+    """The words of commands that may name files which they read."""
+    return {word for words in found for k, word in enumerate(words) if not names_output(words, k)}
 
 
 def names_output(words, k):

@@ -3,6 +3,7 @@ import re
 from pathlib import Path
 from typing import List
 
+from . import decks
 
 LOG = "log.lammps"
 # lines in which SLOPE's styles and LAMMPS report what they made
@@ -29,7 +30,8 @@ class Log:
         self.first, self.steps, self.thermo = 0, None, 0
         self.header: List[str] = []           # words of the thermo output under way
         self.warnings, self.settings, self.notes, self.table = [], [], [], []
-        self.names = set()        # words of the commands: which files they name
+        self.names = set()        # words of the commands that may name files which they read
+        self.environment = set()  # environment variables that they read
         self.in_table = False
 
     def update(self):
@@ -110,7 +112,11 @@ class Log:
 
     def _command(self, words, line):
         """A command as the log echoes it; the last of its echoes has all variables replaced."""
-        self.names.update(words)
+        said = decks.words_of(line)
+        if said:
+            self.names |= decks.read_words([said])
+            if said[0] == "variable" and said[2:3] == ["getenv"] and len(said) > 3:
+                self.environment.add(said[3])
         if "${" in line:
             return
         if words[0] == "run" and len(words) > 1 and words[1].isdigit():

@@ -5,7 +5,6 @@ Order of the work: terrain and body (survey), layers (site_inputs), trial run an
 places (site_folder).
 """
 import contextlib
-import hashlib
 import os
 import shutil
 from pathlib import Path
@@ -44,7 +43,7 @@ def check_target(folder: Path, again: bool) -> None:
     if again:
         deck = folder / site_deck.NAME
         known = site_choices.found(folder).get("deck_sha256")
-        if deck.is_file() and known != digest(deck):
+        if deck.is_file() and known != disk.sha256(deck):
             raise SlopeError(deck, "must not have been changed by hand, the changes would be lost: rename or remove it "
                              "first")
     elif (folder / site_choices.NAME).is_file():
@@ -52,10 +51,6 @@ def check_target(folder: Path, again: bool) -> None:
                          f"{site_choices.NAME}", folder)
     elif folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise SlopeError("-o", "must be a new folder, or an empty one", folder)
-
-
-def digest(path: Path) -> str:
-    return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 Draw = Callable[[Path, Shown, str], None]       # of the map: file, what it shows, title
@@ -131,7 +126,9 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
     files = sorted([path.name for path in new.iterdir()] + [site_choices.NAME])
     about = {"slope_version": provenance.version(), "made": provenance.now(), "files": files,
              "derived": derived,
-             "deck_sha256": digest(new / site_deck.NAME), "choices_sha256": site_choices.fingerprint(choices),
+             "deck_sha256": disk.sha256(new / site_deck.NAME),
+             "choices_sha256": site_choices.fingerprint(choices, folder),
+             "sources_sha256": site_choices.sources(choices, folder),
              "crs": crs_name(raster.crs),
              "origin": {"east": float(raster.offset[0]), "north": float(raster.offset[1])},
              "body": found.measures._asdict(), "balls": size.balls,

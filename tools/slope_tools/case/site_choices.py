@@ -25,6 +25,9 @@ WHAT = "a site.yaml of `slope site`"
 FILES = (("terrain", "files"), ("release", "polygon"), ("release", "scar"), ("road", "file"), ("structures", "files"),
          ("lines", "files"), ("motion", "file"), ("observed", "file"))
 
+# beside a raster, a shapefile or a table: CRS, place, attributes
+BESIDE = (".prj", ".shx", ".dbf", ".cpg", ".tfw", ".hdr", ".yaml")
+
 # keys that slope site fills in with what it finds
 DERIVED = (("balls", "diameter"), ("balls", "number"), ("model", "field_diameter"), ("model", "speed"),
            ("model", "duration"), ("model", "cell"), ("motion", "peak_friction"))
@@ -135,12 +138,29 @@ def found(folder: Path) -> Dict[str, Any]:
     return disk.load_yaml(folder / NAME, WHAT).get("found") or {}
 
 
-def fingerprint(choices: Choices) -> str:
+def fingerprint(choices: Choices, folder: Path) -> str:
     """Of all choices that the deck and its data depend on; not of those that `slope study` reads from site.yaml."""
-    made = with_files(choices, lambda name: Path(name).name)      # the path depends on the working folder
+    made = with_files(choices, lambda name: in_folder(name, folder))
     for name in READ_LATER:
         made[name] = {key: value for key, value in made[name].items() if (name, key) in FILES}
     return hashlib.sha256(json.dumps(disk.plain(made), sort_keys=True).encode("utf-8")).hexdigest()
+
+
+def in_folder(name: str, folder: Path) -> str:
+    """The path of a file as site.yaml in a folder has it."""
+    return Path(os.path.relpath(name, folder)).as_posix()
+
+
+def sources(choices: Choices, folder: Path) -> Dict[str, str]:
+    """{path as in site.yaml: digest} of the files that the choices name and that exist, with the files beside them that
+    say what they mean."""
+    found_: Dict[str, str] = {}
+    for name in source_files(choices):
+        if os.path.isfile(name):
+            beside = [str(Path(name).with_suffix(suffix)) for suffix in BESIDE] + [f"{name}.aux.xml"]
+            parts = [os.path.basename(one) + disk.sha256(one) for one in (name, *beside) if os.path.isfile(one)]
+            found_[in_folder(name, folder)] = hashlib.sha256("\n".join(parts).encode("utf-8")).hexdigest()
+    return found_
 
 
 def derived(before: Choices, after: Choices, known: Derived) -> Derived:
@@ -178,7 +198,7 @@ def source_files(choices: Choices) -> List[str]:
 
 def text(choices: Choices, found_: Dict[str, Any], folder: Path) -> str:
     """site.yaml for a folder: the choices, each with its meaning, and what was found; checked before it is given."""
-    seen = with_files(choices, lambda name: Path(os.path.relpath(name, folder)).as_posix())
+    seen = with_files(choices, lambda name: in_folder(name, folder))
     about = schema()
     lines = [f"# {about['description']}.", "# `slope site FOLDER` rebuilds the folder from it, `slope study FOLDER` "
              "runs it.", "", f"slope_site: {VERSION}    # version of this file"]

@@ -100,7 +100,19 @@ def observed_layer(path: Optional[str], raster: Raster, folder: Path, help_: pol
     if len(wrong) or not np.nansum(mapped.z) > 0:
         raise SlopeError(path, "must be thicknesses >= 0, somewhere > 0",
                          f"{mapped.z[tuple(wrong[0])]:g}" if len(wrong) else "none")
+    check_overlap(path, mapped, raster)
     target = folder / f"{OBSERVED}.tif"
     rasters.write_geotiff(target, {"thickness": mapped.z}, mapped)
     tell(f"{target.name}: thickness, {mapped.z.shape[1]} x {mapped.z.shape[0]} cells")
     return None
+
+
+def check_overlap(path: str, mapped: Raster, raster: Raster) -> None:
+    """Raise SlopeError unless something of a mapped thickness, in coordinates of the CRS, lies on the terrain."""
+    rows, columns = np.nonzero(np.nan_to_num(mapped.z) > 0)
+    x, y = mapped.transform * (columns + 0.5, rows + 0.5)
+    xlo, ylo, xhi, yhi = extent(raster)
+    x, y = x + mapped.offset[0] - raster.offset[0], y + mapped.offset[1] - raster.offset[1]
+    if not np.any((x >= xlo) & (x <= xhi) & (y >= ylo) & (y <= yhi)):
+        far = np.hypot(x - (xlo + xhi) / 2, y - (ylo + yhi) / 2).min()
+        raise SlopeError(path, "must have thickness on the terrain", f"{far:,.0f} m from its centre at the nearest")

@@ -47,7 +47,7 @@ def run(args):
              "run": {"slope_version": run_.summary.get("slope_version"), "time": run_.summary["time"]}, "rasters": []}
     if not any(layer.kind == "base" for layer in found):
         warn(f"no {args.prefix}.base.asc, as of a run by an older version: no ground without the body")
-    with disk.complete(folder) as new:
+    with disk.complete(folder, "export.yaml") as new:
         for layer in rasters.progress(found, "writing GeoTIFFs"):
             about["rasters"].append(write(new, layer, place))
         about["warnings"] = warnings

@@ -46,7 +46,7 @@ def make(prefix: str, mapped: Path, folder: Path, threshold: float = THRESHOLD, 
         about["bulk_factor"] = run_.bulk
         about["volume"] = volumes(observed, table)
     about["warnings"] = warnings
-    with disk.complete(folder) as new:
+    with disk.complete(folder, "score.yaml") as new:
         write_csv(new / "score.csv", run_, squares, table)
         draw(new / "score.png", run_, simulated, observed, about)
         about["files"] = ["score.csv", "score.png", "score.yaml"]

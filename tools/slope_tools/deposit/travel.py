@@ -96,7 +96,7 @@ def of_dumps(paths: Sequence[str], starts: Optional[Sequence[str]], wanted: Want
                                 for key in ("distance", "reach_angle")}} for k, share in enumerate(reach.SHARES)]
     about["each_run"] = single
     about["warnings"] = warnings
-    with disk.complete(folder) as new:
+    with disk.complete(folder, "travel.yaml") as new:
         write_csv(new / "travel.csv", arrivals, tables)
         write_balls(new / "balls.csv", arrivals)
         draw(new / "travel.png", arrivals, tables, wanted)

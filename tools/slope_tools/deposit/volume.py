@@ -88,7 +88,7 @@ def of_run(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], None] = l
 def write(found: Removal, folder: Path, picture: bool = True) -> None:
     """Tables, rasters, GeoJSON, map and volume.yaml, all of them or none; found.about gets their names."""
     run, mesh, result, about = found.run, found.mesh, found.result, found.about
-    with disk.complete(folder) as new:
+    with disk.complete(folder, "volume.yaml") as new:
         volume_files.write_csv(new / "volume.csv", run, mesh, result, found.factor)
         volume_files.write_geojson(new / "volume.geojson", run, mesh, result, found.factor)
         rasters.write_geotiff(new / "volume.tif", {"thickness to remove (m)": np.where(

@@ -42,7 +42,7 @@ class Fit:
         study.check_names(todo)
         study.check_folder(self.setup, todo)
         for one in todo:
-            jobs.check_finished(one, self.setup.deck, self.work.digests)
+            jobs.check_finished(one, self.work.depends)
         self.work.do(todo)
         rows, _ = results.rows_of(self.setup, todo, results.Maps(()), pictures=False)
         found: List[Optional[np.ndarray]] = []

@@ -1,6 +1,5 @@
 """The runs of a study: their folders, their processes, and how far they are."""
 import contextlib
-import hashlib
 import os
 import re
 import shutil
@@ -14,7 +13,7 @@ import yaml
 from .. import disk, processes, provenance
 from ..case import decks, last_words, logs, restarts, run_folders, site_choices
 from ..errors import SlopeError
-from . import launcher
+from . import dependencies, launcher
 from .job_display import Display
 
 POLL = 0.1              # s between two looks at the runs
@@ -48,6 +47,7 @@ class Run:
         self.log = logs.Log(self.folder / logs.LOG)
         self.restart = None         # step and path of the restart file from which it continues
         self.refused = set()        # restart files that LAMMPS could not read
+        self.unlaunched: Optional[str] = None       # what was said when it failed before LAMMPS began
         self.output_before = 0              # bytes of screen output of its earlier parts
 
     @property
@@ -86,35 +86,20 @@ def copied(files, folder):
         for name, source in files.items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(source, folder / name)
-        yield {name: sha256(folder / name) for name in files}
+        yield {name: disk.sha256(folder / name) for name in files}
     finally:
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def check_finished(run, deck, digests):
-    """Raise SlopeError if a finished run was made from files that are not the present ones; comments do not count."""
-    if not run.marker.exists():
-        return
-    for name, digest in (disk.load_yaml(run.marker, "what `slope study` wrote").get("inputs") or {}).items():
-        if digests.get(name, digest) == digest or (name == deck.name and same_commands(run.folder / name, deck)):
-            continue
+def check_finished(run, depends: dependencies.Dependencies):
+    """Raise SlopeError if a finished run depends on something that is not what it was; comments in decks may differ."""
+    changed = depends.changed(run) if run.marker.exists() else None
+    if changed:
+        deck = depends.source
         other = "" if (deck.parent / site_choices.NAME).is_file() else ", or give another -o"
-        raise SlopeError(run.folder, f"was run with another {name} than that of {deck.parent}: remove the folder to "
-                         f"run it again (or {run.folder.parent}, for all of them){other}")
-
-
-def same_commands(path, deck):
-    """Whether a run's copy of a deck differs from it in comments and blanks at most."""
-    return path.is_file() and decks.commands(path) == decks.commands(deck)
-
-
-def sha256(path):
-    """Of a file, in hexadecimal."""
-    digest = hashlib.sha256()
-    with open(path, "rb") as data:
-        for block in iter(lambda: data.read(1 << 20), b""):
-            digest.update(block)
-    return digest.hexdigest()
+        whose = f"that of {deck.parent}" if changed in depends.digests else "the present one"
+        raise SlopeError(run.folder, f"was run with another {changed} than {whose}: remove the folder to run it again "
+                         f"(or {run.folder.parent}, for all of them){other}")
 
 
 # --- processes ---
@@ -149,7 +134,7 @@ class Work:
         self.deck, self.digests, self.inputs = deck, digests, inputs
         self.lmp, self.ranks, self.jobs, self.start = lmp, ranks, jobs, start
         self.package = provenance.package_version()
-        self.lmp_digest = sha256(lmp)
+        self.depends = dependencies.Dependencies(inputs / deck.name, digests, lmp, deck)
         self.defaults = decks.index_variables(inputs / deck.name)
         self.continues = any(CONTINUES in word for words in decks.commands(inputs / deck.name)
                              for word in (*words, " ".join(words)))
@@ -190,7 +175,8 @@ class Work:
 
     def _again(self, active):
         """Whether a run that ended is to be started once more."""
-        return self._refused(active.run, active.process.returncode)
+        return (self._refused(active.run, active.process.returncode)
+                or self._unlaunched(active.run, active.process.returncode))
 
     def _shown(self):
         """The runs that the display shows as under way."""
@@ -229,6 +215,8 @@ class Work:
             self._reopen_folder(run)
         else:
             self._make_folder(run)
+        if run.unlaunched:
+            said += f"; its launch failed once: {run.unlaunched}"
         return said
 
     def _line(self, run):
@@ -239,25 +227,15 @@ class Work:
         """Step and path of the restart file from which an unfinished run can continue, or None; and why it cannot."""
         if not self.continues:
             return None, f"{self.deck.name} has no {CONTINUES}"
-        about = disk.load_yaml(run.folder / run_folders.VARIABLES, "what `slope study` wrote")
-        for key, now, what in (("lmp_sha256", self.lmp_digest, "another LAMMPS program"),
-                               ("package", self.package, "another version of the package")):
-            if about.get(key) != now:
-                return None, f"it was started with {what}"
-        run.log.update()
-        for name in self._inputs_of(run):
-            if not (run.folder / name).is_file() or sha256(run.folder / name) != self.digests[name]:
-                return None, f"it was started with another {name}"
+        changed = self.depends.changed(run) or self.depends.copies_changed(run)
+        if changed:
+            return None, f"it was started with another {changed}"
         for step, path in restarts.restarts(run.folder):
             # from a restart file at or after its halt a run would continue, as LAMMPS does not know that it halted
             if (path not in run.refused and str(path.relative_to(run.folder)) not in self.digests
                     and (run.log.halted is None or step < run.log.halted)):
                 return (step, path), None
         return None, "it left no complete restart file"
-
-    def _inputs_of(self, run):
-        """Names of the deck and of the data files that it named, as far as its log goes."""
-        return [name for name in self.digests if name == self.deck.name or name in run.log.names]
 
     def _reopen_folder(self, run):
         """Prepare the folder of an interrupted run for its continuation."""
@@ -281,6 +259,14 @@ class Work:
         run.refused.add(run.restart[1])
         return True
 
+    @staticmethod
+    def _unlaunched(run, status):
+        """Whether MPI failed before LAMMPS began: once, the run is started again."""
+        if status == 0 or status in KILLED or run.unlaunched or run.log.path.exists():
+            return False
+        run.unlaunched = run.screen().launcher
+        return run.unlaunched is not None
+
     def _make_folder(self, run):
         """Make the folder with all input of the run, in place of that of an unfinished run."""
         new = run.folder.with_name(f".{run.name}.new")
@@ -288,15 +274,18 @@ class Work:
         for rest in (new, old):
             shutil.rmtree(rest, ignore_errors=True)
         shutil.copytree(self.inputs, new)
+        run.log = logs.Log(run.log.path)        # what was read so far belongs to the old run
+        state = self.depends.now(run)
         about = {"deck": self.deck.name, "set": run.chosen, "variables": {**self.defaults, **run.chosen},
                  "command": " ".join([self.lmp.name, *self.command(run)]), "ranks": self.ranks,
-                 "package": self.package, "lmp_sha256": self.lmp_digest, "started": provenance.now()}
+                 "package": self.package, "lmp_sha256": state.program["LAMMPS program"],
+                 "started": provenance.now(), "program": state.program, "environment": state.environment,
+                 "inputs": {**state.files, **self.digests}}
         disk.write(new / run_folders.VARIABLES, yaml.safe_dump(about, sort_keys=False))
         if run.folder.exists():
             run.folder.rename(old)
         new.rename(run.folder)
         shutil.rmtree(old, ignore_errors=True)
-        run.log = logs.Log(run.log.path)        # what was read so far belongs to the old run
 
     def _ended(self, active):
         """Mark the run as finished, or keep why it is not."""
@@ -312,12 +301,13 @@ class Work:
             run.error = str(error)
             return None
         run.log.update()
-        # what the run used, and did not overwrite
-        inputs = {name: self.digests[name] for name in self._inputs_of(run)
-                  if (run.folder / name).is_file() and sha256(run.folder / name) == self.digests[name]}
+        state = self.depends.now(run)
+        begun = disk.load_yaml(run.folder / run_folders.VARIABLES, dependencies.WHAT)
         about = {"finished": provenance.now(), "wall_seconds": round(time.monotonic() - active.began, 1),
                  "summary": summaries[0].name, "machine": provenance.machine(),
-                 "inputs": inputs}
+                 "environment": {**state.environment, **begun["environment"]},
+                 "inputs": {name: begun["inputs"].get(name, digest) for name, digest in state.files.items()}}
+        disk.flush_all(run.folder)      # what it says is there, is
         disk.write(run.marker, yaml.safe_dump(about, sort_keys=False))
         return None
 

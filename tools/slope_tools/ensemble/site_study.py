@@ -3,6 +3,7 @@
 Order of the work: the error of the size (size_study), the study with it (study, results), the score of the run that the
 answer rests on. Every part is resumed by the same call.
 """
+import shutil
 import sys
 from pathlib import Path
 from typing import Dict, Iterable, List, NamedTuple, Optional, Sequence
@@ -31,7 +32,7 @@ def words(numbers: Iterable[float]) -> List[str]:
 class Done(NamedTuple):
     """What was made."""
     study: Optional[Path]                   # its folder, None of a dry run
-    failed: Optional[study.RunsFailed]      # that runs failed, to be raised once the report is there
+    failed: Optional[Exception]             # what failed beside it, to be raised once the report is there
 
 
 def run(folder: Path, engine: Setup) -> Done:
@@ -52,9 +53,14 @@ def check(folder: Path, choices: Choices) -> None:
     for name in (site_deck.NAME, *(found.get("files") or ())):
         if not (folder / name).is_file():
             raise SlopeError(folder / name, f"must exist; `slope site {folder}` rebuilds it")
-    if found.get("choices_sha256", "") not in ("", site_choices.fingerprint(choices)):
+    if found.get("choices_sha256", "") not in ("", site_choices.fingerprint(choices, folder)):
         raise SlopeError(folder / site_choices.NAME, f"must not have been changed since {site_deck.NAME} was made from "
                          f"it: `slope site {folder}` rebuilds the deck (project, road and study may change)")
+    before = found.get("sources_sha256") or {}
+    for name, digest in site_choices.sources(choices, folder).items():      # a folder may have gone without its sources
+        if before.get(name, digest) != digest:
+            raise SlopeError(folder / name, f"must not have changed since {site_deck.NAME} was made from it: "
+                             f"`slope site {folder}` rebuilds the deck")
 
 
 def run_alone(folder: Path, choices: Choices, engine: Setup) -> Done:
@@ -74,7 +80,7 @@ def run_alone(folder: Path, choices: Choices, engine: Setup) -> Done:
     study.check_names(todo)
     questions = results.Questions(settings, repeated, THRESHOLDS, found.errors, size_error_unusable=found.unusable,
                                   notes=(*warnings_of(folder), *found.warnings))
-    failed = None
+    failed: Optional[Exception] = None
     try:
         study.perform(setup, {**settings, **repeated}, todo,
                       lambda todo, work: results.collect(setup, questions, todo, work))
@@ -85,7 +91,11 @@ def run_alone(folder: Path, choices: Choices, engine: Setup) -> Done:
     if setup.dry_run:
         return Done(None, failed)
     if choices["observed"]["file"]:
-        scored(folder, setup)
+        shutil.rmtree(folder / SCORE, ignore_errors=True)       # of other runs
+        try:
+            scored(folder, setup)
+        except Exception as error:      # whatever it is, the runs took hours: their report comes first
+            failed = failed or error
     return Done(setup.output, failed)
 
 

@@ -3,7 +3,7 @@ import argparse
 import contextlib
 import functools
 from pathlib import Path
-from typing import Callable, Dict
+from typing import Callable, Dict, Optional
 
 from .. import disk
 from ..case import decks, run_folders
@@ -12,7 +12,7 @@ from ..errors import SlopeError
 from ..options import number
 from ..programs import find_lmp
 from ..survey import rasters
-from . import jobs, launcher, results, slurm
+from . import dependencies, jobs, launcher, results, slurm
 from .setup import Road, Setup
 
 MOST_LETTERS = 200      # of a folder's name; file systems take 255
@@ -28,18 +28,29 @@ def perform(setup: Setup, settings, todo, collect, begin=None):
         check_road(setup.road, setup.deck, settings)
     check_folder(setup, todo)
     if setup.dry_run:
-        digests = {name: jobs.sha256(source) for name, source in files.items()}
+        digests = {name: disk.sha256(source) for name, source in files.items()}
+        depends = dependencies.Dependencies(setup.deck, digests, program_of(setup))
         for one in todo:
-            jobs.check_finished(one, setup.deck, digests)
+            jobs.check_finished(one, depends)
         return list_runs(todo)
     with prepared(setup, files, len(todo)) as work:
         for one in todo:
-            jobs.check_finished(one, setup.deck, work.digests)
+            jobs.check_finished(one, work.depends)
         if begin:
             begin()
         work.do(todo)
         collect(todo, work)
     raise_failed(setup.output, todo)
+
+
+def program_of(setup: Setup) -> Optional[Path]:
+    """The LAMMPS program; None where none is given or built, which does not matter as long as nothing is run."""
+    try:
+        return find_lmp(setup.lmp)
+    except SlopeError:
+        if setup.lmp:
+            raise
+        return None
 
 
 @contextlib.contextmanager

@@ -1,4 +1,5 @@
 """Coordinate reference systems: are two the same, is a metre a metre."""
+import math
 
 import numpy as np
 import rasterio
@@ -24,7 +25,11 @@ def as_crs(option, name):
 
 def same_crs(a, b):
     """Whether two CRS (or None) are one, however they are spelt."""
-    return a == b or (a is not None and b is not None and epsg(a) is not None and epsg(a) == epsg(b))
+    if a is None or b is None:
+        return a is b
+    if a.is_projected and b.is_projected and not math.isclose(a.linear_units_factor[1], b.linear_units_factor[1]):
+        return False        # rasterio compares what it takes for their EPSG numbers
+    return a == b or (epsg(a) is not None and epsg(a) == epsg(b))
 
 
 def require_metres(crs, where):

@@ -57,9 +57,14 @@ def epsg(crs):
     """EPSG number of a CRS, None if not known.
 
     The confidence of 50 covers ESRI's spelling in .prj files, where the axes of many systems (all of Japan's plane
-    ones) are in another order than EPSG's, which does not matter here: rasters are always east, north.
+    ones) are in another order than EPSG's, which does not matter here: rasters are always east, north. It covers a
+    system in another unit of length too, which matters.
     """
-    return crs.to_epsg(confidence_threshold=50)
+    number = crs.to_epsg(confidence_threshold=50)
+    if number and crs.is_projected and not math.isclose(crs.linear_units_factor[1],
+                                                        CRS.from_epsg(number).linear_units_factor[1], rel_tol=1e-9):
+        return None
+    return number
 
 
 def crs_name(crs):

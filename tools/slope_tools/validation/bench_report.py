@@ -12,7 +12,6 @@ from rich.console import Console
 from rich.table import Table
 
 from .. import disk, provenance
-from ..ensemble import jobs
 from . import peers
 from .bench_scenes import PREPARED
 
@@ -66,8 +65,8 @@ def report(plan):
     scene = plan.scene
     about = {"bench": {"finished": provenance.now(), "machine": provenance.machine(),
                        "package": provenance.package_version(),
-                       "lmp_sha256": jobs.sha256(plan.lmp),
-                       "programs_sha256": {name: jobs.sha256(path) for name, path in plan.programs.items()},
+                       "lmp_sha256": disk.sha256(plan.lmp),
+                       "programs_sha256": {name: disk.sha256(path) for name, path in plan.programs.items()},
                        "versions": plan.versions, "quick": plan.quick,
                        "steps": plan.steps, "repeat": plan.repeat},
              "scene": {"moving": len(scene.moving), "fixed": len(scene.ground), "diameter": scene.diameter,

@@ -8,7 +8,6 @@ from rich.console import Console
 from rich.table import Table
 
 from .. import disk, provenance
-from ..ensemble import jobs
 from .crosscheck import Check, road_corners
 
 
@@ -17,7 +16,7 @@ def report(work):
     rows = [{**check._asdict(), "passed": check.passed} for check in work.checks]
     about = {"crosscheck": {"finished": provenance.now(), "machine": provenance.machine(),
                             "package": provenance.package_version(),
-                            "lmp_sha256": jobs.sha256(work.lmp), "versions": work.versions, "quick": work.quick,
+                            "lmp_sha256": disk.sha256(work.lmp), "versions": work.versions, "quick": work.quick,
                             "compared": sum(row["passed"] is not None for row in rows),
                             "failed": sum(row["passed"] is False for row in rows)},
              "collapse": work.about_collapse, "checks": rows,

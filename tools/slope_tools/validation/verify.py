@@ -37,7 +37,7 @@ class Runner:
         self.folder, self.lmp = Path(folder), lmp
         self.results = {}
         self.kept = 0
-        self.program = jobs.sha256(lmp)
+        self.program = disk.sha256(lmp)
 
     def result(self, run):
         """The Result of a run; it is run now if it was not before."""
@@ -171,7 +171,7 @@ def made(words: str, lmp, runner, outcomes, seconds) -> Dict[str, Any]:
     log = logs.Log(next(iter(runner.results.values())).folder / logs.LOG).update()
     machine = provenance.machine()
     return {"date": provenance.now(), "command": words, "package": provenance.package_version(),
-            "lammps": log.lammps, "lmp_sha256": jobs.sha256(lmp),
+            "lammps": log.lammps, "lmp_sha256": disk.sha256(lmp),
             "python": platform.python_version(), "numpy": np.__version__,
             "processor": machine["processor"], "cores": machine["cores"], "system": platform.system(),
             "runs": len(runner.results), "kept": runner.kept, "seconds": round(seconds, 1), "claims": len(outcomes),
