@@ -15,7 +15,8 @@ from slope_tools import cli  # noqa: E402  (after the path is set)
 PACKAGE = TOOLS / "slope_tools"
 MODULES = sorted(PACKAGE.rglob("*.py"))
 LONGEST = 400       # lines
-ROOMS = ("", "drawing", "survey", "case", "deposit", "ensemble", "report", "validation", "commands")    # from below
+# from below
+ROOMS = ("", "drawing", "mobility", "survey", "case", "deposit", "ensemble", "report", "validation", "commands")
 
 
 def imported(text, path):

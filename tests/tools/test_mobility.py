@@ -1,0 +1,70 @@
+"""Known events and their relation: against the figures found for the set beforehand, and wrong sets."""
+import sys
+
+import pytest
+
+from run_helpers import TOOLS
+
+sys.path.insert(0, str(TOOLS))
+
+from slope_tools.errors import SlopeError  # noqa: E402  (after the path is set)
+from slope_tools.mobility import events, relation  # noqa: E402
+
+ALL = events.read()
+
+
+def test_relation_of_the_set():
+    found = relation.of_events(ALL)
+    assert found.coefficients == pytest.approx([1.334, 0.134, 0.671, 0.144], abs=5e-4)
+    assert (len(ALL), found.free) == (49, 45)
+    assert found.deviation == pytest.approx(0.115, abs=5e-4)
+    assert found.r2 == pytest.approx(0.79, abs=5e-3)
+
+
+def test_one_more_event():
+    found = relation.of_events(ALL)
+    assert found.quantile(0.5, 1, 1000) == pytest.approx(2226, abs=1)
+    assert [found.quantile(share, 1, 1000) for share in (0.05, 0.95)] == pytest.approx([1380, 3590], abs=6)
+    assert found.exceedance(found.quantile(0.3, 5, 800, True), 5, 800, True) == pytest.approx(0.7)
+    assert found.exceedance([1000, 2226], 1, [500, 1000])[1] == pytest.approx(0.5, abs=1e-3)
+    assert found.covers(1, 1000) and not found.covers(0.01, 1000) and not found.covers(1, 50)
+
+
+@pytest.mark.parametrize("level, inside", [(0.8, 38), (0.9, 46)])
+def test_leave_one_out(level, inside):
+    assert sum(abs(share - 0.5) < level / 2 for share in relation.left_out(ALL)) == inside
+
+
+def test_frank():
+    frank = next(one for one in ALL if one.name == "Frank Slide")
+    place = frank.volume, frank.fall, frank.confined
+    assert relation.of_events(ALL).quantile(0.5, *place) == pytest.approx(2994, abs=1)
+    blind = relation.of_events([one for one in ALL if one is not frank])
+    assert blind.quantile(0.1, *place) < frank.length == 3080 < blind.quantile(0.9, *place)
+    assert blind.quantile(0.5, *place) < relation.of_events(ALL).quantile(0.5, *place)      # drawn towards its length
+
+
+HEAD = "name,fall_m,length_m,volume_Mm3,confinement\n"
+
+
+@pytest.mark.parametrize("text, words", [
+    ("name,fall_m\nA,1\n", ("length_m", "volume_Mm3", "confinement")),
+    (HEAD + "A,900,2000,-1,lateral\n", ("line 2", "volume_Mm3", "-1")),
+    (HEAD + "A,900,nan,1,lateral\n", ("line 2", "length_m", "nan")),
+    (HEAD + "A,900,2,1,lateral\n", ("line 2", "length_m", "metres", "2 and 900")),
+    (HEAD + "A,900,2000,1,narrow\n", ("line 2", "confinement", "narrow")),
+    (HEAD + "A,900,2000,1,lateral\n" + "A,900,2000,1,lateral\n", ("line 3", "name", "A")),
+])
+def test_wrong_sets(tmp_path, text, words):
+    path = tmp_path / "set.csv"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(SlopeError) as error:
+        events.read(path)
+    assert all(word in str(error.value) for word in (str(path), *words))
+
+
+def test_sets_that_give_no_relation():
+    with pytest.raises(SlopeError, match="at least 12 events.* got 3"):
+        relation.of_events(ALL[:3])
+    with pytest.raises(SlopeError, match="laterally confined"):
+        relation.of_events([one for one in ALL if not one.confined])

@@ -1,0 +1,70 @@
+"""Sets of known events: what fell, how deep and how far.
+
+rock_avalanches.csv: 49 rock avalanches of Canada, published with A. Mitchell, S. McDougall, N. Nolde, M.-A. Brideau,
+J. Whittall and J. Aaron, Rock avalanche runout prediction using stochastic analysis of a regional dataset, Landslides
+17 (2020), 777-792, and its program PRE-RA. Its bias: avalanches that were mapped, none below 0.1 million m3.
+"""
+import csv
+import math
+from pathlib import Path
+from typing import List, NamedTuple
+
+from ..errors import SlopeError
+
+OWN = Path(__file__).parent / "rock_avalanches.csv"
+CONFINEMENTS = ("frontal", "lateral", "unconfined")
+COLUMNS = ("fall_m", "length_m", "volume_Mm3")
+
+
+class Event(NamedTuple):
+    """fall: crown to toe, vertical (m); length: crown to toe along the path in plan (m); volume: million m3."""
+    name: str
+    fall: float
+    length: float
+    volume: float
+    confined: bool      # laterally
+
+
+def read(path: Path = OWN) -> List[Event]:
+    """The events of a CSV file with columns name, fall_m, length_m, volume_Mm3 and confinement; others are ignored.
+
+    Raises SlopeError, which names the line, on a missing column, a number that is not finite and above 0, a word that
+    is none of CONFINEMENTS, a name that comes twice, and an event that is longer than 50 times or shorter than half its
+    fall, which none of ours is by far: its units are mixed up.
+    """
+    try:
+        with open(path, encoding="utf-8-sig", newline="") as lines:
+            reader = csv.DictReader(lines)
+            missing = [name for name in ("name", *COLUMNS, "confinement") if name not in (reader.fieldnames or ())]
+            if missing:
+                raise SlopeError(path, "must have the columns name, fall_m, length_m, volume_Mm3 and confinement",
+                                 "none named " + ", ".join(missing))
+            events: List[Event] = []
+            for row in reader:
+                events.append(event(row, f"{path}: line {reader.line_num}", {one.name for one in events}))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise SlopeError(path, f"cannot be read as a set of events: {error}") from None
+    return events
+
+
+def event(row, where, names) -> Event:
+    """One row; names: of the events before it."""
+    if not row["name"] or row["name"] in names:
+        raise SlopeError(where, "name must be given, and once only", repr(row["name"]))
+    fall, length, volume = (positive(row[name], f"{where}: {name}") for name in COLUMNS)
+    if row["confinement"] not in CONFINEMENTS:
+        raise SlopeError(where, "confinement must be one of " + ", ".join(CONFINEMENTS), repr(row["confinement"]))
+    if not 0.5 <= length / fall <= 50:
+        raise SlopeError(where, "length_m must be 0.5 to 50 times fall_m; check that both are in metres",
+                         f"{length:g} and {fall:g}")
+    return Event(row["name"], fall, length, volume, row["confinement"] == "lateral")
+
+
+def positive(text, where) -> float:
+    try:
+        value = float(text)
+    except (TypeError, ValueError):
+        value = math.nan
+    if not (math.isfinite(value) and value > 0):
+        raise SlopeError(where, "must be a number above 0", repr(text))
+    return value
