@@ -15,6 +15,7 @@ from ..case import decks, run_folders
 
 PLUGINS = "LAMMPS_PLUGIN_PATH"      # folders of plugins that LAMMPS loads when it starts
 LIBRARIES = "LD_LIBRARY_PATH"       # folders in which a plugin that a deck loads by its bare name is looked for
+SYSTEM = ("/lib", "/usr/lib")        # folders of the system's own libraries
 BESIDE = (".yaml", ".prj")          # sidecars of a raster or a table: terrain.yaml of terrain.asc
 PATHS = re.compile(r"[^\s\"'(),=]+")        # what may be a path in a word such as is_file(/data/a.asc)
 WHAT = "what `slope study` wrote"
@@ -41,12 +42,14 @@ def program(lmp: Path) -> Dict[str, str]:
 
 
 def linked(path: Path) -> Set[Path]:
-    """The shared libraries that a program or a library loads; none of a script."""
+    """The shared libraries that a program or a library loads, but for the system's, whose upgrades change no result; none of a
+    script."""
     if not shutil.which("ldd"):
         return set()
     done = subprocess.run(["ldd", str(path)], stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
     names = re.findall(r"(/.+?) \(0x[0-9a-f]+\)$", done.stdout, re.MULTILINE)
-    return {Path(name) for name in names if os.path.isfile(name)}
+    return {Path(name) for name in names if os.path.isfile(name) and
+            (os.path.basename(name).startswith("liblammps") or not os.path.realpath(name).startswith(SYSTEM))}
 
 
 class Dependencies:
