@@ -17,6 +17,11 @@
 #ifndef SLOPE_CONTACT_FORCE_H
 #define SLOPE_CONTACT_FORCE_H
 
+#ifdef __FAST_MATH__
+#error \
+    "contacts that have just begun or ended need infinities and exact comparisons: build without -ffast-math"
+#endif
+
 #include "contact_law.h"
 #include "lone_contact.h"
 #include "simd4.h"

@@ -23,7 +23,6 @@ static constexpr double ROUNDING = 1.0e-12;    // 0.95 of 20 is the 19th
 void CrossingLog::sort()
 {
   std::sort(events.begin(), events.end(), [](const Event &a, const Event &b) {
-    if (a.step != b.step) return a.step < b.step;
     if (a.time != b.time) return a.time < b.time;
     if (a.tag != b.tag) return a.tag < b.tag;
     return a.along < b.along;
@@ -46,6 +45,11 @@ CrossingLog::Way CrossingLog::way(int direction) const
   return found;
 }
 
+int CrossingLog::main_direction() const
+{
+  return way(-1).volume > way(1).volume ? -1 : 1;
+}
+
 /* ---------------------------------------------------------------------- */
 
 static double value_at(std::vector<double> &values, double share)
@@ -59,8 +63,9 @@ static double value_at(std::vector<double> &values, double share)
 CrossingLog::Largest CrossingLog::quantile(double share) const
 {
   std::vector<double> speeds, heights, energies;
+  const int direction = main_direction();
   for (const Event &e : events) {
-    if (e.direction < 0.0) continue;
+    if (e.direction * direction < 0.0) continue;
     speeds.push_back(e.speed);
     energies.push_back(e.energy);
     if (std::isfinite(e.height)) heights.push_back(e.height);
@@ -107,20 +112,24 @@ std::string CrossingLog::yaml() const
         ", balls: " + count(ways[k].balls) + ", volume: " + real(ways[k].volume) + "}\n";
   line(s, "net_volume", real(ways[0].volume - ways[1].volume));
 
+  const int direction = main_direction();
   double first = HUGE_VAL, last = -HUGE_VAL;
   for (const Event &e : events)
-    if (e.direction > 0.0) {
+    if (e.direction * direction > 0.0) {
       first = std::min(first, e.time);
       last = std::max(last, e.time);
     }
   line(s, "first_time", real(first));
   line(s, "last_time", real(last));
   s +=
-      "# of the forward crossings: speed, height of the ball's centre above the ground, energy of\n"
-      "# motion and spin; quantiles: this share of the crossings stays at or below\n";
+      "# of the crossings in the direction that more volume went: first_time to quantiles; speed,\n"
+      "# height of the ball's centre above the ground, energy of motion and spin; quantiles: this\n"
+      "# share of the crossings stays at or below\n";
+  line(s, "direction", direction > 0 ? "forward" : "back");
   s += "largest: {" + three(quantile(1.0));
-  s += ways[0].crossings > 0.0 ? "quantiles:\n" : "quantiles: []\n";
+  const bool any = !events.empty();
+  s += any ? "quantiles:\n" : "quantiles: []\n";
   for (const double share : SHARES)
-    if (ways[0].crossings > 0.0) s += "  - {share: " + real(share) + ", " + three(quantile(share));
+    if (any) s += "  - {share: " + real(share) + ", " + three(quantile(share));
   return s;
 }

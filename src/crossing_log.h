@@ -36,12 +36,16 @@ class CrossingLog {
 
   std::vector<Event> events;    // in any order until sort()
 
-  void sort();    // by time and ball: the same order whatever ranks there were
+  void
+  sort();    // by time and ball: the same order whatever ranks there were, and if steps are counted anew
 
   Way way(int direction) const;
 
-  // Of the forward crossings: what a share of them (0 to 1) stays at or below; 1: the largest. Heights
-  // without ground do not count. 0 if there are none.
+  // the way that more volume went, 1 or -1: forward unless more went back
+  int main_direction() const;
+
+  // Of the crossings in the main direction: what a share of them (0 to 1) stays at or below; 1: the
+  // largest. Heights without ground do not count. 0 if there are none.
   Largest quantile(double share) const;
 
   std::string csv() const;     // a line for each event

@@ -207,7 +207,8 @@ void DepositBalls::seen_from(const double *place, int i, double &distance, doubl
    side is the safe one
 ------------------------------------------------------------------------- */
 
-std::vector<DepositSummary::Quantile> DepositBalls::quantiles(const double *place) const
+std::vector<DepositSummary::Quantile> DepositBalls::quantiles(const double *place,
+                                                              double lost) const
 {
   double mine[3] = {0.0, -HUGE_VAL, -HUGE_VAL}, most[3];    // farthest; - flattest, steepest
   double distance, angle;
@@ -231,9 +232,18 @@ std::vector<DepositSummary::Quantile> DepositBalls::quantiles(const double *plac
   add_up(distances.weights);
   add_up(angles.weights);
 
+  // of the volume that was released: what was lost went farther than what is left
+
+  double left = 0.0;
+  for (const double weight : distances.weights) left += weight;
   std::vector<DepositSummary::Quantile> found;
-  for (const double share : SHARES)
-    found.push_back({share, {distances.quantile(share), -angles.quantile(share)}});
+  for (const double share : SHARES) {
+    const double of_left = share * (left + lost) / left;
+    if (of_left <= 1.0)
+      found.push_back({share, {distances.quantile(of_left), -angles.quantile(of_left)}});
+    else
+      found.push_back({share, {HUGE_VAL, HUGE_VAL}});    // unknown
+  }
   return found;
 }
 

@@ -46,8 +46,9 @@ class DepositBalls : protected Pointers {
   // there is no ball
   bool farthest(const double *place, double &distance, double &z) const;
 
-  // distance and reach angle, seen from a place, that shares of the volume stay within
-  std::vector<Slope::DepositSummary::Quantile> quantiles(const double *place) const;
+  // distance and reach angle, seen from a place, that shares of the released volume stay within; lost: how much
+  // of it is no longer there, and went farther
+  std::vector<Slope::DepositSummary::Quantile> quantiles(const double *place, double lost) const;
 
   // all but the shares, of whose volumes: moving: of the balls faster than threshold
   Slope::DepositSummary::Motion motion(double threshold, double &moving) const;

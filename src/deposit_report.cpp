@@ -176,7 +176,7 @@ DepositSummary DepositReport::summary(const std::string &why, const DepositResul
               released.front,
               value[Result::CENTROID],
               {value[Result::FRONT], value[Result::REACH]},
-              balls.quantiles(top)};
+              balls.quantiles(top, value[Result::LOST])};
 
   double moving;
   s.motion = balls.motion(options.motion, moving);

@@ -49,7 +49,8 @@ struct DepositSummary {
   struct Reach {
     double distance, angle;
   };
-  struct Quantile {    // this share of the volume stays within
+  struct
+      Quantile {    // this share of the released volume stays within; infinite: unknown, balls were lost
     double share;
     Reach reach;
   };

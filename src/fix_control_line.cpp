@@ -121,7 +121,7 @@ void FixControlLine::init()
     if (fix != this && static_cast<FixControlLine *>(fix)->prefix == prefix)
       error->all(FLERR, "Fix control/line output must differ from that of fix {}, got {}", fix->id,
                  prefix);
-  require_verlet(lmp, "Fix control/line");
+  require_run(lmp, "Fix control/line");
   find_deposit();
   ground.reset(
       new RegionSurface(lmp, "Fix control/line", deposit->terrain().c_str(), RegionSurface::UPPER));
@@ -172,6 +172,7 @@ void FixControlLine::check_line() const
 
 void FixControlLine::setup(int /*vflag*/)
 {
+  set_up = update->ntimestep;
   clock.begin(update->ntimestep, update->dt);
   if (group->count(igroup) == 0 && comm->me == 0)
     error->warning(
@@ -182,6 +183,7 @@ void FixControlLine::setup(int /*vflag*/)
 
 void FixControlLine::end_of_step()
 {
+  require_step(lmp, "Fix control/line", set_up);
   clock.pass(update->ntimestep);
   remember();
 }
@@ -290,6 +292,12 @@ void FixControlLine::post_run()
 void FixControlLine::write_files()
 {
   collect();
+  if (comm->me == 0 && log.main_direction() < 0)
+    error->warning(FLERR,
+                   "Fix control/line {}: more volume crossed back than forward, {:.6g} against "
+                   "{:.6g}: largest values and quantiles are those of the crossings back; turn the "
+                   "line round, {}, if it was drawn against the motion",
+                   id, log.way(-1).volume, log.way(1).volume, file);
   on_rank_zero(lmp, "Fix control/line", [this]() {
     Slope::FileSet files;
     files.add(prefix + ".line.csv").write(log.csv());

@@ -47,6 +47,7 @@ class FixControlLine : public Fix {
   Slope::PlanLine line;
   Slope::RunClock clock;
   class FixDepositGrid *deposit;
+  bigint set_up = -1;    // step of the last set-up
   std::unique_ptr<class RegionSurface> ground;
 
   // places of this rank's balls at the end of the last step, in the order of the atoms, which stays

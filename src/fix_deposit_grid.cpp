@@ -12,6 +12,7 @@
 #include "deposit_ground.h"
 #include "lammps_compat.h"
 #include "node_memory.h"
+#include "requirements.h"
 
 #include "comm.h"
 #include "error.h"
@@ -91,6 +92,7 @@ int FixDepositGrid::setmask()
 
 void FixDepositGrid::init()
 {
+  require_run(lmp, "Fix deposit/grid");
   for (Fix *fix : compat::fixes_of_style(lmp, "deposit/grid"))
     if (fix != this && static_cast<FixDepositGrid *>(fix)->options.prefix == options.prefix)
       error->all(FLERR, "Fix deposit/grid output must differ from that of fix {}, got {}", fix->id,
@@ -137,6 +139,8 @@ void FixDepositGrid::start()
 
 void FixDepositGrid::setup(int /*vflag*/)
 {
+  set_up = update->ntimestep;
+
   // first of all set-ups: where the balls lie now they arrived at time 0
 
   offset = elapsed - clock();
@@ -149,6 +153,7 @@ void FixDepositGrid::setup(int /*vflag*/)
 
 void FixDepositGrid::end_of_step()
 {
+  require_step(lmp, "Fix deposit/grid", set_up);
   sample(true);
   take_snapshot();
   if (options.nfreq > 0 && update->ntimestep % options.nfreq == 0) write_files("running");

@@ -72,6 +72,7 @@ class FixDepositGrid : public Fix {
   DepositResults results;
 
   bool started, fresh;    // the mass was released; and nothing was sampled yet
+  bigint set_up = -1;     // step of the last set-up
   bigint sampled;         // step of the last sample
   bool warned;            // that the balance does not close
 

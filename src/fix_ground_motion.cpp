@@ -117,7 +117,7 @@ int FixGroundMotion::setmask()
 
 void FixGroundMotion::init()
 {
-  require_verlet(lmp, "Fix ground/motion");
+  require_run(lmp, "Fix ground/motion");
 
   kicked = placed = frozen = 0;
   bool before = true;

@@ -172,7 +172,12 @@ void PairGranRestitution::init_style()
   if (comm->style == 1 &&
       force->newton_pair)    // CommTiled cannot send the histories of ghosts back
     error->all(FLERR, "Pair gran/restitution with comm_style tiled requires newton off");
-  require_verlet(lmp, "Pair gran/restitution");
+  if (!compute_flag)
+    error->all(FLERR,
+               "Pair gran/restitution pair_modify compute must be yes, got no: balls would fall "
+               "through each other and the ground");
+  require_run(lmp, "Pair gran/restitution");
+  require_plain_units(lmp, "Pair gran/restitution");
   require_single_balls(lmp, "Pair gran/restitution");
   require_whole_contacts(lmp, "Pair gran/restitution");
 

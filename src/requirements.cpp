@@ -16,15 +16,39 @@
 using namespace LAMMPS_NS;
 
 /* ----------------------------------------------------------------------
-   r-RESPA asks each style for the forces of a level, which ours do not have: balls would fall
-   through the ground
+   Contacts remember the steps before, which those of minimize do not have; r-RESPA asks each style for the forces of a level, which ours do not have: balls would fall through the
+   ground
 ------------------------------------------------------------------------- */
 
-void LAMMPS_NS::require_verlet(LAMMPS *lmp, const std::string &caller)
+void LAMMPS_NS::require_run(LAMMPS *lmp, const std::string &caller)
 {
   const Update *update = lmp->update;
+  if (update->whichflag == 2) lmp->error->all(FLERR, "{} needs run, got minimize", caller);
   if (utils::strmatch(update->integrate_style, "^respa"))
     lmp->error->all(FLERR, "{} needs run_style verlet, got {}", caller, update->integrate_style);
+}
+
+/* ----------------------------------------------------------------------
+   rerun sets up each snapshot and ends a step there, in which nothing has moved
+------------------------------------------------------------------------- */
+
+void LAMMPS_NS::require_step(LAMMPS *lmp, const std::string &caller, bigint set_up)
+{
+  if (lmp->update->ntimestep == set_up)
+    lmp->error->all(FLERR, "{} needs run, got rerun: unfix it before, its files stay as they are",
+                    caller);
+}
+
+/* ----------------------------------------------------------------------
+   the law takes stiffness times length for a force, and mass times velocity squared for an energy
+------------------------------------------------------------------------- */
+
+void LAMMPS_NS::require_plain_units(LAMMPS *lmp, const std::string &caller)
+{
+  const Force *force = lmp->force;
+  if (force->ftm2v != 1.0 || force->mvv2e != 1.0)
+    lmp->error->all(FLERR, "{} units must be si, cgs, lj, micro or nano, got {}", caller,
+                    lmp->update->unit_style);
 }
 
 /* ----------------------------------------------------------------------

@@ -10,12 +10,18 @@
 #ifndef SLOPE_REQUIREMENTS_H
 #define SLOPE_REQUIREMENTS_H
 
+#include "lmptype.h"
+
 #include <string>
 
 namespace LAMMPS_NS {
 class LAMMPS;
 
-void require_verlet(LAMMPS *, const std::string &caller);
+void require_run(LAMMPS *,
+                 const std::string &caller);    // with run_style verlet; no minimize
+// at the end of a step; set_up: the step of the last set-up
+void require_step(LAMMPS *, const std::string &caller, bigint set_up);
+void require_plain_units(LAMMPS *, const std::string &caller);
 void require_single_balls(LAMMPS *, const std::string &caller);    // no rigid bodies
 void require_whole_contacts(LAMMPS *,
                             const std::string &caller);    // special_bonds, if there are bonds

@@ -53,6 +53,33 @@ def test_one_flight_in_closed_form(tmp_path):
     assert about["length"] == 10 and about["bulk_factor"] == BULK
 
 
+def test_a_line_drawn_against_the_motion(tmp_path):
+    """The same flight over the line to the north: what crosses back is what counts, and a warning says so."""
+    log = fly(tmp_path, [[4, -1, 8]], [[-3, 2, -0.5]], "1 -5\n1 5\n", "run 2000\n", d=0.8)
+    row, = crossings(tmp_path)
+    about = summary(tmp_path)
+    assert (about["direction"], about["forward"]["crossings"], about["back"]["crossings"]) == ("back", 0, 1)
+    assert about["largest"] == pytest.approx({key: row[key] for key in ("speed", "height", "energy")}, rel=1e-9)
+    assert about["largest"]["energy"] > 0 and [q["share"] for q in about["quantiles"]] == [0.5, 0.9, 0.95, 0.99]
+    assert about["first_time"] == pytest.approx(1.0, rel=1e-9)
+    warning, = [line for line in log.splitlines() if line.startswith("WARNING: Fix control/line line: more volume")]
+    assert "back than forward" in warning and "against 0" in warning
+
+
+@pytest.mark.parametrize("fix, style", [(DEPOSIT + LINE, "Fix deposit/grid"), (LINE, "Fix control/line")])
+def test_rerun_is_refused_before_files_are_touched(tmp_path, fix, style):
+    """Between snapshots nothing moves: what the true run has written stays."""
+    fly(tmp_path, [[4, -1, 8]], [[-3, 2, -0.5]], "1 5\n1 -5\n", "run 2000\n",
+        fixes="dump d all custom 10 run.dump id x y z vx vy vz\n")
+    before = {file.name: file.read_bytes() for file in tmp_path.glob("out.*")}
+    assert before and summary(tmp_path)["forward"]["crossings"] == 1
+    if fix == LINE:
+        fix = DEPOSIT.replace(" 10 0 ", " 100000 0 ") + LINE       # whose turn comes later
+    run_deck(flight_head(regions="region pit block -9 9 -9 9 0 20 units box") + fix +
+             "rerun run.dump first 10 dump x y z vx vy vz\n", tmp_path, expect_error=f"{style} needs run, got rerun")
+    assert {file.name: file.read_bytes() for file in tmp_path.glob("out.*")} == before
+
+
 def test_what_rolls_back_is_counted_back(tmp_path):
     """Thrown against a field of 2 m/s2, the first ball comes back over the line in time, the second one does not."""
     log = fly(tmp_path, [[-1, 0, 5], [-1, 3, 5], [-3, -3, 5]], [[3, 0, 0], [4, 0, 0], [3, 0, 0]], "0,-9\n0,9\n",

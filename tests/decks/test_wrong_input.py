@@ -406,6 +406,9 @@ SETUPS = [
      "Fix control/line line needs deposit ID, the fix deposit/grid that has the bulk factor, where there is not "
      "exactly one, got 2"),
     ({"run": "run_style respa 2 2\nrun 1"}, "Pair gran/restitution needs run_style verlet, got respa"),
+    ({"run": "minimize 1e-6 1e-6 10 10"}, "Pair gran/restitution needs run, got minimize"),
+    ({"pair": DECK["pair"] + "\npair_modify compute no"}, "Pair gran/restitution pair_modify compute must be yes, got no"),
+    ({"units": "units real"}, "Pair gran/restitution units must be si, cgs, lj, micro or nano, got real"),
     ({"move": "fix move soil rigid single"},
      "Pair gran/restitution: balls must move one by one, got fix move rigid, whose bodies have another mass"),
     ({"move": "fix move soil rigid/nve single"},

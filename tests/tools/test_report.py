@@ -146,7 +146,8 @@ def change(folder, function):
                 row.update(moving=summary["moving"], moving_share=motion["moving_share"], at_rest=state.at_rest,
                            fast_share=motion.get("fast_share"), fast_volume_m3=motion.get("fast_volume"),
                            fast_speed_m_s=motion.get("fast_speed"), stop_reason=summary["stop"]["reason"],
-                           end=state.text, end_short=state.short, front_m=summary["travel"]["front"], **far)
+                           end=state.text, end_short=state.short, front_m=summary["travel"]["front"],
+                           lost_m3=summary["volume"]["lost"], **far)
                 key = results.travel_shares.DISTANCE
                 about["largest"].pop(key, None)
     if about:
@@ -406,6 +407,24 @@ def test_what_an_older_run_does_not_tell_is_unknown(slope, here, folder):
     assert "body unknown" in cards(page)["Released"][1]
     table = next(table for table in reader.tables if table[0][0] == "of the deposit")
     assert table[1][1:] == ["unknown", "unknown"]
+
+
+@pytest.mark.parametrize("folder", ["one", "out"])
+def test_how_far_a_mass_went_that_left_the_terrain_is_unknown(slope, here, folder):
+    def lost(about):
+        about["volume"]["lost"] = 0.02 * about["volume"]["released"]
+        about["travel"]["quantiles"][-1].update(distance=None, reach_angle=None)
+
+    with_quantiles = here / folder
+    change(with_quantiles, with_travel)
+    change(with_quantiles, lost)
+    status, _, err = slope(folder)
+    assert status == 0
+    page, reader = read(f"{folder}/report.html")
+    number, note = cards(page)["99 % of the volume stays within"]
+    assert number == "unknown" and "left the terrain" in note and "1 %" in note
+    table = next(table for table in reader.tables if table[0][0] == "of the deposit")
+    assert table[4][1:3] == ["unknown", "unknown"] and "unknown" not in table[3]
 
 
 def test_a_study_of_an_older_version_is_one_line(slope, here):

@@ -77,6 +77,26 @@ TEST(CrossingLog, OrderDoesNotDependOnWhoSawWhat)
   EXPECT_EQ(one.csv().substr(0, 30), "time,step,ball,direction,along");
 }
 
+TEST(CrossingLog, TheWayThatMoreVolumeWentCounts)
+{
+  CrossingLog log;
+  EXPECT_EQ(log.main_direction(), 1);
+  log.events = {event(1, 1, -1, 3.0), event(2, 2, -1, 4.0), event(3, 3, 1, 5.0)};
+  EXPECT_EQ(log.main_direction(), -1);
+  EXPECT_EQ(log.quantile(1.0).speed, 4.0);
+  EXPECT_NE(log.yaml().find("direction: back\n"), std::string::npos) << log.yaml();
+}
+
+// reset_timestep between two runs
+TEST(CrossingLog, OrderIsThatOfTimeThoughStepsAreCountedAnew)
+{
+  CrossingLog log;
+  log.events = {event(7, 1, 1, 1.0), event(2, 2, 1, 1.0)};
+  log.events[1].time = 0.9;
+  log.sort();
+  EXPECT_EQ(log.events[0].step, 7.0);
+}
+
 TEST(CrossingLog, NothingCrossed)
 {
   const CrossingLog log;

@@ -12,7 +12,9 @@ REACH = f"reach_{HEADLINE}_deg"
 
 
 def columns(summary: Mapping[str, Any], where: Any) -> Dict[str, Optional[float]]:
-    """{column: m in plan from the highest released ball, or degrees}; None each in a summary that knows no quantiles.
+    """{column: m in plan from the highest released ball, or degrees}; None where a summary does not know it.
+
+    None: a run of an older version, or so much left the box that this share of the released volume went who knows how far.
 
     where: the file, for messages.
     """
@@ -26,7 +28,7 @@ def columns(summary: Mapping[str, Any], where: Any) -> Dict[str, Optional[float]
             if share not in SHARES:
                 continue
             for key, column in (("distance", f"distance_{share}_m"), ("reach_angle", f"reach_{share}_deg")):
-                if not disk.is_number(entry[key]):
+                if entry[key] is not None and not disk.is_number(entry[key]):
                     raise ValueError(key)
                 found[column] = entry[key]
     except (TypeError, KeyError, ValueError, OverflowError) as error:

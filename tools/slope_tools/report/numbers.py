@@ -135,6 +135,10 @@ def released_card(data, numbers):
             "note": over_runs([release for _, release in releases], False)}
 
 
+OLD = "of an older version"
+LOST = "from which more than 1 % of the volume left the terrain, farther than anybody knows: enlarge it"
+
+
 def travel_card(data, numbers):
     key, unit = travel_shares.DISTANCE, "m"
     what = f"{travel_shares.HEADLINE} % of the volume stays within"
@@ -145,7 +149,8 @@ def travel_card(data, numbers):
         who = data.label_of(names[far["run"]])
         farthest = f"; farthest ball {numbers('farthest ball', unit, far['value'], 'front_m', who)} m, {who}"
         if key not in largest:
-            return {"what": what, "number": UNKNOWN, "unit": "", "note": f"runs of an older version{farthest}"}
+            left = any(row["lost_m3"] > 0.01 * row["released_m3"] for row in data.finished)
+            return {"what": what, "number": UNKNOWN, "unit": "", "note": f"a run {LOST if left else OLD}{farthest}"}
         row = names[largest[key]["run"]]
         value, angle, name = row[key], row[travel_shares.REACH], data.label_of(row)
         connected = row.get("connected_m")
@@ -155,7 +160,9 @@ def travel_card(data, numbers):
         farthest = f"; farthest ball {numbers('farthest ball', unit, farthest_of(data.result.summary)[0])} m"
         connected = data.connected() and data.connected().distance
         if value is None:
-            return {"what": what, "number": UNKNOWN, "unit": "", "note": f"a run of an older version{farthest}"}
+            volume = data.result.summary["volume"]
+            left = volume["lost"] > 0.01 * volume["released"]
+            return {"what": what, "number": UNKNOWN, "unit": "", "note": f"a run {LOST if left else OLD}{farthest}"}
     note = ("in plan from the highest released ball, reach angle "
             f"{numbers('reach angle of 99 %', 'degrees', angle, travel_shares.REACH, name)} degrees")
     if connected is not None:
