@@ -119,7 +119,9 @@ void FixContactHistory::keep_forces()
 void FixContactHistory::initial_integrate(int)
 {
   forces_taken_back = false;
-  if (force_step != update->ntimestep - 1 || force_step != update->firststep) return;
+  const bool kept = force_step == update->ntimestep - 1 && force_step == update->firststep;
+  force_step = -1;    // a step of this number may come again: reset_timestep
+  if (!kept) return;
   double mine[4] = {0.0, 0.0, 0.0, 0.0}, most[4];    // largest force, torque; differences
   const auto law = static_cast<PairGranRestitution *>(pair);
   for (int i = 0; i < atom->nlocal; i++)

@@ -293,6 +293,7 @@ void FixWallGranMesh::post_force(int)
   std::copy(given, given + 3, before);
   if (first_step && last_step == update->ntimestep - 1 && pair->forces_taken_back())
     std::copy(last, last + 3, before);
+  if (first_step) last_step = -1;    // a step of this number may come again: reset_timestep
   first_step = false;
   apply(false);
   for (int d = 0; d < 3; d++) mine[IMPULSE + d] += 0.5 * update->dt * (before[d] + given[d]);

@@ -82,6 +82,18 @@ def test_a_run_of_no_steps_changes_nothing(site, step):
     assert (site / "whole").read_text() == (site / "cut").read_text()
 
 
+@pytest.mark.parametrize("np_", [1, 3])
+def test_a_step_number_that_recurs_brings_no_old_forces(site, np_):
+    """The second run ends at the step at which the first one has ended: the third goes on from its own forces."""
+    start = START.replace("lattice sc 1.0", "lattice sc 1.6") + "velocity soil set 3 0 -2\n"
+    found = []
+    for out, runs in (("whole", "run 250"), ("cut", "run 200\nrun 50")):
+        run_deck(f"{start}{RUN.replace('run 50', f'run 200{chr(10)}reset_timestep 0{chr(10)}{runs}')}\nwrite_dump all custom {out} "
+                 "id x y z vx vy vz modify sort id format float %.17g\n", site, np=np_)
+        found.append(numpy.loadtxt(site / out, skiprows=9)[:, 1:])
+    assert abs(found[0] - found[1]).max() < 1e-9
+
+
 @pytest.mark.skipif("ASAN_OPTIONS" in os.environ, reason="a sanitizer keeps what is freed")
 def test_no_memory_is_lost(site, monkeypatch):
     """What 50 runs with clear add to the process. A lost raster would be 32 kB each time."""
