@@ -28,7 +28,9 @@ struct BallDashpots {
   double roll;               // br Rr^2, kg m^2
   double f[3], torque[3];    // forces (N) and torques (N m) of the contacts
   double spare;
-  static constexpr int SIZE = 24;
+
+  static constexpr int SIZE = 24, FORCE = 17;    // numbers, and where f begins
+  double *row(int k) { return normal + k; }
 };
 
 inline namespace SLOPE_INSTRUCTIONS {

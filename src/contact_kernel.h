@@ -39,7 +39,8 @@ struct ContactView {
   double *const *histories;    // HISTORY values of each
   size_t size, blocks;
   std::uint64_t *touching, *before, *ended;    // a bit of each contact: see ContactList
-  std::vector<ActiveContacts> *active;
+  ActiveContacts *active;                      // room for all, of which active_count are
+  size_t *active_count;
   Sides moves;
 
   // equal: radii (m) and masses (kg) are these for all contacts; otherwise each looks up its own

@@ -23,25 +23,31 @@ class ContactSweeps : ContactPasses {
   void begin(const ContactLaw &law, double dt, bool repeat, const MovingBalls &balls,
              const Partners &partners)
   {
-    active->clear();
-    if (law.rolling > 0.0)
-      equal ? begin<true, double>(law, dt, repeat, balls, partners)
-            : begin<true, Four>(law, dt, repeat, balls, partners);
+    *active_count = 0;
+    const bool rolls = law.rolling > 0.0;
+    if (rolls && equal)
+      begin<true, double>(law, dt, repeat, balls, partners);
+    else if (rolls)
+      begin<true, Four>(law, dt, repeat, balls, partners);
+    else if (equal)
+      begin<false, double>(law, dt, repeat, balls, partners);
     else
-      equal ? begin<false, double>(law, dt, repeat, balls, partners)
-            : begin<false, Four>(law, dt, repeat, balls, partners);
+      begin<false, Four>(law, dt, repeat, balls, partners);
   }
 
   template <bool LAST, bool TALLY, class Partners>
   void sweep(const ContactLaw &law, double dt, const MovingBalls &balls, const Partners &partners,
              ContactTally *tally)
   {
-    if (law.rolling > 0.0)
-      equal ? sweep<LAST, true, double, TALLY>(law, dt, balls, partners, tally)
-            : sweep<LAST, true, Four, TALLY>(law, dt, balls, partners, tally);
+    const bool rolls = law.rolling > 0.0;
+    if (rolls && equal)
+      sweep<LAST, true, double, TALLY>(law, dt, balls, partners, tally);
+    else if (rolls)
+      sweep<LAST, true, Four, TALLY>(law, dt, balls, partners, tally);
+    else if (equal)
+      sweep<LAST, false, double, TALLY>(law, dt, balls, partners, tally);
     else
-      equal ? sweep<LAST, false, double, TALLY>(law, dt, balls, partners, tally)
-            : sweep<LAST, false, Four, TALLY>(law, dt, balls, partners, tally);
+      sweep<LAST, false, Four, TALLY>(law, dt, balls, partners, tally);
   }
 
  private:
@@ -70,7 +76,7 @@ class ContactSweeps : ContactPasses {
         const int k = static_cast<int>(block) * BLOCK + __builtin_ctzll(bits);
         const bool touched = was & bit(k);
         found[count] = k;
-        age[count++] = !touched ? NEW : now & bit(k) ? LASTING : ENDED;
+        age[count++] = !touched ? NEW : (now & bit(k)) ? LASTING : ENDED;
         if (!touched) std::memset(histories[k], 0, HISTORY * sizeof(double));
       }
       int c = 0;
@@ -157,8 +163,7 @@ class ContactSweeps : ContactPasses {
     }
     store<ROLLING>(h, s);
 
-    active->emplace_back();
-    ActiveContacts &a = active->back();
+    ActiveContacts &a = active[(*active_count)++];
     std::copy(k, k + 4, a.k);
     a.count = count;
     for (int d = 0; d < 3; d++) four(a.n[d]) = c.n[d];
@@ -189,28 +194,28 @@ class ContactSweeps : ContactPasses {
     rows[15] = twice * bt;
     rows[16] = twice * br;
     rows[23] = zero;
-    for (int m = 0; m < 4; m++) balls_of[m] = e[m].i;
-    add_rows(rows, count, balls);
+    int to[4];
+    for (int m = 0; m < 4; m++) to[m] = e[m].i;
+    add_rows(rows, to, count, balls);
     if (!Partners::MOVE) return;
     for (int d = 0; d < 3; d++) {
       rows[12 + d] = -rows[12 + d];
       rows[17 + d] = -rows[17 + d];
       rows[20 + d] = -(out.m[d] + rj * out.t[d]);
     }
-    for (int m = 0; m < 4; m++) balls_of[m] = partners.gets_force(e[m].j) ? e[m].j : -1;
-    add_rows(rows, count, balls);
+    for (int m = 0; m < 4; m++) to[m] = partners.gets_force(e[m].j) ? e[m].j : -1;
+    add_rows(rows, to, count, balls);
   }
 
-  int balls_of[4];
-
-  // sums of four contacts to their balls
-  SLOPE_INLINE void add_rows(const Four *rows, int count, const MovingBalls &balls) const
+  // sums of four contacts to their balls; -1: none
+  SLOPE_INLINE static void add_rows(const Four *rows, const int *to, int count,
+                                    const MovingBalls &balls)
   {
-    for (int q = 0; q < 24; q += 4) {
+    for (int q = 0; q < BallDashpots::SIZE; q += 4) {
       const Columns group(rows[q], rows[q + 1], rows[q + 2], rows[q + 3]);
       const Four column[4] = {group.x, group.y, group.z, group.w};
       for (int m = 0; m < count; m++)
-        if (balls_of[m] >= 0) four(balls.dashpots[balls_of[m]].normal + q) += column[m];
+        if (to[m] >= 0) four(balls.dashpots[to[m]].row(q)) += column[m];
     }
   }
 
@@ -225,7 +230,8 @@ class ContactSweeps : ContactPasses {
     const Partners partners = partners_in;
     const SolvedSizes<double> same = {
         radius_i, radius_j, solved_step_of(moves, law, dt, radius_i, radius_j, mass_i, mass_j)};
-    for (const ActiveContacts &a : *active) {
+    for (size_t n = 0; n < *active_count; n++) {
+      const ActiveContacts &a = active[n];
       const Entry e[4] = {entries[a.k[0]], entries[a.k[1]], entries[a.k[2]], entries[a.k[3]]};
       double *const h[4] = {histories[a.k[0]], histories[a.k[1]], histories[a.k[2]],
                             histories[a.k[3]]};
@@ -364,48 +370,54 @@ class ContactSweeps : ContactPasses {
   }
 };
 
-// the next velocities of balls begin to end, and their dashpots' forces cleared: see ContactKernel
+// vectors of four balls as columns, the fourth of no meaning
+SLOPE_INLINE Columns columns_of(const Vector *v, const int *i)
+{
+  return Columns(four(&v[i[0]].x), four(&v[i[1]].x), four(&v[i[2]].x), four(&v[i[3]].x));
+}
+
+// the next velocities of balls begin to end, and their forces cleared: see ContactKernel
 inline void solve_balls(const BallSolve &b, int begin, int end)
 {
-  static constexpr int ROWS = 17;
+  const double half = 0.5 * b.dt;
   for (int first = begin; first < end; first += 4) {
-    int number[4];
-    for (int m = 0; m < 4; m++) number[m] = std::min(first + m, end - 1);
-    Four rows[24], v[4], w[4], mass, radius;
-    for (int q = 0; q < 24; q += 4) {
-      const Columns group(
-          four(b.dashpots[number[0]].normal + q), four(b.dashpots[number[1]].normal + q),
-          four(b.dashpots[number[2]].normal + q), four(b.dashpots[number[3]].normal + q));
+    int i[4];
+    for (int m = 0; m < 4; m++) i[m] = std::min(first + m, end - 1);
+    Four rows[BallDashpots::SIZE] = {Four()}, mass = Four(), radius = Four();
+    for (int q = 0; q < BallDashpots::SIZE; q += 4) {
+      const Columns group(four(b.dashpots[i[0]].row(q)), four(b.dashpots[i[1]].row(q)),
+                          four(b.dashpots[i[2]].row(q)), four(b.dashpots[i[3]].row(q)));
       rows[q] = group.x;
       rows[q + 1] = group.y;
       rows[q + 2] = group.z;
       rows[q + 3] = group.w;
     }
     for (int m = 0; m < 4; m++) {
-      mass[m] = b.mass[number[m]];
-      radius[m] = b.radius[number[m]];
+      mass[m] = b.mass[i[m]];
+      radius[m] = b.radius[i[m]];
     }
-    // impulse of half a step beyond what the velocities have of it already
-    const double half = 0.5 * b.dt;
-    Four p[3], q[3], dv[3], dw[3];
-    for (int d = 0; d < 3; d++) {
-      p[d] = half * rows[ROWS + d];
-      q[d] = half * rows[ROWS + 3 + d];
-      for (int m = 0; m < 4; m++) {
-        const int i = number[m];
-        p[d][m] += mass[m] * (half * (&b.field[i].x)[d] - ((&b.mean_v[i].x)[d] - (&b.v[i].x)[d]));
-        q[d][m] -=
-            0.4 * mass[m] * radius[m] * radius[m] * ((&b.mean_omega[i].x)[d] - (&b.omega[i].x)[d]);
-      }
-    }
+
+    // the impulses of half a step, less what the velocities have of them already
+
+    const Columns v = columns_of(b.v, i), mean = columns_of(b.mean_v, i);
+    const Columns g = columns_of(b.field, i);
+    const Columns w = columns_of(b.omega, i), mean_w = columns_of(b.mean_omega, i);
+    const Four *const force = rows + BallDashpots::FORCE, *const torque = force + 3;
+    const Four inertia = 0.4 * mass * radius * radius;
+    const Four p[3] = {half * (force[0] + mass * g.x) - mass * (mean.x - v.x),
+                       half * (force[1] + mass * g.y) - mass * (mean.y - v.y),
+                       half * (force[2] + mass * g.z) - mass * (mean.z - v.z)};
+    const Four q[3] = {half * torque[0] - inertia * (mean_w.x - w.x),
+                       half * torque[1] - inertia * (mean_w.y - w.y),
+                       half * torque[2] - inertia * (mean_w.z - w.z)};
+    Four dv[3], dw[3];
     solve_ball(mass, radius, rows, rows + 6, rows + 12, rows[15], rows[16], p, q, dv, dw);
     for (int m = 0; m < 4 && first + m < end; m++) {
-      const int i = number[m];
-      for (int d = 0; d < 3; d++) {
-        (&b.mean_v[i].x)[d] += dv[d][m];
-        (&b.mean_omega[i].x)[d] += dw[d][m];
-        b.dashpots[i].f[d] = b.dashpots[i].torque[d] = 0.0;
-      }
+      Vector &to = b.mean_v[i[m]], &spin = b.mean_omega[i[m]];
+      to = {to.x + dv[0][m], to.y + dv[1][m], to.z + dv[2][m]};
+      spin = {spin.x + dw[0][m], spin.y + dw[1][m], spin.z + dw[2][m]};
+      BallDashpots &sums = b.dashpots[i[m]];
+      for (int d = 0; d < 3; d++) sums.f[d] = sums.torque[d] = 0.0;
     }
   }
 }

@@ -435,6 +435,7 @@ void PairGranRestitution::start_solved()
   mean_omega.assign(vectors(atom->omega), vectors(atom->omega) + nall);
   dashpots.assign(nall, BallDashpots());
 
+  field.reserve(nlocal + 1);
   field.assign(nlocal, Vector{0.0, 0.0, 0.0});
   for (Fix *fix : compat::fixes_of_style(lmp, "gravity")) {
     int dim;

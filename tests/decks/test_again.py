@@ -88,8 +88,8 @@ def test_a_step_number_that_recurs_brings_no_old_forces(site, np_):
     start = START.replace("lattice sc 1.0", "lattice sc 1.6") + "velocity soil set 3 0 -2\n"
     found = []
     for out, runs in (("whole", "run 250"), ("cut", "run 200\nrun 50")):
-        run_deck(f"{start}{RUN.replace('run 50', f'run 200{chr(10)}reset_timestep 0{chr(10)}{runs}')}\nwrite_dump all custom {out} "
-                 "id x y z vx vy vz modify sort id format float %.17g\n", site, np=np_)
+        run_deck(start + RUN.replace("run 50", f"run 200\nreset_timestep 0\n{runs}") +
+                 f"\nwrite_dump all custom {out} id x y z vx vy vz modify sort id format float %.17g\n", site, np=np_)
         found.append(numpy.loadtxt(site / out, skiprows=9)[:, 1:])
     assert abs(found[0] - found[1]).max() < 1e-9
 

@@ -101,7 +101,7 @@ def test_one_stray_ball_moves_the_front_alone(tmp_path):
 
 @pytest.mark.parametrize("np_", [1, 3])
 def test_balls_in_flight(tmp_path, np_):
-    """From the place where the highest ball was released, not from where it is now; lost balls went farther than all."""
+    """From the place where the highest ball was released, not from where it is now; lost balls went farthest."""
     ground(tmp_path)
     x, d = deposit(400)
     rng = np.random.default_rng(6)

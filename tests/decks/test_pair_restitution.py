@@ -434,7 +434,7 @@ def test_bad_pair_coeff(tmp_path, coeff, message):
     ("limit_damping maybe", "limit_damping must be no or yes, got maybe"),
     ("rolling_radius half", "rolling_radius must be ball or reduced, got half"),
     ("gamma 3", "unknown keyword gamma, must be mass, limit_damping"),
-    ("scheme euler", "scheme must be exact or plain, got euler"),
+    ("scheme euler", "scheme must be exact, plain or solved, got euler"),
     ("mass", "mass: value missing"),
 ])
 def test_bad_pair_style(tmp_path, style, message):

@@ -39,7 +39,8 @@ def restitution(ratio):
     return np.exp(-np.pi * ratio / np.sqrt(1 - ratio**2)) if ratio < 1 else 0.0
 
 
-def velocities(folder, cases, balls, e, *, friction=0, scheme="solved", part=1.0, steps=200, np_=1, newton="newton off"):
+def velocities(folder, cases, balls, e, *, friction=0, scheme="solved", part=1.0, steps=200, np_=1,
+               newton="newton off"):
     """Velocities after an impact, (cases, balls, 3), per impact speed.
 
     balls(k) gives for case k the balls as (type, diameter, x, y, z, vx, vy, vz), of which type 2 is held.
@@ -141,7 +142,8 @@ def test_ranks_and_newton(tmp_path, np_, newton):
     one, other = tmp_path / "one", tmp_path / "other"
     one.mkdir(), other.mkdir()
     first = velocities(one, PHASES, cradle, 0.3, friction=30, steps=400)
-    assert abs(velocities(other, PHASES, cradle, 0.3, friction=30, steps=400, np_=np_, newton=newton) - first).max() <= 1e-9
+    second = velocities(other, PHASES, cradle, 0.3, friction=30, steps=400, np_=np_, newton=newton)
+    assert abs(second - first).max() <= 1e-9
 
 
 HEAP = """

@@ -63,7 +63,7 @@ TABLE = {
         mass reduced -> mass must be pair or ball, got reduced
         limit_damping maybe -> limit_damping must be no or yes, got maybe
         rolling_radius 2 -> rolling_radius must be ball or reduced, got 2
-        scheme euler -> scheme must be exact or plain, got euler
+        scheme euler -> scheme must be exact, plain or solved, got euler
         scheme exact color red -> : unknown keyword color, must be mass, limit_damping, rolling_radius or scheme
         color -> color: value missing or unknown keyword
         """,
@@ -407,7 +407,8 @@ SETUPS = [
      "exactly one, got 2"),
     ({"run": "run_style respa 2 2\nrun 1"}, "Pair gran/restitution needs run_style verlet, got respa"),
     ({"run": "minimize 1e-6 1e-6 10 10"}, "Pair gran/restitution needs run, got minimize"),
-    ({"pair": DECK["pair"] + "\npair_modify compute no"}, "Pair gran/restitution pair_modify compute must be yes, got no"),
+    ({"pair": DECK["pair"] + "\npair_modify compute no"},
+     "Pair gran/restitution pair_modify compute must be yes, got no"),
     ({"units": "units real"}, "Pair gran/restitution units must be si, cgs, lj, micro or nano, got real"),
     ({"move": "fix move soil rigid single"},
      "Pair gran/restitution: balls must move one by one, got fix move rigid, whose bodies have another mass"),

@@ -14,7 +14,7 @@ REACH = f"reach_{HEADLINE}_deg"
 def columns(summary: Mapping[str, Any], where: Any) -> Dict[str, Optional[float]]:
     """{column: m in plan from the highest released ball, or degrees}; None where a summary does not know it.
 
-    None: a run of an older version, or so much left the box that this share of the released volume went who knows how far.
+    None: a run of an older version, or so much left the box that this share of the released volume lies beyond it.
 
     where: the file, for messages.
     """

@@ -42,8 +42,7 @@ def program(lmp: Path) -> Dict[str, str]:
 
 
 def linked(path: Path) -> Set[Path]:
-    """The shared libraries that a program or a library loads, but for the system's, whose upgrades change no result; none of a
-    script."""
+    """The shared libraries that a program or a library loads, but for the system's; none of a script."""
     if not shutil.which("ldd"):
         return set()
     done = subprocess.run(["ldd", str(path)], stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
