@@ -96,6 +96,38 @@ class ContactSweeps : ContactPasses {
 
   static constexpr double NEW = 0.0, LASTING = 1.0, ENDED = 2.0;
 
+  // Weights of a contact's first and last step, from its overlap now and a step ago; turn: dt / distance of
+  // the centres. Returns the part of the step in which its springs grow.
+  // A contact begins and ends within a step, and a force acts from the middle of a step to the middle of
+  // the next. A contact that touches for the part f of its first step has dashpots for f + 1/2, one that
+  // touched for the part g of its last step for g, of which the force before gave 1/2; contacts shorter than
+  // a step are found in that part of the cases only, and count for a whole one. A spring that is stretched
+  // at a rate V then has V (f - 1/2)^2/2, V (g - 1/2)^2/2 more than the overlaps say.
+  template <class N>
+  SLOPE_INLINE static Four set_times(Four age, Four overlap, Four was, Four turn, double *const *h,
+                                     SolvedContactOf<Four, N> &c)
+  {
+    const Four zero = Four(), one = all<Four>(1.0), vn = normal_velocity(c);
+    const Four f = choose(was < 0.0, overlap / (overlap - was), one);
+    const Four g = choose(was > 0.0, was / (was - overlap), zero);
+    Four lasted = Four();
+    for (int m = 0; m < 4; m++) lasted[m] = h[m][PHASE];
+    const Four over = larger(g, one - lasted) - 0.5;
+    c.weight = choose(age == NEW, f + 0.5, choose(age == ENDED, over, one));
+
+    // vn in the middle of these times: the normal turns
+
+    const Four across = c.v[0] * c.v[0] + c.v[1] * c.v[1] + c.v[2] * c.v[2] - vn * vn;
+    const Four middle =
+        choose(age == NEW, 0.5 * (0.5 - f), choose(age == ENDED, 0.5 * (g - 1.5), zero));
+    c.turn = middle * turn * across;
+    const Four late = choose(age == NEW, f - 0.5, choose(age == ENDED, g - 0.5, zero));
+    c.beyond = 0.5 * late * late * choose(overlap > was, overlap - was, was - overlap);
+    const Four grow = choose(age == NEW, f, one);
+    for (int m = 0; m < 4; m++) h[m][PHASE] = grow[m];
+    return grow;
+  }
+
   template <bool ROLLING, class N, class Partners>
   SLOPE_INLINE void begin_four(const int *k, const double *age, int count, const ContactLaw &law,
                                const SolvedSizes<double> &same, bool repeat,
@@ -118,44 +150,21 @@ class ContactSweeps : ContactPasses {
     c.n[2] = delta.z * rinv;
     velocities(e, ri, rj, balls.v, balls.omega, partners, c);
 
-    // A contact begins and ends within a step, and a force acts from the middle of a step to the middle of
-    // the next. A contact that touches for the part f of its first step has dashpots for f + 1/2, one that
-    // touched for the part g of its last step for g, of which the force before gave 1/2; contacts shorter than
-    // a step are found in that part of the cases only, and count for a whole one. A spring that is stretched
-    // at a rate V then has V (f - 1/2)^2/2, V (g - 1/2)^2/2 more than the overlaps say.
-
-    const Four zero = Four(), one = all<Four>(1.0), ages = four(age);
-    const Four overlap = ri + rj - r, vn = normal_velocity(c);
-    Four grow = one;
-    c.weight = choose(ages == ENDED, zero, one);
+    const Four zero = Four(), overlap = ri + rj - r;
+    c.weight = choose(four(age) == ENDED, zero, all<Four>(1.0));
     c.turn = c.beyond = zero;
+    Four grow = all<Four>(1.0);
     if (!repeat) {
       const Four x = delta.x - dt * c.v[0], y = delta.y - dt * c.v[1], z = delta.z - dt * c.v[2];
       const Four was = ri + rj - root(Four(x * x + y * y + z * z));    // overlap a step ago, m
-      const Four f = choose(was < 0.0, overlap / (overlap - was), one);
-      const Four g = choose(was > 0.0, was / (was - overlap), zero);
-      Four lasted = Four();
-      for (int m = 0; m < 4; m++) lasted[m] = h[m][PHASE];
-      grow = choose(ages == NEW, f, one);
-      c.weight =
-          choose(ages == NEW, f + 0.5, choose(ages == ENDED, larger(g, one - lasted) - 0.5, one));
-
-      // vn in the middle of these times: the normal turns
-
-      const Four across = c.v[0] * c.v[0] + c.v[1] * c.v[1] + c.v[2] * c.v[2] - vn * vn;
-      c.turn = choose(ages == NEW, 0.5 * (0.5 - f), choose(ages == ENDED, 0.5 * (g - 1.5), zero)) *
-          dt * across * rinv;
-      const Four late = choose(ages == NEW, f - 0.5, choose(ages == ENDED, g - 0.5, zero));
-      c.beyond = 0.5 * late * late * choose(overlap > was, overlap - was, was - overlap);
-      lasted = choose(ages == NEW, f, one);
-      for (int m = 0; m < 4; m++) h[m][PHASE] = lasted[m];
+      grow = set_times(four(age), overlap, was, Four(dt * rinv), h, c);
     }
     c.overlap = larger(overlap, zero);
 
     Four s[6], u[3];
     load(h, s);
     grow = repeat ? zero : dt * grow;
-    sliding_velocity(c, vn, u);
+    sliding_velocity(c, normal_velocity(c), u);
     grow_spring(c.n, u, grow, s);
     if (ROLLING) {
       rolling_velocity(c, u);
@@ -173,9 +182,19 @@ class ContactSweeps : ContactPasses {
     four(a.beyond) = c.beyond;
     if (!balls.dashpots) return;
 
+    give_dashpots<ROLLING>(e, count, sizes, c, s, balls, partners);
+  }
+
+  // dashpots and forces of four contacts, to their balls
+  template <bool ROLLING, class N, class Partners>
+  SLOPE_INLINE void give_dashpots(const Entry *e, int count, const SolvedSizes<N> &sizes,
+                                  const SolvedContactOf<Four, N> &c, Four *s,
+                                  const MovingBalls &balls, const Partners &partners) const
+  {
+    const N ri = sizes.radius_i, rj = sizes.radius_j;
     SolvedForceOf<Four> out;
     solved_force<ROLLING>(sizes.step, c, s, out);
-    const double half = 0.5 * dt;
+    const double half = 0.5 * sizes.step.dt;
     const Four bn = half * c.weight * sizes.step.cn, bt = half * sizes.step.ct * out.sticks;
     const Four br = half * sizes.step.cr * out.rolls * c.rolling_radius * c.rolling_radius;
     const double twice = Partners::MOVE && moves.i * moves.j > 0.0 ? 2.0 : 1.0;    // solve_ball()
@@ -193,7 +212,7 @@ class ContactSweeps : ContactPasses {
     }
     rows[15] = twice * bt;
     rows[16] = twice * br;
-    rows[23] = zero;
+    rows[23] = Four();
     int to[4];
     for (int m = 0; m < 4; m++) to[m] = e[m].i;
     add_rows(rows, to, count, balls);
