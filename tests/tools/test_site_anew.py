@@ -274,7 +274,10 @@ def test_an_end_from_outside_ends_the_trial_run(gis):  # noqa: F811
     err = process.communicate(timeout=120)[1]
     assert process.returncode == 130 and err.endswith("slope site: interrupted\n"), err
     assert not list(gis.glob("*mine*")) + list(gis.glob(".mine*"))
-    assert not processes_in(gis)
+    end = time.monotonic() + 10         # what was told to end does so in its own time, on a busy machine
+    while processes_in(gis):
+        assert time.monotonic() < end
+        time.sleep(0.1)
 
 
 # --- a study of which a run fails ---
