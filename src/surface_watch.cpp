@@ -5,7 +5,7 @@
 
 #include "surface_watch.h"
 
-#include "way_out.h"
+#include "one_surface.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,6 @@ using namespace Slope;
 static constexpr double FAR_AWAY = 1.0e15;    // m: no ball touches a phantom there
 static constexpr double SHELL = 0.05;    // of the radius: how far around a ball triangles are kept
 static constexpr double ON_PLANE = 1.0e-9;    // of the radius
-static constexpr double COS_ONE_SURFACE = 0.8660254;    // 30 degrees
 static constexpr double COS_FOLLOWED = 0.7071067811865476;
 static constexpr double LEAST_SHARE = 1.0e-3;    // of its depth that a contact always keeps
 static constexpr int MOST_SWEEPS = 100;
@@ -225,34 +224,6 @@ void share_overlaps(std::vector<SurfaceContact> &own, double radius)
   keep_all_pressing(own, radius);
 }
 
-// ----------------------------------------------------------------------
-// Contacts whose normals differ little from that of a nearer one are one with it: its overlap is the
-// shortest way of the ball out of all of them. Returns the ways.
-// ----------------------------------------------------------------------
-
-std::vector<Vector> join_one_surface(std::vector<SurfaceContact> &own, double radius)
-{
-  std::vector<Vector> ways;
-  std::vector<OverlappedFace> faces;
-  size_t n = 0;    // the nearest ones of their surfaces
-  for (size_t rest = own.size(); rest > n; rest = own.size()) {
-    SurfaceContact &nearest = own[n++];
-    const Vector normal = nearest.at.normal;
-    faces.assign(1, {normal, nearest.overlap});
-    own.erase(std::remove_if(own.begin() + n, own.end(),
-                             [&](const SurfaceContact &c) {
-                               if (dot(c.at.normal, normal) < COS_ONE_SURFACE) return false;
-                               if (c.overlap > 0.0) faces.push_back({c.at.normal, c.overlap});
-                               return true;
-                             }),
-              own.end());
-    ways.push_back(moved({0.0, 0.0, 0.0}, nearest.overlap, normal));
-    if (faces.size() == 1) continue;
-    ways.back() = WayOut::of(faces, radius);
-    own[n - 1].overlap = own[n - 1].spring = size_of(ways.back());
-  }
-  return ways;
-}
 }    // namespace
 
 /* ---------------------------------------------------------------------- */
@@ -273,7 +244,7 @@ void SurfaceWatch::choose(std::vector<SurfacePoint> &points, double radius,
     if (stands_out) own.push_back({points[k], depth, std::max(depth, 0.0)});
   }
   if (own.size() < 2) return;
-  const std::vector<Vector> ways = join_one_surface(own, radius);
+  const std::vector<Vector> ways = OneSurface::join(own, radius);
   if (own.size() > 1) share_overlaps(own, radius);
   for (size_t k = 0; k < own.size(); k++) {
     const double overlap = size_of(ways[k]);
