@@ -11,7 +11,7 @@ LONGEST_FUNCTION = 80
 
 def includes(path):
     names = re.findall(r'^#include "([^"]+)"', path.read_text(), re.MULTILINE)
-    return {name for name in names if (SRC / name).exists()}
+    return {name for name in names if name in {source.name for source in SOURCES}}
 
 
 def circle(of):
