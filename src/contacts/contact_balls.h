@@ -9,7 +9,6 @@
 #ifndef SLOPE_CONTACT_BALLS_H
 #define SLOPE_CONTACT_BALLS_H
 
-#include "ball_solve.h"
 #include "instruction_set.h"
 #include "vector3.h"
 
@@ -20,12 +19,8 @@ struct MovingBalls {
   const Vector *x, *v, *omega;
   const double *radius, *mass;
   Vector *f, *torque;
-  unsigned char *count, *count_before;    // contacts of each ball now, a step ago; up to 255
-  unsigned char *estimated;               // at set-up: 1 where a force could only be estimated
-
-  // scheme solved, which has no numbers of contacts
-  const Vector *mean_v, *mean_omega;    // mean of the middles before and after now, as found so far
-  BallDashpots *dashpots;    // of each ball; nullptr at set-up, where velocities are known
+  const Vector *ahead;     // velocities that normal dashpots act on: see contact_force.h
+  unsigned char *count;    // contacts of each ball now; up to 255
 };
 
 // The partners of the moving balls: other moving balls ...
@@ -49,6 +44,7 @@ struct MovingPartners {
   }
   SLOPE_INLINE const Vector &v(int j) const { return balls.v[j]; }
   SLOPE_INLINE const Vector &omega(int j) const { return balls.omega[j]; }
+  SLOPE_INLINE const Vector &ahead(int j) const { return balls.ahead[j]; }
   SLOPE_INLINE double radius(int j) const { return balls.radius[j]; }
   SLOPE_INLINE double mass(int j) const { return balls.mass[j]; }
 };
@@ -71,6 +67,7 @@ struct FixedPartners {
   SLOPE_INLINE void prefetch(int) const {}
   SLOPE_INLINE const Vector &v(int) const { return still; }
   SLOPE_INLINE const Vector &omega(int) const { return still; }
+  SLOPE_INLINE const Vector &ahead(int) const { return still; }
   SLOPE_INLINE double radius(int) const { return radius_all; }
   SLOPE_INLINE double mass(int) const { return 1.0; }
 };

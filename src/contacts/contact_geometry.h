@@ -21,20 +21,9 @@ template <class N>
 SLOPE_INLINE ContactStepOf<N> step_of(const Sides &moves, const ContactLaw &law, double dt,
                                       bool repeat, N ri, N rj, N mi, N mj)
 {
-  const N inverse = moves.inverse_mass(mi, mj);
-  return contact_step(law, inverse, N(moves.mass_factor(law) / inverse),
+  return contact_step(law, N(moves.i / mi), N(moves.j / mj),
+                      N(moves.mass_factor(law) / moves.inverse_mass(mi, mj)),
                       moves.inverse_rolling(law, ri, rj, mi, mj), dt, repeat);
-}
-
-// the same for a contact whose balls touch nothing else
-inline LoneContact lone_of(const Sides &moves, const ContactLaw &law, double dt, double ri,
-                           double rj, double mi, double mj)
-{
-  const double inverse = moves.inverse_mass(mi, mj);
-  const double rr = law.rolling_factor * ri * rj / (ri + rj);
-  return lone_contact(law, inverse, moves.mass_factor(law) / inverse,
-                      moves.inverse_rolling(law, ri, rj, mi, mj),
-                      2.5 * rr * (moves.i / (mi * ri) - moves.j / (mj * rj)), dt);
 }
 
 // of the centres, m
@@ -58,6 +47,9 @@ SLOPE_INLINE void set_contact(const ContactLaw &law, const MovingBalls &balls,
   delta = {xi[0] - xj[0], xi[1] - xj[1], xi[2] - xj[2]};
   const double r = distance(balls, partners, i, j);
   c.overlap = ri + rj - r;
+  const Vector &a = balls.ahead[i], &b = partners.ahead(j);
+  c.ahead = ((a.x - b.x) * delta.x + (a.y - b.y) * delta.y + (a.z - b.z) * delta.z) / r;
+  c.follow_whole_step();
   c.rolling_radius = law.rolling_factor * ri * rj / (ri + rj);
   for (int d = 0; d < 3; d++) {
     c.n[d] = (xi[d] - xj[d]) / r;

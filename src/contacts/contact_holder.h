@@ -12,12 +12,8 @@ namespace LAMMPS_NS {
 // init(); the pair style asks all of them for their contacts before any force is computed.
 class ContactHolder {
  public:
-  // which contacts touch now (starting: in the step that has just ended), counted with each ball;
-  // lists_new: the neighbor list, and so those made with it, has been built since the last step
-  virtual void find_contacts(bool starting, bool lists_new) = 0;
-
-  // scheme solved: the sums of the forces once more, with the velocities that the balls have found
-  virtual void sweep_contacts() = 0;
+  // which contacts touch now (starting: in the step that has just ended), counted with each ball
+  virtual void find_contacts(bool starting) = 0;
 
   // of the springs of this rank's contacts, J
   virtual double elastic_energy() const = 0;

@@ -25,12 +25,6 @@ struct ContactEntry {
   int i, j;    // moving ball, partner
 };
 
-// scheme solved: four contacts of a step, count of which are not idle
-struct ActiveContacts {
-  int k[4], count;
-  double n[3][4], overlap[4], weight[4], turn[4], beyond[4];    // as SolvedContactOf
-};
-
 // a contact list as the kernels see it
 struct ContactView {
   static constexpr int BLOCK = 64;
@@ -38,9 +32,7 @@ struct ContactView {
   const ContactEntry *entries;
   double *const *histories;    // HISTORY values of each
   size_t size, blocks;
-  std::uint64_t *touching, *before, *ended;    // a bit of each contact: see ContactList
-  ActiveContacts *active;                      // room for all, of which active_count are
-  size_t *active_count;
+  std::uint64_t *touching, *before, *fresh, *ended;    // a bit of each contact: see ContactList
   Sides moves;
 
   // equal: radii (m) and masses (kg) are these for all contacts; otherwise each looks up its own
@@ -57,35 +49,10 @@ struct ContactTally {
   void *visitor;
 };
 
-// scheme solved: balls whose velocities are to be found
-struct BallSolve {
-  double dt;
-  const double *radius, *mass;
-  const Vector *v, *omega, *field;    // velocities before the step's force; gravity, m/s2
-  Vector *mean_v, *mean_omega;        // found so far, replaced
-  BallDashpots *dashpots;
-};
-
-// The passes of scheme solved over a list, after find(), for one kind of partners
-template <class Partners> struct SolvedPasses {
-  // springs grow (not if repeat), dashpots and forces are summed for the balls
-  void (*begin)(const ContactView &, const ContactLaw &, double dt, bool repeat,
-                const MovingBalls &, const Partners &);
-
-  // the sums of the forces once more, with the velocities that the balls have found
-  void (*sweep)(const ContactView &, const ContactLaw &, double dt, const MovingBalls &,
-                const Partners &);
-
-  // adds the forces to the balls. tally: nullptr if not needed
-  void (*finish)(const ContactView &, const ContactLaw &, double dt, const MovingBalls &,
-                 const Partners &, ContactTally *tally);
-};
-
 // the passes compiled for one instruction set, for each kind of partners
 struct ContactKernel {
   template <class Partners>
-  using Find = void (*)(const ContactView &, bool repeat, bool first, const MovingBalls &,
-                        const Partners &);
+  using Find = void (*)(const ContactView &, bool repeat, const MovingBalls &, const Partners &);
   template <class Partners>
   using Apply = void (*)(const ContactView &, const ContactLaw &, double dt, bool repeat,
                          const MovingBalls &, const Partners &, ContactTally *);
@@ -94,26 +61,15 @@ struct ContactKernel {
   Find<FixedPartners> find_fixed;
   Apply<MovingPartners> apply_moving;
   Apply<FixedPartners> apply_fixed;
-  SolvedPasses<MovingPartners> solved_moving;
-  SolvedPasses<FixedPartners> solved_fixed;
-
-  // the velocities of balls begin to end from the sums, which are cleared
-  void (*solve)(const BallSolve &, int begin, int end);
-
-  const SolvedPasses<MovingPartners> &solved(const MovingPartners &) const { return solved_moving; }
-  const SolvedPasses<FixedPartners> &solved(const FixedPartners &) const { return solved_fixed; }
-
   // First pass: which contacts touch, as bits, and the balls' numbers of contacts. repeat: what touched in
-  // the step that has just ended. first: the list is new, those of the step before are counted, too.
-  void find(const ContactView &v, bool repeat, bool first, const MovingBalls &b,
-            const MovingPartners &p) const
+  // the step that has just ended.
+  void find(const ContactView &v, bool repeat, const MovingBalls &b, const MovingPartners &p) const
   {
-    find_moving(v, repeat, first, b, p);
+    find_moving(v, repeat, b, p);
   }
-  void find(const ContactView &v, bool repeat, bool first, const MovingBalls &b,
-            const FixedPartners &p) const
+  void find(const ContactView &v, bool repeat, const MovingBalls &b, const FixedPartners &p) const
   {
-    find_fixed(v, repeat, first, b, p);
+    find_fixed(v, repeat, b, p);
   }
 
   // Second pass: adds the forces to the balls, whose numbers of contacts are complete. tally: nullptr

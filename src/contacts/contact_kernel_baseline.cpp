@@ -5,7 +5,7 @@
 
 #define SLOPE_INSTRUCTIONS baseline    // the compiler options of all other sources
 
-#include "contact_sweeps.h"
+#include "contact_passes.h"
 
 namespace Slope {
 extern const ContactKernel contact_kernel_baseline = SLOPE_CONTACT_KERNEL;

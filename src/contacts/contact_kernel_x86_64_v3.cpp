@@ -7,7 +7,7 @@
 
 #define SLOPE_INSTRUCTIONS x86_64_v3    // AVX2 and FMA
 
-#include "contact_sweeps.h"
+#include "contact_passes.h"
 
 namespace Slope {
 extern const ContactKernel contact_kernel_x86_64_v3 = SLOPE_CONTACT_KERNEL;

@@ -7,7 +7,7 @@
 
 #define SLOPE_INSTRUCTIONS x86_64_v4    // AVX-512
 
-#include "contact_sweeps.h"
+#include "contact_passes.h"
 
 namespace Slope {
 extern const ContactKernel contact_kernel_x86_64_v4 = SLOPE_CONTACT_KERNEL;

@@ -57,7 +57,7 @@ struct ContactLaw {
   double mass_factor;                     // 1: reduced mass, 2: mass of one of two equal balls
   double rolling_factor;                  // 2: harmonic mean radius, 1: reduced radius
   double fn_least;    // smallest normal force: -HUGE_VAL, or 0 when it must not pull
-  double exact;       // 1: scheme exact, 0: plain (see ContactStep)
+  double exact;       // 1: scheme exact, 0: plain (see contact_step())
 
   // mass (kg) in c = 2 zeta sqrt(k m): two moving balls, or a ball on a fixed one
   double mass(double mi, double mj) const { return mass_factor * mi * mj / (mi + mj); }
@@ -96,31 +96,22 @@ struct Sides {
 // the history of a contact
 // ----------------------------------------------------------------------
 
-// Values carried from step to step: sliding spring (3, m), rolling spring (3, m), phase. Seen from
-// the partner the springs change sign, the phase does not.
+// Values carried from step to step: sliding spring (3, m), rolling spring (3, m), age. Seen from the
+// partner the springs change sign, the age does not.
 static constexpr int HISTORY = 7;
-static constexpr int PHASE = 6;
+static constexpr int AGE = 6;
 
-// What the contact is: an impact that began alone has its age in steps, and a half more if it slid in the
-// last one. A contact that lasts longer than an impact does has been laid down, and counts as one of several.
-enum Phase {
-  BEGAN_IN_CROWD = -2,    // while a ball of it touched others
-  ENDED = -1,             // an impact that came apart in the last step
-  LASTING = 0             // no impact
-};
-static constexpr double SLID = 0.5;
+// Age of a contact after a step, scheme exact: the part of the step for which it has touched, if it began in
+// it; otherwise OLD. With a minus sign if it came apart in the step.
+static constexpr double OLD = 2.0;
 
-SLOPE_INLINE bool is_impact(double phase)
+SLOPE_INLINE bool has_ended(double age)
 {
-  return phase > 0.75;
+  return age < 0.0;
 }
-SLOPE_INLINE bool has_slid(double phase)
+SLOPE_INLINE bool is_new(double age)
 {
-  return is_impact(phase) && phase - std::floor(phase) > 0.5 * SLID;
-}
-SLOPE_INLINE bool is_new_impact(double phase)
-{
-  return is_impact(phase) && phase < 2.0;
+  return age > 0.0 && age <= 1.0;
 }
 
 }    // namespace Slope

@@ -44,8 +44,8 @@ class ContactList {
     histories.clear();
     touching.clear();
     before.clear();
+    fresh.clear();
     ended.clear();
-    active.clear();
     flags.clear();
     equal = true;
   }
@@ -62,14 +62,20 @@ class ContactList {
     }
     equal = equal && ri == radius_i && rj == radius_j && mi == mass_i && mj == mass_j;
     if (entries.size() % BLOCK == 0)
-      for (std::vector<std::uint64_t> *bits : {&touching, &before, &ended}) bits->push_back(0);
+      for (std::vector<std::uint64_t> *bits : {&touching, &before, &fresh, &ended})
+        bits->push_back(0);
     entries.push_back({i, j});
     histories.push_back(history);
     if (has_history) set_history(entries.size() - 1);
   }
 
   // contact k has a history
-  void set_history(size_t k) { set(histories[k][PHASE] == ENDED ? ended : touching, k); }
+  void set_history(size_t k)
+  {
+    const double age = histories[k][AGE];
+    set(has_ended(age) ? ended : touching, k);
+    if (is_new(age)) set(fresh, k);
+  }
 
   bool touches(size_t k) const { return is_set(touching, k); }    // in the last step
   bool has_history(size_t k) const { return touches(k) || is_set(ended, k); }
@@ -77,8 +83,7 @@ class ContactList {
   double memory_usage() const
   {
     return entries.capacity() * sizeof(Entry) + histories.capacity() * sizeof(double *) +
-        3 * touching.capacity() * sizeof(std::uint64_t) + flags.capacity() * sizeof(int *) +
-        active.capacity() * sizeof(ActiveContacts);
+        4 * touching.capacity() * sizeof(std::uint64_t) + flags.capacity() * sizeof(int *);
   }
 
   // Contacts that overlap although they did not touch a step ago, before the first step:
@@ -100,9 +105,9 @@ class ContactList {
 
   // First pass of a step: see ContactKernel
   template <class Partners>
-  void find(bool repeat, bool first, const MovingBalls &balls, const Partners &partners)
+  void find(bool repeat, const MovingBalls &balls, const Partners &partners)
   {
-    if (!entries.empty()) ContactKernels::current().find(view(), repeat, first, balls, partners);
+    if (!entries.empty()) ContactKernels::current().find(view(), repeat, balls, partners);
   }
 
   void store_flags() const
@@ -119,42 +124,14 @@ class ContactList {
       ContactKernels::current().apply(view(), law, dt, repeat, balls, partners, tally);
   }
 
-  // scheme solved: see SolvedPasses
-  template <class Partners>
-  void begin(const ContactLaw &law, double dt, bool repeat, const MovingBalls &balls,
-             const Partners &partners)
-  {
-    if (entries.empty()) return;
-    active.resize((entries.size() + 3) / 4);    // here, as kernels must not: see test_kernels.py
-    solved(partners).begin(view(), law, dt, repeat, balls, partners);
-  }
-  template <class Partners>
-  void sweep(const ContactLaw &law, double dt, const MovingBalls &balls, const Partners &partners)
-  {
-    if (!entries.empty()) solved(partners).sweep(view(), law, dt, balls, partners);
-  }
-  template <class Partners>
-  void finish(const ContactLaw &law, double dt, const MovingBalls &balls, const Partners &partners,
-              ContactTally *tally = nullptr)
-  {
-    if (!entries.empty()) solved(partners).finish(view(), law, dt, balls, partners, tally);
-  }
-
  private:
   static constexpr int BLOCK = ContactView::BLOCK;
 
   // a bit of each contact, a number of each block
   std::vector<std::uint64_t> touching;    // in the last step
   std::vector<std::uint64_t> before;      // in the one before, in the second pass
-  std::vector<std::uint64_t> ended;       // came apart in the last step, and was treated then
-
-  std::vector<ActiveContacts> active;    // scheme solved: of this step
-  size_t active_count = 0;
-
-  template <class Partners> static const SolvedPasses<Partners> &solved(const Partners &partners)
-  {
-    return ContactKernels::current().solved(partners);
-  }
+  std::vector<std::uint64_t> fresh;       // began in the last step
+  std::vector<std::uint64_t> ended;       // came apart in the last step, and had a force in it
 
   static std::uint64_t bit(size_t k) { return std::uint64_t(1) << (k % BLOCK); }
   static bool is_set(const std::vector<std::uint64_t> &bits, size_t k)
@@ -166,8 +143,8 @@ class ContactList {
   ContactView view()
   {
     return {entries.data(), histories.data(), entries.size(), touching.size(), touching.data(),
-            before.data(),  ended.data(),     active.data(),  &active_count,   moves,
-            equal,          radius_i,         radius_j,       mass_i,          mass_j};
+            before.data(),  fresh.data(),     ended.data(),   moves,           equal,
+            radius_i,       radius_j,         mass_i,         mass_j};
   }
 };
 

@@ -4,8 +4,8 @@
 ------------------------------------------------------------------------- */
 
 /* The two passes over a list of contacts, for one set of instructions: find() and apply() of
-   ContactKernel. Contacts are evaluated four at a time (SIMD), or one at a time where two balls touch
-   nothing else. Included by contact_kernel_*.cpp alone. No LAMMPS. */
+   ContactKernel. Contacts are evaluated four at a time (SIMD). Included by contact_kernel_*.cpp alone. No
+   LAMMPS. */
 
 #ifndef SLOPE_CONTACT_PASSES_H
 #define SLOPE_CONTACT_PASSES_H
@@ -22,22 +22,19 @@
 namespace Slope {
 inline namespace SLOPE_INSTRUCTIONS {
 
-class ContactPasses : protected ContactView {
+class ContactPasses : ContactView {
  public:
   SLOPE_INLINE explicit ContactPasses(const ContactView &view) : ContactView(view) {}
 
   template <class Partners>
-  void find(bool repeat, bool first, const MovingBalls &balls, const Partners &partners)
+  void find(bool repeat, const MovingBalls &balls, const Partners &partners)
   {
     for (size_t block = 0; block < blocks; block++) {
-      before[block] = touching[block];
       if (!repeat) {
+        before[block] = touching[block];
         touching[block] = equal ? touching_bits<double>(block, balls, partners)
                                 : touching_bits<Four>(block, balls, partners);
-        ended[block] = 0;
       }
-      if (!balls.count) continue;    // scheme solved needs no numbers
-      if (first) count(block, before[block], balls.count_before, partners);
       count(block, touching[block], balls.count, partners);
     }
   }
@@ -59,9 +56,10 @@ class ContactPasses : protected ContactView {
     }
   }
 
- protected:
+ private:
   typedef ContactEntry Entry;
-  static constexpr int AHEAD = 16;    // contacts found, and fetched from memory, before their turn
+  static constexpr int FETCHED =
+      16;    // contacts found, and fetched from memory, before their turn
 
   SLOPE_INLINE static void add_to(ContactTally &tally, const Entry &e, const Vector &f,
                                   const Vector &delta)
@@ -88,36 +86,20 @@ class ContactPasses : protected ContactView {
     }
   }
 
-  // the larger number of contacts of the two balls; a fixed one has none
-  template <class Partners>
-  SLOPE_INLINE int larger_count(const Entry &e, const unsigned char *counts) const
-  {
-    const int i = moves.i > 0.0 ? counts[e.i] : 0;
-    return Partners::MOVE && moves.j > 0.0 ? std::max<int>(i, counts[e.j]) : i;
-  }
-
   // what depends on the sizes of four contacts: N = double if they are equal, otherwise Four
   template <class N> struct Sizes {
     N radius_i, radius_j;
     ContactStepOf<N> step;
   };
 
-  // the contacts found to be evaluated four at a time, and how many others their balls have
+  // contacts to be evaluated four at a time
   struct Batch {
-    int found[BLOCK + AHEAD + 3];
-    double crowd[BLOCK + AHEAD + 3];
-    int count;
+    int found[2 * BLOCK + FETCHED + 3], count = 0;
 
-    void push(int k, int others)
-    {
-      found[count] = k;
-      crowd[count++] = others;
-    }
     void drop(int done)
     {
       count -= done;
       std::copy(found + done, found + done + count, found);
-      std::copy(crowd + done, crowd + done + count, crowd);
     }
   };
 
@@ -130,96 +112,73 @@ class ContactPasses : protected ContactView {
     const Partners partners = partners_in;
     const Sizes<double> same = {
         radius_i, radius_j, step_of(moves, law, dt, repeat, radius_i, radius_j, mass_i, mass_j)};
-    const LoneContact lone = lone_of(moves, law, dt, radius_i, radius_j, mass_i, mass_j);
-    auto evaluate = [&](int k, Life life) {
-      apply_lone<ROLLING, TALLY>(k, life, law, same, lone, repeat, balls, partners, tally);
-    };
-    Batch batch;
-    batch.count = 0;
-    for (size_t block = 0; block < blocks; block++) {
-      if (repeat)
-        sort_repeated<Partners>(block, law, balls, batch, evaluate);
+    Batch lasting, changing;    // the second: those that begin or end in the step
+    auto evaluate = [&](bool changes, const int *k, int count) {
+      if (changes)
+        apply_four<true, ROLLING, N, TALLY>(k, count, law, same, repeat, balls, partners, tally);
       else
-        sort<Partners>(block, law, balls, batch, evaluate);
+        apply_four<false, ROLLING, N, TALLY>(k, count, law, same, repeat, balls, partners, tally);
+    };
+    auto evaluate_all_but = [&](Batch &batch, bool changes, int left) {
       int c = 0;
-      for (; c + 4 + AHEAD <= batch.count; c += 4) {
-        for (int m = 0; m < 4; m++) prefetch(batch.found[c + AHEAD + m], partners);
-        apply_four<ROLLING, N, TALLY>(&batch.found[c], &batch.crowd[c], 4, law, same, repeat, balls,
-                                      partners, tally);
+      for (; c + 4 + left <= batch.count; c += 4) {
+        for (int m = 0; m < 4 && left > 0; m++) prefetch(batch.found[c + left + m], partners);
+        evaluate(changes, &batch.found[c], 4);
       }
       batch.drop(c);
-    }
-    const int count = batch.count;
-    for (int c = count; c % 4; c++) {    // idle
-      batch.found[c] = batch.found[count - 1];
-      batch.crowd[c] = batch.crowd[count - 1];    // they write the same springs
-    }
-    for (int c = 0; c < count; c += 4)
-      apply_four<ROLLING, N, TALLY>(&batch.found[c], &batch.crowd[c], std::min(4, count - c), law,
-                                    same, repeat, balls, partners, tally);
-  }
-
-  // Contacts of a block that touch: those with company go into the batch, the others to lone(). A
-  // contact begins or ends alone if its balls touch nothing else before and after the step.
-  template <class Partners, class Lone>
-  SLOPE_INLINE void sort(size_t block, const ContactLaw &law, const MovingBalls &balls,
-                         Batch &batch, Lone lone)
-  {
-    const bool exact = law.exact > 0.0;
-    const int start = static_cast<int>(block) * BLOCK;
-    const std::uint64_t now = touching[block], was = before[block];
-    for (std::uint64_t bits = now & was; bits; bits &= bits - 1) {
-      const int k = start + __builtin_ctzll(bits);
-      const int n = larger_count<Partners>(entries[k], balls.count);
-      if (n == 1 && exact && is_impact(histories[k][PHASE]))
-        lone(k, LASTS);
+    };
+    for (size_t block = 0; block < blocks; block++) {
+      if (law.exact > 0.0)
+        sort(block, repeat, lasting, changing);
       else
-        batch.push(k, n - 1);
+        sort_plain(block, repeat, lasting);
+      evaluate_all_but(lasting, false, FETCHED);
+      evaluate_all_but(changing, true, 0);
     }
-    for (std::uint64_t bits = now & ~was; bits; bits &= bits - 1) {
-      const int k = start + __builtin_ctzll(bits);
-      const Entry &e = entries[k];
-      const int n = larger_count<Partners>(e, balls.count);
-      double *history = histories[k];
-      std::memset(history, 0, HISTORY * sizeof(double));
-      if (exact && n == 1 && larger_count<Partners>(e, balls.count_before) == 0) {
-        lone(k, BEGINS);
-        continue;
-      }
-      history[PHASE] = BEGAN_IN_CROWD;
-      batch.push(k, n - 1);
-    }
-    if (!exact) return;
-    for (std::uint64_t bits = was & ~now; bits; bits &= bits - 1) {
-      const int k = start + __builtin_ctzll(bits);
-      const Entry &e = entries[k];
-      if (larger_count<Partners>(e, balls.count) == 0 &&
-          larger_count<Partners>(e, balls.count_before) == 1) {
-        lone(k, ENDS);
-        ended[block] |= bit(k);
-      }
+    evaluate_all_but(lasting, false, 0);
+    for (Batch *batch : {&lasting, &changing}) {
+      const int count = batch->count;
+      if (count == 0) continue;
+      std::fill(batch->found + count, batch->found + 4, batch->found[count - 1]);    // idle
+      evaluate(batch == &changing, batch->found, count);
     }
   }
 
-  // the same for the step that has just ended, from the phases in the histories
-  template <class Partners, class Lone>
-  void sort_repeated(size_t block, const ContactLaw &law, const MovingBalls &balls, Batch &batch,
-                     Lone lone)
+  SLOPE_INLINE static void push(Batch &batch, size_t block, std::uint64_t bits)
   {
-    const bool exact = law.exact > 0.0;
-    const int start = static_cast<int>(block) * BLOCK;
-    for (std::uint64_t bits = touching[block]; bits; bits &= bits - 1) {
-      const int k = start + __builtin_ctzll(bits);
-      const Entry &e = entries[k];
-      const double phase = histories[k][PHASE];
-      const int n = larger_count<Partners>(e, balls.count);
-      if (!exact || n > 1 || !is_impact(phase))
-        batch.push(k, n - 1);
-      else
-        lone(k, is_new_impact(phase) ? BEGINS : LASTS);
+    for (; bits; bits &= bits - 1)
+      batch.found[batch.count++] = static_cast<int>(block) * BLOCK + __builtin_ctzll(bits);
+  }
+
+  // contacts of a block that have a force: those that touch, and those that touched a step ago
+  SLOPE_INLINE void sort(size_t block, bool repeat, Batch &lasting, Batch &changing)
+  {
+    const std::uint64_t now = touching[block];
+    if (repeat) {
+      push(lasting, block, now & ~fresh[block]);
+      push(changing, block, (now & fresh[block]) | ended[block]);
+      return;
     }
-    for (std::uint64_t bits = ended[block]; bits; bits &= bits - 1)
-      lone(start + __builtin_ctzll(bits), ENDS);
+    const std::uint64_t was = before[block];
+    for (std::uint64_t bits = now & was & fresh[block]; bits; bits &= bits - 1)
+      histories[block * BLOCK + __builtin_ctzll(bits)][AGE] = OLD;
+    push(lasting, block, now & was);
+    fresh[block] = now & ~was;
+    ended[block] = was & ~now;
+    clear_histories(block, fresh[block]);
+    push(changing, block, fresh[block] | ended[block]);
+  }
+
+  SLOPE_INLINE void sort_plain(size_t block, bool repeat, Batch &batch)
+  {
+    if (!repeat) clear_histories(block, touching[block] & ~before[block]);
+    push(batch, block, touching[block]);
+  }
+
+  SLOPE_INLINE void clear_histories(size_t block, std::uint64_t bits)
+  {
+    for (; bits; bits &= bits - 1)
+      std::memset(histories[block * BLOCK + __builtin_ctzll(bits)], 0, HISTORY * sizeof(double));
   }
 
   // a bit of each contact of a block that touches
@@ -277,9 +236,9 @@ class ContactPasses : protected ContactView {
     return Columns(d[0], d[1], d[2], d[3]);
   }
 
-  // the contacts k of which count, of four, are not idle
-  template <bool ROLLING, class N, bool TALLY, class Partners>
-  SLOPE_INLINE void apply_four(const int *k, const double *crowd, int count, const ContactLaw &law,
+  // The contacts k of which count, of four, are not idle; CHANGES: they begin or end in the step
+  template <bool CHANGES, bool ROLLING, class N, bool TALLY, class Partners>
+  SLOPE_INLINE void apply_four(const int *k, int count, const ContactLaw &law,
                                const Sizes<double> &same, bool repeat, const MovingBalls &balls,
                                const Partners &partners, ContactTally *tally)
   {
@@ -299,7 +258,37 @@ class ContactPasses : protected ContactView {
     c.n[0] = delta.x * rinv;
     c.n[1] = delta.y * rinv;
     c.n[2] = delta.z * rinv;
+    find_velocities(e, ri, rj, balls, partners, c);
+    c.follow_whole_step();
+    if (CHANGES) find_times(k, repeat, delta, rinv, Four(N(ri + rj) + Four()), same.step.dt, c);
 
+    Four history[6];
+    load(h, history);
+    ContactForceOf<Four> out;
+    contact_force<ROLLING>(sizes.step, c, contacts(e, sizes.step, balls, partners), history, out);
+    if (!repeat) store<ROLLING>(h, history);    // otherwise it is what the step has left
+
+    const Four none = Four();
+    const Columns f(out.f[0], out.f[1], out.f[2], none);
+    const Columns ti(out.m[0] - ri * out.t[0], out.m[1] - ri * out.t[1], out.m[2] - ri * out.t[2],
+                     none);
+    const Columns tj(out.m[0] + rj * out.t[0], out.m[1] + rj * out.t[1], out.m[2] + rj * out.t[2],
+                     none);
+    give(e[0], f.x, ti.x, tj.x, balls, partners);
+    if (count > 1) give(e[1], f.y, ti.y, tj.y, balls, partners);
+    if (count > 2) give(e[2], f.z, ti.z, tj.z, balls, partners);
+    if (count > 3) give(e[3], f.w, ti.w, tj.w, balls, partners);
+    if (TALLY)
+      for (int m = 0; m < count; m++)
+        add_to(*tally, e[m], Vector{out.f[0][m], out.f[1][m], out.f[2][m]},
+               Vector{delta.x[m], delta.y[m], delta.z[m]});
+  }
+
+  template <class N, class Partners>
+  SLOPE_INLINE static void find_velocities(const Entry *e, const N &ri, const N &rj,
+                                           const MovingBalls &balls, const Partners &partners,
+                                           ContactOf<Four, N> &c)
+  {
     Four v[4], rw[4], w[4];
     for (int m = 0; m < 4; m++) {
       v[m] = four(&balls.v[e[m].i].x);
@@ -315,43 +304,84 @@ class ContactPasses : protected ContactView {
     put(Columns(rw[0], rw[1], rw[2], rw[3]), c.rw);
     put(Columns(w[0], w[1], w[2], w[3]), c.w);
 
-    Four history[6];    // in company no step asks for the phase
+    for (int m = 0; m < 4; m++) {
+      v[m] = four(&balls.ahead[e[m].i].x);
+      if (Partners::MOVE) v[m] -= four(&partners.ahead(e[m].j).x);
+    }
+    const Columns ahead(v[0], v[1], v[2], v[3]);
+    c.ahead = ahead.x * c.n[0] + ahead.y * c.n[1] + ahead.z * c.n[2];
+  }
+
+  template <class N, class Partners>
+  SLOPE_INLINE Four contacts(const Entry *e, const ContactStepOf<N> &step, const MovingBalls &balls,
+                             const Partners &partners) const
+  {
+    Four ni, nj = Four();
+    for (int m = 0; m < 4; m++) {
+      ni[m] = balls.count[e[m].i];
+      if (Partners::MOVE) nj[m] = balls.count[e[m].j];
+    }
+    return mean_contacts(step, ni, nj);
+  }
+
+  // Contacts that begin or end in the step. A force acts from the middle of a step to the middle of the
+  // next. A contact that touches for the part f of its first step has dashpots for f + 1/2 of a step, one
+  // that touched for the part g of its last step for g, of which the force before gave 1/2. Contacts
+  // shorter than a step are found in that part of the cases only, and count for a whole one. A spring that
+  // is stretched at a rate V then has V (f - 1/2)^2/2, V (g - 1/2)^2/2 more than the overlaps say.
+  // f and g are those of the overlaps now and a step ago; delta: vector of the centres, reach: of the radii.
+  template <class N>
+  SLOPE_INLINE void find_times(const int *k, bool repeat, const Columns &delta, Four rinv,
+                               Four reach, double dt, ContactOf<Four, N> &c) const
+  {
+    const Four zero = Four(), one = all<Four>(1.0), vn = normal_velocity(c);
+    Four lasted;    // as a step ago; < 0 if it ends
+    FourFlags ends;
+    for (int m = 0; m < 4; m++) lasted[m] = histories[k[m]][AGE];
+    const Four x = delta.x - dt * c.v[0], y = delta.y - dt * c.v[1], z = delta.z - dt * c.v[2];
+    const Four was = reach - root(Four(x * x + y * y + z * z));
+    ends = c.overlap <= zero;
+    const Four f = choose(was < zero, c.overlap / (c.overlap - was), one);
+    const Four g = choose(was > zero, was / (was - c.overlap), zero);
+    const Four late = choose(ends, g, f) - 0.5;
+    const Four before = repeat ? Four(-lasted) : lasted;
+    c.weight = choose(ends, larger(g, Four(one - before)) - 0.5, f + 0.5);
+    c.beyond = 0.5 * late * late * larger(Four(c.overlap - was), Four(was - c.overlap));
+
+    // the normal turns: vn in the middle of these times
+
+    const Four across = c.v[0] * c.v[0] + c.v[1] * c.v[1] + c.v[2] * c.v[2] - vn * vn;
+    c.turn = 0.5 * choose(ends, g - 1.5, 0.5 - f) * dt * rinv * across;
+    c.first = c.touches = choose(ends, zero, one);
+    c.grown = choose(ends, zero, f);
+    c.early = choose(ends, zero, 0.5 * dt * late * late);
+    if (repeat) return;
+    const Four age = choose(ends, -before, f);
+    for (int m = 0; m < 4; m++) histories[k[m]][AGE] = age[m];
+  }
+
+  SLOPE_INLINE static void load(double *const *h, Four *springs)
+  {
     const Columns begin(four(h[0]), four(h[1]), four(h[2]), four(h[3]));
     const Columns end(four(h[0] + 2), four(h[1] + 2), four(h[2] + 2), four(h[3] + 2));
-    put(begin, history);
-    history[3] = begin.w;
-    history[4] = end.z;
-    history[5] = end.w;
+    put(begin, springs);
+    springs[3] = begin.w;
+    springs[4] = end.z;
+    springs[5] = end.w;
+  }
 
-    ContactForceOf<Four> out;
-    contact_force<ROLLING>(sizes.step, c, Four(four(crowd)), history, out);
-
-    if (!repeat) {    // otherwise it is what the step has left
-      const Columns rows(history[0], history[1], history[2], history[3]);
-      four(h[0]) = rows.x;
-      four(h[1]) = rows.y;
-      four(h[2]) = rows.z;
-      four(h[3]) = rows.w;
-      if (ROLLING)
-        for (int m = 0; m < 4; m++) {
-          h[m][4] = history[4][m];
-          h[m][5] = history[5][m];
-        }
-    }
-    const Four none = Four();
-    const Columns f(out.f[0], out.f[1], out.f[2], none);
-    const Columns ti(out.m[0] - ri * out.t[0], out.m[1] - ri * out.t[1], out.m[2] - ri * out.t[2],
-                     none);
-    const Columns tj(out.m[0] + rj * out.t[0], out.m[1] + rj * out.t[1], out.m[2] + rj * out.t[2],
-                     none);
-    give(e[0], f.x, ti.x, tj.x, balls, partners);
-    if (count > 1) give(e[1], f.y, ti.y, tj.y, balls, partners);
-    if (count > 2) give(e[2], f.z, ti.z, tj.z, balls, partners);
-    if (count > 3) give(e[3], f.w, ti.w, tj.w, balls, partners);
-    if (TALLY)
-      for (int m = 0; m < count; m++)
-        add_to(*tally, e[m], Vector{out.f[0][m], out.f[1][m], out.f[2][m]},
-               Vector{delta.x[m], delta.y[m], delta.z[m]});
+  template <bool ROLLING> SLOPE_INLINE static void store(double *const *h, const Four *springs)
+  {
+    const Columns rows(springs[0], springs[1], springs[2], springs[3]);
+    four(h[0]) = rows.x;
+    four(h[1]) = rows.y;
+    four(h[2]) = rows.z;
+    four(h[3]) = rows.w;
+    if (ROLLING)
+      for (int m = 0; m < 4; m++) {
+        h[m][4] = springs[4][m];
+        h[m][5] = springs[5][m];
+      }
   }
 
   template <class Partners>
@@ -374,48 +404,6 @@ class ContactPasses : protected ContactView {
       mj[m] = partners.mass(e[m].j);
     }
     sizes.step = step_of(moves, law, same.step.dt, repeat, sizes.radius_i, sizes.radius_j, mi, mj);
-  }
-
-  // a contact whose balls touch nothing else
-  template <bool ROLLING, bool TALLY, class Partners>
-  void apply_lone(int k, Life life, const ContactLaw &law, const Sizes<double> &same,
-                  const LoneContact &lone, bool repeat, const MovingBalls &balls,
-                  const Partners &partners, ContactTally *tally)
-  {
-    const Entry e = entries[k];
-    Contact c;
-    Vector delta;
-    set_contact(law, balls, partners, e.i, e.j, c, delta);
-    double history[HISTORY];
-    std::memcpy(history, histories[k], sizeof(history));
-    ContactForce out;
-    double ri = same.radius_i, rj = same.radius_j;
-    bool known;
-    if (equal) {
-      known = lone_contact_force<ROLLING>(same.step, lone, life, repeat, c, history, out);
-    } else {
-      ri = balls.radius[e.i];
-      rj = partners.radius(e.j);
-      const double mi = balls.mass[e.i], mj = partners.mass(e.j);
-      known = lone_contact_force<ROLLING>(step_of(moves, law, same.step.dt, repeat, ri, rj, mi, mj),
-                                          lone_of(moves, law, same.step.dt, ri, rj, mi, mj), life,
-                                          repeat, c, history, out);
-    }
-    if (!repeat)
-      std::memcpy(histories[k], history, sizeof(history));
-    else if (!known) {
-      balls.estimated[e.i] = 1;
-      if (Partners::MOVE) balls.estimated[e.j] = 1;
-    }
-    Four f, ti, tj;
-    for (int d = 0; d < 3; d++) {
-      f[d] = out.f[d];
-      ti[d] = out.m[d] - ri * out.t[d];
-      tj[d] = out.m[d] + rj * out.t[d];
-    }
-    f[3] = ti[3] = tj[3] = 0.0;
-    give(e, f, ti, tj, balls, partners);
-    if (TALLY) add_to(*tally, e, Vector{out.f[0], out.f[1], out.f[2]}, delta);
   }
 
   SLOPE_INLINE static double lane(double same, int) { return same; }
@@ -454,10 +442,10 @@ class ContactPasses : protected ContactView {
 };
 
 template <class Partners>
-void find_contacts(const ContactView &view, bool repeat, bool first, const MovingBalls &balls,
+void find_contacts(const ContactView &view, bool repeat, const MovingBalls &balls,
                    const Partners &partners)
 {
-  ContactPasses(view).find(repeat, first, balls, partners);
+  ContactPasses(view).find(repeat, balls, partners);
 }
 
 template <class Partners>
@@ -472,5 +460,12 @@ void apply_contacts(const ContactView &view, const ContactLaw &law, double dt, b
 
 }    // namespace SLOPE_INSTRUCTIONS
 }    // namespace Slope
+
+// a constant, so that none of this code runs before its kernel has been chosen
+#define SLOPE_CONTACT_KERNEL                                                                     \
+  {                                                                                              \
+    find_contacts<MovingPartners>, find_contacts<FixedPartners>, apply_contacts<MovingPartners>, \
+        apply_contacts<FixedPartners>                                                            \
+  }
 
 #endif

@@ -16,9 +16,6 @@ class ContactHistoryOwner {
   // histories from the contact lists to where the neighbor list has them
   virtual void store_flags() const = 0;
 
-  // at set-up: the force on ball i is an estimate, as it slid alone (contact_law.h)
-  virtual bool force_estimated(int i) const = 0;
-
   // guards: every ContactGuards::EVERY steps, and at the end of a run
   virtual void watch_energy() = 0;
   virtual void report_guards() = 0;

@@ -20,12 +20,10 @@
 using namespace LAMMPS_NS;
 using namespace Slope;
 
-static constexpr double STEP_RULE = 0.25;    // dt <= STEP_RULE sqrt(m/kn)
-static constexpr double CONTACTS = 12.0;     // of a ball in the densest packing
-static constexpr int MOST_SWEEPS = 10;
+static constexpr double STEP_RULE = 0.25;       // dt <= STEP_RULE sqrt(m/kn)
 static constexpr double DASHPOT_RULE = 0.15;    // scheme plain: dt <= DASHPOT_RULE m/cn
 static constexpr int FORMAT =
-    20261122;    // of what restart files hold, histories of walls included
+    20261123;    // of what restart files hold, histories of walls included
 
 /* ---------------------------------------------------------------------- */
 
@@ -79,11 +77,10 @@ void ContactTable::read_settings(int narg, char **arg)
       off = "ball";
       on = "reduced";
     } else if (keyword == "scheme") {
-      const char *const names[] = {"exact", "plain", "solved"};    // as Scheme
-      const auto name = std::find(names, names + 3, value);
-      if (name == names + 3)
-        error->all(FLERR, "Pair gran/restitution scheme must be exact, plain or solved, got {}",
-                   value);
+      const char *const names[] = {"exact", "plain"};    // as Scheme
+      const auto name = std::find(names, names + 2, value);
+      if (name == names + 2)
+        error->all(FLERR, "Pair gran/restitution scheme must be exact or plain, got {}", value);
       scheme = static_cast<int>(name - names);
       iarg += 2;
       continue;
@@ -298,40 +295,6 @@ double ContactTable::cutoff(int i, int j) const
   const TypeRange &a = ranges[i], &b = ranges[j];
   return std::max({a.radius_dynamic + b.radius_dynamic, a.radius_frozen + b.radius_dynamic,
                    a.radius_dynamic + b.radius_frozen});
-}
-
-/* ----------------------------------------------------------------------
-   Sweeps of scheme solved that hold a dense packing of moving balls: theory.rst. Dashpots of CONTACTS
-   sticking contacts take delta of a ball's momentum in half a step; a motion of which they take E, at most
-   2 delta, is found with the error E (1 - (1 + E)/(1 + 2 delta))^n, and is stable with E^2 (...)^n <= 1.
-------------------------------------------------------------------------- */
-
-int ContactTable::sweeps(double dt) const
-{
-  double delta = 0.0;
-  for (int i = 1; i <= atom->ntypes; i++)
-    for (int j = i; j <= atom->ntypes; j++) {
-      const TypeRange &a = range(i), &b = range(j);
-      if (!a.moving || !b.moving || !can_touch(i, j)) continue;
-      const ContactLaw &law = this->law(i, j);
-      const double heaviest = std::max(a.mass_max, b.mass_max);
-      for (const double m : {a.mass_min, b.mass_min}) {
-        const double root = std::sqrt(law.mass(m, heaviest)), half = 0.5 * dt / m;
-        const double normal = std::tanh(half * (law.cn_given + law.cn_root * root));
-        const double sliding = std::tanh(3.5 * half * (law.ct_given + law.ct_root * root)) / 3.5;
-        const double rolling =
-            law.rolling > 0.0 ? std::tanh(2.5 * half * (law.cr_given + law.cr_root * root)) : 0.0;
-        delta = std::max({delta, CONTACTS / 3.0 * (normal + 2.0 * sliding),
-                          CONTACTS * 2.0 / 3.0 * (2.5 * sliding + rolling)});
-      }
-    }
-  for (int n = 1; n < MOST_SWEEPS; n++) {
-    double most = 0.0;
-    for (double e = 0.0; e < 2.0 * delta; e += 0.01 * delta)
-      most = std::max(most, e * e * std::pow(1.0 - (1.0 + e) / (1.0 + 2.0 * delta), n));
-    if (most <= 1.0) return n;
-  }
-  return MOST_SWEEPS;
 }
 
 /* ----------------------------------------------------------------------

@@ -44,6 +44,7 @@ class ContactTable : protected Pointers {
   void set(int itype, int jtype, const Coeff &);    // in both orders
   void make_laws();                                 // after set()
 
+  bool is_exact() const { return scheme == EXACT; }
   bool is_set(int itype, int jtype) const { return coeff(itype, jtype).set; }
   const Coeff &coeff(int itype, int jtype) const { return coeffs[index(itype, jtype)]; }
   const Slope::ContactLaw &law(int itype, int jtype) const { return laws[index(itype, jtype)]; }
@@ -53,7 +54,6 @@ class ContactTable : protected Pointers {
   }    // k: itype * (ntypes + 1) + jtype
   const TypeRange &range(int type) const { return ranges[type]; }
   bool is_plain() const { return scheme == PLAIN; }
-  bool is_solved() const { return scheme == SOLVED; }
 
   // at init: the balls of each type; walls are announced afterwards
   void find_ranges(int freeze_group_bit);
@@ -67,7 +67,6 @@ class ContactTable : protected Pointers {
   double lightest(int itype, int jtype) const;    // mass of the lightest moving ball, kg
   double bound_on_step(int itype, int jtype) const;    // s, the smaller one of:
   double spring_bound(int itype, int jtype) const;
-  int sweeps(double dt) const;                         // of scheme solved
   double dashpot_bound(int itype, int jtype) const;    // infinite with scheme exact
 
   // coefficients for the lightest balls of each pair of types; dt: time step, s
@@ -85,7 +84,7 @@ class ContactTable : protected Pointers {
   int mass_ball;          // mass ball instead of mass pair
   int limit_damping;      // the normal force never pulls
   int rolling_reduced;    // rolling radius RiRj/(Ri+Rj) instead of its double
-  enum Scheme { EXACT, PLAIN, SOLVED };
+  enum Scheme { EXACT, PLAIN };
   int scheme;    // which velocities the dashpots have: theory.rst
 
   std::vector<Coeff> coeffs;              // (ntypes+1) x (ntypes+1), both triangles filled

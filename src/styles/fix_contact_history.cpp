@@ -32,6 +32,7 @@ FixContactHistory::FixContactHistory(LAMMPS *lmp, int narg, char **arg) :
     force(nullptr), forces_taken_back(false), force_step(-1), force_dt(0.0), restart_extra(lmp)
 {
   nevery = ContactGuards::EVERY;
+  maxexchange += FORCE;    // until pre_exchange() knows how many contacts there are
   FixContactHistory::grow_arrays(atom->nmax);
   for (int i = 0; i < atom->nlocal; i++) FixContactHistory::set_arrays(i);
 }
@@ -89,8 +90,7 @@ void FixContactHistory::end_of_step()
 void FixContactHistory::post_run()
 {
   FixNeighHistory::post_run();
-  if (!forces_known())
-    keep_forces();    // run 0 only has what the set-up found, an estimate for some balls
+  if (!forces_known()) keep_forces();
   if (update->ntimestep % nevery) owner->watch_energy();
   owner->report_guards();
 }
@@ -111,12 +111,17 @@ void FixContactHistory::keep_forces()
 
 /* ----------------------------------------------------------------------
    Before the first step of a continued run: the set-up has found the forces of the last step
-   once more, to rounding, or has said that it could only estimate them. With the very same ones
-   the run is the uncut one to the bit. If they differ by more, something has been changed in
-   between, and those of the set-up stand.
+   once more, to rounding. With the very same ones the run is the uncut one to the bit. If they
+   differ by more, something has been changed in between, and those of the set-up stand.
 ------------------------------------------------------------------------- */
 
 void FixContactHistory::initial_integrate(int)
+{
+  take_back_forces();
+  for (int i = 0; i < atom->nlocal; i++) memcpy(&force[i][BEFORE], atom->f[i], 3 * sizeof(double));
+}
+
+void FixContactHistory::take_back_forces()
 {
   forces_taken_back = false;
   const bool kept = force_step == update->ntimestep - 1 && force_step == update->firststep;
@@ -124,7 +129,7 @@ void FixContactHistory::initial_integrate(int)
   if (!kept) return;
   double mine[4] = {0.0, 0.0, 0.0, 0.0}, most[4];    // largest force, torque; differences
   for (int i = 0; i < atom->nlocal; i++)
-    for (int d = 0; d < 3 && !owner->force_estimated(i); d++) {
+    for (int d = 0; d < 3; d++) {
       mine[0] = std::max(mine[0], std::fabs(force[i][d]));
       mine[1] = std::max(mine[1], std::fabs(force[i][3 + d]));
       mine[2] = std::max(mine[2], std::fabs(force[i][d] - atom->f[i][d]));
@@ -174,7 +179,6 @@ void FixContactHistory::set_arrays(int i)
 int FixContactHistory::pack_exchange(int i, double *buf)
 {
   const int m = FixNeighHistory::pack_exchange(i, buf);
-  if (!forces_known()) return m;
   memcpy(&buf[m], force[i], FORCE * sizeof(double));
   return m + FORCE;
 }
@@ -182,7 +186,6 @@ int FixContactHistory::pack_exchange(int i, double *buf)
 int FixContactHistory::unpack_exchange(int i, double *buf)
 {
   const int m = FixNeighHistory::unpack_exchange(i, buf);
-  if (!forces_known()) return m;
   memcpy(force[i], &buf[m], FORCE * sizeof(double));
   return m + FORCE;
 }

@@ -49,8 +49,9 @@ class FixContactHistory : public FixNeighHistory {
   bool lists_new;     // the neighbor list has been rebuilt
   bool lists_used;    // its histories are newer than those stored by atom
 
-  // force (3) and torque (3) on each ball in the last step of a run, or when a restart file is written
-  static constexpr int FORCE = 6;
+  // force (3) and torque (3) on each ball in the last step of a run, or when a restart file is written; force (3)
+  // in the step before the last one
+  static constexpr int FORCE = 9, BEFORE = 6;
   double **force;
   bool forces_known() const;
   bool forces_taken_back;    // they are those that the first step of this run has begun with
@@ -61,6 +62,7 @@ class FixContactHistory : public FixNeighHistory {
   RestartExtra restart_extra;
 
   void keep_forces();
+  void take_back_forces();
 };
 
 }    // namespace LAMMPS_NS

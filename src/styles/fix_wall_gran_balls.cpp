@@ -209,7 +209,7 @@ void FixWallGranBalls::post_force(int)
    called by the pair style before it computes forces
 ------------------------------------------------------------------------- */
 
-void FixWallGranBalls::find_contacts(bool starting, bool lists_new)
+void FixWallGranBalls::find_contacts(bool starting)
 {
   const MovingBalls moving = pair->moving_balls();
   const FixedPartners fixed = partners();
@@ -222,21 +222,9 @@ void FixWallGranBalls::find_contacts(bool starting, bool lists_new)
             overlap, std::min(atom->radius[e.i], radius), atom->tag[e.i], atom->x[e.i],
             fmt::format("the fixed ball at {:.6g} {:.6g} {:.6g},", ball.x, ball.y, ball.z));
       });
-    l.find(starting, lists_new, moving, fixed);
+    l.find(starting, moving, fixed);
   }
-  if (pair->is_solved())
-    for (int type = 1; type <= atom->ntypes; type++)
-      if (!lists[type].entries.empty())
-        lists[type].begin(law_of(type), update->dt, starting, moving, fixed);
   if (starting) initial.check(caller);
-}
-
-void FixWallGranBalls::sweep_contacts()
-{
-  const MovingBalls moving = pair->moving_balls();
-  const FixedPartners fixed = partners();
-  for (int type = 1; type <= atom->ntypes; type++)
-    if (!lists[type].entries.empty()) lists[type].sweep(law_of(type), update->dt, moving, fixed);
 }
 
 /* ----------------------------------------------------------------------
@@ -252,10 +240,7 @@ void FixWallGranBalls::apply(bool starting)
   for (int type = 1; type <= atom->ntypes; type++) {
     ContactList &l = lists[type];
     if (l.entries.empty()) continue;
-    if (pair->is_solved())
-      l.finish(law_of(type), update->dt, moving, fixed, &tally);
-    else
-      l.apply(law_of(type), update->dt, starting, moving, fixed, &tally);
+    l.apply(law_of(type), update->dt, starting, moving, fixed, &tally);
   }
 
   force_mine[0] = -tally.force.x;

@@ -324,7 +324,7 @@ void FixWallGranMesh::record()
    called by the pair style before it computes forces
 ------------------------------------------------------------------------- */
 
-void FixWallGranMesh::find_contacts(bool starting, bool lists_new)
+void FixWallGranMesh::find_contacts(bool starting)
 {
   find_features();
   const MovingBalls moving = pair->moving_balls();
@@ -338,36 +338,10 @@ void FixWallGranMesh::find_contacts(bool starting, bool lists_new)
         initial.record(slot.depth(), atom->radius[e.i], atom->tag[e.i], atom->x[e.i],
                        fmt::format("triangle {}", slot.contact.at.triangle + 1));
       });
-    l.find(starting, lists_new, moving, phantoms);
-    if (pair->is_solved())
-      l.begin(smooth_law(entry.first.type), update->dt, starting, moving, phantoms);
+    l.find(starting, moving, phantoms);
   }
   if (starting)
     initial.check(caller, "move the surface, or remove the balls there with delete_atoms region");
-}
-
-void FixWallGranMesh::sweep_contacts()
-{
-  const MovingBalls moving = pair->moving_balls();
-  for (auto &entry : lists)
-    entry.second.sweep(smooth_law(entry.first.type), update->dt, moving,
-                       FixedPartners(centres.data(), entry.first.radius));
-}
-
-/* ----------------------------------------------------------------------
-   force of a contact on its ball as the contact law has it, from what the step gave; zero where an
-   impact has ended in the step
-------------------------------------------------------------------------- */
-
-Vector FixWallGranMesh::force_of_law(const SurfaceWatch::Slot &slot, double phase, const Vector &f,
-                                     const Vector &v, const ImpactForce &impact) const
-{
-  if (phase == ENDED) return {0.0, 0.0, 0.0};
-  const Vector &n = slot.contact.at.normal;
-  const double d = slot.contact.overlap, V = -dot(v, n) * update->dt;
-  const Vector along = moved(f, -dot(f, n), n);
-  const double share = impact.tangential(phase, d, V);
-  return moved({share * along.x, share * along.y, share * along.z}, impact.normal(phase, d, V), n);
 }
 
 /* ----------------------------------------------------------------------
@@ -392,35 +366,23 @@ void FixWallGranMesh::apply(bool starting)
   for (auto &entry : lists) {
     const FixedPartners phantoms(centres.data(), entry.first.radius);
     const ContactLaw law = smooth_law(entry.first.type);
-    std::unique_ptr<ImpactForce> impact;
     auto add = [&](int i, int j, const Vector &f, const Vector &) {
       const SurfaceWatch::Slot &slot = watch.slots[j];
-      const double phase = history[j][PHASE];
-      const bool ended = phase == ENDED;
-      Vector shown = f;
-      if (law.exact > 0.0 && (ended || (is_impact(phase) && moving.count[i] == 1))) {
-        if (!impact || impact->of_mass() != atom->rmass[i])
-          impact.reset(new ImpactForce(law, atom->rmass[i], update->dt));
-        shown = force_of_law(slot, phase, f, moving.v[i], *impact);
-      }
       const SurfacePoint &touched = slot.contact.at;
       const Vector arm = moved({0.0, 0.0, 0.0}, -slot.radius, touched.normal);
       const Vector at = moved(vector_of(atom->x[i]), 1.0, arm);
       const Vector torque = cross(arm, f);    // on the ball
       momentum = moved(momentum, -1.0, f);
-      force = moved(force, -1.0, shown);
-      moment = moved(moment, -1.0, cross(minus(at, options.point), shown));
+      force = moved(force, -1.0, f);
+      moment = moved(moment, -1.0, cross(minus(at, options.point), f));
       moment = moved(moment, 1.0, torque);
-      contacts += !ended;
+      contacts += !has_ended(history[j][AGE]);
       if (recorder && !starting)
-        recorder->add(touched.triangle, dot(shown, touched.normal),
+        recorder->add(touched.triangle, dot(f, touched.normal),
                       dot(f, touched.normal) * update->dt);
     };
     ContactTally tally = tally_of(add);
-    if (pair->is_solved())
-      entry.second.finish(law, update->dt, moving, phantoms, &tally);
-    else
-      entry.second.apply(law, update->dt, starting, moving, phantoms, &tally);
+    entry.second.apply(law, update->dt, starting, moving, phantoms, &tally);
   }
   torque_of_balls(-1.0);
 

@@ -16,7 +16,6 @@ FixStyle(wall/gran/mesh,FixWallGranMesh);
 
 #include "contact_list.h"
 #include "fast_balls.h"
-#include "impact_force.h"
 #include "run_clock.h"
 #include "surface_options.h"
 #include "surface_recorder.h"
@@ -48,8 +47,7 @@ class FixWallGranMesh : public FixContactWall {
   double memory_usage() override;
   void restart(char *) override;
 
-  void find_contacts(bool starting, bool lists_new) override;
-  void sweep_contacts() override;
+  void find_contacts(bool starting) override;
   double elastic_energy() const override;
 
  private:
@@ -100,9 +98,6 @@ class FixWallGranMesh : public FixContactWall {
   void take_contacts() override;
   std::vector<double> restart_values() override;
   void apply(bool);
-  Slope::Vector force_of_law(const Slope::SurfaceWatch::Slot &, double phase,
-                             const Slope::Vector &f, const Slope::Vector &v,
-                             const Slope::ImpactForce &) const;
   void keep_given();
   void reduce();
   void record();

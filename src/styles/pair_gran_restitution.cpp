@@ -21,7 +21,6 @@
 #include "neigh_list.h"
 #include "neighbor.h"
 #include "requirements.h"
-#include "solved_contact.h"
 #include "update.h"
 
 #include <algorithm>
@@ -47,9 +46,10 @@ PairGranRestitution::PairGranRestitution(LAMMPS *lmp) : Pair(lmp), guards(lmp, t
   no_virial_fdotr_compute = 1;
   centroidstressflag = CENTROID_NOTAVAIL;
   finitecutflag = 1;
-  nondefault_history_transfer = 1;    // the phase is the same from both sides
+  nondefault_history_transfer = 1;    // the age is the same from both sides
   beyond_contact = 1;                 // a contact that has ended keeps its history for a step
-  comm_forward = comm_reverse = 2;    // numbers of contacts; of scheme solved see init_style()
+  comm_forward = 4;                   // number of contacts, velocity ahead
+  comm_reverse = 1;                   // number of contacts
   single_extra = 10;
   svector = new double[single_extra];
 
@@ -183,10 +183,6 @@ void PairGranRestitution::init_style()
 
   compat::request_history_list(neighbor, this, instance_me);
   dt = update->dt;
-  if (is_solved()) {
-    comm_forward = 6;    // velocities
-    comm_reverse = BallDashpots::SIZE;
-  }
 
   if (!fix_history) {
     fix_history = static_cast<FixContactHistory *>(modify->replace_fix(
@@ -344,7 +340,7 @@ void PairGranRestitution::find_half_step()
 {
   half_v.clear();
   half_omega.clear();
-  if (is_solved() || !fix_history->forces_known()) return;
+  if (!fix_history->forces_known()) return;
 
   const int nlocal = atom->nlocal, nall = nlocal + atom->nghost;
   Vector *const v = vectors(atom->v), *const omega = vectors(atom->omega);
@@ -365,12 +361,33 @@ void PairGranRestitution::find_half_step()
   std::swap_ranges(omega, omega + nall, half_omega.begin());
 }
 
+/* ----------------------------------------------------------------------
+   The velocities of the middle of the step, and a part of what the last step's force adds to them until
+   its end. At the set-up of a new run those of the end are known, and the force is not.
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::find_ahead()
+{
+  ahead.clear();
+  const bool half = !half_v.empty();
+  if (!table.is_exact() || (starting && !half)) return;
+
+  const int nlocal = atom->nlocal, nall = nlocal + atom->nghost;
+  const Vector *const v = half ? half_v.data() : vectors(atom->v);
+  ahead.reserve(nall + 1);    // see build_lists()
+  ahead.resize(nall);
+  for (int i = 0; i < nlocal; i++) {
+    const double *f = &fix_history->force[i][FixContactHistory::BEFORE];
+    const double a = AHEAD * dt / atom->rmass[i];
+    ahead[i] = {v[i].x + a * f[0], v[i].y + a * f[1], v[i].z + a * f[2]};
+  }
+}
+
 /* ---------------------------------------------------------------------- */
 
 MovingBalls PairGranRestitution::moving_balls()
 {
   const bool half = !half_v.empty();
-  const bool unknown = !mean_v.empty();    // the mean velocities of scheme solved; known at set-up
   return {vectors(atom->x),
           half ? half_v.data() : vectors(atom->v),
           half ? half_omega.data() : vectors(atom->omega),
@@ -378,24 +395,19 @@ MovingBalls PairGranRestitution::moving_balls()
           atom->rmass,
           vectors(atom->f),
           vectors(atom->torque),
-          is_solved() ? nullptr : counts.now.data(),
-          is_solved() ? nullptr : counts.before.data(),
-          is_solved() ? nullptr : counts.estimated.data(),
-          unknown ? mean_v.data() : vectors(atom->v),
-          unknown ? mean_omega.data() : vectors(atom->omega),
-          unknown ? dashpots.data() : nullptr};
+          !ahead.empty() ? ahead.data()
+              : half     ? half_v.data()
+                         : vectors(atom->v),
+          counts.now.data()};
 }
 
 /* ----------------------------------------------------------------------
    what touches, here and at the walls, and the number of contacts of each ball
 ------------------------------------------------------------------------- */
 
-void PairGranRestitution::find_contacts(bool lists_new)
+void PairGranRestitution::find_contacts()
 {
-  if (is_solved())
-    start_solved();
-  else
-    counts.clear(atom->nlocal + atom->nghost, lists_new, starting);
+  counts.clear(atom->nlocal + atom->nghost);
   const MovingBalls balls = moving_balls();
   const MovingPartners partners = {balls, force->newton_pair ? INT_MAX : atom->nlocal};
   if (starting) {
@@ -407,135 +419,38 @@ void PairGranRestitution::find_contacts(bool lists_new)
       });
     initial.check("Pair gran/restitution");
   }
-  for (ContactList &l : lists) l.find(starting, lists_new, balls, partners);
-  for (ContactHolder *wall : walls) wall->find_contacts(starting, lists_new);
-  if (is_solved()) {
-    solve();
-    return;
-  }
-  share(lists_new ? ContactCounts::BOTH : ContactCounts::NOW);
-}
-
-/* ----------------------------------------------------------------------
-   Scheme solved: the mean velocities with which the dashpots act. Each ball's own dashpots are solved for,
-   the velocities of its partners are those of the sweep before. At set-up, velocities are those of now.
-------------------------------------------------------------------------- */
-
-void PairGranRestitution::start_solved()
-{
-  mean_v.clear();
-  mean_omega.clear();
-  if (starting) {
-    sweeps = table.sweeps(dt);
-    return;
-  }
-  const int nlocal = atom->nlocal, nall = nlocal + atom->nghost;
-  mean_v.reserve(nall + 1);    // see build_lists()
-  mean_omega.reserve(nall + 1);
-  mean_v.assign(vectors(atom->v), vectors(atom->v) + nall);
-  mean_omega.assign(vectors(atom->omega), vectors(atom->omega) + nall);
-  dashpots.assign(nall, BallDashpots());
-
-  field.reserve(nlocal + 1);
-  field.assign(nlocal, Vector{0.0, 0.0, 0.0});
-  for (Fix *fix : compat::fixes_of_style(lmp, "gravity")) {
-    int dim;
-    const double *g = static_cast<const double *>(fix->extract("gvec", dim));
-    for (int i = 0; i < nlocal; i++)
-      if (atom->mask[i] & fix->groupbit)
-        field[i] = {field[i].x + g[0], field[i].y + g[1], field[i].z + g[2]};
-  }
-}
-
-void PairGranRestitution::solve()
-{
-  const MovingBalls balls = moving_balls();
-  const MovingPartners partners = {balls, force->newton_pair ? INT_MAX : atom->nlocal};
-  for (size_t k = 0; k < lists.size(); k++)
-    lists[k].begin(table.law(k / 3), dt, starting, balls, partners);
-  if (starting) return;
-  for (int sweep = 0; sweep < sweeps; sweep++) {
-    if (sweep > 0) {
-      for (size_t k = 0; k < lists.size(); k++)
-        lists[k].sweep(table.law(k / 3), dt, balls, partners);
-      for (ContactHolder *wall : walls) wall->sweep_contacts();
-    }
-    if (force->newton_pair) compat::reverse_comm(comm, this);
-    solve_balls();
-    compat::forward_comm(comm, this);
-  }
-}
-
-void PairGranRestitution::solve_balls()
-{
-  const BallSolve balls = {
-      dt,           atom->radius,  atom->rmass,       vectors(atom->v), vectors(atom->omega),
-      field.data(), mean_v.data(), mean_omega.data(), dashpots.data()};
-  ContactKernels::current().solve(balls, 0, atom->nlocal);
-  for (int i = 0; i < atom->nlocal && freeze_group_bit; i++)
-    if (atom->mask[i] & freeze_group_bit) {
-      mean_v[i] = balls.v[i];
-      mean_omega[i] = balls.omega[i];
-    }
-}
-
-/* ----------------------------------------------------------------------
-   counts of balls that several ranks know
-------------------------------------------------------------------------- */
-
-void PairGranRestitution::share(ContactCounts::Which which)
-{
-  counts.shared = which;
+  for (ContactList &l : lists) l.find(starting, balls, partners);
+  for (ContactHolder *wall : walls) wall->find_contacts(starting);
   if (force->newton_pair) compat::reverse_comm(comm, this);
   compat::forward_comm(comm, this);
 }
 
+/* ----------------------------------------------------------------------
+   numbers of contacts of balls that several ranks know
+------------------------------------------------------------------------- */
+
 int PairGranRestitution::pack_forward_comm(int n, int *list, double *buf, int, int *)
 {
-  if (!is_solved()) return counts.pack_forward(n, list, buf);
-  for (int k = 0; k < n; k++) {
-    memcpy(buf, &mean_v[list[k]], sizeof(Vector));
-    memcpy(buf + 3, &mean_omega[list[k]], sizeof(Vector));
-    buf += 6;
-  }
-  return 6 * n;
+  int m = counts.pack_forward(n, list, buf);
+  for (int k = 0; k < n && !ahead.empty(); k++, m += 3)
+    memcpy(&buf[m], &ahead[list[k]], sizeof(Vector));
+  return m;
 }
 
 void PairGranRestitution::unpack_forward_comm(int n, int begin, double *buf)
 {
-  if (!is_solved()) {
-    counts.unpack_forward(n, begin, buf);
-    return;
-  }
-  for (int i = begin; i < begin + n; i++, buf += 6) {
-    memcpy(&mean_v[i], buf, sizeof(Vector));
-    memcpy(&mean_omega[i], buf + 3, sizeof(Vector));
-  }
+  counts.unpack_forward(n, begin, buf);
+  if (!ahead.empty()) memcpy(&ahead[begin], &buf[n], n * sizeof(Vector));
 }
 
 int PairGranRestitution::pack_reverse_comm(int n, int begin, double *buf)
 {
-  if (!is_solved()) return counts.pack_reverse(n, begin, buf);
-  memcpy(buf, &dashpots[begin], n * sizeof(BallDashpots));
-  std::fill_n(&dashpots[begin], n, BallDashpots());
-  return n * BallDashpots::SIZE;
+  return counts.pack_reverse(n, begin, buf);
 }
 
 void PairGranRestitution::unpack_reverse_comm(int n, int *list, double *buf)
 {
-  if (!is_solved()) {
-    counts.unpack_reverse(n, list, buf);
-    return;
-  }
-  for (int k = 0; k < n; k++) {
-    double *const sum = dashpots[list[k]].normal;
-    for (int m = 0; m < BallDashpots::SIZE; m++) sum[m] += *buf++;
-  }
-}
-
-bool PairGranRestitution::force_estimated(int i) const
-{
-  return counts.is_estimated(i);
+  counts.unpack_reverse(n, list, buf);
 }
 
 bool PairGranRestitution::forces_taken_back() const
@@ -550,7 +465,7 @@ bool PairGranRestitution::forces_taken_back() const
 void PairGranRestitution::transfer_history(double *source, double *target)
 {
   for (int k = 0; k < HISTORY; k++) target[k] = -source[k];
-  target[PHASE] = source[PHASE];
+  target[AGE] = source[AGE];
 }
 
 void PairGranRestitution::transfer_history(double *source, double *target, int, int)
@@ -573,7 +488,8 @@ void PairGranRestitution::compute(int eflag, int vflag)
     half_omega.clear();
   }
 
-  find_contacts(lists_new);
+  find_ahead();
+  find_contacts();
 
   const int nlocal = atom->nlocal, newton_pair = force->newton_pair;
   const MovingBalls balls = moving_balls();
@@ -584,13 +500,9 @@ void PairGranRestitution::compute(int eflag, int vflag)
   ContactTally tally = tally_of(add_virial);
   for (size_t k = 0; k < lists.size(); k++) {
     const ContactLaw &law = table.law(k / 3);
-    if (is_solved())
-      lists[k].finish(law, dt, balls, partners, evflag ? &tally : nullptr);
-    else
-      lists[k].apply(law, dt, starting, balls, partners, evflag ? &tally : nullptr);
+    lists[k].apply(law, dt, starting, balls, partners, evflag ? &tally : nullptr);
   }
   fix_history->lists_used = true;
-  if (starting && !is_solved()) share(ContactCounts::ESTIMATED);
 }
 
 /* ----------------------------------------------------------------------
@@ -619,7 +531,7 @@ double PairGranRestitution::single(int i, int j, int itype, int jtype, double rs
   ContactLaw law = acts;
   law.exact = 0.0;
   MovingBalls balls = moving_balls();
-  balls.v = vectors(atom->v);
+  balls.v = balls.ahead = vectors(atom->v);
   balls.omega = vectors(atom->omega);
   const Sides moves = {(atom->mask[i] & freeze_group_bit) ? 0.0 : 1.0,
                        (atom->mask[j] & freeze_group_bit) ? 0.0 : 1.0};
@@ -636,19 +548,7 @@ double PairGranRestitution::single(int i, int j, int itype, int jtype, double rs
   step.kt = acting.kt;
   step.kr = acting.kr;
   ContactForce c;
-  if (is_solved()) {
-    SolvedContactOf<double> solved;
-    static_cast<Contact &>(solved) = contact;
-    solved.weight = 1.0;
-    solved.turn = solved.beyond = 0.0;
-    SolvedForceOf<double> force_of_step;
-    solved_force(solved_step_of(moves, law, dt, atom->radius[i], atom->radius[j], atom->rmass[i],
-                                atom->rmass[j]),
-                 solved, history, force_of_step);
-    c = force_of_step;
-  } else {
-    contact_force(step, contact, 0.0, history, c);
-  }
+  contact_force(step, contact, 1.0, history, c);
 
   const double *n = contact.n;
   const double fn = c.f[0] * n[0] + c.f[1] * n[1] + c.f[2] * n[2];
@@ -711,10 +611,8 @@ double PairGranRestitution::memory_usage()
 {
   double bytes = table.memory_usage();
   for (const ContactList &l : lists) bytes += l.memory_usage();
-  bytes += counts.memory_usage();
-  bytes += (mean_v.capacity() + mean_omega.capacity() + field.capacity()) * sizeof(Vector) +
-      dashpots.capacity() * sizeof(BallDashpots);
-  bytes += (half_v.capacity() + half_omega.capacity()) * sizeof(Vector);
+  bytes += counts.now.capacity();
+  bytes += (half_v.capacity() + half_omega.capacity() + ahead.capacity()) * sizeof(Vector);
   return bytes;
 }
 

@@ -67,8 +67,6 @@ class PairGranRestitution : public Pair, public ContactHistoryOwner {
   void announce_wall(class ContactHolder *wall, int wall_type, int groupbit, const char *style);
   Slope::MovingBalls moving_balls();
   void store_flags() const override;
-  bool force_estimated(int i) const override;
-  bool is_solved() const { return table.is_solved(); }    // scheme solved
   bool forces_taken_back() const;    // in the first step of a run: its forces are the last step's
   bool sizes_vary = false;           // between two neighbor lists, by fix adapt
 
@@ -87,22 +85,15 @@ class PairGranRestitution : public Pair, public ContactHistoryOwner {
   std::vector<class ContactHolder *> walls;
   Slope::ContactCounts counts;
   std::vector<Slope::Vector> half_v, half_omega;    // at set-up, where they are known
-
-  // scheme solved, of each ball, ghosts included: see contact_balls.h
-  std::vector<Slope::Vector> mean_v, mean_omega, field;
-  std::vector<Slope::BallDashpots> dashpots;
-  int sweeps = 1;
+  std::vector<Slope::Vector> ahead;                 // that normal dashpots act on
 
   std::string history_id, dummy_id;
 
   void allocate();
   void build_lists();
-  void find_contacts(bool lists_new);
-  void share(Slope::ContactCounts::Which);
+  void find_contacts();
   void find_half_step();
-  void start_solved();
-  void solve();
-  void solve_balls();
+  void find_ahead();
 };
 
 }    // namespace LAMMPS_NS
