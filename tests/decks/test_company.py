@@ -1,4 +1,4 @@
-"""Scheme solved: restitution where a ball touches several others, at the rule's step, whenever in a step it begins."""
+"""Restitution where a ball touches several others, at the rule's step, whenever in a step it begins."""
 import numpy as np
 import pytest
 
