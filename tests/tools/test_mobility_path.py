@@ -91,6 +91,24 @@ def test_the_lowest_way_out():
     assert np.interp(1500, path.x, path.y) < 300
 
 
+def test_a_pit_in_a_pit():
+    """Over the inner sill and the outer rim, not to and fro between both bottoms."""
+    places, heights = (0, 1000, 1300, 1500, 1800, 2400), (3000, 2300, 2400, 2350, 2450, 2000)
+    ground = terrain(lambda x, y: np.interp(x, places, heights) + 0.5 * np.abs(y - 600))
+    path = fall_path.trace(disc(ground, (300, 600)), 1e5)
+    assert path.end == fall_path.TERRAIN and path.x[-1] == pytest.approx(2395, abs=1)
+    assert path.length[-1] == pytest.approx(2395 - path.x[0], rel=0.01)
+
+
+def test_the_scar_leads():
+    """The mass slides on its slip surface, which falls to one side here, the ground straight on."""
+    ground, x, y = plane(0)[0]
+    way_out = ground.z[60, 40] + 0.3 * ((405 - x) + (y - 495)) / math.sqrt(2)
+    depth = np.where((x - 300) ** 2 + (y - 600) ** 2 < RADIUS ** 2, ground.z - way_out, 0)
+    path = fall_path.trace(body.of_arrays(ground, depth, "disc"), 1e5)
+    assert path.y[-1] < path.y[0] - 40
+
+
 def test_a_flat():
     """Straight on, not to the nearest edge."""
     path = fall_path.trace(disc(terrain(lambda x, y: 3000 - STEEP * np.minimum(x, 1000)), (300, 700)), 1e5)
