@@ -1,6 +1,8 @@
 """The fall path against closed forms, the probabilities on it against the t distribution, and slope mobility."""
 import csv
 import math
+import re
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -10,14 +12,17 @@ from affine import Affine
 from scipy import stats
 from shapely.geometry import LineString, Point, box
 
-from run_helpers import here, run_command, write_asc, write_geojson  # noqa: F401  (here: a fixture)
+from run_helpers import TOP, here, run_command, write_asc, write_geojson  # noqa: F401  (here: a fixture)
 
+from slope_tools.commands import mobility as mobility_command  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
 from slope_tools.mobility import body, charts, events, exceedance, fall_path, road  # noqa: E402
-from slope_tools.survey import release  # noqa: E402
+from slope_tools.survey import rasters, release  # noqa: E402
 from slope_tools.survey.rasters import Raster  # noqa: E402
 
 ALL = events.read()
+DATA = next((folder for folder in (top / "shared" / "data" for top in TOP.parents) if folder.is_dir()), TOP / "none")
+FRANK = DATA / "frank"
 STEEP = 0.5         # slope of the ground
 RADIUS = 150.0      # m, of the body
 
@@ -221,6 +226,20 @@ def test_a_road(known):
     assert not beside.met and beside.beside == pytest.approx(100, abs=3) and beside.x == pytest.approx(1010, abs=11)
 
 
+@pytest.mark.skipif(not FRANK.is_dir(), reason="the rasters of inputs/30_frank are not here")
+def test_the_frank_slide():
+    """By all events but itself, what was observed is inside of 10 to 90 %, along the river and across the valley."""
+    after, pile = (rasters.read(FRANK / f"Frankslide_{name}.asc") for name in ("topography", "pile"))
+    mass = body.of_arrays(after._replace(z=after.z + pile.z), pile.z, "Frank")
+    others = [one for one in ALL if one.name != "Frank Slide"]
+    across = fall_path.given(mass, LineString([(413, 1264), (3960, 3633)]), "line")
+    for path in (None, across):
+        found = exceedance.of_body(mass, others, False, path=path)
+        assert found.in_range and found.volume == pytest.approx(36.0, abs=0.1)
+        assert 0.1 < found.exceedance(3080) < 0.9
+    assert found.length_at(0.5) == pytest.approx(3080, rel=0.05)
+
+
 # --- the command ---
 
 @pytest.fixture
@@ -290,27 +309,27 @@ def test_a_terrain_that_is_too_small(place):
     assert summary()["confined"]["lengths_m"]["0.5"] is None and summary()["confined"]["beyond_path"] > 0.5
 
 
+def of_site(folder="site"):
+    """A folder as slope site makes it, as far as it counts here."""
+    Path(folder).mkdir()
+    shutil.copy("terrain.asc", folder)
+    mass = body.of_release(release.body_of(release.Wanted("terrain.asc", "p.geojson", depth=20, local=True)), "p")
+    write_asc(f"{folder}/release.depth.asc", np.where(mass.depth > 0, mass.depth, np.nan), 10.0)
+    Path(folder, "site.yaml").write_text("slope_site: 1\nterrain: {files: [dem.tif]}\nrelease: {polygon: p.geojson}\n")
+    Path(folder, "road.csv").write_text("1500,0\n1520,0\n1520,590\n1500,590\n")
+    return folder
+
+
 def test_a_site(place):
-    """The folder's terrain and body; the same as from the terrain."""
+    """The folder's terrain, body and road; the same as from the terrain."""
     place(f"{BODY} --road road.wkt -o out")
-    Path("site").mkdir()
-    Path("terrain.asc").rename("site/terrain.asc")
-    mass = body.of_release(released("site/terrain.asc"), "p")
-    write_asc("site/release.depth.asc", np.where(mass.depth > 0, mass.depth, np.nan), 10.0)
-    Path("site/site.yaml").write_text("slope_site: 1\nterrain: {files: [dem.tif]}\nrelease: {polygon: p.geojson}\n")
-    Path("road.wkt").rename("site/road.csv")
-    Path("site/road.csv").write_text("1500,0\n1520,0\n1520,590\n1500,590\n")
-    status, _, err = place("site -o site/known")
+    status, _, err = place(f"{of_site()} -o site/known")
     assert (status, err) == (0, "")
     for key, values in rows()[1].items():
         assert rows("site/known")[1][key] == pytest.approx(values, abs=1e-3)
-    assert summary("site/known")["road"]["exceedance"] == pytest.approx(summary()["road"]["exceedance"], abs=1e-4)
+    assert summary("site/known")["road"] == pytest.approx(summary()["road"], abs=1e-4)
     status, _, err = place("site --depth 3 -o out")
     assert status == 2 and "site: is the folder of a site" in err and err.count("\n") == 1
-
-
-def released(path):
-    return release.body_of(release.Wanted(path, "p.geojson", depth=20, local=True))
 
 
 HEAD = "name,fall_m,length_m,volume_Mm3,confinement\n"
@@ -332,6 +351,23 @@ def test_bad_input_is_one_line(place, text, more, words):
     status, _, err = place(f"{BODY} {more} -o out")
     assert status == 2 and err.count("\n") == 1 and all(word in err for word in words), err
     assert not Path("out").exists()
+
+
+def examples():
+    text = (TOP / "doc" / "src" / "tool_mobility.rst").read_text(encoding="ascii")
+    return re.findall(r"^ +tools/slope mobility ((?!TERRAIN|SITE).*)", text + mobility_command.EPILOG, re.MULTILINE)
+
+
+@pytest.mark.parametrize("command", examples())
+def test_every_example_of_the_page_and_the_help_runs(place, command):
+    write_geojson("release.geojson", Point(300, 300).buffer(RADIUS))
+    write_geojson("road.geojson", box(1500, 0, 1520, 590))
+    shutil.copy("terrain.asc", "before.asc")
+    shutil.copytree(of_site(), "mine")
+    write_asc("after.asc", hillside()[0].z - disc(hillside(), (300, 300)).depth, 10.0)
+    local = " --local" * ("geojson" in command)       # the files of these tests have no CRS
+    status, out, err = place(command + local)
+    assert (status, err) == (0, "") and ("--help" in command or "crown at" in out)
 
 
 def test_pictures(known, tmp_path):
