@@ -52,6 +52,16 @@ def test_beyond_the_path_is_at_least(known):
     assert f"as far as at least {percent(1 - known.beyond_path(False))} of rock" in text
 
 
+def test_a_terrain_that_ends_before_half_of_the_events():
+    data, ground, numbers = case([900.0])
+    assert "leaves the terrain" not in mobility_part.content(data, ground, numbers)[0][1]
+    part = {"raster": ground.raster._replace(z=ground.raster.z[:, :150]), "before": ground.before[:, :150],
+            "slip_depth": ground.slip_depth[:, :150]}
+    text = mobility_part.content(data, SimpleNamespace(**part), numbers)[0][1]
+    shares = [exceedance.of_body(disc(hillside(), (300, 300)), ALL).exceedance(1340, kind) for kind in (False, True)]
+    assert f"leaves the terrain after 1,340 m, where {percent(shares[0])} ({percent(shares[1])}) of them go on" in text
+
+
 @pytest.mark.parametrize("change, words", [
     ({"volume": 49e3}, ("No set of known events covers", "0.049 million m3", "0.1 to 498")),
     ({"lengths": [None]}, ("No run has a connected deposit",)),

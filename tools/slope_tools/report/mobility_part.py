@@ -9,6 +9,7 @@ from typing import List, NamedTuple, Optional, Tuple
 
 from ..errors import SlopeError
 from ..mobility import body, events, exceedance, relation
+from ..mobility.fall_path import TERRAIN
 from ..mobility.results import percent
 
 WHAT = "Known events"
@@ -76,4 +77,14 @@ def sentence(found: Lies, numbers, label: str) -> str:
     return (f"{who} {reach} m: as far as {shares[0]} of rock avalanches of this volume and height do ({shares[1]} "
             "where the path is laterally confined); the others go farther. The lengths of the runs are as the crow "
             "flies and without stray balls, those of the events along the path to the tip, so that this errs on the "
-            "safe side (slope mobility).")
+            "safe side (slope mobility)." + beyond_the_terrain(found.mobility, numbers, label))
+
+
+def beyond_the_terrain(mobility: exceedance.Mobility, numbers, label: str) -> str:
+    """What the edge of the terrain hides, if half of the events of either kind go beyond; else nothing."""
+    shares = [mobility.beyond_path(kind) for kind in (False, True)]
+    if mobility.path.end != TERRAIN or max(shares) <= 0.5:
+        return ""
+    length = numbers("fall path within the terrain", "m", mobility.path.length[-1], None, label)
+    return (f" The fall path leaves the terrain after {length} m, where {percent(shares[0])} ({percent(shares[1])}) of "
+            "them go on: no run shows what lies there.")
