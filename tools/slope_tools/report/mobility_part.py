@@ -9,7 +9,6 @@ from typing import List, NamedTuple, Optional, Tuple
 
 from ..errors import SlopeError
 from ..mobility import body, events, exceedance, relation
-from ..mobility.fall_path import TERRAIN
 from ..mobility.results import percent
 
 WHAT = "Known events"
@@ -83,7 +82,7 @@ def sentence(found: Lies, numbers, label: str) -> str:
 def beyond_the_terrain(mobility: exceedance.Mobility, numbers, label: str) -> str:
     """What the edge of the terrain hides, if half of the events of either kind go beyond; else nothing."""
     shares = [mobility.beyond_path(kind) for kind in (False, True)]
-    if mobility.path.end != TERRAIN or max(shares) <= 0.5:
+    if max(shares) <= 0.5:      # with hardly any left, the path ends within the terrain
         return ""
     length = numbers("fall path within the terrain", "m", mobility.path.length[-1], None, label)
     return (f" The fall path leaves the terrain after {length} m, where {percent(shares[0])} ({percent(shares[1])}) of "
