@@ -15,6 +15,7 @@ import yaml
 
 from .. import disk
 from ..errors import SlopeError
+from ..survey import vectors
 
 NAME = "site.yaml"
 VERSION = 1             # of site.yaml, also in its schema
@@ -155,7 +156,7 @@ def sources(choices: Choices, folder: Path) -> Dict[str, str]:
     """{path as in site.yaml: digest} of the files that the choices name and that exist, with the files beside them that
     say what they mean."""
     found_: Dict[str, str] = {}
-    for name in source_files(choices):
+    for name in (vectors.source(one).path for one in source_files(choices)):
         if os.path.isfile(name):
             beside = [str(Path(name).with_suffix(suffix)) for suffix in BESIDE] + [f"{name}.aux.xml"]
             parts = [os.path.basename(one) + disk.sha256(one) for one in (name, *beside) if os.path.isfile(one)]

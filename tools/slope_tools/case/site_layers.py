@@ -51,7 +51,7 @@ def read_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> L
     observed = observed_layer(choices["observed"]["file"], raster, folder, help_, tell, warn)
     taken: Set[str] = set(site_inputs.TAKEN)
     structures = site_inputs.structures(choices["structures"]["files"], raster, folder, taken)
-    lines = site_inputs.control_lines(choices["lines"]["files"], raster, folder, taken, help_)
+    lines = site_inputs.control_lines(choices["lines"]["files"], raster, folder, taken, warn, help_)
     motion = site_inputs.motion(choices["motion"]["file"], folder) if choices["motion"]["file"] else None
     for one in structures:
         tell(one.summary)
@@ -74,7 +74,7 @@ def polygon_layer(path: Optional[str], raster: Raster, target: Path, help_: poly
     """A polygon in local metres, written for the deck; None if there is none."""
     if not path:
         return None
-    geometry = polygons.read_local(path, raster, advice=help_)
+    geometry = polygons.read_local(path, raster, advice=help_, warn=warn)
     beyond = 1 - geometry.intersection(box(*extent(raster))).area / geometry.area
     if beyond > 1e-9:
         warn(f"{path}: {100 * beyond:.2g} % of the area lies outside of the terrain")

@@ -5,11 +5,11 @@ from pathlib import Path
 from .. import errors
 from ..case import release_files
 from ..options import number
-from ..survey import release, release_scar
+from ..survey import release, release_scar, vectors
 from ..survey.release import SHAPES
 
 EPILOG = """\
-P: polygons as slope polygon takes them (GeoJSON, shapefile, CSV, WKT)
+P: polygons as slope polygon takes them (GeoJSON, shapefile, FILE|layername=NAME, CSV, WKT)
 shapes: sphere (default) through the ends of the fall line in the polygon; ellipsoid, the same, but as wide as the
   polygon; plane (default with --dip), through the toe unless a depth or volume is given; slbl, the sloping local base
   level. --depth or --volume finds their free number.
@@ -36,6 +36,8 @@ def add_parser(commands, **kwargs):
                         help="first part of the names of all files")
     parser.add_argument("--polygon", metavar="P", help="the release area; with --scar, only the part of "
                         "the scar inside it is used")
+    parser.add_argument("--layer", metavar="NAME", help="of the layers of P this one (default: the only one, or the "
+                        "only one of polygons)")
     parser.add_argument("--shape", choices=SHAPES, help="of the slip surface")
     size = parser.add_mutually_exclusive_group()
     size.add_argument("--depth", metavar="D", type=number, help="largest depth below the ground, vertical, m")
@@ -61,8 +63,9 @@ def add_parser(commands, **kwargs):
 
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints the body's numbers before it writes any file."""
-    release_files.check(args.output, [path for path in (args.terrain, args.polygon, args.scar) if path])
-    wanted = release.Wanted(args.terrain, args.polygon, args.shape, args.depth, args.volume, args.curvature, args.dip,
+    polygon = args.polygon and vectors.named(args.polygon, args.layer)
+    release_files.check(args.output, [vectors.source(path).path for path in (args.terrain, polygon, args.scar) if path])
+    wanted = release.Wanted(args.terrain, polygon, args.shape, args.depth, args.volume, args.curvature, args.dip,
                             args.direction, args.scar, args.scar_is, args.least, args.crs, args.local)
     body = release.body_of(wanted)
     print(release.text(body), flush=True)

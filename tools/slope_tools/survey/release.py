@@ -57,14 +57,16 @@ def body_of(wanted: Wanted) -> Body:
     wanted = check(wanted)
     raster = read_terrain(wanted.terrain)
     geometry = None
+    doubts: List[str] = []
     if wanted.polygon:
         crs = as_crs("--assign-crs", wanted.crs) if wanted.crs else None
         geometry = polygons.read_local(wanted.polygon, raster, local=wanted.local, crs=crs,
-                                       advice=wanted.advice or polygons.OF_ASSIGN_CRS._replace(terrain=wanted.terrain))
+                                       advice=wanted.advice or polygons.OF_ASSIGN_CRS._replace(terrain=wanted.terrain),
+                                       warn=doubts.append)
     area, surface, choices = (from_scar if wanted.scar else from_shape)(wanted, raster, geometry)
     slip = release_solve.slip_surface(area, release_solve.depths(area, surface), wanted.where)
     found = release_solve.measures(area, slip)
-    doubts = [*warnings(choices, found, area), *in_parts(area, slip, geometry)]
+    doubts += [*warnings(choices, found, area), *in_parts(area, slip, geometry)]
     return Body(raster, geometry, area, slip, choices, found, doubts)
 
 
