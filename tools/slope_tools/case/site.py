@@ -145,14 +145,18 @@ def wanted_body(choices: Choices, new: Path) -> release.Wanted:
     given = choices["release"]
     if not (given["polygon"] or given["scar"]):
         raise SlopeError("--release", "must be given, a polygon, or --scar, a raster")
-    return release.check(release.Wanted(str(new / TERRAIN), **given, advice=advice(choices)))
+    site_choices.check_assigned(choices)
+    crs, scar_crs = (given[key] and site_choices.assigned(choices, given[key]) for key in ("polygon", "scar"))
+    return release.check(release.Wanted(str(new / TERRAIN), **given, crs=crs, scar_crs=scar_crs,
+                                        advice=advice(choices, given["polygon"] or given["scar"])))
 
 
 def terrain(choices: Choices, new: Path, tell, warn) -> Raster:
     """Write the terrain and read it back, as the deck will."""
     given = choices["terrain"]
+    own = {path: crs for path in given["files"] if (crs := site_choices.assigned(choices, path))}
     wanted = local_terrain.Wanted(given["crs"], None, given["cell"], given["bounds"], given["fill"],
-                                  given["assign_crs"])
+                                  given["assign_crs"], own, given["z_unit"], given["nodata"])
     about = local_terrain.make(given["files"], new / TERRAIN, wanted, tell, warn)
     tell(local_terrain.summary(TERRAIN, about))
     return rasters.read_asc_local(new / TERRAIN)

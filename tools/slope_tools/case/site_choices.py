@@ -16,6 +16,7 @@ import yaml
 from .. import disk
 from ..errors import SlopeError
 from ..survey import vectors
+from ..survey.crs import as_crs
 
 NAME = "site.yaml"
 VERSION = 1             # of site.yaml, also in its schema
@@ -25,6 +26,8 @@ WHAT = "a site.yaml of `slope site`"
 # keys that hold one file, and lists of files
 FILES = (("terrain", "files"), ("release", "polygon"), ("release", "scar"), ("road", "file"), ("structures", "files"),
          ("lines", "files"), ("motion", "file"), ("observed", "file"))
+
+WITHOUT_CRS = (("structures", "files"), ("motion", "file"))
 
 # beside a raster, a shapefile or a table: CRS, place, attributes
 BESIDE = (".prj", ".shx", ".dbf", ".cpg", ".tfw", ".hdr", ".yaml")
@@ -190,11 +193,31 @@ def with_files(choices: Choices, change) -> Choices:
 
 def source_files(choices: Choices) -> List[str]:
     """All files that the choices name."""
-    named: List[str] = []
-    for section, key in FILES:
-        value = choices[section].get(key)
-        named += value if isinstance(value, list) else [value] if value else []
-    return named
+    return [name for section, key in FILES for name in listed(choices, section, key)]
+
+
+def listed(choices: Choices, section: str, key: str) -> List[str]:
+    """The files of a key, also of one that holds one file or none."""
+    value = choices[section].get(key)
+    return value if isinstance(value, list) else [value] if value else []
+
+
+def assigned(choices: Choices, name: str) -> Optional[str]:
+    """The CRS that the choices assign to a file, None if they assign none; a key is the end of its path."""
+    parts = Path(vectors.source(name).path).parts
+    own = choices["crs"]["assigned"]
+    fit = [key for key in own if parts[-len(Path(key).parts):] == Path(key).parts]
+    return own[max(fit, key=len)] if fit else None
+
+
+def check_assigned(choices: Choices) -> None:
+    """Raise SlopeError unless every key of crs.assigned is the end of the path of a file that has a CRS."""
+    named = [name for place in FILES if place not in WITHOUT_CRS for name in listed(choices, *place)]
+    for key, crs in choices["crs"]["assigned"].items():
+        if all(assigned({"crs": {"assigned": {key: crs}}}, name) is None for name in named):
+            raise SlopeError("--assign-crs", "FILE=EPSG:n must name a file of the site that has coordinates, "
+                             + ", ".join(Path(vectors.source(name).path).name for name in named), key)
+        as_crs(f"--assign-crs {key}", crs)
 
 
 def text(choices: Choices, found_: Dict[str, Any], folder: Path) -> str:

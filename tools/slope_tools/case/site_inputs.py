@@ -5,9 +5,10 @@ Each is read, checked, brought to the terrain's local metres, and written into t
 import re
 import shutil
 from pathlib import Path
-from typing import Iterable, List, NamedTuple, Set, Tuple
+from typing import Iterable, List, NamedTuple, Optional, Set, Tuple
 
 import numpy as np
+from rasterio.crs import CRS
 
 from ..errors import SlopeError
 from ..geometry import extent
@@ -118,12 +119,18 @@ def structure(path: str, raster: Raster, folder: Path, taken: Set[str]) -> Struc
 
 # --- lines ---
 
-def control_lines(paths: Iterable[str], raster: Raster, folder: Path, taken: Set[str], warn,
-                  advice: polygons.Advice = polygons.ADVICE) -> List[Line]:
+class Drawn(NamedTuple):
+    """A file with a control line."""
+    path: str
+    crs: Optional[CRS]          # assigned to it
+    advice: polygons.Advice
+
+
+def control_lines(files: Iterable[Drawn], raster: Raster, folder: Path, taken: Set[str], warn) -> List[Line]:
     """Write control lines in local metres into a folder."""
     found = []
-    for path in paths:
-        parts = lines.read_local(path, raster, False, advice=advice, warn=warn).geoms
+    for path, crs, advice in files:
+        parts = lines.read_local(path, raster, False, advice=advice, crs=crs, warn=warn).geoms
         if len(parts) != 1:
             raise SlopeError(path, "must hold one line", f"{len(parts)} that do not meet")
         points = np.round(np.asarray(parts[0].coords)[:, :2], 4) + 0.0

@@ -49,9 +49,9 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--direction", metavar="B", type=number,
                         help="compass bearing to which the plane dips, degrees (default: the fall line's)")
     parser.add_argument("--scar", metavar="RASTER", help="the body is what this raster says, see --scar-is")
-    parser.add_argument("--scar-is", choices=release_scar.KINDS, default="surface",
-                        help="surface: heights after the event (default); depth: of the slip surface, positive down; "
-                             "change: after minus before, of which the loss counts")
+    parser.add_argument("--scar-is", choices=release_scar.KINDS,
+                        help="surface: heights after the event (default, if they follow the terrain's); depth: of the "
+                             "slip surface, positive down; change: after minus before, of which the loss counts")
     parser.add_argument("--least", metavar="D", type=number, default=0.0,
                         help="depths of a scar below this count as none, m (default 0): the noise of two surveys")
     place = parser.add_mutually_exclusive_group()
