@@ -10,7 +10,7 @@ from shapely.geometry.base import BaseGeometry
 
 from ..errors import SlopeError
 from ..geometry import extent
-from ..survey import polygons, rasters, vectors
+from ..survey import polygons, rasters, release_area, vectors
 from ..survey.crs import as_crs, same_crs
 from ..survey.rasters import Raster, crs_name
 from . import site_choices, site_inputs
@@ -77,6 +77,46 @@ def assigned(choices: Choices, path: str) -> Optional[CRS]:
     """The CRS that the choices assign to a file, None if they do not."""
     name = site_choices.assigned(choices, path)
     return as_crs(f"--assign-crs {path}", name) if name else None
+
+
+class Ground(NamedTuple):
+    """The ground in a polygon."""
+    mean: float         # m
+    low: float
+    high: float
+    slope: float        # degrees, of the plane that fits it best
+
+    @property
+    def words(self) -> str:
+        return f"{self.mean:.0f} m on average, a slope of {self.slope:.0f} degrees"
+
+
+def ground_of(choices: Choices, path: str, raster: Raster) -> Optional[Ground]:
+    """The ground in a polygon file, None if that cannot be read or has too few nodes."""
+    try:
+        geometry = polygons.read_local(path, raster, crs=assigned(choices, path))
+    except SlopeError:
+        return None
+    inside = release_area.nodes_inside(raster, geometry) & np.isfinite(raster.z)
+    if inside.sum() < release_area.FEWEST:
+        return None
+    z = raster.z[inside]
+    columns, rows = raster.transform * np.meshgrid(np.arange(raster.z.shape[1]) + 0.5, np.arange(len(raster.z)) + 0.5)
+    _, slope = release_area.fall(columns[0], rows[:, 0], raster.z, inside)
+    return Ground(float(z.mean()), float(z.min()), float(z.max()), slope)
+
+
+def swapped(choices: Choices, raster: Raster, wholly: bool = False) -> Optional[str]:
+    """What speaks for release area and road having been swapped, None if nothing does.
+
+    That is a road on higher and steeper ground; wholly: no part of it as low as the top of the release area.
+    """
+    paths = choices["release"]["polygon"], choices["road"]["file"]
+    release, road = (ground_of(choices, path, raster) if path else None for path in paths)
+    higher = release and road and (road.low > release.high if wholly else road.mean > release.mean)
+    if release and road and higher and road.slope > release.slope:
+        return f"--release {paths[0]}: {release.words}; --road {paths[1]}: {road.words}"
+    return None
 
 
 def polygon_layer(choices: Choices, path: Optional[str], raster: Raster, target: Path, tell, warn):

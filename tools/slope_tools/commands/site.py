@@ -2,6 +2,7 @@
 import argparse
 import os
 from pathlib import Path
+from shlex import quote
 from typing import Any, Dict
 
 from ..case import site, site_choices
@@ -24,6 +25,7 @@ OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
            "scar": ("release", "scar"), "scar_is": ("release", "scar_is"), "least": ("release", "least"),
            "road": ("road", "file"), "cut_angle": ("road", "cut_angle"), "mesh": ("road", "mesh"),
            "structure": ("structures", "files"), "line": ("lines", "files"), "motion": ("motion", "file"),
+           "peak_friction": ("motion", "peak_friction"),
            "observed": ("observed", "file"), "diameter": ("balls", "diameter"), "balls": ("balls", "number"),
            "minutes": ("balls", "minutes"), "memory": ("balls", "memory"), "name": ("project", "name"),
            "client": ("project", "client"), "author": ("project", "author")}
@@ -110,6 +112,8 @@ def add_layers(group):
                        "be given several times")
     group.add_argument("--motion", metavar="FILE", help="ground motion written by slope quake: the body stands, is "
                        "shaken, and loses its strength once it has moved far enough")
+    group.add_argument("--peak-friction", metavar="DEG", type=number, help="strength that holds the body before the "
+                       "earthquake, degrees (default: 7 more than the slope of its slip surface, 33 at least)")
     group.add_argument("--observed", metavar="P|RASTER", help="a mapped deposit, outline or thickness, with which the "
                        "run shown in the report is compared")
 
@@ -133,7 +137,7 @@ def run(args):
                          printer("site"), site_map.draw, again=args.folder is not None,
                          known=known)
     print(f"written to {folder}: {' '.join(made.files)}")
-    print(f"look at {folder / site.MAP}, then: tools/slope study {folder}")
+    print(f"look at {folder / site.MAP}, then: tools/slope study {quote(str(folder))}")
 
 
 def chosen(args):
