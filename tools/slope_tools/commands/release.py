@@ -4,11 +4,11 @@ from pathlib import Path
 
 from .. import errors
 from ..case import release_files
-from ..survey import release
+from ..survey import release, vectors
 from .release_arguments import add_body, wanted
 
 EPILOG = """\
-P: polygons as slope polygon takes them (GeoJSON, shapefile, CSV, WKT)
+P: polygons as slope polygon takes them (GeoJSON, shapefile, FILE|layername=NAME, CSV, WKT)
 shapes: sphere (default) through the ends of the fall line in the polygon; ellipsoid, the same, but as wide as the
   polygon; plane (default with --dip), through the toe unless a depth or volume is given; slbl, the sloping local base
   level. --depth or --volume finds their free number.
@@ -39,8 +39,9 @@ def add_parser(commands, **kwargs):
 
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints the body's numbers before it writes any file."""
-    release_files.check(args.output, [path for path in (args.terrain, args.polygon, args.scar) if path])
     asked = wanted(args)
+    release_files.check(args.output, [vectors.source(path).path
+                                      for path in (args.terrain, asked.polygon, args.scar) if path])
     body = release.body_of(asked)
     print(release.text(body), flush=True)
     tell = errors.printer("release")

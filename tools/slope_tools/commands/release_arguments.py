@@ -1,12 +1,14 @@
 """Arguments of the commands that take a body: which one, below a polygon or from a scar."""
 from ..options import number
-from ..survey import release, release_scar
+from ..survey import release, release_scar, vectors
 
 
 def add_body(parser) -> None:
     """All that says which body is released, but for the terrain."""
     parser.add_argument("--polygon", metavar="P", help="the release area; with --scar, only the part of "
                         "the scar inside it is used")
+    parser.add_argument("--layer", metavar="NAME", help="of the layers of P this one (default: the only one, or the "
+                        "only one of polygons)")
     parser.add_argument("--shape", choices=release.SHAPES, help="of the slip surface")
     size = parser.add_mutually_exclusive_group()
     size.add_argument("--depth", metavar="D", type=number, help="largest depth below the ground, vertical, m")
@@ -18,9 +20,9 @@ def add_body(parser) -> None:
     parser.add_argument("--direction", metavar="B", type=number,
                         help="compass bearing to which the plane dips, degrees (default: the fall line's)")
     parser.add_argument("--scar", metavar="RASTER", help="the body is what this raster says, see --scar-is")
-    parser.add_argument("--scar-is", choices=release_scar.KINDS, default="surface",
-                        help="surface: heights after the event (default); depth: of the slip surface, positive down; "
-                             "change: after minus before, of which the loss counts")
+    parser.add_argument("--scar-is", choices=release_scar.KINDS,
+                        help="surface: heights after the event (default, if they follow the terrain's); depth: of the "
+                             "slip surface, positive down; change: after minus before, of which the loss counts")
     parser.add_argument("--least", metavar="D", type=number, default=0.0,
                         help="depths of a scar below this count as none, m (default 0): the noise of two surveys")
     place = parser.add_mutually_exclusive_group()
@@ -31,5 +33,6 @@ def add_body(parser) -> None:
 
 def wanted(args) -> release.Wanted:
     """What these arguments, and the terrain, ask for."""
-    return release.Wanted(args.terrain, args.polygon, args.shape, args.depth, args.volume, args.curvature, args.dip,
+    polygon = args.polygon and vectors.named(args.polygon, args.layer)
+    return release.Wanted(args.terrain, polygon, args.shape, args.depth, args.volume, args.curvature, args.dip,
                           args.direction, args.scar, args.scar_is, args.least, args.crs, args.local)
