@@ -265,11 +265,12 @@ struct LoneContact {
       dv[d] = u[d] - u1[d];
     }
     const double share = cut(f, limit);
-    if (share < 1.0 && k > 0.0) {
+    const bool alone = !(k > 0.0);    // a dashpot may have slid, and hold at the end
+    if (share < 1.0 || alone) {
       const double held = cut(dv, inverse * most);
       for (int d = 0; d < 3; d++) {
         u1[d] = u[d] - held * dv[d];
-        x1[d] = (share * f[d] - c * u1[d]) / k;
+        x1[d] = alone ? 0.0 : (share * f[d] - c * u1[d]) / k;
       }
     }
     for (int d = 0; d < 3; d++) {

@@ -47,7 +47,8 @@ template <class N> SLOPE_INLINE N step_dashpot(N k, N c, N inverse_mass, double 
 }
 
 // Spring and dashpot such that the steps are on the oscillation of k and c: h' = tanh(h),
-// a' = 2 - (1 + h') 2 exp(-h) cos(sqrt(a - h^2)), the cosine as a series, of a - h^2 < 0 too
+// a' = 2 - (1 + h') 2 exp(-h) cos(sqrt(a - h^2)), the cosine as a series; overdamped, with q^2 = h^2 - a,
+// a' = 2 - 2 cosh(q) / cosh(h), which is 0 without a spring
 template <class N> SLOPE_INLINE void step_oscillator(N &k, N &c, N inverse_mass, double dt)
 {
   const N a = k * dt * dt * inverse_mass, h = 0.5 * c * dt * inverse_mass;
@@ -55,8 +56,15 @@ template <class N> SLOPE_INLINE void step_oscillator(N &k, N &c, N inverse_mass,
   const N cosine =
       1.0 - y / 2.0 * (1.0 - y / 12.0 * (1.0 - y / 30.0 * (1.0 - y / 56.0 * (1.0 - y / 90.0))));
   const N decay = root(N((1.0 - t) / (1.0 + t)));    // exp(-h)
+  N stiffness = 2.0 - 2.0 * (1.0 + t) * decay * cosine;
+  if (bits(y < 0.0)) {    // rare: h of several, where the series fails
+    const N q = root(larger(N(-y), N())), slow = a / (h + q);
+    const N ratio =
+        decay_factor(slow) * (1.0 + decay_factor(N(2.0 * q))) / (1.0 + decay_factor(N(2.0 * h)));
+    stiffness = choose(y < 0.0, N(2.0 - 2.0 * ratio), stiffness);
+  }
   c = t * 2.0 / (dt * inverse_mass);
-  k = (2.0 - 2.0 * (1.0 + t) * decay * cosine) / (dt * dt * inverse_mass);
+  k = stiffness / (dt * dt * inverse_mass);
 }
 
 // inverse_mass (1/kg): 1/m_i + 1/m_j, where a fixed ball has none. mass_dashpot (kg): that of the

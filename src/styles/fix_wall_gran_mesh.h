@@ -105,7 +105,6 @@ class FixWallGranMesh : public FixContactWall {
                              const Slope::ImpactForce &) const;
   void keep_given();
   void reduce();
-  void record();
 };
 
 }    // namespace LAMMPS_NS
