@@ -95,13 +95,22 @@ inline void request_history_list(Neighbor *neighbor, Pair *pair, int instance)
 // are as those of all others, whatever special_bonds says
 static constexpr bool LISTS_OF_SPHERES_KNOW_BONDS = SLOPE_LAMMPS_VERSION >= 20220623;
 
-// values of ghost atoms from, and to, those that own them, by a pair style's pack and unpack
+// values of ghost atoms from, and to, those that own them, by the style's pack and unpack
 inline void forward_comm(Comm *comm, Pair *pair)
 {
 #if SLOPE_LAMMPS_VERSION >= 20220324
   comm->forward_comm(pair);
 #else
   comm->forward_comm_pair(pair);
+#endif
+}
+
+inline void forward_comm(Comm *comm, Fix *fix)
+{
+#if SLOPE_LAMMPS_VERSION >= 20220324
+  comm->forward_comm(fix);
+#else
+  comm->forward_comm_fix(fix);
 #endif
 }
 

@@ -25,11 +25,10 @@ static constexpr double GROWN = 1.5;    // rows over those in the file that make
 ------------------------------------------------------------------------- */
 
 SurfaceRecorder::SurfaceRecorder(LAMMPS *lmp, const std::string &_caller,
-                                 const std::string &_prefix, int _every,
-                                 const TouchedSurface &_surface) :
+                                 const std::string &_prefix, const TouchedSurface &_surface) :
     Pointers(lmp),
-    prefix(_prefix), caller(_caller), every(_every), surface(_surface), largest(0.0), nrow(0.0),
-    written(0.0), last_row(-1)
+    prefix(_prefix), caller(_caller), surface(_surface), largest(0.0), nrow(0.0), written(0.0),
+    steps(0.0)
 {
   on_rank_zero(lmp, caller, [this]() {
     FileSet::probe({prefix + ".csv", prefix + ".triangles.csv", prefix + ".vtp"});
@@ -40,19 +39,14 @@ SurfaceRecorder::SurfaceRecorder(LAMMPS *lmp, const std::string &_caller,
 
 void SurfaceRecorder::add(int triangle, double force, double impulse)
 {
-  fresh.push_back(
-      {static_cast<double>(update->ntimestep), static_cast<double>(triangle), force, impulse});
+  fresh.push_back({steps + 1.0, static_cast<double>(triangle), force, impulse});
 }
 
 void SurfaceRecorder::end_step(const double *force)
 {
+  steps++;
   forces.insert(forces.end(), force, force + 3);
   if (forces.size() >= 3 * SEND) send();
-}
-
-bool SurfaceRecorder::row_due() const
-{
-  return update->ntimestep % every == 0 && update->ntimestep != last_row;
 }
 
 /* ----------------------------------------------------------------------
@@ -80,7 +74,6 @@ void SurfaceRecorder::send()
 void SurfaceRecorder::add_row(double time, const double *values)
 {
   send();
-  last_row = update->ntimestep;
   nrow++;
   if (comm->me == 0) {
     SurfaceLoads::Row row;
@@ -101,11 +94,10 @@ void SurfaceRecorder::write()
   send();
   written = nrow;
   on_rank_zero(lmp, caller, [this]() {
-    const double step = static_cast<double>(update->ntimestep);
     FileSet files;
     files.add(prefix + ".csv").write(loads.series());
-    files.add(prefix + ".triangles.csv").write(loads.triangles(surface, step));
-    files.add(prefix + ".vtp").write(loads.polydata(surface, step));
+    files.add(prefix + ".triangles.csv").write(loads.triangles(surface, steps));
+    files.add(prefix + ".vtp").write(loads.polydata(surface, steps));
     files.commit();
   });
 }
@@ -115,7 +107,7 @@ void SurfaceRecorder::write()
 std::vector<double> SurfaceRecorder::pack()
 {
   send();
-  std::vector<double> list = {nrow, largest, static_cast<double>(last_row)};
+  std::vector<double> list = {nrow, largest, steps};
   const std::vector<double> more = loads.pack();
   list.insert(list.end(), more.begin(), more.end());
   return list;
@@ -124,7 +116,7 @@ std::vector<double> SurfaceRecorder::pack()
 void SurfaceRecorder::unpack(const double *numbers)
 {
   nrow = written = numbers[0];
-  last_row = static_cast<bigint>(numbers[2]);
+  steps = numbers[2];
   if (comm->me > 0) return;
   largest = numbers[1];
   loads.unpack(numbers + 3);

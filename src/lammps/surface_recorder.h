@@ -21,7 +21,7 @@ namespace LAMMPS_NS {
 // of a run.
 class SurfaceRecorder : protected Pointers {
  public:
-  SurfaceRecorder(class LAMMPS *, const std::string &caller, const std::string &prefix, int every,
+  SurfaceRecorder(class LAMMPS *, const std::string &caller, const std::string &prefix,
                   const Slope::TouchedSurface &);
 
   const std::string prefix;
@@ -30,7 +30,6 @@ class SurfaceRecorder : protected Pointers {
   void add(int triangle, double force, double impulse);
   void end_step(const double *force);    // collective
 
-  bool row_due() const;
   void add_row(double time, const double *force_moment_impulse_contacts);    // on all ranks
   void write();                                                              // collective
 
@@ -41,14 +40,13 @@ class SurfaceRecorder : protected Pointers {
   static constexpr int SEND = 50;    // steps
 
   std::string caller;
-  int every;
   const Slope::TouchedSurface &surface;
   Slope::SurfaceLoads loads;                         // of all, on rank 0
   std::vector<Slope::SurfaceLoads::Record> fresh;    // of this rank, not sent yet
   std::vector<double> forces;                        // three numbers for each step
   double largest;                                    // size of the force since the last row
   double nrow, written;                              // rows
-  bigint last_row;                                   // its step
+  double steps;    // made so far: their number in LAMMPS may come again, by reset_timestep
 
   void send();
 };

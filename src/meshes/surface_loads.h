@@ -18,7 +18,8 @@ namespace Slope {
 // edge or a corner one of the triangles there has all.
 class SurfaceLoads {
  public:
-  // of one step, on one triangle, of one rank's balls; numbers only, so that ranks can send them
+  // of one step, on one triangle, of one rank's balls; numbers only, so that ranks can send them.
+  // Steps are counted such that no number comes again.
   struct Record {
     double step, triangle;
     double force, impulse;    // along the normal of the contact, N, N s

@@ -15,6 +15,8 @@ static constexpr double SHELL = 0.05;    // of the radius: how far around a ball
 static constexpr double ON_PLANE = 1.0e-9;    // of the radius
 static constexpr double COS_FOLLOWED = 0.7071067811865476;
 static constexpr double LEAST_SHARE = 1.0e-3;    // of its depth that a contact always keeps
+static constexpr double MOST_TURN = 10.0;    // per motion: where the centre all but lies on an edge
+static constexpr double TINY = 1.0e-300;     // m
 static constexpr int MOST_SWEEPS = 100;
 static constexpr double SWEPT = 1.0e-9;    // of the largest overlap
 
@@ -148,7 +150,7 @@ Height height_above(const SurfacePoint &plane, const SurfacePoint &own)
   if (plane.on == SurfacePoint::CORNER) turns = 1.0;
   if (plane.on == SurfacePoint::SIDE)
     turns = share(dot(cross(unit(plane.side), plane.normal), own.normal));
-  if (turns > 0.0) turns *= own.distance / plane.distance;
+  if (turns > 0.0) turns *= std::min(own.distance / std::max(plane.distance, TINY), MOST_TURN);
 
   // moves (n' - c n) - turns (n - c n')
   h.along_plane = moves + turns * c;

@@ -5,7 +5,8 @@
 
 /* What pair gran/restitution remembers: LAMMPS' own neighbor history for the contacts and, for
    each ball, force and torque of the last step, so that a continued run starts from those, and
-   from the half-step velocities, with which the one before ended. Made by the pair style. */
+   from the half-step velocities, with which the one before ended. LAMMPS finds the partners of a
+   ball by ID: IDs that change between runs are followed. Made by the pair style. */
 
 #include "fix_contact_history.h"
 
@@ -13,12 +14,14 @@
 #include "comm.h"
 #include "contact_guards.h"
 #include "contact_history_owner.h"
+#include "lammps_compat.h"
 #include "memory.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <unordered_map>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -29,10 +32,12 @@ static constexpr double ROUNDING = 1.0e-10;    // of the largest force
 
 FixContactHistory::FixContactHistory(LAMMPS *lmp, int narg, char **arg) :
     FixNeighHistory(lmp, narg, arg), owner(nullptr), lists_new(true), lists_used(false),
-    force(nullptr), forces_taken_back(false), force_step(-1), force_dt(0.0), restart_extra(lmp)
+    force(nullptr), forces_taken_back(false), force_step(-1), force_dt(0.0), known_as(nullptr),
+    restart_extra(lmp)
 {
+  comm_forward = 1;
   nevery = ContactGuards::EVERY;
-  maxexchange += FORCE;    // until pre_exchange() knows how many contacts there are
+  maxexchange += 1 + FORCE;    // until pre_exchange() knows how many contacts there are
   FixContactHistory::grow_arrays(atom->nmax);
   for (int i = 0; i < atom->nlocal; i++) FixContactHistory::set_arrays(i);
 }
@@ -40,6 +45,7 @@ FixContactHistory::FixContactHistory(LAMMPS *lmp, int narg, char **arg) :
 FixContactHistory::~FixContactHistory()
 {
   memory->destroy(force);
+  memory->destroy(known_as);
 }
 
 /* ----------------------------------------------------------------------
@@ -53,13 +59,61 @@ void FixContactHistory::pre_exchange()
   lists_used = false;
   owner->store_flags();
   FixNeighHistory::pre_exchange();
-  maxexchange += FORCE;
+  maxexchange += 1 + FORCE;
+  std::copy_n(atom->tag, atom->nlocal, known_as);
 }
 
 void FixContactHistory::post_neighbor()
 {
   FixNeighHistory::post_neighbor();
   lists_new = true;
+}
+
+void FixContactHistory::setup_post_neighbor()
+{
+  rename_partners();
+  FixNeighHistory::setup_post_neighbor();
+}
+
+/* ----------------------------------------------------------------------
+   Between runs delete_atoms and reset_atoms may give balls other IDs, and create_atoms the ID of one
+   that is gone: the stored contacts get the present IDs of their partners, all of them near, and
+   those of partners that are gone are dropped.
+------------------------------------------------------------------------- */
+
+void FixContactHistory::rename_partners()
+{
+  const tagint *tag = atom->tag;
+  int mine = !std::equal(tag, tag + atom->nlocal, known_as), any;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  if (!any) return;
+
+  compat::forward_comm(comm, this);
+  std::unordered_map<tagint, tagint> now;
+  for (int i = 0; i < atom->nlocal + atom->nghost; i++)
+    if (known_as[i]) now[known_as[i]] = tag[i];
+  for (int i = 0; i < atom->nlocal; i++) {
+    int n = 0;
+    for (int m = 0; m < npartner[i]; m++) {
+      const auto found = now.find(partner[i][m]);
+      if (found == now.end()) continue;
+      partner[i][n] = found->second;
+      memmove(&valuepartner[i][dnum * n++], &valuepartner[i][dnum * m], dnum * sizeof(double));
+    }
+    npartner[i] = n;
+  }
+  std::copy_n(tag, atom->nlocal, known_as);
+}
+
+int FixContactHistory::pack_forward_comm(int n, int *list, double *buf, int, int *)
+{
+  for (int k = 0; k < n; k++) buf[k] = ubuf(known_as[list[k]]).d;
+  return n;
+}
+
+void FixContactHistory::unpack_forward_comm(int n, int first, double *buf)
+{
+  for (int k = 0; k < n; k++) known_as[first + k] = static_cast<tagint>(ubuf(buf[k]).i);
 }
 
 /* ----------------------------------------------------------------------
@@ -155,37 +209,43 @@ bool FixContactHistory::forces_known() const
 
 double FixContactHistory::memory_usage()
 {
-  return FixNeighHistory::memory_usage() + static_cast<double>(atom->nmax) * FORCE * sizeof(double);
+  return FixNeighHistory::memory_usage() +
+      static_cast<double>(atom->nmax) * (FORCE * sizeof(double) + sizeof(tagint));
 }
 
 void FixContactHistory::grow_arrays(int nmax)
 {
   FixNeighHistory::grow_arrays(nmax);
   memory->grow(force, nmax, FORCE, "contact_history:force");
+  memory->grow(known_as, nmax, "contact_history:known_as");
 }
 
 void FixContactHistory::copy_arrays(int i, int j, int delflag)
 {
   FixNeighHistory::copy_arrays(i, j, delflag);
   memcpy(force[j], force[i], FORCE * sizeof(double));
+  known_as[j] = known_as[i];
 }
 
 void FixContactHistory::set_arrays(int i)
 {
   FixNeighHistory::set_arrays(i);
   memset(force[i], 0, FORCE * sizeof(double));
+  known_as[i] = 0;
 }
 
 int FixContactHistory::pack_exchange(int i, double *buf)
 {
-  const int m = FixNeighHistory::pack_exchange(i, buf);
+  int m = FixNeighHistory::pack_exchange(i, buf);
+  buf[m++] = ubuf(known_as[i]).d;
   memcpy(&buf[m], force[i], FORCE * sizeof(double));
   return m + FORCE;
 }
 
 int FixContactHistory::unpack_exchange(int i, double *buf)
 {
-  const int m = FixNeighHistory::unpack_exchange(i, buf);
+  int m = FixNeighHistory::unpack_exchange(i, buf);
+  known_as[i] = static_cast<tagint>(ubuf(buf[m++]).i);
   memcpy(force[i], &buf[m], FORCE * sizeof(double));
   return m + FORCE;
 }
@@ -196,6 +256,7 @@ int FixContactHistory::unpack_exchange(int i, double *buf)
 
 void FixContactHistory::write_restart(FILE *fp)
 {
+  if (update->whichflag == 0) rename_partners();
   pre_exchange();
   if (!forces_known() && update->whichflag == 1) keep_forces();    // in a run: forces are known
   if (comm->me == 0) {
@@ -228,6 +289,7 @@ void FixContactHistory::unpack_restart(int i, int nth)
   const double *list = restart_extra.find(i, nth, 2 + FORCE, 1 + dnum);
   if (!list) return;
   FixNeighHistory::unpack_restart(i, nth);
+  known_as[i] = atom->tag[i];
   memcpy(force[i], list + static_cast<int>(list[0]) - FORCE, FORCE * sizeof(double));
 }
 

@@ -27,6 +27,7 @@ class FixContactHistory : public FixNeighHistory {
   void setup(int) override;
   void initial_integrate(int) override;
   void pre_exchange() override;
+  void setup_post_neighbor() override;
   void post_neighbor() override;
   void end_of_step() override;
   void post_run() override;
@@ -43,6 +44,8 @@ class FixContactHistory : public FixNeighHistory {
   void unpack_restart(int, int) override;
   int size_restart(int) override;
   int maxsize_restart() override;
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
 
   class ContactHistoryOwner *owner;    // the pair style, which sets it
 
@@ -59,10 +62,13 @@ class FixContactHistory : public FixNeighHistory {
  private:
   bigint force_step;    // the step that they belong to
   double force_dt;      // and its length
+  tagint
+      *known_as;    // ID of each ball when the contacts were stored by atom; 0: it came after that
   RestartExtra restart_extra;
 
   void keep_forces();
   void take_back_forces();
+  void rename_partners();
 };
 
 }    // namespace LAMMPS_NS

@@ -32,7 +32,7 @@ using namespace Slope;
 
 static constexpr double SAME_SURFACE = 1.0e-9;
 static constexpr double COARSE = 0.05;    // largest rounding of a file, in smallest radii
-static constexpr double RESTART_FORMAT = 1.0;
+static constexpr double RESTART_FORMAT = 2.0;
 static constexpr int RESTART_SIZE = 16;    // numbers, without those of the recorder
 
 static Vector vector_of(const double *x)
@@ -58,7 +58,7 @@ FixWallGranMesh::FixWallGranMesh(LAMMPS *lmp, int narg, char **arg) :
   last_step = -1;
   if (options.every) {
     nevery = options.every;
-    recorder.reset(new SurfaceRecorder(lmp, caller, options.output, options.every, *surface));
+    recorder.reset(new SurfaceRecorder(lmp, caller, options.output, *surface));
   }
   keep_by_atom();
 }
@@ -310,11 +310,6 @@ void FixWallGranMesh::reset_dt()
 /* ---------------------------------------------------------------------- */
 
 void FixWallGranMesh::end_of_step()
-{
-  if (recorder->row_due()) record();
-}
-
-void FixWallGranMesh::record()
 {
   reduce();
   recorder->add_row(clock.at(update->ntimestep), all);

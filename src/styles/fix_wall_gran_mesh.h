@@ -100,7 +100,6 @@ class FixWallGranMesh : public FixContactWall {
   void apply(bool);
   void keep_given();
   void reduce();
-  void record();
 };
 
 }    // namespace LAMMPS_NS

@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 from deck_helpers import doc_examples, run_deck
+from mesh_helpers import stl_text
 
-# Two balls on the x axis, no gravity. kind of the second: ball (moving), frozen (an atom of fix freeze), wall
+# Two balls on the x axis, no gravity. kind of the second: ball (moving), frozen (an atom of fix freeze), wall,
+# mesh (a plane)
 PAIR = """
 units si
 newton {newton}
@@ -59,6 +61,10 @@ def collide(tmp_path, kind="ball", coeff="restitution 0.5", style="", k=1e6, kt=
         second = "group moving union all"
         (tmp_path / "wall.xyz").write_text("0 0 0\n")
         wall = f"fix wall moving wall/gran/balls 3 {d2} file wall.xyz"
+    if kind == "mesh":  # through the first ball's point of contact with the second one
+        corners = [(-0.5 * d2, y, z) for y, z in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+        (tmp_path / "wall.stl").write_text(stl_text([corners[:3], (corners[0], *corners[2:])]))
+        wall = "fix wall moving wall/gran/mesh 3 wall.stl"
     if "pair_coeff" not in coeff:
         coeff = f"pair_coeff * * stiffness {k} {kt or k} {coeff}"
     # c_w[1] is the first ball's in some LAMMPS only
@@ -267,6 +273,18 @@ def test_rolling_spring_defaults_to_the_tangential_one(tmp_path):
     other = pressed(tmp_path, "wall", 0.01, coeff=f"rolling 0.9 rolling_spring {0.5 * kt} {ct}")
     assert np.allclose(default, same, rtol=0, atol=1e-12)
     assert np.abs(default - other).max() > 1e-4
+
+
+@pytest.mark.parametrize("kind", ["ball", "frozen", "wall", "mesh"])
+@pytest.mark.parametrize("scheme", ["exact", "plain", "solved"])
+def test_rolling_limit_of_a_dashpot_alone(tmp_path, kind, scheme):
+    """Without a rolling spring an impact takes mu_r * arm * impulse / I of the spin, however strong the dashpot."""
+    for dt, cr in ((4e-6, 200), (1e-4, 1e6)):
+        _, one, _ = collide(tmp_path, kind, style=f"scheme {scheme}", v2=(0, 0), dt=dt, steps=int(5e-3 / dt),
+                            coeff=f"restitution 1 rolling 0.02 rolling_spring 0 {cr}", extra="set atom 1 omega 0 0 50")
+        impulse = ball_mass(0.1, 2500) * (one[0, 2] - one[-1, 2])
+        assert impulse == pytest.approx((1 if kind == "ball" else 2) * ball_mass(0.1, 2500), rel=1e-3)  # it is over
+        assert one[0, 4] - one[-1, 4] == pytest.approx(0.02 * 0.05 * impulse / INERTIA, rel=2e-3)
 
 
 @pytest.mark.parametrize("kind", ["wall", "frozen"])

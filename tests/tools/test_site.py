@@ -22,7 +22,7 @@ TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
 from slope_tools import cli, programs  # noqa: E402  (after the path is set)
-from slope_tools.case import decks, site_budget, site_choices  # noqa: E402
+from slope_tools.case import decks, site_budget, site_choices, site_warnings  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
 
 DATA = Path(os.environ.get("SLOPE_DATA", TOP.parent.parent / "shared" / "data"))
@@ -335,8 +335,11 @@ BODY = ("--shape", "ellipsoid", "--depth", "5")
     ((*BODY, "--diameter", "500"), "--diameter: must make 1 to .* balls .*smaller ones, got 0 of 500 m"),
 ])
 def test_refused(gis, words, start):
-    refused(make(gis, *words), start)
-    assert not list(gis.glob("*mine*")) and not list(gis.glob(".mine*"))
+    done = make(gis, *words)
+    refused(done, start)
+    kept = gis / "mine" / "site.yaml"
+    assert not list(gis.glob(".mine*")) and not kept.exists() == (kept.name not in done.stdout)
+    assert list(gis.glob("mine/*")) == [kept] * kept.exists()
 
 
 def test_refused_files(gis):
@@ -364,7 +367,7 @@ def test_refused_files(gis):
         spoil()
         words = ("--structure", "wall.stl") if spoil is wall else ()
         refused(make(gis, *BODY, *words), start)
-        assert not list(gis.glob("*mine*")) and not list(gis.glob(".mine*"))
+        assert list(gis.glob("mine/*")) == [gis / "mine" / "site.yaml"] and not list(gis.glob(".mine*"))
         for name, content in original.items():
             (gis / name).write_bytes(content)
 
@@ -380,7 +383,7 @@ def test_a_layer_in_a_wrong_crs(gis):
     del about["crs"]
     (gis / "release.geojson").write_text(json.dumps(about))
     line = refused(make(gis, *BODY), "release.geojson: coordinates in EPSG:4326 must be longitude and latitude")
-    assert "save it with its CRS" in line and "--assign-crs" not in line
+    assert "--assign-crs release.geojson=EPSG:n, or save it with its CRS" in line
 
 
 def test_a_layer_without_crs(gis):
@@ -389,8 +392,87 @@ def test_a_layer_without_crs(gis):
     with fiona.open(gis / "road.shp", "w", "ESRI Shapefile", {"geometry": "Polygon", "properties": {}}) as out:
         out.write({"geometry": {"type": "Polygon", "coordinates": [points + points[:1]]}, "properties": {}})
     line = refused(make(gis, *BODY, "--road", "road.shp"), "road.shp: must have a CRS.*none")
-    assert ".prj" in line and "--local" not in line and "--assign-crs" not in line
-    assert not (gis / "mine").exists()
+    assert "--assign-crs road.shp=EPSG:n, or save it with its CRS" in line and "--local" not in line
+    assert os.listdir(gis / "mine") == ["site.yaml"]
+
+
+def in_process(monkeypatch, capsys, folder, *words):
+    """`slope site` without LAMMPS; gives status, stdout, stderr."""
+    monkeypatch.chdir(folder)
+    monkeypatch.delenv("LMP", raising=False)
+    monkeypatch.setattr(programs, "BESIDE", folder / "nowhere")
+    status = cli.main(["site", *map(str, words)])
+    return (status, *capsys.readouterr())
+
+
+def test_a_site_that_could_not_be_made_keeps_its_choices(gis, monkeypatch, capsys):
+    """site.yaml is left to be changed; the command may be repeated, or the folder made from the changed file."""
+    given = ("--terrain", "dem.tif", "--release", "release.geojson", "--shape", "ellipsoid", "--balls", "100", "-o",
+             "Damm Fluchth\u00f6rn")
+    mine = gis / given[-1]
+    status, out, err = in_process(monkeypatch, capsys, gis, "--depth", "500", *given)
+    assert status == 2 and "--depth: must be at most" in err
+    assert "site.yaml was kept: change it, then: tools/slope site 'Damm Fluchth\u00f6rn'; or repeat the command" in out
+    assert site_choices.read(mine)["release"]["depth"] == 500
+    assert "must be at most" in site_choices.found(mine)["failed"]
+    (mine / "site.yaml").write_text((mine / "site.yaml").read_text().replace("depth: 500", "depth: 5"))
+    status, out, err = in_process(monkeypatch, capsys, gis, mine.name)
+    assert status == 0 and "then: tools/slope study 'Damm Fluchth\u00f6rn'" in out, err
+    assert "failed" not in site_choices.found(mine)
+    status, out, err = in_process(monkeypatch, capsys, gis, "--depth", "4", *given)
+    assert status == 2 and "`slope site 'Damm Fluchth\u00f6rn'` rebuilds this one" in err
+    shutil.rmtree(mine)
+    assert in_process(monkeypatch, capsys, gis, "--depth", "500", *given)[0] == 2
+    assert in_process(monkeypatch, capsys, gis, "--depth", "5", *given)[0] == 0
+
+
+def test_release_and_road_swapped(gis, monkeypatch, capsys):
+    status, _, err = in_process(monkeypatch, capsys, gis, "--terrain", "dem.tif", "--release", "road.geojson", "--road",
+                                "release.geojson", *BODY, "-o", "mine")
+    assert status == 2 and err == (
+        "slope site: --release, --road: must not be swapped, the mass falls from the release area onto the road, got "
+        "--release road.geojson: 100 m on average, a slope of 0 degrees; --road release.geojson: 117 m on average, a "
+        "slope of 31 degrees\n")
+
+
+def test_files_in_a_crs_that_they_do_not_name(gis, monkeypatch, capsys):
+    """--assign-crs FILE=EPSG:n, for the elevation model, a polygon, a line, a raster; kept in site.yaml."""
+    write_layer(gis / "line.geojson", [(38, 10), (38, 70)], kind=LineString)
+    for name in ("release.geojson", "road.geojson", "line.geojson"):
+        about = json.loads((gis / name).read_text())
+        about["crs"] = {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::6676"}}
+        (gis / name).write_text(json.dumps(about))
+    write_layer(gis / "release.geojson", RELEASE)
+    write_dem(gis / "dem.tif", crs="EPSG:6676")
+    words = ("--terrain", "dem.tif", "--release", "release.geojson", "--road", "road.geojson", "--line", "line.geojson",
+             *BODY, "--balls", "100", "--assign-crs", "EPSG:6677")
+    status, _, err = in_process(monkeypatch, capsys, gis, *words, "-o", "mine")
+    assert status == 2 and "road.geojson: must overlap the terrain" in err
+    given = ("--assign-crs", "road.geojson=EPSG:6677", "--assign-crs", "./line.geojson=EPSG:6677")
+    status, out, err = in_process(monkeypatch, capsys, gis, *words, *given, "-o", "mine")
+    assert status == 0 and "road.csv: 1 polygon, 1,280 m2" in out, err
+    assert site_choices.read(gis / "mine")["crs"]["assigned"] == {"road.geojson": "EPSG:6677",
+                                                                  "line.geojson": "EPSG:6677"}
+    status, out, err = in_process(monkeypatch, capsys, gis, "mine")
+    assert status == 0 and "road.csv: 1 polygon, 1,280 m2" in out, err
+    for word, rule in (("rood.geojson=EPSG:6677", "FILE=EPSG:n must name a file of the site that has coordinates, "
+                        "dem.tif, release.geojson, road.geojson, line.geojson, got rood.geojson"),
+                       ("road.geojson=6677x", "must be a CRS such as EPSG:6677, got 6677x")):
+        status, _, err = in_process(monkeypatch, capsys, gis, "mine", "--assign-crs", word)
+        assert status == 2 and err.count("\n") == 1 and rule in err
+
+
+@pytest.mark.parametrize("words, slope_, start", [
+    ("ERROR: the body does not stand before it is shaken, it moves at 1 m/s", 75, "--motion: the body must "
+     "stand.*stands at no --peak-friction: leave out --motion.*loss of its strength alone, got 75 degrees$"),
+    ("ERROR: Lost atoms: original 380 current 379", 45, "--peak-friction: must hold the body.*got 52$"),
+    ("ERROR: Unknown command", 75, "")])
+def test_what_can_be_done_for_a_body_that_does_not_stand(words, slope_, start):
+    error = SlopeError("trial run", f"must end without an error: {words}")
+    if not start:
+        return site_warnings.require_standing(error, 52, slope_)
+    with pytest.raises(SlopeError, match=start):
+        site_warnings.require_standing(error, 52, slope_)
 
 
 def test_a_file_of_another_version(done, tmp_path):

@@ -5,13 +5,14 @@ Each is read, checked, brought to the terrain's local metres, and written into t
 import re
 import shutil
 from pathlib import Path
-from typing import Iterable, List, NamedTuple, Set, Tuple
+from typing import Iterable, List, NamedTuple, Optional, Set, Tuple
 
 import numpy as np
+from rasterio.crs import CRS
 
 from ..errors import SlopeError
 from ..geometry import extent
-from ..survey import lines, polygons
+from ..survey import lines, polygons, vectors
 from ..survey.rasters import Raster, crs_name
 
 # names of the deck's own fixes and groups, and of files that a run writes beside them
@@ -58,6 +59,12 @@ def unused(stem: str, taken: Set[str]) -> str:
         name = next(f"{name}_{k}" for k in range(2, 10 ** 6) if f"{name}_{k}" not in taken)
     taken.add(name)
     return name
+
+
+def stem(name: str) -> str:
+    """Of a file, or of the layer of it that a name has: what its fix may be called."""
+    where = vectors.source(name)
+    return where.layer or Path(where.path).stem
 
 
 # --- structures ---
@@ -112,12 +119,18 @@ def structure(path: str, raster: Raster, folder: Path, taken: Set[str]) -> Struc
 
 # --- lines ---
 
-def control_lines(paths: Iterable[str], raster: Raster, folder: Path, taken: Set[str],
-                  advice: polygons.Advice = polygons.ADVICE) -> List[Line]:
+class Drawn(NamedTuple):
+    """A file with a control line."""
+    path: str
+    crs: Optional[CRS]          # assigned to it
+    advice: polygons.Advice
+
+
+def control_lines(files: Iterable[Drawn], raster: Raster, folder: Path, taken: Set[str], warn) -> List[Line]:
     """Write control lines in local metres into a folder."""
     found = []
-    for path in paths:
-        parts = lines.read_local(Path(path), raster, False, advice=advice).geoms
+    for path, crs, advice in files:
+        parts = lines.read_local(path, raster, False, advice=advice, crs=crs, warn=warn).geoms
         if len(parts) != 1:
             raise SlopeError(path, "must hold one line", f"{len(parts)} that do not meet")
         points = np.round(np.asarray(parts[0].coords)[:, :2], 4) + 0.0
@@ -125,7 +138,7 @@ def control_lines(paths: Iterable[str], raster: Raster, folder: Path, taken: Set
         if not ((points >= (xlo, ylo)) & (points <= (xhi, yhi))).all():
             raise SlopeError(path, f"must lie within the terrain, local x y {polygons.numbers((xlo, ylo, xhi, yhi))}",
                              polygons.numbers((*points.min(axis=0), *points.max(axis=0))))
-        name = unused(Path(path).stem, taken)
+        name = unused(stem(path), taken)
         rows = "".join(f"{x:.10g},{y:.10g}\n" for x, y in points.tolist())
         head = "# control line, local x,y in m; forward is from its left to its right\n"
         (folder / f"{name}.csv").write_text(head + rows, encoding="ascii")
