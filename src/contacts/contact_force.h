@@ -257,9 +257,9 @@ SLOPE_INLINE T mean_contacts(const ContactStepOf<N> &step, T contacts_i, T conta
 
 // Factor of a dashpot that takes so much of a motion in a step, beside others of the same ball: their sum is
 // held to so much. In three dimensions n contacts resist a motion as n/3 along it would, n sliding
-// contacts a spin as 0.48 n, rolling ones as 0.67 n: with the numbers below they take at most 0.87, 0.57 and
+// contacts a spin as 0.48 n, rolling ones as 0.67 n: with the numbers below they take at most 0.67, 0.57 and
 // 0.5 of it on average, and less than 2 in the directions that they resist most, springs included.
-static constexpr double MOST_NORMAL = 2.6, MOST_SLIDING = 1.2, MOST_ROLLING = 0.75;
+static constexpr double MOST_NORMAL = 2.0, MOST_SLIDING = 1.2, MOST_ROLLING = 0.75;
 template <class T, class N> SLOPE_INLINE T held_back(N taken, T contacts, double most)
 {
   return most / larger(T(taken * contacts), all<T>(most));

@@ -63,7 +63,7 @@ TABLE = {
         mass reduced -> mass must be pair or ball, got reduced
         limit_damping maybe -> limit_damping must be no or yes, got maybe
         rolling_radius 2 -> rolling_radius must be ball or reduced, got 2
-        scheme euler -> scheme must be exact, plain or solved, got euler
+        scheme euler -> scheme must be exact or plain, got euler
         scheme exact color red -> : unknown keyword color, must be mass, limit_damping, rolling_radius or scheme
         color -> color: value missing or unknown keyword
         """,
