@@ -162,11 +162,11 @@ comm_modify vel yes
 region box block -0.2 0.2 -0.2 0.2 -0.05 0.2
 region base block -0.19 0.19 -0.19 0.19 -0.04 0
 create_box 2 box
-lattice sc 0.01025
-region fill block -0.021 0.0205 -0.021 0.0205 0.0102 0.06 units box
+lattice sc 0.0115
+region fill block -0.024 0.024 -0.024 0.024 0.0105 0.068 units box
 create_atoms 1 region fill
 set type 1 diameter 0.01 density 2500
-displace_atoms all random 1e-4 1e-4 5e-5 1 units box
+displace_atoms all random 5e-4 5e-4 5e-4 1 units box
 pair_style gran/restitution scheme exact
 pair_coeff * * stiffness 2e4 2e4 restitution {e} friction 30 rolling 0.1
 neighbor 0.002 bin

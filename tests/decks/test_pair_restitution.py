@@ -276,7 +276,7 @@ def test_rolling_spring_defaults_to_the_tangential_one(tmp_path):
 
 
 @pytest.mark.parametrize("kind", ["ball", "frozen", "wall", "mesh"])
-@pytest.mark.parametrize("scheme", ["exact", "plain", "solved"])
+@pytest.mark.parametrize("scheme", ["exact", "plain"])
 def test_rolling_limit_of_a_dashpot_alone(tmp_path, kind, scheme):
     """Without a rolling spring an impact takes mu_r * arm * impulse / I of the spin, however strong the dashpot."""
     for dt, cr in ((4e-6, 200), (1e-4, 1e6)):
@@ -452,7 +452,7 @@ def test_bad_pair_coeff(tmp_path, coeff, message):
     ("limit_damping maybe", "limit_damping must be no or yes, got maybe"),
     ("rolling_radius half", "rolling_radius must be ball or reduced, got half"),
     ("gamma 3", "unknown keyword gamma, must be mass, limit_damping"),
-    ("scheme euler", "scheme must be exact, plain or solved, got euler"),
+    ("scheme euler", "scheme must be exact or plain, got euler"),
     ("mass", "mass: value missing"),
 ])
 def test_bad_pair_style(tmp_path, style, message):
@@ -514,7 +514,7 @@ print "SHARE $(c_most/v_weight/(x[2]/sqrt(x[2]^2+z[2]^2)):%.6f)"
 """
 
 
-@pytest.mark.parametrize("scheme", ["exact", "plain", "solved"])
+@pytest.mark.parametrize("scheme", ["exact", "plain"])
 def test_force_of_pair_local_is_the_one_that_acts(tmp_path, scheme):
     """A ball at rest on a steep contact: friction carries its weight along it."""
     log = run_deck(RESTING.format(scheme=scheme), tmp_path)
