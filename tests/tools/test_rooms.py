@@ -16,7 +16,7 @@ PACKAGE = TOOLS / "slope_tools"
 MODULES = sorted(PACKAGE.rglob("*.py"))
 LONGEST = 400       # lines
 # from below
-ROOMS = ("", "drawing", "mobility", "survey", "case", "deposit", "ensemble", "report", "validation", "commands")
+ROOMS = ("", "drawing", "mobility", "survey", "slips", "case", "deposit", "ensemble", "report", "validation", "commands")
 
 
 def imported(text, path):
