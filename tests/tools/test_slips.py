@@ -81,6 +81,8 @@ def test_dry_cap_without_cohesion_is_the_infinite_slope(k, water):
     expected = tan * ((1 - k * slope) - water / np.cos(beta) ** 2) / (slope + k)
     found = bishop.factor_of_safety(body, Strengths(0.0, tan, water), k)[0]
     assert found == pytest.approx(expected, rel=5e-3)
+    if not k and not water:     # the weight does not matter
+        assert bishop.factor_of_safety(body, Strengths(0.0, tan), 0.0, 0.3)[0] == pytest.approx(found, rel=1e-9)
 
 
 def test_what_is_connected_and_what_is_not_below_ground():
