@@ -378,7 +378,8 @@ def test_a_layer_in_a_wrong_crs(gis):
     text = (gis / "release.geojson").read_text()
     (gis / "release.geojson").write_text(text.replace("EPSG::6676", "EPSG::6677"))
     refused(make(gis, *BODY), r"release.geojson: must overlap the terrain, local x y 0 0 120 80, got [-\d.]+ [-\d.]+ "
-            r"[-\d.]+ [-\d.]+, read as EPSG:6677: is that right\? The terrain is in EPSG:6677$")
+            r"[-\d.]+ [-\d.]+, read as EPSG:6677: is that right\? The terrain is in EPSG:6677; --assign-crs "
+            "release.geojson=EPSG:n, or save")
     about = json.loads(text)
     del about["crs"]
     (gis / "release.geojson").write_text(json.dumps(about))

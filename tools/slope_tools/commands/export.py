@@ -28,8 +28,8 @@ def add_parser(commands, **kwargs):
         "export", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
         description="Every raster of a run as a GeoTIFF in the coordinates of the survey.", **kwargs)
     parser.add_argument("prefix", metavar="PREFIX",
-                        help="output of fix deposit/grid: PREFIX.thickness.asc and so on; or one of these files; or the "
-                             "folder of a run, or of a study or site, which stands for its governing run")
+                        help="output of fix deposit/grid: PREFIX.thickness.asc and so on; or one of these files; or "
+                             "the folder of a run, or of a study or site, which stands for its governing run")
     parser.add_argument("-o", dest="output", metavar="DIR", type=Path,
                         help="folder for the results (default PREFIX.export; of a folder, FOLDER/export)")
     parser.add_argument("--terrain", metavar="TERRAIN.asc", type=Path,
