@@ -339,7 +339,8 @@ CASES = [
          "right: then: tools/slope study 'Damm Fluchth\u00f6rn'"),
     Case("names", "spaces and umlauts in that of a file", lambda: shutil.move("dem.tif", "H\u00f6hen 2021.tif"),
          ["terrain", "H\u00f6hen 2021.tif", "-o", "Gel\u00e4nde neu.asc"],
-         "right: region ground terrain \"Gel\u00e4nde neu.asc\""),
+         "asked: Gel\u00e4nde neu.asc: LAMMPS cannot read \u00e4 in the name of a file: rename it before it goes into "
+         "a deck"),
 ]
 
 

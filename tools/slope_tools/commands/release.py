@@ -1,9 +1,10 @@
 """slope release: the body that is released, below a polygon or from a scar, as rasters and lines of a deck."""
 import argparse
+import os
 from pathlib import Path
 
 from .. import errors
-from ..case import release_files
+from ..case import decks, release_files
 from ..options import number
 from ..survey import release, release_scar, vectors
 from ..survey.release import SHAPES
@@ -72,5 +73,7 @@ def run(args):
     tell = errors.printer("release")
     for line in body.warnings:
         tell(line)
+    for path in (os.path.relpath(args.terrain, args.output.parent), args.output.name):
+        decks.warn_of_name(path, tell)
     release_files.write_body(args.output, wanted, body)
     print(f"wrote {', '.join(path.name for path in release_files.paths(args.output))}")
