@@ -9,6 +9,7 @@
 #include <cmath>
 #include <fstream>
 #include <sstream>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 using namespace Slope;
@@ -71,4 +72,11 @@ double Slope::free_memory(const std::string &root)
   double found = 1024.0 * number_after(root + "/proc/meminfo", "MemAvailable:");
   if (std::isnan(found)) found = (double) sysconf(_SC_PHYS_PAGES) * sysconf(_SC_PAGESIZE);
   return std::min(found, left_in_groups(root));
+}
+
+double Slope::free_shared_memory(const std::string &folder)
+{
+  struct statvfs left;
+  if (statvfs(folder.c_str(), &left) != 0 || left.f_blocks == 0) return HUGE_VAL;
+  return static_cast<double>(left.f_bavail) * left.f_frsize;
 }

@@ -18,6 +18,11 @@ namespace Slope {
 // root: folder with proc/ and sys/, for tests
 double free_memory(const std::string &root = "");
 
+// Bytes that processes can still share: what is left in the folder that holds such memory, which
+// containers often limit (64 MB). What does not fit there ends the process when it is written. Infinite
+// where there is no such folder.
+double free_shared_memory(const std::string &folder = "/dev/shm");
+
 }    // namespace Slope
 
 #endif

@@ -239,7 +239,7 @@ std::vector<DepositSummary::Quantile> DepositBalls::quantiles(const double *plac
   std::vector<DepositSummary::Quantile> found;
   for (const double share : SHARES) {
     const double of_left = share * (left + lost) / left;
-    if (of_left <= 1.0)
+    if (of_left <= 1.0 + MassLedger::BALANCE)    // all that is left, but for rounding
       found.push_back({share, {distances.quantile(of_left), -angles.quantile(of_left)}});
     else
       found.push_back({share, {HUGE_VAL, HUGE_VAL}});    // unknown

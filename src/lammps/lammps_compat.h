@@ -12,6 +12,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "fix.h"
+#include "fix_nve_sphere.h"
 #include "modify.h"
 #include "neigh_request.h"
 #include "neighbor.h"
@@ -94,6 +95,16 @@ inline void request_history_list(Neighbor *neighbor, Pair *pair, int instance)
 // neighbor lists of spheres leave out bonded pairs whose factor in special_bonds is 0; before 2022 they
 // are as those of all others, whatever special_bonds says
 static constexpr bool LISTS_OF_SPHERES_KNOW_BONDS = SLOPE_LAMMPS_VERSION >= 20220623;
+
+// whether a fix nve/sphere has its keyword disc: protected there
+inline bool moves_discs(Fix *fix)
+{
+  struct Reach : public FixNVESphere {
+    static double FixNVESphere::*prefactor() { return &Reach::inertia; }
+  };
+  const auto sphere = dynamic_cast<FixNVESphere *>(fix);
+  return sphere && sphere->*Reach::prefactor() > 0.45;    // 0.4 of a sphere, 0.5 of a disc
+}
 
 // values of ghost atoms from, and to, those that own them, by the style's pack and unpack
 inline void forward_comm(Comm *comm, Pair *pair)

@@ -13,6 +13,7 @@
 
 using namespace LAMMPS_NS;
 
+static constexpr double HEAD = 1 << 20;     // bytes of MPI's own in shared memory
 static constexpr size_t CHUNK = 1 << 24;    // numbers of a message: MPI counts in int
 
 #if defined(MPI_VERSION) && MPI_VERSION >= 3
@@ -65,7 +66,11 @@ void NodeArray::share()
 #ifdef SLOPE_NODES
   int ranks, fail = 0, any;
   MPI_Comm_size(node, &ranks);
-  if (ranks > 1) {
+  if (ranks > 1) {    // Open MPI does not return from a lack of space
+    fail = HEAD + static_cast<double>(size) * sizeof(double) > Slope::free_shared_memory();
+    MPI_Bcast(&fail, 1, MPI_INT, 0, node);
+  }
+  if (ranks > 1 && !fail) {
     MPI_Comm_set_errhandler(node, MPI_ERRORS_RETURN);
     const MPI_Aint mine = is_first() ? static_cast<MPI_Aint>(size * sizeof(double)) : 0;
     fail = MPI_Win_allocate_shared(mine, sizeof(double), MPI_INFO_NULL, node, &numbers, &window) !=

@@ -71,6 +71,22 @@ void LAMMPS_NS::require_single_balls(LAMMPS *lmp, const std::string &caller)
 }
 
 /* ----------------------------------------------------------------------
+   In two dimensions, too, balls are solid spheres to the law: its time constants of sliding and rolling
+   are those of 2/5 m r^2, and the energy guard's spins.
+------------------------------------------------------------------------- */
+
+void LAMMPS_NS::require_spheres(LAMMPS *lmp, const std::string &caller)
+{
+  for (Fix *fix : compat::fixes_of_style(lmp, "nve/sphere"))
+    if (compat::moves_discs(fix))
+      lmp->error->all(
+          FLERR,
+          "{}: fix {} {} must turn balls as solid spheres, got disc: leave it out, in two "
+          "dimensions, too",
+          caller, fix->id, fix->style);
+}
+
+/* ----------------------------------------------------------------------
    A factor of 0 takes a pair out of the neighbor list, where LAMMPS does that for spheres, and of 1
    leaves it there, as for every pair style; with anything else LAMMPS marks it, for a pair style that
    scales its force.

@@ -23,6 +23,7 @@ void require_run(LAMMPS *,
 void require_step(LAMMPS *, const std::string &caller, bigint set_up);
 void require_plain_units(LAMMPS *, const std::string &caller);
 void require_single_balls(LAMMPS *, const std::string &caller);    // no rigid bodies
+void require_spheres(LAMMPS *, const std::string &caller);         // no discs
 void require_whole_contacts(LAMMPS *,
                             const std::string &caller);    // special_bonds, if there are bonds
 

@@ -179,6 +179,7 @@ void PairGranRestitution::init_style()
   require_run(lmp, "Pair gran/restitution");
   require_plain_units(lmp, "Pair gran/restitution");
   require_single_balls(lmp, "Pair gran/restitution");
+  require_spheres(lmp, "Pair gran/restitution");
   require_whole_contacts(lmp, "Pair gran/restitution");
 
   compat::request_history_list(neighbor, this, instance_me);

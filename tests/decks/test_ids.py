@@ -33,6 +33,7 @@ def test_delete_atoms_keeps_the_contacts_of_the_others(tmp_path, np_, newton):
     last = max(left)
     assert len(left[last]) < BALLS and max(closed[last][:, 0]) == len(closed[last])
     assert max(difference(left[last], closed[last])) < 1e-7
-    run_deck(collapse_deck(f"run {AFTER}", begin="read_restart closed.restart", every=AFTER, out="again", newton=newton),
+    begin = "read_restart closed.restart"
+    run_deck(collapse_deck(f"run {AFTER}", begin=begin, every=AFTER, out="again", newton=newton),
              tmp_path, np=np_)
     assert max(difference(left[last], read_dump(tmp_path / "again.dump")[last])) < 1e-7

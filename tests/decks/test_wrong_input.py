@@ -405,6 +405,8 @@ SETUPS = [
       "deposit": DECK["deposit"] + "\n" + DECK["deposit"].replace("deposit soil", "other soil") + "2"},
      "Fix control/line line needs deposit ID, the fix deposit/grid that has the bulk factor, where there is not "
      "exactly one, got 2"),
+    ({**FLAT, **ONLY, "pair": DECK["pair"], "coeff": DECK["coeff"], "move": "fix move all nve/sphere disc"},
+     "Pair gran/restitution: fix move nve/sphere must turn balls as solid spheres, got disc"),
     ({"run": "run_style respa 2 2\nrun 1"}, "Pair gran/restitution needs run_style verlet, got respa"),
     ({"run": "minimize 1e-6 1e-6 10 10"}, "Pair gran/restitution needs run, got minimize"),
     ({"pair": DECK["pair"] + "\npair_modify compute no"},

@@ -126,8 +126,8 @@ def test_a_run_of_the_deck(slope, here):  # noqa: F811
     ("", "the following arguments are required: PREFIX"),
     ("none", "none.thickness.asc: must be an existing file"),
     (".", ".: must hold one run, or name one of them by its prefix, got broken, finer, run"),
-    ("empty", "empty: must be output of fix deposit/grid: its prefix, one of its files, or the folder of a run, a study "
-     "or a site: it holds neither"),
+    ("empty", "empty: must be output of fix deposit/grid: its prefix, one of its files, or the folder of a run, a "
+     "study or a site: it holds neither"),
     ("terrain.asc", "terrain.asc: must be output of fix deposit/grid: its prefix, one of its files"),
     ("run -o run.base.asc", "-o: must be a folder, got run.base.asc"),
     ("run --terrain none.asc", "none.asc: must be an existing file"),

@@ -492,7 +492,8 @@ def test_nodata_beside_a_scar_of_coarse_cells_costs_no_volume(body, kind, sign, 
 def test_a_scar_that_is_none(refused):
     terrain(ramp(30))
     terrain(ramp(30, top=501), "higher.asc")
-    refused("t.asc --scar higher.asc", "higher.asc: must be lower than the terrain somewhere")
+    refused("t.asc --scar higher.asc", "higher.asc: must be lower than the terrain (are the surveys before and after "
+            "exchanged?) somewhere")
     terrain(lambda x, y: np.where(np.hypot(x - 120, y - 100) < 30, -3.0, 0.0), "change.asc")
     refused("t.asc --scar change.asc --scar-is depth", "change.asc: must hold depths >= 0", "--scar-is change",
             "got -3")

@@ -1,4 +1,6 @@
 """tools/slope site and slope study FOLDER: from a GeoTIFF and two layers of a GIS to a report; what is refused."""
+import contextlib
+import io
 import json
 import os
 import re
@@ -22,8 +24,9 @@ TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
 from slope_tools import cli, programs  # noqa: E402  (after the path is set)
-from slope_tools.case import decks, site_budget, site_choices, site_warnings  # noqa: E402
+from slope_tools.case import decks, release_chart, site_budget, site_choices, site_warnings  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
+from slope_tools.report import site_map  # noqa: E402
 
 DATA = Path(os.environ.get("SLOPE_DATA", TOP.parent.parent / "shared" / "data"))
 EAST, NORTH, CELL, COLUMNS, ROWS = -12000.0, 34000.0, 2.0, 60, 40      # of the survey, m, zone IX of Japan
@@ -73,10 +76,24 @@ def slope(folder, *words, **environment):
                           env={**os.environ, "LMP": str(Path(LMP).absolute()), **environment}, timeout=1200)
 
 
-def make(folder, *words, **environment):
+def inside(folder, *words):
+    """The same in this process, for what ends before a study."""
+    out, err, back = io.StringIO(), io.StringIO(), os.getcwd()
+    os.chdir(folder)
+    try:
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            status = cli.main([str(word) for word in words])
+    except SystemExit as error:
+        status = error.code
+    finally:
+        os.chdir(back)
+    return subprocess.CompletedProcess(words, status, out.getvalue(), err.getvalue())
+
+
+def make(folder, *words, run=slope, **environment):
     """A site in folder/mine from the standard files; more words may follow."""
-    return slope(folder, "site", "--terrain", "dem.tif", "--release", "release.geojson", *words, "-o", "mine",
-                 **environment)
+    return run(folder, "site", "--terrain", "dem.tif", "--release", "release.geojson", *words, "-o", "mine",
+               **environment)
 
 
 @pytest.fixture
@@ -335,7 +352,7 @@ BODY = ("--shape", "ellipsoid", "--depth", "5")
     ((*BODY, "--diameter", "500"), "--diameter: must make 1 to .* balls .*smaller ones, got 0 of 500 m"),
 ])
 def test_refused(gis, words, start):
-    done = make(gis, *words)
+    done = make(gis, *words, run=inside)
     refused(done, start)
     kept = gis / "mine" / "site.yaml"
     assert not list(gis.glob(".mine*")) and not kept.exists() == (kept.name not in done.stdout)
@@ -366,7 +383,7 @@ def test_refused_files(gis):
                          (wall, "wall.stl: must lie within the terrain")):
         spoil()
         words = ("--structure", "wall.stl") if spoil is wall else ()
-        refused(make(gis, *BODY, *words), start)
+        refused(make(gis, *BODY, *words, run=inside), start)
         assert list(gis.glob("mine/*")) == [gis / "mine" / "site.yaml"] and not list(gis.glob(".mine*"))
         for name, content in original.items():
             (gis / name).write_bytes(content)
@@ -377,12 +394,14 @@ def test_a_layer_in_a_wrong_crs(gis):
     write_layer(gis / "release.geojson", RELEASE, "EPSG:6676")
     text = (gis / "release.geojson").read_text()
     (gis / "release.geojson").write_text(text.replace("EPSG::6676", "EPSG::6677"))
-    refused(make(gis, *BODY), r"release.geojson: must overlap the terrain, local x y 0 0 120 80, got [-\d.]+ [-\d.]+ "
-            r"[-\d.]+ [-\d.]+, read as EPSG:6677: is that right\? The terrain is in EPSG:6677$")
+    refused(make(gis, *BODY, run=inside), r"release.geojson: must overlap the terrain, local x y 0 0 120 80, got "
+            r"[-\d.]+ [-\d.]+ [-\d.]+ [-\d.]+, read as EPSG:6677: is that right\? The terrain is in EPSG:6677; "
+            "--assign-crs release.geojson=EPSG:n, or save")
     about = json.loads(text)
     del about["crs"]
     (gis / "release.geojson").write_text(json.dumps(about))
-    line = refused(make(gis, *BODY), "release.geojson: coordinates in EPSG:4326 must be longitude and latitude")
+    line = refused(make(gis, *BODY, run=inside),
+                   "release.geojson: coordinates in EPSG:4326 must be longitude and latitude")
     assert "--assign-crs release.geojson=EPSG:n, or save it with its CRS" in line
 
 
@@ -391,7 +410,7 @@ def test_a_layer_without_crs(gis):
     points = (np.array(ROAD, float) + (EAST, NORTH)).tolist()
     with fiona.open(gis / "road.shp", "w", "ESRI Shapefile", {"geometry": "Polygon", "properties": {}}) as out:
         out.write({"geometry": {"type": "Polygon", "coordinates": [points + points[:1]]}, "properties": {}})
-    line = refused(make(gis, *BODY, "--road", "road.shp"), "road.shp: must have a CRS.*none")
+    line = refused(make(gis, *BODY, "--road", "road.shp", run=inside), "road.shp: must have a CRS.*none")
     assert "--assign-crs road.shp=EPSG:n, or save it with its CRS" in line and "--local" not in line
     assert os.listdir(gis / "mine") == ["site.yaml"]
 
@@ -401,6 +420,8 @@ def in_process(monkeypatch, capsys, folder, *words):
     monkeypatch.chdir(folder)
     monkeypatch.delenv("LMP", raising=False)
     monkeypatch.setattr(programs, "BESIDE", folder / "nowhere")
+    for module in (release_chart, site_map):
+        monkeypatch.setattr(module, "draw", lambda path, *rest: Path(path).write_bytes(b""))
     status = cli.main(["site", *map(str, words)])
     return (status, *capsys.readouterr())
 
@@ -492,19 +513,20 @@ def test_a_file_of_another_version(done, tmp_path):
         assert old in good
         (mine / "site.yaml").write_text(good.replace(old, new))
         for command in ("site", "study"):
-            refused(slope(tmp_path, command, "mine"), f"mine/site.yaml:{rule}")
+            refused(inside(tmp_path, command, "mine"), f"mine/site.yaml:{rule}")
 
 
 def test_folders_that_are_no_sites(gis, done):
-    refused(slope(gis, "study", "nope"), "nope: must be a deck or the folder of a site")
-    refused(slope(gis, "study", "."), r"\.: must be a folder with site.yaml")
-    refused(slope(gis, "site", "."), r"\.: must be a folder with site.yaml")
-    refused(slope(gis, "site", "-o", "mine"), "--terrain: must be given")
-    refused(slope(gis, "site", "--terrain", "dem.tif", *BODY, "-o", "mine"), "--release: must be given")
-    refused(slope(done[0], "site", "--terrain", "dem.tif", "--release", "release.geojson", *BODY, "-o", "mine"),
+    refused(inside(gis, "study", "nope"), "nope: must be a deck or the folder of a site")
+    refused(inside(gis, "study", "."), r"\.: must be a folder with site.yaml")
+    refused(inside(gis, "site", "."), r"\.: must be a folder with site.yaml")
+    refused(inside(gis, "site", "-o", "mine"), "--terrain: must be given")
+    refused(inside(gis, "site", "--terrain", "dem.tif", *BODY, "-o", "mine"), "--release: must be given")
+    refused(inside(done[0], "site", "--terrain", "dem.tif", "--release", "release.geojson", *BODY, "-o", "mine"),
             "-o: must be a new folder; `slope site mine`")
-    refused(slope(done[0], "study", "mine", "--set", "rolling=0"), "--set: must not be given with the folder of a site")
-    refused(slope(done[0], "study", "mine/in.site", "--set", "rolling=0"), "-o: must be given")
+    refused(inside(done[0], "study", "mine", "--set", "rolling=0"),
+            "--set: must not be given with the folder of a site")
+    refused(inside(done[0], "study", "mine/in.site", "--set", "rolling=0"), "-o: must be given")
 
 
 def test_a_site_has_its_own_choices(tmp_path):
@@ -517,7 +539,7 @@ def test_a_site_has_its_own_choices(tmp_path):
                             ("--exceed-speed", "5"), ("--exceed-energy", "100000"), ("--design", "sobol"),
                             ("--seed", "0"), ("--of", "front_m"), ("--road", "road.geojson"), ("--cut-angle", "30"),
                             ("--mesh", "10"), ("--local",), ("-o", "out")):
-        line = refused(slope(tmp_path, "study", "mine", option, *values),
+        line = refused(inside(tmp_path, "study", "mine", option, *values),
                        f"{option}: must not be given with the folder of a site: mine/site.yaml")
         assert line.endswith(f", got {values[0]}" if values else "is run")
 

@@ -12,7 +12,7 @@ from rasterio.crs import CRS
 
 from ..errors import SlopeError
 from ..geometry import extent
-from ..survey import lines, polygons, vectors
+from ..survey import lines, motion_file, polygons, vectors
 from ..survey.rasters import Raster, crs_name
 
 # names of the deck's own fixes and groups, and of files that a run writes beside them
@@ -150,32 +150,9 @@ def control_lines(files: Iterable[Drawn], raster: Raster, folder: Path, taken: S
 
 def motion(path: str, folder: Path) -> Motion:
     """Copy the motion of the ground, lines "t ax ay az" in s and m/s2, into a folder."""
-    try:
-        text = Path(path).read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        why = getattr(error, "strerror", None) or error
-        raise SlopeError(path, f"must be text, lines t ax ay az ({why})") from None
-    rows = []
-    for number, line in enumerate(text.splitlines(), 1):
-        words = line.split("#")[0].split()
-        if not words:
-            continue
-        try:
-            row = [float(word) for word in words]
-        except ValueError:
-            row = []
-        if len(row) != 4 or not np.isfinite(row).all():
-            raise SlopeError(f"{path}: line {number}", "must be four numbers, t ax ay az in s and m/s2 (slope quake "
-                             "makes it from a record)", line[:60])
-        rows.append(row)
-    values = np.array(rows)
-    if len(values) < 2 or not (np.diff(values[:, 0]) > 0).all():
-        raise SlopeError(path, "must have two lines at least, with times that grow")
-    peak = float(np.hypot(values[:, 1], values[:, 2]).max())
-    if not peak > 0:
-        raise SlopeError(path, "must hold a motion, all horizontal accelerations are 0")
+    values = motion_file.read(path)
     copy(path, folder / MOTION)
-    return Motion(MOTION, float(values[-1, 0]), peak)
+    return Motion(MOTION, float(values[-1, 0]), motion_file.peak(values))
 
 
 def copy(source: str, target: Path) -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from shapely.geometry import box
 
-from ..case.decks import quoted
+from ..case.decks import quoted, warn_of_name
 from ..errors import SlopeError, printer
 from ..survey import polygons, rasters, vectors
 from ..survey.crs import as_crs
@@ -64,6 +64,7 @@ def run(args):
     beyond = 1 - geometry.intersection(box(*place.extent)).area / geometry.area
     if beyond > 1e-9:
         warn(f"{args.input}: {100 * beyond:.2g} % of the area lies outside of {args.terrain}")
+    warn_of_name(args.output, warn)
     geometry = polygons.write(args.output, geometry, place)
     print(summary(args.output, geometry))
     if time.monotonic() - start > SLOW:

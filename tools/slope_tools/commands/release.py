@@ -1,9 +1,10 @@
 """slope release: the body that is released, below a polygon or from a scar, as rasters and lines of a deck."""
 import argparse
+import os
 from pathlib import Path
 
 from .. import errors
-from ..case import release_files
+from ..case import decks, release_files
 from ..survey import release, vectors
 from .release_arguments import add_body, wanted
 
@@ -47,5 +48,7 @@ def run(args):
     tell = errors.printer("release")
     for line in body.warnings:
         tell(line)
+    for path in (os.path.relpath(args.terrain, args.output.parent), args.output.name):
+        decks.warn_of_name(path, tell)
     release_files.write_body(args.output, asked, body)
     print(f"wrote {', '.join(path.name for path in release_files.paths(args.output))}")

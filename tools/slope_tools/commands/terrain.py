@@ -2,7 +2,7 @@
 import argparse
 from pathlib import Path
 
-from ..case.decks import quoted
+from ..case.decks import quoted, warn_of_name
 from ..errors import SlopeError, printer
 from ..options import number, whole
 from ..survey import local_terrain, rasters
@@ -59,7 +59,9 @@ def add_parser(commands, **kwargs):
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints what was done, a summary and the line for the deck."""
     wanted = check(args)
-    about = local_terrain.make(args.inputs, args.output, wanted, print, printer("terrain"))
+    warn = printer("terrain")
+    about = local_terrain.make(args.inputs, args.output, wanted, print, warn)
+    warn_of_name(args.output, warn)
     print(f"{local_terrain.summary(args.output, about)}\nregion ground terrain {quoted(str(args.output))}")
 
 

@@ -80,11 +80,19 @@ def _read_local(path, raster, local, crs, advice, warn):
     bounds = getattr(raster, "extent", None) or extent(raster)
     if geometry.intersection(box(*bounds)).area == 0:
         hint = " (with --local it would)" if plain and as_it_stands.intersection(box(*bounds)).area > 0 else ""
+        if exchanged(geometry, raster, local).intersection(box(*bounds)).area > 0:
+            hint = " (with x and y exchanged it would)"
         read_as = "" if local or plain else (f", read as {crs_name(crs or own)}: is that right? The terrain is in "
-                                             f"{crs_name(raster.crs)}")
+                                             f"{crs_name(raster.crs)}; {advice.wrong_crs}")
         raise SlopeError(path, f"must overlap the terrain{hint}, local x y {decimetres(bounds)}",
                          decimetres(geometry.bounds) + read_as)
     return geometry
+
+
+def exchanged(geometry, raster, local):
+    """A box in local metres with the east and north of its place exchanged, as in a file with northings first."""
+    offset = np.array([0.0, 0.0] if local else raster.offset)
+    return map_points(geometry.envelope, lambda points: (points + offset)[:, ::-1] - offset)
 
 
 def decimetres(values):
