@@ -38,29 +38,25 @@ inline double held(const SpringDashpot &law, double most, double limit, const do
   return slides && along < 0.0 ? 0.0 : std::min(law.k * s2, most * most / law.k);
 }
 
-// the same of all springs of a contact, J
-inline double elastic_energy(const ContactLaw &law, const Contact &c, double mass_dashpot,
-                             const double *history)
+// the same of all springs of a contact, J, as they act
+inline double elastic_energy(const ContactStep &step, const Contact &c, const double *history)
 {
-  const double root_mass = std::sqrt(mass_dashpot), elastic = law.kn * c.overlap;
-  const double vn = normal_velocity(c);
-  const double pressing = elastic - (law.cn_given + law.cn_root * root_mass) * vn;
+  const double elastic = step.kn * c.overlap, vn = normal_velocity(c);
+  const double pressing = elastic - step.cn * vn;
   double vt[3], w[3];
   sliding_velocity(c, vn, vt);
   flatten(c.n, c.w, w);
   for (double &x : w) x *= c.rolling_radius;
-  const SpringDashpot sliding = {law.kt, law.ct_given + law.ct_root * root_mass};
-  const SpringDashpot rolling = {law.kr, law.cr_given + law.cr_root * root_mass};
   return 0.5 *
       (elastic * c.overlap +
-       held(sliding, law.friction * elastic, law.friction * pressing, history, vt) +
-       held(rolling, law.rolling * elastic, law.rolling * pressing, history + 3, w));
+       held({step.kt, step.ct}, step.friction * elastic, step.friction * pressing, history, vt) +
+       held({step.kr, step.cr}, step.rolling * elastic, step.rolling * pressing, history + 3, w));
 }
 
 // The same of a list, this rank's share, J; see(entry, overlap) is called for each contact that overlaps.
 template <class Partners, class See>
-double elastic_energy(const ContactList &list, const ContactLaw &law, const MovingBalls &balls,
-                      const Partners &partners, See see)
+double elastic_energy(const ContactList &list, const ContactLaw &law, double dt,
+                      const MovingBalls &balls, const Partners &partners, See see)
 {
   double energy = 0.0;
   for (size_t k = 0; k < list.entries.size(); k++) {
@@ -70,9 +66,9 @@ double elastic_energy(const ContactList &list, const ContactLaw &law, const Movi
     Vector delta;
     set_contact(law, balls, partners, e.i, e.j, c, delta);
     see(e, c.overlap);
-    const double mass =
-        list.moves.mass_factor(law) / list.moves.inverse_mass(balls.mass[e.i], partners.mass(e.j));
-    energy += partners.share(e.j) * elastic_energy(law, c, mass, list.histories[k]);
+    const ContactStep step = step_of(list.moves, law, dt, true, balls.radius[e.i],
+                                     partners.radius(e.j), balls.mass[e.i], partners.mass(e.j));
+    energy += partners.share(e.j) * elastic_energy(step, c, list.histories[k]);
   }
   return energy;
 }

@@ -259,7 +259,7 @@ double FixWallGranBalls::elastic_energy() const
   double energy = 0.0;
   for (size_t type = 1; type < lists.size(); type++)
     if (!lists[type].entries.empty())
-      energy += Slope::elastic_energy(lists[type], law_of(type), moving, fixed,
+      energy += Slope::elastic_energy(lists[type], law_of(type), update->dt, moving, fixed,
                                       [this](const ContactList::Entry &e, double overlap) {
                                         pair->guards.record_overlap(
                                             e.i, overlap, std::min(atom->radius[e.i], radius));

@@ -404,7 +404,7 @@ double FixWallGranMesh::elastic_energy() const
   const MovingBalls moving = pair->moving_balls();
   double energy = 0.0;
   for (const auto &entry : lists)
-    energy += Slope::elastic_energy(entry.second, smooth_law(entry.first.type), moving,
+    energy += Slope::elastic_energy(entry.second, smooth_law(entry.first.type), update->dt, moving,
                                     FixedPartners(places.data(), entry.first.radius),
                                     [this](const ContactList::Entry &e, double) {
                                       pair->guards.record_overlap(e.i, watch.slots[e.j].depth(),

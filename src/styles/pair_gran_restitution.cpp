@@ -267,7 +267,7 @@ void PairGranRestitution::watch_energy()
   const MovingPartners partners = {balls, force->newton_pair ? INT_MAX : atom->nlocal};
   double elastic = 0.0;
   for (size_t k = 0; k < lists.size(); k++)
-    elastic += elastic_energy(lists[k], table.law(k / 3), balls, partners,
+    elastic += elastic_energy(lists[k], table.law(k / 3), dt, balls, partners,
                               [this](const ContactList::Entry &e, double overlap) {
                                 guards.record_overlap(
                                     e.i, overlap, std::min(atom->radius[e.i], atom->radius[e.j]));
