@@ -299,7 +299,7 @@ SLOPE_INLINE void contact_force(const ContactStepOf<N> &step, const ContactOf<T,
   // friction and rolling are limited by a force without the weight, or they would depend on when in a step
   // contacts begin
 
-  const T pressing = c.touches * larger(T(elastic - cn * c.ahead), zero);
+  const T pressing = c.touches * larger(T(elastic - cn * c.ahead / own), zero);
   T vt[3], ft[3];
   sliding_velocity(c, vn, vt);
   const T ct =
