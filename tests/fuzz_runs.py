@@ -32,12 +32,14 @@ def draw(rng):
     case = {"ranks": 1 if serial() else rng.choice([1, 1, 3]),
             "scheme": rng.choice(["exact", "exact", "plain", "solved"]),
             "newton": rng.choice(["on", "off"]), "after": rng.choice([1, 20, 60, 200])}
-    commands = [("run", rng.randint(100, 400))]
-    kinds = ["run"] * 4 + ["reset", "timestep", "weight", "move", "wall", "write", "restart", "balance", "delete"]
-    kinds += ["spin", "speed", "displace", "zero", "pre no"]
+    steps = [50, 100, 200]    # with reset_timestep their numbers come again
+    commands = [("run", rng.choice([*steps, rng.randint(100, 400)]))]
+    kinds = ["run"] * 4 + ["reset"] * 3 + ["timestep", "weight", "move", "wall", "write", "restart", "balance"]
+    kinds += ["delete", "spin", "speed", "displace", "zero", "pre no"]
     for _ in range(rng.randint(2, 9)):
         kind = rng.choice(kinds)
-        number = {"run": rng.randint(1, 120), "pre no": rng.randint(1, 60), "reset": rng.choice([0, 0, 50, 100, 200]),
+        number = {"run": rng.choice([*steps, rng.randint(1, 120)]), "pre no": rng.randint(1, 60),
+                  "reset": rng.choice([0, 0, 50, 100, 200]),
                   "timestep": rng.choice([0.001, 0.0012, 0.0015]), "weight": rng.choice(["0 0 -1", "-0.1 0 -1"]),
                   "delete": rng.choice(["yes", "no"])}.get(kind, rng.randint(1, BALLS))
         commands.append((kind, number))
