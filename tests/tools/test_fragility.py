@@ -104,6 +104,9 @@ def test_lognormal_capacities_come_back():
     assert found.beta_r == pytest.approx(0.2, rel=0.05)
     assert found.hclpf == pytest.approx(400 * np.exp(-1.645 * 0.5), rel=0.03)
     assert found.off < 0.01 and found.median_error < 5
+    assert found.at_hclpf == pytest.approx(found.at_hclpf_fitted, rel=0.2)
+    weak = fragility.fit(np.where(strength < 0.75, 100.0, 400 * strength * record), np.arange(50.0, 1500.0, 25.0))
+    assert weak.at_hclpf > 1.5 * weak.at_hclpf_fitted
     assert fragility.fit(400 * strength * record, np.array([5.0, 10.0, 15.0])) is None
 
 

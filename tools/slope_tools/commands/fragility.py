@@ -180,6 +180,9 @@ def warnings_of(curves, found, pseudo_static, records):
             yield f"{one.title}: no lognormal fit, the peaks show fewer than three probabilities between 0 and 1"
         elif one.fit.off > 0.05:
             yield f"{one.title}: the lognormal fit is off by up to {one.fit.off:.2f}"
+        if one.fit and one.fit.at_hclpf > 1.5 * one.fit.at_hclpf_fitted:
+            yield (f"{one.title}: at the HCLPF {100 * one.fit.at_hclpf:.2g} % fail, the lognormal fit says "
+                   f"{100 * one.fit.at_hclpf_fitted:.2g} %: it is too favourable there")
         if one.frequency and one.frequency.beyond > 0.1 * one.frequency.total.value:
             yield (f"{one.title}: peaks above the hazard curve's last may add up to {one.frequency.beyond:.2g} "
                    "failures per year")

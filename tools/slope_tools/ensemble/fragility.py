@@ -63,6 +63,8 @@ class Fit(NamedTuple):
     median_error: float
     beta_error: float
     off: float              # largest difference from the probability
+    at_hclpf: float         # probability of failure at the HCLPF, by the samples
+    at_hclpf_fitted: float  # the same by the fit
 
 
 def values_of(variable, u: np.ndarray) -> np.ndarray:
@@ -187,8 +189,9 @@ def fit(capacity: np.ndarray, peaks: np.ndarray) -> Optional[Fit]:
     beta_r = beta * np.sqrt(within / (within + between)) if within + between > 0 else 0.0
     beta_u = np.sqrt(max(beta ** 2 - beta_r ** 2, 0.0))
     off = np.abs(stats.norm.cdf(np.log(peaks / median) / beta) - share).max()
-    return Fit(median, beta, float(beta_r), float(beta_u), float(median * np.exp(-LARGE * (beta_r + beta_u))),
-               float(errors[0]), float(errors[1]), float(off))
+    hclpf = median * np.exp(-LARGE * (beta_r + beta_u))
+    return Fit(median, beta, float(beta_r), float(beta_u), float(hclpf), float(errors[0]), float(errors[1]), float(off),
+               float((capacity < hclpf).mean()), float(stats.norm.cdf(np.log(hclpf / median) / beta)))
 
 
 class Hazard(NamedTuple):

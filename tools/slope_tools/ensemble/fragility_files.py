@@ -68,7 +68,8 @@ def about_curve(one: Curve) -> Dict[str, Any]:
         about["lognormal"] = {
             "median_gal": one.fit.median, "beta": one.fit.beta, "beta_r": one.fit.beta_r, "beta_u": one.fit.beta_u,
             "hclpf_gal": one.fit.hclpf, "median_standard_error": one.fit.median_error,
-            "beta_standard_error": one.fit.beta_error, "largest_difference": one.fit.off}
+            "beta_standard_error": one.fit.beta_error, "largest_difference": one.fit.off,
+            "probability_at_hclpf": one.fit.at_hclpf, "probability_at_hclpf_fitted": one.fit.at_hclpf_fitted}
     if one.frequency:
         total = one.frequency.total
         about["annual_frequency"] = {
