@@ -65,11 +65,5 @@ def both_ways(t: np.ndarray, acceleration: np.ndarray, direction: float, yields:
     component. For a dry body without cohesion it is the yield coefficient.
     """
     horizontal = along(acceleration, direction)
-    lift = vertical * acceleration[:, 2] if acceleration.shape[1] > 2 else 0.0
-    return np.maximum(*(displacement(t, sign * horizontal - lift, yields) for sign in (-1.0, 1.0)))
-
-
-def table(t: np.ndarray, ground: np.ndarray, ratios: np.ndarray) -> np.ndarray:
-    """The larger displacement (m) of the record and of its negative at each ratio of yield to largest |ground|."""
-    largest = float(np.abs(ground).max())
-    return np.maximum(displacement(t, ground, ratios * largest), displacement(t, -ground, ratios * largest))
+    lift = vertical * acceleration[:, 2]
+    return np.maximum(displacement(t, horizontal - lift, yields), displacement(t, -horizontal - lift, yields))
