@@ -87,11 +87,14 @@ template <class N> SLOPE_INLINE N share_if_late(N a, N h)
 
 // The same if it acts on velocities that are AHEAD of those: to the first order in AHEAD the steps are those
 // of a late dashpot of H (1 - AHEAD (H (1 + h) - a)) with a spring of a (1 - AHEAD H). H is right to
-// 5e-3 for a <= 1/8 (unit test).
+// 5e-3 for a <= 1/8 (unit test); overdamped contacts take MOST_TAKEN, with which the steps are stable.
+static constexpr double MOST_TAKEN = 0.9;
 template <class N> SLOPE_INLINE N share_taken(N a, N h)
 {
   const N late = share_if_late(a, h), softer = 1.0 - AHEAD * late;
-  return share_if_late(N(a * softer), N(h * root(softer))) / (1.0 - AHEAD * (late * (1.0 + h) - a));
+  const N more = AHEAD * (late * (1.0 + smaller(h, all<N>(0.5))) - a);
+  const N share = share_if_late(N(a * softer), N(h * root(softer))) / (1.0 - more);
+  return smaller(share, all<N>(MOST_TAKEN));
 }
 
 // The share with a spring that changes, too: the steps are then on the oscillation itself, damped or

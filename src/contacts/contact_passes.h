@@ -343,16 +343,21 @@ class ContactPasses : ContactView {
     ends = c.overlap <= zero;
     const Four f = choose(was < zero, c.overlap / (c.overlap - was), one);
     const Four g = choose(was > zero, was / (was - c.overlap), zero);
-    const Four late = choose(ends, g, f) - 0.5;
+    // a partner of which the overlaps say something else has been put in place, or taken away
+
+    const Four real = choose(ends, choose(was > zero, one, zero), choose(was < zero, one, zero));
+    const Four late = real * (choose(ends, g, f) - 0.5);
     const Four before = repeat ? Four(-lasted) : lasted;
-    c.weight = choose(ends, larger(g, Four(one - before)) - 0.5, f + 0.5);
-    c.beyond = 0.5 * late * late * larger(Four(c.overlap - was), Four(was - c.overlap));
+    c.weight = choose(ends, real * (larger(g, Four(one - before)) - 0.5), one + real * (f - 0.5));
+    c.beyond = 0.5 * late * late *
+        choose(real > zero, larger(Four(c.overlap - was), Four(was - c.overlap)), zero);
 
     // the normal turns: vn in the middle of these times
 
     const Four across = c.v[0] * c.v[0] + c.v[1] * c.v[1] + c.v[2] * c.v[2] - vn * vn;
-    c.turn = 0.5 * choose(ends, g - 1.5, 0.5 - f) * dt * rinv * across;
-    c.first = c.touches = choose(ends, zero, one);
+    c.turn = 0.5 * real * choose(ends, g - 1.5, 0.5 - f) * dt * rinv * across;
+    c.touches = choose(ends, zero, one);
+    c.first = c.touches * real;
     c.grown = choose(ends, zero, f);
     c.early = choose(ends, zero, 0.5 * dt * late * late);
     if (repeat) return;
