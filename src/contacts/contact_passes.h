@@ -361,7 +361,7 @@ class ContactPasses : ContactView {
     c.grown = choose(ends, zero, f);
     c.early = choose(ends, zero, 0.5 * dt * late * late);
     if (repeat) return;
-    const Four age = choose(ends, -before, f);
+    const Four age = choose(ends, -before, choose(real > zero, f, all<Four>(OLD)));
     for (int m = 0; m < 4; m++) histories[k[m]][AGE] = age[m];
   }
 

@@ -363,17 +363,22 @@ void FixWallGranMesh::apply(bool starting)
     const ContactLaw law = smooth_law(entry.first.type);
     auto add = [&](int i, int j, const Vector &f, const Vector &) {
       const SurfaceWatch::Slot &slot = watch.slots[j];
+      // of a contact that began in the step, f is the force of more or less than a step
+
+      const double age = history[j][AGE];
+      const double share = has_ended(age) ? 0.0 : is_new(age) ? 1.0 / (age + 0.5) : 1.0;
+      const Vector shown = {share * f.x, share * f.y, share * f.z};
       const SurfacePoint &touched = slot.contact.at;
       const Vector arm = moved({0.0, 0.0, 0.0}, -slot.radius, touched.normal);
       const Vector at = moved(vector_of(atom->x[i]), 1.0, arm);
       const Vector torque = cross(arm, f);    // on the ball
       momentum = moved(momentum, -1.0, f);
-      force = moved(force, -1.0, f);
-      moment = moved(moment, -1.0, cross(minus(at, options.point), f));
+      force = moved(force, -1.0, shown);
+      moment = moved(moment, -1.0, cross(minus(at, options.point), shown));
       moment = moved(moment, 1.0, torque);
-      contacts += !has_ended(history[j][AGE]);
+      contacts += !has_ended(age);
       if (recorder && !starting)
-        recorder->add(touched.triangle, dot(f, touched.normal),
+        recorder->add(touched.triangle, dot(shown, touched.normal),
                       dot(f, touched.normal) * update->dt);
     };
     ContactTally tally = tally_of(add);
