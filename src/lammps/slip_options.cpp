@@ -23,6 +23,7 @@ using Slope::SlipFactor;
 using Slope::SlipSoil;
 
 static constexpr double RADIANS = Slope::PI / 180.0;
+static constexpr int MOST_KEPT = 1000;
 
 /* ----------------------------------------------------------------------
    find_slip REGION strength C PHI DENSITY keyword value ... output PREFIX
@@ -97,12 +98,19 @@ int SlipOptions::keyword()
   if (keyword == "water") return read_water();
   if (keyword == "seismic") return read_seismic();
   if (keyword == "direction") return read_direction();
+  if (keyword == "volume" || keyword == "depth") return read_limits();
+  if (keyword == "keep") {
+    limits.keep = whole_number_argument(lmp, "Find_slip keep", text(1));
+    if (limits.keep < 1 || limits.keep > MOST_KEPT)
+      error->all(FLERR, "Find_slip keep must be 1 to {}, got {}", MOST_KEPT, text(1));
+    return 1;
+  }
   if (keyword == "method") return read_method();
   if (keyword == "shape") return read_shape();
   if (keyword == "surface") return read_surface();
   error->all(FLERR,
              "Find_slip: unknown keyword {}, must be strength, layer, water, seismic, within, "
-             "direction, method, shape, surface or output",
+             "volume, depth, keep, direction, method, shape, surface or output",
              keyword);
   return 0;
 }
@@ -151,6 +159,20 @@ int SlipOptions::read_direction()
 
 /* ---------------------------------------------------------------------- */
 
+int SlipOptions::read_limits()
+{
+  const double lo = number(1, " LO"), hi = number(2, " HI");
+  if (!(lo >= 0.0 && lo < hi))
+    error->all(FLERR, "Find_slip {} must be LO HI with 0 <= LO < HI, got {} {}", arg[iarg], text(1),
+               text(2));
+  const bool volume = strcmp(arg[iarg], "volume") == 0;
+  (volume ? limits.volume_lo : limits.depth_lo) = lo;
+  (volume ? limits.volume_hi : limits.depth_hi) = hi;
+  return 2;
+}
+
+/* ---------------------------------------------------------------------- */
+
 int SlipOptions::read_method()
 {
   const std::string method = text(1);
@@ -191,7 +213,13 @@ void SlipOptions::check()
 {
   if (!has_strength) error->all(FLERR, "Find_slip keyword strength is missing");
   if (output.empty()) error->all(FLERR, "Find_slip keyword output is missing");
-  if (!lone) error->all(FLERR, "Find_slip keyword surface is missing: a search is not available");
+  bool loose = top.cohesion == 0.0;
+  for (const Layer &layer : layers) loose |= layer.strength.cohesion == 0.0;
+  if (!lone && loose && limits.volume_lo == 0.0)
+    error->all(
+        FLERR,
+        "Find_slip volume LO must be > 0 where C is 0, as the factor falls with the depth of "
+        "the body, got 0");
 
   name = output.substr(output.rfind('/') + 1);
   bool good = !name.empty();

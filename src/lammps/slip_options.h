@@ -10,6 +10,7 @@
 
 #include "elevation_grid.h"
 #include "slip_body.h"
+#include "slip_search.h"
 #include "slip_soil.h"
 
 #include <string>
@@ -28,6 +29,7 @@ class SlipOptions : protected Pointers {
   const std::string &variable() const { return name; }    // begin of the variables' names
 
   Slope::SlipTask task;
+  Slope::SlipLimits limits;
   std::string output;            // prefix of the files
   bool lone;                     // one surface, no search
   Slope::SlipSurface surface;    // this one
@@ -52,6 +54,7 @@ class SlipOptions : protected Pointers {
   int read_water();
   int read_seismic();
   int read_direction();
+  int read_limits();
   int read_method();
   int read_shape();
   int read_surface();

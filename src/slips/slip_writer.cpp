@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 
 using namespace Slope;
 
@@ -49,13 +48,11 @@ std::string SlipWriter::table(const std::vector<SlipBody> &bodies)
 
 /* ---------------------------------------------------------------------- */
 
-void SlipWriter::write(const std::string &prefix, const ElevationGrid &ground,
+void SlipWriter::write(const std::string &prefix, ElevationGrid least,
                        const std::vector<SlipBody> &bodies, SlipBodyMaker &maker)
 {
   FileSet files;
   files.add(prefix + ".slips.csv").write(table(bodies));
-  ElevationGrid least(ground.nx, ground.ny, ground.xlo, ground.ylo, ground.cell,
-                      std::numeric_limits<double>::quiet_NaN());
   for (size_t k = 0; k < bodies.size(); k++) {
     const ElevationGrid base = maker.base(bodies[k].surface);
     base.write(files.add(base_path(prefix, k + 1)));

@@ -20,9 +20,9 @@ class SlipWriter {
  public:
   static void probe(const std::string &prefix, int bodies);    // whether they could be written
 
-  // the least factor of the surfaces through each cell: of these bodies alone
-  static void write(const std::string &prefix, const ElevationGrid &ground,
-                    const std::vector<SlipBody> &, SlipBodyMaker &);
+  // least: factor of the surfaces through each cell, to which those of the bodies are added
+  static void write(const std::string &prefix, ElevationGrid least, const std::vector<SlipBody> &,
+                    SlipBodyMaker &);
 
   static std::string table(const std::vector<SlipBody> &);
 };

@@ -17,6 +17,7 @@ CommandStyle(find_slip,FindSlip);
 #include <vector>
 
 namespace Slope {
+class ElevationGrid;
 struct SlipBody;
 class SlipBodyMaker;
 }    // namespace Slope
@@ -29,7 +30,10 @@ class FindSlip : public Command {
   void command(int, char **) override;
 
  private:
-  void compute(const class SlipOptions &, Slope::SlipBodyMaker &, Slope::SlipBody &) const;
+  std::vector<Slope::SlipBody> given(const class SlipOptions &, Slope::SlipBodyMaker &) const;
+  std::vector<Slope::SlipBody> search(const class SlipOptions &, Slope::SlipBodyMaker &,
+                                      Slope::ElevationGrid &least) const;
+  void report(const std::vector<Slope::SlipBody> &) const;
   void warn(const Slope::SlipBodyMaker &) const;
   void set_variables(const class SlipOptions &, const Slope::SlipBody &) const;
 };

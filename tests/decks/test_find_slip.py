@@ -158,3 +158,40 @@ def test_wrong_words_end_the_run_with_one_line(tmp_path, more, message):
     of_10_m(tmp_path)
     run_deck(deck(more=more), tmp_path, expect_error=message)
     assert not list(tmp_path.glob("crit.*"))
+
+
+def test_the_search_finds_the_least_on_any_number_of_ranks(tmp_path):
+    """Not above the 1.0400 of a search by Scoops3D on a lattice, within the limits; the map and the rows agree."""
+    of_10_m(tmp_path)
+    more = "volume 500 5000 keep 2"
+    run_deck(deck(more=more), tmp_path)
+    found = rows(tmp_path)
+    assert found[0]["factor"] < 1.0400
+    assert found[0]["direction"] == pytest.approx(180, abs=1)
+    assert all(500 <= row["volume"] <= 5000 for row in found)
+    assert [row["factor"] for row in found] == sorted(row["factor"] for row in found)
+    bases = [numpy.isfinite(raster(tmp_path / f"crit.{k + 1}.base.asc")) for k in range(len(found))]
+    for k, row in enumerate(found):
+        assert (raster(tmp_path / "crit.factor.asc")[bases[k]] <= row["factor"] * (1 + 1e-6)).all()
+    assert len(found) == 2 and (bases[0] & bases[1]).sum() <= 0.6 * min(bases[0].sum(), bases[1].sum())
+
+    # the sphere that it says has the factor that it says
+
+    table, log = (tmp_path / "crit.slips.csv").read_bytes(), (tmp_path / "crit.factor.asc").read_bytes()
+    run_deck(deck(more="surface sphere {x:.10g} {y:.10g} {z:.10g} {radius:.10g}".format(**found[0])), tmp_path)
+    assert rows(tmp_path)[0]["factor"] == pytest.approx(found[0]["factor"], rel=1e-5)
+    run_deck(deck(more=more), tmp_path, np=2)
+    assert (tmp_path / "crit.slips.csv").read_bytes() == table
+    assert (tmp_path / "crit.factor.asc").read_bytes() == log
+
+
+@pytest.mark.parametrize("strength, more, message", [
+    (LOW, "volume 1e7 1e8", "Find_slip limits must leave a sphere inside the terrain"),
+    (LOW, "volume 5 2", "Find_slip volume must be LO HI with 0 <= LO < HI, got 5 2"),
+    (LOW, "keep 0", "Find_slip keep must be 1 to 1000, got 0"),
+    ("0 30 2000", "keep 1", "Find_slip volume LO must be > 0 where C is 0"),
+])
+def test_a_search_that_cannot_be(tmp_path, strength, more, message):
+    of_10_m(tmp_path)
+    run_deck(deck(strength, more), tmp_path, expect_error=message)
+    assert not list(tmp_path.glob("crit.*"))
