@@ -116,8 +116,8 @@ SPINS = "spin", "partner_spin"
 PLAIN = "scheme plain"
 
 
-# Largest errors: of the tangential velocity, its mean over the times in a step and at each time; of the spin; of the normal
-# restitution. Set after the runs: steps of a ninth to a thirteenth of a contact cannot do much better.
+# Largest errors: of the tangential velocity, its mean over the times in a step and at each time; of the spin; of the
+# normal restitution. Set after the runs: steps of a ninth to a thirteenth of a contact cannot do much better.
 BOUNDS, ROLLING_BOUNDS = (0.12, 0.2, 0.06, 0.1, 0.01), (0.15, 0.3, 0.2, 0.25, 0.01)
 
 
