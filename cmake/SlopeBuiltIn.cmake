@@ -16,7 +16,7 @@ add_custom_target(slope_lmp ALL DEPENDS lmp)
 set_target_properties(lmp PROPERTIES
   RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}"
   INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
-target_include_directories(lammps PRIVATE "${PROJECT_SOURCE_DIR}/src")
+target_include_directories(lammps PRIVATE ${SLOPE_INCLUDES})
 
 # A third less to compile: most of the time goes into these headers
 target_precompile_headers(lammps PRIVATE <mpi.h> <algorithm> <cmath> <cstring> <map> <set>

@@ -121,6 +121,19 @@ def test_balls_in_flight(tmp_path, np_):
     check_quantiles(found["travel"], end[inside], d[inside], (d**3)[~inside].sum())
 
 
+@pytest.mark.parametrize("n", [30, 50])
+def test_a_share_that_is_just_what_is_left(tmp_path, n):
+    """A tenth leaves: nine tenths stay within the place of the farthest that is left, whatever the rounding."""
+    ground(tmp_path)
+    x = np.column_stack([5 + 2 * np.arange(n), np.full(n, 100.0), np.full(n, 5.0)])
+    v = np.where(np.arange(n)[:, None] % 10 == 9, [0, 0, 1e4], [0, 0, 0])
+    write_balls(tmp_path / "balls.data", x, 0.9, v, BOX)
+    run_deck(flight_head() + DEPOSIT + "run 100\n", tmp_path)
+    found = summary(tmp_path)["travel"]
+    assert found["quantiles"][1] == {"share": 0.9, **found["farthest"]}
+    assert found["quantiles"][2]["distance"] is None
+
+
 def test_no_ball_is_left(tmp_path):
     ground(tmp_path)
     write_balls(tmp_path / "balls.data", [[5, 5, 5]], 1.0, [[-1e3, 0, 0]], BOX)

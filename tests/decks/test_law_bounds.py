@@ -7,7 +7,7 @@ from deck_helpers import run_deck
 from test_guards import run
 
 # as in src/pair_gran_restitution.cpp
-FORMAT = 20261122
+FORMAT = 20261123
 
 
 def law_warnings(warnings):

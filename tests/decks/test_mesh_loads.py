@@ -52,6 +52,21 @@ def test_a_heap_in_a_box_presses_with_its_weight(tmp_path):
     assert values["last_pressure"].sum() == pytest.approx(triangles["last_pressure"].sum(), rel=1e-8)
 
 
+def test_step_numbers_that_recur_neither_lose_a_row_nor_bring_an_old_load(tmp_path):
+    write_case(tmp_path, plane(1), (3.0, -1.0, 0.5), (0, 0, -1))
+    case = dict(style="scheme plain", keywords="output out 10")
+    rows = run_case(tmp_path, "run 60", **case)[0]
+    touches = rows[rows[:, 2] > 0]
+    last = int(touches[-1, 0])
+    assert 2 < last < 50 and touches[-1, 5] != 0
+    for step, steps in ((0, last), (50, 10)):    # the ball flies
+        run_case(tmp_path, f"run 60\nreset_timestep {step}\nrun {steps}", **case)
+        series = np.genfromtxt(tmp_path / "out.csv", delimiter=",", names=True)
+        assert list(series["step"]) == [*range(10, 61, 10), *range(step // 10 * 10 + 10, step + steps + 1, 10)]
+        triangles = np.genfromtxt(tmp_path / "out.triangles.csv", delimiter=",", names=True)
+        assert (triangles["largest_pressure"] > 0) and (triangles["last_pressure"] == 0)
+
+
 def test_moment_about_a_point_is_that_of_the_weight(tmp_path):
     write_case(tmp_path, plane(10), (2.0, -1.0, 0.5 - MASS * 9.81 / STIFFNESS), (0, 0, 0))
     rows = run_case(tmp_path, "run 200", g=9.81, keywords="point 0.5 1.0 7.0")[0]

@@ -218,4 +218,4 @@ def test_the_s1000_slide_itself(tmp_path):
     folder = prepare(S1000, data_of("s1000"), tmp_path / "case")
     _, summary = run(S1000, folder, d=3)
     assert summary["volume"]["released"] == pytest.approx(22481, rel=2e-3)
-    assert 200 < within(summary) < 900
+    assert within(summary) == pytest.approx(789, rel=0.25)              # mapped; the page on events: 14 % beyond it

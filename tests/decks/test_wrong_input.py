@@ -63,7 +63,7 @@ TABLE = {
         mass reduced -> mass must be pair or ball, got reduced
         limit_damping maybe -> limit_damping must be no or yes, got maybe
         rolling_radius 2 -> rolling_radius must be ball or reduced, got 2
-        scheme euler -> scheme must be exact, plain or solved, got euler
+        scheme euler -> scheme must be exact or plain, got euler
         scheme exact color red -> : unknown keyword color, must be mass, limit_damping, rolling_radius or scheme
         color -> color: value missing or unknown keyword
         """,
@@ -405,6 +405,8 @@ SETUPS = [
       "deposit": DECK["deposit"] + "\n" + DECK["deposit"].replace("deposit soil", "other soil") + "2"},
      "Fix control/line line needs deposit ID, the fix deposit/grid that has the bulk factor, where there is not "
      "exactly one, got 2"),
+    ({**FLAT, **ONLY, "pair": DECK["pair"], "coeff": DECK["coeff"], "move": "fix move all nve/sphere disc"},
+     "Pair gran/restitution: fix move nve/sphere must turn balls as solid spheres, got disc"),
     ({"run": "run_style respa 2 2\nrun 1"}, "Pair gran/restitution needs run_style verlet, got respa"),
     ({"run": "minimize 1e-6 1e-6 10 10"}, "Pair gran/restitution needs run, got minimize"),
     ({"pair": DECK["pair"] + "\npair_modify compute no"},

@@ -39,7 +39,7 @@ for target in "${targets[@]}"; do
   mkdir -p "$out/corpus/$target" "$out/found"
   case $target in
     dump_reader) folder=$top/tools/dump2vtk names=(dump_reader line_reader numbers) libraries=-lz ;;
-    *) folder=$top/src names=("$target") libraries= ;;
+    *) folder=$top/src/common names=("$target") libraries= ;;
   esac
   # lines and files longer than the reader's buffers are in reach of small inputs
   sources=()
@@ -48,8 +48,8 @@ for target in "${targets[@]}"; do
     sources+=("$out/$name.cpp")
   done
   clang++ -std=c++17 -g -O1 -fno-omit-frame-pointer -fsanitize=fuzzer,address,undefined \
-    -fno-sanitize-recover=undefined -I "$top/src" -I "$folder" -I "$here" \
-    "$here/fuzz_$target.cpp" "${sources[@]}" "$top/src/text_file.cpp" ${libraries:+"$libraries"} -o "$out/fuzz_$target"
+    -fno-sanitize-recover=undefined -I "$top/src/common" -I "$folder" -I "$here" \
+    "$here/fuzz_$target.cpp" "${sources[@]}" "$top/src/common/text_file.cpp" ${libraries:+"$libraries"} -o "$out/fuzz_$target"
   "$out/fuzz_$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=3000 -print_final_stats=1 \
     -dict="$here/words" -artifact_prefix="$out/found/$target." "$out/corpus/$target" "$here/seeds/$target" \
     >"$out/$target.log" 2>&1 || status=1

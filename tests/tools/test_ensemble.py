@@ -38,6 +38,7 @@ def variable(text):
     ("10:40", stats.uniform(10, 30)), ("uniform:-5:5", stats.uniform(-5, 10)),
     ("loguniform:1e-3:10", stats.loguniform(1e-3, 10)), ("triangular:0:1:4", stats.triang(0.25, 0, 4)),
     ("normal:30:4:25:40", stats.truncnorm(-1.25, 2.5, 30, 4)),
+    ("lognormal:8:0.4:0.01:900", stats.lognorm(0.4, scale=8)),
     ("normal:30:0.02:0:90", stats.norm(30, 0.02)), ("1000:1000.01", stats.uniform(1000, 0.01)),
 ])
 def test_values_follow_the_distribution_and_come_back(text, reference):

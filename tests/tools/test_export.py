@@ -1,6 +1,7 @@
 """tools/slope export: every raster of a run, with its values, place and CRS; and the base of a run that has one."""
 import os
 import re
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from run_helpers import (CRS_M, EAST, NORTH, TOP, here, run_command, write_asc, 
                          write_sidecar)
 from tiny_collapse import LMP, read_asc, write_case
 
+from slope_tools.case import run_folders
 from slope_tools.commands import export as export_command
 from slope_tools.deposit import deposit, export
 from slope_tools.errors import SlopeError
@@ -70,6 +72,23 @@ def test_every_raster_in_the_coordinates_of_the_survey(slope):
     assert told["run.max_energy.tif"]["unit"] == "J" and told["run.arrival.tif"]["unit"] == "s"
 
 
+def test_a_run_by_its_folder_or_one_of_its_files(slope, here):  # noqa: F811
+    """They are the rasters of the prefix; of a study those of its governing run, which is said."""
+    assert set(run_folders.RASTERS) == set(export.KINDS)
+    for run in ("one", "two"):
+        Path("mine/study", run).mkdir(parents=True)
+        write_rasters(f"mine/study/{run}/site")
+    Path("mine/study/study.yaml").write_text("conservative: null\nlargest: {front_m: {run: two}}")
+    for name, folder in (("mine/study/two/site.max_speed.asc", "mine/study/two/site.export"),
+                         ("mine/study/two/site.summary.yaml", "mine/study/two/site.export"),
+                         ("mine/study/two", "mine/study/two/export"), ("mine/study", "mine/study/export"),
+                         ("mine", "mine/export")):
+        status, out, err = slope(name)
+        assert status == 0 and f"written to {folder}: site.base.tif" in out, err
+        assert ("two, the governing run of mine/study: mine/study/two/site" in out) == (name in ("mine", "mine/study"))
+        shutil.rmtree(folder)
+
+
 def test_without_a_terrain_in_local_metres(slope):
     write_rasters()
     status, out, err = slope("run")
@@ -106,6 +125,10 @@ def test_a_run_of_the_deck(slope, here):  # noqa: F811
 @pytest.mark.parametrize("arguments, message", [
     ("", "the following arguments are required: PREFIX"),
     ("none", "none.thickness.asc: must be an existing file"),
+    (".", ".: must hold one run, or name one of them by its prefix, got broken, finer, run"),
+    ("empty", "empty: must be output of fix deposit/grid: its prefix, one of its files, or the folder of a run, a "
+     "study or a site: it holds neither"),
+    ("terrain.asc", "terrain.asc: must be output of fix deposit/grid: its prefix, one of its files"),
     ("run -o run.base.asc", "-o: must be a folder, got run.base.asc"),
     ("run --terrain none.asc", "none.asc: must be an existing file"),
     ("finer", "finer.max_speed.asc: must have the grid of the run's thickness"),
@@ -113,6 +136,7 @@ def test_a_run_of_the_deck(slope, here):  # noqa: F811
 ])
 def test_bad_input_is_one_line(slope, here, arguments, message):  # noqa: F811
     write_sidecar(40, 60, 2.5)
+    Path("empty").mkdir()
     for prefix in ("run", "finer", "broken"):
         write_rasters(prefix)
     write_asc("finer.max_speed.asc", np.zeros((80, 120)), 1.25)
@@ -159,9 +183,11 @@ def doc_examples():
 def test_every_example_of_the_page_and_the_help_runs(slope, here, command):  # noqa: F811
     write_sidecar(40, 60, 2.5)
     write_rasters("embankment")
-    Path("study/runs/001").mkdir(parents=True)
-    os.chdir("study/runs/001")
-    write_rasters("embankment")
-    os.chdir(here)
+    for folder in ("study/rolling_0.05", "mine/study/rolling_0"):
+        Path(folder).mkdir(parents=True)
+        write_rasters(f"{folder}/embankment")
+        shutil.copy("terrain.asc", folder)
+        shutil.copy("terrain.yaml", folder)
+    Path("mine/study/study.yaml").write_text("conservative: {run: rolling_0}")
     status, out, err = slope(command)
     assert (status, err) == (0, "") and ("--help" in command or "8 rasters, EPSG:6677" in out)

@@ -140,7 +140,7 @@ TEXT_CSV = "\n\n".join("\n".join(f"{x + EAST!r},{y + NORTH!r}" for x, y in ring.
 
 @pytest.mark.parametrize("name, make, options", [
     ("a.geojson", lambda path: geojson(path, moved(ROAD), crs=CRS_M), ""),
-    ("a.geojson", lambda path: geojson(path, None, moved(ROAD, WGS)), ""),
+    ("a.geojson", lambda path: geojson(path, moved(ROAD, WGS)), ""),
     ("a.geojson", lambda path: geojson(path, moved(ROAD)), "--crs EPSG:6677"),
     ("a.geojson", lambda path: geojson(path, moved(ROAD)), "--assign-crs EPSG:6677"),
     ("a.geojson", lambda path: geojson(path, moved(ROAD), crs="EPSG:6676"), "--assign-crs EPSG:6677"),
@@ -162,6 +162,48 @@ def test_every_format(written, name, make, options):
     found, out = written(f"{name} {options}")
     assert_is(found, ROAD)
     assert f"area {ROAD.area:.3f} m2" in out or f"area {ROAD.area - 0.001:.3f} m2" in out
+
+
+def test_a_feature_without_geometry_is_left_out_and_said(slope):
+    geojson("a.geojson", None, moved(ROAD, WGS), None)
+    status, out, err = slope("a.geojson -o out.csv")
+    assert status == 0 and f"area {ROAD.area:.3f} m2" in out
+    assert err == "slope polygon: warning: a.geojson: feature 0 has no geometry, and 1 more: left out\n"
+    geojson("none.geojson", None, None)
+    assert slope("none.geojson -o none.csv")[2].endswith("none.geojson: must hold polygons, none of its features has a "
+                                                         "geometry, got 2\n")
+
+
+def test_layers_of_a_file(slope):
+    """The only layer of polygons is taken; of several one must be named, as QGIS does or as an option."""
+    layers = [("axis", "LineString", moved(ROAD).exterior), ("road", "Polygon", moved(ROAD))]
+    for name, kind, geometry in layers:
+        with fiona.open("a.gpkg", "w", driver="GPKG", layer=name, crs=CRS_M,
+                        schema={"geometry": kind, "properties": {}}) as out:
+            out.write({"geometry": {**mapping(geometry), "type": kind}, "properties": {}})
+    assert slope("a.gpkg -o out.csv")[0] == 0
+    with fiona.open("a.gpkg", "w", driver="GPKG", layer="other road", crs=CRS_M,
+                    schema={"geometry": "Polygon", "properties": {}}) as out:
+        out.write({"geometry": mapping(moved(ROAD)), "properties": {}})
+    for arguments in ("'a.gpkg|layername=other road' -o out.csv", "a.gpkg --layer road -o out.csv",
+                      "'a.gpkg|layername=road|geometrytype=Polygon' -o out.csv"):
+        assert slope(arguments)[0] == 0
+        assert_is(rings("out.csv"), ROAD)
+    for arguments, rule in (
+            ("a.gpkg", "a.gpkg: must name one of its layers, a.gpkg|layername=NAME (or --layer, where there is that "
+             "option): road, other road, got 3 layers"),
+            ("a.gpkg --layer rood", "a.gpkg: must have the named layer, one of axis, road, other road, got rood"),
+            ("'a.gpkg|layername=road' --layer road", "--layer: must not be given with a.gpkg|layername=road, which "
+             "names a layer, got road"),
+            ("a.gpkg --layer axis", "a.gpkg: feature 1: must be a polygon, got LineString")):
+        assert slope(f"{arguments} -o none.csv")[2] == f"slope polygon: {rule}\n"
+
+
+def test_a_shapefile_that_was_copied_in_part(slope):
+    shapefile("a.shp", moved(ROAD), crs=CRS_M)
+    Path("a.shx").unlink()
+    line = slope("a.shp -o out.csv")[2]
+    assert line.startswith("slope polygon: a.shp: must have its other files beside it, a.shx is missing: copy all of")
 
 
 def test_three_dimensions_are_two(written):

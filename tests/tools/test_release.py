@@ -392,6 +392,55 @@ def test_scars_give_the_body_back(body):
     assert 0.1 * found["volume"] < west["volume"] < 0.9 * found["volume"]
 
 
+def test_depths_that_are_taken_for_heights(body, refused):
+    """Without --scar-is a raster must follow the terrain; with it, it is what it says."""
+    terrain(hill)
+    terrain(lambda x, y: 9 * np.clip(1 - np.hypot(x - 120, y - 100) / 40, 0, None), "depth.asc")
+    terrain(lambda x, y: -9 * np.clip(1 - np.hypot(x - 120, y - 100) / 40, 0, None), "change.asc")
+    refused("t.asc --scar depth.asc", "depth.asc: must be heights that follow the terrain's, ",
+            "did you mean depths? Then --scar-is depth; --scar-is surface if they are heights, got 0 to 8.")
+    refused("t.asc --scar change.asc", "did you mean the change of the surface? Then --scar-is change")
+    found, about = body("t.asc --scar depth.asc --scar-is depth")
+    assert found["volume"] == pytest.approx(9 * math.pi * 40 ** 2 / 3, rel=0.01) and about["scar_is"] == "depth"
+
+
+@pytest.mark.parametrize("shift", [-0.6, 0.0, 0.6])
+def test_two_surveys_over_different_datums(slope, no_picture, shift):
+    """That the datums are not compared is said; what the two differ by beside the body is, too."""
+    terrain(hill)
+    terrain(lambda x, y: hill(x, y) - shift - 9 * np.clip(1 - np.hypot(x - 120, y - 100) / 40, 0, None), "after.asc")
+    polygon(Point(120, 100).buffer(42))
+    status, out, err = slope("t.asc --scar after.asc --polygon p.csv -o r")
+    assert status == 0, err
+    assert f"vertical datums are not compared, beside the body the two surveys differ by {abs(shift):.2g} m" in out
+    assert (f"after.asc lies 0.6 m {'below' if shift > 0 else 'above'} the terrain" in err) == bool(shift)
+
+
+def test_pits_in_the_release_area(refused):
+    def height(x, y):
+        z = hill(x, y)
+        z[np.hypot(x - 121, y - 101) < 3] = 0.0
+        return z
+    terrain(height)
+    polygon(box(60, 60, 160, 140))
+    refused("t.asc --polygon p.csv --depth 5", "p.csv: the ground in it must have no pits: 9 cells of 0 m lie ",
+            "--nodata 0 makes them NODATA, with --fill 9 they are filled (slope terrain, slope site), got the first at "
+            "east ")
+
+
+def test_a_hole_names_what_fills_it(refused):
+    def height(x, y):
+        z = hill(x, y)
+        z[np.hypot(x - 121, y - 101) < 3] = np.nan
+        z[:, -12:] = np.nan
+        return z
+    terrain(height)
+    polygon(box(60, 60, 160, 140))
+    refused("t.asc --polygon p.csv --depth 5", "--fill 9 of slope terrain and site fills this hole, got NODATA at east")
+    polygon(box(180, 60, 220, 140))
+    refused("t.asc --polygon p.csv --depth 5", "it goes on to the edge, where --fill does not fill: take a larger ")
+
+
 def test_a_scar_on_another_grid_and_in_another_crs(body):
     dent = (lambda x, y: 12 * np.clip(1 - ((x - 120) / 40) ** 2 - ((y - 100) / 30) ** 2, 0, None))
     terrain(ramp(30))
@@ -443,7 +492,8 @@ def test_nodata_beside_a_scar_of_coarse_cells_costs_no_volume(body, kind, sign, 
 def test_a_scar_that_is_none(refused):
     terrain(ramp(30))
     terrain(ramp(30, top=501), "higher.asc")
-    refused("t.asc --scar higher.asc", "higher.asc: must be lower than the terrain somewhere")
+    refused("t.asc --scar higher.asc", "higher.asc: must be lower than the terrain (are the surveys before and after "
+            "exchanged?) somewhere")
     terrain(lambda x, y: np.where(np.hypot(x - 120, y - 100) < 30, -3.0, 0.0), "change.asc")
     refused("t.asc --scar change.asc --scar-is depth", "change.asc: must hold depths >= 0", "--scar-is change",
             "got -3")

@@ -1,4 +1,6 @@
 """tools/slope site and slope study FOLDER: from a GeoTIFF and two layers of a GIS to a report; what is refused."""
+import contextlib
+import io
 import json
 import os
 import re
@@ -22,8 +24,9 @@ TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
 from slope_tools import cli, programs  # noqa: E402  (after the path is set)
-from slope_tools.case import decks, site_budget, site_choices  # noqa: E402
+from slope_tools.case import decks, release_chart, site_budget, site_choices, site_warnings  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
+from slope_tools.report import site_map  # noqa: E402
 
 DATA = Path(os.environ.get("SLOPE_DATA", TOP.parent.parent / "shared" / "data"))
 EAST, NORTH, CELL, COLUMNS, ROWS = -12000.0, 34000.0, 2.0, 60, 40      # of the survey, m, zone IX of Japan
@@ -73,10 +76,24 @@ def slope(folder, *words, **environment):
                           env={**os.environ, "LMP": str(Path(LMP).absolute()), **environment}, timeout=1200)
 
 
-def make(folder, *words, **environment):
+def inside(folder, *words):
+    """The same in this process, for what ends before a study."""
+    out, err, back = io.StringIO(), io.StringIO(), os.getcwd()
+    os.chdir(folder)
+    try:
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            status = cli.main([str(word) for word in words])
+    except SystemExit as error:
+        status = error.code
+    finally:
+        os.chdir(back)
+    return subprocess.CompletedProcess(words, status, out.getvalue(), err.getvalue())
+
+
+def make(folder, *words, run=slope, **environment):
     """A site in folder/mine from the standard files; more words may follow."""
-    return slope(folder, "site", "--terrain", "dem.tif", "--release", "release.geojson", *words, "-o", "mine",
-                 **environment)
+    return run(folder, "site", "--terrain", "dem.tif", "--release", "release.geojson", *words, "-o", "mine",
+               **environment)
 
 
 @pytest.fixture
@@ -335,8 +352,11 @@ BODY = ("--shape", "ellipsoid", "--depth", "5")
     ((*BODY, "--diameter", "500"), "--diameter: must make 1 to .* balls .*smaller ones, got 0 of 500 m"),
 ])
 def test_refused(gis, words, start):
-    refused(make(gis, *words), start)
-    assert not list(gis.glob("*mine*")) and not list(gis.glob(".mine*"))
+    done = make(gis, *words, run=inside)
+    refused(done, start)
+    kept = gis / "mine" / "site.yaml"
+    assert not list(gis.glob(".mine*")) and not kept.exists() == (kept.name not in done.stdout)
+    assert list(gis.glob("mine/*")) == [kept] * kept.exists()
 
 
 def test_refused_files(gis):
@@ -363,8 +383,8 @@ def test_refused_files(gis):
                          (wall, "wall.stl: must lie within the terrain")):
         spoil()
         words = ("--structure", "wall.stl") if spoil is wall else ()
-        refused(make(gis, *BODY, *words), start)
-        assert not list(gis.glob("*mine*")) and not list(gis.glob(".mine*"))
+        refused(make(gis, *BODY, *words, run=inside), start)
+        assert list(gis.glob("mine/*")) == [gis / "mine" / "site.yaml"] and not list(gis.glob(".mine*"))
         for name, content in original.items():
             (gis / name).write_bytes(content)
 
@@ -374,13 +394,15 @@ def test_a_layer_in_a_wrong_crs(gis):
     write_layer(gis / "release.geojson", RELEASE, "EPSG:6676")
     text = (gis / "release.geojson").read_text()
     (gis / "release.geojson").write_text(text.replace("EPSG::6676", "EPSG::6677"))
-    refused(make(gis, *BODY), r"release.geojson: must overlap the terrain, local x y 0 0 120 80, got [-\d.]+ [-\d.]+ "
-            r"[-\d.]+ [-\d.]+, read as EPSG:6677: is that right\? The terrain is in EPSG:6677$")
+    refused(make(gis, *BODY, run=inside), r"release.geojson: must overlap the terrain, local x y 0 0 120 80, got "
+            r"[-\d.]+ [-\d.]+ [-\d.]+ [-\d.]+, read as EPSG:6677: is that right\? The terrain is in EPSG:6677; "
+            "--assign-crs release.geojson=EPSG:n, or save")
     about = json.loads(text)
     del about["crs"]
     (gis / "release.geojson").write_text(json.dumps(about))
-    line = refused(make(gis, *BODY), "release.geojson: coordinates in EPSG:4326 must be longitude and latitude")
-    assert "save it with its CRS" in line and "--assign-crs" not in line
+    line = refused(make(gis, *BODY, run=inside),
+                   "release.geojson: coordinates in EPSG:4326 must be longitude and latitude")
+    assert "--assign-crs release.geojson=EPSG:n, or save it with its CRS" in line
 
 
 def test_a_layer_without_crs(gis):
@@ -388,9 +410,90 @@ def test_a_layer_without_crs(gis):
     points = (np.array(ROAD, float) + (EAST, NORTH)).tolist()
     with fiona.open(gis / "road.shp", "w", "ESRI Shapefile", {"geometry": "Polygon", "properties": {}}) as out:
         out.write({"geometry": {"type": "Polygon", "coordinates": [points + points[:1]]}, "properties": {}})
-    line = refused(make(gis, *BODY, "--road", "road.shp"), "road.shp: must have a CRS.*none")
-    assert ".prj" in line and "--local" not in line and "--assign-crs" not in line
-    assert not (gis / "mine").exists()
+    line = refused(make(gis, *BODY, "--road", "road.shp", run=inside), "road.shp: must have a CRS.*none")
+    assert "--assign-crs road.shp=EPSG:n, or save it with its CRS" in line and "--local" not in line
+    assert os.listdir(gis / "mine") == ["site.yaml"]
+
+
+def in_process(monkeypatch, capsys, folder, *words):
+    """`slope site` without LAMMPS; gives status, stdout, stderr."""
+    monkeypatch.chdir(folder)
+    monkeypatch.delenv("LMP", raising=False)
+    monkeypatch.setattr(programs, "BESIDE", folder / "nowhere")
+    for module in (release_chart, site_map):
+        monkeypatch.setattr(module, "draw", lambda path, *rest: Path(path).write_bytes(b""))
+    status = cli.main(["site", *map(str, words)])
+    return (status, *capsys.readouterr())
+
+
+def test_a_site_that_could_not_be_made_keeps_its_choices(gis, monkeypatch, capsys):
+    """site.yaml is left to be changed; the command may be repeated, or the folder made from the changed file."""
+    given = ("--terrain", "dem.tif", "--release", "release.geojson", "--shape", "ellipsoid", "--balls", "100", "-o",
+             "Damm Fluchth\u00f6rn")
+    mine = gis / given[-1]
+    status, out, err = in_process(monkeypatch, capsys, gis, "--depth", "500", *given)
+    assert status == 2 and "--depth: must be at most" in err
+    assert "site.yaml was kept: change it, then: tools/slope site 'Damm Fluchth\u00f6rn'; or repeat the command" in out
+    assert site_choices.read(mine)["release"]["depth"] == 500
+    assert "must be at most" in site_choices.found(mine)["failed"]
+    (mine / "site.yaml").write_text((mine / "site.yaml").read_text().replace("depth: 500", "depth: 5"))
+    status, out, err = in_process(monkeypatch, capsys, gis, mine.name)
+    assert status == 0 and "then: tools/slope study 'Damm Fluchth\u00f6rn'" in out, err
+    assert "failed" not in site_choices.found(mine)
+    status, out, err = in_process(monkeypatch, capsys, gis, "--depth", "4", *given)
+    assert status == 2 and "`slope site 'Damm Fluchth\u00f6rn'` rebuilds this one" in err
+    shutil.rmtree(mine)
+    assert in_process(monkeypatch, capsys, gis, "--depth", "500", *given)[0] == 2
+    assert in_process(monkeypatch, capsys, gis, "--depth", "5", *given)[0] == 0
+
+
+def test_release_and_road_swapped(gis, monkeypatch, capsys):
+    status, _, err = in_process(monkeypatch, capsys, gis, "--terrain", "dem.tif", "--release", "road.geojson", "--road",
+                                "release.geojson", *BODY, "-o", "mine")
+    assert status == 2 and err == (
+        "slope site: --release, --road: must not be swapped, the mass falls from the release area onto the road, got "
+        "--release road.geojson: 100 m on average, a slope of 0 degrees; --road release.geojson: 117 m on average, a "
+        "slope of 31 degrees\n")
+
+
+def test_files_in_a_crs_that_they_do_not_name(gis, monkeypatch, capsys):
+    """--assign-crs FILE=EPSG:n, for the elevation model, a polygon, a line, a raster; kept in site.yaml."""
+    write_layer(gis / "line.geojson", [(38, 10), (38, 70)], kind=LineString)
+    for name in ("release.geojson", "road.geojson", "line.geojson"):
+        about = json.loads((gis / name).read_text())
+        about["crs"] = {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::6676"}}
+        (gis / name).write_text(json.dumps(about))
+    write_layer(gis / "release.geojson", RELEASE)
+    write_dem(gis / "dem.tif", crs="EPSG:6676")
+    words = ("--terrain", "dem.tif", "--release", "release.geojson", "--road", "road.geojson", "--line", "line.geojson",
+             *BODY, "--balls", "100", "--assign-crs", "EPSG:6677")
+    status, _, err = in_process(monkeypatch, capsys, gis, *words, "-o", "mine")
+    assert status == 2 and "road.geojson: must overlap the terrain" in err
+    given = ("--assign-crs", "road.geojson=EPSG:6677", "--assign-crs", "./line.geojson=EPSG:6677")
+    status, out, err = in_process(monkeypatch, capsys, gis, *words, *given, "-o", "mine")
+    assert status == 0 and "road.csv: 1 polygon, 1,280 m2" in out, err
+    assert site_choices.read(gis / "mine")["crs"]["assigned"] == {"road.geojson": "EPSG:6677",
+                                                                  "line.geojson": "EPSG:6677"}
+    status, out, err = in_process(monkeypatch, capsys, gis, "mine")
+    assert status == 0 and "road.csv: 1 polygon, 1,280 m2" in out, err
+    for word, rule in (("rood.geojson=EPSG:6677", "FILE=EPSG:n must name a file of the site that has coordinates, "
+                        "dem.tif, release.geojson, road.geojson, line.geojson, got rood.geojson"),
+                       ("road.geojson=6677x", "must be a CRS such as EPSG:6677, got 6677x")):
+        status, _, err = in_process(monkeypatch, capsys, gis, "mine", "--assign-crs", word)
+        assert status == 2 and err.count("\n") == 1 and rule in err
+
+
+@pytest.mark.parametrize("words, slope_, start", [
+    ("ERROR: the body does not stand before it is shaken, it moves at 1 m/s", 75, "--motion: the body must "
+     "stand.*stands at no --peak-friction: leave out --motion.*loss of its strength alone, got 75 degrees$"),
+    ("ERROR: Lost atoms: original 380 current 379", 45, "--peak-friction: must hold the body.*got 52$"),
+    ("ERROR: Unknown command", 75, "")])
+def test_what_can_be_done_for_a_body_that_does_not_stand(words, slope_, start):
+    error = SlopeError("trial run", f"must end without an error: {words}")
+    if not start:
+        return site_warnings.require_standing(error, 52, slope_)
+    with pytest.raises(SlopeError, match=start):
+        site_warnings.require_standing(error, 52, slope_)
 
 
 def test_a_file_of_another_version(done, tmp_path):
@@ -410,19 +513,20 @@ def test_a_file_of_another_version(done, tmp_path):
         assert old in good
         (mine / "site.yaml").write_text(good.replace(old, new))
         for command in ("site", "study"):
-            refused(slope(tmp_path, command, "mine"), f"mine/site.yaml:{rule}")
+            refused(inside(tmp_path, command, "mine"), f"mine/site.yaml:{rule}")
 
 
 def test_folders_that_are_no_sites(gis, done):
-    refused(slope(gis, "study", "nope"), "nope: must be a deck or the folder of a site")
-    refused(slope(gis, "study", "."), r"\.: must be a folder with site.yaml")
-    refused(slope(gis, "site", "."), r"\.: must be a folder with site.yaml")
-    refused(slope(gis, "site", "-o", "mine"), "--terrain: must be given")
-    refused(slope(gis, "site", "--terrain", "dem.tif", *BODY, "-o", "mine"), "--release: must be given")
-    refused(slope(done[0], "site", "--terrain", "dem.tif", "--release", "release.geojson", *BODY, "-o", "mine"),
+    refused(inside(gis, "study", "nope"), "nope: must be a deck or the folder of a site")
+    refused(inside(gis, "study", "."), r"\.: must be a folder with site.yaml")
+    refused(inside(gis, "site", "."), r"\.: must be a folder with site.yaml")
+    refused(inside(gis, "site", "-o", "mine"), "--terrain: must be given")
+    refused(inside(gis, "site", "--terrain", "dem.tif", *BODY, "-o", "mine"), "--release: must be given")
+    refused(inside(done[0], "site", "--terrain", "dem.tif", "--release", "release.geojson", *BODY, "-o", "mine"),
             "-o: must be a new folder; `slope site mine`")
-    refused(slope(done[0], "study", "mine", "--set", "rolling=0"), "--set: must not be given with the folder of a site")
-    refused(slope(done[0], "study", "mine/in.site", "--set", "rolling=0"), "-o: must be given")
+    refused(inside(done[0], "study", "mine", "--set", "rolling=0"),
+            "--set: must not be given with the folder of a site")
+    refused(inside(done[0], "study", "mine/in.site", "--set", "rolling=0"), "-o: must be given")
 
 
 def test_a_site_has_its_own_choices(tmp_path):
@@ -435,7 +539,7 @@ def test_a_site_has_its_own_choices(tmp_path):
                             ("--exceed-speed", "5"), ("--exceed-energy", "100000"), ("--design", "sobol"),
                             ("--seed", "0"), ("--of", "front_m"), ("--road", "road.geojson"), ("--cut-angle", "30"),
                             ("--mesh", "10"), ("--local",), ("-o", "out")):
-        line = refused(slope(tmp_path, "study", "mine", option, *values),
+        line = refused(inside(tmp_path, "study", "mine", option, *values),
                        f"{option}: must not be given with the folder of a site: mine/site.yaml")
         assert line.endswith(f", got {values[0]}" if values else "is run")
 

@@ -1,4 +1,4 @@
-"""What holds for every source of the package: see doc/src/developing.rst."""
+"""What holds for every source of the package: see doc/src/architecture.rst and doc/src/developing.rst."""
 import re
 from pathlib import Path
 
@@ -6,12 +6,31 @@ import pytest
 
 SRC = Path(__file__).resolve().parents[2] / "src"
 SOURCES = sorted(SRC.glob("**/*.h")) + sorted(SRC.glob("**/*.cpp"))
+NAMES = {path.name: path for path in SOURCES}
 LONGEST_FUNCTION = 80
+# A room includes its own files and those of the rooms in this list; the last two need LAMMPS, no other does.
+CORE = ("contacts", "deposit", "ground", "meshes", "motion", "slips")
+ROOMS = {"common": (), **{room: ("common",) for room in CORE}, "lammps": ("common", *CORE),
+         "styles": ("common", *CORE, "lammps"), "plugin": ("styles",)}
 
 
 def includes(path):
-    names = re.findall(r'^#include "([^"]+)"', path.read_text(), re.MULTILINE)
-    return {name for name in names if (SRC / name).exists()}
+    """Names of our files that a file includes, and of others'."""
+    names = set(re.findall(r'^#include "([^"]+)"', path.read_text(), re.MULTILINE))
+    return names & NAMES.keys(), names - NAMES.keys()
+
+
+def not_allowed(room, names):
+    """What a file of this room must not include, of the files {name: room}."""
+    return sorted(name for name, other in names.items() if other not in (room, "src", *ROOMS[room]))
+
+
+def pairs(sources):
+    """{name of a .h/.cpp pair: names of the other pairs that it includes}"""
+    of = {}
+    for path in sources:
+        of.setdefault(path.stem, set()).update(Path(name).stem for name in includes(path)[0])
+    return {name: others - {name} for name, others in of.items()}
 
 
 def circle(of):
@@ -63,9 +82,32 @@ def test_a_long_function_is_found():
     assert functions(text) == [(2, 92), (96, 3)]
 
 
-def test_no_circle_of_includes():
-    assert len(SOURCES) > 80
-    assert circle({path.name: includes(path) for path in SOURCES}) is None
+def test_an_arrow_upwards_is_found():
+    assert not_allowed("ground", {"plan_nodes.h": "ground", "text_file.h": "common", "triangle.h": "meshes",
+                                  "pair_gran_restitution.h": "styles"}) == ["pair_gran_restitution.h", "triangle.h"]
+
+
+def test_every_file_is_in_a_room():
+    assert len(SOURCES) > 80 and len(NAMES) == len(SOURCES)
+    assert {path.parent.name for path in SOURCES} == {"src", *ROOMS}
+    assert [path.name for path in SOURCES if path.parent == SRC] == ["slope_version.h"]
+    assert [room for room in ROOMS if room != "plugin" and not (SRC / room / "README.md").exists()] == []
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.name)
+def test_no_arrow_upwards(path):
+    room = path.parent.name
+    ours, others = includes(path)
+    if room == "src":
+        assert not ours
+        return
+    assert not_allowed(room, {name: NAMES[name].parent.name for name in ours}) == []
+    assert not others or room in ("lammps", "styles", "plugin")
+
+
+def test_no_circle_of_pairs():
+    """Of .h/.cpp pairs, which is more than the compiler asks."""
+    assert circle(pairs(SOURCES)) is None
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.name)

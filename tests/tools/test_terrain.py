@@ -363,6 +363,49 @@ def test_a_stretched_crs_is_warned_of(slope):
 
 # --- values ---
 
+@pytest.mark.parametrize("units, option, factor", [
+    ("ft", "", 0.3048), ("US survey foot", "", 1200 / 3937), ("", "--z-unit ft", 0.3048),
+    ("m", "--z-unit us-ft", 1200 / 3937), ("ft", "--z-unit m", 1), ("", "--z-unit m", 1)])
+def test_heights_in_feet_become_metres(written, units, option, factor):
+    z, transform = survey()
+    write_tif("feet.tif", z / factor, transform, tags={"units": (units,)})
+    *found, _, out = written(f"feet.tif {option}")
+    assert_plane(*found)
+    assert ("brought to metres" in out) == (factor != 1)
+    assert ("taken as" in out) == bool(units and option)
+
+
+def test_a_crs_in_feet_with_the_unit_of_its_heights(written):
+    """EPSG:2225, and the same with heights of NAVD88 in US survey feet, which says it."""
+    z, transform = survey()
+    for name, option, factor in (("EPSG:2225", "--z-unit us-ft", 1200 / 3937), ("EPSG:2225", "--z-unit m", 1.0),
+                                 ("EPSG:2225+6360", "", 1200 / 3937)):
+        write_tif("feet.tif", z, Affine(5, 0, 6e6, 0, -5, 2e6), crs=name)
+        found, *_ = written(f"feet.tif --crs EPSG:26910 {option}")
+        assert np.nanmax(found) == pytest.approx(z.max() * factor, abs=4), name
+
+
+def test_pits_and_a_ground_in_feet_are_said(slope, written):
+    z, transform = survey()
+    z[5, 5] = z[8, 3:5] = 0.0
+    write_tif("pits.tif", z, transform)
+    _, _, err = slope("pits.tif -o out.asc")
+    assert "3 cells of 0 m lie at least" in err and "--nodata 0 makes them NODATA, with --fill 2 they are filled" in err
+    found = written("pits.tif --nodata 0 --fill 2")
+    assert_plane(*found[:3])
+    assert np.isfinite(found[0]).all() and slope("pits.tif --nodata 0 -o out.asc")[2] == ""
+    write_tif("steep.tif", 3.28084 * survey()[0], transform)
+    _, _, err = slope("steep.tif -o out.asc")
+    assert "the ground falls by " in err and "are the heights in feet? Then --z-unit ft, which makes it 37" in err
+
+
+def test_level_ground_at_the_sea_is_no_pit(slope):
+    z, transform = survey()
+    z = np.maximum(z - np.median(z), 0.0)
+    write_tif("coast.tif", z, transform)
+    assert slope("coast.tif -o out.asc")[2] == ""
+
+
 def test_scale_offset_and_mask_of_a_geotiff(written):
     transform = Affine(5, 0, EAST, 0, -5, NORTH)
     write_tif("dem.tif", np.array([[10, 20], [30, -1]]), transform, nodata=-1, dtype="int16",
@@ -524,11 +567,17 @@ BAD = {
     "colours": (bad_tif(z=np.ones((3, 4, 4))), "bad.tif -o out.asc",
                 "bad.tif: must have one band, the heights, got 3 bands"),
     "no georeference": (bad_tif(transform=None, crs=None), "bad.tif -o out.asc", "bad.tif: must be georeferenced"),
-    "heights in feet": (bad_tif(tags={"units": ("ft",)}), "bad.tif -o out.asc",
-                        "bad.tif: heights must be in metres, got ft"),
+    "heights in fathoms": (bad_tif(tags={"units": ("fathom",)}), "bad.tif -o out.asc",
+                           "bad.tif: heights must be in metres or feet; --z-unit m, ft or us-ft overrides a wrong tag, "
+                           "got fathom"),
+    "heights of a CRS in feet": (bad_tif(crs="EPSG:2225"), "bad.tif -o out.asc --crs EPSG:6677",
+                                 "bad.tif: must say the unit of its heights, as its CRS, EPSG:2225, is in US survey "
+                                 "foot: give --z-unit us-ft, ft or m"),
+    "--z-unit of metres": (bad_tif(), "bad.tif -o out.asc --z-unit metres",
+                           "argument --z-unit: invalid choice: 'metres'"),
     "degrees": (bad_tif(crs="EPSG:6668", transform=Affine(1e-4, 0, 139, 0, -1e-4, 36)), "bad.tif -o out.asc",
                 "bad.tif: CRS must be in metres; give --crs EPSG:n of a projected one, got EPSG:6668 in degrees"),
-    "feet": (bad_tif(crs="EPSG:2263"), "bad.tif -o out.asc",
+    "feet": (bad_tif(crs="EPSG:2263"), "bad.tif -o out.asc --z-unit us-ft",
              "bad.tif: CRS must be in metres; give --crs EPSG:n of a projected one, got EPSG:2263 in US survey foot"),
     "no degrees": (bad_tif(crs="EPSG:4326", transform=Affine(1e-4, 0, 10, 0, -1e-4, 95)),
                    f"bad.tif -o out.asc --crs {CRS_M}",

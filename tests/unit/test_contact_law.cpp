@@ -37,13 +37,13 @@ TEST(ContactLaw, LimitDampingNeverPulls)
 {
   ContactLaw law = law_of(0.1);
   Contact c = still_contact(1e-6);
-  c.v[2] = 1.0;    // leaving
+  c.v[2] = c.ahead = 1.0;    // leaving
   double history[HISTORY] = {0.0};
   ContactForce out;
-  contact_force(on_fixed(law, 1e-5), c, 0.0, history, out);
+  contact_force(on_fixed(law, 1e-5), c, 1.0, history, out);
   EXPECT_LT(out.f[2], 0.0);
   law.fn_least = 0.0;
-  contact_force(on_fixed(law, 1e-5), c, 0.0, history, out);
+  contact_force(on_fixed(law, 1e-5), c, 1.0, history, out);
   EXPECT_EQ(out.f[2], 0.0);
 }
 
@@ -55,7 +55,7 @@ TEST(ContactLaw, SlidingForceSitsOnTheLimit)
   c.v[0] = 2.0;
   double history[HISTORY] = {0.0};
   ContactForce out;
-  for (int step = 0; step < 1000; step++) contact_force(on_fixed(law, 1e-5), c, 0.0, history, out);
+  for (int step = 0; step < 1000; step++) contact_force(on_fixed(law, 1e-5), c, 1.0, history, out);
   EXPECT_NEAR(out.f[0], -law.friction * out.f[2], 1e-9 * out.f[2]);
   EXPECT_NEAR(out.f[1], 0.0, 1e-9);
   // the spring was cut back to the limit: it does not grow for ever
@@ -72,12 +72,12 @@ TEST(ContactLaw, RollingTorqueHasItsLimitAndArm)
   c.w[1] = 50.0;
   double history[HISTORY] = {0.0};
   ContactForce out;
-  for (int step = 0; step < 1000; step++) contact_force(on_fixed(law, 1e-5), c, 0.0, history, out);
+  for (int step = 0; step < 1000; step++) contact_force(on_fixed(law, 1e-5), c, 1.0, history, out);
   EXPECT_NEAR(out.m[1], -law.rolling * c.rolling_radius * out.f[2], 1e-9 * out.f[2]);
   c.w[1] = 0.0;
   c.w[2] = 50.0;    // spin about the normal meets none
   double none[HISTORY] = {0.0};
-  contact_force(on_fixed(law, 1e-5), c, 0.0, none, out);
+  contact_force(on_fixed(law, 1e-5), c, 1.0, none, out);
   EXPECT_EQ(out.m[2], 0.0);
 }
 
@@ -89,6 +89,7 @@ TEST(ContactLaw, PartnerSeesTheOpposite)
   Contact c = still_contact(1e-4);
   c.v[0] = 0.3;
   c.v[2] = -0.2;
+  c.ahead = -0.2;
   c.rw[1] = 0.5;
   c.w[0] = 4.0;
   double h[HISTORY] = {1e-6, 2e-6, 0.0, -1e-6, 3e-6, 0.0}, g[HISTORY];
@@ -100,14 +101,14 @@ TEST(ContactLaw, PartnerSeesTheOpposite)
     d.w[k] = -c.w[k];
   }
   ContactForce a, b;
-  contact_force(on_fixed(law, 1e-5), c, 0.0, h, a);
-  contact_force(on_fixed(law, 1e-5), d, 0.0, g, b);
+  contact_force(on_fixed(law, 1e-5), c, 1.0, h, a);
+  contact_force(on_fixed(law, 1e-5), d, 1.0, g, b);
   for (int k = 0; k < 3; k++) {
     EXPECT_DOUBLE_EQ(a.f[k], -b.f[k]);
     EXPECT_DOUBLE_EQ(a.t[k], b.t[k]);
     EXPECT_DOUBLE_EQ(a.m[k], -b.m[k]);
   }
-  for (int k = 0; k < PHASE; k++) EXPECT_NEAR(h[k], -g[k], 1e-18);
+  for (int k = 0; k < AGE; k++) EXPECT_NEAR(h[k], -g[k], 1e-18);
 }
 
 // no trace of the step is left where it is short
@@ -119,50 +120,83 @@ TEST(ContactLaw, SmallStepsGiveTheLaw)
   const double zeta = damping_ratio(0.3), c0 = 2.0 * zeta * std::sqrt(KN * MASS), dt = 1e-8;
   Contact c = still_contact(1e-4);
   c.v[0] = 0.02;
-  c.v[2] = -0.3;
+  c.v[2] = c.ahead = -0.3;
   c.w[1] = 0.05;
   double history[HISTORY] = {1e-6, 0.0, 0.0, 0.0, 2e-6, 0.0};
   ContactForce out;
-  contact_force(on_fixed(law, dt), c, 0.0, history, out);
+  contact_force(on_fixed(law, dt), c, 1.0, history, out);
   EXPECT_NEAR(out.f[2] / (KN * 1e-4 + c0 * 0.3), 1.0, 1e-4);
   EXPECT_NEAR(out.f[0] / -(KN * 1e-6 + c0 * 0.02), 1.0, 1e-3);
   EXPECT_NEAR(out.m[1] / (-RADIUS * (KN * 2e-6 + c0 * RADIUS * 0.05)), 1.0, 1e-3);
 }
 
-// What the dashpots of n contacts in a row with one motion take of it in a step stays below 1, for
-// each of the motions and any dashpot; leapfrog needs (spring) + 2 (dashpots) < 4.
-TEST(ContactLaw, DashpotsOfSeveralContactsShareWhatTheyTake)
+// Steps of velocity Verlet with these coefficients decay as the law's restitution says; the overlap at rest
+// is the law's
+TEST(ContactLaw, StepsHaveTheLawsDampingRatio)
 {
-  for (double zeta : {0.2, 0.6, 2.0, 20.0})
-    for (int n : {1, 2, 4, 12}) {
+  for (double e : {0.05, 0.1, 0.3, 0.5, 0.9})
+    for (double part : {1.0, 0.5, 0.1}) {
+      const ContactLaw law = law_of(e);
+      const double dt = part * rule_step();
+      const ContactStep step = on_fixed(law, dt);
+      EXPECT_EQ(step.kn, law.kn);
+      const double a = KN * dt * dt / MASS, H = step.taken_n;
+      EXPECT_NEAR(H, step.cn * dt / MASS, 1e-12);
+
+      // d(n+1) - 2 d(n) + d(n-1) = -a d(n) - H (V + AHEAD (V - V')), V = d(n) - d(n-1), V' the one before:
+      // e = exp(-pi decay / frequency) of the complex root of z^3 + c2 z^2 + c1 z + c0, by Newton's method
+      const double t = AHEAD;
+      double re = 1.0 - 0.5 * H, im = std::sqrt(a);
+      for (int k = 0; k < 50; k++) {
+        const double r2 = re * re - im * im, i2 = 2.0 * re * im;                     // z^2
+        const double r3 = r2 * re - i2 * im, i3 = r2 * im + i2 * re;                 // z^3
+        const double c2 = -2.0 + a + H * (1.0 + t), c1 = 1.0 - H * (1.0 + 2.0 * t), c0 = H * t;
+        const double pr = r3 + c2 * r2 + c1 * re + c0, pi = i3 + c2 * i2 + c1 * im;
+        const double qr = 3.0 * r2 + 2.0 * c2 * re + c1, qi = 3.0 * i2 + 2.0 * c2 * im;
+        const double q = qr * qr + qi * qi;
+        re -= (pr * qr + pi * qi) / q;
+        im -= (pi * qr - pr * qi) / q;
+      }
+      const double got = std::exp(PI * 0.5 * std::log(re * re + im * im) / std::atan2(im, re));
+      EXPECT_NEAR(got, e, 0.002) << e << " " << part;
+    }
+}
+
+// the sliding spring's steps lie on the oscillation itself, damped and overdamped
+TEST(ContactLaw, SteppedSpring)
+{
+  for (double a : {0.0, 0.01, 0.2, 1.0})
+    for (double h : {0.0, 0.1, 0.5, 2.0, 10.0}) {
+      const double y = a - h * h, q = std::sqrt(std::fabs(y));
+      const double both = y > 0.0 ? 2.0 * std::exp(-h) * std::cos(q) : std::exp(q - h) + std::exp(-q - h);
+      EXPECT_NEAR(stepped_spring(a, h), 1.0 + std::exp(-2.0 * h) - both, 1e-7) << a << " " << h;
+    }
+}
+
+// What the dashpots of many contacts of one ball take of its motion is bounded, whatever they are and however
+// many; those of few are not touched.
+TEST(ContactLaw, DashpotsOfManyContactsAreHeldBack)
+{
+  for (double zeta : {0.05, 0.6, 2.0, 20.0})
+    for (int n : {1, 2, 4, 12, 40}) {
       ContactLaw law = law_of_ratio(zeta);
       law.friction = law.rolling = 1e9;
-      const double dt = rule_step();
-      const ContactStep step = on_fixed(law, dt);
+      ContactStep step = on_fixed(law, rule_step());
+      step.grow = 0.0;
+      step.per_kt = step.per_kr = 0.0;
       Contact c = still_contact(1e-3);
-      c.v[2] = -0.1;
-      c.w[1] = 2.0;    // spin turns both springs
+      c.v[2] = c.ahead = -0.1;
+      c.w[1] = 2.0;
       c.rw[1] = RADIUS * 2.0;
       double history[HISTORY] = {0.0};
-      ContactForce moving, still, out;
-      ContactStep no_spring = step;
-      no_spring.grow = 0.0;
-      no_spring.per_kt = no_spring.per_kr = 0.0;
-      contact_force(no_spring, c, n - 1.0, history, out);
-      moving = out;
-      contact_force(no_spring, still_contact(1e-3), n - 1.0, history, still);
-      const double normal = n * (moving.f[2] - still.f[2]) * dt / (MASS * 0.1);
-      // of the spin: sliding's torque R Ft and rolling's, over the moment of inertia
-      const double spin = -n * (moving.m[1] - RADIUS * moving.t[1]) * dt / (0.4 * MASS * RADIUS * RADIUS * 2.0);
-      EXPECT_GT(normal, 0.0);
-      EXPECT_LT(normal, 1.0 + 1e-12) << zeta << " " << n;
-      EXPECT_LT(spin, 1.5) << zeta << " " << n;
-      if (n > 1) {
-        ContactForce alone;
-        contact_force(no_spring, c, 0.0, history, alone);
-        EXPECT_LT(moving.f[2], alone.f[2]);
-        const double taken = 1.0 - std::exp(-2.0 * zeta * std::sqrt(KN / MASS) * dt);
-        EXPECT_NEAR((moving.f[2] - still.f[2]) / (alone.f[2] - still.f[2]), 1.0 / (1.0 + (n - 1) * taken), 1e-8);
-      }
+      ContactForce out, still;
+      contact_force(step, c, static_cast<double>(n), history, out);
+      contact_force(step, still_contact(1e-3), static_cast<double>(n), history, still);
+      const double normal = (out.f[2] - still.f[2]) * step.dt / (MASS * 0.1);
+      EXPECT_NEAR(normal, std::min(step.taken_n, MOST_NORMAL / n), 1e-9) << zeta << " " << n;
+      const double sliding = -RADIUS * -out.t[1] * step.dt / (0.4 * MASS * RADIUS * RADIUS * 2.0) * -3.5 / 2.5;
+      EXPECT_NEAR(std::fabs(sliding), std::min(step.taken_t, MOST_SLIDING / n), 1e-9) << zeta << " " << n;
+      const double rolling = -out.m[1] * step.dt / (0.4 * MASS * RADIUS * RADIUS * 2.0);
+      EXPECT_NEAR(rolling, std::min(step.taken_r, MOST_ROLLING / n), 1e-9) << zeta << " " << n;
     }
 }

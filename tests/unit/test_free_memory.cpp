@@ -12,6 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <string>
@@ -81,4 +82,11 @@ TEST(FreeMemory, ControlGroups)
   machine.write("/sys/fs/cgroup/memory.max", "2147483648\n");
   machine.write("/sys/fs/cgroup/memory.current", "3221225472\n");
   EXPECT_EQ(free_memory(machine.root), 0.0);
+}
+
+TEST(FreeMemory, SharedByProcesses)
+{
+  EXPECT_EQ(Slope::free_shared_memory("/nowhere"), HUGE_VAL);
+  EXPECT_EQ(Slope::free_shared_memory("/proc"), HUGE_VAL);    // of no size
+  EXPECT_GT(Slope::free_shared_memory("/tmp"), 0.0);
 }

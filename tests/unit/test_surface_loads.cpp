@@ -1,6 +1,5 @@
-/* Loads of a surface: sums over ranks and steps, files; contacts stored by ball; force of an impact. */
+/* Loads of a surface: sums over ranks and steps, files; contacts stored by ball. */
 
-#include "impact_force.h"
 #include "contact_records.h"
 #include "surface_loads.h"
 #include "triangle_mesh.h"
@@ -74,32 +73,4 @@ TEST(ContactRecords, KeepsPacksAndCopies)
   EXPECT_EQ(store.largest(2), static_cast<int>(buffer.size()));
   store.clear();
   EXPECT_EQ(store.contacts(1), 0);
-}
-
-// the law's own force along a step-by-step impact, from where the contact list's steps are
-TEST(ImpactForce, IsTheLawsInClosedForm)
-{
-  const double kn = 2.0e6, m = 300.0, w = std::sqrt(kn / m), dt = 0.25 / w, v0 = 1.5;
-  for (const double e : {0.3, 0.6, 1.0})
-    for (const double begin : {0.05, 0.5, 0.95}) {    // of a step
-      ContactLaw law = ContactLaw();
-      law.kn = kn;
-      law.cn_root = 2.0 * damping_ratio(e) * std::sqrt(kn);
-      law.exact = 1.0;
-      law.fn_least = -HUGE_VAL;
-      const ImpactForce impact(law, m, dt);
-      const Oscillator o = true_at_rest({law.cn(m) * 0.5 * dt / m, kn * dt * dt / m});
-      const double fast = 1.0 + o.stiffness() / 12.0, hurry = std::sqrt(o.a) / 0.25;
-      const Oscillator own = {law.cn(m) * 0.5 * dt / m, kn * dt * dt / m};
-      double before = 0.0, t = 1.0 - begin;
-      for (int k = 0; k < 8; k++, t += 1.0) {
-        const double d = o.after(t).x(0.0, fast * v0 * dt);
-        const double V = k == 0 ? v0 * dt : d - before;
-        const Motion there = own.after(t * hurry);    // the law's motion, at the same phase
-        const double force = (kn * there.x(0.0, v0 * dt) + law.cn(m) / dt * there.rate(0.0, v0 * dt));
-        EXPECT_NEAR(impact.normal(k + 1.0, d, V), force, 1e-9 * kn * v0 / w) << e << " " << begin << " " << k;
-        EXPECT_NEAR(impact.tangential(k + 1.0, d, V), k ? 1.0 / hurry : 1.0 / (hurry * (0.5 + 1.0 - begin)), 1e-9);
-        before = d;
-      }
-    }
 }

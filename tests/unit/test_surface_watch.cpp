@@ -55,6 +55,20 @@ static void expect_vector(const Vector &a, double x, double y, double z)
   EXPECT_NEAR(a.z, z, 1e-12);
 }
 
+// as deep as it gets: such a ball is refused at the start, but a fast one may come there
+TEST(SurfaceWatch, ACentreOnAnEdgeHasNoForceWithoutBound)
+{
+  std::vector<Triangle> list;
+  add_square(list, {0, 0, 0}, {2, 0, 0}, {0, 2, 0});
+  add_square(list, {0, 0.4, 0}, {2, 0, 0}, {0, -2, 2});
+  for (double z : {0.0, 1e-300, -1e-12, -1e-3})
+    for (const SurfaceContact &c : contacts(list, {1.25, -std::fabs(z), -z})) {
+      EXPECT_TRUE(c.overlap > 0.0 && c.overlap < 4.0 * R) << z << " " << c.overlap;
+      EXPECT_TRUE(c.spring > 0.0 && c.spring <= R) << z << " " << c.spring;
+    }
+  EXPECT_EQ(contacts(list, {1.25, 0.0, 0.0}).size(), 2u);
+}
+
 TEST(NearestPoint, IsTheNearestOfAllPoints)
 {
   std::mt19937 random(3);

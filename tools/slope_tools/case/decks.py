@@ -1,7 +1,7 @@
 """LAMMPS input decks: the commands, variables and files of one."""
 import re
 from pathlib import Path
-from typing import Dict, Iterable, List, Mapping, Sequence, Set, Tuple
+from typing import Any, Callable, Dict, Iterable, List, Mapping, Sequence, Set, Tuple
 
 from ..errors import SlopeError
 
@@ -66,7 +66,14 @@ def variables(deck):
 
 def quoted(path: str) -> str:
     """A path as one word of a deck."""
-    return f'"{path}"' if any(c.isspace() for c in path) else path
+    return f'"{path}"' if any(c.isspace() or c in "#$&" for c in path) else path
+
+
+def warn_of_name(path: object, warn: Callable[[str], Any]) -> None:
+    """Warn of a path that no deck can name: LAMMPS changes what is not ASCII before it opens a file."""
+    odd = sorted({c for c in str(path) if not c.isascii() or c == '"'})
+    if odd:
+        warn(f"{path}: LAMMPS cannot read {' '.join(odd)} in the name of a file: rename it before it goes into a deck")
 
 
 def filled(word: str, values: Mapping[str, str]) -> str:

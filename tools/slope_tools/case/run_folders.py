@@ -1,10 +1,15 @@
 """The files of a run: its summary and the rasters that fix deposit/grid wrote."""
+import re
 from pathlib import Path
+from typing import NamedTuple, Optional
 
 from ..disk import is_number, load_yaml
 from ..errors import SlopeError
 from ..survey import rasters
 
+# what fix deposit/grid writes, PREFIX.KIND.asc
+RASTERS = ("base", "surface", "thickness", "max_thickness", "max_speed", "max_energy", "arrival", "last_motion")
+OF_RUN = "output of fix deposit/grid: its prefix, one of its files, or the folder of a run, a study or a site"
 VARIABLES = "variables.yaml"       # what `slope study` runs, written before the run
 MARKER = "finished.yaml"           # written when the run is complete
 SUMMARY_KEYS = {"volume": ("released", "on_grid", "off_grid", "lost", "residual"),
@@ -27,6 +32,51 @@ def summaries(folder):
 def prefix_of(summary):
     """PREFIX of the rasters that belong to a summary."""
     return Path(str(summary).removesuffix(".summary.yaml"))
+
+
+class Named(NamedTuple):
+    """The run that a name on the command line stands for."""
+    prefix: str
+    folder: Optional[Path]      # that was named, None if a prefix or a file was
+    note: Optional[str]         # which run of several it is
+
+
+def named_run(name: str) -> Named:
+    """The run of a prefix, of one of its rasters or its summary, of its folder, or the governing run of a study's or a
+    site's folder; SlopeError if there is none, or several.
+    """
+    path = Path(name)
+    if Path(f"{name}.thickness.asc").is_file() or not path.exists():
+        return Named(name, None, None)
+    if path.is_file():
+        match = re.fullmatch(rf"(.+?)(?:\.\d+)?\.(?:{'|'.join(RASTERS)})\.asc|(.+)\.summary\.yaml", path.name)
+        if not match:
+            raise SlopeError(path, f"must be {OF_RUN}")
+        return Named(str(path.with_name(match[1] or match[2])), None, None)
+    here = summaries(path)
+    if len(here) > 1:
+        raise SlopeError(path, "must hold one run, or name one of them by its prefix",
+                         ", ".join(str(prefix_of(one)) for one in here[:3]) + ", ..." * (len(here) > 3))
+    if here:
+        return Named(str(prefix_of(here[0])), path, None)
+    for study in (path / "study.yaml", path / "study" / "study.yaml"):
+        if study.is_file():
+            run = governing_run(study)
+            inside = summaries(study.parent / run)
+            if len(inside) != 1:
+                raise SlopeError(study.parent / run, "must hold the governing run of the study, with its summary")
+            return Named(str(prefix_of(inside[0])), path, f"{run}, the governing run of {study.parent}")
+    raise SlopeError(path, f"must be {OF_RUN}: it holds neither a PREFIX.summary.yaml nor a study.yaml")
+
+
+def governing_run(study: Path) -> str:
+    """The folder of the run on which a study's answer rests, or which ran out farthest where it has none."""
+    what = "what `slope study` wrote"
+    about = load_yaml(study, what)
+    try:
+        return str((about["conservative"] or about["largest"]["front_m"])["run"])
+    except (KeyError, TypeError) as error:
+        raise SlopeError(study, f"must be {what} ({error!r})") from error
 
 
 def load_summary(path):

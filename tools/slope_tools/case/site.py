@@ -8,6 +8,7 @@ import contextlib
 import os
 import shutil
 from pathlib import Path
+from shlex import quote
 from typing import Any, Callable, List, NamedTuple, Optional
 
 import numpy as np
@@ -20,7 +21,7 @@ from . import release_files, site_budget, site_choices, site_deck, site_folder, 
 from .site_budget import Size, Trial
 from .site_choices import Choices, Derived
 from .site_folder import BODY, BODY_DECK, MAP, TERRAIN
-from .site_layers import Layers, Shown, advice, read_layers
+from .site_layers import Layers, Shown, advice, read_layers, swapped
 
 
 class Machine(NamedTuple):
@@ -46,8 +47,10 @@ def check_target(folder: Path, again: bool) -> None:
         if deck.is_file() and known != disk.sha256(deck):
             raise SlopeError(deck, "must not have been changed by hand, the changes would be lost: rename or remove it "
                              "first")
+    elif site_folder.was_not_made(folder):
+        return
     elif (folder / site_choices.NAME).is_file():
-        raise SlopeError("-o", f"must be a new folder; `slope site {folder}` rebuilds this one from its "
+        raise SlopeError("-o", f"must be a new folder; `slope site {quote(str(folder))}` rebuilds this one from its "
                          f"{site_choices.NAME}", folder)
     elif folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise SlopeError("-o", "must be a new folder, or an empty one", folder)
@@ -63,10 +66,11 @@ def make(choices: Choices, folder: Path, machine: Machine, tell: Callable[[str],
 
     tell and warn are called with lines for the user, draw draws the map; again: the folder is a site, which is
     rebuilt; known: the choices that were determined when it was made before. Raises SlopeError on bad input; the folder
-    is then as it was.
+    is then as it was, and a new one has site.yaml alone, to be changed.
     """
     check_target(folder, again)
-    old = set(site_choices.found(folder).get("files") or ()) if again else set()
+    known_files = again or site_folder.was_not_made(folder)
+    old = set(site_choices.found(folder).get("files") or ()) if known_files else set()
     site_folder.check(choices, folder, old)
     place = folder.absolute()
     # on the disk of the folder, so that renames do
@@ -77,6 +81,12 @@ def make(choices: Choices, folder: Path, machine: Machine, tell: Callable[[str],
             try:
                 made = built(choices, known or {}, new, folder, machine, tell, warn, draw)
                 site_folder.exchange(new, place, old)
+            except SlopeError as error:
+                if not again:
+                    site_folder.keep_choices(choices, folder, error)
+                    tell(f"{folder / site_choices.NAME} was kept: change it, then: tools/slope site "
+                         f"{quote(str(folder))}; or repeat the command")
+                raise
             finally:
                 shutil.rmtree(new, ignore_errors=True)
     except OSError as error:
@@ -104,7 +114,7 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
     choices = {name: dict(section) for name, section in given.items()}
     wanted = wanted_body(choices, new)
     raster = terrain(choices, new, tell, keep)
-    found = release.body_of(wanted)
+    found = body_of(choices, wanted, raster, keep)
     tell(release.text(found))
     for line in found.warnings:
         keep(line)
@@ -145,17 +155,35 @@ def wanted_body(choices: Choices, new: Path) -> release.Wanted:
     given = choices["release"]
     if not (given["polygon"] or given["scar"]):
         raise SlopeError("--release", "must be given, a polygon, or --scar, a raster")
-    return release.check(release.Wanted(str(new / TERRAIN), **given, advice=advice(choices)))
+    site_choices.check_assigned(choices)
+    crs, scar_crs = (given[key] and site_choices.assigned(choices, given[key]) for key in ("polygon", "scar"))
+    return release.check(release.Wanted(str(new / TERRAIN), **given, crs=crs, scar_crs=scar_crs,
+                                        advice=advice(choices, given["polygon"] or given["scar"])))
 
 
 def terrain(choices: Choices, new: Path, tell, warn) -> Raster:
     """Write the terrain and read it back, as the deck will."""
     given = choices["terrain"]
+    own = {path: crs for path in given["files"] if (crs := site_choices.assigned(choices, path))}
     wanted = local_terrain.Wanted(given["crs"], None, given["cell"], given["bounds"], given["fill"],
-                                  given["assign_crs"])
+                                  given["assign_crs"], own, given["z_unit"], given["nodata"])
     about = local_terrain.make(given["files"], new / TERRAIN, wanted, tell, warn)
     tell(local_terrain.summary(TERRAIN, about))
     return rasters.read_asc_local(new / TERRAIN)
+
+
+def body_of(choices: Choices, wanted: release.Wanted, raster: Raster, warn) -> release.Body:
+    """The body; SlopeError, in other words where release area and road seem to be swapped."""
+    try:
+        found = release.body_of(wanted)
+    except SlopeError:
+        if line := swapped(choices, raster):
+            raise SlopeError("--release, --road", "must not be swapped, the mass falls from the release area onto the "
+                             "road", line) from None
+        raise
+    if line := swapped(choices, raster, wholly=True):
+        warn(f"--release and --road may be swapped, the road lies above the release area: {line}")
+    return found
 
 
 def write_body(new: Path, wanted: release.Wanted, found: release.Body):
@@ -197,7 +225,12 @@ def tried(choices: Choices, parts: site_deck.Parts, found: release.Body, new: Pa
         if path.suffix in (".asc", ".stl", ".csv", ".txt"):
             os.symlink(f"../{path.name}", folder / path.name)
     disk.write(folder / site_deck.NAME, site_deck.text(coarse, parts, numbers(coarse, None, None, d)))
-    trial = site_budget.measure(folder, site_deck.NAME, machine.lmp)._replace(diameter=d)
+    try:
+        trial = site_budget.measure(folder, site_deck.NAME, machine.lmp)._replace(diameter=d)
+    except SlopeError as error:
+        if parts.motion:
+            site_warnings.require_standing(error, choices["motion"]["peak_friction"], found.measures.mean_slope)
+        raise
     reached = rasters.read(next(iter(folder.glob("*.max_thickness.asc"))), heights=False)
     shutil.rmtree(folder)
     tell(f"trial run, {trial.balls} balls of {d:g} m: {'at rest' if trial.at_rest else 'not at rest'} after "

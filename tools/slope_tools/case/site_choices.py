@@ -15,6 +15,8 @@ import yaml
 
 from .. import disk
 from ..errors import SlopeError
+from ..survey import vectors
+from ..survey.crs import as_crs
 
 NAME = "site.yaml"
 VERSION = 1             # of site.yaml, also in its schema
@@ -24,6 +26,8 @@ WHAT = "a site.yaml of `slope site`"
 # keys that hold one file, and lists of files
 FILES = (("terrain", "files"), ("release", "polygon"), ("release", "scar"), ("road", "file"), ("structures", "files"),
          ("lines", "files"), ("motion", "file"), ("observed", "file"))
+
+WITHOUT_CRS = (("structures", "files"), ("motion", "file"))
 
 # beside a raster, a shapefile or a table: CRS, place, attributes
 BESIDE = (".prj", ".shx", ".dbf", ".cpg", ".tfw", ".hdr", ".yaml")
@@ -155,7 +159,7 @@ def sources(choices: Choices, folder: Path) -> Dict[str, str]:
     """{path as in site.yaml: digest} of the files that the choices name and that exist, with the files beside them that
     say what they mean."""
     found_: Dict[str, str] = {}
-    for name in source_files(choices):
+    for name in (vectors.source(one).path for one in source_files(choices)):
         if os.path.isfile(name):
             beside = [str(Path(name).with_suffix(suffix)) for suffix in BESIDE] + [f"{name}.aux.xml"]
             parts = [os.path.basename(one) + disk.sha256(one) for one in (name, *beside) if os.path.isfile(one)]
@@ -189,11 +193,31 @@ def with_files(choices: Choices, change) -> Choices:
 
 def source_files(choices: Choices) -> List[str]:
     """All files that the choices name."""
-    named: List[str] = []
-    for section, key in FILES:
-        value = choices[section].get(key)
-        named += value if isinstance(value, list) else [value] if value else []
-    return named
+    return [name for section, key in FILES for name in listed(choices, section, key)]
+
+
+def listed(choices: Choices, section: str, key: str) -> List[str]:
+    """The files of a key, also of one that holds one file or none."""
+    value = choices[section].get(key)
+    return value if isinstance(value, list) else [value] if value else []
+
+
+def assigned(choices: Choices, name: str) -> Optional[str]:
+    """The CRS that the choices assign to a file, None if they assign none; a key is the end of its path."""
+    parts = Path(vectors.source(name).path).parts
+    own = choices["crs"]["assigned"]
+    fit = [key for key in own if parts[-len(Path(key).parts):] == Path(key).parts]
+    return own[max(fit, key=len)] if fit else None
+
+
+def check_assigned(choices: Choices) -> None:
+    """Raise SlopeError unless every key of crs.assigned is the end of the path of a file that has a CRS."""
+    named = [name for place in FILES if place not in WITHOUT_CRS for name in listed(choices, *place)]
+    for key, crs in choices["crs"]["assigned"].items():
+        if all(assigned({"crs": {"assigned": {key: crs}}}, name) is None for name in named):
+            raise SlopeError("--assign-crs", "FILE=EPSG:n must name a file of the site that has coordinates, "
+                             + ", ".join(Path(vectors.source(name).path).name for name in named), key)
+        as_crs(f"--assign-crs {key}", crs)
 
 
 def text(choices: Choices, found_: Dict[str, Any], folder: Path) -> str:

@@ -2,7 +2,9 @@
 from pathlib import Path
 from typing import List, Set
 
+from .. import disk
 from ..errors import SlopeError
+from ..survey import vectors
 from . import release_files, site_choices, site_deck, site_inputs, site_warnings
 from .site_choices import Choices
 from .site_layers import OBSERVED, RASTERS, ROAD
@@ -26,14 +28,27 @@ def planned(choices: Choices) -> Set[str]:
         names.add(site_inputs.MOTION)
     taken = set(site_inputs.TAKEN)
     for section, suffix in (("structures", ".stl"), ("lines", ".csv")):
-        names |= {site_inputs.unused(Path(file).stem, taken) + suffix for file in choices[section]["files"]}
+        names |= {site_inputs.unused(site_inputs.stem(file), taken) + suffix for file in choices[section]["files"]}
     return names
+
+
+def was_not_made(folder: Path) -> bool:
+    """Whether all that a folder has is the site.yaml of a site that could not be made."""
+    names = [path.name for path in folder.iterdir()] if folder.is_dir() else []
+    return names == [site_choices.NAME] and "failed" in site_choices.found(folder)
+
+
+def keep_choices(choices: Choices, folder: Path, error: SlopeError) -> None:
+    """Write the choices of a site that could not be made into its folder, to be changed."""
+    folder.mkdir(exist_ok=True)
+    about = {"failed": str(error), "files": [site_choices.NAME]}
+    disk.write(folder / site_choices.NAME, site_choices.text(choices, about, folder.absolute()))
 
 
 def check(choices: Choices, folder: Path, old: Set[str]) -> None:
     """Raise SlopeError if rebuilding a folder would replace a file of the user's; old: names that slope site made."""
     names = planned(choices)
-    for source in map(Path, site_choices.source_files(choices)):
+    for source in (Path(vectors.source(name).path) for name in site_choices.source_files(choices)):
         if source.name in names | old and source.parent.resolve() == folder.resolve():
             raise SlopeError(source, f"must not have the name of a file that slope site makes in {folder}: rename it, "
                              "or move it elsewhere")

@@ -5,13 +5,14 @@ Each is read, checked, brought to the terrain's local metres, and written into t
 import re
 import shutil
 from pathlib import Path
-from typing import Iterable, List, NamedTuple, Set, Tuple
+from typing import Iterable, List, NamedTuple, Optional, Set, Tuple
 
 import numpy as np
+from rasterio.crs import CRS
 
 from ..errors import SlopeError
 from ..geometry import extent
-from ..survey import lines, polygons
+from ..survey import lines, motion_file, polygons, vectors
 from ..survey.rasters import Raster, crs_name
 
 # names of the deck's own fixes and groups, and of files that a run writes beside them
@@ -58,6 +59,12 @@ def unused(stem: str, taken: Set[str]) -> str:
         name = next(f"{name}_{k}" for k in range(2, 10 ** 6) if f"{name}_{k}" not in taken)
     taken.add(name)
     return name
+
+
+def stem(name: str) -> str:
+    """Of a file, or of the layer of it that a name has: what its fix may be called."""
+    where = vectors.source(name)
+    return where.layer or Path(where.path).stem
 
 
 # --- structures ---
@@ -112,12 +119,18 @@ def structure(path: str, raster: Raster, folder: Path, taken: Set[str]) -> Struc
 
 # --- lines ---
 
-def control_lines(paths: Iterable[str], raster: Raster, folder: Path, taken: Set[str],
-                  advice: polygons.Advice = polygons.ADVICE) -> List[Line]:
+class Drawn(NamedTuple):
+    """A file with a control line."""
+    path: str
+    crs: Optional[CRS]          # assigned to it
+    advice: polygons.Advice
+
+
+def control_lines(files: Iterable[Drawn], raster: Raster, folder: Path, taken: Set[str], warn) -> List[Line]:
     """Write control lines in local metres into a folder."""
     found = []
-    for path in paths:
-        parts = lines.read_local(Path(path), raster, False, advice=advice).geoms
+    for path, crs, advice in files:
+        parts = lines.read_local(path, raster, False, advice=advice, crs=crs, warn=warn).geoms
         if len(parts) != 1:
             raise SlopeError(path, "must hold one line", f"{len(parts)} that do not meet")
         points = np.round(np.asarray(parts[0].coords)[:, :2], 4) + 0.0
@@ -125,7 +138,7 @@ def control_lines(paths: Iterable[str], raster: Raster, folder: Path, taken: Set
         if not ((points >= (xlo, ylo)) & (points <= (xhi, yhi))).all():
             raise SlopeError(path, f"must lie within the terrain, local x y {polygons.numbers((xlo, ylo, xhi, yhi))}",
                              polygons.numbers((*points.min(axis=0), *points.max(axis=0))))
-        name = unused(Path(path).stem, taken)
+        name = unused(stem(path), taken)
         rows = "".join(f"{x:.10g},{y:.10g}\n" for x, y in points.tolist())
         head = "# control line, local x,y in m; forward is from its left to its right\n"
         (folder / f"{name}.csv").write_text(head + rows, encoding="ascii")
@@ -137,32 +150,9 @@ def control_lines(paths: Iterable[str], raster: Raster, folder: Path, taken: Set
 
 def motion(path: str, folder: Path) -> Motion:
     """Copy the motion of the ground, lines "t ax ay az" in s and m/s2, into a folder."""
-    try:
-        text = Path(path).read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        why = getattr(error, "strerror", None) or error
-        raise SlopeError(path, f"must be text, lines t ax ay az ({why})") from None
-    rows = []
-    for number, line in enumerate(text.splitlines(), 1):
-        words = line.split("#")[0].split()
-        if not words:
-            continue
-        try:
-            row = [float(word) for word in words]
-        except ValueError:
-            row = []
-        if len(row) != 4 or not np.isfinite(row).all():
-            raise SlopeError(f"{path}: line {number}", "must be four numbers, t ax ay az in s and m/s2 (slope quake "
-                             "makes it from a record)", line[:60])
-        rows.append(row)
-    values = np.array(rows)
-    if len(values) < 2 or not (np.diff(values[:, 0]) > 0).all():
-        raise SlopeError(path, "must have two lines at least, with times that grow")
-    peak = float(np.hypot(values[:, 1], values[:, 2]).max())
-    if not peak > 0:
-        raise SlopeError(path, "must hold a motion, all horizontal accelerations are 0")
+    values = motion_file.read(path)
     copy(path, folder / MOTION)
-    return Motion(MOTION, float(values[-1, 0]), peak)
+    return Motion(MOTION, float(values[-1, 0]), motion_file.peak(values))
 
 
 def copy(source: str, target: Path) -> None:

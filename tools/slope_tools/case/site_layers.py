@@ -1,17 +1,19 @@
 """What lies on a site's terrain: road, structures, control lines, a mapped deposit, and the motion of the ground."""
+import shlex
 from pathlib import Path
 from typing import List, NamedTuple, Optional, Sequence, Set
 
 import numpy as np
+from rasterio.crs import CRS
 from shapely.geometry import box
 from shapely.geometry.base import BaseGeometry
 
 from ..errors import SlopeError
 from ..geometry import extent
-from ..survey import polygons, rasters
-from ..survey.crs import same_crs
+from ..survey import polygons, rasters, release_area, vectors
+from ..survey.crs import as_crs, same_crs
 from ..survey.rasters import Raster, crs_name
-from . import site_inputs
+from . import site_choices, site_inputs
 from .site_choices import Choices
 from .site_inputs import Line, Motion, Structure
 
@@ -46,12 +48,13 @@ def read_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> L
 
     Raises SlopeError, which names the file, if one does not fit the terrain.
     """
-    help_ = advice(choices)
-    road = polygon_layer(choices["road"]["file"], raster, folder / ROAD, help_, tell, warn)
-    observed = observed_layer(choices["observed"]["file"], raster, folder, help_, tell, warn)
+    road = polygon_layer(choices, choices["road"]["file"], raster, folder / ROAD, tell, warn)
+    observed = observed_layer(choices, raster, folder, tell, warn)
     taken: Set[str] = set(site_inputs.TAKEN)
     structures = site_inputs.structures(choices["structures"]["files"], raster, folder, taken)
-    lines = site_inputs.control_lines(choices["lines"]["files"], raster, folder, taken, help_)
+    drawn = [site_inputs.Drawn(path, assigned(choices, path), advice(choices, path))
+             for path in choices["lines"]["files"]]
+    lines = site_inputs.control_lines(drawn, raster, folder, taken, warn)
     motion = site_inputs.motion(choices["motion"]["file"], folder) if choices["motion"]["file"] else None
     for one in structures:
         tell(one.summary)
@@ -63,18 +66,64 @@ def read_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> L
     return Layers(road, observed, structures, lines, motion)
 
 
-def advice(choices: Choices) -> polygons.Advice:
-    """What can be done in slope site where a polygon does not fit the terrain."""
-    own = "save it with its CRS; a GeoJSON that names none is in longitude and latitude"
-    return polygons.Advice(choices["terrain"]["files"][0], "--crs EPSG:n gives it one",
-                           f"a .prj file beside a shapefile: {own}", own)
+def advice(choices: Choices, path: str) -> polygons.Advice:
+    """What can be done in slope site where a file does not fit the terrain."""
+    own = f"--assign-crs {shlex.quote(Path(vectors.source(path).path).name + '=EPSG:n')}, or save it with its CRS"
+    return polygons.Advice(choices["terrain"]["files"][0], "--crs EPSG:n gives it one", own,
+                           f"{own}; a GeoJSON that names none is in longitude and latitude")
 
 
-def polygon_layer(path: Optional[str], raster: Raster, target: Path, help_: polygons.Advice, tell, warn):
+def assigned(choices: Choices, path: str) -> Optional[CRS]:
+    """The CRS that the choices assign to a file, None if they do not."""
+    name = site_choices.assigned(choices, path)
+    return as_crs(f"--assign-crs {path}", name) if name else None
+
+
+class Ground(NamedTuple):
+    """The ground in a polygon."""
+    mean: float         # m
+    low: float
+    high: float
+    slope: float        # degrees, of the plane that fits it best
+
+    @property
+    def words(self) -> str:
+        return f"{self.mean:.0f} m on average, a slope of {self.slope:.0f} degrees"
+
+
+def ground_of(choices: Choices, path: str, raster: Raster) -> Optional[Ground]:
+    """The ground in a polygon file, None if that cannot be read or has too few nodes."""
+    try:
+        geometry = polygons.read_local(path, raster, crs=assigned(choices, path))
+    except SlopeError:
+        return None
+    inside = release_area.nodes_inside(raster, geometry) & np.isfinite(raster.z)
+    if inside.sum() < release_area.FEWEST:
+        return None
+    z = raster.z[inside]
+    columns, rows = raster.transform * np.meshgrid(np.arange(raster.z.shape[1]) + 0.5, np.arange(len(raster.z)) + 0.5)
+    _, slope = release_area.fall(columns[0], rows[:, 0], raster.z, inside)
+    return Ground(float(z.mean()), float(z.min()), float(z.max()), slope)
+
+
+def swapped(choices: Choices, raster: Raster, wholly: bool = False) -> Optional[str]:
+    """What speaks for release area and road having been swapped, None if nothing does.
+
+    That is a road on higher and steeper ground; wholly: no part of it as low as the top of the release area.
+    """
+    paths = choices["release"]["polygon"], choices["road"]["file"]
+    release, road = (ground_of(choices, path, raster) if path else None for path in paths)
+    higher = release and road and (road.low > release.high if wholly else road.mean > release.mean)
+    if release and road and higher and road.slope > release.slope:
+        return f"--release {paths[0]}: {release.words}; --road {paths[1]}: {road.words}"
+    return None
+
+
+def polygon_layer(choices: Choices, path: Optional[str], raster: Raster, target: Path, tell, warn):
     """A polygon in local metres, written for the deck; None if there is none."""
     if not path:
         return None
-    geometry = polygons.read_local(path, raster, advice=help_)
+    geometry = polygons.read_local(path, raster, crs=assigned(choices, path), advice=advice(choices, path), warn=warn)
     beyond = 1 - geometry.intersection(box(*extent(raster))).area / geometry.area
     if beyond > 1e-9:
         warn(f"{path}: {100 * beyond:.2g} % of the area lies outside of the terrain")
@@ -83,13 +132,15 @@ def polygon_layer(path: Optional[str], raster: Raster, target: Path, help_: poly
     return geometry
 
 
-def observed_layer(path: Optional[str], raster: Raster, folder: Path, help_: polygons.Advice, tell, warn):
+def observed_layer(choices: Choices, raster: Raster, folder: Path, tell, warn):
     """The mapped deposit: an outline in local metres, or None after a raster was copied."""
+    path = choices["observed"]["file"]
     if not path:
         return None
     if Path(path).suffix.lower() not in RASTERS:
-        return polygon_layer(path, raster, folder / f"{OBSERVED}.csv", help_, tell, warn)
+        return polygon_layer(choices, path, raster, folder / f"{OBSERVED}.csv", tell, warn)
     mapped = rasters.read(path, heights=False)
+    mapped = mapped._replace(crs=assigned(choices, path) or mapped.crs)
     if mapped.crs is None:
         mapped = mapped._replace(crs=raster.crs)
         warn(f"{path} has no CRS: taken to be in that of the terrain")

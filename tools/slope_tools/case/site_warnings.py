@@ -5,6 +5,7 @@ from typing import List, Optional, Sequence
 import yaml
 
 from .. import disk
+from ..errors import SlopeError
 from ..survey.release_solve import Measures
 from .site_budget import Size, Trial
 
@@ -13,6 +14,9 @@ ROUGH = 3.0             # balls, mean thickness of the body: below, the numbers 
 THICK = 10.0            # balls, largest thickness: below, a site should be repeated with more balls
 LARGE = 1e6             # m3: larger masses run farther than laboratory friction suggests
 LOST = 0.001            # share of the mass that may leave the terrain
+STEEP = 65.0            # degrees; tried: some faces of balls stand at 60, none at 70 and 80, whatever their friction
+# what a run says whose body falls while it settles
+FALLS = ("does not stand before it is shaken", "Lost atoms", "must be the body that the balls fill")
 MORE = "use more balls (--balls, --minutes)"
 
 
@@ -50,6 +54,22 @@ def of_thickness(mean: float, largest: float) -> List[str]:
     if largest < THICK:
         return [f"the body is {largest:.1f} balls thick at most, below {THICK:g}: a first look; to repeat it, {MORE}"]
     return []
+
+
+def require_standing(error: SlopeError, peak_friction: float, slope: float) -> None:
+    """Raise SlopeError with what can be done if a trial run failed because the body does not stand before it is shaken.
+
+    peak_friction and slope (of the ground of the body) in degrees.
+    """
+    if not any(words in str(error) for words in FALLS):
+        return
+    alone = ("leave out --motion (motion.file: null in site.yaml), the body then fails by the loss of its strength "
+             "alone")
+    if slope >= STEEP:
+        raise SlopeError("--motion", "the body must stand before it is shaken, but a face of spheres as steep as this "
+                         f"one stands at no --peak-friction: {alone}", f"{slope:.0f} degrees") from None
+    raise SlopeError("--peak-friction", "must hold the body before it is shaken: try a larger one, up to 80, or a "
+                     f"thinner body; or {alone}", f"{peak_friction:g}") from None
 
 
 def write(folder: Path, lines: Sequence[str]) -> None:

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import List
 
 from .. import disk, errors
+from ..case import run_folders
 from ..deposit import deposit
 from ..deposit.export import layers, write
 from ..survey import rasters
@@ -12,9 +13,10 @@ from ..survey.rasters import crs_name
 EPILOG = """\
 units: metres, m/s, J, s. PREFIX is what fix deposit/grid was given as output.
 
-example: the rasters of a run, for QGIS; of a run in another folder than its terrain:
+examples: the rasters of a run, for QGIS; of a site, its governing run; of a run in another folder than its terrain:
   tools/slope export embankment
-  tools/slope export study/runs/001/embankment --terrain terrain.asc -o gis
+  tools/slope export mine
+  tools/slope export study/rolling_0.05/embankment --terrain terrain.asc -o gis
 
 Writes PREFIX.thickness.tif and so on, and export.yaml.
 """
@@ -25,9 +27,11 @@ def add_parser(commands, **kwargs):
     parser = commands.add_parser(
         "export", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
         description="Every raster of a run as a GeoTIFF in the coordinates of the survey.", **kwargs)
-    parser.add_argument("prefix", metavar="PREFIX", help="output of fix deposit/grid: PREFIX.thickness.asc and so on")
+    parser.add_argument("prefix", metavar="PREFIX",
+                        help="output of fix deposit/grid: PREFIX.thickness.asc and so on; or one of these files; or "
+                             "the folder of a run, or of a study or site, which stands for its governing run")
     parser.add_argument("-o", dest="output", metavar="DIR", type=Path,
-                        help="folder for the results (default PREFIX.export)")
+                        help="folder for the results (default PREFIX.export; of a folder, FOLDER/export)")
     parser.add_argument("--terrain", metavar="TERRAIN.asc", type=Path,
                         help="the run's terrain, whose sidecar holds the CRS (default: terrain.asc beside PREFIX)")
     return parser
@@ -37,20 +41,23 @@ def run(args):
     """Do the command; raises SlopeError on bad input. Prints what was written."""
     warnings: List[str] = []
     warn = errors.warner("export", warnings)
-    run_ = deposit.read(args.prefix, args.terrain, warn)
-    folder = args.output or Path(f"{args.prefix}.export")
+    named = run_folders.named_run(args.prefix)
+    run_ = deposit.read(named.prefix, args.terrain, warn)
+    folder = args.output or (named.folder / "export" if named.folder else Path(f"{named.prefix}.export"))
     disk.check_folder(folder)
     place = run_.raster
-    found = layers(args.prefix)
+    found = layers(named.prefix)
     about = {"prefix": run_.prefix, "terrain": run_.terrain, "crs": None if place.crs is None else crs_name(place.crs),
              "origin": {"east": place.offset[0], "north": place.offset[1]}, "cell": run_.cell,
              "run": {"slope_version": run_.summary.get("slope_version"), "time": run_.summary["time"]}, "rasters": []}
     if not any(layer.kind == "base" for layer in found):
-        warn(f"no {args.prefix}.base.asc, as of a run by an older version: no ground without the body")
+        warn(f"no {named.prefix}.base.asc, as of a run by an older version: no ground without the body")
     with disk.complete(folder, "export.yaml") as new:
         for layer in rasters.progress(found, "writing GeoTIFFs"):
             about["rasters"].append(write(new, layer, place))
         about["warnings"] = warnings
         disk.write_yaml(new / "export.yaml", about, "slope export: rasters of a run as GeoTIFFs; m, m/s, J, s")
+    if named.note:
+        print(f"{named.note}: {named.prefix}")
     print(f"{len(found)} rasters, {about['crs'] or 'local metres, no CRS'}, cells of {run_.cell:g} m\n"
           f"written to {folder}: {' '.join(one['file'] for one in about['rasters'])} export.yaml")

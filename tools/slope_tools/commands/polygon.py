@@ -1,19 +1,19 @@
 """slope polygon: polygons of a GIS to the rings in local metres that `region polygon` reads."""
 import argparse
-import sys
 import time
 from pathlib import Path
 
 from shapely.geometry import box
 
-from ..case.decks import quoted
-from ..errors import SlopeError
-from ..survey import polygons, rasters
+from ..case.decks import quoted, warn_of_name
+from ..errors import SlopeError, printer
+from ..survey import polygons, rasters, vectors
 from ..survey.crs import as_crs
 
 SLOW = 5.0     # s; a run that took longer says so
 EPILOG = """\
-IN: GeoJSON, shapefile, or another format of GDAL with one layer; or text (.csv, .txt, .wkt) with
+IN: GeoJSON, shapefile, or another format of GDAL, one layer of it (FILE|layername=NAME, or --layer); or text
+  (.csv, .txt, .wkt) with
   rings of lines x,y (metres), a blank line between two rings, # comments, one line of names at most; a point is inside
   if it is inside an odd number of rings, so that a ring inside of another one is a hole
   WKT such as POLYGON ((x y, x y, x y, x y))
@@ -36,6 +36,8 @@ def add_parser(commands, **kwargs):
                         help="rings for region polygon")
     parser.add_argument("--terrain", metavar="TERRAIN.asc", required=True,
                         help="terrain that `slope terrain` wrote; its sidecar TERRAIN.yaml has CRS and origin")
+    parser.add_argument("--layer", metavar="NAME", help="of the layers of IN this one (default: the only one, or the "
+                        "only one of polygons)")
     place = parser.add_mutually_exclusive_group()
     place.add_argument("--assign-crs", "--crs", dest="crs", metavar="EPSG:n",
                        help="the coordinates of IN are in this CRS, whatever IN says")
@@ -51,15 +53,18 @@ def run(args):
         raise SlopeError("-o", "must be a file that ends in .csv", args.output)
     if not args.output.parent.is_dir():
         raise SlopeError("-o", "must be in an existing folder", args.output)
-    if args.output.exists() and Path(args.input).exists() and args.output.samefile(args.input):
+    source = Path(vectors.source(args.input).path)
+    if args.output.exists() and source.exists() and args.output.samefile(source):
         raise SlopeError("-o", "must not be the input", args.output)
     crs = as_crs("--assign-crs", args.crs) if args.crs else None
     place = rasters.read_place(args.terrain)
-    geometry = polygons.read_local(args.input, place, local=args.local, crs=crs, advice=polygons.OF_ASSIGN_CRS)
+    warn = printer("polygon")
+    geometry = polygons.read_local(vectors.named(args.input, args.layer), place, local=args.local, crs=crs,
+                                   advice=polygons.OF_ASSIGN_CRS, warn=warn)
     beyond = 1 - geometry.intersection(box(*place.extent)).area / geometry.area
     if beyond > 1e-9:
-        print(f"slope polygon: warning: {args.input}: {100 * beyond:.2g} % of the area lies outside of {args.terrain}",
-              file=sys.stderr)
+        warn(f"{args.input}: {100 * beyond:.2g} % of the area lies outside of {args.terrain}")
+    warn_of_name(args.output, warn)
     geometry = polygons.write(args.output, geometry, place)
     print(summary(args.output, geometry))
     if time.monotonic() - start > SLOW:

@@ -6,6 +6,7 @@ Order of the work: find the runs and read their results (data.py), find what map
 """
 import argparse
 from pathlib import Path
+from shlex import quote
 
 from ..case import run_folders
 from ..ensemble import site_study
@@ -73,8 +74,8 @@ def study_of(folder: Path) -> Path:
     if (inside / STUDY).is_file():
         return inside
     if not run_folders.summaries(folder):
-        raise SlopeError(folder, f"must hold the study of this site: `slope study {folder}` makes it and the report",
-                         f"no {inside / STUDY}")
+        raise SlopeError(folder, f"must hold the study of this site: `slope study {quote(str(folder))}` makes it and "
+                         "the report", f"no {inside / STUDY}")
     return folder
 
 

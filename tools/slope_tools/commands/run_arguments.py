@@ -57,7 +57,8 @@ def add_sample(parser) -> None:
                         help="an ensemble: N points of the distributions of --vary, instead of a product of lists")
     parser.add_argument("--vary", metavar="NAME=DISTRIBUTION", action="append", default=[],
                         help="a variable of the ensemble: LO:HI or uniform:LO:HI, loguniform:LO:HI, "
-                             "triangular:LO:MODE:HI, normal:MEAN:DEVIATION:LO:HI, list:V1@WEIGHT,V2@WEIGHT,...")
+                             "triangular:LO:MODE:HI, normal:MEAN:DEVIATION:LO:HI, "
+                             "lognormal:MEDIAN:DEVIATION_OF_LN:LO:HI, list:V1@WEIGHT,V2@WEIGHT,...")
     parser.add_argument("--design", choices=designs.KINDS,
                         help="sobol (default): more points can be added later; lhs: Latin hypercube, "
                              "whose number of points is final")

@@ -2,6 +2,8 @@
 import argparse
 import os
 from pathlib import Path
+from shlex import quote
+from typing import Any, Dict
 
 from ..case import site, site_choices
 from ..ensemble import jobs
@@ -9,18 +11,21 @@ from ..errors import SlopeError, printer
 from ..options import count, number, whole
 from ..programs import find_lmp
 from ..report import site_map
+from ..survey.rasters import UNITS
 from ..survey.release import SHAPES
 from ..survey.release_scar import KINDS
 
 # option -> section and key of site.yaml
 OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
-           "assign_crs": ("terrain", "assign_crs"), "bounds": ("terrain", "bounds"),
+           "assign_crs": ("terrain", "assign_crs"), "assigned": ("crs", "assigned"), "bounds": ("terrain", "bounds"),
+           "z_unit": ("terrain", "z_unit"), "nodata": ("terrain", "nodata"),
            "cell": ("terrain", "cell"), "fill": ("terrain", "fill"), "release": ("release", "polygon"),
            "shape": ("release", "shape"), "depth": ("release", "depth"), "volume": ("release", "volume"),
            "curvature": ("release", "curvature"), "dip": ("release", "dip"), "direction": ("release", "direction"),
            "scar": ("release", "scar"), "scar_is": ("release", "scar_is"), "least": ("release", "least"),
            "road": ("road", "file"), "cut_angle": ("road", "cut_angle"), "mesh": ("road", "mesh"),
            "structure": ("structures", "files"), "line": ("lines", "files"), "motion": ("motion", "file"),
+           "peak_friction": ("motion", "peak_friction"),
            "observed": ("observed", "file"), "diameter": ("balls", "diameter"), "balls": ("balls", "number"),
            "minutes": ("balls", "minutes"), "memory": ("balls", "memory"), "name": ("project", "name"),
            "client": ("project", "client"), "author": ("project", "author")}
@@ -73,7 +78,11 @@ def add_ground(group):
                        help="elevation model, as slope terrain takes it: GeoTIFF, ESRI ASCII grid, FG-GML; several are "
                             "merged")
     group.add_argument("--crs", metavar="EPSG:n", help="wanted CRS, in metres; an elevation model without one is in it")
-    group.add_argument("--assign-crs", metavar="EPSG:n", help="the elevation model is in this CRS, whatever it says")
+    group.add_argument("--assign-crs", metavar="[FILE=]EPSG:n", action="append", help="the elevation model, or the "
+                       "FILE of another option, is in this CRS, whatever it says; may be given several times")
+    group.add_argument("--z-unit", choices=UNITS, help="of the heights of the elevation model, whatever it says")
+    group.add_argument("--nodata", type=number, metavar="V",
+                       help="a value of the elevation model that stands for no height, beside the one that it declares")
     group.add_argument("--bounds", nargs=4, type=number, metavar=("W", "S", "E", "N"), help="take this part, m")
     group.add_argument("--cell", type=number, metavar="S", help="wanted cell size, m")
     group.add_argument("--fill", type=whole, metavar="N", help="fill NODATA holes of at most N cells")
@@ -87,7 +96,8 @@ def add_ground(group):
     group.add_argument("--dip", metavar="A", type=number, help="of a plane, degrees below the horizontal")
     group.add_argument("--direction", metavar="B", type=number, help="compass bearing to which the plane dips, degrees")
     group.add_argument("--scar", metavar="RASTER", help="the body is what this raster says, see --scar-is")
-    group.add_argument("--scar-is", choices=KINDS, help="surface: heights after the event (default); depth; change")
+    group.add_argument("--scar-is", choices=KINDS, help="surface: heights after the event (default, "
+                       "if they follow the terrain); depth; change")
     group.add_argument("--least", metavar="D", type=number, help="depths of a scar below this count as none, m")
 
 
@@ -102,6 +112,8 @@ def add_layers(group):
                        "be given several times")
     group.add_argument("--motion", metavar="FILE", help="ground motion written by slope quake: the body stands, is "
                        "shaken, and loses its strength once it has moved far enough")
+    group.add_argument("--peak-friction", metavar="DEG", type=number, help="strength that holds the body before the "
+                       "earthquake, degrees (default: 7 more than the slope of its slip surface, 33 at least)")
     group.add_argument("--observed", metavar="P|RASTER", help="a mapped deposit, outline or thickness, with which the "
                        "run shown in the report is compared")
 
@@ -125,14 +137,15 @@ def run(args):
                          printer("site"), site_map.draw, again=args.folder is not None,
                          known=known)
     print(f"written to {folder}: {' '.join(made.files)}")
-    print(f"look at {folder / site.MAP}, then: tools/slope study {folder}")
+    print(f"look at {folder / site.MAP}, then: tools/slope study {quote(str(folder))}")
 
 
 def chosen(args):
     """The folder; the choices of the command line, or of the folder with those of the command line; and what of them
     was found before.
     """
-    given = {option: value for option in OPTIONS if (value := getattr(args, option)) is not None}
+    given = {option: value for option in OPTIONS if (value := getattr(args, option, None)) is not None}
+    given.update(assigned_crs(given.pop("assign_crs", ())))
     if args.folder is not None:
         if args.output is not None:
             raise SlopeError("-o", f"must not be given with the folder of a site, {args.folder}, which is rebuilt",
@@ -149,8 +162,24 @@ def chosen(args):
         folder, choices, known = args.output, site_choices.complete({}), {}
     replace(choices, given)
     site_choices.check({"slope_site": site_choices.VERSION, **choices}, str(folder / site_choices.NAME),
-                       {OPTIONS[option]: f"--{option.replace('_', '-')}" for option in given})
+                       {OPTIONS[option]: "--assign-crs" if option == "assigned" else f"--{option.replace('_', '-')}"
+                        for option in given})
     return folder, choices, known
+
+
+def assigned_crs(words):
+    """Options from the values of --assign-crs, [FILE=]EPSG:n: that of the elevation model, those of other files."""
+    given: Dict[str, Any] = {}
+    for word in words:
+        name, _, crs = word.rpartition("=")
+        if not name and "assign_crs" in given:
+            raise SlopeError("--assign-crs", "must be given once without a FILE=", word)
+        if name:
+            parts = [part for part in Path(name).parts if part not in ("..", "/")]
+            given.setdefault("assigned", {})[str(Path(*parts))] = crs
+        else:
+            given["assign_crs"] = crs
+    return given
 
 
 def replace(choices, given):
@@ -164,7 +193,7 @@ def replace(choices, given):
         choices["release"].update(shape=None, depth=None, volume=None, curvature=None, dip=None, direction=None)
     for option, value in given.items():
         section, key = OPTIONS[option]
-        choices[section][key] = value
+        choices[section][key] = {**choices[section][key], **value} if isinstance(value, dict) else value
 
 
 def program(option):

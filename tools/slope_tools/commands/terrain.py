@@ -2,10 +2,10 @@
 import argparse
 from pathlib import Path
 
-from ..case.decks import quoted
+from ..case.decks import quoted, warn_of_name
 from ..errors import SlopeError, printer
 from ..options import number, whole
-from ..survey import local_terrain
+from ..survey import local_terrain, rasters
 
 EPILOG = """\
 units: metres for heights, --cell, and coordinates; N of --fill is a number of cells of the input.
@@ -39,6 +39,11 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--assign-crs", metavar="EPSG:n",
                         help="the coordinates of the inputs are in this CRS, whatever their tags say (not of FG-GML); "
                              "--crs may then reproject them")
+    parser.add_argument("--z-unit", choices=rasters.UNITS,
+                        help="of the heights, whatever the tags of the inputs say: m, ft (0.3048 m) or us-ft "
+                             "(1200/3937 m); default: what a tag says, else m")
+    parser.add_argument("--nodata", type=number, metavar="V",
+                        help="a value of the inputs that stands for no height, beside the one that they declare")
     parser.add_argument("--bounds", nargs=4, type=number, metavar=("W", "S", "E", "N"),
                         help="crop to this box, in the output's CRS, m")
     parser.add_argument("--cell", type=number, metavar="S",
@@ -54,7 +59,9 @@ def add_parser(commands, **kwargs):
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints what was done, a summary and the line for the deck."""
     wanted = check(args)
-    about = local_terrain.make(args.inputs, args.output, wanted, print, printer("terrain"))
+    warn = printer("terrain")
+    about = local_terrain.make(args.inputs, args.output, wanted, print, warn)
+    warn_of_name(args.output, warn)
     print(f"{local_terrain.summary(args.output, about)}\nregion ground terrain {quoted(str(args.output))}")
 
 
@@ -74,6 +81,7 @@ def check(args):
         except (argparse.ArgumentTypeError, ValueError):
             raise SlopeError("--origin", "must be auto or two numbers, E N", " ".join(args.origin)) from None
         origin = east, north
-    wanted = local_terrain.Wanted(args.crs, origin, args.cell, args.bounds, args.fill, args.assign_crs)
+    wanted = local_terrain.Wanted(args.crs, origin, args.cell, args.bounds, args.fill, args.assign_crs,
+                                  z_unit=args.z_unit, nodata=args.nodata)
     local_terrain.checked_crs(wanted)
     return wanted

@@ -64,7 +64,7 @@ def of_run(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], None] = l
 
     run = deposit.read(prefix, terrain, warn)
     mesh = make_mesh(wanted.mesh, run.raster)
-    road = in_grid(polygons.read_local(wanted.road, run.raster, wanted.local), run.raster, wanted.road, warn)
+    road = in_grid(polygons.read_local(wanted.road, run.raster, wanted.local, warn=warn), run.raster, wanted.road, warn)
     if wanted.axis:
         axis, source = eastward(read_local(wanted.axis, run.raster, wanted.local, "axis")), str(wanted.axis)
     else:

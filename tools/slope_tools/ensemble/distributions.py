@@ -12,6 +12,7 @@ from ..case import deck_ranges, settings
 from ..errors import SlopeError
 
 FORMS = {"uniform": "LO:HI", "loguniform": "LO:HI", "triangular": "LO:MODE:HI", "normal": "MEAN:DEVIATION:LO:HI",
+         "lognormal": "MEDIAN:DEVIATION_OF_LN:LO:HI",
          "list": "V1@WEIGHT,V2@WEIGHT,..."}
 MUST = "must be NAME=LO:HI or NAME=KIND:..., of " + ", ".join(f"{kind}:{form}" for kind, form in FORMS.items())
 DIGITS = 6              # of a value, and of its place between the bounds
@@ -56,6 +57,19 @@ class Range:
     def limits(self) -> Tuple[str, ...]:
         """Values between which, or at which, all of them are."""
         return repr(self.low), repr(self.high)
+
+
+@dataclass(frozen=True)
+class Exponential:
+    """The distribution of exp(x), given the one of x."""
+    log: Any
+
+    def ppf(self, share):
+        return np.exp(self.log.ppf(share))
+
+    def cdf(self, value):
+        with np.errstate(divide="ignore"):
+            return self.log.cdf(np.log(value))
 
 
 @dataclass(frozen=True)
@@ -123,7 +137,7 @@ def distribution(name: str, text: str, option: str, words: str):
         numbers = []
     if len(numbers) != len(FORMS[kind].split(":")) or not all(map(math.isfinite, numbers)):
         raise SlopeError(option, MUST, words)
-    low, high = (numbers[0], numbers[-1]) if kind != "normal" else numbers[2:]
+    low, high = numbers[2:] if kind.endswith("normal") else (numbers[0], numbers[-1])
     if not math.isfinite(high - low):
         raise SlopeError(option, f"{name} must have bounds whose difference is a number", words)
     if not low < high:
@@ -131,7 +145,11 @@ def distribution(name: str, text: str, option: str, words: str):
     if high - low <= 1e-9 * max(abs(low), abs(high)):
         raise SlopeError(option, f"{name} must have bounds that differ by more than rounding", words)
     drawn = frozen(kind, numbers, option, words)
-    width = high - low if kind != "normal" else min(high - low, WIDE * numbers[1])
+    width = high - low
+    if kind == "normal":
+        width = min(width, WIDE * numbers[1])
+    if kind == "lognormal":
+        width = min(width, float(np.ptp(drawn.ppf([1e-3, 1 - 1e-3]))))
     return Range(name, f"{kind}:{rest}", low, high, drawn, width)
 
 
@@ -150,11 +168,16 @@ def frozen(kind: str, numbers: Sequence[float], option: str, words: str):
         return stats.triang((numbers[1] - low) / (high - low), low, high - low)
     mean, deviation, low, high = numbers
     if not deviation > 0:
-        raise SlopeError(option, "normal must have DEVIATION > 0", words)
+        raise SlopeError(option, f"{kind} must have DEVIATION > 0", words)
+    if kind == "lognormal":
+        if not (mean > 0 and low > 0):
+            raise SlopeError(option, "lognormal must have MEDIAN > 0 and LO > 0", words)
+        mean, low, high = map(math.log, (mean, low, high))
     between = stats.norm(mean, deviation)
     if between.cdf(high) - between.cdf(low) < LEAST_SHARE:
-        raise SlopeError(option, "normal must have a part of it between LO and HI", words)
-    return stats.truncnorm((low - mean) / deviation, (high - mean) / deviation, mean, deviation)
+        raise SlopeError(option, f"{kind} must have a part of it between LO and HI", words)
+    drawn = stats.truncnorm((low - mean) / deviation, (high - mean) / deviation, mean, deviation)
+    return Exponential(drawn) if kind == "lognormal" else drawn
 
 
 def listed(name: str, rest: str, option: str, words: str) -> Listed:

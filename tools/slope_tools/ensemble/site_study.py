@@ -6,6 +6,7 @@ answer rests on. Every part is resumed by the same call.
 import shutil
 import sys
 from pathlib import Path
+from shlex import quote
 from typing import Dict, Iterable, List, NamedTuple, Optional, Sequence
 
 from .. import disk
@@ -52,15 +53,16 @@ def check(folder: Path, choices: Choices) -> None:
     found = site_choices.found(folder)
     for name in (site_deck.NAME, *(found.get("files") or ())):
         if not (folder / name).is_file():
-            raise SlopeError(folder / name, f"must exist; `slope site {folder}` rebuilds it")
+            raise SlopeError(folder / name, f"must exist; `slope site {quote(str(folder))}` rebuilds it")
     if found.get("choices_sha256", "") not in ("", site_choices.fingerprint(choices, folder)):
         raise SlopeError(folder / site_choices.NAME, f"must not have been changed since {site_deck.NAME} was made from "
-                         f"it: `slope site {folder}` rebuilds the deck (project, road and study may change)")
+                         f"it: `slope site {quote(str(folder))}` rebuilds the deck (project, road and study may "
+                         "change)")
     before = found.get("sources_sha256") or {}
     for name, digest in site_choices.sources(choices, folder).items():      # a folder may have gone without its sources
         if before.get(name, digest) != digest:
             raise SlopeError(folder / name, f"must not have changed since {site_deck.NAME} was made from it: "
-                             f"`slope site {folder}` rebuilds the deck")
+                             f"`slope site {quote(str(folder))}` rebuilds the deck")
 
 
 def run_alone(folder: Path, choices: Choices, engine: Setup) -> Done:

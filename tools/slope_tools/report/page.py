@@ -6,7 +6,7 @@ from .. import provenance
 from ..case import decks
 from ..ensemble.quantities import NAMES
 from ..survey.rasters import crs_name
-from . import convergence_part, film, frames, heading, intensity_part, limits_part, view
+from . import convergence_part, film, frames, heading, intensity_part, limits_part, mobility_part, view
 from .asked import Asked
 from .charts import Charts, REMOVE, TERMS, differences, quantities, single_row
 from .data import Data, find_deck
@@ -79,7 +79,8 @@ class Page:
             "mass_error": (one.deposit.volume - one.summary["volume"]["released"] + one.summary["volume"]["off_grid"]
                            + one.summary["volume"]["lost"]) / one.summary["volume"]["released"],
             "view": view.content(data, self.ground, self.section, self.frames, self.no_frames, self.film.text),
-            "heading": self.heading, "terms": self.terms(), "limits": limits_part.content(data, numbers),
+            "heading": self.heading, "terms": self.terms(),
+            "limits": [*mobility_part.content(data, self.ground, numbers), *limits_part.content(data, numbers)],
             "place": self.place(), "ensemble": None}
         if study and study.get("ensemble"):
             from . import ensemble_part

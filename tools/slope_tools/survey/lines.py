@@ -1,17 +1,13 @@
 """Reading lines (GeoJSON, shapefile, WKT, CSV) to the local metres of a run: the axis of a road, a section."""
-import fiona
 import numpy as np
-from fiona.errors import FionaError
-from rasterio.crs import CRS
-from rasterio.errors import CRSError
 from shapely import wkt
 from shapely.errors import ShapelyError
-from shapely.geometry import GeometryCollection, LineString, MultiLineString, shape
+from shapely.geometry import GeometryCollection, LineString, MultiLineString
 from shapely.ops import linemerge
 
 from ..errors import SlopeError
-from . import polygons
-from .crs import same_crs, transform
+from . import polygons, vectors
+from .crs import require_degrees, same_crs, transform
 from .rasters import crs_name
 
 
@@ -26,37 +22,36 @@ def lines_of(geometry):
     return MultiLineString(lines)
 
 
-def read_local(path, raster, local, what="line", advice=None):
+def read_local(path, raster, local, what="line", advice=None, crs=None, warn=vectors.ignore):
     """The lines in a file, a MultiLineString in the local metres of a run, drawn in the file's direction.
 
     A CSV (x,y in its lines) or WKT is in the CRS of the run's terrain; local: coordinates of any file are local metres
-    already. what: what the line is, for messages; advice: a polygons.Advice for those on a missing CRS. Raises
-    SlopeError, which names the file.
+    already; crs: the CRS of the file, whatever it names. what: what the line is, for messages; advice: a
+    polygons.Advice for those on a missing CRS; warn is called with a line for each doubt. Raises SlopeError, which
+    names the file.
     """
-    if not path.is_file():
-        raise SlopeError(path, "must be an existing file")
+    vectors.require_file(path)
     text_ = polygons.read_text(path)
-    crs = raster.crs
-    try:
-        if text_ is None:
-            with fiona.Env(), fiona.open(path) as source:
-                crs = CRS.from_wkt(source.crs_wkt) if source.crs_wkt else None
-                lines = lines_of(GeometryCollection([shape(feature["geometry"]) for feature in source
-                                                     if feature["geometry"]]))
-        elif polygons.WKT.match(text_.lstrip()):
-            lines = lines_of(wkt.loads(text_))
-        else:
-            content = [line.split("#")[0].strip() for line in text_.splitlines()]
-            lines = lines_of(LineString([tuple(map(float, line.split(","))) for line in content if line]))
-    except (FionaError, ShapelyError, OSError, ValueError, TypeError, AttributeError, CRSError) as error:
-        raise SlopeError(path, "must be a line: GeoJSON, shapefile, WKT, or CSV with x,y in its lines "
-                         f"({error})") from error
+    own = raster.crs
+    if text_ is None:
+        found = vectors.read(path, "Line", warn)
+        own, geometry = found.crs, GeometryCollection([one for _, one in found.features])
+    else:
+        geometry = text_geometry(path, text_)
+    lines = lines_of(geometry)
+    if lines.is_empty and (others := kinds(geometry)):
+        raise SlopeError(path, "must hold a line: draw one, as the outline of an area has no forward and back" if
+                         "Polygon" in others else "must hold a line: draw one", f"only {others}")
     if lines.is_empty or not all(np.isfinite(line.coords).all() for line in lines.geoms) or lines.length == 0:
         raise SlopeError(path, "must hold a line of a length > 0")
+    plain = text_ is not None and crs is None
+    crs = crs or own
+    if not (local or plain or crs is None):
+        require_degrees(crs, lines.bounds, path, (advice or polygons.ADVICE).wrong_crs)
     points = [np.asarray(line.coords)[:, :2] for line in lines.geoms]
     if local:
         return MultiLineString(points)
-    if text_ is None and (crs is None or raster.crs is None):
+    if not plain and (crs is None or raster.crs is None):
         where, remedy = "--terrain", f"--local if the {what} is in the run's local metres"
         if advice:
             where, remedy = advice.terrain, advice.polygon_crs if crs is None else advice.terrain_crs
@@ -67,3 +62,21 @@ def read_local(path, raster, local, what="line", advice=None):
         if not all(np.isfinite(line).all() for line in points):
             raise SlopeError(path, f"must lie where {crs_name(raster.crs)}, the CRS of the terrain, covers it")
     return MultiLineString([line - raster.offset for line in points])
+
+
+def text_geometry(path, text):
+    """The geometry of a text: WKT, or x,y in its lines."""
+    try:
+        if polygons.WKT.match(text.lstrip()):
+            return wkt.loads(text)
+        content = [line.split("#")[0].strip() for line in text.splitlines()]
+        return LineString([tuple(map(float, line.split(","))) for line in content if line])
+    except (ShapelyError, ValueError, TypeError, AttributeError) as error:
+        raise SlopeError(path, "must be a line: GeoJSON, shapefile, WKT, or CSV with x,y in its lines "
+                         f"({error})") from error
+
+
+def kinds(geometry):
+    """The types of the geometries in a geometry, as words."""
+    parts = getattr(geometry, "geoms", [geometry])
+    return " and ".join(sorted({part.geom_type for part in parts if not part.is_empty}))

@@ -4,7 +4,7 @@ Order of the work: read, merge, fill holes, crop or resample, move to the local 
 """
 import math
 from pathlib import Path
-from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, List, NamedTuple, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 from affine import Affine
@@ -12,7 +12,7 @@ from rasterio.crs import CRS
 
 from ..errors import SlopeError
 from ..geometry import numbers
-from . import fggml, rasters
+from . import fggml, plausible, rasters
 from .crs import as_crs, require_metres, warn_of_stretch
 from .holes import fill, small_holes
 from .rasters import Raster
@@ -28,6 +28,9 @@ class Wanted(NamedTuple):
     bounds: Optional[Sequence[float]] = None        # W S E N, m
     fill: int = 0                       # holes of at most this many cells are filled
     assigned: Optional[str] = None      # CRS that the files are in, whatever they say
+    own: Mapping[str, str] = {}         # the same of single files, by their paths
+    z_unit: Optional[str] = None        # of the heights in the files, of rasters.UNITS, whatever they say
+    nodata: Optional[float] = None      # a value of the files that stands for none, beside the declared one
 
 
 def checked_crs(wanted: Wanted) -> Tuple[Optional[CRS], Optional[CRS]]:
@@ -47,6 +50,11 @@ def checked_crs(wanted: Wanted) -> Tuple[Optional[CRS], Optional[CRS]]:
     return crs, assigned
 
 
+def own_crs(path: str, wanted: Wanted, assigned: Optional[CRS]) -> Optional[CRS]:
+    """The CRS that is assigned to a file, to it alone or to all."""
+    return as_crs(f"--assign-crs {path}", wanted.own[path]) if path in wanted.own else assigned
+
+
 def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[str], Any],
          warn: Callable[[str], Any]) -> Dict[str, Any]:
     """Write the terrain of survey files to output (.asc, with its sidecar); returns the sidecar.
@@ -62,15 +70,19 @@ def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[st
 
     cell = wanted.cell
     if any(map(fggml.is_one, inputs)):
-        if assigned is not None:
-            raise SlopeError("--assign-crs", "must not be given for FG-GML, which has its CRS", wanted.assigned)
+        for option, value in (("--assign-crs", wanted.assigned or "".join(wanted.own.values()) or None),
+                              ("--z-unit", wanted.z_unit), ("--nodata", wanted.nodata)):
+            if value is not None:
+                raise SlopeError(option, "must not be given for FG-GML, which has its CRS and heights in metres", value)
         raster, crs, cell = read_fggml(inputs, crs, cell, keep, warn)
     else:
-        raster = merge([declare(path, crs, keep, warn, assigned) for path in inputs], inputs, keep)
+        raster = merge([declare(path, crs, keep, warn, own_crs(path, wanted, assigned), wanted.z_unit, wanted.nodata)
+                        for path in inputs], inputs, keep)
         crs = crs or raster.crs
     require_metres(crs, inputs[0])
     if not np.isfinite(raster.z).any():
         raise SlopeError(", ".join(inputs), "must have a height, all cells are NODATA")
+    plausible.warn_of_pits(raster, warn)
     filled = 0
     if wanted.fill:
         holes, count = small_holes(np.isnan(raster.z), wanted.fill)
@@ -80,6 +92,8 @@ def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[st
     raster = regrid(raster, crs, cell, wanted.bounds, keep, warn)
     if crs is not None:
         warn_of_stretch(raster, warn)
+    if wanted.z_unit is None:
+        plausible.warn_of_slope(raster, warn)
     z = np.round(raster.z, 3) + 0.0  # as they are written; + 0.0 because of -0.0
     origin = wanted.origin
     if origin is None:

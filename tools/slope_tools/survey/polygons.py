@@ -3,26 +3,23 @@
 The deck's own format, which `region polygon` reads and write() writes: rings of lines `x,y`, a blank line between two
 rings, # starts a comment. A point is inside if it is inside an odd number of rings, so that holes are rings, too.
 """
-import contextlib
-import io
 import logging
 import os
 import re
 from pathlib import Path
 from typing import List, NamedTuple, Tuple
 
-import fiona
 import numpy as np
 import rasterio.warp
-from rasterio.crs import CRS
 from shapely import wkt
 from shapely.errors import ShapelyError
-from shapely.geometry import MultiPolygon, Polygon, box, shape
+from shapely.geometry import MultiPolygon, Polygon, box
 from shapely.ops import unary_union
 from shapely.validation import explain_validity
 
 from ..errors import SlopeError
 from ..geometry import extent, numbers, polygons_of
+from . import vectors
 from .crs import require_degrees, same_crs
 from .rasters import crs_name
 
@@ -48,28 +45,27 @@ for library in ("fiona", "shapely"):  # what they log is in the exceptions as we
     logging.getLogger(library).setLevel(logging.CRITICAL + 1)
 
 
-def read_local(path, raster, local=False, crs=None, advice=ADVICE):
+def read_local(path, raster, local=False, crs=None, advice=ADVICE, warn=vectors.ignore):
     """Polygons of a file in the local metres of a terrain: a valid, not empty shapely Polygon or MultiPolygon.
 
     raster: the terrain, a Raster of rasters.read_asc_local() or a Place of rasters.read_place(). Format by content and
     suffix: the deck's format (.csv), text with WKT, else what fiona opens. Coordinates of a file with a CRS are
     reprojected to the terrain's; those of CSV and WKT are taken to be in the terrain's CRS, but of a file that write()
     wrote, which are local already. local=True: the file's coordinates are local, whatever CRS it names. crs: the CRS of
-    the file, whatever it names. Polygons that overlap or touch become one. Raises SlopeError, which names file and
-    place.
+    the file, whatever it names; a layer of it: FILE|layername=NAME. Polygons that overlap or touch become one. warn is
+    called with a line for each doubt. Raises SlopeError, which names file and place.
     """
-    if not Path(path).is_file():
-        raise SlopeError(path, "must be an existing file")
+    vectors.require_file(path)
     try:
-        return _read_local(path, raster, local, crs, advice)
+        return _read_local(path, raster, local, crs, advice, warn)
     except ShapelyError as error:     # GEOS gives up on coordinates such as 1e-320 among others
         raise SlopeError(path, "must be polygons whose points differ by more than rounding") from error
 
 
-def _read_local(path, raster, local, crs, advice):
+def _read_local(path, raster, local, crs, advice, warn):
     text = read_text(path)
     if text is None:
-        polygons, own = _read_fiona(path)
+        polygons, own = _read_layer(path, warn)
     elif WKT.match(re.sub("#.*", "", text).lstrip()):
         polygons, own = _read_wkt(path, text), raster.crs
     else:
@@ -84,11 +80,19 @@ def _read_local(path, raster, local, crs, advice):
     bounds = getattr(raster, "extent", None) or extent(raster)
     if geometry.intersection(box(*bounds)).area == 0:
         hint = " (with --local it would)" if plain and as_it_stands.intersection(box(*bounds)).area > 0 else ""
+        if exchanged(geometry, raster, local).intersection(box(*bounds)).area > 0:
+            hint = " (with x and y exchanged it would)"
         read_as = "" if local or plain else (f", read as {crs_name(crs or own)}: is that right? The terrain is in "
-                                             f"{crs_name(raster.crs)}")
+                                             f"{crs_name(raster.crs)}; {advice.wrong_crs}")
         raise SlopeError(path, f"must overlap the terrain{hint}, local x y {decimetres(bounds)}",
                          decimetres(geometry.bounds) + read_as)
     return geometry
+
+
+def exchanged(geometry, raster, local):
+    """A box in local metres with the east and north of its place exchanged, as in a file with northings first."""
+    offset = np.array([0.0, 0.0] if local else raster.offset)
+    return map_points(geometry.envelope, lambda points: (points + offset)[:, ::-1] - offset)
 
 
 def decimetres(values):
@@ -98,10 +102,11 @@ def decimetres(values):
 
 def read_text(path):
     """The text of a .csv, .txt, .wkt file; None for any other."""
-    if Path(path).suffix.lower() not in (".csv", ".txt", ".wkt"):
+    file = Path(vectors.source(path).path)
+    if file.suffix.lower() not in (".csv", ".txt", ".wkt"):
         return None
     try:
-        return Path(path).read_text(encoding="utf-8-sig")
+        return file.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError as error:
         raise SlopeError(path, f"must be text in UTF-8 ({error.reason} at byte {error.start})") from None
     except OSError as error:
@@ -110,36 +115,13 @@ def read_text(path):
 
 # --- formats ---
 
-def _read_fiona(path):
-    """Polygons of a file that fiona opens, and its CRS or None."""
-    try:
-        # fiona prints what it cannot decode of GDAL's messages
-        with contextlib.redirect_stderr(io.StringIO()), fiona.Env():
-            layers = fiona.listlayers(path)
-            if len(layers) != 1:
-                raise SlopeError(path, "must have one layer of polygons: save it as a file of its own",
-                                 f"{len(layers)} layers")
-            with fiona.open(path) as source:
-                features = [(feature["id"], feature["geometry"]) for feature in source]
-                crs = CRS.from_wkt(source.crs_wkt) if source.crs_wkt else None
-    except SlopeError:
-        raise
-    except Exception as error:  # GDAL's too, of classes that fiona keeps private
-        raise SlopeError(path, "must be polygons that GDAL can read: GeoJSON, shapefile, or another format of it "
-                         f"({error})") from error
-    polygons = []
-    for name, geometry in features:
-        if geometry is None:
-            continue
-        where = f"{path}: feature {name}"
-        try:
-            geometry = shape(geometry)
-        except (ShapelyError, ValueError, TypeError, AttributeError, NotImplementedError) as error:
-            raise SlopeError(where, f"must be a polygon ({error})") from error
-        polygons += _parts(where, geometry)
+def _read_layer(path, warn):
+    """Polygons of a file of a GIS, and its CRS or None."""
+    found = vectors.read(path, "Polygon", warn)
+    polygons = [part for where, geometry in found.features for part in _parts(where, geometry)]
     if not polygons:
         raise SlopeError(path, "must hold a polygon, it is empty")
-    return polygons, crs
+    return polygons, found.crs
 
 
 def _read_wkt(path, text):

@@ -26,7 +26,10 @@ NODATA = -9999             # in written files
 HIGHEST = 9000.0           # m; beyond +-HIGHEST a value is a NODATA mark that the file does not declare (-9999, -32768)
 BYTES_PER_CELL = 40        # peak memory of `slope terrain` per cell, measured 22 to 33 for 16 million cells
 HEADER = {"ncols", "nrows", "xllcorner", "yllcorner", "xllcenter", "yllcenter", "cellsize", "dx", "dy", "nodata_value"}
-METRES = {None, "", "m", "metre", "meter", "metres", "meters"}
+UNITS = {"m": 1.0, "ft": 0.3048, "us-ft": 1200 / 3937}      # m, of heights
+TAGS = {"m": "m", "metre": "m", "meter": "m", "metres": "m", "meters": "m", "ft": "ft", "foot": "ft", "feet": "ft",
+        "international foot": "ft", "us survey foot": "us-ft", "us survey feet": "us-ft", "ftus": "us-ft",
+        "us-ft": "us-ft", "foot_us": "us-ft"}      # how files spell them, in lower case
 
 
 class Raster(NamedTuple):
@@ -74,12 +77,13 @@ def crs_name(crs):
     return f"EPSG:{epsg(crs)}" if epsg(crs) else crs.to_wkt().split('"')[1]
 
 
-def read(path, heights=True):
-    """Read a single-band raster in metres (GeoTIFF, ESRI ASCII grid, or another format of GDAL) into a Raster.
+def read(path, heights=True, unit=None, nodata=None):
+    """Read a single-band raster (GeoTIFF, ESRI ASCII grid, or another format of GDAL) into a Raster.
 
-    The CRS is None where the file has none; it may be in degrees, the heights may not. heights=False: other values
-    than heights, such as the energies of fix deposit/grid; their size is not checked. Raises SlopeError on anything
-    that is not such a raster.
+    The CRS is None where the file has none; it may be in degrees, the heights may not: they become metres, from what
+    the file says, or from the unit (of UNITS) that is given. heights=False: other values than heights, such as the
+    energies of fix deposit/grid; their size is not checked. nodata: a value of the file that stands for none, too.
+    Raises SlopeError on anything that is not such a raster.
     """
     if not Path(path).is_file():
         raise SlopeError(path, "must be an existing file")
@@ -88,24 +92,56 @@ def read(path, heights=True):
             warnings.simplefilter("ignore", NotGeoreferencedWarning)  # an error of our own, below
             with rasterio.open(path) as source:
                 raster = _read(path, source)
+                factor = UNITS[unit or unit_of(path, source, heights) or "m"]
     except (RasterioError, OSError) as error:  # RasterioIOError is an OSError only
         raise SlopeError(path, f"must be a raster that GDAL can read ({error})") from error
+    if nodata is not None:
+        raster.z[raster.z == nodata] = np.nan
+    if factor != 1:
+        raster = raster._replace(z=raster.z * factor)
     if not heights:
         return raster
     with np.errstate(invalid="ignore"):
         wrong = np.argwhere(np.abs(raster.z) > HIGHEST)
     if len(wrong):
         row, column = wrong[0]
+        value = raster.z[row, column]
+        feet = "; --z-unit ft if these are feet" if unit is None and abs(value) * UNITS["ft"] < HIGHEST else ""
         raise SlopeError(f"{path}: row {row + 1} column {column + 1}", "must be a height in metres between -9000 and "
-                         "9000, or the NODATA value that the file declares", f"{raster.z[row, column]:g}")
+                         f"9000, or the NODATA value that the file declares; --nodata {value:g} if it means none{feet}",
+                         f"{value:g}")
     return raster
+
+
+def unit_of(path, source, heights=True):
+    """The unit (of UNITS) that an open raster says its heights have, None if it does not say.
+
+    SlopeError where it is another one, or cannot be metres as a matter of course: the CRS is in feet, too.
+    """
+    tag = source.units[0]
+    unit = TAGS.get(tag.lower()) if tag else None
+    if tag and (unit is None or not heights and unit != "m"):
+        raise SlopeError(path, "heights must be in metres or feet; --z-unit m, ft or us-ft overrides a wrong tag"
+                         if heights else "must be in metres", tag)
+    if unit is None and heights and source.crs is not None and source.crs.is_projected:
+        name, factor = source.crs.linear_units_factor
+        if any(abs(factor / UNITS[foot] - 1) < 1e-7 for foot in ("ft", "us-ft")):
+            raise SlopeError(path, f"must say the unit of its heights, as its CRS, {crs_name(source.crs)}, is in {name}"
+                             ": give --z-unit us-ft, ft or m (slope terrain, slope site)", "none")
+    return unit
+
+
+def height_unit(path):
+    """The unit that a raster file says its heights have, None if it does not say."""
+    with warnings.catch_warnings(), rasterio.Env():
+        warnings.simplefilter("ignore", NotGeoreferencedWarning)
+        with rasterio.open(path) as source:
+            return TAGS.get((source.units[0] or "").lower())
 
 
 def _read(path, source):
     if source.count != 1:
         raise SlopeError(path, "must have one band, the heights", f"{source.count} bands")
-    if source.units[0] not in METRES:
-        raise SlopeError(path, "heights must be in metres", source.units[0])
     rows, columns = source.shape
     check_memory(rows, columns, path)
     if source.driver == "AAIGrid":
@@ -181,14 +217,14 @@ def _check_ascii_header(path, lines):
     return header, number
 
 
-def read_asc_local(path, heights=True):
+def read_asc_local(path, heights=True, unit=None, nodata=None):
     """Read an .asc that write_asc_local wrote, and its sidecar, into a Raster: (z, transform, crs, offset).
 
     The transform gives local x, y; adding the offset (east, north) gives coordinates in crs. A raster without a
-    sidecar is read as by read(); heights as there. Raises SlopeError if either file is broken or they do not belong
-    together.
+    sidecar is read as by read(); heights, unit and nodata as there. Raises SlopeError if either file is broken or they
+    do not belong together.
     """
-    raster = read(path, heights)
+    raster = read(path, heights, unit, nodata)
     place = read_sidecar(path)
     if place is None:
         return raster

@@ -8,13 +8,15 @@ from scipy.ndimage import label
 
 from ..digits import rounded
 from ..errors import SlopeError
-from . import polygons, rasters, release_area, release_bodies, release_scar, release_solve
+from . import plausible, polygons, rasters, release_area, release_bodies, release_scar, release_solve
 from .crs import as_crs
 
 SHAPES = ("sphere", "ellipsoid", "plane", "slbl")
 LITTLE = 0.75   # share of the polygon; a base level that takes less of it is a doubtful body
 SCAR_REMEDY = ": --polygon takes a part of the scar, --least D leaves out the noise of two surveys"
+CLIFF = 60.0    # degrees, mean of a body's ground; it may be in feet
 TINY = 0.02     # of the volume; a smaller part of a body is none
+SHIFT = 0.25    # m between two surveys, beside the body
 COARSE = 50     # cells; a body of fewer is drawn with a coarse brush
 
 
@@ -29,9 +31,10 @@ class Wanted(NamedTuple):
     dip: Optional[float] = None         # degrees, of a plane
     direction: Optional[float] = None   # degrees from north, of a plane
     scar: Optional[str] = None          # raster
-    scar_is: str = "surface"            # or depth
+    scar_is: Optional[str] = None       # of release_scar.KINDS; None: heights, if they look like it
     least: float = 0.0                  # m; a scar is where it is deeper
-    crs: Optional[str] = None           # of the polygon
+    crs: Optional[str] = None           # of the polygon, whatever it says
+    scar_crs: Optional[str] = None      # of the scar
     local: bool = False                 # the polygon is in local metres
     advice: Optional[polygons.Advice] = None        # for messages on the polygon's place
 
@@ -57,14 +60,18 @@ def body_of(wanted: Wanted) -> Body:
     wanted = check(wanted)
     raster = read_terrain(wanted.terrain)
     geometry = None
+    doubts: List[str] = []
     if wanted.polygon:
         crs = as_crs("--assign-crs", wanted.crs) if wanted.crs else None
         geometry = polygons.read_local(wanted.polygon, raster, local=wanted.local, crs=crs,
-                                       advice=wanted.advice or polygons.OF_ASSIGN_CRS._replace(terrain=wanted.terrain))
+                                       advice=wanted.advice or polygons.OF_ASSIGN_CRS._replace(terrain=wanted.terrain),
+                                       warn=doubts.append)
+    if wanted.polygon:
+        check_pits(raster, geometry, wanted)
     area, surface, choices = (from_scar if wanted.scar else from_shape)(wanted, raster, geometry)
     slip = release_solve.slip_surface(area, release_solve.depths(area, surface), wanted.where)
     found = release_solve.measures(area, slip)
-    doubts = [*warnings(choices, found, area), *in_parts(area, slip, geometry)]
+    doubts += [*warnings(choices, found, area), *in_parts(area, slip, geometry)]
     return Body(raster, geometry, area, slip, choices, found, doubts)
 
 
@@ -81,7 +88,7 @@ def check(wanted: Wanted) -> Wanted:
             if getattr(wanted, name) is not None:
                 raise SlopeError(f"--{name}", "must not be given with --scar, whose depths are not changed")
         return wanted
-    for name, value, default in (("least", f"{wanted.least:g}", "0"), ("scar-is", wanted.scar_is, "surface")):
+    for name, value, default in (("least", f"{wanted.least:g}", "0"), ("scar-is", wanted.scar_is, None)):
         if value != default:
             raise SlopeError(f"--{name}", "must be given with --scar only", value)
     if not wanted.polygon:
@@ -121,18 +128,40 @@ def read_terrain(path):
     return raster
 
 
+def check_pits(raster, geometry, wanted: Wanted) -> None:
+    """Raise SlopeError if the ground of a polygon has pits of a NODATA value that no file declares."""
+    rows, columns = np.nonzero(release_area.nodes_inside(raster, geometry))
+    if not len(rows):
+        return
+    rim = release_area.RIM
+    part = tuple(slice(max(0, one.min() - rim), one.max() + rim + 1) for one in (rows, columns))
+    found = plausible.pits(raster.z[part], float(raster.transform.a))
+    if found is None:
+        return
+    row, column = np.argwhere(found.cells)[0] + [part[0].start, part[1].start]
+    x, y = raster.transform * (column + 0.5, row + 0.5)
+    raise SlopeError(wanted.polygon, f"the ground in it must have no pits: {int(found.cells.sum())} cells of "
+                     f"{found.mark:g} m lie {found.least:.4g} m or more below all cells beside them; "
+                     f"{plausible.remedy(found)} (slope terrain, slope site)",
+                     f"the first at east {x + raster.offset[0]:.1f} north {y + raster.offset[1]:.1f}")
+
+
 def from_scar(wanted: Wanted, raster, geometry):
     """Area, slip surface on its nodes and choices of a body that a raster gives."""
     assert wanted.scar
-    depth = release_scar.depths(wanted.scar, wanted.scar_is, raster, wanted.least)
+    crs = as_crs(f"--assign-crs {wanted.scar}", wanted.scar_crs) if wanted.scar_crs else None
+    scar = release_scar.read(wanted.scar, wanted.scar_is, raster, wanted.least, crs)
+    depth, inside = scar.depth, None
     if geometry is not None:
-        depth = np.where(release_area.nodes_inside(raster, geometry), depth, 0.0)
+        inside = release_area.nodes_inside(raster, geometry)
+        depth = np.where(inside, depth, 0.0)
         if not depth.any():
             raise SlopeError(wanted.polygon, f"must hold some of the scar in {wanted.scar}")
     area = release_area.area_of(raster, depth > 0, wanted.where, wanted.terrain, SCAR_REMEDY)
     row, column = area.corner
     part = depth[row:row + area.z.shape[0], column:column + area.z.shape[1]]
-    return area, area.z - part, {"shape": "scar", "scar": wanted.scar, "scar_is": wanted.scar_is, "least": wanted.least}
+    return area, area.z - part, {"shape": "scar", "scar": wanted.scar, "scar_is": scar.kind, "least": wanted.least,
+                                 "beside_m": release_scar.beside(scar, inside)}
 
 
 def from_shape(wanted: Wanted, raster, geometry):
@@ -186,12 +215,21 @@ def warnings(choices, found, area):
         what = f"bulges (curvature {curvature:.3g} /m) and " if curvature < 0 else ""
         lines.append(f"the base level {what}takes {100 * share:.0f} % of the polygon, {found.mean_depth:.3g} m deep on "
                      "average: is this the intended body? A larger depth or a smaller polygon gives another one")
+    if found.mean_slope > CLIFF:
+        lines.append(f"the ground of the body falls by {found.mean_slope:.0f} degrees on average: a cliff, or "
+                     f"heights in feet ({plausible.in_feet(found.mean_slope):.0f} degrees)? slope terrain and site "
+                     "have --z-unit")
     if found.cells < COARSE:
         lines.append(f"the body covers {found.cells} cells of {area.cell:g} m: use a finer terrain")
     if found.wall > 0.5 * found.largest_depth:
         lines.append(f"the body is {found.wall:.3g} m deep at the rim of its area, where it ends in a wall: "
-                     + ("a wider polygon, or --shape ellipsoid?" if choices["shape"] == "sphere" else
-                        "is the polygon large enough?"))
+                     + {"sphere": "a wider polygon, or --shape ellipsoid?",
+                        "scar": "does the raster, or the polygon, end in the middle of the scar?"}
+                     .get(choices["shape"], "is the polygon large enough?"))
+    if abs(shift := choices.get("beside_m") or 0.0) > SHIFT:
+        lines.append(f"beside the body {choices['scar']} lies {abs(shift):.3g} m {'below' if shift > 0 else 'above'} "
+                     "the terrain (median), which counts in the depths: vertical datums are not compared, are they the "
+                     "same?")
     return lines
 
 
@@ -222,6 +260,10 @@ def text(body: Body) -> str:
     shape = choices["shape"]
     if shape == "scar":
         what = f"scar of {choices['scar']} ({choices['scar_is']})"
+        if choices["scar_is"] == "surface":
+            what += "; vertical datums are not compared"
+            if choices["beside_m"] is not None:
+                what += f", beside the body the two surveys differ by {abs(choices['beside_m']):.2g} m (median)"
     elif shape == "plane":
         what = (f"plane that dips {choices['dip_degrees']:.4g} degrees towards {choices['direction_degrees']:.4g}, "
                 f"{choices['drop_m']:.4g} m below the plane that touches the highest ground")

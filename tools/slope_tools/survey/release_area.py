@@ -9,7 +9,7 @@ from typing import NamedTuple, Tuple
 
 import numpy as np
 from rasterio.features import geometry_mask
-from scipy.ndimage import binary_dilation, map_coordinates
+from scipy.ndimage import binary_dilation, label, map_coordinates
 from shapely.geometry import LineString
 from shapely.geometry.base import BaseGeometry
 
@@ -92,6 +92,8 @@ def area_of(raster: Raster, inside: np.ndarray, where: str, terrain: str, remedy
                        if min(r, c) < RIM or r >= rows - RIM or c >= columns - RIM)
         x, y = raster.transform * (bad[1] + 0.5, bad[0] + 0.5)
         east, north = x + raster.offset[0], y + raster.offset[1]
+        if missing.any():
+            remedy += fill_remedy(raster.z, int(bad[0]), int(bad[1]))
         raise SlopeError(where, f"must stay at least {RIM} cells away from NODATA and from the edge of {terrain}"
                          f"{remedy}",
                          f"{'NODATA' if missing.any() else 'its edge'} at east {east:.1f} north {north:.1f}")
@@ -99,6 +101,15 @@ def area_of(raster: Raster, inside: np.ndarray, where: str, terrain: str, remedy
     _, y = raster.transform * (0.0, np.arange(part[0].start, part[0].stop) + 0.5)
     downhill, slope = fall(x, y, z, mask)
     return Area(z, x, y, cell, mask, (part[0].start, part[1].start), downhill, slope)
+
+
+def fill_remedy(z: np.ndarray, row: int, column: int) -> str:
+    """What can be done about NODATA (NaN) at a row and column."""
+    groups, _ = label(np.isnan(z), np.ones((3, 3)))
+    hole = groups == groups[row, column]
+    if np.count_nonzero(hole) == np.count_nonzero(hole[1:-1, 1:-1]):
+        return f"; --fill {np.count_nonzero(hole)} of slope terrain and site fills this hole"
+    return "; it goes on to the edge, where --fill does not fill: take a larger elevation model"
 
 
 def fall(x: np.ndarray, y: np.ndarray, z: np.ndarray, mask: np.ndarray) -> Tuple[np.ndarray, float]:

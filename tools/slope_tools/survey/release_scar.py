@@ -1,6 +1,9 @@
 """A body from a raster: a second survey of the surface, depths, or the change between two surveys."""
+from typing import NamedTuple, Optional
+
 import numpy as np
 from affine import Affine
+from rasterio.crs import CRS
 
 from ..errors import SlopeError
 from . import rasters
@@ -10,18 +13,31 @@ from .release_solve import THINNEST
 from .resampling import sample
 
 KINDS = ("surface", "depth", "change")
+ALIKE = 0.7     # of the terrain's scatter: that of the differences to a second survey of it is smaller
+FEW = 50        # nodes on which two surveys must have heights, to be compared beside the scar
 
 
-def depths(path: str, kind: str, raster: Raster, least: float) -> np.ndarray:
-    """Depths (m, >= 0) of a scar on the nodes of a terrain, 0 where the scar raster has none.
+class Scar(NamedTuple):
+    """What a raster says of a body."""
+    depth: np.ndarray           # m, >= 0, on the nodes of the terrain, 0 where there is none
+    kind: str                   # of KINDS
+    above: Optional[np.ndarray]     # m, of heights: the terrain's less the raster's, NaN where either has none
+
+
+def read(path: str, kind: Optional[str], raster: Raster, least: float, crs: Optional[CRS] = None) -> Scar:
+    """The scar of a raster on the nodes of a terrain.
 
     kind: "surface", heights after the event; "depth", of the slip surface below the terrain, positive down; "change",
-    after minus before, of which what is negative counts. Depths below `least` (m) are 0. The scar's grid may be
+    after minus before, of which what is negative counts; None: heights, if they follow the terrain's. crs: of the
+    raster, whatever it says. Depths below `least` (m) are 0. The scar's grid may be
     another one: bilinear between its cell centres, and reprojected. A raster without a CRS is taken to be in the
     terrain's. Depths below a millimetre, to which a terrain's heights are rounded, are none. Raises SlopeError on a
     raster that is none, lies elsewhere, or holds no depth.
     """
-    values = on_nodes(path, raster, heights=kind == "surface")
+    values = on_nodes(path, raster, kind in (None, "surface"), crs)
+    if kind is None:
+        check_heights(path, values, raster)
+        kind = "surface"
     if kind == "depth":
         wrong = np.nanmin(values)
         if wrong < 0:
@@ -32,18 +48,47 @@ def depths(path: str, kind: str, raster: Raster, least: float) -> np.ndarray:
         depth = np.where(depth >= max(least, THINNEST), depth, 0.0)      # NaN too
     depth = np.maximum(depth, 0.0)
     if not depth.any():
-        what = {"surface": "be lower than the terrain", "depth": "hold a depth > 0", "change": "hold a change < 0"}
+        what = {"surface": "be lower than the terrain (are the surveys before and after exchanged?)",
+                "depth": "hold a depth > 0", "change": "hold a change < 0"}
         raise SlopeError(path, f"must {what[kind]} somewhere" + (f", by --least {least:g} m" if least else ""))
-    return depth
+    return Scar(depth, kind, raster.z - values if kind == "surface" else None)
 
 
-def on_nodes(path: str, raster: Raster, heights: bool) -> np.ndarray:
+def check_heights(path: str, values: np.ndarray, raster: Raster) -> None:
+    """Raise SlopeError if values (m) on the nodes of a terrain do not follow its heights: they may be depths."""
+    both = np.isfinite(values) & np.isfinite(raster.z)
+    z, scar = raster.z[both], values[both]
+    if len(z) < FEW or np.std(z - scar) <= ALIKE * np.std(z):
+        return
+    meant = "depths? Then --scar-is depth" if scar.min() >= 0 else "the change of the surface? Then --scar-is change"
+    raise SlopeError(path, f"must be heights that follow the terrain's, {z.min():.6g} to {z.max():.6g} m: did you mean "
+                     f"{meant}; --scar-is surface if they are heights", f"{scar.min():.6g} to {scar.max():.6g}")
+
+
+def beside(scar: Scar, inside: Optional[np.ndarray]) -> Optional[float]:
+    """How far (m, median) the terrain lies above a second survey of it beside the body.
+
+    inside: mask of the nodes in the polygon of the body. None where that is not known: no two surveys, or no nodes
+    beside the body.
+    """
+    if scar.above is None:
+        return None
+    known = np.isfinite(scar.above)
+    if inside is not None:
+        known &= ~inside
+    elif known.any() and np.mean(scar.depth[known] > 0.5) > 0.5:
+        return None         # a survey of the scar alone
+    return float(np.median(scar.above[known])) if known.sum() >= FEW else None
+
+
+def on_nodes(path: str, raster: Raster, heights: bool, crs: Optional[CRS] = None) -> np.ndarray:
     """Values of a raster file at the nodes of a terrain; bilinear, exact at its own centres.
 
     Heights are NaN where the raster has none. Depths and changes are 0 there, also between a cell that has one and a
     cell beyond the raster: what they sum up to does not depend on how the file marks the ground beside the scar.
     """
     scar = rasters.read_asc_local(path) if heights else _read_values(path)
+    scar = scar._replace(crs=crs or scar.crs)
     if not np.isfinite(scar.z).any():
         raise SlopeError(path, "must hold a value, all cells are NODATA")
     if not heights:

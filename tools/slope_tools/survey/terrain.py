@@ -13,12 +13,18 @@ from .resampling import STRIP, footprint, sample
 ON_GRID = 0.01         # cells; grids of two files that differ by less than this are the same grid
 
 
-def declare(path, crs, tell, warn, assigned=None):
+def declare(path, crs, tell, warn, assigned=None, unit=None, nodata=None):
     """Read a raster, in coordinates of its CRS; one without is taken to be in crs, or warned of if that is None.
 
-    assigned: the CRS of its coordinates, whatever the file says.
+    assigned: the CRS of its coordinates, unit: that of its heights, whatever the file says; nodata: a height that is
+    none.
     """
-    local = rasters.read_asc_local(path)
+    local = rasters.read_asc_local(path, unit=unit, nodata=nodata)
+    said = rasters.height_unit(path)
+    if unit and said and said != unit:
+        tell(f"{path} says heights in {said}: taken as {unit}")
+    if (unit or said or "m") != "m":
+        tell(f"{path}: heights in {unit or said} brought to metres")
     raster = Raster(local.z, Affine.translation(*local.offset) * local.transform, local.crs)
     if assigned is not None:
         if raster.crs is not None and not same_crs(raster.crs, assigned):

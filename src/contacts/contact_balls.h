@@ -1,0 +1,77 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+/* The balls of a contact as the contact lists see them: arrays of those that move, and the partners
+   that they meet, which move, too, or are fixed. No LAMMPS. */
+
+#ifndef SLOPE_CONTACT_BALLS_H
+#define SLOPE_CONTACT_BALLS_H
+
+#include "instruction_set.h"
+#include "vector3.h"
+
+namespace Slope {
+
+// all that moves; positions in m, velocities at the middle of the step in m/s and rad/s
+struct MovingBalls {
+  const Vector *x, *v, *omega;
+  const double *radius, *mass;
+  Vector *f, *torque;
+  const Vector *ahead;     // velocities that normal dashpots act on: see contact_force.h
+  unsigned char *count;    // contacts of each ball now; up to 255
+};
+
+// The partners of the moving balls: other moving balls ...
+struct MovingPartners {
+  static constexpr bool MOVE = true;
+  const MovingBalls &balls;
+  int nforce;    // partners below this number get their force, and count their contacts
+
+  SLOPE_INLINE const Vector &x(int j) const { return balls.x[j]; }
+  SLOPE_INLINE double share(int j) const
+  {
+    return j < nforce ? 1.0 : 0.5;
+  }    // of the contact that is this rank's
+  SLOPE_INLINE bool gets_force(int j) const { return j < nforce; }
+  SLOPE_INLINE void prefetch(int j) const
+  {
+    __builtin_prefetch(&balls.v[j]);
+    __builtin_prefetch(&balls.omega[j]);
+    __builtin_prefetch(&balls.f[j], 1);
+    __builtin_prefetch(&balls.torque[j], 1);
+  }
+  SLOPE_INLINE const Vector &v(int j) const { return balls.v[j]; }
+  SLOPE_INLINE const Vector &omega(int j) const { return balls.omega[j]; }
+  SLOPE_INLINE const Vector &ahead(int j) const { return balls.ahead[j]; }
+  SLOPE_INLINE double radius(int j) const { return balls.radius[j]; }
+  SLOPE_INLINE double mass(int j) const { return balls.mass[j]; }
+};
+
+// ... or fixed ones of one radius (m)
+struct FixedPartners {
+  static constexpr bool MOVE = false;
+  const Vector *position;
+  double radius_all;
+  Vector still = {0.0, 0.0, 0.0};
+
+  SLOPE_INLINE FixedPartners(const Vector *positions, double radius) :
+      position(positions), radius_all(radius)
+  {
+  }
+
+  SLOPE_INLINE const Vector &x(int j) const { return position[j]; }
+  SLOPE_INLINE double share(int) const { return 1.0; }
+  SLOPE_INLINE bool gets_force(int) const { return false; }
+  SLOPE_INLINE void prefetch(int) const {}
+  SLOPE_INLINE const Vector &v(int) const { return still; }
+  SLOPE_INLINE const Vector &omega(int) const { return still; }
+  SLOPE_INLINE const Vector &ahead(int) const { return still; }
+  SLOPE_INLINE double radius(int) const { return radius_all; }
+  SLOPE_INLINE double mass(int) const { return 1.0; }
+};
+
+}    // namespace Slope
+
+#endif

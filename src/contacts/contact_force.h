@@ -1,0 +1,327 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+/* The contact law: linear spring-dashpot, Coulomb friction with a tangential
+   spring, rolling resistance with a rolling spring. One contact, pure functions,
+   no LAMMPS. Nothing else computes a contact force. Derivations: doc/src/theory.rst.
+
+   T is double, for one contact, or Four, for four at a time (SIMD): what differs
+   between contacts is chosen, never branched on. N is the same, or double if all
+   contacts share it.
+
+   Units are SI: m, kg, s, N, rad. The normal n points from the partner to the ball.
+*/
+
+#ifndef SLOPE_CONTACT_FORCE_H
+#define SLOPE_CONTACT_FORCE_H
+
+#ifdef __FAST_MATH__
+#error \
+    "contacts that have just begun or ended need infinities and exact comparisons: build without -ffast-math"
+#endif
+
+#include "contact_law.h"
+#include "simd4.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace Slope {
+inline namespace SLOPE_INSTRUCTIONS {
+
+// ----------------------------------------------------------------------
+// the law for balls of one mass and one time step
+// ----------------------------------------------------------------------
+
+// a solid sphere's contact point moves as 2/7 of the mass: translation and spin together
+static constexpr double POINT = 3.5;
+
+// Velocity Verlet hands over the overlap at the end of a step and the velocities of its middle, and the force
+// acts for a whole step. With the law's own coefficients (scheme plain) the restitution comes out too low, and
+// scatters with where in the step a contact begins. Scheme exact
+//   has the normal dashpots act on velocities that are AHEAD dt nearer to those of the overlap, as the last
+//   step's forces change them (MovingBalls::ahead);
+//   takes other coefficients, with which the steps of a lone contact lie on an oscillation of the law's
+//   damping ratio (contact_step());
+//   gives the steps in which a contact begins and ends the part of the dashpot that is theirs (ContactOf);
+//   reduces the dashpots of balls that have so many contacts that together they would take more of a motion
+//   than there is (held_back()).
+// Derivation: doc/src/theory.rst.
+static constexpr double AHEAD = 0.25;
+template <class N> struct ContactStepOf {
+  double dt, grow;                // s; grow: what the springs grow by, 0 at set-up
+  N kn, cn, kt, ct, kr, cr;       // N/m, N s/m: as velocity Verlet needs them
+  N taken_n, taken_t, taken_r;    // share of a motion that its dashpot takes in a step; 0: plain
+  N per_kt, per_kr;               // 1 / kt, 1 / kr; 0 without a spring
+  N share_i, share_j;    // of the two balls in the inverse of the contact's mass; their sum is 1
+  double friction, rolling, fn_least;
+};
+using ContactStep = ContactStepOf<double>;
+
+// exp(-x), x >= 0, to 1e-9; no call, so that it takes four at a time
+template <class N> SLOPE_INLINE N decay_factor(N x)
+{
+  const N y = 0.125 * smaller(x, all<N>(24.0));    // Pade approximant, to the eighth power
+  const N even = 1.0 + 0.1 * y * y, odd = y * (0.5 + y * y / 120.0);
+  N e = (even - odd) / (even + odd);
+  e *= e;
+  e *= e;
+  return e * e;
+}
+
+// Share H of a motion that a dashpot must take in a step of velocity Verlet, so that the steps have the damping
+// ratio of spring and dashpot, and so their restitution, although the spring stays as it is, if the dashpot
+// acts on velocities that are half a step late: with a = k dt^2/m and h = c dt/(2 m) the overlaps obey
+// d(n+1) = (2 - a - H) d(n) - (1 - H) d(n-1), and H = 1 - exp(-2 f h), where f solves
+// cos(f sqrt(a - h^2)) = cosh(f h) - a/2 exp(f h). The series of f is that of exp(f h / 2) = f, with a
+// correction for a.
+template <class N> SLOPE_INLINE N share_if_late(N a, N h)
+{
+  const N x = smaller(N(0.5 * h), all<N>(0.25));
+  const N f = 1.0 + x * (1.0 + x * (1.5 + x * (8.0 / 3.0 + x * 125.0 / 24.0)));
+  const N more = f * f * (a - 8.0 * x * x) / (12.0 * (2.0 - 2.0 * x * f));
+  return 1.0 - decay_factor(N(2.0 * f * (1.0 + more) * h));
+}
+
+// The same if it acts on velocities that are AHEAD of those: to the first order in AHEAD the steps are those
+// of a late dashpot of H (1 - AHEAD (H (1 + h) - a)) with a spring of a (1 - AHEAD H). H is right to
+// 5e-3 for a <= 1/8 (unit test); overdamped contacts take MOST_TAKEN, with which the steps are stable.
+static constexpr double MOST_TAKEN = 0.9;
+template <class N> SLOPE_INLINE N share_taken(N a, N h)
+{
+  const N late = share_if_late(a, h), softer = 1.0 - AHEAD * late;
+  const N more = AHEAD * (late * (1.0 + smaller(h, all<N>(0.5))) - a);
+  const N share = share_if_late(N(a * softer), N(h * root(softer))) / (1.0 - more);
+  return smaller(share, all<N>(MOST_TAKEN));
+}
+
+// The share with a spring that changes, too: the steps are then on the oscillation itself, damped or
+// overdamped. Returns the spring's a; H = 1 - exp(-2 h).
+template <class N> SLOPE_INLINE N stepped_spring(N a, N h)
+{
+  const N zero = N(), y = a - h * h, decay = decay_factor(h);
+  const N w = smaller(larger(y, zero), all<N>(4.0)), q = root(N(larger(N(-y), zero)));
+  const N cosine =
+      1.0 - w / 2.0 * (1.0 - w / 12.0 * (1.0 - w / 30.0 * (1.0 - w / 56.0 * (1.0 - w / 90.0))));
+  const N slow = decay_factor(N(a / larger(N(h + q), all<N>(1.0e-30)))),
+          fast = decay_factor(N(h + q));
+  return 1.0 + decay * decay - choose(y < zero, N(slow + fast), N(2.0 * decay * cosine));
+}
+
+// inverse_i, inverse_j (1/kg): 1/m_i and 1/m_j, 0 of a fixed ball. mass_dashpot (kg): that of the
+// conversion restitution -> dashpot. inverse_rolling (1/kg): 2.5 Rr^2 (1/(m_i R_i^2) + 1/(m_j R_j^2)),
+// of solid spheres. dt (s) > 0; repeat: for the forces of the step that has just ended once more.
+template <class N>
+SLOPE_INLINE ContactStepOf<N> contact_step(const ContactLaw &law, N inverse_i, N inverse_j,
+                                           N mass_dashpot, N inverse_rolling, double dt,
+                                           bool repeat)
+{
+  const N root_mass = root(mass_dashpot);
+  const N inverse = inverse_i + inverse_j, point = POINT * inverse;
+  ContactStepOf<N> s;
+  s.dt = dt;
+  s.grow = repeat ? 0.0 : dt;
+  s.friction = law.friction;
+  s.rolling = law.rolling;
+  s.fn_least = law.fn_least;
+  s.share_i = inverse_i / inverse;
+  s.share_j = inverse_j / inverse;
+  s.kn = N() + law.kn;
+  s.kt = N() + law.kt;
+  s.kr = N() + law.kr;
+  s.cn = law.cn_given + law.cn_root * root_mass;
+  s.ct = law.ct_given + law.ct_root * root_mass;
+  s.cr = law.cr_given + law.cr_root * root_mass;
+  s.taken_n = s.taken_t = s.taken_r = N();
+  if (law.exact > 0.0) {
+    const double square = dt * dt, half = 0.5 * dt;
+    s.taken_n = share_taken(N(s.kn * square * inverse), N(s.cn * half * inverse));
+    s.cn = s.taken_n / (dt * inverse);
+    const N decay_t = decay_factor(N(s.ct * dt * point)),
+            decay_r = decay_factor(N(s.cr * dt * inverse_rolling));
+    s.kt = stepped_spring(N(s.kt * square * point), N(s.ct * half * point)) / (square * point);
+    s.kr = stepped_spring(N(s.kr * square * inverse_rolling), N(s.cr * half * inverse_rolling)) /
+        (square * inverse_rolling);
+    s.taken_t = 1.0 - decay_t;
+    s.taken_r = 1.0 - decay_r;
+    s.ct = s.taken_t / (dt * point);
+    s.cr = s.taken_r / (dt * inverse_rolling);
+  }
+  s.per_kt = law.kt > 0.0 ? N(1.0 / s.kt) : N();
+  s.per_kr = law.kr > 0.0 ? N(1.0 / s.kr) : N();
+  return s;
+}
+
+// ----------------------------------------------------------------------
+// one contact
+// ----------------------------------------------------------------------
+
+template <class T, class N = T> struct ContactOf {
+  T n[3];              // unit normal, partner to ball
+  T overlap;           // m; < 0 if the contact has ended
+  T v[3];              // velocity of the ball minus that of the partner, m/s
+  T ahead;             // normal velocity that the dashpot acts on, m/s
+  T rw[3];             // R_i w_i + R_j w_j, m/s
+  T w[3];              // w_i - w_j, rad/s
+  N rolling_radius;    // m
+
+  // 1, 0, 0, 1, 1 but in the steps in which the contact begins and ends, see ContactPasses::find_times()
+  T weight;    // of the normal dashpot
+  T beyond;    // stretch of the normal spring beyond the overlap, m
+  T first;     // 1 in the first step, 0 in others
+  T turn;    // what the normal velocity differs by in the middle of the time that it stands for, m/s
+  T touches;    // 0 if the contact has ended
+  T grown;      // part of the step in which the springs grow
+  T early;      // time that the sliding spring is ahead, s
+
+  SLOPE_INLINE void follow_whole_step()
+  {
+    weight = touches = grown = all<T>(1.0);
+    beyond = turn = first = early = T();
+  }
+};
+using Contact = ContactOf<double>;
+
+template <class T> struct ContactForceOf {
+  T f[3];    // on the ball, N; the partner gets the opposite
+  T t[3];    // n x Ft, N: torque on the ball is -R_i t + m, on the partner -R_j t - m
+  T m[3];    // rolling torque on the ball, N m
+};
+using ContactForce = ContactForceOf<double>;
+
+// Spring and dashpot in the tangent plane with a limit, for sliding and for rolling alike:
+// s += u dt, kept in the plane of n; F = -k s - c u; if |F| exceeds the limit, F is cut to it and
+// s is cut back to what gives the cut force: with F' = a F, s' = a s - (1 - a) c/k u. u must lie in
+// the plane of n. relax: c / k, 0 without a spring.
+template <class T, class N>
+SLOPE_INLINE void limited_spring(N k, T c, T relax, T limit, const T *n, const T *u, T dt, T *s,
+                                 T *f)
+{
+  T sx = s[0] + u[0] * dt;
+  T sy = s[1] + u[1] * dt;
+  T sz = s[2] + u[2] * dt;
+  const T sn = sx * n[0] + sy * n[1] + sz * n[2];
+  sx -= sn * n[0];
+  sy -= sn * n[1];
+  sz -= sn * n[2];
+
+  const T fx = k * sx + c * u[0];
+  const T fy = k * sy + c * u[1];
+  const T fz = k * sz + c * u[2];
+  const T f2 = fx * fx + fy * fy + fz * fz;
+  const T a = smaller(T(limit / f2 * root(f2)), all<T>(1.0));    // 1, too, if f2 = 0
+  const T back = (1.0 - a) * relax;
+  f[0] = -a * fx;
+  f[1] = -a * fy;
+  f[2] = -a * fz;
+  s[0] = a * sx - back * u[0];
+  s[1] = a * sy - back * u[1];
+  s[2] = a * sz - back * u[2];
+}
+
+// the part of c.v along n, m/s
+template <class T, class N> SLOPE_INLINE T normal_velocity(const ContactOf<T, N> &c)
+{
+  return c.v[0] * c.n[0] + c.v[1] * c.n[1] + c.v[2] * c.n[2];
+}
+
+// velocity of the contact point in the tangent plane, m/s: v - vn n - (Ri wi + Rj wj) x n
+template <class T, class N>
+SLOPE_INLINE void sliding_velocity(const ContactOf<T, N> &c, T vn, T *vt)
+{
+  const T *n = c.n;
+  vt[0] = c.v[0] - vn * n[0] - (c.rw[1] * n[2] - c.rw[2] * n[1]);
+  vt[1] = c.v[1] - vn * n[1] - (c.rw[2] * n[0] - c.rw[0] * n[2]);
+  vt[2] = c.v[2] - vn * n[2] - (c.rw[0] * n[1] - c.rw[1] * n[0]);
+}
+
+// force on the ball from its parts: fn along n, ft in the tangent plane
+template <class T, class N>
+SLOPE_INLINE void set_force(const ContactOf<T, N> &c, T fn, const T *ft, ContactForceOf<T> &out)
+{
+  const T *n = c.n;
+  for (int d = 0; d < 3; d++) {
+    out.f[d] = fn * n[d] + ft[d];
+    out.m[d] = T();
+  }
+  out.t[0] = n[1] * ft[2] - n[2] * ft[1];
+  out.t[1] = n[2] * ft[0] - n[0] * ft[2];
+  out.t[2] = n[0] * ft[1] - n[1] * ft[0];
+}
+
+// Number of contacts of the two balls of one, itself included, each weighted with the ball's share in its mass
+template <class T, class N>
+SLOPE_INLINE T mean_contacts(const ContactStepOf<N> &step, T contacts_i, T contacts_j)
+{
+  return step.share_i * contacts_i + step.share_j * contacts_j;
+}
+
+// Factor of a dashpot that takes so much of a motion in a step, beside others of the same ball: their sum is
+// held to so much. In three dimensions n contacts resist a motion as n/3 along it would, n sliding
+// contacts a spin as 0.48 n, rolling ones as 0.67 n: with the numbers below they take at most 0.67, 0.57 and
+// 0.5 of it on average, and less than 2 in the directions that they resist most, springs included.
+static constexpr double MOST_NORMAL = 2.0, MOST_SLIDING = 1.2, MOST_ROLLING = 0.75;
+template <class T, class N> SLOPE_INLINE T held_back(N taken, T contacts, double most)
+{
+  return most / larger(T(taken * contacts), all<T>(most));
+}
+
+// Rolling: the same construction as sliding on Rr (wi - wj) in the tangent plane, torque arm Rr.
+// The dashpots of sliding and of rolling act on the same spin: one more than those of sliding.
+template <class T, class N>
+SLOPE_INLINE void add_rolling(const ContactStepOf<N> &step, const ContactOf<T, N> &c, T contacts,
+                              T pressing, T *spring, ContactForceOf<T> &out)
+{
+  const T *n = c.n;
+  const N rr = c.rolling_radius;
+  const T wn = c.w[0] * n[0] + c.w[1] * n[1] + c.w[2] * n[2];
+  const T vr[3] = {rr * (c.w[0] - wn * n[0]), rr * (c.w[1] - wn * n[1]), rr * (c.w[2] - wn * n[2])};
+  const T cr = c.touches * step.cr * held_back(step.taken_r, contacts, MOST_ROLLING);
+  T fr[3];
+  limited_spring(step.kr, cr, T(cr * step.per_kr), T(step.rolling * pressing), n, vr,
+                 T(step.grow * c.grown), spring, fr);
+  for (int d = 0; d < 3; d++) out.m[d] = rr * fr[d];
+}
+
+// Force of one contact. contacts: see mean_contacts(). history: the springs, updated.
+// ROLLING = false leaves out the rolling resistance, for laws that have none.
+template <bool ROLLING = true, class T, class N>
+SLOPE_INLINE void contact_force(const ContactStepOf<N> &step, const ContactOf<T, N> &c, T contacts,
+                                T *history, ContactForceOf<T> &out)
+{
+  const T *n = c.n;
+  const T vn = normal_velocity(c), zero = T();
+  const T elastic = step.kn * (larger(c.overlap, zero) + c.beyond);
+  const T cn = step.cn * held_back(step.taken_n, contacts, MOST_NORMAL);
+  const T own =
+      1.0 + AHEAD * c.first * c.weight * step.taken_n;    // its force is not in c.ahead yet
+  const T fn = larger(T(elastic - cn * c.weight * (c.ahead + c.turn) / own), all<T>(step.fn_least));
+
+  // friction and rolling are limited by a force without the weight, or they would depend on when in a step
+  // contacts begin
+
+  const T pressing = c.touches * larger(T(elastic - cn * c.ahead / own), zero);
+  T vt[3], ft[3];
+  sliding_velocity(c, vn, vt);
+  const T ct =
+      c.touches * step.ct * held_back(step.taken_t, contacts, MOST_SLIDING) + step.kt * c.early;
+  limited_spring(step.kt, ct, T(ct * step.per_kt), T(step.friction * pressing), n, vt,
+                 T(step.grow * c.grown), history, ft);
+
+  set_force(c, fn, ft, out);
+  if (ROLLING) add_rolling(step, c, contacts, pressing, history + 3, out);
+}
+
+// v without its part along n
+inline void flatten(const double *n, const double *v, double *out)
+{
+  const double along = v[0] * n[0] + v[1] * n[1] + v[2] * n[2];
+  for (int d = 0; d < 3; d++) out[d] = v[d] - along * n[d];
+}
+
+}    // namespace SLOPE_INSTRUCTIONS
+}    // namespace Slope
+
+#endif

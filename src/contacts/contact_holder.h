@@ -1,0 +1,27 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#ifndef SLOPE_CONTACT_HOLDER_H
+#define SLOPE_CONTACT_HOLDER_H
+
+namespace LAMMPS_NS {
+
+// Holders of contacts besides the pair style: the walls. Each registers in its
+// init(); the pair style asks all of them for their contacts before any force is computed.
+class ContactHolder {
+ public:
+  // which contacts touch now (starting: in the step that has just ended), counted with each ball
+  virtual void find_contacts(bool starting) = 0;
+
+  // of the springs of this rank's contacts, J
+  virtual double elastic_energy() const = 0;
+
+ protected:
+  ~ContactHolder() = default;    // not virtual: that of Fix may throw in some versions of LAMMPS
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

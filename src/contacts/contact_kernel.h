@@ -1,0 +1,116 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+/* The two passes of a step over a list of contacts, compiled for several instruction sets. The best one
+   that the processor has is chosen when it is first asked for. No LAMMPS.
+
+   Results of one kernel are the same from run to run; those of two kernels differ by rounding, because some
+   processors multiply and add without rounding in between. */
+
+#ifndef SLOPE_CONTACT_KERNEL_H
+#define SLOPE_CONTACT_KERNEL_H
+
+#include "contact_balls.h"
+#include "contact_law.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace Slope {
+
+struct ContactEntry {
+  int i, j;    // moving ball, partner
+};
+
+// a contact list as the kernels see it
+struct ContactView {
+  static constexpr int BLOCK = 64;
+
+  const ContactEntry *entries;
+  double *const *histories;    // HISTORY values of each
+  size_t size, blocks;
+  std::uint64_t *touching, *before, *fresh, *ended;    // a bit of each contact: see ContactList
+  Sides moves;
+
+  // equal: radii (m) and masses (kg) are these for all contacts; otherwise each looks up its own
+  bool equal;
+  double radius_i, radius_j, mass_i, mass_j;
+};
+
+// Results of a second pass: the sum of the forces on the balls i, N; and each contact to
+// visit(visitor, i, j, force on i, vector j -> i), if that is set
+struct ContactTally {
+  typedef void (*Visit)(void *, int, int, const Vector &, const Vector &);
+  Vector force;
+  Visit visit;
+  void *visitor;
+};
+
+// the passes compiled for one instruction set, for each kind of partners
+struct ContactKernel {
+  template <class Partners>
+  using Find = void (*)(const ContactView &, bool repeat, const MovingBalls &, const Partners &);
+  template <class Partners>
+  using Apply = void (*)(const ContactView &, const ContactLaw &, double dt, bool repeat,
+                         const MovingBalls &, const Partners &, ContactTally *);
+
+  Find<MovingPartners> find_moving;
+  Find<FixedPartners> find_fixed;
+  Apply<MovingPartners> apply_moving;
+  Apply<FixedPartners> apply_fixed;
+  // First pass: which contacts touch, as bits, and the balls' numbers of contacts. repeat: what touched in
+  // the step that has just ended.
+  void find(const ContactView &v, bool repeat, const MovingBalls &b, const MovingPartners &p) const
+  {
+    find_moving(v, repeat, b, p);
+  }
+  void find(const ContactView &v, bool repeat, const MovingBalls &b, const FixedPartners &p) const
+  {
+    find_fixed(v, repeat, b, p);
+  }
+
+  // Second pass: adds the forces to the balls, whose numbers of contacts are complete. tally: nullptr
+  // if not needed
+  void apply(const ContactView &v, const ContactLaw &law, double dt, bool repeat,
+             const MovingBalls &b, const MovingPartners &p, ContactTally *tally) const
+  {
+    apply_moving(v, law, dt, repeat, b, p, tally);
+  }
+  void apply(const ContactView &v, const ContactLaw &law, double dt, bool repeat,
+             const MovingBalls &b, const FixedPartners &p, ContactTally *tally) const
+  {
+    apply_fixed(v, law, dt, repeat, b, p, tally);
+  }
+};
+
+namespace ContactKernels {
+
+struct Choice {
+  const char *name;
+  bool runs_here;    // this processor has its instructions
+  const ContactKernel *kernel;
+};
+
+// all of this program, the slowest first
+const std::vector<Choice> &all();
+
+// The number, in all(), of the one to use: that of this name, or if it is nullptr or empty the last one that
+// runs here. Throws std::invalid_argument where there is none of that name, or it does not run here.
+int choose(const char *name);
+
+// name of the environment variable that overrides the choice
+extern const char *const ENVIRONMENT;
+
+// the one in use: choose(environment) until another one is set
+const ContactKernel &current();
+const char *current_name();
+void set_current(int number);
+
+}    // namespace ContactKernels
+
+}    // namespace Slope
+
+#endif

@@ -1,0 +1,171 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+/* Contacts of one law: what may touch until the next neighbor list, and what does. A step has two passes,
+   each over the lists of all styles: find() tells from the distances which contacts touch and counts
+   those of each ball; apply() evaluates the law and hands out the forces. Pair gran/restitution and the wall
+   fixes use it. The work is done by the kernels. No LAMMPS. */
+
+#ifndef SLOPE_CONTACT_LIST_H
+#define SLOPE_CONTACT_LIST_H
+
+#include "contact_geometry.h"
+#include "contact_kernel.h"
+
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+namespace Slope {
+
+class ContactList {
+ public:
+  typedef ContactEntry Entry;
+
+  std::vector<Entry> entries;
+  std::vector<double *> histories;    // HISTORY values of each
+  std::vector<int *> flags;    // where LAMMPS wants to know what has a history: store_flags()
+
+  Sides moves;
+
+  // if so, radii (m) and masses (kg) are these for all contacts; otherwise each looks up its own
+  bool equal;
+  double radius_i, radius_j, mass_i, mass_j;
+
+  ContactList() { clear(); }
+
+  void clear(bool i_moves = true, bool j_moves = true)
+  {
+    moves = {i_moves ? 1.0 : 0.0, j_moves ? 1.0 : 0.0};
+    radius_i = radius_j = mass_i = mass_j = 1.0;
+    entries.clear();
+    histories.clear();
+    touching.clear();
+    before.clear();
+    fresh.clear();
+    ended.clear();
+    flags.clear();
+    equal = true;
+  }
+
+  // has_history: the contact touched a step ago, or ended in it; then its history is there
+  void add(int i, int j, double *history, bool has_history, double ri, double rj, double mi,
+           double mj)
+  {
+    if (entries.empty()) {
+      radius_i = ri;
+      radius_j = rj;
+      mass_i = mi;
+      mass_j = mj;
+    }
+    equal = equal && ri == radius_i && rj == radius_j && mi == mass_i && mj == mass_j;
+    if (entries.size() % BLOCK == 0)
+      for (std::vector<std::uint64_t> *bits : {&touching, &before, &fresh, &ended})
+        bits->push_back(0);
+    entries.push_back({i, j});
+    histories.push_back(history);
+    if (has_history) set_history(entries.size() - 1);
+  }
+
+  // contact k has a history
+  void set_history(size_t k)
+  {
+    const double age = histories[k][AGE];
+    set(has_ended(age) ? ended : touching, k);
+    if (is_new(age)) set(fresh, k);
+  }
+
+  bool touches(size_t k) const { return is_set(touching, k); }    // in the last step
+  bool has_history(size_t k) const { return touches(k) || is_set(ended, k); }
+
+  // visit(k) for each contact that touched in the last step
+  template <class Visit> void for_each_touching(Visit visit) const
+  {
+    for (size_t block = 0; block < touching.size(); block++)
+      for (std::uint64_t bits = touching[block]; bits; bits &= bits - 1)
+        visit(block * BLOCK + __builtin_ctzll(bits));
+  }
+
+  double memory_usage() const
+  {
+    return entries.capacity() * sizeof(Entry) + histories.capacity() * sizeof(double *) +
+        4 * touching.capacity() * sizeof(std::uint64_t) + flags.capacity() * sizeof(int *);
+  }
+
+  // Contacts that overlap although they did not touch a step ago, before the first step:
+  // visit(entry, overlap). They count as old ones.
+  template <class Partners, class Visit>
+  void adopt_overlaps(const MovingBalls &balls, const Partners &partners, Visit visit)
+  {
+    for (size_t k = 0; k < entries.size(); k++) {
+      const Entry &e = entries[k];
+      const double overlap =
+          balls.radius[e.i] + partners.radius(e.j) - distance(balls, partners, e.i, e.j);
+      if (touches(k) || overlap <= 0.0) continue;
+      visit(e, overlap);
+      std::memset(histories[k], 0, HISTORY * sizeof(double));
+      set(touching, k);
+      ended[k / BLOCK] &= ~bit(k);
+    }
+  }
+
+  // First pass of a step: see ContactKernel
+  template <class Partners>
+  void find(bool repeat, const MovingBalls &balls, const Partners &partners)
+  {
+    if (!entries.empty()) ContactKernels::current().find(view(), repeat, balls, partners);
+  }
+
+  void store_flags() const
+  {
+    for (size_t k = 0; k < flags.size(); k++) *flags[k] = has_history(k);
+  }
+
+  // Second pass: see ContactKernel
+  template <class Partners>
+  void apply(const ContactLaw &law, double dt, bool repeat, const MovingBalls &balls,
+             const Partners &partners, ContactTally *tally = nullptr)
+  {
+    if (!entries.empty())
+      ContactKernels::current().apply(view(), law, dt, repeat, balls, partners, tally);
+  }
+
+ private:
+  static constexpr int BLOCK = ContactView::BLOCK;
+
+  // a bit of each contact, a number of each block
+  std::vector<std::uint64_t> touching;    // in the last step
+  std::vector<std::uint64_t> before;      // in the one before, in the second pass
+  std::vector<std::uint64_t> fresh;       // began in the last step
+  std::vector<std::uint64_t> ended;       // came apart in the last step, and had a force in it
+
+  static std::uint64_t bit(size_t k) { return std::uint64_t(1) << (k % BLOCK); }
+  static bool is_set(const std::vector<std::uint64_t> &bits, size_t k)
+  {
+    return bits[k / BLOCK] & bit(k);
+  }
+  static void set(std::vector<std::uint64_t> &bits, size_t k) { bits[k / BLOCK] |= bit(k); }
+
+  ContactView view()
+  {
+    return {entries.data(), histories.data(), entries.size(), touching.size(), touching.data(),
+            before.data(),  fresh.data(),     ended.data(),   moves,           equal,
+            radius_i,       radius_j,         mass_i,         mass_j};
+  }
+};
+
+// a tally that calls visit(i, j, force on i, vector j -> i) for each contact; visit must outlive it
+template <class Visit> ContactTally tally_of(Visit &visit)
+{
+  return {{0.0, 0.0, 0.0},
+          [](void *v, int i, int j, const Vector &f, const Vector &d) {
+            (*static_cast<Visit *>(v))(i, j, f, d);
+          },
+          &visit};
+}
+
+}    // namespace Slope
+
+#endif

@@ -1,0 +1,112 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#include "requirements.h"
+
+#include "atom.h"
+#include "error.h"
+#include "fix.h"
+#include "force.h"
+#include "lammps_compat.h"
+#include "modify.h"
+#include "update.h"
+
+using namespace LAMMPS_NS;
+
+/* ----------------------------------------------------------------------
+   Contacts remember the steps before, which those of minimize do not have; r-RESPA asks each style for the forces of a level, which ours do not have: balls would fall through the
+   ground
+------------------------------------------------------------------------- */
+
+void LAMMPS_NS::require_run(LAMMPS *lmp, const std::string &caller)
+{
+  const Update *update = lmp->update;
+  if (update->whichflag == 2) lmp->error->all(FLERR, "{} needs run, got minimize", caller);
+  if (utils::strmatch(update->integrate_style, "^respa"))
+    lmp->error->all(FLERR, "{} needs run_style verlet, got {}", caller, update->integrate_style);
+}
+
+/* ----------------------------------------------------------------------
+   rerun sets up each snapshot and ends a step there, in which nothing has moved
+------------------------------------------------------------------------- */
+
+void LAMMPS_NS::require_step(LAMMPS *lmp, const std::string &caller, bigint set_up)
+{
+  if (lmp->update->ntimestep == set_up)
+    lmp->error->all(FLERR, "{} needs run, got rerun: unfix it before, its files stay as they are",
+                    caller);
+}
+
+/* ----------------------------------------------------------------------
+   the law takes stiffness times length for a force, and mass times velocity squared for an energy
+------------------------------------------------------------------------- */
+
+void LAMMPS_NS::require_plain_units(LAMMPS *lmp, const std::string &caller)
+{
+  const Force *force = lmp->force;
+  if (force->ftm2v != 1.0 || force->mvv2e != 1.0)
+    lmp->error->all(FLERR, "{} units must be si, cgs, lj, micro or nano, got {}", caller,
+                    lmp->update->unit_style);
+}
+
+/* ----------------------------------------------------------------------
+   The law takes mass and inertia of each ball as those of a solid sphere that moves by itself. In a
+   rigid body dashpots, the exact scheme and the velocities at set-up would be those of another mass.
+------------------------------------------------------------------------- */
+
+void LAMMPS_NS::require_single_balls(LAMMPS *lmp, const std::string &caller)
+{
+  const Modify *modify = lmp->modify;
+  for (int i = 0; i < modify->nfix; i++) {
+    const Fix *fix = modify->fix[i];
+    if (fix->rigid_flag)
+      lmp->error->all(
+          FLERR,
+          "{}: balls must move one by one, got fix {} {}, whose bodies have another mass than "
+          "a ball: use fix nve/sphere, or pair_style granular for rigid bodies",
+          caller, fix->id, fix->style);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   In two dimensions, too, balls are solid spheres to the law: its time constants of sliding and rolling
+   are those of 2/5 m r^2, and the energy guard's spins.
+------------------------------------------------------------------------- */
+
+void LAMMPS_NS::require_spheres(LAMMPS *lmp, const std::string &caller)
+{
+  for (Fix *fix : compat::fixes_of_style(lmp, "nve/sphere"))
+    if (compat::moves_discs(fix))
+      lmp->error->all(
+          FLERR,
+          "{}: fix {} {} must turn balls as solid spheres, got disc: leave it out, in two "
+          "dimensions, too",
+          caller, fix->id, fix->style);
+}
+
+/* ----------------------------------------------------------------------
+   A factor of 0 takes a pair out of the neighbor list, where LAMMPS does that for spheres, and of 1
+   leaves it there, as for every pair style; with anything else LAMMPS marks it, for a pair style that
+   scales its force.
+------------------------------------------------------------------------- */
+
+void LAMMPS_NS::require_whole_contacts(LAMMPS *lmp, const std::string &caller)
+{
+  if (!lmp->atom->molecular) return;
+  const double *lj = lmp->force->special_lj, *coul = lmp->force->special_coul;
+  for (int k = 1; k <= 3; k++)
+    if (lj[k] != coul[k] || (lj[k] != 0.0 && lj[k] != 1.0))
+      lmp->error->all(
+          FLERR,
+          "{}: special_bonds must be 0 or 1, the same for lj and coul, as balls that are bonded "
+          "touch fully or not at all, got lj {:g} {:g} {:g} coul {:g} {:g} {:g}",
+          caller, lj[1], lj[2], lj[3], coul[1], coul[2], coul[3]);
+    else if (lj[k] == 0.0 && !compat::LISTS_OF_SPHERES_KNOW_BONDS)
+      lmp->error->all(
+          FLERR,
+          "{}: special_bonds must be lj/coul 1 1 1 where balls have bonds, as LAMMPS "
+          "before 23Jun2022 keeps bonded spheres in its neighbor lists, got lj {:g} {:g} {:g}",
+          caller, lj[1], lj[2], lj[3]);
+}

@@ -1,0 +1,32 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+/* What a run must be like for contacts to be right. Each ends a run that is not with one line, which
+   starts with the caller: without it the results would be wrong and nothing would say so. To be
+   called by all ranks in init(). */
+
+#ifndef SLOPE_REQUIREMENTS_H
+#define SLOPE_REQUIREMENTS_H
+
+#include "lmptype.h"
+
+#include <string>
+
+namespace LAMMPS_NS {
+class LAMMPS;
+
+void require_run(LAMMPS *,
+                 const std::string &caller);    // with run_style verlet; no minimize
+// at the end of a step; set_up: the step of the last set-up
+void require_step(LAMMPS *, const std::string &caller, bigint set_up);
+void require_plain_units(LAMMPS *, const std::string &caller);
+void require_single_balls(LAMMPS *, const std::string &caller);    // no rigid bodies
+void require_spheres(LAMMPS *, const std::string &caller);         // no discs
+void require_whole_contacts(LAMMPS *,
+                            const std::string &caller);    // special_bonds, if there are bonds
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,74 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#include "slip_body.h"
+
+#include <cmath>
+#include <limits>
+
+using namespace Slope;
+
+static constexpr double NONE = std::numeric_limits<double>::quiet_NaN();
+
+/* ---------------------------------------------------------------------- */
+
+SlipBodyMaker::SlipBodyMaker(const ElevationGrid &_ground, const SlipSoil &soil,
+                             const std::vector<char> &allowed, const SlipTask &_task) :
+    ground(_ground),
+    task(_task), maker(_ground, soil, allowed), found(), factor(_task.method)
+{
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::string SlipBodyMaker::exact(const SlipSurface &s, SlipBody &body, int lines)
+{
+  if (!maker.exact(s, found, lines)) return "no ground is above it";
+  if (found.at_edge) return "the body reaches the edge of the terrain or cells without a value";
+  if (found.overhang) return "the ground at the rim of the body is above the centre";
+  if (found.outside) return "the body reaches beyond the region within";
+  fill(s, body, SlipFactor::PRECISION);
+  return "";
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool SlipBodyMaker::coarse(const SlipSurface &s, int stride, SlipBody &body, double precision)
+{
+  if (!maker.coarse(s, stride, found)) return false;
+  if (found.at_edge || found.overhang || found.outside) return false;
+  fill(s, body, precision);
+  return true;
+}
+
+/* ----------------------------------------------------------------------
+   the columns of a sphere are the same for all directions of sliding
+------------------------------------------------------------------------- */
+
+void SlipBodyMaker::fill(const SlipSurface &s, SlipBody &body, double precision)
+{
+  body.surface = s;
+  body.surface.direction = task.any_direction ? SlipFactor::steepest(found) : task.direction;
+  factor.take(found, body.surface);
+  body.factor = factor.factor(task.seismic, precision);
+  body.yield = NONE;
+  body.volume = found.volume;
+  body.area = found.plan_area;
+  body.depth = found.greatest_depth;
+}
+
+/* ---------------------------------------------------------------------- */
+
+ElevationGrid SlipBodyMaker::base(const SlipSurface &s)
+{
+  ElevationGrid heights(ground.nx, ground.ny, ground.xlo, ground.ylo, ground.cell, NONE);
+  if (!maker.coarse(s, 1, found)) return heights;
+  for (size_t k = 0; k < found.size(); k++) {
+    const int i = static_cast<int>((s.x + found.dx[k] - ground.xlo) / ground.cell);
+    const int j = static_cast<int>((s.y + found.dy[k] - ground.ylo) / ground.cell);
+    heights.at(i, j) = s.z - found.depth[k];
+  }
+  return heights;
+}

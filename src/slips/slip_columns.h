@@ -1,0 +1,106 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#ifndef SLOPE_SLIP_COLUMNS_H
+#define SLOPE_SLIP_COLUMNS_H
+
+#include "elevation_grid.h"
+#include "slip_soil.h"
+#include "slip_surface.h"
+
+#include <vector>
+
+namespace Slope {
+
+// The body above a slip surface as vertical columns: the largest connected part of where the ground
+// is above the surface. Memory is kept from surface to surface.
+struct SlipColumns {
+  // of each column
+  std::vector<double> dx, dy;      // in plan, from the centre of the surface
+  std::vector<double> depth;       // of the base below the centre
+  std::vector<double> area;        // in plan
+  std::vector<double> thick;       // from base to ground
+  std::vector<double> weight;      // N
+  std::vector<double> arm;         // of the weight's place below the centre
+  std::vector<double> cohesion;    // Pa
+  std::vector<double> friction;    // tangent
+  std::vector<double> pore;        // Pa
+
+  double volume, plan_area, greatest_depth;
+  bool at_edge;     // the body reaches the edge of the terrain, or cells without a value
+  bool overhang;    // the rim is where the surface is vertical: it would leave a wall
+  bool outside;     // a column is in a cell that is not allowed
+
+  size_t size() const { return area.size(); }
+  void clear();
+  void keep(size_t first, size_t last, size_t to);    // columns, moved to a place before them
+  void resize(size_t n);
+};
+
+// Makes columns of surfaces below one terrain.
+class SlipColumnMaker {
+ public:
+  // allowed: a flag for each cell of the ground, or empty for all of them; all three must outlive this
+  SlipColumnMaker(const ElevationGrid &ground, const SlipSoil &soil,
+                  const std::vector<char> &allowed);
+
+  // One column in the middle of each stride-th cell: fast, with a staircase at the rim. False, as
+  // below, if there is no body.
+  bool coarse(const SlipSurface &, int stride, SlipColumns &);
+
+  // The ground is bilinear between the cells' centres, as region terrain has it: along a line in x it
+  // is a polyline, whose intersections with the surface are roots of a quadratic equation. Gauss
+  // points between these roots along at least so many lines across the body. No staircase.
+  bool exact(const SlipSurface &, SlipColumns &, int lines = 96);
+
+ private:
+  const ElevationGrid &ground;
+  const SlipSoil &soil;
+  const std::vector<char> &allowed;
+
+  struct Run {    // of columns side by side, on a line
+    int line;
+    size_t parent;         // another run of the same part of the body, or itself
+    double lo, hi;         // in x
+    size_t first, last;    // columns
+    double volume;
+    bool unknown;    // no ground there
+    bool at_edge, overhang;
+  };
+  struct Node {    // of the ground along a line
+    double x, z;
+  };
+  std::vector<Run> runs;
+  std::vector<double> cuts;
+  std::vector<char> outside;    // of each column
+
+  SlipSurface surface;
+  double cosine, sine;
+
+  void begin(const SlipSurface &, SlipColumns &);
+  double depth(double dx, double dy) const;
+  void add(SlipColumns &, double dx, double dy, double depth, double zground, double area);
+  Run &run_from(int line, double lo, const SlipColumns &);
+
+  void coarse_row(SlipColumns &, int j, int stride);
+
+  double ground_at_node(int i, int j, double t) const;
+  void row_of(double y, int &j, double &t) const;
+  template <typename Work> void along(double y, Work work) const;
+  void find_cuts(double y, const Node &, const Node &);
+  bool is_cut(double y);
+  bool extent_in_y(int lines, double &lo, double &hi);
+  void line(SlipColumns &, int number, double y, double width, int parts);
+  void piece(SlipColumns &, int number, double y, double width, int parts, const Node &,
+             const Node &);
+
+  bool finish(SlipColumns &);
+  size_t root(size_t);
+  void connect();
+};
+
+}    // namespace Slope
+
+#endif

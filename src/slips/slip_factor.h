@@ -1,0 +1,76 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#ifndef SLOPE_SLIP_FACTOR_H
+#define SLOPE_SLIP_FACTOR_H
+
+#include "slip_columns.h"
+#include "slip_surface.h"
+
+#include <vector>
+
+namespace Slope {
+
+// Factor of safety of a body by the balance of moments about the surface's axis;
+// doc/src/slip_analysis.rst has the equations.
+class SlipFactor {
+ public:
+  enum Method { ORDINARY, BISHOP };
+  static constexpr double LEAST_M = 0.2;    // bound of m_alpha (Whitman and Bailey 1967)
+  static constexpr double PRECISION = 1.0e-10;
+
+  // coefficients of inertia: in the direction of sliding, and upwards
+  struct Seismic {
+    double horizontal, vertical;
+  };
+
+  explicit SlipFactor(Method _method) :
+      method(_method), columns(nullptr), bounded(0.0), pulled(0.0), weight(0.0), weight_u(0.0),
+      weight_arm(0.0)
+  {
+  }
+
+  // the columns of a surface, for sliding in its direction; they must exist while the others are asked
+  void take(const SlipColumns &, const SlipSurface &);
+
+  // infinite if nothing drives the body
+  double factor(const Seismic &, double precision = PRECISION) const;
+
+  // horizontal coefficient at which the factor is 1, with this vertical one; negative if the body
+  // slides without an earthquake; NaN if no coefficient does it
+  double yield(double vertical) const;
+
+  // shares of the weight at the last factor(), with Bishop's method: in columns whose m_alpha was below
+  // its bound; in columns whose effective normal force was negative, which is left as it is
+  double share_bounded() const { return bounded; }
+  double share_pulled() const { return pulled; }
+
+  // resisting moment times factor, and driving moment, if the factor in the normal forces is this
+  // one: their quotient is the factor where both are the same
+  void moments(double factor, const Seismic &, double &resisting, double &driving) const;
+
+  // direction of sliding, radians, in which the weight's moment about the centre is largest
+  static double steepest(const SlipColumns &);
+
+ private:
+  Method method;
+  const SlipColumns *columns;
+  mutable double bounded, pulled;
+  double weight;
+  double weight_u, weight_arm;    // sums of W u, and of W x arm
+
+  // of each column
+  struct Base {
+    double sine, cosine;      // of the dip in the direction of sliding
+    double up;                // cosine of the true dip
+    double lever, normal;     // of the shear force; of the normal force, which drives
+    double cohesive, lift;    // c A and u A, over the area of the base
+  };
+  std::vector<Base> bases;
+};
+
+}    // namespace Slope
+
+#endif

@@ -1,0 +1,381 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#include "slip_search.h"
+
+#include "constants.h"
+
+#include <algorithm>
+#include <limits>
+
+using namespace Slope;
+
+static constexpr double LOWEST = 0.4, HIGHEST = 4.0;    // centres above the ground / size of bodies
+static constexpr double RAISE = 1.3;                    // from one height to the next
+static constexpr int DEPTHS = 10;                       // radii for each centre
+static constexpr int LEAST_PLACES = 12, MOST_PLACES = 64;    // of centres, along the longer side
+static constexpr int ACROSS = 24;          // columns across a body, on the lattice
+static constexpr double ROUGH = 1.0e-4;    // precision of a factor there
+static constexpr double STARTS_OVERLAP = 0.8;
+static constexpr size_t TRIED = 4000;       // best of the lattice, to find starts among
+static constexpr double SMALLEST = 10.0;    // body, in cells along its plan
+
+// a cap whose depth is a sixth of its diameter has nearly this volume / diameter^3
+static constexpr double CAP = 0.1;
+
+/* ---------------------------------------------------------------------- */
+
+SlipSearch::SlipSearch(const ElevationGrid &_ground, const SlipLimits &_limits,
+                       const SlipRanks &_ranks, SlipBodyMaker &_maker) :
+    ground(_ground),
+    limits(_limits), ranks(_ranks), maker(_maker),
+    map(_ground.nx, _ground.ny, _ground.xlo, _ground.ylo, _ground.cell, HUGE_VAL)
+{
+  lay_lattice();
+}
+
+/* ----------------------------------------------------------------------
+   distances of the lattice follow from the size of the smallest body
+------------------------------------------------------------------------- */
+
+void SlipSearch::lay_lattice()
+{
+  const double width = ground.xhi() - ground.xlo, length = ground.yhi() - ground.ylo;
+  const double whole = std::max(width, length);
+  if (limits.volume_lo == 0.0) limits.volume_lo = CAP * std::pow(SMALLEST * ground.cell, 3);
+  size_lo = std::cbrt(limits.volume_lo / CAP);
+  size_hi = std::max(size_lo, std::min(std::cbrt(limits.volume_hi / CAP), whole));
+  spacing = std::max(std::min(0.4 * size_lo, whole / LEAST_PLACES), whole / MOST_PLACES);
+  const double middle[2] = {0.5 * (ground.xlo + ground.xhi()), 0.5 * (ground.ylo + ground.yhi())};
+  const double extent[2] = {width, length};
+  for (int d = 0; d < 2; d++) {    // beyond the terrain, too
+    centres[d] = static_cast<int>(extent[d] / spacing) + 3;
+    origin[d] = middle[d] - 0.5 * (centres[d] - 1) * spacing;
+  }
+  heights = 1 +
+      static_cast<int>(
+                std::ceil(std::log(HIGHEST * size_hi / (LOWEST * size_lo)) / std::log(RAISE)));
+}
+
+size_t SlipSearch::per_place() const
+{
+  return static_cast<size_t>(heights) * DEPTHS;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double SlipSearch::ground_near(double x, double y) const
+{
+  const double i = (x - ground.xlo) / ground.cell, j = (y - ground.ylo) / ground.cell;
+  return ground.at(static_cast<int>(std::max(0.0, std::min(i, ground.nx - 1.0))),
+                   static_cast<int>(std::max(0.0, std::min(j, ground.ny - 1.0))));
+}
+
+// distance from a centre to the ground, at some of its cells
+double SlipSearch::nearest(double x, double y, double z, double reach) const
+{
+  const int stride = std::max(1, static_cast<int>(reach / (20.0 * ground.cell)));
+  const auto index = [&](double at, int n) {
+    return static_cast<int>(std::max(0.0, std::min(at / ground.cell, n - 1.0)));
+  };
+  const int ihi = index(x + reach - ground.xlo, ground.nx);
+  const int jhi = index(y + reach - ground.ylo, ground.ny);
+  double least = reach * reach;
+  for (int j = index(y - reach - ground.ylo, ground.ny); j <= jhi; j += stride)
+    for (int i = index(x - reach - ground.xlo, ground.nx); i <= ihi; i += stride) {
+      const double dx = ground.xlo + (i + 0.5) * ground.cell - x;
+      const double dy = ground.ylo + (j + 0.5) * ground.cell - y, dz = ground.at(i, j) - z;
+      const double square = dx * dx + dy * dy + dz * dz;
+      if (square < least) least = square;    // not where there is no value
+    }
+  return std::sqrt(least);
+}
+
+/* ----------------------------------------------------------------------
+   radii go below the nearest ground by the depths of caps on a plane between both volumes, and more
+------------------------------------------------------------------------- */
+
+SlipSurface SlipSearch::lattice_surface(size_t number) const
+{
+  const size_t place = number / per_place();
+  const int height = static_cast<int>(number % per_place() / DEPTHS), depth = number % DEPTHS;
+  const double x = origin[0] + (place % centres[0]) * spacing;
+  const double y = origin[1] + (place / centres[0]) * spacing;
+  const double above = LOWEST * size_lo * std::pow(RAISE, height);
+  const double z = ground_near(x, y) + above;
+  if (std::isnan(z)) return {x, y, z, z};
+  const double distance = nearest(x, y, z, above);
+  const double lo = 0.5 * std::sqrt(CAP * std::pow(size_lo, 3) / (PI * distance));
+  const double hi = 2.0 * std::sqrt(CAP * std::pow(size_hi, 3) / (PI * distance));
+  return {x, y, z, distance + lo * std::pow(hi / lo, depth / (DEPTHS - 1.0))};
+}
+
+/* ---------------------------------------------------------------------- */
+
+int SlipSearch::stride_for(const SlipSurface &s) const
+{
+  const double above = nearest(s.x, s.y, s.z, s.radius);
+  const double across = 2.0 * std::sqrt(std::max(0.0, s.radius * s.radius - above * above));
+  return std::max(1, static_cast<int>(across / (ACROSS * ground.cell)));
+}
+
+bool SlipSearch::within(const SlipBody &b) const
+{
+  return b.volume >= limits.volume_lo && b.volume <= limits.volume_hi &&
+      b.depth >= limits.depth_lo && b.depth <= limits.depth_hi && b.factor > 0.0 &&
+      std::isfinite(b.factor);
+}
+
+// exact columns on so many lines, or, with 0, one in each block of cells
+bool SlipSearch::compute(const SlipSurface &s, int lines, SlipBody &body)
+{
+  if (lines == 0) return maker.coarse(s, stride_for(s), body, ROUGH) && within(body);
+  return maker.exact(s, body, lines).empty() && within(body);
+}
+
+/* ----------------------------------------------------------------------
+   all surfaces with a centre above one place
+------------------------------------------------------------------------- */
+
+void SlipSearch::above_place(size_t place, double *factors)
+{
+  SlipBody body;
+  for (size_t k = 0; k < per_place(); k++) {
+    const SlipSurface s = lattice_surface(place * per_place() + k);
+    if (!(s.radius > 0.0) || !compute(s, 0, body)) continue;
+    factors[k] = body.factor;
+    mark(body);
+  }
+}
+
+void SlipSearch::mark(const SlipBody &body)
+{
+  const int stride = stride_for(body.surface);
+  const SlipColumns &c = maker.columns();
+  for (size_t k = 0; k < c.size(); k++) {
+    const double x = body.surface.x + c.dx[k] - ground.xlo,
+                 y = body.surface.y + c.dy[k] - ground.ylo;
+    const int ilo = static_cast<int>(x / ground.cell) / stride * stride;
+    const int jlo = static_cast<int>(y / ground.cell) / stride * stride;
+    for (int j = jlo; j < std::min(jlo + stride, ground.ny); j++)
+      for (int i = ilo; i < std::min(ilo + stride, ground.nx); i++)
+        map.at(i, j) = std::min(map.at(i, j), body.factor);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   the best surfaces of the lattice, the least factor first
+------------------------------------------------------------------------- */
+
+std::vector<SlipBody> SlipSearch::lattice()
+{
+  std::vector<double> factors(surfaces(), HUGE_VAL);
+  const size_t places = static_cast<size_t>(centres[0]) * centres[1];
+  for (size_t place = ranks.me; place < places; place += ranks.all)
+    above_place(place, &factors[place * per_place()]);
+  ranks.least(factors.data(), factors.size());
+  ranks.least(map.z.data(), map.z.size());
+  for (double &f : map.z)
+    if (f == HUGE_VAL) f = std::numeric_limits<double>::quiet_NaN();
+
+  std::vector<size_t> order;
+  for (size_t k = 0; k < factors.size(); k++)
+    if (factors[k] < HUGE_VAL) order.push_back(k);
+  std::sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+    return factors[a] != factors[b] ? factors[a] < factors[b] : a < b;
+  });
+  order.resize(std::min(order.size(), TRIED));
+  std::vector<SlipBody> best(order.size());
+  for (size_t k = 0; k < order.size(); k++) {
+    best[k].surface = lattice_surface(order[k]);
+    best[k].factor = factors[order[k]];
+  }
+  return best;
+}
+
+/* ----------------------------------------------------------------------
+   which bodies differ
+------------------------------------------------------------------------- */
+
+SlipSearch::Plan SlipSearch::plan(const SlipSurface &s)
+{
+  Plan found;
+  SlipBody body;
+  found.stride = stride_for(s);
+  if (!maker.coarse(s, found.stride, body, ROUGH)) return found;
+  const double block = found.stride * ground.cell;
+  const SlipColumns &c = maker.columns();
+  for (size_t k = 0; k < c.size(); k++)
+    found.blocks.push_back(static_cast<size_t>((s.y + c.dy[k] - ground.ylo) / block) * ground.nx +
+                           static_cast<size_t>((s.x + c.dx[k] - ground.xlo) / block));
+  std::sort(found.blocks.begin(), found.blocks.end());
+  return found;
+}
+
+bool SlipSearch::overlap(const Plan &a, const Plan &b, double share) const
+{
+  const Plan &fine = a.stride <= b.stride ? a : b, &wide = a.stride <= b.stride ? b : a;
+  const size_t n = ground.nx;
+  size_t common = 0;
+  for (const size_t block : fine.blocks) {
+    const size_t i = (block % n * fine.stride + fine.stride / 2) / wide.stride;
+    const size_t j = (block / n * fine.stride + fine.stride / 2) / wide.stride;
+    common += std::binary_search(wide.blocks.begin(), wide.blocks.end(), j * n + i);
+  }
+  const double area = 1.0 * fine.stride * fine.stride;
+  const double smaller =
+      std::min(area * fine.blocks.size(), 1.0 * wide.stride * wide.stride * wide.blocks.size());
+  return area * common > share * smaller;
+}
+
+std::vector<SlipBody> SlipSearch::distinct(std::vector<SlipBody> bodies, size_t most, double share)
+{
+  std::stable_sort(bodies.begin(), bodies.end(), [](const SlipBody &a, const SlipBody &b) {
+    return a.factor < b.factor;
+  });
+  std::vector<SlipBody> kept;
+  std::vector<Plan> plans;
+  for (const SlipBody &body : bodies) {
+    if (kept.size() == most || !(body.factor < HUGE_VAL)) break;
+    Plan mine = plan(body.surface);
+    bool differs = true;
+    for (const Plan &other : plans) differs = differs && !overlap(mine, other, share);
+    if (!differs) continue;
+    kept.push_back(body);
+    plans.push_back(std::move(mine));
+  }
+  return kept;
+}
+
+/* ----------------------------------------------------------------------
+   Nelder and Mead's simplex. The variables are the centre, and how far below a pivot the surface passes:
+   the pivot is on the first surface below its thickest column, so that the radius follows the centre.
+------------------------------------------------------------------------- */
+
+SlipBody SlipSearch::improve(const SlipBody &start, int lines, int steps)
+{
+  typedef std::array<double, 4> Point;
+  SlipBody best = start, body;
+  best.factor = HUGE_VAL;
+  if (!compute(start.surface, lines, body)) return best;
+  best = body;
+  const SlipColumns &c = maker.columns();
+  const size_t thickest = std::max_element(c.thick.begin(), c.thick.end()) - c.thick.begin();
+  const SlipSurface &s = start.surface;
+  const double pivot[3] = {s.x + c.dx[thickest], s.y + c.dy[thickest], s.z - c.depth[thickest]};
+  const auto value = [&](const Point &p) {
+    const double r = p[3] +
+        std::sqrt(std::pow(p[0] - pivot[0], 2) + std::pow(p[1] - pivot[1], 2) +
+                  std::pow(p[2] - pivot[2], 2));
+    if (!(r > 0.0) || !compute({p[0], p[1], p[2], r}, lines, body)) return HUGE_VAL;
+    if (body.factor < best.factor) best = body;
+    return body.factor;
+  };
+
+  const double wide = 0.2 * std::sqrt(best.area);
+  const double step[4] = {wide, wide, wide, 0.1 * best.depth};
+  std::array<Point, 5> simplex;
+  std::array<double, 5> f;
+  for (int k = 0; k < 5; k++) {
+    simplex[k] = {s.x, s.y, s.z, 0.0};
+    if (k > 0) simplex[k][k - 1] += step[k - 1];
+    f[k] = value(simplex[k]);
+    if (k > 0 && f[k] == HUGE_VAL) {
+      simplex[k][k - 1] -= 2.0 * step[k - 1];
+      f[k] = value(simplex[k]);
+    }
+  }
+  for (int n = 0; n < steps; n++) {
+    const int low = std::min_element(f.begin(), f.end()) - f.begin();
+    const int high = std::max_element(f.begin(), f.end()) - f.begin();
+    if (f[high] - f[low] < 1.0e-7 * f[low]) break;
+    double second = f[low];
+    for (int k = 0; k < 5; k++)
+      if (k != high) second = std::max(second, f[k]);
+    const auto along = [&](double by) {
+      Point p;
+      for (int d = 0; d < 4; d++) {
+        double middle = 0.0;
+        for (int k = 0; k < 5; k++)
+          if (k != high) middle += 0.25 * simplex[k][d];
+        p[d] = middle + by * (simplex[high][d] - middle);
+      }
+      return p;
+    };
+    const auto take = [&](const Point &p, double fp) {
+      simplex[high] = p;
+      f[high] = fp;
+    };
+    const Point mirror = along(-1.0);
+    const double fm = value(mirror);
+    if (fm < f[low]) {
+      const Point far = along(-2.0);
+      const double ff = value(far);
+      ff < fm ? take(far, ff) : take(mirror, fm);
+    } else if (fm < second)
+      take(mirror, fm);
+    else {
+      const Point near = along(fm < f[high] ? -0.5 : 0.5);
+      const double fn = value(near);
+      if (fn < std::min(fm, f[high]))
+        take(near, fn);
+      else
+        for (int k = 0; k < 5; k++) {
+          if (k == low) continue;
+          for (int d = 0; d < 4; d++) simplex[k][d] = 0.5 * (simplex[k][d] + simplex[low][d]);
+          f[k] = value(simplex[k]);
+        }
+    }
+  }
+  return best;
+}
+
+/* ----------------------------------------------------------------------
+   shared by the ranks; a second simplex begins where the first one ended
+------------------------------------------------------------------------- */
+
+std::vector<SlipBody> SlipSearch::improve_all(const std::vector<SlipBody> &starts, int lines,
+                                              int steps)
+{
+  static constexpr size_t WIDTH = 9;
+  std::vector<double> values(WIDTH * starts.size(), HUGE_VAL);
+  for (size_t k = ranks.me; k < starts.size(); k += ranks.all) {
+    const SlipBody b = improve(improve(starts[k], lines, steps), lines, steps);
+    const double of_body[WIDTH] = {
+        b.surface.x, b.surface.y, b.surface.z, b.surface.radius, b.surface.direction,
+        b.factor,    b.volume,    b.area,      b.depth};
+    if (b.factor < HUGE_VAL) std::copy(of_body, of_body + WIDTH, &values[WIDTH * k]);
+  }
+  ranks.least(values.data(), values.size());
+  std::vector<SlipBody> found;
+  for (size_t k = 0; k < starts.size(); k++) {
+    const double *v = &values[WIDTH * k];
+    const SlipSurface s = {v[0], v[1], v[2], v[3], v[4]};
+    if (v[5] < HUGE_VAL) found.push_back({s, v[5], 0.0, v[6], v[7], v[8]});
+  }
+  return found;
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::vector<SlipBody> SlipSearch::run()
+{
+  static constexpr int LINES = 96;
+  const size_t keep = limits.keep;
+  std::vector<SlipBody> found = distinct(lattice(), 8 + 4 * keep, STARTS_OVERLAP);
+  found = distinct(improve_all(found, 0, 100), keep + 2, OVERLAP);
+
+  // one that slides into a better one's place is kept as it was before
+
+  std::vector<SlipBody> all = improve_all(found, LINES, 100);
+  const std::vector<SlipBody> before = improve_all(found, LINES, 0);
+  all.insert(all.end(), before.begin(), before.end());
+  std::vector<SlipBody> kept = distinct(all, keep, OVERLAP);
+  for (SlipBody &body : kept) {
+    maker.exact(body.surface, body, LINES);
+    body.yield = maker.yield();
+  }
+  return kept;
+}

@@ -1,0 +1,319 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+/* What pair gran/restitution remembers: LAMMPS' own neighbor history for the contacts and, for
+   each ball, force and torque of the last step, so that a continued run starts from those, and
+   from the half-step velocities, with which the one before ended. LAMMPS finds the partners of a
+   ball by ID: IDs that change between runs are followed. Made by the pair style. */
+
+#include "fix_contact_history.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "contact_guards.h"
+#include "contact_history_owner.h"
+#include "lammps_compat.h"
+#include "memory.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <unordered_map>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+
+static constexpr double ROUNDING = 1.0e-10;    // of the largest force
+
+/* ---------------------------------------------------------------------- */
+
+FixContactHistory::FixContactHistory(LAMMPS *lmp, int narg, char **arg) :
+    FixNeighHistory(lmp, narg, arg), owner(nullptr), lists_new(true), lists_used(false),
+    force(nullptr), before(nullptr), forces_taken_back(false), force_step(-1), force_dt(0.0),
+    known_as(nullptr), restart_extra(lmp)
+{
+  comm_forward = 1;
+  nevery = ContactGuards::EVERY;
+  maxexchange += 1 + STORED;    // until pre_exchange() knows how many contacts there are
+  FixContactHistory::grow_arrays(atom->nmax);
+  for (int i = 0; i < atom->nlocal; i++) FixContactHistory::set_arrays(i);
+}
+
+FixContactHistory::~FixContactHistory()
+{
+  memory->destroy(force);
+  memory->destroy(before);
+  memory->destroy(known_as);
+}
+
+/* ----------------------------------------------------------------------
+   From the lists to storage by atom. Only when the lists have been used since: after
+   write_restart has moved atoms between ranks, they name atoms that are no longer there.
+------------------------------------------------------------------------- */
+
+void FixContactHistory::pre_exchange()
+{
+  if (!lists_used) return;
+  lists_used = false;
+  owner->store_flags();
+  FixNeighHistory::pre_exchange();
+  maxexchange += 1 + STORED;
+  std::copy_n(atom->tag, atom->nlocal, known_as);
+}
+
+void FixContactHistory::post_neighbor()
+{
+  FixNeighHistory::post_neighbor();
+  lists_new = true;
+}
+
+void FixContactHistory::setup_post_neighbor()
+{
+  rename_partners();
+  FixNeighHistory::setup_post_neighbor();
+}
+
+/* ----------------------------------------------------------------------
+   Between runs delete_atoms and reset_atoms may give balls other IDs, and create_atoms the ID of one
+   that is gone: the stored contacts get the present IDs of their partners, all of them near, and
+   those of partners that are gone are dropped.
+------------------------------------------------------------------------- */
+
+void FixContactHistory::rename_partners()
+{
+  const tagint *tag = atom->tag;
+  int mine = !std::equal(tag, tag + atom->nlocal, known_as), any;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  if (!any) return;
+
+  compat::forward_comm(comm, this);
+  std::unordered_map<tagint, tagint> now;
+  for (int i = 0; i < atom->nlocal + atom->nghost; i++)
+    if (known_as[i]) now[known_as[i]] = tag[i];
+  for (int i = 0; i < atom->nlocal; i++) {
+    int n = 0;
+    for (int m = 0; m < npartner[i]; m++) {
+      const auto found = now.find(partner[i][m]);
+      if (found == now.end()) continue;
+      partner[i][n] = found->second;
+      memmove(&valuepartner[i][dnum * n++], &valuepartner[i][dnum * m], dnum * sizeof(double));
+    }
+    npartner[i] = n;
+  }
+  std::copy_n(tag, atom->nlocal, known_as);
+}
+
+int FixContactHistory::pack_forward_comm(int n, int *list, double *buf, int, int *)
+{
+  for (int k = 0; k < n; k++) buf[k] = ubuf(known_as[list[k]]).d;
+  return n;
+}
+
+void FixContactHistory::unpack_forward_comm(int n, int first, double *buf)
+{
+  for (int k = 0; k < n; k++) known_as[first + k] = static_cast<tagint>(ubuf(buf[k]).i);
+}
+
+/* ----------------------------------------------------------------------
+   guards
+------------------------------------------------------------------------- */
+
+int FixContactHistory::setmask()
+{
+  return FixNeighHistory::setmask() | INITIAL_INTEGRATE | END_OF_STEP;
+}
+
+void FixContactHistory::init()
+{
+  restart_extra.check("Pair gran/restitution");
+  FixNeighHistory::init();
+}
+
+void FixContactHistory::setup(int)
+{
+  owner->watch_energy();
+}
+
+void FixContactHistory::end_of_step()
+{
+  owner->watch_energy();
+}
+
+void FixContactHistory::post_run()
+{
+  FixNeighHistory::post_run();
+  if (!forces_known()) keep_forces();
+  if (update->ntimestep % nevery) owner->watch_energy();
+  owner->report_guards();
+}
+
+/* ----------------------------------------------------------------------
+   forces of a step that ends a run or goes into a restart file
+------------------------------------------------------------------------- */
+
+void FixContactHistory::keep_forces()
+{
+  for (int i = 0; i < atom->nlocal; i++) {
+    memcpy(force[i], atom->f[i], 3 * sizeof(double));
+    memcpy(&force[i][3], atom->torque[i], 3 * sizeof(double));
+  }
+  force_step = update->ntimestep;
+  force_dt = update->dt;
+}
+
+/* ----------------------------------------------------------------------
+   Before the first step of a continued run: the set-up has found the forces of the last step
+   once more, to rounding. With the very same ones the run is the uncut one to the bit. If they
+   differ by more, something has been changed in between, and those of the set-up stand.
+------------------------------------------------------------------------- */
+
+void FixContactHistory::initial_integrate(int)
+{
+  take_back_forces();
+  if (atom->nlocal) memcpy(before[0], atom->f[0], atom->nlocal * BEFORE * sizeof(double));
+}
+
+void FixContactHistory::take_back_forces()
+{
+  forces_taken_back = false;
+  const bool kept = force_step == update->ntimestep - 1 && force_step == update->firststep;
+  force_step = -1;    // a step of this number may come again: reset_timestep
+  if (!kept) return;
+  double mine[4] = {0.0, 0.0, 0.0, 0.0}, most[4];    // largest force, torque; differences
+  for (int i = 0; i < atom->nlocal; i++)
+    for (int d = 0; d < 3; d++) {
+      mine[0] = std::max(mine[0], std::fabs(force[i][d]));
+      mine[1] = std::max(mine[1], std::fabs(force[i][3 + d]));
+      mine[2] = std::max(mine[2], std::fabs(force[i][d] - atom->f[i][d]));
+      mine[3] = std::max(mine[3], std::fabs(force[i][3 + d] - atom->torque[i][d]));
+    }
+  MPI_Allreduce(mine, most, 4, MPI_DOUBLE, MPI_MAX, world);
+  if (most[2] > ROUNDING * most[0] || most[3] > ROUNDING * most[1]) return;
+  forces_taken_back = true;
+  for (int i = 0; i < atom->nlocal; i++) {
+    memcpy(atom->f[i], force[i], 3 * sizeof(double));
+    memcpy(atom->torque[i], &force[i][3], 3 * sizeof(double));
+  }
+}
+
+bool FixContactHistory::forces_known() const
+{
+  return force_step == update->ntimestep && force_dt == update->dt;
+}
+
+/* ----------------------------------------------------------------------
+   storage by atom
+------------------------------------------------------------------------- */
+
+double FixContactHistory::memory_usage()
+{
+  return FixNeighHistory::memory_usage() +
+      static_cast<double>(atom->nmax) * (STORED * sizeof(double) + sizeof(tagint));
+}
+
+void FixContactHistory::grow_arrays(int nmax)
+{
+  FixNeighHistory::grow_arrays(nmax);
+  memory->grow(force, nmax, FORCE, "contact_history:force");
+  memory->grow(before, nmax, BEFORE, "contact_history:before");
+  memory->grow(known_as, nmax, "contact_history:known_as");
+}
+
+void FixContactHistory::copy_arrays(int i, int j, int delflag)
+{
+  FixNeighHistory::copy_arrays(i, j, delflag);
+  memcpy(force[j], force[i], FORCE * sizeof(double));
+  memcpy(before[j], before[i], BEFORE * sizeof(double));
+  known_as[j] = known_as[i];
+}
+
+void FixContactHistory::set_arrays(int i)
+{
+  FixNeighHistory::set_arrays(i);
+  memset(force[i], 0, FORCE * sizeof(double));
+  memset(before[i], 0, BEFORE * sizeof(double));
+  known_as[i] = 0;
+}
+
+int FixContactHistory::pack_exchange(int i, double *buf)
+{
+  int m = FixNeighHistory::pack_exchange(i, buf);
+  buf[m++] = ubuf(known_as[i]).d;
+  return m + pack_forces(i, &buf[m]);
+}
+
+int FixContactHistory::unpack_exchange(int i, double *buf)
+{
+  int m = FixNeighHistory::unpack_exchange(i, buf);
+  known_as[i] = static_cast<tagint>(ubuf(buf[m++]).i);
+  return m + unpack_forces(i, &buf[m]);
+}
+
+int FixContactHistory::pack_forces(int i, double *buf) const
+{
+  memcpy(buf, force[i], FORCE * sizeof(double));
+  memcpy(buf + FORCE, before[i], BEFORE * sizeof(double));
+  return STORED;
+}
+
+int FixContactHistory::unpack_forces(int i, const double *buf)
+{
+  memcpy(force[i], buf, FORCE * sizeof(double));
+  memcpy(before[i], buf + FORCE, BEFORE * sizeof(double));
+  return STORED;
+}
+
+/* ----------------------------------------------------------------------
+   restart file
+------------------------------------------------------------------------- */
+
+void FixContactHistory::write_restart(FILE *fp)
+{
+  if (update->whichflag == 0) rename_partners();
+  pre_exchange();
+  if (!forces_known() && update->whichflag == 1) keep_forces();    // in a run: forces are known
+  if (comm->me == 0) {
+    const double list[2] = {static_cast<double>(force_step), force_dt};
+    const int size = sizeof(list);
+    fwrite(&size, sizeof(int), 1, fp);
+    fwrite(list, sizeof(double), 2, fp);
+  }
+}
+
+void FixContactHistory::restart(char *buf)
+{
+  double list[2];
+  memcpy(list, buf, sizeof(list));
+  force_step = static_cast<bigint>(list[0]);
+  force_dt = list[1];
+}
+
+int FixContactHistory::pack_restart(int i, double *buf)
+{
+  int m = FixNeighHistory::pack_restart(i, buf);
+  m += pack_forces(i, &buf[m]);
+  buf[0] = m;
+  return m;
+}
+
+void FixContactHistory::unpack_restart(int i, int nth)
+{
+  const double *list = restart_extra.find(i, nth, 2 + STORED, 1 + dnum);
+  if (!list) return;
+  FixNeighHistory::unpack_restart(i, nth);
+  known_as[i] = atom->tag[i];
+  unpack_forces(i, list + static_cast<int>(list[0]) - STORED);
+}
+
+int FixContactHistory::size_restart(int i)
+{
+  return FixNeighHistory::size_restart(i) + STORED;
+}
+
+int FixContactHistory::maxsize_restart()
+{
+  return FixNeighHistory::maxsize_restart() + STORED;
+}

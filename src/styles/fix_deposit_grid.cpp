@@ -1,0 +1,355 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+/* The deposit on a plan grid, binned in the run. Every rank bins its own balls; the rows of the
+   rasters are shared out among the ranks, and each gets the bins of its rows from the others. */
+
+#include "fix_deposit_grid.h"
+
+#include "constants.h"
+#include "deposit_ground.h"
+#include "lammps_compat.h"
+#include "node_memory.h"
+#include "pair_gran_restitution.h"
+#include "requirements.h"
+
+#include "comm.h"
+#include "error.h"
+#include "update.h"
+
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using Slope::DepositRasters;
+using Slope::MassLedger;
+typedef DepositResults Result;
+
+enum { X, Y, Z };
+
+/* ---------------------------------------------------------------------- */
+
+FixDepositGrid::FixDepositGrid(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), options(lmp, narg, arg), balls(lmp, groupbit, options.bulk), exchange(lmp),
+    losses(lmp, balls), report(lmp, id, options, balls), restart_data(lmp, options), results(),
+    started(false), fresh(false), sampled(-1), warned(false), elapsed(0.0), offset(0.0)
+{
+  nevery = options.nevery;
+  make_rasters();
+
+  results.vector[Result::CHANGE] = rasters.change;
+  scalar_flag = vector_flag = 1;
+  size_vector = Result::NUMBER;
+  global_freq = 1;
+  extscalar = 1;
+  extvector = -1;
+  extlist = new int[Result::NUMBER];
+  for (int k = 0; k < Result::NUMBER; k++) extlist[k] = Result::extensive(k);
+  restart_global = 1;
+}
+
+/* ---------------------------------------------------------------------- */
+
+FixDepositGrid::~FixDepositGrid()
+{
+  restart_data.remove_parts();
+  delete[] extlist;
+}
+
+/* ----------------------------------------------------------------------
+   the fix is known to LAMMPS now, and may add others
+------------------------------------------------------------------------- */
+
+void FixDepositGrid::post_constructor()
+{
+  restart_data.add_parts(id);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixDepositGrid::make_rasters()
+{
+  const Slope::DepositBands bands(options.grid, comm->me, comm->nprocs);
+  check_node_memory(lmp, DepositRasters::MOST_BYTES_PER_CELL * bands.ncells(),
+                    fmt::format("Fix deposit/grid cell {:g}: {} x {} cells", options.cell,
+                                options.grid.n[X], options.grid.n[Y]),
+                    "a larger cell, a smaller extent, or more nodes");
+  bins.set_grid(options.grid);
+  rasters.create(options.grid, comm->me, comm->nprocs);
+  DepositGround(lmp, options.terrain).read(rasters);
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixDepositGrid::setmask()
+{
+  return PRE_EXCHANGE | END_OF_STEP | POST_RUN;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixDepositGrid::init()
+{
+  require_run(lmp, "Fix deposit/grid");
+  for (Fix *fix : compat::fixes_of_style(lmp, "deposit/grid"))
+    if (fix != this && static_cast<FixDepositGrid *>(fix)->options.prefix == options.prefix)
+      error->all(FLERR, "Fix deposit/grid output must differ from that of fix {}, got {}", fix->id,
+                 options.prefix);
+  report.begin_run();
+  sampled = -1;
+
+  // this may be the init() of a command that drops balls outside of the box
+
+  if (started) losses.end_command();
+  losses.begin_command();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixDepositGrid::setup_pre_exchange()
+{
+  if (!started && update->whichflag == 1) start();
+  if (started) losses.end_command();
+  pre_exchange();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixDepositGrid::pre_exchange()
+{
+  if (started) losses.before_exchange();
+}
+
+/* ----------------------------------------------------------------------
+   first set-up: the mass as it is released
+------------------------------------------------------------------------- */
+
+void FixDepositGrid::start()
+{
+  DepositRelease release(lmp, balls, options);
+  results.released = release.find();
+  if (!options.body.empty()) losses.begin_command();    // now that the volume of balls is known
+  started = fresh = true;
+  release.log(id, results.released);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixDepositGrid::setup(int /*vflag*/)
+{
+  set_up = update->ntimestep;
+
+  // first of all set-ups: where the balls lie now they arrived at time 0
+
+  offset = elapsed - clock();
+  sample(fresh);
+  if (fresh) take_snapshot();
+  fresh = false;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixDepositGrid::end_of_step()
+{
+  require_step(lmp, "Fix deposit/grid", set_up);
+  sample(true);
+  take_snapshot();
+  if (options.nfreq > 0 && update->ntimestep % options.nfreq == 0) write_files("running");
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixDepositGrid::post_run()
+{
+  if (update->whichflag != 1) return;
+  write_files(report.reason());
+  elapsed = now();
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixDepositGrid::compute_scalar()
+{
+  return compute_vector(Result::ON_GRID);
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixDepositGrid::compute_vector(int k)
+{
+  // between runs the deck may have done anything to the atoms since the last sample
+
+  if (started && (sampled != update->ntimestep || update->whichflag == 0)) sample(false);
+  return results.vector[k];
+}
+
+/* ----------------------------------------------------------------------
+   the deposit and the balance as they are now; record: also the maxima
+------------------------------------------------------------------------- */
+
+void FixDepositGrid::sample(bool record)
+{
+  const DepositBalls::Sums sums = balls.bin(bins);    // of all ranks
+  for (const std::string &line : losses.add_up()) report.warn(line);
+
+  const MassLedger &ledger = losses.ledger;
+  const double released = results.released.volume;
+  double *value = results.vector;
+  results.present = sums.number;
+  value[Result::RELEASED] = released;
+  value[Result::ON_GRID] = add_bins(record);
+  value[Result::OFF_GRID] = sums.off_grid;
+  value[Result::LOST] = ledger.lost.volume;
+  value[Result::RESIDUAL] = ledger.residual(released, value[Result::ON_GRID], sums.off_grid);
+  value[Result::CHANGE] = rasters.change;
+  value[Result::NLOST] = ledger.lost.number;
+  value[Result::FAST_SHARE] = sums.fast / released;
+  find_travel(sums);
+  sampled = update->ntimestep;
+  check_balance();
+}
+
+/* ----------------------------------------------------------------------
+   into the rasters; returns the volume on the grid
+------------------------------------------------------------------------- */
+
+double FixDepositGrid::add_bins(bool record)
+{
+  const double time = now();
+  rasters.clear();
+  auto take = [&](int column, int band, const double *values) {
+    rasters.add(column, band, values, record, time, options.motion);
+  };
+  exchange.to_owners(bins.blocks(), rasters.bands(), take);
+  return exchange.sum(rasters.finish(record));
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixDepositGrid::find_travel(const DepositBalls::Sums &sums)
+{
+  const DepositRelease::Mass &from = results.released.mass;
+  double *value = results.vector, z;
+  const bool any = balls.farthest(from.top, value[Result::FRONT], z);
+  value[Result::REACH] = any ? atan2(from.top[Z] - z, value[Result::FRONT]) / Slope::DEGREE : 0.0;
+  value[Result::CENTROID] =
+      any ? hypot(sums.mass_x / sums.mass - from.x, sums.mass_y / sums.mass - from.y) : 0.0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixDepositGrid::check_balance()
+{
+  const double *value = results.vector;
+  if (warned || std::fabs(value[Result::RESIDUAL]) <= MassLedger::BALANCE * value[Result::RELEASED])
+    return;
+  warned = true;
+  report.warn(fmt::format(
+      "the volume balance does not close at step {}: released {:.10g}, on the grid {:.10g}, off "
+      "the grid {:.10g}, lost {:.10g}, residual {:.3g}: balls were added or removed other than by "
+      "leaving the box",
+      sampled, value[Result::RELEASED], value[Result::ON_GRID], value[Result::OFF_GRID],
+      value[Result::LOST], value[Result::RESIDUAL]));
+}
+
+/* ----------------------------------------------------------------------
+   every window steps: how much of the mass went to another cell since the last time
+------------------------------------------------------------------------- */
+
+void FixDepositGrid::take_snapshot()
+{
+  if (update->ntimestep % options.window) return;
+  const double share = exchange.sum(rasters.moved()) / results.released.volume;
+  rasters.take_snapshot(update->ntimestep, options.window, now(), share);
+  results.vector[Result::CHANGE] = rasters.change;
+}
+
+/* ----------------------------------------------------------------------
+   time of LAMMPS, before a change of the time step and since
+------------------------------------------------------------------------- */
+
+double FixDepositGrid::clock() const
+{
+  return update->atime + (update->ntimestep - update->atimestep) * update->dt;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixDepositGrid::write_files(const std::string &reason)
+{
+  if (sampled != update->ntimestep) sample(false);
+  results.time = now();
+  const auto law = PairGranRestitution::of(lmp);
+  report.write(reason, results, rasters, law ? &law->guards : nullptr);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixDepositGrid::write_restart(FILE *fp)
+{
+  if (started) losses.end_command();
+  if (started && (sampled != update->ntimestep || update->whichflag == 0)) sample(false);
+  write_piece(fp, 0);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixDepositGrid::write_piece(FILE *fp, int piece)
+{
+  const DepositRestart::Saved saved = {(double) started,
+                                       results.released,
+                                       balls.bulk(),
+                                       losses.ledger.lost,
+                                       (double) losses.ledger.nlogged,
+                                       update->whichflag == 1 ? now() : elapsed,
+                                       (double) rasters.snapshot_step,
+                                       rasters.snapshot_time,
+                                       rasters.change};
+  restart_data.write(fp, piece, saved, rasters);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixDepositGrid::restart(char *buffer)
+{
+  read_piece(buffer, 0);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixDepositGrid::read_piece(const char *buffer, int piece)
+{
+  DepositRestart::Saved saved;
+  restart_data.read(id, buffer, piece, saved, rasters);
+  if (piece > 0) return;
+  started = saved.started;
+  results.released = saved.released;
+  balls.set_bulk(saved.bulk);
+  losses.ledger.lost = saved.lost;
+  losses.ledger.nlogged = (int) saved.nlogged;
+  elapsed = saved.elapsed;
+  rasters.snapshot_step = (bigint) saved.snapshot_step;
+  rasters.snapshot_time = saved.snapshot_time;
+  results.vector[Result::CHANGE] = rasters.change = saved.change;
+}
+
+/* ----------------------------------------------------------------------
+   LAMMPS' own granular pair styles take any fix deposit... for the one that inserts balls, and
+   ask for their radius: there are none
+------------------------------------------------------------------------- */
+
+void *FixDepositGrid::extract(const char *name, int & /*itype*/)
+{
+  static double none = 0.0;
+  return strcmp(name, "radius") == 0 ? &none : nullptr;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixDepositGrid::memory_usage()
+{
+  return rasters.bytes() + bins.blocks().bytes();
+}

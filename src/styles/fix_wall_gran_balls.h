@@ -1,0 +1,76 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(wall/gran/balls,FixWallGranBalls);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_WALL_GRAN_BALLS_H
+#define LMP_FIX_WALL_GRAN_BALLS_H
+
+#include "fix_contact_wall.h"
+
+#include "ball_body.h"
+#include "ball_tiles.h"
+#include "contact_list.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class FixWallGranBalls : public FixContactWall, public BallBody {
+ public:
+  FixWallGranBalls(class LAMMPS *, int, char **);
+  int setmask() override;
+  void init() override;
+  void setup(int) override;
+  void post_neighbor() override;
+  void post_force(int) override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+
+  double memory_usage() override;
+  void restart(char *) override;
+
+  void find_contacts(bool starting) override;
+  double elastic_energy() const override;
+
+  // largest overlap (m) of a ball at x with any fixed ball, <= 0 if it touches none
+  double deepest_overlap(const double *x, double radius) const;
+
+  std::shared_ptr<class SunkRegion> body() const override;
+  const std::string &left_out() const override;
+
+ private:
+  double diameter, radius;
+
+  std::unique_ptr<class BallPlacement> placement;
+  std::unique_ptr<Slope::BallTiles> balls;    // those near the moving balls of this rank
+  bool smaller_warned;
+
+  // what may touch until the next neighbor list, by type of the moving ball
+
+  std::vector<Slope::ContactList> lists;
+  std::vector<double> histories;    // of their entries
+
+  double force_mine[3], force_all[3];    // on the fixed balls
+  int force_ready;
+
+  Slope::FixedPartners partners() const { return {balls->places(), radius}; }
+  void check_sizes();
+  void take_contacts() override;
+  void give_histories();
+  std::vector<double> restart_values() override;
+  void apply(bool);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

@@ -1,0 +1,108 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(wall/gran/mesh,FixWallGranMesh);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_WALL_GRAN_MESH_H
+#define LMP_FIX_WALL_GRAN_MESH_H
+
+#include "fix_contact_wall.h"
+
+#include "contact_list.h"
+#include "fast_balls.h"
+#include "run_clock.h"
+#include "surface_options.h"
+#include "surface_recorder.h"
+#include "surface_watch.h"
+
+#include <array>
+#include <deque>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class FixWallGranMesh : public FixContactWall {
+ public:
+  FixWallGranMesh(class LAMMPS *, int, char **);
+  int setmask() override;
+  void init() override;
+  void setup(int) override;
+  void post_neighbor() override;
+  void post_force(int) override;
+  void end_of_step() override;
+  void reset_dt() override;
+  void post_run() override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+
+  double memory_usage() override;
+  void restart(char *) override;
+
+  void find_contacts(bool starting) override;
+  double elastic_energy() const override;
+
+ private:
+  SurfaceOptions options;
+  std::unique_ptr<Slope::TouchedSurface> surface;
+
+  // The contacts of this rank's balls, by type and radius of the ball. Each has a slot in watch, and in the
+  // contact list a phantom ball as partner: a fixed ball of the same size, so placed that it touches the
+  // ball where the surface does, and as deep.
+
+  Slope::SurfaceWatch watch;
+  struct Kind {
+    int type;
+    double radius;
+    bool operator<(const Kind &other) const
+    {
+      return type != other.type ? type < other.type : radius < other.radius;
+    }
+  };
+  std::map<Kind, Slope::ContactList> lists;
+  std::vector<double> radii;    // of each slot's phantom
+  std::deque<std::array<double, Slope::HISTORY>> history;
+  std::vector<Slope::Vector> centres;    // of the phantoms
+
+  // what the balls do to the surface: the force as the contact law has it, its moment, and the momentum
+  // that it has got since the fix was defined
+
+  enum { FORCE = 0, MOMENT = 3, IMPULSE = 6, CONTACTS = 9, NVALUE };
+  double mine[NVALUE], all[NVALUE];
+  bool all_ready;
+  std::unique_ptr<SurfaceRecorder> recorder;    // nullptr without output
+  Slope::RunClock clock;
+  double given[3];    // momentum per time in this step, as velocity Verlet hands it over
+  double
+      last[3];    // and in a step that ended a run, which the set-up of the next one only estimates
+  bigint last_step;
+  bool first_step;
+  bool started;    // with the first run
+
+  FastBalls fast;
+
+  Slope::ContactLaw smooth_law(int type) const;
+  void add_contact(int slot, const double *from);
+  void find_features();
+  void warn_of_enclosed();
+  void warn_of_rounding();
+  void check_speed(int i, const Slope::Vector &normal);
+  void take_contacts() override;
+  std::vector<double> restart_values() override;
+  void apply(bool);
+  void keep_given();
+  void reduce();
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

@@ -1,0 +1,630 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#include "pair_gran_restitution.h"
+
+#include "atom.h"
+#include "atom_vec.h"
+#include "comm.h"
+#include "contact_energy.h"
+#include "contact_holder.h"
+#include "error.h"
+#include "fix_contact_history.h"
+#include "fix_dummy.h"
+#include "force.h"
+#include "initial_overlap.h"
+#include "kernel_choice.h"
+#include "lammps_compat.h"
+#include "memory.h"
+#include "neigh_list.h"
+#include "neighbor.h"
+#include "requirements.h"
+#include "update.h"
+
+#include <algorithm>
+#include <climits>
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace Slope;
+
+// LAMMPS keeps the rows of these arrays one after the other
+
+static inline Vector *vectors(double **array)
+{
+  return reinterpret_cast<Vector *>(array ? array[0] : nullptr);
+}
+
+/* ---------------------------------------------------------------------- */
+
+PairGranRestitution::PairGranRestitution(LAMMPS *lmp) : Pair(lmp), guards(lmp, table), table(lmp)
+{
+  single_enable = 1;
+  no_virial_fdotr_compute = 1;
+  centroidstressflag = CENTROID_NOTAVAIL;
+  finitecutflag = 1;
+  nondefault_history_transfer = 1;    // the age is the same from both sides
+  beyond_contact = 1;                 // a contact that has ended keeps its history for a step
+  comm_forward = 4;                   // number of contacts, velocity ahead
+  ahead_known = false;
+  comm_reverse = 1;    // number of contacts
+  single_extra = 10;
+  svector = new double[single_extra];
+
+  choose_contact_kernel(lmp);
+  freeze_group_bit = 0;
+  dt = update->dt;
+
+  // a placeholder holds the history's place in the order of the fixes
+  // numbered by the lowest free number, not by instance_me, which clear does not reset:
+  // a restart file hands the history back to a fix of the same ID
+
+  fix_history = nullptr;
+  for (int n = 0;
+       history_id.empty() || modify->find_fix(history_id) >= 0 || modify->find_fix(dummy_id) >= 0;
+       n++) {
+    history_id = fmt::format("NEIGH_HISTORY_SLOPE{}", n);
+    dummy_id = fmt::format("NEIGH_HISTORY_SLOPE_DUMMY{}", n);
+  }
+  modify->add_fix(dummy_id + " all DUMMY");
+}
+
+/* ---------------------------------------------------------------------- */
+
+PairGranRestitution::~PairGranRestitution()
+{
+  if (copymode) return;
+  delete[] svector;
+  for (const std::string &fix_id : {history_id, dummy_id})
+    if (modify->find_fix(fix_id) >= 0) modify->delete_fix(fix_id);
+  if (allocated) {
+    memory->destroy(setflag);
+    memory->destroy(cutsq);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   allocate what depends on the number of types
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::allocate()
+{
+  allocated = 1;
+  const int n = atom->ntypes + 1;
+  memory->create(setflag, n, n, "pair:setflag");
+  memory->create(cutsq, n, n, "pair:cutsq");
+
+  // LAMMPS wants every I,I to be set, but a wall type meets only the moving types:
+  // coeffs[].set is what counts, and init_one() asks for the pairs that can touch
+
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++) setflag[i][j] = (i == j);
+  table.allocate();
+}
+
+/* ----------------------------------------------------------------------
+   pair_style gran/restitution keyword value ...
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::settings(int narg, char **arg)
+{
+  table.read_settings(narg, arg);
+}
+
+/* ----------------------------------------------------------------------
+   pair_coeff I J keyword values ...
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::coeff(int narg, char **arg)
+{
+  if (narg < 2) error->all(FLERR, "Pair gran/restitution pair_coeff needs two atom types");
+  if (!allocated) allocate();
+
+  int ilo, ihi, jlo, jhi;
+  auto types = [&](const char *text, int &lo, int &hi) {
+    utils::bounds(FLERR, text, 1, atom->ntypes, lo, hi, nullptr);
+    if (!(lo >= 1 && lo <= hi && hi <= atom->ntypes))
+      error->all(
+          FLERR,
+          "Pair gran/restitution pair_coeff {} {}: types must be 1 to {}, or a range of them with "
+          "*, got {}",
+          arg[0], arg[1], atom->ntypes, text);
+  };
+  types(arg[0], ilo, ihi);
+  types(arg[1], jlo, jhi);
+
+  const ContactTable::Coeff c =
+      table.read_coeff(fmt::format("{} {}", arg[0], arg[1]), narg - 2, arg + 2);
+
+  int count = 0;
+  for (int i = ilo; i <= ihi; i++)
+    for (int j = std::max(jlo, i); j <= jhi; j++) {
+      table.set(i, j, c);
+      setflag[i][j] = 1;
+      count++;
+    }
+  if (count == 0)
+    error->all(FLERR, "Pair gran/restitution pair_coeff {} {}: no pair I <= J of {} types", arg[0],
+               arg[1], atom->ntypes);
+  table.make_laws();
+}
+
+/* ---------------------------------------------------------------------- */
+
+const ContactLaw *PairGranRestitution::law(int itype, int jtype) const
+{
+  return allocated && table.is_set(itype, jtype) ? &table.law(itype, jtype) : nullptr;
+}
+
+/* ----------------------------------------------------------------------
+   init specific to this pair style
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::init_style()
+{
+  if (!atom->radius_flag || !atom->rmass_flag || !atom->omega_flag || !atom->torque_flag)
+    error->all(FLERR, "Pair gran/restitution requires balls: atom_style must be sphere, got {}",
+               atom->atom_style);
+  if (!comm->ghost_velocity)
+    error->all(FLERR, "Pair gran/restitution requires ghost velocities: comm_modify vel yes");
+  if (comm->style == 1 &&
+      force->newton_pair)    // CommTiled cannot send the histories of ghosts back
+    error->all(FLERR, "Pair gran/restitution with comm_style tiled requires newton off");
+  if (!compute_flag)
+    error->all(FLERR,
+               "Pair gran/restitution pair_modify compute must be yes, got no: balls would fall "
+               "through each other and the ground");
+  require_run(lmp, "Pair gran/restitution");
+  require_plain_units(lmp, "Pair gran/restitution");
+  require_single_balls(lmp, "Pair gran/restitution");
+  require_spheres(lmp, "Pair gran/restitution");
+  require_whole_contacts(lmp, "Pair gran/restitution");
+
+  compat::request_history_list(neighbor, this, instance_me);
+  dt = update->dt;
+
+  if (!fix_history) {
+    fix_history = static_cast<FixContactHistory *>(modify->replace_fix(
+        dummy_id, fmt::format("{} all CONTACT_HISTORY {}", history_id, HISTORY), 1));
+    fix_history->pair = this;
+    fix_history->owner = this;
+  }
+
+  freeze_group_bit = 0;
+  for (const Fix *fix : compat::fixes_of_style(lmp, "freeze")) freeze_group_bit |= fix->groupbit;
+
+  sizes_vary = !compat::fixes_of_style(lmp, "adapt").empty();
+
+  table.find_ranges(freeze_group_bit);    // wall fixes announce themselves after
+  walls.clear();
+}
+
+/* ----------------------------------------------------------------------
+   init for one type pair i,j and corresponding j,i
+------------------------------------------------------------------------- */
+
+double PairGranRestitution::init_one(int i, int j)
+{
+  if (table.balls_can_touch(i, j) && !table.is_set(i, j))
+    error->all(FLERR,
+               "Pair gran/restitution: pair_coeff {} {} is not set, and balls of both types "
+               "exist",
+               i, j);
+  return table.cutoff(i, j);
+}
+
+/* ---------------------------------------------------------------------- */
+
+PairGranRestitution *PairGranRestitution::of(LAMMPS *lmp)
+{
+  return dynamic_cast<PairGranRestitution *>(lmp->force->pair_match("gran/restitution", 1));
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairGranRestitution::announce_wall(ContactHolder *wall, int type, int groupbit,
+                                        const char *style)
+{
+  walls.push_back(wall);
+  for (int itype = 1; itype <= atom->ntypes; itype++) {
+    int mine = 0, any;
+    for (int i = 0; i < atom->nlocal && !mine; i++)
+      if ((atom->mask[i] & groupbit) && atom->type[i] == itype) mine = 1;
+    MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+    if (any && !law(itype, type))
+      error->all(FLERR, "Fix {}: pair_coeff {} {} is not set (moving type {}, wall type {})", style,
+                 std::min(itype, type), std::max(itype, type), itype, type);
+  }
+  if (allocated) table.add_wall_type(type);
+}
+
+/* ----------------------------------------------------------------------
+   once per run, when masses, coefficients and step are final
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::setup()
+{
+  dt = update->dt;
+  guards.start(freeze_group_bit);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairGranRestitution::reset_dt()
+{
+  dt = update->dt;
+}
+
+/* ----------------------------------------------------------------------
+   the energy must not grow
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::watch_energy()
+{
+  const MovingBalls balls = moving_balls();
+  const MovingPartners partners = {balls, force->newton_pair ? INT_MAX : atom->nlocal};
+  double elastic = 0.0;
+  for (size_t k = 0; k < lists.size(); k++)
+    elastic += elastic_energy(lists[k], table.law(k / 3), dt, balls, partners,
+                              [this](const ContactList::Entry &e, double overlap) {
+                                guards.record_overlap(
+                                    e.i, overlap, std::min(atom->radius[e.i], atom->radius[e.j]));
+                              });
+  for (const ContactHolder *wall : walls) elastic += wall->elastic_energy();
+  guards.watch_energy(elastic);
+}
+
+/* ----------------------------------------------------------------------
+   lists of what may touch, by law, from a new neighbor list
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::build_lists()
+{
+  // contacts are read 32 bytes at a time, 8 beyond a vector: there must be something beyond the last
+
+  if (atom->nlocal + atom->nghost >= atom->nmax) atom->avec->grow(0);
+
+  const int n = atom->ntypes + 1;
+  lists.resize(3 * n * n);
+  for (size_t k = 0; k < lists.size(); k++) lists[k].clear(k % 3 != 1, k % 3 != 2);
+
+  const Vector *const x = vectors(atom->x);
+  const double *const radius = atom->radius;
+  const double *const rmass = atom->rmass;
+  const int *const mask = atom->mask;
+  const int *const type = atom->type;
+  for (int ii = 0; ii < list->inum; ii++) {
+    const int i = list->ilist[ii];
+    const bool frozen_i = mask[i] & freeze_group_bit;
+    const int *const jlist = list->firstneigh[i];
+    int *const flags = fix_history->firstflag[i];
+    double *const values = fix_history->firstvalue[i];
+
+    for (int jj = 0; jj < list->numneigh[i]; jj++) {
+      const int j = jlist[jj] & NEIGHMASK;
+      const bool frozen_j = mask[j] & freeze_group_bit;
+      if (frozen_i && frozen_j) continue;
+      ContactList &l = lists[3 * (type[i] * n + type[j]) + (frozen_i ? 1 : frozen_j ? 2 : 0)];
+      l.add(i, j, &values[HISTORY * jj], flags[jj], radius[i], radius[j], rmass[i], rmass[j]);
+      l.flags.push_back(&flags[jj]);
+
+      if (!flags[jj]) continue;
+      const Vector a = x[i], b = x[j];
+      const double r =
+          sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y) + (a.z - b.z) * (a.z - b.z));
+      guards.record_overlap(i, radius[i] + radius[j] - r, std::min(radius[i], radius[j]));
+    }
+  }
+  if (sizes_vary)
+    for (ContactList &l : lists) l.equal = false;
+  fix_history->lists_new = false;
+}
+
+/* ----------------------------------------------------------------------
+   which contacts touch, to the history that is to be stored
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::store_flags() const
+{
+  for (const ContactList &l : lists) l.store_flags();
+}
+
+/* ----------------------------------------------------------------------
+   At set-up velocities are those of the end of a step, while a step's forces are made with
+   those of its middle. A run that goes on, from a restart file too, gets these back: then its
+   first forces are the ones that the last step had.
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::find_half_step()
+{
+  half_v.clear();
+  half_omega.clear();
+  if (!fix_history->forces_known()) return;
+
+  const int nlocal = atom->nlocal, nall = nlocal + atom->nghost;
+  Vector *const v = vectors(atom->v), *const omega = vectors(atom->omega);
+  half_v.reserve(nall + 1);    // see build_lists()
+  half_omega.reserve(nall + 1);
+  half_v.assign(v, v + nall);
+  half_omega.assign(omega, omega + nall);
+  for (int i = 0; i < nlocal; i++) {
+    const double *f =
+        fix_history->force[i];    // velocity Verlet's second half step, for solid balls
+    const double a = 0.5 * dt / atom->rmass[i];
+    const double b = a / (0.4 * atom->radius[i] * atom->radius[i]);
+    v[i] = {v[i].x - a * f[0], v[i].y - a * f[1], v[i].z - a * f[2]};
+    omega[i] = {omega[i].x - b * f[3], omega[i].y - b * f[4], omega[i].z - b * f[5]};
+  }
+  comm->forward_comm();    // to the ghosts
+  std::swap_ranges(v, v + nall, half_v.begin());
+  std::swap_ranges(omega, omega + nall, half_omega.begin());
+}
+
+/* ----------------------------------------------------------------------
+   The velocities of the middle of the step, and a part of what the last step's force adds to them until
+   its end. At the set-up of a new run those of the end are known, and the force is not.
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::find_ahead()
+{
+  const bool half = !half_v.empty();
+  ahead_known = table.is_exact() && (half || !starting);
+  if (!ahead_known) return;
+
+  const int nlocal = atom->nlocal, nall = nlocal + atom->nghost;
+  const Vector *const v = half ? half_v.data() : vectors(atom->v);
+  if (static_cast<int>(ahead.size()) <= nall) ahead.resize(atom->nmax + 1);    // see build_lists()
+  for (int i = 0; i < nlocal; i++) {
+    const double *f = fix_history->before[i];
+    const double a = AHEAD * dt / atom->rmass[i];
+    ahead[i] = {v[i].x + a * f[0], v[i].y + a * f[1], v[i].z + a * f[2]};
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+MovingBalls PairGranRestitution::moving_balls()
+{
+  const bool half = !half_v.empty();
+  return {vectors(atom->x),
+          half ? half_v.data() : vectors(atom->v),
+          half ? half_omega.data() : vectors(atom->omega),
+          atom->radius,
+          atom->rmass,
+          vectors(atom->f),
+          vectors(atom->torque),
+          ahead_known ? ahead.data()
+              : half  ? half_v.data()
+                      : vectors(atom->v),
+          counts.now.data()};
+}
+
+/* ----------------------------------------------------------------------
+   what touches, here and at the walls, and the number of contacts of each ball
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::find_contacts()
+{
+  counts.clear(atom->nlocal + atom->nghost);
+  const MovingBalls balls = moving_balls();
+  const MovingPartners partners = {balls, force->newton_pair ? INT_MAX : atom->nlocal};
+  if (starting) {
+    InitialOverlap initial(lmp);
+    for (ContactList &l : lists)
+      l.adopt_overlaps(balls, partners, [&](const ContactList::Entry &e, double overlap) {
+        initial.record(overlap, std::min(atom->radius[e.i], atom->radius[e.j]), atom->tag[e.i],
+                       atom->x[e.i], fmt::format("ball {}", atom->tag[e.j]));
+      });
+    initial.check("Pair gran/restitution");
+  }
+  for (ContactList &l : lists) l.find(starting, balls, partners);
+  for (ContactHolder *wall : walls) wall->find_contacts(starting);
+  if (force->newton_pair) compat::reverse_comm(comm, this);
+  compat::forward_comm(comm, this);
+}
+
+/* ----------------------------------------------------------------------
+   numbers of contacts of balls that several ranks know
+------------------------------------------------------------------------- */
+
+int PairGranRestitution::pack_forward_comm(int n, int *list, double *buf, int, int *)
+{
+  int m = counts.pack_forward(n, list, buf);
+  for (int k = 0; k < n && ahead_known; k++, m += 3)
+    memcpy(&buf[m], &ahead[list[k]], sizeof(Vector));
+  return m;
+}
+
+void PairGranRestitution::unpack_forward_comm(int n, int begin, double *buf)
+{
+  counts.unpack_forward(n, begin, buf);
+  if (ahead_known) memcpy(&ahead[begin], &buf[n], n * sizeof(Vector));
+}
+
+int PairGranRestitution::pack_reverse_comm(int n, int begin, double *buf)
+{
+  return counts.pack_reverse(n, begin, buf);
+}
+
+void PairGranRestitution::unpack_reverse_comm(int n, int *list, double *buf)
+{
+  counts.unpack_reverse(n, list, buf);
+}
+
+bool PairGranRestitution::forces_taken_back() const
+{
+  return fix_history && fix_history->forces_taken_back;
+}
+
+/* ----------------------------------------------------------------------
+   history of a contact as its partner sees it
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::transfer_history(double *source, double *target)
+{
+  for (int k = 0; k < HISTORY; k++) target[k] = -source[k];
+  target[AGE] = source[AGE];
+}
+
+void PairGranRestitution::transfer_history(double *source, double *target, int, int)
+{
+  transfer_history(source, target);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairGranRestitution::compute(int eflag, int vflag)
+{
+  ev_init(eflag, vflag);
+  starting = update->setupflag;
+  const bool lists_new = starting || fix_history->lists_new;
+  if (lists_new) build_lists();
+  if (starting)
+    find_half_step();
+  else if (!half_v.empty()) {
+    half_v.clear();
+    half_omega.clear();
+  }
+
+  find_ahead();
+  find_contacts();
+
+  const int nlocal = atom->nlocal, newton_pair = force->newton_pair;
+  const MovingBalls balls = moving_balls();
+  const MovingPartners partners = {balls, newton_pair ? INT_MAX : nlocal};
+  auto add_virial = [&](int i, int j, const Vector &f, const Vector &d) {
+    ev_tally_xyz(i, j, nlocal, newton_pair, 0.0, 0.0, f.x, f.y, f.z, d.x, d.y, d.z);
+  };
+  ContactTally tally = tally_of(add_virial);
+  for (size_t k = 0; k < lists.size(); k++) {
+    const ContactLaw &law = table.law(k / 3);
+    lists[k].apply(law, dt, starting, balls, partners, evflag ? &tally : nullptr);
+  }
+  fix_history->lists_used = true;
+}
+
+/* ----------------------------------------------------------------------
+   the force of one pair, for computes; changes no history
+   svector: tangential force (3), its size, normal velocity (3), tangential velocity (3)
+------------------------------------------------------------------------- */
+
+double PairGranRestitution::single(int i, int j, int itype, int jtype, double rsq,
+                                   double /*factor_coul*/, double /*factor_lj*/, double &fforce)
+{
+  fforce = 0.0;
+  std::fill(svector, svector + single_extra, 0.0);
+  const double radsum = atom->radius[i] + atom->radius[j];
+  if (rsq >= radsum * radsum) return 0.0;
+  if ((atom->mask[i] & freeze_group_bit) && (atom->mask[j] & freeze_group_bit)) return 0.0;
+
+  double history[HISTORY] = {0.0};
+  const int *jlist = list->firstneigh[i];
+  for (int jj = 0; jj < list->numneigh[i]; jj++)
+    if ((jlist[jj] & NEIGHMASK) == j)
+      memcpy(history, &fix_history->firstvalue[i][HISTORY * jj], sizeof(history));
+
+  // as the law has it: velocities and overlap of the same time; sliding and rolling springs as they act
+
+  const ContactLaw &acts = table.law(itype, jtype);
+  ContactLaw law = acts;
+  law.exact = 0.0;
+  MovingBalls balls = moving_balls();
+  balls.v = balls.ahead = vectors(atom->v);
+  balls.omega = vectors(atom->omega);
+  const Sides moves = {(atom->mask[i] & freeze_group_bit) ? 0.0 : 1.0,
+                       (atom->mask[j] & freeze_group_bit) ? 0.0 : 1.0};
+  Contact contact;
+  Vector delta;
+  const MovingPartners partners = {balls, INT_MAX};
+  set_contact(law, balls, partners, i, j, contact, delta);
+  auto step_with = [&](const ContactLaw &l) {
+    return step_of(moves, l, dt, true, atom->radius[i], atom->radius[j], atom->rmass[i],
+                   atom->rmass[j]);
+  };
+  ContactStep step = step_with(law);
+  const ContactStep acting = step_with(acts);
+  step.kt = acting.kt;
+  step.kr = acting.kr;
+  ContactForce c;
+  contact_force(step, contact, 1.0, history, c);
+
+  const double *n = contact.n;
+  const double fn = c.f[0] * n[0] + c.f[1] * n[1] + c.f[2] * n[2];
+  const double vn = contact.v[0] * n[0] + contact.v[1] * n[1] + contact.v[2] * n[2];
+  fforce = fn / sqrt(rsq);
+  for (int k = 0; k < 3; k++) {
+    svector[k] = c.f[k] - fn * n[k];
+    svector[4 + k] = vn * n[k];
+    svector[7 + k] = contact.v[k] - vn * n[k];
+  }
+  svector[3] = sqrt(svector[0] * svector[0] + svector[1] * svector[1] + svector[2] * svector[2]);
+  return 0.0;
+}
+
+/* ----------------------------------------------------------------------
+   settings and coefficients in the restart file
+------------------------------------------------------------------------- */
+
+void PairGranRestitution::write_restart(FILE *fp)
+{
+  table.write_settings(fp);
+  table.write_coeffs(fp);
+}
+
+void PairGranRestitution::read_restart(FILE *fp)
+{
+  table.read_settings(fp);
+  allocate();
+  table.read_coeffs(fp);
+  for (int i = 1; i <= atom->ntypes; i++)
+    for (int j = i; j <= atom->ntypes; j++)
+      if (table.is_set(i, j)) setflag[i][j] = 1;
+}
+
+void PairGranRestitution::write_restart_settings(FILE *fp)
+{
+  table.write_settings(fp);
+}
+
+void PairGranRestitution::read_restart_settings(FILE *fp)
+{
+  table.read_settings(fp);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void *PairGranRestitution::extract(const char *name, int &dim)
+{
+  dim = 0;
+  if (strcmp(name, "history_size") == 0) {
+    static int size = HISTORY;
+    return &size;
+  }
+  return nullptr;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double PairGranRestitution::memory_usage()
+{
+  double bytes = table.memory_usage();
+  for (const ContactList &l : lists) bytes += l.memory_usage();
+  bytes += counts.now.capacity();
+  bytes += (half_v.capacity() + half_omega.capacity() + ahead.capacity()) * sizeof(Vector);
+  return bytes;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double PairGranRestitution::atom2cut(int i)
+{
+  return 2.0 * atom->radius[i];
+}
+
+double PairGranRestitution::radii2cut(double r1, double r2)
+{
+  return r1 + r2;
+}

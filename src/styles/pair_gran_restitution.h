@@ -1,0 +1,103 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#ifdef PAIR_CLASS
+// clang-format off
+PairStyle(gran/restitution,PairGranRestitution);
+// clang-format on
+#else
+
+#ifndef LMP_PAIR_GRAN_RESTITUTION_H
+#define LMP_PAIR_GRAN_RESTITUTION_H
+
+#include "pair.h"
+
+#include "contact_counts.h"
+#include "contact_guards.h"
+#include "contact_history_owner.h"
+#include "contact_law.h"
+#include "contact_list.h"
+#include "contact_table.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class PairGranRestitution : public Pair, public ContactHistoryOwner {
+ public:
+  explicit PairGranRestitution(class LAMMPS *);
+  ~PairGranRestitution() override;
+  void compute(int, int) override;
+  void settings(int, char **) override;
+  void coeff(int, char **) override;
+  void init_style() override;
+  double init_one(int, int) override;
+  void setup() override;
+  void reset_dt() override;
+  double single(int, int, int, int, double, double, double, double &) override;
+  void write_restart(FILE *) override;
+  void read_restart(FILE *) override;
+  void write_restart_settings(FILE *) override;
+  void read_restart_settings(FILE *) override;
+  void *extract(const char *, int &) override;
+  double memory_usage() override;
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
+  int pack_reverse_comm(int, int, double *) override;
+  void unpack_reverse_comm(int, int *, double *) override;
+
+  // not marked override: the arguments differ between versions
+  void transfer_history(double *, double *);
+  void transfer_history(double *, double *, int, int);
+
+  // size of a ball against another, for computes and for balancing by cost;
+  // not marked override: they moved between classes in later LAMMPS
+  double atom2cut(int);
+  double radii2cut(double, double);
+
+  // the pair style of this name, alone or in pair hybrid; nullptr if there is none
+  static PairGranRestitution *of(class LAMMPS *);
+
+  // for the walls: the contact law of a type pair, nullptr where no pair_coeff
+  // set it, and a line in the start-up table for every type that the wall meets
+  const Slope::ContactLaw *law(int itype, int jtype) const;
+  void announce_wall(class ContactHolder *wall, int wall_type, int groupbit, const char *style);
+  Slope::MovingBalls moving_balls();
+  void store_flags() const override;
+  bool forces_taken_back() const;    // in the first step of a run: its forces are the last step's
+  bool sizes_vary = false;           // between two neighbor lists, by fix adapt
+
+  void watch_energy() override;
+  void report_guards() override { guards.report(); }
+  ContactGuards guards;
+
+ protected:
+  ContactTable table;
+
+  double dt = 0.0;
+  bool starting = false;    // at set-up
+  int freeze_group_bit;
+  class FixContactHistory *fix_history;
+  std::vector<Slope::ContactList> lists;    // by type pair and by which side is frozen
+  std::vector<class ContactHolder *> walls;
+  Slope::ContactCounts counts;
+  std::vector<Slope::Vector> half_v, half_omega;    // at set-up, where they are known
+  std::vector<Slope::Vector> ahead;                 // that normal dashpots act on, if
+  bool ahead_known;                                 // they are others than these
+
+  std::string history_id, dummy_id;
+
+  void allocate();
+  void build_lists();
+  void find_contacts();
+  void find_half_step();
+  void find_ahead();
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

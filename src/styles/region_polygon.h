@@ -1,0 +1,41 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#ifdef REGION_CLASS
+// clang-format off
+RegionStyle(polygon,RegPolygon);
+// clang-format on
+#else
+
+#ifndef LMP_REGION_POLYGON_H
+#define LMP_REGION_POLYGON_H
+
+#include "region.h"
+
+#include "polygon.h"
+#include "region_shapes.h"
+
+namespace LAMMPS_NS {
+
+class RegPolygon : public Region, public PrismRegion {
+ public:
+  RegPolygon(class LAMMPS *, int, char **);
+  void init() override;
+  bool covers(double x, double y) const override { return polygon.inside(x, y); }
+  int inside(double, double, double) override;
+  int surface_interior(double *, double) override;
+  int surface_exterior(double *, double) override;
+
+ private:
+  Slope::Polygon polygon;
+
+  void read(const char *);
+  int no_contacts();
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

@@ -1,0 +1,47 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#ifdef REGION_CLASS
+// clang-format off
+RegionStyle(terrain,RegTerrain);
+// clang-format on
+#else
+
+#ifndef LMP_REGION_TERRAIN_H
+#define LMP_REGION_TERRAIN_H
+
+#include "region.h"
+
+#include "elevation_grid.h"
+#include "region_shapes.h"
+
+#include <memory>
+
+namespace LAMMPS_NS {
+
+class RegTerrain : public Region, public RasterRegion {
+ public:
+  RegTerrain(class LAMMPS *, int, char **);
+  ~RegTerrain() override;
+  int inside(double, double, double) override;
+  int surface_interior(double *, double) override;
+  int surface_exterior(double *, double) override;
+
+  const Slope::ElevationGrid &grid() const override { return elevation; }
+
+ private:
+  Slope::ElevationGrid elevation;
+  std::unique_ptr<class NodeArray> heights;    // one copy for the ranks of a node
+  double zmin, zmax, bottom;                   // the region ends at the bottom
+  int nodata;
+
+  void read(const char *);
+  int no_contacts();
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

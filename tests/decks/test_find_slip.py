@@ -1,0 +1,197 @@
+"""find_slip: the surface with the least factor of safety below a terrain, in the deck."""
+
+import csv
+import math
+
+import numpy
+import pytest
+from deck_helpers import run_deck
+
+GRAVITY = 9.80665
+
+DECK = """
+units           si
+region          ground terrain ground.asc
+find_slip       ground strength {strength} {more} output crit
+{after}
+"""
+
+# after Donald and Giam 1989: c 3 kPa, phi 19.6 degrees, 20 kN/m3
+LOW = "3000 19.6 {:.12g}".format(20000 / GRAVITY)
+LOW_SPHERE = "surface sphere 10.25 25.25 54.0 28.9617"
+# after Arai and Tagyo 1985: c 41.65 kPa, phi 15 degrees, 18.82 kN/m3
+HIGH = "41650 15 {:.12g}".format(18820 / GRAVITY)
+HIGH_SPHERE = "surface sphere 25.75 33.25 49.0 36.6347"
+
+
+def embankment(path, nx, ny, low, first, step, steps):
+    """Write a raster of 0.5 m cells that rises along x by step per cell from column first on."""
+    profile = low + step * numpy.clip(numpy.arange(nx) - first, 0, steps)
+    row = " ".join(f"{z:.9g}" for z in profile)
+    (path / "ground.asc").write_text(
+        f"ncols {nx}\nnrows {ny}\nxllcorner 0\nyllcorner 0\ncellsize 0.5\nNODATA_value -9999\n" + (row + "\n") * ny)
+
+
+def of_10_m(path):
+    embankment(path, 102, 101, 25, 20, 0.25, 40)
+
+
+def of_20_m(path):
+    embankment(path, 133, 133, 15, 36, 1 / 3, 60)
+
+
+def deck(strength=LOW, more=LOW_SPHERE, after=""):
+    return DECK.format(strength=strength, more=more, after=after)
+
+
+def rows(path):
+    with open(path / "crit.slips.csv", newline="") as lines:
+        return [{name: float(value) for name, value in row.items()} for row in csv.DictReader(lines)]
+
+
+def yield_of_the_low_sphere(cell=0.1):
+    """By a sum of its own over square columns: resisting moment at F = 1 less the weight's, over the inertia's."""
+    x, y = numpy.meshgrid(numpy.arange(cell / 2, 51, cell), numpy.arange(cell / 2, 50.5, cell))
+    ground = 25 + 0.25 * numpy.clip(x / 0.5 - 20.5, 0, 40)
+    u, v = x - 10.25, y - 25.25
+    depth = numpy.sqrt(numpy.maximum(28.9617 ** 2 - u ** 2 - v ** 2, 0))
+    there = (depth > 0) & (54 - depth < ground)
+    u, depth, ground = u[there], depth[there], ground[there]
+    weight = 20000 * (ground - 54 + depth) * cell ** 2
+    sine, up, tangent = u / numpy.hypot(u, depth), depth / 28.9617, math.tan(math.radians(19.6))
+    base = cell ** 2 / up
+    normal = (weight - 3000 * base * sine) / numpy.maximum(up + sine * tangent, 0.2)
+    resisting = numpy.hypot(u, depth) * (3000 * base + normal * tangent)
+    return numpy.sum(resisting - weight * u) / numpy.sum(weight * (54 - (ground + 54 - depth) / 2))
+
+
+def raster(path):
+    values = numpy.loadtxt(path, skiprows=6)
+    return numpy.where(values == -9999, numpy.nan, values)[::-1]
+
+
+def test_the_sphere_of_the_low_embankment(tmp_path):
+    of_10_m(tmp_path)
+    after = 'print "IN THE DECK $(v_crit_factor:%.5f) $(v_crit_yield:%.5f) ${crit_x} ${crit_y} ${crit_z} ${crit_r}"'
+    log = run_deck(deck(after=after), tmp_path)
+    [row] = rows(tmp_path)
+    assert list(row) == ["rank", "x", "y", "z", "radius", "direction", "factor", "yield", "volume", "area", "depth"]
+    assert row["rank"] == 1
+    assert row["factor"] == pytest.approx(1.0405, rel=1e-3)
+    assert row["yield"] == pytest.approx(yield_of_the_low_sphere(), rel=5e-3)
+    assert row["volume"] == pytest.approx(788.48, rel=5e-4)
+    assert row["direction"] == pytest.approx(180, abs=0.1)
+    assert f"IN THE DECK {row['factor']:.5f} {row['yield']:.5f} 10.25 25.25 54 28.9617" in log
+
+    # the base is the sphere where it is below the ground, and the map has the factor there
+
+    base, factor = raster(tmp_path / "crit.1.base.asc"), raster(tmp_path / "crit.factor.asc")
+    ground = raster(tmp_path / "ground.asc")
+    x, y = numpy.meshgrid(0.25 + 0.5 * numpy.arange(102), 0.25 + 0.5 * numpy.arange(101))
+    depth = numpy.sqrt(numpy.maximum(28.9617 ** 2 - (x - 10.25) ** 2 - (y - 25.25) ** 2, 0))
+    there = (depth > 0) & (54 - depth < ground)
+    assert (numpy.isfinite(base) == there).all() and (numpy.isfinite(factor) == there).all()
+    assert base[there] == pytest.approx((54 - depth)[there], abs=1e-6)
+    assert factor[there] == pytest.approx(row["factor"], rel=1e-6)
+    assert numpy.sum((ground - base)[there]) * 0.25 == pytest.approx(row["volume"], rel=0.01)
+
+
+def test_the_sphere_of_the_high_embankment(tmp_path):
+    of_20_m(tmp_path)
+    run_deck(deck(HIGH, HIGH_SPHERE), tmp_path)
+    [row] = rows(tmp_path)
+    assert row["factor"] == pytest.approx(1.5982, rel=1e-3)
+    assert row["volume"] == pytest.approx(14419.9, rel=5e-4)
+
+
+def test_an_earthquake_of_the_yield_coefficient_makes_the_factor_one(tmp_path):
+    of_10_m(tmp_path)
+    run_deck(deck(), tmp_path)
+    first = rows(tmp_path)[0]
+    run_deck(deck(more=f"{LOW_SPHERE} seismic {first['yield']:.10g}"), tmp_path)
+    assert rows(tmp_path)[0]["factor"] == pytest.approx(1, abs=1e-6)
+    run_deck(deck(more=f"{LOW_SPHERE} seismic 0 0.2"), tmp_path)       # upwards: cohesion counts for more
+    assert rows(tmp_path)[0]["factor"] > first["factor"]
+
+
+def test_a_given_direction_off_the_steepest_has_a_larger_factor(tmp_path):
+    of_10_m(tmp_path)
+    run_deck(deck(), tmp_path)
+    steepest = rows(tmp_path)[0]["factor"]
+    run_deck(deck(more=f"{LOW_SPHERE} direction 170"), tmp_path)
+    [row] = rows(tmp_path)
+    assert row["direction"] == pytest.approx(170)
+    assert row["factor"] == pytest.approx(1.017 * steepest, rel=2e-3)
+
+
+def test_layers_and_water(tmp_path):
+    of_10_m(tmp_path)
+    ground = (tmp_path / "ground.asc").read_text()
+    (tmp_path / "top.asc").write_text(ground)
+    factors = {}
+    for name, more in {"dry": "", "ru": "water ru 0.2", "table": "water table top.asc",
+                       "layer": f"layer top.asc 6000 19.6 {20000 / GRAVITY:.12g}",
+                       "ordinary": "method ordinary"}.items():
+        run_deck(deck(more=f"{LOW_SPHERE} {more}"), tmp_path)
+        factors[name] = rows(tmp_path)[0]["factor"]
+    run_deck(deck(f"6000 19.6 {20000 / GRAVITY:.12g}"), tmp_path)
+    assert factors["layer"] == pytest.approx(rows(tmp_path)[0]["factor"], rel=1e-9)
+    assert factors["table"] < factors["ru"] < factors["dry"]
+    assert factors["ordinary"] < factors["dry"]
+    assert math.isfinite(factors["table"])
+
+
+@pytest.mark.parametrize("more, message", [
+    (f"{LOW_SPHERE} shape ellipsoid 1 2", "Find_slip shape ellipsoid is not available"),
+    (f"{LOW_SPHERE} method spencer", "Find_slip method spencer is not available"),
+    ("surface raster ground.asc", "Find_slip surface raster is not available"),
+    (f"{LOW_SPHERE} shape cube", "Find_slip shape must be sphere, got cube"),
+    (f"{LOW_SPHERE} water ru 1.5", "Find_slip water ru must be 0 to below 1, got 1.5"),
+    (f"{LOW_SPHERE} seismic -0.1", "Find_slip seismic KH must be >= 0 (of the weight), got -0.1"),
+    (f"{LOW_SPHERE} layer none.asc 1 2 3", "none.asc"),
+    (f"{LOW_SPHERE} within ground", "Find_slip within: region ground must be of style polygon, got terrain"),
+    ("surface sphere 10 25 54 20", "no ground is above it"),
+    ("surface sphere 10 2 54 29", "the body reaches the edge of the terrain"),
+    (f"{LOW_SPHERE} strange 3", "Find_slip: unknown keyword strange"),
+])
+def test_wrong_words_end_the_run_with_one_line(tmp_path, more, message):
+    of_10_m(tmp_path)
+    run_deck(deck(more=more), tmp_path, expect_error=message)
+    assert not list(tmp_path.glob("crit.*"))
+
+
+def test_the_search_finds_the_least_on_any_number_of_ranks(tmp_path):
+    """Not above the 1.0400 of a search by Scoops3D on a lattice, within the limits; the map and the rows agree."""
+    of_10_m(tmp_path)
+    more = "volume 500 5000 keep 2"
+    run_deck(deck(more=more), tmp_path)
+    found = rows(tmp_path)
+    assert found[0]["factor"] < 1.0400
+    assert found[0]["direction"] == pytest.approx(180, abs=1)
+    assert all(500 <= row["volume"] <= 5000 for row in found)
+    assert [row["factor"] for row in found] == sorted(row["factor"] for row in found)
+    bases = [numpy.isfinite(raster(tmp_path / f"crit.{k + 1}.base.asc")) for k in range(len(found))]
+    for k, row in enumerate(found):
+        assert (raster(tmp_path / "crit.factor.asc")[bases[k]] <= row["factor"] * (1 + 1e-6)).all()
+    assert len(found) == 2 and (bases[0] & bases[1]).sum() <= 0.6 * min(bases[0].sum(), bases[1].sum())
+
+    # the sphere that it says has the factor that it says
+
+    table, log = (tmp_path / "crit.slips.csv").read_bytes(), (tmp_path / "crit.factor.asc").read_bytes()
+    run_deck(deck(more="surface sphere {x:.10g} {y:.10g} {z:.10g} {radius:.10g}".format(**found[0])), tmp_path)
+    assert rows(tmp_path)[0]["factor"] == pytest.approx(found[0]["factor"], rel=1e-5)
+    run_deck(deck(more=more), tmp_path, np=2)
+    assert (tmp_path / "crit.slips.csv").read_bytes() == table
+    assert (tmp_path / "crit.factor.asc").read_bytes() == log
+
+
+@pytest.mark.parametrize("strength, more, message", [
+    (LOW, "volume 1e7 1e8", "Find_slip limits must leave a sphere inside the terrain"),
+    (LOW, "volume 5 2", "Find_slip volume must be LO HI with 0 <= LO < HI, got 5 2"),
+    (LOW, "keep 0", "Find_slip keep must be 1 to 1000, got 0"),
+    ("0 30 2000", "keep 1", "Find_slip volume LO must be > 0 where C is 0"),
+])
+def test_a_search_that_cannot_be(tmp_path, strength, more, message):
+    of_10_m(tmp_path)
+    run_deck(deck(strength, more), tmp_path, expect_error=message)
+    assert not list(tmp_path.glob("crit.*"))

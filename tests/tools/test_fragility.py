@@ -1,0 +1,235 @@
+"""Fragility of bodies: closed forms of an infinite slope, displacements, hazard, the command."""
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from scipy import stats
+
+from run_helpers import called, write_asc
+from test_newmark import noise
+from test_slips import CASES
+
+from slope_tools.ensemble import distributions, fragility
+from slope_tools.slips import bishop, columns, newmark
+from slope_tools.slips.bodies import Body
+from slope_tools.slips.columns import GRAVITY, Columns
+
+BETA = np.radians(30.0)
+PRESSURE = 40e3     # weight per area in plan, Pa
+
+
+def infinite_slope():
+    """One column, as large as the slope; its radius is 1e6 m."""
+    one, radius = np.ones(1), 1e6
+    return Body("1", 180.0, Columns(one, one / np.cos(BETA), PRESSURE * one, radius * np.sin(BETA) * one,
+                                    radius * np.cos(BETA) * one, radius * one, np.sin(BETA) * one, np.cos(BETA) * one))
+
+
+def drawn(text):
+    return distributions.distribution("x", text, "--cohesion", text)
+
+
+def normal_soil(correlation=0.0):
+    return fragility.Soil(drawn("normal:9e3:1.5e3:1e3:17e3"), drawn("normal:0.6:0.06:0.2:1.0"), 0.0, True, correlation)
+
+
+def chance(gal, correlation):
+    """P(k_y < k) for normal c and tan phi: k_y < k is c a cos + tan W (1 - K sin) < W K cos, K = (k + tan) cos."""
+    k = gal * 0.01 / GRAVITY
+    pull = (k + np.tan(BETA)) * np.cos(BETA)
+    of_c, of_t = 1.0, PRESSURE * (1 - pull * np.sin(BETA))
+    mean = 9e3 * of_c + 0.6 * of_t - PRESSURE * pull * np.cos(BETA)
+    variance = (1.5e3 * of_c) ** 2 + (0.06 * of_t) ** 2 + 2 * correlation * 1.5e3 * of_c * 0.06 * of_t
+    return stats.norm.cdf(-mean / np.sqrt(variance))
+
+
+@pytest.mark.parametrize("correlation", [0.0, -0.5, 0.7])
+def test_normal_strengths_on_an_infinite_slope(correlation):
+    peaks = np.arange(20.0, 600.0, 20.0)
+    soil = fragility.strengths_of(normal_soil(correlation), 1024, 1)
+    capacity = fragility.capacities([infinite_slope()], soil, fragility.PseudoStatic(1.0))[:, :, 0]
+    found = fragility.curve(capacity, peaks)
+    expected = chance(peaks, correlation)
+    assert expected.min() < 0.02 and expected.max() > 0.98
+    assert found.value == pytest.approx(expected, abs=2e-3)
+    assert ((found.low <= found.value) & (found.value <= found.high)).all()
+
+
+def test_bands_hold_what_they_promise():
+    """Of 200 bands of 90 %, 165 to 195 have the closed form in them (33 to 39 of 40)."""
+    peaks = np.array([230.0])
+    expected = chance(peaks, 0.0)[0]
+    assert 0.2 < expected < 0.8
+    inside = 0
+    for seed in range(200):
+        soil = fragility.strengths_of(normal_soil(), 64, 1000 * seed + 1)
+        band = fragility.curve(fragility.capacities([infinite_slope()], soil, fragility.PseudoStatic(1.0))[:, :, 0],
+                               peaks)
+        inside += band.low[0] <= expected <= band.high[0]
+    assert 165 <= inside <= 195
+
+
+def test_pseudo_static_factor_scales_the_peak_and_agrees_with_the_factor_of_safety():
+    soil = fragility.strengths_of(normal_soil(), 8, 3)
+    body = infinite_slope()
+    half = fragility.capacities([body], soil, fragility.PseudoStatic(0.5))[:, 0, 0]
+    assert half == pytest.approx(2 * fragility.capacities([body], soil, fragility.PseudoStatic(1.0))[:, 0, 0])
+    k = 0.5 * 460 * 0.01 / GRAVITY
+    fails = bishop.factor_of_safety(body.columns, soil, k) < 1
+    assert 10 < fails.sum() < len(fails) - 10 and ((half < 460) == fails).all()
+
+
+@pytest.mark.parametrize("limit, lift", [(0.02, 0.0), (0.3, 0.0), (0.05, 0.4)])
+def test_a_record_scaled_to_the_capacity_gives_the_displacement(limit, lift):
+    t, x = noise()
+    record = np.column_stack([t, x, 0.5 * np.roll(x, 40), 0.6 * np.roll(x, 7)])
+    k = np.array([-0.1, 1e-6, 0.02, 0.1, 0.4])
+    capacity = fragility.slide_capacity(k, record, 30.0, limit, lift)
+    assert capacity[0] == 0 and (np.diff(capacity) > 0).all()
+    for one, gal in list(zip(k, capacity))[1:]:
+        scale = gal * 0.01 / np.hypot(record[:, 1], record[:, 2]).max()
+        way = newmark.both_ways(t, scale * record[:, 1:], 30.0, [one * GRAVITY], lift)[0]
+        assert way == pytest.approx(limit, rel=5e-3)
+
+
+def test_lognormal_capacities_come_back():
+    """Median 400 gal, beta_u 0.3 between strengths and beta_r 0.2 between records."""
+    rng = np.random.default_rng(5)
+    strength = np.exp(0.3 * rng.normal(size=(fragility.REPLICATES * 512, 1)))
+    record = np.exp(0.2 * stats.norm.ppf((np.arange(21) + 0.5) / 21))
+    found = fragility.fit(400 * strength * record, np.arange(50.0, 1500.0, 25.0))
+    assert (found.median, found.beta_u) == pytest.approx((400, 0.3), rel=0.02)
+    assert found.beta_r == pytest.approx(0.2, rel=0.05)
+    assert found.hclpf == pytest.approx(400 * np.exp(-1.645 * 0.5), rel=0.03)
+    assert found.off < 0.01 and found.median_error < 5
+    assert found.at_hclpf == pytest.approx(found.at_hclpf_fitted, rel=0.2)
+    weak = fragility.fit(np.where(strength < 0.75, 100.0, 400 * strength * record), np.arange(50.0, 1500.0, 25.0))
+    assert weak.at_hclpf > 1.5 * weak.at_hclpf_fitted
+    assert fragility.fit(400 * strength * record, np.array([5.0, 10.0, 15.0])) is None
+
+
+def test_annual_frequency_is_the_integral():
+    """Rate (a / 100)^-2 / 100, capacity lognormal: closed form exp(beta^2 2) times the rate of the median."""
+    hazard = fragility.Hazard(np.array([1.0, 1e6]), np.array([100.0, 1e-10]))
+    u = (np.arange(fragility.REPLICATES * 4096) + 0.5) / (fragility.REPLICATES * 4096)
+    capacity = np.random.default_rng(1).permutation(np.exp(np.log(400) + 0.4 * stats.norm.ppf(u)))[:, None]
+    found = fragility.frequency(capacity, hazard, np.array([200.0, 400.0, 800.0]))
+    assert found.total.value == pytest.approx(0.01 / 16 * np.exp(2 * 0.4 ** 2), rel=1e-3)
+    assert sum(part for *_, part in found.parts) == pytest.approx(found.total.value, rel=1e-9)
+    inner = next(part for a, b, part in found.parts if (a, b) == (200.0, 400.0))
+    grid = np.linspace(200, 400, 20001)
+    p = stats.norm.cdf(np.log(grid / 400) / 0.4)
+    assert inner == pytest.approx(np.trapz(p * 2 * 100 / grid ** 3, grid), rel=2e-3)
+
+
+# --- the command ---
+
+SOIL = "--terrain terrain.asc --density 2039 --cohesion 3e3:9e3 --friction 22:32"
+
+
+@pytest.fixture
+def slips(tmp_path, monkeypatch):
+    """What find_slip leaves on the embankment of 10 m: two spheres, of which the second lies deeper."""
+    monkeypatch.chdir(tmp_path)
+    ground, centre, radius = CASES[0][:3]
+    write_asc("terrain.asc", ground.z, 0.5)
+    Path("slips").mkdir()
+    rows = []
+    for rank, r in ((1, radius), (2, radius + 1.0)):
+        base = columns.base_of(ground, centre, r)
+        inside = columns.largest(ground, base)
+        volume = columns.of_sphere(ground, centre, r, 180.0, 2000.0, inside).volume
+        write_asc(f"slips/out.{rank}.base.asc", np.where(inside, base, np.nan), 0.5)
+        rows.append(f"{rank},{centre[0]},{centre[1]},{centre[2]},{r},180,1.1,0.1,{volume},500,3\n")
+    head = "rank,x,y,z,radius,direction,factor,yield,volume,area,depth\n"
+    Path("slips/out.slips.csv").write_text(head + "".join(rows))
+    t, x = noise()
+    Path("motion.txt").write_text("".join(f"{a} {b} 0 {0.3 * b}\n" for a, b in zip(t, x)))
+    Path("other.txt").write_text("".join(f"{a} {b} 0 0\n" for a, b in zip(t, noise(seed=9)[1])))
+    Path("hazard.csv").write_text("peak,exceedance\n50,1e-2\n200,1e-3\n800,3e-5\n2000,1e-6\n")
+    return tmp_path
+
+
+def ran(capsys, words):
+    return called(capsys, ["fragility", *words.split()])
+
+
+def table(path="out/fragility.csv"):
+    found = {}
+    for row in csv.DictReader(open(path)):
+        values = [float(row[name]) for name in ("peak_gal", "probability", "low", "high")]
+        found.setdefault(row["body"], []).append(values)
+    return {name: np.array(rows).T for name, rows in found.items()}
+
+
+def test_two_bodies_two_records_and_a_hazard(slips, capsys):
+    status, out, err = ran(capsys, f"slips {SOIL} --peaks 50:1500:50 --record motion.txt "
+                           "--record other.txt --displacement 0.05 --sample 512 --hazard hazard.csv -o out")
+    assert status == 0, err
+    curves = table()
+    assert set(curves) == {"1", "2", "any"} and len(curves["any"][0]) == 30
+    for peak, p, low, high in zip(*curves["1"]):
+        assert low <= p <= high
+    assert (np.diff(curves["any"][1]) >= 0).all() and curves["any"][1][-1] > 0.9
+    assert (curves["any"][1] >= np.maximum(curves["1"][1], curves["2"][1]) - 1e-9).all()
+    about = yaml.safe_load(Path("out/fragility.yaml").read_text())
+    last = about["curves"][-1]
+    assert last["lognormal"]["beta_r"] > 0.01 and last["lognormal"]["hclpf_gal"] < last["lognormal"]["median_gal"]
+    frequency = last["annual_frequency"]
+    assert sum(one["frequency"] for one in frequency["contributions"]) == pytest.approx(frequency["value"], rel=1e-6)
+    assert 1e-6 < frequency["value"] < 1e-2 and "any body" in out and "per year" in out
+    assert Path("out/fragility.png").stat().st_size > 10000
+
+
+def test_pseudo_static_is_said_to_be_cautious_and_is(slips, capsys):
+    status, _, err = ran(capsys, f"slips/out.slips.csv {SOIL} --peaks 50:1500:50 --pseudo-static 1 "
+                         "--sample 512 -o out")
+    assert status == 0 and "cautious" in err
+    status, _, err = ran(capsys, f"slips {SOIL} --peaks 50:1500:50 --record motion.txt --sample 512 "
+                         "-o slide")
+    assert status == 0 and "one record" in err
+    assert (table()["1"][1] >= table("slide/fragility.csv")["1"][1]).all()
+
+
+def test_the_share_below_a_peak_is_a_direct_simulation(slips, capsys):
+    """Every sample's own displacement at one peak, instead of its capacity."""
+    words = (f"slips {SOIL} --water 0:0.2 --peaks 200:400:200 --record motion.txt --sample 256 "
+             "--displacement 0.02")
+    assert ran(capsys, words + " -o out")[0] == 0
+    soil = fragility.Soil(drawn("3e3:9e3"), drawn("22:32"), drawn("0:0.2"))
+    ground, centre, radius = CASES[0][:3]
+    body = columns.of_sphere(ground, centre, radius, 180.0, 2039.0)
+    k = bishop.yield_coefficient(body, fragility.strengths_of(soil, 16, 1))
+    t, x = noise()
+    scaled = np.column_stack([x, 0 * x, 0 * x]) * 2.0 / np.abs(x).max()
+    way = newmark.both_ways(t, scaled, 180.0, np.maximum(k, 0) * GRAVITY)
+    assert table()["1"][1][0] == pytest.approx(np.mean((way > 0.02) | (k <= 0)), abs=1 / 256 + 1e-9)
+    assert 0.1 < table()["1"][1][0] < 0.99
+
+
+@pytest.mark.parametrize("words, rule", [
+    ("--peaks 500:100 --pseudo-static 1", "--peaks: must be LO:HI or LO:HI:STEP"),
+    ("--peaks 100:500", "--record: must give a motion"),
+    ("--peaks 100:500 --record motion.txt --pseudo-static 1", "--pseudo-static: must be without --record"),
+    ("--peaks 100:500 --pseudo-static 1 --friction 20:95", "--friction: must be from 0 to 89 degrees"),
+    ("--peaks 100:500 --pseudo-static 1 --cohesion lognormal:0:1:1:2", "lognormal must have MEDIAN > 0"),
+    ("--peaks 100:500 --pseudo-static 1 --correlation 2", "--correlation: must be from -1 to 1, got 2"),
+    ("--peaks 100:500 --pseudo-static 1 --hazard rises.csv", "rises.csv: row 3: must be exceeded less often"),
+    ("--peaks 100:500 --pseudo-static 1 --terrain flat.asc", "must be"),
+    ("--peaks 100:500 --pseudo-static 1 --sample 10", "--sample: must be from 256"),
+])
+def test_bad_input_is_one_line(slips, capsys, words, rule):
+    Path("rises.csv").write_text("peak,exceedance\n100,1e-2\n200,2e-2\n")
+    write_asc("flat.asc", np.full((101, 102), 40.0), 0.5)
+    status, _, err = ran(capsys, f"slips {SOIL} {words} -o out")
+    assert status == 2 and err.count("\n") == 1 and rule in err
+    assert not Path("out").exists()
+
+
+def test_a_base_that_is_no_sphere(slips, capsys):
+    ground, centre, radius = CASES[0][:3]
+    write_asc("slips/out.1.base.asc", columns.base_of(ground, centre, radius) + 0.3, 0.5)
+    status, _, err = ran(capsys, f"slips {SOIL} --peaks 100:500 --pseudo-static 1 -o out")
+    assert status == 2 and "must be the sphere" in err

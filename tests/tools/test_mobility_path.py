@@ -1,0 +1,379 @@
+"""The fall path against closed forms, the probabilities on it against the t distribution, and slope mobility."""
+import csv
+import math
+import re
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from affine import Affine
+from scipy import stats
+from shapely.geometry import LineString, Point, box
+
+from run_helpers import TOP, here, run_command, write_asc, write_geojson  # noqa: F401  (here: a fixture)
+
+from slope_tools.commands import mobility as mobility_command  # noqa: E402
+from slope_tools.errors import SlopeError  # noqa: E402
+from slope_tools.mobility import body, charts, events, exceedance, fall_path, road  # noqa: E402
+from slope_tools.survey import rasters, release  # noqa: E402
+from slope_tools.survey.rasters import Raster  # noqa: E402
+
+ALL = events.read()
+DATA = next((folder for folder in (top / "shared" / "data" for top in TOP.parents) if folder.is_dir()), TOP / "none")
+FRANK = DATA / "frank"
+STEEP = 0.5         # slope of the ground
+RADIUS = 150.0      # m, of the body
+
+
+def terrain(height, columns=240, rows=120, cell=10.0):
+    """A Raster of height(x, y), m."""
+    x, y = np.meshgrid(cell * (np.arange(columns) + 0.5), cell * (rows - 0.5 - np.arange(rows)))
+    return Raster(height(x, y), Affine(cell, 0, 0, 0, -cell, rows * cell), None), x, y
+
+
+def disc(ground, centre, depth=20.0):
+    """A body whose depth falls from the centre of a disc to its rim; 0.7 million m3 for 20 m."""
+    raster, x, y = ground
+    away = ((x - centre[0]) ** 2 + (y - centre[1]) ** 2) / RADIUS ** 2
+    return body.of_arrays(raster, depth * np.clip(1 - away, 0, 1), "disc")
+
+
+def plane(bearing):
+    """Ground that falls by STEEP towards an angle from x (degrees), and the unit vector down."""
+    way = np.array([math.cos(math.radians(bearing)), math.sin(math.radians(bearing))])
+    return terrain(lambda x, y: 3000 - STEEP * (x * way[0] + y * way[1])), way
+
+
+def hillside():
+    """800 m of STEEP, then gentle ground, long enough for known events."""
+    return terrain(lambda x, y: 1000 - STEEP * np.minimum(x, 800) - 0.02 * np.maximum(x - 800, 0), 500, 60)
+
+
+# --- the path ---
+
+@pytest.mark.parametrize("bearing, centre", [(0, (300, 600)), (25, (300, 300)), (-50, (500, 1000))])
+def test_a_plane(bearing, centre):
+    """Straight down whatever the grid, and to the edge; length and fall from the crown's level."""
+    ground, way = plane(bearing)
+    mass = disc(ground, centre)
+    path = fall_path.trace(mass, 1e5)
+    above = (np.array(centre) - mass.crown[:2]) @ way
+    assert above == pytest.approx(RADIUS, abs=15)
+    expected = np.array(centre) + (path.length - above)[:, None] * way
+    assert np.hypot(*(np.column_stack([path.x, path.y]) - expected).T).max() < 3
+    assert path.fall[1:] == pytest.approx(STEEP * path.length[1:], abs=1.5)
+    assert path.end == fall_path.TERRAIN
+    low, high = np.array([5, 5]), np.array([2395, 1195])       # outermost nodes: beyond, no height is known
+    room = [((high if step > 0 else low)[k] - centre[k]) / step for k, step in enumerate(way) if abs(step) > 1e-9]
+    assert path.length[-1] == pytest.approx(above + min(room), abs=2)
+
+
+def test_as_far_as_asked():
+    ground, _ = plane(0)
+    path = fall_path.trace(disc(ground, (300, 600)), 800)
+    assert path.end == fall_path.EVENTS and 800 < path.length[-1] < 1000
+
+
+def test_a_pit():
+    """Deeper than the slope is steep: over its rim and on, straight, as if there were none."""
+    def height(x, y):
+        return 3000 - STEEP * x - 250 * np.exp(-((x - 1200) ** 2 + (y - 600) ** 2) / (2 * 120 ** 2))
+    mass = disc(terrain(height), (300, 600))
+    path = fall_path.trace(mass, 1e5)
+    assert mass.raster.z[60, 110:140].argmin() not in (0, 29)       # a pit, and not only a bump
+    assert path.end == fall_path.TERRAIN and path.x[-1] == pytest.approx(2395, abs=5)
+    assert path.length[-1] == pytest.approx(2395 - mass.crown[0], rel=0.01)
+
+
+def test_the_lowest_way_out():
+    """A dam across, with a gap on one side: the path goes through the gap, not over the dam."""
+    def height(x, y):
+        dam = 200 * np.exp(-((x - 1500) / 60) ** 2)
+        return 3000 - STEEP * np.minimum(x, 1400) + np.where(y > 300, dam, 0)
+    path = fall_path.trace(disc(terrain(height), (300, 600)), 1e5)
+    assert np.interp(1500, path.x, path.y) < 300
+
+
+def test_a_pit_in_a_pit():
+    """Over the inner sill and the outer rim, not to and fro between both bottoms."""
+    places, heights = (0, 1000, 1300, 1500, 1800, 2400), (3000, 2300, 2400, 2350, 2450, 2000)
+    ground = terrain(lambda x, y: np.interp(x, places, heights) + 0.5 * np.abs(y - 600))
+    path = fall_path.trace(disc(ground, (300, 600)), 1e5)
+    assert path.end == fall_path.TERRAIN and path.x[-1] == pytest.approx(2395, abs=1)
+    assert path.length[-1] == pytest.approx(2395 - path.x[0], rel=0.01)
+
+
+def test_the_scar_leads():
+    """The mass slides on its slip surface, which falls to one side here, the ground straight on."""
+    ground, x, y = plane(0)[0]
+    way_out = ground.z[60, 40] + 0.3 * ((405 - x) + (y - 495)) / math.sqrt(2)
+    depth = np.where((x - 300) ** 2 + (y - 600) ** 2 < RADIUS ** 2, ground.z - way_out, 0)
+    path = fall_path.trace(body.of_arrays(ground, depth, "disc"), 1e5)
+    assert path.y[-1] < path.y[0] - 40
+
+
+def test_a_flat():
+    """Straight on, not to the nearest edge."""
+    path = fall_path.trace(disc(terrain(lambda x, y: 3000 - STEEP * np.minimum(x, 1000)), (300, 700)), 1e5)
+    assert path.x[-1] > 2380 and np.abs(path.y - 700).max() < 15
+    assert path.length[-1] == pytest.approx(2395 - 155, rel=0.01)
+
+
+def test_the_ground_ends():
+    raster, x, y = plane(0)[0]
+    raster.z[x > 1500] = np.nan
+    path = fall_path.trace(disc((raster, x, y), (300, 600)), 1e5)
+    assert path.end == fall_path.TERRAIN and path.x[-1] == pytest.approx(1495, abs=1)
+    assert path.fall[-2:] == pytest.approx(STEEP * path.length[-2:], abs=1.5)
+
+
+@pytest.mark.parametrize("factor", [1, 2])
+def test_a_gully_narrower_than_the_mass(factor):
+    """Is not followed, and the length does not depend on the cells: 10 and 5 m."""
+    def height(x, y):
+        return 3000 - STEEP * x - 6 * np.cos((y - 600 - 25 * np.sin(x / 40)) / 8) * (x > 600)
+    ground = terrain(height, 240 * factor, 120 * factor, 10 / factor)
+    path = fall_path.trace(disc(ground, (300, 600)), 1e5)
+    assert path.length[-1] == pytest.approx(2395 - 155, rel=0.01)
+
+
+def test_a_line_of_ones_own():
+    ground, _ = plane(0)
+    mass = disc(ground, (300, 600))
+    path = fall_path.given(mass, LineString([(1500, 1100), (150, 600)]), "line")
+    assert (path.x[0], path.end) == (150, fall_path.LINE) and path.length[-1] == pytest.approx(math.hypot(1350, 500))
+    assert path.fall[-1] == pytest.approx(STEEP * (1500 - mass.crown[0]), abs=1)
+    beyond = fall_path.given(mass, LineString([(150, 600), (5000, 600)]), "line")
+    assert beyond.end == fall_path.TERRAIN and beyond.x[-1] == pytest.approx(2390, abs=10)
+    with pytest.raises(SlopeError, match="line: must begin on the terrain"):
+        fall_path.given(mass, LineString([(-100, 600), (-2000, 600)]), "line")
+
+
+def test_level_ground_has_no_path():
+    with pytest.raises(SlopeError, match="at least 1 degree.* flat"):
+        fall_path.trace(disc(terrain(lambda x, y: 100 - 0.001 * x), (300, 600)), 1e5)
+
+
+# --- the probabilities ---
+
+def by_hand(path, volume, confined):
+    """Exceedance at each point by the set's least squares and scipy's t, without the code that is tested."""
+    x = np.array([[1, math.log10(e.volume), math.log10(e.fall), e.confined] for e in ALL], float)
+    y = np.log10([e.length for e in ALL])
+    fit, squares, _, _ = np.linalg.lstsq(x, y, rcond=None)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        at = np.column_stack([np.ones(len(path.x)), np.full(len(path.x), math.log10(volume)), np.log10(path.fall),
+                              np.full(len(path.x), confined)])
+        scale = np.sqrt(squares[0] / 45 * (1 + (at @ np.linalg.inv(x.T @ x) * at).sum(axis=1)))
+        return 1 - stats.t(45).cdf((np.log10(path.length) - at @ fit) / scale)
+
+
+@pytest.fixture(scope="module")
+def known():
+    return exceedance.of_body(disc(hillside(), (300, 300)), ALL)
+
+
+@pytest.mark.parametrize("confined", [True, False])
+def test_exceedance(known, confined):
+    far = known.path.fall >= 220        # the set's least
+    curve = known.curves[confined]
+    assert curve[far] == pytest.approx(by_hand(known.path, known.volume, confined)[far], abs=1e-9)
+    assert (curve[~far] == 1).all() and (np.diff(curve) <= 0).all()
+
+
+def test_confined_is_severe(known):
+    assert known.severe and (known.curves[True] >= known.curves[False]).all()
+    assert known.exceedance(1800) == known.exceedance(1800, True) > known.exceedance(1800, False) + 0.1
+
+
+def test_it_never_rises():
+    """Before a cliff the probability is less than by the height below the cliff."""
+    mass = disc(terrain(lambda x, y: 3000 - STEEP * np.minimum(x, 700) - 900 / (1 + np.exp((1900 - x) / 15))),
+                (200, 600))
+    found = exceedance.of_body(mass, ALL, False)
+    raw = by_hand(found.path, found.volume, False)
+    far = found.path.fall >= 220
+    assert np.diff(raw[far]).max() > 0.1
+    assert found.curves[False][far] == pytest.approx(np.minimum.accumulate(raw[far]), abs=1e-9)
+    assert found.beyond_path() == pytest.approx(raw[far].min()) and raw[far].min() < raw[-1] - 0.1
+
+
+def test_where_a_run_lies(known):
+    median = known.length_at(0.5, False)
+    assert known.exceedance(median, False) == pytest.approx(0.5, abs=1e-9)
+    lies = known.where_lies(median, False)
+    assert lies == pytest.approx((0.5, 0.5, False))
+    assert known.where_lies(median, True).at_most < 0.5 and known.where_lies(1e5, False).beyond
+    assert known.where_lies(0, False).at_least == 1
+    assert known.length_at(1e-6, True) is None and known.in_range
+
+
+@pytest.mark.parametrize("depth, slope, words", [(1.0, STEEP, ["volume, 0.03"]), (20.0, 0.05, ["height, "])])
+def test_out_of_range(depth, slope, words):
+    mass = disc(terrain(lambda x, y: 3000 - slope * x), (300, 600), depth)
+    found = exceedance.of_body(mass, ALL)
+    assert not found.in_range and len(found.outside) == len(words)
+    assert all(f"covers this {word}" in line for word, line in zip(words, found.outside))
+
+
+def test_a_road(known):
+    lane = box(1000, 0, 1020, 1190)
+    first = road.at_road(known.path, lane)
+    assert first.met and first.x == pytest.approx(1000) and first.length == pytest.approx(1000 - 155, abs=3)
+    beside = road.at_road(known.path, box(1000, 400, 1020, 590))
+    assert not beside.met and beside.beside == pytest.approx(100, abs=3) and beside.x == pytest.approx(1010, abs=11)
+
+
+@pytest.mark.skipif(not FRANK.is_dir(), reason="the rasters of inputs/30_frank are not here")
+def test_the_frank_slide():
+    """By all events but itself, what was observed is inside of 10 to 90 %, along the river and across the valley."""
+    after, pile = (rasters.read(FRANK / f"Frankslide_{name}.asc") for name in ("topography", "pile"))
+    mass = body.of_arrays(after._replace(z=after.z + pile.z), pile.z, "Frank")
+    others = [one for one in ALL if one.name != "Frank Slide"]
+    across = fall_path.given(mass, LineString([(413, 1264), (3960, 3633)]), "line")
+    for path in (None, across):
+        found = exceedance.of_body(mass, others, False, path=path)
+        assert found.in_range and found.volume == pytest.approx(36.0, abs=0.1)
+        assert 0.1 < found.exceedance(3080) < 0.9
+    assert found.length_at(0.5) == pytest.approx(3080, rel=0.05)
+
+
+# --- the command ---
+
+@pytest.fixture
+def place(here, capsys, monkeypatch):       # noqa: F811
+    """terrain.asc, a plane; P, a disc on it; gives a call of slope mobility that draws no pictures."""
+    for name in ("draw_map", "draw_profile"):
+        monkeypatch.setattr(charts, name, lambda path, *rest: Path(path).write_bytes(b""))
+    write_asc("terrain.asc", hillside()[0].z, 10.0)
+    write_geojson("p.geojson", Point(300, 300).buffer(RADIUS))
+    Path("road.wkt").write_text("POLYGON ((1500 0, 1520 0, 1520 590, 1500 590, 1500 0))")
+    return lambda words: run_command("mobility", words, capsys)
+
+
+BODY = "terrain.asc --polygon p.geojson --local --depth 20"
+COLUMNS = ["length_m", "height_m", "x", "y", "exceedance"]
+
+
+def rows(folder="out"):
+    with open(Path(folder, "mobility.csv"), encoding="ascii") as lines:
+        found = list(csv.DictReader(lines))
+    return list(found[0]), {key: np.array([float(row[key]) for row in found]) for key in found[0]}
+
+
+def summary(folder="out"):
+    return yaml.safe_load(Path(folder, "mobility.yaml").read_text(encoding="utf-8"))
+
+
+def test_command(place):
+    status, out, err = place(f"{BODY} --road road.wkt -o out")
+    assert (status, err) == (0, "")
+    heads, both = rows()
+    assert heads == [*COLUMNS, "exceedance_unconfined"]
+    about = summary()
+    assert about["in_range"] and about["exceedance_is"] == "confined" and about["set"]["events"] == 49
+    at = about["road"]
+    assert at["on_path"] and at["x"] == pytest.approx(1500)
+    for name in ("exceedance", "exceedance_unconfined"):
+        assert at[name] == pytest.approx(np.interp(at["length_m"], both["length_m"], both[name]), abs=1e-4)
+    assert about["confined"]["beyond_path"] == pytest.approx(both["exceedance"][-1], rel=1e-5)
+    assert "of the road" not in out and {path.name for path in Path("out").iterdir()} == set(about["files"])
+    place(f"{BODY} --unconfined -o open")
+    place(f"{BODY} --confined -o valley")
+    assert rows("open")[0] == rows("valley")[0] == COLUMNS
+    assert (rows("open")[1]["exceedance"] == both["exceedance_unconfined"]).all()
+    assert (rows("valley")[1]["exceedance"] == both["exceedance"]).all()
+
+
+def test_except(place):
+    status, _, err = place(f"{BODY} --unconfined --except 'Frank Slide' --except 'Todagin Creek' -o out")
+    assert (status, err) == (0, "")
+    about = summary()
+    assert about["set"]["events"] == 47 and about["set"]["left_out"] == ["Frank Slide", "Todagin Creek"]
+    assert about["relation"]["degrees_of_freedom"] == 43
+
+
+def test_out_of_range_is_said(place):
+    status, _, err = place("terrain.asc --polygon p.geojson --local --depth 0.5 -o out")
+    about = summary()
+    assert status == 0 and about["in_range"] is False and err.count("\n") == len(about["warnings"]) == 1
+    assert "no set of known events covers this volume" in err and "0.1 to 498" in err and "conditioned" in err
+
+
+def test_a_terrain_that_is_too_small(place):
+    write_asc("terrain.asc", hillside()[0].z[:, :100], 10.0)
+    status, _, err = place(f"{BODY} --confined -o out")
+    assert status == 0 and "leaves the terrain after 84" in err and "larger terrain" in err
+    assert summary()["confined"]["lengths_m"]["0.5"] is None and summary()["confined"]["beyond_path"] > 0.5
+
+
+def of_site(folder="site"):
+    """A folder as slope site makes it, as far as it counts here."""
+    Path(folder).mkdir()
+    shutil.copy("terrain.asc", folder)
+    mass = body.of_release(release.body_of(release.Wanted("terrain.asc", "p.geojson", depth=20, local=True)), "p")
+    write_asc(f"{folder}/release.depth.asc", np.where(mass.depth > 0, mass.depth, np.nan), 10.0)
+    Path(folder, "site.yaml").write_text("slope_site: 1\nterrain: {files: [dem.tif]}\nrelease: {polygon: p.geojson}\n")
+    Path(folder, "road.csv").write_text("1500,0\n1520,0\n1520,590\n1500,590\n")
+    return folder
+
+
+def test_a_site(place):
+    """The folder's terrain, body and road; the same as from the terrain."""
+    place(f"{BODY} --road road.wkt -o out")
+    status, _, err = place(f"{of_site()} -o site/known")
+    assert (status, err) == (0, "")
+    for key, values in rows()[1].items():
+        assert rows("site/known")[1][key] == pytest.approx(values, abs=1e-3)
+    assert summary("site/known")["road"] == pytest.approx(summary()["road"], abs=1e-4)
+    status, _, err = place("site --depth 3 -o out")
+    assert status == 2 and "site: is the folder of a site" in err and err.count("\n") == 1
+
+
+HEAD = "name,fall_m,length_m,volume_Mm3,confinement\n"
+
+
+@pytest.mark.parametrize("text, more, words", [
+    (HEAD + "".join(f"{name},900,2000,1,lateral\n" for name in "ABC"), "", ("at least 12", "got 3")),
+    (HEAD + "A,900,890,1,lateral\n", "", ("line 2", "metres", "890 and 900")),
+    ("name,fall_m,length_m\n", "", ("volume_Mm3", "confinement")),
+    (None, "--except Nowhere", ("--except", "Nowhere")),
+    (None, "--path road.wkt", ("road.wkt",)),
+    (None, "--road none.wkt", ("none.wkt", "existing")),
+    (None, "--confined --unconfined", ("--confined",)),
+])
+def test_bad_input_is_one_line(place, text, more, words):
+    if text:
+        Path("set.csv").write_text(text, encoding="utf-8")
+        more += " --set set.csv"
+    status, _, err = place(f"{BODY} {more} -o out")
+    assert status == 2 and err.count("\n") == 1 and all(word in err for word in words), err
+    assert not Path("out").exists()
+
+
+def examples():
+    text = (TOP / "doc" / "src" / "tool_mobility.rst").read_text(encoding="ascii")
+    return re.findall(r"^ +tools/slope mobility ((?!TERRAIN|SITE).*)", text + mobility_command.EPILOG, re.MULTILINE)
+
+
+@pytest.mark.parametrize("command", examples())
+def test_every_example_of_the_page_and_the_help_runs(place, command):
+    write_geojson("release.geojson", Point(300, 300).buffer(RADIUS))
+    write_geojson("road.geojson", box(1500, 0, 1520, 590))
+    shutil.copy("terrain.asc", "before.asc")
+    shutil.copytree(of_site(), "mine")
+    write_asc("after.asc", hillside()[0].z - disc(hillside(), (300, 300)).depth, 10.0)
+    local = " --local" * ("geojson" in command)       # the files of these tests have no CRS
+    status, out, err = place(command + local)
+    assert (status, err) == (0, "") and ("--help" in command or "crown at" in out)
+
+
+def test_pictures(known, tmp_path):
+    """Drawn from what is there: with a road, and of a mass that no set covers."""
+    mass = disc(hillside(), (300, 300))
+    lane = box(1000, 0, 1020, 1190)
+    charts.draw_map(tmp_path / "map.png", known, mass, lane)
+    charts.draw_profile(tmp_path / "profile.png", known._replace(outside=["x"]), mass, road.at_road(known.path, lane))
+    assert all((tmp_path / name).read_bytes()[:4] == b"\x89PNG" for name in ("map.png", "profile.png"))

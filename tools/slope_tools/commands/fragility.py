@@ -1,0 +1,204 @@
+"""slope fragility: how likely the bodies of find_slip fail at a peak acceleration."""
+import argparse
+import math
+from pathlib import Path
+from typing import Any, List
+
+import numpy as np
+
+from .. import disk, errors
+from ..errors import SlopeError
+from ..options import number, whole
+
+EPILOG = """\
+SLIPS: PREFIX.slips.csv of find_slip, or the folder with it; PREFIX.N.base.asc lie beside it. Spheres only.
+DIST: a number, or as in `slope study --vary`: LO:HI, uniform:LO:HI, loguniform:LO:HI, triangular:LO:MODE:HI,
+normal:MEAN:DEVIATION:LO:HI, lognormal:MEDIAN:DEVIATION_OF_LN:LO:HI, list:V1@WEIGHT,V2@WEIGHT,...
+MOTION: lines "t ax ay az" (s, m/s2), which `slope quake` makes of a record.
+
+examples:
+  tools/slope fragility slips --terrain terrain.asc --density 1900 --cohesion lognormal:8e3:0.3:1e3:4e4 \\
+      --friction normal:30:3:20:40 --peaks 100:1200:25 --record motion.txt --displacement 0.5 -o fragility
+  tools/slope fragility slips --terrain terrain.asc --density 1900 --cohesion 5e3:15e3 --friction 25:35 \\
+      --peaks 100:1200 --pseudo-static 0.65 --hazard hazard.csv -o fragility
+
+Writes fragility.csv, fragility.yaml and fragility.png.
+"""
+
+
+def add_parser(commands, **kwargs):
+    """Add `fragility` and its arguments to argparse's commands; return its parser."""
+    parser = commands.add_parser(
+        "fragility", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
+        description="How likely the bodies of find_slip fail at a peak acceleration.", **kwargs)
+    parser.add_argument("slips", metavar="SLIPS", type=Path, help="what find_slip wrote")
+    parser.add_argument("--terrain", metavar="TERRAIN.asc", type=Path, required=True, help="the terrain of find_slip")
+    parser.add_argument("--density", metavar="R", type=number, required=True, help="density of the ground, kg/m3")
+    parser.add_argument("--cohesion", metavar="DIST", required=True, help="Pa")
+    parser.add_argument("--friction", metavar="DIST", required=True,
+                        help="friction angle, degrees; tan:DIST: its tangent")
+    parser.add_argument("--water", metavar="DIST", default="0",
+                        help="pore pressure over the weight per area, from 0 (default) to below 1")
+    parser.add_argument("--correlation", metavar="R", type=number, default=0.0,
+                        help="between cohesion and friction, -1 to 1 (default 0)")
+    parser.add_argument("--peaks", metavar="LO:HI[:STEP]", required=True, help="largest horizontal accelerations, gal")
+    parser.add_argument("--record", metavar="MOTION", action="append", default=[], type=Path,
+                        help="a motion of the ground, which is scaled to each peak; several may be given")
+    parser.add_argument("--vertical", action="store_true", help="with the vertical component of the records")
+    parser.add_argument("--displacement", metavar="D", type=number,
+                        help="a body fails if it slides farther than this, m (default 0.1)")
+    parser.add_argument("--pseudo-static", metavar="FACTOR", type=number,
+                        help="instead of records: a body fails if F < 1 with k = FACTOR peak / g, which is cautious")
+    parser.add_argument("--hazard", metavar="CURVE.csv", type=Path,
+                        help="lines peak,exceedance (gal, per year): gives the annual frequency of failure")
+    parser.add_argument("--sample", metavar="N", type=whole, default=4096,
+                        help="samples of the strength, at least 256 (default 4096)")
+    parser.add_argument("--seed", metavar="S", type=whole, default=1, help="seed of the samples (default 1)")
+    parser.add_argument("-o", dest="output", metavar="DIR", type=Path, required=True, help="folder for the results")
+    return parser
+
+
+def run(args):
+    """Do the command; raises SlopeError on bad input. Prints medians, HCLPF and frequencies."""
+    from ..ensemble import fragility, fragility_files as files      # scipy, matplotlib
+    from ..slips import bodies
+    from ..survey import motion_file
+
+    peaks = peaks_of(args.peaks)
+    check(args)
+    soil = soil_of(args)
+    hazard = files.read_hazard(args.hazard) if args.hazard else None
+    disk.check_folder(args.output)
+    limit = 0.1 if args.displacement is None else args.displacement
+    failure: Any = fragility.PseudoStatic(args.pseudo_static) if args.pseudo_static is not None else \
+        fragility.Slide(limit, [motion_file.read(path) for path in args.record], args.vertical)
+    found = bodies.read(args.slips, args.terrain, args.density)
+    strengths = fragility.strengths_of(soil, math.ceil(args.sample / fragility.REPLICATES), args.seed)
+    capacity = fragility.capacities(found, strengths, failure)
+    names = [body.name for body in found]
+    columns = [capacity[:, :, k] for k in range(len(found))]
+    if len(found) > 1:
+        names.append(files.ANY)
+        columns.append(capacity.min(axis=2))
+    curves = [files.Curve(name, fragility.curve(one, peaks), fragility.fit(one, peaks),
+                          fragility.frequency(one, hazard, peaks) if hazard else None,
+                          float((one <= 0).all(axis=1).mean())) for name, one in zip(names, columns)]
+    kept: List[str] = []
+    warn = errors.warner("fragility", kept)
+    for text in warnings_of(curves, found, args.pseudo_static, len(args.record)):
+        warn(text)
+    about = {"slips": args.slips, "terrain": args.terrain, "density": args.density, "cohesion": args.cohesion,
+             "friction": args.friction, "water": args.water, "correlation": args.correlation,
+             "samples": len(capacity), "seed": args.seed, "records": args.record, "vertical": args.vertical,
+             "displacement": None if args.pseudo_static is not None else limit,
+             "pseudo_static": args.pseudo_static, "hazard": args.hazard, "warnings": kept}
+    files.write(args.output, peaks, curves, about)
+    print(summary(curves, args.output, files.FILES))
+
+
+def check(args):
+    """The numbers, and what goes together."""
+    if not args.density > 0:
+        raise SlopeError("--density", "must be > 0 kg/m3", f"{args.density:g}")
+    if not -1 <= args.correlation <= 1:
+        raise SlopeError("--correlation", "must be from -1 to 1", f"{args.correlation:g}")
+    if not 256 <= args.sample <= 2 ** 20:
+        raise SlopeError("--sample", "must be from 256 to 1048576", args.sample)
+    if not 0 <= args.seed < 2 ** 31:
+        raise SlopeError("--seed", "must be from 0 to 2147483647", args.seed)
+    if args.pseudo_static is None:
+        if not args.record:
+            raise SlopeError("--record", "must give a motion of the ground, or --pseudo-static a factor instead")
+        if args.displacement is not None and not args.displacement >= 0:
+            raise SlopeError("--displacement", "must be >= 0 m", f"{args.displacement:g}")
+    elif args.record or args.displacement is not None or args.vertical:
+        raise SlopeError("--pseudo-static", "must be without --record, --displacement and --vertical, which are of "
+                         "sliding blocks")
+    elif not args.pseudo_static > 0:
+        raise SlopeError("--pseudo-static", "must be > 0", f"{args.pseudo_static:g}")
+
+
+def peaks_of(text):
+    """The peaks of LO:HI[:STEP], gal."""
+    rule = "must be LO:HI or LO:HI:STEP with 0 < LO < HI and STEP > 0, at most 1000 peaks (gal)"
+    try:
+        parts = [float(word) for word in text.split(":")]
+    except ValueError:
+        parts = []
+    if len(parts) not in (2, 3) or not all(map(math.isfinite, parts)) or not 0 < parts[0] < parts[1]:
+        raise SlopeError("--peaks", rule, text)
+    step = parts[2] if len(parts) == 3 else (parts[1] - parts[0]) / 44
+    if not step > 0 or (parts[1] - parts[0]) / step > 1000:
+        raise SlopeError("--peaks", rule, text)
+    return parts[0] + step * np.arange(math.floor((parts[1] - parts[0]) / step + 1e-9) + 1)
+
+
+def soil_of(args):
+    """What is sampled, checked."""
+    from ..ensemble.fragility import Soil
+
+    tangent = args.friction.startswith("tan:")
+    return Soil(drawn("--cohesion", args.cohesion, 0.0, 1e8, "Pa"),
+                drawn("--friction", args.friction[4 * tangent:], 0.0, 10.0 if tangent else 89.0,
+                      "as a tangent" if tangent else "degrees"),
+                drawn("--water", args.water, 0.0, 0.99, "as a ratio"), tangent, args.correlation)
+
+
+def drawn(option, text, low, high, unit):
+    """A number, or a distribution of `slope study --vary`, with all values from low to high."""
+    from ..ensemble import distributions
+
+    try:
+        one: Any = float(text)
+        values = [one]
+    except ValueError:
+        one = distributions.distribution(option[2:], text, option, text)
+        try:
+            values = [float(value) for value in one.limits]
+        except ValueError:
+            raise SlopeError(option, "must have numbers in its list", text) from None
+    if not all(low <= value <= high for value in values):
+        raise SlopeError(option, f"must be from {low:g} to {high:g} {unit}", text)
+    return one
+
+
+def warnings_of(curves, found, pseudo_static, records):
+    """What a reader must know, in words."""
+    from ..slips.columns import FEWEST
+
+    if pseudo_static is not None:
+        yield "pseudo-static: a body that is at F < 1 for an instant counts as failed, which is cautious"
+    elif records == 1:
+        yield "one record: how much records differ is not seen, beta_r is 0"
+    for body in found:
+        if len(body.columns.area) < FEWEST:
+            yield f"body {body.name} has {len(body.columns.area)} columns, fewer than {FEWEST}: its numbers are rough"
+    for one in curves:
+        if one.at_rest > 0.01:
+            yield f"{one.title}: {100 * one.at_rest:.3g} % of the strengths fail without an earthquake"
+        if one.fit is None:
+            yield f"{one.title}: no lognormal fit, the peaks show fewer than three probabilities between 0 and 1"
+        elif one.fit.off > 0.05:
+            yield f"{one.title}: the lognormal fit is off by up to {one.fit.off:.2f}"
+        if one.fit and one.fit.at_hclpf > 1.5 * one.fit.at_hclpf_fitted:
+            yield (f"{one.title}: at the HCLPF {100 * one.fit.at_hclpf:.2g} % fail, the lognormal fit says "
+                   f"{100 * one.fit.at_hclpf_fitted:.2g} %: it is too favourable there")
+        if one.frequency and one.frequency.beyond > 0.1 * one.frequency.total.value:
+            yield (f"{one.title}: peaks above the hazard curve's last may add up to {one.frequency.beyond:.2g} "
+                   "failures per year")
+
+
+def summary(curves, folder, files):
+    """What the user needs to know."""
+    lines = []
+    for one in curves:
+        line = one.title
+        if one.fit:
+            line += (f": median {one.fit.median:.4g} gal (standard error {one.fit.median_error:.2g}), beta_r "
+                     f"{one.fit.beta_r:.2f}, beta_u {one.fit.beta_u:.2f}, HCLPF {one.fit.hclpf:.4g} gal")
+        if one.frequency:
+            total = one.frequency.total
+            line += (f"; fails {float(total.value):.3g} times per year (90 %: {float(total.low):.3g} to "
+                     f"{float(total.high):.3g})")
+        lines.append(line)
+    return "\n".join([*lines, f"written to {folder}: {' '.join(files)}"])

@@ -1,0 +1,111 @@
+"""slope mobility: how likely a mass goes beyond each point of its fall path, by how far known events went."""
+import argparse
+from pathlib import Path
+
+from .. import disk
+from ..case.site_layers import ROAD
+from ..errors import SlopeError, printer
+from ..mobility import body, events, exceedance, fall_path, relation, results, road
+from ..survey import lines, polygons, release
+from ..survey.crs import as_crs
+from .release_arguments import add_body, wanted
+
+EPILOG = """\
+EVENTS.csv: columns name, fall_m, length_m (crown to toe, in plan along the path), volume_Mm3 (million m3) and
+confinement (frontal, lateral or unconfined); at least 12 events.
+Writes DIR/mobility.csv (length_m,height_m,x,y,exceedance along the fall path), mobility_map.png, mobility_profile.png
+and mobility.yaml.
+
+examples:
+  tools/slope mobility terrain.asc --polygon release.geojson --depth 40 --road road.geojson -o known
+  tools/slope mobility before.asc --scar after.asc --unconfined --except "Frank Slide" -o frank
+  tools/slope mobility mine --confined -o mine/mobility
+"""
+
+
+def add_parser(commands, **kwargs):
+    """Add `mobility` and its arguments to argparse's commands; return its parser."""
+    parser = commands.add_parser(
+        "mobility", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
+        description="The probability that a mass goes beyond each point of its fall path, by known events of its "
+                    "volume and height. No run is needed.", **kwargs)
+    parser.add_argument("terrain", metavar="TERRAIN.asc|SITE",
+                        help="the ground before the collapse, as slope terrain wrote it; or the folder of a site")
+    parser.add_argument("-o", dest="output", metavar="DIR", required=True, type=Path, help="folder of the results")
+    add_body(parser.add_argument_group("the body, as slope release takes it (not with SITE)"))
+    parser.add_argument("--set", metavar="EVENTS.csv", dest="events", type=Path, default=events.OWN,
+                        help="known events (default: 49 rock avalanches of Canada)")
+    parser.add_argument("--except", metavar="NAME", dest="left_out", action="append", default=[],
+                        help="leave out this event of the set; may be given several times")
+    kind = parser.add_mutually_exclusive_group()
+    kind.add_argument("--confined", action="store_const", const=True, dest="confined",
+                      help="the path is laterally confined, a valley (default: both are shown)")
+    kind.add_argument("--unconfined", action="store_const", const=False, dest="confined", help="the path is not")
+    parser.add_argument("--road", metavar="POLYGON",
+                        help="how likely the mass reaches it (default with SITE: its road)")
+    parser.add_argument("--path", metavar="LINE", type=Path,
+                        help="a line from the crown down, instead of the steepest descent")
+    return parser
+
+
+def run(args):
+    """Do the command; raises SlopeError on bad input. Prints what was found and written."""
+    disk.check_folder(args.output)
+    known = chosen(args.events, args.left_out)
+    relation.of_events(known, args.events)      # before the terrain is read
+    tell = printer("mobility")
+    site = Path(args.terrain).is_dir()
+    mass = of_site(args) if site else of_release(args, tell)
+    lane = road_of(args, site, mass)
+    path = args.path and fall_path.given(mass, line_of(args, mass), args.path)
+    found = exceedance.of_body(mass, known, args.confined, args.events, path)
+    met = lane and road.at_road(found.path, lane)
+    source = results.Source(args.terrain, mass, str(args.events), len(known), args.left_out, lane)
+    results.write(args.output, found, source, met)
+    print("\n".join(results.words(found, source, met)))
+    for line in results.doubts(found):
+        tell(line)
+    print(f"wrote {', '.join(str(args.output / name) for name in results.FILES)}")
+
+
+def chosen(path, left_out):
+    """The events of a set without those left out, all of which it must have."""
+    every = events.read(path)
+    names = {one.name for one in every}
+    for name in left_out:
+        if name not in names:
+            raise SlopeError("--except", f"must be an event of {path}, such as {', '.join(sorted(names)[:3])}", name)
+    return [one for one in every if one.name not in left_out]
+
+
+def of_site(args):
+    """The body of a site's folder."""
+    asked = wanted(args)
+    if asked != release.Wanted(args.terrain, local=args.local):
+        raise SlopeError(args.terrain, "is the folder of a site, whose body is given: no options of slope release")
+    return body.of_site(Path(args.terrain))
+
+
+def of_release(args, tell):
+    """The body that the options ask for."""
+    asked = wanted(args)
+    found = release.body_of(asked)
+    for line in found.warnings:
+        tell(line)
+    return body.of_release(found, asked.where)
+
+
+def road_of(args, site, mass):
+    """The road in local metres; None without one."""
+    if args.road:
+        return polygons.read_local(args.road, mass.raster, args.local, args.crs and as_crs("--assign-crs", args.crs))
+    own = Path(args.terrain, ROAD)
+    return polygons.read_local(own, mass.raster, local=True) if site and own.is_file() else None
+
+
+def line_of(args, mass):
+    """The line of --path."""
+    found = lines.read_local(args.path, mass.raster, args.local, "path").geoms
+    if len(found) != 1:
+        raise SlopeError(args.path, "must hold one line, for --path", f"{len(found)} lines")
+    return found[0]

@@ -1,0 +1,130 @@
+"""What `slope fragility` reads and writes: the curve of a hazard, tables, numbers, a picture."""
+import csv
+import math
+from pathlib import Path
+from typing import Any, Dict, List, NamedTuple, Optional, Sequence
+
+import numpy as np
+from scipy import stats
+
+from .. import disk
+from ..drawing import figures, pictures
+from ..drawing.figures import plt
+from ..errors import SlopeError
+from .fragility import Band, Fit, Frequency, Hazard
+
+ANY = "any"
+FILES = ["fragility.csv", "fragility.png", "fragility.yaml"]
+
+
+class Curve(NamedTuple):
+    """Of one body, or of any of them."""
+    name: str
+    band: Band
+    fit: Optional[Fit]
+    frequency: Optional[Frequency]
+    at_rest: float      # share of the samples that fail without an earthquake
+
+    @property
+    def title(self) -> str:
+        return "any body" if self.name == ANY else f"body {self.name}"
+
+
+def read_hazard(path: Path) -> Hazard:
+    """Lines "peak,exceedance" (gal, per year), perhaps with a first line of words; SlopeError if it does not fall."""
+    try:
+        with open(path, newline="", encoding="utf-8-sig") as source:
+            rows = [row for row in csv.reader(source) if row and not row[0].lstrip().startswith("#")]
+    except (OSError, UnicodeDecodeError) as error:
+        raise SlopeError(path, f"cannot be read ({error})") from None
+    found: List[List[float]] = []
+    for place, row in enumerate(rows, 1):
+        try:
+            values = [float(word) for word in row]
+        except ValueError:
+            if place == 1:
+                continue        # names of the columns
+            values = []
+        if len(values) != 2 or not all(math.isfinite(one) and one > 0 for one in values):
+            raise SlopeError(f"{path}: row {place}", "must be a peak (gal) and how often it is exceeded per year, both "
+                             "> 0", ",".join(row)[:60])
+        if found and not values[0] > found[-1][0]:
+            raise SlopeError(f"{path}: row {place}", "must have a larger peak than the row before, "
+                             f"{found[-1][0]:g} gal", f"{values[0]:g} gal")
+        if found and not values[1] < found[-1][1]:
+            raise SlopeError(f"{path}: row {place}", "must be exceeded less often than the row before, "
+                             f"{found[-1][1]:g} per year", f"{values[1]:g} per year at {values[0]:g} gal")
+        found.append(values)
+    if len(found) < 2:
+        raise SlopeError(path, "must have two rows at least, a peak (gal) and how often it is exceeded per year")
+    peaks, rates = np.array(found).T
+    return Hazard(peaks, rates)
+
+
+def about_curve(one: Curve) -> Dict[str, Any]:
+    """The numbers of a curve for the YAML."""
+    about: Dict[str, Any] = {"body": one.name, "fails_without_earthquake": one.at_rest, "lognormal": None}
+    if one.fit:
+        about["lognormal"] = {
+            "median_gal": one.fit.median, "beta": one.fit.beta, "beta_r": one.fit.beta_r, "beta_u": one.fit.beta_u,
+            "hclpf_gal": one.fit.hclpf, "median_standard_error": one.fit.median_error,
+            "beta_standard_error": one.fit.beta_error, "largest_difference": one.fit.off,
+            "probability_at_hclpf": one.fit.at_hclpf, "probability_at_hclpf_fitted": one.fit.at_hclpf_fitted}
+    if one.frequency:
+        total = one.frequency.total
+        about["annual_frequency"] = {
+            "value": float(total.value), "low": float(total.low), "high": float(total.high),
+            "more_at_most": one.frequency.beyond,
+            "contributions": [{"from_gal": a, "to_gal": None if math.isinf(b) else b, "frequency": part}
+                              for a, b, part in one.frequency.parts]}
+    return about
+
+
+def write(folder: Path, peaks: np.ndarray, curves: Sequence[Curve], about: Dict[str, Any]) -> None:
+    """fragility.csv, .png and .yaml, all of them or none."""
+    with disk.complete(folder, "fragility.yaml") as new:
+        with open(new / "fragility.csv", "w", encoding="ascii", newline="") as out:
+            rows = csv.writer(out, lineterminator="\n")
+            rows.writerow(["body", "peak_gal", "probability", "low", "high", "lognormal"])
+            for one in curves:
+                fitted = fitted_at(one.fit, peaks)
+                for k, peak in enumerate(peaks):
+                    band = (f"{value[k]:.6g}" for value in one.band)
+                    rows.writerow([one.name, f"{peak:g}", *band, "" if fitted is None else f"{fitted[k]:.6g}"])
+        draw(new / "fragility.png", peaks, curves)
+        disk.write_yaml(new / "fragility.yaml", {**about, "curves": [about_curve(one) for one in curves],
+                                                 "files": FILES}, "slope fragility: peaks in gal, rates per year")
+
+
+def fitted_at(fit: Optional[Fit], peaks: np.ndarray) -> Optional[np.ndarray]:
+    """Probabilities of the lognormal fit."""
+    return None if fit is None else stats.norm.cdf(np.log(peaks / fit.median) / fit.beta)
+
+
+def draw(path: Path, peaks: np.ndarray, curves: Sequence[Curve]) -> None:
+    """The curves with their bands and fits; with a hazard curve also where the frequency of the last one comes from."""
+    parts = curves[-1].frequency
+    with plt.rc_context(figures.STYLE):
+        figure, axes = plt.subplots(1, 2 if parts else 1, figsize=(figures.FULL, 2.9), squeeze=False,
+                                    width_ratios=[3, 2] if parts else None)
+        left = axes[0, 0]
+        for k, one in enumerate(curves):
+            colour = "black" if one.name == ANY else figures.COLOURS[k % len(figures.COLOURS)]
+            left.fill_between(peaks, one.band.low, one.band.high, color=colour, alpha=0.2, linewidth=0)
+            label = one.title + (f": median {one.fit.median:.0f} gal, HCLPF {one.fit.hclpf:.0f} gal" if one.fit else "")
+            left.plot(peaks, one.band.value, color=colour, linewidth=1.2, label=label)
+            if one.fit:
+                left.plot(peaks, fitted_at(one.fit, peaks), color=colour, linewidth=0.8, linestyle="--")
+        left.set(xlim=(peaks[0], peaks[-1]), ylim=(0, 1), xlabel="peak acceleration (gal)",
+                 ylabel="probability of failure")
+        left.set_title("with bands of the sampling (90 %); dashed: lognormal", loc="left")
+        left.legend(loc="best")
+        if parts:
+            right = axes[0, 1]
+            ends = [(a, b if math.isfinite(b) else 1.1 * a) for a, b, _ in parts.parts]
+            widths = [b - a for a, b in ends]
+            right.bar([a for a, _ in ends], [part / wide for wide, (*_, part) in zip(widths, parts.parts)], widths,
+                      align="edge", color=figures.COLOURS[0], edgecolor="white", linewidth=0.3)
+            right.set(xlabel="peak acceleration (gal)", ylabel="failures per year and gal")
+            right.set_title(f"{curves[-1].title}: {float(parts.total.value):.3g} per year", loc="left")
+        pictures.save(figure, path)

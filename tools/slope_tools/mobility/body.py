@@ -1,0 +1,79 @@
+"""The mass that falls: ground before and depth of the body on the same grid, from a release, a site, or arrays."""
+from pathlib import Path
+from typing import NamedTuple, Tuple
+
+import numpy as np
+
+from ..case import site_choices, site_folder
+from ..errors import SlopeError
+from ..survey import rasters, release, release_area
+from ..survey.rasters import Raster
+
+
+class Body(NamedTuple):
+    """raster: the ground before; depth (m, 0 beside the body), of its shape; where: what messages name."""
+    raster: Raster
+    depth: np.ndarray
+    where: str
+
+    @property
+    def cell(self) -> float:
+        return float(self.raster.transform.a)
+
+    @property
+    def volume(self) -> float:
+        """m3; exact, as the body lies between two bilinear surfaces."""
+        return float(self.depth.sum()) * self.cell ** 2
+
+    @property
+    def base(self) -> np.ndarray:
+        """The ground without the body, m."""
+        return self.raster.z - self.depth
+
+    @property
+    def crown(self) -> Tuple[float, float, float]:
+        """x, y, z (m) of the highest ground in the body."""
+        row, column = np.unravel_index(np.argmax(np.where(self.depth > 0, self.raster.z, -np.inf)), self.depth.shape)
+        x, y = self.raster.transform * (column + 0.5, row + 0.5)
+        return float(x), float(y), float(self.raster.z[row, column])
+
+    def fall_line(self) -> Tuple[np.ndarray, np.ndarray]:
+        """Of the body: its centre of volume (x, y, m), and the unit vector down the plane that fits its ground best."""
+        row, column = np.nonzero(self.depth)
+        x, y = self.raster.transform * np.array([column + 0.5, row + 0.5])
+        weight = self.depth[row, column]
+        top, left = row.min(), column.min()
+        part = slice(top, row.max() + 1), slice(left, column.max() + 1)
+        columns, _ = self.raster.transform * (np.arange(left, column.max() + 1) + 0.5, 0.0)
+        _, rows = self.raster.transform * (0.0, np.arange(top, row.max() + 1) + 0.5)
+        downhill, slope = release_area.fall(columns, rows, self.raster.z[part], self.depth[part] > 0)
+        if slope < release_area.FLAT:
+            raise SlopeError(self.where, f"the ground of the body must fall by at least {release_area.FLAT:g} degree, "
+                             "for a fall path", f"{slope:.3g}, flat")
+        return np.array([x @ weight, y @ weight]) / weight.sum(), downhill
+
+
+def of_arrays(raster: Raster, depth: np.ndarray, where: str) -> Body:
+    """raster: the ground before; depth: m, NaN or 0 beside the body; SlopeError without a body."""
+    depth = np.where(np.isfinite(raster.z), np.maximum(np.nan_to_num(depth), 0.0), 0.0)
+    if not depth.any():
+        raise SlopeError(where, "must hold a body that is released")
+    return Body(raster, depth, where)
+
+
+def of_release(found: release.Body, where: str) -> Body:
+    depth = np.zeros(found.raster.z.shape)
+    row, column = found.area.corner
+    rows, columns = found.slip.shape
+    depth[row:row + rows, column:column + columns] = np.nan_to_num(found.area.z - found.slip)
+    return of_arrays(found.raster, depth, where)
+
+
+def of_site(folder: Path) -> Body:
+    """The body of a folder that slope site made."""
+    site_choices.read(folder)       # a site, and one of this version
+    terrain, depth = folder / site_folder.TERRAIN, folder / f"{site_folder.BODY}.depth.asc"
+    raster, found = rasters.read_asc_local(terrain), rasters.read_asc_local(depth, heights=False)
+    if found.z.shape != raster.z.shape or not found.transform.almost_equals(raster.transform):
+        raise SlopeError(depth, f"must have the grid of {terrain}: rebuild the folder with slope site")
+    return of_arrays(raster, found.z, str(folder))

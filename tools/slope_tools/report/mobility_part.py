@@ -1,0 +1,89 @@
+"""Where the runs of a report lie among known events, by how far their deposits reach.
+
+A run's length is that of its connected deposit, from the highest released ball, in plan and as the crow flies. That of
+a known event is the length of its path from crown to tip. The first is the shorter one: a path has bends, and a mapped
+tip may lie beyond the last ground that is covered by more than the connected deposit's 0.1 m. So a run seems to be less
+mobile than it is, which is the safe side. (A cell of the deposit adds up to its diagonal.)
+"""
+from typing import List, NamedTuple, Optional, Tuple
+
+from ..errors import SlopeError
+from ..mobility import body, events, exceedance, relation
+from ..mobility.results import percent
+
+WHAT = "Known events"
+
+
+class Lies(NamedTuple):
+    """Where runs lie; mobility: None, and why, where no set covers them."""
+    lengths: List[float]                # m, of the connected deposits that there are
+    mobility: Optional[exceedance.Mobility]
+    why: str
+
+
+def content(data, ground, numbers) -> List[Tuple[str, str]]:
+    """The row of the table of limits."""
+    found = where_lie(data, ground)
+    if found.mobility is None:
+        return [(WHAT, found.why)]
+    return [(WHAT, sentence(found, numbers, data.label(data.result)))]
+
+
+def where_lie(data, ground) -> Lies:
+    """The runs of a data.Data on its ground.Ground among the events of our own set."""
+    lengths = lengths_of(data)
+    known = events.read()
+    low, high = relation.of_events(known).volumes
+    volume = data.largest_release() / 1e6
+    if not low <= volume <= high:
+        return Lies(lengths, None, f"No set of known events covers a volume of {volume:.3g} million m3; ours are of "
+                                   f"{low:g} to {high:g}. How far it runs rests on the parameters alone.")
+    try:
+        mass = body.of_arrays(ground.raster._replace(z=ground.before), ground.slip_depth, "the run")
+        found = exceedance.of_body(mass, known)
+    except SlopeError as error:
+        return Lies(lengths, None, f"The runs cannot be compared with known events: {error}.")
+    if not found.in_range:
+        return Lies(lengths, None, "; ".join(f"{line[0].upper()}{line[1:]}" for line in found.outside)
+                    + ". How far the mass runs rests on the parameters alone.")
+    if not lengths:
+        return Lies(lengths, None, "No run has a connected deposit, whose length could be compared with known events.")
+    return Lies(lengths, found, "")
+
+
+def lengths_of(data) -> List[float]:
+    """Of the connected deposit of each finished run that has one."""
+    if data.study:
+        return sorted(row["connected_m"] for row in data.finished if row.get("connected_m") is not None)
+    one = data.connected()
+    return [one.distance] if one else []
+
+
+def sentence(found: Lies, numbers, label: str) -> str:
+    """How far the runs reach, and how many known events end there or before."""
+    assert found.mobility is not None
+    ends = list(dict.fromkeys((found.lengths[0], found.lengths[-1])))
+    reach = " to ".join(numbers("connected deposit", "m", length, "connected_m", label) for length in ends)
+    shares = []
+    for kind in (False, True):
+        lies = [found.mobility.where_lies(length, kind) for length in ends]
+        for one in lies:
+            numbers.rows.append((f"known events that reach at most as far, {exceedance.WORDS[kind]}", "%", label,
+                                 percent(one.at_most).split()[-2], 100 * one.at_most))
+        shares.append("at least " * lies[-1].beyond
+                      + " to ".join(dict.fromkeys(percent(one.at_most) for one in lies)))
+    who = "The connected deposit reaches" if len(ends) == 1 else "The connected deposits of the runs reach"
+    return (f"{who} {reach} m: as far as {shares[0]} of rock avalanches of this volume and height do ({shares[1]} "
+            "where the path is laterally confined); the others go farther. The lengths of the runs are as the crow "
+            "flies and without stray balls, those of the events along the path to the tip, so that this errs on the "
+            "safe side (slope mobility)." + beyond_the_terrain(found.mobility, numbers, label))
+
+
+def beyond_the_terrain(mobility: exceedance.Mobility, numbers, label: str) -> str:
+    """What the edge of the terrain hides, if half of the events of either kind go beyond; else nothing."""
+    shares = [mobility.beyond_path(kind) for kind in (False, True)]
+    if max(shares) <= 0.5:      # with hardly any left, the path ends within the terrain
+        return ""
+    length = numbers("fall path within the terrain", "m", mobility.path.length[-1], None, label)
+    return (f" The fall path leaves the terrain after {length} m, where {percent(shares[0])} ({percent(shares[1])}) of "
+            "them go on: no run shows what lies there.")

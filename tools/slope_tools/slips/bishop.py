@@ -1,0 +1,80 @@
+"""Bishop's factor of safety and yield coefficient in three dimensions, of many strengths at once.
+
+The equations are those of doc/src/slip_analysis.rst. With t = tan phi / F, the resisting moment over F is
+
+    c / F a(t) + (1 - kv) b(t) + q w(t)
+
+where a, b and w are sums over the columns that depend on t alone; q is the ratio of pore pressure, or 1 with a water
+table. Strengths: cohesion (Pa), tangent of the friction angle, ratio of pore pressure; each a number or an array.
+"""
+from typing import NamedTuple, Tuple, Union
+
+import numpy as np
+
+from .columns import Columns
+
+Values = Union[float, np.ndarray]
+LEAST_M = 0.2           # of m_alpha (Whitman and Bailey 1967)
+TOLERANCE = 1e-10
+MOST_STEPS = 200
+CHUNK = 4_000_000       # columns times strengths that are held in memory
+
+
+class Strengths(NamedTuple):
+    cohesion: Values        # Pa
+    tangent: Values         # of the friction angle
+    water: Values = 0.0     # pore pressure over the weight per area; without effect where the columns have a table
+
+    def arrays(self) -> Tuple[np.ndarray, ...]:
+        """All of the same shape, one-dimensional."""
+        return tuple(np.broadcast_arrays(*(np.atleast_1d(np.asarray(one, float)) for one in self)))
+
+
+def sums(body: Columns, t: np.ndarray) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The sums a, b and w at each t: of cohesion, weight and water."""
+    force = body.weight * (body.base / body.area) if body.pressure is None else body.pressure * body.base
+    right = np.stack([body.lever * body.base * body.sine, body.lever * body.weight,
+                      body.lever * force * body.sine], axis=1)
+    shear = float(body.lever @ body.base), float(body.lever @ force)
+    found = np.empty((len(t), 3))
+    step = max(1, CHUNK // len(body.area))
+    for start in range(0, len(t), step):
+        part = t[start:start + step, None]
+        found[start:start + step] = (1 / np.maximum(body.cosine + body.sine * part, LEAST_M)) @ right
+    cohesion, weight, water = found.T
+    return shear[0] - t * cohesion, t * weight, t * (t * water - shear[1])
+
+
+def driving(body: Columns, horizontal: Values = 0.0, vertical: float = 0.0) -> Values:
+    """Moment of the weight and of the inertia, N m; horizontal and vertical (upwards) in parts of the weight."""
+    return (1 - vertical) * float(body.weight @ body.u) + np.asarray(horizontal) * float(body.weight @ body.depth)
+
+
+def resistance(body: Columns, strengths: Strengths, factor: np.ndarray, vertical: float = 0.0) -> np.ndarray:
+    """Resisting moment over F, N m, at these F."""
+    cohesion, tangent, water = strengths.arrays()
+    a, b, w = sums(body, tangent / factor)
+    return cohesion / factor * a + (1 - vertical) * b + (1.0 if body.pressure is not None else water) * w
+
+
+def yield_coefficient(body: Columns, strengths: Strengths, vertical: float = 0.0) -> np.ndarray:
+    """The horizontal k at which F is 1; negative for a body that slides without an earthquake."""
+    cohesion = strengths.arrays()[0]
+    left = resistance(body, strengths, np.ones(len(cohesion)), vertical) - driving(body, 0.0, vertical)
+    return left / float(body.weight @ body.depth)
+
+
+def factor_of_safety(body: Columns, strengths: Strengths, horizontal: float = 0.0, vertical: float = 0.0) -> np.ndarray:
+    """F of each strength; infinite where nothing drives the body."""
+    count = len(strengths.arrays()[0])
+    load = float(driving(body, horizontal, vertical))
+    if not load > 0:
+        return np.full(count, np.inf)
+    factor = np.ones(count)
+    for _ in range(MOST_STEPS):
+        new = np.maximum(factor * resistance(body, strengths, factor, vertical) / load, 1e-9)
+        done = np.abs(new - factor) <= TOLERANCE * new
+        factor = new
+        if done.all():
+            break
+    return factor

@@ -1,0 +1,85 @@
+"""The bodies that `find_slip` kept: PREFIX.slips.csv and PREFIX.N.base.asc."""
+import csv
+import math
+from pathlib import Path
+from typing import Dict, List, NamedTuple
+
+import numpy as np
+
+from ..errors import SlopeError
+from ..survey import rasters
+from . import columns
+
+END = ".slips.csv"
+NUMBERS = ("x", "y", "z", "radius", "direction", "volume")
+SAME_BASE = 0.05        # m; a base that differs more from the sphere is none
+SAME_VOLUME = 0.05      # a larger difference means another terrain
+
+
+class Body(NamedTuple):
+    name: str               # its rank, 1 is the one with the least factor of safety
+    direction: float        # of sliding, degrees counterclockwise from +x
+    columns: columns.Columns
+
+
+def table_of(path: Path) -> Path:
+    """PREFIX.slips.csv of that name, or the one in a folder."""
+    if path.is_file():
+        return path
+    found = sorted(path.glob("*" + END)) if path.is_dir() else []
+    if len(found) != 1:
+        raise SlopeError(path, f"must be PREFIX{END} of find_slip, or a folder with one", f"{len(found)} files")
+    return found[0]
+
+
+def rows_of(path: Path) -> List[Dict[str, float]]:
+    """The rows of the table, with NUMBERS and the rank."""
+    try:
+        with open(path, newline="", encoding="utf-8") as source:
+            rows = list(csv.DictReader(source))
+    except (OSError, UnicodeDecodeError) as error:
+        raise SlopeError(path, f"cannot be read ({error})") from None
+    if not rows:
+        raise SlopeError(path, "must hold a surface, it has none")
+    found = []
+    for place, row in enumerate(rows, 2):
+        one = {}
+        for name in ("rank", *NUMBERS):
+            try:
+                one[name] = float(row.get(name) or "")
+            except ValueError:
+                one[name] = math.nan
+            if not math.isfinite(one[name]):
+                raise SlopeError(f"{path}: line {place}", f"must have a number in the column {name}", row.get(name))
+        found.append(one)
+    return found
+
+
+def read(path: Path, terrain: Path, density: float) -> List[Body]:
+    """The bodies of a table on their terrain; density kg/m3.
+
+    Columns have the exact base of the sphere within the raster of the body. SlopeError for another terrain, and for
+    surfaces that are no spheres.
+    """
+    source = table_of(path)
+    ground = rasters.read_asc_local(terrain)
+    prefix = source.name[:-len(END)] if source.name.endswith(END) else source.stem
+    found = []
+    for row in rows_of(source):
+        rank = f"{row['rank']:g}"
+        file = source.with_name(f"{prefix}.{rank}.base.asc")
+        base = rasters.read(file)
+        if base.z.shape != ground.z.shape or not base.transform.almost_equals(ground.transform, 1e-6):
+            raise SlopeError(file, f"must be on the cells of {terrain}")
+        centre, radius = (row["x"], row["y"], row["z"]), row["radius"]
+        inside = columns.largest(ground, base.z)
+        off = np.abs(base.z - columns.base_of(ground, centre, radius))[inside]
+        if not np.nanmedian(off) <= SAME_BASE:
+            raise SlopeError(file, f"must be the sphere of {source.name}, within {SAME_BASE:g} m",
+                             f"{np.nanmedian(off):.3g} m")
+        body = columns.of_sphere(ground, centre, radius, row["direction"], density, inside)
+        if not abs(body.volume / row["volume"] - 1) <= SAME_VOLUME:
+            raise SlopeError(terrain, f"must be the terrain of {source.name}, on which body {rank} has "
+                             f"{row['volume']:.5g} m3", f"{body.volume:.5g} m3")
+        found.append(Body(rank, row["direction"], body))
+    return found

@@ -1,0 +1,134 @@
+"""Features of the files of a GIS: which layer, which CRS, what geometry; the one place that asks fiona.
+
+A file may be named as QGIS does, FILE|layername=NAME. Without a layer it is the only one, or the only one of the wanted
+geometry.
+"""
+import contextlib
+import io
+from pathlib import Path
+from typing import Any, Callable, List, NamedTuple, Optional, Sequence, Tuple
+
+import fiona
+from rasterio.crs import CRS
+from shapely.errors import ShapelyError
+from shapely.geometry import shape
+
+from ..errors import SlopeError
+
+MARK = "layername="         # QGIS: FILE|layername=NAME|geometrytype=...
+MAGIC = bytes([0, 0, 0x27, 0x0a])       # begins a shapefile
+SHOWN = 6                   # names of layers in a message
+
+
+class Source(NamedTuple):
+    """A file, and its layer if one is named."""
+    path: str
+    layer: Optional[str]
+
+
+class Found(NamedTuple):
+    """What a file holds."""
+    features: List[Tuple[str, Any]]     # where (file and feature, for messages), geometry of shapely
+    crs: Optional[CRS]
+    empty: int                          # features without a geometry, which are not among them
+
+
+def ignore(_: str) -> None:
+    """A function for warnings of which nobody wants to hear."""
+
+
+def source(name: object) -> Source:
+    """File and layer of FILE or FILE|layername=NAME."""
+    path, *more = str(name).split("|")
+    if not more or Path(str(name)).exists():
+        return Source(str(name), None)
+    return Source(path, next((word[len(MARK):] for word in more if word.startswith(MARK)), None))
+
+
+def named(name: object, layer: Optional[str], option: str = "--layer") -> str:
+    """FILE|layername=NAME of a file and of the layer that an option names; SlopeError if both name one."""
+    if layer is None:
+        return str(name)
+    if source(name).layer is not None:
+        raise SlopeError(option, f"must not be given with {name}, which names a layer", layer)
+    return f"{name}|{MARK}{layer}"
+
+
+def require_file(name: object) -> Source:
+    """The Source of a name; SlopeError unless its file is there."""
+    found = source(name)
+    if not Path(found.path).is_file():
+        raise SlopeError(found.path, "must be an existing file")
+    return found
+
+
+def read(name: object, kind: str, warn: Callable[[str], Any] = ignore) -> Found:
+    """The features of a file, of the layer that it names or the one with geometries of a kind ("Polygon", "Line").
+
+    Raises SlopeError, which names the file.
+    """
+    where = require_file(name)
+    check_shapefile(Path(where.path))
+    what = {"Polygon": "polygons", "Line": "lines"}[kind]
+    try:
+        # fiona prints what it cannot decode of GDAL's messages
+        with contextlib.redirect_stderr(io.StringIO()), fiona.Env():
+            layer = where.layer if where.layer is not None else only_layer(where.path, kind)
+            if where.layer is not None and layer not in fiona.listlayers(where.path):
+                raise SlopeError(where.path, "must have the named layer, one of "
+                                 f"{some(fiona.listlayers(where.path))}", layer)
+            with fiona.open(where.path, layer=layer) as data:
+                raw = [(f"{where.path}: feature {feature['id']}", feature["geometry"]) for feature in data]
+                crs = CRS.from_wkt(data.crs_wkt) if data.crs_wkt else None
+    except SlopeError:
+        raise
+    except Exception as error:  # GDAL's too, of classes that fiona keeps private
+        raise SlopeError(where.path, f"must be {what} that GDAL can read: GeoJSON, shapefile, or another format of it "
+                         f"({error})") from error
+    features = [(place, shaped(place, geometry, kind)) for place, geometry in raw if geometry is not None]
+    if raw and not features:
+        raise SlopeError(where.path, f"must hold {what}, none of its features has a geometry", len(raw))
+    empty = len(raw) - len(features)
+    if empty:
+        first = next(place for place, geometry in raw if geometry is None)
+        warn(f"{first} has no geometry" + f", and {empty - 1} more" * (empty > 1) + ": left out")
+    return Found(features, crs, empty)
+
+
+def shaped(where: str, geometry: Any, kind: str):
+    """The geometry of a feature."""
+    try:
+        return shape(geometry)
+    except (ShapelyError, ValueError, TypeError, AttributeError, NotImplementedError) as error:
+        raise SlopeError(where, f"must be a {kind.lower()} ({error})") from error
+
+
+def only_layer(path: str, kind: str) -> str:
+    """The layer of a file, the one with geometries of a kind if it has several; SlopeError if that is not clear."""
+    layers = fiona.listlayers(path)
+    if len(layers) == 1:
+        return layers[0]
+    fit = []
+    for layer in layers:
+        with fiona.open(path, layer=layer) as data:
+            if kind in str(data.schema["geometry"]):
+                fit.append(layer)
+    if len(fit) != 1:
+        raise SlopeError(path, f"must name one of its layers, {path}|{MARK}NAME (or --layer, where there is that "
+                         f"option): {some(fit or layers)}", f"{len(layers)} layers")
+    return fit[0]
+
+
+def some(names: Sequence[str]) -> str:
+    return ", ".join(names[:SHOWN]) + ", ..." * (len(names) > SHOWN)
+
+
+def check_shapefile(path: Path) -> None:
+    """Raise SlopeError if a shapefile lacks the index that GDAL needs."""
+    if path.suffix.lower() != ".shp" or any(path.with_suffix(suffix).is_file() for suffix in (".shx", ".SHX")):
+        return
+    with open(path, "rb") as data:
+        is_one = data.read(4) == MAGIC
+    if is_one:
+        raise SlopeError(path, f"must have its other files beside it, {path.with_suffix('.shx').name} is missing: copy "
+                         "all of the shapefile (.shp, .shx, .dbf, .prj), or save it as GeoJSON")
