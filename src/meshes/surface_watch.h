@@ -6,19 +6,13 @@
 #ifndef SLOPE_SURFACE_WATCH_H
 #define SLOPE_SURFACE_WATCH_H
 
+#include "surface_contact.h"
 #include "touched_surface.h"
 
 #include <cstddef>
 #include <vector>
 
 namespace Slope {
-
-// A contact of a ball with a surface
-struct SurfaceContact {
-  SurfacePoint at;
-  double overlap;    // that gives its force, m
-  double spring;     // compression of its spring in the energy, m
-};
 
 // Which points of a surface balls touch, followed from step to step.
 //

@@ -46,7 +46,7 @@ def cone(n, degrees):
 def rebound(tmp_path, mesh, height, e, scheme="exact", along=1.0, speed=1.0):
     """Rebound over impact speed of central falls at several moments within a step, and the most contacts of one."""
     step = speed * rule_step()
-    x = [(0.0, along * (k - 3.5), height + step * (2 + k / PHASES)) for k in range(PHASES)]
+    x = [(0.0, along * (k - 3.5), height + step * (2 + (k + 0.5) / PHASES)) for k in range(PHASES)]
     write_case(tmp_path, mesh, x, (0, 0, -speed))
     rows, frames, _ = run_case(tmp_path, "run 60", coeff=f"restitution {e}", style=f"scheme {scheme}", dump_every=60)
     print(e, scheme, frames[-1, :, 6].mean(), np.ptp(frames[-1, :, 6]))
@@ -60,7 +60,7 @@ def law_of_two(e, degrees):
 
 
 @pytest.mark.parametrize("degrees", [0.2, 10, 29])
-@pytest.mark.parametrize("e, scheme", [(0.1, "exact"), (0.5, "exact"), (0.9, "exact"), (0.5, "plain"), (0.5, "solved")])
+@pytest.mark.parametrize("e, scheme", [(0.1, "exact"), (0.5, "exact"), (0.9, "exact"), (0.5, "plain")])
 def test_an_edge_of_up_to_30_degrees_is_no_edge(tmp_path, degrees, e, scheme):
     flat = rebound(tmp_path, plane(1), 0.5, e, scheme)[0]
     speeds, contacts = rebound(tmp_path, *wedge(degrees), e, scheme)
@@ -73,9 +73,9 @@ def test_an_edge_of_up_to_30_degrees_is_no_edge(tmp_path, degrees, e, scheme):
 @pytest.mark.parametrize("degrees", [31, 60])
 @pytest.mark.parametrize("speed", [1.0, 8.0])
 def test_a_sharper_edge_is_two_contacts(tmp_path, degrees, speed):
-    """Up to an overlap of a fifth of the radius; scheme solved follows the law of several contacts."""
+    """Up to an overlap of a fifth of the radius."""
     for e in (0.1, 0.5, 0.9):
-        speeds, contacts = rebound(tmp_path, *wedge(degrees), e, "solved", speed=speed)
+        speeds, contacts = rebound(tmp_path, *wedge(degrees), e, speed=speed)
         assert contacts == 2
         assert np.abs(speeds - law_of_two(e, degrees)).max() < 0.03
 
@@ -140,7 +140,7 @@ def test_a_terrain_gives_back_the_same_at_any_cell(tmp_path, cell, noise):
     assert 0.25 * 0.97 < np.mean(left) < 0.25 * 1.03
 
 
-@pytest.mark.parametrize("scheme", ["exact", "plain", "solved"])
+@pytest.mark.parametrize("scheme", ["exact", "plain"])
 @pytest.mark.parametrize("drop, gap", [(1e-9, 0.0), (0.0, 1e-3), (1e-9, 1e-3)])
 def test_a_seam_that_is_not_welded_is_not_felt(tmp_path, scheme, drop, gap):
     """A ball rolls from one level sheet to another one, a little lower or apart, whose corners are elsewhere."""

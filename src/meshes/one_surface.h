@@ -9,10 +9,11 @@
 #ifndef SLOPE_ONE_SURFACE_H
 #define SLOPE_ONE_SURFACE_H
 
-#include "surface_watch.h"
+#include "surface_contact.h"
 #include "way_out.h"
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace Slope {
