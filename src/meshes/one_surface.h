@@ -33,6 +33,7 @@ class OneSurface {
       if (s.members.empty()) continue;
       nearest.push_back(contacts[s.members[0]]);
       SurfaceContact &c = nearest.back();
+      c.joined = s.members.size() > 1;
       ways.push_back(moved({0.0, 0.0, 0.0}, c.overlap, c.at.normal));
       const std::vector<OverlappedFace> faces = all.overlapped(s);
       if (faces.size() < 2) continue;

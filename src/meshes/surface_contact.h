@@ -15,6 +15,7 @@ struct SurfaceContact {
   SurfacePoint at;
   double overlap;    // that gives its force, m
   double spring;     // compression of its spring in the energy, m
+  bool joined;       // of several points of one surface
 };
 
 }    // namespace Slope

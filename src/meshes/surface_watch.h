@@ -81,6 +81,7 @@ class SurfaceWatch {
   void find_near(Ball &ball, const Vector &x, double radius, double step,
                  const TouchedSurface &surface);
   void hand_out(int ball, const Vector &x, double radius);
+  static SurfaceContact followed(SurfaceContact now, const Vector &normal);
   void set(Slot &slot, const SurfaceContact &contact, const Vector &x, double radius);
   int new_slot(int ball);
 };

@@ -87,9 +87,9 @@ class WayOut {
                                 cross(p.normal, q.normal)};
       const double volume = dot(p.normal, across[0]);
       if (!(std::fabs(volume) > PARALLEL)) return false;
-      way = moved(moved(moved({0.0, 0.0, 0.0}, p.depth / volume, across[0]), q.depth / volume,
-                        across[1]),
-                  r.depth / volume, across[2]);
+      way = moved(
+          moved(moved({0.0, 0.0, 0.0}, p.depth / volume, across[0]), q.depth / volume, across[1]),
+          r.depth / volume, across[2]);
       for (size_t m = 0; m < list.size(); m++)
         if (dot(way, across[m]) / volume < 0.0) return false;
     }

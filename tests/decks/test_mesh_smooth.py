@@ -59,41 +59,40 @@ def law_of_two(e, degrees):
     return np.exp(-np.pi * zeta / np.sqrt(1 - zeta ** 2))
 
 
-@pytest.mark.parametrize("degrees", [0.2, 10, 29])
-@pytest.mark.parametrize("e, scheme", [(0.1, "exact"), (0.5, "exact"), (0.9, "exact"), (0.5, "plain")])
-def test_an_edge_of_up_to_30_degrees_is_no_edge(tmp_path, degrees, e, scheme):
-    flat = rebound(tmp_path, plane(1), 0.5, e, scheme)[0]
-    speeds, contacts = rebound(tmp_path, *wedge(degrees), e, scheme)
+@pytest.mark.parametrize("degrees", [0.2, 29])
+@pytest.mark.parametrize("e", [0.1, 0.5, 0.9])
+def test_an_edge_of_up_to_30_degrees_is_no_edge(tmp_path, degrees, e):
+    speeds, contacts = rebound(tmp_path, *wedge(degrees), e)
     assert contacts == 1
-    assert speeds.mean() == pytest.approx(flat.mean(), abs=0.02 if scheme == "plain" else 0.005)
-    if scheme != "plain":    # which scatters with the moment within a step
-        assert np.abs(speeds - e).max() < 0.02
+    assert speeds.mean() == pytest.approx(e, abs=0.002) and np.abs(speeds - e).max() < 0.01
+
+
+def test_an_edge_is_no_edge_with_scheme_plain_either(tmp_path):
+    flat = rebound(tmp_path, plane(1), 0.5, 0.5, "plain")[0]
+    assert rebound(tmp_path, *wedge(29), 0.5, "plain")[0] == pytest.approx(flat, abs=0.02)
 
 
 @pytest.mark.parametrize("degrees", [31, 60])
 @pytest.mark.parametrize("speed", [1.0, 8.0])
 def test_a_sharper_edge_is_two_contacts(tmp_path, degrees, speed):
     """Up to an overlap of a fifth of the radius."""
-    for e in (0.1, 0.5, 0.9):
+    for e in (0.1, 0.5):
         speeds, contacts = rebound(tmp_path, *wedge(degrees), e, speed=speed)
         assert contacts == 2
         assert np.abs(speeds - law_of_two(e, degrees)).max() < 0.03
 
 
-@pytest.mark.parametrize("shape, n", [("trough", 8), ("trough", 16), ("trough", 128), ("trough", 512), ("cone", 4),
-                                      ("cone", 8), ("cone", 64), ("cone", 512)])
-def test_bowls_and_cones_act_as_if_they_were_smooth(tmp_path, shape, n):
-    mesh, height = trough(n) if shape == "trough" else cone(n, 20)
-    for e in (0.1, 0.5, 0.9):
-        speeds, contacts = rebound(tmp_path, mesh, height, e, along=0.0 if shape == "cone" else 1.0)
-        if n == 8 and shape == "trough":    # turns by 45 degrees
-            assert contacts == 2
-            continue
+@pytest.mark.parametrize("faces", [16, 128, 512])
+@pytest.mark.parametrize("shape", ["trough", "cone of 20", "cone of 45"])
+def test_bowls_and_cones_act_as_if_they_were_smooth(tmp_path, shape, faces):
+    mesh, height = trough(faces) if shape == "trough" else cone(faces, int(shape[-2:]))
+    for e in (0.1, 0.5):
+        speeds, contacts = rebound(tmp_path, mesh, height, e, along=1.0 if shape == "trough" else 0.0)
         assert contacts == 1
-        assert speeds.mean() == pytest.approx(e, abs=0.005) and np.abs(speeds - e).max() < 0.02
+        assert speeds.mean() == pytest.approx(e, abs=0.002) and np.abs(speeds - e).max() < 0.01
 
 
-@pytest.mark.parametrize("n, degrees", [(8, 20), (64, 20), (8, 45), (24, 45), (64, 45)])
+@pytest.mark.parametrize("n, degrees", [(8, 20), (24, 45), (64, 45)])
 def test_a_cone_gives_an_elastic_ball_no_energy(tmp_path, n, degrees):
     mesh, height = cone(n, degrees)
     rng = np.random.default_rng(2)
@@ -107,8 +106,7 @@ def test_a_cone_gives_an_elastic_ball_no_energy(tmp_path, n, degrees):
     assert energy.max() < 1.01 and energy.mean() == pytest.approx(1, abs=0.002)
 
 
-@pytest.mark.parametrize("cell", [1.0, 0.25, 0.1])
-@pytest.mark.parametrize("noise", [0, 5])
+@pytest.mark.parametrize("cell, noise", [(1.0, 0), (0.25, 0), (0.1, 0), (0.1, 5)])
 def test_a_terrain_gives_back_the_same_at_any_cell(tmp_path, cell, noise):
     """Drops at random on waves of 5 degrees, root mean square, or on noise of 5 degrees in each cell.
 
