@@ -61,7 +61,7 @@ class OneSurface {
   explicit OneSurface(const std::vector<SurfaceContact> &list) : contacts(list) {}
 
   const Vector &normal(size_t k) const { return contacts[k].at.normal; }
-  static bool faces(const Vector &n, const Vector &sum)
+  static bool faces_mean(const Vector &n, const Vector &sum)
   {
     return dot(n, sum) >= COS_OF_MEAN * size_of(sum);
   }
@@ -73,7 +73,7 @@ class OneSurface {
     double most = COS_NEIGHBORS;
     for (size_t m = 0; m < k; m++) {
       const double cosine = dot(normal(k), normal(m));
-      if (cosine < most || !faces(normal(k), surfaces[of[m]].sum)) continue;
+      if (cosine < most || !faces_mean(normal(k), surfaces[of[m]].sum)) continue;
       most = cosine;
       best = of[m];
     }
@@ -94,7 +94,7 @@ class OneSurface {
     const Vector sum = moved(to.sum, 1.0, from.sum);
     for (const Surface *s : {&to, &from})
       for (const size_t m : s->members)
-        if (!faces(normal(m), sum)) return;
+        if (!faces_mean(normal(m), sum)) return;
     for (const size_t m : from.members) of[m] = a;
     to.members.insert(to.members.end(), from.members.begin(), from.members.end());
     to.sum = sum;

@@ -150,3 +150,26 @@ def test_a_seam_that_is_not_welded_is_not_felt(tmp_path, scheme, drop, gap):
     assert frames[-1, 0, 1] > 1.0
     force = -rows[20:, 5] / weight
     assert 0.99 < force.min() and force.max() < 1.01
+
+
+def test_ranks_restarts_and_the_impulse_of_a_contact_with_many_faces(tmp_path):
+    """The run is cut while balls touch, where the way out of the faces is kept by its normal alone."""
+    mesh, height = cone(24, 45)
+    x = np.random.default_rng(2).uniform(-0.25, 0.25, (24, 3)) + (0, 0, height + 0.5)
+    ends = []
+    for ranks, commands, begin in [(1, "run 300", "read_data balls.data"), (2, "run 300", "read_data balls.data"),
+                                   (2, "run 130\nwrite_restart half.restart", "read_data balls.data"),
+                                   (1, "run 170", "read_restart half.restart")]:
+        write_case(tmp_path, mesh, x, (0, 0, -1), omega=(1, 0, 2))
+        rows, frames, _ = run_case(tmp_path, commands, np=ranks, begin=begin, dump_every=10,
+                                   coeff="restitution 0.5 friction 30 rolling 0.1")
+        if "write" in commands:
+            assert rows[-1, 2] > 4
+        else:
+            ends.append((frames[-1], rows[-1, 9:]))
+    momentum = MASS * (ends[0][0][:, 4:7] - (0, 0, -1)).sum(axis=0)
+    scale = MASS * len(x)
+    for frame, impulse in ends:
+        assert np.abs(frame - ends[0][0]).max() < 1e-9
+        assert np.abs(impulse + momentum).max() < 1e-9 * scale
+    assert np.abs(momentum).max() > 0.5 * scale
