@@ -30,7 +30,7 @@ REFUSED = "overlap at the start", "Cannot displace_atoms after reading restart f
 def draw(rng):
     """A case: ranks, scheme and newton of the deck, commands, steps that are compared."""
     case = {"ranks": 1 if serial() else rng.choice([1, 1, 3]),
-            "scheme": rng.choice(["exact", "exact", "plain", "solved"]),
+            "scheme": rng.choice(["exact", "exact", "plain"]),
             "newton": rng.choice(["on", "off"]), "after": rng.choice([1, 20, 60, 200])}
     steps = [50, 100, 200]    # with reset_timestep their numbers come again
     commands = [("run", rng.choice([*steps, rng.randint(100, 400)]))]

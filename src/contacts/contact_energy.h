@@ -53,23 +53,25 @@ inline double elastic_energy(const ContactStep &step, const Contact &c, const do
        held({step.kr, step.cr}, step.rolling * elastic, step.rolling * pressing, history + 3, w));
 }
 
-// The same of a list, this rank's share, J; see(entry, overlap) is called for each contact that overlaps.
+// The same of a list, this rank's share, J; see(entry, overlap) is called for each contact that touched in the last step.
 template <class Partners, class See>
 double elastic_energy(const ContactList &list, const ContactLaw &law, double dt,
                       const MovingBalls &balls, const Partners &partners, See see)
 {
   double energy = 0.0;
-  for (size_t k = 0; k < list.entries.size(); k++) {
+  ContactStep step =
+      step_of(list.moves, law, dt, true, list.radius_i, list.radius_j, list.mass_i, list.mass_j);
+  list.for_each_touching([&](size_t k) {
     const ContactList::Entry &e = list.entries[k];
-    if (!(distance(balls, partners, e.i, e.j) < balls.radius[e.i] + partners.radius(e.j))) continue;
     Contact c;
     Vector delta;
     set_contact(law, balls, partners, e.i, e.j, c, delta);
     see(e, c.overlap);
-    const ContactStep step = step_of(list.moves, law, dt, true, balls.radius[e.i],
-                                     partners.radius(e.j), balls.mass[e.i], partners.mass(e.j));
+    if (!list.equal)
+      step = step_of(list.moves, law, dt, true, balls.radius[e.i], partners.radius(e.j),
+                     balls.mass[e.i], partners.mass(e.j));
     energy += partners.share(e.j) * elastic_energy(step, c, list.histories[k]);
-  }
+  });
   return energy;
 }
 

@@ -80,6 +80,14 @@ class ContactList {
   bool touches(size_t k) const { return is_set(touching, k); }    // in the last step
   bool has_history(size_t k) const { return touches(k) || is_set(ended, k); }
 
+  // visit(k) for each contact that touched in the last step
+  template <class Visit> void for_each_touching(Visit visit) const
+  {
+    for (size_t block = 0; block < touching.size(); block++)
+      for (std::uint64_t bits = touching[block]; bits; bits &= bits - 1)
+        visit(block * BLOCK + __builtin_ctzll(bits));
+  }
+
   double memory_usage() const
   {
     return entries.capacity() * sizeof(Entry) + histories.capacity() * sizeof(double *) +

@@ -70,8 +70,6 @@ class ContactPasses : ContactView {
     if (tally.visit) tally.visit(tally.visitor, e.i, e.j, f, delta);
   }
 
-  SLOPE_INLINE static std::uint64_t bit(size_t k) { return std::uint64_t(1) << (k % BLOCK); }
-
   SLOPE_INLINE static void increase(unsigned char &n) { n += n < 255; }
 
   template <class Partners>

@@ -17,7 +17,7 @@ static constexpr double NONE = std::numeric_limits<double>::quiet_NaN();
 SlipBodyMaker::SlipBodyMaker(const ElevationGrid &_ground, const SlipSoil &soil,
                              const std::vector<char> &allowed, const SlipTask &_task) :
     ground(_ground),
-    task(_task), maker(_ground, soil, allowed), factor(_task.method)
+    task(_task), maker(_ground, soil, allowed), found(), factor(_task.method)
 {
 }
 

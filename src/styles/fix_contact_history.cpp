@@ -32,12 +32,12 @@ static constexpr double ROUNDING = 1.0e-10;    // of the largest force
 
 FixContactHistory::FixContactHistory(LAMMPS *lmp, int narg, char **arg) :
     FixNeighHistory(lmp, narg, arg), owner(nullptr), lists_new(true), lists_used(false),
-    force(nullptr), forces_taken_back(false), force_step(-1), force_dt(0.0), known_as(nullptr),
-    restart_extra(lmp)
+    force(nullptr), before(nullptr), forces_taken_back(false), force_step(-1), force_dt(0.0),
+    known_as(nullptr), restart_extra(lmp)
 {
   comm_forward = 1;
   nevery = ContactGuards::EVERY;
-  maxexchange += 1 + FORCE;    // until pre_exchange() knows how many contacts there are
+  maxexchange += 1 + STORED;    // until pre_exchange() knows how many contacts there are
   FixContactHistory::grow_arrays(atom->nmax);
   for (int i = 0; i < atom->nlocal; i++) FixContactHistory::set_arrays(i);
 }
@@ -45,6 +45,7 @@ FixContactHistory::FixContactHistory(LAMMPS *lmp, int narg, char **arg) :
 FixContactHistory::~FixContactHistory()
 {
   memory->destroy(force);
+  memory->destroy(before);
   memory->destroy(known_as);
 }
 
@@ -59,7 +60,7 @@ void FixContactHistory::pre_exchange()
   lists_used = false;
   owner->store_flags();
   FixNeighHistory::pre_exchange();
-  maxexchange += 1 + FORCE;
+  maxexchange += 1 + STORED;
   std::copy_n(atom->tag, atom->nlocal, known_as);
 }
 
@@ -172,7 +173,7 @@ void FixContactHistory::keep_forces()
 void FixContactHistory::initial_integrate(int)
 {
   take_back_forces();
-  for (int i = 0; i < atom->nlocal; i++) memcpy(&force[i][BEFORE], atom->f[i], 3 * sizeof(double));
+  if (atom->nlocal) memcpy(before[0], atom->f[0], atom->nlocal * BEFORE * sizeof(double));
 }
 
 void FixContactHistory::take_back_forces()
@@ -210,13 +211,14 @@ bool FixContactHistory::forces_known() const
 double FixContactHistory::memory_usage()
 {
   return FixNeighHistory::memory_usage() +
-      static_cast<double>(atom->nmax) * (FORCE * sizeof(double) + sizeof(tagint));
+      static_cast<double>(atom->nmax) * (STORED * sizeof(double) + sizeof(tagint));
 }
 
 void FixContactHistory::grow_arrays(int nmax)
 {
   FixNeighHistory::grow_arrays(nmax);
   memory->grow(force, nmax, FORCE, "contact_history:force");
+  memory->grow(before, nmax, BEFORE, "contact_history:before");
   memory->grow(known_as, nmax, "contact_history:known_as");
 }
 
@@ -224,6 +226,7 @@ void FixContactHistory::copy_arrays(int i, int j, int delflag)
 {
   FixNeighHistory::copy_arrays(i, j, delflag);
   memcpy(force[j], force[i], FORCE * sizeof(double));
+  memcpy(before[j], before[i], BEFORE * sizeof(double));
   known_as[j] = known_as[i];
 }
 
@@ -231,6 +234,7 @@ void FixContactHistory::set_arrays(int i)
 {
   FixNeighHistory::set_arrays(i);
   memset(force[i], 0, FORCE * sizeof(double));
+  memset(before[i], 0, BEFORE * sizeof(double));
   known_as[i] = 0;
 }
 
@@ -238,16 +242,28 @@ int FixContactHistory::pack_exchange(int i, double *buf)
 {
   int m = FixNeighHistory::pack_exchange(i, buf);
   buf[m++] = ubuf(known_as[i]).d;
-  memcpy(&buf[m], force[i], FORCE * sizeof(double));
-  return m + FORCE;
+  return m + pack_forces(i, &buf[m]);
 }
 
 int FixContactHistory::unpack_exchange(int i, double *buf)
 {
   int m = FixNeighHistory::unpack_exchange(i, buf);
   known_as[i] = static_cast<tagint>(ubuf(buf[m++]).i);
-  memcpy(force[i], &buf[m], FORCE * sizeof(double));
-  return m + FORCE;
+  return m + unpack_forces(i, &buf[m]);
+}
+
+int FixContactHistory::pack_forces(int i, double *buf) const
+{
+  memcpy(buf, force[i], FORCE * sizeof(double));
+  memcpy(buf + FORCE, before[i], BEFORE * sizeof(double));
+  return STORED;
+}
+
+int FixContactHistory::unpack_forces(int i, const double *buf)
+{
+  memcpy(force[i], buf, FORCE * sizeof(double));
+  memcpy(before[i], buf + FORCE, BEFORE * sizeof(double));
+  return STORED;
 }
 
 /* ----------------------------------------------------------------------
@@ -278,27 +294,26 @@ void FixContactHistory::restart(char *buf)
 int FixContactHistory::pack_restart(int i, double *buf)
 {
   int m = FixNeighHistory::pack_restart(i, buf);
-  memcpy(&buf[m], force[i], FORCE * sizeof(double));
-  m += FORCE;
+  m += pack_forces(i, &buf[m]);
   buf[0] = m;
   return m;
 }
 
 void FixContactHistory::unpack_restart(int i, int nth)
 {
-  const double *list = restart_extra.find(i, nth, 2 + FORCE, 1 + dnum);
+  const double *list = restart_extra.find(i, nth, 2 + STORED, 1 + dnum);
   if (!list) return;
   FixNeighHistory::unpack_restart(i, nth);
   known_as[i] = atom->tag[i];
-  memcpy(force[i], list + static_cast<int>(list[0]) - FORCE, FORCE * sizeof(double));
+  unpack_forces(i, list + static_cast<int>(list[0]) - STORED);
 }
 
 int FixContactHistory::size_restart(int i)
 {
-  return FixNeighHistory::size_restart(i) + FORCE;
+  return FixNeighHistory::size_restart(i) + STORED;
 }
 
 int FixContactHistory::maxsize_restart()
 {
-  return FixNeighHistory::maxsize_restart() + FORCE;
+  return FixNeighHistory::maxsize_restart() + STORED;
 }

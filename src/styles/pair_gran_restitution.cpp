@@ -49,7 +49,8 @@ PairGranRestitution::PairGranRestitution(LAMMPS *lmp) : Pair(lmp), guards(lmp, t
   nondefault_history_transfer = 1;    // the age is the same from both sides
   beyond_contact = 1;                 // a contact that has ended keeps its history for a step
   comm_forward = 4;                   // number of contacts, velocity ahead
-  comm_reverse = 1;                   // number of contacts
+  ahead_known = false;
+  comm_reverse = 1;    // number of contacts
   single_extra = 10;
   svector = new double[single_extra];
 
@@ -369,16 +370,15 @@ void PairGranRestitution::find_half_step()
 
 void PairGranRestitution::find_ahead()
 {
-  ahead.clear();
   const bool half = !half_v.empty();
-  if (!table.is_exact() || (starting && !half)) return;
+  ahead_known = table.is_exact() && (half || !starting);
+  if (!ahead_known) return;
 
   const int nlocal = atom->nlocal, nall = nlocal + atom->nghost;
   const Vector *const v = half ? half_v.data() : vectors(atom->v);
-  ahead.reserve(nall + 1);    // see build_lists()
-  ahead.resize(nall);
+  if (static_cast<int>(ahead.size()) <= nall) ahead.resize(atom->nmax + 1);    // see build_lists()
   for (int i = 0; i < nlocal; i++) {
-    const double *f = &fix_history->force[i][FixContactHistory::BEFORE];
+    const double *f = fix_history->before[i];
     const double a = AHEAD * dt / atom->rmass[i];
     ahead[i] = {v[i].x + a * f[0], v[i].y + a * f[1], v[i].z + a * f[2]};
   }
@@ -396,9 +396,9 @@ MovingBalls PairGranRestitution::moving_balls()
           atom->rmass,
           vectors(atom->f),
           vectors(atom->torque),
-          !ahead.empty() ? ahead.data()
-              : half     ? half_v.data()
-                         : vectors(atom->v),
+          ahead_known ? ahead.data()
+              : half  ? half_v.data()
+                      : vectors(atom->v),
           counts.now.data()};
 }
 
@@ -433,7 +433,7 @@ void PairGranRestitution::find_contacts()
 int PairGranRestitution::pack_forward_comm(int n, int *list, double *buf, int, int *)
 {
   int m = counts.pack_forward(n, list, buf);
-  for (int k = 0; k < n && !ahead.empty(); k++, m += 3)
+  for (int k = 0; k < n && ahead_known; k++, m += 3)
     memcpy(&buf[m], &ahead[list[k]], sizeof(Vector));
   return m;
 }
@@ -441,7 +441,7 @@ int PairGranRestitution::pack_forward_comm(int n, int *list, double *buf, int, i
 void PairGranRestitution::unpack_forward_comm(int n, int begin, double *buf)
 {
   counts.unpack_forward(n, begin, buf);
-  if (!ahead.empty()) memcpy(&ahead[begin], &buf[n], n * sizeof(Vector));
+  if (ahead_known) memcpy(&ahead[begin], &buf[n], n * sizeof(Vector));
 }
 
 int PairGranRestitution::pack_reverse_comm(int n, int begin, double *buf)

@@ -85,7 +85,8 @@ class PairGranRestitution : public Pair, public ContactHistoryOwner {
   std::vector<class ContactHolder *> walls;
   Slope::ContactCounts counts;
   std::vector<Slope::Vector> half_v, half_omega;    // at set-up, where they are known
-  std::vector<Slope::Vector> ahead;                 // that normal dashpots act on
+  std::vector<Slope::Vector> ahead;                 // that normal dashpots act on, if
+  bool ahead_known;                                 // they are others than these
 
   std::string history_id, dummy_id;
 

@@ -96,6 +96,7 @@ def test_lone_impact(tmp_path, e, partner):
 BEYOND = {(4, 0.67, 0.3): (0.015, 0.04), (6, 0.87, 0.05): (0.3, 0.7), (6, 0.87, 0.1): (0.2, 0.5),
           (6, 0.87, 0.3): (0.02, 0.04), (6, 0.87, 0.5): (0.05, 0.07)}
 
+
 # normal motion on several fixed balls is that of the same oscillator with the damping ratio times sqrt(n) nz
 @pytest.mark.parametrize("contacts, height", [(2, 0.87), (3, 0.6), (4, 0.67), (6, 0.5), (6, 0.87)])
 @pytest.mark.parametrize("e", [0.05, 0.1, 0.3, 0.5, 0.9])

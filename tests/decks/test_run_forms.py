@@ -46,7 +46,7 @@ def test_pair_style_hybrid(tmp_path, kind, more, np_):
 
 
 @pytest.mark.parametrize("np_", [1, 3])
-@pytest.mark.parametrize("scheme", ["exact", "solved"])
+@pytest.mark.parametrize("scheme", ["exact"])
 def test_run_with_pre_no(tmp_path, np_, scheme):
     write_collapse(tmp_path, BALLS)
     for out, run in (("whole", f"run {STEPS}"), ("cut", f"run {STEPS - 100}\nrun 60 pre no\nrun 40 pre no post no")):
@@ -96,7 +96,7 @@ write_dump all custom {out} id x y z vx vy vz omegax omegay omegaz modify sort i
 """
 
 
-@pytest.mark.parametrize("scheme", ["exact", "plain", "solved"])
+@pytest.mark.parametrize("scheme", ["exact", "plain"])
 def test_two_dimensions(tmp_path, scheme):
     """As the same balls in space: solid spheres whose centres stay in a plane."""
     found = []

@@ -16,7 +16,8 @@ PACKAGE = TOOLS / "slope_tools"
 MODULES = sorted(PACKAGE.rglob("*.py"))
 LONGEST = 400       # lines
 # from below
-ROOMS = ("", "drawing", "survey", "slips", "case", "deposit", "mobility", "ensemble", "report", "validation", "commands")
+ROOMS = ("", "drawing", "survey", "slips", "case", "deposit", "mobility", "ensemble", "report", "validation",
+         "commands")
 
 
 def imported(text, path):

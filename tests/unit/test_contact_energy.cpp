@@ -89,7 +89,8 @@ TEST(ContactEnergy, ShareOfThisRank)
                              still.data(), still.data(), still.data(), counts.data()};
   double history[3][HISTORY] = {};
   ContactList list;
-  for (int j = 1; j < 4; j++) list.add(0, j, history[j - 1], true, RADIUS, RADIUS, MASS, MASS);
+  for (int j = 1; j < 4; j++) list.add(0, j, history[j - 1], false, RADIUS, RADIUS, MASS, MASS);
+  list.find(false, balls, MovingPartners{balls, 2});
   int seen = 0;
   auto see = [&](const ContactList::Entry &, double overlap) {
     EXPECT_NEAR(overlap, OVERLAP, 1e-15);

@@ -155,15 +155,18 @@ struct Reference {
     if (exact && now != was) {
       const double vn = normal_velocity(c), reach = ri + rj - c.overlap;
       const double across = c.v[0] * c.v[0] + c.v[1] * c.v[1] + c.v[2] * c.v[2] - vn * vn;
-      const double part = now ? (before < 0.0 ? c.overlap / (c.overlap - before) : 1.0)
-                              : (before > 0.0 ? before / (before - c.overlap) : 0.0);
-      c.weight = now ? part + 0.5 : std::max(part, 1.0 - age) - 0.5;
-      c.beyond = 0.5 * (part - 0.5) * (part - 0.5) * std::fabs(c.overlap - before);
-      c.turn = 0.5 * (now ? 0.5 - part : part - 1.5) * dt / reach * across;
-      c.touches = c.first = now ? 1.0 : 0.0;
+      const bool real = now ? before < 0.0 : before > 0.0;    // or the partner was put in place or taken away
+      const double part = now ? (real ? c.overlap / (c.overlap - before) : 1.0)
+                              : (real ? before / (before - c.overlap) : 0.0);
+      const double late = real ? part - 0.5 : 0.0;
+      c.weight = now ? (real ? part + 0.5 : 1.0) : real ? std::max(part, 1.0 - age) - 0.5 : 0.0;
+      c.beyond = 0.5 * late * late * std::fabs(c.overlap - before);
+      c.turn = real ? 0.5 * (now ? 0.5 - part : part - 1.5) * dt / reach * across : 0.0;
+      c.touches = now ? 1.0 : 0.0;
+      c.first = now && real ? 1.0 : 0.0;
       c.grown = now ? part : 0.0;
-      c.early = now ? 0.5 * dt * (part - 0.5) * (part - 0.5) : 0.0;
-      h[AGE] = now ? part : -age;
+      c.early = now ? 0.5 * dt * late * late : 0.0;
+      h[AGE] = now ? (real ? part : OLD) : -age;
     } else if (exact) {
       h[AGE] = OLD;
     }

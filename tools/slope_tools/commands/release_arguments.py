@@ -35,4 +35,4 @@ def wanted(args) -> release.Wanted:
     """What these arguments, and the terrain, ask for."""
     polygon = args.polygon and vectors.named(args.polygon, args.layer)
     return release.Wanted(args.terrain, polygon, args.shape, args.depth, args.volume, args.curvature, args.dip,
-                          args.direction, args.scar, args.scar_is, args.least, args.crs, args.local)
+                          args.direction, args.scar, args.scar_is, args.least, args.crs, local=args.local)
