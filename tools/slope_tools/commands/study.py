@@ -119,6 +119,7 @@ def run_deck(args):
 def run_site(args):
     """The standard study of a site's folder, and the report."""
     refuse(args, NOT_OF_A_SITE)
+    condition_of(args)
     done = site_study.run(args.deck, setup_of(args))
     if done.study:
         write_report(done.study, args.deck / "report.html")

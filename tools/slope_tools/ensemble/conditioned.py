@@ -17,13 +17,13 @@ from dataclasses import dataclass
 from typing import Callable, List, NamedTuple, Optional, Sequence
 
 import numpy as np
-from scipy import linalg, ndimage, stats
+from scipy import linalg, stats
 
 from ..mobility import weights
 from . import designs, hazard
 
 SIMULATED = 100         # designs of either kind
-LEVELS, SMOOTHED = 25, 5        # values at which designs are compared, and over how many of them the ratio is averaged
+LEVELS = 25             # values at which designs are compared
 UNSEEN = 0.5            # pairs of neighbours that differ, beside those that are seen: a few, or none, say little
 MOST_EMULATED = 400     # runs; with more of them the evenness of a design counts for nothing
 NORMAL = float(stats.norm.ppf((1 + hazard.CONFIDENCE) / 2))
@@ -76,7 +76,7 @@ def estimate(exceeding: np.ndarray, mass: Masses, factor=1.0, several: float = 1
     return part, low * (1 - failed), high + failed * (1 - high)
 
 
-def curve(values: Sequence[float], mass: Masses, effect: Optional[Callable] = None, several: float = 1.0,
+def curve(values: hazard.Values, mass: Masses, effect: Optional[Callable] = None, several: float = 1.0,
           failed: float = 0.0) -> hazard.Curve:
     """The share of known events above each value of the runs, with bounds; it begins as hazard.curve does.
 
@@ -147,7 +147,7 @@ class Design:
         found = fitted.at(np.concatenate(self.points)).reshape(self.chance.shape) + left_out[self.chance]
         return np.clip(found, values.min(), values.max())
 
-    def effect(self, values: Sequence[float]) -> Callable:
+    def effect(self, values: hazard.Values) -> Callable:
         """The factor of the variance, at most 1, as a function of the levels of a quantity."""
         given = np.asarray(values, float)
         levels = np.unique(np.quantile(given, (np.arange(LEVELS) + 0.5) / LEVELS, method="inverted_cdf"))
@@ -155,5 +155,5 @@ class Design:
                            for one, mass in zip(self.simulate(given), self.masses)])
         even, independent = (part.var(axis=0, ddof=1) for part in (shares[:SIMULATED], shares[SIMULATED:]))
         ratio = np.divide(even, independent, out=np.ones_like(even), where=independent > 0)
-        factor = np.minimum(ndimage.uniform_filter1d(ratio, SMOOTHED, mode="nearest"), 1.0)
+        factor = np.minimum(ratio, 1.0)
         return lambda at: np.interp(at, levels, factor)

@@ -4,12 +4,12 @@ Known events beyond the longest run count as the longest ones; in an upper bound
 """
 import math
 from pathlib import Path
-from typing import Any, Dict, List, Sequence
+from typing import Any, Dict, List, Sequence, Tuple
 
 import numpy as np
 
-from ..survey import rasters
 from ..case import run_folders
+from ..survey import rasters
 from . import conditioned, hazard
 from .conditioned import Masses
 from .ensemble_maps import BOUND, KINDS, Kind, SIDES, Stack, Thresholds, emptied
@@ -51,7 +51,8 @@ def of_kind(folder: Path, kind: Kind, stack: Stack, grid, mass: Masses, several:
             exceeded[level, "low"][part], exceeded[level, "high"][part] = low, np.minimum(high + mass.far, 1)
         for share, values in zip(hazard.SHARES, quantiles(-block if kind.early else block, full, hazard.SHARES)):
             within[share][part] = -values if kind.early else values
-    bands, central = {}, []
+    bands: Dict[str, np.ndarray] = {}
+    central: List[Tuple[Dict[str, Any], str, str, str]] = []
     for share, z in within.items():
         text = quantile_text(kind, share)
         bands[text] = np.where(np.isfinite(z), z, np.nan).reshape(stack.shape)

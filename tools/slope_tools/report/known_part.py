@@ -50,14 +50,14 @@ class KnownEvents:
 
     def curve(self):
         """The weighted hazard curve."""
-        points = self.entry and read_curve(self.data.folder / known_events.HAZARD, self.of)
-        if points is None:
+        points = read_curve(self.data.folder / known_events.HAZARD, self.of) if self.entry else None
+        if points is None or not self.entry:
             return None
         named = [ensemble_charts.Quantile(*(one[key] for key in ("share", "value", "low", "high")))
                  for one in self.entry["quantiles"] if one["value"] is not None]
         title = f"Hazard curve by known events: {self.entry['name']}"
-        uri = ensemble_charts.hazard_curve(*points, named, f"{self.entry['name']} ({self.entry['unit']})", title,
-                                           "known events")
+        uri = ensemble_charts.hazard_curve(points[0], points[1], points[2], points[3], named,
+                                           f"{self.entry['name']} ({self.entry['unit']})", title, "known events")
         return self.picture(uri, title, "The weighted hazard curve: share of known events in which the quantity is "
                             f"larger, with its {100 * self.confidence:g} % bounds. What the runs do not reach is not "
                             "shared out: known events beyond the longest run exceed every value.")
