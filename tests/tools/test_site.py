@@ -532,12 +532,25 @@ def test_folders_that_are_no_sites(gis, done):
     refused(inside(done[0], "study", "mine/in.site", "--set", "rolling=0"), "-o: must be given")
 
 
+def test_an_ensemble_of_a_site(done):
+    """Its deck with the distributions of mobile masses; known events that do not cover it are refused at once."""
+    listed = inside(done[0], "study", "mine", "--sample", "6", "--dry-run")
+    assert listed.returncode == 0 and "6 runs, 0 of them finished" in listed.stdout, listed.stderr
+    assert all(listed.stdout.count(f"{name} 0.") >= 5 for name in ("rolling", "spacing", "xoffset"))
+    refused(inside(done[0], "study", "mine", "--sample", "6", "--mobility", "rock_avalanches"),
+            "--mobility: must be a set that covers the mass: no set of known events covers this volume")
+    refused(inside(done[0], "study", "mine", "--sample", "6", "--mesh", "10"),
+            "--mesh: must not be given with the folder of a site")
+    assert not (done[0] / "mine" / "ensemble").exists()
+
+
 def test_a_site_has_its_own_choices(tmp_path):
     """What site.yaml says is refused as an option, its default too: nothing is ignored without a word."""
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "site.yaml").touch()
     for option, *values in (("--set", "rolling=0"), ("--repeat", "xoffset=0.5"), ("--vary", "rolling=0:1"),
-                            ("--sample", "8"), ("--equally-good", "d"), ("--size-error", "converge.yaml"),
+                            ("--mobility", "rock_avalanches"), ("--except", "x"),
+                            ("--equally-good", "d"), ("--size-error", "converge.yaml"),
                             ("--intensity", "peak"), ("--more-than", "10"), ("--exceed", "0.1,0.5,1"),
                             ("--exceed-speed", "5"), ("--exceed-energy", "100000"), ("--design", "sobol"),
                             ("--seed", "0"), ("--of", "front_m"), ("--road", "road.geojson"), ("--cut-angle", "30"),

@@ -21,7 +21,9 @@ from .sensitivity import quantities
 from .setup import Road, Setup
 from .size_error import SizeErrors, WHAT
 
-SIZES, STUDY, SCORE = "sizes", "study", "score"         # folders in the site's
+SIZES, STUDY, SCORE, ENSEMBLE = "sizes", "study", "score", "ensemble"       # folders in the site's
+# --vary of an ensemble of a site, unless it is given: masses from as sluggish as the defaults to rock avalanches
+MOBILE = ("friction=9:29", "rolling=0.01:0.14", "spacing=0.37:1", "xoffset=0:0.99")
 THRESHOLDS = (0.1, 0.5, 1.0)        # m, of the maps of exceedance
 
 
