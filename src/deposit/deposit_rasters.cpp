@@ -25,8 +25,7 @@ static const double UNTOUCHED[DepositRasters::KINDS] = {0.0, 0.0, 0.0, 0.0, NaN,
 /* ---------------------------------------------------------------------- */
 
 DepositRasters::DepositRasters() :
-    snapshot_step(-1), snapshot_time(0.0), change(1.0),
-    blocks(std::vector<double>(UNTOUCHED, UNTOUCHED + KINDS))
+    snapshot_time(NaN), change(1.0), blocks(std::vector<double>(UNTOUCHED, UNTOUCHED + KINDS))
 {
 }
 
@@ -102,12 +101,11 @@ double DepositRasters::moved() const
 
 /* ---------------------------------------------------------------------- */
 
-void DepositRasters::take_snapshot(int64_t step, int window, double time, double share)
+void DepositRasters::take_snapshot(double time, double share)
 {
-  if (snapshot_step >= 0 && snapshot_step + window == step) change = share / (time - snapshot_time);
+  if (time > snapshot_time) change = share / (time - snapshot_time);
   for (size_t b = 0; b < blocks.size(); b++)
     std::copy_n(blocks[b] + THICKNESS * CELLS, CELLS, blocks[b] + SNAPSHOT * CELLS);
-  snapshot_step = step;
   snapshot_time = time;
 }
 

@@ -45,9 +45,8 @@ class DepositRasters {
 
   double moved() const;    // volume that went to another cell, of these cells
 
-  // share: of the released volume, moved in all cells. Change per time is known if the last snapshot
-  // was window steps ago, else it stays as it is.
-  void take_snapshot(int64_t step, int window, double time, double share);
+  // share: of the released volume, moved in all cells since the last snapshot, if there was one
+  void take_snapshot(double time, double share);
 
   // --- what the rows hold ---
 
@@ -62,8 +61,7 @@ class DepositRasters {
   std::vector<double> touched(int band) const;
   void restore(const double *values);    // of one cell; nothing if it is another rank's
 
-  int64_t snapshot_step;
-  double snapshot_time, change;
+  double snapshot_time, change;    // NaN before the first one; per time, 1 before the second one
 
  private:
   PlanGrid cells;

@@ -17,7 +17,7 @@ using namespace LAMMPS_NS;
 using Slope::DepositRasters;
 using Slope::PlanGrid;
 
-static constexpr double FORMAT = 2.0;    // first number of what a restart file holds
+static constexpr double FORMAT = 3.0;    // first number of what a restart file holds
 static constexpr int PER_CELL = DepositRasters::PER_CELL;
 
 /* ---------------------------------------------------------------------- */

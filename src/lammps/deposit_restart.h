@@ -31,7 +31,7 @@ class DepositRestart : protected Pointers {
     DepositRelease::Released released;
     double bulk;
     Slope::MassLedger::Mass lost;
-    double nlogged, elapsed, snapshot_step, snapshot_time, change;
+    double nlogged, elapsed, snapshot_time, change;
   };
 
   DepositRestart(class LAMMPS *, const DepositOptions &);

@@ -256,14 +256,16 @@ void FixDepositGrid::check_balance()
 }
 
 /* ----------------------------------------------------------------------
-   every window steps: how much of the mass went to another cell since the last time
+   Every window steps: how much of the mass went to another cell since the last time. The steps made
+   count, by their time: the deck may change their numbers.
 ------------------------------------------------------------------------- */
 
 void FixDepositGrid::take_snapshot()
 {
-  if (update->ntimestep % options.window) return;
+  const double time = now();
+  if (time - rasters.snapshot_time < (options.window - 0.5) * update->dt) return;
   const double share = exchange.sum(rasters.moved()) / results.released.volume;
-  rasters.take_snapshot(update->ntimestep, options.window, now(), share);
+  rasters.take_snapshot(time, share);
   results.vector[Result::CHANGE] = rasters.change;
 }
 
@@ -305,7 +307,6 @@ void FixDepositGrid::write_piece(FILE *fp, int piece)
                                        losses.ledger.lost,
                                        (double) losses.ledger.nlogged,
                                        update->whichflag == 1 ? now() : elapsed,
-                                       (double) rasters.snapshot_step,
                                        rasters.snapshot_time,
                                        rasters.change};
   restart_data.write(fp, piece, saved, rasters);
@@ -331,7 +332,6 @@ void FixDepositGrid::read_piece(const char *buffer, int piece)
   losses.ledger.lost = saved.lost;
   losses.ledger.nlogged = (int) saved.nlogged;
   elapsed = saved.elapsed;
-  rasters.snapshot_step = (bigint) saved.snapshot_step;
   rasters.snapshot_time = saved.snapshot_time;
   results.vector[Result::CHANGE] = rasters.change = saved.change;
 }

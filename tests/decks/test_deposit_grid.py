@@ -343,6 +343,25 @@ run 20000
     assert found["moving"] is True and found["motion"]["moving_share"] == pytest.approx(0.5)
 
 
+@pytest.mark.parametrize("number", [0, 130, 400])
+def test_change_whatever_the_steps_are_called(tmp_path, number):
+    """A window is over after so many steps made: here 40 steps after the number has been set."""
+    flat(tmp_path, 10)
+    write_balls(tmp_path / "balls.data", [[0.5, 4.5, 5], [0.5, 2.5, 5]], 1.0,
+                [[1.0, 0, 0], [0, 0, 0]], [(-1.0, 30.0)] * 3)
+    log = run_deck(head() + f"""
+fix dep all deposit/grid 10 0 cell 1 terrain ground output out window 100
+run 60
+reset_timestep {number}
+run 30
+print "before: $(f_dep[6])"
+run 10
+print "then: $(f_dep[6])"
+""", tmp_path)
+    assert numbers(log, "before:") == [1.0]
+    assert numbers(log, "then:") == pytest.approx([0.5])     # half of the mass by a tenth of a cell in 0.1 s
+
+
 # --- files ---
 
 
@@ -497,13 +516,13 @@ set group all density 2000
                  expect_error="Fix deposit/grid dep must have the grid of the restart file, "
                  "cell 0.7, 15 x 15 cells from -2 -2, bulk 1.909859317; got")
 
-    # and so is data of an older format, whose first number is 1 and not 2
+    # and so is data of an older format, whose first number is 2 and not 3
     data = (tmp_path / "a.1500.restart").read_bytes()
-    key = struct.pack("<4d", 2.0, 0.7, 15.0, 15.0)
+    key = struct.pack("<4d", 3.0, 0.7, 15.0, 15.0)
     assert data.count(key) == pieces and data.count(b"DEPOSIT_GRID_PART\0") == pieces - 1
-    (tmp_path / "old.restart").write_bytes(data.replace(key, struct.pack("<d", 1.0) + key[8:]))
+    (tmp_path / "old.restart").write_bytes(data.replace(key, struct.pack("<d", 2.0) + key[8:]))
     run_deck(heap("read_restart old.restart", DEP.format("two"), "run 0"), tmp_path,
-             expect_error="Fix deposit/grid dep must have restart data of format 2, got 1: the file "
+             expect_error="Fix deposit/grid dep must have restart data of format 3, got 2: the file "
              "is of another version of SLOPE")
 
 

@@ -130,7 +130,10 @@ def test_two_commands_lead_from_gis_files_to_a_report(done):
         assert (mine / name).stat().st_size > 0, name
     study = yaml.safe_load((mine / "study" / "study.yaml").read_text())
     assert study["study"]["finished"] == 9 and study["study"]["set"] == {"rolling": ["0", "0.05", "0.1"]}
-    assert study["conservative"]["kind"] == "prediction" and study["conservative"]["volume_m3"] > 0
+    best = study["conservative"]
+    assert best["kind"] == "prediction" and best["mean_m3"] > 0
+    # so few balls do not tell the size error
+    assert best["volume_m3"] is None and [one["kind"] for one in best["withheld"]] == ["size error"]
     assert yaml.safe_load((mine / "sizes" / "converge.yaml").read_text())["study"]["finished"] == 9
     assert "report.html" in second and "conservative" in second
     assert (mine / "report.mp4").exists() == bool(shutil.which("ffmpeg"))
@@ -209,7 +212,7 @@ def test_the_folder_is_made_anew_from_its_file(done, tmp_path):
     assert variables["friction"] == "25"
     volume = site_choices.found(mine)["body"]["volume"]
     assert volume / float(variables["d"]) ** 3 == pytest.approx(300, rel=0.02)
-    assert variables["field_d"] == variables["d"]
+    assert float(variables["field_d"]) > float(variables["d"])        # the roughness of the ground stays
 
     # the study does not mix runs of two decks
     study = slope(folder, "study", "mine")

@@ -127,7 +127,7 @@ TEST(DepositRasters, RanksHoldWhatOneHolds)
   double released = 0.0, on_grid = 0.0, moved = 0.0;
   for (const Ball &ball : first) released += std::pow(ball.side, 3);
   one.sample(balls, 0.5);
-  one.rasters[0].take_snapshot(1, 1, 0.5, 0.0);
+  one.rasters[0].take_snapshot(0.5, 0.0);
   on_grid = one.sample(first, 0.75);    // begins at 0 again
   moved = one.rasters[0].moved();
   EXPECT_GT(moved, 0.1 * released);
@@ -146,7 +146,7 @@ TEST(DepositRasters, RanksHoldWhatOneHolds)
   for (const int number : {2, 3, 5}) {
     Ranks ranks(grid, number);
     ranks.sample(balls, 0.5);
-    for (Rasters &mine : ranks.rasters) mine.take_snapshot(1, 1, 0.5, 0.0);
+    for (Rasters &mine : ranks.rasters) mine.take_snapshot(0.5, 0.0);
     EXPECT_NEAR(ranks.sample(first, 0.75), on_grid, 1e-12 * released);
     double sum = 0.0, largest = 0.0;
     for (Rasters &mine : ranks.rasters) {
@@ -198,19 +198,17 @@ TEST(DepositRasters, ChangePerTime)
 {
   Ranks ranks(PlanGrid(EXTENT, 1.0), 1);
   Rasters &rasters = ranks.rasters[0];
-  auto take_snapshot = [&](int step, double time) {    // of 4 m3 released, a window of 50 steps
-    rasters.take_snapshot(step, 50, time, rasters.moved() / 4.0);
+  auto take_snapshot = [&](double time) {    // of 4 m3 released
+    rasters.take_snapshot(time, rasters.moved() / 4.0);
   };
   EXPECT_EQ(rasters.change, 1.0);
   sample(ranks, 1.5, 1.0, 0.0);
-  take_snapshot(100, 1.0);
+  take_snapshot(1.0);
   EXPECT_EQ(rasters.change, 1.0);    // nothing to compare with
   sample(ranks, 2.25, 1.0, 0.0);     // three quarters of 1 m3 of 4 go on, in 0.5 s
-  take_snapshot(150, 1.5);
+  take_snapshot(1.5);
   EXPECT_DOUBLE_EQ(rasters.change, 0.75 / 4.0 / 0.5);
-  take_snapshot(230, 2.5);    // not a window later
-  EXPECT_DOUBLE_EQ(rasters.change, 0.75 / 4.0 / 0.5);
-  take_snapshot(280, 3.0);
+  take_snapshot(3.0);
   EXPECT_EQ(rasters.change, 0.0);
 }
 
@@ -222,7 +220,7 @@ TEST(DepositRasters, TouchedCells)
   for (const int number : {1, 2, 4}) {
     Ranks ranks(grid, number);
     ranks.sample(draw(20), 0.5);
-    for (Rasters &mine : ranks.rasters) mine.take_snapshot(1, 1, 0.5, 0.0);
+    for (Rasters &mine : ranks.rasters) mine.take_snapshot(0.5, 0.0);
     ranks.sample(draw(1), 1.0, false);
     saved.emplace_back();
     for (int band = 0; band < ranks.rasters[0].bands().number(); band++) {

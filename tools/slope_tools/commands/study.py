@@ -111,7 +111,8 @@ def run_deck(args):
         errors = SizeErrors(args.size_error, "remove_m3")
         errors.check(settings, defaults)
     setup = setup_of(args)
-    questions = results.Questions(settings, repeated, thresholds, errors, None, args.intensity, args.more_than)
+    questions = results.Questions(settings, repeated, thresholds, errors, None, args.intensity, args.more_than,
+                                  sizes=args.size_error)
     return perform(setup, {**settings, **repeated}, todo,
                    lambda todo, work: results.collect(setup, questions, todo, work))
 
