@@ -27,7 +27,7 @@ struct ContactEntry {
 
 // a contact list as the kernels see it
 struct ContactView {
-  static constexpr int BLOCK = 64;
+  static constexpr int BLOCK = 64, ROW = 12;
 
   const ContactEntry *entries;
   double *const *histories;    // HISTORY values of each
@@ -38,6 +38,14 @@ struct ContactView {
   // equal: radii (m) and masses (kg) are these for all contacts; otherwise each looks up its own
   bool equal;
   double radius_i, radius_j, mass_i, mass_j;
+
+  // otherwise the numbers of the row of each contact that has a force (contact_rows.h), and the contacts whose
+  // row is still to be solved for
+  const int *row_numbers;
+  double *rows;
+  const int *unsolved;
+  size_t unsolved_size;
+  double *row(int k) const { return rows + ROW * static_cast<size_t>(row_numbers[k]); }
 };
 
 // Results of a second pass: the sum of the forces on the balls i, N; and each contact to

@@ -46,8 +46,11 @@ class ContactList {
     before.clear();
     fresh.clear();
     ended.clear();
+    solved.clear();
     flags.clear();
     equal = true;
+    varying = false;
+    forget_rows();
   }
 
   // has_history: the contact touched a step ago, or ended in it; then its history is there
@@ -62,11 +65,18 @@ class ContactList {
     }
     equal = equal && ri == radius_i && rj == radius_j && mi == mass_i && mj == mass_j;
     if (entries.size() % BLOCK == 0)
-      for (std::vector<std::uint64_t> *bits : {&touching, &before, &fresh, &ended})
+      for (std::vector<std::uint64_t> *bits : {&touching, &before, &fresh, &ended, &solved})
         bits->push_back(0);
     entries.push_back({i, j});
     histories.push_back(history);
     if (has_history) set_history(entries.size() - 1);
+  }
+
+  // radii and masses may change until the next neighbor list
+  void let_vary()
+  {
+    equal = false;
+    varying = true;
   }
 
   // contact k has a history
@@ -91,7 +101,9 @@ class ContactList {
   double memory_usage() const
   {
     return entries.capacity() * sizeof(Entry) + histories.capacity() * sizeof(double *) +
-        4 * touching.capacity() * sizeof(std::uint64_t) + flags.capacity() * sizeof(int *);
+        5 * touching.capacity() * sizeof(std::uint64_t) + flags.capacity() * sizeof(int *) +
+        (row_numbers.capacity() + unsolved.capacity()) * sizeof(int) +
+        rows.capacity() * sizeof(double);
   }
 
   // Contacts that overlap although they did not touch a step ago, before the first step:
@@ -128,8 +140,9 @@ class ContactList {
   void apply(const ContactLaw &law, double dt, bool repeat, const MovingBalls &balls,
              const Partners &partners, ContactTally *tally = nullptr)
   {
-    if (!entries.empty())
-      ContactKernels::current().apply(view(), law, dt, repeat, balls, partners, tally);
+    if (entries.empty()) return;
+    if (!equal) make_rows(dt);
+    ContactKernels::current().apply(view(), law, dt, repeat, balls, partners, tally);
   }
 
  private:
@@ -140,6 +153,39 @@ class ContactList {
   std::vector<std::uint64_t> before;      // in the one before, in the second pass
   std::vector<std::uint64_t> fresh;       // began in the last step
   std::vector<std::uint64_t> ended;       // came apart in the last step, and had a force in it
+
+  // where the balls are unequal: see ContactView
+  bool varying;
+  std::vector<std::uint64_t> solved;    // has a row
+  std::vector<int> row_numbers, unsolved;
+  std::vector<double> rows;
+  double solved_dt = 0.0;
+
+  void forget_rows()
+  {
+    std::fill(solved.begin(), solved.end(), 0);
+    rows.clear();
+    unsolved.clear();
+  }
+
+  // a row for each contact that has a force in this step
+  void make_rows(double dt)
+  {
+    if (varying || dt != solved_dt) forget_rows();
+    solved_dt = dt;
+    unsolved.clear();
+    row_numbers.resize(entries.size());
+    int next = static_cast<int>(rows.size() / ContactView::ROW);
+    for (size_t block = 0; block < solved.size(); block++) {
+      std::uint64_t bits = (touching[block] | before[block] | ended[block]) & ~solved[block];
+      for (solved[block] |= bits; bits; bits &= bits - 1) {
+        const int k = static_cast<int>(block) * BLOCK + __builtin_ctzll(bits);
+        row_numbers[k] = next++;
+        unsolved.push_back(k);
+      }
+    }
+    rows.resize(static_cast<size_t>(next) * ContactView::ROW);
+  }
 
   static std::uint64_t bit(size_t k) { return std::uint64_t(1) << (k % BLOCK); }
   static bool is_set(const std::vector<std::uint64_t> &bits, size_t k)
@@ -152,7 +198,8 @@ class ContactList {
   {
     return {entries.data(), histories.data(), entries.size(), touching.size(), touching.data(),
             before.data(),  fresh.data(),     ended.data(),   moves,           equal,
-            radius_i,       radius_j,         mass_i,         mass_j};
+            radius_i,       radius_j,         mass_i,         mass_j,          row_numbers.data(),
+            rows.data(),    unsolved.data(),  unsolved.size()};
   }
 };
 

@@ -12,6 +12,7 @@
 
 #include "contact_geometry.h"
 #include "contact_kernel.h"
+#include "contact_rows.h"
 #include "simd4.h"
 
 #include <algorithm>
@@ -43,6 +44,7 @@ class ContactPasses : ContactView {
   void apply(const ContactLaw &law, double dt, bool repeat, const MovingBalls &balls,
              const Partners &partners, ContactTally *tally)
   {
+    solve_rows(*this, law, dt, balls, partners);
     if (law.rolling > 0.0) {
       if (equal)
         apply<true, double, TALLY>(law, dt, repeat, balls, partners, tally);
@@ -243,7 +245,7 @@ class ContactPasses : ContactView {
     const Entry e[4] = {entries[k[0]], entries[k[1]], entries[k[2]], entries[k[3]]};
     double *const h[4] = {histories[k[0]], histories[k[1]], histories[k[2]], histories[k[3]]};
     Sizes<N> sizes;
-    find_sizes(e, law, same, repeat, balls, partners, sizes);
+    find_sizes(k, e, same, balls, partners, sizes);
     const N ri = sizes.radius_i, rj = sizes.radius_j;
 
     ContactOf<Four, N> c;
@@ -388,25 +390,22 @@ class ContactPasses : ContactView {
   }
 
   template <class Partners>
-  SLOPE_INLINE void find_sizes(const Entry *, const ContactLaw &, const Sizes<double> &same, bool,
+  SLOPE_INLINE void find_sizes(const int *, const Entry *, const Sizes<double> &same,
                                const MovingBalls &, const Partners &, Sizes<double> &sizes) const
   {
     sizes = same;
   }
   template <class Partners>
-  SLOPE_INLINE void find_sizes(const Entry *e, const ContactLaw &law, const Sizes<double> &same,
-                               bool repeat, const MovingBalls &balls, const Partners &partners,
+  SLOPE_INLINE void find_sizes(const int *k, const Entry *e, const Sizes<double> &same,
+                               const MovingBalls &balls, const Partners &partners,
                                Sizes<Four> &sizes) const
   {
-    Four mi = Four(), mj = Four();
     sizes.radius_i = sizes.radius_j = Four();
     for (int m = 0; m < 4; m++) {
       sizes.radius_i[m] = balls.radius[e[m].i];
       sizes.radius_j[m] = partners.radius(e[m].j);
-      mi[m] = balls.mass[e[m].i];
-      mj[m] = partners.mass(e[m].j);
     }
-    sizes.step = step_of(moves, law, same.step.dt, repeat, sizes.radius_i, sizes.radius_j, mi, mj);
+    sizes.step = load_rows(*this, k, same.step);
   }
 
   SLOPE_INLINE static double lane(double same, int) { return same; }

@@ -5,6 +5,8 @@
 
 #include "surface_watch.h"
 
+#include "one_surface.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -12,8 +14,8 @@ using namespace Slope;
 
 static constexpr double FAR_AWAY = 1.0e15;    // m: no ball touches a phantom there
 static constexpr double SHELL = 0.05;    // of the radius: how far around a ball triangles are kept
-static constexpr double ON_PLANE = 1.0e-9;    // of the radius
-static constexpr double COS_FOLLOWED = 0.7071067811865476;
+static constexpr double ON_PLANE = 1.0e-9;       // of the radius
+static constexpr double COS_FOLLOWED = 0.5;      // 60 degrees
 static constexpr double LEAST_SHARE = 1.0e-3;    // of its depth that a contact always keeps
 static constexpr double MOST_TURN = 10.0;    // per motion: where the centre all but lies on an edge
 static constexpr double TINY = 1.0e-300;     // m
@@ -223,6 +225,7 @@ void share_overlaps(std::vector<SurfaceContact> &own, double radius)
   }
   keep_all_pressing(own, radius);
 }
+
 }    // namespace
 
 /* ---------------------------------------------------------------------- */
@@ -240,9 +243,15 @@ void SurfaceWatch::choose(std::vector<SurfacePoint> &points, double radius,
     for (size_t m = 0; stands_out && m < k; m++)    // the nearest ones first: most end there
       stands_out = dot(minus(points[k].point, points[m].point), points[m].normal) > on_plane;
     const double depth = radius - points[k].distance;
-    if (stands_out) own.push_back({points[k], depth, std::max(depth, 0.0)});
+    if (stands_out) own.push_back({points[k], depth, std::max(depth, 0.0), false});
   }
+  if (own.size() < 2) return;
+  const std::vector<Vector> ways = OneSurface::join(own, radius);
   if (own.size() > 1) share_overlaps(own, radius);
+  for (size_t k = 0; k < own.size(); k++) {
+    const double overlap = size_of(ways[k]);
+    if (own[k].spring > 0.0) own[k].at.normal = moved({0.0, 0.0, 0.0}, 1.0 / overlap, ways[k]);
+  }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -253,6 +262,19 @@ void SurfaceWatch::set(Slot &slot, const SurfaceContact &contact, const Vector &
   slot.touches = contact.overlap > 0.0;
   slot.centre = moved(x, contact.overlap - 2.0 * radius, contact.at.normal);
   slot.radius = radius;
+}
+
+/* ----------------------------------------------------------------------
+   What a contact with this normal is now. If the ball has just left several faces of one surface, the way
+   out of them is that of the step before: the dashpot acts on until the end, and not along the nearest one.
+------------------------------------------------------------------------- */
+
+SurfaceContact SurfaceWatch::followed(SurfaceContact now, const Vector &normal)
+{
+  if (!now.joined || now.overlap > 0.0) return now;
+  now.overlap /= dot(now.at.normal, normal);
+  now.at.normal = normal;
+  return now;
 }
 
 /* ----------------------------------------------------------------------
@@ -283,7 +305,8 @@ void SurfaceWatch::hand_out(int ball, const Vector &x, double radius)
         best_point = p;
       }
     if (best_slot == open.size()) break;
-    set(slots[open[best_slot]], own[best_point], x, radius);
+    Slot &slot = slots[open[best_slot]];
+    set(slot, followed(own[best_point], slot.contact.at.normal), x, radius);
     taken[best_point] = 1;
     open.erase(open.begin() + best_slot);
   }

@@ -6,19 +6,13 @@
 #ifndef SLOPE_SURFACE_WATCH_H
 #define SLOPE_SURFACE_WATCH_H
 
+#include "surface_contact.h"
 #include "touched_surface.h"
 
 #include <cstddef>
 #include <vector>
 
 namespace Slope {
-
-// A contact of a ball with a surface
-struct SurfaceContact {
-  SurfacePoint at;
-  double overlap;    // that gives its force, m
-  double spring;     // compression of its spring in the energy, m
-};
 
 // Which points of a surface balls touch, followed from step to step.
 //
@@ -87,6 +81,7 @@ class SurfaceWatch {
   void find_near(Ball &ball, const Vector &x, double radius, double step,
                  const TouchedSurface &surface);
   void hand_out(int ball, const Vector &x, double radius);
+  static SurfaceContact followed(SurfaceContact now, const Vector &normal);
   void set(Slot &slot, const SurfaceContact &contact, const Vector &x, double radius);
   int new_slot(int ball);
 };

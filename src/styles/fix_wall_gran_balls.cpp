@@ -190,7 +190,7 @@ void FixWallGranBalls::post_neighbor()
   placement->forget();
   give_histories();
   if (pair->sizes_vary)
-    for (ContactList &l : lists) l.equal = false;
+    for (ContactList &l : lists) l.let_vary();
 }
 
 /* ---------------------------------------------------------------------- */

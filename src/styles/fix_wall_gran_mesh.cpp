@@ -181,7 +181,7 @@ void FixWallGranMesh::add_contact(int slot, const double *from)
   ContactList &l = lists[{atom->type[i], r}];
   if (l.entries.empty()) l.clear(true, false);
   l.add(i, slot, values, from != nullptr, r, r, atom->rmass[i], 1.0);
-  if (pair->sizes_vary) l.equal = false;
+  if (pair->sizes_vary) l.let_vary();
 }
 
 /* ----------------------------------------------------------------------

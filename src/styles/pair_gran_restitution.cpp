@@ -319,7 +319,7 @@ void PairGranRestitution::build_lists()
     }
   }
   if (sizes_vary)
-    for (ContactList &l : lists) l.equal = false;
+    for (ContactList &l : lists) l.let_vary();
   fix_history->lists_new = false;
 }
 

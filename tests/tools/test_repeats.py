@@ -72,12 +72,14 @@ def test_repeats_are_made_for_each_combination_and_the_headline_is_theirs(slope)
     deviation = ((statistics.variance(volumes[0]) + statistics.variance(volumes[1])) / 2) ** 0.5
     assert best["scatter_m3"] == pytest.approx(deviation) and 2 <= best["degrees_of_freedom"] <= 4
     assert best["chance_m3"] == pytest.approx(best["quantile"] * deviation * (4 / 3) ** 0.5)
-    assert best["volume_m3"] == best["mean_m3"] + best["chance_m3"] and best["repeats"] == 3 and best["size_m3"] is None
+    assert best["repeats"] == 3 and best["size_m3"] is None
     assert best["remove_m3"] == max(volumes[larger])
     assert [row["run"] for row in table if float(row["remove_m3"]) == best["remove_m3"]] == [best["run"]]
-    rounded = best["rounded"]
-    assert rounded["volume_m3"] == pytest.approx(rounded["mean_m3"] + rounded["chance_m3"])
-    assert f"conservative volume to remove: {headline.text(rounded['volume_m3'], best['place_m3'])} m3 = " in out
+    # the runs are cut short: the number is withheld
+    assert best["volume_m3"] is None and best["rounded"]["volume_m3"] is None
+    assert [one["kind"] for one in best["withheld"]] == ["runs not at rest or failed"]
+    assert "not usable as a conservative volume:\n  6 of 6 runs failed or are not at rest" in out
+    assert "conservative volume to remove" not in out
 
     assert [entry["combination"] for entry in about["combinations"]] == ["rolling_0_steps_700", "rolling_0.3_steps_700"]
     with open("out/combinations.csv", encoding="ascii") as lines:

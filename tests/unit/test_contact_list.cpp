@@ -76,10 +76,32 @@ struct Cloud {
     f.assign(x.size(), {0.0, 0.0, 0.0});
     torque = f;
     count.assign(x.size(), 0);
+    fill_list(touched);
+  }
+
+  template <class Has> void fill_list(Has has_history)
+  {
     list.clear();
-    for (int k = 0; k < contacts; k++)
-      list.add(i_of(k), j_of(k), history[k].data(), touched(k), radius[i_of(k)], radius[j_of(k)], mass[i_of(k)],
+    for (int k = 0; k < static_cast<int>(history.size()); k++)
+      list.add(i_of(k), j_of(k), history[k].data(), has_history(k), radius[i_of(k)], radius[j_of(k)], mass[i_of(k)],
                mass[j_of(k)]);
+  }
+
+  void list_again()    // as with a new neighbor list
+  {
+    std::vector<bool> had;
+    for (size_t k = 0; k < history.size(); k++) had.push_back(list.has_history(k));
+    fill_list([&](int k) { return had[k]; });
+  }
+
+  void evaluate(const ContactLaw &law, double dt)
+  {
+    forget_forces();
+    std::fill(count.begin(), count.end(), 0);
+    const MovingBalls all = balls();
+    const MovingPartners partners = {all, static_cast<int>(x.size())};
+    list.find(false, all, partners);
+    list.apply(law, dt, false, all, partners);
   }
 
   static int i_of(int k) { return (k / PARTNERS) * (PARTNERS + 1); }
@@ -227,6 +249,51 @@ TEST_P(ContactLists, SameAsOneContactAtATime)
           if (exact) EXPECT_NEAR(cloud.history[k][AGE], expected.history[k][AGE], 1e-9) << k;
         }
       }
+}
+
+// What unequal balls make of the law is kept while a list lasts: as contacts come and go, the step changes
+// and, where that is announced, masses do
+TEST_P(ContactLists, WhatIsKeptOfUnequalBallsIsTheirs)
+{
+  ContactLaw law = law_of(0.48);
+  law.friction = 0.3;
+  law.rolling = 0.1;
+  Cloud kept(70, true), anew(70, true);
+  int ended = 0;
+  for (int step = 0; step < 6; step++) {
+    const bool masses_change = step == 5;
+    const double dt = step < 3 ? 1e-4 : 2e-4;
+    if (masses_change) {
+      kept.list_again();
+      kept.list.let_vary();
+      kept.evaluate(law, dt);
+      anew.list_again();
+      anew.evaluate(law, dt);
+    }
+    for (Cloud *cloud : {&kept, &anew}) {
+      for (size_t b = 0; b < cloud->x.size(); b++) {
+        const double by = b % 4 == 0 || (b + step) % 5 ? 0.0 : step % 2 ? 0.001 : -0.001;
+        cloud->x[b].x += by;
+        cloud->v[b].x = by / dt;
+        if (masses_change) cloud->mass[b] *= 1.0 + 0.1 * (b % 3);
+      }
+    }
+    anew.list_again();
+    anew.evaluate(law, dt);
+    kept.evaluate(law, dt);
+    int touching = 0;
+    for (size_t k = 0; k < kept.history.size(); k++) {
+      touching += kept.list.touches(k);
+      ended += kept.list.has_history(k) && !kept.list.touches(k);
+    }
+    EXPECT_GT(touching, 40);
+    for (size_t b = 0; b < kept.x.size(); b++)
+      for (int d = 0; d < 3; d++) {
+        EXPECT_EQ((&kept.f[b].x)[d], (&anew.f[b].x)[d]) << step << " " << b;
+        EXPECT_EQ((&kept.torque[b].x)[d], (&anew.torque[b].x)[d]) << step << " " << b;
+      }
+  }
+  EXPECT_GT(ended, 10);
 }
 
 TEST_P(ContactLists, CountsContactsOfEachBall)

@@ -23,6 +23,8 @@ from .site_choices import Choices, Derived
 from .site_folder import BODY, BODY_DECK, MAP, TERRAIN
 from .site_layers import Layers, Shown, advice, read_layers, swapped
 
+THROUGH = 0.6495          # half of 1.299, see field_diameter()
+
 
 class Machine(NamedTuple):
     """With what a site is tried, and its study will run."""
@@ -124,9 +126,11 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
     parts = site_deck.Parts(title, ", ".join(Path(name).name for name in choices["terrain"]["files"]), body,
                             layers.structures, layers.lines, layers.motion)
     trial, reached = tried(choices, parts, found, new, machine, tell)
+    chosen = choices["model"]["field_diameter"]
     size = settle(choices, parts, found, trial, machine, raster)
     derived = site_choices.derived(given, choices, known)
-    say_size(choices, size, found, machine, "model.field_diameter" in derived, tell)
+    too_large = None if chosen == choices["model"]["field_diameter"] else chosen
+    say_size(choices, size, found, machine, too_large, tell)
     for line in site_warnings.site_warnings(found.measures, size, trial):
         keep(line)
     site_warnings.write(new, warnings)
@@ -246,21 +250,34 @@ def settle(choices: Choices, parts: site_deck.Parts, found: release.Body, trial:
     model["duration"] = model["duration"] or site_budget.duration(trial)
     size = site_budget.size(choices, parts.body.volume, trial, machine.jobs, raster.z.size)
     balls["diameter"] = size.diameter
-    model["field_diameter"] = model["field_diameter"] or size.diameter
+    model["field_diameter"] = field_diameter(choices, size.diameter)
     model["cell"] = model["cell"] or max(found.area.cell, site_budget.three_digits(size.diameter / 2))
     return size
 
 
-def say_size(choices: Choices, size: Size, found: release.Body, machine: Machine, follows: bool, tell):
+def field_diameter(choices: Choices, diameter: float) -> float:
+    """That of the field balls (m): the ground's roughness stays, but no ball of the study may fall through them.
+
+    The smallest passes where its radius and a field ball's together are below spacing/1.299, on steep ground
+    (fix wall/gran/balls warns of it).
+    """
+    chosen = choices["model"]["field_diameter"] or diameter
+    spacing, smallest = choices["model"]["spacing"], diameter * min([1.0, *choices["study"]["sizes"]])
+    if spacing <= THROUGH:
+        return chosen
+    return min(chosen, site_budget.three_digits(0.99 * THROUGH * smallest / (spacing - THROUGH)))
+
+
+def say_size(choices: Choices, size: Size, found: release.Body, machine: Machine, chosen: Optional[float], tell):
     """Tell the user the size of the balls, and the time and memory of the study.
 
-    follows: the user did not choose the size of the field balls, it is that of the soil's.
+    chosen: diameter of the field balls (m) that was too large; None: it was not.
     """
     thick = found.measures.mean_depth / size.diameter, found.measures.largest_depth / size.diameter
     tell(f"balls of {size.diameter:g} m: {size.balls:,} of them, the body is {thick[0]:.1f} balls thick on average, "
          f"{thick[1]:.1f} at most")
     tell(f"field balls of {choices['model']['field_diameter']:g} m (field_diameter): the roughness of the ground"
-         + ("; it changes with the number of balls unless you set it in site.yaml" if follows else ""))
+         + (f"; not {chosen:g} m, through which the smallest balls would fall" if chosen else ""))
     study = choices["study"]
     each = 1 + len(study["xoffset"])
     runs = f"{size.runs} runs: {len(study['rolling'])} rolling resistances x {each} lattice positions"

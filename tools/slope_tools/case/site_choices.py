@@ -33,8 +33,8 @@ WITHOUT_CRS = (("structures", "files"), ("motion", "file"))
 BESIDE = (".prj", ".shx", ".dbf", ".cpg", ".tfw", ".hdr", ".yaml")
 
 # keys that slope site fills in with what it finds
-DERIVED = (("balls", "diameter"), ("balls", "number"), ("model", "field_diameter"), ("model", "speed"),
-           ("model", "duration"), ("model", "cell"), ("motion", "peak_friction"))
+DERIVED = (("balls", "diameter"), ("balls", "number"), ("model", "speed"), ("model", "duration"), ("model", "cell"),
+           ("motion", "peak_friction"))
 
 # sections that `slope study` and the report read when they run, except for files, of which the folder has copies
 READ_LATER = ("project", "road", "study")

@@ -51,7 +51,7 @@ def add_parser(commands, **kwargs):
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints what was found and written."""
     disk.check_folder(args.output)
-    known = chosen(args.events, args.left_out)
+    known = events.chosen(args.events, args.left_out)
     relation.of_events(known, args.events)      # before the terrain is read
     tell = printer("mobility")
     site = Path(args.terrain).is_dir()
@@ -66,16 +66,6 @@ def run(args):
     for line in results.doubts(found):
         tell(line)
     print(f"wrote {', '.join(str(args.output / name) for name in results.FILES)}")
-
-
-def chosen(path, left_out):
-    """The events of a set without those left out, all of which it must have."""
-    every = events.read(path)
-    names = {one.name for one in every}
-    for name in left_out:
-        if name not in names:
-            raise SlopeError("--except", f"must be an event of {path}, such as {', '.join(sorted(names)[:3])}", name)
-    return [one for one in every if one.name not in left_out]
 
 
 def of_site(args):

@@ -1,9 +1,10 @@
 """Arguments of the commands that run decks."""
 import argparse
 from pathlib import Path
+from typing import Optional
 
 from ..case.settings import check_settings
-from ..ensemble import designs, intensity
+from ..ensemble import designs, intensity, known_events
 from ..ensemble.setup import Road, Setup
 from ..errors import SlopeError
 from ..options import count, number, whole
@@ -65,6 +66,29 @@ def add_sample(parser) -> None:
     parser.add_argument("--seed", metavar="S", type=whole, help="seed of the design (default 1)")
 
 
+def add_mobility(parser) -> None:
+    """--mobility, --except, --confined and --unconfined."""
+    parser.add_argument("--mobility", metavar="SET",
+                        help="weight the runs of an ensemble so that they end where known events of this volume and "
+                             "height do: rock_avalanches (49 of Canada), or a file of `slope mobility --set`")
+    parser.add_argument("--except", metavar="NAME", dest="left_out", action="append", default=[],
+                        help="leave out this event of the set; may be given several times")
+    kind = parser.add_mutually_exclusive_group()
+    kind.add_argument("--confined", action="store_const", const=True, dest="confined",
+                      help="the path is laterally confined, a valley (default: taken for it, the severe case)")
+    kind.add_argument("--unconfined", action="store_const", const=False, dest="confined", help="the path is not")
+
+
+def condition_of(args) -> Optional[known_events.Condition]:
+    """What these arguments ask for; SlopeError if some are there without --mobility."""
+    if args.mobility is not None:
+        return known_events.check(args.mobility, args.left_out, args.confined, args.deck)
+    for option, given in (("--except", args.left_out), ("--confined or --unconfined", args.confined is not None)):
+        if given:
+            raise SlopeError(option, "must be given with --mobility")
+    return None
+
+
 def add_intensity(parser):
     parser.add_argument("--intensity", metavar="NAME",
                         help="variable of --set that is the intensity of the trigger (default: the one called peak, "
@@ -75,7 +99,8 @@ def add_intensity(parser):
 
 
 # options of one kind of study: whether they go with --sample, and their default
-OF_A_KIND = {"intensity": (False, None), "more_than": (False, ()), "of": (True, None), "exceed_speed": (True, "5"),
+OF_A_KIND = {"intensity": (False, None), "more_than": (False, ()), "of": (True, None), "mobility": (True, None),
+             "exceed_speed": (True, "5"),
              "exceed_energy": (True, "100000"), "design": (True, designs.SOBOL), "seed": (True, 1)}
 
 

@@ -6,17 +6,21 @@ finished (jobs.py), collect (results.py), combine (combinations.py, headline.py)
 import argparse
 from pathlib import Path
 
-from ..case import decks, site_choices
+from ..case import decks, site_choices, site_deck
 from ..case.settings import check_settings, one_value_each
+from ..case.site_layers import ROAD
 from ..ensemble import intensity, repeats, results, sample, site_study
 from ..ensemble.size_error import SizeErrors
 from ..ensemble.study import check_names, check_thresholds, perform
 from ..errors import SlopeError
-from .run_arguments import OF_A_KIND, add_deck, add_intensity, add_repeats, add_runs, add_sample, settle_kind, setup_of
+from .run_arguments import (OF_A_KIND, add_deck, add_intensity, add_mobility, add_repeats, add_runs, add_sample,
+                            condition_of, settle_kind, setup_of)
 
 THICKNESSES = "0.1,0.5,1"      # of the maps of exceedance, m; the parser has None, as for all that a site refuses
-NOT_OF_A_SITE = ("set", "repeat", "vary", "sample", "size_error", "road", "equally_good", "output", "cut_angle", "mesh",
-                 "local", "exceed", *OF_A_KIND)
+OF_A_ROAD = ("size_error", "road", "cut_angle", "mesh", "local")
+NOT_OF_A_SITE = ("set", "repeat", "vary", "sample", *OF_A_ROAD, "equally_good", "output", "exceed", "left_out",
+                 *OF_A_KIND)
+OPTIONS = {"output": "-o", "left_out": "--except"}
 EPILOG = """\
 units: metres, seconds, m3 of ground (bulk); thresholds of --exceed in metres.
 
@@ -29,6 +33,12 @@ with a conservative volume that counts the chance: every combination three times
 an ensemble: 64 runs with values drawn from distributions, the probability of a volume, the variables that matter:
   tools/slope study in.collapse --sample 64 --vary friction=20:40 --vary rolling=triangular:0:0:0.2 \\
       --road road.geojson -o out
+
+the same, weighted so that the runs end where known events of this volume and height did:
+  tools/slope study in.collapse --sample 64 --mobility rock_avalanches --vary friction=5:35 --vary rolling=0:0.2 -o out
+
+such an ensemble of a site that `slope site ... -o mine` made, with its road and report:
+  tools/slope study mine --sample 64 --mobility rock_avalanches
 
 everything of a site that `slope site ... -o mine` made: rolling resistances, repeats, sizes of balls, the report:
   tools/slope study mine
@@ -48,6 +58,7 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--set", metavar="NAME=V1,V2,...", action="append", default=[],
                         help="values of an index variable of the deck; A:B:STEP stands for A, A + STEP, ... up to B")
     add_sample(parser)
+    add_mobility(parser)
     add_repeats(parser)
     parser.add_argument("--size-error", metavar="FILE", type=Path,
                         help="converge.yaml of `slope sensitivity --converge`: its error at the size of these balls "
@@ -69,7 +80,12 @@ def add_parser(commands, **kwargs):
 def run(args):
     """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
     if args.deck.is_dir() and (args.output is None or (args.deck / site_choices.NAME).exists()):
-        return run_site(args)
+        return run_site(args) if args.sample is None else run_site_ensemble(args)
+    return run_deck(args)
+
+
+def run_deck(args):
+    """The runs of a deck."""
     if args.output is None and not args.deck.exists():
         raise SlopeError(args.deck, "must be a deck or the folder of a site, there is none of that name")
     if args.output is None:
@@ -80,8 +96,9 @@ def run(args):
     thresholds = check_thresholds(THICKNESSES if args.exceed is None else args.exceed)
     defaults = decks.index_variables(args.deck)
     settle_kind(args, sample=args.sample is not None or bool(args.vary))
+    condition = condition_of(args)
     if args.sample is not None or args.vary:
-        return run_ensemble(args, settings, repeated, thresholds, defaults)
+        return run_ensemble(args, settings, repeated, thresholds, defaults, condition)
     if not settings:
         raise SlopeError("--set", "must be given, or --sample with --vary")
     todo = repeats.plan(args.output, settings, repeated, defaults)
@@ -94,31 +111,55 @@ def run(args):
         errors = SizeErrors(args.size_error, "remove_m3")
         errors.check(settings, defaults)
     setup = setup_of(args)
-    questions = results.Questions(settings, repeated, thresholds, errors, None, args.intensity, args.more_than)
+    questions = results.Questions(settings, repeated, thresholds, errors, None, args.intensity, args.more_than,
+                                  sizes=args.size_error)
     return perform(setup, {**settings, **repeated}, todo,
                    lambda todo, work: results.collect(setup, questions, todo, work))
 
 
 def run_site(args):
     """The standard study of a site's folder, and the report."""
-    for option in NOT_OF_A_SITE:
-        value = getattr(args, option)
-        if value is not None and value is not False and value not in ("", []):
-            first = value[0] if isinstance(value, list) else value
-            raise SlopeError("-o" if option == "output" else f"--{option.replace('_', '-')}", "must not be given with "
-                             f"the folder of a site: {args.deck / 'site.yaml'} says what is run",
-                             None if first is True else f"{first:g}" if isinstance(first, float) else first)
+    refuse(args, NOT_OF_A_SITE)
+    condition_of(args)
     done = site_study.run(args.deck, setup_of(args))
     if done.study:
-        from ..report import document
-        from ..report.asked import Asked
-        report = args.deck / "report.html"
-        print("\n".join(document.write(Asked(done.study, film=report.with_suffix(".mp4")), report)))
+        write_report(done.study, args.deck / "report.html")
     if done.failed:
         raise done.failed
 
 
-def run_ensemble(args, settings, repeated, thresholds, defaults):
+def refuse(args, options):
+    """Raise SlopeError if one of these options, which a site decides on, is given."""
+    for option in options:
+        value = getattr(args, option)
+        if value is not None and value is not False and value not in ("", []):
+            first = value[0] if isinstance(value, list) else value
+            raise SlopeError(OPTIONS.get(option, f"--{option.replace('_', '-')}"), "must not be given with "
+                             f"the folder of a site: {args.deck / 'site.yaml'} says what is run",
+                             None if first is True else f"{first:g}" if isinstance(first, float) else first)
+
+
+def write_report(study, page):
+    from ..report import document
+    from ..report.asked import Asked
+    print("\n".join(document.write(Asked(study, film=page.with_suffix(".mp4")), page)))
+
+
+def run_site_ensemble(args):
+    """An ensemble of a site's deck with its road, in a folder of the site's, and the report."""
+    refuse(args, OF_A_ROAD)
+    site, choices = args.deck, site_choices.read(args.deck)
+    site_study.check(site, choices)
+    args.deck, args.vary = site / site_deck.NAME, args.vary or list(site_study.MOBILE)
+    args.output = args.output or site / site_study.ENSEMBLE
+    if choices["road"]["file"]:
+        args.road, args.cut_angle, args.mesh = site / ROAD, choices["road"]["cut_angle"], choices["road"]["mesh"]
+    run_deck(args)
+    if not args.dry_run:
+        write_report(args.output, site / f"{site_study.ENSEMBLE}.html")
+
+
+def run_ensemble(args, settings, repeated, thresholds, defaults, condition):
     """The runs of --sample, and what they say together."""
     from ..ensemble import ensemble, ensemble_maps
     if args.sample is None:
@@ -136,6 +177,6 @@ def run_ensemble(args, settings, repeated, thresholds, defaults):
     sample.check_growth(args.output, plan)
     several = sample.settings_of(todo)
     setup = setup_of(args)
-    questions = results.Questions(several, repeated, thresholds, None, ensemble.Order(plan, of, levels))
+    questions = results.Questions(several, repeated, thresholds, None, ensemble.Order(plan, of, levels, condition))
     perform(setup, {**several, **repeated}, todo, lambda todo, work: results.collect(setup, questions, todo, work),
             begin=lambda: sample.keep(args.output, plan))

@@ -6,7 +6,7 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence
 
 from ..case.settings import as_number
 from ..deposit.travel_shares import DISTANCE, REACH
-from . import headline, jobs
+from . import headline, jobs, withheld_words
 from .headline import Combination, Scatter
 from .repeats import key_of
 from .size_error import SizeErrors
@@ -132,7 +132,8 @@ def conservative(settings, rows, groups: Sequence[Group], errors: Optional[SizeE
             "file": str(errors.path), "variable": errors.variable,
             "value": str(governing.rows[0]["variables"][errors.variable]), "error_percent": 100 * size.share,
             "half_percent": None if size.half is None else 100 * size.half},
-        "differences": differences, "doubts": doubts(settings, rows, groups, best, differences)}
+        "differences": differences, "doubts": doubts(settings, rows, groups, best, differences),
+        "withheld": [], "zero": None}       # see usable.judge
 
 
 def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline, differences) -> List[str]:
@@ -188,10 +189,15 @@ def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline, dif
 
 
 def describe(best: Mapping[str, Any]) -> List[str]:
-    """The conservative volume and its parts, rounded to what is known, differences and caveats; a line each."""
+    """The conservative volume and its parts, rounded to what is known, differences and caveats; a line each.
+
+    In its place why it is withheld, if it is.
+    """
     def number(value):
         return headline.text(value, best["place_m3"])
 
+    if best["withheld"]:
+        return [*withheld_words.lines(best["withheld"]), *(f"caveat: {doubt}" for doubt in best["doubts"])]
     parts = {name: best["rounded"][f"{name}_m3"] for name in ("volume", "mean", "chance", "size")}
     if parts["chance"] is None:
         text = f"{best['kind']}: {number(parts['volume'])} m3 to remove"
@@ -204,7 +210,7 @@ def describe(best: Mapping[str, Any]) -> List[str]:
                 f"(s {number(best['scatter_m3'])}, {best['degrees_of_freedom']:.3g} degrees of freedom)")
         text += (f" + {number(parts['size'])}, size of the balls" if parts["size"] is not None
                  else "; the size of the balls is not in it")
-    lines = [text]
+    lines = [text, *([best["zero"]["text"]] if best["zero"] else [])]
     for entry in best["differences"]:
         if entry["clear"] is not None:
             word = "more than" if entry["clear"] else "no more than"

@@ -15,7 +15,7 @@ from .. import disk
 from ..case import run_folders
 from ..deposit import travel_shares
 from ..errors import SlopeError
-from . import emulator, ensemble_maps, hazard, quantities, study_table
+from . import emulator, ensemble_maps, hazard, known_events, quantities, study_table
 from .sample import Sample
 
 MAPS = "ensemble"           # folder of the maps
@@ -32,10 +32,14 @@ SIGN = ("first", "first_error", "total", "total_error")
 
 @dataclass(frozen=True)
 class Order:
-    """What is asked of an ensemble: its plan, the quantity of the hazard curve, thresholds of the maps."""
+    """What is asked of an ensemble: its plan, the quantity of the hazard curve, thresholds of the maps.
+
+    condition: the known events that its runs are weighted by.
+    """
     sample: Sample
     of: str
     levels: ensemble_maps.Thresholds
+    condition: Optional[known_events.Condition] = None
 
 
 def check_quantity(of: Optional[str], road: bool) -> str:
@@ -67,14 +71,17 @@ def evaluate(order: Order, rows: Sequence[Mapping[str, Any]], output: Path, plac
         "points": len(set(point)), "confidence": hazard.CONFIDENCE, "of": order.of if order.of in curves else None,
         "quantities": {name: numbers(finished, name, point, failed) for name in of_quantity}}
     places = order.sample.places(finished)
+    main = [name for name in dict.fromkeys((order.of, *MAIN)) if name in of_quantity]
     analyses = {name: emulator.analyse(order.sample.names, places, column(finished, name), point, order.sample.snap)
-                for name in dict.fromkeys((order.of, *MAIN)) if name in of_quantity}
+                for name in main}
     about["influence"] = {name: influence(one) for name, one in analyses.items()}
     about["doubts"] = doubts(about)
     about["maps"] = [] if grids else ensemble_maps.write(
         output / MAPS, [run_folders.prefix_of(output / row["summary"]) for row in finished], len(set(point)), failed,
         order.levels, place)
-    disk.write(output / HAZARD, hazard_table(curves))
+    about["known_events"] = order.condition and known_events.evaluate(
+        order.condition, order.sample, rows, output, of_quantity, main, order.levels, place, grids)
+    disk.write(output / HAZARD, hazard.table(curves))
     disk.write(output / INFLUENCE, influence_table(analyses))
     return about
 
@@ -133,17 +140,6 @@ def doubts(about: Mapping[str, Any]) -> List[str]:
 
 # --- tables ---
 
-def hazard_table(curves: Mapping[str, hazard.Curve]) -> str:
-    """The CSV of all hazard curves: share of the runs above each value, with bounds."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["quantity", "value", "exceeded", "low", "high"])
-    for name, curve in curves.items():
-        for row in zip(curve.values, curve.share, curve.low, curve.high):
-            writer.writerow([name, *(f"{value:.9g}" for value in row)])
-    return text.getvalue()
-
-
 def influence_table(analyses: Mapping[str, emulator.Analysis]) -> str:
     """The CSV of ranks and indices; a cell is empty where the emulator says nothing."""
     text = io.StringIO()
@@ -169,7 +165,8 @@ def describe(about: Mapping[str, Any]) -> List[str]:
         entry = about["quantities"][of]
         lines.append(f"{entry['name']}: " + "; ".join(quantile_text(one, entry["unit"]) for one in entry["quantiles"]))
         lines.append(f"{entry['name']} depends on " + dependence_text(about["influence"][of]))
-    return lines + [f"caveat: {text}" for text in about["doubts"]]
+    lines += [f"caveat: {text}" for text in about["doubts"]]
+    return lines + (known_events.describe(about["known_events"], of) if about.get("known_events") else [])
 
 
 def quantile_text(one: Mapping[str, Any], unit: str) -> str:

@@ -48,10 +48,7 @@ def write(folder: Path, prefixes: Sequence[Path], points: int, failed: int, thre
 
     points: of the design that they are of; place: CRS and offset of the runs (rasters.Place) or None.
     """
-    folder.mkdir(exist_ok=True)
-    for old in folder.iterdir():
-        if old.suffix in (".asc", ".yaml", ".tif"):
-            old.unlink()
+    emptied(folder)
     effect = max(1.0, len(prefixes) / points)
     found = []
     for kind in rasters.progress(KINDS, "maps over all runs"):
@@ -61,6 +58,14 @@ def write(folder: Path, prefixes: Sequence[Path], points: int, failed: int, thre
         stack = Stack(kind, prefixes, grid.z.shape, folder)
         found += of_kind(folder, kind, stack, grid, failed, effect, thresholds.of(kind))
     return found
+
+
+def emptied(folder: Path) -> None:
+    """Make the folder of maps, without those of a study before."""
+    folder.mkdir(exist_ok=True)
+    for old in folder.iterdir():
+        if old.suffix in (".asc", ".yaml", ".tif"):
+            old.unlink()
 
 
 class Stack:

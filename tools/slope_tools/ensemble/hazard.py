@@ -5,9 +5,11 @@ Bounds are those of Clopper and Pearson for a share k of n; where a point has se
 independent runs that they are worth (Korn and Graubard, Survey Methodology, 24, 193, 1998). Failed runs could have
 given anything: in a lower bound they do not exceed a value, in an upper one they do. Every function is pure.
 """
+import csv
+import io
 import math
 from dataclasses import dataclass
-from typing import List, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from scipy import stats
@@ -118,14 +120,10 @@ def quantiles(values: Values, point: Sequence[int], failed: int = 0,
 
 
 def curve(values: Values, point: Sequence[int], failed: int = 0) -> Curve:
-    """The share of the runs above each of their values, and above what lies below all of them.
-
-    It begins at 0, or, where there are negative values, below the lowest one.
-    """
+    """The share of the runs above each of their values, and above what lies below all of them: levels_of()."""
     given, of = np.asarray(values, float), np.asarray(point)
     n = len(given)
-    start = 0.0 if given.min() > 0 else np.nextafter(given.min(), -math.inf)
-    at = np.unique(np.concatenate([[start], given]))
+    at = levels_of(given)
     above = n - np.searchsorted(np.sort(given), at, "right")
     low, high = np.empty(len(at)), np.empty(len(at))
     several = len(np.unique(of)) < n
@@ -133,3 +131,20 @@ def curve(values: Values, point: Sequence[int], failed: int = 0) -> Curve:
         effect = effect_of(given > value, of) if several else 1.0
         low[i], high[i] = share_bounds(above[i], n, failed, effect)
     return Curve(at, above / n, low, high)
+
+
+def levels_of(given: np.ndarray) -> np.ndarray:
+    """The values of a curve: all, after 0, or, where one is not above 0, after what is below them all."""
+    start = 0.0 if given.min() > 0 else np.nextafter(given.min(), -math.inf)
+    return np.unique(np.concatenate([[start], given]))
+
+
+def table(curves: Mapping[str, Curve]) -> str:
+    """The CSV of hazard curves of quantities: the share above each value, with bounds."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["quantity", "value", "exceeded", "low", "high"])
+    for name, one in curves.items():
+        for row in zip(one.values, one.share, one.low, one.high):
+            writer.writerow([name, *(f"{value:.9g}" for value in row)])
+    return text.getvalue()

@@ -1,6 +1,7 @@
 """What came out of the runs of a study: their numbers, the table, the maps over all runs, the conservative volume."""
 import os
 import sys
+from pathlib import Path
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
 
 import numpy as np
@@ -8,9 +9,9 @@ import yaml
 
 from .. import disk, provenance
 from ..case import run_folders
-from ..deposit import rest, travel_shares
+from ..deposit import left, rest, travel_shares
 from ..survey import rasters
-from . import combinations, ensemble, intensity, repeats, structures, study_table
+from . import combinations, ensemble, intensity, repeats, size_error, structures, study_table, usable, withheld_words
 from .setup import Road, Setup
 from .size_error import SizeErrors
 from .study_maps import Maps
@@ -35,6 +36,8 @@ class Questions(NamedTuple):
     more_than: Sequence[float] = ()                 # m3, volumes exceeded at each intensity
     notes: Sequence[str] = ()                       # warnings of what was before the study, which go into its results
     size_error_unusable: Optional[str] = None       # why the size error, which was to be measured, is not used
+    site: Optional[Path] = None                     # folder of the site whose study it is
+    sizes: Optional[Path] = None                    # converge.yaml of the runs with balls of several sizes
 
 
 def collect(setup: Setup, questions: Questions, todo, work) -> None:
@@ -70,13 +73,21 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
     if order:
         about["ensemble"] = ensemble.evaluate(order, rows, output, first and terrain_place(first), maps.problem)
     elif setup.road and finished:
-        best = about["conservative"] = combinations.conservative(settings, rows, groups, errors)
-        if errors:
+        distrust = untrusted(errors, groups)
+        trusted = None if distrust else errors
+        about["size_error_unusable"] = questions.size_error_unusable or distrust
+        best = about["conservative"] = combinations.conservative(settings, rows, groups, trusted)
+        if trusted:
             # from the folder of study.yaml, so that both may move together
-            best["size"]["file"] = os.path.relpath(errors.path.resolve(), output.resolve())
-            best["doubts"] += errors.doubts(deck.name, {**work.defaults, **best["set"]}, [*settings, *repeated],
-                                            about["study"]["road"])
+            best["size"]["file"] = os.path.relpath(trusted.path.resolve(), output.resolve())
+            best["doubts"] += trusted.doubts(deck.name, {**work.defaults, **best["set"]}, [*settings, *repeated],
+                                             about["study"]["road"])
         best["doubts"] += unseen(repeated, work.defaults)
+        unknown = about["size_error_unusable"] or ""
+        if unknown and questions.sizes and size_error.falls(questions.sizes, "remove_m3"):
+            about["size_error_unusable"] = f"{unknown}. The volume falls with the size of the balls: nothing is added"
+            unknown = ""
+        usable.judge(best, rows, events_of(setup, first, finished[0]), case_of(setup, questions, finished[0]), unknown)
     about["intensity"] = intensity.collect(
         output, questions.intensity, questions.more_than, settings, bool(setup.road), groups) \
         if finished and not order else None      # of values that are drawn, each has one run
@@ -107,6 +118,26 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         print(f"{output / entry['file']}: {entry['what']}")
 
 
+def untrusted(errors: Optional[SizeErrors], groups) -> Optional[str]:
+    """Why a size error does not count, None where it does, or where there is none."""
+    if errors is None:
+        return None
+    return "; ".join(errors.distrust(str(group.rows[0]["variables"][errors.variable]) for group in groups)) or None
+
+
+def events_of(setup: Setup, run, row) -> Optional[usable.Events]:
+    """Known events of the mass of a run, of its row."""
+    from ..survey import polygons
+    summary = setup.output / row["summary"]
+    raster = placed(run_folders.load_raster(run_folders.prefix_of(summary), "thickness"), run)
+    road = polygons.read_local(setup.road.file, raster, setup.road.local) if setup.road else None
+    return usable.known_events(run_folders.prefix_of(summary), terrain_of(run), row["released_m3"], road)
+
+
+def case_of(setup: Setup, questions: Questions, row) -> withheld_words.Case:
+    return withheld_words.Case(setup.deck, questions.site, row["variables"], round(row["released_m3"] / row["ball_m3"]))
+
+
 def unseen(repeated, defaults):
     """The caveat that the scatter is incomplete: only seeds were repeated, though the deck can move its lattice."""
     offsets = repeats.only_seeds(repeated, defaults)
@@ -128,7 +159,7 @@ def rows_of(setup: Setup, todo, maps, pictures=True):
             continue
         row, thickness = result(run, row, maps)
         if setup.road:
-            row.update(on_road(run, setup.road, setup.output / row["summary"], thickness, pictures))
+            row.update(on_road(run, setup, row, thickness, pictures))
         rows.append(row)
     return rows, thickness
 
@@ -183,7 +214,7 @@ def result(run, row, maps):
     on_grid = float(np.nansum(thickness.z)) * thickness.transform.a ** 2
     state, whole = rest.state(summary, path), whole_deposit(prefix, thickness, summary)
     row = {**row, "variables": about.get("variables"), "ranks": about.get("ranks"), "package": about.get("package"),
-           "released_m3": volume["released"],
+           "released_m3": volume["released"], "ball_m3": volume["released"] / summary["balls"]["released"],
            "on_grid_m3": volume["on_grid"], "off_grid_m3": volume["off_grid"], "lost_m3": volume["lost"],
            "residual_m3": volume["residual"], "mass_error": (on_grid - stays) / volume["released"],
            "front_m": travel["front"], "reach_angle_deg": travel["reach_angle"], "centroid_m": travel["centroid"],
@@ -211,19 +242,24 @@ def whole_deposit(prefix, thickness, summary):
     return {"connected_m": found and found.distance, "connected_deg": found and found.reach_angle}
 
 
-def on_road(run, road: Road, summary, thickness, picture=True) -> Dict[str, Any]:
+def on_road(run, setup: Setup, row, thickness, picture=True) -> Dict[str, Any]:
     """What `slope volume` says of a run, all of which goes to the folder volume of the run; and what lies beyond."""
     from ..deposit import volume
     from ..survey import polygons
+    road, summary = setup.road, setup.output / row["summary"]
+    assert road
     prefix = run_folders.prefix_of(summary)
-    terrain = run.folder / run.log.terrain if run.log.terrain else None
+    terrain = terrain_of(run)
     found = volume.of_run(str(prefix), volume.Wanted(road.file, road.mesh, road.cut_angle, road.local), terrain)
     volume.write(found, run.folder / "volume", picture)
     about = disk.plain(found.about)       # numpy has no place in study.yaml
+    released = run_folders.load_raster(prefix, "arrival").z == 0
+    polygon = polygons.read_local(road.file, placed(thickness, run), road.local)
+    gone, passed = row["off_grid_m3"] + row["lost_m3"], run_folders.load_raster(prefix, "max_thickness")
     return {"remove_m3": about["volume"]["remove"], "remove_on_road_m3": about["volume"]["remove_on_road"],
             "remove_beside_road_m3": about["volume"]["remove_beside_road"],
-            "beyond_road_m3": beyond(thickness, run_folders.load_raster(prefix, "arrival").z == 0,
-                                     polygons.read_local(road.file, placed(thickness, run), road.local)),
+            "beyond_road_m3": beyond(thickness, released, polygon),
+            "left_before_road_m3": left.before_road(gone, passed, released, polygon),
             "blocked_m": about["axis"]["blocked_length"], "axis_thickness_m": about["axis"]["largest_thickness"],
             # what it says of the summary is in the table
             "road_warnings": [text.replace(f"{run.folder}/", "") for text in about["warnings"]
@@ -265,6 +301,11 @@ def write_road(output, road: Road, run, thickness) -> Dict[str, Any]:
 def terrain_place(run):
     """CRS and offset of the runs' local metres, from the sidecar of their terrain; None without one."""
     return run.log.terrain and rasters.read_sidecar(run.folder / run.log.terrain)
+
+
+def terrain_of(run):
+    """The terrain file of a run, None without one."""
+    return run.folder / run.log.terrain if run.log.terrain else None
 
 
 def largest(rows, key):

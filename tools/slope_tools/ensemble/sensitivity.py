@@ -75,7 +75,7 @@ def collect(setup: Setup, base, of, todo, work):
             continue
         found, thickness = results.result(one, row, maps)
         if setup.road:
-            found.update(results.on_road(one, setup.road, setup.output / found["summary"], thickness))
+            found.update(results.on_road(one, setup, found, thickness))
         rows.append(found)
     if not rows or rows[0]["kind"] != "base":
         return      # nothing to hold the others against; which run failed is said at the end

@@ -21,7 +21,9 @@ from .sensitivity import quantities
 from .setup import Road, Setup
 from .size_error import SizeErrors, WHAT
 
-SIZES, STUDY, SCORE = "sizes", "study", "score"         # folders in the site's
+SIZES, STUDY, SCORE, ENSEMBLE = "sizes", "study", "score", "ensemble"       # folders in the site's
+# --vary of an ensemble of a site, unless it is given: masses from as sluggish as the defaults to rock avalanches
+MOBILE = ("friction=9:29", "rolling=0.01:0.14", "spacing=0.37:1", "xoffset=0:0.99")
 THRESHOLDS = (0.1, 0.5, 1.0)        # m, of the maps of exceedance
 
 
@@ -81,7 +83,7 @@ def run_alone(folder: Path, choices: Choices, engine: Setup) -> Done:
     todo = repeats.plan(setup.output, settings, repeated, decks.index_variables(deck))
     study.check_names(todo)
     questions = results.Questions(settings, repeated, THRESHOLDS, found.errors, size_error_unusable=found.unusable,
-                                  notes=(*warnings_of(folder), *found.warnings))
+                                  notes=(*warnings_of(folder), *found.warnings), site=folder, sizes=found.path)
     failed: Optional[Exception] = None
     try:
         study.perform(setup, {**settings, **repeated}, todo,
@@ -112,6 +114,7 @@ class Sizes(NamedTuple):
     errors: Optional[SizeErrors]
     warnings: Sequence[str]         # of these runs
     unusable: Optional[str]         # why there are no errors although they were to be measured
+    path: Optional[Path] = None     # converge.yaml, with the means of all sizes
 
 
 def sizes(setup: Setup, choices: Choices, repeated: Dict[str, List[str]]) -> Sizes:
@@ -138,13 +141,13 @@ def sizes(setup: Setup, choices: Choices, repeated: Dict[str, List[str]]) -> Siz
         errors = SizeErrors(path, "remove_m3")
         errors.check({}, variables)
     except SlopeError as error:
-        return unusable(str(error))._replace(warnings=said)
-    return Sizes(errors, said, None)
+        return unusable(str(error), "its runs do not tell what small balls give")._replace(warnings=said, path=path)
+    return Sizes(errors, said, None, path)
 
 
-def unusable(why: str) -> Sizes:
+def unusable(why: str, shortly: str = "") -> Sizes:
     print(f"slope study: warning: the size error is unknown: {why}", file=sys.stderr)
-    return Sizes(None, (), why)
+    return Sizes(None, (), shortly or why)
 
 
 def scored(folder: Path, setup: Setup) -> None:

@@ -1,6 +1,6 @@
 """The error of a volume by the size of the balls, from what `slope sensitivity --converge` found."""
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Optional, Sequence
+from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence
 
 from .. import disk
 from ..case.settings import as_number
@@ -12,6 +12,22 @@ WHAT = "a converge.yaml of `slope sensitivity --converge`"
 # what may differ between the runs of the fit and those of the study without a word
 UNIMPORTANT = {"out", "ranks", "seed"}
 TRUSTED = 0.15          # share: a larger error is that of balls which are too large, however narrow its interval
+
+
+def falls(path: Path, quantity: str) -> bool:
+    """Whether the quantity falls with each step to smaller balls, down to some below the size of the field's.
+
+    A volume is then not too small for the size of its balls, however badly the size of its error is known.
+    """
+    about = disk.load_yaml(path, WHAT)
+    try:
+        sizes = sorted((entry["value"], entry["mean"]) for entry in about["quantities"][quantity]["sizes"])
+        field = as_number(about["study"]["base"].get("field_d", ""))
+    except (KeyError, TypeError, AttributeError) as error:
+        raise SlopeError(path, f"must be {WHAT} ({error!r})") from error
+    means = [mean for _, mean in sizes]
+    return (about["study"]["variable"] == "d" and isinstance(field, float) and sizes[0][0] < field * (1 - 1e-9)
+            and len(means) > 1 and means[0] > 0 and all(low <= high for low, high in zip(means, means[1:])))
 
 
 class SizeErrors:
@@ -79,24 +95,29 @@ class SizeErrors:
         for value in settings.get(self.variable) or [defaults[self.variable]]:
             self.at(value)
 
+    def distrust(self, values: Iterable[str]) -> List[str]:
+        """Why these errors, at values of the variable, must not count; empty: they may."""
+        found = []
+        if self.supported is False:
+            found.append("its own runs do not support the line that it rests on")
+        if any(entry["mean"] == 0 for entry in self.sizes):
+            found.append(f"it rests on runs with nothing to remove, at {self.variable} "
+                         + ", ".join(f"{entry['value']:g}" for entry in self.sizes if entry["mean"] == 0))
+        share = max((self.at(value).share for value in values), key=abs)
+        if abs(share) > TRUSTED:
+            found.append(f"it is {100 * share:.0f} %, and beyond {100 * TRUSTED:.0f} % a line through these sizes is "
+                         "not reliable")
+        field = as_number(self.base.get("field_d", ""))
+        smallest = min(entry["value"] for entry in self.sizes)
+        if self.variable == "d" and isinstance(field, float) and smallest >= field * (1 - 1e-9):
+            found.append(f"none of its runs has balls smaller than the field's, {field:g} m, below which the trend may "
+                         "reverse")
+        return found
+
     def doubts(self, deck: str, variables: Mapping[str, str], free: Sequence[str],
                road: Mapping[str, Any]) -> List[str]:
         """The caveats on these errors for runs with these variables; free: names that may differ."""
         found = []
-        if self.supported is False:
-            found.append("the size error rests on a line that its own runs do not support")
-        if any(entry["mean"] == 0 for entry in self.sizes):
-            found.append(f"the size error rests on runs with nothing to remove, at {self.variable} "
-                         + ", ".join(f"{entry['value']:g}" for entry in self.sizes if entry["mean"] == 0))
-        share = self.at(str(variables[self.variable])).share if self.variable in variables else 0.0
-        if abs(share) > TRUSTED:
-            found.append(f"the size error is {100 * share:.0f} %: beyond {100 * TRUSTED:.0f} % a line through these "
-                         "sizes is not reliable; use smaller balls")
-        field = as_number(self.base.get("field_d", ""))
-        smallest = min(entry["value"] for entry in self.sizes)
-        if self.variable == "d" and isinstance(field, float) and smallest >= field * (1 - 1e-9):
-            found.append(f"no run of the size error has balls smaller than the field's, {field:g} m, below which the "
-                         "trend may reverse")
         if self.deck != deck:
             found.append(f"the size error is that of another deck, {self.deck}")
         other = [f"{name} {value} instead of {variables[name]}" for name, value in self.base.items()

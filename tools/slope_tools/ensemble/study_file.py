@@ -50,8 +50,12 @@ def check_headline(path, best):
         if key not in best:
             raise SlopeError(path, f"conservative must have {key}: it is of another version; `slope study` with the "
                              "same arguments rewrites it and keeps the runs")
+    withheld = best.get("withheld") or []           # none in older ones
+    if not all(isinstance(one["text"], str) and isinstance(one["remedy"], str) for one in withheld):
+        raise ValueError("conservative: withheld")
     for key in (*PARTS, "remove_m3"):
-        if not (disk.is_number(best[key]) or (best[key] is None and key in PARTS and key not in ALWAYS)):
+        unknown = key == "volume_m3" and withheld or key in PARTS and key not in ALWAYS
+        if not (disk.is_number(best[key]) or best[key] is None and unknown):
             raise ValueError(f"conservative: {key}")
 
 

@@ -7,7 +7,7 @@ J. Whittall and J. Aaron, Rock avalanche runout prediction using stochastic anal
 import csv
 import math
 from pathlib import Path
-from typing import List, NamedTuple
+from typing import List, NamedTuple, Sequence
 
 from ..errors import SlopeError
 
@@ -45,6 +45,16 @@ def read(path: Path = OWN) -> List[Event]:
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise SlopeError(path, f"cannot be read as a set of events: {error}") from None
     return events
+
+
+def chosen(path: Path, left_out: Sequence[str]) -> List[Event]:
+    """The events of a set without those left out (names), all of which it must have."""
+    every = read(path)
+    names = {one.name for one in every}
+    for name in left_out:
+        if name not in names:
+            raise SlopeError("--except", f"must be an event of {path}, such as {', '.join(sorted(names)[:3])}", name)
+    return [one for one in every if one.name not in left_out]
 
 
 def event(row, where, names) -> Event:

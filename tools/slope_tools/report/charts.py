@@ -119,6 +119,8 @@ class Charts:
     def mark(self, name):
         """The point of the conservative volume, and its level where it is more than the point."""
         best = self.data.study["conservative"]
+        if best.get("withheld"):
+            return (float(best["set"][name]), best["mean_m3"], "governing mean, not usable"), []
         number = headline.text(best["rounded"]["volume_m3"], best["place_m3"])
         x = float(best["set"][name])
         if best["chance_m3"] is None and best["size_m3"] is None:

@@ -233,8 +233,12 @@ class Data:
         ensemble: Any = study.get("ensemble")
         if ensemble and ensemble["of"]:
             # a quantile is the value of a run
-            at = {one["share"]: one["value"] for one in ensemble["quantities"][ensemble["of"]]["quantiles"]}[0.9]
-            return min(self.finished, key=lambda row: abs(row[ensemble["of"]] - at))["run"]
+            of = ensemble["of"]
+            known = ((ensemble.get("known_events") or {}).get("quantities") or ensemble["quantities"])[of]["quantiles"]
+            at = {one["share"]: one["value"] for one in known}[0.9]
+            if at is None:      # events beyond the runs decide
+                return max(self.finished, key=lambda row: row[of])["run"]
+            return min(self.finished, key=lambda row: abs(row[of] - at))["run"]
         if not best:
             from ..deposit.travel_shares import DISTANCE
             key = DISTANCE if all(row.get(DISTANCE) is not None for row in self.finished) else "front_m"

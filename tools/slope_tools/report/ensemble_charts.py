@@ -28,20 +28,24 @@ class Bar(NamedTuple):
     total_error: float
 
 
-def hazard_curve(values, share, low, high, quantiles: Sequence[Quantile], x_label: str, title: str) -> str:
-    """Share of the runs above each value (arrays, values ascending), with its bounds and the quantiles."""
+def hazard_curve(values, share, low, high, quantiles: Sequence[Quantile], x_label: str, title: str,
+                 what: str = "runs") -> str:
+    """Share of the runs above each value (arrays, values ascending), with its bounds and the quantiles.
+
+    what: it is a share of.
+    """
     with plt.rc_context(STYLE):
         figure, axes = plt.subplots(figsize=(figures.WIDE, 2.7))
         end = values[-1] + 0.04 * (values[-1] - values[0] or 1)
         at = np.append(values, end)
         axes.fill_between(at, np.append(low, low[-1]), np.append(high, high[-1]), step="post", color=COLOURS[0],
                           alpha=0.18, lw=0, label="bounds, 90 %")
-        axes.step(at, np.append(share, share[-1]), where="post", color=COLOURS[0], lw=1.4, label="runs")
+        axes.step(at, np.append(share, share[-1]), where="post", color=COLOURS[0], lw=1.4, label=what)
         for one in quantiles:
             axes.plot([one.value], [1 - one.share], "o", ms=4, color=COLOURS[1])
             axes.annotate(f"{100 * one.share:g} %", (one.value, 1 - one.share), xytext=(4, 3),
                           textcoords="offset points", fontsize=6)
-        axes.set(xlim=(values[0], end), ylim=(0, 1.02), xlabel=x_label, ylabel="share of the runs above")
+        axes.set(xlim=(values[0], end), ylim=(0, 1.02), xlabel=x_label, ylabel=f"share of the {what} above")
         finish(axes, title)
         axes.yaxis.set_major_formatter(PercentFormatter(1, 0))
         axes.legend(loc="upper right")

@@ -60,15 +60,9 @@ class Ensemble:
         """The hazard curve, from hazard.csv."""
         if not self.entry:
             return None
-        path = self.data.folder / ensemble.HAZARD
-        try:
-            with open(path, newline="", encoding="ascii") as lines:
-                points = np.array([[float(row[key]) for key in ("value", "exceeded", "low", "high")]
-                                   for row in csv.DictReader(lines) if row["quantity"] == self.of]).T
-            if points.shape[1] < 2:
-                return None
-        except (OSError, ValueError, KeyError, TypeError, IndexError) as error:
-            raise SlopeError(path, f"must be what `slope study --sample` wrote ({error!r})") from error
+        points = read_curve(self.data.folder / ensemble.HAZARD, self.of)
+        if points is None:
+            return None
         quantiles = [ensemble_charts.Quantile(*(one[key] for key in ("share", "value", "low", "high")))
                      for one in self.entry["quantiles"]]
         title = f"Hazard curve: {self.entry['name']}"
@@ -151,6 +145,22 @@ class Ensemble:
         return entry["quantile"] == 0.9 and entry["raster"] != "thickness"
 
 
+def share_of(what: str) -> str:
+    """The label of a map of shares: of runs, or of known events."""
+    return "share of known events" if "known events" in what else "share of the runs"
+
+
+def read_curve(path, quantity: str):
+    """Value, share, low and high (rows) of a quantity, of a file of curves; None where the curve is one point."""
+    try:
+        with open(path, newline="", encoding="ascii") as lines:
+            points = np.array([[float(row[key]) for key in ("value", "exceeded", "low", "high")]
+                               for row in csv.DictReader(lines) if row["quantity"] == quantity]).T
+        return points if points.shape[1] >= 2 else None
+    except (OSError, ValueError, KeyError, TypeError, IndexError) as error:
+        raise SlopeError(path, f"must be what `slope study --sample` wrote ({error!r})") from error
+
+
 def draw(entries, maps):
     """The pictures of (entry, values), by a maps_part.Maps."""
     pictures = []
@@ -159,10 +169,11 @@ def draw(entries, maps):
         what = entry["what"]
         title = f"{what[0].upper()}{what[1:]}"
         if "threshold" in entry:
-            uri = figure_maps.value_map(layers, values, title, "share of the runs", ODDS, "RdPu", mask=values > 0)
+            uri = figure_maps.value_map(layers, values, title, share_of(what), ODDS, "RdPu", mask=values > 0)
         else:
             bounds = figures.even_to_most(values[values > 0])
             colours = "YlGnBu" if entry["raster"] == "arrival" else "viridis_r"
             uri = figure_maps.value_map(layers, values, title, f"({entry['unit']})", bounds, colours, mask=values > 0)
-        pictures.append(maps.picture(uri, title, f"{title}. Its bounds are bands of {entry['bounds']}."))
+        bands = f" Its bounds are bands of {entry['bounds']}." if entry["bounds"] else ""
+        pictures.append(maps.picture(uri, title, f"{title}.{bands}"))
     return pictures

@@ -4,13 +4,12 @@ import math
 import numpy as np
 
 from .. import geometry
+from ..deposit import scar
 from ..drawing import maps
 from ..errors import SlopeError
-from ..survey import rasters
 from ..survey.resampling import sample
 
 TALLEST, FLATTEST = 0.7, 0.22       # height / width of a map, where the terrain is large enough
-SCAR = 0.01             # m; ground that lies so much lower than before is the slip surface
 
 
 class Ground:
@@ -26,12 +25,7 @@ class Ground:
         self.raster, self.base, self.cell = one.deposit.raster, one.deposit.base, one.deposit.cell
         rows, columns = self.base.shape
         self.x, self.y = self.raster.transform * np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
-        self.before = np.full(self.base.shape, np.nan)
-        if one.terrain_path:
-            self.before = sample(rasters.read_asc_local(one.terrain_path), self.x, self.y)
-        self.before = np.where(np.isfinite(self.before), self.before, self.base)
-        with np.errstate(invalid="ignore"):
-            self.slip_depth = np.where(self.before - self.base > SCAR, self.before - self.base, 0)
+        self.before, self.slip_depth = scar.before(self.raster, self.base, one.terrain_path)
         self.arrival, self.max_thickness = one.raster("arrival"), one.raster("max_thickness")
         self.max_speed = one.raster("max_speed")
         # balls larger than the cells leave holes between them

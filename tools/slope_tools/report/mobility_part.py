@@ -7,8 +7,7 @@ mobile than it is, which is the safe side. (A cell of the deposit adds up to its
 """
 from typing import List, NamedTuple, Optional, Tuple
 
-from ..errors import SlopeError
-from ..mobility import body, events, exceedance, relation
+from ..mobility import exceedance, known
 from ..mobility.results import percent
 
 WHAT = "Known events"
@@ -32,23 +31,10 @@ def content(data, ground, numbers) -> List[Tuple[str, str]]:
 def where_lie(data, ground) -> Lies:
     """The runs of a data.Data on its ground.Ground among the events of our own set."""
     lengths = lengths_of(data)
-    known = events.read()
-    low, high = relation.of_events(known).volumes
-    volume = data.largest_release() / 1e6
-    if not low <= volume <= high:
-        return Lies(lengths, None, f"No set of known events covers a volume of {volume:.3g} million m3; ours are of "
-                                   f"{low:g} to {high:g}. How far it runs rests on the parameters alone.")
-    try:
-        mass = body.of_arrays(ground.raster._replace(z=ground.before), ground.slip_depth, "the run")
-        found = exceedance.of_body(mass, known)
-    except SlopeError as error:
-        return Lies(lengths, None, f"The runs cannot be compared with known events: {error}.")
-    if not found.in_range:
-        return Lies(lengths, None, "; ".join(f"{line[0].upper()}{line[1:]}" for line in found.outside)
-                    + ". How far the mass runs rests on the parameters alone.")
-    if not lengths:
+    found = known.of_mass(ground.raster, ground.before, ground.slip_depth, data.largest_release())
+    if found.mobility and not lengths:
         return Lies(lengths, None, "No run has a connected deposit, whose length could be compared with known events.")
-    return Lies(lengths, found, "")
+    return Lies(lengths, found.mobility, found.why and f"{found.why}.")
 
 
 def lengths_of(data) -> List[float]:

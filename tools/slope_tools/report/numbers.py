@@ -4,7 +4,7 @@ import io
 
 from .. import disk
 from ..deposit import rest, travel_shares
-from ..ensemble import headline
+from ..ensemble import headline, withheld_words
 from .release_part import over_runs
 
 UNKNOWN = "unknown"
@@ -50,11 +50,17 @@ class Numbers:
 # --- the answer ---
 
 def answer(data, numbers):
-    """The conservative volume: its number, what it may be called, and its parts; None without a road."""
+    """The conservative volume: its number (or why it is withheld), what it may be called, its parts.
+
+    None without a road.
+    """
     best = data.study and data.study["conservative"]
     if not best:
         return None
     road, place = data.study["study"]["road"], best["place_m3"]
+    if best.get("withheld"):        # older ones have none
+        return {"title": withheld_words.UNUSABLE.capitalize(), "withheld": best["withheld"], "road": road,
+                "number": None, "parts": [], "predicted": False, "below": "", "zero": None}
     who = best.get("label") or best.get("combination") or data.label(data.result)
 
     def part(key):
@@ -81,7 +87,8 @@ def answer(data, numbers):
     title = "Conservative volume to remove from the road" if predicted else \
         f"Volume to remove from the road: {best['kind']}"
     return {"number": part("volume_m3"), "title": title, "parts": parts, "predicted": predicted, "road": road,
-            "below": below_ground(data, numbers), "who": who, "only": not predicted and best["size_m3"] is None}
+            "zero": (best.get("zero") or {}).get("text"), "withheld": [],
+            "below": below_ground(data, numbers)}
 
 
 def below_ground(data, numbers):

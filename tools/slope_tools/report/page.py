@@ -81,11 +81,16 @@ class Page:
             "view": view.content(data, self.ground, self.section, self.frames, self.no_frames, self.film.text),
             "heading": self.heading, "terms": self.terms(),
             "limits": [*mobility_part.content(data, self.ground, numbers), *limits_part.content(data, numbers)],
-            "place": self.place(), "ensemble": None}
+            "place": self.place(), "ensemble": None, "known": None}
         if study and study.get("ensemble"):
             from . import ensemble_part
             mine = found["ensemble"] = ensemble_part.Ensemble(data, numbers, self.picture).content()
             mine["maps"] = ensemble_part.draw(mine["maps"], maps)
+            if study["ensemble"].get("known_events"):
+                from . import known_part
+                known = found["known"] = known_part.KnownEvents(data, numbers, self.picture).content()
+                known["maps"] = ensemble_part.draw(known["maps"], maps)
+                mine["answer"] = known["answer"] or mine["answer"]
         return {**found, **self.what_was_run(), **self.provenance()}
 
     # --- tables ---

@@ -29,7 +29,9 @@ def warnings(data):
         for text in (data.study["conservative"] or {}).get("doubts") or ():
             if not SAID_TOO.search(text):
                 found.append((AMBER, f"The volume to remove: {text}"))
-        found += [(AMBER, f"The ensemble: {text}") for text in (data.study.get("ensemble") or {}).get("doubts") or ()]
+        ensemble = data.study.get("ensemble") or {}
+        for what, about in (("ensemble", ensemble), ("known events", ensemble.get("known_events") or {})):
+            found += [(AMBER, f"The {what}: {text}") for text in about.get("doubts") or ()]
         found += of_study(data)
     found += from_logs(data, any("released mass" in text for _, text in found), bool(gone))
     return sorted(found, key=lambda one: one[0] != RED)

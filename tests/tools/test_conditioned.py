@@ -1,0 +1,230 @@
+"""tools/slope study --sample --mobility: bounds of weighted curves, weighted maps, an ensemble of small collapses."""
+import csv
+import shlex
+from pathlib import Path
+
+import numpy as np
+import pytest
+import rasterio
+import yaml
+from scipy import stats
+
+from run_helpers import called
+from tiny_collapse import LMP, read_asc, write_case
+
+import known_twins as twins  # noqa: E402  (run_helpers has set the path)
+from slope_tools import cli  # noqa: E402
+from slope_tools.ensemble import conditioned, known_events, known_maps  # noqa: E402
+from slope_tools.mobility import weights  # noqa: E402
+from slope_tools.report import known_part  # noqa: E402
+from slope_tools.report.numbers import Numbers  # noqa: E402
+
+pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
+LONGER = 1.9
+LEVELS = np.array([5e3, 2e4, 4e4, 7e4])     # m3
+
+
+def mass_of(lengths):
+    return conditioned.masses(weights.of_lengths(lengths, twins.exceedance(lengths)))
+
+
+def shares(lengths, volumes):
+    mass = mass_of(lengths)
+    return mass.share @ conditioned.above(volumes, LEVELS) + mass.far
+
+
+# --- bounds ---
+
+@pytest.mark.parametrize("jump, least", [(False, 33), (True, 31)])
+def test_bands_hold_a_reference(jump, least):
+    """Of independent runs; tests/statistics/conditioned.py has designs as well."""
+    reference = shares(*twins.runs("sobol", 4000, 10, jump)[1:])
+    found, bands = [], []
+    for seed in range(400):
+        lengths, volumes = twins.response(np.random.default_rng(seed).random((100, 3)), jump)
+        found.append(shares(lengths, volumes))
+        if seed >= 40:
+            continue
+        curve = conditioned.curve(volumes, mass_of(lengths))
+        bands.append([(one.low, one.high) for one in map(curve.at, LEVELS)])
+    low, high = np.moveaxis(bands, 2, 0)
+    held = ((low <= reference) & (reference <= high)).sum(axis=0)
+    assert least <= held.mean() <= 39
+    width = np.diff(np.quantile(found, [0.05, 0.95], axis=0), axis=0).sum()
+    assert 0.8 < (high - low).mean(axis=0).sum() / width < 1.3
+
+
+def test_a_design_is_as_even_as_what_it_samples():
+    """The variance is a quarter where the length decides, and hardly less where chance does."""
+    u, lengths, volumes = twins.runs("sobol", 64, 3)
+    design = conditioned.Design("sobol", u, lengths, twins.exceedance)
+    assert design.effect(volumes)(np.array([4e4])) < 0.4
+    chance = np.random.default_rng(3).random(64)
+    assert design.effect(chance)(np.array([0.5])) > 0.5
+
+
+def test_an_estimate_by_hand():
+    """Four runs, in the order of their lengths; two neighbours differ, and half a pair more is added."""
+    mass = conditioned.Masses(np.array([0.1, 0.2, 0.3, 0.2]), 0.2, np.array([0, 1, 2, 3]), 3.0, 1)
+    part, low, high = conditioned.estimate(np.array([[False], [False], [True], [True]]), mass)
+    assert part == pytest.approx([0.5])
+    pair = np.array([0.05, 0.13, 0.13]) / 4
+    number = max(3.0, 0.625 * 0.375 / ((pair[1] + pair.mean() / 2) / 0.64))
+    z = stats.norm.ppf(0.95)
+    middle = (0.625 + z ** 2 / (2 * number)) / (1 + z ** 2 / number)
+    half = z / (1 + z ** 2 / number) * (0.625 * 0.375 / number + z ** 2 / (4 * number ** 2)) ** 0.5
+    assert (low, high) == (pytest.approx([0.8 * (middle - half)]), pytest.approx([0.8 * (middle + half)]))
+    wide = conditioned.estimate(np.array([[False], [False], [True], [True]]), mass, failed=0.1)
+    assert wide[1] == pytest.approx(0.9 * low) and wide[2] == pytest.approx(high + 0.1 * (1 - high))
+
+
+def test_what_lies_beyond_exceeds_every_value():
+    lengths = np.linspace(1000, 1800, 40)
+    mass = mass_of(lengths)
+    curve = conditioned.curve(lengths - 1000, mass)
+    assert curve.share[-1] == pytest.approx(mass.far) and 0.3 < mass.far < 0.85
+    assert curve.share[0] == pytest.approx(1)
+    assert (np.diff(curve.share) <= 1e-12).all() and (curve.low <= curve.share).all() and curve.low[-1] == 0
+    assert (curve.high >= curve.share - 1e-12).all()
+    few, most = conditioned.quantiles(curve, (0.1, 0.9))
+    assert 0 <= few.low <= few.value <= 800
+    assert (most.value, most.high) == (None, None)
+
+
+def test_runs_that_reach_no_event_say_nothing():
+    mass = conditioned.masses(weights.of_lengths([2000, 2000], [0.4, 0.4]))
+    curve = conditioned.curve([1.0, 2.0], mass)
+    assert (curve.low[-1], curve.high[0]) == (0, 1)
+
+
+def test_ranks_and_quantiles_are_weighted():
+    rng = np.random.default_rng(5)
+    x, y = rng.random(50), rng.integers(0, 9, 50)
+    assert known_events.rank(x, y, np.ones(50)) == pytest.approx(stats.spearmanr(x, y)[0])
+    twice = np.repeat(np.arange(50), rng.integers(1, 4, 50))
+    share = np.bincount(twice)
+    assert known_events.rank(x, y, share) == pytest.approx(stats.spearmanr(x[twice], y[twice])[0])
+    assert known_events.rank(x, np.ones(50), share) is None
+    assert known_events.quantiles(x, share, (0.2, 0.5)) == pytest.approx(
+        np.quantile(x[twice], (0.2, 0.5), method="inverted_cdf"))
+    block = rng.random((50, 7))
+    for one, wanted in zip(known_maps.quantiles(block, share, (0.1, 0.9)), (0.1, 0.9)):
+        assert one == pytest.approx(np.quantile(block[twice], wanted, axis=0, method="inverted_cdf"))
+
+
+# --- an ensemble ---
+
+def write_set(path):
+    """Known events as small as the test's collapse: so many times as long as they fell, with a scatter."""
+    rng = np.random.default_rng(1)
+    rows = [f"event {i},{fall:.4g},{LONGER * fall * 10 ** (0.08 * rng.standard_normal()):.4g},{volume:.4g},"
+            f"{'lateral' if i % 3 == 0 else 'unconfined'}"
+            for i, (fall, volume) in enumerate(zip(rng.uniform(3, 20, 24), 10 ** rng.uniform(-4.5, -3, 24)))]
+    Path(path).write_text("name,fall_m,length_m,volume_Mm3,confinement\n" + "\n".join(rows) + "\n")
+
+
+@pytest.fixture
+def slope(tmp_path, monkeypatch, capsys):
+    """Run `slope study case/in.tiny ARGUMENTS` in the test's folder; gives status, stdout, stderr."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("LMP", LMP)
+    write_case(tmp_path / "case")
+    Path("case/road.csv").write_text("13,0\n18,0\n18,24\n13,24\n")
+    write_set("small.csv")
+    return lambda arguments: called(capsys, ["study", "case/in.tiny", *shlex.split(arguments)])
+
+
+def test_an_ensemble_is_weighted(slope, capsys):
+    words = ("--sample 8 --vary friction=2:40 --vary rolling=0:0.3 --set steps=900 --mobility small.csv --unconfined "
+             "--except 'event 3' --road case/road.csv --local --exceed 0.1 -o out")
+    status, out, err = slope(words)
+    assert status == 0, err
+    assert "known events: the runs reach from " in out and "23 events of small.csv" in out
+    found = yaml.safe_load(Path("out/study.yaml").read_text())["ensemble"]["known_events"]
+    assert found["left_out"] == ["event 3"] and found["path"] == "not laterally confined" and not found["outside"]
+    assert found["reached"] + found["short"] + found["far"] == pytest.approx(1) and found["reached"] > 0.05
+    with open("out/weights.csv", encoding="ascii") as lines:
+        rows = list(csv.DictReader(lines))
+    weight, length, beyond = (np.array([float(row[key]) for row in rows]) for key in ("weight", "length_m", "beyond"))
+    assert weight.sum() == pytest.approx(found["reached"], abs=1e-4)
+    again = weights.of_lengths(length, beyond)
+    assert again.weights == pytest.approx(weight, abs=1e-4)
+
+    # curve and map, by hand
+    mass = conditioned.masses(again)
+    table = list(csv.DictReader(open("out/study.csv", encoding="ascii")))
+    assert [row["run"] for row in table] == [row["run"] for row in rows]
+    volumes = np.array([float(row["remove_on_road_m3"]) for row in table])
+    curve = [row for row in csv.DictReader(open("out/hazard_known_events.csv", encoding="ascii"))
+             if row["quantity"] == "remove_on_road_m3"]
+    for row in curve:
+        share = mass.share[volumes > float(row["value"]) * (1 + 1e-6)].sum() + mass.far
+        assert float(row["exceeded"]) == pytest.approx(share, abs=2e-4)
+        assert float(row["low"]) - 1e-9 <= share <= float(row["high"]) + 1e-4
+    stack = np.array([read_asc(f"out/{row['run']}/tiny.thickness.asc") for row in rows])
+    share = mass.share + 0
+    share[mass.order[-1]] += mass.far       # the window of 8 runs is one
+    assert again.window == 1
+    there = read_asc("out/known_events/thickness_above_0.1.asc")
+    assert there == pytest.approx(np.tensordot(share, stack > 0.1, 1), abs=1e-3) and there.max() > 0.5
+    with rasterio.open("out/known_events/thickness.tif") as tif:
+        bands = {name: tif.read(i + 1) for i, name in enumerate(tif.descriptions)}
+    plain = "share of known events with a final thickness > 0.1 m"
+    assert (bands[f"{plain}, lower bound"] <= bands[plain] + 1e-6).all()
+    assert (bands[f"{plain}, upper bound"] >= bands[plain] - 1e-6).all()
+    assert cli.main(["report", "out"]) == 0
+    page = Path("out/report.html").read_text()
+    capsys.readouterr()
+    assert "Weighted by known events" in page and "90 % of known events stay within" in page
+
+    # a set that does not cover the mass: said, and nothing is weighted
+    status, out, err = slope(words.replace("small.csv", "rock_avalanches").replace("'event 3'", "'Frank Slide'"))
+    assert status == 0 and "no set of known events covers this volume" in out
+    found = yaml.safe_load(Path("out/study.yaml").read_text())["ensemble"]["known_events"]
+    assert found["reached"] is None and "quantities" not in found and not Path("out/weights.csv").exists()
+
+
+@pytest.mark.parametrize("arguments, message", [
+    ("--sample 8 --vary friction=1:2 --mobility none.csv", "none.csv: cannot be read as a set of events"),
+    ("--sample 8 --vary friction=1:2 --mobility small.csv --except x", "--except: must be an event of small.csv"),
+    ("--sample 8 --vary friction=1:2 --except x", "--except: must be given with --mobility"),
+    ("--sample 8 --vary friction=1:2 --confined", "--confined or --unconfined: must be given with --mobility"),
+    ("--set friction=1 --mobility small.csv", "--mobility: must be given with --sample only, got small.csv"),
+    ("--sample 8 --vary friction=1:2 --mobility three.csv", "three.csv: must have at least 12 events"),
+])
+def test_wrong_conditions_are_one_line(slope, arguments, message):
+    Path("three.csv").write_text("".join(Path("small.csv").read_text().splitlines(True)[:4]))
+    status, out, err = slope(f"{arguments} -o out")
+    assert (status, out) == (2, "") and err.count("\n") == 1 and err.startswith(f"slope study: {message}"), err
+    assert not Path("out").exists()
+
+
+# --- words ---
+
+def test_what_is_not_reached_is_said():
+    rows = [{"off_grid_m3": lost, "lost_m3": 0, "released_m3": 100} for lost in (0, 5)]
+    runs = type("Runs", (), {"rows": rows, "failed": 1})
+    about = {"reached": 0.4, "far": 0.5, "short": 0.1, "longest_m": 1700.4, "shortest_m": 900, "effective": 11.6,
+             "gaps": [{"low_m": 1200, "high_m": 1500, "share": 0.2}]}
+    lines = known_events.doubts(about, runs)
+    for line, text in zip(lines, ("no run goes beyond 1,700 m; 50 % of known events do", "before 900 m; 10 %",
+                                  "between 1,200 and 1,500 m no run ends; 20 % of known events do", "as 12 runs",
+                                  "1 of 3 runs have no length", "1 of 2 runs lost more than 1 %")):
+        assert text in line
+    assert len(lines) == 6
+    assert known_events.doubts({**about, "reached": 0.96, "far": 0.02, "short": 0.02, "gaps": [], "effective": 60},
+                               type("Runs", (), {"rows": rows[:1], "failed": 0})) == []
+
+
+def test_a_report_shows_no_number_where_events_go_beyond_the_runs():
+    quantiles = [{"share": 0.5, "value": 1000.0, "low": 0.0, "high": None},
+                 {"share": 0.9, "value": None, "low": 900.0, "high": None}]
+    about = {"reached": 0.5, "effective": 12.0, "doubts": ["why"], "quantities": {
+        "front_m": {"name": "farthest ball", "unit": "m", "quantiles": quantiles}}}
+    data = type("Data", (), {"study": {"ensemble": {"known_events": about, "of": "front_m", "confidence": 0.9}}})
+    answer = known_part.KnownEvents(data, Numbers(None), None).answer()
+    assert (answer["number"], answer["unit"]) == ("unknown", "")
+    about.update(reached=None, doubts=["no set of known events covers this volume"])
+    content = known_part.KnownEvents(data, Numbers(None), None).content()
+    assert content["lines"] == ["No set of known events covers this volume."] and not content["answer"]
+    assert "50 % of the known events" in answer["note"] and answer["parts"][0]["note"].startswith("0 to ?")

@@ -1,0 +1,120 @@
+"""When the conservative volume is withheld: each rule alone, none, and several; the words; what left before a road."""
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from affine import Affine
+from shapely.geometry import box
+
+TOP = Path(__file__).resolve().parents[2]
+sys.path.insert(0, os.environ.get("SLOPE_TOOLS", str(TOP / "tools")))
+
+from slope_tools.deposit import left  # noqa: E402
+from slope_tools.ensemble import combinations, usable, withheld, withheld_words  # noqa: E402
+from slope_tools.ensemble.usable import Events  # noqa: E402
+from slope_tools.ensemble.withheld import Facts, Kind  # noqa: E402
+from slope_tools.ensemble.withheld_words import Case  # noqa: E402
+from slope_tools.survey.rasters import Raster  # noqa: E402
+
+GOOD = Facts(volume=5000.0, on_road=3000.0, ball=10.0, runs=20, failed=0, moving=0, left=0.0, length=900.0,
+             median=800.0)
+SITE = Case(Path("site/in.site"), Path("my site"), {"friction": "30", "rolling": "0.1", "d": "2"}, 1000)
+DECK = Case(Path("in.slope"), None, {"d": "2", "duration": "60"}, 1000)
+
+
+@pytest.mark.parametrize("changed, kinds", [
+    ({}, []),
+    ({"on_road": 99.0}, [Kind.BALLS]),                                  # 9.9 balls
+    ({"on_road": 100.0}, []),
+    ({"length": 799.0}, [Kind.MOBILITY]),
+    ({"length": 100.0, "median": None}, []),                            # no set covers the mass
+    ({"left": 0.011}, [Kind.LEFT]),
+    ({"left": 0.01}, []),
+    ({"failed": 1, "moving": 2}, [Kind.RUNS]),                          # 15 %
+    ({"moving": 2}, []),                                                # 10 %
+    ({"size": "it is -20 %"}, [Kind.SIZE]),
+    ({"volume": 0.0, "on_road": 0.0, "size": "it is -20 %"}, []),       # nothing to count balls of
+    ({"volume": 0.0, "on_road": 0.0, "length": 1.0, "left": 0.5, "failed": 20},
+     [Kind.MOBILITY, Kind.LEFT, Kind.RUNS])])
+def test_twelve_cases(changed, kinds):
+    assert [one.kind for one in withheld.reasons(GOOD._replace(**changed))] == kinds
+
+
+@pytest.mark.parametrize("changed, case, text, remedy", [
+    ({"on_road": 50.0}, SITE, "on the road lies the volume of 5 balls, fewer than 10",
+     "rm -r 'my site'/study 'my site'/sizes; tools/slope site 'my site' --balls 2200 && tools/slope study 'my site'"),
+    ({"on_road": 50.0}, DECK, "5 balls", "the same command with --set d=1.54"),
+    ({"length": 700.0}, SITE, "no run reaches 800 m, as half of known events of this volume and height do; the longest "
+     "connected deposit ends at 700 m", "tools/slope study site/in.site --sample 64 --vary friction=10:30 --vary "
+     "rolling=0:0.1 --road 'my site/road.csv' --local -o 'my site/ensemble'"),
+    ({"length": 700.0}, DECK, "no run reaches", "tools/slope calibrate in.slope, with a past event"),
+    ({"left": 0.3}, SITE, "30 % of the released volume left the terrain before or beside the road, more than 1 %",
+     "a larger elevation model (terrain.files, terrain.bounds) in 'my site'/site.yaml, then: rm -r "
+     "'my site'/study 'my site'/sizes; tools/slope site "
+     "'my site' && tools/slope study 'my site'"),
+    ({"moving": 5}, DECK, "5 of 20 runs failed or are not at rest, more than 10 %",
+     "the same command with more time, --set duration=120"),
+    ({"failed": 5}, DECK, "5 of 20 runs", "the same command again, once the cause of the failures is removed"),
+    ({"size": "it is -20 %"}, SITE, "the size error is not trusted: it is -20 %",
+     "rm -r 'my site'/study 'my site'/sizes; tools/slope site 'my site' --balls 8800 && tools/slope study 'my site'")])
+def test_the_reason_and_the_command_that_mends_it(changed, case, text, remedy):
+    [entry] = withheld_words.entries(withheld.reasons(GOOD._replace(**changed)), case)
+    assert text in entry["text"] and entry["remedy"] == remedy
+
+
+# --- of the rows of a study ---
+
+def rows(*volumes, **more):
+    return [{"status": "finished", "run": f"seed_{k}", "set": {"rolling": "0"}, "repeat": {"seed": str(k)},
+             "remove_m3": volume, "remove_on_road_m3": volume / 2, "ball_m3": 1.0, "released_m3": 1000.0,
+             "left_before_road_m3": 0.0, "at_rest": True, "connected_m": 500.0, "label": "", **more}
+            for k, volume in enumerate(volumes)]
+
+
+def judged(several, events=None, size=""):
+    best = combinations.conservative({"rolling": ["0"]}, several, combinations.grouped(several))
+    usable.judge(best, several, events, SITE, size)
+    return best
+
+
+def test_a_number_that_may_stand():
+    best = judged(rows(90.0, 100, 110), Events(400.0, 0.6))
+    assert best["withheld"] == [] and best["volume_m3"] > 110 and best["zero"] is None
+    assert combinations.describe(best)[0].startswith("conservative volume to remove: ")
+
+
+def test_a_number_that_is_withheld_is_nowhere():
+    best = judged(rows(90.0, 100, 110), Events(600.0, 0.6))
+    assert best["volume_m3"] is None and best["rounded"]["volume_m3"] is None
+    lines = combinations.describe(best)
+    assert lines[0] == "not usable as a conservative volume:" and "no run reaches 600 m" in lines[1]
+    assert not any("m3" in line for line in lines)
+
+
+def test_zero_has_a_probability():
+    best = judged(rows(0.0, 0, 0), Events(400.0, 0.25))
+    assert best["volume_m3"] == 0 and best["zero"]["exceeded_at_most"] == pytest.approx(1 - 0.05 ** (1 / 3))
+    assert combinations.describe(best)[1] == (
+        "nothing is to be removed in any of 3 runs: in another one something is with a probability of at most 63 % "
+        "(95 % confidence); 25 % of known events of this volume and height go as far as the road")
+
+
+# --- what left the terrain before it reached the road ---
+
+def test_what_left_before_or_beside_a_road():
+    """Mass in the west, a road in the middle that ends short of the northern edge."""
+    z = np.zeros((10, 20))
+    raster = Raster(z, Affine(1, 0, 0, 0, -1, 10), None)
+    released = np.zeros(z.shape, bool)
+    released[4:6, 1:3] = True
+    road = box(9, -1, 11, 8)
+    z[5, 19] = 3.0                              # behind the road
+    assert left.before_road(100.0, raster, released, road) == 0
+    z[0, 5] = 1.0                               # at the side, before it
+    assert left.before_road(100.0, raster, released, road) == pytest.approx(25.0)
+    z[9, 10] = 4.0                              # on the road itself
+    assert left.before_road(100.0, raster, released, road) == pytest.approx(500.0 / 8)
+    assert left.before_road(0.0, raster, released, road) == 0
+    assert left.before_road(7.0, raster._replace(z=0 * z), released, road) == 7     # nobody knows where
