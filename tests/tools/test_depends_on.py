@@ -27,7 +27,8 @@ PLACE = {"output", "help", "dry_run"}   # where to, or no run
 ONE_RESULT = {"np", "jobs", "launcher", "engine", "slurm"}      # how it is run: the same but for rounding
 # computed from the runs, each time that the command is given
 ANEW = {"road", "cut_angle", "mesh", "local", "intensity", "more_than", "of", "exceed", "exceed_speed",
-        "exceed_energy", "size_error", "equally_good", "observed", "front", "area", "volume", "tolerance", "threshold"}
+        "exceed_energy", "size_error", "equally_good", "observed", "front", "area", "volume", "tolerance", "threshold",
+        "mobility", "confined", "left_out"}
 
 
 @pytest.mark.parametrize("command", ["study", "calibrate", "sensitivity"])
