@@ -2,9 +2,9 @@
 """Random legal sequences of commands on a small collapse, continued in the run and from a restart file: the same.
 
 What a run remembers from before, and a restart file does not (or the other way round), shows as a difference of more
-than 1e-9 m (the balls are of 1 m) at most 200 steps later. A sequence that ends with a run is compared with that of one
-longer run, too: what is stale in the run may go into the restart file as it is. A sequence that fails is printed and made shorter, command
-by command.
+than 1e-9 m (the balls are of 1 m) at most 200 steps later. A sequence that ends with a run is also compared with one
+longer run: what is stale in the run may go into the restart file as it is. A sequence that fails is printed and made
+shorter, command by command.
 
     LMP=build/lmp tests/fuzz_runs.py --count 100 --first 1        # seeds 1 to 100
     LMP=build/lmp tests/fuzz_runs.py --count 30 --day             # seeds of the day
@@ -36,8 +36,8 @@ def draw(rng):
     steps = [50, 100, 200]    # with reset_timestep their numbers come again
     first = rng.choice([*steps, rng.randint(100, 400), 600])
     commands = [("run", first)]
-    kinds = ["run"] * 4 + ["reset"] * 3 + ["again"] * 2 + ["timestep", "weight", "move", "wall", "write", "restart", "balance"]
-    kinds += ["delete", "spin", "speed", "displace", "zero", "pre no"]
+    kinds = ["run"] * 4 + ["reset"] * 3 + ["again"] * 2 + ["timestep", "weight", "move", "wall", "write"]
+    kinds += ["restart", "balance", "delete", "spin", "speed", "displace", "zero", "pre no"]
     for _ in range(rng.randint(2, 9)):
         kind = rng.choice(kinds)
         number = {"run": rng.choice([*steps, rng.randint(1, 120)]), "pre no": rng.randint(1, 60),

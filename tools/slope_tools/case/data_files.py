@@ -31,7 +31,7 @@ def data_files(deck, settings):
         if path.is_file() and (path.name in words or not output):
             found[path.name] = path
     found[deck.name] = deck
-    for word in sorted(words):
+    for word in sorted({*words, *(path for word in words for path in decks.PATHS.findall(word))}):
         if "/" not in word or word.startswith("/") or "$" in word or not (folder / word).is_file():
             continue
         inside = os.path.normpath(word)

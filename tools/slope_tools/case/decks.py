@@ -6,6 +6,7 @@ from typing import Any, Callable, Dict, Iterable, List, Mapping, Sequence, Set, 
 from ..errors import SlopeError
 
 WORD = re.compile(r'"""(.*?)"""|"([^"]*)"|\'([^\']*)\'|(\S+)')
+PATHS = re.compile(r"[^\s\"'(),=]+")        # what may be a path in a word such as is_file(/data/a.asc)
 # where a variable is used: ${name}, $x, v_name
 USED = re.compile(r"\$\{(\w+)\}|\$(\w)|\bv_(\w+)")
 DEEPEST = 10            # variables that name variables

@@ -17,7 +17,6 @@ PLUGINS = "LAMMPS_PLUGIN_PATH"      # folders of plugins that LAMMPS loads when 
 LIBRARIES = "LD_LIBRARY_PATH"       # folders in which a plugin that a deck loads by its bare name is looked for
 SYSTEM = ("/lib", "/usr/lib")        # folders of the system's own libraries
 BESIDE = (".yaml", ".prj")          # sidecars of a raster or a table: terrain.yaml of terrain.asc
-PATHS = re.compile(r"[^\s\"'(),=]+")        # what may be a path in a word such as is_file(/data/a.asc)
 WHAT = "what `slope study` wrote"
 
 
@@ -142,7 +141,7 @@ def outside(words: str, folder: Path) -> Dict[str, str]:
     libraries = [one for one in os.environ.get(LIBRARIES, "").split(":") if one]
     top = os.path.abspath(folder)
     found: Dict[str, str] = {}
-    for word in {*words.split("\n"), *PATHS.findall(words)}:
+    for word in {*words.split("\n"), *decks.PATHS.findall(words)}:
         if "/" in word:
             places = [os.path.normpath(os.path.join(top, word))]
         elif word.endswith(".so"):

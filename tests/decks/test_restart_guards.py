@@ -1,0 +1,92 @@
+"""A restart file is not continued with another ground, mesh, line, motion or raster: what each keyword guards."""
+import re
+from pathlib import Path
+
+import numpy
+import pytest
+from deck_helpers import run_deck, write_asc
+from mesh_helpers import box, stl_bytes
+
+DECK = """
+units si
+atom_style sphere
+boundary f f f
+comm_modify vel yes
+{begin}
+region ground terrain ground.asc depth 2 headroom 6
+region road polygon road.csv
+pair_style gran/restitution
+pair_coeff * * stiffness 1e6 1e6 restitution 0.5 friction 30
+group soil type 1
+fix balls soil wall/gran/balls 2 1.0 surface ground upper spacing 1.0 origin 0 0 sink 0.2 outside road
+fix places soil wall/gran/balls 2 1.0 file places.txt
+fix house soil wall/gran/mesh 3 house.stl scale 1 move 0 0 0
+fix floor soil wall/gran/mesh 3 terrain floor.asc
+fix move soil nve/sphere
+fix weight soil gravity 9.81 vector 0 0 -1
+fix quake soil ground/motion motion.txt scale 1 start 0
+fix dep soil deposit/grid 10 0 cell 1 terrain ground output out bulk 1.5 extent 0 16 0 16
+fix line soil control/line line.csv deposit dep output out
+timestep 1e-3
+"""
+NEW = """region all block 0 16 0 16 -2 6
+create_box 3 all
+region soil block 6 7.5 6 7.5 2 4
+lattice sc 1.0
+create_atoms 1 region soil
+set group all diameter 0.9 density 2000"""
+CHANGES = [("2 1.0 surface", "2 0.9 surface", "balls"), ("spacing 1.0", "spacing 0.9", "balls"),
+           ("origin 0 0", "origin 0.3 0", "balls"), ("sink 0.2", "sink 0.1", "balls"),
+           ("outside road", "inside road", "balls"), ("outside road", "", "balls"),
+           ("file places.txt", "file other.txt", "places"), ("scale 1 move", "scale 1.1 move", "house"),
+           ("move 0 0 0", "move 0 0 0.1", "house"), ("house.stl", "other.stl", "house"),
+           ("terrain floor.asc", "terrain higher.asc", "floor"), ("terrain ground.asc", "terrain higher.asc", "balls"),
+           ("scale 1 start", "scale 1.1 start", "quake"), ("start 0", "start 0.1", "quake"),
+           ("motion.txt", "other_motion.txt", "quake"), ("cell 1 ", "cell 2 ", "dep"), ("bulk 1.5", "bulk 1.6", "dep"),
+           ("extent 0 16", "extent 0 15", "dep"), ("line.csv", "other.csv", "line")]
+# words of these parsers that a restart file does not guard, as decks may change them, or that another one stands for
+PARSERS = ("lammps/placement_arguments", "lammps/surface_options", "lammps/deposit_options", "styles/fix_ground_motion",
+           "styles/fix_control_line")
+OUTPUTS = {"output", "write", "series", "point", "motion", "window", "deposit"}
+LIKE = {"inside": "outside", "upper": "surface", "lower": "surface", "sunk": "sink", "smallest": "file"}
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("guards")
+    for name, z in (("ground", 0.0), ("floor", -0.1), ("higher", 0.1)):
+        write_asc(folder / f"{name}.asc", numpy.full((16, 16), z), cell=1.0)
+    for name, x in (("road", 12), ("line", 10), ("other", 11)):
+        ring = f"{x},0\n16,0\n16,16\n{x},16\n"
+        (folder / f"{name}.csv").write_text(ring if name == "road" else f"{x},0\n{x},16\n")
+    for name, x in (("places", 1.0), ("other", 1.2)):
+        (folder / f"{name}.txt").write_text(f"{x} 1 0\n3 1 0\n")
+    for name, x in (("motion", 0.5), ("other_motion", 0.6)):
+        (folder / f"{name}.txt").write_text(f"0 0 0 0\n1 {x} 0 0\n2 0 0 0\n")
+    for name, size in (("house", 1.0), ("other", 1.2)):
+        (folder / f"{name}.stl").write_bytes(stl_bytes(box((12, 12, 1), (12 + size, 13, 2))))
+    run_deck(DECK.format(begin=NEW) + "run 20\nwrite_restart at.restart\n", folder)
+    return folder
+
+
+def test_the_same_goes_on(site):
+    run_deck(DECK.format(begin="read_restart at.restart") + "run 10\n", site)
+
+
+@pytest.mark.parametrize("old, new, fix", CHANGES)
+def test_another_one_is_refused(site, old, new, fix):
+    deck = DECK.format(begin="read_restart at.restart")
+    assert old in deck
+    with pytest.raises(AssertionError) as failed:
+        run_deck(deck.replace(old, new) + "run 0\n", site)
+    error = [line for line in str(failed.value).splitlines() if line.startswith("ERROR")]
+    assert len(error) == 1 and f" {fix}" in error[0] and "restart file" in error[0], str(failed.value)[-500:]
+
+
+def test_every_word_is_guarded():
+    found = set()
+    for name in PARSERS:
+        text = (Path(__file__).resolve().parents[2] / "src" / f"{name}.cpp").read_text()
+        found |= set(re.findall(r'(?:strcmp\(\w+\[[^]]*\], |\bkeyword == )"([a-z_]+)"', text))
+    guarded = {word for old, _, _ in CHANGES for word in old.split()}
+    assert found - guarded - OUTPUTS - {*LIKE} == set() and {*LIKE.values()} <= guarded

@@ -1,0 +1,154 @@
+"""Every option, keyword, file and environment variable that a result depends on, and what guards it.
+
+The lists below are compared with what the sources read: one that is new must be entered, with its guard. A run that is
+made of one thing is then held against another one, by the digests alone; nothing is run.
+"""
+import argparse
+import importlib
+import os
+import re
+from pathlib import Path
+
+import pytest
+import yaml
+
+import run_helpers  # noqa: F401  (finds slope_tools)
+from tiny_collapse import TOP
+
+from slope_tools.case import data_files, run_folders  # noqa: E402
+from slope_tools.ensemble import dependencies, jobs  # noqa: E402
+
+# --- options of the commands that make runs ---
+
+# values of variables: the name of a run's folder
+CHOSEN = {"set", "vary", "sample", "design", "seed", "repeat", "converge", "runs"}
+FOLLOWED = {"deck", "lmp"}              # dependencies.py
+PLACE = {"output", "help", "dry_run"}   # where to, or no run
+ONE_RESULT = {"np", "jobs", "launcher", "engine", "slurm"}      # how it is run: the same but for rounding
+# computed from the runs, each time that the command is given
+ANEW = {"road", "cut_angle", "mesh", "local", "intensity", "more_than", "of", "exceed", "exceed_speed",
+        "exceed_energy", "size_error", "equally_good", "observed", "front", "area", "volume", "tolerance", "threshold",
+        "mobility", "confined", "left_out"}
+
+
+@pytest.mark.parametrize("command", ["study", "calibrate", "sensitivity"])
+def test_every_option_is_guarded(command):
+    made = importlib.import_module(f"slope_tools.commands.{command}").add_parser(
+        argparse.ArgumentParser().add_subparsers())
+    assert {action.dest for action in made._actions} - (CHOSEN | FOLLOWED | PLACE | ONE_RESULT | ANEW) == set()
+
+
+@pytest.mark.parametrize("one, other", [({"rolling": "0"}, {"rolling": "0.1"}), ({"rolling": "0"}, {"friction": "0"}),
+                                        ({"a": "1"}, {"a": "1", "b": "1"})])
+def test_other_values_have_another_folder(one, other):
+    assert jobs.Run("out", one).folder != jobs.Run("out", other).folder
+
+
+# --- environment variables ---
+
+PROGRAM = {"LMP", "LAMMPS_PLUGIN_PATH", "LD_LIBRARY_PATH"}      # by what they lead to
+SAME = {"SLOPE_KERNEL", "SLOPE_RESTART_PIECE", "OMP_NUM_THREADS"}   # of one result, but for rounding
+
+
+def test_every_environment_variable_is_guarded():
+    text = "\n".join(path.read_text() for folder in ("src", "tools/slope_tools")
+                     for path in (TOP / folder).rglob("*") if path.suffix in (".cpp", ".h", ".py"))
+    named = {"PLUGINS": dependencies.PLUGINS, "LIBRARIES": dependencies.LIBRARIES, **dict(
+        re.findall(r'const char \*const (?:\w+::)*(ENVIRONMENT) = "(\w+)"', text))}
+    words = re.findall(r"(?:getenv\(|environ\.get\(|environ\[)([\w:\"]+)", text)
+    found = {named.get(word.split(":")[-1], word.strip('"')) for word in words}
+    # those that a deck names are asked for by it
+    assert found - {"name"} - PROGRAM - SAME == set()
+
+
+# --- words of decks: any other word is another deck, files also count by what is in them ---
+
+FILES = {
+    "region/terrain": ["region ground terrain {}"],
+    "region/polygon": ["region road polygon {}"],
+    "fix/wall/gran/balls": ["fix wall all wall/gran/balls 2 1.0 file {}",
+                            "fix wall all wall/gran/balls 2 1.0 file {} write places.txt"],
+    "fix/wall/gran/mesh": ["fix house all wall/gran/mesh 3 {}", "fix house all wall/gran/mesh 3 {} output o 10",
+                           "fix house all wall/gran/mesh 3 terrain {}"],
+    "fix/ground/motion": ["fix quake all ground/motion {} scale 1"],
+    "fix/control/line": ["fix line all control/line {} deposit dep output o"],
+    "command/create_balls": ["create_balls 3 1.0 2000 file {}"],
+    "command/find_slip": ["find_slip ground strength 1e4 30 2000 layer {} 1e3 20 1800 output o",
+                          "find_slip ground strength 1e4 30 2000 water table {} output o",
+                          "find_slip ground strength 1e4 30 2000 surface raster {} output o"],
+    "LAMMPS": ["read_data {}", "read_restart {}", "include {}", "molecule m {}", "python f file {}",
+               "variable x file {}", "variable x atomfile {}", "jump {}", "read_dump {} 0 x y z", "plugin load {}",
+               "shell cp {} other.txt", 'if "$(is_file({}))" then "run 1"', "region r mesh {}"]}
+NO_FILES = {"pair/gran/restitution", "fix/deposit/grid", "fix/gravity/slope", "fix/nve/sphere/slope",
+            "command/delete_balls", "fix/CONTACT_HISTORY", "fix/DEPOSIT_GRID_PART"}
+# words that the parsers compare with: what follows is a file, or not
+NAMES_FILE = {"file", "terrain", "layer", "table", "raster"}
+NAMES_NONE = {
+    "bulk", "cell", "damping", "deposit", "depth", "direction", "extent", "friction", "headroom", "inside", "keep",
+    "limit_damping", "lower", "mass", "method", "motion", "move", "open", "origin", "output", "outside", "overlap",
+    "point", "restitution", "rolling", "rolling_radius", "rolling_spring", "rotate", "scale", "scheme", "seismic",
+    "series", "shape", "side", "sink", "smallest", "spacing", "stiffness", "strength", "sunk", "surface", "units",
+    "upper", "volume", "water", "window", "within", "write"}
+WORD = re.compile(r'(?:strcmp\(\w+\[[^]]*\], |\b(?:keyword|word|key|name) == )"([a-z_]+)"')
+
+
+def sources():
+    return [path for room in ("styles", "lammps") for path in (TOP / "src" / room).iterdir()
+            if path.suffix in (".cpp", ".h")]
+
+
+def test_every_style_and_word_is_guarded():
+    text = "\n".join(path.read_text() for path in sources())
+    styles = {f"{kind.lower()}/{name}" for kind, name in re.findall(r"^(\w+)Style\(([\w/]+),", text, re.MULTILINE)}
+    assert styles - {"LAMMPS"} == ({*FILES} - {"LAMMPS"}) | NO_FILES
+    assert set(WORD.findall(text)) - NAMES_FILE - NAMES_NONE == set()
+
+
+def depends(folder):
+    deck = folder / "case" / "in.x"
+    files = data_files.data_files(deck, {})
+    return dependencies.Dependencies(deck, {name: dependencies.disk.sha256(path) for name, path in files.items()})
+
+
+def made(folder):
+    """A run of the case as it is now."""
+    run = jobs.Run(folder / "out", {})
+    run.folder.mkdir(parents=True)
+    now = depends(folder).now(run)
+    (run.folder / run_folders.VARIABLES).write_text(yaml.safe_dump(
+        {"environment": now.environment, "inputs": now.files}))
+    return run
+
+
+@pytest.mark.parametrize("line", [line for lines in FILES.values() for line in lines])
+@pytest.mark.parametrize("where", ["beside", "below", "elsewhere", "sidecar", "variable"])
+def test_a_file_counts_by_what_is_in_it(tmp_path, line, where):
+    (tmp_path / "case" / "data").mkdir(parents=True)
+    (tmp_path / "data").mkdir()
+    place = {"below": tmp_path / "case" / "data", "elsewhere": tmp_path / "data"}.get(where, tmp_path / "case")
+    changed = path = place / "input.asc"
+    path.write_text("1")
+    word = {"below": "data/input.asc", "elsewhere": str(path), "variable": "${one}.asc"}.get(where, path.name)
+    text = "variable one string input\n" * (where == "variable") + line.format(word)
+    (tmp_path / "case" / "in.x").write_text(text + "\nrun 1\n")
+    if where == "sidecar":
+        changed = path.with_suffix(".yaml")
+        changed.write_text("1")
+    run = made(tmp_path)
+    assert depends(tmp_path).changed(run) is None
+    before = os.stat(changed).st_mtime_ns
+    changed.write_text("2")
+    os.utime(changed, ns=(before, before))      # and not by its date
+    assert Path(depends(tmp_path).changed(run)).name == changed.name
+
+
+@pytest.mark.parametrize("word", sorted(NAMES_FILE | NAMES_NONE))
+def test_a_word_counts(tmp_path, word):
+    (tmp_path / "case").mkdir()
+    deck = tmp_path / "case" / "in.x"
+    deck.write_text(f"fix one all some/style {word} 1\n")
+    run = made(tmp_path)
+    (run.folder / deck.name).write_text(deck.read_text())
+    assert depends(tmp_path).changed(run) is None
+    deck.write_text(f"fix one all some/style {word} 2\n")
+    assert depends(tmp_path).changed(run) == "in.x"
