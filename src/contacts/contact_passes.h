@@ -335,12 +335,14 @@ class ContactPasses : ContactView {
                                Four reach, double dt, ContactOf<Four, N> &c) const
   {
     const Four zero = Four(), one = all<Four>(1.0), vn = normal_velocity(c);
-    Four lasted;    // as a step ago; < 0 if it ends
-    FourFlags ends;
-    for (int m = 0; m < 4; m++) lasted[m] = histories[k[m]][AGE];
+    Four lasted;       // as a step ago; < 0 if it ends
+    FourFlags ends;    // as find() saw it: an overlap of 0 is one or the other by rounding
+    for (int m = 0; m < 4; m++) {
+      lasted[m] = histories[k[m]][AGE];
+      ends[m] = touching[k[m] / BLOCK] >> (k[m] % BLOCK) & 1 ? 0 : -1;
+    }
     const Four x = delta.x - dt * c.v[0], y = delta.y - dt * c.v[1], z = delta.z - dt * c.v[2];
     const Four was = reach - root(Four(x * x + y * y + z * z));
-    ends = c.overlap <= zero;
     const Four f = choose(was < zero, c.overlap / (c.overlap - was), one);
     const Four g = choose(was > zero, was / (was - c.overlap), zero);
     // a partner of which the overlaps say something else has been put in place, or taken away
