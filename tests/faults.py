@@ -30,6 +30,7 @@ from tiny_collapse import DECK, LMP, processes_in, write_case    # noqa: E402
 
 CLOSE = 1e-6        # of a number, for runs that were continued: beyond their rounding
 NUMBER = re.compile(r"[-+]?\d+\.?\d*(?:e[-+]?\d+)?")
+MADE = re.compile(rb"\d{4}-\d\d-\d\d \d\d:\d\d UTC")     # of a report
 GUARDS = re.compile(r"^guards:.*\n(?: .*\n)*", re.MULTILINE)     # of the last run command: less where a run was cut
 TEXT = (".asc", ".csv", ".yaml", ".txt", ".md", ".site", ".tiny")
 KILLED = -signal.SIGKILL
@@ -128,7 +129,7 @@ def results(output):
 def contents(path):
     """Numbers and the text between them, or the bytes of another kind of file."""
     if path.suffix not in TEXT:
-        return path.read_bytes()
+        return MADE.sub(b"", path.read_bytes())
     text = GUARDS.sub("", path.read_text(errors="replace"))
     return NUMBER.split(text), [float(one) for one in NUMBER.findall(text)]
 
