@@ -30,6 +30,7 @@ sys.path.insert(0, str(TOOLS))
 
 from slope_tools import cli, disk  # noqa: E402,F401
 from slope_tools.case import restarts as files, run_folders  # noqa: E402,F401
+from slope_tools.errors import SlopeError  # noqa: E402
 from slope_tools.drawing import figures, maps  # noqa: E402,F401
 from slope_tools.survey import rasters  # noqa: E402,F401
 
