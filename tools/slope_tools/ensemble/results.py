@@ -74,6 +74,9 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         about["study"]["road"] = write_road(output, setup.road, first, thickness)
     if order:
         about["ensemble"] = ensemble.evaluate(order, rows, output, first and terrain_place(first), maps.problem)
+        about["ensemble"]["withheld"] = usable.reasons_of_ensemble(
+            rows, events_of(setup, first, finished[0]),
+            case_of(setup, questions, finished[0])._replace(sampled=True)) if setup.road and finished else []
     elif setup.road and finished:
         distrust = untrusted(errors, groups)
         trusted = None if distrust else errors

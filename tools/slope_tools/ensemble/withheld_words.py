@@ -19,6 +19,7 @@ class Case(NamedTuple):
     site: Optional[Path]            # its folder, where it is one
     variables: Mapping[str, Any]    # of a run: name and value
     balls: int                      # in the body
+    sampled: bool = False           # an ensemble
 
 
 def text(reason: Reason) -> str:
@@ -68,6 +69,8 @@ def finer(case: Case, factor: float) -> str:
 
 def mobile(case: Case) -> str:
     """An ensemble that has mobile masses too, weighted by the known events."""
+    if case.sampled:
+        return "the same command with --vary of more mobile masses: less friction and rolling, a denser field"
     sample = "--sample 64 --mobility rock_avalanches"
     if case.site:
         return f"tools/slope study {quote(str(case.site))} {sample}"
