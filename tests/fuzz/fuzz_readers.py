@@ -296,7 +296,7 @@ def sizes(path):
     from slope_tools.report import convergence_part as report_convergence, figure_charts, numbers as report_numbers
     found = report_convergence.Sizes(path)
     figure_charts.convergence = lambda *_: ""
-    found.rows(report_numbers.Numbers(None))
+    found.rows(report_numbers.Numbers())
     found.pictures(lambda *_: None)
 
 

@@ -222,9 +222,9 @@ def test_a_report_shows_no_number_where_events_go_beyond_the_runs():
     about = {"reached": 0.5, "effective": 12.0, "doubts": ["why"], "quantities": {
         "front_m": {"name": "farthest ball", "unit": "m", "quantiles": quantiles}}}
     data = type("Data", (), {"study": {"ensemble": {"known_events": about, "of": "front_m", "confidence": 0.9}}})
-    answer = known_part.KnownEvents(data, Numbers(None), None).answer()
+    answer = known_part.KnownEvents(data, Numbers(), None).answer()
     assert (answer["number"], answer["unit"]) == ("unknown", "")
     about.update(reached=None, doubts=["no set of known events covers this volume"])
-    content = known_part.KnownEvents(data, Numbers(None), None).content()
+    content = known_part.KnownEvents(data, Numbers(), None).content()
     assert content["lines"] == ["No set of known events covers this volume."] and not content["answer"]
     assert "50 % of the known events" in answer["note"] and answer["parts"][0]["note"].startswith("0 to ?")

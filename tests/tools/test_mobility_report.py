@@ -21,7 +21,7 @@ def case(lengths, volume=0.78e6, study=True, scar=1):
     one = SimpleNamespace(distance=lengths[0]) if lengths and lengths[0] else None
     data = SimpleNamespace(study=study or None, finished=rows, result=None, label=lambda one: "run",
                            largest_release=lambda: volume, connected=lambda: one)
-    return data, ground, Numbers(None)
+    return data, ground, Numbers()
 
 
 @pytest.fixture(scope="module")

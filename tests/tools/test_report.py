@@ -246,14 +246,14 @@ def test_what_stands_on_the_page(slope, here):
     assert table.strip() in text
     assert "A small collapse for tests; second line of the head." in text
     assert "Nothing in particular" not in text.split("<h2")[0]
-    for value in (summary["slope_version"], summary["lammps_version"], f"{summary['volume']['released']:,.1f} m3"):
+    for value in (summary["slope_version"], summary["lammps_version"], f"{summary['volume']['released']:,.1f} m³"):
         assert value in text
     # the study's table: its numbers are those of study.csv, rounded; all digits are in numbers.csv
     rows = next(table for table in reader.tables if any("to remove" in cell for cell in table[0]))
     assert len(rows) == 3
     kept = {(row["what"], row["of"]): row for row in numbers("out/report.numbers.csv")}
     for row, cells in zip(about["runs"], rows[1:]):
-        assert cells[0] == row["set"]["rolling"]
+        assert cells[:2] == [str(about["runs"].index(row) + 1), row["set"]["rolling"]]
         for head, key in (("to remove", "remove_m3"), ("farthest ball", "front_m")):
             cell = cells[next(k for k, name in enumerate(rows[0]) if name.startswith(head))]
             assert float(cell.replace(",", "")) == pytest.approx(row[key], rel=6e-3)    # three digits
@@ -265,19 +265,15 @@ def test_what_stands_on_the_page(slope, here):
         assert word not in text.replace((run / "in.tiny").read_text(), "")
 
 
-@pytest.mark.parametrize("deviation, step", [(4000.0, 100), (370.0, 10), (37.0, 1), (3.0, 0.1), (1e-11, None)])
-def test_numbers_are_rounded_to_what_is_known(slope, here, deviation, step):
-    """By the standard deviation of a run; to three digits where there is none but rounding."""
+def test_numbers_have_three_digits(slope, here):
     about = yaml.safe_load(Path("repeated/study.yaml").read_text())
-    about["scatter"]["remove_m3"] = {"deviation": deviation, "degrees_of_freedom": 4.0}
     for k, row in enumerate(about["runs"]):
         row["remove_m3"] = 12345.678 + k
     Path("repeated/study.yaml").write_text(yaml.safe_dump(about))
     assert slope("repeated")[0] == 0
     kept = [row for row in numbers("repeated/report.numbers.csv")
             if (row["what"], row["of"]) == ("to remove", "rolling 0")]
-    expected = {100: "12300", 10: "12350", 1: "12346", 0.1: "12345.7", None: "12300"}[step]
-    assert {(row["shown"], row["value"]) for row in kept} == {(expected, "12345.678")}
+    assert {(row["shown"], row["value"]) for row in kept} == {("12300", "12345.678")}
 
 
 def test_the_shown_run_is_the_one_that_the_volume_rests_on(slope, here):
@@ -321,7 +317,7 @@ def test_a_number_that_is_withheld_is_not_in_the_answer(slope, here):
     assert "Not usable as a conservative volume:" in top and "card main withheld" in top
     for one in best["withheld"]:
         assert html.escape(f"{one['text'][0].upper()}{one['text'][1:]}.") in top and html.escape(one["remedy"]) in top
-    assert not re.search(r"[0-9] *(<small>)?m3", top)
+    assert not re.search(r"[0-9] *(<small>)?m[3³]", top)
     assert "conservative volume, " not in page          # nor is it in the chart
 
 
@@ -371,9 +367,9 @@ def test_the_size_part(slope, here):
     page = Path("repeated/report.html").read_text()
     lacking = best["mean_m3"] / 0.875 - best["mean_m3"]
     assert "at d 1.0 the volume is 12.5 % too small (\N{PLUS-MINUS SIGN} 3 percentage points): mean/(1 - 0.125)" in page
-    assert float(re.search(r"- mean = ([\d.,]+) m3", page)[1].replace(",", "")) == pytest.approx(
+    assert float(re.search(r"- mean = ([\d.,]+) m³", page)[1].replace(",", "")) == pytest.approx(
         lacking, abs=best["place_m3"])
-    assert re.search(r'<div class="sum">\+ 40[.0]* m3</div><div class="name">size of the balls', page)
+    assert re.search(r'<div class="sum">\+ 40[.0]* m³</div><div class="name">size of the balls', page)
 
 
 @pytest.mark.parametrize("by, chance, clear, told", [
@@ -466,7 +462,7 @@ def test_a_study_of_an_older_version_is_one_line(slope, here):
 
 
 @pytest.mark.parametrize("body, factor, words, doubt", [
-    (1000.0, 6 / np.pi, ("body 1,000 m3", "bulk factor 1.91, 6/pi "), False),
+    (1000.0, 6 / np.pi, ("body 1,000 m³", "bulk factor 1.91, 6/pi "), False),
     (1000.0, 1.14 * 6 / np.pi, ("14 % above 6/pi",), False),
     (1000.0, 1.16 * 6 / np.pi, ("16 % above 6/pi",), True), (1000.0, 0.8 * 6 / np.pi, ("20 % below 6/pi",), True),
     (None, 6 / np.pi, ("body unknown",), False)])
@@ -513,8 +509,9 @@ def test_red_on_a_deposit_that_moves(slope, here, folder):
     red = [text for level, text in reader.warnings if level == "red"]
     assert status == 0 and len(red) == 1 and "not at rest" in red[0] and "42 % of the volume" in red[0]
     assert "WARNING: " in out and "not at rest" in out
-    # before everything else, and really red
-    assert page.index(red[0][:20]) < page.index("<figure")
+    # first in the appendix, on the client's page in its words, and really red
+    assert page.index('id="appendix"') < page.index(red[0][:20]) < page.index("<figure", page.index('id="appendix"'))
+    assert "more than a tenth of the mass in motion" in page[:page.index('id="appendix"')]
     assert re.search(r"\.warnings \.red \{[^}]*color: #7d0c12", page) and '--red: #b3131b' in page
     assert not [level for level, _ in reader.warnings if level == "green"]
 
@@ -547,7 +544,7 @@ def test_green_only_at_rest(slope, here, folder, share, reason, level):
     assert card == {"green": "rest", "amber": "doubt", "red": "moving"}[level]
     if level != "green":
         volume = share * yaml.safe_load(next((here / folder).rglob("*.summary.yaml")).read_text())["volume"]["released"]
-        assert f"{volume:,.3g} m3" in found[1] and "up to 12 m/s" in found[1]
+        assert f"{volume:,.3g} m³" in found[1] and "up to 12 m/s" in found[1]
         assert ("stopped at its duration" in found[1] or "stopped at their duration" in found[1]) == (
             reason == "run completed")
         if folder == "out":     # of a study the card counts the deposits
@@ -613,7 +610,7 @@ def test_lost_mass_is_told(slope, here):
     path = here / "one" / "tiny.summary.yaml"
     path.write_text(re.sub(r"^  lost: 0.0", "  lost: 12.5", path.read_text(), flags=re.MULTILINE))
     assert slope("one")[0] == 0
-    assert any("12.5 m3" in text and "left the grid or the box" in text
+    assert any("12.5 m³" in text and "left the grid or the box" in text
                for _, text in read("one/report.html")[1].warnings)
     about = yaml.safe_load(Path("out/study.yaml").read_text())
     for row, lost in zip(about["runs"], (1.5, 2.5)):
@@ -621,7 +618,7 @@ def test_lost_mass_is_told(slope, here):
     Path("out/study.yaml").write_text(yaml.safe_dump(about))
     assert slope("out")[0] == 0
     [text] = [text for _, text in read("out/report.html")[1].warnings if "left the grid or the box" in text]
-    assert text.startswith("up to 2.5 m3") and text.endswith("(all 2 runs)")
+    assert text.startswith("up to 2.5 m³") and text.endswith("(all 2 runs)")
 
 
 def test_what_lies_beyond_the_road_is_explained(slope, here):
@@ -664,12 +661,13 @@ def test_warnings_of_the_study_s_tools_are_shown_each(slope, here):
     Path("out/study.yaml").write_text(yaml.safe_dump(about))
     status, out, _ = slope("out")
     page, reader = read("out/report.html")
-    assert status == 0 and [text for level, text in reader.warnings if level == "red"] == texts
+    assert status == 0 and [text for level, text in reader.warnings if level == "red"] == [
+        text.replace("m3", "m\N{SUPERSCRIPT THREE}") for text in texts]
     assert [level for level, _ in reader.warnings if level] == ["red"] * 4
     assert all(f"WARNING: {text}" in out for text in texts)
     # measured, and useless: not "not measured"
-    assert "measured, but not usable: small balls would give -2.53e+06 m3" in page and "not measured" not in page
-    assert "The effect of smaller balls was measured, but is not usable: small balls would give -2.53e+06 m3" in page
+    assert "measured, but not usable: small balls would give -2.53e+06 m³" in page and "not measured" not in page
+    assert "The effect of smaller balls was measured, but is not usable: small balls would give -2.53e+06 m³" in page
 
 
 @pytest.mark.parametrize("folder", ["out", "one"])
@@ -685,8 +683,8 @@ def test_a_mass_of_a_million_m3_is_said_to_run_farther(slope, here, folder):
         assert slope(folder)[0] == 0
         page, reader = read(f"{folder}/report.html")
         found = [text for level, text in reader.warnings if level == "amber" and text.startswith("The run-out: ")]
-        assert bool(found) == said == ("Masses of 1 million m3 and more" in page)
-        assert all(f"{volume / 1e6:.3g} million m3" in text for text in found)
+        assert bool(found) == said == ("Masses of 1 million m³ and more" in page)
+        assert all(f"{volume / 1e6:.3g} million m³" in text for text in found)
 
 
 def test_what_lies_above_a_cut_below_the_ground_is_told(slope, here):
@@ -771,7 +769,7 @@ def test_the_report_takes_the_convergence_in(slope, here):
     for name in ("sizes", "sizes/converge.yaml"):
         assert slope(f"out --converge {name}")[0] == 0
         page, reader = read("out/report.html")
-        row = next(row for table in reader.tables for row in table if row[0] == "to remove m3")
+        row = next(row for table in reader.tables for row in table if row[0] == "to remove m³")
         assert row[1] == "17,400 \N{PLUS-MINUS SIGN} 500"
         assert row[2].startswith("4: -27.6 % \N{PLUS-MINUS SIGN} 2.0; 2.5: -17.2 %; ") and "not supported" in row[2]
         assert "To remove against d" in reader.alt and "7 runs of in.other" in page

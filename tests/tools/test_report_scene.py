@@ -541,7 +541,7 @@ def test_project_client_and_author_from_the_site(plain):
     (plain / "site.yaml").write_text(yaml.safe_dump({"project": {"name": None}, "terrain": {"files": ["../dem.tif"]}}))
     assert cli.main(["report", "case"]) == 0
     text = (plain / "report.html").read_text()
-    assert "<h1>case</h1>" in text and "<small>Survey</small> dem.tif" in text
+    assert "<h1>case</h1>" in text and "Survey: dem.tif." in text
     assert re.search(r"Report made \d{4}-\d\d-\d\d \d\d:\d\d UTC", text)
 
 
@@ -551,7 +551,7 @@ def test_only_the_first_line_of_the_deck_s_head_is_the_purpose(plain):
     deck.write_text(f"{first}\n# By hand: lmp -in in.tiny\n{rest}")
     assert cli.main(["report", "case"]) == 0
     text = (plain / "report.html").read_text()
-    assert f'<p class="purpose">{first.lstrip("# ")}</p>' in text and "By hand" not in text.split("<h2")[0]
+    assert f'<p class="purpose">{first.lstrip("# ")}</p>' in text and "By hand" not in text.split("<h2>")[0]
 
 
 @pytest.mark.parametrize("options, site, where", [
@@ -581,12 +581,12 @@ def limits_of(path):
 def test_limits_of_a_run(plain):
     assert cli.main(["report", "case"]) == 0
     found = limits_of(plain / "report.html")
-    assert list(found) == ["Known events", "Chance", "Size of the balls", "Varied", "The body", "The mass",
-                           "The ground"]
+    assert list(found) == ["Known events", "Chance", "Size of the balls", "Time step", "Varied", "The body",
+                           "The mass", "The ground"]
     assert found["Known events"].startswith("No set of known events covers a volume of")
     assert found["Chance"].startswith("Unknown") and found["Varied"].startswith("Nothing")
     # balls of 1 m, of which each stands for a cube: 6/pi of its volume
-    assert "1.00 m3 of ground, a cube of 1.00 m" in found["The mass"] and "Dry" in found["The mass"]
+    assert "1.00 m³ of ground, a cube of 1.00 m" in found["The mass"] and "Dry" in found["The mass"]
     assert "cells of 1 m" in found["The ground"]
 
 
@@ -600,7 +600,7 @@ def test_limits_of_a_study_with_repeats(case):
     found = limits_of(Path("out/report.html"))
     about = yaml.safe_load(Path("out/study.yaml").read_text())
     best = about["conservative"]
-    low, high = map(float, re.search(r"gives ([\d.,]+) to ([\d.,]+) m3 to remove, in 95 %", found["Chance"]).groups())
+    low, high = map(float, re.search(r"gives ([\d.,]+) to ([\d.,]+) m³ to remove, in 95 %", found["Chance"]).groups())
     assert low == pytest.approx(max(0, best["mean_m3"] - best["chance_m3"]), abs=best["place_m3"])
     assert high == pytest.approx(best["mean_m3"] + best["chance_m3"], abs=best["place_m3"])
     assert "rolling 0, 0.3" in found["Varied"]

@@ -1,7 +1,9 @@
 """Volumes and limits in words: as many digits as a reader can use."""
 import math
+import re
 
 DIGITS = 5      # of a number in a message; more is known of none
+UNITS = re.compile(r"\b(m)([23])\b")
 
 
 def _place(value: float, digits: int) -> int:
@@ -25,3 +27,41 @@ def at_least(value: float, digits: int = DIGITS) -> str:
     """A lower limit as a number that may be given."""
     power = 10 ** _place(value, digits)
     return f"{math.ceil(value * power) / power:.15g}"
+
+
+# --- the rule of reports: three significant digits, SI prefixes, words for nothing ---
+
+SIGNIFICANT = 3
+PREFIXES = ((1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""))
+MILLION = 1e6       # m³, from which volumes are in millions
+
+
+def three(value: float) -> str:
+    """A number with three significant digits and commas, never as a power of ten: 16.3, 6,130, 0.0212."""
+    value = to_three(value)
+    return f"{value:,.{_place(value, SIGNIFICANT)}f}"
+
+
+def to_three(value: float) -> float:
+    return float(f"{value:.{SIGNIFICANT - 1}e}")
+
+
+def si(value: float, unit: str) -> str:
+    """A quantity with three digits and the prefix that suits it: 16.3 GN, 6.00 GJ, 0 N."""
+    value = to_three(value)
+    if value == 0:
+        return f"0 {unit}"
+    factor, prefix = next(((factor, prefix) for factor, prefix in PREFIXES if abs(value) >= factor), PREFIXES[-1])
+    return f"{three(value / factor)} {prefix}{unit}"
+
+
+def cubic(value: float) -> str:
+    """A volume with its unit, for those who read: 6,130 m³, 4.52 million m³."""
+    if abs(value) >= MILLION:
+        return f"{three(value / MILLION)} million m³"
+    return f"{three(value) if value else '0'} m³"
+
+
+def typeset(text: str) -> str:
+    """A text of the tools as a page and a picture have it; files and the console are ASCII."""
+    return UNITS.sub(lambda match: f"{match[1]}{'²' if match[2] == '2' else '³'}", text)

@@ -27,6 +27,7 @@ class Log:
         self.parts = None         # logs of the parts before this one, as long as they are not read
         self.halted, self.reading = None, False
         self.lammps = self.wall = self.error = self.step = self.time = self.last = self.terrain = None
+        self.density = None       # of the balls that the deck set first, kg/m3
         self.first, self.steps, self.thermo = 0, None, 0
         self.header: List[str] = []           # words of the thermo output under way
         self.warnings, self.settings, self.notes, self.table = [], [], [], []
@@ -125,9 +126,19 @@ class Log:
             self.reading = words[1] != "CPU"       # LAMMPS says last how long it took
         elif words[0] == "region" and words[2:3] == ["terrain"] and len(words) > 3 and self.terrain is None:
             self.terrain = words[3].strip("\"'")
+        elif words[0] == "set" and "density" in words[:-1] and self.density is None:
+            self.density = density_of(words[words.index("density") + 1])
         if (words[0] in ("pair_style", "pair_coeff", "timestep", "units", "lattice", "neighbor")
                 or (words[0] == "fix" and len(words) > 3)):
             add(self.settings, " ".join(line.split("#")[0].split()))
+
+
+def density_of(word):
+    """A density as a command has it; None where it is no number, such as a variable by atom."""
+    try:
+        return float(word)
+    except ValueError:
+        return None
 
 
 def add(lines, line):

@@ -95,10 +95,11 @@ class Headline:
 
     @property
     def place(self) -> float:
-        """The power of ten (m3) to which the volume is known."""
-        if self.scatter is None:
-            return place_of_digits(self.volume)
-        return place(self.scatter.deviation) if self.scatter.deviation > 0 else place_of_digits(self.volume)
+        """The power of ten (m3) that the volume is rounded to: what is known of it, but three digits at least."""
+        digits = place_of_digits(self.volume)
+        if self.scatter is None or not self.scatter.deviation > 0:
+            return digits
+        return min(place(self.scatter.deviation), digits)
 
     def rounded(self) -> Dict[str, Optional[float]]:
         """volume, mean, chance and size, each rounded up to what is known, so that the rounded parts add up."""

@@ -193,7 +193,7 @@ def doubts(rows):
     for row in finished:
         left = row["off_grid_m3"] + row["lost_m3"]
         if left > 1e-6 * row["released_m3"]:
-            warnings.append(f"{row['run']}: {left:.6g} m3 left the grid or the box")
+            warnings.append(f"{row['run']}: {rounded(left, 3)} m3 left the grid or the box")
         if not abs(row["mass_error"]) <= BALANCE:
             warnings.append(f"{row['run']}: the volume in the thickness raster differs from released - off the grid - "
                             f"lost by {row['mass_error']:.1e} of the released volume")

@@ -167,13 +167,13 @@ def differences(data, numbers):
     best = data.study and data.study["conservative"]
     found = []
     for entry in (best or {}).get("differences") or ():
-        by = numbers(f"difference over {entry['variable']}", "m3", entry["by_m3"], REMOVE)
+        by = numbers(f"difference over {entry['variable']}", "m3", entry["by_m3"])
         text = (f"{entry['variable']}: the means at {entry['smallest_at']} and {entry['largest_at']} (the largest) "
                 f"differ by {by} m3")
         if entry["clear"] is None:
             text += ", of one run each: chance unknown"
         else:
-            chance = numbers(f"chance over {entry['variable']}", "m3", entry["chance_m3"], REMOVE)
+            chance = numbers(f"chance over {entry['variable']}", "m3", entry["chance_m3"])
             text += f", {'more than' if entry['clear'] else 'within'} chance ({chance} m3)"
             text += "" if entry["clear"] else ": no trend"
         found.append(text + ".")

@@ -257,6 +257,10 @@ class Data:
             names[-1] = shown
         return names
 
+    def number(self, name):
+        """The number of a run of a study in the report, from 1."""
+        return next(k for k, row in enumerate(self.rows, 1) if row["run"] == name)
+
     def label(self, one):
         """A short name of a run: the values that differ in the study."""
         return self.label_of(one.row) if self.study else one.name

@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 from typing import List
 
-from .. import disk
+from .. import digits, disk
 from ..errors import SlopeError
 from .asked import Asked
 
@@ -44,12 +44,18 @@ def make(asked: Asked):
                          f"{type(error).__name__}: {error}"[:200]) from error
 
 
+def typeset(value):
+    """What the template writes: units as in print; Markup, such as decks and logs, stays as it is."""
+    return digits.typeset(value) if type(value) is str else value
+
+
 def render(content):
     """The page, from the template beside this file."""
     import jinja2
+    import markupsafe
     loader = jinja2.FileSystemLoader(Path(__file__).parent)
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True,
-                                     undefined=jinja2.StrictUndefined)
-    environment.filters.update(percent=lambda value: f"{100 * value:.1f} %",
+                                     undefined=jinja2.StrictUndefined, finalize=typeset)
+    environment.filters.update(verbatim=markupsafe.escape, percent=lambda value: f"{100 * value:.1f} %",
                                fixed=lambda value, digits=1: f"{value:,.{digits}f}")
     return environment.get_template("report.html.j2").render(content)

@@ -41,10 +41,10 @@ class Ensemble:
                           "note": f"{low} to {high} with {100 * self.about['confidence']:g} % confidence"})
         shown = next((part for part, one in zip(parts, self.entry["quantiles"]) if one["share"] == 0.9), parts[-1])
         return {"title": f"{what[0].upper()}{what[1:]}: 90 % of the runs stay within", "number": shown["number"],
-                "unit": unit, "parts": parts, "note": self.design(), "withheld": []}
+                "unit": unit, "parts": parts, "note": self.design(), "withheld": [], "band": shown["note"]}
 
     def number(self, what, unit, value):
-        return self.numbers(f"{self.entry['name']}: {what}", unit, value, self.of)
+        return self.numbers(f"{self.entry['name']}: {what}", unit, value)
 
     def design(self):
         design = self.about["design"]

@@ -18,9 +18,14 @@ def heading(folder: Path, given: Dict[str, Optional[str]]) -> Dict[str, Optional
     return {name: given.get(name) or found.get(name) for name in (*FIELDS, "survey")}
 
 
+def site_file(folder: Path) -> Optional[Path]:
+    """The file of the site of a folder, in it or above it; None without one."""
+    return next((place / SITE for place in (folder, folder.absolute().parent) if (place / SITE).is_file()), None)
+
+
 def of_site(folder: Path) -> Dict[str, str]:
     """What the file of the site says, in the folder or in the one above it; a site without a name has its folder's."""
-    path = next((place / SITE for place in (folder, folder.absolute().parent) if (place / SITE).is_file()), None)
+    path = site_file(folder)
     if path is None:
         return {}
     site = disk.load_yaml(path, "a file of `slope site`")

@@ -29,7 +29,7 @@ def rows(about, numbers):
         for point in line["points"]:
             of = ", ".join([*(f"{other} {value}" for other, value in line["set"].items()),
                             f"{about['variable']} {point['at']:g}"])
-            cells = [numbers(f"on the road, {what}", "m3", point[f"{what}_m3"], about["quantity"], of)
+            cells = [numbers(f"on the road, {what}", "m3", point[f"{what}_m3"], of)
                      for what in ("mean", "smallest", "largest")]
             cells.append(f"{100 * point['share_of_released']:.2g} %")
             cells += [f"{percent(one['probability'])} ({percent(one['low'])} to {percent(one['high'])})"

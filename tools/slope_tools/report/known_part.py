@@ -27,7 +27,7 @@ class KnownEvents:
                 "rows": self.rows(), "variables": self.variables(), "maps": self.maps()}
 
     def number(self, what: str, unit: str, value: Optional[float]) -> str:
-        return "unknown" if value is None else self.numbers(f"known events: {what}", unit, value, self.of)
+        return "unknown" if value is None else self.numbers(f"known events: {what}", unit, value)
 
     def answer(self):
         """For the card on top, instead of that of the runs as their distributions have them."""
@@ -44,7 +44,7 @@ class KnownEvents:
                           "unit": "" if one["value"] is None else unit})
         shown = next((part for part, one in zip(parts, self.entry["quantiles"]) if one["share"] == 0.9), parts[-1])
         return {"title": f"{what[0].upper()}{what[1:]}: 90 % of known events stay within", "number": shown["number"],
-                "unit": shown["unit"], "parts": parts,
+                "unit": shown["unit"], "parts": parts, "band": shown["note"],
                 "note": f"The runs reach {percent(self.about['reached'])} of the known events of this volume and "
                         f"height, and weighted by them say as much as {self.about['effective']:.0f} runs."}
 

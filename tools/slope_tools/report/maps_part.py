@@ -45,8 +45,8 @@ class Maps:
         found = {"slip": None, "speed": None, "arrival": None}
         found["deposit"] = self.thickness(
             one.thickness, "Thickness of the deposit at the end", "Map of the deposit's thickness at the end",
-            f"Final thickness, {one.deposit.cell:g} m cells." + ("" if not data.study else f" Run: {data.label(one)}."),
-            figures.FULL)
+            f"Final thickness, {one.deposit.cell:g} m cells."
+            + ("" if not data.study else f" Run {data.number(one.name)} of the appendix."), figures.FULL)
         found["terrain"] = self.picture(
             figure_maps.terrain_map(layers._replace(shown=whole), layers.shown, self.crs), "Map of the terrain before",
             "Terrain before the collapse, light from the north-west"

@@ -49,7 +49,7 @@ def sentence(found: Lies, numbers, label: str) -> str:
     """How far the runs reach, and how many known events end there or before."""
     assert found.mobility is not None
     ends = list(dict.fromkeys((found.lengths[0], found.lengths[-1])))
-    reach = " to ".join(numbers("connected deposit", "m", length, "connected_m", label) for length in ends)
+    reach = " to ".join(numbers("connected deposit", "m", length, label) for length in ends)
     shares = []
     for kind in (False, True):
         lies = [found.mobility.where_lies(length, kind) for length in ends]
@@ -70,6 +70,6 @@ def beyond_the_terrain(mobility: exceedance.Mobility, numbers, label: str) -> st
     shares = [mobility.beyond_path(kind) for kind in (False, True)]
     if max(shares) <= 0.5:      # with hardly any left, the path ends within the terrain
         return ""
-    length = numbers("fall path within the terrain", "m", mobility.path.length[-1], None, label)
+    length = numbers("fall path within the terrain", "m", mobility.path.length[-1], label)
     return (f" The fall path leaves the terrain after {length} m, where {percent(shares[0])} ({percent(shares[1])}) of "
             "them go on: no run shows what lies there.")

@@ -8,29 +8,21 @@ from ..ensemble import headline, withheld_words
 from .release_part import over_runs
 
 UNKNOWN = "unknown"
-EXACT = 1e-9            # of a value: a smaller scatter is rounding
 
 
 class Numbers:
     """Writes numbers, and keeps them: each that was shown, with all its digits, is a row of the table."""
 
-    def __init__(self, scatter):
-        self.scatter, self.rows = scatter or {}, []
+    def __init__(self):
+        self.rows = []
 
-    def __call__(self, what, unit, value, key=None, of=""):
-        """A number as text: rounded by the scatter of a run in the column `key`, else to three digits."""
+    def __call__(self, what, unit, value, of=""):
+        """A number as text, with three digits."""
         if value is None:
             return UNKNOWN
-        text = headline.text(value, self.place(value, key))
+        text = headline.text(value, headline.place_of_digits(value))
         self.rows.append((what, unit, of, text, value))
         return text
-
-    def place(self, value, key=None):
-        """The power of ten that a number is rounded to."""
-        deviation = (self.scatter.get(key) or {}).get("deviation")
-        if deviation is not None and disk.is_number(deviation) and deviation > EXACT * abs(value):
-            return headline.place(deviation)
-        return headline.place_of_digits(value)
 
     def whole(self, what, unit, value, of=""):
         """A volume that has no scatter, to the cubic metre."""
@@ -97,7 +89,7 @@ def below_ground(data, numbers):
     if found is None:
         return ""
     below, whole, name = found[0], data.volumes["remove"], data.label(data.result)
-    texts = [numbers(what, "m3", value, "remove_m3", name)
+    texts = [numbers(what, "m3", value, name)
              for what, value in (("to remove where the cut is below the ground", below), ("to remove", whole))]
     return (f"{texts[0]} m3 of the {texts[1]} m3 of the run {name} lie where the cut surface is below the ground "
             "before the collapse.")
@@ -154,7 +146,7 @@ def travel_card(data, numbers):
         far = largest["front_m"]
         names = {row["run"]: row for row in data.finished}
         who = data.label_of(names[far["run"]])
-        farthest = f"; farthest ball {numbers('farthest ball', unit, far['value'], 'front_m', who)} m, {who}"
+        farthest = f"; farthest ball {numbers('farthest ball', unit, far['value'], who)} m, {who}"
         if key not in largest:
             left = any(row["lost_m3"] > 0.01 * row["released_m3"] for row in data.finished)
             return {"what": what, "number": UNKNOWN, "unit": "", "note": f"a run {LOST if left else OLD}{farthest}"}
@@ -171,10 +163,10 @@ def travel_card(data, numbers):
             left = volume["lost"] > 0.01 * volume["released"]
             return {"what": what, "number": UNKNOWN, "unit": "", "note": f"a run {LOST if left else OLD}{farthest}"}
     note = ("in plan from the highest released ball, reach angle "
-            f"{numbers('reach angle of 99 %', 'degrees', angle, travel_shares.REACH, name)} degrees")
+            f"{numbers('reach angle of 99 %', 'degrees', angle, name)} degrees")
     if connected is not None:
-        note += f"; connected deposit {numbers('connected deposit', unit, connected, 'connected_m', name)} m"
-    return {"what": what, "number": numbers("99 % within", unit, value, key, name), "unit": unit,
+        note += f"; connected deposit {numbers('connected deposit', unit, connected, name)} m"
+    return {"what": what, "number": numbers("99 % within", unit, value, name), "unit": unit,
             "note": note + farthest + (f". Run: {name}" if name and data.study else "")}
 
 
@@ -193,7 +185,7 @@ def thickness_card(data, numbers):
     else:
         about = data.result.summary["largest"]
         value, ever, speed = (about[key] for key in ("thickness", "max_thickness", "max_speed"))
-    return {"what": "Thickest deposit", "number": numbers("largest thickness at the end", "m", value, "thickness_m"),
+    return {"what": "Thickest deposit", "number": numbers("largest thickness at the end", "m", value),
             "unit": "m", "note": f"at the end; {numbers('largest thickness', 'm', ever)} m in the course of "
             f"{'a' if data.study else 'the'} run. Fastest ball {numbers('largest speed', 'm/s', speed)} m/s"}
 
@@ -221,16 +213,16 @@ def travel_rows(data, numbers):
     rows = []
     for share in travel_shares.SHARES:
         keys = f"distance_{share}_m", f"reach_{share}_deg"
-        rows.append((f"{share} % of the volume", *(numbers(f"{share} %: {what}", unit, shares[key], key)
+        rows.append((f"{share} % of the volume", *(numbers(f"{share} %: {what}", unit, shares[key])
                                                    for key, what, unit in zip(keys, ("distance", "reach angle"),
                                                                               ("m", "degrees")))))
     found = data.connected()
     if found is not None:
         rows.append((f"connected deposit, thicker than {found.threshold:g} m",
-                     numbers("connected deposit: distance", "m", found.distance, "connected_m"),
+                     numbers("connected deposit: distance", "m", found.distance),
                      numbers("connected deposit: reach angle", "degrees", found.reach_angle)))
     distance, angle = farthest_of(one.summary)
-    rows.append(("the one farthest ball", numbers("farthest ball: distance", "m", distance, "front_m"),
+    rows.append(("the one farthest ball", numbers("farthest ball: distance", "m", distance),
                  numbers("farthest ball: reach angle", "degrees", angle)))
     return rows
 
@@ -245,7 +237,7 @@ def balance(data, numbers):
             "status": "rest" if state.at_rest else "moving" if one.summary["moving"] else "doubt",
             "energy": energy(one.summary["largest"]["max_energy"]),
             "front_at_release": numbers("farthest ball at release", "m", one.summary["travel"]["front_at_release"]),
-            "centroid": numbers("centroid moved", "m", one.summary["travel"]["centroid"], "centroid_m")}
+            "centroid": numbers("centroid moved", "m", one.summary["travel"]["centroid"])}
 
 
 def energy(joules):

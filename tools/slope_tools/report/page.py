@@ -6,7 +6,8 @@ from .. import provenance
 from ..case import decks
 from ..ensemble.quantities import NAMES
 from ..survey.rasters import crs_name
-from . import convergence_part, film, frames, heading, intensity_part, limits_part, mobility_part, view
+from . import (body, client_part, convergence_part, film, frames, heading, intensity_part, limits_part, mobility_part,
+               view)
 from .asked import Asked
 from .charts import Charts, REMOVE, TERMS, differences, quantities, single_row
 from .data import Data, find_deck
@@ -41,7 +42,7 @@ class Page:
         path, missing = convergence_part.find(asked.converge, self.data)
         self.sizes = path and convergence_part.Sizes(path)
         self.warnings = [*warnings(self.data), *([(AMBER, missing)] if missing else [])]
-        self.numbers = Numbers((self.data.study or {}).get("scatter"))
+        self.numbers = Numbers()
         self.heading = heading.heading(asked.folder, {name: getattr(asked, name) for name in heading.FIELDS})
         self.frames, self.no_frames = frames.read(self.data.result)
         self.film_file, self.film = asked.film, film.Film(None, "")
@@ -59,7 +60,7 @@ class Page:
         charts = Charts(data, self.reference, self.picture)
         if self.film_file:
             self.film = film.film(data, self.ground, self.section, maps.layers, self.frames, self.film_file.name)
-        removal = numbers("to remove", "m3", one.row[REMOVE], REMOVE, data.label(one)) if REMOVE in one.row else ""
+        removal = numbers("to remove", "m3", one.row[REMOVE], data.label(one)) if REMOVE in one.row else ""
         found = {
             "made": utc(provenance.now()), "study": study, "single": not study, "one": one, "summary": one.summary,
             "label": data.label(one), "settings": data.settings, "repeats": data.repeats,
@@ -81,7 +82,7 @@ class Page:
             "view": view.content(data, self.ground, self.section, self.frames, self.no_frames, self.film.text),
             "heading": self.heading, "terms": self.terms(),
             "limits": [*mobility_part.content(data, self.ground, numbers), *limits_part.content(data, numbers)],
-            "place": self.place(), "ensemble": None, "known": None}
+            "place": self.place(), "ensemble": None, "known": None, "body": body.of_data(data, self.ground)}
         if study and study.get("ensemble"):
             from . import ensemble_part
             mine = found["ensemble"] = ensemble_part.Ensemble(data, numbers, self.picture).content()
@@ -92,6 +93,8 @@ class Page:
                 known["maps"] = ensemble_part.draw(known["maps"], maps)
                 if known["answer"] and not (mine["answer"] or {}).get("withheld"):
                     mine["answer"] = {**known["answer"], "withheld": []}
+        answers = found["answer"], found["ensemble"] and found["ensemble"]["answer"]
+        found["client"] = client_part.content(data, self.ground, numbers, answers, len(self.warnings))
         return {**found, **self.what_was_run(), **self.provenance()}
 
     # --- tables ---
@@ -127,6 +130,7 @@ class Page:
         for row in data.rows:
             repeat = ", ".join(f"{name} {value}" for name, value in (row.get("repeat") or {}).items()) or "base"
             entry = {"set": [row["set"][key] for key in varied], "repeat": repeat, "run": row["run"],
+                     "number": data.number(row["run"]),
                      "best": bool(best) and row["status"] == "finished" and row["set"] == best.get("set"),
                      "bad": row["status"] != "finished" or row["moving"], "error": row.get("error")}
             if row["status"] == "finished":
@@ -144,7 +148,7 @@ class Page:
             return self.numbers.whole(head, unit, value, name)
         if key == "stop_time_s":
             return f"{value:.1f}"
-        return self.numbers(head, unit, value, key, name)
+        return self.numbers(head, unit, value, name)
 
     def means(self):
         """Heads and rows of the table over combinations; None without repeats."""
@@ -158,9 +162,9 @@ class Page:
             cells = []
             for head, unit, key in heads:
                 one, name = entry[key], str(entry["combination"])
-                text = self.numbers(f"mean: {head}", unit, one["mean"], key, name)
+                text = self.numbers(f"mean: {head}", unit, one["mean"], name)
                 if one["scatter"] is not None:
-                    text += f" \N{PLUS-MINUS SIGN} {self.numbers(f'scatter: {head}', unit, one['scatter'], key, name)}"
+                    text += f" \N{PLUS-MINUS SIGN} {self.numbers(f'scatter: {head}', unit, one['scatter'], name)}"
                 cells.append(text)
             best = study["conservative"] and entry["combination"] == study["conservative"]["combination"]
             rows.append({"set": [entry["set"][key] for key in varied], "runs": entry["repeats"], "cells": cells,
@@ -178,7 +182,7 @@ class Page:
             xs = sorted({x for points in quantity.series.values() for x, _ in points})
             series = [(name, [f"{dict(points)[x]:,.6g}" if x in dict(points) else "-" for x in xs])
                       for name, points in quantity.series.items()]
-            low, high = (self.numbers(what, unit, pick(row[key] for row in own), key) for pick in (min, max))
+            low, high = (self.numbers(what, unit, pick(row[key] for row in own)) for pick in (min, max))
             tables.append({"what": f"{what} ({unit})", "variable": quantity.variable, "xs": [f"{x:g}" for x in xs],
                            "series": series, "own": low if low == high else f"{low} to {high}",
                            "levels": [(name, f"{value:,.6g}") for name, value in quantity.levels.items()]})

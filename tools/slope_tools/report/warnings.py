@@ -12,6 +12,7 @@ NUMBER = re.compile(r"\d[\d.,]*(?:[eE][+-]?\d+)?")
 # what the page says in its own words here, or beside the maps: about single runs, and about all of them
 SAID_OF_RUNS = ("failed: ", "still moves", "left the grid or the box", "has no CRS")
 SAID_OF_ALL = re.compile(r"\d+ of \d+ deposits are not at rest at the end|.*has no CRS")
+OF_SIZES = re.compile(r"sizes of balls: \S+?: (.*)")     # of one of the runs with balls of several sizes
 LEFT = "left the box"     # in the lines of fix deposit/grid
 SAID_TOO = re.compile(r"runs failed$|deposits are not at rest$")
 RED, AMBER = "red", "amber"
@@ -45,10 +46,22 @@ def of_study(data):
         who, colon, rest = text.partition(": ")
         runs = who.split(", ")
         if not (colon and all(run in names for run in runs)):
-            whole += [] if SAID_OF_ALL.match(text) else [(RED, text)]
+            whole += [] if SAID_OF_ALL.match(text) else [text]
         elif not any(said in rest for said in SAID_OF_RUNS):
             entries += [(rest, names[run]) for run in runs]
-    return [*dict.fromkeys(whole), *by_kind(entries, len(data.finished))]
+    return [*((RED, text) for text in of_sizes(whole)), *by_kind(entries, len(data.finished))]
+
+
+def of_sizes(texts):
+    """The same lines, but one for each kind of those on the single runs with balls of several sizes."""
+    found: Dict[str, Any] = {}
+    for text in texts:
+        match = OF_SIZES.fullmatch(text)
+        kind = NUMBER.sub("#", match[1]) if match else text
+        found.setdefault(kind, []).append(match[1] if match else text)
+    return [f"sizes of balls: {mine[0]} ({plural(len(mine), 'run')}, other numbers in the others)"
+            if len(mine) > 1 and kind not in texts else f"sizes of balls: {mine[0]}" if kind not in texts else mine[0]
+            for kind, mine in found.items()]
 
 
 def failures(data):

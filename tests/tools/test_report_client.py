@@ -1,0 +1,163 @@
+"""The first page of a report, for a client: no words of the tools, the number or why there is none, counted caveats."""
+import html
+import re
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import yaml
+
+import test_report
+from test_report import stands
+
+from slope_tools import digits
+from slope_tools.report import body, caveats, client_part, warnings
+
+made, here, slope = test_report.made, test_report.here, test_report.slope       # its fixtures
+# of options, files, runs and variables
+TOOLS_WORDS = re.compile(r"--\w|\.yaml|\.csv|\.asc|slope |rolling_|_steps|xoffset|seed|\bm3\b|<code>")
+
+
+def client(path):
+    """The text of the first page, without its picture and style."""
+    page = path.read_text(encoding="utf-8")
+    part = page[page.index('<section id="client">'):page.index('id="appendix"')]
+    return html.unescape(re.sub(r"<[^>]*>", " ", part))
+
+
+@pytest.mark.parametrize("folder", ["out", "repeated", "one"])
+def test_the_first_page_has_no_words_of_the_tools(slope, here, folder):
+    assert slope(f"{folder} --project Slope")[0] == 0
+    text = client(here / folder / "report.html")
+    assert not TOOLS_WORDS.search(text), TOOLS_WORDS.search(text)[0]
+    page = (here / folder / "report.html").read_text(encoding="utf-8")
+    first = page[:page.index('id="appendix"')]
+    assert 1 <= first.count('class="caveat"') <= 3 and first.count("<figure") == 1
+    assert "bulk density is 1,786 kg/m³" in text         # 3411.4 kg/m3 x pi/6
+
+
+def test_number_and_band_are_those_of_the_study(slope, here):
+    stands("repeated")
+    best = yaml.safe_load((here / "repeated" / "study.yaml").read_text())["conservative"]["rounded"]
+    assert slope("repeated")[0] == 0
+    text = client(here / "repeated" / "report.html")
+    assert f"{best['volume_m3']:,.6g}" in text
+    low, high = re.search(r"Another run gives ([\d,.]+) to ([\d,.]+) m³", text).groups()
+    assert float(high.replace(",", "")) == pytest.approx(best["mean_m3"] + best["chance_m3"])
+    assert float(low.replace(",", "")) == pytest.approx(max(0, best["mean_m3"] - best["chance_m3"]))
+    stands("out")
+    assert slope("out")[0] == 0
+    text = client(here / "out" / "report.html")
+    assert "No band: no run was repeated" in text and "No run was repeated: how much chance" in text
+
+
+def test_a_number_that_is_withheld_gives_way_to_its_reasons(slope, here):
+    path = here / "out" / "study.yaml"
+    about = yaml.safe_load(path.read_text())
+    best = about["conservative"]
+    best.update(withheld=[{"kind": "balls on the road", "number": 3.0, "bound": 10, "text": "on the road lie 3 balls",
+                           "remedy": "slope study --set d=1"}], volume_m3=None)
+    best["rounded"]["volume_m3"] = None
+    path.write_text(yaml.safe_dump(about))
+    assert slope("out")[0] == 0
+    text = client(here / "out" / "report.html")
+    assert "Not usable as a conservative volume" in text and "On the road lie 3 balls." in text
+    assert not TOOLS_WORDS.search(text) and "slope study --set d=1" in (here / "out" / "report.html").read_text()
+
+
+def test_without_a_road_the_reach_is_the_number(slope, here):
+    assert slope("one")[0] == 0
+    text = client(here / "one" / "report.html")
+    assert re.search(r"99 % of the volume stays within\s+[\d.]+\s+m\s+One run: no band", text)
+
+
+# --- caveats ---
+
+def study_of(masses, **more):
+    """What caveats() takes of a study, of (lost m3, released m3) of each run."""
+    finished = [{"off_grid_m3": 0.0, "lost_m3": lost, "released_m3": released} for lost, released in masses]
+    found = {"study": {"conservative": None, "warnings": []}, "rows": finished, "finished": finished, "repeats": {},
+             "ends": lambda: [], "releases": lambda: [], "below_ground": lambda: None,
+             "largest_release": lambda: max(released for _, released in masses)}
+    return SimpleNamespace(**{**found, **more})
+
+
+def ground_of(*touched, crs="EPSG:6677"):
+    """A ground whose edges were reached at these rows and columns."""
+    z = np.zeros((5, 6))
+    for row, column, value in touched:
+        z[row, column] = value
+    return SimpleNamespace(max_thickness=z, raster=SimpleNamespace(crs=crs))
+
+
+def test_what_was_lost_is_counted_in_one_line_with_its_side():
+    rows = [(0.0, 50000.0)] * 6 + [(6000.0 - 10 * k, 50000.0) for k in range(9)]
+    found = caveats.lost(study_of(rows), ground_of((4, 2, 3.0), (2, 0, 2.5)))
+    assert found.text == ("9 of 15 runs lost up to 6,000 m³ over the edge: enlarge the terrain to the south-west.")
+    assert found.order == caveats.LOST_MUCH
+    little = caveats.lost(study_of([(1.0, 50000.0)]), ground_of((4, 2, 3.0), (2, 0, 0.5)))
+    assert little.text == "The run lost 1.00 m³ over the edge: enlarge the terrain to the south."
+    assert little.order == caveats.LOST
+    assert caveats.lost(study_of([(0.0, 5.0)]), ground_of()) is None
+    assert caveats.lost(study_of([(2.0, 5.0)]), ground_of((2, 5, 1), crs=None)).text.endswith(
+        "enlarge the terrain beyond the right edge of the map.")
+    assert caveats.side_of(ground_of((0, 2, 1), (4, 2, 1))) == "to the north and the south"
+
+
+def test_the_weightiest_come_first_and_three_are_shown():
+    rows = [(6000.0, 2e6)] * 4
+    data = study_of(rows, rows=[*study_of(rows).finished, {}],
+                    ends=lambda: [SimpleNamespace(at_rest=k > 1, moving=k == 0) for k in range(4)])
+    data.study["warnings"] = ["the body is 1.8 balls thick on average, below 3: the numbers will be rough; use --balls"]
+    found = caveats.caveats(data, ground_of())
+    assert [one.order for one in found] == sorted(one.order for one in found)
+    told, rest = caveats.shown(found, 7)
+    assert told == ["1 of 5 runs failed and are not in the numbers.",
+                    "1 of 4 runs ended with more than a tenth of the mass in motion: the numbers are not those of a "
+                    "deposit.",
+                    "Masses of 1.00 million m³ and more are known to run farther than laboratory friction suggests: "
+                    "the reach is not conservative unless a past event was used to calibrate it."]
+    assert rest == "The appendix has all 7 warnings, the settings, the runs and the checks."
+    assert any("only 1.8 of the model's balls" in one.text for one in found)
+
+
+def test_runs_of_several_sizes_are_one_line():
+    texts = ["sizes of balls: rolling_0_d_1: 4.21 m3 left the grid or the box", "the slope is steep",
+             "sizes of balls: rolling_0_d_2: 337 m3 left the grid or the box"]
+    assert warnings.of_sizes(texts) == [
+        "sizes of balls: 4.21 m3 left the grid or the box (2 runs, other numbers in the others)", "the slope is steep"]
+    assert warnings.of_sizes(texts[:1]) == ["sizes of balls: 4.21 m3 left the grid or the box"]
+
+
+# --- words ---
+
+@pytest.mark.parametrize("value, unit, text", [
+    (1.63e10, "N", "16.3 GN"), (6e9, "J", "6.00 GJ"), (999.6e3, "N", "1.00 MN"), (0.0, "N", "0 N"),
+    (0.5, "Pa", "0.500 Pa"),
+    (290e6, "Pa", "290 MPa"), (12.34, "kg", "12.3 kg"), (5e15, "J", "5,000 TJ")])
+def test_si(value, unit, text):
+    assert digits.si(value, unit) == text
+
+
+def test_volumes_and_units_as_they_are_read():
+    assert [digits.cubic(value) for value in (0.0, 104.4, 6128.0, 119e6)] == [
+        "0 m³", "104 m³", "6,130 m³", "119 million m³"]
+    assert digits.typeset("5 m3 on 3 m2, 2 m30 of dam3") == "5 m³ on 3 m², 2 m30 of dam3"
+
+
+def test_what_the_runs_differ_in_is_said_without_names_of_variables():
+    data = SimpleNamespace(study={"study": 1}, repeats={"xoffset": ["0.5"]}, finished=[{}] * 8,
+                           settings={"rolling": ["0", "1"], "d": ["1", "2"], "zeta": ["1", "2"], "x": ["1"]})
+    assert client_part.basis(data) == (
+        "8 runs of a computer model of equal balls, which differ in the rolling resistance, the size of the model's "
+        "balls and 1 other setting and, by chance, in how the balls lie at the start.")
+
+
+def test_the_body_in_a_sentence():
+    known = body.Body(14808.9, 3584.0, 8.0, 35.02, body.SHAPES["slbl"], 1786.2, "EPSG:6677", True, "release.geojson")
+    assert body.sentence(known) == (
+        "The body has 14,809 m³, is up to 8.00 m deep and covers 3,580 m² in plan, above a slip surface by the sloping "
+        "local base level on ground of 35 degrees on average. Its bulk density is 1,786 kg/m³. Coordinates: EPSG:6677 "
+        "(assigned).")
+    assert body.sentence(body.Body(119e6, None, None, None, "a given slip surface", None, None, False, None)) == (
+        "The body has 119 million m³, above a given slip surface. Coordinates: local metres.")

@@ -1,0 +1,77 @@
+"""The body that a report is about, in a sentence: volume, depth, area, shape, density, coordinates."""
+from pathlib import Path
+from typing import Any, Dict, NamedTuple, Optional
+
+from .. import digits, disk
+from ..ensemble import headline
+from ..survey.rasters import crs_name
+from .heading import site_file
+
+SHAPES = {"sphere": "a spherical slip surface", "ellipsoid": "an ellipsoidal slip surface",
+          "plane": "a plane slip surface", "slbl": "a slip surface by the sloping local base level"}
+LEAST = 0.01        # m of depth that belong to the body
+
+
+class Body(NamedTuple):
+    """What is known of it; None: unknown. Volumes of ground."""
+    volume: float               # m3, released; the largest of all runs
+    area: Optional[float]       # m2, in plan
+    depth: Optional[float]      # m, the largest, vertical
+    slope: Optional[float]      # degrees, of the ground on it
+    shape: str                  # of the slip surface, in words
+    density: Optional[float]    # kg/m3, bulk
+    crs: Optional[str]
+    assigned: bool              # that CRS is not the file's own
+    polygon: Optional[str]      # file of the release area, for the appendix
+
+
+def of_data(data, ground) -> Body:
+    """The body of a data.Data on its ground.Ground: by the site's file where there is one, else by the rasters."""
+    site = site_of(data.folder)
+    found = (site.get("found") or {}).get("body") or {}
+    release = site.get("release") or {}
+    mask = ground.slip_depth > LEAST
+    area = found.get("area") or (float(mask.sum()) * ground.cell ** 2 if mask.any() else None)
+    depth = found.get("largest_depth") or (float(ground.slip_depth.max()) if mask.any() else None)
+    shape = SHAPES.get(release.get("shape") or "", "a surveyed scar" if release.get("scar") else "a given slip surface")
+    crs = ground.raster.crs
+    ball, factor = data.result.log.density, data.result.summary["bulk_factor"]
+    return Body(data.largest_release(), area, depth, found.get("mean_slope"), shape, ball and ball / factor,
+                crs_name(crs) if crs is not None else None, is_assigned(site), release.get("polygon"))
+
+
+def site_of(folder: Path) -> Dict[str, Any]:
+    """The file of the site of a folder; empty without one."""
+    path = site_file(folder)
+    return disk.load_yaml(path, "a file of `slope site`") if path else {}
+
+
+def is_assigned(site: Dict[str, Any]) -> bool:
+    """Whether somebody said in which CRS the terrain is, against its file or in place of it."""
+    terrain = site.get("terrain") or {}
+    return bool(terrain.get("assign_crs") or terrain.get("crs"))
+
+
+def sentence(body: Body) -> str:
+    """It, for a client."""
+    about = [f"The body has {volume(body.volume)}"]
+    if body.depth and body.area:
+        about.append(f", is up to {digits.three(body.depth)} m deep and covers {digits.three(body.area)} m² in plan")
+    about.append(f", above {body.shape}")
+    if body.slope is not None:
+        about.append(f" on ground of {body.slope:.0f} degrees on average")
+    text = "".join(about) + "."
+    if body.density:
+        text += f" Its bulk density is {whole(body.density)} kg/m³."
+    if body.crs:
+        return text + f" Coordinates: {body.crs}{' (assigned)' if body.assigned else ''}."
+    return text + " Coordinates: local metres."
+
+
+def volume(value: float) -> str:
+    """A released volume, which is known to the cubic metre; in millions from one on."""
+    return f"{whole(value)} m³" if value < digits.MILLION else digits.cubic(value)
+
+
+def whole(value: float) -> str:
+    return headline.text(value, 1.0)
