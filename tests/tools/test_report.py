@@ -29,7 +29,7 @@ from slope_tools.commands import report as report_command  # noqa: E402
 from slope_tools.drawing import figures  # noqa: E402
 from slope_tools.ensemble import results  # noqa: E402
 from slope_tools.report import (data as report_data, figure_charts, figure_maps, ground as report_ground,  # noqa: E402
-                                numbers as report_numbers, section as report_section)
+                                numbers as report_numbers, paper, section as report_section)
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 
@@ -1050,6 +1050,8 @@ def doc_examples():
 
 @pytest.mark.parametrize("command", [*doc_examples(), *re.findall("tools/slope (report .*)", report_command.EPILOG)])
 def test_every_example_of_the_page_and_the_help_runs(slope, here, command):
+    if "--pdf" in command and not paper.browser():
+        pytest.skip("no browser that prints")
     Path("thalweg.geojson").write_text('{"type": "LineString", "coordinates": %s}' % BENT)
     Path("sizes").mkdir()
     write_converge("sizes/converge.yaml")

@@ -11,7 +11,7 @@ from shlex import quote
 from ..case import run_folders
 from ..ensemble import site_study
 from ..errors import SlopeError
-from ..report import document
+from ..report import document, paper
 from ..report.asked import Asked
 from ..report.heading import SITE
 from ..report.section import FALL
@@ -23,7 +23,7 @@ units: metres; the ends of --section are local coordinates of the run's terrain.
 
 example: the study that `slope study ... -o out` made, with a section along a line from a GIS:
   tools/slope report out -o report.html
-  tools/slope report out --section thalweg.geojson
+  tools/slope report out --section thalweg.geojson --pdf
 
 Writes report.html, with all pictures in it, and a 3-D view of a run that wrote dumps; report.section.csv, the heights
 along the section; report.numbers.csv, the numbers on the page with all their digits; and report.mp4, a film of the run.
@@ -56,6 +56,9 @@ def add_parser(commands, **kwargs):
     for name, what in (("project", "name of the project or the site, the title of the page"),
                        ("client", "recipient of the report"), ("author", "author of the report")):
         parser.add_argument(f"--{name}", metavar="TEXT", help=f"{what} (default: what {SITE} says, in DIR or above it)")
+    parser.add_argument("--pdf", action="store_true",
+                        help="also print the page to REPORT.pdf, with an installed browser: chromium, google-chrome or "
+                             "microsoft-edge")
     parser.add_argument("--no-film", action="store_true",
                         help="make no film of the balls, REPORT.mp4 (default: one, where the run wrote dumps and "
                              "ffmpeg is installed)")
@@ -93,12 +96,18 @@ def run(args):
         raise SlopeError(args.folder, "must be an existing folder")
     if not output.absolute().parent.is_dir():
         raise SlopeError("-o", "must be in an existing folder", output)
+    if args.pdf:
+        paper.require_browser()
     asked = Asked(folder, args.shown, args.section, args.local, args.reference, args.converge, args.project,
                   args.client, args.author, None if args.no_film else output.with_suffix(".mp4"))
     first, *notes = document.write(asked, output)
     print(first)
     if args.pictures:
         document.write_pictures(output)
+    if args.pdf:
+        pdf = output.with_suffix(".pdf")
+        paper.write(output, pdf)
+        print(f"{pdf}: the page on A4, by {paper.browser()}")
     if args.no_paper:
         print("note: --no-paper is the default now; --reference FILE.yaml brings other numbers in")
     for line in notes:

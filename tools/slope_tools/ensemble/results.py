@@ -10,6 +10,7 @@ import yaml
 from .. import disk, provenance
 from ..case import run_folders
 from ..deposit import left, rest, travel_shares
+from ..digits import rounded
 from ..survey import rasters
 from . import combinations, ensemble, intensity, repeats, size_error, step_check, structures, study_table, usable
 from . import withheld_words

@@ -185,10 +185,18 @@
       event.preventDefault();
       say('The graphics of this computer stopped. Load the page again to see the view.');
     });
-    // paper: a still picture, for a canvas does not print everywhere
+    // paper: a still picture of the final state, for a canvas does not print everywhere
+    let before = null;
     window.addEventListener('beforeprint', () => {
+      before = time;
+      play(false);
+      setTime(end);
       draw();
       element('view-still').src = renderer.domElement.toDataURL('image/jpeg', 0.9);
+    });
+    window.addEventListener('afterprint', () => {
+      if (before !== null) setTime(before);
+      before = null;
     });
     new ResizeObserver(resize).observe(stage);
     resize();

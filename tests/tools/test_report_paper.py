@@ -1,0 +1,116 @@
+"""slope report --pdf: heads and page numbers, no page that is emptier than a third, the final state; looked at."""
+import re
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import yaml
+
+from run_helpers import TOOLS, called
+from tiny_collapse import LMP, write_case
+
+sys.path.insert(0, str(TOOLS))
+
+from slope_tools import cli  # noqa: E402
+from slope_tools.drawing import figures  # noqa: E402
+from slope_tools.report import document, paper, view  # noqa: E402
+
+pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
+looked_at = pytest.mark.skipif(not (paper.browser() and shutil.which("pdftoppm")),
+                               reason="no browser that prints, or poppler-utils is not installed")
+DUMP = "dump        view soil custom 75 view.*.dump id diameter x y z vx vy vz\ndump_modify view pad 9\n"
+TOP, BOTTOM, TALL = 17, 16, 297     # mm, the margins and the height of a page
+MOST_EMPTY = 1 / 3                  # of the height between the margins
+
+
+def words(*arguments):
+    return subprocess.run(arguments, check=True, stdout=subprocess.PIPE).stdout
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A study of two runs with dumps and a road, in out; its folder."""
+    folder = tmp_path_factory.mktemp("made")
+    deck = write_case(folder / "case")
+    deck.write_text(deck.read_text().replace("run         ${steps}", f"{DUMP}run         ${{steps}}"))
+    assert cli.main(["study", str(deck), "--set", "rolling=0,0.3", "--set", "steps=900", "-o", str(folder / "out"),
+                     "--road", str(folder / "case" / "road.csv"), "--local", "--lmp", LMP]) == 0
+    return folder / "out"
+
+
+@pytest.fixture(scope="module")
+def pdf(made):
+    """The report of it as a PDF."""
+    patch = pytest.MonkeyPatch()
+    patch.setattr(figures, "DPI", 60)
+    assert cli.main(["report", str(made), "--no-film", "--pdf", "--project", "Cut 7"]) == 0
+    patch.undo()
+    return made / "report.pdf"
+
+
+@looked_at
+def test_every_page_has_head_and_number(pdf):
+    about = words("pdfinfo", pdf).decode()
+    count = int(re.search(r"Pages: +(\d+)", about)[1])
+    assert count >= 5 and "A4" in about
+    for k in range(1, count + 1):
+        text = words("pdftotext", "-f", str(k), "-l", str(k), "-layout", pdf, "-").decode()
+        assert f"page {k} of {count}" in text and "Slope collapse: Cut 7" in text
+    first = words("pdftotext", "-l", "1", pdf, "-").decode()
+    assert "Appendix" not in first and "Less than 0.1 m is not drawn" in first      # the map's caption is there too
+
+
+@looked_at
+def test_no_page_is_emptier_than_a_third(pdf, tmp_path):
+    """All but the last, which ends where the report does."""
+    words("pdftoppm", "-r", "30", "-gray", pdf, tmp_path / "page")
+    empty = []
+    for path in sorted(tmp_path.glob("page*.pgm")):
+        kind, size, most, content = path.read_bytes().split(b"\n", 3)
+        assert kind == b"P5" and most == b"255"
+        z = np.frombuffer(content, np.uint8).reshape([int(word) for word in size.split()][::-1])
+        low, high = (round(len(z) * mm / TALL) for mm in (TOP, TALL - BOTTOM))
+        inked = np.flatnonzero((z[low:high] < 230).any(axis=1))
+        empty.append(1 - (inked[-1] + 1) / (high - low))
+    assert len(empty) > 4 and max(empty[:-1]) <= MOST_EMPTY, empty
+
+
+@looked_at
+@pytest.mark.skipif(view.library() is None, reason="libjs-three is not installed")
+def test_the_still_picture_is_the_final_state(pdf, made):
+    best = yaml.safe_load((made / "study.yaml").read_text())["conservative"]["run"]
+    text = words("pdftotext", pdf, "-").decode()
+    steps = [int(re.search(r"(\d+)\.dump", path.name)[1]) for path in (made / best).glob("view.*.dump")]
+    assert f"t = {0.002 * max(steps):.1f} s" in text and "t = 0.0 s" not in text
+
+
+def test_without_a_browser_one_line_and_nothing_is_made(made, capsys, monkeypatch, tmp_path):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    status, out, err = called(capsys, ["report", str(made), "--pdf", "-o", str(tmp_path / "page.html")])
+    assert (status, out) == (2, "") and err.count("\n") == 1 and not list(tmp_path.iterdir())
+    assert "--pdf: needs a browser that prints, chromium or google-chrome" in err
+
+
+@pytest.mark.parametrize("script, last", [("echo first >&2; echo 'no display' >&2; exit 3", "no display"),
+                                          ("exit 0", "status 0")])
+def test_a_browser_that_fails_leaves_no_pdf(monkeypatch, tmp_path, script, last):
+    program = tmp_path / "bin" / "chromium"
+    program.parent.mkdir()
+    program.write_text(f"#!/bin/sh\n{script}\n")
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{program.parent}:/bin")
+    page = tmp_path / "page.html"
+    page.write_text("<html></html>")
+    with pytest.raises(Exception, match=f"must print {page}, got {last}"):
+        paper.write(page, tmp_path / "page.pdf")
+    assert not (tmp_path / "page.pdf").exists()
+
+
+def test_what_is_no_text_keeps_its_letters():
+    """A unit is typeset; a picture, whose letters may look like one, is not."""
+    import markupsafe
+    assert document.typeset("5 m3") == "5 m³" and document.typeset(markupsafe.Markup("/m3+")) == "/m3+"
+    template = (TOOLS / "slope_tools" / "report" / "report.html.j2").read_text(encoding="utf-8")
+    assert "picture.uri|safe" in template and "deck|verbatim" in template
