@@ -1,4 +1,4 @@
-"""A page as a PDF, printed by a browser that is installed: A4 pages with heads and numbers, by the style of the page."""
+"""A page as a PDF, printed by a browser that is installed: A4 pages with heads and numbers, by the page's style."""
 import os
 import shutil
 import subprocess
