@@ -29,7 +29,7 @@ from slope_tools.commands import report as report_command  # noqa: E402
 from slope_tools.drawing import figures  # noqa: E402
 from slope_tools.ensemble import results  # noqa: E402
 from slope_tools.report import (data as report_data, figure_charts, figure_maps, ground as report_ground,  # noqa: E402
-                                numbers as report_numbers, paper, section as report_section)
+                                paper, section as report_section)
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 
@@ -811,11 +811,6 @@ def test_the_section_goes_through_the_centroid_along_the_fall_line(slope, here):
     columns = np.flatnonzero((thickness > 0).any(axis=0))
     assert line["x"][0] <= columns[0] and line["x"][-1] >= columns[-1] + 1
     assert line["distance"] == pytest.approx(np.hypot(line["x"] - line["x"][0], line["y"] - line["y"][0]), abs=2e-4)
-
-
-def test_energies_have_a_unit_that_suits_them():
-    found = [report_numbers.energy(joules) for joules in (0.0, 12.34, 6543.2, 453853610e3)]
-    assert found == ["0 J", "12.3 J", "6.54 kJ", "454 GJ"]
 
 
 def test_heights_of_a_section_by_hand(slope, here):

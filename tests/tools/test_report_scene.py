@@ -480,7 +480,8 @@ def test_the_film_shows_the_run(case, capsys):
     gray = np.frombuffer(raw, np.uint8).reshape(pictures, stream["height"], stream["width"]).astype(int)
     moved = [np.count_nonzero(np.abs(one - gray[0]) > 40) for one in gray]
     assert moved[-1] > 0.01 * gray[0].size and moved[pictures // 4] < moved[-1]
-    assert np.abs(gray[-1] - gray[-5]).max() < 40       # it stays, but for what the compression makes of it
+    # it stays, but for what the compression makes of single pixels
+    assert np.count_nonzero(np.abs(gray[-1] - gray[-5]) > 40) < 1e-4 * gray[0].size
 
 
 def test_between_and_on_line_by_hand():

@@ -160,3 +160,15 @@ class Mesh:
 
 def as_multi(geometry):
     return MultiPolygon(polygons_of(geometry))
+
+
+def parts_of(geometry):
+    """The single geometries of any geometry."""
+    return [part for one in getattr(geometry, "geoms", [geometry]) for part in getattr(one, "geoms", [one])
+            if not part.is_empty]
+
+
+def coordinates(geometry) -> np.ndarray:
+    """All x and y of lines, points and the outer rings of polygons, rows."""
+    found = [np.asarray(getattr(one, "exterior", one).coords)[:, :2] for one in parts_of(geometry)]
+    return np.concatenate(found) if found else np.zeros((0, 2))

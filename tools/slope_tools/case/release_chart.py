@@ -1,7 +1,7 @@
 """The picture of a body that is released: map with its depths, and a section along the fall line."""
 import numpy as np
 
-from ..drawing import figures, pictures
+from ..drawing import figures, palettes, pictures
 from ..drawing.figures import FULL, RELEASE, SECTION, STYLE, plt
 from ..drawing.maps import RELIEF, contours, outline, part, scheme, shade, window
 from ..survey.rasters import Raster
@@ -70,7 +70,7 @@ def draw_map(figure, axes, raster: Raster, depth: np.ndarray, shown, geometry) -
     contours(axes, z, where, figures.contour_interval(z), alpha=0.7)
     values, _ = part(raster, depth, shown)
     bounds = figures.even(float(np.nanmax(depth)))
-    colours, norm = scheme("YlOrRd", bounds)
+    colours, norm = scheme(palettes.DEPTH, bounds)
     image = axes.imshow(np.ma.masked_where(~(values > 0), values), cmap=colours, norm=norm, alpha=0.75, extent=where,
                         interpolation="nearest")
     figure.colorbar(image, cax=axes.inset_axes([1.03, 0.05, 0.05, 0.9]), label="depth below the ground (m)")

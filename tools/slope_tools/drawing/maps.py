@@ -10,7 +10,7 @@ from matplotlib import pyplot as plt  # noqa: E402  (after the backend is set)
 from matplotlib.colors import BoundaryNorm, ListedColormap  # noqa: E402
 
 from ..geometry import extent, polygons_of  # noqa: E402
-from . import pictures  # noqa: E402
+from . import palettes, pictures  # noqa: E402
 
 SIDE = 8.0      # inches, width of a map
 PIXELS = 1200   # a raster is thinned out to at most this many cells along a side
@@ -89,7 +89,7 @@ def relief(raster, base, shown, title):
     return figure, axes
 
 
-def values_on(axes, raster, values, shown, label, cmap="YlOrRd"):
+def values_on(axes, raster, values, shown, label, cmap=palettes.THICKNESS):
     """Draw values > 0 over the relief, with a colour bar."""
     values, where = part(raster, values, shown)
     top = np.nanmax(values, initial=0)

@@ -4,7 +4,7 @@ from typing import Sequence
 
 import numpy as np
 
-from ..drawing import pictures
+from ..drawing import palettes, pictures
 from ..drawing.figures import COLOURS, FULL, GRAY, STYLE, plt
 from .backanalysis import Posterior, SHARE
 
@@ -57,7 +57,7 @@ def pair(axis, found: Posterior, i: int, j: int, variables: Sequence, runs: np.n
     edges = [values(variables[k], np.linspace(low, high, len(region.density) + 1))
              for k, low, high in zip((i, j), region.low, region.high)]
     shown = np.ma.masked_where(~region.inside, region.density)
-    axis.pcolormesh(*edges, shown.T, cmap="Blues", vmin=0, vmax=region.density.max())
+    axis.pcolormesh(*edges, shown.T, cmap=palettes.DENSITY, vmin=0, vmax=region.density.max())
     axis.plot(values(variables[i], runs[:, i]), values(variables[j], runs[:, j]), ".", color=GRAY, ms=2.5, mew=0)
     best = [float(values(variables[k], found.best[k:k + 1])[0]) for k in (i, j)]
     axis.plot(*best, "+", color="#c1121f", ms=9, mew=1.4)

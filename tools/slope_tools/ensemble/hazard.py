@@ -145,6 +145,8 @@ def table(curves: Mapping[str, Curve]) -> str:
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(["quantity", "value", "exceeded", "low", "high"])
     for name, one in curves.items():
-        for row in zip(one.values, one.share, one.low, one.high):
+        # what levels_of() put just below a value stands for all below it, and is no value
+        first = int(len(one.values) > 1 and np.nextafter(one.values[0], math.inf) == one.values[1])
+        for row in list(zip(one.values, one.share, one.low, one.high))[first:]:
             writer.writerow([name, *(f"{value:.9g}" for value in row)])
     return text.getvalue()

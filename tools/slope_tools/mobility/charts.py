@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.collections import LineCollection
 from shapely.geometry.base import BaseGeometry
 
-from ..drawing import figures, maps, pictures
+from ..drawing import figures, maps, palettes, pictures
 from ..drawing.figures import plt
 from ..survey.resampling import sample
 from .body import Body
@@ -34,7 +34,7 @@ def draw_map(path: Path, mobility: Mobility, body: Body, road: Optional[BaseGeom
             maps.outline(axes, road, color=figures.ROAD, linewidth=1.0)
         points = np.column_stack([way.x, way.y])
         middle = (mobility.curves[mobility.severe][1:] + mobility.curves[mobility.severe][:-1]) / 2
-        drawn = axes.add_collection(LineCollection(np.stack([points[:-1], points[1:]], axis=1), cmap="plasma_r",
+        drawn = axes.add_collection(LineCollection(np.stack([points[:-1], points[1:]], axis=1), cmap=palettes.PATH,
                                                    norm=plt.Normalize(0, 1), linewidths=3, array=middle))
         figure.colorbar(drawn, cax=axes.inset_axes([1.02, 0, 0.03, 1]), label="share of known events that go beyond")
         axes.plot(*way.crown[:2], "^", color=figures.RELEASE, ms=6, mec="white", mew=0.5)

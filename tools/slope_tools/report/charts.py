@@ -167,6 +167,9 @@ def differences(data, numbers):
     best = data.study and data.study["conservative"]
     found = []
     for entry in (best or {}).get("differences") or ():
+        if entry["by_m3"] == 0:
+            found.append(f"{entry['variable']}: the means of all its values are the same, so that there is no trend.")
+            continue
         by = numbers(f"difference over {entry['variable']}", "m3", entry["by_m3"])
         text = (f"{entry['variable']}: the means at {entry['smallest_at']} and {entry['largest_at']} (the largest) "
                 f"differ by {by} m3")

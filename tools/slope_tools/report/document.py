@@ -57,5 +57,6 @@ def render(content):
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True,
                                      undefined=jinja2.StrictUndefined, finalize=typeset)
     environment.filters.update(verbatim=markupsafe.escape, percent=lambda value: f"{100 * value:.1f} %",
+                               signed=lambda value: f"{'-' if value < 0 else '+'} {abs(value):,.10g}",
                                fixed=lambda value, digits=1: f"{value:,.{digits}f}")
     return environment.get_template("report.html.j2").render(content)

@@ -4,7 +4,7 @@ from typing import Any, Dict, List, Mapping
 
 import numpy as np
 
-from ..drawing import figures
+from ..drawing import figures, palettes
 from ..ensemble import ensemble, quantities, withheld_words
 from ..errors import SlopeError
 from . import ensemble_charts, figure_maps
@@ -172,10 +172,10 @@ def draw(entries, maps):
         what = entry["what"]
         title = f"{what[0].upper()}{what[1:]}"
         if "threshold" in entry:
-            uri = figure_maps.value_map(layers, values, title, share_of(what), ODDS, "RdPu", mask=values > 0)
+            uri = figure_maps.value_map(layers, values, title, share_of(what), ODDS, palettes.SHARE, mask=values > 0)
         else:
             bounds = figures.even_to_most(values[values > 0])
-            colours = "YlGnBu" if entry["raster"] == "arrival" else "viridis_r"
+            colours = palettes.BY_RASTER[entry["raster"]]
             uri = figure_maps.value_map(layers, values, title, f"({entry['unit']})", bounds, colours, mask=values > 0)
         bands = f" Its bounds are bands of {entry['bounds']}." if entry["bounds"] else ""
         pictures.append(maps.picture(uri, title, f"{title}.{bands}"))

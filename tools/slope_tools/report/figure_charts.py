@@ -5,12 +5,14 @@ import numpy as np
 
 from ..drawing import figures
 from ..drawing.figures import COLOURS, FULL, HALF, LINE, ROAD, SECTION, STYLE, plt, shortened, text_width, ticks
+from .figure_maps import LINE as CONTROL, WALL
 from .sheets import Box, EDGE, Entry, LABEL, OUT, Sheet, TICK, keep_in, label, place_entries, widest
 
 VISIBLE = 0.055     # inches: a deposit of this thickness can be seen
 LEAST, MOST = 0.9, 3.6      # inches: height of the section, but for a low one on level ground
 STEPS = (1, 2, 5, 10)       # how many times heights may be exaggerated
 TICKS = 0.2         # inches: room of the labels below an axis
+CUT = {"color": ROAD, "lw": 1.1, "ls": "--"}
 THICK = {"lw": 5, "solid_capstyle": "butt"}     # of an area, in a legend
 
 
@@ -45,12 +47,13 @@ def times(factor):
     return "" if factor == 1 else f", {factor:g} times exaggerated"
 
 
-def section(s, before, base, runs, road, cut, title, bends=()):
+def section(s, before, base, runs, road, cut, title, bends=(), walls=(), crossings=()):
     """Heights along the section, and below them the thickness where it cannot be seen in the heights.
 
     s: distance (m); before, base: ground before, and slip surface with the ground that stays; runs: list of
     (name, surface after, thickness), the first of them filled; road: list of (from, to); cut: its heights or None;
-    bends: distances at which the line turns. Returns the picture, the exaggeration of the heights, and that of the
+    bends: distances at which the line turns; walls: pieces of structures, pairs of (distance, height); crossings:
+    distances of control lines. Returns the picture, the exaggeration of the heights, and that of the
     thickness or None.
     """
     known = np.concatenate([values[np.isfinite(values)] for values in (before, base, *(run[1] for run in runs))])
@@ -69,8 +72,9 @@ def section(s, before, base, runs, road, cut, title, bends=()):
         axes, found = panel(sheet, left, size, "height (m)" + times(scale.factor), s, (low, high), road, bends)
         found += draw_heights(axes, s, before, base, runs, names, low)
         if cut is not None:
-            axes.plot(s, np.where(cut <= high, cut, np.nan), color=ROAD, lw=0.8, ls=":", zorder=5)
-            found.append(Entry("cut surface", {"color": ROAD, "lw": 0.8, "ls": ":"}))
+            axes.plot(s, np.where(cut <= high, cut, np.nan), zorder=7, **CUT)
+            found.append(Entry("cut surface", CUT))
+        found += draw_obstacles(axes, walls, crossings)
         factor = None
         if 0 < typical * scale.heights < VISIBLE:
             top = 1.05 * max(run[2].max() for run in runs)
@@ -139,6 +143,16 @@ def draw_heights(axes, s, before, base, runs, names, low):
     return found
 
 
+def draw_obstacles(axes, walls, crossings):
+    """Structures as they are cut, control lines upright; returns the legend's entries."""
+    for piece in walls:
+        axes.plot(*np.asarray(piece).T, zorder=7, **WALL)
+    for at in crossings:
+        axes.axvline(at, zorder=2, **CONTROL)
+    return [entry for entry, any_of in ((Entry("structure", WALL), walls), (Entry("control line", CONTROL), crossings))
+            if len(any_of)]
+
+
 def draw_thickness(axes, s, runs):
     axes.fill_between(s, 0, runs[0][2], color="#d9a066", alpha=0.85, lw=0, zorder=2)
     for i, (_, _, thickness) in enumerate(runs):
@@ -170,7 +184,8 @@ def panel_width(width, left):
 
 def value_panel(sheet, values, y_label, title, width, tall):
     """Axes below a title, with room for all values and zero; the ticks of y, and where the axes begin, inches."""
-    low, high = 1.08 * min(0.0, values.min()), 1.08 * max(values.max(), 1e-9)
+    low, high = 1.08 * min(0.0, values.min()), 1.08 * max(0.0, values.max())
+    high = high if high > low else 1.0      # all of them are 0
     grid = ticks(low, high, 6)
     left = EDGE + OUT + max(text_width(f"{value:,.6g}", TICK) for value in grid) + 0.02
     sheet.title(title, left)
@@ -294,7 +309,8 @@ def bars(names, values, y_label, title):
         axes.barh(range(len(names)), values, color=COLOURS[0], height=0.7)
         axes.set_yticks(range(len(names)), names)
         axes.set_ylim(len(names) - 0.4, -0.6)
-        low, high = min(0.0, *values) * 1.05, max(1e-9, *values) * 1.05
+        low, high = min(0.0, *values) * 1.05, max(0.0, *values) * 1.05
+        high = high if high > low else 1.0
         axes.set_xlim(low, high)
         axes.set_xticks(at := ticks(low, high, 6), [f"{value:,.6g}" for value in at])
         keep_in(axes.get_xticklabels(), at, low, high, width)

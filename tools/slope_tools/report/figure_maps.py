@@ -1,15 +1,15 @@
 """The maps of a report on a shaded relief, as data URIs."""
 import math
-from typing import Any, NamedTuple, Optional, Tuple
+from typing import Any, Mapping, NamedTuple, Optional, Tuple
 
 import numpy as np
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.patches import Rectangle
 
-from ..drawing import figures
+from ..drawing import figures, palettes
 from ..drawing.figures import FULL, HALF, RELEASE, ROAD, SECTION, STYLE, TITLE, classes_of, plt, text_width, wrapped
 from ..drawing.maps import RELIEF, contours, outline, part, scheme, shade
-from ..geometry import polygons_of
+from ..geometry import parts_of, polygons_of
 from . import sheets
 from .sheets import Box, Entry, Frame
 
@@ -17,6 +17,8 @@ TALL = {FULL: 5.2, HALF: 3.7}       # inches: the tallest map
 MESH_FONT, LEAST_FONT = 6.5, 4.0    # points, of the numbers in a mesh: as a rule, and the smallest that can be read
 SECTION_LINE = {"color": SECTION, "lw": 0.9, "ls": (0, (6, 2, 1, 2))}
 RELEASE_LINE = {"color": RELEASE, "lw": 0.9, "ls": "--"}
+WALL = {"color": "#111111", "lw": 1.2}
+LINE = {"color": "#8a5aa8", "lw": 1.2}
 TINTS = LinearSegmentedColormap.from_list(
     "tints", ["#5f8f5a", "#9dbb7c", "#d9d39a", "#c8a36c", "#a87a55", "#e9e4de"])
 
@@ -30,12 +32,14 @@ class Layers(NamedTuple):
     road: Any = None                     # polygon
     section: Optional[np.ndarray] = None     # points of the line, rows of x y
     interval: float = 5.0                # of the contours, m
+    walls: Mapping[str, Any] = {}        # what structures cover
+    lines: Mapping[str, np.ndarray] = {}     # points of control lines, rows of x y
 
 
 # --- what is drawn into the axes of a map ---
 
 def base_map(axes, layers, labels=True):
-    """Shaded relief, contours, release and road."""
+    """Shaded relief, contours, release, road, structures and control lines."""
     raster, shown = layers.raster, layers.shown
     z, where = part(raster, layers.ground, shown)
     step = (where[1] - where[0]) / z.shape[1]
@@ -54,6 +58,19 @@ def base_map(axes, layers, labels=True):
         outline(axes, layers.road, color=ROAD, linewidth=1.1, zorder=6)
         for polygon in polygons_of(layers.road):
             axes.fill(*np.asarray(polygon.exterior.coords)[:, :2].T, color=ROAD, alpha=0.13, lw=0, zorder=1.5)
+    draw_obstacles(axes, layers)
+
+
+def draw_obstacles(axes, layers):
+    """Structures and control lines."""
+    for shape in layers.walls.values():
+        for one in parts_of(shape):
+            if one.geom_type == "Polygon":
+                axes.fill(*np.asarray(one.exterior.coords)[:, :2].T, color=WALL["color"], alpha=0.35, lw=0, zorder=6)
+                one = one.exterior
+            axes.plot(*np.asarray(one.coords)[:, :2].T, zorder=6, **WALL)
+    for points in layers.lines.values():
+        axes.plot(*np.asarray(points).T, zorder=6, **LINE)
 
 
 def draw_values(axes, layers, values, bounds, colours, mask=None, alpha=0.82):
@@ -90,6 +107,10 @@ def entries(layers):
         found.append(Entry("released mass", RELEASE_LINE))
     if layers.road is not None:
         found.append(Entry("road", {"color": ROAD, "lw": 1.1}))
+    if layers.walls:
+        found.append(Entry("structure", WALL))
+    if layers.lines:
+        found.append(Entry("control line", LINE))
     if layers.section is not None:
         found.append(Entry("section A-A'", SECTION_LINE))
     return [*found, Entry(f"contours every {layers.interval:g} m", {"color": "#333333", "lw": 0.5})]
@@ -133,7 +154,7 @@ def mesh_map(layers, removed, mesh, title, crs_name):
         frame, bounds = frame_of(layers, True, crs_name), classes_of(removed)
         sheet, axes, size, beside, below = sheets.single(FULL, frame, title, TALL[FULL], bounds)
         base_map(axes, layers, labels=False)
-        image = draw_values(axes, layers, removed, bounds, "YlOrBr", alpha=0.75)
+        image = draw_values(axes, layers, removed, bounds, palettes.THICKNESS, alpha=0.75)
         side = mesh.transform.a
         inches = side * size[0] / frame.width
         widest = max((text_width(f"{value:,.0f}", MESH_FONT) for value in mesh.z[mesh.z >= 0.5]), default=0)

@@ -4,7 +4,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.colors import LogNorm, to_rgba
 from mpl_toolkits.axes_grid1 import make_axes_locatable
 
-from ..drawing import figures
+from ..drawing import figures, palettes
 from ..drawing.figures import COLOURS, FULL, HALF, STYLE, plt
 
 EMPTY = "#e4e6e9"       # of a panel that nothing touched
@@ -50,10 +50,9 @@ def pressure_map(corners, pressure, direction, title):
     top = values.max()
     with plt.rc_context(STYLE):
         span = np.ptp(places.reshape(-1, 2), axis=0)
-        wide = span[0] > 3 * span[1]
-        figure, axes = plt.subplots(figsize=(FULL, 1.9) if wide else (HALF, 2.8))
+        figure, axes = plt.subplots(figsize=(FULL, min(max(0.8 * FULL * span[1] / max(span[0], 1e-9), 0.5), 2.6) + 0.7))
         norm = LogNorm(top / 10 ** DECADES, top)
-        colours = plt.get_cmap("YlOrRd")(norm(np.maximum(values, norm.vmin)))
+        colours = plt.get_cmap(palettes.PRESSURE)(norm(np.maximum(values, norm.vmin)))
         colours[values <= 0] = to_rgba(EMPTY)
         axes.add_collection(PolyCollection(places, facecolors=colours, edgecolors="#9aa0a6", linewidths=0.15))
         low, high = places.reshape(-1, 2).min(axis=0), places.reshape(-1, 2).max(axis=0)
@@ -62,7 +61,7 @@ def pressure_map(corners, pressure, direction, title):
                  xlabel="along the structure (m)", ylabel="height (m)")
         axes.set_title(title, loc="left")
         beside = make_axes_locatable(axes).append_axes("right", size=0.1, pad=0.08)
-        bar = figure.colorbar(plt.cm.ScalarMappable(norm, "YlOrRd"), cax=beside, extend="min")
+        bar = figure.colorbar(plt.cm.ScalarMappable(norm, palettes.PRESSURE), cax=beside, extend="min")
         bar.set_label("largest pressure (kPa)", fontsize=6.5)
         bar.ax.tick_params(labelsize=6)
         return figures.data_uri(figure)

@@ -2,12 +2,14 @@
 import math
 
 import numpy as np
+from shapely.geometry import LineString, box
 
 from .. import geometry
 from ..deposit import scar
 from ..drawing import maps
 from ..errors import SlopeError
 from ..survey.resampling import sample
+from . import obstacles
 
 TALLEST, FLATTEST = 0.7, 0.22       # height / width of a map, where the terrain is large enough
 
@@ -17,7 +19,8 @@ class Ground:
 
     x, y: of the centres (local m); before: ground before (m); base: without the body; slip_depth: between the two;
     arrival (s), max_thickness (m), max_speed (m/s) of the shown run; release: mask of cells that held the mass at the
-    start; touched: mask of cells that the mass ever touched, in any of the runs that are drawn.
+    start; touched: mask of cells that the mass ever touched, in any of the runs that are drawn; obstacles: structures
+    and control lines.
     """
 
     def __init__(self, data):
@@ -34,6 +37,7 @@ class Ground:
         self.touched = self.max_thickness > 0
         for other in data.drawn:
             self.touched = self.touched | (other.thickness > 0)
+        self.obstacles = obstacles.of_run(one)
         if not self.touched.any():
             raise SlopeError(f"{one.prefix}.max_thickness.asc", "must have a cell that the mass ever touched")
 
@@ -49,6 +53,16 @@ class Ground:
     def along(self, values, x, y):
         """Values of cells at points, NaN outside."""
         return sample(self.raster._replace(z=values), x, y)
+
+    def boxes(self):
+        """Local xlo, ylo, xhi, yhi of what the mass touched, and of structures and lines that are not far from it."""
+        found = [box_of(self.raster, self.touched)]
+        far = max(found[0][2] - found[0][0], found[0][3] - found[0][1])
+        near = geometry.box_of(self.raster).intersection(box(*found[0]).buffer(far))
+        for one in (*self.obstacles.footprints.values(), *map(LineString, self.obstacles.lines.values())):
+            part = one.intersection(near)
+            found += [] if part.is_empty else [part.bounds]
+        return found
 
     def window(self, *boxes):
         """The part of the terrain that a map shows: the boxes and some room, of a shape that is good to print."""

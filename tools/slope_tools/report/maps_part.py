@@ -4,7 +4,7 @@ from typing import Any, Dict
 import numpy as np
 
 from .. import geometry
-from ..drawing import figures
+from ..drawing import figures, palettes
 from ..survey.rasters import crs_name
 from . import figure_maps
 from .ground import box_of
@@ -22,8 +22,9 @@ class Maps:
         line = section.points
         self.layers = figure_maps.Layers(
             ground.raster, ground.before,
-            ground.window(box_of(ground.raster, ground.touched), (*line.min(axis=0), *line.max(axis=0))),
-            ground.release, data.road, line, figures.contour_interval(ground.before))
+            ground.window(*ground.boxes(), (*line.min(axis=0), *line.max(axis=0))),
+            ground.release, data.road, line, figures.contour_interval(ground.before), ground.obstacles.footprints,
+            ground.obstacles.lines)
 
     def thickness(self, values, title, alt, caption, width=figures.HALF, layers=None):
         """A map of a thickness, in classes that the release does not set."""
@@ -32,8 +33,8 @@ class Maps:
         if len(bounds) > 2 and bounds[-1] > 2 * bounds[-2]:
             more += OPEN
         return self.picture(
-            figure_maps.value_map(layers or self.layers, values, title, "thickness (m)", bounds, "YlOrBr", width,
-                                  self.crs), alt, caption + more)
+            figure_maps.value_map(layers or self.layers, values, title, "thickness (m)", bounds, palettes.THICKNESS,
+                                  width, self.crs), alt, caption + more)
 
     def classes(self, values):
         return figures.classes_of(values, self.ground.source)
@@ -54,7 +55,8 @@ class Maps:
         if ground.slip_depth.max() > 0:
             found["slip"] = self.picture(
                 figure_maps.value_map(layers._replace(ground=ground.base), ground.slip_depth, "Slip surface",
-                                      "depth below the ground (m)", figures.classes_of(ground.slip_depth), "PuBu"),
+                                      "depth below the ground (m)", figures.classes_of(ground.slip_depth),
+                                      palettes.DEPTH),
                 "Map of the slip surface", "Depth of the slip surface below the ground before the collapse; relief and "
                 "contours are those of the ground without the body.")
         found["max_thickness"] = self.thickness(
@@ -64,13 +66,13 @@ class Maps:
         if (speed > 0).any():
             found["speed"] = self.picture(
                 figure_maps.value_map(layers, speed, "Largest speed", "speed (m/s)",
-                                      figures.even_to_most(speed[speed > 0]), "viridis_r", mask=speed > 0),
+                                      figures.even_to_most(speed[speed > 0]), palettes.SPEED, mask=speed > 0),
                 "Map of the largest speed", "Speed of the fastest ball that passed, sampled in the run.")
         known = ground.arrival[np.isfinite(ground.arrival)]
         if known.size and known.max() > 0:
             found["arrival"] = self.picture(
                 figure_maps.value_map(layers, ground.arrival, "First arrival", "time (s)",
-                                      figures.even_to_most(known[known > 0]), "YlGnBu",
+                                      figures.even_to_most(known[known > 0]), palettes.ARRIVAL,
                                       mask=np.isfinite(ground.arrival) & ~ground.release),
                 "Map of the first arrival", "Time at which the first ball arrived.")
         return found
@@ -106,7 +108,7 @@ class Maps:
                                         np.array([self.ground.source] * len(data.drawn)))
             found["runs"] = self.picture(
                 figure_maps.small_maps(layers, [(data.label(one), one.thickness) for one in data.drawn],
-                                       "thickness (m)", bounds, "YlOrBr"),
+                                       "thickness (m)", bounds, palettes.THICKNESS),
                 "Final thickness of the runs", "Final thickness of the runs." + some)
         envelope = data.study.get("envelope")
         if envelope:
@@ -123,7 +125,7 @@ class Maps:
                 if side > 10 * entry["threshold_m"] else ""
             found["exceedance"].append(self.picture(
                 figure_maps.value_map(layers, values, f"Thicker than {entry['threshold_m']:g} m", "share of the runs",
-                                      [0.0, 0.2, 0.4, 0.6, 0.8, 1.0], "RdPu", mask=values > 0),
+                                      [0.0, 0.2, 0.4, 0.6, 0.8, 1.0], palettes.SHARE, mask=values > 0),
                 f"Share of the runs thicker than {entry['threshold_m']:g} m",
                 f"Share of the {len(data.finished)} runs with a final thickness > {entry['threshold_m']:g} m: in every "
                 f"run on {entry['area_in_every_run_m2']:,.0f} m2, in any run on "

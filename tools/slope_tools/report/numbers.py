@@ -2,7 +2,7 @@
 import csv
 import io
 
-from .. import disk
+from .. import digits, disk
 from ..deposit import rest, travel_shares
 from ..ensemble import headline, withheld_words
 from .release_part import over_runs
@@ -235,14 +235,6 @@ def balance(data, numbers):
     state = rest.state(one.summary, one.path)
     return {"release": release.text if release else UNKNOWN, "rest": state.text,
             "status": "rest" if state.at_rest else "moving" if one.summary["moving"] else "doubt",
-            "energy": energy(one.summary["largest"]["max_energy"]),
+            "energy": digits.si(one.summary["largest"]["max_energy"], "J"),
             "front_at_release": numbers("farthest ball at release", "m", one.summary["travel"]["front_at_release"]),
             "centroid": numbers("centroid moved", "m", one.summary["travel"]["centroid"])}
-
-
-def energy(joules):
-    """An energy with three digits, in the unit that suits it."""
-    unit, factor = next(((unit, factor) for unit, factor in (("TJ", 1e12), ("GJ", 1e9), ("MJ", 1e6), ("kJ", 1e3))
-                         if joules >= factor), ("J", 1))
-    value = joules / factor
-    return f"{headline.text(value, headline.place_of_digits(value))} {unit}"

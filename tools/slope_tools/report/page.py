@@ -71,7 +71,7 @@ class Page:
             "means": self.means(), "differences": differences(data, numbers),
             "maps": maps.of_run(), "section": self.picture(*self.section.picture()), "charts": charts.all(),
             "intensity": intensity_part.content(data, numbers, self.picture),
-            "hit": Structures(data, numbers, self.picture).content(),
+            "hit": Structures(data, numbers, self.picture, self.ground.obstacles.footprints).content(),
             "road_chart": REMOVE in one.row, "removal": maps.removal(removal), "over_all": maps.over_all(),
             "beyond": self.beyond(),
             "reference": self.reference and self.reference_tables(),

@@ -12,7 +12,7 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.colors import to_hex
 
-from ..drawing import figures
+from ..drawing import figures, palettes
 from ..ensemble import structures
 from ..geometry import polygons_of
 from ..survey import rasters
@@ -24,7 +24,7 @@ MOST_NODES = 60_000     # of the ground
 MOST_TRIANGLES = 20_000     # of one structure: 1 MB
 ROOM = 0.3              # of what the mass touched, shown around it
 FULL = 65_534           # the largest number of a place or a height; one more: nothing there
-COLOURS = {"speed": "YlOrRd", "height": "viridis"}
+COLOURS = {"speed": palettes.SPEED, "height": palettes.HEIGHT}
 STRUCTURE = "#7d8fa3"
 TONES = 9               # of a scale of colours
 FASTEST = 99.5          # percentile of the speeds of moving balls that the scale ends at

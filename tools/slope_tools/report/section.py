@@ -13,7 +13,7 @@ from ..deposit import cut, flow_path
 from ..errors import SlopeError
 from ..options import number
 from ..survey import lines
-from . import figure_charts
+from . import figure_charts, obstacles
 
 FALL = "fall"           # --section fall
 NEAR = 0.04             # of its length: a path that is no farther from the fall line is shown by that
@@ -70,7 +70,7 @@ class Section:
         """The path of the mass, or the fall line where that is about the same."""
         fall = self._fall_line()
         path = flow_path.path(self.data.result, self.ground)
-        straight = fall, "through the centroid of the released mass, along its mean fall line"
+        straight = self._to_road(fall), "through the centroid of the released mass, along its mean fall line"
         if path is None:
             return straight
         length = LineString(path.points).length
@@ -78,7 +78,7 @@ class Section:
         off = max(line.distance(Point(point)) for point in path.points)
         if off <= max(NEAR * length, 2.5 * self.ground.cell):
             return straight
-        points = self._continued(path.points, 0.06 * length + 2 * self.ground.cell)
+        points = self._to_road(self._continued(path.points, 0.06 * length + 2 * self.ground.cell))
         if self._westward(points[-1] - points[0]):
             points = points[::-1]
         how = "along the path of the centroid, " if path.dumped else "along the middle of the flow, "
@@ -88,7 +88,7 @@ class Section:
         return way[np.argmax(np.abs(way))] < 0
 
     def _continued(self, points, room):
-        """The line, straight on at both ends through what release and deposit hold there, and some room."""
+        """The line, straight on at both ends to the last of release and deposit there, and some room."""
         ends = []
         held_at = (self.ground.source | (self.data.result.thickness > 0)).astype(float)
         for point, before in ((points[0], points[1]), (points[-1], points[-2])):
@@ -97,9 +97,29 @@ class Section:
             steps = np.arange(0, most, self.ground.cell / 2)
             places = point[:, None] + way[:, None] * steps
             held = np.nan_to_num(self.ground.along(held_at, *places)) > 0.5
-            far = steps[np.argmin(held)] if held.any() and not held.all() and held[0] else 0.0
+            far = steps[held][-1] if held.any() else 0.0
             ends.append(point + min(far + room, most) * way)
         return np.concatenate([ends[:1], points, ends[1:]])
+
+    def _to_road(self, points):
+        """The line, straight on to the far side of the road ahead, if that is no farther away than the line is long."""
+        road = self.data.road
+        line = LineString(points)
+        if road is None or not (line.disjoint(road) or any(road.intersects(Point(end)) for end in points[[0, -1]])):
+            return points
+        room = 0.04 * line.length + 2 * self.ground.cell
+        ways = []
+        for end, before in ((0, 1), (-1, -2)):
+            way = (points[end] - points[before]) / np.hypot(*(points[end] - points[before]))
+            most = max(0.0, inside(points[end], way, self.ground.extent)[1])
+            ahead = LineString([points[end], points[end] + most * way]).intersection(road)
+            if not ahead.is_empty and ahead.distance(Point(points[end])) <= line.length:
+                far = np.hypot(*(geometry.coordinates(ahead) - points[end]).T).max()
+                ways.append((ahead.distance(Point(points[end])), end, points[end] + min(far + room, most) * way))
+        if not ways:
+            return points
+        _, end, place = min(ways, key=lambda way: way[0])
+        return np.concatenate([[place], points[1:]] if end == 0 else [points[:-1], [place]])
 
     def _fall_line(self):
         """Both ends, west or south end first."""
@@ -161,18 +181,38 @@ class Section:
             height = np.full(self.s.shape, np.nan)
         return spans, height
 
+    def _where_it_cuts(self, height):
+        """The cut surface on the ground that it takes away from the shown run; None where that is nowhere."""
+        if height is None:
+            return None
+        _, surface, thickness = self.runs[0]
+        with np.errstate(invalid="ignore"):
+            cuts = (thickness > 0) & (height < surface)
+        return np.where(cuts, height, np.nan) if cuts.any() else None
+
+    def walls(self):
+        """Where the line cuts the structures: pieces (k, 2, 2) of (distance, height)."""
+        found = [obstacles.section_of(corners, self.points) for corners in self.ground.obstacles.walls.values()]
+        return np.concatenate([np.zeros((0, 2, 2)), *found])
+
+    def crossings(self):
+        """Distances at which the line crosses control lines."""
+        found = [self.line.intersection(LineString(points)) for points in self.ground.obstacles.lines.values()]
+        return sorted(self.line.project(Point(place)) for one in found for place in geometry.coordinates(one))
+
     def picture(self):
         """The picture's data URI, what it shows, and its caption."""
         spans, height = self.road() if self.data.road is not None else ([], None)
         uri, factor, thickness_factor = figure_charts.section(
-            self.s, self.before, self.base, self.runs, spans, height, "Section A-A'", self.bends)
+            self.s, self.before, self.base, self.runs, spans, self._where_it_cuts(height), "Section A-A'", self.bends,
+            self.walls(), self.crossings())
         (x1, y1), (x2, y2) = self.points[0], self.points[-1]
         caption = (f"Section from A ({x1:.1f}, {y1:.1f}) to A' ({x2:.1f}, {y2:.1f}), local metres, {self.how}; "
                    + ("heights not exaggerated" if factor == 1 else f"heights exaggerated {factor:g} times"))
         if thickness_factor:
             caption += (f"; below, the thickness on a scale of its own, exaggerated {thickness_factor:g} times, "
                         "because it would not show at the scale of the heights")
-        if height is not None:
+        if self._where_it_cuts(height) is not None:
             caption += (f"; cut surface rising at {self.data.study['study']['road']['cut_angle']:g} degrees from the "
                         "road's edges")
         return uri, "Section through the slope before and after", caption + "."

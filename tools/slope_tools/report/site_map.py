@@ -6,16 +6,15 @@ from typing import List
 import numpy as np
 
 from ..case.site_layers import Shown
-from ..drawing import figures
+from ..drawing import figures, palettes
 from ..drawing.maps import outline, window
 from ..geometry import extent
 from ..survey.rasters import Raster, crs_name
 from . import figure_maps, sheets
+from .figure_maps import LINE, WALL
 from .sheets import Entry
 
 RELEASE = {"color": figures.RELEASE, "lw": 1.0, "ls": "--"}
-STRUCTURE = {"color": "#111111", "lw": 1.2}
-LINE = {"color": "#8a5aa8", "lw": 1.2}
 OBSERVED = {"color": "#d1603d", "lw": 1.1}
 TRIAL = {"color": "#1f7a4d", "lw": 1.0, "ls": ":"}
 REACHED = 0.1       # m of thickness
@@ -32,7 +31,7 @@ def draw(path: Path, layers: Shown, title: str) -> None:
         sheet, axes, size, beside, below = sheets.single(figures.FULL, frame, title,
                                                          figure_maps.TALL[figures.FULL], bounds)
         figure_maps.base_map(axes, base)
-        image = figure_maps.draw_values(axes, base, layers.depth, bounds, "PuBu", layers.depth > 0)
+        image = figure_maps.draw_values(axes, base, layers.depth, bounds, palettes.DEPTH, layers.depth > 0)
         entries = draw_outlines(axes, layers)
         sheets.draw_axes(axes, frame, size)
         sheets.colour_bar(sheet, image, bounds, "depth of the body (m)", beside, below)
@@ -75,11 +74,11 @@ def draw_outlines(axes, layers: Shown) -> List[Entry]:
             entries.append(Entry(name, style))
     for one in layers.structures:
         (xlo, ylo), (xhi, yhi) = one.low[:2], one.high[:2]
-        axes.plot([xlo, xhi, xhi, xlo, xlo], [ylo, ylo, yhi, yhi, ylo], color=STRUCTURE["color"], lw=STRUCTURE["lw"],
+        axes.plot([xlo, xhi, xhi, xlo, xlo], [ylo, ylo, yhi, yhi, ylo], color=WALL["color"], lw=WALL["lw"],
                   zorder=7)
         axes.annotate(one.name, (xhi, yhi), fontsize=6, xytext=(2, 2), textcoords="offset points", zorder=8)
     if layers.structures:
-        entries.append(Entry("structure", STRUCTURE))
+        entries.append(Entry("structure", WALL))
     for line in layers.lines:
         axes.plot(*line.points.T, color=LINE["color"], lw=LINE["lw"], zorder=7)
         axes.annotate(line.name, line.points[-1], fontsize=6, xytext=(2, 2), textcoords="offset points", zorder=8)

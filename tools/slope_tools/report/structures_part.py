@@ -4,26 +4,31 @@ from typing import Any, Dict
 
 import numpy as np
 
+from .. import digits
 from ..ensemble import structures
 from . import figure_structures
 
+
+LENGTHWISE = "mean_force_n_m"       # the largest lasting force per metre of the structure
 COLUMNS = {
-    "structures": (("largest force", "kN", "largest_force_n", 1e3), ("at", "s", "at_s", 1),
-                   (f"largest mean over {structures.WINDOW:g} s", "kN", "mean_force_n", 1e3),
-                   ("at the end", "kN", "end_force_n", 1e3), ("impulse", "kN s", "impulse_ns", 1e3),
-                   ("largest moment", "kN m", "moment_nm", 1e3),
-                   ("largest pressure", "kPa", "largest_pressure_pa", 1e3)),
-    "lines": (("forward", "m3", "forward_m3", 1), ("back", "m3", "back_m3", 1), ("net", "m3", "net_m3", 1),
-              ("first", "s", "first_s", 1), ("speed 95 %", "m/s", "speed_95_m_s", 1),
-              ("height 95 %", "m", "height_95_m", 1), ("energy 50 %", "kJ", "energy_50_j", 1e3),
-              ("energy 95 %", "kJ", "energy_95_j", 1e3), ("largest energy", "kJ", "largest_energy_j", 1e3))}
+    "structures": (("largest force", "N", "largest_force_n"), ("at", "s", "at_s"),
+                   (f"largest mean over {structures.WINDOW:g} s", "N", "mean_force_n"),
+                   ("the same per metre", "N/m", LENGTHWISE), ("at the end", "N", "end_force_n"),
+                   ("impulse", "N s", "impulse_ns"), ("largest moment", "N m", "moment_nm"),
+                   ("largest pressure", "Pa", "largest_pressure_pa")),
+    "lines": (("forward", "m3", "forward_m3"), ("back", "m3", "back_m3"), ("net", "m3", "net_m3"),
+              ("first", "s", "first_s"), ("speed 95 %", "m/s", "speed_95_m_s"), ("height 95 %", "m", "height_95_m"),
+              ("energy 50 %", "J", "energy_50_j"), ("energy 95 %", "J", "energy_95_j"),
+              ("largest energy", "J", "largest_energy_j"))}
+PREFIXED = ("N", "N/m", "N s", "N m", "Pa", "J")     # units that are written with a prefix, beside each number
 
 
 class Structures:
     """Draws what hit the structures of a data.Data, and what crossed its lines; picture makes the template's."""
 
-    def __init__(self, data, numbers, picture):
+    def __init__(self, data, numbers, picture, footprints):
         self.data, self.numbers, self.picture = data, numbers, picture
+        self.lengths = {name: longest_side(shape) for name, shape in footprints.items()}
         self.runs = data.drawn
 
     def content(self):
@@ -58,12 +63,20 @@ class Structures:
             ("", structures.of_run(self.data.result.folder, self.data.result.log.settings)[what])]
         for label, found in each:
             for name, numbers in found.items():
-                cells = ["-" if numbers[key] is None else
-                         self.numbers(f"{name}: {head}", unit, numbers[key] / factor, of=label)
-                         for head, unit, key, factor in COLUMNS[what]]
+                if what == "structures":
+                    length = self.lengths.get(name)
+                    numbers = {**numbers, LENGTHWISE: length and numbers["mean_force_n"] / length}
+                cells = [self.cell(f"{name}: {head}", unit, numbers[key], label) for head, unit, key in COLUMNS[what]]
                 rows.append({"run": label, "name": name, "cells": cells})
-        heads = [(head, unit) for head, unit, _, _ in COLUMNS[what]]
+        heads = [(head, "" if unit in PREFIXED else unit) for head, unit, _ in COLUMNS[what]]
         return {"heads": heads, "rows": rows} if rows else None
+
+    def cell(self, what, unit, value, label):
+        """A number of the table, with its unit where that has a prefix."""
+        if value is None:
+            return "-"
+        text = self.numbers(what, unit, value, of=label)
+        return digits.si(value, unit) if unit in PREFIXED else text
 
     def forces(self, name, found):
         """The mean force on a structure against time, of each run."""
@@ -86,10 +99,13 @@ class Structures:
         load = structures.series(folder, prefix).impulse[-1:].sum(axis=0)       # none without any output
         direction = load if np.hypot(*load[:2]) > 1e-6 * np.linalg.norm(load) else np.array([1.0, 0.0, 0.0])
         title = f"Largest pressure on {name}"
+        top = int(pressure.argmax())
+        one, other = corners[top, 1] - corners[top, 0], corners[top, 2] - corners[top, 0]
+        area = digits.three(0.5 * float(np.linalg.norm(np.cross(one, other))))
         return self.picture(figure_structures.pressure_map(corners, pressure / 1e3, direction, title), title,
                             f"{title}, of each triangle at any time, seen along the load; grey: never touched. Force "
-                            "of the model's balls in one step over the triangle's area: smaller triangles and larger "
-                            "balls make it larger.")
+                            f"of the model's balls in one step over the triangle's area: {area} m2 where it is "
+                            "largest. Smaller triangles and larger balls make it larger.")
 
     def energies(self, name, found):
         """Share of the forward crossings of a line with more than an energy, of each run."""
@@ -107,3 +123,9 @@ class Structures:
                                                      falling=True), title,
                             f"{title}: share of the forward crossings with more than an energy (translation and "
                             "rotation).")
+
+
+def longest_side(shape) -> float:
+    """Of the narrowest rectangle around a shape in plan, m."""
+    around = np.asarray(getattr(shape.minimum_rotated_rectangle, "exterior", shape.minimum_rotated_rectangle).coords)
+    return float(np.hypot(*np.diff(around, axis=0).T).max())
