@@ -2,7 +2,7 @@
 import csv
 import math
 from pathlib import Path
-from typing import Dict, List, NamedTuple
+from typing import Dict, List, NamedTuple, Sequence
 
 import numpy as np
 
@@ -32,8 +32,8 @@ def table_of(path: Path) -> Path:
     return found[0]
 
 
-def rows_of(path: Path) -> List[Dict[str, float]]:
-    """The rows of the table, with NUMBERS and the rank."""
+def rows_of(path: Path, names: Sequence[str] = NUMBERS, unknown: Sequence[str] = ()) -> List[Dict[str, float]]:
+    """The rows of the table, with the rank and these columns; those of `unknown` may have NaN."""
     try:
         with open(path, newline="", encoding="utf-8") as source:
             rows = list(csv.DictReader(source))
@@ -44,15 +44,20 @@ def rows_of(path: Path) -> List[Dict[str, float]]:
     found = []
     for place, row in enumerate(rows, 2):
         one = {}
-        for name in ("rank", *NUMBERS):
+        for name in ("rank", *names, *unknown):
             try:
                 one[name] = float(row.get(name) or "")
             except ValueError:
                 one[name] = math.nan
-            if not math.isfinite(one[name]):
+            if name not in unknown and not math.isfinite(one[name]):
                 raise SlopeError(f"{path}: line {place}", f"must have a number in the column {name}", row.get(name))
         found.append(one)
     return found
+
+
+def mask_of(path: Path) -> np.ndarray:
+    """The cells of a body: those with a value in PREFIX.N.base.asc."""
+    return np.isfinite(rasters.read(path).z)
 
 
 def read(path: Path, terrain: Path, density: float) -> List[Body]:
