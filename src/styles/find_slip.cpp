@@ -97,6 +97,8 @@ std::vector<SlipBody> FindSlip::search(const SlipOptions &options, SlipBodyMaker
     if (comm->me == 0 && now - said >= TELL_EVERY && share > 0.0) {
       utils::logmesg(lmp, "Find_slip: {}, {:.0f} % done, about {:.0f} s to go\n", stage,
                      100.0 * share, (now - stage_begun) * (1.0 / share - 1.0));
+      if (screen) fflush(screen);
+      if (logfile) fflush(logfile);
       said = now;
     }
   };

@@ -10,6 +10,7 @@ from ..case.slip_deck import PREFIX
 from ..errors import SlopeError
 from ..options import count, number
 from ..programs import find_lmp
+from . import stability_failed
 
 EPILOG = """\
 units: Pa, degrees, kg/m3; m and m3; directions are compass bearings.
@@ -20,9 +21,10 @@ examples:
       --within slope.geojson --keep 5 -o slips
   tools/slope stability terrain.asc --cohesion 5e3 --friction 28 --density 1800 --layer rock.asc 2e5 40 2500 \\
       --water-table water.asc -o slips
+  tools/slope stability terrain.asc --failed 25.75,33.25,49,36.63 --density 1919 --seismic 0.3 -o back
 
 Writes body.slips.csv and body.N.base.asc, which `slope fragility` reads, body.factor.asc, stability.csv,
-stability.yaml, stability.png, and the deck in.slips with its log.
+stability.yaml, stability.png, and the deck in.slips with its log. With --failed: back.csv, back.yaml, back.png.
 """
 HUGE = 100.0        # factor of safety that no slope has
 FAINT = 100.0       # Pa
@@ -37,7 +39,9 @@ def add_parser(commands, **kwargs):
     parser.add_argument("terrain", metavar="TERRAIN.asc", type=Path, help="the ground, as slope terrain wrote it")
     add_soil(parser.add_argument_group("ground"))
     add_search(parser.add_argument_group("search"))
-    parser.add_argument("--np", type=count, default=1, metavar="N", help="MPI ranks (default 1)")
+    parser.add_argument("--failed", metavar="BODY", help="no search: the strengths with which this body has F = 1, a "
+                        "sphere X,Y,Z,R (m), what find_slip wrote, or a raster of the ground without the body")
+    parser.add_argument("--np", type=count, metavar="N", help="MPI ranks (default 1)")
     parser.add_argument("--lmp", metavar="FILE", help="the LAMMPS program (default: LMP of the environment, then "
                         "build/lmp beside tools/)")
     parser.add_argument("-o", dest="output", metavar="DIR", type=Path, required=True, help="folder for the results")
@@ -45,8 +49,9 @@ def add_parser(commands, **kwargs):
 
 
 def add_soil(group):
-    group.add_argument("--cohesion", metavar="C", type=number, required=True, help="Pa")
-    group.add_argument("--friction", metavar="PHI", type=number, required=True, help="friction angle, degrees")
+    group.add_argument("--cohesion", metavar="C", type=number, help="Pa; must be given without --failed")
+    group.add_argument("--friction", metavar="PHI", type=number,
+                       help="friction angle, degrees; must be given without --failed")
     group.add_argument("--density", metavar="R", type=number, required=True, help="kg/m3")
     group.add_argument("--layer", metavar=("RASTER", "C", "PHI", "R"), nargs=4, action="append", default=[],
                        help="below the heights in this raster another strength begins; may be given several times, "
@@ -67,12 +72,15 @@ def add_search(group):
     group.add_argument("--local", action="store_true", help="the polygon is in the terrain's local metres")
     group.add_argument("--direction", metavar="B", type=number,
                        help="compass bearing of sliding, degrees (default: where the weight drives most)")
-    group.add_argument("--method", choices=("bishop", "ordinary"), default="bishop", help="default: bishop")
-    group.add_argument("--keep", metavar="N", type=count, default=3, help="bodies that differ (default 3)")
+    group.add_argument("--method", choices=("bishop", "ordinary"), help="default: bishop")
+    group.add_argument("--keep", metavar="N", type=count, help="bodies that differ (default 3)")
 
 
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints the bodies."""
+    if args.failed is not None:
+        stability_failed.run(args)
+        return
     from ..ensemble import slip_run         # numpy, rasterio
     from ..slips import bodies, doubts
     from ..survey import polygons, rasters
@@ -85,7 +93,8 @@ def run(args):
     kept: List[str] = []
     warn = errors.warner("stability", kept)
     with disk.complete(args.output, FILES[-1]) as folder:
-        said = slip_run.run(asked, polygon, raster, folder, lmp, args.np)
+        said = slip_run.run(asked, polygon, raster, folder, lmp, args.np or 1,
+                            lambda line: print(line, flush=True))
         rows = bodies.rows_of(folder / f"{PREFIX}.slips.csv", (*bodies.NUMBERS, "factor", "area", "depth"), ("yield",))
         if rows[0]["factor"] > HUGE:
             raise SlopeError(args.terrain, "must be steep enough, and the strengths in Pa, for a factor of safety "
@@ -107,6 +116,9 @@ def run(args):
 
 def asked_of(args) -> slip_deck.Asked:
     """What the options ask for; find_slip checks the numbers, this what has no number there."""
+    for option in ("cohesion", "friction"):
+        if getattr(args, option) is None:
+            raise SlopeError(f"--{option}", "must be given, or --failed a body that failed")
     for path in (args.terrain, args.water_table, *(layer[0] for layer in args.layer)):
         if path is not None and not Path(path).is_file():
             raise SlopeError(path, "must be an existing file")
@@ -119,7 +131,7 @@ def asked_of(args) -> slip_deck.Asked:
         args.terrain, slip_deck.Strength(args.cohesion, args.friction, args.density), layers, args.water,
         args.water_table, (shaking[0], shaking[-1] if len(shaking) > 1 else 0.0), bool(args.within),
         pair(args.volume), pair(args.depth), None if args.direction is None else (90.0 - args.direction) % 360.0,
-        args.method, args.keep)
+        args.method or "bishop", args.keep or 3)
 
 
 def pair(limits) -> Optional[Tuple[float, float]]:
@@ -159,7 +171,7 @@ def write(folder, args, raster, rows, masks, found) -> None:
     chart.draw(folder / FILES[1], raster, factor, rows, masks, title)
     about = {name: getattr(args, name) for name in ("terrain", "cohesion", "friction", "density", "layer", "water",
                                                     "water_table", "seismic", "volume", "depth", "within", "direction",
-                                                    "method", "keep")}
+                                                    "method", "keep") if getattr(args, name)}
     disk.write_yaml(folder / FILES[2], {**about, **found}, "slope stability: Pa, degrees, kg/m3, m, m3; bearings")
 
 

@@ -1,7 +1,8 @@
 """A search of slip surfaces from start to files: the deck, the program, and what it left."""
 import os
+import subprocess
 from pathlib import Path
-from typing import List, NamedTuple
+from typing import Any, Callable, List, NamedTuple
 
 from .. import disk, processes
 from ..case import last_words, logs, slip_deck
@@ -11,6 +12,8 @@ from ..survey import polygons, rasters
 from . import jobs, launcher
 
 SCREEN = "screen.txt"
+POLL = 1.0              # s
+TO_GO = "s to go"       # ends find_slip's lines on its progress
 
 
 class Found(NamedTuple):
@@ -19,10 +22,11 @@ class Found(NamedTuple):
     warnings: List[str]
 
 
-def run(asked: slip_deck.Asked, polygon, raster: rasters.Raster, folder: Path, lmp: Path, ranks: int) -> Found:
-    """Run the search in a folder, and leave its files there with a deck for `final`; SlopeError with LAMMPS' message.
+def run(asked: slip_deck.Asked, polygon, raster: rasters.Raster, folder: Path, lmp: Path, ranks: int,
+        tell: Callable[[str], Any]) -> Found:
+    """Run the search in a folder, and leave its files there; SlopeError with LAMMPS' message.
 
-    polygon: where the bodies must lie, in local metres, or None; raster: the terrain.
+    polygon: where the bodies must lie, in local metres, or None; raster: the terrain; tell: gets how far it is.
     """
     launcher.check(None, ranks)
     if polygon is not None:
@@ -35,7 +39,7 @@ def run(asked: slip_deck.Asked, polygon, raster: rasters.Raster, folder: Path, l
         except OSError as error:
             raise SlopeError(lmp, f"cannot be run: {error.strerror}") from None
         try:
-            status = process.wait()
+            status = followed(process, folder / logs.LOG, tell)
         finally:
             processes.stop([process])
     log = logs.Log(folder / logs.LOG).update()
@@ -44,8 +48,23 @@ def run(asked: slip_deck.Asked, polygon, raster: rasters.Raster, folder: Path, l
         raise SlopeError("find_slip", f"must end without an error: {why or f'ended with status {status}'}")
     (folder / SCREEN).unlink()
     text = (folder / logs.LOG).read_text(encoding="utf-8", errors="replace")
-    return Found([line for line in text.splitlines() if line.startswith("Find_slip: lattice")],
+    return Found([line for line in text.splitlines() if line.startswith("Find_slip: lattice of")],
                  [one.removeprefix("Find_slip: ") for one in log.warnings])
+
+
+def followed(process, log: Path, tell: Callable[[str], Any]) -> int:
+    """The status with which the program ends; what it says of its progress goes to tell."""
+    said = 0
+    while True:
+        try:
+            return process.wait(POLL)
+        except subprocess.TimeoutExpired:
+            pass
+        text = log.read_text(encoding="utf-8", errors="replace") if log.is_file() else ""
+        lines = [line for line in text.split("\n")[:-1] if line.endswith(TO_GO)]
+        for line in lines[said:]:
+            tell(line)
+        said = len(lines)
 
 
 def settle(asked: slip_deck.Asked, raster: rasters.Raster, folder: Path, kept: int, final: Path) -> None:
