@@ -234,7 +234,7 @@ SlipSearch::Plan SlipSearch::plan(const SlipSurface &s)
   Plan found;
   SlipBody body;
   found.stride = stride_for(s);
-  if (!maker.coarse(s, found.stride, body, ROUGH)) return found;
+  maker.coarse(s, found.stride, body, ROUGH);    // a body at the edge has a plan, too
   const double block = found.stride * ground.cell;
   const SlipColumns &c = maker.columns();
   for (size_t k = 0; k < c.size(); k++)
