@@ -135,6 +135,30 @@ def test_bad_input_is_one_line(low, capsys, words, rule):
 
 
 @needs_lmp
+def test_a_site_of_a_body(low, capsys):
+    """Its release is the body of that rank, on the terrain where it was found."""
+    assert ran(capsys, f"{LOW} --volume 300 5000 --keep 2 -o slips")[0] == 0
+    rows = table()
+
+    def site(words):
+        return called(capsys, ["site", "--terrain", "terrain.asc", "--balls", "100", *words.split()])
+
+    status, out, err = site("--slips slips --body 2 -o mine")
+    assert status == 0, err
+    about = yaml.safe_load(Path("mine/site.yaml").read_text())
+    assert about["release"]["scar"] == "../slips/body.2.base.asc" and about["release"]["scar_is"] == "surface"
+    body = yaml.safe_load(Path("mine/release.yaml").read_text())
+    assert body["body"]["volume"] == pytest.approx(rows[1]["volume"], rel=2e-3)
+    for words, rule in (("--slips slips --body 3", "--body: must be one of slips/body.slips.csv, 1, 2, got 3"),
+                        ("--body 1", "--body: must be given with --slips, got 1"),
+                        ("--slips nowhere", "nowhere: must be PREFIX.slips.csv"),
+                        ("--slips slips --scar terrain.asc", "--slips: must be given without --scar")):
+        status, _, err = site(f"{words} -o other")
+        assert status == 2 and err.count("\n") == 1 and rule in err
+        assert not Path("other").exists()
+
+
+@needs_lmp
 def test_flat_ground(low, capsys):
     write_asc("terrain.asc", np.full((40, 40), 10.0), 0.5)
     Path("terrain.yaml").unlink()

@@ -60,6 +60,22 @@ def mask_of(path: Path) -> np.ndarray:
     return np.isfinite(rasters.read(path).z)
 
 
+def base_file(path: Path, rank: int) -> Path:
+    """PREFIX.N.base.asc of a body in a table, or in a folder with one."""
+    source = table_of(path)
+    known = [int(row["rank"]) for row in rows_of(source)]
+    if rank not in known:
+        raise SlopeError("--body", f"must be one of {source}, {', '.join(map(str, known))}", rank)
+    found = source.with_name(f"{prefix_of(source)}.{rank}.base.asc")
+    if not found.is_file():
+        raise SlopeError(found, "must be an existing file, beside the table")
+    return found
+
+
+def prefix_of(table: Path) -> str:
+    return table.name[:-len(END)] if table.name.endswith(END) else table.stem
+
+
 def read(path: Path, terrain: Path, density: float) -> List[Body]:
     """The bodies of a table on their terrain; density kg/m3.
 
@@ -68,7 +84,7 @@ def read(path: Path, terrain: Path, density: float) -> List[Body]:
     """
     source = table_of(path)
     ground = rasters.read_asc_local(terrain)
-    prefix = source.name[:-len(END)] if source.name.endswith(END) else source.stem
+    prefix = prefix_of(source)
     found = []
     for row in rows_of(source):
         rank = f"{row['rank']:g}"
