@@ -3,6 +3,7 @@
 Three ways to make a disk full: a limit on the size of files (RLIMIT_FSIZE, for everybody), a small file system of its
 own (tmpfs, for root; else skipped), and no folder at all.
 """
+import errno
 import contextlib
 import csv
 import json
@@ -29,6 +30,7 @@ sys.path.insert(0, str(TOOLS))
 
 from slope_tools import cli, disk  # noqa: E402,F401
 from slope_tools.case import restarts as files, run_folders  # noqa: E402,F401
+from slope_tools.errors import SlopeError  # noqa: E402
 from slope_tools.drawing import figures, maps  # noqa: E402,F401
 from slope_tools.survey import rasters  # noqa: E402,F401
 
@@ -425,3 +427,13 @@ def test_a_run_that_is_killed(run_folder, tmp_path):
         assert held == pytest.approx(about["volume"]["on_grid"], rel=1e-3)
         seen.add(about["step"])
     assert len(seen) > 1
+
+
+def test_a_read_only_file_system_is_said(tmp_path, monkeypatch):
+    """It refuses to remove a file, too, though there is none."""
+    def refuse(*_, **__):
+        raise OSError(errno.EROFS, "Read-only file system")
+    monkeypatch.setattr(Path, "write_bytes", refuse)
+    monkeypatch.setattr(Path, "unlink", refuse)
+    with pytest.raises(SlopeError, match="report.html: cannot be written: Read-only file system"):
+        disk.write(tmp_path / "report.html", "text")

@@ -351,8 +351,15 @@ def test_an_ensemble_grows_and_its_tables_are_those_of_the_runs(slope):
     page = Path("out/report.html").read_text()
     for text in ("How likely", "hazard curve", "90 % of the runs stay within", "friction", "ensemble of 12 points"):
         assert text in page, text
+    # the runs are cut short: no quantile is in the answer
     name = found["quantities"][found["of"]]["name"]
-    assert f"<b>{name[0].upper()}{name[1:]}: 90 % of the runs stay within</b>" in page
+    stays = f"<b>{name[0].upper()}{name[1:]}: 90 % of the runs stay within</b>"
+    assert [one["kind"] for one in found["withheld"]] == ["runs not at rest or failed"]
+    assert "<b>Not usable as a conservative volume:</b>" in page and stays not in page
+    about = yaml.safe_load(Path("out/study.yaml").read_text())
+    about["ensemble"]["withheld"] = []
+    Path("out/study.yaml").write_text(yaml.safe_dump(about))
+    assert cli.main(["report", "out"]) == 0 and stays in Path("out/report.html").read_text()
 
 
 def test_repeats_of_points_and_a_list(slope):

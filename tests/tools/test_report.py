@@ -613,14 +613,15 @@ def test_lost_mass_is_told(slope, here):
     path = here / "one" / "tiny.summary.yaml"
     path.write_text(re.sub(r"^  lost: 0.0", "  lost: 12.5", path.read_text(), flags=re.MULTILINE))
     assert slope("one")[0] == 0
-    assert any("12.5 m3" in text and "left the grid or the box" in text
-               for _, text in read("one/report.html")[1].warnings)
+    [(level, text)] = [one for one in read("one/report.html")[1].warnings if "left the grid or the box" in one[1]]
+    assert level == "red" and "12.5 m3" in text and "how far they went is unknown" in text      # 4 %
     about = yaml.safe_load(Path("out/study.yaml").read_text())
     for row, lost in zip(about["runs"], (1.5, 2.5)):
         row["lost_m3"] = lost
     Path("out/study.yaml").write_text(yaml.safe_dump(about))
     assert slope("out")[0] == 0
-    [text] = [text for _, text in read("out/report.html")[1].warnings if "left the grid or the box" in text]
+    [(level, text)] = [one for one in read("out/report.html")[1].warnings if "left the grid or the box" in one[1]]
+    assert level == "amber" and "unknown" not in text       # 0.7 %
     assert text.startswith("up to 2.5 m3") and text.endswith("(all 2 runs)")
 
 

@@ -5,7 +5,7 @@ import hashlib
 import math
 import os
 import shutil
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import yaml
@@ -26,7 +26,8 @@ def write(path, content):
     except OSError as error:
         raise SlopeError(path, f"cannot be written: {error.strerror}") from error
     finally:
-        new.unlink(missing_ok=True)
+        with suppress(OSError):     # a read-only file system refuses this too
+            new.unlink(missing_ok=True)
 
 
 def sha256(path) -> str:

@@ -84,7 +84,7 @@ def make(choices: Choices, folder: Path, machine: Machine, tell: Callable[[str],
                 made = built(choices, known or {}, new, folder, machine, tell, warn, draw)
                 site_folder.exchange(new, place, old)
             except SlopeError as error:
-                if not again:
+                if not again and site_folder.is_free(folder):       # no other one has made it meanwhile
                     site_folder.keep_choices(choices, folder, error)
                     tell(f"{folder / site_choices.NAME} was kept: change it, then: tools/slope site "
                          f"{quote(str(folder))}; or repeat the command")

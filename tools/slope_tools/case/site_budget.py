@@ -139,6 +139,8 @@ def study_seconds(d: float, volume: float, trial: Trial, speed: float, density: 
         size = factor * d
         steps = trial.rest / time_step(size, speed, density)
         total += runs * (trial.setup + COLLECT + steps * volume / size ** 3 * trial.cost)
+    steps = 2 * trial.rest / time_step(d, speed, density)       # the run with half the time step
+    total += trial.setup + COLLECT + steps * volume / d ** 3 * trial.cost
     return total / jobs + REPORT
 
 

@@ -38,6 +38,11 @@ def was_not_made(folder: Path) -> bool:
     return names == [site_choices.NAME] and "failed" in site_choices.found(folder)
 
 
+def is_free(folder: Path) -> bool:
+    """Whether a folder holds nothing but such a site.yaml, or is not there."""
+    return not folder.exists() or not any(folder.iterdir()) or was_not_made(folder)
+
+
 def keep_choices(choices: Choices, folder: Path, error: SlopeError) -> None:
     """Write the choices of a site that could not be made into its folder, to be changed."""
     folder.mkdir(exist_ok=True)
@@ -67,17 +72,23 @@ def exchange(new: Path, folder: Path, old: Set[str]) -> None:
 
     The deck goes first and comes last: where this was killed, there is none, and slope site makes the folder anew.
     """
+    disk.flush_all(new)
     if not folder.is_dir():
         new.rename(folder)
+        disk.flush(folder.parent)
         return
     made = {path.name for path in new.iterdir()}
     check_free(made, folder, old)
     (folder / site_deck.NAME).unlink(missing_ok=True)
+    disk.flush(folder)
     order: List[str] = [site_choices.NAME, *sorted(made - {site_choices.NAME, site_deck.NAME}), site_deck.NAME]
     (new / order[0]).replace(folder / order[0])     # now it is known which files are slope site's
     for path in sorted(folder.iterdir()):
         if path.name in old - made and path.is_file():
             path.unlink()
-    for name in order[1:]:
+    for name in order[1:-1]:
         (new / name).replace(folder / name)
+    disk.flush(folder)
+    (new / order[-1]).replace(folder / order[-1])
+    disk.flush(folder)
     new.rmdir()

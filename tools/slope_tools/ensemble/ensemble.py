@@ -15,7 +15,7 @@ from .. import disk
 from ..case import run_folders
 from ..deposit import travel_shares
 from ..errors import SlopeError
-from . import emulator, ensemble_maps, hazard, known_events, quantities, study_table
+from . import emulator, ensemble_maps, hazard, known_events, quantities, study_table, withheld_words
 from .sample import Sample
 
 MAPS = "ensemble"           # folder of the maps
@@ -161,9 +161,12 @@ def describe(about: Mapping[str, Any]) -> List[str]:
     lines = [f"ensemble: {about['finished']} runs of {about['points']} points; bounds hold with "
              f"{100 * about['confidence']:g} %"]
     of = about["of"]
+    lines += withheld_words.lines(about["withheld"]) if about.get("withheld") else []
     if of:
         entry = about["quantities"][of]
-        lines.append(f"{entry['name']}: " + "; ".join(quantile_text(one, entry["unit"]) for one in entry["quantiles"]))
+        if not about.get("withheld"):
+            shares = (quantile_text(one, entry["unit"]) for one in entry["quantiles"])
+            lines.append(f"{entry['name']}: " + "; ".join(shares))
         lines.append(f"{entry['name']} depends on " + dependence_text(about["influence"][of]))
     lines += [f"caveat: {text}" for text in about["doubts"]]
     return lines + (known_events.describe(about["known_events"], of) if about.get("known_events") else [])

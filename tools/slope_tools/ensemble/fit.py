@@ -82,16 +82,17 @@ class Fit:
                          "predicted": None if predicted is None else float(predicted[i])}
                         for i, (one, goal, noise) in enumerate(zip(targets, found.goals, found.noise))],
             "pairs": self.pairs(found)}
-        disk.write(output / TABLE, self.table(found))
-        disk.write(output / ABOUT, "# slope calibrate: lengths in m, areas in m2, volumes in m3 of ground (bulk)\n"
-                   + yaml.safe_dump(about, sort_keys=False))
-        from . import calibrate_charts
-        calibrate_charts.draw(output / CHART, found, self.variables, plan.ledger.places(plan.finished()),
-                              f"{self.setup.deck.name}: {len(plan.finished())} runs")
-        names = [TABLE, ABOUT, CHART]
-        if self.wanted.observed is not None and predicted is not None:
-            self.draw_map(output / MAP, best)
-            names.append(MAP)
+        with disk.complete(output, ABOUT) as new:
+            disk.write(new / TABLE, self.table(found))
+            disk.write(new / ABOUT, "# slope calibrate: lengths in m, areas in m2, volumes in m3 of ground (bulk)\n"
+                       + yaml.safe_dump(about, sort_keys=False))
+            from . import calibrate_charts
+            calibrate_charts.draw(new / CHART, found, self.variables, plan.ledger.places(plan.finished()),
+                                  f"{self.setup.deck.name}: {len(plan.finished())} runs")
+            names = [TABLE, ABOUT, CHART]
+            if self.wanted.observed is not None and predicted is not None:
+                self.draw_map(new / MAP, best)
+                names.append(MAP)
         print("\n".join([*words, *self.comparison(about["targets"]), *(f"caveat: {text}" for text in doubts)]))
         print(f"best values: run {best.name}; written to {output}: {' '.join(names)}")
 

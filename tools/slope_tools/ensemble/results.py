@@ -11,7 +11,8 @@ from .. import disk, provenance
 from ..case import run_folders
 from ..deposit import left, rest, travel_shares
 from ..survey import rasters
-from . import combinations, ensemble, intensity, repeats, size_error, structures, study_table, usable, withheld_words
+from . import combinations, ensemble, intensity, repeats, size_error, step_check, structures, study_table, usable
+from . import withheld_words
 from .setup import Road, Setup
 from .size_error import SizeErrors
 from .study_maps import Maps
@@ -38,6 +39,7 @@ class Questions(NamedTuple):
     size_error_unusable: Optional[str] = None       # why the size error, which was to be measured, is not used
     site: Optional[Path] = None                     # folder of the site whose study it is
     sizes: Optional[Path] = None                    # converge.yaml of the runs with balls of several sizes
+    step: Optional[step_check.Step] = None          # the run with half the time step
 
 
 def collect(setup: Setup, questions: Questions, todo, work) -> None:
@@ -64,7 +66,7 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
                   "ranks": work.ranks, "jobs": work.jobs, "package": work.package, "collected": provenance.now(),
                   "machine": provenance.machine()},
         "largest": {key: largest(finished, key) for key in keys if finished},
-        "conservative": None, "size_error_unusable": questions.size_error_unusable, "ensemble": None,
+        "conservative": None, "size_error_unusable": questions.size_error_unusable, "ensemble": None, "step": None,
         "scatter": {name: known and {"deviation": known.deviation, "degrees_of_freedom": known.degrees_of_freedom}
                     for name, known in scatters.items()},
         "combinations": combinations.entries(groups, names), **written, "warnings": warnings, "runs": rows}
@@ -72,6 +74,9 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         about["study"]["road"] = write_road(output, setup.road, first, thickness)
     if order:
         about["ensemble"] = ensemble.evaluate(order, rows, output, first and terrain_place(first), maps.problem)
+        about["ensemble"]["withheld"] = usable.reasons_of_ensemble(
+            rows, events_of(setup, first, finished[0]),
+            case_of(setup, questions, finished[0])._replace(sampled=True)) if setup.road and finished else []
     elif setup.road and finished:
         distrust = untrusted(errors, groups)
         trusted = None if distrust else errors
@@ -83,6 +88,10 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
             best["doubts"] += trusted.doubts(deck.name, {**work.defaults, **best["set"]}, [*settings, *repeated],
                                              about["study"]["road"])
         best["doubts"] += unseen(repeated, work.defaults)
+        if questions.step:
+            about["step"] = step_check.compare(questions.step, groups, scatters[step_check.QUANTITY])
+            if about["step"]["within_chance"] is False:
+                best["doubts"].append(about["step"]["text"])
         unknown = about["size_error_unusable"] or ""
         if unknown and questions.sizes and size_error.falls(questions.sizes, "remove_m3"):
             about["size_error_unusable"] = f"{unknown}. The volume falls with the size of the balls: nothing is added"
@@ -110,6 +119,8 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
     print(f"{output / 'study.yaml'}, {output / 'study.csv'}, {output / 'combinations.csv'}: all numbers")
     if about["conservative"]:
         print("\n".join(combinations.describe(about["conservative"])))
+        if about["step"]:
+            print(about["step"]["text"])
     if about["ensemble"]:
         print("\n".join(ensemble.describe(about["ensemble"])))
         print(f"{output / ensemble.HAZARD}, {output / ensemble.INFLUENCE}: all curves and indices; "

@@ -1,7 +1,7 @@
-"""The standard study of a site: sizes of balls, rolling resistances and repeats, and the mapped deposit.
+"""The standard study of a site: sizes of balls, half the step, rolling resistances, repeats, the mapped deposit.
 
-Order of the work: the error of the size (size_study), the study with it (study, results), the score of the run that the
-answer rests on. Every part is resumed by the same call.
+Order of the work: the error of the size (size_study), a run with half the step, the study with both (study, results),
+the score of the run that the answer rests on. Every part is resumed by the same call.
 """
 import shutil
 import sys
@@ -20,8 +20,10 @@ from .quantities import NAMES
 from .sensitivity import quantities
 from .setup import Road, Setup
 from .size_error import SizeErrors, WHAT
+from .step_check import HALF, QUANTITY, Step
 
-SIZES, STUDY, SCORE, ENSEMBLE = "sizes", "study", "score", "ensemble"       # folders in the site's
+# folders in the site's
+SIZES, STEP, STUDY, SCORE, ENSEMBLE = "sizes", "step", "study", "score", "ensemble"
 # --vary of an ensemble of a site, unless it is given: masses from as sluggish as the defaults to rock avalanches
 MOBILE = ("friction=9:29", "rolling=0.01:0.14", "spacing=0.37:1", "xoffset=0:0.99")
 THRESHOLDS = (0.1, 0.5, 1.0)        # m, of the maps of exceedance
@@ -80,10 +82,12 @@ def run_alone(folder: Path, choices: Choices, engine: Setup) -> Done:
     if len(several["sizes"]) > 1:
         found = sizes(setup._replace(output=folder / SIZES), choices, repeated)
     settings = {"rolling": words(several["rolling"])}
+    step = half_step(setup._replace(output=folder / STEP), settings["rolling"]) if setup.road else None
     todo = repeats.plan(setup.output, settings, repeated, decks.index_variables(deck))
     study.check_names(todo)
     questions = results.Questions(settings, repeated, THRESHOLDS, found.errors, size_error_unusable=found.unusable,
-                                  notes=(*warnings_of(folder), *found.warnings), site=folder, sizes=found.path)
+                                  notes=(*warnings_of(folder), *found.warnings), site=folder, sizes=found.path,
+                                  step=step)
     failed: Optional[Exception] = None
     try:
         study.perform(setup, {**settings, **repeated}, todo,
@@ -143,6 +147,24 @@ def sizes(setup: Setup, choices: Choices, repeated: Dict[str, List[str]]) -> Siz
     except SlopeError as error:
         return unusable(str(error), "its runs do not tell what small balls give")._replace(warnings=said, path=path)
     return Sizes(errors, said, None, path)
+
+
+def half_step(setup: Setup, rolling: List[str]) -> Optional[Step]:
+    """One run with half the time step, at the rolling resistance in the middle; None of a dry run."""
+    middle = rolling[len(rolling) // 2]
+    settings = {"rolling": [middle], "step": [HALF]}
+    todo = repeats.plan(setup.output, settings, {}, decks.index_variables(setup.deck))
+    volumes: List[float] = []
+
+    def collect(todo, _):
+        rows, _ = results.rows_of(setup, todo, results.Maps(()), pictures=False)
+        volumes.extend(row[QUANTITY] for row in rows if row["status"] == "finished")
+
+    try:
+        study.perform(setup, settings, todo, collect)
+    except SlopeError as error:
+        return Step(middle, None, str(error))
+    return Step(middle, volumes[0]) if volumes else None
 
 
 def unusable(why: str, shortly: str = "") -> Sizes:

@@ -1,6 +1,6 @@
 """Whether the number of a study may be used: the Facts that withheld looks at, from its rows."""
 from pathlib import Path
-from typing import Any, Dict, Mapping, NamedTuple, Optional, Sequence
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
 
 from ..deposit import deposit, scar
 from ..mobility import known
@@ -44,6 +44,16 @@ def facts(rows: Sequence[Row], volume: float, on_road: float, events: Optional[E
                  sum(not row["at_rest"] for row in finished),
                  max(row["left_before_road_m3"] / row["released_m3"] for row in finished),
                  max(lengths, default=None), events and events.median, size)
+
+
+def reasons_of_ensemble(rows: Sequence[Row], events: Optional[Events], case: Case) -> List[Dict[str, Any]]:
+    """Why the quantiles of an ensemble with a road are withheld, as study.yaml has it; empty: they may stand.
+
+    Of volumes the largest of all runs count: where even those govern nothing, no quantile does.
+    """
+    finished = [row for row in rows if row["status"] == "finished"]
+    largest, on_road = (max(row[key] for row in finished) for key in ("remove_m3", "remove_on_road_m3"))
+    return withheld_words.entries(withheld.reasons(facts(rows, largest, on_road, events)), case)
 
 
 def judge(best: Dict[str, Any], rows: Sequence[Row], events: Optional[Events], case: Case, size: str = "") -> None:

@@ -19,6 +19,7 @@ class Case(NamedTuple):
     site: Optional[Path]            # its folder, where it is one
     variables: Mapping[str, Any]    # of a run: name and value
     balls: int                      # in the body
+    sampled: bool = False           # an ensemble
 
 
 def text(reason: Reason) -> str:
@@ -59,9 +60,7 @@ def finer(case: Case, factor: float) -> str:
     """The same with so many times the balls."""
     number = round(MARGIN * factor * case.balls, -max(0, int(math.log10(max(factor * case.balls, 1))) - 1))
     if case.site:
-        site = quote(str(case.site))
-        return (f"rm -r {site}/study {site}/sizes; tools/slope site {site} --balls {number:.0f} && "
-                f"tools/slope study {site}")
+        return anew(case.site, f" --balls {number:.0f}")
     try:
         return f"the same command with --set d={float(case.variables['d']) / (MARGIN * factor) ** (1 / 3):.3g}"
     except (KeyError, ValueError):
@@ -69,22 +68,30 @@ def finer(case: Case, factor: float) -> str:
 
 
 def mobile(case: Case) -> str:
-    """An ensemble that has mobile masses too."""
+    """An ensemble that has mobile masses too, weighted by the known events."""
+    if case.sampled:
+        return "the same command with --vary of more mobile masses: less friction and rolling, a denser field"
+    sample = "--sample 64 --mobility rock_avalanches"
+    if case.site:
+        return f"tools/slope study {quote(str(case.site))} {sample}"
     words = " ".join(f"--vary {name}={span}" for name, span in (("friction", "10:30"), ("rolling", "0:0.1"))
                      if name in case.variables)
     if not words:
         return f"tools/slope calibrate {quote(str(case.deck))}, with a past event"
-    place = f" --road {quote(str(case.site / 'road.csv'))} --local -o {quote(str(case.site / 'ensemble'))}" \
-        if case.site else " --road ROAD -o DIR"
-    return f"tools/slope study {quote(str(case.deck))} --sample 64 {words}{place}"
+    return f"tools/slope study {quote(str(case.deck))} {sample} {words} --road ROAD -o DIR"
 
 
 def changed(case: Case, in_site: str, in_deck: str) -> str:
     """What must be changed, and what is run then."""
     if not case.site:
         return in_deck
-    site = quote(str(case.site))
-    return (f"{in_site} in {site}/site.yaml, then: rm -r {site}/study {site}/sizes; tools/slope site {site} && "
+    return f"{in_site} in {quote(str(case.site))}/site.yaml, then: {anew(case.site)}"
+
+
+def anew(folder: Path, options: str = "") -> str:
+    """A site and its study once more; runs of the deck before are not mixed with new ones."""
+    site = quote(str(folder))
+    return (f"rm -r {site}/study {site}/sizes {site}/step; tools/slope site {site}{options} && "
             f"tools/slope study {site}")
 
 

@@ -5,7 +5,7 @@ from typing import Any, Dict, List, Mapping
 import numpy as np
 
 from ..drawing import figures
-from ..ensemble import ensemble, quantities
+from ..ensemble import ensemble, quantities, withheld_words
 from ..errors import SlopeError
 from . import ensemble_charts, figure_maps
 from .charts import AXIS
@@ -29,6 +29,9 @@ class Ensemble:
         if not self.entry:
             return None
         what, unit = self.entry["name"], self.entry["unit"]
+        if self.about.get("withheld"):
+            return {"title": withheld_words.UNUSABLE.capitalize(), "withheld": self.about["withheld"], "number": None,
+                    "unit": unit, "parts": [], "note": self.design()}
         parts = []
         for one in self.entry["quantiles"]:
             low, high = ("?" if one[side] is None else self.number(f"{100 * one['share']:g} % {side}", unit, one[side])
@@ -38,7 +41,7 @@ class Ensemble:
                           "note": f"{low} to {high} with {100 * self.about['confidence']:g} % confidence"})
         shown = next((part for part, one in zip(parts, self.entry["quantiles"]) if one["share"] == 0.9), parts[-1])
         return {"title": f"{what[0].upper()}{what[1:]}: 90 % of the runs stay within", "number": shown["number"],
-                "unit": unit, "parts": parts, "note": self.design()}
+                "unit": unit, "parts": parts, "note": self.design(), "withheld": []}
 
     def number(self, what, unit, value):
         return self.numbers(f"{self.entry['name']}: {what}", unit, value, self.of)

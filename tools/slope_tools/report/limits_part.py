@@ -44,6 +44,9 @@ def uncertainty(data, numbers) -> CONTENT:
     elif best and best["size_m3"] is None or not study:
         chance.append(("Size of the balls", "The effect of smaller balls is unknown "
                                             "(sensitivity --converge, study --size-error)."))
+    step = (study or {}).get("step")
+    chance.append(("Time step", f"{step['text'][0].upper()}{step['text'][1:]}." if step else
+                   "What half the time step changes was not tried (the study of a site does, or --set step=0.5)."))
     return chance
 
 

@@ -90,7 +90,8 @@ class Page:
                 from . import known_part
                 known = found["known"] = known_part.KnownEvents(data, numbers, self.picture).content()
                 known["maps"] = ensemble_part.draw(known["maps"], maps)
-                mine["answer"] = known["answer"] or mine["answer"]
+                if known["answer"] and not (mine["answer"] or {}).get("withheld"):
+                    mine["answer"] = {**known["answer"], "withheld": []}
         return {**found, **self.what_was_run(), **self.provenance()}
 
     # --- tables ---

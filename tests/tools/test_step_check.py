@@ -1,0 +1,42 @@
+"""What half the time step changes, against the runs that are otherwise the same."""
+import os
+import sys
+from pathlib import Path
+
+import pytest
+
+TOP = Path(__file__).resolve().parents[2]
+sys.path.insert(0, os.environ.get("SLOPE_TOOLS", str(TOP / "tools")))
+
+from slope_tools.ensemble import combinations, step_check  # noqa: E402
+from slope_tools.ensemble.headline import Scatter  # noqa: E402
+from slope_tools.ensemble.step_check import Step  # noqa: E402
+
+
+def groups():
+    return combinations.grouped([
+        {"status": "finished", "run": f"{rolling}_{k}", "set": {"rolling": rolling}, "repeat": {"seed": str(k)},
+         "remove_m3": volume, "front_m": volume}
+        for rolling, several in (("0", (90.0, 100, 110)), ("0.1", (50.0, 60, 70))) for k, volume in enumerate(several)])
+
+
+@pytest.mark.parametrize("volume, within, words", [
+    (120.0, True, "half the time step, rolling 0: 120 m3 instead of 100 to remove, +20.0 %; no more than chance "),
+    (140.0, False, "+40.0 %; more than chance explains, "), (60.0, False, "-40.0 %; more than chance")])
+def test_half_the_step_against_the_mean_and_chance(volume, within, words):
+    entry = step_check.compare(Step("0", volume), groups(), Scatter(10.0, 4.0))
+    # t(0.975, 4) 10 sqrt(1 + 1/3)
+    assert entry["chance_m3"] == pytest.approx(2.776445 * 10 * (4 / 3) ** 0.5)
+    assert entry["mean_m3"] == 100 and entry["within_chance"] is within and words in entry["text"]
+
+
+def test_without_repeats_chance_is_unknown():
+    entry = step_check.compare(Step("0.1", 61.0), groups(), None)
+    assert entry["within_chance"] is None and entry["text"].endswith("instead of 60 to remove, +1.7 %; chance unknown")
+
+
+def test_a_run_that_was_not_made_says_why():
+    entry = step_check.compare(Step("0", None, "the disk is full"), groups(), None)
+    assert entry["text"] == "half the time step: not tried: the disk is full"
+    entry = step_check.compare(Step("0.2", 5.0), groups(), None)
+    assert entry["text"] == "half the time step: not tried: no run with the same values finished"
