@@ -59,6 +59,9 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--pdf", action="store_true",
                         help="also print the page to REPORT.pdf, with an installed browser: chromium, google-chrome or "
                              "microsoft-edge")
+    parser.add_argument("--reproduce", action="store_true",
+                        help="make no page; list the commands, versions and checksums with which a reviewer makes the "
+                             "numbers again")
     parser.add_argument("--no-film", action="store_true",
                         help="make no film of the balls, REPORT.mp4 (default: one, where the run wrote dumps and "
                              "ffmpeg is installed)")
@@ -96,6 +99,9 @@ def run(args):
         raise SlopeError(args.folder, "must be an existing folder")
     if not output.absolute().parent.is_dir():
         raise SlopeError("-o", "must be in an existing folder", output)
+    if args.reproduce:
+        print("\n".join(document.reproduce(folder)))
+        return
     if args.pdf:
         paper.require_browser()
     asked = Asked(folder, args.shown, args.section, args.local, args.reference, args.converge, args.project,

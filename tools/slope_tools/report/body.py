@@ -33,7 +33,8 @@ def of_data(data, ground) -> Body:
     mask = ground.slip_depth > LEAST
     area = found.get("area") or (float(mask.sum()) * ground.cell ** 2 if mask.any() else None)
     depth = found.get("largest_depth") or (float(ground.slip_depth.max()) if mask.any() else None)
-    shape = SHAPES.get(release.get("shape") or "", "a surveyed scar" if release.get("scar") else "a given slip surface")
+    shape = SHAPES.get(release.get("shape") or "",
+                       "a slip surface from a raster" if release.get("scar") else "a given slip surface")
     crs = ground.raster.crs
     ball, factor = data.result.log.density, data.result.summary["bulk_factor"]
     return Body(data.largest_release(), area, depth, found.get("mean_slope"), shape, ball and ball / factor,

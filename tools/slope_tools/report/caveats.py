@@ -29,8 +29,8 @@ def caveats(data, ground) -> List[Caveat]:
     """All of a data.Data on its ground.Ground, by weight, one of each kind."""
     found = [failed(data), *at_rest(data), lost(data, ground), body(data), large(data), repeats(data), sizes(data),
              below_ground(data), thin(data),
-             Caveat(SLIP, "The slip surface was given, not computed: whether, and how likely, the slope fails is not "
-                          "said here.")]
+             Caveat(SLIP, "The slip surface is an assumption: whether, and how likely, the slope fails is not said "
+                          "here.")]
     return sorted((one for one in found if one), key=lambda one: one.order)
 
 

@@ -1,6 +1,7 @@
 """The page of a report as HTML, and its pictures as files."""
 import base64
 import re
+from contextlib import contextmanager
 from pathlib import Path
 from typing import List
 
@@ -33,14 +34,28 @@ def write(asked: Asked, output: Path) -> List[str]:
 
 
 def make(asked: Asked):
-    """The Page and its HTML. What `slope study` wrote is trusted to be of the right kind: if it is not, one line."""
-    import jinja2
+    """The Page and its HTML."""
     from .page import Page
-    try:
+    with trusted(asked.folder):
         page = Page(asked)
         return page, render(page.content())
+
+
+def reproduce(folder: Path) -> List[str]:
+    """Lines with the commands, versions and checksums of a folder."""
+    from .reproduce import lines
+    with trusted(folder):
+        return lines(folder)
+
+
+@contextmanager
+def trusted(folder: Path):
+    """What `slope study` wrote is trusted to be of the right kind: if it is not, one line."""
+    import jinja2
+    try:
+        yield
     except (jinja2.TemplateError, ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
-        raise SlopeError(asked.folder, "must hold what a run or `slope study` wrote, unchanged",
+        raise SlopeError(folder, "must hold what a run or `slope study` wrote, unchanged",
                          f"{type(error).__name__}: {error}"[:200]) from error
 
 

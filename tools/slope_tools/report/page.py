@@ -1,5 +1,6 @@
 """All that a report shows, read, computed and drawn, as the template takes it."""
 import datetime
+import re
 from typing import Any, Dict, List
 
 from .. import provenance
@@ -19,6 +20,8 @@ from .section import Section
 from .structures_part import Structures
 from .warnings import AMBER, warnings
 
+# a variable of a deck and the comment on it, which has its unit
+MEANING = re.compile(r"^\s*variable\s+(\w+)\s+index\s.*?#\s*(.*?)\s*$", re.MULTILINE)
 # columns of a study's table: head, unit, key
 COLUMNS = (("released", "m3", "released_m3"), ("99 % within", "m", "distance_99_m"),
            ("reach angle", "deg", "reach_99_deg"), ("connected deposit", "m", "connected_m"),
@@ -204,7 +207,8 @@ class Page:
         runs = f"study of {len(data.rows)} run{'s' * (len(data.rows) != 1)}" if data.study else "one run"
         return {"name": name, "title": f"Slope collapse: {name}", "what": f"Slope collapse, {runs}",
                 "deck_name": deck_name, "purpose": first.lstrip("# ") if first.startswith("#") else "",
-                "deck": text, "variables": variables or {}, "settings_lines": one.log.settings, "notes": one.log.notes,
+                "deck": text, "variables": with_meanings(variables or {}, text),
+                "settings_lines": one.log.settings, "notes": one.log.notes,
                 "table": "\n".join(one.log.table),
                 "sources": [{"name": file, "sha256": digest} for file, digest in digests.items()]}
 
@@ -230,6 +234,13 @@ def utc(text):
         return datetime.datetime.fromisoformat(text).astimezone(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC")
     except (TypeError, ValueError):
         return text
+
+
+def with_meanings(variables, deck):
+    """(name, value, meaning) of variables; the meaning is the deck's comment on them, or a usual one."""
+    comments = dict(MEANING.findall(deck))
+    return [(name, value, comments.get(name.split(" ")[0]) or TERMS.get(name.split(" ")[0], ""))
+            for name, value in variables.items()]
 
 
 def deck_variables(deck):
