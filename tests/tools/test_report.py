@@ -453,6 +453,24 @@ def test_how_far_a_mass_went_that_left_the_terrain_is_unknown(slope, here, folde
     assert number == "unknown" and "left the terrain" in note and "1 %" in note
     table = next(table for table in reader.tables if table[0][0] == "of the deposit")
     assert table[4][1:3] == ["unknown", "unknown"] and "unknown" not in table[3]
+    assert "Distance of the farthest ball" not in page       # of those that stayed
+
+
+def test_the_run_that_lost_most_went_farthest(slope, here):
+    """Whatever the distances of the balls that stayed; the report shows it where no volume on a road governs."""
+    path = Path("out/study.yaml")
+    about = yaml.safe_load(path.read_text())
+    one, two = (row["run"] for row in about["runs"])
+    about["conservative"] = None
+    first, second = about["runs"]
+    for row, distance, front, lost, farthest in ((first, 50.0, 900.0, 0.0, two), (second, 60.0, 70.0, 0.0, two),
+                                                 (first, None, 40.0, 0.02, one), (second, None, 30.0, 0.3, two)):
+        row.update(distance_99_m=distance, front_m=front, lost_m3=lost * row["released_m3"])
+        if row is first and distance:
+            continue
+        path.write_text(yaml.safe_dump(about))
+        assert results.travel_shares.farthest(about["runs"])["run"] == farthest
+        assert report_data.Data(Path("out")).result.name == farthest
 
 
 def test_a_study_of_an_older_version_is_one_line(slope, here):
@@ -616,12 +634,14 @@ def test_lost_mass_is_told(slope, here):
     assert any("12.5 m3" in text and "left the grid or the box" in text
                for _, text in read("one/report.html")[1].warnings)
     about = yaml.safe_load(Path("out/study.yaml").read_text())
-    for row, lost in zip(about["runs"], (1.5, 2.5)):
-        row["lost_m3"] = lost
-    Path("out/study.yaml").write_text(yaml.safe_dump(about))
-    assert slope("out")[0] == 0
-    [text] = [text for _, text in read("out/report.html")[1].warnings if "left the grid or the box" in text]
-    assert text.startswith("up to 2.5 m3") and text.endswith("(all 2 runs)")
+    for share, level in ((0.009, "amber"), (0.011, "red")):
+        for k, row in enumerate(about["runs"], 1):
+            row["lost_m3"] = share * k / 2 * row["released_m3"]
+        Path("out/study.yaml").write_text(yaml.safe_dump(about))
+        assert slope("out")[0] == 0
+        [(found, text)] = [one for one in read("out/report.html")[1].warnings if "left the grid or the box" in one[1]]
+        assert text.startswith(f"up to {share * row['released_m3']:,.1f} m3") and text.endswith("(all 2 runs)")
+        assert level in found and ("use a larger terrain" in text) == (level == "red")
 
 
 def test_what_lies_beyond_the_road_is_explained(slope, here):

@@ -3,6 +3,7 @@ import re
 from typing import Any, Dict
 
 from ..case.site_warnings import LARGE
+from ..deposit.travel_shares import BEYOND
 from ..deposit.volume import MUCH_BELOW
 from ..ensemble import headline
 
@@ -91,7 +92,10 @@ def lost(data):
     left, released, _ = max(gone)
     text = (f"{'up to ' * (len(gone) > 1)}{left:,.1f} m3 ({100 * left / released:.2g} % of the released volume) left "
             "the grid or the box and are not on the maps")
-    return [(AMBER, text + of_runs([name for *_, name in gone], len(rows)) if data.study else text)]
+    much = any(left > BEYOND * released for left, released, _ in gone)
+    if much:
+        text += ", nor in the volumes; distances lack what left the box: use a larger terrain"
+    return [(RED if much else AMBER, text + of_runs([name for *_, name in gone], len(rows)) if data.study else text)]
 
 
 def releases(data):
