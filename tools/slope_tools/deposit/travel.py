@@ -81,8 +81,8 @@ def of_dumps(paths: Sequence[str], starts: Optional[Sequence[str]], wanted: Want
             warn(f"{one.name}: {one.moving} of {len(one.id)} balls are faster than {MOVING:g} m/s: they have not "
                  f"arrived")
         if one.missing:
-            warn(f"{one.name}: {one.missing} of {one.missing + len(one.id)} balls of the start are not there: shares of "
-                 f"the run-out count them as beyond all others, all else leaves them out")
+            warn(f"{one.name}: {one.missing} of {one.missing + len(one.id)} balls of the start are not there: shares "
+                 f"of the run-out count them as beyond all others, all else leaves them out")
     tables = {name: distribution(arrivals, name, wanted.limits(name), warn) for name in DIRECTIONS}
     about: Dict[str, Any] = {
         "axis": {"along": wanted.axis, "across": wanted.axis + 90, "origin": wanted.origin}, "types": wanted.types,
@@ -208,8 +208,8 @@ def plan(difference):
 def runout(one):
     """From the highest ball at the start to the farthest one now: distance in plan (m), drop (m), angle (degrees).
 
-    And quantiles: what shares of the volume (of the balls, where a dump has no diameter) stay within, infinite where the
-    farthest of those are missing.
+    And quantiles: what shares of the volume (of the balls, where a dump has no diameter) stay within, infinite where
+    the farthest of those are missing.
     """
     distance = plan(one.place - one.top)
     far = distance.argmax()

@@ -96,9 +96,7 @@ class Observations:
             raise SlopeError(summary, "must have the grid of the other runs: cells cannot be varied here")
         outputs = self._of_map(run_, self.mapped) if self.mapped is not None else []
         if self.wanted.front is not None:
-            if row.get(travel_shares.DISTANCE) is None:
-                raise SlopeError(summary, "must have the distance of 99 % of the volume (travel: quantiles)")
-            outputs.append(row[travel_shares.DISTANCE])
+            outputs.append(front(summary, row))
         if self.wanted.area is not None:
             covered = run_folders.load_raster(run_.prefix, "max_thickness").z > self.wanted.threshold
             outputs.append(float(covered.sum()) * run_.cell ** 2)
@@ -157,6 +155,20 @@ class Observations:
         """Volume (m3) in each band of distance."""
         band = np.searchsorted(self.edges, self.distance)
         return np.bincount(band.ravel(), thickness.ravel(), ZONES) * cell ** 2
+
+
+def front(summary: Path, row: Mapping[str, Any]) -> float:
+    """The distance (m) that 99 % of the volume of a run stay within; SlopeError where that is unknown, and why."""
+    found = row.get(travel_shares.DISTANCE)
+    if found is None and travel_shares.lost(row):
+        raise SlopeError(summary, f"--front needs the distance of {travel_shares.HEADLINE} % of the volume, of which at "
+                         f"most {100 * travel_shares.BEYOND:.0f} % may leave the box: use a larger terrain and box, or "
+                         "ranges of --vary in which the mass stays on it",
+                         f"{100 * row['lost_m3'] / row['released_m3']:.3g} %")
+    if found is None:
+        raise SlopeError(summary, f"must have the distance of {travel_shares.HEADLINE} % of the volume (travel: "
+                         "quantiles), which runs of older versions lack")
+    return found
 
 
 def distances(run_: deposit.Deposit) -> np.ndarray:
