@@ -33,15 +33,14 @@ PROGRAM = [sys.executable, str(TOOLS / "slope")]
 # --- what was observed ---
 
 @pytest.mark.parametrize("lost, message", [
-    (37.0, "a.summary.yaml: --front needs the distance of 99 % of the volume, of which at most 1 % may leave the box: use a "
-           "larger terrain and box, or ranges of --vary in which the mass stays on it, got 3.7 %"),
-    (0.0, "a.summary.yaml: must have the distance of 99 % of the volume (travel: quantiles), which runs of older versions "
-          "lack")])
+    (37.0, "--front needs the distance of 99 % of the volume, of which at most 1 % may leave the box: use a larger "
+           "terrain and box, or ranges of --vary in which the mass stays on it, got 3.7 %"),
+    (0.0, "must have the distance of 99 % of the volume (travel: quantiles), which runs of older versions lack")])
 def test_a_front_that_is_unknown_says_what_is_missing(lost, message):
     row = {travel_shares.DISTANCE: None, "lost_m3": lost, "released_m3": 1000.0}
     with pytest.raises(SlopeError) as error:
         observations.front(Path("a.summary.yaml"), row)
-    assert str(error.value) == message
+    assert str(error.value) == f"a.summary.yaml: {message}"
     assert observations.front(Path("a.summary.yaml"), {**row, travel_shares.DISTANCE: 12.5}) == 12.5
 
 

@@ -163,7 +163,9 @@ def test_another_body_gets_balls_of_its_own(inside, mine):
     second = site_choices.read(mine)
     assert second["balls"]["number"] == first["balls"]["number"] and second["release"]["depth"] is None
     assert second["balls"]["diameter"] < first["balls"]["diameter"] / 1.5
-    assert second["model"]["field_diameter"] == second["balls"]["diameter"]
+    # the roughness of the ground stays, as far as the smallest balls of the study, of 0.7 d, do not fall through it
+    assert second["balls"]["diameter"] < second["model"]["field_diameter"] < first["model"]["field_diameter"]
+    assert 0.7 * second["balls"]["diameter"] == pytest.approx(0.545 * second["model"]["field_diameter"], rel=0.01)
     assert site_choices.found(mine)["balls"] == pytest.approx(4000, rel=0.02)
     for key in ("speed", "duration"):       # a trial run of the other body may have been slower
         edit(mine, "model", **{key: 99.0})
@@ -225,15 +227,16 @@ def test_a_large_body_needs_a_past_event():
 
 
 def test_the_balls_of_the_ground_are_named(inside, mine):
-    """And that they follow those of the soil, unless they were chosen."""
-    out = inside("mine --balls 60").out
-    diameter = site_choices.read(mine)["balls"]["diameter"]
-    line, = [line for line in out.splitlines() if "field_diameter" in line]
-    assert f" {diameter:g} m" in line and "unless you set it" in line
-    edit(mine, "model", field_diameter=2.5)
-    out = inside("mine --balls 90").out
-    line, = [line for line in out.splitlines() if "field_diameter" in line]
-    assert " 2.5 m" in line and "unless" not in line
+    """They stay when the number of balls changes, unless the smallest would fall through."""
+    first = site_choices.read(mine)["model"]["field_diameter"]
+    line, = [line for line in inside("mine --balls 60").out.splitlines() if "field_diameter" in line]
+    assert f" {first:g} m" in line and "fall" not in line
+    edit(mine, "model", field_diameter=50.0)
+    line, = [line for line in inside("mine --balls 90").out.splitlines() if "field_diameter" in line]
+    choices = site_choices.read(mine)
+    assert f" {choices['model']['field_diameter']:g} m" in line
+    assert "not 50 m, through which the smallest balls would fall" in line
+    assert choices["model"]["field_diameter"] < 1.3 * choices["balls"]["diameter"]
 
 
 def test_all_warnings_are_kept_in_the_folder(inside, mine):

@@ -161,9 +161,9 @@ def front(summary: Path, row: Mapping[str, Any]) -> float:
     """The distance (m) that 99 % of the volume of a run stay within; SlopeError where that is unknown, and why."""
     found = row.get(travel_shares.DISTANCE)
     if found is None and travel_shares.lost(row):
-        raise SlopeError(summary, f"--front needs the distance of {travel_shares.HEADLINE} % of the volume, of which at "
-                         f"most {100 * travel_shares.BEYOND:.0f} % may leave the box: use a larger terrain and box, or "
-                         "ranges of --vary in which the mass stays on it",
+        raise SlopeError(summary, f"--front needs the distance of {travel_shares.HEADLINE} % of the volume, of which "
+                         f"at most {100 * travel_shares.BEYOND:.0f} % may leave the box: use a larger terrain and box, "
+                         "or ranges of --vary in which the mass stays on it",
                          f"{100 * row['lost_m3'] / row['released_m3']:.3g} %")
     if found is None:
         raise SlopeError(summary, f"must have the distance of {travel_shares.HEADLINE} % of the volume (travel: "

@@ -92,10 +92,10 @@ def lost(data):
     left, released, _ = max(gone)
     text = (f"{'up to ' * (len(gone) > 1)}{left:,.1f} m3 ({100 * left / released:.2g} % of the released volume) left "
             "the grid or the box and are not on the maps")
-    much = any(left > BEYOND * released for left, released, _ in gone)
-    if much:
-        text += ", nor in the volumes; distances lack what left the box: use a larger terrain"
-    return [(RED if much else AMBER, text + of_runs([name for *_, name in gone], len(rows)) if data.study else text)]
+    many = any(volume > BEYOND * whole for volume, whole, _ in gone)
+    if many:
+        text += ", and how far they went is unknown: enlarge the terrain and the box"
+    return [(RED if many else AMBER, text + of_runs([name for *_, name in gone], len(rows)) if data.study else text)]
 
 
 def releases(data):
