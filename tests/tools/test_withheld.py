@@ -1,5 +1,9 @@
 """When the conservative volume is withheld: each rule alone, none, and several; the words; what left before a road."""
+import argparse
+import importlib
 import os
+import re
+import shlex
 import sys
 from pathlib import Path
 
@@ -52,6 +56,8 @@ ANEW = ("rm -r 'my site'/study 'my site'/sizes 'my site'/step; tools/slope site 
     ({"length": 700.0}, SITE, "no run reaches 800 m, as half of known events of this volume and height do; the longest "
      "connected deposit ends at 700 m", "tools/slope study 'my site' --sample 64 --mobility rock_avalanches"),
     ({"length": 700.0}, DECK, "no run reaches", "tools/slope calibrate in.slope, with a past event"),
+    ({"length": None}, DECK, "no run reaches 800 m, as half of known events of this volume and height do; there is no "
+     "connected deposit", "tools/slope calibrate in.slope, with a past event"),
     ({"length": 700.0}, DECK._replace(variables={"friction": "30"}), "no run reaches", "tools/slope study in.slope "
      "--sample 64 --mobility rock_avalanches --vary friction=10:30 --road ROAD -o DIR"),
     ({"left": 0.3}, SITE, "30 % of the released volume left the terrain before or beside the road, more than 1 %",
@@ -63,6 +69,23 @@ ANEW = ("rm -r 'my site'/study 'my site'/sizes 'my site'/step; tools/slope site 
 def test_the_reason_and_the_command_that_mends_it(changed, case, text, remedy):
     [entry] = withheld_words.entries(withheld.reasons(GOOD._replace(**changed)), case)
     assert text in entry["text"] and entry["remedy"] == remedy
+
+
+@pytest.mark.parametrize("case", [SITE, DECK, DECK._replace(variables={"friction": "30", "rolling": "0"})])
+@pytest.mark.parametrize("changed", [{"on_road": 50.0}, {"length": 700.0}, {"left": 0.3}, {"moving": 5}, {"size": "x"}])
+def test_the_commands_are_ones_that_the_tools_take(case, changed):
+    [entry] = withheld_words.entries(withheld.reasons(GOOD._replace(**changed)), case)
+    typed = re.findall(r"tools/slope (?:'[^']*'|[^&;,])*", entry["remedy"])
+    assert typed or case.site is None
+    for words in map(shlex.split, typed):
+        parser = argparse.ArgumentParser()
+        command = importlib.import_module(f"slope_tools.commands.{words[1]}")
+        command.add_parser(parser.add_subparsers())
+        try:
+            parser.parse_args(words[1:])
+        except SystemExit:
+            # the user has to add the observation and the ranges
+            assert words == ["tools/slope", "calibrate", "in.slope"]
 
 
 # --- of the rows of a study ---
