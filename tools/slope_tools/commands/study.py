@@ -151,7 +151,7 @@ def run_site_ensemble(args):
     site, choices = args.deck, site_choices.read(args.deck)
     site_study.check(site, choices)
     args.deck, args.vary = site / site_deck.NAME, args.vary or list(site_study.MOBILE)
-    args.output = args.output or site / site_study.ENSEMBLE
+    args.site, args.output = site, args.output or site / site_study.ENSEMBLE
     if choices["road"]["file"]:
         args.road, args.cut_angle, args.mesh = site / ROAD, choices["road"]["cut_angle"], choices["road"]["mesh"]
     run_deck(args)
@@ -177,6 +177,7 @@ def run_ensemble(args, settings, repeated, thresholds, defaults, condition):
     sample.check_growth(args.output, plan)
     several = sample.settings_of(todo)
     setup = setup_of(args)
-    questions = results.Questions(several, repeated, thresholds, None, ensemble.Order(plan, of, levels, condition))
+    questions = results.Questions(several, repeated, thresholds, None, ensemble.Order(plan, of, levels, condition),
+                                  site=getattr(args, "site", None))
     perform(setup, {**several, **repeated}, todo, lambda todo, work: results.collect(setup, questions, todo, work),
             begin=lambda: sample.keep(args.output, plan))
