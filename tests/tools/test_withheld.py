@@ -73,7 +73,8 @@ def test_the_reason_and_the_command_that_mends_it(changed, case, text, remedy):
     assert text in entry["text"] and entry["remedy"] == remedy
 
 
-@pytest.mark.parametrize("case", [SITE, SITE._replace(sampled=True), DECK, DECK._replace(variables={"friction": "30", "rolling": "0"})])
+@pytest.mark.parametrize("case", [SITE, SITE._replace(sampled=True), DECK,
+                                  DECK._replace(variables={"friction": "30", "rolling": "0"})])
 @pytest.mark.parametrize("changed", [{"on_road": 50.0}, {"length": 700.0}, {"left": 0.3}, {"moving": 5}, {"size": "x"}])
 def test_the_commands_are_ones_that_the_tools_take(case, changed):
     [entry] = withheld_words.entries(withheld.reasons(GOOD._replace(**changed)), case)
