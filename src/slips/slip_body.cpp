@@ -15,9 +15,9 @@ static constexpr double NONE = std::numeric_limits<double>::quiet_NaN();
 /* ---------------------------------------------------------------------- */
 
 SlipBodyMaker::SlipBodyMaker(const ElevationGrid &_ground, const SlipSoil &soil,
-                             const std::vector<char> &allowed, const SlipTask &_task) :
-    ground(_ground),
-    task(_task), maker(_ground, soil, allowed), found(), factor(_task.method)
+                             const std::vector<char> &_allowed, const SlipTask &_task) :
+    allowed(_allowed),
+    ground(_ground), task(_task), maker(_ground, soil, _allowed), found(), factor(_task.method)
 {
 }
 

@@ -50,6 +50,8 @@ class SlipBodyMaker {
   double share_pulled() const { return factor.share_pulled(); }
   const SlipColumns &columns() const { return found; }
 
+  const std::vector<char> &allowed;    // cells, or empty for all of them
+
   // heights of the surface in the cells whose middle is in the body; no value elsewhere
   ElevationGrid base(const SlipSurface &);
 

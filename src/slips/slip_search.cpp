@@ -54,10 +54,37 @@ void SlipSearch::lay_lattice()
     centres[d] = static_cast<int>(extent[d] / spacing) + 3;
     origin[d] = middle[d] - 0.5 * (centres[d] - 1) * spacing;
   }
+  centre_on_allowed();
   heights = 1 +
       static_cast<int>(
                 std::ceil(std::log(HIGHEST * size_hi / (LOWEST * size_lo)) / std::log(RAISE)));
 }
+
+/* ----------------------------------------------------------------------
+   bodies in a narrow polygon have their centres on its middle
+------------------------------------------------------------------------- */
+
+void SlipSearch::centre_on_allowed()
+{
+  const std::vector<char> &allowed = maker.allowed;
+  int lo[2] = {ground.nx, ground.ny}, hi[2] = {-1, -1};
+  for (size_t k = 0; k < allowed.size(); k++) {
+    if (!allowed[k]) continue;
+    const int at[2] = {static_cast<int>(k % ground.nx), static_cast<int>(k / ground.nx)};
+    for (int d = 0; d < 2; d++) {
+      lo[d] = std::min(lo[d], at[d]);
+      hi[d] = std::max(hi[d], at[d]);
+    }
+  }
+  if (hi[0] < 0) return;
+  const double begin[2] = {ground.xlo, ground.ylo};
+  for (int d = 0; d < 2; d++) {
+    const double middle = begin[d] + 0.5 * (lo[d] + hi[d] + 1) * ground.cell;
+    origin[d] += std::remainder(middle - origin[d], spacing);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
 
 size_t SlipSearch::per_place() const
 {
@@ -173,8 +200,11 @@ std::vector<SlipBody> SlipSearch::lattice()
 {
   std::vector<double> factors(surfaces(), HUGE_VAL);
   const size_t places = static_cast<size_t>(centres[0]) * centres[1];
-  for (size_t place = ranks.me; place < places; place += ranks.all)
+  ranks.progress("lattice", 0.0);
+  for (size_t place = ranks.me; place < places; place += ranks.all) {
     above_place(place, &factors[place * per_place()]);
+    ranks.progress("lattice", (place + 1.0) / places);
+  }
   ranks.least(factors.data(), factors.size());
   ranks.least(map.z.data(), map.z.size());
   for (double &f : map.z)
@@ -204,7 +234,7 @@ SlipSearch::Plan SlipSearch::plan(const SlipSurface &s)
   Plan found;
   SlipBody body;
   found.stride = stride_for(s);
-  if (!maker.coarse(s, found.stride, body, ROUGH)) return found;
+  maker.coarse(s, found.stride, body, ROUGH);    // a body at the edge has a plan, too
   const double block = found.stride * ground.cell;
   const SlipColumns &c = maker.columns();
   for (size_t k = 0; k < c.size(); k++)
@@ -250,6 +280,25 @@ std::vector<SlipBody> SlipSearch::distinct(std::vector<SlipBody> bodies, size_t 
 }
 
 /* ----------------------------------------------------------------------
+   A body at a limit may be beyond it with other columns: then the nearest radius that is within all
+   limits. False, with an infinite factor, if there is none.
+------------------------------------------------------------------------- */
+
+bool SlipSearch::enter(const SlipBody &start, int lines, SlipBody &body)
+{
+  static constexpr int TRIES = 40;
+  static constexpr double STEP = 0.01;    // of the depth
+  for (int k = 0; k < TRIES; k++) {
+    SlipSurface s = start.surface;
+    s.radius += (k % 2 ? -1 : 1) * ((k + 1) / 2) * STEP * start.depth;
+    if (compute(s, lines, body)) return true;
+  }
+  body = start;
+  body.factor = HUGE_VAL;
+  return false;
+}
+
+/* ----------------------------------------------------------------------
    Nelder and Mead's simplex. The variables are the centre, and how far below a pivot the surface passes:
    the pivot is on the first surface below its thickest column, so that the radius follows the centre.
 ------------------------------------------------------------------------- */
@@ -257,13 +306,11 @@ std::vector<SlipBody> SlipSearch::distinct(std::vector<SlipBody> bodies, size_t 
 SlipBody SlipSearch::improve(const SlipBody &start, int lines, int steps)
 {
   typedef std::array<double, 4> Point;
-  SlipBody best = start, body;
-  best.factor = HUGE_VAL;
-  if (!compute(start.surface, lines, body)) return best;
-  best = body;
+  SlipBody best, body;
+  if (!enter(start, lines, best)) return best;
   const SlipColumns &c = maker.columns();
   const size_t thickest = std::max_element(c.thick.begin(), c.thick.end()) - c.thick.begin();
-  const SlipSurface &s = start.surface;
+  const SlipSurface &s = best.surface;
   const double pivot[3] = {s.x + c.dx[thickest], s.y + c.dy[thickest], s.z - c.depth[thickest]};
   const auto value = [&](const Point &p) {
     const double r = p[3] +
@@ -336,17 +383,20 @@ SlipBody SlipSearch::improve(const SlipBody &start, int lines, int steps)
    shared by the ranks; a second simplex begins where the first one ended
 ------------------------------------------------------------------------- */
 
-std::vector<SlipBody> SlipSearch::improve_all(const std::vector<SlipBody> &starts, int lines,
+std::vector<SlipBody> SlipSearch::improve_all(const char *stage,
+                                              const std::vector<SlipBody> &starts, int lines,
                                               int steps)
 {
   static constexpr size_t WIDTH = 9;
   std::vector<double> values(WIDTH * starts.size(), HUGE_VAL);
+  ranks.progress(stage, 0.0);
   for (size_t k = ranks.me; k < starts.size(); k += ranks.all) {
     const SlipBody b = improve(improve(starts[k], lines, steps), lines, steps);
     const double of_body[WIDTH] = {
         b.surface.x, b.surface.y, b.surface.z, b.surface.radius, b.surface.direction,
         b.factor,    b.volume,    b.area,      b.depth};
     if (b.factor < HUGE_VAL) std::copy(of_body, of_body + WIDTH, &values[WIDTH * k]);
+    ranks.progress(stage, (k + 1.0) / starts.size());
   }
   ranks.least(values.data(), values.size());
   std::vector<SlipBody> found;
@@ -365,12 +415,12 @@ std::vector<SlipBody> SlipSearch::run()
   static constexpr int LINES = 96;
   const size_t keep = limits.keep;
   std::vector<SlipBody> found = distinct(lattice(), 8 + 4 * keep, STARTS_OVERLAP);
-  found = distinct(improve_all(found, 0, 100), keep + 2, OVERLAP);
+  found = distinct(improve_all("simplex", found, 0, 100), keep + 2, OVERLAP);
 
   // one that slides into a better one's place is kept as it was before
 
-  std::vector<SlipBody> all = improve_all(found, LINES, 100);
-  const std::vector<SlipBody> before = improve_all(found, LINES, 0);
+  std::vector<SlipBody> all = improve_all("exact columns", found, LINES, 100);
+  const std::vector<SlipBody> before = improve_all("exact columns", found, LINES, 0);
   all.insert(all.end(), before.begin(), before.end());
   std::vector<SlipBody> kept = distinct(all, keep, OVERLAP);
   for (SlipBody &body : kept) {

@@ -23,10 +23,12 @@ struct SlipLimits {
   int keep = 1;
 };
 
-// Ranks that share a search. least() makes of each value the least of all ranks.
+// Ranks that share a search. least() makes of each value the least of all ranks; progress() is called
+// on each rank with the stage and the share of it that is done, first 0.
 struct SlipRanks {
   int me, all;
   std::function<void(double *, size_t)> least;
+  std::function<void(const char *, double)> progress;
 };
 
 // Searches the spheres with the least factor of safety below a terrain: a lattice of centres and radii
@@ -64,6 +66,7 @@ class SlipSearch {
   int centres[2], heights;
 
   void lay_lattice();
+  void centre_on_allowed();
   size_t per_place() const;
   double ground_near(double x, double y) const;
   double nearest(double x, double y, double z, double reach) const;
@@ -79,8 +82,10 @@ class SlipSearch {
   bool overlap(const Plan &, const Plan &, double share) const;
   std::vector<SlipBody> distinct(std::vector<SlipBody>, size_t most, double share);
 
+  bool enter(const SlipBody &, int lines, SlipBody &);
   SlipBody improve(const SlipBody &, int lines, int steps);
-  std::vector<SlipBody> improve_all(const std::vector<SlipBody> &, int lines, int steps);
+  std::vector<SlipBody> improve_all(const char *stage, const std::vector<SlipBody> &, int lines,
+                                    int steps);
 };
 
 }    // namespace Slope

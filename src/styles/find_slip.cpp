@@ -28,6 +28,7 @@ using Slope::SlipBodyMaker;
 
 static constexpr double DOUBTED = 0.05;    // of the weight
 static constexpr double HUGE_FACTOR = 100.0;
+static constexpr double TELL_EVERY = 10.0;    // s
 
 /* ----------------------------------------------------------------------
    find_slip REGION strength C PHI DENSITY keyword value ... output PREFIX
@@ -82,14 +83,26 @@ std::vector<SlipBody> FindSlip::search(const SlipOptions &options, SlipBodyMaker
                                        ElevationGrid &least) const
 {
   const Slope::SlipLimits &limits = options.limits;
-  const Slope::SlipRanks ranks = {comm->me, comm->nprocs, [this](double *values, size_t n) {
-                                    const size_t most = MAXSMALLINT / 16;
-                                    for (size_t k = 0; k < n; k += most)
-                                      MPI_Allreduce(MPI_IN_PLACE, values + k,
-                                                    static_cast<int>(std::min(n - k, most)),
-                                                    MPI_DOUBLE, MPI_MIN, world);
-                                  }};
+  const auto least_of_all = [this](double *values, size_t n) {
+    const size_t most = MAXSMALLINT / 16;
+    for (size_t k = 0; k < n; k += most)
+      MPI_Allreduce(MPI_IN_PLACE, values + k, static_cast<int>(std::min(n - k, most)), MPI_DOUBLE,
+                    MPI_MIN, world);
+  };
   const double begun = MPI_Wtime();
+  double stage_begun = begun, said = begun;
+  const auto progress = [&](const char *stage, double share) {
+    const double now = MPI_Wtime();
+    if (share == 0.0) stage_begun = now;
+    if (comm->me == 0 && now - said >= TELL_EVERY && share > 0.0) {
+      utils::logmesg(lmp, "Find_slip: {}, {:.0f} % done, about {:.0f} s to go\n", stage,
+                     100.0 * share, (now - stage_begun) * (1.0 / share - 1.0));
+      if (screen) fflush(screen);
+      if (logfile) fflush(logfile);
+      said = now;
+    }
+  };
+  const Slope::SlipRanks ranks = {comm->me, comm->nprocs, least_of_all, progress};
   Slope::SlipSearch search(options.ground(), limits, ranks, maker);
   const std::vector<SlipBody> bodies = search.run();
   if (bodies.empty())

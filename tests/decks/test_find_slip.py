@@ -185,6 +185,14 @@ def test_the_search_finds_the_least_on_any_number_of_ranks(tmp_path):
     assert (tmp_path / "crit.factor.asc").read_bytes() == log
 
 
+def test_a_body_at_a_limit_is_not_lost(tmp_path):
+    """Cells find a body as deep as is allowed, exact columns a little deeper: it is made to fit."""
+    of_10_m(tmp_path)
+    run_deck(deck(more="volume 50 5000 depth 0 2"), tmp_path)
+    [row] = rows(tmp_path)
+    assert 1.9 < row["depth"] <= 2 and 1.04 < row["factor"] < 1.13
+
+
 @pytest.mark.parametrize("strength, more, message", [
     (LOW, "volume 1e7 1e8", "Find_slip limits must leave a sphere inside the terrain"),
     (LOW, "volume 5 2", "Find_slip volume must be LO HI with 0 <= LO < HI, got 5 2"),

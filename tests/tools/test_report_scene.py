@@ -581,8 +581,9 @@ def limits_of(path):
 def test_limits_of_a_run(plain):
     assert cli.main(["report", "case"]) == 0
     found = limits_of(plain / "report.html")
-    assert list(found) == ["Known events", "Chance", "Size of the balls", "Varied", "The body", "The mass",
-                           "The ground"]
+    assert list(found) == ["Known events", "Chance", "Size of the balls", "Time step", "Varied", "The body",
+                           "The mass", "The ground"]
+    assert "not tried" in found["Time step"]
     assert found["Known events"].startswith("No set of known events covers a volume of")
     assert found["Chance"].startswith("Unknown") and found["Varied"].startswith("Nothing")
     # balls of 1 m, of which each stands for a cube: 6/pi of its volume

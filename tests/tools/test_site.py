@@ -161,7 +161,7 @@ def test_the_study_is_resumed(done):
     before = {path: path.stat().st_mtime_ns for path in (folder / "mine").rglob("finished.yaml")}
     again = slope(folder, "study", "mine")
     assert again.returncode == 0, again.stderr
-    assert len(before) == 18 and "started" not in again.stdout
+    assert len(before) == 19 and "started" not in again.stdout
     assert before == {path: path.stat().st_mtime_ns for path in before}
 
 

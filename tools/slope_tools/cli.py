@@ -31,6 +31,7 @@ COMMANDS = {
     "calibrate": "which values of a deck's variables give a deposit that was observed, and how well they are known",
     "sensitivity": "one variable of a deck at a time: what it does to the volumes, how far one run can be trusted",
     "mobility": "how likely a mass goes beyond each point of its fall path, by how far known events went",
+    "stability": "slip surfaces with the least factor of safety below a terrain: map, bodies, table, warnings",
     "fragility": "how likely the bodies of find_slip fail at a peak acceleration, and how often per year",
     "bench": "how fast a collapse runs: against other codes, on larger terrains, on ranks, with more balls",
     "crosscheck": "the same scenes in other codes: bounce, slide, roll, rolling resistance, a collapse",

@@ -11,6 +11,7 @@ from ..errors import SlopeError, printer
 from ..options import count, number, whole
 from ..programs import find_lmp
 from ..report import site_map
+from ..slips import bodies
 from ..survey.rasters import UNITS
 from ..survey.release import SHAPES
 from ..survey.release_scar import KINDS
@@ -40,6 +41,9 @@ units: metres, m3, degrees; minutes of the whole study on this machine, GB of al
 examples: from three files of a GIS to a folder, then to a report:
   tools/slope site --terrain dem.tif --release release.geojson --depth 12 --road road.geojson -o mine
   tools/slope study mine
+
+the body that slope stability found below dem.asc:
+  tools/slope site --terrain dem.asc --slips slips --road road.geojson -o critical
 
 a scar from two surveys; a wall, an earthquake and a line behind the wall; finer balls for an existing site:
   tools/slope site --terrain before.tif --scar after.tif --least 0.5 --road road.shp -o scar
@@ -98,6 +102,9 @@ def add_ground(group):
     group.add_argument("--scar", metavar="RASTER", help="the body is what this raster says, see --scar-is")
     group.add_argument("--scar-is", choices=KINDS, help="surface: heights after the event (default, "
                        "if they follow the terrain); depth; change")
+    group.add_argument("--slips", metavar="SLIPS", type=Path, help="the body is one of what slope stability found on "
+                       "this terrain, its folder or PREFIX.slips.csv; instead of --release")
+    group.add_argument("--body", metavar="N", type=count, help="its rank (default 1, the least factor of safety)")
     group.add_argument("--least", metavar="D", type=number, help="depths of a scar below this count as none, m")
 
 
@@ -146,6 +153,7 @@ def chosen(args):
     """
     given = {option: value for option in OPTIONS if (value := getattr(args, option, None)) is not None}
     given.update(assigned_crs(given.pop("assign_crs", ())))
+    given.update(of_slips(args))
     if args.folder is not None:
         if args.output is not None:
             raise SlopeError("-o", f"must not be given with the folder of a site, {args.folder}, which is rebuilt",
@@ -165,6 +173,18 @@ def chosen(args):
                        {OPTIONS[option]: "--assign-crs" if option == "assigned" else f"--{option.replace('_', '-')}"
                         for option in given})
     return folder, choices, known
+
+
+def of_slips(args):
+    """--slips and --body as options of a scar: the surface of that body."""
+    if args.slips is None:
+        if args.body is not None:
+            raise SlopeError("--body", "must be given with --slips", args.body)
+        return {}
+    for option in ("scar", "release"):
+        if getattr(args, option) is not None:
+            raise SlopeError("--slips", f"must be given without --{option}: it is the body", args.slips)
+    return {"scar": str(bodies.base_file(args.slips, args.body or 1)), "scar_is": "surface"}
 
 
 def assigned_crs(words):

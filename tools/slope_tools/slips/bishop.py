@@ -4,8 +4,9 @@ The equations are those of doc/src/slip_analysis.rst. With t = tan phi / F, the 
 
     c / F a(t) + (1 - kv) b(t) + q w(t)
 
-where a, b and w are sums over the columns that depend on t alone; q is the ratio of pore pressure, or 1 with a water
-table. Strengths: cohesion (Pa), tangent of the friction angle, ratio of pore pressure; each a number or an array.
+less the driving moment of the normal forces, where a, b and w are sums over the columns that depend on t alone; q is
+the ratio of pore pressure, or 1 with a water table. Strengths: cohesion (Pa), tangent of the friction angle, ratio of
+pore pressure; each a number or an array.
 """
 from typing import NamedTuple, Tuple, Union
 
@@ -33,16 +34,18 @@ class Strengths(NamedTuple):
 def sums(body: Columns, t: np.ndarray) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The sums a, b and w at each t: of cohesion, weight and water."""
     force = body.weight * (body.base / body.area) if body.pressure is None else body.pressure * body.base
-    right = np.stack([body.lever * body.base * body.sine, body.lever * body.weight,
-                      body.lever * force * body.sine], axis=1)
+    normal = np.zeros_like(body.lever) if body.normal is None else body.normal
+    right = np.concatenate([np.stack([lever * body.base * body.sine, lever * body.weight, lever * force * body.sine])
+                            for lever in (body.lever, normal)]).T
     shear = float(body.lever @ body.base), float(body.lever @ force)
-    found = np.empty((len(t), 3))
+    found = np.empty((len(t), 6))
     step = max(1, CHUNK // len(body.area))
     for start in range(0, len(t), step):
         part = t[start:start + step, None]
         found[start:start + step] = (1 / np.maximum(body.cosine + body.sine * part, LEAST_M)) @ right
-    cohesion, weight, water = found.T
-    return shear[0] - t * cohesion, t * weight, t * (t * water - shear[1])
+    cohesion, weight, water, *of_normal = found.T
+    return (shear[0] - t * cohesion + of_normal[0], t * weight - of_normal[1],
+            t * (t * water - of_normal[2] - shear[1]))
 
 
 def driving(body: Columns, horizontal: Values = 0.0, vertical: float = 0.0) -> Values:
@@ -51,7 +54,7 @@ def driving(body: Columns, horizontal: Values = 0.0, vertical: float = 0.0) -> V
 
 
 def resistance(body: Columns, strengths: Strengths, factor: np.ndarray, vertical: float = 0.0) -> np.ndarray:
-    """Resisting moment over F, N m, at these F."""
+    """Resisting moment over F, less that of the normal forces, N m, at these F."""
     cohesion, tangent, water = strengths.arrays()
     a, b, w = sums(body, tangent / factor)
     return cohesion / factor * a + (1 - vertical) * b + (1.0 if body.pressure is not None else water) * w
@@ -70,9 +73,11 @@ def factor_of_safety(body: Columns, strengths: Strengths, horizontal: float = 0.
     load = float(driving(body, horizontal, vertical))
     if not load > 0:
         return np.full(count, np.inf)
-    factor = np.ones(count)
+    factor, along = np.ones(count), body._replace(normal=None)
     for _ in range(MOST_STEPS):
-        new = np.maximum(factor * resistance(body, strengths, factor, vertical) / load, 1e-9)
+        shear = resistance(along, strengths, factor, vertical)
+        of_normal = 0.0 if body.normal is None else shear - resistance(body, strengths, factor, vertical)
+        new = np.maximum(factor * shear / (load + of_normal), 1e-9)
         done = np.abs(new - factor) <= TOLERANCE * new
         factor = new
         if done.all():

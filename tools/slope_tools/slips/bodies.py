@@ -2,7 +2,7 @@
 import csv
 import math
 from pathlib import Path
-from typing import Dict, List, NamedTuple
+from typing import Dict, List, NamedTuple, Sequence
 
 import numpy as np
 
@@ -32,8 +32,8 @@ def table_of(path: Path) -> Path:
     return found[0]
 
 
-def rows_of(path: Path) -> List[Dict[str, float]]:
-    """The rows of the table, with NUMBERS and the rank."""
+def rows_of(path: Path, names: Sequence[str] = NUMBERS, unknown: Sequence[str] = ()) -> List[Dict[str, float]]:
+    """The rows of the table, with the rank and these columns; those of `unknown` may have NaN."""
     try:
         with open(path, newline="", encoding="utf-8") as source:
             rows = list(csv.DictReader(source))
@@ -44,15 +44,36 @@ def rows_of(path: Path) -> List[Dict[str, float]]:
     found = []
     for place, row in enumerate(rows, 2):
         one = {}
-        for name in ("rank", *NUMBERS):
+        for name in ("rank", *names, *unknown):
             try:
                 one[name] = float(row.get(name) or "")
             except ValueError:
                 one[name] = math.nan
-            if not math.isfinite(one[name]):
+            if name not in unknown and not math.isfinite(one[name]):
                 raise SlopeError(f"{path}: line {place}", f"must have a number in the column {name}", row.get(name))
         found.append(one)
     return found
+
+
+def mask_of(path: Path) -> np.ndarray:
+    """The cells of a body: those with a value in PREFIX.N.base.asc."""
+    return np.isfinite(rasters.read(path).z)
+
+
+def base_file(path: Path, rank: int) -> Path:
+    """PREFIX.N.base.asc of a body in a table, or in a folder with one."""
+    source = table_of(path)
+    known = [int(row["rank"]) for row in rows_of(source)]
+    if rank not in known:
+        raise SlopeError("--body", f"must be one of {source}, {', '.join(map(str, known))}", rank)
+    found = source.with_name(f"{prefix_of(source)}.{rank}.base.asc")
+    if not found.is_file():
+        raise SlopeError(found, "must be an existing file, beside the table")
+    return found
+
+
+def prefix_of(table: Path) -> str:
+    return table.name[:-len(END)] if table.name.endswith(END) else table.stem
 
 
 def read(path: Path, terrain: Path, density: float) -> List[Body]:
@@ -63,7 +84,7 @@ def read(path: Path, terrain: Path, density: float) -> List[Body]:
     """
     source = table_of(path)
     ground = rasters.read_asc_local(terrain)
-    prefix = source.name[:-len(END)] if source.name.endswith(END) else source.stem
+    prefix = prefix_of(source)
     found = []
     for row in rows_of(source):
         rank = f"{row['rank']:g}"

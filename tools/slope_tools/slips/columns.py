@@ -28,6 +28,7 @@ class Columns(NamedTuple):
     cosine: np.ndarray      # of the true dip of the base
     pressure: Optional[np.ndarray] = None    # of water at the base, Pa; None: as a ratio of the weight
     volume: float = 0.0
+    normal: Optional[np.ndarray] = None      # lever of the normal force, which drives, m; None: 0, as on a sphere
 
 
 def centres(raster: Raster):
@@ -61,18 +62,46 @@ def of_sphere(ground: Raster, centre: Sequence[float], radius: float, direction:
     """
     bottom = base_of(ground, centre, radius)
     kept = largest(ground, bottom) if inside is None else inside & (ground.z > bottom)
-    x, y = (one[kept] for one in centres(ground))
     top, low = ground.z[kept], bottom[kept]
-    along = np.cos(np.radians(direction)), np.sin(np.radians(direction))
-    dx, dy = x - centre[0], y - centre[1]
-    u = -(dx * along[0] + dy * along[1])
-    v = dy * along[0] - dx * along[1]
+    u, v = from_axis(ground, kept, centre, direction)
     e = centre[2] - low
-    area = np.full(len(x), abs(ground.transform.a * ground.transform.e))
+    area = np.full(len(u), abs(ground.transform.a * ground.transform.e))
     cosine = e / radius
     volume = area * (top - low)
-    pressure = None
-    if table is not None:
-        pressure = WATER * GRAVITY * np.nan_to_num(np.maximum(table[kept] - low, 0.0))
     return Columns(area, area / cosine, density * GRAVITY * volume, u, centre[2] - (top + low) / 2,
-                   np.sqrt(radius ** 2 - v ** 2), u / np.hypot(u, e), cosine, pressure, float(volume.sum()))
+                   np.sqrt(radius ** 2 - v ** 2), u / np.hypot(u, e), cosine, pressure_of(table, kept, low),
+                   float(volume.sum()))
+
+
+def of_raster(ground: Raster, bottom: np.ndarray, kept: np.ndarray, centre: Sequence[float], direction: float,
+              density: float, table: Optional[np.ndarray] = None) -> Columns:
+    """The columns of a body above any surface: the cells `kept`, between the heights `bottom` and the ground.
+
+    The dip of the base is that of the raster. The axis of moments goes through `centre`, across the direction.
+    """
+    top, low = ground.z[kept], bottom[kept]
+    south, east = (one[kept] for one in np.gradient(bottom, abs(ground.transform.a)))
+    turned = np.radians(direction)
+    dip = -(east * np.cos(turned) - south * np.sin(turned))       # tangent, in the direction of sliding
+    u, _ = from_axis(ground, kept, centre, direction)
+    e = centre[2] - low
+    area = np.full(len(u), abs(ground.transform.a * ground.transform.e))
+    cosine = 1 / np.sqrt(1 + east ** 2 + south ** 2)
+    sine = dip / np.hypot(1, dip)
+    volume = area * (top - low)
+    return Columns(area, area / cosine, density * GRAVITY * volume, u, centre[2] - (top + low) / 2,
+                   u * sine + e / np.hypot(1, dip), sine, cosine, pressure_of(table, kept, low), float(volume.sum()),
+                   cosine * (e * dip - u))
+
+
+def from_axis(ground: Raster, kept: np.ndarray, centre: Sequence[float], direction: float):
+    """u and v of the cells of a mask, m."""
+    x, y = (one[kept] for one in centres(ground))
+    along = np.cos(np.radians(direction)), np.sin(np.radians(direction))
+    dx, dy = x - centre[0], y - centre[1]
+    return -(dx * along[0] + dy * along[1]), dy * along[0] - dx * along[1]
+
+
+def pressure_of(table: Optional[np.ndarray], kept: np.ndarray, low: np.ndarray) -> Optional[np.ndarray]:
+    """Pressure of the water at the base of columns, Pa; None without a water table."""
+    return None if table is None else WATER * GRAVITY * np.nan_to_num(np.maximum(table[kept] - low, 0.0))

@@ -1,0 +1,167 @@
+"""slope stability: what find_slip finds on the embankments of Scoops3D, and what is said of it."""
+import csv
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from affine import Affine
+from shapely.geometry import box
+
+import run_helpers
+from run_helpers import called, write_asc
+from test_slips import CASES
+
+from slope_tools.slips import bodies, doubts  # noqa: E402
+from slope_tools.survey.rasters import Raster  # noqa: E402
+
+LMP = os.environ.get("LMP")
+needs_lmp = pytest.mark.skipif(not LMP, reason="needs the LAMMPS program (LMP)")
+LOW = "terrain.asc --cohesion 3e3 --friction 19.6 --density 2039.43"
+
+
+@pytest.fixture
+def low(tmp_path, monkeypatch):
+    """The embankment of 10 m, which slides to the west, in the coordinates of a survey."""
+    monkeypatch.chdir(tmp_path)
+    run_helpers.write_sidecar(101, 102, 0.5)
+    write_asc("terrain.asc", CASES[0][0].z, 0.5)
+    return tmp_path
+
+
+def ran(capsys, words):
+    return called(capsys, ["stability", *words.split()])
+
+
+def table(folder="slips"):
+    with open(f"{folder}/stability.csv", newline="") as source:
+        return [{name: float(value) for name, value in row.items()} for row in csv.DictReader(source)]
+
+
+@needs_lmp
+def test_bodies_table_map_and_warnings(low, capsys):
+    status, out, err = ran(capsys, f"{LOW} --volume 500 5000 --keep 9 -o slips")
+    assert status == 0, err
+    rows = table()
+    assert rows[0]["factor"] == pytest.approx(1.0389, abs=2e-4) and rows[0]["bearing"] == pytest.approx(270, abs=1)
+    assert f"{rows[0]['factor']:.3f}" in out
+    factor = bodies.rasters.read_asc_local("slips/body.factor.asc", heights=False)
+    assert factor.offset == (run_helpers.EAST, run_helpers.NORTH) and factor.crs.to_epsg() == 6677
+    inside = bodies.mask_of(Path("slips/body.1.base.asc"))
+    assert inside.sum() == rows[0]["cells"] and (factor.z[inside] <= rows[0]["factor"] * (1 + 1e-6)).all()
+    assert rows[0]["cells"] * 0.25 == pytest.approx(rows[0]["area"], rel=0.02)
+    about = yaml.safe_load(Path("slips/stability.yaml").read_text())
+    assert f"only {len(rows)} of 9 bodies" in about["warnings"][0] and len(rows) < 9
+    assert all(f"stability: warning: {line}\n" in err for line in about["warnings"])
+    assert Path("slips/stability.png").stat().st_size > 10000
+
+    # its deck runs from where it lies, and slope fragility reads what it left
+
+    assert "region ground terrain ../terrain.asc" in Path("slips/in.slips").read_text()
+    assert [body.name for body in bodies.read(Path("slips"), Path("terrain.asc"), 2039.43)] \
+        == [f"{row['body']:.0f}" for row in rows]
+
+
+@needs_lmp
+def test_a_smaller_search_in_the_same_folder(low, capsys):
+    """Within a polygon in the coordinates of the survey, with a limit of depth: both are said to bind; on two ranks."""
+    part = box(0, 18, 51, 34)
+    run_helpers.write_geojson("part.geojson", part, crs=None)
+    Path("slips").mkdir()
+    Path("slips/body.2.base.asc").write_text("of an earlier search")
+    status, out, err = ran(capsys, f"{LOW} --volume 100 5000 --depth 0 2 --within part.geojson --local --keep 1 "
+                           "--seismic 0.05 -0.02 --water 0.1 --np 2 -o slips")
+    assert status == 0, err
+    [row] = table()
+    assert row["depth"] <= 2 and "has the largest depth that is allowed, 2 m" in err
+    assert "is at the edge of --within" in err and row["factor"] < 1 and "below 1" in err
+    assert not Path("slips/body.2.base.asc").exists()
+    deck = Path("slips/in.slips").read_text()
+    assert all(words in deck for words in ("water ru 0.1", "seismic 0.05 -0.02", "depth 0 2", "within inside"))
+
+
+def plane_body(cells, rise=0.5):
+    """A raster of 20 x 20 cells, a block of cells in it, and its row of a table."""
+    raster = Raster(np.tile(rise * np.arange(20.0), (20, 1)), Affine(1, 0, 0, 0, -1, 20), None)
+    inside = np.zeros((20, 20), bool)
+    inside[5:5 + cells, 5:5 + cells] = True
+    row = {"rank": 1, "radius": 20.0, "direction": 180.0, "factor": 1.5, "volume": 300.0, "depth": 3.0}
+    return raster, row, inside
+
+
+@pytest.mark.parametrize("change, limits, kind", [
+    ({}, {}, None), ({"volume": 100.5}, {}, "volume low"), ({"volume": 500}, {"volume": (200, 503)}, "volume high"),
+    ({"depth": 1.0}, {"depth": (1.0, 4.0)}, "depth low"), ({"depth": 3.99}, {"depth": (1.0, 4.0)}, "depth high"),
+    ({"radius": 60.0}, {}, "flat"), ({"factor": 0.99}, {}, "fails")])
+def test_doubts_of_numbers(change, limits, kind):
+    raster, row, inside = plane_body(9)
+    given = {"volume": None, "depth": None, "allowed": None, **limits}
+    found = [one.kind for one in doubts.of_body(raster, {**row, **change}, inside, **given)]
+    assert found == ([kind] if kind else [])
+
+
+def test_doubts_of_places():
+    raster, row, inside = plane_body(7)
+    assert [one.kind for one in doubts.of_body(raster, row, inside, None, None, None)] == ["columns"]
+    raster, row, inside = plane_body(9)
+    hole = raster._replace(z=np.where(np.indices((20, 20))[0] == 15, np.nan, raster.z))
+    assert [one.kind for one in doubts.of_body(hole, row, inside, None, None, None)] == ["terrain"]
+    assert doubts.at_edge(raster, np.roll(inside, -3, axis=1)) and not doubts.at_edge(raster, inside)
+    allowed = doubts.cells_in(raster, box(4, 4, 16, 16))
+    assert not doubts.of_body(raster, row, inside, None, None, allowed)
+    allowed = doubts.cells_in(raster, box(5, 4, 16, 16))
+    assert [one.kind for one in doubts.of_body(raster, row, inside, None, None, allowed)] == ["within"]
+    assert doubts.length(raster, inside, 180.0) == pytest.approx(9)
+
+
+@needs_lmp
+@pytest.mark.parametrize("words, rule", [
+    ("--cohesion -3", "Find_slip strength C must be >= 0 (Pa), got -3"),
+    ("--friction 95", "Find_slip strength PHI must be 0 to below 90"),
+    ("--volume 1e7 1e8", "Find_slip limits must leave a sphere inside the terrain"),
+    ("--water 1.5", "Find_slip water ru must be 0 to below 1, got 1.5"),
+    ("--water-table high.asc", "water table"),
+    ("--layer none.asc 1 2 3", "none.asc: must be an existing file"),
+    ("--layer terrain.asc 1 x 3", "--layer: must be a finite number, got 'x'"),
+    ("--seismic 0.1 0.2 0.3", "--seismic: must be KH, or KH KV, got 0.1 0.2 0.3"),
+    ("--lmp nowhere", "--lmp: must lead to the LAMMPS program"),
+])
+def test_bad_input_is_one_line(low, capsys, words, rule):
+    write_asc("high.asc", CASES[0][0].z + 1, 0.5)
+    status, _, err = ran(capsys, f"{LOW} {words} -o out")
+    assert status == 2 and err.count("\n") == 1 and rule in err
+    assert not Path("out").exists() and not list(Path().glob(".out*"))
+
+
+@needs_lmp
+def test_a_site_of_a_body(low, capsys):
+    """Its release is the body of that rank, on the terrain where it was found."""
+    assert ran(capsys, f"{LOW} --volume 300 5000 --keep 2 -o slips")[0] == 0
+    rows = table()
+
+    def site(words):
+        return called(capsys, ["site", "--terrain", "terrain.asc", "--balls", "100", *words.split()])
+
+    status, out, err = site("--slips slips --body 2 -o mine")
+    assert status == 0, err
+    about = yaml.safe_load(Path("mine/site.yaml").read_text())
+    assert about["release"]["scar"] == "../slips/body.2.base.asc" and about["release"]["scar_is"] == "surface"
+    body = yaml.safe_load(Path("mine/release.yaml").read_text())
+    assert body["body"]["volume"] == pytest.approx(rows[1]["volume"], rel=2e-3)
+    for words, rule in (("--slips slips --body 3", "--body: must be one of slips/body.slips.csv, 1, 2, got 3"),
+                        ("--body 1", "--body: must be given with --slips, got 1"),
+                        ("--slips nowhere", "nowhere: must be PREFIX.slips.csv"),
+                        ("--slips slips --scar terrain.asc", "--slips: must be given without --scar")):
+        status, _, err = site(f"{words} -o other")
+        assert status == 2 and err.count("\n") == 1 and rule in err
+        assert not Path("other").exists()
+
+
+@needs_lmp
+def test_flat_ground(low, capsys):
+    write_asc("terrain.asc", np.full((40, 40), 10.0), 0.5)
+    Path("terrain.yaml").unlink()
+    status, _, err = ran(capsys, f"{LOW} -o out")
+    assert status == 2 and err.count("\n") == 1 and "terrain.asc: must be steep enough" in err
+    assert not Path("out").exists()

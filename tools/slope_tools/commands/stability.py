@@ -1,0 +1,184 @@
+"""slope stability: the slip surfaces with the least factor of safety below a terrain."""
+import argparse
+import csv
+from pathlib import Path
+from typing import Dict, List, Optional, Tuple
+
+from .. import disk, errors
+from ..case import slip_deck
+from ..case.slip_deck import PREFIX
+from ..errors import SlopeError
+from ..options import count, number
+from ..programs import find_lmp
+from . import stability_failed
+
+EPILOG = """\
+units: Pa, degrees, kg/m3; m and m3; directions are compass bearings.
+
+examples:
+  tools/slope stability terrain.asc --cohesion 3e3 --friction 19.6 --density 2039 --volume 500 5000 -o slips
+  tools/slope stability terrain.asc --cohesion 1e4 --friction 30 --density 1900 --water 0.2 --seismic 0.2 \\
+      --within slope.geojson --keep 5 -o slips
+  tools/slope stability terrain.asc --cohesion 5e3 --friction 28 --density 1800 --layer rock.asc 2e5 40 2500 \\
+      --water-table water.asc -o slips
+  tools/slope stability terrain.asc --failed 25.75,33.25,49,36.63 --density 1919 --seismic 0.3 -o back
+
+Writes body.slips.csv and body.N.base.asc, which `slope fragility` reads, body.factor.asc, stability.csv,
+stability.yaml, stability.png, and the deck in.slips with its log. With --failed: back.csv, back.yaml, back.png.
+"""
+HUGE = 100.0        # factor of safety that no slope has
+FAINT = 100.0       # Pa
+FILES = ["stability.csv", "stability.png", "stability.yaml"]
+
+
+def add_parser(commands, **kwargs):
+    """Add `stability` and its arguments to argparse's commands; return its parser."""
+    parser = commands.add_parser(
+        "stability", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
+        description="The slip surfaces with the least factor of safety below a terrain.", **kwargs)
+    parser.add_argument("terrain", metavar="TERRAIN.asc", type=Path, help="the ground, as slope terrain wrote it")
+    add_soil(parser.add_argument_group("ground"))
+    add_search(parser.add_argument_group("search"))
+    parser.add_argument("--failed", metavar="BODY", help="no search: the strengths with which this body has F = 1, a "
+                        "sphere X,Y,Z,R (m), what find_slip wrote, or a raster of the ground without the body")
+    parser.add_argument("--np", type=count, metavar="N", help="MPI ranks (default 1)")
+    parser.add_argument("--lmp", metavar="FILE", help="the LAMMPS program (default: LMP of the environment, then "
+                        "build/lmp beside tools/)")
+    parser.add_argument("-o", dest="output", metavar="DIR", type=Path, required=True, help="folder for the results")
+    return parser
+
+
+def add_soil(group):
+    group.add_argument("--cohesion", metavar="C", type=number, help="Pa; must be given without --failed")
+    group.add_argument("--friction", metavar="PHI", type=number,
+                       help="friction angle, degrees; must be given without --failed")
+    group.add_argument("--density", metavar="R", type=number, required=True, help="kg/m3")
+    group.add_argument("--layer", metavar=("RASTER", "C", "PHI", "R"), nargs=4, action="append", default=[],
+                       help="below the heights in this raster another strength begins; may be given several times, "
+                            "from above")
+    water = group.add_mutually_exclusive_group()
+    water.add_argument("--water", metavar="RU", type=number,
+                       help="pore pressure over the weight per area, 0 to below 1 (default: dry)")
+    water.add_argument("--water-table", metavar="RASTER", type=Path, help="heights of the water table")
+    group.add_argument("--seismic", metavar="K", type=number, nargs="+",
+                       help="KH [KV]: horizontal inertia in the direction of sliding, and vertical one upwards, in "
+                            "parts of the weight")
+
+
+def add_search(group):
+    group.add_argument("--volume", metavar=("LO", "HI"), type=number, nargs=2, help="limits of a body's volume, m3")
+    group.add_argument("--depth", metavar=("LO", "HI"), type=number, nargs=2, help="limits of its greatest depth, m")
+    group.add_argument("--within", metavar="P", help="the bodies lie in this polygon: GeoJSON, shapefile, CSV or WKT")
+    group.add_argument("--local", action="store_true", help="the polygon is in the terrain's local metres")
+    group.add_argument("--direction", metavar="B", type=number,
+                       help="compass bearing of sliding, degrees (default: where the weight drives most)")
+    group.add_argument("--method", choices=("bishop", "ordinary"), help="default: bishop")
+    group.add_argument("--keep", metavar="N", type=count, help="bodies that differ (default 3)")
+
+
+def run(args):
+    """Do the command; raises SlopeError on bad input. Prints the bodies."""
+    if args.failed is not None:
+        stability_failed.run(args)
+        return
+    from ..ensemble import slip_run         # numpy, rasterio
+    from ..slips import bodies, doubts
+    from ..survey import polygons, rasters
+
+    asked = asked_of(args)
+    lmp = find_lmp(args.lmp)
+    disk.check_folder(args.output)
+    raster = rasters.read_asc_local(args.terrain)
+    polygon = polygons.read_local(args.within, raster, args.local) if args.within else None
+    kept: List[str] = []
+    warn = errors.warner("stability", kept)
+    with disk.complete(args.output, FILES[-1]) as folder:
+        said = slip_run.run(asked, polygon, raster, folder, lmp, args.np or 1,
+                            lambda line: print(line, flush=True))
+        rows = bodies.rows_of(folder / f"{PREFIX}.slips.csv", (*bodies.NUMBERS, "factor", "area", "depth"), ("yield",))
+        if rows[0]["factor"] > HUGE:
+            raise SlopeError(args.terrain, "must be steep enough, and the strengths in Pa, for a factor of safety "
+                             f"below {HUGE:g} somewhere", f"{rows[0]['factor']:.4g}")
+        masks = [bodies.mask_of(folder / f"{PREFIX}.{k + 1}.base.asc") for k in range(len(rows))]
+        if 0 < args.cohesion < FAINT:
+            warn(f"--cohesion {args.cohesion:g}: is it in Pa? Values in kPa are a thousand times smaller")
+        for line in said.warnings:
+            warn(line)
+        for doubt in doubts.of_all(raster, rows, masks, asked.volume, asked.depth,
+                                   polygon and doubts.cells_in(raster, polygon)):
+            warn(doubts.words(doubt))
+        table = [numbers_of(raster, row, mask) for row, mask in zip(rows, masks)]
+        write(folder, args, raster, rows, masks, {"bodies": table, "warnings": kept})
+        slip_run.settle(asked, raster, folder, len(rows), args.output)
+    slip_run.remove_others(args.output, len(rows))
+    print(summary(table, args.output, said.notes))
+
+
+def asked_of(args) -> slip_deck.Asked:
+    """What the options ask for; find_slip checks the numbers, this what has no number there."""
+    for option in ("cohesion", "friction"):
+        if getattr(args, option) is None:
+            raise SlopeError(f"--{option}", "must be given, or --failed a body that failed")
+    for path in (args.terrain, args.water_table, *(layer[0] for layer in args.layer)):
+        if path is not None and not Path(path).is_file():
+            raise SlopeError(path, "must be an existing file")
+    shaking = args.seismic or [0.0]
+    if len(shaking) > 2:
+        raise SlopeError("--seismic", "must be KH, or KH KV", " ".join(f"{one:g}" for one in shaking))
+    layers = tuple(slip_deck.Layer(Path(path), slip_deck.Strength(*(parsed(word) for word in words)))
+                   for path, *words in args.layer)
+    return slip_deck.Asked(
+        args.terrain, slip_deck.Strength(args.cohesion, args.friction, args.density), layers, args.water,
+        args.water_table, (shaking[0], shaking[-1] if len(shaking) > 1 else 0.0), bool(args.within),
+        pair(args.volume), pair(args.depth), None if args.direction is None else (90.0 - args.direction) % 360.0,
+        args.method or "bishop", args.keep or 3)
+
+
+def pair(limits) -> Optional[Tuple[float, float]]:
+    """LO and HI of an option, if it is given."""
+    return (limits[0], limits[1]) if limits else None
+
+
+def parsed(word):
+    """A number of --layer."""
+    try:
+        return number(word)
+    except argparse.ArgumentTypeError as error:
+        raise SlopeError("--layer", str(error)) from None
+
+
+def numbers_of(raster, row: Dict[str, float], mask) -> Dict[str, float]:
+    """A line of the table."""
+    from ..slips import doubts
+
+    return {"body": int(row["rank"]), **{name: row[name] for name in ("factor", "yield", "volume", "area", "depth")},
+            "bearing": (90.0 - row["direction"]) % 360.0, "length": doubts.length(raster, mask, row["direction"]),
+            "cells": int(mask.sum()), **{name: row[name] for name in ("x", "y", "z", "radius")}}
+
+
+def write(folder, args, raster, rows, masks, found) -> None:
+    """stability.csv, .png and .yaml."""
+    from ..slips import chart
+    from ..survey import rasters
+
+    with open(folder / FILES[0], "w", encoding="ascii", newline="") as out:
+        table = csv.DictWriter(out, list(found["bodies"][0]), lineterminator="\n")
+        table.writeheader()
+        table.writerows({name: f"{value:.8g}" for name, value in row.items()} for row in found["bodies"])
+    factor = rasters.read(folder / f"{PREFIX}.factor.asc", heights=False).z
+    title = f"c {args.cohesion:g} Pa, friction {args.friction:g} degrees" + (
+        f", k {args.seismic[0]:g}" if args.seismic else "")
+    chart.draw(folder / FILES[1], raster, factor, rows, masks, title)
+    about = {name: getattr(args, name) for name in ("terrain", "cohesion", "friction", "density", "layer", "water",
+                                                    "water_table", "seismic", "volume", "depth", "within", "direction",
+                                                    "method", "keep") if getattr(args, name)}
+    disk.write_yaml(folder / FILES[2], {**about, **found}, "slope stability: Pa, degrees, kg/m3, m, m3; bearings")
+
+
+def summary(table, folder, notes) -> str:
+    """What the user needs to know."""
+    lines = [*notes, "body  factor   yield    volume m3    area m2  depth m  bearing  length m"]
+    for row in table:
+        lines.append(f"{row['body']:4d}  {row['factor']:6.3f}  {row['yield']:6.3f}  {row['volume']:11.5g}  "
+                     f"{row['area']:9.5g}  {row['depth']:7.3g}  {row['bearing']:7.1f}  {row['length']:8.4g}")
+    return "\n".join([*lines, f"written to {folder}: {' '.join(FILES)} {PREFIX}.slips.csv and rasters"])

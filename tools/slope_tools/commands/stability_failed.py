@@ -1,0 +1,66 @@
+"""slope stability --failed: on which strengths a body that failed has F = 1."""
+from typing import List
+
+from .. import disk, errors
+from ..errors import SlopeError
+
+SEARCH = ("cohesion", "friction", "layer", "volume", "depth", "within", "method", "keep", "np", "lmp")
+APART = 0.1         # of the cohesion, between the axis of the nearest sphere and a far one
+
+
+def run(args):
+    """Do it; raises SlopeError on bad input. Prints points of the line."""
+    from ..slips import back, back_files, columns, failed
+    from ..survey import rasters, resampling
+
+    for name in SEARCH:
+        if getattr(args, name):
+            raise SlopeError(f"--{name}", "must not be given with --failed, which searches no surface")
+    horizontal, vertical = shaking = inertia(args)
+    ratio = args.water or 0.0
+    if not args.density > 0:
+        raise SlopeError("--density", "must be > 0 kg/m3", f"{args.density:g}")
+    if not 0 <= ratio < 1:
+        raise SlopeError("--water", "must be 0 to below 1", f"{ratio:g}")
+    disk.check_folder(args.output)
+    raster = rasters.read_asc_local(args.terrain)
+    table = args.water_table and resampling.sample(rasters.read(args.water_table), *columns.centres(raster))
+    way = None if args.direction is None else (90.0 - args.direction) % 360.0
+    body = failed.read(args.failed, raster, way, args.density, table)
+    line = back.line(body.columns, horizontal, vertical, ratio)
+    far = back.line(body.far, horizontal, vertical, ratio) if body.far else None
+    kept: List[str] = []
+    warn = errors.warner("stability", kept)
+    for text in warnings_of(body, line, far):
+        warn(text)
+    about = {"terrain": args.terrain, "failed": args.failed, "density": args.density, "seismic": shaking,
+             "water": args.water, "water_table": args.water_table, "volume": body.columns.volume,
+             "cells": len(body.columns.area), "bearing": (90.0 - body.direction) % 360.0, "centre": body.centre,
+             "radius": body.radius, "cohesion_without_friction": line.cohesion[0],
+             "friction_without_cohesion": line.friction[-1] if line.cohesion[-1] < 1e-6 * line.cohesion[0] else None,
+             "warnings": kept}
+    back_files.write(args.output, line, far, about)
+    print(back_files.summary(line, about))
+    print(f"written to {args.output}: {' '.join(back_files.FILES)}")
+
+
+def inertia(args):
+    """KH and KV of --seismic."""
+    given = args.seismic or [0.0]
+    if len(given) > 2 or given[0] < 0 or not abs(given[-1]) < 1:
+        raise SlopeError("--seismic", "must be KH >= 0, or KH KV with KV above -1 and below 1",
+                         " ".join(f"{one:g}" for one in given))
+    return given[0], given[1] if len(given) > 1 else 0.0
+
+
+def warnings_of(body, line, far):
+    """What a reader must know, in words."""
+    from ..slips.columns import FEWEST
+
+    if len(body.columns.area) < FEWEST:
+        yield f"the body has {len(body.columns.area)} cells, fewer than {FEWEST}: the line is rough"
+    if far is not None:
+        change = far.cohesion[0] / line.cohesion[0] - 1
+        if abs(change) > APART:
+            yield ("the body is no sphere, and the line depends on the axis of moments: a far one changes the cohesion "
+                   f"by {100 * change:+.0f} % without friction")

@@ -1,0 +1,51 @@
+"""What `slope stability --failed` writes: the line as a table, its numbers, a picture."""
+import csv
+from pathlib import Path
+from typing import Any, Dict, Optional
+
+import numpy as np
+
+from .. import disk
+from ..drawing import figures, pictures
+from ..drawing.figures import plt
+from .back import Line
+
+FILES = ["back.csv", "back.png", "back.yaml"]
+
+
+def write(folder: Path, line: Line, far: Optional[Line], about: Dict[str, Any]) -> None:
+    """back.csv, .png and .yaml, all of them or none; far: the line about a far axis."""
+    with disk.complete(folder, FILES[-1]) as new:
+        with open(new / FILES[0], "w", encoding="ascii", newline="") as out:
+            rows = csv.writer(out, lineterminator="\n")
+            rows.writerow(["friction_degrees", "cohesion_pa"])
+            rows.writerows([f"{phi:.8g}", f"{c:.8g}"] for phi, c in zip(*line))
+        draw(new / FILES[1], line, far, about)
+        disk.write_yaml(new / FILES[2], about, "slope stability --failed: F = 1 on the line; Pa, degrees, m")
+
+
+def draw(path: Path, line: Line, far: Optional[Line], about: Dict[str, Any]) -> None:
+    with plt.rc_context(figures.STYLE):
+        figure, axes = plt.subplots(figsize=(figures.WIDE, 2.9))
+        unit, name = (1e6, "MPa") if line.cohesion.max() >= 2e6 else (1e3, "kPa")
+        axes.plot(line.friction, line.cohesion / unit, color=figures.COLOURS[0], lw=1.4,
+                  label="F = 1" + (", axis of the nearest sphere" if far else ""))
+        axes.fill_between(line.friction, 0, line.cohesion / unit, color=figures.COLOURS[1], alpha=0.15, lw=0,
+                          label="it fails")
+        if far:
+            axes.plot(far.friction, far.cohesion / unit, color=figures.COLOURS[0], lw=0.9, ls="--", label="a far axis")
+        axes.set(xlabel="friction angle (degrees)", ylabel=f"cohesion ({name})", xlim=(0, None), ylim=(0, None))
+        axes.set_title(f"{about['volume']:.5g} m3, k {about['seismic'][0]:g}")
+        axes.legend(loc="best")
+        axes.grid(color="#dddddd", lw=0.4)
+        pictures.save(figure, path)
+
+
+def summary(line: Line, about: Dict[str, Any]) -> str:
+    """Points of the line for the user."""
+    lines = [f"body of {about['volume']:.6g} m3, sliding to {about['bearing']:.1f} degrees",
+             "F = 1 with   friction, degrees   cohesion, Pa"]
+    places = [*np.arange(0.0, line.friction[-1], 10.0), line.friction[-1]]
+    for phi in places:
+        lines.append(f"             {phi:17.2f}   {np.interp(phi, *line):12.5g}")
+    return "\n".join(lines)

@@ -1,0 +1,75 @@
+"""The body of a back-analysis: a sphere, the first body of find_slip, or the ground that a collapse left."""
+import math
+from pathlib import Path
+from typing import NamedTuple, Optional
+
+import numpy as np
+
+from ..errors import SlopeError
+from ..survey import rasters
+from ..survey.rasters import Raster
+from . import back, bodies, columns
+
+LEAST = 0.05        # m; a thinner column is noise of the raster
+
+
+class Failed(NamedTuple):
+    columns: columns.Columns
+    far: Optional[columns.Columns]      # of a raster: the same about a far axis
+    direction: float                    # of sliding, degrees counterclockwise from +x
+    centre: np.ndarray                  # of the sphere, or a point of the axis of moments
+    radius: float                       # m; inf: the base is no hollow, and the axis is the far one
+
+
+def numbers(text: str):
+    """X,Y,Z,R as numbers; None if it is something else."""
+    try:
+        found = [float(word) for word in text.split(",")]
+    except ValueError:
+        return None
+    return found if len(found) == 4 and all(map(math.isfinite, found)) and found[3] > 0 else None
+
+
+def of_sphere(raster: Raster, centre, radius: float, direction: Optional[float], density: float, table) -> Failed:
+    base = columns.base_of(raster, centre, radius)
+    inside = columns.largest(raster, base)
+    way = back.steepest(raster, base, inside, centre) if direction is None else direction
+    return Failed(columns.of_sphere(raster, centre, radius, way, density, inside, table), None, way,
+                  np.asarray(centre, float), radius)
+
+
+def of_base(raster: Raster, path: Path, direction: Optional[float], density: float, table) -> Failed:
+    """Of a raster with the heights of the ground without the body, on the cells of the terrain."""
+    base = rasters.read(path)
+    if base.z.shape != raster.z.shape or not base.transform.almost_equals(raster.transform, 1e-6):
+        raise SlopeError(path, "must be on the cells of the terrain")
+    inside = columns.largest(raster, base.z + LEAST) & np.isfinite(np.gradient(base.z)).all(axis=0)
+    points = back.points_of(raster, base.z, inside)
+    centre, radius = back.sphere_of(points)
+    way = back.steepest(raster, base.z, inside, centre) if direction is None else direction
+
+    def about(axis):
+        return columns.of_raster(raster, base.z, inside, axis, way, density, table)
+
+    far = None if math.isinf(radius) else about(back.far_centre(points))
+    return Failed(about(centre), far, way, centre, radius)
+
+
+def read(text: str, raster: Raster, direction: Optional[float], density: float,
+         table: Optional[np.ndarray] = None) -> Failed:
+    """The body that BODY names: X,Y,Z,R; the table of find_slip or a folder with it; a raster.
+
+    direction: degrees counterclockwise from +x; None: where the weight has the largest moment about the centre.
+    """
+    if numbers(text):
+        *centre, radius = numbers(text)
+        return of_sphere(raster, centre, radius, direction, density, table)
+    path = Path(text)
+    if path.is_dir() or path.suffix == ".csv":
+        row = bodies.rows_of(bodies.table_of(path))[0]
+        return of_sphere(raster, (row["x"], row["y"], row["z"]), row["radius"],
+                         row["direction"] if direction is None else direction, density, table)
+    if not path.is_file():
+        raise SlopeError("--failed", "must be X,Y,Z,R of a sphere (m), what find_slip wrote, or a raster of the ground "
+                         "without the body", text)
+    return of_base(raster, path, direction, density, table)
