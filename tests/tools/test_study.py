@@ -701,7 +701,8 @@ def doc_examples():
     page = TOP / "doc" / "src" / "tool_study.rst"
     text = page.read_text(encoding="ascii").replace("\\\n", " ")
     return [command for command in re.findall(r"^ +tools/slope (study .*)", text, re.MULTILINE)
-            if " DECK " not in command and " SITE " not in command and not command.startswith("study mine ")]   # a site
+            if " DECK " not in command and " SITE " not in command
+            and not command.startswith("study mine ")]      # of a site: test_site.py, test_conditioned.py
 
 
 @pytest.mark.parametrize("command", [*doc_examples(), study_command.EPILOG.split("tools/slope ")[1].split("\n")[0]])
