@@ -17,7 +17,7 @@ looked_for=(--vary friction=5:30 --vary rolling=0:0.15 --vary spacing=0.3:1 --va
 [ -f s1000/release.slip.asc ] || "$here/inputs/31_s1000/prepare.sh" "$data/s1000" s1000
 
 # what each event allows
-"$slope" calibrate frank/in.frank --front 3080 --area 3.57e6 --tolerance front=0.05 --tolerance area=0.15 \
+"$slope" calibrate frank/in.frank --front 3080 --front-is 99 --area 3.57e6 --tolerance front=0.05 --tolerance area=0.15 \
   "${looked_for[@]}" --set d=20 --runs 44 --jobs "$jobs" -o frank.fit
 "$slope" calibrate s1000/in.s1000 --observed s1000/deposit.asc --tolerance 0.1 \
   "${looked_for[@]}" --set d=3 --runs 44 --jobs "$jobs" -o s1000.fit

@@ -91,10 +91,8 @@ void DepositSummary::write_travel(std::string &s) const
   line(s, "  farthest",
        "{distance: " + real(travel.farthest.distance) +
            ", reach_angle: " + real(travel.farthest.angle) + "}");
-  s += travel.quantiles.empty()
-      ? "  quantiles: []\n"
-      : "  quantiles:  # this share of the released volume stays within; null: "
-        "beyond where balls were lost\n";
+  s += "  quantiles:  # this share of the released volume stays within; null: beyond where balls "
+       "were lost\n";
   for (const Quantile &q : travel.quantiles)
     s += "    - {share: " + real(q.share) + ", distance: " + real(q.reach.distance) +
         ", reach_angle: " + real(q.reach.angle) + "}\n";

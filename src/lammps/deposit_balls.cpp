@@ -220,7 +220,11 @@ std::vector<DepositSummary::Quantile> DepositBalls::quantiles(const double *plac
     mine[2] = std::max(mine[2], angle);
   }
   MPI_Allreduce(mine, most, 3, MPI_DOUBLE, MPI_MAX, world);
-  if (most[1] == -HUGE_VAL) return {};
+  std::vector<DepositSummary::Quantile> found;
+  if (most[1] == -HUGE_VAL) {    // no ball is left: nothing is known
+    for (const double share : SHARES) found.push_back({share, {HUGE_VAL, HUGE_VAL}});
+    return found;
+  }
 
   Histogram distances(0.0, most[0]), angles(-most[2], most[1]);
   for (int i = 0; i < atom->nlocal; i++) {
@@ -236,7 +240,6 @@ std::vector<DepositSummary::Quantile> DepositBalls::quantiles(const double *plac
 
   double left = 0.0;
   for (const double weight : distances.weights) left += weight;
-  std::vector<DepositSummary::Quantile> found;
   for (const double share : SHARES) {
     const double of_left = share * (left + lost) / left;
     if (of_left <= 1.0 + MassLedger::BALANCE)    // all that is left, but for rounding

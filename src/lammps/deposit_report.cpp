@@ -96,6 +96,7 @@ void DepositReport::write(const std::string &why, const DepositResults &results,
 {
   DepositSummary about = summary(why, results);
   add_guards(about, guards);
+  add_lost(about);
   double mine[4] = {
       rasters.largest(DepositRasters::THICKNESS), rasters.largest(DepositRasters::MAX_THICKNESS),
       rasters.largest(DepositRasters::MAX_SPEED), rasters.largest(DepositRasters::MAX_ENERGY)};
@@ -200,4 +201,19 @@ void DepositReport::add_guards(DepositSummary &s, const ContactGuards *guards) c
     s.warnings = guards->warnings;
   }
   s.warnings.insert(s.warnings.end(), warnings.begin(), warnings.end());
+}
+
+/* ----------------------------------------------------------------------
+   of these results, so not among the warnings that stay; before those of single balls
+------------------------------------------------------------------------- */
+
+void DepositReport::add_lost(DepositSummary &s) const
+{
+  if (s.lost == 0.0) return;
+  const std::string text =
+      fmt::format("Fix deposit/grid {}: the released volume must stay in the box: {:.3g} % of it "
+                  "left, in {:.0f} of {:.0f} balls, and lies beyond what is written here; use a "
+                  "larger box",
+                  fix_id, 100.0 * s.volume.lost / s.volume.released, s.lost, s.release.balls);
+  s.warnings.insert(s.warnings.begin(), text);
 }

@@ -55,6 +55,7 @@ class DepositReport : protected Pointers {
                     const DepositExchange::MakeBytes &, const Slope::DepositBands &);
   Slope::DepositSummary summary(const std::string &reason, const DepositResults &) const;
   void add_guards(Slope::DepositSummary &, const class ContactGuards *) const;
+  void add_lost(Slope::DepositSummary &) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -75,6 +75,7 @@ def test_a_deposit_made_by_hand(tmp_path, np_):
     x, d = deposit()
     write_balls(tmp_path / "balls.data", x, d, None, BOX)
     run_deck(flight_head() + DEPOSIT + "run 0\n", tmp_path, np=np_)
+    assert summary(tmp_path)["warnings"] == []
     found = summary(tmp_path)["travel"]
     assert found["top"] == x[0].tolist()
     check_quantiles(found, x, d)
@@ -116,6 +117,8 @@ def test_balls_in_flight(tmp_path, np_):
         inside &= np.all([(at[:, k] >= lo) & (at[:, k] < hi) for k, (lo, hi) in enumerate(BOX)], axis=0)
     found = summary(tmp_path)
     assert found["balls"]["present"] == inside.sum() < 400
+    share = 100 * (d**3)[~inside].sum() / (d**3).sum()
+    assert f" {share:.3g} % of it left, in {(~inside).sum()} of 400 balls," in found["warnings"][0]
     assert found["travel"]["top"] == x[0].tolist()
     assert 0.02 < 1 - (d**3)[inside].sum() / (d**3).sum() < 0.5
     check_quantiles(found["travel"], end[inside], d[inside], (d**3)[~inside].sum())
@@ -139,7 +142,8 @@ def test_no_ball_is_left(tmp_path):
     write_balls(tmp_path / "balls.data", [[5, 5, 5]], 1.0, [[-1e3, 0, 0]], BOX)
     run_deck(flight_head() + DEPOSIT + "run 100\n", tmp_path)
     found = summary(tmp_path)
-    assert found["balls"]["present"] == 0 and found["travel"]["quantiles"] == []
+    assert found["balls"]["present"] == 0 and "100 % of it left, in 1 of 1 balls," in found["warnings"][0]
+    assert found["travel"]["quantiles"] == [{"share": share, "distance": None, "reach_angle": None} for share in SHARES]
     assert found["motion"]["fast_share"] == found["motion"]["moving_share"] == 0.0
 
 

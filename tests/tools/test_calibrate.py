@@ -1,6 +1,7 @@
 """tools/slope calibrate: twin experiments on a stand-in and on small collapses, resuming, regions, words, bad input."""
 import csv
 import os
+import re
 import shlex
 import signal
 import subprocess
@@ -20,11 +21,38 @@ from tiny_collapse import LMP, TOP, write_case
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools.ensemble import backanalysis, calibration, designs, distributions, emulator, tempering  # noqa: E402
+from slope_tools.deposit import travel_shares  # noqa: E402
+from slope_tools.ensemble import (backanalysis, calibration, designs, distributions, emulator,  # noqa: E402
+                                  fit_words, observations, tempering)
+from slope_tools.errors import SlopeError  # noqa: E402
 from slope_tools.survey import rasters  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 PROGRAM = [sys.executable, str(TOOLS / "slope")]
+
+
+# --- what was observed ---
+
+def wanted(**options):
+    return observations.Observations(observations.Wanted(*(options.get(name) for name in observations.KINDS), 0.05, 0.1,
+                                                         False, front_is=options.get("front_is", "connected")))
+
+
+@pytest.mark.parametrize("options, lost, told", [
+    ({"front": 100.0}, 9.0, True), ({"front": 100.0}, 11.0, False), ({"area": 100.0}, 11.0, False),
+    ({"volume": 100.0}, 11.0, True), ({"observed": Path("a.tif")}, 500.0, True)])
+def test_a_run_whose_mass_left_tells_no_length(options, lost, told):
+    assert wanted(**options).told_by({"lost_m3": lost, "released_m3": 1000.0}) is told
+
+
+def test_the_front_is_that_of_the_connected_deposit():
+    row = {"connected_m": 12.5, travel_shares.DISTANCE: 40.0, "distance_95_m": None}
+    columns = {name: column for name, (_, column) in observations.FRONTS.items()}
+    assert observations.front(Path("a.summary.yaml"), row, columns["connected"]) == 12.5
+    assert observations.front(Path("a.summary.yaml"), row, columns["99"]) == 40.0
+    assert observations.front(Path("a.summary.yaml"), {"connected_m": None}, columns["connected"]) == 0.0
+    with pytest.raises(SlopeError, match="a.summary.yaml: must have the distance of a share of the volume .*older"):
+        observations.front(Path("a.summary.yaml"), row, columns["95"])
 
 
 # --- the search, on functions ---
@@ -130,6 +158,55 @@ def test_what_the_model_cannot_reach_is_said():
                for text in backanalysis.judgement(found, variables))
 
 
+def test_a_gap_is_named_where_there_is_one_and_the_region_holds_the_truth():
+    """Seed 0 lies near the step. No value between 1,750 and 2,300 m can occur."""
+    one, plain = twins.Steep(0, 550.0), twins.Steep(0, 0.0)
+    (low, high), = one.gaps
+    assert one.near and one.holds and 1600 < low <= 1750 and 2300 <= high < 2450
+    assert plain.holds and not plain.gaps
+    line, = fit_words.jumps(one.found, one.targets)
+    assert line.startswith(f"run-out: no run gives a value between {low:,.0f} and {high:,.0f} m, where the response "
+                           "jumps")
+    inside = [one.targets[0]._replace(value=2000.0), one.targets[1]]
+    line, = fit_words.jumps(one.found, inside)
+    assert line.endswith("; the observed 2,000 lies there, and no values reproduce it")
+
+
+def test_a_run_is_predicted_from_the_others():
+    """As by a process without it, of the same kernel."""
+    points = designs.points(designs.SOBOL, 2, 16, 3)
+    values = points @ [3.0, 1.0] + 0.1 * np.random.default_rng(3).normal(size=16)
+    whole = emulator.Emulator(points, values)
+    mean, deviation = whole.unseen(values)
+    y = (values - whole.mean) / whole.scale
+    for i in (0, 7, 15):
+        kept = np.arange(16) != i
+        covariance = whole.kernel(points)
+        weights = np.linalg.solve(covariance[np.ix_(kept, kept)], covariance[kept, i])
+        assert mean[i] == pytest.approx(whole.mean + whole.scale * weights @ y[kept], rel=1e-6)
+        assert deviation[i] == pytest.approx(whole.scale * np.sqrt(covariance[i, i] - weights @ covariance[kept, i]),
+                                             rel=1e-5)
+
+
+def test_a_best_run_that_misses_is_said_first():
+    one = twins.Steep(0, 550.0)
+    value = one.targets[0].value
+    assert fit_words.misses(one.found, one.targets, np.array([target.value for target in one.targets])) == []
+    line, = fit_words.misses(one.found, one.targets, np.array([value + 500, one.targets[1].value]))
+    assert line.endswith(f"explain: run-out {value + 500:,.0f} instead of {value:,.0f} m")
+    assert "says nothing" in fit_words.misses(one.found, one.targets, None)[0]
+
+
+def test_sets_stand_for_the_region():
+    one = twins.Steep(3, 0.0)
+    sets = backanalysis.sets(one.found, 64)
+    assert sets.shape == (64, 2) and len(np.unique(sets, axis=0)) > 55
+    mean = one.found.weights @ one.found.points
+    deviation = np.sqrt(one.found.weights @ (one.found.points - mean) ** 2)
+    assert (np.abs(sets.mean(axis=0) - mean) < 0.35 * deviation).all()
+    assert sets.std(axis=0) == pytest.approx(deviation, rel=0.35)
+
+
 def test_the_ledger_keeps_what_was_decided(tmp_path):
     variables = [distributions.distribution("a", "0:10", "", "")]
     ledger = calibration.Ledger(tmp_path, {"seed": 1}, variables)
@@ -216,9 +293,14 @@ def test_a_calibration_of_small_collapses_goes_on_after_a_kill(slope, here):
     for name in ("friction", "rolling"):
         entry = about["variables"][name]
         assert entry["low"] <= entry["high"] and entry["identifiable"] in ("yes", "roughly", "no")
+        said = float(re.search(rf"^{name}: ([0-9.]+),", out, re.M)[1])
+        assert said == pytest.approx(float(about["best"]["set"][name]), abs=0.04 if name == "friction" else 4e-4)
+        values = [float(one[name]) for one in about["sets"]]
+        assert len(values) == 64 and sum(entry["low"] <= value <= entry["high"] for value in values) > 48
     assert about["pairs"][0]["rows_of"] == "rolling" and "x" in "".join(about["pairs"][0]["region"])
     for name in ("calibrate.png", "predicted.png"):
         assert Path("out", name).read_bytes().startswith(b"\x89PNG")
+    an_ensemble_of_the_region(slope, about["sets"])
     # more runs are added; what was finished is kept
     before = {path: path.stat().st_mtime_ns for path in Path("out").glob("*/finished.yaml")}
     status, out, err = slope(words.replace("--runs 16", "--runs 18"))
@@ -228,6 +310,31 @@ def test_a_calibration_of_small_collapses_goes_on_after_a_kill(slope, here):
     assert status == 2 and "--runs: must be at least what out/calibrate.ledger.yaml has, 18, got 16" in err
     status, _, err = slope(words.replace("friction=5", "friction=6"))
     assert status == 2 and "calibrate.ledger.yaml: must be of the same observation, variables and seed" in err
+
+
+def an_ensemble_of_the_region(slope, sets):
+    """study --from: its runs are sets of the calibration."""
+    status, _, err = slope("study case/in.tiny --from out --sample 5 --exceed 0.1 -o more")
+    assert status == 0, err
+    found = yaml.safe_load(Path("more/study.yaml").read_text())
+    different = list({tuple(one.values()): one for one in sets}.values())
+    assert [run["set"] for run in found["runs"]] == different[:5]
+    assert found["ensemble"]["design"]["kind"] == "calibrated"
+    for words, message in (
+            ("--from case", "--from: must be a folder with calibrate.yaml, which slope calibrate writes, got case"),
+            ("--from out --vary friction=5:20", "--vary: must not be given with --from"),
+            ("--from out --sample 2", "--sample: must be from 3 to "),
+            ("--from out --sample 65", "--sample: must be from 3 to "),
+            ("--from out --seed 3", "--seed: must not be given with --from"),
+            ("--from out --mobility rock_avalanches", "--mobility: must not be given with --from"),
+            ("--from out --set friction=20", "--from: must not have a variable of --set, got friction"),
+            ("--from spoiled", "spoiled/calibrate.yaml: must be what `slope calibrate` wrote, with its sets")):
+        if "spoiled" in words:
+            Path("spoiled").mkdir()
+            Path("spoiled/calibrate.yaml").write_text("calibration: {variables: {friction: '5:40'}}\n")
+        status, _, err = slope(f"study case/in.tiny {words} -o bad")
+        assert status == 2 and err.count("\n") == 1 and err.startswith(f"slope study: {message}"), err
+        assert not Path("bad").exists()
 
 
 def test_numbers_alone_with_a_failing_run(slope, here):
@@ -243,7 +350,7 @@ def test_numbers_alone_with_a_failing_run(slope, here):
     assert failed and all(float(row["friction"]) > 37 and row["score"] == "" for row in failed)
     assert f"caveat: {len(failed)} of 12 runs failed and are left out" in out
     assert sum("xoffset" in text for text in about["doubts"]) == 1        # the deck has it, and nothing moves it
-    assert [entry["name"] for entry in about["targets"]] == ["99 % of the volume within", "area covered",
+    assert [entry["name"] for entry in about["targets"]] == ["end of the connected deposit", "area covered",
                                                              "volume on the road"]
     assert not Path("out/predicted.png").exists()
 

@@ -21,14 +21,14 @@ from slope_tools.ensemble import dependencies, jobs  # noqa: E402
 # --- options of the commands that make runs ---
 
 # values of variables: the name of a run's folder
-CHOSEN = {"set", "vary", "sample", "design", "seed", "repeat", "converge", "runs"}
+CHOSEN = {"set", "vary", "sample", "fit", "design", "seed", "repeat", "converge", "runs"}
 FOLLOWED = {"deck", "lmp"}              # dependencies.py
 PLACE = {"output", "help", "dry_run"}   # where to, or no run
 ONE_RESULT = {"np", "jobs", "launcher", "engine", "slurm"}      # how it is run: the same but for rounding
 # computed from the runs, each time that the command is given
 ANEW = {"road", "cut_angle", "mesh", "local", "intensity", "more_than", "of", "exceed", "exceed_speed",
-        "exceed_energy", "size_error", "equally_good", "observed", "front", "area", "volume", "tolerance", "threshold",
-        "mobility", "confined", "left_out"}
+        "exceed_energy", "size_error", "equally_good", "observed", "front", "front_is", "area", "volume",
+        "tolerance", "threshold", "mobility", "confined", "left_out"}
 
 
 @pytest.mark.parametrize("command", ["study", "calibrate", "sensitivity"])

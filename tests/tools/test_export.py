@@ -72,13 +72,16 @@ def test_every_raster_in_the_coordinates_of_the_survey(slope):
     assert told["run.max_energy.tif"]["unit"] == "J" and told["run.arrival.tif"]["unit"] == "s"
 
 
-def test_a_run_by_its_folder_or_one_of_its_files(slope, here):  # noqa: F811
+@pytest.mark.parametrize("study", ["conservative: null\nlargest: {front_m: {run: two}}",      # of an older version
+                                   "conservative: null\nfarthest: two\nlargest: {front_m: {run: one}}",
+                                   "conservative: {run: two}\nfarthest: one\nlargest: {front_m: {run: one}}"])
+def test_a_run_by_its_folder_or_one_of_its_files(slope, here, study):  # noqa: F811
     """They are the rasters of the prefix; of a study those of its governing run, which is said."""
     assert set(run_folders.RASTERS) == set(export.KINDS)
     for run in ("one", "two"):
         Path("mine/study", run).mkdir(parents=True)
         write_rasters(f"mine/study/{run}/site")
-    Path("mine/study/study.yaml").write_text("conservative: null\nlargest: {front_m: {run: two}}")
+    Path("mine/study/study.yaml").write_text(study)
     for name, folder in (("mine/study/two/site.max_speed.asc", "mine/study/two/site.export"),
                          ("mine/study/two/site.summary.yaml", "mine/study/two/site.export"),
                          ("mine/study/two", "mine/study/two/export"), ("mine/study", "mine/study/export"),

@@ -449,6 +449,23 @@ def test_how_far_a_mass_went_that_left_the_terrain_is_unknown(slope, here, folde
     assert number == "unknown" and "left the terrain" in note and "1 %" in note
     table = next(table for table in reader.tables if table[0][0] == "of the deposit")
     assert table[4][1:3] == ["unknown", "unknown"] and "unknown" not in table[3]
+    assert "Distance of the farthest ball" not in page       # of those that stayed
+
+
+def test_the_run_that_lost_most_went_farthest(slope, here):
+    """Whatever the distances of the balls that stayed; the report shows it where no volume on a road governs."""
+    path = Path("out/study.yaml")
+    about = yaml.safe_load(path.read_text())
+    first, second = about["runs"]
+    about["conservative"] = None
+    for lost, distances, fronts, farthest in (((0, 0), (50.0, 60.0), (900.0, 70.0), second),
+                                              ((0.02, 0), (None, 60.0), (40.0, 70.0), first),
+                                              ((0.02, 0.3), (None, None), (40.0, 30.0), second)):
+        for row, share, distance, front in zip(about["runs"], lost, distances, fronts):
+            row.update(lost_m3=share * row["released_m3"], distance_99_m=distance, front_m=front)
+        path.write_text(yaml.safe_dump(about))
+        assert results.travel_shares.farthest(about["runs"]) is farthest
+        assert report_data.Data(Path("out")).result.name == farthest["run"]
 
 
 def test_a_study_of_an_older_version_is_one_line(slope, here):

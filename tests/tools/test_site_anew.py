@@ -1,4 +1,5 @@
 """slope site FOLDER over a folder that is there: what of it stays, what is found anew, what is refused, kills."""
+import math
 import os
 import shlex
 import shutil
@@ -19,7 +20,7 @@ from test_site import BODY, EAST, NORTH, ROAD, TOOLS, gis, make, refused, slope,
 from tiny_collapse import LMP, processes_in
 
 from slope_tools import cli, disk, programs
-from slope_tools.case import site_choices, site_deck, site_folder, site_warnings
+from slope_tools.case import decks, site_choices, site_deck, site_folder, site_warnings
 from slope_tools.ensemble import site_study
 from slope_tools.errors import SlopeError
 
@@ -238,6 +239,49 @@ def test_the_balls_of_the_ground_are_named(inside, mine):
     assert "not 50 m, through which the smallest balls would fall" in line
     assert choices["model"]["field_diameter"] < 1.3 * choices["balls"]["diameter"]
 
+
+# --- soil and ground ---
+
+def test_options_of_soil_and_ground_reach_the_deck(inside, mine):
+    told = inside("mine --friction 25 --rolling 0 0.07 --slip-friction 5 --spacing 0.5 --density 1600 "
+                  "--field-diameter 2 --field-restitution 0.3").out
+    choices = site_choices.read(mine)
+    assert choices["study"]["rolling"] == [0, 0.07]
+    assert "friction 25 degrees, on the slip surface 5; rolling resistance 0, 0.07" in told
+    assert "bulk density 1,600 kg/m3" in told
+    deck = decks.index_variables(mine / site_deck.NAME)
+    wanted = {"friction": 25, "slip": 5, "spacing": 0.5, "field_d": 2, "field_e": 0.3, "density": 1600 * 6 / math.pi}
+    assert {name: float(deck[name]) for name in wanted} == pytest.approx(wanted, rel=1e-4)
+
+
+def test_mobile_values_of_frank(inside, mine):
+    """Its own option replaces one of them; the ground's balls follow the volume, also where they were set before."""
+    told = inside("mine --mobile --friction 9").out
+    choices = site_choices.read(mine)
+    model = choices["model"]
+    assert (model["friction"], model["spacing"], model["field_restitution"]) == (9, 0.33, 0.16)
+    assert choices["study"]["rolling"] == [0.05, 0.14]
+    volume = site_choices.found(mine)["body"]["volume"]
+    assert model["field_diameter"] == pytest.approx(volume ** (1 / 3) / 22, rel=0.005)
+    assert "Frank slide of 1903" in told and "friction 9 degrees" in told
+    inside("mine --mobile --field-diameter 0.8")
+    assert site_choices.read(mine)["model"]["field_diameter"] == 0.8
+    assert "Frank" not in inside("mine --balls 70").out
+
+
+@pytest.mark.parametrize("words, line", [
+    ("--density 1.8", "--density: must be at least 100 kg/m3, of the ground with its voids, got 1.8"),
+    ("--friction 95", "--friction: must be < 90, got 95"),
+    ("--rolling 0 0", "--rolling: must"), ("--rolling 0.1 -0.1", "--rolling: second value: must be >= 0, got -0.1"),
+    ("--field-ratio 0", "--field-ratio: must be > 0, got 0"), ("--spacing 0", "--spacing: must be > 0, got 0"),
+    ("--field-restitution 1.2", "--field-restitution: must be <= 1, got 1.2")])
+def test_refused_values_of_soil_and_ground(inside, mine, words, line):
+    before = contents(mine)
+    assert inside(f"mine {words}", 2).err.startswith(f"slope site: {line}")
+    assert contents(mine) == before
+
+
+# --- warnings of all kinds ---
 
 def test_all_warnings_are_kept_in_the_folder(inside, mine):
     """Those of layers and balls; anew with the other files."""

@@ -210,6 +210,28 @@ def test_shares_that_stay_within(travelled, slope):
     assert "farthest ball: 100.000 m, reach angle 16.7 degrees\n" in out
 
 
+@pytest.mark.parametrize("columns, of, shares", [
+    ("id type diameter x y z", "volume", [9, None, None, None]),        # the one that is gone has 8 of 17 parts
+    ("id type x y z", "balls", [5, 9, None, None])])
+def test_balls_that_are_gone_went_farthest(travelled, slope, columns, of, shares):
+    """Ten balls at 1 to 10 m, of which the last one left; it was twice as large as the others."""
+    sizes = [0.06] * 9 + [0.12]
+    write("start.dump", [(0, 0, 60), *[(0, 0, 0)] * 9], columns=columns, diameter=sizes)
+    write("whole.dump", [(k + 1, 0, 0) for k in range(10)], diameter=sizes)
+    write("rest.dump", [(k + 1, 0, 0) for k in range(9)])
+    runs = travelled("rest.dump whole.dump --start start.dump")
+    one, whole = [run["runout"] for run in runs["each_run"]]
+    found = one["quantiles"]
+    assert one["quantiles_of"] == of and [share["distance"] for share in found] == shares
+    assert found[3]["reach_angle"] is None and found[0]["reach_angle"] is not None
+    assert whole["quantiles_of"] == "volume" and whole["quantiles"][3]["distance"] == 10
+    assert runs["runout"]["quantiles"][3]["distance"] == {"lowest": 10, "median": None, "highest": None}
+    assert runs["runout"]["quantiles"][3]["reach_angle"]["lowest"] is None
+    status, out, err = slope("rest.dump --start start.dump")
+    assert status == 0 and "run-out: 99 % within an unknown distance: 1 of 10 balls of the start are missing\n" in out
+    assert "1 of 10 balls of the start are not there" in err
+
+
 # --- dumps ---
 
 def test_columns_by_name_and_the_last_snapshot(travelled):

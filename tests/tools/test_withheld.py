@@ -1,5 +1,9 @@
 """When the conservative volume is withheld: each rule alone, none, and several; the words; what left before a road."""
+import argparse
+import importlib
 import os
+import re
+import shlex
 import sys
 from pathlib import Path
 
@@ -52,10 +56,14 @@ ANEW = ("rm -r 'my site'/study 'my site'/sizes 'my site'/step; tools/slope site 
     ({"length": 700.0}, SITE, "no run reaches 800 m, as half of known events of this volume and height do; the longest "
      "connected deposit ends at 700 m", "tools/slope study 'my site' --sample 64 --mobility rock_avalanches"),
     ({"length": 700.0}, DECK, "no run reaches", "tools/slope calibrate in.slope, with a past event"),
+    ({"length": None}, DECK, "no run reaches 800 m, as half of known events of this volume and height do; there is no "
+     "connected deposit", "tools/slope calibrate in.slope, with a past event"),
     ({"length": 700.0}, DECK._replace(variables={"friction": "30"}), "no run reaches", "tools/slope study in.slope "
      "--sample 64 --mobility rock_avalanches --vary friction=10:30 --road ROAD -o DIR"),
     ({"left": 0.3}, SITE, "30 % of the released volume left the terrain before or beside the road, more than 1 %",
      "a larger elevation model (terrain.files, terrain.bounds) in 'my site'/site.yaml, then: " + ANEW.format("")),
+    ({"left": 0.3}, SITE._replace(sampled=True), "30 %", "a larger elevation model (terrain.files, terrain.bounds) in "
+     "'my site'/site.yaml, then: tools/slope site 'my site'; the same command with another -o"),
     ({"moving": 5}, DECK, "5 of 20 runs failed or are not at rest, more than 10 %",
      "the same command with more time, --set duration=120"),
     ({"failed": 5}, DECK, "5 of 20 runs", "the same command again, once the cause of the failures is removed"),
@@ -63,6 +71,24 @@ ANEW = ("rm -r 'my site'/study 'my site'/sizes 'my site'/step; tools/slope site 
 def test_the_reason_and_the_command_that_mends_it(changed, case, text, remedy):
     [entry] = withheld_words.entries(withheld.reasons(GOOD._replace(**changed)), case)
     assert text in entry["text"] and entry["remedy"] == remedy
+
+
+@pytest.mark.parametrize("case", [SITE, SITE._replace(sampled=True), DECK,
+                                  DECK._replace(variables={"friction": "30", "rolling": "0"})])
+@pytest.mark.parametrize("changed", [{"on_road": 50.0}, {"length": 700.0}, {"left": 0.3}, {"moving": 5}, {"size": "x"}])
+def test_the_commands_are_ones_that_the_tools_take(case, changed):
+    [entry] = withheld_words.entries(withheld.reasons(GOOD._replace(**changed)), case)
+    typed = re.findall(r"tools/slope (?:'[^']*'|[^&;,])*", entry["remedy"])
+    assert typed or case.site is None or case.sampled
+    for words in map(shlex.split, typed):
+        parser = argparse.ArgumentParser()
+        command = importlib.import_module(f"slope_tools.commands.{words[1]}")
+        command.add_parser(parser.add_subparsers())
+        try:
+            parser.parse_args(words[1:])
+        except SystemExit:
+            # the user has to add the observation and the ranges
+            assert words == ["tools/slope", "calibrate", "in.slope"]
 
 
 # --- of the rows of a study ---
@@ -119,3 +145,24 @@ def test_what_left_before_or_beside_a_road():
     assert left.before_road(100.0, raster, released, road) == pytest.approx(500.0 / 8)
     assert left.before_road(0.0, raster, released, road) == 0
     assert left.before_road(7.0, raster._replace(z=0 * z), released, road) == 7     # nobody knows where
+
+
+def test_a_valley_that_turns_behind_the_road():
+    """The mass goes east, passes a road across the valley, and leaves in the north: no straight line tells that."""
+    z = np.zeros((40, 60))
+    raster = Raster(z, Affine(1, 0, 0, 0, -1, 40), None)
+    released = np.zeros(z.shape, bool)
+    released[28:32, 2:6] = True
+    z[26:34, 2:50] = 1.0
+    z[0:34, 42:50] = 1.0
+    road = box(34, 4, 36, 16)
+    assert left.before_road(100.0, raster, released, road) == 0
+    # without a way through: the straight line
+    z[20:24, 42:50] = 0
+    z[10:16, 42:50] = 0
+    assert left.before_road(100.0, raster, released, road) == 100
+    assert left.before_road(100.0, raster, released, box(0, 0, 20, 20)) == 100      # a road below all of the mass
+    # a second way round the road, and shorter
+    z[0:34, 42:50] = 1.0
+    z[0:28, 8:16] = z[0:8, 8:50] = 1.0
+    assert left.before_road(100.0, raster, released, road) == pytest.approx(100.0, rel=0.2)

@@ -50,9 +50,8 @@ class Twin:
         targets = [backanalysis.Target(NAMES[k], "", float(value), 0.0) for k, value in zip(outputs, observed)]
         points = backanalysis.first(3, seed)
         found = np.array([collapse(LOW + WIDTH * point, rng, outputs) for point in points])
-        guess = None
         while len(points) < runs:
-            guess = backanalysis.posterior(points, found, targets, guess)
+            guess = backanalysis.posterior(points, found, targets)
             more = backanalysis.propose(guess, points, min(batch, runs - len(points)))
             points = np.vstack([points, more])
             found = np.vstack([found, [collapse(LOW + WIDTH * point, rng, outputs) for point in more]])
@@ -72,3 +71,39 @@ class Twin:
     @property
     def words(self):
         return backanalysis.judgement(self.found, VARIABLES)
+
+
+class Steep:
+    """A calibration of a stand-in whose run-out jumps by `fall` metres where the mass gets over a step at EDGE.
+
+    Two variables, friction and rolling; observed are run-out and width of a run at hidden values.
+    """
+    EDGE = 1750.0
+    CHANCE = np.array([40.0, 8.0])
+
+    def __init__(self, seed, fall, runs=40, batch=9):
+        rng = np.random.default_rng(500 + seed)
+        self.fall = fall
+        hidden = 0.1 + 0.8 * rng.random(2)
+        observed = self.run(hidden, rng)
+        targets = [backanalysis.Target(name, "m", float(value), 0.02 * float(value))
+                   for name, value in zip(("run-out", "width"), observed)]
+        points = backanalysis.first(2, seed)
+        found = np.array([self.run(point, rng) for point in points])
+        while len(points) < runs:
+            guess = backanalysis.posterior(points, found, targets)
+            more = backanalysis.propose(guess, points, min(batch, runs - len(points)))
+            points = np.vstack([points, more])
+            found = np.vstack([found, [self.run(point, rng) for point in more]])
+        self.points, self.outputs, self.targets = points, found, targets
+        self.found = backanalysis.posterior(points, found, targets)
+        self.holds = self.found.pair(0, 1).holds(hidden)
+        self.near = bool(abs(observed[0] - self.EDGE - (fall if observed[0] > self.EDGE else 0)) < 150)
+        self.gaps = self.found.gaps[0]
+
+    def run(self, place, rng):
+        """Run-out and width (m) of a run at a place in the unit cube, with chance."""
+        friction, rolling = 15 + 25 * place[0], 0.2 * place[1]
+        reach = 900 / (0.15 + 0.5 * np.tan(np.radians(friction)) + 0.8 * rolling) + self.CHANCE[0] * rng.normal()
+        width = 300 * (1 + 0.5 * (40 - friction) / 25 - 2.5 * rolling) + self.CHANCE[1] * rng.normal()
+        return np.array([reach + self.fall * (reach > self.EDGE), width])

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 using Slope::DepositSummary;
@@ -55,13 +56,14 @@ TEST(DepositSummary, Release)
 TEST(DepositSummary, Travel)
 {
   DepositSummary s = halted(0.0);
-  EXPECT_TRUE(has(s.text(), "  quantiles: []"));
-  s.travel = {{1.0, 2.5, 3e-7}, 4.0, 5.0, {60.0, 17.5}, {{0.5, {30.0, 33.0}}, {0.99, {55.0, 18.25}}}};
+  s.travel = {{1.0, 2.5, 3e-7}, 4.0, 5.0, {60.0, 17.5}, {{0.5, {30.0, 33.0}}, {0.95, {55.0, 18.25}}}};
+  s.travel.quantiles.push_back({0.99, {HUGE_VAL, HUGE_VAL}});
   for (const char *line :
        {"  top: [1.0, 2.5, 3.0e-07]", "  front: 60.0", "  reach_angle: 17.5",
         "  farthest: {distance: 60.0, reach_angle: 17.5}", "  front_at_release: 4.0",
         "    - {share: 0.5, distance: 30.0, reach_angle: 33.0}",
-        "    - {share: 0.99, distance: 55.0, reach_angle: 18.25}"})
+        "    - {share: 0.95, distance: 55.0, reach_angle: 18.25}",
+        "    - {share: 0.99, distance: null, reach_angle: null}"})
     EXPECT_TRUE(has(s.text(), line)) << line;
 }
 

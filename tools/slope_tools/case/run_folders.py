@@ -70,11 +70,13 @@ def named_run(name: str) -> Named:
 
 
 def governing_run(study: Path) -> str:
-    """The folder of the run on which a study's answer rests, or which ran out farthest where it has none."""
+    """The folder of the run on which a study's answer rests, or which went farthest where it has none."""
     what = "what `slope study` wrote"
     about = load_yaml(study, what)
     try:
-        return str((about["conservative"] or about["largest"]["front_m"])["run"])
+        best = about["conservative"]
+        # studies of older versions have no farthest
+        return str(best["run"] if best else about.get("farthest") or about["largest"]["front_m"]["run"])
     except (KeyError, TypeError) as error:
         raise SlopeError(study, f"must be {what} ({error!r})") from error
 

@@ -126,10 +126,13 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
     parts = site_deck.Parts(title, ", ".join(Path(name).name for name in choices["terrain"]["files"]), body,
                             layers.structures, layers.lines, layers.motion)
     trial, reached = tried(choices, parts, found, new, machine, tell)
-    chosen = choices["model"]["field_diameter"]
+    model = choices["model"]
+    if model["field_diameter"] is None and model["field_ratio"]:
+        model["field_diameter"] = site_budget.three_digits(model["field_ratio"] * found.measures.volume ** (1 / 3))
+    chosen = model["field_diameter"]
     size = settle(choices, parts, found, trial, machine, raster)
     derived = site_choices.derived(given, choices, known)
-    too_large = None if chosen == choices["model"]["field_diameter"] else chosen
+    too_large = None if chosen == model["field_diameter"] else chosen
     say_size(choices, size, found, machine, too_large, tell)
     for line in site_warnings.site_warnings(found.measures, size, trial):
         keep(line)

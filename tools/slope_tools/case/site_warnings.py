@@ -44,7 +44,8 @@ def of_volume(volume: float) -> List[str]:
     if volume < LARGE:
         return []
     return [f"the body has {volume / 1e6:.3g} million m3: masses of {LARGE / 1e6:g} million m3 and more run farther "
-            "than the default friction gives; calibrate it with a past event of that size (slope calibrate)"]
+            "than laboratory friction gives; calibrate with a past event of that size (slope calibrate), or see "
+            "--mobile"]
 
 
 def of_thickness(mean: float, largest: float) -> List[str]:

@@ -44,7 +44,10 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--observed", metavar="POLYGON|RASTER", type=Path,
                         help="the mapped deposit: its outline, or its thickness in metres, as for `slope score`")
     parser.add_argument("--front", metavar="L", type=number,
-                        help="distance in plan from the highest released ball that 99 %% of the volume stays within, m")
+                        help="how far the mass went, in plan from the highest released ball, m")
+    parser.add_argument("--front-is", choices=observations.FRONTS, default="connected",
+                        help="what of a run is compared with it: the end of the connected deposit (default), which "
+                             "single balls do not move, or the distance that 95 or 99 %% of the volume stay within")
     parser.add_argument("--area", metavar="A", type=number,
                         help="total area that was covered at any time by more than --threshold, m2")
     parser.add_argument("--volume", metavar="V", type=number, help="volume on the road of --road, m3")
@@ -79,7 +82,7 @@ def run(args):
     """Do the command; raises SlopeError on bad input, and where too few runs finished."""
     shares = dict(args.tolerance)
     wanted = observations.Wanted(args.observed, args.front, args.area, args.volume, shares.pop(None, TOLERANCE),
-                                 args.threshold, args.local, shares)
+                                 args.threshold, args.local, shares, args.front_is)
     variables = distributions.parse(args.vary, args.deck, ranges_only=True)
     fixed = one_value_each(check_settings(args.set, args.deck), "--set", "--vary")
     repeated = check_settings(args.repeat, args.deck, "--repeat")

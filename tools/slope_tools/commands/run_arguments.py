@@ -60,6 +60,9 @@ def add_sample(parser) -> None:
                         help="a variable of the ensemble: LO:HI or uniform:LO:HI, loguniform:LO:HI, "
                              "triangular:LO:MODE:HI, normal:MEAN:DEVIATION:LO:HI, "
                              "lognormal:MEDIAN:DEVIATION_OF_LN:LO:HI, list:V1@WEIGHT,V2@WEIGHT,...")
+    parser.add_argument("--from", metavar="FIT", dest="fit", type=Path,
+                        help="an ensemble of the sets of values that slope calibrate found equally good, of which FIT "
+                             "is the folder; instead of --vary (default --sample 32)")
     parser.add_argument("--design", choices=designs.KINDS,
                         help="sobol (default): more points can be added later; lhs: Latin hypercube, "
                              "whose number of points is final")

@@ -1,5 +1,6 @@
 """slope site: from the files of a GIS to a folder with terrain, body, deck and map, which `slope study` runs."""
 import argparse
+import math
 import os
 from pathlib import Path
 from shlex import quote
@@ -26,14 +27,24 @@ OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
            "scar": ("release", "scar"), "scar_is": ("release", "scar_is"), "least": ("release", "least"),
            "road": ("road", "file"), "cut_angle": ("road", "cut_angle"), "mesh": ("road", "mesh"),
            "structure": ("structures", "files"), "line": ("lines", "files"), "motion": ("motion", "file"),
-           "peak_friction": ("motion", "peak_friction"),
+           "peak_friction": ("motion", "peak_friction"), "friction": ("model", "friction"),
+           "rolling": ("study", "rolling"), "slip_friction": ("model", "slip_friction"),
+           "density": ("model", "density"), "spacing": ("model", "spacing"),
+           "field_diameter": ("model", "field_diameter"),
+           "field_ratio": ("model", "field_ratio"), "field_restitution": ("model", "field_restitution"),
            "observed": ("observed", "file"), "diameter": ("balls", "diameter"), "balls": ("balls", "number"),
            "minutes": ("balls", "minutes"), "memory": ("balls", "memory"), "name": ("project", "name"),
            "client": ("project", "client"), "author": ("project", "author")}
 # options that change neither the body nor its runs: what was determined for these is kept
 BESIDE = {"road", "cut_angle", "mesh", "line", "observed", "name", "client", "author"}
 # of each group, an option that is given replaces the others
-ONE_OF = (("depth", "volume", "curvature"), ("diameter", "balls", "minutes", "memory"))
+ONE_OF = (("depth", "volume", "curvature"), ("diameter", "balls", "minutes", "memory"),
+          ("field_diameter", "field_ratio"))
+# --mobile: the Frank slide of 1903, doc/src/events.rst: its likeliest values, and the least rolling resistance that its
+# length and area allow
+MOBILE = {"friction": 6, "rolling": [0.05, 0.14], "spacing": 0.33, "field_ratio": 1 / 22, "field_restitution": 0.16}
+LIGHT = 100                 # kg/m3; less is not a ground's density, but one in t/m3 or relative to water's
+OF_BALL = 6 / math.pi       # density of a ball over that of the ground, in a cubic packing
 
 EPILOG = """\
 units: metres, m3, degrees; minutes of the whole study on this machine, GB of all runs that are active at a time.
@@ -51,6 +62,10 @@ a scar from two surveys; a wall, an earthquake and a line behind the wall; finer
       --motion motion.txt -o quake
   tools/slope site mine --minutes 60
 
+a mass that may run as far as a rock avalanche; a light and smooth ground:
+  tools/slope site --terrain dem.tif --release release.geojson --volume 2e6 --mobile -o mobile
+  tools/slope site mine --friction 25 --rolling 0 0.05 --spacing 0.8 --density 1600
+
 FOLDER/site.yaml holds every choice, and what each means; change it and give FOLDER alone to rebuild the folder.
 """
 
@@ -65,6 +80,7 @@ def add_parser(commands, **kwargs):
     parser.add_argument("-o", dest="output", metavar="FOLDER", type=Path, help="the new folder")
     add_ground(parser.add_argument_group("ground and body"))
     add_layers(parser.add_argument_group("what lies on it"))
+    add_model(parser.add_argument_group("soil and ground", "What the options leave open has the values of the paper."))
     add_size(parser.add_argument_group("size of the balls", "One of these (default: --balls 4000)."))
     about = parser.add_argument_group("report")
     about.add_argument("--name", help="of the site (default: of the folder)")
@@ -125,6 +141,24 @@ def add_layers(group):
                        "run shown in the report is compared")
 
 
+def add_model(group):
+    group.add_argument("--mobile", action="store_true", help="the values of the Frank slide (36 million m3 of rock): "
+                       "less friction, a smoother ground; other options of this group replace single ones")
+    group.add_argument("--friction", metavar="DEG", type=number, help="of soil and ground, degrees (default 30)")
+    group.add_argument("--rolling", metavar="R", type=number, nargs="+",
+                       help="rolling resistances of the study, of which the largest volume counts (default 0 0.05 0.1)")
+    group.add_argument("--slip-friction", metavar="DEG", type=number, help="of the slip surface, degrees (default 0)")
+    group.add_argument("--density", metavar="R", type=number, help="bulk density of the ground, kg/m3 (default 1786); "
+                       "forces and energies are proportional to it, volumes and distances do not depend on it")
+    group.add_argument("--spacing", metavar="S", type=number, help="of the ground's balls, in their diameters (default "
+                       "1); less is smoother")
+    field = group.add_mutually_exclusive_group()
+    field.add_argument("--field-diameter", metavar="D", type=number, help="of the ground's balls, its roughness, m "
+                       "(default: that of the soil's)")
+    field.add_argument("--field-ratio", metavar="K", type=number, help="the same in cube roots of the body's volume")
+    group.add_argument("--field-restitution", metavar="E", type=number, help="on the ground (default 0.1)")
+
+
 def add_size(group):
     size = group.add_mutually_exclusive_group()
     size.add_argument("--balls", metavar="N", type=count, help="number of balls in the body")
@@ -138,6 +172,8 @@ def add_size(group):
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints what was read, found and written."""
     folder, choices, known = chosen(args)
+    for line in model(args, choices):
+        print(line)
     cores = args.jobs or jobs.cores()
     with jobs.signals_interrupt():
         made = site.make(choices, folder, site.Machine(program(args.lmp), cores), lambda line: print(line, flush=True),
@@ -154,6 +190,11 @@ def chosen(args):
     given = {option: value for option in OPTIONS if (value := getattr(args, option, None)) is not None}
     given.update(assigned_crs(given.pop("assign_crs", ())))
     given.update(of_slips(args))
+    if "density" in given:
+        given["density"] = density_of_ball(given["density"])
+    if args.mobile:
+        given = {**{option: value for option, value in MOBILE.items()
+                    if not (option == "field_ratio" and "field_diameter" in given)}, **given}
     if args.folder is not None:
         if args.output is not None:
             raise SlopeError("-o", f"must not be given with the folder of a site, {args.folder}, which is rebuilt",
@@ -185,6 +226,29 @@ def of_slips(args):
         if getattr(args, option) is not None:
             raise SlopeError("--slips", f"must be given without --{option}: it is the body", args.slips)
     return {"scar": str(bodies.base_file(args.slips, args.body or 1)), "scar_is": "surface"}
+
+
+def density_of_ball(bulk):
+    """Of the balls (kg/m3) that together have a bulk density."""
+    if bulk < LIGHT:
+        raise SlopeError("--density", f"must be at least {LIGHT} kg/m3, of the ground with its voids", bulk)
+    return round(bulk * OF_BALL, 1)
+
+
+def model(args, choices):
+    """Lines with the values of soil and ground, where an option gave any."""
+    of = choices["model"]
+    if args.mobile:
+        yield ("--mobile: values of the Frank slide of 1903, 36 million m3 of rock; what is known of smaller or wet "
+               "masses is on the page events of the documentation")
+    if args.mobile or any(getattr(args, option) is not None for option in (*MOBILE, "density", "slip_friction",
+                                                                           "field_diameter")):
+        field = f"{of['field_diameter']:g} m" if of["field_diameter"] else \
+            f"{of['field_ratio']:.3g} of the cube root of the volume" if of["field_ratio"] else "those of the soil"
+        yield (f"friction {of['friction']:g} degrees, on the slip surface {of['slip_friction']:g}; rolling resistance "
+               f"{', '.join(f'{one:g}' for one in choices['study']['rolling'])}; the ground: balls of {field}, spacing "
+               f"{of['spacing']:g}, restitution {of['field_restitution']:g}; bulk density "
+               f"{of['density'] / OF_BALL:,.0f} kg/m3")
 
 
 def assigned_crs(words):

@@ -80,7 +80,7 @@ def add_parser(commands, **kwargs):
 def run(args):
     """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
     if args.deck.is_dir() and (args.output is None or (args.deck / site_choices.NAME).exists()):
-        return run_site(args) if args.sample is None else run_site_ensemble(args)
+        return run_site(args) if args.sample is None and args.fit is None else run_site_ensemble(args)
     return run_deck(args)
 
 
@@ -95,9 +95,11 @@ def run_deck(args):
     repeats.check(list(repeated), args.equally_good)
     thresholds = check_thresholds(THICKNESSES if args.exceed is None else args.exceed)
     defaults = decks.index_variables(args.deck)
-    settle_kind(args, sample=args.sample is not None or bool(args.vary))
+    many = args.sample is not None or bool(args.vary) or args.fit is not None
+    check_fit(args)
+    settle_kind(args, sample=many)
     condition = condition_of(args)
-    if args.sample is not None or args.vary:
+    if many:
         return run_ensemble(args, settings, repeated, thresholds, defaults, condition)
     if not settings:
         raise SlopeError("--set", "must be given, or --sample with --vary")
@@ -115,6 +117,14 @@ def run_deck(args):
                                   sizes=args.size_error)
     return perform(setup, {**settings, **repeated}, todo,
                    lambda todo, work: results.collect(setup, questions, todo, work))
+
+
+def check_fit(args):
+    """Raise SlopeError if --from is given with what says otherwise where the runs lie, or how they count."""
+    for option in ("vary", "design", "seed", "mobility"):
+        if args.fit is not None and getattr(args, option) not in (None, []):
+            raise SlopeError(f"--{option}", "must not be given with --from: a calibration has said which values are "
+                             "equally good", " ".join(args.vary) if option == "vary" else getattr(args, option))
 
 
 def run_site(args):
@@ -150,8 +160,9 @@ def run_site_ensemble(args):
     refuse(args, OF_A_ROAD)
     site, choices = args.deck, site_choices.read(args.deck)
     site_study.check(site, choices)
-    args.deck, args.vary = site / site_deck.NAME, args.vary or list(site_study.MOBILE)
-    args.output = args.output or site / site_study.ENSEMBLE
+    args.deck = site / site_deck.NAME
+    args.vary = args.vary or ([] if args.fit else list(site_study.MOBILE))
+    args.site, args.output = site, args.output or site / site_study.ENSEMBLE
     if choices["road"]["file"]:
         args.road, args.cut_angle, args.mesh = site / ROAD, choices["road"]["cut_angle"], choices["road"]["mesh"]
     run_deck(args)
@@ -161,14 +172,15 @@ def run_site_ensemble(args):
 
 def run_ensemble(args, settings, repeated, thresholds, defaults, condition):
     """The runs of --sample, and what they say together."""
-    from ..ensemble import ensemble, ensemble_maps
-    if args.sample is None:
+    from ..ensemble import calibrated, ensemble, ensemble_maps
+    if args.sample is None and args.fit is None:
         raise SlopeError("--sample", "must be given with --vary: how many runs")
     if args.size_error:
         raise SlopeError("--size-error", "must not be given with --sample: an ensemble has no conservative volume",
                          args.size_error)
     fixed = one_value_each(settings, "--set", "--vary")
-    plan = sample.check(args.sample, args.design, args.seed, args.vary, args.deck, fixed, repeated)
+    plan = calibrated.sample(args.fit, args.sample, args.deck, fixed, repeated) if args.fit else \
+        sample.check(args.sample, args.design, args.seed, args.vary, args.deck, fixed, repeated)
     levels = ensemble_maps.Thresholds(thresholds, check_thresholds(args.exceed_speed, "--exceed-speed", "speeds"),
                                       check_thresholds(args.exceed_energy, "--exceed-energy", "energies"))
     of = ensemble.check_quantity(args.of, args.road is not None)
@@ -177,6 +189,7 @@ def run_ensemble(args, settings, repeated, thresholds, defaults, condition):
     sample.check_growth(args.output, plan)
     several = sample.settings_of(todo)
     setup = setup_of(args)
-    questions = results.Questions(several, repeated, thresholds, None, ensemble.Order(plan, of, levels, condition))
+    questions = results.Questions(several, repeated, thresholds, None, ensemble.Order(plan, of, levels, condition),
+                                  site=getattr(args, "site", None))
     perform(setup, {**several, **repeated}, todo, lambda todo, work: results.collect(setup, questions, todo, work),
             begin=lambda: sample.keep(args.output, plan))

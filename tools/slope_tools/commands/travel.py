@@ -61,6 +61,12 @@ def run(args):
     print(summary(about, args.output))
 
 
+def missing(about):
+    """How many balls are missing, in the run that lacks most."""
+    of, balls = max((one["missing"], one["missing"] + one["balls"]) for one in about["each_run"])
+    return f"{of} of {balls} balls of the start are missing"
+
+
 def summary(about, folder):
     """What the user needs to know."""
     lines = [f"{about['balls']} balls of {about['runs']} run{'s' if about['runs'] > 1 else ''}"]
@@ -75,7 +81,8 @@ def summary(about, folder):
         most = about["runout"]["quantiles"][-1]
         of_runs = " (the farthest and the flattest of the runs)" if about["runs"] > 1 else ""
         lines.append(f"run-out: {100 * most['share']:g} % within {most['distance']['highest']:.3f} m, reach angle "
-                     f"{most['reach_angle']['lowest']:.1f} degrees{of_runs}")
+                     f"{most['reach_angle']['lowest']:.1f} degrees{of_runs}" if most["distance"]["highest"] is not None
+                     else f"run-out: {100 * most['share']:g} % within an unknown distance: {missing(about)}")
         far, flat = about["runout"]["distance"]["highest"], about["runout"]["reach_angle"]["lowest"]
         lines.append(f"farthest ball: {far:.3f} m, reach angle {flat:.1f} degrees")
     lines.append(f"written to {folder}: {' '.join(about['files'])}")

@@ -44,6 +44,7 @@ class Arrival(NamedTuple):
     start: Optional[np.ndarray]     # x y z of each ball at the start, None without
     top: Optional[np.ndarray]       # x y z of the highest ball at the start
     missing: int                    # balls of the start that are not there now
+    lost: Optional[float]           # their volume, m3; None: the start has no diameter
 
 
 def check(paths: Sequence[str], starts: Optional[Sequence[str]], wanted: Wanted) -> None:
@@ -80,7 +81,8 @@ def of_dumps(paths: Sequence[str], starts: Optional[Sequence[str]], wanted: Want
             warn(f"{one.name}: {one.moving} of {len(one.id)} balls are faster than {MOVING:g} m/s: they have not "
                  f"arrived")
         if one.missing:
-            warn(f"{one.name}: {one.missing} of {one.missing + len(one.id)} balls of the start are not there: left out")
+            warn(f"{one.name}: {one.missing} of {one.missing + len(one.id)} balls of the start are not there: shares "
+                 f"of the run-out count them as beyond all others, all else leaves them out")
     tables = {name: distribution(arrivals, name, wanted.limits(name), warn) for name in DIRECTIONS}
     about: Dict[str, Any] = {
         "axis": {"along": wanted.axis, "across": wanted.axis + 90, "origin": wanted.origin}, "types": wanted.types,
@@ -94,7 +96,7 @@ def of_dumps(paths: Sequence[str], starts: Optional[Sequence[str]], wanted: Want
         about["runout"]["quantiles"] = [
             {"share": share, **{key: spread([one["runout"]["quantiles"][k][key] for one in single])
                                 for key in ("distance", "reach_angle")}} for k, share in enumerate(reach.SHARES)]
-    about["each_run"] = single
+    about["each_run"] = [known(one) for one in single]
     about["warnings"] = warnings
     with disk.complete(folder, "travel.yaml") as new:
         write_csv(new / "travel.csv", arrivals, tables)
@@ -118,17 +120,19 @@ def read(path, start, wanted: Wanted) -> Arrival:
     moving = None
     if all(key in rest.of for key in ("vx", "vy", "vz")):
         moving = int((np.hypot(np.hypot(rest.of["vx"], rest.of["vy"]), rest.of["vz"]) > MOVING).sum())
-    before, top, missing = None, None, 0
+    before, top, missing, lost = None, None, 0, None
     if start:
-        first = chosen(dumps.last(start, ("type",)), wanted.types)
+        first = chosen(dumps.last(start, ("type", "diameter", "radius")), wanted.types)
         ids, order = first.of["id"], np.argsort(first.of["id"])
         same = order[np.minimum(np.searchsorted(ids, rest.of["id"], sorter=order), len(ids) - 1)]
         other = rest.of["id"][ids[same] != rest.of["id"]]
         if len(other):
             raise SlopeError(start, f"must have the balls of {path}", f"none with id {other[0]:g}")
         before, top, missing = first.place[same], first.place[first.of["z"].argmax()], len(ids) - len(same)
+        volume = volume_of(first)
+        lost = None if volume is None else float(volume[~np.isin(ids, rest.of["id"])].sum())
     return Arrival(str(path), rest.step, rest.of["id"].astype(int), place, volume_of(rest),
-                   {"along": along, "across": across}, moving, before, top, missing)
+                   {"along": along, "across": across}, moving, before, top, missing, lost)
 
 
 def volume_of(snapshot):
@@ -180,9 +184,13 @@ def percentiles(values):
 
 
 def spread(values):
-    """A number of each run, over the runs."""
-    return {"lowest": round(float(min(values)), 9), "median": round(float(np.median(values)), 9),
-            "highest": round(float(max(values)), 9)}
+    """A number of each run, over the runs; what is infinite is unknown."""
+    return {"lowest": told(min(values)), "median": told(np.median(values)), "highest": told(max(values))}
+
+
+def told(value):
+    """A number as travel.yaml has it; None if it is infinite."""
+    return round(float(value), 9) if math.isfinite(value) else None
 
 
 def statistics(runs):
@@ -200,17 +208,19 @@ def plan(difference):
 def runout(one):
     """From the highest ball at the start to the farthest one now: distance in plan (m), drop (m), angle (degrees).
 
-    And quantiles: what shares of the volume (of the balls, where the dump has no diameter) stay within.
+    And quantiles: what shares of the volume (of the balls, where a dump has no diameter) stay within, infinite where
+    the farthest of those are missing.
     """
     distance = plan(one.place - one.top)
     far = distance.argmax()
     drop = one.top[2] - one.place[far, 2]
-    volume = np.ones(len(distance)) if one.volume is None else one.volume
-    shares = [{"share": share, "distance": round(within, 9), "reach_angle": round(angle, 9)}
-              for share, within, angle in reach.quantiles(one.place, one.top, volume)]
+    by_volume = one.volume is not None and (one.lost is not None or not one.missing)
+    weights = (one.volume, one.lost or 0.0) if by_volume else (np.ones(len(distance)), float(one.missing))
+    shares = [{"share": share, "distance": within, "reach_angle": angle}
+              for share, within, angle in reach.quantiles(one.place, one.top, *weights)]
     return {"distance": round(float(distance[far]), 9), "drop": round(float(drop), 9),
             "reach_angle": round(math.degrees(math.atan2(drop, distance[far])), 9), "ball": int(one.id[far]),
-            "quantiles_of": "balls" if one.volume is None else "volume", "quantiles": shares}
+            "quantiles_of": "volume" if by_volume else "balls", "quantiles": shares}
 
 
 def each(one):
@@ -220,6 +230,15 @@ def each(one):
     if one.start is not None:
         about.update(missing=one.missing, travel=percentiles(plan(one.place - one.start)), runout=runout(one))
     return about
+
+
+def known(one):
+    """What each() gave, with None for what is infinite."""
+    if "runout" not in one:
+        return one
+    shares = [{"share": of["share"], "distance": told(of["distance"]), "reach_angle": told(of["reach_angle"])}
+              for of in one["runout"]["quantiles"]]
+    return {**one, "runout": {**one["runout"], "quantiles": shares}}
 
 
 # --- output ---

@@ -1,5 +1,5 @@
 """How far the volume travels, by the shares that stay within a distance: what a summary's travel: quantiles say."""
-from typing import Any, Dict, Mapping, Optional
+from typing import Any, Dict, Mapping, Optional, Sequence
 
 from .. import disk
 from ..errors import SlopeError
@@ -9,6 +9,7 @@ HEADLINE = SHARES[-1]           # the distance that counts: one stray ball does 
 COLUMNS = (*(f"distance_{share}_m" for share in SHARES), *(f"reach_{share}_deg" for share in SHARES))
 DISTANCE = f"distance_{HEADLINE}_m"
 REACH = f"reach_{HEADLINE}_deg"
+BEYOND = 1 - HEADLINE / 100       # of the volume; where more left the box, that distance is beyond it
 
 
 def columns(summary: Mapping[str, Any], where: Any) -> Dict[str, Optional[float]]:
@@ -35,3 +36,21 @@ def columns(summary: Mapping[str, Any], where: Any) -> Dict[str, Optional[float]
         raise SlopeError(where, "travel: quantiles must be a list of share, distance (m) and reach_angle (degrees)",
                          repr(error)[:60]) from error
     return found
+
+
+def lost(row: Mapping[str, Any]) -> bool:
+    """Whether so much of a run (a row of study.yaml) left the box that nobody knows how far it went."""
+    return row["lost_m3"] > BEYOND * row["released_m3"]
+
+
+def farthest(rows: Sequence[Mapping[str, Any]]) -> Mapping[str, Any]:
+    """The run that went farthest: a row of study.yaml.
+
+    Of those that left the box, which went beyond all others, it is the one that lost most. Where a run of an older
+    version has no shares, the farthest balls are compared.
+    """
+    gone = [row for row in rows if lost(row)]
+    if gone:
+        return max(gone, key=lambda row: row["lost_m3"] / row["released_m3"])
+    key = DISTANCE if all(row.get(DISTANCE) is not None for row in rows) else "front_m"
+    return max(rows, key=lambda row: row[key])

@@ -23,6 +23,8 @@ from scipy.stats import qmc
 
 from . import designs, tempering
 from .emulator import Emulator
+from .gaps import Gap
+from .gaps import gaps as gaps_of
 
 CLOUD = 4096            # points that stand for the cube
 ENOUGH = 300.0          # of them that must count, or others are drawn where the likelihood is
@@ -83,6 +85,7 @@ class Posterior:
     emulators: List[Emulator]
     goals: np.ndarray           # the targets' values, the best attainable of those without one
     noise: np.ndarray           # standard deviation of each output by chance
+    gaps: List[List[Gap]]       # of each output
     misfit: float               # smallest chi2 over what chance makes of it; above 1 the model does not get there
 
     def interval(self, i: int, share: float = SHARE) -> Tuple[float, float]:
@@ -127,19 +130,11 @@ def first(dimensions: int, seed: int) -> np.ndarray:
     return designs.points(designs.SOBOL, dimensions, max(10, 4 * dimensions + 2), seed)
 
 
-def posterior(points: np.ndarray, outputs: np.ndarray, targets: Sequence[Target],
-              before: Optional[Posterior] = None) -> Posterior:
-    """What runs at points (n, d) with outputs (n, m) say, held against targets (m).
-
-    before: of fewer runs; its emulators are where these begin, which is faster.
-    """
+def posterior(points: np.ndarray, outputs: np.ndarray, targets: Sequence[Target]) -> Posterior:
+    """What runs at points (n, d) with outputs (n, m) say, held against targets (m)."""
     points, outputs = np.asarray(points, float), np.asarray(outputs, float)
     dimensions = points.shape[1]
-    if before:
-        emulators = [Emulator(points, column, one.kernel, restarts=0)
-                     for column, one in zip(outputs.T, before.emulators)]
-    else:
-        emulators = [Emulator(points, column) for column in outputs.T]
+    emulators = [Emulator(points, column) for column in outputs.T]
     deviation = outputs.std(axis=0)
     noise = np.maximum([one.chance for one in emulators], np.maximum(LEAST_NOISE * deviation, 1e-12))
     chance = correlation_of(outputs - np.column_stack([one.at(points) for one in emulators]))
@@ -173,8 +168,9 @@ def posterior(points: np.ndarray, outputs: np.ndarray, targets: Sequence[Target]
         box = np.maximum(0, low - room), np.minimum(1, high + room)
     mean = weights @ cloud
     likely = log_likelihood(*measured(mean[None]))[0] > logs.max() + math.log(LIKELY)
+    jumps = [gaps_of(column, one) for column, one in zip(outputs.T, emulators)]
     return Posterior(cloud, weights, logs, mean if likely else cloud[int(logs.argmax())], box, emulators, goals, noise,
-                     misfit)
+                     jumps, misfit)
 
 
 def correlation_of(residuals: np.ndarray) -> np.ndarray:
@@ -223,6 +219,15 @@ def propose(found: Posterior, taken: np.ndarray, number: int) -> np.ndarray:
     near = np.abs(points[:, None] - np.asarray(taken)[None]).max(axis=2).min(axis=1) < 1e-5
     points[near] = np.clip(points[near] + 1e-3, 0, 1)
     return points
+
+
+def sets(found: Posterior, number: int) -> np.ndarray:
+    """Points (number, d) of the region that stand for it, in no order: each is as likely as the others."""
+    rng = np.random.default_rng(SEED)
+    order = np.argsort(found.points[:, 0])
+    below = np.cumsum(found.weights[order])
+    at = np.searchsorted(below, (np.arange(number) + rng.random(number)) / number * below[-1])
+    return found.points[rng.permutation(order[np.minimum(at, len(order) - 1)])]
 
 
 def misfits(outputs: np.ndarray, found: Posterior, targets: Sequence[Target]) -> np.ndarray:

@@ -1,11 +1,12 @@
 """The runs of a calibration, batch by batch: a ledger keeps the proposed points, so that it can be continued."""
 from pathlib import Path
-from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence
+from typing import Any, Callable, Dict, List, Mapping, Sequence
 
 import numpy as np
 import yaml
 
 from .. import disk
+from ..deposit import travel_shares
 from ..errors import SlopeError
 from . import backanalysis, repeats
 
@@ -77,7 +78,6 @@ class Calibration:
     def do(self, evaluate: Callable, targets: Callable, say: Callable[[str], None]) -> backanalysis.Posterior:
         """Make all runs; returns what they show of the variables, without the last one, which uses the best values."""
         self.begin()
-        found = None
         while True:
             todo = [i for i in range(len(self._known())) if i not in self.outputs]
             for i, outputs in zip(todo, evaluate([self.runs[i] for i in todo])):
@@ -85,7 +85,7 @@ class Calibration:
             decided = len(self.ledger.points)
             if decided == self.number:
                 return self.posterior(targets())
-            found = self.posterior(targets(), found)
+            found = self.posterior(targets())
             say(f"{decided} of {self.number} runs: " + "; ".join(
                 f"{one.name} {backanalysis.shown(one, low)} to {backanalysis.shown(one, high)}"
                 for one, (low, high) in zip(self.ledger.variables, map(found.interval,
@@ -99,13 +99,14 @@ class Calibration:
         """Numbers of the runs that count: not those that failed, and not the one at the best values."""
         return [i for i in range(min(len(self.ledger.points), self.number - 1)) if self.outputs.get(i) is not None]
 
-    def posterior(self, targets: Sequence[backanalysis.Target],
-                  before: Optional[backanalysis.Posterior] = None) -> backanalysis.Posterior:
-        """What the runs so far say; before: what they said a batch ago."""
+    def posterior(self, targets: Sequence[backanalysis.Target]) -> backanalysis.Posterior:
+        """What the runs so far say."""
         of = self.finished()
         if len(of) <= len(self.ledger.variables) + 1:
             failed = [one for one in self.runs if one.error]
             raise SlopeError(self.output, f"{len(failed)} of {len(self.runs)} runs failed, too many to go on: "
-                             f"{failed[0].name}: {failed[0].error}" if failed else "too few runs to go on")
-        return backanalysis.posterior(self.ledger.places(of), np.array([self.outputs[i] for i in of]), targets,
-                                      before)
+                             f"{failed[0].name}: {failed[0].error}" if failed else
+                             f"{len(self.runs) - len(of)} of {len(self.runs)} runs lost more than "
+                             f"{100 * travel_shares.BEYOND:.0f} % of the volume over the edge, too many to go on: use "
+                             "a larger terrain and box, or ranges of --vary in which the mass stays on it")
+        return backanalysis.posterior(self.ledger.places(of), np.array([self.outputs[i] for i in of]), targets)

@@ -71,6 +71,15 @@ class Emulator:
         """Mean of the process."""
         return self.mean + self.scale * self.process.predict(points)
 
+    def unseen(self, values: np.ndarray):
+        """Each of the values that it was fitted to, predicted from the others: mean, and deviation with chance.
+
+        Rasmussen and Williams, Gaussian Processes for Machine Learning (2006), equations 5.10 to 5.12.
+        """
+        inverse = linalg.cho_solve((self.process.L_, True), np.eye(len(self.process.L_)))
+        variance = 1 / np.diag(inverse)
+        return values - self.scale * variance * self.process.alpha_.ravel(), self.scale * np.sqrt(variance)
+
     def spread(self, points: np.ndarray):
         """Mean, and standard deviation of the smooth part: by how much the mean itself may be wrong."""
         mean, deviation = self.process.predict(points, return_std=True)

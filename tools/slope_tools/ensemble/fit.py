@@ -10,9 +10,10 @@ import yaml
 from .. import disk, provenance
 from ..case import run_folders
 from ..deposit import deposit, score
-from . import backanalysis, calibration, jobs, observations, quantities, repeats, results, study
+from . import backanalysis, calibration, fit_words, jobs, observations, quantities, repeats, results, study
 from .setup import Setup
 
+SETS = 64               # sets of values that stand for the region
 TABLE, ABOUT, CHART, MAP = "calibrate.csv", "calibrate.yaml", "calibrate.png", "predicted.png"
 
 
@@ -48,7 +49,8 @@ class Fit:
         found: List[Optional[np.ndarray]] = []
         for one, row in zip(todo, rows):
             self.rows[one.name] = row
-            found.append(None if one.error else self.observed.measure(self.summary(row), self.terrain(one), row))
+            told = not one.error and self.observed.told_by(row)
+            found.append(self.observed.measure(self.summary(row), self.terrain(one), row) if told else None)
         return found
 
     def summary(self, row: Mapping[str, Any]) -> Path:
@@ -66,7 +68,9 @@ class Fit:
         output, plan, targets = self.setup.output, self.plan, self.observed.targets
         best = plan.runs[plan.number - 1]
         predicted = plan.outputs[plan.number - 1]
-        words, doubts = backanalysis.judgement(found, self.variables), self.doubts(found)
+        words = [*fit_words.misses(found, targets, predicted), *fit_words.jumps(found, targets),
+                 *backanalysis.judgement(found, self.variables)]
+        doubts = self.doubts(found)
         failed = [one.name for one in plan.runs if one.error]
         about: Dict[str, Any] = {
             "calibration": {**plan.ledger.about, "runs": plan.number, "failed": len(failed), "package":
@@ -81,6 +85,8 @@ class Fit:
                          "tolerance": one.deviation, "chance": float(noise),
                          "predicted": None if predicted is None else float(predicted[i])}
                         for i, (one, goal, noise) in enumerate(zip(targets, found.goals, found.noise))],
+            "sets": [{one.name: one.value(float(u)) for one, u in zip(self.variables, place)}
+                     for place in backanalysis.sets(found, SETS)],
             "pairs": self.pairs(found)}
         with disk.complete(output, ABOUT) as new:
             disk.write(new / TABLE, self.table(found))
@@ -102,6 +108,11 @@ class Fit:
         failed = [one.name for one in plan.runs if one.error]
         doubts = [f"{len(failed)} of {len(plan.runs)} runs failed and are left out: {', '.join(failed[:3])}"] \
             if failed else []
+        gone = self.gone()
+        if gone:
+            most = max(row["lost_m3"] for row in gone)
+            doubts.append(f"{len(gone)} of {len(plan.runs)} runs lost up to {most:,.0f} m3 over the edge of the "
+                          "terrain or the box: how far they went is unknown, and they are left out; use a larger one")
         if len(targets) < len(self.variables):
             known, asked = len(targets), len(self.variables)
             doubts.append(f"{in_words(known)} observed number{'s' * (known > 1)} cannot determine {in_words(asked)} "
@@ -120,6 +131,10 @@ class Fit:
         if moving:
             doubts.append(f"{moving} deposits are not at rest")
         return doubts
+
+    def gone(self) -> List[Mapping[str, Any]]:
+        """The runs that lost so much that they are left out."""
+        return [row for row in self.rows.values() if row["status"] == "finished" and not self.observed.told_by(row)]
 
     def known(self, found: backanalysis.Posterior, i: int) -> Dict[str, Any]:
         """What is known of a variable."""
@@ -155,7 +170,7 @@ class Fit:
             cells = [""] * (1 + len(targets)) if outputs is None else [
                 f"{backanalysis.misfits(outputs[None], found, targets)[0]:.6g}", *(f"{value:.9g}" for value in outputs)]
             writer.writerow([one.name, *(plan.ledger.points[i][name] for name in names), one.key, *cells,
-                             "failed" if one.error else "finished"])
+                             "failed" if one.error else "finished" if outputs is not None else "left the terrain"])
         return text.getvalue()
 
     def draw_map(self, path: Path, best: repeats.Repeat) -> None:
@@ -174,7 +189,8 @@ class Fit:
         lines = []
         for one in targets:
             goal = f"{number_(one['attainable'])} at the least" if one["observed"] is None else number_(one["observed"])
-            predicted = "unknown, the run failed" if one["predicted"] is None else number_(one["predicted"])
+            predicted = "unknown, the run failed or left the terrain" if one["predicted"] is None else \
+                number_(one["predicted"])
             lines.append(f"{one['name']}: predicted {predicted}, observed {goal} ({one['unit']}; s of a run "
                          f"by chance {number_(one['chance'])})")
         return lines

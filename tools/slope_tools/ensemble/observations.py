@@ -3,8 +3,8 @@
 A mapped deposit gives: the lack of overlap 1 - CSI, with CSI = both/(both + simulated only + mapped only) by area; the
 distance from the highest released ball that 99 % of the mapped volume, or area, stay within; of a raster the volume in
 each of ZONES bands of that distance, which hold equal shares of the mapped volume; of an outline its area, and the
-distances of 50 and 90 % of it. Single numbers: the distance of 99 % of the volume (front), the area ever covered, the
-volume on the road.
+distances of 50 and 90 % of it. Single numbers: the front, which is the end of the connected deposit, or the distance of
+95 or 99 % of the volume; the area ever covered; the volume on the road.
 """
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -22,6 +22,9 @@ ZONES = 6
 SHARES = {True: (0.5, 0.9, 0.99), False: (0.99,)}      # of an outline, of a raster
 ROAD = "remove_on_road_m3"
 KINDS = ("observed", "front", "area", "volume")     # what can be observed, as the options call it
+# what is compared with a front: name, column of the table of `slope study`
+FRONTS = {"connected": ("end of the connected deposit", "connected_m"),
+          "95": ("95 % of the volume within", "distance_95_m"), "99": ("99 % of the volume within", "distance_99_m")}
 
 
 @dataclass(frozen=True)
@@ -38,6 +41,7 @@ class Wanted:
     threshold: float            # m; thinner is no deposit
     local: bool                 # the mapped deposit is in local metres
     own: Mapping[str, float] = field(default_factory=dict)
+    front_is: str = "connected"
 
     def share(self, kind: str) -> float:
         """The tolerance of a kind."""
@@ -68,7 +72,8 @@ class Wanted:
     def about(self) -> Dict[str, Any]:
         """For the result, and to tell whether another call is of the same observation."""
         return {"observed": None if self.observed is None else self.observed.name, "front": self.front,
-                "area": self.area, "volume": self.volume, "threshold": self.threshold,
+                "front_is": self.front_is if self.front is not None else None, "area": self.area,
+                "volume": self.volume, "threshold": self.threshold,
                 "tolerance": {"all": self.tolerance, **self.own} if self.own else self.tolerance}
 
     def check_place(self, terrain: Path, warn: Callable[[str], None]) -> None:
@@ -87,6 +92,14 @@ class Observations:
         self.shape: Tuple[int, ...] = ()        # of the grid of the first run
         self.edges = np.empty(0)                # of the bands of distance, m
 
+    def told_by(self, row: Mapping[str, Any]) -> bool:
+        """Whether a run (a row of the table of `slope study`) says how far the mass goes, if that was asked.
+
+        A length or an area that the edge of the terrain cuts off is none.
+        """
+        asked = self.wanted.front is not None or self.wanted.area is not None
+        return not (asked and travel_shares.lost(row))
+
     def measure(self, summary: Path, terrain: Optional[Path], row: Mapping[str, Any]) -> np.ndarray:
         """The outputs of a run, in the order of the targets; row: of the table of `slope study`."""
         run_ = deposit.read(run_folders.prefix_of(summary), terrain, lambda text: None)
@@ -96,9 +109,7 @@ class Observations:
             raise SlopeError(summary, "must have the grid of the other runs: cells cannot be varied here")
         outputs = self._of_map(run_, self.mapped) if self.mapped is not None else []
         if self.wanted.front is not None:
-            if row.get(travel_shares.DISTANCE) is None:
-                raise SlopeError(summary, "must have the distance of 99 % of the volume (travel: quantiles)")
-            outputs.append(row[travel_shares.DISTANCE])
+            outputs.append(front(summary, row, FRONTS[self.wanted.front_is][1]))
         if self.wanted.area is not None:
             covered = run_folders.load_raster(run_.prefix, "max_thickness").z > self.wanted.threshold
             outputs.append(float(covered.sum()) * run_.cell ** 2)
@@ -134,7 +145,7 @@ class Observations:
                 total = float(weight.sum()) * run_.cell ** 2
                 for k, volume in enumerate(self._zones(weight, run_.cell)):
                     relative(f"volume in zone {k + 1}", "m3", volume, total)
-        for name, unit, kind in (("99 % of the volume within", "m", "front"), ("area covered", "m2", "area"),
+        for name, unit, kind in ((FRONTS[wanted.front_is][0], "m", "front"), ("area covered", "m2", "area"),
                                  ("volume on the road", "m3", "volume")):
             if getattr(wanted, kind) is not None:
                 relative(name, unit, getattr(wanted, kind), kind=kind)
@@ -157,6 +168,17 @@ class Observations:
         """Volume (m3) in each band of distance."""
         band = np.searchsorted(self.edges, self.distance)
         return np.bincount(band.ravel(), thickness.ravel(), ZONES) * cell ** 2
+
+
+def front(summary: Path, row: Mapping[str, Any], column: str) -> float:
+    """The front (m) of a run of which it is known; 0 where nothing is left of the deposit."""
+    found = row.get(column)
+    if found is None and column == FRONTS["connected"][1]:
+        return 0.0
+    if found is None:
+        raise SlopeError(summary, "must have the distance of a share of the volume (travel: quantiles), which runs of "
+                         "older versions lack")
+    return found
 
 
 def distances(run_: deposit.Deposit) -> np.ndarray:

@@ -67,6 +67,7 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
                   "ranks": work.ranks, "jobs": work.jobs, "package": work.package, "collected": provenance.now(),
                   "machine": provenance.machine()},
         "largest": {key: largest(finished, key) for key in keys if finished},
+        "farthest": travel_shares.farthest(finished)["run"] if finished else None,
         "conservative": None, "size_error_unusable": questions.size_error_unusable, "ensemble": None, "step": None,
         "scatter": {name: known and {"deviation": known.deviation, "degrees_of_freedom": known.degrees_of_freedom}
                     for name, known in scatters.items()},

@@ -10,7 +10,7 @@ from shlex import quote
 from typing import Dict, Iterable, List, NamedTuple, Optional, Sequence
 
 from .. import disk
-from ..case import decks, site_choices, site_deck, site_warnings
+from ..case import decks, run_folders, site_choices, site_deck, site_warnings
 from ..case.site_budget import three_digits
 from ..case.site_choices import Choices
 from ..case.site_layers import OBSERVED, ROAD
@@ -175,9 +175,9 @@ def unusable(why: str, shortly: str = "") -> Sizes:
 def scored(folder: Path, setup: Setup) -> None:
     """Compare the governing run with the mapped deposit."""
     from ..deposit import score_run
-    about = disk.load_yaml(setup.output / "study.yaml", "what `slope study` wrote")
-    best = about["conservative"] or about["largest"]["front_m"]
-    row = next(row for row in about["runs"] if row["run"] == best["run"])
+    path = setup.output / "study.yaml"
+    name = run_folders.governing_run(path)
+    row = next(row for row in disk.load_yaml(path, "what `slope study` wrote")["runs"] if row["run"] == name)
     outline = folder / f"{OBSERVED}.csv"
     print(f"{row['run']} against the mapped deposit:")
     print(score_run.make(str(setup.output / row["summary"]).removesuffix(".summary.yaml"),

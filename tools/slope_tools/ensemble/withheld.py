@@ -31,7 +31,7 @@ class Facts(NamedTuple):
     failed: int
     moving: int                     # not at rest at their end
     left: float                     # share of the released volume that left before or beside the road, the largest
-    length: Optional[float]         # m, of the longest connected deposit
+    length: Optional[float]         # m, of the longest connected deposit; None: no run has one
     median: Optional[float]         # m, length that half of known events exceed; None: no set covers the mass
     size: str = ""                  # why the size error is not trusted; "": it is, or was not measured
 
@@ -52,7 +52,7 @@ def few_balls(facts: Facts) -> Optional[Reason]:
 
 
 def short(facts: Facts) -> Optional[Reason]:
-    if facts.length is None or facts.median is None or facts.length >= facts.median:
+    if facts.median is None or facts.length is not None and facts.length >= facts.median:
         return None
     return Reason(Kind.MOBILITY, facts.length, facts.median)
 

@@ -28,8 +28,9 @@ def text(reason: Reason) -> str:
     if reason.kind is Kind.BALLS:
         return f"on the road lies the volume of {number:.2g} balls, fewer than {bound:g}"
     if reason.kind is Kind.MOBILITY:
-        return (f"no run reaches {rounded(bound, 3)} m, as half of known events of this volume and height do; the "
-                f"longest connected deposit ends at {rounded(number, 3)} m")
+        longest = "there is no connected deposit" if reason.number is None else \
+            f"the longest connected deposit ends at {rounded(number, 3)} m"
+        return f"no run reaches {rounded(bound, 3)} m, as half of known events of this volume and height do; {longest}"
     if reason.kind is Kind.LEFT:
         return (f"{100 * number:.2g} % of the released volume left the terrain before or beside the road, more than "
                 f"{100 * bound:g} %")
@@ -60,7 +61,7 @@ def finer(case: Case, factor: float) -> str:
     """The same with so many times the balls."""
     number = round(MARGIN * factor * case.balls, -max(0, int(math.log10(max(factor * case.balls, 1))) - 1))
     if case.site:
-        return anew(case.site, f" --balls {number:.0f}")
+        return anew(case, f" --balls {number:.0f}")
     try:
         return f"the same command with --set d={float(case.variables['d']) / (MARGIN * factor) ** (1 / 3):.3g}"
     except (KeyError, ValueError):
@@ -85,12 +86,14 @@ def changed(case: Case, in_site: str, in_deck: str) -> str:
     """What must be changed, and what is run then."""
     if not case.site:
         return in_deck
-    return f"{in_site} in {quote(str(case.site))}/site.yaml, then: {anew(case.site)}"
+    return f"{in_site} in {quote(str(case.site))}/site.yaml, then: {anew(case)}"
 
 
-def anew(folder: Path, options: str = "") -> str:
-    """A site and its study once more; runs of the deck before are not mixed with new ones."""
-    site = quote(str(folder))
+def anew(case: Case, options: str = "") -> str:
+    """A site and its study, or ensemble, once more; runs of the deck before are not mixed with new ones."""
+    site = quote(str(case.site))
+    if case.sampled:
+        return f"tools/slope site {site}{options}; the same command with another -o"
     return (f"rm -r {site}/study {site}/sizes {site}/step; tools/slope site {site}{options} && "
             f"tools/slope study {site}")
 

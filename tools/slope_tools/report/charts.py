@@ -64,9 +64,9 @@ class Charts:
         data = self.data
         if not data.study or len(data.finished) < 2 or data.study.get("ensemble"):
             return []
-        far = travel_shares.DISTANCE if all(row.get(travel_shares.DISTANCE) is not None for row in data.finished) \
-            else "front_m"
-        wanted = [*([REMOVE] if REMOVE in data.finished[0] else []), far, "thickness_m"]
+        far = [travel_shares.DISTANCE] if all(row.get(travel_shares.DISTANCE) is not None for row in data.finished) \
+            else [] if any(map(travel_shares.lost, data.finished)) else ["front_m"]
+        wanted = [*([REMOVE] if REMOVE in data.finished[0] else []), *far, "thickness_m"]
         wanted += [name for name in (self.reference.quantities if self.reference else ()) if name not in wanted]
         name = self.variable()
         return [self.bars(key) if name is None else self.chart(key, name) for key in wanted]

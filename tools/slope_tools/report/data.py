@@ -8,7 +8,7 @@ from affine import Affine
 
 from .. import disk
 from ..case import logs, run_folders
-from ..deposit import deposit, rest
+from ..deposit import deposit, rest, travel_shares
 from ..ensemble.study_file import read_study
 from ..errors import SlopeError
 from ..survey import rasters
@@ -224,7 +224,7 @@ class Data:
         return found
 
     def governing(self):
-        """The run that represents the headline; else the one with the longest 99 % distance.
+        """The run that represents the headline; else the one that went farthest.
 
         Of an ensemble the one at the 90 % quantile of what counts.
         """
@@ -240,9 +240,7 @@ class Data:
                 return max(self.finished, key=lambda row: row[of])["run"]
             return min(self.finished, key=lambda row: abs(row[of] - at))["run"]
         if not best:
-            from ..deposit.travel_shares import DISTANCE
-            key = DISTANCE if all(row.get(DISTANCE) is not None for row in self.finished) else "front_m"
-            return max(self.finished, key=lambda row: row[key])["run"]
+            return travel_shares.farthest(self.finished)["run"]
         return best["run"]
 
     def _beside(self, shown):

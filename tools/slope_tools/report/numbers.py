@@ -148,7 +148,7 @@ def travel_card(data, numbers):
         who = data.label_of(names[far["run"]])
         farthest = f"; farthest ball {numbers('farthest ball', unit, far['value'], who)} m, {who}"
         if key not in largest:
-            left = any(row["lost_m3"] > 0.01 * row["released_m3"] for row in data.finished)
+            left = any(map(travel_shares.lost, data.finished))
             return {"what": what, "number": UNKNOWN, "unit": "", "note": f"a run {LOST if left else OLD}{farthest}"}
         row = names[largest[key]["run"]]
         value, angle, name = row[key], row[travel_shares.REACH], data.label_of(row)
@@ -160,7 +160,7 @@ def travel_card(data, numbers):
         connected = data.connected() and data.connected().distance
         if value is None:
             volume = data.result.summary["volume"]
-            left = volume["lost"] > 0.01 * volume["released"]
+            left = volume["lost"] > travel_shares.BEYOND * volume["released"]
             return {"what": what, "number": UNKNOWN, "unit": "", "note": f"a run {LOST if left else OLD}{farthest}"}
     note = ("in plan from the highest released ball, reach angle "
             f"{numbers('reach angle of 99 %', 'degrees', angle, name)} degrees")

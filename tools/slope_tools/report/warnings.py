@@ -3,11 +3,11 @@ import re
 from typing import Any, Dict
 
 from ..case.site_warnings import LARGE
+from ..deposit.travel_shares import BEYOND
 from ..deposit.volume import MUCH_BELOW
 from ..ensemble import headline
 
 SMALL = 1e-6            # of the released volume
-MUCH = 0.01             # of it: the distance that 99 % of it stay within is not known
 NAMED = 4               # runs that a line names
 NUMBER = re.compile(r"\d[\d.,]*(?:[eE][+-]?\d+)?")
 # what the page says in its own words here, or beside the maps: about single runs, and about all of them
@@ -105,7 +105,7 @@ def lost(data):
     left, released, _ = max(gone)
     text = (f"{'up to ' * (len(gone) > 1)}{left:,.1f} m3 ({100 * left / released:.2g} % of the released volume) left "
             "the grid or the box and are not on the maps")
-    many = any(volume > MUCH * whole for volume, whole, _ in gone)
+    many = any(volume > BEYOND * whole for volume, whole, _ in gone)
     if many:
         text += ", and how far they went is unknown: enlarge the terrain and the box"
     return [(RED if many else AMBER, text + of_runs([name for *_, name in gone], len(rows)) if data.study else text)]
