@@ -134,7 +134,7 @@ def test_the_cut_is_drawn_only_where_it_cuts():
 # --- one palette for each quantity ---
 
 def test_palettes_are_named_in_one_place():
-    names = set(figures.plt.colormaps()) - {"gray", "terrain"}      # of the shaded relief; a word of ours
+    names = set(figures.plt.colormaps()) - {"gray", "terrain", "seismic"}      # of the shaded relief; words of ours
     found = {path.name: re.findall(r'"([A-Za-z_]+)"', path.read_text(encoding="utf-8"))
              for path in (TOOLS / "slope_tools").rglob("*.py") if path.name != "palettes.py"}
     assert {name: used for name, words in found.items() if (used := names & set(words))} == {}

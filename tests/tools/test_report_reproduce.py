@@ -1,4 +1,4 @@
-"""slope report --reproduce, the settings on the page, and the table of what a report must hold against page and tests."""
+"""slope report --reproduce, the settings on the page, the table of what a report must hold against page and tests."""
 import ast
 import hashlib
 import html
@@ -24,8 +24,8 @@ def test_what_a_reviewer_needs(slope, here):
     assert (status, err) == (0, "") and set(here.rglob("*")) == before       # no page
     about = yaml.safe_load(Path("repeated/study.yaml").read_text())
     command = next(line for line in out.splitlines() if line.startswith("tools/slope study"))
-    assert command == ("tools/slope study in.tiny --set rolling=0,0.3 --set steps=1200 --repeat seed=1,2 --road road.csv "
-                       "--local --cut-angle 30 --mesh 4 -o repeated")
+    assert command == ("tools/slope study in.tiny --set rolling=0,0.3 --set steps=1200 --repeat seed=1,2 --road "
+                       "road.csv --local --cut-angle 30 --mesh 4 -o repeated")
     for k, row in enumerate(about["runs"], 1):
         told = yaml.safe_load(Path(f"repeated/{row['run']}/variables.yaml").read_text())["command"]
         assert f"cd repeated/{row['run']} && {told}    # run {k}, " in out

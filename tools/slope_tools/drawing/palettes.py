@@ -7,6 +7,7 @@ ENERGY = "Purples"
 PRESSURE = "Reds"
 SHARE = "RdPu"              # of runs, or of known events
 HEIGHT = "cividis"          # of balls at the release
+SAFETY = "RdYlBu"           # a factor of safety: red below 1
 DENSITY = "Blues"           # of a probability
 PATH = "plasma_r"           # of a share along a line, whose pale end must be seen on the relief
 

@@ -130,8 +130,8 @@ def below_ground(data) -> Optional[Caveat]:
 
 def thin(data) -> Optional[Caveat]:
     match = next((match for text in (data.study or {}).get("warnings") or () if (match := THIN.match(str(text)))), None)
-    return match and Caveat(THIN_BODY, f"The body is only {match[1]} of the model's balls thick on average: the "
-                                       "numbers are rough.")
+    return None if match is None else Caveat(
+        THIN_BODY, f"The body is only {match[1]} of the model's balls thick on average: the numbers are rough.")
 
 
 def shown(found: Sequence[Caveat], all_warnings: int) -> Tuple[List[str], str]:

@@ -19,7 +19,7 @@ OPTIONS = ("--headless", "--disable-extensions", "--use-gl=angle", "--use-angle=
 
 def browser() -> Optional[str]:
     """The program of a browser that prints; None where none is installed."""
-    return next((path for path in map(shutil.which, BROWSERS) if path), None)
+    return next((path for name in BROWSERS if (path := shutil.which(name))), None)
 
 
 def require_browser() -> str:

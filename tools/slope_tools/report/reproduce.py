@@ -1,4 +1,5 @@
 """What a reviewer needs to make a report's numbers again: commands, versions, checksums; as text."""
+import os
 import platform
 from importlib import metadata
 from pathlib import Path
@@ -67,7 +68,7 @@ def commands(data, runs: List[Run]) -> List[str]:
     found = []
     site = site_file(data.folder)
     if site:
-        place = quote(str(site.parent))
+        place = quote(os.path.relpath(site.parent))
         found += [f"tools/slope site {place}", f"tools/slope study {place}"]
     elif data.study and not data.study.get("ensemble"):
         found.append(of_study(data))
@@ -109,7 +110,7 @@ def sources(folder: Path) -> List[str]:
     place = site_file(folder)
     if not (about and place):
         return []
-    return ["", f"# checksums of the site's sources, of files in {quote(str(place.parent))}",
+    return ["", f"# checksums of the site's sources, of files in {quote(os.path.relpath(place.parent))}",
             *(f"{digest}  {name}" for name, digest in about.items())]
 
 

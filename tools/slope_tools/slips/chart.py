@@ -6,7 +6,7 @@ from typing import Dict, List, Sequence
 import numpy as np
 from matplotlib.colors import BoundaryNorm
 
-from ..drawing import figures, pictures
+from ..drawing import figures, palettes, pictures
 from ..drawing.figures import COLOURS, FULL, STYLE, plt
 from ..drawing.maps import RELIEF, contours, part, shade, window
 from ..geometry import extent
@@ -64,8 +64,9 @@ def draw_map(axes, raster: Raster, factor: np.ndarray, shown) -> None:
                 extent=where, interpolation="bilinear", **RELIEF)
     contours(axes, z, where, figures.contour_interval(z), alpha=0.7)
     values, _ = part(raster, factor, shown)
-    image = axes.imshow(np.ma.masked_invalid(values), cmap="RdYlBu", extent=where, alpha=0.75, interpolation="nearest",
-                        norm=BoundaryNorm(CLASSES, plt.get_cmap("RdYlBu").N, extend="both"))
+    image = axes.imshow(np.ma.masked_invalid(values), cmap=palettes.SAFETY, extent=where, alpha=0.75,
+                        interpolation="nearest",
+                        norm=BoundaryNorm(CLASSES, plt.get_cmap(palettes.SAFETY).N, extend="both"))
     axes.figure.colorbar(image, ax=axes, shrink=0.9, label="least factor of safety of the surfaces")
     axes.set(xlim=(shown[0], shown[2]), ylim=(shown[1], shown[3]), xlabel="x (m)", ylabel="y (m)", aspect="equal")
 
