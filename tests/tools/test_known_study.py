@@ -36,6 +36,9 @@ def test_a_mass_that_known_events_cover(large, capsys, monkeypatch):
     assert status == 0, err
     assert out.startswith("weighted by known events of this volume and height, rock_avalanches; --paper takes the ")
     assert "64 runs" in out
+    assert study(capsys, monkeypatch, "big --unconfined")[0] == 0
+    status, _, err = study(capsys, monkeypatch, "big --paper --unconfined")
+    assert status == 2 and "must be given with --mobility" in err
     status, out, _ = study(capsys, monkeypatch, "big --paper")
     assert status == 0 and out.startswith("by the paper's method, as asked for\n") and "64 runs" not in out
 

@@ -97,12 +97,12 @@ def run_folder(args):
             raise SlopeError("--paper", "must not be given with --sample or --from, which make an ensemble")
         return run_site_ensemble(args)
     refuse(args, NOT_OF_A_SITE)
-    condition_of(args)
     choices = site_choices.read(args.deck)
     site_study.check(args.deck, choices)
     volume = float(site_choices.found(args.deck)["body"]["volume"])
     why = "" if args.paper else known_study.why_not(args.deck, volume, bool(choices["observed"]["file"]))
     if args.paper or why:
+        condition_of(args)      # has no meaning here
         method = f"{known_study.PAPER}; {why}" if why else f"{known_study.PAPER}, as asked for"
         print(method)
         return run_site(args, method)
