@@ -42,10 +42,11 @@ COMMANDS = {
 
 
 class Parser(argparse.ArgumentParser):
-    """An ArgumentParser whose errors are one line, and to which -1e-3 is a number, no option."""
+    """An ArgumentParser whose errors are one line, which takes no abbreviations of options, as each new option would
+    break scripts that use them, and to which -1e-3 is a number, no option."""
 
     def __init__(self, *args, **kwargs):
-        super().__init__(*args, **kwargs)
+        super().__init__(*args, **{"allow_abbrev": False, **kwargs})
         self._negative_number_matcher = re.compile(r"-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
 
     def error(self, message):
