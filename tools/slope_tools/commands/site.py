@@ -1,4 +1,4 @@
-"""slope site: from the files of a GIS to a folder with terrain, body, deck and map, which `slope study` runs."""
+"""slope site: make a folder with terrain, body, deck and map from GIS files, ready for `slope study`."""
 import argparse
 import math
 import os
@@ -50,7 +50,7 @@ OF_BALL = 6 / math.pi       # density of a ball over that of the ground, in a cu
 EPILOG = """\
 units: metres, m3, degrees; minutes of the whole study on this machine, GB of all runs that are active at a time.
 
-examples: from three files of a GIS to a folder, then to a report:
+examples: a folder from three GIS files, then the study and its report:
   tools/slope site --terrain dem.tif --release release.geojson --depth 12 --road road.geojson -o mine
   tools/slope study mine
 
