@@ -11,7 +11,7 @@ CASE = "12_heap"
 HEAP = Run("12_heap/in.heap")
 SMALL = HEAP(length=12, height=11, once=40)
 ROLLING = 0, 0.05, 0.1, 0.2         # mu_r
-SEEDS = 1, 2, 3                     # an angle scatters by a degree or two
+SEEDS = range(1, 7)                 # an angle scatters by a degree or two
 D = 0.01                            # m
 AI = "Ai et al. (2011)"
 NO_SPRING = "no rolling spring, a rolling dashpot only"
@@ -62,10 +62,10 @@ def _keeps(name, which, deck, **more):
 CLAIMS = [
     _keeps("heap_rests_small", "A small heap, mu_r 0.2, rests", SMALL),
     _keeps("heap_rests", "A heap, mu_r 0.2, rests", HEAP(seed=1), quick=False),
-    Claim("heap_angle", "Angle at mu_r 0, 0.05, 0.1, 0.2, mean of three seeds: smallest step from one to the next",
+    Claim("heap_angle", "Angle at mu_r 0, 0.05, 0.1, 0.2, mean of six seeds: smallest step from one to the next",
           "degrees", AI + ": it grows with the rolling resistance",
           tuple(HEAP(seed=seed, rolling=mu) for mu in ROLLING for seed in SEEDS), smallest_step, AtLeast(1.0),
           Control("neither rolling spring nor dashpot: mu_r limits nothing",
                   tuple(HEAP(NOTHING, rolling=mu) for mu in ROLLING)),
-          quick=False),
+          quick=False, remark="Three seeds, as before, gave 0.7 degrees from 0.1 to 0.2, within their scatter."),
 ]
