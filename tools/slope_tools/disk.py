@@ -16,18 +16,32 @@ from .errors import SlopeError
 
 def write(path, content):
     """Write a file of text or bytes: complete, or not touched."""
-    path = Path(path)
-    new = path.with_name(f".{path.name}.{os.getpid()}.new")
-    try:
+    with beside(path) as (new,):
         new.write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
-        flush(new)
-        os.replace(new, path)
-        flush(path.parent)
+
+
+@contextmanager
+def beside(*paths):
+    """Names to write files under, beside those asked for, which they take in this order once all are complete.
+
+    The last one is what makes them valid, and is named where they cannot be written.
+    """
+    paths = [Path(path) for path in paths]
+    new = [path.with_name(f".{path.name}.{os.getpid()}.new") for path in paths]
+    try:
+        yield new
+        for part in new:
+            flush(part)
+        for part, path in zip(new, paths):
+            os.replace(part, path)
+        for folder in {path.parent for path in paths}:
+            flush(folder)
     except OSError as error:
-        raise SlopeError(path, f"cannot be written: {error.strerror}") from error
+        raise SlopeError(paths[-1], f"cannot be written: {error.strerror or error}") from error
     finally:
-        with suppress(OSError):     # a read-only file system refuses this too
-            new.unlink(missing_ok=True)
+        for part in new:
+            with suppress(OSError):     # a read-only file system refuses this too
+                part.unlink(missing_ok=True)
 
 
 def sha256(path) -> str:
@@ -142,6 +156,16 @@ def check_folder(folder):
         raise SlopeError("-o", "must be a folder", folder)
     if not folder.resolve().parent.is_dir():
         raise SlopeError("-o", "must be in an existing folder", folder)
+
+
+def check_file(path, suffix, inputs=(), called="an input"):
+    """Raise SlopeError if a result cannot have that name, before the work is done; inputs: what it must not be."""
+    if path.suffix != suffix or path.is_dir():
+        raise SlopeError("-o", f"must be a file that ends in {suffix}", path)
+    if not path.parent.is_dir():
+        raise SlopeError("-o", "must be in an existing folder", path)
+    if any(path.exists() and Path(one).exists() and path.samefile(one) for one in inputs):
+        raise SlopeError("-o", f"must not be {called}", path)
 
 
 def plain(value):

@@ -6,7 +6,8 @@ from pathlib import Path
 from shapely.geometry import box
 
 from ..case.decks import quoted, warn_of_name
-from ..errors import SlopeError, printer
+from ..disk import check_file
+from ..errors import printer
 from ..survey import polygons, rasters, vectors
 from ..survey.crs import as_crs
 
@@ -49,13 +50,7 @@ def add_parser(commands, **kwargs):
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints what was written and the line for the deck."""
     start = time.monotonic()
-    if args.output.suffix != ".csv" or args.output.is_dir():
-        raise SlopeError("-o", "must be a file that ends in .csv", args.output)
-    if not args.output.parent.is_dir():
-        raise SlopeError("-o", "must be in an existing folder", args.output)
-    source = Path(vectors.source(args.input).path)
-    if args.output.exists() and source.exists() and args.output.samefile(source):
-        raise SlopeError("-o", "must not be the input", args.output)
+    check_file(args.output, ".csv", [vectors.source(args.input).path], "the input")
     crs = as_crs("--assign-crs", args.crs) if args.crs else None
     place = rasters.read_place(args.terrain)
     warn = printer("polygon")

@@ -3,6 +3,7 @@ import argparse
 from pathlib import Path
 
 from ..case.decks import quoted
+from ..disk import check_file
 from ..errors import SlopeError
 from ..options import number
 from ..survey import quake_motion as motions, quake_records as records
@@ -61,13 +62,7 @@ def run(args):
 
 def check(args):
     """The numbers, what would be overwritten, and where nothing can be written, before there is any work."""
-    if args.output.suffix != ".txt" or args.output.is_dir():
-        raise SlopeError("-o", "must be a file that ends in .txt", args.output)
-    if not args.output.parent.is_dir():
-        raise SlopeError("-o", "must be in an existing folder", args.output)
-    for record in args.records:
-        if args.output.exists() and Path(record).exists() and args.output.samefile(record):
-            raise SlopeError("-o", "must not be a record", args.output)
+    check_file(args.output, ".txt", args.records, "a record")
     for name in ("peak", "scale"):
         value = getattr(args, name)
         if value is not None and not (value > 0 if name == "peak" else value != 0):

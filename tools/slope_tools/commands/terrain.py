@@ -3,6 +3,7 @@ import argparse
 from pathlib import Path
 
 from ..case.decks import quoted, warn_of_name
+from ..disk import check_file
 from ..errors import SlopeError, printer
 from ..options import number, whole
 from ..survey import local_terrain, rasters
@@ -67,13 +68,7 @@ def run(args):
 
 def check(args):
     """Check what can be checked before any reading; return what is wanted."""
-    if args.output.suffix != ".asc" or args.output.is_dir():
-        raise SlopeError("-o", "must be a file that ends in .asc", args.output)
-    if not args.output.parent.is_dir():
-        raise SlopeError("-o", "must be in an existing folder", args.output)
-    for path in args.inputs:
-        if args.output.exists() and Path(path).exists() and args.output.samefile(path):
-            raise SlopeError("-o", "must not be an input", args.output)
+    check_file(args.output, ".asc", args.inputs)
     origin = None
     if args.origin != ["auto"]:
         try:

@@ -4,7 +4,6 @@ The deck's own format, which `region polygon` reads and write() writes: rings of
 rings, # starts a comment. A point is inside if it is inside an odd number of rings, so that holes are rings, too.
 """
 import logging
-import os
 import re
 from pathlib import Path
 from typing import List, NamedTuple, Tuple
@@ -17,6 +16,7 @@ from shapely.geometry import MultiPolygon, Polygon, box
 from shapely.ops import unary_union
 from shapely.validation import explain_validity
 
+from .. import disk
 from ..errors import SlopeError
 from ..geometry import extent, numbers, polygons_of
 from . import vectors
@@ -326,15 +326,6 @@ def write(path, geometry, raster):
     rounded = map_points(geometry, lambda points: np.round(points, DIGITS) + 0.0)  # + 0.0 because of -0.0
     if rounded.is_valid and rounded.area > 0:
         geometry = rounded
-    path = Path(path)
-    new = path.with_name(f".{path.name}.{os.getpid()}.new")
-    try:
-        with open(new, "w", encoding="utf-8") as out:
-            out.write(_place_line(raster) + "\n")
-            out.write("\n".join("".join(f"{x!r},{y!r}\n" for x, y in ring.tolist()) for ring in rings_of(geometry)))
-        os.replace(new, path)
-    except OSError as error:
-        raise SlopeError(path, f"cannot be written: {error.strerror}") from error
-    finally:
-        new.unlink(missing_ok=True)
+    rings = "\n".join("".join(f"{x!r},{y!r}\n" for x, y in ring.tolist()) for ring in rings_of(geometry))
+    disk.write(path, f"{_place_line(raster)}\n{rings}")
     return geometry

@@ -1,10 +1,10 @@
 """A ground motion from records of its components, and its files."""
-import os
 from typing import NamedTuple, Optional, Sequence
 
 import numpy as np
 import yaml
 
+from .. import disk
 from ..errors import SlopeError
 from . import quake_motion as motions, quake_records as records
 from .quake_records import GAL
@@ -62,20 +62,11 @@ def write(path, motion, about):
     spectrum = "period,x,y,z\n" + "".join(
         f"{period:g},{x:.6g},{y:.6g},{z:.6g}\n" for period, (x, y, z) in
         zip(motions.PERIODS, np.asarray(motions.spectrum(motion)) / GAL))
-    texts = {path: head + rows, path.with_suffix(".yaml"): yaml.safe_dump(about, sort_keys=False),
-             path.with_suffix(".spectrum.csv"): spectrum}
-    picture = path.with_suffix(".png")
-    beside = {final: final.with_name(final.name + ".tmp") for final in (*texts, picture)}
-    try:
-        for final, content in texts.items():
-            beside[final].write_text(content, encoding="utf-8")
+    texts = {path.with_suffix(".spectrum.csv"): spectrum,
+             path.with_suffix(".yaml"): yaml.safe_dump(about, sort_keys=False), path: head + rows}
+    with disk.beside(path.with_suffix(".png"), *texts) as (picture, *new):
+        for part, content in zip(new, texts.values()):
+            part.write_text(content, encoding="utf-8")
         title = (f"{about['peak_gal']:.4g} gal" if about["peak_gal"] > 0 else
                  f"vertical only, {about['axes']['z']['acceleration_gal']:.4g} gal")
-        quake_charts.draw(beside[picture], motion, f"{path.name}: {title}")
-        for final, part in beside.items():
-            os.replace(part, final)
-    except OSError as error:
-        raise SlopeError(path, f"cannot be written: {error.strerror}") from None
-    finally:
-        for part in beside.values():
-            part.unlink(missing_ok=True)
+        quake_charts.draw(picture, motion, f"{path.name}: {title}")

@@ -20,6 +20,7 @@ from rasterio.errors import CRSError, NotGeoreferencedWarning, RasterioError
 from rich.console import Console
 from rich.progress import track
 
+from .. import disk
 from ..errors import SlopeError
 
 NODATA = -9999             # in written files
@@ -300,9 +301,7 @@ def write_asc_local(path, raster, about, exact=False):
         "nodata_cells": int(np.isnan(raster.z).sum()),
         **about,
     }
-    new_asc = path.with_name(f".{path.name}.{os.getpid()}.new")
-    new_yaml = new_asc.with_suffix(".new_yaml")
-    try:
+    with disk.beside(path.with_suffix(".yaml"), path) as (new_yaml, new_asc):
         with open(new_asc, "w", encoding="ascii") as out:
             digits = 15 if exact else 12
             form = "{!r}".format if exact else "{:.3f}".format
@@ -313,13 +312,6 @@ def write_asc_local(path, raster, about, exact=False):
         with open(new_yaml, "w", encoding="utf-8") as out:
             out.write(f"# About {path.name}. Metres; east = x + origin east, north = y + origin north.\n")
             yaml.safe_dump(sidecar, out, sort_keys=False)
-        os.replace(new_yaml, path.with_suffix(".yaml"))
-        os.replace(new_asc, path)
-    except OSError as error:
-        raise SlopeError(path, f"cannot be written: {error.strerror}") from error
-    finally:
-        new_asc.unlink(missing_ok=True)
-        new_yaml.unlink(missing_ok=True)
     return sidecar
 
 
@@ -329,11 +321,9 @@ def write_geotiff(path, bands, raster):
     It lies at the CRS coordinates, transform plus offset; without a CRS at the local ones. Doubles, so that sums over
     the cells are those of the array. The file is complete or not touched. Raises SlopeError where it cannot be written.
     """
-    path = Path(path)
-    new = path.with_name(f".{path.name}.{os.getpid()}.new")
     rows, columns = next(iter(bands.values())).shape
     try:
-        with warnings.catch_warnings(), rasterio.Env():
+        with disk.beside(path) as (new,), warnings.catch_warnings(), rasterio.Env():
             warnings.simplefilter("ignore", NotGeoreferencedWarning)
             with rasterio.open(new, "w", driver="GTiff", height=rows, width=columns, count=len(bands), dtype="float64",
                                crs=raster.crs, transform=Affine.translation(*raster.offset) * raster.transform,
@@ -341,8 +331,5 @@ def write_geotiff(path, bands, raster):
                 for band, (name, values) in enumerate(bands.items(), 1):
                     out.write(np.where(np.isnan(values), NODATA, values), band)
                     out.set_band_description(band, name)
-        os.replace(new, path)
-    except (RasterioError, OSError) as error:
-        raise SlopeError(path, f"cannot be written: {getattr(error, 'strerror', None) or error}") from error
-    finally:
-        new.unlink(missing_ok=True)
+    except RasterioError as error:      # of those that are no OSError
+        raise SlopeError(path, f"cannot be written: {error}") from error
