@@ -26,18 +26,18 @@ def beside(*paths):
 
     The last one is what makes them valid, and is named where they cannot be written.
     """
-    paths = [Path(path) for path in paths]
-    new = [path.with_name(f".{path.name}.{os.getpid()}.new") for path in paths]
+    places = [Path(path) for path in paths]
+    new = [path.with_name(f".{path.name}.{os.getpid()}.new") for path in places]
     try:
         yield new
         for part in new:
             flush(part)
-        for part, path in zip(new, paths):
+        for part, path in zip(new, places):
             os.replace(part, path)
-        for folder in {path.parent for path in paths}:
+        for folder in {path.parent for path in places}:
             flush(folder)
     except OSError as error:
-        raise SlopeError(paths[-1], f"cannot be written: {error.strerror or error}") from error
+        raise SlopeError(places[-1], f"cannot be written: {error.strerror or error}") from error
     finally:
         for part in new:
             with suppress(OSError):     # a read-only file system refuses this too
