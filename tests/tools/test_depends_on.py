@@ -21,7 +21,7 @@ from slope_tools.ensemble import dependencies, jobs  # noqa: E402
 # --- options of the commands that make runs ---
 
 # values of variables: the name of a run's folder
-CHOSEN = {"set", "vary", "sample", "fit", "design", "seed", "repeat", "converge", "runs"}
+CHOSEN = {"set", "vary", "sample", "fit", "paper", "design", "seed", "repeat", "converge", "runs"}
 FOLLOWED = {"deck", "lmp"}              # dependencies.py
 PLACE = {"output", "help", "dry_run"}   # where to, or no run
 ONE_RESULT = {"np", "jobs", "launcher", "engine", "slurm"}      # how it is run: the same but for rounding

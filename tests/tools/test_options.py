@@ -1,6 +1,8 @@
 """Types of options on the command line: what they take, and the one line for what they do not."""
 import argparse
 import re
+import shlex
+from pathlib import Path
 
 import pytest
 
@@ -42,3 +44,26 @@ def test_no_option_has_the_words_of_argparse(words, capsys):
         cli.main(words.split())
     err = capsys.readouterr().err
     assert ended.value.code == 2 and err.count("\n") == 1 and "must be a whole number" in err and "'1e3'" in err
+
+
+@pytest.mark.parametrize("words, short", [("volume run --road r.csv --mesh 5 --cut 30", "--cut 30"),
+                                          ("study in.x --set d=1 -o out --dry", "--dry"),
+                                          ("site mine --vol 5", "--vol 5")])
+def test_abbreviations_are_no_options(words, short, capsys):
+    with pytest.raises(SystemExit) as ended:
+        cli.main(words.split())
+    err = capsys.readouterr().err
+    assert ended.value.code == 2 and err.count("\n") == 1 and "unrecognized" in err and short in err
+
+
+def test_the_two_commands_of_the_readme_are_of_files_that_are_here():
+    top = Path(__file__).parents[2]
+    lines = (top / "README.md").read_text().replace("$e", "inputs/20_embankment").splitlines()
+    site, = [shlex.split(line)[1:] for line in lines if line.startswith("    tools/slope site ")]
+    assert f"    tools/slope study {site[site.index('-o') + 1]}" in lines
+    parser = cli.Parser()
+    commands = parser.add_subparsers()
+    cli.importlib.import_module("slope_tools.commands.site").add_parser(commands)
+    args = parser.parse_args(site)
+    for path in [*args.terrain, args.release, args.road]:
+        assert (top / str(path)).is_file()

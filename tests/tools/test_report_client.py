@@ -146,11 +146,16 @@ def test_volumes_and_units_as_they_are_read():
 
 
 def test_what_the_runs_differ_in_is_said_without_names_of_variables():
-    data = SimpleNamespace(study={"study": 1}, repeats={"xoffset": ["0.5"]}, finished=[{}] * 8,
+    data = SimpleNamespace(study={"study": {}}, repeats={"xoffset": ["0.5"]}, finished=[{}] * 8,
                            settings={"rolling": ["0", "1"], "d": ["1", "2"], "zeta": ["1", "2"], "x": ["1"]})
     assert client_part.basis(data) == (
         "8 runs of a computer model of equal balls, which differ in the rolling resistance, the size of the model's "
         "balls and 1 other setting and, by chance, in how the balls lie at the start.")
+    data.study["study"]["method"] = "by the paper's method; no set of known events covers this volume, 900 m3"
+    assert client_part.basis(data).endswith(
+        "at the start. By the paper's method; no set of known events covers this volume, 900 m3.")
+    data.study["study"]["method"] = "weighted by known events"
+    assert client_part.basis(data).endswith("at the start.")
 
 
 def test_the_body_in_a_sentence():

@@ -19,32 +19,34 @@ from .errors import SlopeError
 from .provenance import version
 
 COMMANDS = {
-    "terrain": "survey rasters (GeoTIFF, ESRI ASCII) to the plain terrain.asc that decks read",
-    "polygon": "polygons (GeoJSON, shapefile, CSV, WKT) to the .csv in local metres that decks read",
-    "release": "the body that is released: slip surface below a polygon or from a scar, to a volume; lines of the deck",
-    "site": "from the files of a GIS to a folder with terrain, body, deck and map, which study runs",
-    "quake": "strong-motion records (K-NET, KiK-net, PEER AT2, CSV) to the motion of the ground that decks read",
-    "volume": "what must be removed from a road, per mesh cell and in total, above a cut surface",
-    "export": "every raster of a run as a GeoTIFF in the survey's coordinates, for a GIS",
-    "score": "a run's deposit against a mapped one: overlap, run-out, volume",
-    "study": "one deck over lists of its variables, several runs at a time: table, envelope, exceedance",
-    "calibrate": "which values of a deck's variables give a deposit that was observed, and how well they are known",
-    "sensitivity": "one variable of a deck at a time: what it does to the volumes, how far one run can be trusted",
-    "mobility": "how likely a mass goes beyond each point of its fall path, by how far known events went",
-    "stability": "slip surfaces with the least factor of safety below a terrain: map, bodies, table, warnings",
-    "fragility": "how likely the bodies of find_slip fail at a peak acceleration, and how often per year",
-    "bench": "how fast a collapse runs: against other codes, on larger terrains, on ranks, with more balls",
-    "crosscheck": "the same scenes in other codes: bounce, slide, roll, rolling resistance, a collapse",
-    "verify": "every case against closed forms and published numbers: a report to file",
-    "report": "one self-contained HTML page on a study or a run: maps, section, tables, warnings",
-    "travel": "where balls come to rest: cumulative distributions along and across the slope, over several runs",
+    "terrain": "convert survey rasters (GeoTIFF, ESRI ASCII, FG-GML) to the plain terrain.asc that decks read",
+    "polygon": "convert polygons (GeoJSON, shapefile, CSV, WKT) to the .csv in local metres that decks read",
+    "release": "define the body that is released, by a polygon and a depth or a volume, or by a scar",
+    "site": "make a folder with terrain, body, deck and map from GIS files, ready for study",
+    "quake": "convert strong-motion records (K-NET, KiK-net, PEER AT2, CSV) to the ground motion that decks read",
+    "volume": "compute the volume to remove from a road, in total and for each mesh cell",
+    "export": "write the rasters of a run as GeoTIFFs in the survey's coordinates",
+    "score": "compare a run's deposit with a mapped one: overlap, run-out, volume",
+    "study": "run a deck for many values of its variables: table, maps, conservative volume",
+    "calibrate": "find the values of a deck's variables that reproduce an observed deposit, and their uncertainty",
+    "sensitivity": "vary one variable of a deck at a time: its effect on the volumes, compared with chance",
+    "mobility": "estimate from known events how likely a mass passes each point of its fall path",
+    "stability": "find the slip surfaces with the least factor of safety below a terrain",
+    "fragility": "estimate how likely the bodies of find_slip fail at a peak acceleration, and how often per year",
+    "bench": "measure the speed: against other codes, with more ranks, balls and ground",
+    "crosscheck": "run the same scenes in other codes: bounce, slide, roll, rolling resistance, a collapse",
+    "verify": "check every case against closed forms and published numbers, and write a report",
+    "report": "write one self-contained HTML page on a study or a run: maps, section, tables, warnings",
+    "travel": "show where balls come to rest: cumulative distributions along and across the slope",
 }
 
 
 class Parser(argparse.ArgumentParser):
-    """An ArgumentParser whose errors are one line, and to which -1e-3 is a number, no option."""
+    """An ArgumentParser whose errors are one line, which takes no abbreviations of options, as each new option would
+    break scripts that use them, and to which -1e-3 is a number, no option."""
 
     def __init__(self, *args, **kwargs):
+        kwargs.setdefault("allow_abbrev", False)
         super().__init__(*args, **kwargs)
         self._negative_number_matcher = re.compile(r"-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
 

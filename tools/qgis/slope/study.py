@@ -62,11 +62,17 @@ class Study(Algorithm):
 
     def collect(self, asked, results):
         folder = self.site(asked)
-        show(folder / "study" if folder else Path(asked.output("OUTPUT")), results)
+        made = newest(folder) if folder else Path(asked.output("OUTPUT"))
+        show(made, results)
         if folder:
-            page = next((path for path in (folder / "report.html", folder / "study" / "report.html") if path.exists()),
-                        None)
+            page = next((path for path in (folder / "report.html", made / "report.html") if path.exists()), None)
             results.put(REPORT=page and str(page))
+
+
+def newest(site):
+    """The folder of a site's last study: by the paper's method, or an ensemble that known events weight."""
+    tables = [site / name / "study.yaml" for name in ("study", "ensemble")]
+    return max((path for path in tables if path.exists()), key=lambda path: path.stat().st_mtime).parent
 
 
 def show(folder, results):

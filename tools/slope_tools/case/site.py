@@ -23,6 +23,8 @@ from .site_choices import Choices, Derived
 from .site_folder import BODY, BODY_DECK, MAP, TERRAIN
 from .site_layers import Layers, Shown, advice, read_layers, swapped
 
+# field balls of masses that known events cover, in cube roots of the volume: doc/src/events.rst, both events
+OF_EVENTS = 0.0455
 THROUGH = 0.6495          # half of 1.299, see field_diameter()
 
 
@@ -30,6 +32,8 @@ class Machine(NamedTuple):
     """With what a site is tried, and its study will run."""
     lmp: Optional[Path]     # None: there is none, nothing is tried
     jobs: int               # runs at a time
+    # m3 of a body -> runs of an ensemble weighted by known events; 0: none cover it
+    points: Callable[[float], int] = lambda volume: 0
 
 
 class Made(NamedTuple):
@@ -127,6 +131,8 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
                             layers.structures, layers.lines, layers.motion)
     trial, reached = tried(choices, parts, found, new, machine, tell)
     model = choices["model"]
+    if model["field_ratio"] is None and machine.points(found.measures.volume):
+        model["field_ratio"] = OF_EVENTS
     if model["field_diameter"] is None and model["field_ratio"]:
         model["field_diameter"] = site_budget.three_digits(model["field_ratio"] * found.measures.volume ** (1 / 3))
     chosen = model["field_diameter"]
@@ -251,7 +257,8 @@ def settle(choices: Choices, parts: site_deck.Parts, found: release.Body, trial:
     model, balls = choices["model"], choices["balls"]
     model["speed"] = model["speed"] or site_budget.stiff_to(trial)
     model["duration"] = model["duration"] or site_budget.duration(trial)
-    size = site_budget.size(choices, parts.body.volume, trial, machine.jobs, raster.z.size)
+    size = site_budget.size(choices, parts.body.volume, trial, machine.jobs, raster.z.size,
+                            machine.points(found.measures.volume))
     balls["diameter"] = size.diameter
     model["field_diameter"] = field_diameter(choices, size.diameter)
     model["cell"] = model["cell"] or max(found.area.cell, site_budget.three_digits(size.diameter / 2))
@@ -281,13 +288,8 @@ def say_size(choices: Choices, size: Size, found: release.Body, machine: Machine
          f"{thick[1]:.1f} at most")
     tell(f"field balls of {choices['model']['field_diameter']:g} m (field_diameter): the roughness of the ground"
          + (f"; not {chosen:g} m, through which the smallest balls would fall" if chosen else ""))
-    study = choices["study"]
-    each = 1 + len(study["xoffset"])
-    runs = f"{size.runs} runs: {len(study['rolling'])} rolling resistances x {each} lattice positions"
-    if study["sizes"]:
-        runs += f", {len(study['sizes'])} sizes of balls x {each}"
     took = "" if size.seconds is None else f", about {site_budget.duration_text(size.seconds)} if nothing else runs"
-    tell(f"the study: {runs}; {machine.jobs} at a time{took}, {size.gigabytes:.2g} GB")
+    tell(f"the study: {size.text}; {machine.jobs} at a time{took}, {size.gigabytes:.2g} GB")
 
 
 # --- map ---

@@ -9,7 +9,7 @@ import re
 import resource
 import subprocess
 from pathlib import Path
-from typing import Callable, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Callable, List, NamedTuple, Optional, Tuple
 
 from .. import disk, processes
 from ..case import last_words, logs
@@ -52,12 +52,13 @@ class Trial(NamedTuple):
 
 
 class Size(NamedTuple):
-    """The balls of a site, and the time and memory of its standard study."""
+    """The balls of a site, and the time and memory of its study."""
     diameter: float
     balls: int
     runs: int
     seconds: Optional[float]    # of the whole study on this machine; None without a trial run
     gigabytes: float            # of all runs that are active at a time
+    text: str                   # the runs in words
 
 
 def time_step(d: float, speed: float, density: float) -> float:
@@ -124,23 +125,42 @@ def measure(folder: Path, deck: str, lmp: Path) -> Trial:
 
 # --- the size ---
 
-def plan(choices: Choices) -> List[Tuple[float, int]]:
-    """The runs of the standard study: (diameter as a factor of the site's, number of runs) of each part."""
+class Plan(NamedTuple):
+    """The runs that `slope study` makes of a site."""
+    parts: List[Tuple[float, int]]      # diameter as a factor of the site's, number of runs
+    half_step: bool                     # and one with half the time step
+    text: str
+
+    @property
+    def runs(self) -> int:
+        return sum(runs for _, runs in self.parts)
+
+
+def plan(choices: Choices, points: int = 0) -> Plan:
+    """points: of an ensemble that is weighted by known events; 0: the study by the paper's method."""
+    if points:
+        return Plan([(1.0, points)], False, f"{points} runs, weighted by known events (study --paper makes others)")
     study = choices["study"]
     each = 1 + len(study["xoffset"])
-    return [(1.0, each * len(study["rolling"])), *((float(factor), each) for factor in study["sizes"])]
+    parts = [(1.0, each * len(study["rolling"])), *((float(factor), each) for factor in study["sizes"])]
+    text = (f"{sum(runs for _, runs in parts)} runs: {len(study['rolling'])} rolling resistances x {each} lattice "
+            "positions")
+    if study["sizes"]:
+        text += f", {len(study['sizes'])} sizes of balls x {each}"
+    return Plan(parts, True, text)
 
 
-def study_seconds(d: float, volume: float, trial: Trial, speed: float, density: float,
-                  parts: Sequence[Tuple[float, int]], jobs: int) -> float:
-    """What the standard study takes on this machine, with balls of diameter d in a body of that volume (m3)."""
+def study_seconds(d: float, volume: float, trial: Trial, speed: float, density: float, wanted: Plan,
+                  jobs: int) -> float:
+    """What a study takes on this machine, with balls of diameter d in a body of that volume (m3)."""
     total = 0.0
-    for factor, runs in parts:
+    for factor, runs in wanted.parts:
         size = factor * d
         steps = trial.rest / time_step(size, speed, density)
         total += runs * (trial.setup + COLLECT + steps * volume / size ** 3 * trial.cost)
-    steps = 2 * trial.rest / time_step(d, speed, density)       # the run with half the time step
-    total += trial.setup + COLLECT + steps * volume / d ** 3 * trial.cost
+    if wanted.half_step:
+        steps = 2 * trial.rest / time_step(d, speed, density)
+        total += trial.setup + COLLECT + steps * volume / d ** 3 * trial.cost
     return total / jobs + REPORT
 
 
@@ -173,16 +193,16 @@ def duration(trial: Optional[Trial]) -> float:
     return max(LEAST_DURATION, 10.0 * math.ceil(PATIENCE * trial.rest / 10)) if trial else LONGEST
 
 
-def size(choices: Choices, volume: float, trial: Optional[Trial], jobs: int, cells: int) -> Size:
+def size(choices: Choices, volume: float, trial: Optional[Trial], jobs: int, cells: int, points: int = 0) -> Size:
     """The balls by the first of diameter, number, minutes, memory that is given; SlopeError if there are none such.
 
-    volume: of the body, m3; cells: of the terrain. The choices hold speed and density.
+    volume: of the body, m3; cells: of the terrain; points: see plan(). The choices hold speed and density.
     """
-    balls, model, parts = choices["balls"], choices["model"], plan(choices)
+    balls, model, wanted = choices["balls"], choices["model"], plan(choices, points)
 
     def seconds(d: float) -> float:
         assert trial is not None
-        return study_seconds(d, volume, trial, model["speed"], model["density"], parts, jobs)
+        return study_seconds(d, volume, trial, model["speed"], model["density"], wanted, jobs)
 
     if balls["diameter"]:
         d = balls["diameter"]
@@ -198,8 +218,8 @@ def size(choices: Choices, volume: float, trial: Optional[Trial], jobs: int, cel
     else:
         balls["number"] = DEFAULT
         d = three_digits((volume / DEFAULT) ** (1 / 3))
-    return Size(d, number_of(choices, volume, d), sum(runs for _, runs in parts), trial and seconds(d),
-                gigabytes(d, volume, cells, jobs))
+    return Size(d, number_of(choices, volume, d), wanted.runs, trial and seconds(d), gigabytes(d, volume, cells, jobs),
+                wanted.text)
 
 
 def number_of(choices: Choices, volume: float, d: float) -> int:

@@ -1,4 +1,4 @@
-"""slope site: from the files of a GIS to a folder with terrain, body, deck and map, which `slope study` runs."""
+"""slope site: make a folder with terrain, body, deck and map from GIS files, ready for `slope study`."""
 import argparse
 import math
 import os
@@ -7,7 +7,7 @@ from shlex import quote
 from typing import Any, Dict
 
 from ..case import site, site_choices
-from ..ensemble import jobs
+from ..ensemble import jobs, known_study
 from ..errors import SlopeError, printer
 from ..options import count, number, whole
 from ..programs import find_lmp
@@ -42,14 +42,15 @@ ONE_OF = (("depth", "volume", "curvature"), ("diameter", "balls", "minutes", "me
           ("field_diameter", "field_ratio"))
 # --mobile: the Frank slide of 1903, doc/src/events.rst: its likeliest values, and the least rolling resistance that its
 # length and area allow
-MOBILE = {"friction": 6, "rolling": [0.05, 0.14], "spacing": 0.33, "field_ratio": 1 / 22, "field_restitution": 0.16}
+MOBILE = {"friction": 6, "rolling": [0.05, 0.14], "spacing": 0.33, "field_ratio": site.OF_EVENTS,
+          "field_restitution": 0.16}
 LIGHT = 100                 # kg/m3; less is not a ground's density, but one in t/m3 or relative to water's
 OF_BALL = 6 / math.pi       # density of a ball over that of the ground, in a cubic packing
 
 EPILOG = """\
 units: metres, m3, degrees; minutes of the whole study on this machine, GB of all runs that are active at a time.
 
-examples: from three files of a GIS to a folder, then to a report:
+examples: a folder from three GIS files, then the study and its report:
   tools/slope site --terrain dem.tif --release release.geojson --depth 12 --road road.geojson -o mine
   tools/slope study mine
 
@@ -176,9 +177,9 @@ def run(args):
         print(line)
     cores = args.jobs or jobs.cores()
     with jobs.signals_interrupt():
-        made = site.make(choices, folder, site.Machine(program(args.lmp), cores), lambda line: print(line, flush=True),
-                         printer("site"), site_map.draw, again=args.folder is not None,
-                         known=known)
+        made = site.make(choices, folder, site.Machine(program(args.lmp), cores, known_study.points),
+                         lambda line: print(line, flush=True), printer("site"), site_map.draw,
+                         again=args.folder is not None, known=known)
     print(f"written to {folder}: {' '.join(made.files)}")
     print(f"look at {folder / site.MAP}, then: tools/slope study {quote(str(folder))}")
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from ..case import decks, site_choices, site_deck
 from ..case.settings import check_settings, one_value_each
 from ..case.site_layers import ROAD
-from ..ensemble import intensity, repeats, results, sample, site_study
+from ..ensemble import intensity, known_study, repeats, results, sample, site_study
 from ..ensemble.size_error import SizeErrors
 from ..ensemble.study import check_names, check_thresholds, perform
 from ..errors import SlopeError
@@ -40,7 +40,8 @@ the same, weighted so that the runs end where known events of this volume and he
 such an ensemble of a site that `slope site ... -o mine` made, with its road and report:
   tools/slope study mine --sample 64 --mobility rock_avalanches
 
-everything of a site that `slope site ... -o mine` made: rolling resistances, repeats, sizes of balls, the report:
+everything of a site that `slope site ... -o mine` made, with its report: where known events cover the mass, an ensemble
+that is weighted by them; otherwise, or with --paper, rolling resistances, repeats and sizes of balls:
   tools/slope study mine
 
 Every run has a folder of its own in DIR, and is not repeated once it is finished. Over all runs: DIR/study.csv,
@@ -59,6 +60,9 @@ def add_parser(commands, **kwargs):
                         help="values of an index variable of the deck; A:B:STEP stands for A, A + STEP, ... up to B")
     add_sample(parser)
     add_mobility(parser)
+    parser.add_argument("--paper", action="store_true",
+                        help="of a site: the largest volume over the rolling resistances, the paper's method, also "
+                             "where a set of known events covers the mass")
     add_repeats(parser)
     parser.add_argument("--size-error", metavar="FILE", type=Path,
                         help="converge.yaml of `slope sensitivity --converge`: its error at the size of these balls "
@@ -80,8 +84,33 @@ def add_parser(commands, **kwargs):
 def run(args):
     """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
     if args.deck.is_dir() and (args.output is None or (args.deck / site_choices.NAME).exists()):
-        return run_site(args) if args.sample is None and args.fit is None else run_site_ensemble(args)
+        return run_folder(args)
+    if args.paper:
+        raise SlopeError("--paper", "must be given with the folder of a site", args.deck)
     return run_deck(args)
+
+
+def run_folder(args):
+    """The study of a site's folder: weighted by known events, where a set covers the mass, or by the paper's method."""
+    if args.sample is not None or args.fit is not None:
+        if args.paper:
+            raise SlopeError("--paper", "must not be given with --sample or --from, which make an ensemble")
+        return run_site_ensemble(args)
+    refuse(args, NOT_OF_A_SITE)
+    choices = site_choices.read(args.deck)
+    site_study.check(args.deck, choices)
+    volume = float(site_choices.found(args.deck)["body"]["volume"])
+    why = "" if args.paper else known_study.why_not(args.deck, volume, bool(choices["observed"]["file"]))
+    if args.paper or why:
+        condition_of(args)      # has no meaning here
+        method = f"{known_study.PAPER}; {why}" if why else f"{known_study.PAPER}, as asked for"
+        print(method)
+        return run_site(args, method)
+    args.sample, args.mobility = known_study.POINTS, known_study.SET
+    method = (f"weighted by known events of this volume and height, {known_study.SET}; --paper takes the largest "
+              "volume over the rolling resistances of site.yaml instead")
+    print(method)
+    return run_site_ensemble(args, "report.html", method)
 
 
 def run_deck(args):
@@ -127,11 +156,9 @@ def check_fit(args):
                              "equally good", " ".join(args.vary) if option == "vary" else getattr(args, option))
 
 
-def run_site(args):
+def run_site(args, method):
     """The standard study of a site's folder, and the report."""
-    refuse(args, NOT_OF_A_SITE)
-    condition_of(args)
-    done = site_study.run(args.deck, setup_of(args))
+    done = site_study.run(args.deck, setup_of(args), method)
     if done.study:
         write_report(done.study, args.deck / "report.html")
     if done.failed:
@@ -155,19 +182,19 @@ def write_report(study, page):
     print("\n".join(document.write(Asked(study, film=page.with_suffix(".mp4")), page)))
 
 
-def run_site_ensemble(args):
+def run_site_ensemble(args, page=f"{site_study.ENSEMBLE}.html", method=""):
     """An ensemble of a site's deck with its road, in a folder of the site's, and the report."""
     refuse(args, OF_A_ROAD)
     site, choices = args.deck, site_choices.read(args.deck)
     site_study.check(site, choices)
     args.deck = site / site_deck.NAME
-    args.vary = args.vary or ([] if args.fit else list(site_study.MOBILE))
-    args.site, args.output = site, args.output or site / site_study.ENSEMBLE
+    args.vary = args.vary or ([] if args.fit else list(known_study.VARY))
+    args.site, args.method, args.output = site, method, args.output or site / site_study.ENSEMBLE
     if choices["road"]["file"]:
         args.road, args.cut_angle, args.mesh = site / ROAD, choices["road"]["cut_angle"], choices["road"]["mesh"]
     run_deck(args)
     if not args.dry_run:
-        write_report(args.output, site / f"{site_study.ENSEMBLE}.html")
+        write_report(args.output, site / page)
 
 
 def run_ensemble(args, settings, repeated, thresholds, defaults, condition):
@@ -190,6 +217,6 @@ def run_ensemble(args, settings, repeated, thresholds, defaults, condition):
     several = sample.settings_of(todo)
     setup = setup_of(args)
     questions = results.Questions(several, repeated, thresholds, None, ensemble.Order(plan, of, levels, condition),
-                                  site=getattr(args, "site", None))
+                                  site=getattr(args, "site", None), method=getattr(args, "method", ""))
     perform(setup, {**several, **repeated}, todo, lambda todo, work: results.collect(setup, questions, todo, work),
             begin=lambda: sample.keep(args.output, plan))

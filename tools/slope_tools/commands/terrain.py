@@ -34,8 +34,8 @@ def add_parser(commands, **kwargs):
     parser.add_argument("-o", dest="output", metavar="OUT.asc", required=True, type=Path,
                         help="the terrain; OUT.yaml beside it is its sidecar")
     parser.add_argument("--crs", metavar="EPSG:n",
-                        help="wanted CRS, in metres: an input in another CRS is reprojected to it (bilinear); an input "
-                             "without a CRS cannot be, and is taken to be in this one")
+                        help="wanted CRS, in metres: an input in another CRS is reprojected to it (bilinear); "
+                             "the coordinates of an input that names no CRS are taken to be in this one")
     parser.add_argument("--assign-crs", metavar="EPSG:n",
                         help="the coordinates of the inputs are in this CRS, whatever their tags say (not of FG-GML); "
                              "--crs may then reproject them")

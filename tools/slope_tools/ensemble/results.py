@@ -41,6 +41,7 @@ class Questions(NamedTuple):
     site: Optional[Path] = None                     # folder of the site whose study it is
     sizes: Optional[Path] = None                    # converge.yaml of the runs with balls of several sizes
     step: Optional[step_check.Step] = None          # the run with half the time step
+    method: str = ""                                # of a site's study, in words
 
 
 def collect(setup: Setup, questions: Questions, todo, work) -> None:
@@ -64,8 +65,8 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
     keys += [key for key in (travel_shares.DISTANCE, "connected_m") if key in names]
     about = {
         "study": {"deck": deck.name, "set": settings, "repeat": repeated, "runs": len(rows), "finished": len(finished),
-                  "ranks": work.ranks, "jobs": work.jobs, "package": work.package, "collected": provenance.now(),
-                  "machine": provenance.machine()},
+                  "method": questions.method, "ranks": work.ranks, "jobs": work.jobs, "package": work.package,
+                  "collected": provenance.now(), "machine": provenance.machine()},
         "largest": {key: largest(finished, key) for key in keys if finished},
         "farthest": travel_shares.farthest(finished)["run"] if finished else None,
         "conservative": None, "size_error_unusable": questions.size_error_unusable, "ensemble": None, "step": None,

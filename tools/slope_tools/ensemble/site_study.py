@@ -24,8 +24,6 @@ from .step_check import HALF, QUANTITY, Step
 
 # folders in the site's
 SIZES, STEP, STUDY, SCORE, ENSEMBLE = "sizes", "step", "study", "score", "ensemble"
-# --vary of an ensemble of a site, unless it is given: masses from as sluggish as the defaults to rock avalanches
-MOBILE = ("friction=9:29", "rolling=0.01:0.14", "spacing=0.37:1", "xoffset=0:0.99")
 THRESHOLDS = (0.1, 0.5, 1.0)        # m, of the maps of exceedance
 
 
@@ -40,16 +38,16 @@ class Done(NamedTuple):
     failed: Optional[Exception]             # what failed beside it, to be raised once the report is there
 
 
-def run(folder: Path, engine: Setup) -> Done:
+def run(folder: Path, engine: Setup, method: str) -> Done:
     """Make or continue all runs of a site, and their results.
 
-    engine: how the runs are made; its deck, output and road do not count. Raises SlopeError on bad input, and if no run
-    of the study finished.
+    engine: how the runs are made; its deck, output and road do not count; method: of the study, in words. Raises
+    SlopeError on bad input, and if no run of the study finished.
     """
     choices = site_choices.read(folder)
     check(folder, choices)
     with disk.alone_in(folder):
-        return run_alone(folder, choices, engine)
+        return run_alone(folder, choices, engine, method)
 
 
 def check(folder: Path, choices: Choices) -> None:
@@ -69,7 +67,7 @@ def check(folder: Path, choices: Choices) -> None:
                              f"`slope site {quote(str(folder))}` rebuilds the deck")
 
 
-def run_alone(folder: Path, choices: Choices, engine: Setup) -> Done:
+def run_alone(folder: Path, choices: Choices, engine: Setup, method: str) -> Done:
     """run() after its checks, with the folder locked."""
     deck = folder / site_deck.NAME
     road = choices["road"]
@@ -87,7 +85,7 @@ def run_alone(folder: Path, choices: Choices, engine: Setup) -> Done:
     study.check_names(todo)
     questions = results.Questions(settings, repeated, THRESHOLDS, found.errors, size_error_unusable=found.unusable,
                                   notes=(*warnings_of(folder), *found.warnings), site=folder, sizes=found.path,
-                                  step=step)
+                                  step=step, method=method)
     failed: Optional[Exception] = None
     try:
         study.perform(setup, {**settings, **repeated}, todo,

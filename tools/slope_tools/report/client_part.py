@@ -6,7 +6,7 @@ from typing import Any, Dict, List, Optional, Sequence
 
 from .. import digits
 from ..deposit import travel_shares
-from ..ensemble import headline
+from ..ensemble import headline, known_study
 from . import body, caveats
 from .numbers import farthest_of
 
@@ -149,6 +149,9 @@ def basis(data) -> str:
         text += f", which differ in {listed(known)}"
     if data.repeats:
         text += f"{' and' if known else ', which differ'}, by chance, in how the balls lie at the start"
+    method = data.study["study"].get("method") or ""        # of a site's study
+    if method.startswith(known_study.PAPER):
+        text += f". {method[0].upper()}{method[1:]}"
     return f"{text}."
 
 

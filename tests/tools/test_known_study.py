@@ -1,0 +1,101 @@
+"""tools/slope study SITE: weighted by known events where a set covers the mass, else by the paper's method; said."""
+import numpy as np
+import pytest
+
+from run_helpers import called
+from test_site import gis  # noqa: F401
+from test_site_anew import inside, mine  # noqa: F401
+from tiny_collapse import LMP
+
+from slope_tools.case import site_budget, site_choices
+from slope_tools.ensemble import known_study, site_study
+from slope_tools.mobility import exceedance
+
+CELL = 20.0
+
+
+@pytest.fixture
+def large(inside, gis):  # noqa: F811
+    """A site of 0.3 million m3 on a slope of 25 degrees and a plain, without a trial run."""
+    x = np.arange(0, 3000, CELL) + CELL / 2
+    heights = np.maximum(900 - 0.47 * x, 430 - 0.02 * x)
+    rows = "\n".join(" ".join(f"{z:.2f}" for z in heights) for _ in range(40))
+    (gis / "large.asc").write_text(f"ncols {len(x)}\nnrows 40\nxllcorner 0\nyllcorner 0\ncellsize {CELL:g}\n{rows}\n")
+    (gis / "large.csv").write_text("200,300\n500,300\n500,500\n200,500\n")
+    inside("--terrain large.asc --crs EPSG:6677 --release large.csv --shape ellipsoid --volume 3e5 --balls 100 -o big")
+    return gis / "big"
+
+
+def study(capsys, monkeypatch, words):
+    monkeypatch.setenv("LMP", LMP)
+    return called(capsys, ["study", *words.split(), "--dry-run"])
+
+
+def test_a_mass_that_known_events_cover(large, capsys, monkeypatch):
+    status, out, err = study(capsys, monkeypatch, "big")
+    assert status == 0, err
+    assert out.startswith("weighted by known events of this volume and height, rock_avalanches; --paper takes the ")
+    assert "64 runs" in out
+    assert study(capsys, monkeypatch, "big --unconfined")[0] == 0
+    status, _, err = study(capsys, monkeypatch, "big --paper --unconfined")
+    assert status == 2 and "must be given with --mobility" in err
+    status, out, _ = study(capsys, monkeypatch, "big --paper")
+    assert status == 0 and out.startswith("by the paper's method, as asked for\n") and "64 runs" not in out
+
+
+def test_a_mass_that_no_set_covers(mine, capsys, monkeypatch):  # noqa: F811
+    status, out, err = study(capsys, monkeypatch, "mine")
+    assert status == 0, err
+    volume = site_choices.found(mine)["body"]["volume"]
+    assert out.startswith("by the paper's method; no set of known events covers this volume, "
+                          f"{volume:,.0f} m3; ours has 0.1 to 498 million m3\n")
+
+
+@pytest.mark.parametrize("words, line", [
+    ("mine --paper --sample 8", "--paper: must not be given with --sample or --from"),
+    ("mine --paper --from fit", "--paper: must not be given with --sample or --from"),
+    ("mine --vary friction=5:9", "--vary: must not be given with the folder of a site"),
+    ("mine/in.site --paper --set rolling=0 -o o", "--paper: must be given with the folder of a site, got mine/in")])
+def test_refused(mine, capsys, monkeypatch, words, line):  # noqa: F811
+    status, _, err = study(capsys, monkeypatch, words)
+    assert status == 2 and err.count("\n") == 1 and err.startswith(f"slope study: {line}"), err
+
+
+def test_why_not(large, monkeypatch):
+    assert known_study.why_not(large, 3e5, False) == ""
+    assert "a mapped deposit is given" in known_study.why_not(large, 3e5, True)
+    for volume in (9e4, 6e8):
+        assert "no set of known events covers this volume" in known_study.why_not(large, volume, False)
+        assert known_study.points(volume) == 0
+    monkeypatch.setattr(exceedance, "of_body",
+                        lambda *_: exceedance.Mobility(None, 0.3, None, {}, ["the fall is small"]))
+    assert known_study.why_not(large, 3e5, False) == "the fall is small"
+
+
+def test_the_ground_is_as_rough_as_that_of_real_events(large, mine):  # noqa: F811
+    """Where known events cover the mass: both of inputs/ had field balls of the cube root of the volume over 22."""
+    model = site_choices.read(large)["model"]
+    assert model["field_diameter"] == pytest.approx(3e5 ** (1 / 3) / 22, rel=0.01)
+    other = site_choices.read(mine)
+    assert other["model"]["field_ratio"] is None and other["model"]["field_diameter"] == other["balls"]["diameter"]
+
+
+def test_the_estimate_is_of_the_study_that_is_made(large):
+    choices = site_choices.read(large)
+    assert site_choices.found(large)["study"]["runs"] == known_study.POINTS == 64
+    plan = site_budget.plan(choices, 64)
+    assert plan.runs == 64 and not plan.half_step and "known events" in plan.text
+    plan = site_budget.plan(choices)
+    assert plan.runs == 18 and plan.half_step
+    assert plan.text == "18 runs: 3 rolling resistances x 3 lattice positions, 3 sizes of balls x 3"
+
+
+def test_the_method_is_in_the_results(mine, monkeypatch, capsys):  # noqa: F811
+    """It goes from the command to study.yaml through the questions."""
+    seen = []
+    monkeypatch.setattr(site_study.results, "collect", lambda setup, questions, *_: seen.append(questions.method))
+    monkeypatch.setattr(site_study.study, "perform", lambda setup, settings, todo, collect: collect(todo, None))
+    monkeypatch.setattr(site_study, "sizes", lambda *_: site_study.Sizes(None, (), None))
+    monkeypatch.setattr(site_study, "half_step", lambda *_: None)
+    _, out, _ = study(capsys, monkeypatch, "mine")
+    assert seen == [out.splitlines()[0]] and seen[0].startswith("by the paper's method; ")
