@@ -78,6 +78,27 @@ def test_no_page_is_emptier_than_a_third(pdf, tmp_path):
 
 
 @looked_at
+def test_no_title_and_no_row_is_alone(tmp_path):
+    """Wherever a table begins on a page, its title, caption, head and two rows are together."""
+    template = (TOOLS / "slope_tools" / "report" / "report.html.j2").read_text(encoding="utf-8")
+    style = re.sub(r"\{\{.*?\}\}", "", re.search(r"<style>.*?</style>", template, re.DOTALL)[0])
+    rows = "".join(f"<tr><td>row{i}</td></tr>" for i in range(5))
+    table = ("<h2>TITLE</h2><div class='wide'><table><caption>CAPTION<br>of two lines</caption>"
+             f"<thead><tr><th>HEAD<br>m</th></tr></thead><tbody>{rows}</tbody></table></div>")
+    page = tmp_path / "page.html"
+    page.write_text(f"<html>{style}" + "".join(
+        f"<section style='break-before: page'><div style='height: {mm}mm'></div>{table}</section>"
+        for mm in range(190, 246)), encoding="utf-8")
+    paper.write(page, tmp_path / "page.pdf")
+    found = [text.split() for text in words("pdftotext", "-layout", tmp_path / "page.pdf", "-").decode().split("\f")]
+    found = [[word for word in text if word in ("TITLE", "CAPTION", "HEAD") or word[:3] == "row"] for text in found]
+    assert sum("TITLE" in text for text in found) == 56 and any(text[-1:] == ["row2"] for text in found)
+    for text in found:
+        assert "TITLE" not in text or text[1:5] == ["CAPTION", "HEAD", "row0", "row1"], text
+        assert sum(word.startswith("row") for word in text) != 1, text
+
+
+@looked_at
 @pytest.mark.skipif(view.library() is None, reason="libjs-three is not installed")
 def test_the_still_picture_is_the_final_state(pdf, made):
     best = yaml.safe_load((made / "study.yaml").read_text())["conservative"]["run"]

@@ -7,7 +7,8 @@ from qgis.core import (QgsProcessing, QgsProcessingException, QgsProcessingParam
                        QgsProcessingParameterDefinition, QgsProcessingParameterEnum, QgsProcessingParameterExtent,
                        QgsProcessingParameterFeatureSource, QgsProcessingParameterFile,
                        QgsProcessingParameterFileDestination, QgsProcessingParameterFolderDestination,
-                       QgsProcessingParameterNumber, QgsProcessingParameterRasterLayer, QgsProcessingParameterString)
+                       QgsProcessingParameterMultipleLayers, QgsProcessingParameterNumber,
+                       QgsProcessingParameterRasterLayer, QgsProcessingParameterString)
 
 from . import layers
 
@@ -16,8 +17,9 @@ from . import layers
 class Option:
     """A parameter KEY of an algorithm and its option of the command line; flag "" is a positional argument.
 
-    kind: number, whole, choice (of choices), switch, text, words (several, a flag before each), file, folder, polygons,
-    line, raster, crs, extent, new folder, new file. own: its words are made by the algorithm. filter: of files.
+    kind: number, whole, numbers (several, one flag), choice (of choices), switch, text, words (several, a flag before
+    each), file, files (several, a flag before each), folder, polygons, line, raster, crs, extent, new folder, new file.
+    own: its words are made by the algorithm. filter: of files.
     """
     key: str
     flag: str
@@ -48,11 +50,13 @@ class Option:
             return QgsProcessingParameterEnum(*names, list(self.choices), False, self.default, optional, True)
         if self.kind == "switch":
             return QgsProcessingParameterBoolean(*names, bool(self.default), optional)
-        if self.kind in ("text", "words"):
+        if self.kind in ("text", "words", "numbers"):
             return QgsProcessingParameterString(*names, self.default, self.kind == "words", optional)
         if self.kind in ("polygons", "line"):
             geometry = QgsProcessing.TypeVectorPolygon if self.kind == "polygons" else QgsProcessing.TypeVectorLine
             return QgsProcessingParameterFeatureSource(*names, [geometry], self.default, optional)
+        if self.kind == "files":
+            return QgsProcessingParameterMultipleLayers(*names, QgsProcessing.TypeFile, self.default, optional)
         if self.kind == "raster":
             return QgsProcessingParameterRasterLayer(*names, self.default, optional)
         if self.kind == "crs":
@@ -82,6 +86,11 @@ class Option:
             return []
         if self.kind == "words":
             return [word for one in split(self.key, asked.text(self.key)) for word in (self.flag, one)]
+        if self.kind == "numbers":
+            return [self.flag, *split(self.key, asked.text(self.key))]
+        if self.kind == "files":
+            return [word for one in asked.algorithm.parameterAsFileList(*asked.of(self.key))
+                    for word in self._flagged(one)]
         return self._flagged(self.value(asked))
 
     def _flagged(self, value) -> List[str]:

@@ -3,15 +3,22 @@ from processing.core.ProcessingConfig import ProcessingConfig, Setting
 from qgis.core import QgsApplication, QgsProcessingProvider
 
 from . import process
+from .calibrate import Calibrate
 from .export import Export
+from .fragility import Fragility
+from .mobility import Mobility
+from .quake import Quake
 from .release import Release
 from .report import Report
+from .score import Score
 from .site import Site
+from .stability import Stability
 from .study import Study
 from .terrain import Terrain
 from .volume import Volume
 
-ALGORITHMS = (Terrain, Release, Site, Study, Report, Volume, Export)
+ALGORITHMS = (Terrain, Release, Site, Study, Report, Volume, Export, Mobility, Score, Calibrate, Quake, Stability,
+              Fragility)
 
 
 class Provider(QgsProcessingProvider):

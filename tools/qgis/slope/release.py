@@ -1,14 +1,14 @@
 """The body that is released: slope release."""
 from pathlib import Path
 
-from . import layers, process, terrain
+from . import process, terrain
 from .algorithm import Algorithm
 from .options import Option
-from .results import NewFolder, load
+from .results import load
+from .terrain import DEM, with_terrain
 
-TERRAIN_FILES = ("terrain.asc", "terrain.yaml")
 SHAPES = ("sphere", "ellipsoid", "plane", "slbl")
-DEM = Option("DEM", "", "raster", "Elevation model or terrain (heights in m)", needed=True, own=True)
+POLYGON = Option("POLYGON", "--polygon", "polygons", "Polygon where the mass is released")
 SHAPE = (
     Option("SHAPE", "--shape", "choice", "Shape of the slip surface (default: sphere; plane with a dip)",
            choices=SHAPES),
@@ -23,6 +23,10 @@ SCAR = (
     Option("SCAR_IS", "--scar-is", "choice", "What the scar raster holds (default: surface)",
            choices=("surface", "depth", "change")),
     Option("LEAST", "--least", "number", "Depths of the scar below this are none (m)", advanced=True))
+POLYGON_CRS = Option("POLYGON_CRS", "--assign-crs", "crs", "The polygon is in this CRS, whatever it says",
+                     advanced=True)
+LOCAL = Option("LOCAL", "--local", "switch", "The polygon is in the terrain's local metres, not in a CRS",
+               advanced=True)
 
 
 class Release(Algorithm):
@@ -41,9 +45,7 @@ class Release(Algorithm):
     section, the numbers (release.yaml), and the lines of the deck (release.deck.txt). The terrain is made first
     if the raster is not one of SLOPE."""
     options = (
-        DEM, Option("POLYGON", "--polygon", "polygons", "Polygon where the mass is released"), *SHAPE, *SCAR,
-        Option("LOCAL", "--local", "switch", "The polygon is in the terrain's local metres, not in a CRS",
-               advanced=True),
+        DEM, POLYGON, *SHAPE, *SCAR, POLYGON_CRS, LOCAL,
         Option("OUTPUT", "-o", "new folder", "Folder for the results", own=True))
     outputs = (("raster", "DEPTH_LAYER", "Depth of the body (m)"),
                ("raster", "SLIP_LAYER", "Ground without the body (m)"),
@@ -52,13 +54,8 @@ class Release(Algorithm):
                ("file", "DECK_LINES", "Lines of the deck"), ("file", "PICTURE", "Map and section"))
 
     def work(self, asked, results):
-        source = layers.raster_file(asked, "DEM")
-        ground = layers.slope_terrain(source)
         words = self.words(asked)
-        with NewFolder(asked.output("OUTPUT"), () if ground else TERRAIN_FILES) as folder:
-            if not ground:
-                ground = str(folder / TERRAIN_FILES[0])
-                terrain.make(source, ground, asked.feedback)
+        with with_terrain(asked) as (folder, ground):
             process.run(["release", ground, *words, "-o", folder / "release"], asked.feedback)
         terrain.show(results, "SLIP_LAYER", folder / "release.slip.asc", "ground", "ground without the body")
         terrain.show(results, "DEPTH_LAYER", folder / "release.depth.asc", "depth", "depth of the body (m)")

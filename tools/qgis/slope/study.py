@@ -9,6 +9,8 @@ from .results import load
 from .volume import CUT_ANGLE, MESH
 
 DECK = Option("DECK", "", "file", "Deck, or site.yaml of a site", needed=True)
+RANKS = Option("RANKS", "--np", "whole", "MPI ranks of each run", 1, least=1)
+JOBS = Option("JOBS", "--jobs", "whole", "Runs at a time (default: as many as the cores allow)", least=1)
 WITH_A_SITE = ("RANKS", "JOBS")     # all other choices are in its site.yaml
 
 
@@ -32,9 +34,7 @@ class Study(Algorithm):
         Option("SET", "--set", "words", "Values of the deck's variables, one NAME=V1,V2,... per line"),
         Option("REPEAT", "--repeat", "words", "Repeats, one NAME=V1,V2,... per line"),
         Option("ROAD", "--road", "polygons", "Road (polygons): the volume to remove from it"),
-        CUT_ANGLE, MESH,
-        Option("RANKS", "--np", "whole", "MPI ranks of each run", 1, least=1),
-        Option("JOBS", "--jobs", "whole", "Runs at a time (default: as many as the cores allow)", least=1),
+        CUT_ANGLE, MESH, RANKS, JOBS,
         Option("EXCEED", "--exceed", "text", "Thicknesses of the maps of exceedance, with commas between (m)",
                "0.1,0.5,1", advanced=True),
         Option("LOCAL", "--local", "switch", "The road is in the local metres of the run, not in a CRS", advanced=True),

@@ -14,6 +14,7 @@ CLEAR = QColor(255, 255, 255, 0)
 YELLOW_RED = ("#ffffb2", "#fed976", "#feb24c", "#fd8d3c", "#f03b20", "#bd0026", "#800026")
 VIRIDIS = ("#fde725", "#90d743", "#35b779", "#21918c", "#31688e", "#443983", "#440154")
 MAGMA = ("#fcfdbf", "#feb078", "#f1605d", "#b73779", "#721f81", "#2c115f", "#000004")
+RED_BLUE = ("#d73027", "#fc8d59", "#fee090", "#ffffbf", "#e0f3f8", "#91bfdb", "#4575b4")
 BLUES = ("#eff3ff", "#c6dbef", "#9ecae1", "#6baed6", "#4292c6", "#2171b5", "#084594")
 
 # kind: colours from the smallest to the largest class, unit, scale, whether 0 is nothing and stays clear
@@ -25,12 +26,15 @@ RASTERS = {
     "arrival": (VIRIDIS, "s", "even", False),
     "removal": (YELLOW_RED, "m", "thin to thick", True),
     "exceedance": (YELLOW_RED, "of the runs", "shares", True),
+    "factor": (RED_BLUE, "", "factors", False),
 }
 SERIES = {"thin to thick": (1, 2, 5), "powers": (1, 3)}     # upper bounds, times powers of ten
 GROUND = "ground"               # as a shaded relief
 MESH = "mesh cells"             # of `slope volume`, polygons
 OF_MESH = "remove"              # their column, m3
-SHARES = (0.05, 0.25, 0.5, 0.75, 1.0)
+# upper bounds that do not follow from the values
+FIXED = {"shares": (0.05, 0.25, 0.5, 0.75, 1.0),
+         "factors": (0.8, 0.9, 1.0, 1.1, 1.2, 1.3, 1.5, 2.0, 3.0, math.inf)}
 
 
 def apply(layer, kind):
@@ -56,8 +60,8 @@ def bounds_of(largest: float, scale: str, smallest: float = 0.0) -> List[float]:
     even: round numbers at equal distances from the smallest value, or from 0; of SERIES: CLASSES numbers of the series
     up to the largest value, so that thin and thick, slow and fast are told apart on one map.
     """
-    if scale == "shares":
-        return list(SHARES)
+    if scale in FIXED:
+        return list(FIXED[scale])
     if not largest > 0:
         return [1.0]
     if scale in SERIES:
@@ -95,7 +99,8 @@ def between(one: QColor, other: QColor, share: float) -> QColor:
 def labels(bounds: Sequence[float], unit: str, smallest: float) -> List[str]:
     """What the legend says of each class."""
     below = [smallest, *bounds[:-1]]
-    return [f"{low:g} to {high:g} {unit}" for low, high in zip(below, bounds)]
+    return [(f"above {low:g}" if high == math.inf else f"{low:g} to {high:g} {unit}").rstrip()
+            for low, high in zip(below, bounds)]
 
 
 def extremes(layer) -> Tuple[float, float]:
@@ -109,19 +114,21 @@ def classes(layer, kind):
     colours, unit, scale, zero_is_nothing = RASTERS[kind]
     smallest, largest = extremes(layer)
     bounds = bounds_of(largest, scale, 0.0 if zero_is_nothing else smallest)
-    start = 0.0 if zero_is_nothing else bounds[0] - (bounds[1] - bounds[0] if len(bounds) > 1 else bounds[0])
+    step = bounds[1] - bounds[0] if len(bounds) > 1 else bounds[0]
+    start = 0.0 if zero_is_nothing or scale in FIXED else bounds[0] - step
     names = labels(bounds, unit, start)
     items = [QgsColorRampShader.ColorRampItem(0.0, CLEAR, "none")] if zero_is_nothing else []
     # the last class has no upper bound: a value that is rounded up is not left out
     items += [QgsColorRampShader.ColorRampItem(high, colour, name) for high, colour, name in
               zip([*bounds[:-1], math.inf], shades(colours, len(bounds)), names)]
-    ramp = QgsColorRampShader(start, bounds[-1], None, QgsColorRampShader.Discrete)
+    last = largest if bounds[-1] == math.inf else bounds[-1]
+    ramp = QgsColorRampShader(start, last, None, QgsColorRampShader.Discrete)
     ramp.setColorRampItemList(items)
     shader = QgsRasterShader()
     shader.setRasterShaderFunction(ramp)
     renderer = QgsSingleBandPseudoColorRenderer(layer.dataProvider(), 1, shader)
     renderer.setClassificationMin(start)
-    renderer.setClassificationMax(bounds[-1])
+    renderer.setClassificationMax(last)
     renderer.setOpacity(0.8)
     return renderer
 

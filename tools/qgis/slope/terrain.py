@@ -1,28 +1,32 @@
 """The terrain that decks read, from an elevation model: slope terrain; and the same for other algorithms."""
+from contextlib import contextmanager
 from pathlib import Path
 
 from qgis.core import QgsProcessingException
 
-from . import process, styles
+from . import layers, process, styles
 from .algorithm import Algorithm
 from .options import Option
-from .results import TERRAIN_TAG, load, survey_tif
+from .results import TERRAIN_TAG, NewFolder, load, survey_tif
 
-
+FILES = ("terrain.asc", "terrain.yaml")
+DEM = Option("DEM", "", "raster", "Elevation model or terrain (heights in m)", needed=True, own=True)
 GROUND = (
     Option("CRS", "--crs", "crs", "CRS of the terrain, in metres (default: the model's)"),
+    Option("ASSIGNED_CRS", "--assign-crs", "crs", "The elevation model is in this CRS, whatever it says",
+           advanced=True),
     Option("CELL", "--cell", "number", "Cell size (m; default: the model's)"),
     Option("BOUNDS", "--bounds", "extent", "Crop to this box", own=True),
     Option("FILL", "--fill", "whole", "Fill holes of at most so many cells"))
 
 
 def bounds(asked, model):
-    """--bounds W S E N in the CRS of the terrain: that of the parameter CRS, else of the raster layer model."""
+    """--bounds W S E N in the CRS of the terrain: CRS, else ASSIGNED_CRS, else that of the raster layer model."""
     if not asked.parameters.get("BOUNDS"):
         return []
-    crs = asked.algorithm.parameterAsCrs(*asked.of("CRS"))
-    if not crs.isValid():
-        crs = asked.algorithm.parameterAsRasterLayer(*asked.of(model)).crs()
+    given = [asked.algorithm.parameterAsCrs(*asked.of(key)) for key in ("CRS", "ASSIGNED_CRS")]
+    crs = next((one for one in given if one.isValid()),
+               asked.algorithm.parameterAsRasterLayer(*asked.of(model)).crs())
     box = asked.algorithm.parameterAsExtent(*asked.of("BOUNDS"), crs)
     if box.isEmpty():
         raise QgsProcessingException(f"BOUNDS: must be a box, got {asked.text('BOUNDS')}")
@@ -35,9 +39,16 @@ def show(results, key, asc, kind, name):
                                   if kind == styles.GROUND else {}), kind, name)
 
 
-def make(source, asc, feedback):
-    """Make a terrain of an elevation model as it is: its CRS, its cells."""
-    process.run(["terrain", source, "-o", asc], feedback)
+@contextmanager
+def with_terrain(asked):
+    """The folder OUTPUT and the terrain that the raster DEM is, or one made of it there: its CRS, its cells."""
+    source = layers.raster_file(asked, DEM.key)
+    ground = layers.slope_terrain(source)
+    with NewFolder(asked.output("OUTPUT"), () if ground else FILES) as folder:
+        if not ground:
+            ground = str(folder / FILES[0])
+            process.run(["terrain", source, "-o", ground], asked.feedback)
+        yield folder, ground
 
 
 class Terrain(Algorithm):

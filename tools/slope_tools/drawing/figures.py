@@ -11,10 +11,12 @@ matplotlib.use("Agg")  # no display is needed
 
 from matplotlib import pyplot as plt  # noqa: E402  (after the backend is set)
 from matplotlib.font_manager import FontProperties  # noqa: E402
+from matplotlib.text import Text  # noqa: E402
 from matplotlib.textpath import TextToPath  # noqa: E402
 from matplotlib.ticker import MaxNLocator  # noqa: E402
 from matplotlib.transforms import Bbox  # noqa: E402
 
+from .. import digits  # noqa: E402
 from . import pictures  # noqa: E402
 
 FULL, WIDE, HALF = 7.0, 4.6, 3.42    # inches: the width of a page's text, of two thirds, of one of two side by side
@@ -37,6 +39,8 @@ def data_uri(figure, kind="png"):
     letters on the page, stays.
     """
     out = io.BytesIO()
+    for text in figure.findobj(Text):
+        text.set_text(digits.typeset(text.get_text()))
     figure.draw_without_rendering()
     figure.set_layout_engine("none")    # once more, and it would not be what was measured
     used = figure.get_tightbbox(figure.canvas.get_renderer())

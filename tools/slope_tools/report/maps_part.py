@@ -3,7 +3,7 @@ from typing import Any, Dict
 
 import numpy as np
 
-from .. import geometry
+from .. import digits, geometry
 from ..drawing import figures, palettes
 from ..survey.rasters import crs_name
 from . import figure_maps
@@ -46,7 +46,7 @@ class Maps:
         found = {"slip": None, "speed": None, "arrival": None}
         found["deposit"] = self.thickness(
             one.thickness, "Thickness of the deposit at the end", "Map of the deposit's thickness at the end",
-            f"Final thickness, {one.deposit.cell:g} m cells."
+            f"Final thickness, {digits.three(one.deposit.cell)} m cells."
             + ("" if not data.study else f" Run {data.number(one.name)} of the appendix."), figures.FULL)
         found["terrain"] = self.picture(
             figure_maps.terrain_map(layers._replace(shown=whole), layers.shown, self.crs), "Map of the terrain before",

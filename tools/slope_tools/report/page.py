@@ -205,8 +205,9 @@ class Page:
         variables = data.study and one.row.get("variables") or one.about.get("variables") or deck_variables(deck)
         digests = (one.marker.get("inputs") or {}) if deck else {}
         runs = f"study of {len(data.rows)} run{'s' * (len(data.rows) != 1)}" if data.study else "one run"
+        purpose = first.lstrip("# ").removesuffix("; made by slope site, yours to change") if first[:1] == "#" else ""
         return {"name": name, "title": f"Slope collapse: {name}", "what": f"Slope collapse, {runs}",
-                "deck_name": deck_name, "purpose": first.lstrip("# ") if first.startswith("#") else "",
+                "deck_name": deck_name, "purpose": purpose,
                 "deck": text, "variables": with_meanings(variables or {}, text),
                 "settings_lines": one.log.settings, "notes": one.log.notes,
                 "table": "\n".join(one.log.table),

@@ -5,6 +5,7 @@ from typing import Any, Dict
 from ..case.site_warnings import LARGE
 from ..deposit.travel_shares import BEYOND
 from ..deposit.volume import MUCH_BELOW
+from ..digits import rounded, to_three
 from ..ensemble import headline
 
 SMALL = 1e-6            # of the released volume
@@ -103,8 +104,8 @@ def lost(data):
     if not gone:
         return []
     left, released, _ = max(gone)
-    text = (f"{'up to ' * (len(gone) > 1)}{left:,.1f} m3 ({100 * left / released:.2g} % of the released volume) left "
-            "the grid or the box and are not on the maps")
+    text = (f"{'up to ' * (len(gone) > 1)}{rounded(to_three(left))} m3 ({100 * left / released:.2g} % of the released "
+            "volume) left the grid or the box and are not on the maps")
     many = any(volume > BEYOND * whole for volume, whole, _ in gone)
     if many:
         text += ", and how far they went is unknown: enlarge the terrain and the box"

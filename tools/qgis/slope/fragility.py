@@ -1,0 +1,55 @@
+"""How likely bodies fail at a peak acceleration: slope fragility."""
+from pathlib import Path
+
+from .algorithm import Algorithm
+from .options import Option
+from .results import load
+
+
+class Fragility(Algorithm):
+    """slope fragility"""
+
+    command = "fragility"
+    title = "Fragility in earthquakes"
+    about = """
+    How likely the bodies of the algorithm Slip surfaces fail at a peak acceleration (gal), and with a hazard curve, how
+    often per year.
+
+    Strengths are distributions: cohesion (Pa) and friction (degrees) as a number, LO:HI, normal:MEAN:DEVIATION:LO:HI,
+    lognormal:MEDIAN:DEVIATION_OF_LN:LO:HI. A body fails if it slides farther than a displacement (m) in one of the
+    motions, each scaled to the peak; or, without motions, if its factor of safety is below 1 with a constant
+    acceleration.
+
+    Tables fragility.csv and fragility.yaml, and a picture."""
+    options = (
+        Option("SLIPS", "", "folder", "Folder of the slip surfaces", needed=True),
+        Option("TERRAIN", "--terrain", "file", "Terrain of the search", needed=True, filter="Terrain (*.asc)"),
+        Option("DENSITY", "--density", "number", "Density of the ground (kg/m3)", needed=True),
+        Option("COHESION", "--cohesion", "text", "Cohesion (Pa), a number or a distribution", needed=True),
+        Option("FRICTION", "--friction", "text", "Friction angle (degrees), a number or a distribution", needed=True),
+        Option("WATER", "--water", "text", "Pore pressure over the weight per area (-), a number or a distribution"),
+        Option("CORRELATION", "--correlation", "number", "Between cohesion and friction, -1 to 1 (-)", least=-1.0,
+               advanced=True),
+        Option("PEAKS", "--peaks", "text", "Peak accelerations LO:HI or LO:HI:STEP (gal)", needed=True),
+        Option("RECORD", "--record", "files", "Motions of the ground, as slope quake wrote them (s, m/s2)"),
+        Option("VERTICAL", "--vertical", "switch", "With the vertical component of the motions", advanced=True),
+        Option("DISPLACEMENT", "--displacement", "number", "A body fails if it slides farther than this (m; default: "
+               "0.1)"),
+        Option("PSEUDO_STATIC", "--pseudo-static", "number", "Instead of motions: this share of the peak, constant "
+               "(-)"),
+        Option("HAZARD", "--hazard", "file", "Hazard curve: peak (gal) and exceedance per year",
+               filter="Table (*.csv)"),
+        Option("SAMPLE", "--sample", "whole", "Samples of the strength (default: 4096)", advanced=True),
+        Option("SEED", "--seed", "whole", "Seed of the samples (default: 1)", advanced=True),
+        Option("OUTPUT", "-o", "new folder", "Folder for the results"))
+    outputs = (("number", "MEDIAN", "Peak at which failure is as likely as not (gal)"),
+               ("number", "FREQUENCY", "Failures per year"), ("file", "TABLE", "Curves, CSV"),
+               ("file", "NUMBERS", "Numbers, YAML"), ("file", "PICTURE", "Curves"))
+
+    def collect(self, asked, results):
+        folder = Path(asked.output("OUTPUT"))
+        last = load(folder / "fragility.yaml")["curves"][-1]        # of any body
+        results.put(OUTPUT=str(folder), MEDIAN=(last["lognormal"] or {}).get("median_gal"),
+                    FREQUENCY=(last.get("annual_frequency") or {}).get("value"),
+                    TABLE=str(folder / "fragility.csv"), NUMBERS=str(folder / "fragility.yaml"),
+                    PICTURE=str(folder / "fragility.png"))

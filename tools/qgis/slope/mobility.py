@@ -1,0 +1,45 @@
+"""How far masses of this volume and height went: slope mobility."""
+from . import process
+from .algorithm import Algorithm
+from .options import Option
+from .release import LOCAL, POLYGON, POLYGON_CRS, SCAR, SHAPE
+from .results import load
+from .terrain import DEM, with_terrain
+
+
+class Mobility(Algorithm):
+    """slope mobility"""
+
+    command = "mobility"
+    title = "Mobility of known events"
+    about = """
+    The probability that a mass goes beyond each point of its fall path, by known events of its volume (m3) and fall
+    height (m). No run is needed.
+
+    The body is that of the algorithm for the body: a shape below a polygon, or a scar. Known events: 49 rock avalanches
+    of Canada, unless a table of others is given. The path is that of the steepest descent, or a line from the crown
+    down.
+
+    mobility.csv has the path (m) with the probability at each point; also a map, a profile and mobility.yaml."""
+    options = (
+        DEM, POLYGON, *SHAPE, *SCAR,
+        Option("ROAD", "--road", "polygons", "Road (polygons): how likely the mass reaches it"),
+        Option("PATH", "--path", "line", "Path from the crown down (default: steepest descent)"),
+        Option("CONFINED", "--confined", "switch", "The path is confined, a valley"),
+        Option("UNCONFINED", "--unconfined", "switch", "The path is not confined"),
+        Option("SET", "--set", "file", "Known events (default: 49 rock avalanches)", filter="Table (*.csv)",
+               advanced=True),
+        POLYGON_CRS, LOCAL, Option("OUTPUT", "-o", "new folder", "Folder for the results", own=True))
+    outputs = (("number", "AT_ROAD", "Probability of going beyond the road (-)"),
+               ("number", "VOLUME_OF_BODY", "Volume of the body (m3)"),
+               ("file", "TABLE", "Path with probabilities, CSV"), ("file", "PICTURE", "Map"),
+               ("file", "PROFILE", "Profile"))
+
+    def work(self, asked, results):
+        words = self.words(asked)
+        with with_terrain(asked) as (folder, ground):
+            process.run([self.command, ground, *words, "-o", folder], asked.feedback)
+        about = load(folder / "mobility.yaml")
+        results.put(OUTPUT=str(folder), AT_ROAD=(about["road"] or {}).get("exceedance"),
+                    VOLUME_OF_BODY=about["volume_m3"], TABLE=str(folder / "mobility.csv"),
+                    PICTURE=str(folder / "mobility_map.png"), PROFILE=str(folder / "mobility_profile.png"))
