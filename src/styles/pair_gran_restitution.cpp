@@ -197,6 +197,7 @@ void PairGranRestitution::init_style()
   for (const Fix *fix : compat::fixes_of_style(lmp, "freeze")) freeze_group_bit |= fix->groupbit;
 
   sizes_vary = !compat::fixes_of_style(lmp, "adapt").empty();
+  works.wanted = !compat::fixes_of_style(lmp, "energy/ledger").empty();
 
   table.find_ranges(freeze_group_bit);    // wall fixes announce themselves after
   walls.clear();
@@ -495,13 +496,19 @@ void PairGranRestitution::compute(int eflag, int vflag)
   const int nlocal = atom->nlocal, newton_pair = force->newton_pair;
   const MovingBalls balls = moving_balls();
   const MovingPartners partners = {balls, newton_pair ? INT_MAX : nlocal};
-  auto add_virial = [&](int i, int j, const Vector &f, const Vector &d) {
-    ev_tally_xyz(i, j, nlocal, newton_pair, 0.0, 0.0, f.x, f.y, f.z, d.x, d.y, d.z);
+  double kn = 0.0;
+  auto visit = [&](int i, int j, const Vector &f, const Vector &d) {
+    if (evflag) ev_tally_xyz(i, j, nlocal, newton_pair, 0.0, 0.0, f.x, f.y, f.z, d.x, d.y, d.z);
+    if (works.wanted)
+      works.add(i, j, atom->radius[i], atom->radius[j], kn, partners.share(j), f, d);
   };
-  ContactTally tally = tally_of(add_virial);
+  works.clear();
+  ContactTally tally = tally_of(visit);
+  const bool visited = evflag || works.wanted;
   for (size_t k = 0; k < lists.size(); k++) {
     const ContactLaw &law = table.law(k / 3);
-    lists[k].apply(law, dt, starting, balls, partners, evflag ? &tally : nullptr);
+    kn = law.kn;
+    lists[k].apply(law, dt, starting, balls, partners, visited ? &tally : nullptr);
   }
   fix_history->lists_used = true;
 }

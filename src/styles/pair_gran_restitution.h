@@ -20,6 +20,7 @@ PairStyle(gran/restitution,PairGranRestitution);
 #include "contact_law.h"
 #include "contact_list.h"
 #include "contact_table.h"
+#include "contact_works.h"
 
 #include <string>
 #include <vector>
@@ -73,6 +74,7 @@ class PairGranRestitution : public Pair, public ContactHistoryOwner {
   void watch_energy() override;
   void report_guards() override { guards.report(); }
   ContactGuards guards;
+  Slope::ContactWorks works;    // of fix energy/ledger, walls included
 
  protected:
   ContactTable table;

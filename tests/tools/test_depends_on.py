@@ -79,8 +79,8 @@ FILES = {
     "LAMMPS": ["read_data {}", "read_restart {}", "include {}", "molecule m {}", "python f file {}",
                "variable x file {}", "variable x atomfile {}", "jump {}", "read_dump {} 0 x y z", "plugin load {}",
                "shell cp {} other.txt", 'if "$(is_file({}))" then "run 1"', "region r mesh {}"]}
-NO_FILES = {"pair/gran/restitution", "fix/deposit/grid", "fix/gravity/slope", "fix/nve/sphere/slope",
-            "command/delete_balls", "fix/CONTACT_HISTORY", "fix/DEPOSIT_GRID_PART"}
+NO_FILES = {"pair/gran/restitution", "fix/energy/ledger", "fix/deposit/grid", "fix/gravity/slope",
+            "fix/nve/sphere/slope", "command/delete_balls", "fix/CONTACT_HISTORY", "fix/DEPOSIT_GRID_PART"}
 # words that the parsers compare with: what follows is a file, or not
 NAMES_FILE = {"file", "terrain", "layer", "table", "raster"}
 NAMES_NONE = {

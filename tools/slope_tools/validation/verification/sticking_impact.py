@@ -118,6 +118,7 @@ PLAIN = "scheme plain"
 
 # Largest errors: of the tangential velocity, its mean over the times in a step and at each time; of the spin; of the
 # normal restitution. Set after the runs: steps of a ninth to a thirteenth of a contact cannot do much better.
+SET_AFTER = "Bound set after the run; 0.02 (mean) and 0.04 (each) were aimed at."
 BOUNDS, ROLLING_BOUNDS = (0.12, 0.2, 0.06, 0.1, 0.01), (0.15, 0.3, 0.2, 0.25, 0.01)
 
 
@@ -131,7 +132,7 @@ def _claims(name, title, which, bounds=BOUNDS, **more):
             ("spin_each", "R w at each time", worst("largest", *SPINS)),
             ("e", "normal restitution at each time", worst("largest", "restitution"))), bounds):
         yield Claim(f"sticking_{name}_{key}", f"{title}: largest error of {text}", "", CONTINUOUS, tuple(which),
-                    got, AtMost(most), coarse, **more)
+                    got, AtMost(most), coarse, remark="" if key == "e" else SET_AFTER, **more)
 
 
 HITS = {partner: [MATRIX(partner=partner, ktkn=ratio) for ratio in RATIOS.values()] for partner in PARTNERS}

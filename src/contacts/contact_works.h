@@ -1,0 +1,82 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+/* The forces of the contacts in a step, kept until its end, and their work with the velocities of that time:
+   with these it is what velocity Verlet changes the kinetic energy by. No LAMMPS. Derivation:
+   doc/src/theory.rst. */
+
+#ifndef SLOPE_CONTACT_WORKS_H
+#define SLOPE_CONTACT_WORKS_H
+
+#include "vector3.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace Slope {
+
+class ContactWorks {
+ public:
+  static constexpr int FIXED = -1;    // number of a partner that does not move
+
+  struct Sum {
+    double spring, dashpot, sliding;    // work on the balls, J
+    double by_torque;                   // part of sliding that is the work of torques, J
+    double stored;                      // in the normal springs, J
+  };
+
+  bool wanted = false;
+
+  void clear() { forces.clear(); }
+
+  // f: on ball i, N; delta: from the partner to the ball, m; share: of the contact that is this rank's
+  void add(int i, int j, double ri, double rj, double kn, double share, const Vector &f,
+           const Vector &delta)
+  {
+    const double r = std::sqrt(dot(delta, delta));
+    forces.push_back(
+        {i, j, ri, rj, kn, share, ri + rj - r, f, {delta.x / r, delta.y / r, delta.z / r}});
+  }
+
+  // in a step of dt (s), with the velocities of its end
+  Sum work(double dt, const Vector *v, const Vector *omega) const
+  {
+    Sum sum = {0.0, 0.0, 0.0, 0.0, 0.0};
+    for (const Force &c : forces) {
+      const bool fixed = c.j == FIXED;
+      const Vector still = {0.0, 0.0, 0.0};
+      const Vector &vj = fixed ? still : v[c.j], &wj = fixed ? still : omega[c.j];
+      const Vector &vi = v[c.i], &wi = omega[c.i], &n = c.n;
+      const Vector u = {vi.x - vj.x, vi.y - vj.y, vi.z - vj.z};
+      const Vector w = {c.ri * wi.x + c.rj * wj.x, c.ri * wi.y + c.rj * wj.y,
+                        c.ri * wi.z + c.rj * wj.z};
+      const Vector spin = {w.y * n.z - w.z * n.y, w.z * n.x - w.x * n.z, w.x * n.y - w.y * n.x};
+      const double un = dot(u, n), part = dt * c.share;
+      const double elastic = c.kn * std::max(c.overlap, 0.0), normal = dot(c.f, n);
+      const double torque = -part * dot(c.f, spin);
+      sum.spring += part * elastic * un;
+      sum.dashpot += part * (normal - elastic) * un;
+      sum.sliding += part * (dot(c.f, u) - normal * un) + torque;
+      sum.by_torque += torque;
+      sum.stored += 0.5 * c.share * elastic * std::max(c.overlap, 0.0);
+    }
+    return sum;
+  }
+
+ private:
+  struct Force {
+    int i, j;
+    double ri, rj, kn, share, overlap;
+    Vector f, n;
+  };
+  std::vector<Force> forces;
+
+  static double dot(const Vector &a, const Vector &b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+};
+
+}    // namespace Slope
+
+#endif

@@ -1,0 +1,147 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+/* Where the energy goes: works of all forces from step to step, such that they sum up to what velocity
+   Verlet changes the kinetic energy of the middles of the steps by. */
+
+#include "fix_energy_ledger.h"
+
+#include "lammps_compat.h"
+#include "pair_gran_restitution.h"
+#include "requirements.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "modify.h"
+#include "update.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using Slope::ContactWorks;
+using Slope::Vector;
+
+static inline const Vector *vectors(double **array)
+{
+  return reinterpret_cast<const Vector *>(array ? array[0] : nullptr);
+}
+
+static inline double dot(const double *a, const double *b)
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* ---------------------------------------------------------------------- */
+
+FixEnergyLedger::FixEnergyLedger(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), begun(false), first(0.0), stored_first(0.0), springs(0.0)
+{
+  if (narg != 3) error->all(FLERR, "Fix energy/ledger takes no arguments, got {}", arg[3]);
+  if (igroup != 0) error->all(FLERR, "Fix energy/ledger: the group must be all, got {}", arg[1]);
+  nevery = 1;
+  vector_flag = 1;
+  size_vector = NITEM;
+  global_freq = 1;
+  extvector = 1;
+  std::fill(item, item + NITEM, 0.0);
+}
+
+int FixEnergyLedger::setmask()
+{
+  return END_OF_STEP;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixEnergyLedger::init()
+{
+  if (!PairGranRestitution::of(lmp))
+    error->all(FLERR, "Fix energy/ledger requires pair_style gran/restitution");
+  require_run(lmp, "Fix energy/ledger");
+  for (const char *style : {"wall/gran/mesh", "ground/motion"})
+    for (const Fix *fix : compat::fixes_of_style(lmp, style))
+      error->all(FLERR,
+                 "Fix energy/ledger does not know the work of fix {} {}: run without one of them",
+                 fix->id, style);
+}
+
+/* ----------------------------------------------------------------------
+   of the middle of the step that comes next
+------------------------------------------------------------------------- */
+
+double FixEnergyLedger::kinetic() const
+{
+  double energy = 0.0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double m = atom->rmass[i], r = atom->radius[i], inertia = 0.4 * m * r * r;
+    double v[3], w[3];
+    for (int d = 0; d < 3; d++) {
+      v[d] = atom->v[i][d] + 0.5 * update->dt * atom->f[i][d] / m;
+      w[d] = atom->omega[i][d] + 0.5 * update->dt * atom->torque[i][d] / inertia;
+    }
+    energy += 0.5 * (m * dot(v, v) + inertia * dot(w, w));
+  }
+  return energy;
+}
+
+/* ----------------------------------------------------------------------
+   work of gravity in a step; fix freeze takes it from the balls that it holds, whose velocity is zero
+------------------------------------------------------------------------- */
+
+double FixEnergyLedger::gravity() const
+{
+  double work = 0.0;
+  for (Fix *fix : compat::fixes_of_style(lmp, "gravity")) {
+    int dim;
+    const double *g = static_cast<double *>(fix->extract("gvec", dim));
+    for (int i = 0; i < atom->nlocal; i++)
+      if (atom->mask[i] & fix->groupbit) work += atom->rmass[i] * dot(g, atom->v[i]);
+  }
+  return update->dt * work;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixEnergyLedger::end_of_step()
+{
+  comm->forward_comm();    // the velocities of the end of the step to the ghosts
+  const ContactWorks::Sum c =
+      PairGranRestitution::of(lmp)->works.work(update->dt, vectors(atom->v), vectors(atom->omega));
+
+  if (!begun) {
+    begun = true;
+    first = kinetic();
+    stored_first = c.stored;
+  } else {
+    double on_places = 0.0, on_spins = 0.0;
+    for (int i = 0; i < atom->nlocal; i++) {
+      on_places += update->dt * dot(atom->f[i], atom->v[i]);
+      on_spins += update->dt * dot(atom->torque[i], atom->omega[i]);
+    }
+    const double fallen = gravity();
+    item[GRAVITY] += fallen;
+    item[OTHERS] += on_places - fallen - (c.spring + c.dashpot + c.sliding - c.by_torque);
+    item[DASHPOTS] -= c.dashpot;
+    item[SLIDING] -= c.sliding;
+    item[ROLLING] -= on_spins - c.by_torque;
+    springs += c.spring;
+  }
+  item[KINETIC] = kinetic();
+  item[STORED] = c.stored;
+  item[BEGIN_END] = stored_first - springs - c.stored;
+  item[RESIDUAL] = item[KINETIC] - first + item[STORED] - stored_first + item[DASHPOTS] +
+      item[SLIDING] + item[ROLLING] + item[BEGIN_END] - item[GRAVITY] - item[OTHERS];
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixEnergyLedger::compute_vector(int n)
+{
+  double sum;
+  MPI_Allreduce(&item[n], &sum, 1, MPI_DOUBLE, MPI_SUM, world);
+  return sum;
+}
