@@ -20,6 +20,7 @@ class Case(NamedTuple):
     variables: Mapping[str, Any]    # of a run: name and value
     balls: int                      # in the body
     sampled: bool = False           # an ensemble
+    asked: str = ""                 # option that chose the study of the site
 
 
 def text(reason: Reason) -> str:
@@ -95,7 +96,7 @@ def anew(case: Case, options: str = "") -> str:
     if case.sampled:
         return f"tools/slope site {site}{options}; the same command with another -o"
     return (f"rm -r {site}/study {site}/sizes {site}/step; tools/slope site {site}{options} && "
-            f"tools/slope study {site}")
+            f"tools/slope study {site}{case.asked}")
 
 
 def twice(case: Case) -> str:
