@@ -215,6 +215,15 @@ ContactGuards::Found ContactGuards::found() const
   return f;
 }
 
+void ContactGuards::Found::add(const Found &other)
+{
+  deepest = std::max(deepest, other.deepest);
+  energy_growth = std::max(energy_growth, other.energy_growth);
+  deep += other.deep;
+  energy_grew += other.energy_grew;
+  dangerous_builds += other.dangerous_builds;
+}
+
 /* ----------------------------------------------------------------------
    warn, once per run and with a count, of what was not sensible
 ------------------------------------------------------------------------- */

@@ -38,8 +38,9 @@ class ContactGuards : protected Pointers {
     double deepest;    // overlap, of the smaller radius
     double energy_growth;
     bigint deep, energy_grew, dangerous_builds;
+    void add(const Found &);    // of another run
   };
-  Found found() const;                  // collective
+  Found found() const;                  // in this run; collective
   std::vector<std::string> warnings;    // so far, each once; on rank 0
 
  private:

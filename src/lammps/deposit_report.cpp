@@ -5,7 +5,6 @@
 
 #include "deposit_report.h"
 
-#include "contact_guards.h"
 #include "deposit_balls.h"
 #include "deposit_writer.h"
 #include "lammps_compat.h"
@@ -34,7 +33,8 @@ enum { X, Y, Z };
 DepositReport::DepositReport(LAMMPS *lmp, const std::string &id, const DepositOptions &options_in,
                              const DepositBalls &balls_in) :
     Pointers(lmp),
-    fix_id(id), options(options_in), balls(balls_in), exchange(lmp), limit(0.0), limit_set(0.0)
+    fix_id(id), options(options_in), balls(balls_in), exchange(lmp), limit(0.0), limit_set(0.0),
+    before(), last()
 {
 }
 
@@ -190,13 +190,21 @@ DepositSummary DepositReport::summary(const std::string &why, const DepositResul
 }
 
 /* ----------------------------------------------------------------------
-   what the guards of the contacts found in this run, and all warnings so far
+   what the guards of the contacts found in all runs, and all warnings so far
 ------------------------------------------------------------------------- */
 
-void DepositReport::add_guards(DepositSummary &s, const ContactGuards *guards) const
+void DepositReport::keep_guards()
+{
+  before.add(last);
+  last = ContactGuards::Found();
+}
+
+void DepositReport::add_guards(DepositSummary &s, const ContactGuards *guards)
 {
   if (guards) {
-    const ContactGuards::Found found = guards->found();
+    last = guards->found();
+    ContactGuards::Found found = before;
+    found.add(last);
     s.guards = {true, found.deepest, found.energy_growth, found.deep, found.dangerous_builds};
     s.warnings = guards->warnings;
   }

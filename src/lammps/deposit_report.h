@@ -6,6 +6,7 @@
 #ifndef SLOPE_DEPOSIT_REPORT_H
 #define SLOPE_DEPOSIT_REPORT_H
 
+#include "contact_guards.h"
 #include "deposit_exchange.h"
 #include "deposit_options.h"
 #include "deposit_rasters.h"
@@ -29,6 +30,9 @@ class DepositReport : protected Pointers {
   // files that cannot be written end the run before it begins, not at its end
   void begin_run();
 
+  // at the set-up of a run: the guards of the contacts have begun again
+  void keep_guards();
+
   // why a run ended
   std::string reason() const;
 
@@ -38,7 +42,7 @@ class DepositReport : protected Pointers {
   // all files, or none
   // guards of the contacts, or nullptr
   void write(const std::string &reason, const DepositResults &, const Slope::DepositRasters &,
-             const class ContactGuards *guards);
+             const ContactGuards *guards);
 
  private:
   const std::string fix_id;
@@ -47,6 +51,8 @@ class DepositReport : protected Pointers {
   DepositExchange exchange;
   double limit, limit_set;              // wall time that the run has, when that was known; s
   std::vector<std::string> warnings;    // so far, on rank 0
+  ContactGuards::Found before,
+      last;    // in the runs before, in this one when files were written last
 
   std::unique_ptr<Slope::FileSet> files;    // on rank 0, as long as they are written
 
@@ -54,7 +60,7 @@ class DepositReport : protected Pointers {
   void write_raster(const std::string &path, const std::string &header,
                     const DepositExchange::MakeBytes &, const Slope::DepositBands &);
   Slope::DepositSummary summary(const std::string &reason, const DepositResults &) const;
-  void add_guards(Slope::DepositSummary &, const class ContactGuards *) const;
+  void add_guards(Slope::DepositSummary &, const ContactGuards *);
   void add_lost(Slope::DepositSummary &) const;
 };
 

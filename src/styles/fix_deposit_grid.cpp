@@ -141,6 +141,7 @@ void FixDepositGrid::start()
 void FixDepositGrid::setup(int /*vflag*/)
 {
   set_up = update->ntimestep;
+  report.keep_guards();
 
   // first of all set-ups: where the balls lie now they arrived at time 0
 

@@ -97,6 +97,22 @@ def test_dangerous_builds(tmp_path):
     assert told in summary["warnings"]
 
 
+LIFTED = "\ndisplace_atoms ball move 0 0 3\nvelocity ball set 0 0 0"
+
+
+@pytest.mark.parametrize("settings", [
+    {"k": 5e4, "z": 4.0, "skin": 0.001, "steps": 500},
+    {"e": 1.0, "z": 4.0, "skin": 0.0, "neigh": "neigh_modify every 8 delay 8 check no", "dt": 1.5e-3, "steps": 800}])
+@pytest.mark.parametrize("again", ["", "\nrun 2\nwrite_restart side\nrun 2 pre no"])
+def test_findings_of_all_runs(tmp_path, settings, again):
+    """A run that finds something, then some that find nothing."""
+    _, first = run(tmp_path, **settings)
+    wanted = first["guards"]
+    assert wanted["energy_growth"] > 0.1 or wanted["deep_contacts"] > 1 and wanted["dangerous_builds"] > 1
+    _, all_runs = run(tmp_path, **{**settings, "extra": f"run {settings['steps']}{LIFTED}{again}", "steps": 3})
+    assert all_runs["guards"] == wanted
+
+
 FIXED = "create_atoms 2 single 5 5 0\nset type 2 diameter 1.0 density 2500"
 
 
