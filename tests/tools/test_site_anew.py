@@ -240,23 +240,6 @@ def test_the_balls_of_the_ground_are_named(inside, mine):
     assert choices["model"]["field_diameter"] < 1.3 * choices["balls"]["diameter"]
 
 
-def test_what_killed_calls_left_is_removed_once_it_is_old(inside, mine):
-    """In the folder, and beside one that is made; what may still be made stays."""
-    beside = mine.parent
-    left = [mine / ".mine.1.new", mine / ".mine.2.new", beside / ".other.3.new", beside / ".mine.4.new"]
-    for path in left:
-        path.mkdir()
-        (path / "terrain.asc").write_text("1")
-    old = time.time() - 2 * site_folder.LEFT_BEHIND
-    for path in (left[0], left[2], left[3]):
-        os.utime(path / "terrain.asc", (old, old))
-        os.utime(path, (old, old))
-    inside("mine --balls 60")
-    assert [path.exists() for path in left] == [False, True, True, True]     # the last one is not in the folder
-    inside(f"--terrain dem.tif --release release.geojson {shlex.join(BODY)} -o other")
-    assert not left[2].exists()
-
-
 # --- soil and ground ---
 
 def test_options_of_soil_and_ground_reach_the_deck(inside, mine):

@@ -79,8 +79,9 @@ def make(choices: Choices, folder: Path, machine: Machine, tell: Callable[[str],
     old = set(site_choices.found(folder).get("files") or ()) if known_files else set()
     site_folder.check(choices, folder, old)
     place = folder.absolute()
+    # on the disk of the folder, so that renames do
+    new = (place if place.is_dir() else place.parent) / f".{place.name}.{os.getpid()}.new"
     try:
-        new = site_folder.place_of(place)
         with disk.alone_in(folder) if again else contextlib.nullcontext():
             new.mkdir()
             try:
