@@ -20,7 +20,7 @@ from test_site import BODY, EAST, NORTH, ROAD, TOOLS, gis, make, refused, slope,
 from tiny_collapse import LMP, processes_in
 
 from slope_tools import cli, disk, programs
-from slope_tools.case import decks, site_choices, site_deck, site_folder, site_warnings
+from slope_tools.case import decks, site, site_choices, site_deck, site_folder, site_warnings
 from slope_tools.ensemble import site_study
 from slope_tools.errors import SlopeError
 
@@ -131,6 +131,32 @@ def test_killed_while_the_files_are_exchanged(tmp_path, monkeypatch, after):
     site_folder.exchange(new(), folder, old)
     assert all((folder / name).read_text() == "new\n" for name in made)
     assert (folder / "notes.txt").read_text() == "old\n" and (folder / "study" / "study.yaml").exists()
+
+
+@pytest.mark.parametrize("before", ["nothing", "an empty folder", "the site"])
+def test_killed_while_the_files_are_made(inside, gis, monkeypatch, before):  # noqa: F811
+    """The next call removes what the killed one left, and leaves alone what belongs to a process that lives."""
+    make = f"--terrain dem.tif --release release.geojson {shlex.join(BODY)} -o mine"
+    if before == "an empty folder":
+        (gis / "mine").mkdir()
+    elif before == "the site":
+        inside(make)
+        make = "mine"
+    child = os.fork()
+    if child == 0:
+        monkeypatch.setattr(site, "built", lambda *_: os.kill(os.getpid(), signal.SIGKILL))
+        try:
+            inside(make)
+        finally:
+            os._exit(1)
+    assert os.waitpid(child, 0)[1] == signal.SIGKILL
+    left, = gis.rglob(f".mine.*{child}.new")
+    other = left.with_name(left.name.replace(str(child), str(os.getppid())))
+    if before != "an empty folder":     # with it the folder is in use
+        other.mkdir()
+    inside(make)
+    assert (gis / "mine" / site_deck.NAME).is_file() and not left.exists()
+    assert list(gis.rglob(".mine.*")) == ([other] if before != "an empty folder" else [])
 
 
 def test_a_folder_without_its_deck_is_made_anew(inside, mine):

@@ -89,8 +89,8 @@ def run(args):
         warn(text)
     about = {"slips": args.slips, "terrain": args.terrain, "density": args.density, "cohesion": args.cohesion,
              "friction": args.friction, "water": args.water, "correlation": args.correlation,
-             "samples": len(capacity), "seed": args.seed, "records": args.record, "vertical": args.vertical,
-             "displacement": None if args.pseudo_static is not None else limit,
+             "peaks": args.peaks, "samples": len(capacity), "seed": args.seed, "records": args.record,
+             "vertical": args.vertical, "displacement": None if args.pseudo_static is not None else limit,
              "pseudo_static": args.pseudo_static, "hazard": args.hazard, "warnings": kept}
     files.write(args.output, peaks, curves, about)
     print(summary(curves, args.output, files.FILES))
