@@ -62,6 +62,8 @@ ANEW = ("rm -r 'my site'/study 'my site'/sizes 'my site'/step; tools/slope site 
      "--sample 64 --mobility rock_avalanches --vary friction=10:30 --road ROAD -o DIR"),
     ({"left": 0.3}, SITE, "30 % of the released volume left the terrain before or beside the road, more than 1 %",
      "a larger elevation model (terrain.files, terrain.bounds) in 'my site'/site.yaml, then: " + ANEW.format("")),
+    ({"on_road": 10.0}, SITE._replace(asked=" --paper"), "the volume of 1 ball, fewer than 10",
+     ANEW.format(" --balls 11000") + " --paper"),
     ({"left": 0.3}, SITE._replace(sampled=True), "30 %", "a larger elevation model (terrain.files, terrain.bounds) in "
      "'my site'/site.yaml, then: tools/slope site 'my site'; the same command with another -o"),
     ({"moving": 5}, DECK, "5 of 20 runs failed or are not at rest, more than 10 %",
@@ -73,7 +75,7 @@ def test_the_reason_and_the_command_that_mends_it(changed, case, text, remedy):
     assert text in entry["text"] and entry["remedy"] == remedy
 
 
-@pytest.mark.parametrize("case", [SITE, SITE._replace(sampled=True), DECK,
+@pytest.mark.parametrize("case", [SITE, SITE._replace(asked=" --paper"), SITE._replace(sampled=True), DECK,
                                   DECK._replace(variables={"friction": "30", "rolling": "0"})])
 @pytest.mark.parametrize("changed", [{"on_road": 50.0}, {"length": 700.0}, {"left": 0.3}, {"moving": 5}, {"size": "x"}])
 def test_the_commands_are_ones_that_the_tools_take(case, changed):

@@ -103,7 +103,7 @@ def run_folder(args):
     why = "" if args.paper else known_study.why_not(args.deck, volume, bool(choices["observed"]["file"]))
     if args.paper or why:
         condition_of(args)      # has no meaning here
-        method = f"{known_study.PAPER}; {why}" if why else f"{known_study.PAPER}, as asked for"
+        method = f"{known_study.PAPER}; {why}" if why else known_study.ASKED
         print(method)
         return run_site(args, method)
     args.sample, args.mobility = known_study.POINTS, known_study.SET

@@ -12,8 +12,8 @@ from ..case import run_folders
 from ..deposit import left, rest, travel_shares
 from ..digits import rounded
 from ..survey import rasters
-from . import combinations, ensemble, intensity, repeats, size_error, step_check, structures, study_table, usable
-from . import withheld_words
+from . import combinations, ensemble, intensity, known_study, repeats, size_error, step_check, structures, study_table
+from . import usable, withheld_words
 from .setup import Road, Setup
 from .size_error import SizeErrors
 from .study_maps import Maps
@@ -149,7 +149,9 @@ def events_of(setup: Setup, run, row) -> Optional[usable.Events]:
 
 
 def case_of(setup: Setup, questions: Questions, row) -> withheld_words.Case:
-    return withheld_words.Case(setup.deck, questions.site, row["variables"], round(row["released_m3"] / row["ball_m3"]))
+    asked = " --paper" if questions.method == known_study.ASKED else ""
+    return withheld_words.Case(setup.deck, questions.site, row["variables"], round(row["released_m3"] / row["ball_m3"]),
+                               asked=asked)
 
 
 def unseen(repeated, defaults):

@@ -20,13 +20,14 @@ class Case(NamedTuple):
     variables: Mapping[str, Any]    # of a run: name and value
     balls: int                      # in the body
     sampled: bool = False           # an ensemble
+    asked: str = ""                 # option that chose the study of the site
 
 
 def text(reason: Reason) -> str:
     """A reason in words."""
     number, bound = reason.number or 0.0, reason.bound or 0.0
     if reason.kind is Kind.BALLS:
-        return f"on the road lies the volume of {number:.2g} balls, fewer than {bound:g}"
+        return f"on the road lies the volume of {number:.2g} ball{'s' * (number != 1)}, fewer than {bound:g}"
     if reason.kind is Kind.MOBILITY:
         longest = "there is no connected deposit" if reason.number is None else \
             f"the longest connected deposit ends at {rounded(number, 3)} m"
@@ -95,7 +96,7 @@ def anew(case: Case, options: str = "") -> str:
     if case.sampled:
         return f"tools/slope site {site}{options}; the same command with another -o"
     return (f"rm -r {site}/study {site}/sizes {site}/step; tools/slope site {site}{options} && "
-            f"tools/slope study {site}")
+            f"tools/slope study {site}{case.asked}")
 
 
 def twice(case: Case) -> str:
