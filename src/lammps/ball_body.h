@@ -14,13 +14,14 @@ namespace LAMMPS_NS {
 // What fixed balls tell those that are placed later of the bodies above them.
 class BallBody {
  public:
-  virtual ~BallBody() = default;
-
   // the body that the balls lie sunk below, nullptr if they do not
   virtual std::shared_ptr<class SunkRegion> body() const = 0;
 
   // the region outside of which the balls are, without knowing whether it is sunk; or empty
   virtual const std::string &left_out() const = 0;
+
+ protected:
+  ~BallBody() = default;
 };
 
 }    // namespace LAMMPS_NS

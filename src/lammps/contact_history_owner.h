@@ -11,8 +11,6 @@ namespace LAMMPS_NS {
 // What fix CONTACT_HISTORY asks of the pair style whose histories it keeps.
 class ContactHistoryOwner {
  public:
-  virtual ~ContactHistoryOwner() = default;
-
   // histories from the contact lists to where the neighbor list has them
   virtual void store_flags() const = 0;
 
@@ -20,6 +18,9 @@ class ContactHistoryOwner {
   virtual void watch_energy() = 0;
   virtual void check_finite() const = 0;
   virtual void report_guards() = 0;
+
+ protected:
+  ~ContactHistoryOwner() = default;
 };
 
 }    // namespace LAMMPS_NS

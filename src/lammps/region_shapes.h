@@ -16,17 +16,20 @@ namespace LAMMPS_NS {
 // the ground below a raster
 class RasterRegion {
  public:
-  virtual ~RasterRegion() = default;
-
   // the raster that the ground surface is interpolated from
   virtual const Slope::ElevationGrid &grid() const = 0;
+
+ protected:
+  ~RasterRegion() = default;
 };
 
 // vertical prism: the same inside at all heights
 class PrismRegion {
  public:
-  virtual ~PrismRegion() = default;
   virtual bool covers(double x, double y) const = 0;
+
+ protected:
+  ~PrismRegion() = default;
 };
 
 }    // namespace LAMMPS_NS

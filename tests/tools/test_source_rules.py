@@ -110,6 +110,25 @@ def test_no_circle_of_pairs():
     assert circle(pairs(SOURCES)) is None
 
 
+def second_bases(texts):
+    """Classes beside the first, LAMMPS' one, that a class derives from and whose destructor is virtual."""
+    beside = {name for text in texts
+              for bases in re.findall(r"^class \w+ : public \w+, ([^{]+) \{", text, re.MULTILINE)
+              for name in re.findall(r"\w+", bases) if name != "public"}
+    return sorted(name for name in beside for text in texts if re.search(rf"virtual ~{name}\(", text))
+
+
+def test_a_virtual_destructor_beside_the_one_of_lammps_is_found():
+    user = "class FixA : public Fix, public Asked {"
+    assert second_bases([user, "virtual ~Asked() = default;"]) == ["Asked"]
+    assert second_bases([user, "protected:\n ~Asked() = default;"]) == []
+
+
+def test_destructors_beside_the_one_of_lammps():
+    """That of LAMMPS' classes may throw in some versions, so one that may not does not compile with it."""
+    assert second_bases([path.read_text() for path in SOURCES if path.suffix == ".h"]) == []
+
+
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.name)
 def test_sizes(path):
     text = path.read_text()
