@@ -1,6 +1,7 @@
 """The bodies that `find_slip` kept: PREFIX.slips.csv and PREFIX.N.base.asc."""
 import csv
 import math
+import re
 from pathlib import Path
 from typing import Dict, List, NamedTuple, Sequence
 
@@ -70,6 +71,19 @@ def base_file(path: Path, rank: int) -> Path:
     if not found.is_file():
         raise SlopeError(found, "must be an existing file, beside the table")
     return found
+
+
+def rank_of(base: Path) -> int:
+    """Of the name of PREFIX.N.base.asc: N."""
+    found = re.search(r"\.([0-9]+)\.base\.asc$", base.name)
+    if found is None:
+        raise SlopeError(base, "must be named PREFIX.N.base.asc, as find_slip names it")
+    return int(found[1])
+
+
+def base_files(path: Path) -> List[Path]:
+    """PREFIX.N.base.asc of all bodies in a table, or in a folder with one."""
+    return [base_file(path, int(row["rank"])) for row in rows_of(table_of(path))]
 
 
 def prefix_of(table: Path) -> str:
