@@ -33,8 +33,7 @@ def bodies(volumes=None):
 
 def simulated(capacity, given, at_peaks, rng):
     """Volumes on the road, one for each peak: of a sample and a record at random, each run with its rank."""
-    sample, record = rng.integers(len(capacity), size=len(at_peaks)), rng.integers(capacity.shape[1],
-                                                                                    size=len(at_peaks))
+    sample, record = (rng.integers(size, size=len(at_peaks)) for size in capacity.shape[:2])
     fails = capacity[sample, record] < at_peaks[:, None]
     rank = rng.random(len(at_peaks))
     found = np.zeros(len(at_peaks))

@@ -2,6 +2,8 @@
 from pathlib import Path
 from typing import Any, Dict, NamedTuple, Set
 
+import numpy as np
+
 from .. import disk
 from ..slips.bodies import rank_of
 from ..survey import rasters, release
@@ -50,8 +52,9 @@ def around(body: release_deck.Body, name: str, several: Dict[int, Known]) -> rel
     if not several:
         return body
     every = [body, *(one.deck for one in several.values())]
-    box = tuple((max if k % 2 else min)(one.box[k] for one in every) for k in range(6))
-    return body._replace(slip=slip_name(name, "${body}"), lower=max(one.lower for one in every), box=box)
+    low, high = np.min([one.box for one in every], axis=0), np.max([one.box for one in every], axis=0)
+    return body._replace(slip=slip_name(name, f"${{{VARIABLE}}}"), lower=max(one.lower for one in every),
+                         box=(low[0], high[1], low[2], high[3], low[4], high[5]))
 
 
 def about(several: Dict[int, Known]) -> Dict[int, Dict[str, Any]]:

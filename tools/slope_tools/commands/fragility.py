@@ -22,7 +22,8 @@ examples:
   tools/slope fragility slips --terrain terrain.asc --density 1900 --cohesion 5e3:15e3 --friction 25:35 \\
       --peaks 100:1200 --pseudo-static 0.65 --hazard hazard.csv -o fragility
 
-Writes fragility.csv, fragility.yaml and fragility.png.
+Writes fragility.csv, fragility.yaml and fragility.png, and capacities.csv: from which peak on each sample fails. With
+this folder `slope study SITE --sample N --fragility DIR` says how likely which volume reaches the road.
 """
 
 
@@ -87,12 +88,16 @@ def run(args):
     warn = errors.warner("fragility", kept)
     for text in warnings_of(curves, found, args.pseudo_static, len(args.record)):
         warn(text)
-    about = {"slips": args.slips, "terrain": args.terrain, "density": args.density, "cohesion": args.cohesion,
-             "friction": args.friction, "water": args.water, "correlation": args.correlation,
-             "samples": len(capacity), "seed": args.seed, "records": args.record, "vertical": args.vertical,
+    about = {"bodies": [{"body": body.name, "volume_m3": body.columns.volume,
+                        "base_sha256": disk.sha256(body.base)} for body in found],
+             "peaks_gal": peaks.tolist(),
+             "hazard_curve": np.column_stack(hazard).tolist() if hazard else None, "slips": args.slips,
+             "terrain": args.terrain, "density": args.density, "cohesion": args.cohesion, "friction": args.friction,
+             "water": args.water, "correlation": args.correlation, "samples": len(capacity), "seed": args.seed,
+             "records": args.record, "vertical": args.vertical,
              "displacement": None if args.pseudo_static is not None else limit,
              "pseudo_static": args.pseudo_static, "hazard": args.hazard, "warnings": kept}
-    files.write(args.output, peaks, curves, about)
+    files.write(args.output, peaks, curves, capacity, about)
     print(summary(curves, args.output, files.FILES))
 
 

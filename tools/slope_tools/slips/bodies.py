@@ -21,6 +21,7 @@ class Body(NamedTuple):
     name: str               # its rank, 1 is the one with the least factor of safety
     direction: float        # of sliding, degrees counterclockwise from +x
     columns: columns.Columns
+    base: Path = Path()     # the file of its surface
 
 
 def table_of(path: Path) -> Path:
@@ -116,5 +117,5 @@ def read(path: Path, terrain: Path, density: float) -> List[Body]:
         if not abs(body.volume / row["volume"] - 1) <= SAME_VOLUME:
             raise SlopeError(terrain, f"must be the terrain of {source.name}, on which body {rank} has "
                              f"{row['volume']:.5g} m3", f"{body.volume:.5g} m3")
-        found.append(Body(rank, row["direction"], body))
+        found.append(Body(rank, row["direction"], body, file))
     return found
