@@ -110,6 +110,21 @@ def test_weights_are_the_frequencies_of_failure():
     assert chain.weights(capacity, PEAKS).sum() == pytest.approx(1)
 
 
+def test_what_no_peak_of_the_curve_reaches_does_not_fail():
+    """Half of the samples fail above the curve's last peak: the other half alone counts, and beyond says so."""
+    capacity = np.full((fragility.REPLICATES * 4, 1, 1), 300.0)
+    capacity[::2] = 3000.0
+    found = chain.frequency(capacity, RATE, PEAKS, bodies([[100.0, 200.0]]), np.array([0.0, 150.0]))
+    assert found.total.value == pytest.approx(float(RATE.at(300.0)) * np.array([0.5, 0.25]))
+    assert found.beyond == pytest.approx(1e-6 * np.array([0.5, 0.75]))
+
+
+def test_a_peak_at_which_no_sample_fails_is_bounded():
+    capacity = np.full((fragility.REPLICATES * 4, 1, 1), 300.0)
+    found = chain.family(capacity, np.array([100.0]), bodies([[100.0]]), np.array([0.0, 50.0]))
+    assert found.value.max() == 0 and found.high[0] == pytest.approx([1 - 0.05 ** (1 / 64)] * 2)
+
+
 def test_more_is_never_more_likely():
     volumes = np.linspace(0, 1500, 200)
     found = chain.family(capacities(), PEAKS, bodies(), volumes)
