@@ -13,6 +13,7 @@ shorter, command by command.
 import argparse
 import datetime
 import random
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -106,6 +107,8 @@ def fails(case):
     with tempfile.TemporaryDirectory() as folder:
         try:
             found = differences(case, Path(folder))
+        except subprocess.TimeoutExpired as error:
+            return f"not at its end after {error.timeout:g} s"
         except AssertionError as error:
             lines = [line for line in str(error).splitlines() if "ERROR" in line]
             if any(words in line for line in lines for words in REFUSED):

@@ -247,7 +247,7 @@ void ContactGuards::report()
   if (f.energy_grew > 1)
     warn("the energy of the balls had grown at {} of the checks every {} steps, by {:.3g} % of the "
          "largest kinetic and spring energy",
-         f.energy_grew, +EVERY, 100.0 * f.energy_growth);
+         f.energy_grew, +EnergyGuard::EVERY, 100.0 * f.energy_growth);
   if (f.dangerous_builds)
     warn("{} neighbor lists came late (dangerous builds): balls went farther than half the skin "
          "{:g} in one step, and contacts may have started too deep",

@@ -22,8 +22,6 @@ class ContactTable;
 
 class ContactGuards : protected Pointers {
  public:
-  static constexpr int EVERY = EnergyGuard::EVERY;    // steps between two checks
-
   ContactGuards(LAMMPS *, const ContactTable &);
 
   // once per run, when masses, coefficients and step are final; prints the table if it has changed
@@ -31,6 +29,7 @@ class ContactGuards : protected Pointers {
 
   void record_overlap(int i, double overlap, double radius);    // m; radius: the smaller one
   void watch_energy(double elastic);    // J, of this rank's springs; collective
+  void check_finite() const { energy.check_finite(); }
   void say(const std::string &text);    // a warning of a wall; by rank 0, or by all
   void report();                        // at the end of a run; collective
 

@@ -16,8 +16,9 @@ class ContactHistoryOwner {
   // histories from the contact lists to where the neighbor list has them
   virtual void store_flags() const = 0;
 
-  // guards: every ContactGuards::EVERY steps, and at the end of a run
+  // guards, see EnergyGuard: every EVERY steps, every FINITE_EVERY steps, and at the end of a run
   virtual void watch_energy() = 0;
+  virtual void check_finite() const = 0;
   virtual void report_guards() = 0;
 };
 

@@ -17,13 +17,17 @@ namespace LAMMPS_NS {
 
 class EnergyGuard : protected Pointers {
  public:
-  static constexpr int EVERY = 50;         // steps between two checks
+  static constexpr int EVERY = 200;    // steps between two checks, multiple of FINITE_EVERY
+  static constexpr int FINITE_EVERY = 50;
   static constexpr double GROWTH = 0.1;    // of the largest of motion and springs: not sensible
 
   explicit EnergyGuard(LAMMPS *);
 
   // at the set-up of a run: whether anything but contacts and gravity does work
   void start();
+
+  // every FINITE_EVERY steps, and by check(); not collective
+  void check_finite() const;
 
   // Collective; elastic: energy of this rank's springs (J). Returns true when the energy has
   // grown more than is sensible for the first time in this run.
@@ -40,8 +44,6 @@ class EnergyGuard : protected Pointers {
   bigint count;
   bigint number;     // of balls, when lowest began
   double pull[3];    // gravity then
-
-  void check_finite() const;
 };
 
 }    // namespace LAMMPS_NS

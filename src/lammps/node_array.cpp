@@ -96,6 +96,11 @@ bool NodeArray::is_first() const
   return rank == 0;
 }
 
+double NodeArray::bytes() const
+{
+  return !shared || is_first() ? static_cast<double>(size) * sizeof(double) : 0.0;
+}
+
 NodeArray::~NodeArray()
 {
 #ifdef SLOPE_NODES

@@ -26,6 +26,7 @@ class NodeArray : protected Pointers {
 
   void fill(const double *values);    // all ranks; those of rank 0
   const double *data() const { return numbers; }
+  double bytes() const;    // that this rank has, for all that share them
 
  private:
   const size_t size;

@@ -6,6 +6,7 @@
 #include "surface_options.h"
 
 #include "elevation_grid.h"
+#include "node_array.h"
 #include "rank_zero.h"
 #include "stl_file.h"
 #include "style_argument.h"
@@ -20,6 +21,8 @@
 
 #include <algorithm>
 #include <exception>
+#include <new>
+#include <utility>
 
 using namespace LAMMPS_NS;
 using namespace Slope;
@@ -137,31 +140,61 @@ std::unique_ptr<TouchedSurface> SurfaceOptions::read_stl() const
 
 std::unique_ptr<TouchedSurface> SurfaceOptions::read_terrain() const
 {
-  ElevationGrid grid;
+  int size[2];
+  double cell;
+  std::unique_ptr<TerrainSurface> read;
   on_rank_zero(lmp, caller, [&]() {
-    grid = ElevationGrid::read(file);
+    const ElevationGrid grid = ElevationGrid::read(file);
+    size[0] = grid.nx;
+    size[1] = grid.ny;
+    cell = grid.cell;
+    read.reset(new TerrainSurface(grid, file));
   });
-  int size[2] = {grid.nx, grid.ny};
-  double place[3] = {grid.xlo, grid.ylo, grid.cell};
-  MPI_Bcast(size, 2, MPI_INT, 0, world);
-  MPI_Bcast(place, 3, MPI_DOUBLE, 0, world);
-  on_all_ranks(lmp, caller, [&]() {
-    if (comm->me > 0) grid = ElevationGrid(size[0], size[1], place[0], place[1], place[2], 0.0);
-  });
-  for (int j = 0; j < grid.ny; j++) MPI_Bcast(&grid.at(0, j), grid.nx, MPI_DOUBLE, 0, world);
-
-  std::unique_ptr<TouchedSurface> made;
-  on_all_ranks(lmp, caller, [&]() {
-    made.reset(new TerrainSurface(grid, file));
-  });
+  std::unique_ptr<TouchedSurface> made = shared(std::move(read));
   const Vector &low = made->low(), &high = made->high();
   if (comm->me == 0)
     utils::logmesg(
         lmp,
         "{}: smooth ground, {} x {} cells of {:.8g}, x {:.8g} to {:.8g}, y {:.8g} to {:.8g}, z "
         "{:.8g} to {:.8g}\n",
-        caller, grid.nx, grid.ny, grid.cell, low.x, high.x, low.y, high.y, low.z, high.z);
+        caller, size[0], size[1], cell, low.x, high.x, low.y, high.y, low.z, high.z);
   return made;
+}
+
+/* ----------------------------------------------------------------------
+   one copy of the heights for the ranks of a node
+------------------------------------------------------------------------- */
+
+namespace {
+struct SharedTerrain : TerrainSurface {
+  SharedTerrain(const About &about, std::unique_ptr<NodeArray> values_in) :
+      TerrainSurface(about, values_in->data()), values(std::move(values_in))
+  {
+  }
+  double memory_usage() const override { return values->bytes(); }
+
+ private:
+  std::unique_ptr<NodeArray> values;
+};
+}    // namespace
+
+std::unique_ptr<TouchedSurface> SurfaceOptions::shared(std::unique_ptr<TerrainSurface> read) const
+{
+  if (comm->nprocs == 1) return std::move(read);
+  TerrainSurface::About about;
+  if (read) about = read->about();
+  MPI_Bcast(&about, sizeof(about), MPI_BYTE, 0, world);
+  std::unique_ptr<NodeArray> values;
+  const size_t size = static_cast<size_t>(about.nx) * about.ny;
+  try {
+    values.reset(new NodeArray(lmp, size));
+  } catch (std::bad_alloc &) {
+    error->all(FLERR,
+               "{}: {}: {} x {} cells need {:.3g} GB of memory on each node, more than is free",
+               caller, file, about.nx - 2, about.ny - 2, 1.0e-9 * sizeof(double) * size);
+  }
+  values->fill(read ? read->heights() : nullptr);
+  return std::unique_ptr<TouchedSurface>(new SharedTerrain(about, std::move(values)));
 }
 
 /* ----------------------------------------------------------------------

@@ -13,6 +13,10 @@
 #include <memory>
 #include <string>
 
+namespace Slope {
+class TerrainSurface;
+}
+
 namespace LAMMPS_NS {
 
 // The arguments of fix wall/gran/mesh from TYPE on, and the surface that they name. Wrong ones end the
@@ -37,6 +41,7 @@ class SurfaceOptions : protected Pointers {
   int read_keyword(int narg, char **arg);
   std::unique_ptr<Slope::TouchedSurface> read_stl() const;
   std::unique_ptr<Slope::TouchedSurface> read_terrain() const;
+  std::unique_ptr<Slope::TouchedSurface> shared(std::unique_ptr<Slope::TerrainSurface>) const;
   void check_place(const Slope::TouchedSurface &) const;
 };
 

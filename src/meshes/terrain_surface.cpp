@@ -17,19 +17,38 @@ static constexpr double MOST = std::numeric_limits<int>::max() / 4;    // corner
 /* ---------------------------------------------------------------------- */
 
 TerrainSurface::TerrainSurface(const ElevationGrid &grid, const std::string &name) :
-    nx(grid.nx + 2), ny(grid.ny + 2), xlo(grid.xlo), ylo(grid.ylo), xhi(grid.xhi()),
-    yhi(grid.yhi()), cell(grid.cell), sum(0.0), missing(0)
+    about_{grid.nx + 2,
+           grid.ny + 2,
+           grid.xlo,
+           grid.ylo,
+           grid.xhi(),
+           grid.yhi(),
+           grid.cell,
+           {grid.xlo, grid.ylo, HUGE_VAL},
+           {grid.xhi(), grid.yhi(), -HUGE_VAL},
+           0.0,
+           0}
 {
-  if (static_cast<double>(nx) * ny > MOST)
+  if (static_cast<double>(about_.nx) * about_.ny > MOST)
     throw std::runtime_error(name + ": a smooth ground must have at most " +
                              std::to_string(static_cast<int>(MOST)) + " cells, got " +
                              std::to_string(grid.nx) + " times " + std::to_string(grid.ny));
+  fill(grid);
+  measure();
+  if (about_.missing == (about_.nx - 1) * (about_.ny - 1))
+    throw std::runtime_error(name +
+                             ": a smooth ground needs four neighbor cells with a value, got none");
+}
 
-  // the rim: from the two cells beside it, or as high as the only one
+// the rim: from the two cells beside it, or as high as the only one
 
-  z.resize(static_cast<size_t>(nx) * ny);
+void TerrainSurface::fill(const ElevationGrid &grid)
+{
+  const int nx = about_.nx, ny = about_.ny;
+  own.resize(static_cast<size_t>(nx) * ny);
+  z = own.data();
   auto at = [&](int i, int j) -> double & {
-    return z[static_cast<size_t>(j) * nx + i];
+    return own[static_cast<size_t>(j) * nx + i];
   };
   auto beyond = [](double first, double second) {
     return std::isfinite(second) ? first - 0.5 * (second - first) : first;
@@ -43,24 +62,22 @@ TerrainSurface::TerrainSurface(const ElevationGrid &grid, const std::string &nam
     at(i, 0) = ny > 3 ? beyond(at(i, 1), at(i, 2)) : at(i, 1);
     at(i, ny - 1) = ny > 3 ? beyond(at(i, ny - 2), at(i, ny - 3)) : at(i, 1);
   }
+}
 
-  lowest = {xlo, ylo, HUGE_VAL};
-  highest = {xhi, yhi, -HUGE_VAL};
-  for (int j = 0; j + 1 < ny; j++)
-    for (int i = 0; i + 1 < nx; i++) {
+void TerrainSurface::measure()
+{
+  for (int j = 0; j + 1 < about_.ny; j++)
+    for (int i = 0; i + 1 < about_.nx; i++) {
       double zmin, zmax;
       if (!quadrangle(i, j, zmin, zmax)) {
-        missing++;
+        about_.missing++;
         continue;
       }
-      lowest.z = std::min(lowest.z, zmin);
-      highest.z = std::max(highest.z, zmax);
+      about_.lowest.z = std::min(about_.lowest.z, zmin);
+      about_.highest.z = std::max(about_.highest.z, zmax);
       const double turns = 0.6180339887498949 * (1.0 + i + 3.0 * j);
-      sum += (1.0 + turns - std::floor(turns)) * (zmin + 2.0 * zmax + 1.0);
+      about_.sum += (1.0 + turns - std::floor(turns)) * (zmin + 2.0 * zmax + 1.0);
     }
-  if (missing == (nx - 1) * (ny - 1))
-    throw std::runtime_error(name +
-                             ": a smooth ground needs four neighbor cells with a value, got none");
 }
 
 /* ---------------------------------------------------------------------- */
@@ -79,14 +96,15 @@ int TerrainSurface::index_of(double x, int n, double lo, double cell)
 
 Vector TerrainSurface::corner(int i, int j) const
 {
-  return {place(i, nx, xlo, xhi, cell), place(j, ny, ylo, yhi, cell),
-          z[static_cast<size_t>(j) * nx + i]};
+  const About &a = about_;
+  return {place(i, a.nx, a.xlo, a.xhi, a.cell), place(j, a.ny, a.ylo, a.yhi, a.cell),
+          z[static_cast<size_t>(j) * a.nx + i]};
 }
 
 // lowest and highest corner; false if one has no value
 bool TerrainSurface::quadrangle(int i, int j, double &zmin, double &zmax) const
 {
-  const double *row = &z[static_cast<size_t>(j) * nx + i], *next = row + nx;
+  const double *row = &z[static_cast<size_t>(j) * about_.nx + i], *next = row + about_.nx;
   if (!std::isfinite(row[0] + row[1] + next[0] + next[1])) return false;
   zmin = std::min(std::min(row[0], row[1]), std::min(next[0], next[1]));
   zmax = std::max(std::max(row[0], row[1]), std::max(next[0], next[1]));
@@ -97,7 +115,7 @@ bool TerrainSurface::quadrangle(int i, int j, double &zmin, double &zmax) const
 
 Triangle TerrainSurface::triangle(int number) const
 {
-  const int quad = number / 2, i = quad % (nx - 1), j = quad / (nx - 1);
+  const int quad = number / 2, i = quad % (about_.nx - 1), j = quad / (about_.nx - 1);
   const Vector a = corner(i, j), b = corner(i + 1, j), c = corner(i + 1, j + 1),
                d = corner(i, j + 1);
   const bool second = number % 2;
@@ -110,7 +128,11 @@ Triangle TerrainSurface::triangle(int number) const
 
 void TerrainSurface::find_near(const Vector &x, double reach, std::vector<int> &numbers) const
 {
-  if (x.x < xlo - reach || x.x > xhi + reach || x.y < ylo - reach || x.y > yhi + reach) return;
+  const int nx = about_.nx, ny = about_.ny;
+  const double xlo = about_.xlo, ylo = about_.ylo, cell = about_.cell;
+  if (x.x < xlo - reach || x.x > about_.xhi + reach || x.y < ylo - reach ||
+      x.y > about_.yhi + reach)
+    return;
   const int ilo = index_of(x.x - reach, nx, xlo, cell), ihi = index_of(x.x + reach, nx, xlo, cell);
   const int jlo = index_of(x.y - reach, ny, ylo, cell), jhi = index_of(x.y + reach, ny, ylo, cell);
   for (int j = jlo; j <= jhi; j++)

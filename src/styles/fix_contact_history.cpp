@@ -12,8 +12,8 @@
 
 #include "atom.h"
 #include "comm.h"
-#include "contact_guards.h"
 #include "contact_history_owner.h"
+#include "energy_guard.h"
 #include "lammps_compat.h"
 #include "memory.h"
 #include "update.h"
@@ -36,7 +36,7 @@ FixContactHistory::FixContactHistory(LAMMPS *lmp, int narg, char **arg) :
     known_as(nullptr), restart_extra(lmp)
 {
   comm_forward = 1;
-  nevery = ContactGuards::EVERY;
+  nevery = EnergyGuard::FINITE_EVERY;
   maxexchange += 1 + STORED;    // until pre_exchange() knows how many contacts there are
   FixContactHistory::grow_arrays(atom->nmax);
   for (int i = 0; i < atom->nlocal; i++) FixContactHistory::set_arrays(i);
@@ -139,14 +139,17 @@ void FixContactHistory::setup(int)
 
 void FixContactHistory::end_of_step()
 {
-  owner->watch_energy();
+  if (update->ntimestep % EnergyGuard::EVERY)
+    owner->check_finite();
+  else
+    owner->watch_energy();
 }
 
 void FixContactHistory::post_run()
 {
   FixNeighHistory::post_run();
   if (!forces_known()) keep_forces();
-  if (update->ntimestep % nevery) owner->watch_energy();
+  if (update->ntimestep % EnergyGuard::EVERY) owner->watch_energy();
   owner->report_guards();
 }
 

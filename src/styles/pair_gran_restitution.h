@@ -72,6 +72,7 @@ class PairGranRestitution : public Pair, public ContactHistoryOwner {
   bool sizes_vary = false;           // between two neighbor lists, by fix adapt
 
   void watch_energy() override;
+  void check_finite() const override { guards.check_finite(); }
   void report_guards() override { guards.report(); }
   ContactGuards guards;
   Slope::ContactWorks works;    // of fix energy/ledger, walls included

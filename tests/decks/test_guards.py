@@ -73,6 +73,8 @@ def test_growing_energy(tmp_path):
     assert float(re.search(r"grew by (\S+) % of the largest .* until step \d+", told)[1]) > 10
     assert summary["guards"]["energy_growth"] > 0.1
     assert told in summary["warnings"]
+    grown, every = map(int, re.search(r"grown at (\d+) of the checks every (\d+) steps", " ".join(warnings)).groups())
+    assert every == 200 and 1 < grown <= 3000 // every + 1      # a check costs less than 1 % of the steps in between
 
 
 def test_work_of_other_fixes_is_their_own(tmp_path):

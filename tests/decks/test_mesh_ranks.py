@@ -1,5 +1,7 @@
 """Fix wall/gran/mesh: the same whatever the ranks, the order of the atoms, a cut into runs or restarts."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -126,6 +128,16 @@ def test_terrain_too(tmp_path):
     assert rows[-1, 2] > 8
     assert difference(ends[0][None], ends[1][None]) < 1e-6
     assert difference(ends[0][None], ends[3][None]) < 1e-6
+
+
+def test_ranks_share_the_raster(tmp_path):
+    """What one rank of a node has the others do not have."""
+    write_container(tmp_path)
+    cells = 800
+    write_asc(tmp_path / "hills.asc", np.zeros((cells, cells)), -7.0, -7.0, 14 / cells)
+    _, _, log = run(tmp_path, "run 0", np=2, wall="fix wall all wall/gran/mesh 2 terrain hills.asc {keywords}")
+    least, most = map(float, re.search(r"Per MPI rank memory.* = (\S+) \| \S+ \| (\S+) Mbytes", log).groups())
+    assert most - least == pytest.approx(8 * (cells + 2) ** 2 / 2 ** 20, abs=0.5)
 
 
 def test_impulse_is_the_change_of_momentum(tmp_path):

@@ -166,17 +166,20 @@ SMALL_SHM = ["unshare", "-m", "sh", "-c", 'mount -t tmpfs -o size=16m tmpfs /dev
 @pytest.mark.skipif(serial(), reason="LMP is serial")
 @pytest.mark.skipif(subprocess.run([*SMALL_SHM, "true"], capture_output=True).returncode != 0,
                     reason="/dev/shm cannot be made small here")
-def test_a_container_with_little_shared_memory(tmp_path):
+@pytest.mark.parametrize("used, said", [
+    ("region ground terrain ground.asc depth 2 headroom 1\nlattice sc 100.0 origin 0 0 0.07\n"
+     "create_atoms 1 region ground", "Created 225 atoms"),
+    ("fix ground all wall/gran/mesh 1 terrain ground.asc", "smooth ground, 1500 x 1500 cells")])
+def test_a_container_with_little_shared_memory(tmp_path, used, said):
     """A raster of 18 MB where ranks share 16 MB: each has its own, instead of a run that hangs or dies."""
     n = 1500
     row = " ".join(["7.5"] * n) + "\n"
     header = f"ncols {n}\nnrows {n}\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n"
     (tmp_path / "ground.asc").write_text(header + row * n)
     (tmp_path / "in.deck").write_text(
-        "units si\natom_style sphere\nregion ground terrain ground.asc depth 2 headroom 1\ncreate_box 1 ground\n"
-        "lattice sc 100.0 origin 0 0 0.07\ncreate_atoms 1 region ground\n")
+        f"units si\natom_style sphere\nregion box block 0 {n} 0 {n} 0 9\ncreate_box 1 box\n{used}\n")
     command = ["mpirun", "--oversubscribe", "-np", "2", LMP, "-in", "in.deck", "-log", "none"]
     run = subprocess.run([*SMALL_SHM, *command], cwd=tmp_path, env=ENVIRONMENT, capture_output=True, text=True,
                          timeout=60)
     assert run.returncode == 0, run.stdout + run.stderr
-    assert "Created 225 atoms" in run.stdout
+    assert said in run.stdout

@@ -15,7 +15,8 @@ import yaml
 import run_helpers  # noqa: F401  (finds slope_tools)
 from tiny_collapse import TOP
 
-from slope_tools.case import data_files, run_folders  # noqa: E402
+from slope_tools.case import data_files, run_folders, site_choices  # noqa: E402
+from slope_tools.commands import site as site_command  # noqa: E402
 from slope_tools.ensemble import dependencies, jobs  # noqa: E402
 
 # --- options of the commands that make runs ---
@@ -31,17 +32,84 @@ ANEW = {"road", "cut_angle", "mesh", "local", "intensity", "more_than", "of", "e
         "tolerance", "threshold", "mobility", "confined", "left_out"}
 
 
-@pytest.mark.parametrize("command", ["study", "calibrate", "sensitivity"])
-def test_every_option_is_guarded(command):
+def options(command):
     made = importlib.import_module(f"slope_tools.commands.{command}").add_parser(
         argparse.ArgumentParser().add_subparsers())
-    assert {action.dest for action in made._actions} - (CHOSEN | FOLLOWED | PLACE | ONE_RESULT | ANEW) == set()
+    return {action.dest for action in made._actions}
+
+
+@pytest.mark.parametrize("command", ["study", "calibrate", "sensitivity"])
+def test_every_option_is_guarded(command):
+    assert options(command) - (CHOSEN | FOLLOWED | PLACE | ONE_RESULT | ANEW) == set()
 
 
 @pytest.mark.parametrize("one, other", [({"rolling": "0"}, {"rolling": "0.1"}), ({"rolling": "0"}, {"friction": "0"}),
                                         ({"a": "1"}, {"a": "1", "b": "1"})])
 def test_other_values_have_another_folder(one, other):
     assert jobs.Run("out", one).folder != jobs.Run("out", other).folder
+
+
+# --- a site: its options are choices in its site.yaml, which slope study holds against those of the deck ---
+
+SET_CHOICES = {"slips", "body", "mobile"}       # of several keys
+TRIAL = {"lmp", "jobs"}                         # what the trial run finds is written as a choice
+# keys that slope study and the report read from site.yaml
+LATER = {("project", "name"), ("project", "client"), ("project", "author"), ("road", "cut_angle"), ("road", "mesh"),
+         ("study", "rolling"), ("study", "xoffset"), ("study", "sizes")}
+KEYS = [(section, key) for section, about in site_choices.sections() for key in about["properties"]]
+NOT_FILES = {("terrain", "crs"), ("terrain", "assign_crs"), ("terrain", "z_unit"), ("release", "shape"),
+             ("release", "scar_is"), ("project", "name"), ("project", "client"), ("project", "author")}
+
+
+def test_every_option_of_a_site_is_a_choice():
+    assert options("site") - SET_CHOICES - TRIAL - PLACE - {"folder"} == site_command.OPTIONS.keys() - {"assigned"}
+    assert set(site_command.OPTIONS.values()) <= set(KEYS)
+
+
+def test_every_file_of_a_site_is_known():
+    def is_text(about):
+        kinds = about.get("items", about).get("type", [])
+        return "string" in kinds or any(isinstance(one, str) for one in about.get("enum", []))
+    texts = {(section, key) for section, about in site_choices.sections()
+             for key, entry in about["properties"].items() if is_text(entry)}
+    assert texts - NOT_FILES == set(site_choices.FILES)
+
+
+@pytest.mark.parametrize("section, key", KEYS)
+def test_a_choice_of_a_site_counts(tmp_path, section, key):
+    choices = site_choices.complete({"terrain": {"files": [str(tmp_path / "dem.asc")]}})
+    before = site_choices.fingerprint(choices, tmp_path)
+    several = isinstance(choices[section].get(key), list)
+    choices[section][key] = [str(tmp_path / "other")] if several else str(tmp_path / "other")
+    assert (site_choices.fingerprint(choices, tmp_path) == before) == ((section, key) in LATER)
+
+
+@pytest.mark.parametrize("section, key", site_choices.FILES)
+@pytest.mark.parametrize("end", ["", ".prj", ".shx", ".dbf", ".cpg", ".tfw", ".hdr", ".yaml", ".x.aux.xml"])
+def test_a_file_of_a_site_counts_by_what_is_in_it(tmp_path, section, key, end):
+    source = tmp_path / "source.x"
+    changed = source.with_suffix(end) if end else source
+    source.write_text("1")
+    choices = site_choices.complete({})
+    choices[section][key] = [str(source)] if isinstance(choices[section].get(key, []), list) else str(source)
+    changed.write_text("1")
+    before = site_choices.sources(choices, tmp_path)
+    changed.write_text("2")
+    assert len(before) == 1 and site_choices.sources(choices, tmp_path) != before
+
+
+# --- results that are computed each time: their yaml says of what ---
+
+SAID = {"fragility": {"slips", "terrain", "density", "cohesion", "friction", "water", "correlation", "peaks", "record",
+                      "vertical", "displacement", "pseudo_static", "hazard", "sample", "seed"},
+        "stability": {"terrain", "cohesion", "friction", "density", "layer", "water", "water_table", "seismic",
+                      "volume", "depth", "within", "local", "direction", "method", "keep", "failed"}}
+
+
+@pytest.mark.parametrize("command", SAID)
+def test_every_option_is_said(command):
+    """What the yaml has is tested with each command."""
+    assert options(command) - PLACE - ONE_RESULT - FOLLOWED == SAID[command]
 
 
 # --- environment variables ---

@@ -7,6 +7,7 @@ import pytest
 import yaml
 from scipy import stats
 
+import test_depends_on
 from run_helpers import called, write_asc
 from test_newmark import noise
 from test_slips import CASES
@@ -175,6 +176,9 @@ def test_two_bodies_two_records_and_a_hazard(slips, capsys):
     assert (np.diff(curves["any"][1]) >= 0).all() and curves["any"][1][-1] > 0.9
     assert (curves["any"][1] >= np.maximum(curves["1"][1], curves["2"][1]) - 1e-9).all()
     about = yaml.safe_load(Path("out/fragility.yaml").read_text())
+    names = {"sample": "samples", "record": "records"}
+    assert {names.get(one, one) for one in test_depends_on.SAID["fragility"]} <= about.keys()
+    assert about["peaks"] == "50:1500:50"
     last = about["curves"][-1]
     assert last["lognormal"]["beta_r"] > 0.01 and last["lognormal"]["hclpf_gal"] < last["lognormal"]["median_gal"]
     frequency = last["annual_frequency"]

@@ -20,7 +20,7 @@ from test_site import BODY, EAST, NORTH, ROAD, TOOLS, gis, make, refused, slope,
 from tiny_collapse import LMP, processes_in
 
 from slope_tools import cli, disk, programs
-from slope_tools.case import decks, site_choices, site_deck, site_folder, site_warnings
+from slope_tools.case import decks, site, site_choices, site_deck, site_folder, site_warnings
 from slope_tools.ensemble import site_study
 from slope_tools.errors import SlopeError
 
@@ -133,6 +133,32 @@ def test_killed_while_the_files_are_exchanged(tmp_path, monkeypatch, after):
     assert (folder / "notes.txt").read_text() == "old\n" and (folder / "study" / "study.yaml").exists()
 
 
+@pytest.mark.parametrize("before", ["nothing", "an empty folder", "the site"])
+def test_killed_while_the_files_are_made(inside, gis, monkeypatch, before):  # noqa: F811
+    """The next call removes what the killed one left, and leaves alone what belongs to a process that lives."""
+    make = f"--terrain dem.tif --release release.geojson {shlex.join(BODY)} -o mine"
+    if before == "an empty folder":
+        (gis / "mine").mkdir()
+    elif before == "the site":
+        inside(make)
+        make = "mine"
+    child = os.fork()
+    if child == 0:
+        monkeypatch.setattr(site, "built", lambda *_: os.kill(os.getpid(), signal.SIGKILL))
+        try:
+            inside(make)
+        finally:
+            os._exit(1)
+    assert os.waitpid(child, 0)[1] == signal.SIGKILL
+    left, = gis.rglob(f".mine.*{child}.new")
+    other = left.with_name(left.name.replace(str(child), str(os.getppid())))
+    if before != "an empty folder":     # with it the folder is in use
+        other.mkdir()
+    inside(make)
+    assert (gis / "mine" / site_deck.NAME).is_file() and not left.exists()
+    assert list(gis.rglob(".mine.*")) == ([other] if before != "an empty folder" else [])
+
+
 def test_a_folder_without_its_deck_is_made_anew(inside, mine):
     (mine / site_deck.NAME).unlink()
     inside("mine")
@@ -238,23 +264,6 @@ def test_the_balls_of_the_ground_are_named(inside, mine):
     assert f" {choices['model']['field_diameter']:g} m" in line
     assert "not 50 m, through which the smallest balls would fall" in line
     assert choices["model"]["field_diameter"] < 1.3 * choices["balls"]["diameter"]
-
-
-def test_what_killed_calls_left_is_removed_once_it_is_old(inside, mine):
-    """In the folder, and beside one that is made; what may still be made stays."""
-    beside = mine.parent
-    left = [mine / ".mine.1.new", mine / ".mine.2.new", beside / ".other.3.new", beside / ".mine.4.new"]
-    for path in left:
-        path.mkdir()
-        (path / "terrain.asc").write_text("1")
-    old = time.time() - 2 * site_folder.LEFT_BEHIND
-    for path in (left[0], left[2], left[3]):
-        os.utime(path / "terrain.asc", (old, old))
-        os.utime(path, (old, old))
-    inside("mine --balls 60")
-    assert [path.exists() for path in left] == [False, True, True, True]     # the last one is not in the folder
-    inside(f"--terrain dem.tif --release release.geojson {shlex.join(BODY)} -o other")
-    assert not left[2].exists()
 
 
 # --- soil and ground ---

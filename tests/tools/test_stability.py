@@ -11,6 +11,7 @@ from affine import Affine
 from shapely.geometry import box
 
 import run_helpers
+import test_depends_on
 from run_helpers import called, write_asc
 from test_slips import CASES
 
@@ -53,6 +54,7 @@ def test_bodies_table_map_and_warnings(low, capsys):
     assert inside.sum() == rows[0]["cells"] and (factor.z[inside] <= rows[0]["factor"] * (1 + 1e-6)).all()
     assert rows[0]["cells"] * 0.25 == pytest.approx(rows[0]["area"], rel=0.02)
     about = yaml.safe_load(Path("slips/stability.yaml").read_text())
+    assert test_depends_on.SAID["stability"] - {"failed"} <= about.keys() and about["method"] == "bishop"
     assert f"only {len(rows)} of 9 bodies" in about["warnings"][0] and len(rows) < 9
     assert all(f"stability: warning: {line}\n" in err for line in about["warnings"])
     assert Path("slips/stability.png").stat().st_size > 10000

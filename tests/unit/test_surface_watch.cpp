@@ -572,6 +572,23 @@ TEST(TerrainSurface, FindsAllThatIsNear)
   EXPECT_GT(near, 1000u);
 }
 
+TEST(TerrainSurface, IsTheSameWithHeightsThatAreElsewhere)
+{
+  ElevationGrid grid(9, 7, 0.0, 0.0, 1.0, 0.0);
+  for (size_t k = 0; k < grid.z.size(); k++) grid.z[k] = std::sin(3.0 * k);
+  const TerrainSurface ground(grid, "g");
+  const std::vector<double> heights(ground.heights(), ground.heights() + 11 * 9);
+  const TerrainSurface other(ground.about(), heights.data());
+  ASSERT_EQ(other.count(), ground.count());
+  EXPECT_EQ(other.checksum(), ground.checksum());
+  EXPECT_EQ(other.memory_usage(), 0.0);
+  EXPECT_EQ(other.high().z, ground.high().z);
+  for (int k = 0; k < ground.count(); k++) {
+    EXPECT_EQ(other.triangle(k).a.z, ground.triangle(k).a.z);
+    EXPECT_EQ(other.triangle(k).c.x, ground.triangle(k).c.x);
+  }
+}
+
 TEST(TerrainSurface, NeedsAQuadrangle)
 {
   ElevationGrid grid(3, 3, 0.0, 0.0, 1.0, NAN);

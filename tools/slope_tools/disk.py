@@ -1,9 +1,11 @@
 """Reading YAML, and writing files whole or not at all."""
 import fcntl
 import functools
+import glob
 import hashlib
 import math
 import os
+import platform
 import shutil
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -115,6 +117,32 @@ def alone_in(folder, what="study"):
         yield
 
 
+def beside_folder(folder: Path) -> Path:
+    """Name of a folder for files on their way to `folder`, on its disk, so that renames do.
+
+    Removes what processes of this machine that are gone left under such names.
+    """
+    start = f".{folder.name}.{platform.node()}."
+    for place in (folder, folder.parent):
+        left = place.glob(f"{glob.escape(start)}*.new") if place.is_dir() else ()
+        for path in list(left):
+            number = path.name[len(start):-len(".new")]
+            if number.isdigit() and not is_alive(int(number)):
+                shutil.rmtree(path, ignore_errors=True)
+    return (folder if folder.is_dir() else folder.parent) / f"{start}{os.getpid()}.new"
+
+
+def is_alive(process: int) -> bool:
+    """Whether this machine has a process of that number."""
+    try:
+        os.kill(process, 0)
+    except (ProcessLookupError, OverflowError):
+        return False
+    except OSError:     # another user's
+        return True
+    return True
+
+
 @contextmanager
 def complete(folder, marker):
     """A folder to write a set of results into; when all are there they move to `folder`, else nothing changes.
@@ -123,8 +151,7 @@ def complete(folder, marker):
     leaves files without it, which are void.
     """
     asked, folder = folder, Path(folder).resolve()
-    # on the disk of the folder, so that renames do
-    new = (folder if folder.is_dir() else folder.parent) / f".{folder.name}.{os.getpid()}.new"
+    new = beside_folder(folder)
     try:
         new.mkdir()
         yield new

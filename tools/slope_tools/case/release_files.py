@@ -7,7 +7,7 @@ from typing import Iterable, List
 import numpy as np
 from scipy.ndimage import binary_dilation
 
-from ..disk import write_yaml
+from ..disk import beside_folder, write_yaml
 from ..errors import SlopeError
 from ..provenance import version
 from ..survey import rasters, release_solve
@@ -60,7 +60,7 @@ def write(name: Path, terrain: str, raster: Raster, area: Area, slip: np.ndarray
     """
     from . import release_chart     # matplotlib: only once the body is there
 
-    folder = name.parent / f".{name.name}.{os.getpid()}.new"
+    folder = beside_folder(name)
     new = folder / name.name
     made = dict(zip(SUFFIXES, paths(new)))
     whole, depth = ground_without(raster, area, slip), np.full(raster.z.shape, np.nan)

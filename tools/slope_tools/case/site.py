@@ -74,13 +74,13 @@ def make(choices: Choices, folder: Path, machine: Machine, tell: Callable[[str],
     rebuilt; known: the choices that were determined when it was made before. Raises SlopeError on bad input; the folder
     is then as it was, and a new one has site.yaml alone, to be changed.
     """
+    place = folder.absolute()
+    new = disk.beside_folder(place)
     check_target(folder, again)
     known_files = again or site_folder.was_not_made(folder)
     old = set(site_choices.found(folder).get("files") or ()) if known_files else set()
     site_folder.check(choices, folder, old)
-    place = folder.absolute()
     try:
-        new = site_folder.place_of(place)
         with disk.alone_in(folder) if again else contextlib.nullcontext():
             new.mkdir()
             try:

@@ -1,7 +1,4 @@
 """The files of a site's folder: which ones slope site makes, and how new ones take the place of old ones."""
-import os
-import shutil
-import time
 from pathlib import Path
 from typing import List, Set
 
@@ -16,7 +13,6 @@ MAP = "map.png"
 TERRAIN = "terrain.asc"
 BODY = "release"        # first part of the names of the body's files
 BODY_DECK = f"{BODY}.deck.txt"      # is not kept: its lines are in the deck
-LEFT_BEHIND = 3600.0    # s without a change: a trial run takes less
 
 
 def planned(choices: Choices) -> Set[str]:
@@ -70,16 +66,6 @@ def check_free(names: Set[str], folder: Path, old: Set[str]) -> None:
     for path in (folder / name for name in sorted(names)):
         if path.is_dir() or (path.exists() and path.name not in old):
             raise SlopeError(path, "must not exist, slope site makes a file of that name: rename or move it")
-
-
-def place_of(folder: Path) -> Path:
-    """Where the files of a folder (absolute) are made, on its disk so that renames do; what killed calls left there is
-    removed, once it has not been touched for an hour."""
-    parent = folder if folder.is_dir() else folder.parent
-    for old in parent.glob(f".{folder.name}.*.new"):
-        if time.time() - max(path.stat().st_mtime for path in (old, *old.iterdir())) > LEFT_BEHIND:
-            shutil.rmtree(old, ignore_errors=True)
-    return parent / f".{folder.name}.{os.getpid()}.new"
 
 
 def exchange(new: Path, folder: Path, old: Set[str]) -> None:

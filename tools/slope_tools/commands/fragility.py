@@ -89,8 +89,8 @@ def run(args):
     for text in warnings_of(curves, found, args.pseudo_static, len(args.record)):
         warn(text)
     about = {"bodies": [{"body": body.name, "volume_m3": body.columns.volume,
-                        "base_sha256": disk.sha256(body.base)} for body in found],
-             "peaks_gal": peaks.tolist(),
+                         "base_sha256": disk.sha256(body.base)} for body in found],
+             "peaks": args.peaks, "peaks_gal": peaks.tolist(),
              "hazard_curve": np.column_stack(hazard).tolist() if hazard else None, "slips": args.slips,
              "terrain": args.terrain, "density": args.density, "cohesion": args.cohesion, "friction": args.friction,
              "water": args.water, "correlation": args.correlation, "samples": len(capacity), "seed": args.seed,

@@ -108,7 +108,8 @@ def run(args):
                                    polygon and doubts.cells_in(raster, polygon)):
             warn(doubts.words(doubt))
         table = [numbers_of(raster, row, mask) for row, mask in zip(rows, masks)]
-        write(folder, args, raster, rows, masks, {"bodies": table, "warnings": kept})
+        write(folder, args, raster, rows, masks, {"method": asked.method, "keep": asked.keep, "bodies": table,
+                                                  "warnings": kept})
         slip_run.settle(asked, raster, folder, len(rows), args.output)
     slip_run.remove_others(args.output, len(rows))
     print(summary(table, args.output, said.notes))
@@ -170,8 +171,8 @@ def write(folder, args, raster, rows, masks, found) -> None:
         f", k {args.seismic[0]:g}" if args.seismic else "")
     chart.draw(folder / FILES[1], raster, factor, rows, masks, title)
     about = {name: getattr(args, name) for name in ("terrain", "cohesion", "friction", "density", "layer", "water",
-                                                    "water_table", "seismic", "volume", "depth", "within", "direction",
-                                                    "method", "keep") if getattr(args, name)}
+                                                    "water_table", "seismic", "volume", "depth", "within", "local",
+                                                    "direction")}
     disk.write_yaml(folder / FILES[2], {**about, **found}, "slope stability: Pa, degrees, kg/m3, m, m3; bearings")
 
 
