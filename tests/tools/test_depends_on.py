@@ -22,7 +22,8 @@ from slope_tools.ensemble import dependencies, jobs  # noqa: E402
 # --- options of the commands that make runs ---
 
 # values of variables: the name of a run's folder
-CHOSEN = {"set", "vary", "sample", "fit", "paper", "design", "seed", "repeat", "converge", "runs"}
+CHOSEN = {"set", "vary", "sample", "fit", "paper", "design", "seed", "repeat", "converge", "runs",
+          "fragility"}
 FOLLOWED = {"deck", "lmp"}              # dependencies.py
 PLACE = {"output", "help", "dry_run"}   # where to, or no run
 ONE_RESULT = {"np", "jobs", "launcher", "engine", "slurm"}      # how it is run: the same but for rounding
@@ -62,7 +63,7 @@ NOT_FILES = {("terrain", "crs"), ("terrain", "assign_crs"), ("terrain", "z_unit"
 
 
 def test_every_option_of_a_site_is_a_choice():
-    assert options("site") - SET_CHOICES - TRIAL - PLACE - {"folder"} == site_command.OPTIONS.keys() - {"assigned"}
+    assert options("site") - SET_CHOICES - TRIAL - PLACE - {"folder"} == site_command.OPTIONS.keys() - {"assigned", "bodies"}
     assert set(site_command.OPTIONS.values()) <= set(KEYS)
 
 

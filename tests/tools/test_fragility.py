@@ -197,6 +197,17 @@ def test_pseudo_static_is_said_to_be_cautious_and_is(slips, capsys):
     assert (table()["1"][1] >= table("slide/fragility.csv")["1"][1]).all()
 
 
+def test_strengths_with_which_the_slope_would_not_stand_are_named(slips, capsys):
+    """Few, but each earthquake of the curve finds them failed."""
+    few = SOIL.replace("3e3:9e3", "list:0@0.02,9e3@0.98")
+    status, _, err = ran(capsys, f"slips {few} --peaks 50:1500:50 --pseudo-static 1 --sample 512 --hazard hazard.csv "
+                         "-o out")
+    given = yaml.safe_load(Path("out/fragility.yaml").read_text())["curves"][-1]
+    assert status == 0 and "any body: " in err and "% of the strengths fail without an earthquake, which makes" in err
+    share = given["fails_without_earthquake"] * 0.01 / given["annual_frequency"]["value"]
+    assert f"which makes {100 * share:.2g} % of the frequency" in err and share > 0.05
+
+
 def test_the_share_below_a_peak_is_a_direct_simulation(slips, capsys):
     """Every sample's own displacement at one peak, instead of its capacity."""
     words = (f"slips {SOIL} --water 0:0.2 --peaks 200:400:200 --record motion.txt --sample 256 "

@@ -1,6 +1,7 @@
 """slope stability: what find_slip finds on the embankments of Scoops3D, and what is said of it."""
 import csv
 import os
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -136,6 +137,27 @@ def test_bad_input_is_one_line(low, capsys, words, rule):
     assert not Path("out").exists() and not list(Path().glob(".out*"))
 
 
+def several_bodies(site, rows):
+    """Without --body all of them are in the deck, each with its own volume."""
+    assert site("--slips slips -o all")[0] == 0
+    about = yaml.safe_load(Path("all/site.yaml").read_text())
+    assert about["release"]["bodies"] == ["../slips/body.1.base.asc", "../slips/body.2.base.asc"]
+    volumes = [about["found"]["bodies"][rank]["volume_m3"] for rank in (1, 2)]
+    assert volumes == pytest.approx([row["volume"] for row in rows], rel=2e-3)
+    at = []
+    for rank, volume in enumerate(volumes, 1):
+        subprocess.run([LMP, "-in", "in.site", "-var", "body", str(rank), "-var", "duration", "0.1", "-var", "out",
+                        f"run{rank}"], cwd="all", check=True, stdout=subprocess.DEVNULL)
+        summary = yaml.safe_load(Path(f"all/run{rank}.summary.yaml").read_text())
+        assert summary["volume"]["released"] == pytest.approx(volume, rel=2e-3)
+        start = bodies.rasters.read(Path(f"all/run{rank}.arrival.asc"), heights=False)
+        y = start.transform.f + start.transform.e * (np.nonzero(start.z == 0)[0] + 0.5)
+        at.append(y.mean())
+    # spheres of one size beside each other along the embankment
+    assert abs(rows[1]["y"] - rows[0]["y"]) > 2
+    assert at[1] - at[0] == pytest.approx(rows[1]["y"] - rows[0]["y"], abs=0.5)
+
+
 @needs_lmp
 def test_a_site_of_a_body(low, capsys):
     """Its release is the body of that rank, on the terrain where it was found."""
@@ -151,6 +173,7 @@ def test_a_site_of_a_body(low, capsys):
     assert about["release"]["scar"] == "../slips/body.2.base.asc" and about["release"]["scar_is"] == "surface"
     body = yaml.safe_load(Path("mine/release.yaml").read_text())
     assert body["body"]["volume"] == pytest.approx(rows[1]["volume"], rel=2e-3)
+    several_bodies(site, rows)
     for words, rule in (("--slips slips --body 3", "--body: must be one of slips/body.slips.csv, 1, 2, got 3"),
                         ("--body 1", "--body: must be given with --slips, got 1"),
                         ("--slips nowhere", "nowhere: must be PREFIX.slips.csv"),

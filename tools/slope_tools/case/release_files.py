@@ -39,6 +39,18 @@ def check(name: Path, inputs: Iterable[str]) -> None:
                     raise SlopeError("-o", f"must be another name: {made} belongs to an input", name)
 
 
+def part_of(area: Area, slip: np.ndarray):
+    """Where the nodes of an area are in its raster."""
+    return tuple(slice(first, first + size) for first, size in zip(area.corner, slip.shape))
+
+
+def ground_without(raster: Raster, area: Area, slip: np.ndarray) -> np.ndarray:
+    """The heights (m) of a raster without a body; slip: those on the nodes of the area."""
+    whole = raster.z.copy()
+    whole[part_of(area, slip)] = slip
+    return whole
+
+
 def write(name: Path, terrain: str, raster: Raster, area: Area, slip: np.ndarray, about: dict, geometry,
           title: str) -> None:
     """Write all files of a body beside their names and then rename them.
@@ -51,9 +63,8 @@ def write(name: Path, terrain: str, raster: Raster, area: Area, slip: np.ndarray
     folder = beside_folder(name)
     new = folder / name.name
     made = dict(zip(SUFFIXES, paths(new)))
-    whole, depth = raster.z.copy(), np.full(raster.z.shape, np.nan)
-    part = tuple(slice(first, first + size) for first, size in zip(area.corner, slip.shape))
-    whole[part] = slip
+    whole, depth = ground_without(raster, area, slip), np.full(raster.z.shape, np.nan)
+    part = part_of(area, slip)
     depth[part] = np.where(slip < area.z, area.z - slip, np.nan)
     sidecar = {"terrain": str(terrain), "release": name.name + ".yaml"}
     try:

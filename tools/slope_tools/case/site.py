@@ -17,7 +17,7 @@ from .. import disk, provenance
 from ..errors import SlopeError
 from ..survey import local_terrain, polygons, rasters, release
 from ..survey.rasters import Raster, crs_name
-from . import release_files, site_budget, site_choices, site_deck, site_folder, site_warnings
+from . import release_files, site_bodies, site_budget, site_choices, site_deck, site_folder, site_warnings
 from .site_budget import Size, Trial
 from .site_choices import Choices, Derived
 from .site_folder import BODY, BODY_DECK, MAP, TERRAIN
@@ -123,7 +123,8 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
     tell(release.text(found))
     for line in found.warnings:
         keep(line)
-    body = write_body(new, wanted, found)
+    several = site_bodies.write(choices, new, BODY, wanted, keep)
+    body = site_bodies.around(write_body(new, wanted, found), BODY, several)
     layers = read_layers(choices, raster, new, tell, keep)
     title = choices["project"]["name"] or folder.absolute().name
     parts = site_deck.Parts(title, ", ".join(Path(name).name for name in choices["terrain"]["files"]), body,
@@ -153,7 +154,7 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
              "sources_sha256": site_choices.sources(choices, folder),
              "crs": crs_name(raster.crs),
              "origin": {"east": float(raster.offset[0]), "north": float(raster.offset[1])},
-             "body": found.measures._asdict(), "balls": size.balls,
+             "body": found.measures._asdict(), "bodies": site_bodies.about(several), "balls": size.balls,
              "trial": trial and trial._asdict(), "study": {"runs": size.runs, "seconds": size.seconds,
                                                            "gigabytes": size.gigabytes, "at_a_time": machine.jobs}}
     disk.write(new / site_choices.NAME, site_choices.text(choices, about, folder.absolute()))
@@ -164,7 +165,7 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
 
 def wanted_body(choices: Choices, new: Path) -> release.Wanted:
     """What is asked of the body, checked before anything is read."""
-    given = choices["release"]
+    given = {key: value for key, value in choices["release"].items() if key != "bodies"}
     if not (given["polygon"] or given["scar"]):
         raise SlopeError("--release", "must be given, a polygon, or --scar, a raster")
     site_choices.check_assigned(choices)

@@ -24,8 +24,8 @@ LONGEST_TEXT = 200      # letters of a name in the heading of a report
 SCHEMA = Path(__file__).with_name("site_schema.json")
 WHAT = "a site.yaml of `slope site`"
 # keys that hold one file, and lists of files
-FILES = (("terrain", "files"), ("release", "polygon"), ("release", "scar"), ("road", "file"), ("structures", "files"),
-         ("lines", "files"), ("motion", "file"), ("observed", "file"))
+FILES = (("terrain", "files"), ("release", "polygon"), ("release", "scar"), ("release", "bodies"), ("road", "file"),
+         ("structures", "files"), ("lines", "files"), ("motion", "file"), ("observed", "file"))
 
 WITHOUT_CRS = (("structures", "files"), ("motion", "file"))
 

@@ -6,6 +6,7 @@ from typing import Any, Dict, NamedTuple, Optional, Sequence
 
 import jinja2
 
+from ..slips.bodies import rank_of
 from .release_deck import Body
 from .site_choices import Choices
 from .site_inputs import Line, Motion, Structure
@@ -58,6 +59,7 @@ def values(choices: Choices, parts: Parts, numbers: Numbers) -> Dict[str, Any]:
         "run_time": run_time(numbers.run_seconds), "lower": math.ceil(body.lower),
         "box": " ".join(plain(value) for value in body.box), "types": 4 if parts.structures else 3,
         "film": plain(frame(numbers.rest or numbers.duration / 3)),
+        "slip_file": body.slip, "body": choices["release"]["bodies"] and body_number(choices),
         "structures": [{"name": one.name, "file": one.file, "point": words(one.point),
                         "move": f" move {words(one.move)}" if any(one.move) else ""} for one in parts.structures],
         "lines": parts.lines, "motion": parts.motion.file if parts.motion else "", }
@@ -71,6 +73,11 @@ def values(choices: Choices, parts: Parts, numbers: Numbers) -> Dict[str, Any]:
         ("peak_friction", numbers.peak_friction), ("peak_rolling", motion["peak_rolling"]),
         ("trigger", motion["trigger"]))})
     return parameters
+
+
+def body_number(choices: Choices) -> int:
+    """Which of the bodies of slope stability the site's is."""
+    return rank_of(Path(choices["release"]["scar"]))
 
 
 def plain(value: float) -> str:

@@ -5,7 +5,7 @@ from typing import List, Set
 from .. import disk
 from ..errors import SlopeError
 from ..survey import vectors
-from . import release_files, site_choices, site_deck, site_inputs, site_warnings
+from . import release_files, site_bodies, site_choices, site_deck, site_inputs, site_warnings
 from .site_choices import Choices
 from .site_layers import OBSERVED, RASTERS, ROAD
 
@@ -19,6 +19,7 @@ def planned(choices: Choices) -> Set[str]:
     """Names of the files that will be made."""
     names = {MAP, TERRAIN, Path(TERRAIN).with_suffix(".yaml").name, f"{BODY}.csv", site_deck.NAME, site_choices.NAME,
              site_warnings.NAME, *(path.name for path in release_files.paths(Path(BODY)))} - {BODY_DECK}
+    names |= site_bodies.planned(choices, BODY)
     observed = choices["observed"]["file"]
     if observed:
         names.add(OBSERVED + (".tif" if Path(observed).suffix.lower() in RASTERS else ".csv"))

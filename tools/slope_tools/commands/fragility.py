@@ -22,7 +22,8 @@ examples:
   tools/slope fragility slips --terrain terrain.asc --density 1900 --cohesion 5e3:15e3 --friction 25:35 \\
       --peaks 100:1200 --pseudo-static 0.65 --hazard hazard.csv -o fragility
 
-Writes fragility.csv, fragility.yaml and fragility.png.
+Writes fragility.csv, fragility.yaml and fragility.png, and capacities.csv: from which peak on each sample fails. With
+this folder `slope study SITE --sample N --fragility DIR` says how likely which volume reaches the road.
 """
 
 
@@ -85,14 +86,18 @@ def run(args):
                           float((one <= 0).all(axis=1).mean())) for name, one in zip(names, columns)]
     kept: List[str] = []
     warn = errors.warner("fragility", kept)
-    for text in warnings_of(curves, found, args.pseudo_static, len(args.record)):
+    for text in warnings_of(curves, found, args.pseudo_static, len(args.record), hazard):
         warn(text)
-    about = {"slips": args.slips, "terrain": args.terrain, "density": args.density, "cohesion": args.cohesion,
-             "friction": args.friction, "water": args.water, "correlation": args.correlation,
-             "peaks": args.peaks, "samples": len(capacity), "seed": args.seed, "records": args.record,
-             "vertical": args.vertical, "displacement": None if args.pseudo_static is not None else limit,
+    about = {"bodies": [{"body": body.name, "volume_m3": body.columns.volume,
+                         "base_sha256": disk.sha256(body.base)} for body in found],
+             "peaks": args.peaks, "peaks_gal": peaks.tolist(),
+             "hazard_curve": np.column_stack(hazard).tolist() if hazard else None, "slips": args.slips,
+             "terrain": args.terrain, "density": args.density, "cohesion": args.cohesion, "friction": args.friction,
+             "water": args.water, "correlation": args.correlation, "samples": len(capacity), "seed": args.seed,
+             "records": args.record, "vertical": args.vertical,
+             "displacement": None if args.pseudo_static is not None else limit,
              "pseudo_static": args.pseudo_static, "hazard": args.hazard, "warnings": kept}
-    files.write(args.output, peaks, curves, about)
+    files.write(args.output, peaks, curves, capacity, about)
     print(summary(curves, args.output, files.FILES))
 
 
@@ -162,7 +167,7 @@ def drawn(option, text, low, high, unit):
     return one
 
 
-def warnings_of(curves, found, pseudo_static, records):
+def warnings_of(curves, found, pseudo_static, records, hazard):
     """What a reader must know, in words."""
     from ..slips.columns import FEWEST
 
@@ -174,8 +179,11 @@ def warnings_of(curves, found, pseudo_static, records):
         if len(body.columns.area) < FEWEST:
             yield f"body {body.name} has {len(body.columns.area)} columns, fewer than {FEWEST}: its numbers are rough"
     for one in curves:
-        if one.at_rest > 0.01:
-            yield f"{one.title}: {100 * one.at_rest:.3g} % of the strengths fail without an earthquake"
+        standing = one.at_rest * hazard.rates[0] / one.frequency.total.value if one.frequency else 0.0
+        if one.at_rest > 0.01 or standing > 0.05:
+            yield (f"{one.title}: {100 * one.at_rest:.2g} % of the strengths fail without an earthquake"
+                   + (f", which makes {100 * standing:.2g} % of the frequency" if standing > 0.05 else "")
+                   + ": if the slope stands, they are not its own; raise the lower bounds of the strengths")
         if one.fit is None:
             yield f"{one.title}: no lognormal fit, the peaks show fewer than three probabilities between 0 and 1"
         elif one.fit.off > 0.05:

@@ -25,6 +25,7 @@ OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
            "shape": ("release", "shape"), "depth": ("release", "depth"), "volume": ("release", "volume"),
            "curvature": ("release", "curvature"), "dip": ("release", "dip"), "direction": ("release", "direction"),
            "scar": ("release", "scar"), "scar_is": ("release", "scar_is"), "least": ("release", "least"),
+           "bodies": ("release", "bodies"),
            "road": ("road", "file"), "cut_angle": ("road", "cut_angle"), "mesh": ("road", "mesh"),
            "structure": ("structures", "files"), "line": ("lines", "files"), "motion": ("motion", "file"),
            "peak_friction": ("motion", "peak_friction"), "friction": ("model", "friction"),
@@ -119,9 +120,11 @@ def add_ground(group):
     group.add_argument("--scar", metavar="RASTER", help="the body is what this raster says, see --scar-is")
     group.add_argument("--scar-is", choices=KINDS, help="surface: heights after the event (default, "
                        "if they follow the terrain); depth; change")
-    group.add_argument("--slips", metavar="SLIPS", type=Path, help="the body is one of what slope stability found on "
-                       "this terrain, its folder or PREFIX.slips.csv; instead of --release")
-    group.add_argument("--body", metavar="N", type=count, help="its rank (default 1, the least factor of safety)")
+    group.add_argument("--slips", metavar="SLIPS", type=Path, help="the bodies are those that slope stability found on "
+                       "this terrain, its folder or PREFIX.slips.csv; instead of --release. The first is released "
+                       "where the deck's variable body does not say otherwise")
+    group.add_argument("--body", metavar="N", type=count, help="only the one of this rank (1 has the least factor "
+                       "of safety)")
     group.add_argument("--least", metavar="D", type=number, help="depths of a scar below this count as none, m")
 
 
@@ -218,7 +221,7 @@ def chosen(args):
 
 
 def of_slips(args):
-    """--slips and --body as options of a scar: the surface of that body."""
+    """--slips and --body as options of a scar: the surface of the first body, and those of all that may be released."""
     if args.slips is None:
         if args.body is not None:
             raise SlopeError("--body", "must be given with --slips", args.body)
@@ -226,7 +229,8 @@ def of_slips(args):
     for option in ("scar", "release"):
         if getattr(args, option) is not None:
             raise SlopeError("--slips", f"must be given without --{option}: it is the body", args.slips)
-    return {"scar": str(bodies.base_file(args.slips, args.body or 1)), "scar_is": "surface"}
+    found = [bodies.base_file(args.slips, args.body)] if args.body else bodies.base_files(args.slips)
+    return {"scar": str(found[0]), "scar_is": "surface", "bodies": [str(one) for one in found]}
 
 
 def density_of_ball(bulk):
@@ -274,6 +278,8 @@ def replace(choices, given):
             for option in group:
                 section, key = OPTIONS[option]
                 choices[section][key] = None
+    if "scar" in given or "release" in given:
+        choices["release"]["bodies"] = []
     if "scar" in given:
         choices["release"].update(shape=None, depth=None, volume=None, curvature=None, dip=None, direction=None)
     for option, value in given.items():

@@ -7,6 +7,7 @@ import argparse
 from pathlib import Path
 
 from ..case import decks, site_choices, site_deck
+from ..case.site_bodies import VARIABLE
 from ..case.settings import check_settings, one_value_each
 from ..case.site_layers import ROAD
 from ..ensemble import intensity, known_study, repeats, results, sample, site_study
@@ -40,6 +41,9 @@ the same, weighted so that the runs end where known events of this volume and he
 such an ensemble of a site that `slope site ... -o mine` made, with its road and report:
   tools/slope study mine --sample 64 --mobility rock_avalanches
 
+the whole chain, from an earthquake to how often the road is blocked, of a site made with `slope site --slips`:
+  tools/slope study mine --sample 64 --vary friction=25:35 --vary rolling=0:0.1 --fragility fragility --more-than 500
+
 everything of a site that `slope site ... -o mine` made, with its report: where known events cover the mass, an ensemble
 that is weighted by them; otherwise, or with --paper, rolling resistances, repeats and sizes of balls:
   tools/slope study mine
@@ -60,6 +64,9 @@ def add_parser(commands, **kwargs):
                         help="values of an index variable of the deck; A:B:STEP stands for A, A + STEP, ... up to B")
     add_sample(parser)
     add_mobility(parser)
+    parser.add_argument("--fragility", metavar="FOLDER", type=Path,
+                        help="of a site with several bodies, with --sample: what `slope fragility` wrote; how likely "
+                             "which volume reaches the road at a peak acceleration, and per year")
     parser.add_argument("--paper", action="store_true",
                         help="of a site: the largest volume over the rolling resistances, the paper's method, also "
                              "where a set of known events covers the mass")
@@ -96,6 +103,8 @@ def run_folder(args):
         if args.paper:
             raise SlopeError("--paper", "must not be given with --sample or --from, which make an ensemble")
         return run_site_ensemble(args)
+    if args.fragility is not None:
+        raise SlopeError("--sample", "must be given with --fragility: how many runs")
     refuse(args, NOT_OF_A_SITE)
     choices = site_choices.read(args.deck)
     site_study.check(args.deck, choices)
@@ -119,6 +128,7 @@ def run_deck(args):
         raise SlopeError(args.deck, "must be a deck or the folder of a site, there is none of that name")
     if args.output is None:
         raise SlopeError("-o", "must be given, the study's folder")
+    chain = chain_of(args)
     settings = check_settings(args.set, args.deck)
     repeated = check_settings(args.repeat, args.deck, "--repeat")
     repeats.check(list(repeated), args.equally_good)
@@ -129,7 +139,7 @@ def run_deck(args):
     settle_kind(args, sample=many)
     condition = condition_of(args)
     if many:
-        return run_ensemble(args, settings, repeated, thresholds, defaults, condition)
+        return run_ensemble(args, settings, repeated, thresholds, defaults, condition, chain)
     if not settings:
         raise SlopeError("--set", "must be given, or --sample with --vary")
     todo = repeats.plan(args.output, settings, repeated, defaults)
@@ -154,6 +164,29 @@ def check_fit(args):
         if args.fit is not None and getattr(args, option) not in (None, []):
             raise SlopeError(f"--{option}", "must not be given with --from: a calibration has said which values are "
                              "equally good", " ".join(args.vary) if option == "vary" else getattr(args, option))
+
+
+def chain_of(args):
+    """What --fragility asks for, None without it; the bodies become a variable of the ensemble."""
+    if args.fragility is None:
+        return None
+    from ..ensemble import chain_files      # scipy
+    for option, given in (("mobility", args.mobility), ("from", args.fit), ("of", args.of)):
+        if given is not None:
+            raise SlopeError(f"--{option}", "must not be given with --fragility, whose runs are of several bodies "
+                             "and of the volume on the road", given)
+    if args.sample is None or getattr(args, "site", None) is None:
+        raise SlopeError("--fragility", "must be given with the folder of a site and --sample", args.fragility)
+    if not args.road:
+        raise SlopeError("--fragility", "needs a site with a road: what counts is the volume on it", args.fragility)
+    for words in (*args.vary, *args.set):
+        if words.startswith(f"{VARIABLE}="):
+            raise SlopeError("--vary", f"must not have {VARIABLE}, which --fragility draws", words)
+    found = chain_files.check(chain_files.read(args.fragility), site_choices.found(args.site).get("bodies") or {},
+                              args.site, args.more_than or ())
+    fixed, drawn = chain_files.options(found)
+    args.set, args.vary, args.more_than = [*args.set, *fixed], [*args.vary, *drawn], None
+    return found
 
 
 def run_site(args, method):
@@ -188,7 +221,7 @@ def run_site_ensemble(args, page=f"{site_study.ENSEMBLE}.html", method=""):
     site, choices = args.deck, site_choices.read(args.deck)
     site_study.check(site, choices)
     args.deck = site / site_deck.NAME
-    args.vary = args.vary or ([] if args.fit else list(known_study.VARY))
+    args.vary = args.vary or ([] if args.fit else chances(choices) if args.fragility else list(known_study.VARY))
     args.site, args.method, args.output = site, method, args.output or site / site_study.ENSEMBLE
     if choices["road"]["file"]:
         args.road, args.cut_angle, args.mesh = site / ROAD, choices["road"]["cut_angle"], choices["road"]["mesh"]
@@ -197,7 +230,14 @@ def run_site_ensemble(args, page=f"{site_study.ENSEMBLE}.html", method=""):
         write_report(args.output, site / page)
 
 
-def run_ensemble(args, settings, repeated, thresholds, defaults, condition):
+def chances(choices):
+    """--vary of a site's chain, unless it is given: the rolling resistances of its study, and the lattice."""
+    rolling = choices["study"]["rolling"]
+    several = [f"rolling={min(rolling):.10g}:{max(rolling):.10g}"] * (min(rolling) < max(rolling))
+    return [*several, "xoffset=0:0.99"]
+
+
+def run_ensemble(args, settings, repeated, thresholds, defaults, condition, chain=None):
     """The runs of --sample, and what they say together."""
     from ..ensemble import calibrated, ensemble, ensemble_maps
     if args.sample is None and args.fit is None:
@@ -217,6 +257,6 @@ def run_ensemble(args, settings, repeated, thresholds, defaults, condition):
     several = sample.settings_of(todo)
     setup = setup_of(args)
     questions = results.Questions(several, repeated, thresholds, None, ensemble.Order(plan, of, levels, condition),
-                                  site=getattr(args, "site", None), method=getattr(args, "method", ""))
+                                  site=getattr(args, "site", None), method=getattr(args, "method", ""), chain=chain)
     perform(setup, {**several, **repeated}, todo, lambda todo, work: results.collect(setup, questions, todo, work),
             begin=lambda: sample.keep(args.output, plan))

@@ -14,7 +14,8 @@ from ..errors import SlopeError
 from .fragility import Band, Fit, Frequency, Hazard
 
 ANY = "any"
-FILES = ["fragility.csv", "fragility.png", "fragility.yaml"]
+ABOUT, CAPACITIES = "fragility.yaml", "capacities.csv"
+FILES = ["fragility.csv", "fragility.png", CAPACITIES, ABOUT]
 
 
 class Curve(NamedTuple):
@@ -80,9 +81,10 @@ def about_curve(one: Curve) -> Dict[str, Any]:
     return about
 
 
-def write(folder: Path, peaks: np.ndarray, curves: Sequence[Curve], about: Dict[str, Any]) -> None:
-    """fragility.csv, .png and .yaml, all of them or none."""
-    with disk.complete(folder, "fragility.yaml") as new:
+def write(folder: Path, peaks: np.ndarray, curves: Sequence[Curve], capacity: np.ndarray,
+          about: Dict[str, Any]) -> None:
+    """FILES, all of them or none; capacity (gal): samples, records, bodies."""
+    with disk.complete(folder, ABOUT) as new:
         with open(new / "fragility.csv", "w", encoding="ascii", newline="") as out:
             rows = csv.writer(out, lineterminator="\n")
             rows.writerow(["body", "peak_gal", "probability", "low", "high", "lognormal"])
@@ -92,8 +94,13 @@ def write(folder: Path, peaks: np.ndarray, curves: Sequence[Curve], about: Dict[
                     band = (f"{value[k]:.6g}" for value in one.band)
                     rows.writerow([one.name, f"{peak:g}", *band, "" if fitted is None else f"{fitted[k]:.6g}"])
         draw(new / "fragility.png", peaks, curves)
-        disk.write_yaml(new / "fragility.yaml", {**about, "curves": [about_curve(one) for one in curves],
-                                                 "files": FILES}, "slope fragility: peaks in gal, rates per year")
+        samples, records = capacity.shape[:2]
+        sample, record = (one.ravel() + 1 for one in np.indices((samples, records)))
+        np.savetxt(new / CAPACITIES, np.column_stack([sample, record, capacity.reshape(samples * records, -1)]),
+                   "%.7g", ",", header=",".join(["sample", "record", *(one["body"] for one in about["bodies"])]),
+                   comments="")
+        disk.write_yaml(new / ABOUT, {**about, "curves": [about_curve(one) for one in curves], "files": FILES},
+                        "slope fragility: peaks in gal, rates per year")
 
 
 def fitted_at(fit: Optional[Fit], peaks: np.ndarray) -> Optional[np.ndarray]:

@@ -12,7 +12,8 @@ from ..case import run_folders
 from ..deposit import left, rest, travel_shares
 from ..digits import rounded
 from ..survey import rasters
-from . import combinations, ensemble, intensity, known_study, repeats, size_error, step_check, structures, study_table
+from . import (chain_files, combinations, ensemble, intensity, known_study, repeats, size_error, step_check,
+               structures, study_table)
 from . import usable, withheld_words
 from .setup import Road, Setup
 from .size_error import SizeErrors
@@ -42,6 +43,7 @@ class Questions(NamedTuple):
     sizes: Optional[Path] = None                    # converge.yaml of the runs with balls of several sizes
     step: Optional[step_check.Step] = None          # the run with half the time step
     method: str = ""                                # of a site's study, in words
+    chain: Optional[chain_files.Chain] = None       # of an ensemble: how likely its bodies fail in an earthquake
 
 
 def collect(setup: Setup, questions: Questions, todo, work) -> None:
@@ -100,6 +102,8 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
             about["size_error_unusable"] = f"{unknown}. The volume falls with the size of the balls: nothing is added"
             unknown = ""
         usable.judge(best, rows, events_of(setup, first, finished[0]), case_of(setup, questions, finished[0]), unknown)
+    about["chain"] = chain_files.evaluate(questions.chain, rows, output, about["ensemble"]["withheld"]) \
+        if questions.chain and order and finished else None
     about["intensity"] = intensity.collect(
         output, questions.intensity, questions.more_than, settings, bool(setup.road), groups) \
         if finished and not order else None      # of values that are drawn, each has one run
@@ -128,6 +132,8 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         print("\n".join(ensemble.describe(about["ensemble"])))
         print(f"{output / ensemble.HAZARD}, {output / ensemble.INFLUENCE}: all curves and indices; "
               f"{output / ensemble.MAPS}: {len(about['ensemble']['maps'])} maps of quantiles and exceedance")
+    if about["chain"]:
+        print("\n".join(chain_files.describe(about["chain"], output)))
     for entry in [*(written["envelope"] or {}).values(), *(written["exceedance"] or ())]:
         print(f"{output / entry['file']}: {entry['what']}")
 

@@ -7,8 +7,8 @@ from .. import provenance
 from ..case import decks
 from ..ensemble.quantities import NAMES
 from ..survey.rasters import crs_name
-from . import (body, client_part, convergence_part, film, frames, heading, intensity_part, limits_part, mobility_part,
-               view)
+from . import (body, chain_part, client_part, convergence_part, film, frames, heading, intensity_part, limits_part,
+               mobility_part, view)
 from .asked import Asked
 from .charts import Charts, REMOVE, TERMS, differences, quantities, single_row
 from .data import Data, find_deck
@@ -74,6 +74,7 @@ class Page:
             "means": self.means(), "differences": differences(data, numbers),
             "maps": maps.of_run(), "section": self.picture(*self.section.picture()), "charts": charts.all(),
             "intensity": intensity_part.content(data, numbers, self.picture),
+            "chain": chain_part.content(data, numbers, self.picture),
             "hit": Structures(data, numbers, self.picture, self.ground.obstacles.footprints).content(),
             "road_chart": REMOVE in one.row, "removal": maps.removal(removal), "over_all": maps.over_all(),
             "beyond": self.beyond(),

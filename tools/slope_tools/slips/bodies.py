@@ -1,6 +1,7 @@
 """The bodies that `find_slip` kept: PREFIX.slips.csv and PREFIX.N.base.asc."""
 import csv
 import math
+import re
 from pathlib import Path
 from typing import Dict, List, NamedTuple, Sequence
 
@@ -20,6 +21,7 @@ class Body(NamedTuple):
     name: str               # its rank, 1 is the one with the least factor of safety
     direction: float        # of sliding, degrees counterclockwise from +x
     columns: columns.Columns
+    base: Path = Path()     # the file of its surface
 
 
 def table_of(path: Path) -> Path:
@@ -72,6 +74,19 @@ def base_file(path: Path, rank: int) -> Path:
     return found
 
 
+def rank_of(base: Path) -> int:
+    """Of the name of PREFIX.N.base.asc: N."""
+    found = re.search(r"\.([0-9]+)\.base\.asc$", base.name)
+    if found is None:
+        raise SlopeError(base, "must be named PREFIX.N.base.asc, as find_slip names it")
+    return int(found[1])
+
+
+def base_files(path: Path) -> List[Path]:
+    """PREFIX.N.base.asc of all bodies in a table, or in a folder with one."""
+    return [base_file(path, int(row["rank"])) for row in rows_of(table_of(path))]
+
+
 def prefix_of(table: Path) -> str:
     return table.name[:-len(END)] if table.name.endswith(END) else table.stem
 
@@ -102,5 +117,5 @@ def read(path: Path, terrain: Path, density: float) -> List[Body]:
         if not abs(body.volume / row["volume"] - 1) <= SAME_VOLUME:
             raise SlopeError(terrain, f"must be the terrain of {source.name}, on which body {rank} has "
                              f"{row['volume']:.5g} m3", f"{body.volume:.5g} m3")
-        found.append(Body(rank, row["direction"], body))
+        found.append(Body(rank, row["direction"], body, file))
     return found

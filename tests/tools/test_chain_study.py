@@ -1,0 +1,144 @@
+"""slope study --fragility: the chain of a small embankment, from its slips to how often the road is blocked."""
+import csv
+import os
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from run_helpers import called
+from test_fragility import SOIL, slips  # noqa: F401  (a fixture)
+
+from slope_tools import programs  # noqa: E402
+from slope_tools.commands import study  # noqa: E402
+from slope_tools.ensemble import chain_files  # noqa: E402
+from slope_tools.report import chain_part  # noqa: E402
+from slope_tools.report.numbers import Numbers  # noqa: E402
+
+needs_lmp = pytest.mark.skipif(not os.environ.get("LMP"), reason="needs the LAMMPS program (LMP)")
+ROAD = "1,0\n8,0\n8,51\n1,51\n"
+FRAGILITY = f"slips {SOIL} --peaks 50:1500:50 --pseudo-static 1 --sample 256"
+STUDY = "mine --sample 6 --vary rolling=0:0.1 --vary xoffset=0:0.99 --fragility fragility"
+
+
+@pytest.fixture
+def mine(slips, capsys, monkeypatch):  # noqa: F811
+    """A site of two bodies with a road at the toe, their fragility; no report of the study."""
+    Path("road.csv").write_text(ROAD)
+    assert ran(capsys, f"fragility {FRAGILITY} --hazard hazard.csv -o fragility")[0] == 0
+    status, _, err = ran(capsys, "site --terrain terrain.asc --slips slips --road road.csv --balls 60 -o mine")
+    assert status == 0, err
+    monkeypatch.setattr(study, "write_report", lambda *_: None)
+    return slips
+
+
+def ran(capsys, words):
+    return called(capsys, words.split())
+
+
+def about():
+    return yaml.safe_load(Path("mine/ensemble/study.yaml").read_text())
+
+
+def rows(name):
+    with open(f"mine/ensemble/{name}", newline="") as lines:
+        return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(lines)]
+
+
+@needs_lmp
+def test_the_chain_of_two_bodies(mine, capsys):
+    status, out, err = ran(capsys, f"study {STUDY}")
+    assert status == 0, err
+    of = about()
+    found = of["chain"]
+    assert [(one["body"], one["runs"]) for one in found["bodies"]] == \
+        [(name, sum(row["set"]["body"] == name for row in of["runs"])) for name in ("1", "2")]
+    weights = np.array([one["weight"] for one in found["bodies"]])
+    given = yaml.safe_load(Path("fragility/fragility.yaml").read_text())["curves"]
+    each = np.array([one["annual_frequency"]["value"] for one in given])
+    assert weights == pytest.approx(each[:2] / each[:2].sum(), rel=1e-4)
+    released = {row["set"]["body"]: row["released_m3"] for row in of["runs"]}
+    assert released["2"] > 1.1 * released["1"]
+
+    # of each body there is a run: less than the least of them is exceeded whenever one fails
+
+    on_road = {name: [row["remove_on_road_m3"] for row in of["runs"] if row["set"]["body"] == name] for name in "12"}
+    assert min(map(min, on_road.values())) > 1 and all(on_road.values())
+    yearly = rows("chain_per_year.csv")
+    assert yearly[0]["volume_m3"] == 0 and yearly[0]["per_year"] == pytest.approx(each[2], rel=1e-4)
+    assert yearly[0]["low"] < yearly[0]["per_year"] < yearly[0]["high"] and yearly[-1]["per_year"] == 0
+    any_body = {peak: p for body, peak, p in fragility_rows() if body == "any"}
+    first = {row["peak_gal"]: row["probability"] for row in rows("chain.csv") if row["volume_m3"] == 0}
+    assert first == pytest.approx(any_body, abs=1e-4) and max(any_body.values()) > 0.9
+    for one in found["per_year"]:
+        assert sum(part["per_year"] for part in one["contributions"]) == pytest.approx(one["value"], rel=1e-6)
+    if not found["withheld"]:
+        assert all(f"{text}\n" in out for text in chain_files.sentences(found))
+    assert "the road is blocked by more than" in chain_files.sentences(found)[0]
+    shown_in_the_report(of)
+
+    # the same again takes the runs that are there, other volumes are another question
+
+    status, out, err = ran(capsys, f"study {STUDY} --more-than 20")
+    assert status == 0 and ": started" not in out
+    assert about()["chain"]["more_than_m3"] == [20.0]
+
+
+def fragility_rows():
+    with open("fragility/fragility.csv", newline="") as lines:
+        return [(row["body"], float(row["peak_gal"]), float(row["probability"])) for row in csv.DictReader(lines)]
+
+
+def shown_in_the_report(of):
+    class Data:
+        study, folder = {**of, "chain": {**of["chain"], "withheld": []}}, Path("mine/ensemble")
+
+    pictures = []
+    shown = chain_part.content(Data, Numbers(), lambda *picture: pictures.append(picture) or picture)
+    assert len(pictures) == 1 and pictures[0][0].startswith("data:image/svg")
+    assert len(shown["sentences"]) == len(of["chain"]["more_than_m3"]) and len(shown["parts"]) == chain_part.MOST_ROWS
+    total = sum(float(row["cells"][0]) for row in shown["parts"])
+    assert total == pytest.approx(of["chain"]["per_year"][0]["value"], rel=0.05)
+    Data.study = of
+    Data.study["chain"]["withheld"] = ["few balls"]
+    assert chain_part.content(Data, Numbers(), None) is None
+
+
+@pytest.fixture
+def bad(slips, capsys, monkeypatch):  # noqa: F811
+    """Sites of all bodies, of one, and without a road, which nothing is run of; fragilities that do not fit."""
+    monkeypatch.delenv("LMP", raising=False)
+    monkeypatch.setattr(programs, "BESIDE", slips / "nowhere")
+    Path("road.csv").write_text(ROAD)
+    for name, words in (("mine", "--road road.csv"), ("one", "--road road.csv --body 1"), ("free", "")):
+        assert ran(capsys, f"site --terrain terrain.asc --slips slips --balls 60 {words} -o {name}")[0] == 0
+    for name, words in (("fragility", ""), ("strong", "--cohesion 1e6")):
+        assert ran(capsys, f"fragility {FRAGILITY} {words} -o {name}")[0] == 0
+    for name, file, old in (("moved", chain_files.ABOUT, "base_sha256: "), ("short", chain_files.CAPACITIES, "\n1,1,")):
+        shutil.copytree("fragility", name)
+        text = Path(name, file).read_text()
+        assert old in text
+        Path(name, file).write_text(text.replace(old, f"{old}f"))
+
+
+def test_bad_input_is_one_line(bad, capsys):
+    for words, rule in (
+            ("mine --fragility fragility", "--sample: must be given with --fragility"),
+            (f"{STUDY} --mobility rock_avalanches", "--mobility: must not be given with --fragility"),
+            (f"{STUDY} --of remove_m3", "--of: must not be given with --fragility"),
+            (f"{STUDY} --vary body=list:1,2", "--vary: must not have body"),
+            ("mine/in.site --sample 8 --vary rolling=0:0.1 -o out --fragility fragility",
+             "--fragility: must be given with the folder of a site"),
+            ("mine --sample 8 --more-than 5", "--more-than: must not be given with --sample"),
+            ("mine --sample 8 --fragility nowhere", "nowhere/fragility.yaml"),
+            ("mine --sample 3 --fragility fragility", "--sample: must be more runs than there are parameters"),
+            ("one --sample 8 --fragility fragility", "body 2 may fail, too"),
+            ("mine --sample 8 --fragility strong", "must have a body that fails"),
+            ("mine --sample 8 --fragility moved", "body 1 is another one there"),
+            ("mine --sample 8 --fragility short", "capacities.csv: must be what `slope fragility` wrote"),
+            ("free --sample 8 --fragility fragility", "--fragility: needs a site with a road")):
+        status, _, err = ran(capsys, f"study {words}")
+        assert status == 2 and err.count("\n") == 1 and rule in err, (words, err)
+    assert not Path("out").exists() and not list(Path().glob("*/ensemble"))

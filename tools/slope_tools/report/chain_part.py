@@ -1,0 +1,95 @@
+"""What a report shows of the chain: how likely which volume reaches the road at a peak acceleration, and per year."""
+import csv
+from typing import Any, Dict, List, Mapping
+
+import numpy as np
+
+from ..drawing import figures
+from ..drawing.figures import COLOURS, plt
+from ..ensemble import chain_files
+from ..errors import SlopeError
+from .ensemble_charts import THOUSANDS
+
+MOST_ROWS = 12          # of the contributions; smaller ones are joined
+HOW = ("The runs release one body each. Bodies that fail together in an earthquake have their volumes added, the "
+       "largest with the largest, as if they did not overlap. The bounds show whether there are enough runs and "
+       "samples, not the doubt in strengths, hazard and model.")
+
+
+def content(data, numbers, picture):
+    """For the template; None without a chain, or where the volumes of its runs are withheld."""
+    about = (data.study or {}).get("chain")
+    if not about or about["withheld"]:
+        return None
+    for one in about["per_year"] or ():
+        for name in ("value", "low", "high"):
+            numbers.rows.append((f"more than {one['more_than_m3']:,.6g} m3 on the road: {name}", "per year", "",
+                                 f"{one[name]:.2g}", one[name]))
+    title = "How likely the road is blocked"
+    caption = "P(V > v) at a peak acceleration, for volumes v on the road, with bounds of 90 %."
+    if about["per_year"]:
+        caption += " Right: how often per year a volume is exceeded."
+    return {"sentences": [f"{text[0].upper()}{text[1:]}." for text in chain_files.sentences(about)], "how": HOW,
+            "bodies": bodies(about, numbers), "volumes": [f"{one:,.6g}" for one in about["more_than_m3"]],
+            "parts": parts(about), "doubts": about["doubts"],
+            "picture": picture(draw(about, per_year(data, about), title), title, caption)}
+
+
+def bodies(about: Mapping[str, Any], numbers) -> List[Dict[str, Any]]:
+    """Rows of the table of bodies."""
+    return [{**one, "volume": "" if one["volume_m3"] is None else
+             numbers("volume", "m3", one["volume_m3"], f"body {one['body']}"),
+             "share": f"{100 * one['weight']:.2g} %"} for one in about["bodies"]]
+
+
+def parts(about: Mapping[str, Any]) -> List[Dict[str, Any]]:
+    """Rows of the contributions; neighbours are joined to MOST_ROWS at most."""
+    if not about["per_year"]:
+        return []
+    each = [one["contributions"] for one in about["per_year"]]
+    groups = np.array_split(np.arange(len(each[0])), min(len(each[0]), MOST_ROWS))
+    found = []
+    for group in groups:
+        low, high = each[0][group[0]]["from_gal"], each[0][group[-1]]["to_gal"]
+        found.append({"peak": f"{low:g} and more" if high is None else f"{low:g} to {high:g}",
+                      "cells": [f"{sum(one[k]['per_year'] for k in group):.2g}" for one in each]})
+    return found
+
+
+def per_year(data, about: Mapping[str, Any]):
+    """Volume, frequency per year and its bounds (rows), of the file; None without a hazard curve."""
+    if not about["per_year"]:
+        return None
+    path = data.folder / chain_files.PER_YEAR
+    try:
+        with open(path, newline="", encoding="ascii") as lines:
+            return np.array([[float(one) for one in row] for row in list(csv.reader(lines))[1:]]).T.reshape(4, -1)
+    except (OSError, ValueError) as error:
+        raise SlopeError(path, f"must be what `slope study --fragility` wrote ({error})") from error
+
+
+def draw(about: Mapping[str, Any], yearly, title: str) -> str:
+    """Left the curves against the peak, one for each volume; right the annual frequency against the volume."""
+    with plt.rc_context(figures.STYLE):
+        figure, axes = plt.subplots(1, 1 if yearly is None else 2, squeeze=False,
+                                    figsize=(figures.WIDE if yearly is None else figures.FULL, 2.7))
+        left, peaks = axes[0, 0], about["peaks_gal"]
+        for one, colour in zip(about["curves"], COLOURS):
+            left.fill_between(peaks, one["low"], one["high"], color=colour, alpha=0.18, lw=0)
+            left.plot(peaks, one["probability"], color=colour, lw=1.4, label=f"more than {one['more_than_m3']:,.6g} m3")
+        left.set(xlim=(peaks[0], peaks[-1]), ylim=(0, 1.02), xlabel="peak acceleration (gal)",
+                 ylabel="probability of more on the road")
+        left.set_title(title, loc="left")
+        left.legend(loc="upper left")
+        if yearly is not None and (yearly[1] > 0).any():
+            right, (volume, value, low, high) = axes[0, 1], yearly[:, yearly[1] > 0]
+            least = 0.1 * value.min()
+            right.fill_between(volume, np.maximum(low, least), high, color=COLOURS[0], alpha=0.18, lw=0)
+            right.plot(volume, value, color=COLOURS[0], lw=1.4)
+            right.set(yscale="log", ylim=(least, None), xlabel="volume on the road (m3)", ylabel="exceeded, per year")
+            right.xaxis.set_major_formatter(THOUSANDS)
+        for one in axes[0]:
+            one.grid(color="#dddddd", lw=0.5)
+            one.set_axisbelow(True)
+            one.spines[["top", "right"]].set_visible(False)
+        return figures.data_uri(figure, "svg")
