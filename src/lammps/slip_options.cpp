@@ -188,8 +188,9 @@ int SlipOptions::read_method()
 int SlipOptions::read_shape()
 {
   const std::string shape = text(1);
-  if (shape == "ellipsoid") error->all(FLERR, "Find_slip shape ellipsoid is not available");
-  if (shape != "sphere") error->all(FLERR, "Find_slip shape must be sphere, got {}", shape);
+  if (shape != "sphere" && shape != "ellipsoid")
+    error->all(FLERR, "Find_slip shape must be sphere or ellipsoid, got {}", shape);
+  limits.ellipsoids = shape == "ellipsoid";
   return 1;
 }
 
@@ -199,12 +200,21 @@ int SlipOptions::read_surface()
 {
   const std::string kind = text(1);
   if (kind == "raster") error->all(FLERR, "Find_slip surface raster is not available");
-  if (kind != "sphere") error->all(FLERR, "Find_slip surface must be sphere, got {}", kind);
+  if (kind != "sphere" && kind != "ellipsoid")
+    error->all(FLERR, "Find_slip surface must be sphere or ellipsoid, got {}", kind);
   surface = {number(2, " X"), number(3, " Y"), number(4, " Z"), number(5, " R")};
   if (!(surface.radius > 0.0))
     error->all(FLERR, "Find_slip surface R must be > 0, got {}", text(5));
   lone = true;
-  return 5;
+  if (kind == "sphere") return 5;
+  surface.along = number(6, " A");
+  surface.across = number(7, " B");
+  surface.straight = number(8, " L");
+  if (!(surface.along > 0.0 && surface.across > 0.0))
+    error->all(FLERR, "Find_slip surface A and B must be > 0 (of R), got {} {}", text(6), text(7));
+  if (!(surface.straight >= 0.0))
+    error->all(FLERR, "Find_slip surface L must be >= 0, got {}", text(8));
+  return 8;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -213,6 +223,9 @@ void SlipOptions::check()
 {
   if (!has_strength) error->all(FLERR, "Find_slip keyword strength is missing");
   if (output.empty()) error->all(FLERR, "Find_slip keyword output is missing");
+  if (lone && !surface.round() && task.any_direction)
+    error->all(FLERR,
+               "Find_slip direction DEG must be given with surface ellipsoid, whose A is along it");
   bool loose = top.cohesion == 0.0;
   for (const Layer &layer : layers) loose |= layer.strength.cohesion == 0.0;
   if (!lone && loose && limits.volume_lo == 0.0)

@@ -25,11 +25,12 @@ SlipBodyMaker::SlipBodyMaker(const ElevationGrid &_ground, const SlipSoil &soil,
 
 std::string SlipBodyMaker::exact(const SlipSurface &s, SlipBody &body, int lines)
 {
-  if (!maker.exact(s, found, lines)) return "no ground is above it";
+  const SlipSurface d = directed(s);
+  if (!maker.exact(d, found, lines)) return "no ground is above it";
   if (found.at_edge) return "the body reaches the edge of the terrain or cells without a value";
   if (found.overhang) return "the ground at the rim of the body is above the centre";
   if (found.outside) return "the body reaches beyond the region within";
-  fill(s, body, SlipFactor::PRECISION);
+  fill(d, body, SlipFactor::PRECISION);
   return "";
 }
 
@@ -37,20 +38,28 @@ std::string SlipBodyMaker::exact(const SlipSurface &s, SlipBody &body, int lines
 
 bool SlipBodyMaker::coarse(const SlipSurface &s, int stride, SlipBody &body, double precision)
 {
-  if (!maker.coarse(s, stride, found)) return false;
+  const SlipSurface d = directed(s);
+  if (!maker.coarse(d, stride, found)) return false;
   if (found.at_edge || found.overhang || found.outside) return false;
-  fill(s, body, precision);
+  fill(d, body, precision);
   return true;
 }
 
+SlipSurface SlipBodyMaker::directed(const SlipSurface &s) const
+{
+  SlipSurface d = s;
+  if (!task.any_direction) d.direction = task.direction;
+  return d;
+}
+
 /* ----------------------------------------------------------------------
-   the columns of a sphere are the same for all directions of sliding
+   the columns of a round surface are the same for all directions of sliding
 ------------------------------------------------------------------------- */
 
 void SlipBodyMaker::fill(const SlipSurface &s, SlipBody &body, double precision)
 {
   body.surface = s;
-  body.surface.direction = task.any_direction ? SlipFactor::steepest(found) : task.direction;
+  if (task.any_direction && s.round()) body.surface.direction = SlipFactor::steepest(found);
   factor.take(found, body.surface);
   body.factor = factor.factor(task.seismic, precision);
   body.yield = NONE;

@@ -28,8 +28,9 @@ struct SlipBody {
 struct SlipTask {
   SlipFactor::Method method = SlipFactor::BISHOP;
   SlipFactor::Seismic seismic = {0.0, 0.0};
-  bool any_direction = true;    // of sliding: where the weight's moment is largest
-  double direction = 0.0;       // otherwise, radians
+  bool any_direction =
+      true;    // of sliding: where the weight's moment is largest, or the surface's own
+  double direction = 0.0;    // otherwise, radians
 };
 
 class SlipBodyMaker {
@@ -62,6 +63,7 @@ class SlipBodyMaker {
   SlipColumns found;
   SlipFactor factor;
 
+  SlipSurface directed(const SlipSurface &) const;
   void fill(const SlipSurface &, SlipBody &, double precision);
 };
 

@@ -301,11 +301,14 @@ bool SlipSearch::enter(const SlipBody &start, int lines, SlipBody &body)
 /* ----------------------------------------------------------------------
    Nelder and Mead's simplex. The variables are the centre, and how far below a pivot the surface passes:
    the pivot is on the first surface below its thickest column, so that the radius follows the centre.
+   If it is wide, the width's logarithm and the direction, too.
 ------------------------------------------------------------------------- */
 
-SlipBody SlipSearch::improve(const SlipBody &start, int lines, int steps)
+SlipBody SlipSearch::improve(const SlipBody &start, bool wide, int lines, int steps)
 {
-  typedef std::array<double, 4> Point;
+  static constexpr int MOST = 6;
+  typedef std::array<double, MOST> Point;
+  const int dim = wide ? MOST : 4;
   SlipBody best, body;
   if (!enter(start, lines, best)) return best;
   const SlipColumns &c = maker.columns();
@@ -313,20 +316,25 @@ SlipBody SlipSearch::improve(const SlipBody &start, int lines, int steps)
   const SlipSurface &s = best.surface;
   const double pivot[3] = {s.x + c.dx[thickest], s.y + c.dy[thickest], s.z - c.depth[thickest]};
   const auto value = [&](const Point &p) {
-    const double r = p[3] +
-        std::sqrt(std::pow(p[0] - pivot[0], 2) + std::pow(p[1] - pivot[1], 2) +
-                  std::pow(p[2] - pivot[2], 2));
-    if (!(r > 0.0) || !compute({p[0], p[1], p[2], r}, lines, body)) return HUGE_VAL;
+    SlipSurface tried(p[0], p[1], p[2], 0.0, p[5]);
+    tried.across = std::exp(p[4]);
+    if (tried.across > WIDEST || tried.across * WIDEST < 1.0) return HUGE_VAL;
+    const double dx = pivot[0] - p[0], dy = pivot[1] - p[1], dz = pivot[2] - p[2];
+    const double c = std::cos(p[5]), s = std::sin(p[5]);
+    const double u = dx * c + dy * s, v = (dx * s - dy * c) / tried.across;
+    tried.radius = p[3] + std::sqrt(u * u + v * v + dz * dz);
+    if (!(tried.radius > 0.0) || !compute(tried, lines, body)) return HUGE_VAL;
     if (body.factor < best.factor) best = body;
     return body.factor;
   };
 
-  const double wide = 0.2 * std::sqrt(best.area);
-  const double step[4] = {wide, wide, wide, 0.1 * best.depth};
-  std::array<Point, 5> simplex;
-  std::array<double, 5> f;
-  for (int k = 0; k < 5; k++) {
-    simplex[k] = {s.x, s.y, s.z, 0.0};
+  const double far_off = 0.2 * std::sqrt(best.area);
+  const double step[MOST] = {far_off, far_off, far_off, 0.1 * best.depth, 0.2, 0.1};
+  std::array<Point, MOST + 1> simplex;
+  std::array<double, MOST + 1> f;
+  const auto end = f.begin() + dim + 1;
+  for (int k = 0; k <= dim; k++) {
+    simplex[k] = {s.x, s.y, s.z, 0.0, std::log(s.across), s.direction};
     if (k > 0) simplex[k][k - 1] += step[k - 1];
     f[k] = value(simplex[k]);
     if (k > 0 && f[k] == HUGE_VAL) {
@@ -335,18 +343,18 @@ SlipBody SlipSearch::improve(const SlipBody &start, int lines, int steps)
     }
   }
   for (int n = 0; n < steps; n++) {
-    const int low = std::min_element(f.begin(), f.end()) - f.begin();
-    const int high = std::max_element(f.begin(), f.end()) - f.begin();
+    const int low = std::min_element(f.begin(), end) - f.begin();
+    const int high = std::max_element(f.begin(), end) - f.begin();
     if (f[high] - f[low] < 1.0e-7 * f[low]) break;
     double second = f[low];
-    for (int k = 0; k < 5; k++)
+    for (int k = 0; k <= dim; k++)
       if (k != high) second = std::max(second, f[k]);
     const auto along = [&](double by) {
-      Point p;
-      for (int d = 0; d < 4; d++) {
+      Point p = simplex[high];
+      for (int d = 0; d < dim; d++) {
         double middle = 0.0;
-        for (int k = 0; k < 5; k++)
-          if (k != high) middle += 0.25 * simplex[k][d];
+        for (int k = 0; k <= dim; k++)
+          if (k != high) middle += simplex[k][d] / dim;
         p[d] = middle + by * (simplex[high][d] - middle);
       }
       return p;
@@ -369,9 +377,9 @@ SlipBody SlipSearch::improve(const SlipBody &start, int lines, int steps)
       if (fn < std::min(fm, f[high]))
         take(near, fn);
       else
-        for (int k = 0; k < 5; k++) {
+        for (int k = 0; k <= dim; k++) {
           if (k == low) continue;
-          for (int d = 0; d < 4; d++) simplex[k][d] = 0.5 * (simplex[k][d] + simplex[low][d]);
+          for (int d = 0; d < dim; d++) simplex[k][d] = 0.5 * (simplex[k][d] + simplex[low][d]);
           f[k] = value(simplex[k]);
         }
     }
@@ -384,17 +392,17 @@ SlipBody SlipSearch::improve(const SlipBody &start, int lines, int steps)
 ------------------------------------------------------------------------- */
 
 std::vector<SlipBody> SlipSearch::improve_all(const char *stage,
-                                              const std::vector<SlipBody> &starts, int lines,
-                                              int steps)
+                                              const std::vector<SlipBody> &starts, bool wide,
+                                              int lines, int steps)
 {
-  static constexpr size_t WIDTH = 9;
+  static constexpr size_t WIDTH = 10;
   std::vector<double> values(WIDTH * starts.size(), HUGE_VAL);
   ranks.progress(stage, 0.0);
   for (size_t k = ranks.me; k < starts.size(); k += ranks.all) {
-    const SlipBody b = improve(improve(starts[k], lines, steps), lines, steps);
+    const SlipBody b = improve(improve(starts[k], wide, lines, steps), wide, lines, steps);
     const double of_body[WIDTH] = {
         b.surface.x, b.surface.y, b.surface.z, b.surface.radius, b.surface.direction,
-        b.factor,    b.volume,    b.area,      b.depth};
+        b.factor,    b.volume,    b.area,      b.depth,          b.surface.across};
     if (b.factor < HUGE_VAL) std::copy(of_body, of_body + WIDTH, &values[WIDTH * k]);
     ranks.progress(stage, (k + 1.0) / starts.size());
   }
@@ -402,7 +410,8 @@ std::vector<SlipBody> SlipSearch::improve_all(const char *stage,
   std::vector<SlipBody> found;
   for (size_t k = 0; k < starts.size(); k++) {
     const double *v = &values[WIDTH * k];
-    const SlipSurface s = {v[0], v[1], v[2], v[3], v[4]};
+    SlipSurface s = {v[0], v[1], v[2], v[3], v[4]};
+    s.across = v[9];
     if (v[5] < HUGE_VAL) found.push_back({s, v[5], 0.0, v[6], v[7], v[8]});
   }
   return found;
@@ -415,13 +424,17 @@ std::vector<SlipBody> SlipSearch::run()
   static constexpr int LINES = 96;
   const size_t keep = limits.keep;
   std::vector<SlipBody> found = distinct(lattice(), 8 + 4 * keep, STARTS_OVERLAP);
-  found = distinct(improve_all("simplex", found, 0, 100), keep + 2, OVERLAP);
+  found = distinct(improve_all("simplex", found, false, 0, 100), keep + 2, OVERLAP);
 
   // one that slides into a better one's place is kept as it was before
 
-  std::vector<SlipBody> all = improve_all("exact columns", found, LINES, 100);
-  const std::vector<SlipBody> before = improve_all("exact columns", found, LINES, 0);
+  std::vector<SlipBody> all = improve_all("exact columns", found, false, LINES, 100);
+  const std::vector<SlipBody> before = improve_all("exact columns", found, false, LINES, 0);
   all.insert(all.end(), before.begin(), before.end());
+  if (limits.ellipsoids) {
+    const std::vector<SlipBody> wide = improve_all("ellipsoids", all, true, LINES, 200);
+    all.insert(all.end(), wide.begin(), wide.end());
+  }
   std::vector<SlipBody> kept = distinct(all, keep, OVERLAP);
   for (SlipBody &body : kept) {
     maker.exact(body.surface, body, LINES);

@@ -21,6 +21,7 @@ struct SlipLimits {
   double volume_lo = 0.0, volume_hi = HUGE_VAL;    // m3; lo 0: what the raster resolves
   double depth_lo = 0.0, depth_hi = HUGE_VAL;
   int keep = 1;
+  bool ellipsoids = false;    // the width across the direction of sliding is free, too
 };
 
 // Ranks that share a search. least() makes of each value the least of all ranks; progress() is called
@@ -33,11 +34,12 @@ struct SlipRanks {
 
 // Searches the spheres with the least factor of safety below a terrain: a lattice of centres and radii
 // with a column per cell or block of cells, then Nelder and Mead's simplex from the best that
-// differ, then the same with exact columns. Each surface is computed by one rank, and what comes next
+// differ, then the same with exact columns, and with the width free. Each surface is computed by one rank, and what comes next
 // depends on the factors of all: the result does not depend on the ranks.
 class SlipSearch {
  public:
   static constexpr double OVERLAP = 0.5;    // of the smaller body's plan, for those that are kept
+  static constexpr double WIDEST = 4.0;     // across the direction of sliding / along it
 
   SlipSearch(const ElevationGrid &ground, const SlipLimits &, const SlipRanks &, SlipBodyMaker &);
 
@@ -83,9 +85,9 @@ class SlipSearch {
   std::vector<SlipBody> distinct(std::vector<SlipBody>, size_t most, double share);
 
   bool enter(const SlipBody &, int lines, SlipBody &);
-  SlipBody improve(const SlipBody &, int lines, int steps);
-  std::vector<SlipBody> improve_all(const char *stage, const std::vector<SlipBody> &, int lines,
-                                    int steps);
+  SlipBody improve(const SlipBody &, bool wide, int lines, int steps);
+  std::vector<SlipBody> improve_all(const char *stage, const std::vector<SlipBody> &, bool wide,
+                                    int lines, int steps);
 };
 
 }    // namespace Slope

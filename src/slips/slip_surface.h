@@ -27,6 +27,9 @@ struct SlipSurface {
   {
   }
 
+  // the same for all directions of sliding
+  bool round() const { return along == across && straight == 0.0; }
+
   // half extents of the bounding box of the plan
   double half_x() const { return half(std::cos(direction), std::sin(direction)); }
   double half_y() const { return half(std::sin(direction), std::cos(direction)); }

@@ -32,15 +32,18 @@ void SlipWriter::probe(const std::string &prefix, int bodies)
 
 std::string SlipWriter::table(const std::vector<SlipBody> &bodies)
 {
-  std::string text = "rank,x,y,z,radius,direction,factor,yield,volume,area,depth\n";
+  std::string text =
+      "rank,x,y,z,radius,direction,factor,yield,volume,area,depth,along,across,straight\n";
   char line[400];
   for (size_t k = 0; k < bodies.size(); k++) {
     const SlipBody &b = bodies[k];
     const SlipSurface &s = b.surface;
     const double degrees = std::fmod(s.direction * 180.0 / PI + 360.0, 360.0);
-    snprintf(line, sizeof(line), "%d,%.10g,%.10g,%.10g,%.10g,%.8g,%.8g,%.8g,%.10g,%.10g,%.8g\n",
+    snprintf(line, sizeof(line),
+             "%d,%.10g,%.10g,%.10g,%.10g,%.8g,%.8g,%.8g,%.10g,%.10g,%.8g,"
+             "%.8g,%.8g,%.8g\n",
              static_cast<int>(k + 1), s.x, s.y, s.z, s.radius, degrees, b.factor, b.yield, b.volume,
-             b.area, b.depth);
+             b.area, b.depth, s.along, s.across, s.straight);
     text += line;
   }
   return text;

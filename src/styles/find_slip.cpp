@@ -65,9 +65,10 @@ std::vector<SlipBody> FindSlip::given(const SlipOptions &options, SlipBodyMaker 
   const Slope::SlipSurface &s = options.surface;
   if (!problem.empty())
     error->all(FLERR,
-               "Find_slip surface must cut a body out of the terrain, got sphere {:.8g} "
+               "Find_slip surface must cut a body out of the terrain, got {} {:.8g} "
                "{:.8g} {:.8g} {:.8g}: {}",
-               s.x, s.y, s.z, s.radius, problem);
+               s.round() && s.along == 1.0 ? "sphere" : "ellipsoid", s.x, s.y, s.z, s.radius,
+               problem);
   if (!std::isfinite(body.factor))
     error->all(FLERR,
                "Find_slip direction must be one in which the weight drives the body, got {:.6g}",

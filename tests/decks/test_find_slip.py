@@ -75,7 +75,8 @@ def test_the_sphere_of_the_low_embankment(tmp_path):
     after = 'print "IN THE DECK $(v_crit_factor:%.5f) $(v_crit_yield:%.5f) ${crit_x} ${crit_y} ${crit_z} ${crit_r}"'
     log = run_deck(deck(after=after), tmp_path)
     [row] = rows(tmp_path)
-    assert list(row) == ["rank", "x", "y", "z", "radius", "direction", "factor", "yield", "volume", "area", "depth"]
+    assert list(row) == ["rank", "x", "y", "z", "radius", "direction", "factor", "yield", "volume", "area", "depth",
+                         "along", "across", "straight"]
     assert row["rank"] == 1
     assert row["factor"] == pytest.approx(1.0405, rel=1e-3)
     assert row["yield"] == pytest.approx(yield_of_the_low_sphere(), rel=5e-3)
@@ -142,10 +143,13 @@ def test_layers_and_water(tmp_path):
 
 
 @pytest.mark.parametrize("more, message", [
-    (f"{LOW_SPHERE} shape ellipsoid 1 2", "Find_slip shape ellipsoid is not available"),
+    ("surface ellipsoid 10.25 25.25 54.0 28.9617 1 1.5 0", "Find_slip direction DEG must be given with surface ellips"),
+    ("surface ellipsoid 10.25 25.25 54.0 28.9617 1 0 0 direction 180", "Find_slip surface A and B must be > 0 (of R)"),
+    ("surface ellipsoid 10.25 25.25 54.0 28.9617 1 1 -1 direction 180", "Find_slip surface L must be >= 0, got -1"),
+    ("surface ellipsoid 10.25 2 54 29 1 1.5 0 direction 180", "got ellipsoid 10.25 2 54 29: the body reaches the edge"),
     (f"{LOW_SPHERE} method spencer", "Find_slip method spencer is not available"),
     ("surface raster ground.asc", "Find_slip surface raster is not available"),
-    (f"{LOW_SPHERE} shape cube", "Find_slip shape must be sphere, got cube"),
+    (f"{LOW_SPHERE} shape cube", "Find_slip shape must be sphere or ellipsoid, got cube"),
     (f"{LOW_SPHERE} water ru 1.5", "Find_slip water ru must be 0 to below 1, got 1.5"),
     (f"{LOW_SPHERE} seismic -0.1", "Find_slip seismic KH must be >= 0 (of the weight), got -0.1"),
     (f"{LOW_SPHERE} layer none.asc 1 2 3", "none.asc"),
@@ -183,6 +187,34 @@ def test_the_search_finds_the_least_on_any_number_of_ranks(tmp_path):
     run_deck(deck(more=more), tmp_path, np=2)
     assert (tmp_path / "crit.slips.csv").read_bytes() == table
     assert (tmp_path / "crit.factor.asc").read_bytes() == log
+
+
+def test_wide_surfaces_on_an_extruded_profile(tmp_path):
+    """A capped cylinder and a long ellipsoid on the circle with the least factor in two dimensions, 1.405."""
+    embankment(tmp_path, 133, 401, 15, 36, 1 / 3, 60)
+    run_deck(deck(HIGH, "surface ellipsoid 25.94 100.25 46.34 32.26 1 1 100 direction 180"), tmp_path)
+    assert rows(tmp_path)[0]["factor"] == pytest.approx(1.455, rel=3e-3)
+    embankment(tmp_path, 133, 2161, 15, 36, 1 / 3, 60)
+    run_deck(deck(HIGH, "surface ellipsoid 25.94 540.25 46.34 32.26 1 15 0 direction 180"), tmp_path)
+    [row] = rows(tmp_path)
+    assert row["factor"] == pytest.approx(1.526, rel=3e-3)
+    assert (row["along"], row["across"], row["straight"]) == (1, 15, 0)
+
+
+def test_ellipsoids_are_not_above_spheres_on_any_number_of_ranks(tmp_path):
+    of_10_m(tmp_path)
+    run_deck(deck(more="volume 500 5000"), tmp_path)
+    [sphere] = rows(tmp_path)
+    run_deck(deck(more="volume 500 5000 shape ellipsoid"), tmp_path)
+    [wide] = rows(tmp_path)
+    assert sphere["across"] == 1 and 1.5 < wide["across"] <= 4 and wide["along"] == 1
+    assert wide["factor"] < 0.99 * sphere["factor"] and 500 <= wide["volume"] <= 5000
+    table = (tmp_path / "crit.slips.csv").read_bytes()
+    words = "{x:.10g} {y:.10g} {z:.10g} {radius:.10g} 1 {across:.10g} 0 direction {direction:.10g}".format(**wide)
+    run_deck(deck(more=f"surface ellipsoid {words}"), tmp_path)
+    assert rows(tmp_path)[0]["factor"] == pytest.approx(wide["factor"], rel=1e-5)
+    run_deck(deck(more="volume 500 5000 shape ellipsoid"), tmp_path, np=2)
+    assert (tmp_path / "crit.slips.csv").read_bytes() == table
 
 
 def test_a_body_at_a_limit_is_not_lost(tmp_path):

@@ -18,7 +18,7 @@ HIGH = CASES[1]
 
 @pytest.mark.parametrize("k, kv, water", [(0.0, 0.0, 0.0), (0.2, -0.1, 0.0), (0.1, 0.0, 0.3)])
 def test_the_factor_is_1_along_the_line(k, kv, water):
-    body = columns.of_sphere(*HIGH[:3], 180.0, 1900.0)
+    body = columns.of_surface(*HIGH[:3], 180.0, 1900.0)
     found = back.line(body, k, kv, water)
     assert found.friction[0] == 0 and found.friction[-1] > 10 and found.cohesion[-1] < 1e-6 * found.cohesion[0]
     assert (np.diff(found.cohesion) < 0).all()
@@ -30,13 +30,13 @@ def test_the_factor_is_1_along_the_line(k, kv, water):
 def test_the_line_goes_through_the_published_strength_over_its_factor():
     """Scoops3D's sphere: F 1.5982 with 41.65 kPa and 15 degrees, so F is 1 with both divided by it."""
     z, centre, radius, c, phi, gamma, factor, _ = HIGH
-    body = columns.of_sphere(z, centre, radius, 180.0, gamma / columns.GRAVITY)
+    body = columns.of_surface(z, centre, radius, 180.0, gamma / columns.GRAVITY)
     assert back.cohesion_of(body, np.tan(np.radians(phi)) / factor)[0] == pytest.approx(c / factor, rel=0.01)
 
 
 def test_the_raster_of_a_sphere_is_the_sphere():
     z, centre, radius = HIGH[:3]
-    exact = columns.of_sphere(z, centre, radius, 180.0, 1900.0)
+    exact = columns.of_surface(z, centre, radius, 180.0, 1900.0)
     base = columns.base_of(z, centre, radius)
     inside = columns.largest(z, base)
     found, size = back.sphere_of(back.points_of(z, base, inside))

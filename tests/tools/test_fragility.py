@@ -141,7 +141,7 @@ def slips(tmp_path, monkeypatch):
     for rank, r in ((1, radius), (2, radius + 1.0)):
         base = columns.base_of(ground, centre, r)
         inside = columns.largest(ground, base)
-        volume = columns.of_sphere(ground, centre, r, 180.0, 2000.0, inside).volume
+        volume = columns.of_surface(ground, centre, r, 180.0, 2000.0, inside).volume
         write_asc(f"slips/out.{rank}.base.asc", np.where(inside, base, np.nan), 0.5)
         rows.append(f"{rank},{centre[0]},{centre[1]},{centre[2]},{r},180,1.1,0.1,{volume},500,3\n")
     head = "rank,x,y,z,radius,direction,factor,yield,volume,area,depth\n"
@@ -215,7 +215,7 @@ def test_the_share_below_a_peak_is_a_direct_simulation(slips, capsys):
     assert ran(capsys, words + " -o out")[0] == 0
     soil = fragility.Soil(drawn("3e3:9e3"), drawn("22:32"), drawn("0:0.2"))
     ground, centre, radius = CASES[0][:3]
-    body = columns.of_sphere(ground, centre, radius, 180.0, 2039.0)
+    body = columns.of_surface(ground, centre, radius, 180.0, 2039.0)
     k = bishop.yield_coefficient(body, fragility.strengths_of(soil, 16, 1))
     t, x = noise()
     scaled = np.column_stack([x, 0 * x, 0 * x]) * 2.0 / np.abs(x).max()
@@ -247,4 +247,4 @@ def test_a_base_that_is_no_sphere(slips, capsys):
     ground, centre, radius = CASES[0][:3]
     write_asc("slips/out.1.base.asc", columns.base_of(ground, centre, radius) + 0.3, 0.5)
     status, _, err = ran(capsys, f"slips {SOIL} --peaks 100:500 --pseudo-static 1 -o out")
-    assert status == 2 and "must be the sphere" in err
+    assert status == 2 and "must be the surface" in err

@@ -15,7 +15,7 @@ import test_depends_on
 from run_helpers import called, write_asc
 from test_slips import CASES
 
-from slope_tools.slips import bodies, doubts  # noqa: E402
+from slope_tools.slips import bishop, bodies, columns, doubts  # noqa: E402
 from slope_tools.survey.rasters import Raster  # noqa: E402
 
 LMP = os.environ.get("LMP")
@@ -67,6 +67,29 @@ def test_bodies_table_map_and_warnings(low, capsys):
 
 
 @needs_lmp
+def test_ellipsoids_are_not_above_spheres_and_go_on_to_their_fragility(low, capsys):
+    status, _, err = ran(capsys, f"{LOW} --volume 500 5000 --keep 1 --shape ellipsoid -o wide")
+    assert status == 0, err
+    [row] = table("wide")
+    assert row["factor"] < 1.0389 and 1.5 < row["across"] < 4.0
+    [body] = bodies.read(Path("wide"), Path("terrain.asc"), 2039.43)
+    soil = bishop.Strengths(3e3, np.tan(np.radians(19.6)))
+    assert body.columns.normal is None      # the body can turn about its axis
+    assert bishop.factor_of_safety(body.columns, soil)[0] == pytest.approx(row["factor"], rel=3e-3)
+    assert bishop.yield_coefficient(body.columns, soil)[0] == pytest.approx(row["yield"], abs=2e-3)
+    assert Path("wide/stability.png").stat().st_size > 10000
+
+    # a section of a sphere would lie beside the base that find_slip wrote
+
+    [of_table] = bodies.rows_of(Path("wide/body.slips.csv"))
+    base = bodies.rasters.read(Path("wide/body.1.base.asc"))
+    sphere = columns.base_of(base, (row["x"], row["y"], row["z"]), row["radius"])
+    exact = columns.base_of(base, (row["x"], row["y"], row["z"]), row["radius"], of_table["direction"],
+                            bodies.shape_of(of_table))
+    assert np.nanmax(np.abs(exact - base.z)) < 1e-3 < 0.1 < np.nanmax(np.abs(sphere - base.z))
+
+
+@needs_lmp
 def test_a_smaller_search_in_the_same_folder(low, capsys):
     """Within a polygon in the coordinates of the survey, with a limit of depth: both are said to bind; on two ranks."""
     part = box(0, 18, 51, 34)
@@ -89,14 +112,16 @@ def plane_body(cells, rise=0.5):
     raster = Raster(np.tile(rise * np.arange(20.0), (20, 1)), Affine(1, 0, 0, 0, -1, 20), None)
     inside = np.zeros((20, 20), bool)
     inside[5:5 + cells, 5:5 + cells] = True
-    row = {"rank": 1, "radius": 20.0, "direction": 180.0, "factor": 1.5, "volume": 300.0, "depth": 3.0}
+    row = {"rank": 1, "radius": 20.0, "direction": 180.0, "factor": 1.5, "volume": 300.0, "depth": 3.0,
+           "across": 1.0}
     return raster, row, inside
 
 
 @pytest.mark.parametrize("change, limits, kind", [
     ({}, {}, None), ({"volume": 100.5}, {}, "volume low"), ({"volume": 500}, {"volume": (200, 503)}, "volume high"),
     ({"depth": 1.0}, {"depth": (1.0, 4.0)}, "depth low"), ({"depth": 3.99}, {"depth": (1.0, 4.0)}, "depth high"),
-    ({"radius": 60.0}, {}, "flat"), ({"factor": 0.99}, {}, "fails")])
+    ({"radius": 60.0}, {}, "flat"), ({"across": 0.251}, {}, "wide"), ({"across": 3.99}, {}, "wide"),
+    ({"factor": 0.99}, {}, "fails")])
 def test_doubts_of_numbers(change, limits, kind):
     raster, row, inside = plane_body(9)
     given = {"volume": None, "depth": None, "allowed": None, **limits}

@@ -136,6 +136,22 @@ TEST(SlipSearch, NotAboveAPlainLattice)
   }
 }
 
+TEST(SlipSearch, EllipsoidsAreNotAboveSpheres)
+{
+  for (const ElevationGrid &ground : {hill(), valley()}) {
+    Case c(ground);
+    const double sphere = c.search().run().front().factor;
+    c.limits.ellipsoids = true;
+    const SlipBody wide = c.search().run().front();
+    EXPECT_LE(wide.factor, sphere);
+    EXPECT_NE(wide.surface.across, 1.0);
+    EXPECT_LE(wide.surface.across, SlipSearch::WIDEST);
+    EXPECT_GE(wide.surface.across * SlipSearch::WIDEST, 1.0);
+    EXPECT_TRUE(c.within(wide));
+    EXPECT_EQ(c.stages.back(), "ellipsoids");
+  }
+}
+
 TEST(SlipSearch, KeepsBodiesThatDifferInOrder)
 {
   Case c(valley());

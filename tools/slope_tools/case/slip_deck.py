@@ -37,6 +37,7 @@ class Asked(NamedTuple):
     direction: Optional[float] = None       # degrees counterclockwise from +x
     method: str = "bishop"
     keep: int = 3
+    shape: str = "sphere"
 
 
 def text(asked: Asked, named: Callable[[Path], str]) -> str:
@@ -57,6 +58,8 @@ def text(asked: Asked, named: Callable[[Path], str]) -> str:
         words.append(f"direction {asked.direction:.12g}")
     if asked.within:
         words.append("within inside")
+    if asked.shape != "sphere":
+        words.append(f"shape {asked.shape}")
     words += [f"method {asked.method}", f"keep {asked.keep}", f"output {PREFIX}"]
     lines = ["# slip surfaces with the least factor of safety, made by slope stability", "units si",
              f"region ground terrain {quoted(named(asked.terrain))}"]

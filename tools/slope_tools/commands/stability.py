@@ -72,6 +72,8 @@ def add_search(group):
     group.add_argument("--local", action="store_true", help="the polygon is in the terrain's local metres")
     group.add_argument("--direction", metavar="B", type=number,
                        help="compass bearing of sliding, degrees (default: where the weight drives most)")
+    group.add_argument("--shape", choices=("sphere", "ellipsoid"),
+                       help="ellipsoid: the width across the direction of sliding is free, too (default: sphere)")
     group.add_argument("--method", choices=("bishop", "ordinary"), help="default: bishop")
     group.add_argument("--keep", metavar="N", type=count, help="bodies that differ (default 3)")
 
@@ -108,8 +110,8 @@ def run(args):
                                    polygon and doubts.cells_in(raster, polygon)):
             warn(doubts.words(doubt))
         table = [numbers_of(raster, row, mask) for row, mask in zip(rows, masks)]
-        write(folder, args, raster, rows, masks, {"method": asked.method, "keep": asked.keep, "bodies": table,
-                                                  "warnings": kept})
+        write(folder, args, raster, rows, masks, {"method": asked.method, "shape": asked.shape, "keep": asked.keep,
+                                                  "bodies": table, "warnings": kept})
         slip_run.settle(asked, raster, folder, len(rows), args.output)
     slip_run.remove_others(args.output, len(rows))
     print(summary(table, args.output, said.notes))
@@ -132,7 +134,7 @@ def asked_of(args) -> slip_deck.Asked:
         args.terrain, slip_deck.Strength(args.cohesion, args.friction, args.density), layers, args.water,
         args.water_table, (shaking[0], shaking[-1] if len(shaking) > 1 else 0.0), bool(args.within),
         pair(args.volume), pair(args.depth), None if args.direction is None else (90.0 - args.direction) % 360.0,
-        args.method or "bishop", args.keep or 3)
+        args.method or "bishop", args.keep or 3, args.shape or "sphere")
 
 
 def pair(limits) -> Optional[Tuple[float, float]]:
@@ -154,7 +156,7 @@ def numbers_of(raster, row: Dict[str, float], mask) -> Dict[str, float]:
 
     return {"body": int(row["rank"]), **{name: row[name] for name in ("factor", "yield", "volume", "area", "depth")},
             "bearing": (90.0 - row["direction"]) % 360.0, "length": doubts.length(raster, mask, row["direction"]),
-            "cells": int(mask.sum()), **{name: row[name] for name in ("x", "y", "z", "radius")}}
+            "cells": int(mask.sum()), **{name: row[name] for name in ("x", "y", "z", "radius", "across")}}
 
 
 def write(folder, args, raster, rows, masks, found) -> None:

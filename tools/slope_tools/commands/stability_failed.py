@@ -4,7 +4,7 @@ from typing import List
 from .. import disk, errors
 from ..errors import SlopeError
 
-SEARCH = ("cohesion", "friction", "layer", "volume", "depth", "within", "method", "keep", "np", "lmp")
+SEARCH = ("cohesion", "friction", "layer", "volume", "depth", "within", "method", "shape", "keep", "np", "lmp")
 APART = 0.1         # of the cohesion, between the axis of the nearest sphere and a far one
 
 

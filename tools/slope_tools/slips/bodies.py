@@ -35,7 +35,10 @@ def table_of(path: Path) -> Path:
 
 
 def rows_of(path: Path, names: Sequence[str] = NUMBERS, unknown: Sequence[str] = ()) -> List[Dict[str, float]]:
-    """The rows of the table, with the rank and these columns; those of `unknown` may have NaN."""
+    """The rows of the table, with the rank, these columns and columns.Shape's; those of `unknown` may have NaN.
+
+    A table without columns.Shape's is of spheres.
+    """
     try:
         with open(path, newline="", encoding="utf-8") as source:
             rows = list(csv.DictReader(source))
@@ -53,8 +56,18 @@ def rows_of(path: Path, names: Sequence[str] = NUMBERS, unknown: Sequence[str] =
                 one[name] = math.nan
             if name not in unknown and not math.isfinite(one[name]):
                 raise SlopeError(f"{path}: line {place}", f"must have a number in the column {name}", row.get(name))
+        for name, default in columns.SPHERE._asdict().items():
+            try:
+                one[name] = float(row.get(name, default))
+            except ValueError:
+                raise SlopeError(f"{path}: line {place}", f"must have a number in the column {name}",
+                                 row[name]) from None
         found.append(one)
     return found
+
+
+def shape_of(row: Dict[str, float]) -> columns.Shape:
+    return columns.Shape(*(row[name] for name in columns.Shape._fields))
 
 
 def mask_of(path: Path) -> np.ndarray:
@@ -94,8 +107,7 @@ def prefix_of(table: Path) -> str:
 def read(path: Path, terrain: Path, density: float) -> List[Body]:
     """The bodies of a table on their terrain; density kg/m3.
 
-    Columns have the exact base of the sphere within the raster of the body. SlopeError for another terrain, and for
-    surfaces that are no spheres.
+    Columns have the exact base of the surface within the raster of the body. SlopeError for another terrain or base.
     """
     source = table_of(path)
     ground = rasters.read_asc_local(terrain)
@@ -107,13 +119,13 @@ def read(path: Path, terrain: Path, density: float) -> List[Body]:
         base = rasters.read(file)
         if base.z.shape != ground.z.shape or not base.transform.almost_equals(ground.transform, 1e-6):
             raise SlopeError(file, f"must be on the cells of {terrain}")
-        centre, radius = (row["x"], row["y"], row["z"]), row["radius"]
+        centre, radius, shape = (row["x"], row["y"], row["z"]), row["radius"], shape_of(row)
         inside = columns.largest(ground, base.z)
-        off = np.abs(base.z - columns.base_of(ground, centre, radius))[inside]
+        off = np.abs(base.z - columns.base_of(ground, centre, radius, row["direction"], shape))[inside]
         if not np.nanmedian(off) <= SAME_BASE:
-            raise SlopeError(file, f"must be the sphere of {source.name}, within {SAME_BASE:g} m",
+            raise SlopeError(file, f"must be the surface of {source.name}, within {SAME_BASE:g} m",
                              f"{np.nanmedian(off):.3g} m")
-        body = columns.of_sphere(ground, centre, radius, row["direction"], density, inside)
+        body = columns.of_surface(ground, centre, radius, row["direction"], density, inside, shape=shape)
         if not abs(body.volume / row["volume"] - 1) <= SAME_VOLUME:
             raise SlopeError(terrain, f"must be the terrain of {source.name}, on which body {rank} has "
                              f"{row['volume']:.5g} m3", f"{body.volume:.5g} m3")

@@ -12,6 +12,7 @@ from ..drawing.maps import RELIEF, contours, part, shade, window
 from ..geometry import extent
 from ..survey.rasters import Raster
 from ..survey.resampling import sample
+from . import bodies, columns
 from .doubts import length
 
 CLASSES = (0.8, 0.9, 1.0, 1.1, 1.2, 1.3, 1.5, 2.0, 3.0)     # of the factor of safety
@@ -86,15 +87,15 @@ def draw_body(axes, raster: Raster, row: Dict[str, float], mask: np.ndarray, col
 
 
 def draw_section(axes, raster: Raster, row: Dict[str, float], mask: np.ndarray, colour: str) -> None:
-    """Ground and sphere along the direction of sliding through the middle of a body, down to the right."""
+    """Ground and surface along the direction of sliding through the middle of a body, down to the right."""
     along = np.array([math.cos(math.radians(row["direction"])), math.sin(math.radians(row["direction"]))])
     long = length(raster, mask, row["direction"])
     place = np.linspace(-(0.5 + ROOM) * long, (0.5 + ROOM) * long, POINTS)
     x, y = (middle_of(raster, mask)[:, None] + along[:, None] * place)
     ground = sample(raster, x, y)
-    left = row["radius"] ** 2 - (x - row["x"]) ** 2 - (y - row["y"]) ** 2
-    base = row["z"] - np.sqrt(np.where(left > 0, left, np.nan))
-    inside = sample(raster._replace(z=mask.astype(float)), x, y) > 0.25     # other parts above the sphere do not slide
+    base = columns.height_at(x, y, (row["x"], row["y"], row["z"]), row["radius"], row["direction"],
+                             bodies.shape_of(row))
+    inside = sample(raster._replace(z=mask.astype(float)), x, y) > 0.25     # other parts above it do not slide
     with np.errstate(invalid="ignore"):
         there = inside & (ground > base)
     way = place - place[0]

@@ -31,17 +31,38 @@ class Columns(NamedTuple):
     normal: Optional[np.ndarray] = None      # lever of the normal force, which drives, m; None: 0, as on a sphere
 
 
+class Shape(NamedTuple):
+    """What an ellipsoid is beside a sphere: see SlipSurface in src/slips."""
+    along: float = 1.0      # horizontal semi-axis in the direction of sliding / radius, which is the vertical one
+    across: float = 1.0     # the other one / radius
+    straight: float = 0.0   # length of a straight part across the direction, m
+
+    def beyond(self, v):
+        """Distance across from the straight part, with sign."""
+        return v - np.clip(v, -0.5 * self.straight, 0.5 * self.straight)
+
+
+SPHERE = Shape()
+
+
 def centres(raster: Raster):
     """x and y of the middles of the cells, (rows, columns) each."""
     rows, columns = np.indices(raster.z.shape)
     return raster.transform * (columns + 0.5, rows + 0.5)
 
 
-def base_of(raster: Raster, centre: Sequence[float], radius: float) -> np.ndarray:
-    """Height of the lower half of a sphere under each cell's middle, NaN beside it."""
-    x, y = centres(raster)
-    left = radius ** 2 - (x - centre[0]) ** 2 - (y - centre[1]) ** 2
+def height_at(x, y, centre: Sequence[float], radius: float, direction: float = 0.0, shape: Shape = SPHERE):
+    """Height of the lower half of a surface at places, NaN beside it; direction of sliding in degrees from +x."""
+    u, v = turned(x - centre[0], y - centre[1], direction)
+    left = radius ** 2 - (u / shape.along) ** 2 - (shape.beyond(v) / shape.across) ** 2
     return centre[2] - np.sqrt(np.where(left > 0, left, np.nan))
+
+
+def base_of(raster: Raster, centre: Sequence[float], radius: float, direction: float = 0.0,
+            shape: Shape = SPHERE) -> np.ndarray:
+    """Height of the lower half of a surface under each cell's middle, NaN beside it."""
+    x, y = centres(raster)
+    return height_at(x, y, centre, radius, direction, shape)
 
 
 def largest(raster: Raster, base: np.ndarray) -> np.ndarray:
@@ -53,24 +74,27 @@ def largest(raster: Raster, base: np.ndarray) -> np.ndarray:
     return parts == 1 + np.argmax(np.bincount(parts.ravel())[1:])
 
 
-def of_sphere(ground: Raster, centre: Sequence[float], radius: float, direction: float, density: float,
-              inside: Optional[np.ndarray] = None, table: Optional[np.ndarray] = None) -> Columns:
-    """The columns of the body above a sphere; direction of sliding in degrees counterclockwise from +x, density kg/m3.
+def of_surface(ground: Raster, centre: Sequence[float], radius: float, direction: float, density: float,
+               inside: Optional[np.ndarray] = None, table: Optional[np.ndarray] = None,
+               shape: Shape = SPHERE) -> Columns:
+    """The columns of the body above a surface; direction of sliding in degrees counterclockwise from +x, density kg/m3.
 
     inside: mask of the cells of the body (default: its largest connected part); table: heights of the water table,
     NaN where there is no water. It does not change the density.
     """
-    bottom = base_of(ground, centre, radius)
+    bottom = base_of(ground, centre, radius, direction, shape)
     kept = largest(ground, bottom) if inside is None else inside & (ground.z > bottom)
     top, low = ground.z[kept], bottom[kept]
     u, v = from_axis(ground, kept, centre, direction)
     e = centre[2] - low
     area = np.full(len(u), abs(ground.transform.a * ground.transform.e))
-    cosine = e / radius
+    dip, dip_across = u / (shape.along ** 2 * e), shape.beyond(v) / (shape.across ** 2 * e)
+    cosine = 1 / np.sqrt(1 + dip ** 2 + dip_across ** 2)
+    sine = dip / np.hypot(1, dip)
     volume = area * (top - low)
     return Columns(area, area / cosine, density * GRAVITY * volume, u, centre[2] - (top + low) / 2,
-                   np.sqrt(radius ** 2 - v ** 2), u / np.hypot(u, e), cosine, pressure_of(table, kept, low),
-                   float(volume.sum()))
+                   u * sine + e / np.hypot(1, dip), sine, cosine, pressure_of(table, kept, low), float(volume.sum()),
+                   None if shape.along == 1.0 else cosine * (e * dip - u))
 
 
 def of_raster(ground: Raster, bottom: np.ndarray, kept: np.ndarray, centre: Sequence[float], direction: float,
@@ -97,8 +121,12 @@ def of_raster(ground: Raster, bottom: np.ndarray, kept: np.ndarray, centre: Sequ
 def from_axis(ground: Raster, kept: np.ndarray, centre: Sequence[float], direction: float):
     """u and v of the cells of a mask, m."""
     x, y = (one[kept] for one in centres(ground))
+    return turned(x - centre[0], y - centre[1], direction)
+
+
+def turned(dx, dy, direction: float):
+    """u, against the direction of sliding, and v, across it, of distances in x and y."""
     along = np.cos(np.radians(direction)), np.sin(np.radians(direction))
-    dx, dy = x - centre[0], y - centre[1]
     return -(dx * along[0] + dy * along[1]), dy * along[0] - dx * along[1]
 
 

@@ -11,6 +11,7 @@ from .columns import FEWEST
 
 NEAR = 0.01         # of a limit
 EDGE = 2            # cells from the edge of the terrain
+LEAST_WIDTH = 0.25      # across / along, of the search: SlipSearch::WIDEST
 FLAT = 5.0          # radii of such a length of the body are nearly a plane
 SMALLEST = 100.0    # cells^3, least volume of find_slip without a limit
 
@@ -32,6 +33,8 @@ WORDS = {
     "depth low": "has the least depth that is allowed, {limit:.6g} m: a shallower body may have a lower factor",
     "depth high": "has the largest depth that is allowed, {limit:.6g} m: a deeper body may have a lower factor",
     "flat": "is nearly a plane, radius {value:.4g} m for a length of {limit:.4g} m: at the edge of a search of spheres",
+    "wide": "is {value:.3g} times as wide as a sphere, which is a limit of the search: another width may have a lower "
+            "factor",
     "fails": "has a factor of {value:.3f}, below 1: with these numbers it does not stand",
 }
 
@@ -86,6 +89,8 @@ def of_body(raster: Raster, row: Dict[str, float], inside: np.ndarray, volume: O
     long = length(raster, inside, row["direction"])
     if row["radius"] > FLAT * long:
         found.append(Doubt(rank, "flat", row["radius"], long))
+    if not LEAST_WIDTH * 1.01 < row["across"] < 0.99 / LEAST_WIDTH:
+        found.append(Doubt(rank, "wide", row["across"]))
     if row["factor"] < 1:
         found.append(Doubt(rank, "fails", row["factor"], 1.0))
     return found

@@ -30,11 +30,12 @@ def numbers(text: str):
     return found if len(found) == 4 and all(map(math.isfinite, found)) and found[3] > 0 else None
 
 
-def of_sphere(raster: Raster, centre, radius: float, direction: Optional[float], density: float, table) -> Failed:
-    base = columns.base_of(raster, centre, radius)
+def of_surface(raster: Raster, centre, radius: float, direction: Optional[float], density: float, table,
+               shape: columns.Shape = columns.SPHERE) -> Failed:
+    base = columns.base_of(raster, centre, radius, direction or 0.0, shape)
     inside = columns.largest(raster, base)
     way = back.steepest(raster, base, inside, centre) if direction is None else direction
-    return Failed(columns.of_sphere(raster, centre, radius, way, density, inside, table), None, way,
+    return Failed(columns.of_surface(raster, centre, radius, way, density, inside, table, shape), None, way,
                   np.asarray(centre, float), radius)
 
 
@@ -63,12 +64,12 @@ def read(text: str, raster: Raster, direction: Optional[float], density: float,
     """
     if numbers(text):
         *centre, radius = numbers(text)
-        return of_sphere(raster, centre, radius, direction, density, table)
+        return of_surface(raster, centre, radius, direction, density, table)
     path = Path(text)
     if path.is_dir() or path.suffix == ".csv":
         row = bodies.rows_of(bodies.table_of(path))[0]
-        return of_sphere(raster, (row["x"], row["y"], row["z"]), row["radius"],
-                         row["direction"] if direction is None else direction, density, table)
+        return of_surface(raster, (row["x"], row["y"], row["z"]), row["radius"],
+                          row["direction"] if direction is None else direction, density, table, bodies.shape_of(row))
     if not path.is_file():
         raise SlopeError("--failed", "must be X,Y,Z,R of a sphere (m), what find_slip wrote, or a raster of the ground "
                          "without the body", text)
