@@ -38,7 +38,7 @@ TOOLS = Path(os.environ.get("SLOPE_TOOLS", HERE.parents[1] / "tools"))
 sys.path[:0] = [str(TOOLS), str(HERE.parent / "tools")]
 
 from slope_tools.case import run_folders  # noqa: E402
-from slope_tools.deposit import deposit, dumps  # noqa: E402
+from slope_tools.deposits import deposit, dumps  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
 from slope_tools.survey import crs, fggml, polygons, rasters  # noqa: E402
 
@@ -251,8 +251,9 @@ def study():
 
 def read_page(folder):
     """The report on a study, all but the drawing."""
+    from slope_tools.plots import figure_charts, figure_maps
+    from slope_tools.report import document
     from slope_tools.report.asked import Asked
-    from slope_tools.report import document, figure_charts, figure_maps
     for name in ("value_map", "terrain_map", "mesh_map", "small_maps"):
         setattr(figure_maps, name, lambda *_, **__: "")
     for name in ("bars", "chart", "convergence"):
@@ -293,7 +294,8 @@ CONVERGE = {"study": {"variable": "d", "deck": "in.tiny", "finished": 4, "base":
 
 def sizes(path):
     """converge.yaml, as the report takes it."""
-    from slope_tools.report import convergence_part as report_convergence, figure_charts, numbers as report_numbers
+    from slope_tools.plots import figure_charts
+    from slope_tools.report import convergence_part as report_convergence, numbers as report_numbers
     found = report_convergence.Sizes(path)
     figure_charts.convergence = lambda *_: ""
     found.rows(report_numbers.Numbers())

@@ -17,8 +17,9 @@ TOP = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(TOP / "tests" / "tools"), str(TOP / "tools")]
 
 import known_twins as twins  # noqa: E402  (after the path is set)
-from slope_tools.ensemble import conditioned, designs  # noqa: E402
+from slope_tools.ensembles import conditioned  # noqa: E402
 from slope_tools.mobility import weights  # noqa: E402
+from slope_tools.statistics import designs  # noqa: E402
 
 RUNS, REFERENCE, MANY = 100, 4000, 400
 LEVELS = np.array([5e3, 2e4, 4e4, 7e4])     # m3

@@ -21,10 +21,10 @@ from tiny_collapse import LMP, TOP, write_case
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools.deposit import travel_shares  # noqa: E402
-from slope_tools.ensemble import (backanalysis, calibration, designs, distributions, emulator,  # noqa: E402
-                                  fit_words, observations, tempering)
+from slope_tools.deposits import travel_shares  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
+from slope_tools.fitting import backanalysis, calibration, fit_words, observations  # noqa: E402
+from slope_tools.statistics import designs, distributions, emulator, tempering  # noqa: E402
 from slope_tools.survey import rasters  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")

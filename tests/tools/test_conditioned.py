@@ -14,7 +14,7 @@ from tiny_collapse import LMP, read_asc, write_case
 
 import known_twins as twins  # noqa: E402  (run_helpers has set the path)
 from slope_tools import cli  # noqa: E402
-from slope_tools.ensemble import conditioned, known_events, known_maps  # noqa: E402
+from slope_tools.ensembles import conditioned, known_events, known_maps  # noqa: E402
 from slope_tools.mobility import weights  # noqa: E402
 from slope_tools.report import known_part  # noqa: E402
 from slope_tools.report.numbers import Numbers  # noqa: E402

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from run_helpers import here, write_run  # noqa: F401  (here is a fixture)
 
-from slope_tools.deposit import connected, deposit
+from slope_tools.deposits import connected, deposit
 
 CELL = 2.0
 

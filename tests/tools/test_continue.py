@@ -20,7 +20,7 @@ TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
 from slope_tools.case import logs, restarts, run_folders  # noqa: E402
-from slope_tools.ensemble import jobs  # noqa: E402
+from slope_tools.runs import jobs  # noqa: E402
 
 PROGRAM = [sys.executable, str(TOOLS / "slope")]
 # Rounding differs after a restart, and in a collapse it grows: measured here by a factor of 30 in 200 steps. The runs

@@ -18,9 +18,10 @@ from tiny_collapse import LMP, TOP, write_case
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools.ensemble import convergence, size_study  # noqa: E402
-from slope_tools.ensemble.size_error import SizeErrors  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
+from slope_tools.statistics import convergence  # noqa: E402
+from slope_tools.studies import size_study  # noqa: E402
+from slope_tools.tables.size_error import SizeErrors  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 SIZES = (4.0, 2.5, 1.25, 0.9)

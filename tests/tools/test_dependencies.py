@@ -13,7 +13,7 @@ from run_helpers import called, write_sidecar
 from tiny_collapse import LMP, read_asc, write_case, write_stl
 
 from slope_tools.case import decks
-from slope_tools.ensemble import dependencies
+from slope_tools.runs import dependencies
 
 RUN = "out/rolling_0_steps_10"
 

@@ -21,8 +21,9 @@ sys.path.insert(0, str(TOOLS))
 
 from slope_tools import cli  # noqa: E402
 from slope_tools.case import deck_ranges  # noqa: E402
-from slope_tools.ensemble import designs, distributions, emulator, ensemble, hazard, sample  # noqa: E402
+from slope_tools.ensembles import ensemble, sample  # noqa: E402
 from slope_tools.report import ensemble_part  # noqa: E402
+from slope_tools.statistics import designs, distributions, emulator, hazard  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 ROAD = "--road case/road.csv --local"

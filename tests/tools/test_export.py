@@ -16,7 +16,7 @@ from tiny_collapse import LMP, read_asc, write_case
 
 from slope_tools.case import run_folders
 from slope_tools.commands import export as export_command
-from slope_tools.deposit import deposit, export
+from slope_tools.deposits import deposit, export
 from slope_tools.errors import SlopeError
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")

@@ -12,10 +12,11 @@ from run_helpers import called, write_asc
 from test_newmark import noise
 from test_slips import CASES
 
-from slope_tools.ensemble import distributions, fragility
+from slope_tools.seismic import fragility
 from slope_tools.slips import bishop, columns, newmark
 from slope_tools.slips.bodies import Body
-from slope_tools.slips.columns import GRAVITY, Columns
+from slope_tools.slips.columns import Columns, GRAVITY
+from slope_tools.statistics import distributions
 
 BETA = np.radians(30.0)
 PRESSURE = 40e3     # weight per area in plan, Pa

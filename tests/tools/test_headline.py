@@ -12,8 +12,8 @@ from scipy import stats
 TOP = Path(__file__).resolve().parents[2]
 sys.path.insert(0, os.environ.get("SLOPE_TOOLS", str(TOP / "tools")))
 
-from slope_tools.ensemble import headline  # noqa: E402
-from slope_tools.ensemble.headline import Combination, Headline, Scatter, SizeError  # noqa: E402
+from slope_tools.statistics import headline  # noqa: E402
+from slope_tools.statistics.headline import Combination, Headline, Scatter, SizeError  # noqa: E402
 
 STUDIES = 400
 REPEATS = 3

@@ -16,7 +16,7 @@ TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
 from slope_tools import cli, errors  # noqa: E402
-from slope_tools.ensemble import combinations, intensity  # noqa: E402
+from slope_tools.tables import combinations, intensity  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 STUDY = "case/in.tiny --set peak=0,300,900 --repeat xoffset=0.25 --road case/road.csv --local --jobs 1 -o out"

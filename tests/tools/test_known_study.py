@@ -7,9 +7,10 @@ from test_site import gis  # noqa: F401
 from test_site_anew import inside, mine  # noqa: F401
 from tiny_collapse import LMP
 
-from slope_tools.case import site_budget, site_choices
-from slope_tools.ensemble import known_study, site_study
+from slope_tools.ensembles import known_study
 from slope_tools.mobility import exceedance
+from slope_tools.sites import site_budget, site_choices
+from slope_tools.studies import site_study
 
 CELL = 20.0
 

@@ -17,7 +17,8 @@ from run_helpers import TOP, here, run_command, write_asc, write_geojson  # noqa
 from slope_tools.commands import mobility as mobility_command  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
 from slope_tools.mobility import body, charts, events, exceedance, fall_path, road  # noqa: E402
-from slope_tools.survey import rasters, release  # noqa: E402
+from slope_tools.releases import release  # noqa: E402
+from slope_tools.survey import rasters  # noqa: E402
 from slope_tools.survey.rasters import Raster  # noqa: E402
 
 ALL = events.read()

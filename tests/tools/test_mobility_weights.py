@@ -9,8 +9,8 @@ from run_helpers import TOOLS
 sys.path.insert(0, str(TOOLS))
 
 import known_twins as twins  # noqa: E402  (after the path is set)
-from slope_tools.ensemble import designs  # noqa: E402
 from slope_tools.mobility import weights  # noqa: E402
+from slope_tools.statistics import designs  # noqa: E402
 
 RUNS = 100
 

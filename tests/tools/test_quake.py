@@ -11,7 +11,7 @@ import yaml
 from run_helpers import TOP, called
 
 from slope_tools.commands import quake as quake_command  # noqa: E402
-from slope_tools.survey import quake_motion, quake_records  # noqa: E402
+from slope_tools.quakes import quake_motion, quake_records  # noqa: E402
 
 DT = 0.01
 T = DT * np.arange(2000)

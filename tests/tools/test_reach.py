@@ -6,7 +6,7 @@ import pytest
 
 import run_helpers  # noqa: F401  (the path)
 
-from slope_tools.deposit import reach
+from slope_tools.deposits import reach
 
 
 def test_within_by_hand():

@@ -15,9 +15,12 @@ from tiny_collapse import LMP, TOP, write_case
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools.deposit import rest, travel_shares  # noqa: E402
-from slope_tools.ensemble import combinations, headline, repeats, results, study_file, study_table  # noqa: E402
+from slope_tools.deposits import rest, travel_shares  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
+from slope_tools.runs import repeats  # noqa: E402
+from slope_tools.statistics import headline  # noqa: E402
+from slope_tools.studies import results  # noqa: E402
+from slope_tools.tables import combinations, study_file, study_table  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 ROAD = "--road case/road.csv --local"

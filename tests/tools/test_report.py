@@ -27,9 +27,10 @@ sys.path.insert(0, str(TOOLS))
 
 from slope_tools.commands import report as report_command  # noqa: E402
 from slope_tools.drawing import figures  # noqa: E402
-from slope_tools.ensemble import results  # noqa: E402
-from slope_tools.report import (data as report_data, figure_charts, figure_maps, ground as report_ground,  # noqa: E402
-                                paper, section as report_section)
+from slope_tools.plots import (figure_charts, figure_maps, ground as report_ground,  # noqa: E402
+                               section as report_section)
+from slope_tools.report import data as report_data, paper  # noqa: E402
+from slope_tools.studies import results  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 

@@ -13,9 +13,10 @@ from run_helpers import TOOLS
 sys.path.insert(0, str(TOOLS))
 
 from slope_tools.drawing import figures, palettes  # noqa: E402
-from slope_tools.ensemble import hazard  # noqa: E402
-from slope_tools.report import charts, figure_charts, figure_maps, figure_structures, obstacles  # noqa: E402
-from slope_tools.report import section as report_section, structures_part  # noqa: E402
+from slope_tools.plots import (figure_charts, figure_maps, figure_structures, obstacles,  # noqa: E402
+                               section as report_section)
+from slope_tools.report import charts, structures_part  # noqa: E402
+from slope_tools.statistics import hazard  # noqa: E402
 from slope_tools.survey.rasters import Raster  # noqa: E402
 
 

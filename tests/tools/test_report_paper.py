@@ -14,8 +14,9 @@ from tiny_collapse import LMP, write_case
 sys.path.insert(0, str(TOOLS))
 
 from slope_tools import cli  # noqa: E402
+from slope_tools.animation import view  # noqa: E402
 from slope_tools.drawing import figures  # noqa: E402
-from slope_tools.report import document, paper, view  # noqa: E402
+from slope_tools.report import document, paper  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 looked_at = pytest.mark.skipif(not (paper.browser() and shutil.which("pdftoppm")),

@@ -13,8 +13,8 @@ TOP = Path(__file__).resolve().parents[2]
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools.deposit import flow_path  # noqa: E402
-from slope_tools.report import section as report_section  # noqa: E402
+from slope_tools.deposits import flow_path  # noqa: E402
+from slope_tools.plots import section as report_section  # noqa: E402
 from slope_tools.survey.rasters import Raster  # noqa: E402
 
 CELL = 2.0

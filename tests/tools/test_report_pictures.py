@@ -15,8 +15,8 @@ TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
 from slope_tools.drawing import figures  # noqa: E402
-from slope_tools.report import figure_charts, figure_maps, sheets  # noqa: E402
-from slope_tools.report.figure_charts import Convergence, Series  # noqa: E402
+from slope_tools.plots import figure_charts, figure_maps, sheets  # noqa: E402
+from slope_tools.plots.figure_charts import Convergence, Series  # noqa: E402
 from slope_tools.survey.rasters import Raster  # noqa: E402
 
 LONG = "Thickness of the deposit at the end of a run with a name that is longer than most sheets of paper are wide"

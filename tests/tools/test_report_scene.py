@@ -22,9 +22,10 @@ TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
 from slope_tools import cli  # noqa: E402
-from slope_tools.report import figure_charts, figure_maps, film, frames, scene, view  # noqa: E402
+from slope_tools.animation import film, frames, scene, view  # noqa: E402
+from slope_tools.plots import figure_charts, figure_maps  # noqa: E402
+from slope_tools.plots.ground import Ground, box_of  # noqa: E402
 from slope_tools.report.data import Data  # noqa: E402
-from slope_tools.report.ground import Ground, box_of  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 library = pytest.mark.skipif(view.library() is None, reason="libjs-three is not installed")

@@ -16,8 +16,10 @@ PACKAGE = TOOLS / "slope_tools"
 MODULES = sorted(PACKAGE.rglob("*.py"))
 LONGEST = 400       # lines
 # from below
-ROOMS = ("", "drawing", "survey", "slips", "case", "deposit", "mobility", "ensemble", "report", "validation",
+ROOMS = ("", "drawing", "survey", "case", "quakes", "releases", "slips", "sites", "deposits", "mobility", "statistics",
+         "runs", "tables", "ensembles", "seismic", "studies", "fitting", "plots", "animation", "report", "validation",
          "commands")
+MOST = 25           # modules of a room; its __init__.py is one
 
 
 def imported(text, path):
@@ -53,7 +55,7 @@ def other_commands(text, path):
 
 def test_what_is_wrong_is_found():
     survey, volume = PACKAGE / "survey" / "rasters.py", PACKAGE / "commands" / "volume.py"
-    assert upwards("from ..deposit import cut\nfrom .crs import box\n", survey) == ["deposit.cut"]
+    assert upwards("from ..deposits import cut\nfrom .crs import box\n", survey) == ["deposits.cut"]
     assert upwards("def f():\n    from ..commands.volume import run\n", survey) == ["commands.volume.run"]
     assert upwards("from slope_tools.report import page\n", survey) == ["report.page"]
     assert other_commands("from . import run_arguments, study\n", volume) == ["commands.study"]
@@ -73,6 +75,8 @@ def test_every_command_is_a_module_and_every_module_in_a_room():
     commands = {path.stem for path in (PACKAGE / "commands").glob("*.py")}
     assert set(cli.COMMANDS) <= commands
     assert {path.name for path in PACKAGE.iterdir() if (path / "__init__.py").is_file()} == {*ROOMS[1:]}
+    for name in ROOMS[1:]:
+        assert len(list((PACKAGE / name).glob("*.py"))) <= MOST, name
 
 
 def test_rooms_take_no_arguments_of_the_command_line():
@@ -97,7 +101,8 @@ def test_a_command_loads_only_what_it_needs(name):
     others = {f"slope_tools.commands.{other}" for other in cli.COMMANDS} - {f"slope_tools.commands.{name}"}
     assert f"slope_tools.commands.{name}" in loaded
     assert not others & set(loaded)
-    assert not [one for one in loaded if one.startswith(("slope_tools.report.", "slope_tools.validation."))]
+    assert not [one for one in loaded if one.startswith(tuple(
+        f"slope_tools.{name}." for name in ("plots", "animation", "report", "validation")))]
 
 
 def imports_of_modules(texts):
@@ -125,8 +130,8 @@ def circle(graph):
 
 def test_no_circle_of_imports():
     """An import inside a function may save time, not hide that two modules need each other."""
-    one, other = PACKAGE / "ensemble" / "results.py", PACKAGE / "ensemble" / "study.py"
+    one, other = PACKAGE / "studies" / "results.py", PACKAGE / "studies" / "study.py"
     assert circle(imports_of_modules({one: "def f():\n    from . import study\n", other: "from .results import f\n"})) \
-        == ["ensemble.results", "ensemble.study", "ensemble.results"]
+        == ["studies.results", "studies.study", "studies.results"]
     assert circle(imports_of_modules({one: "", other: "from .results import f\n"})) == []
     assert circle(imports_of_modules({path: path.read_text(encoding="utf-8") for path in MODULES})) == []

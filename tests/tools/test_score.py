@@ -18,7 +18,7 @@ from run_helpers import (BULK, CRS_M, EAST, NORTH, TOP, centres, here, run_comma
 
 from slope_tools import disk
 from slope_tools.commands import score as score_command
-from slope_tools.deposit import score
+from slope_tools.deposits import score
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 

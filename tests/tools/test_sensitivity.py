@@ -17,7 +17,8 @@ from tiny_collapse import LMP, TOP, write_case
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools.ensemble import quantities, sensitivity  # noqa: E402
+from slope_tools.studies import sensitivity  # noqa: E402
+from slope_tools.tables import quantities  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 T = 4.302652729911275       # t(0.975) of three runs

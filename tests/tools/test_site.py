@@ -24,9 +24,11 @@ TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
 from slope_tools import cli, programs  # noqa: E402  (after the path is set)
-from slope_tools.case import decks, release_chart, site_budget, site_choices, site_warnings  # noqa: E402
+from slope_tools.case import decks  # noqa: E402
+from slope_tools.releases import release_chart  # noqa: E402
+from slope_tools.sites import site_budget, site_choices, site_warnings  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
-from slope_tools.report import site_map  # noqa: E402
+from slope_tools.plots import site_map  # noqa: E402
 
 DATA = Path(os.environ.get("SLOPE_DATA", TOP.parent.parent / "shared" / "data"))
 EAST, NORTH, CELL, COLUMNS, ROWS = -12000.0, 34000.0, 2.0, 60, 40      # of the survey, m, zone IX of Japan

@@ -20,9 +20,10 @@ from test_site import BODY, EAST, NORTH, ROAD, TOOLS, gis, make, refused, slope,
 from tiny_collapse import LMP, processes_in
 
 from slope_tools import cli, disk, programs
-from slope_tools.case import decks, site, site_choices, site_deck, site_folder, site_warnings
-from slope_tools.ensemble import site_study
+from slope_tools.case import decks
 from slope_tools.errors import SlopeError
+from slope_tools.sites import site, site_choices, site_deck, site_folder, site_warnings
+from slope_tools.studies import site_study
 
 
 @pytest.fixture

@@ -19,7 +19,7 @@ sys.path.insert(0, str(TOOLS))
 
 from slope_tools import cli  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
-from slope_tools.ensemble import job_display, jobs, launcher, slurm as engine  # noqa: E402
+from slope_tools.runs import job_display, jobs, launcher, slurm as engine  # noqa: E402
 
 PROGRAM = [sys.executable, str(TOOLS / "slope")]
 PATH = f"{os.environ['PATH']}:/usr/sbin:/sbin"

@@ -8,9 +8,9 @@ import pytest
 TOP = Path(__file__).resolve().parents[2]
 sys.path.insert(0, os.environ.get("SLOPE_TOOLS", str(TOP / "tools")))
 
-from slope_tools.ensemble import combinations, step_check  # noqa: E402
-from slope_tools.ensemble.headline import Scatter  # noqa: E402
-from slope_tools.ensemble.step_check import Step  # noqa: E402
+from slope_tools.statistics.headline import Scatter  # noqa: E402
+from slope_tools.tables import combinations, step_check  # noqa: E402
+from slope_tools.tables.step_check import Step  # noqa: E402
 
 
 def groups():

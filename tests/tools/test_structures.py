@@ -18,8 +18,9 @@ TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
 from slope_tools import cli, errors  # noqa: E402
-from slope_tools.ensemble import structures  # noqa: E402
-from slope_tools.report import figure_structures, structures_part as report_structures  # noqa: E402
+from slope_tools.plots import figure_structures  # noqa: E402
+from slope_tools.report import structures_part as report_structures  # noqa: E402
+from slope_tools.tables import structures  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 ADDED = """\

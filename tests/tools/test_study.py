@@ -25,7 +25,9 @@ sys.path.insert(0, str(TOOLS))
 
 from slope_tools.case import decks, logs, settings  # noqa: E402
 from slope_tools.commands import study as study_command  # noqa: E402
-from slope_tools.ensemble import convergence, headline, job_display, results, size_study, study  # noqa: E402
+from slope_tools.runs import job_display  # noqa: E402
+from slope_tools.statistics import convergence, headline  # noqa: E402
+from slope_tools.studies import results, size_study, study  # noqa: E402
 from slope_tools.survey import rasters  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")

@@ -14,7 +14,7 @@ from run_helpers import TOP, here, run_command  # noqa: F401
 
 from slope_tools import disk
 from slope_tools.commands import travel as travel_command
-from slope_tools.deposit import travel
+from slope_tools.deposits import travel
 
 
 @pytest.fixture

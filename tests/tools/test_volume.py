@@ -23,7 +23,7 @@ from run_helpers import (BULK, CRS_M, EAST, NORTH, TOP, centres, here, run_comma
 
 from slope_tools import disk, geometry
 from slope_tools.commands import volume as volume_command
-from slope_tools.deposit import cut, deposit, volume, volume_files
+from slope_tools.deposits import cut, deposit, volume, volume_files
 from slope_tools.survey import rasters
 
 LMP = os.environ.get("LMP", str(TOP / "build" / "lmp"))

@@ -15,12 +15,13 @@ from shapely.geometry import box
 TOP = Path(__file__).resolve().parents[2]
 sys.path.insert(0, os.environ.get("SLOPE_TOOLS", str(TOP / "tools")))
 
-from slope_tools.deposit import left  # noqa: E402
-from slope_tools.ensemble import combinations, usable, withheld, withheld_words  # noqa: E402
-from slope_tools.ensemble.usable import Events  # noqa: E402
-from slope_tools.ensemble.withheld import Facts, Kind  # noqa: E402
-from slope_tools.ensemble.withheld_words import Case  # noqa: E402
+from slope_tools.deposits import left  # noqa: E402
+from slope_tools.statistics import withheld  # noqa: E402
+from slope_tools.statistics.withheld import Facts, Kind  # noqa: E402
 from slope_tools.survey.rasters import Raster  # noqa: E402
+from slope_tools.tables import combinations, usable, withheld_words  # noqa: E402
+from slope_tools.tables.usable import Events  # noqa: E402
+from slope_tools.tables.withheld_words import Case  # noqa: E402
 
 GOOD = Facts(volume=5000.0, on_road=3000.0, ball=10.0, runs=20, failed=0, moving=0, left=0.0, length=900.0,
              median=800.0)

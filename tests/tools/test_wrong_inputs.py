@@ -20,8 +20,8 @@ from shapely.affinity import translate
 from run_helpers import CRS_M, EAST, NORTH, TOP, called, write_run
 
 from slope_tools import programs
-from slope_tools.case import release_chart
-from slope_tools.report import site_map
+from slope_tools.plots import site_map
+from slope_tools.releases import release_chart
 from slope_tools.survey import rasters
 
 RIGHT, ASKED = "right: ", "asked: "     # before answers of commands that succeed

@@ -8,10 +8,10 @@ import shutil
 from pathlib import Path
 
 from .. import disk
-from ..ensemble import jobs
 from ..errors import SlopeError
 from ..options import count, number
 from ..programs import lmp_of_each
+from ..runs import jobs
 from ..validation import peers
 from ..validation.bench import Plan
 from ..validation.bench_scenes import BALLS

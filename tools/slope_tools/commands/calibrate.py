@@ -9,11 +9,14 @@ from pathlib import Path
 from .. import errors, options
 from ..case import data_files, decks
 from ..case.settings import check_settings, one_value_each
-from ..deposit.score import THRESHOLD
-from ..ensemble import backanalysis, calibration, distributions, jobs, observations, repeats, study
-from ..ensemble.fit import Fit
+from ..deposits.score import THRESHOLD
 from ..errors import SlopeError
+from ..fitting import backanalysis, calibration, observations
+from ..fitting.fit import Fit
 from ..options import number
+from ..runs import jobs, repeats
+from ..statistics import distributions
+from ..studies import study
 from . import run_arguments
 
 TOLERANCE = 0.05

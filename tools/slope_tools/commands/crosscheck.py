@@ -9,9 +9,9 @@ import argparse
 from pathlib import Path
 
 from .. import disk
-from ..ensemble import jobs
 from ..errors import SlopeError
 from ..programs import find_lmp
+from ..runs import jobs
 from ..validation import peers
 from ..validation.crosscheck import PEERS, Work, bounce, collapse, rolling, slide_roll
 from ..validation.crosscheck_report import report

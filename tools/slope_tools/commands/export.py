@@ -5,8 +5,8 @@ from typing import List
 
 from .. import disk, errors
 from ..case import run_folders
-from ..deposit import deposit
-from ..deposit.export import layers, write
+from ..deposits import deposit
+from ..deposits.export import layers, write
 from ..survey import rasters
 from ..survey.rasters import crs_name
 

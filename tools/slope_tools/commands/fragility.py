@@ -61,9 +61,9 @@ def add_parser(commands, **kwargs):
 
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints medians, HCLPF and frequencies."""
-    from ..ensemble import fragility, fragility_files as files      # scipy, matplotlib
+    from ..seismic import fragility, fragility_files as files      # scipy, matplotlib
     from ..slips import bodies
-    from ..survey import motion_file
+    from ..quakes import motion_file
 
     peaks = peaks_of(args.peaks)
     check(args)
@@ -140,7 +140,7 @@ def peaks_of(text):
 
 def soil_of(args):
     """What is sampled, checked."""
-    from ..ensemble.fragility import Soil
+    from ..seismic.fragility import Soil
 
     tangent = args.friction.startswith("tan:")
     return Soil(drawn("--cohesion", args.cohesion, 0.0, 1e8, "Pa"),
@@ -151,7 +151,7 @@ def soil_of(args):
 
 def drawn(option, text, low, high, unit):
     """A number, or a distribution of `slope study --vary`, with all values from low to high."""
-    from ..ensemble import distributions
+    from ..statistics import distributions
 
     try:
         one: Any = float(text)

@@ -3,10 +3,11 @@ import argparse
 from pathlib import Path
 
 from .. import disk
-from ..case.site_layers import ROAD
 from ..errors import SlopeError, printer
 from ..mobility import body, events, exceedance, fall_path, relation, results, road
-from ..survey import lines, polygons, release
+from ..releases import release
+from ..sites.site_layers import ROAD
+from ..survey import lines, polygons
 from ..survey.crs import as_crs
 from .release_arguments import add_body, wanted
 

@@ -6,8 +6,8 @@ from ..case.decks import quoted
 from ..disk import check_file
 from ..errors import SlopeError
 from ..options import number
-from ..survey import quake_motion as motions, quake_records as records
-from ..survey.quake import Processing, processed, write
+from ..quakes import quake_motion as motions, quake_records as records
+from ..quakes.quake import Processing, processed, write
 
 EPILOG = """\
 RECORD: one file for each component, or one with all of them

@@ -4,8 +4,9 @@ import os
 from pathlib import Path
 
 from .. import errors
-from ..case import decks, release_files
-from ..survey import release, vectors
+from ..case import decks
+from ..releases import release, release_files
+from ..survey import vectors
 from .release_arguments import add_body, wanted
 
 EPILOG = """\

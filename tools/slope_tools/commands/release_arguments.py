@@ -1,6 +1,7 @@
 """Arguments of the commands that take a body: which one, below a polygon or from a scar."""
 from ..options import number
-from ..survey import release, release_scar, vectors
+from ..releases import release, release_scar
+from ..survey import vectors
 
 
 def add_body(parser) -> None:

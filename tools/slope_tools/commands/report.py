@@ -9,12 +9,12 @@ from pathlib import Path
 from shlex import quote
 
 from ..case import run_folders
-from ..ensemble import site_study
 from ..errors import SlopeError
+from ..plots.section import FALL
 from ..report import document, paper
 from ..report.asked import Asked
 from ..report.heading import SITE
-from ..report.section import FALL
+from ..studies import site_study
 
 STUDY = "study.yaml"
 

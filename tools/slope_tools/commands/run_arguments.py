@@ -4,10 +4,12 @@ from pathlib import Path
 from typing import Optional
 
 from ..case.settings import check_settings
-from ..ensemble import designs, intensity, known_events
-from ..ensemble.setup import Road, Setup
+from ..ensembles import known_events
 from ..errors import SlopeError
 from ..options import count, number, whole
+from ..statistics import designs
+from ..studies.setup import Road, Setup
+from ..tables import intensity
 
 
 def add_deck(parser, site=False):

@@ -6,8 +6,8 @@ polygon is cut by them; a mapped raster on another grid is spread over the run's
 import argparse
 from pathlib import Path
 
-from ..deposit import score_run
-from ..deposit.score import THRESHOLD
+from ..deposits import score_run
+from ..deposits.score import THRESHOLD
 from ..options import number
 
 EPILOG = """\

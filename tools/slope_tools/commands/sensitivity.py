@@ -6,10 +6,11 @@ Order of the work: plan the base run and those that differ from it by one variab
 import argparse
 
 from ..case.settings import check_settings, one_value_each
-from ..ensemble import repeats, study
-from ..ensemble.quantities import NAMES
-from ..ensemble.sensitivity import OF_ROAD, OF_TRAVEL, collect, plan, quantities
 from ..errors import SlopeError
+from ..runs import repeats
+from ..studies import study
+from ..studies.sensitivity import OF_ROAD, OF_TRAVEL, collect, plan, quantities
+from ..tables.quantities import NAMES
 from . import run_arguments
 
 EPILOG = """\
@@ -64,7 +65,7 @@ def run(args):
     if args.converge:
         if args.vary:
             raise SlopeError("--converge", "must be given without --vary: one kind of study at a time", args.vary[0])
-        from ..ensemble import size_study
+        from ..studies import size_study
         return size_study.run(setup, args.converge, base, repeated, of, {name: NAMES[name] for name in of})
     todo = plan(setup, base, kinds)
     settings = {name: list(dict.fromkeys(one.chosen[name] for one in todo if name in one.chosen))

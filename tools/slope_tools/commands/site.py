@@ -6,16 +6,17 @@ from pathlib import Path
 from shlex import quote
 from typing import Any, Dict
 
-from ..case import site, site_choices
-from ..ensemble import jobs, known_study
+from ..ensembles import known_study
 from ..errors import SlopeError, printer
 from ..options import count, number, whole
+from ..plots import site_map
 from ..programs import find_lmp
-from ..report import site_map
+from ..releases.release import SHAPES
+from ..releases.release_scar import KINDS
+from ..runs import jobs
+from ..sites import site, site_choices
 from ..slips import bodies
 from ..survey.rasters import UNITS
-from ..survey.release import SHAPES
-from ..survey.release_scar import KINDS
 
 # option -> section and key of site.yaml
 OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),

@@ -83,7 +83,7 @@ def run(args):
     if args.failed is not None:
         stability_failed.run(args)
         return
-    from ..ensemble import slip_run         # numpy, rasterio
+    from ..runs import slip_run         # numpy, rasterio
     from ..slips import bodies, doubts
     from ..survey import polygons, rasters
 

@@ -6,14 +6,18 @@ finished (jobs.py), collect (results.py), combine (combinations.py, headline.py)
 import argparse
 from pathlib import Path
 
-from ..case import decks, site_choices, site_deck
-from ..case.site_bodies import VARIABLE
+from ..case import decks
 from ..case.settings import check_settings, one_value_each
-from ..case.site_layers import ROAD
-from ..ensemble import intensity, known_study, repeats, results, sample, site_study
-from ..ensemble.size_error import SizeErrors
-from ..ensemble.study import check_names, check_thresholds, perform
+from ..ensembles import known_study, sample
 from ..errors import SlopeError
+from ..runs import repeats
+from ..sites import site_choices, site_deck
+from ..sites.site_bodies import VARIABLE
+from ..sites.site_layers import ROAD
+from ..studies import results, site_study
+from ..studies.study import check_names, check_thresholds, perform
+from ..tables import intensity
+from ..tables.size_error import SizeErrors
 from .run_arguments import (OF_A_KIND, add_deck, add_intensity, add_mobility, add_repeats, add_runs, add_sample,
                             condition_of, settle_kind, setup_of)
 
@@ -170,7 +174,7 @@ def chain_of(args):
     """What --fragility asks for, None without it; the bodies become a variable of the ensemble."""
     if args.fragility is None:
         return None
-    from ..ensemble import chain_files      # scipy
+    from ..seismic import chain_files      # scipy
     for option, given in (("mobility", args.mobility), ("from", args.fit), ("of", args.of)):
         if given is not None:
             raise SlopeError(f"--{option}", "must not be given with --fragility, whose runs are of several bodies "
@@ -239,7 +243,8 @@ def chances(choices):
 
 def run_ensemble(args, settings, repeated, thresholds, defaults, condition, chain=None):
     """The runs of --sample, and what they say together."""
-    from ..ensemble import calibrated, ensemble, ensemble_maps
+    from ..ensembles import ensemble, ensemble_maps
+    from ..fitting import calibrated
     if args.sample is None and args.fit is None:
         raise SlopeError("--sample", "must be given with --vary: how many runs")
     if args.size_error:

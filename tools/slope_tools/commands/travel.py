@@ -3,7 +3,7 @@ import argparse
 from pathlib import Path
 
 from .. import disk, errors
-from ..deposit import travel
+from ..deposits import travel
 from ..options import number, whole
 
 EPILOG = """\

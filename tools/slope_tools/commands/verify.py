@@ -7,12 +7,12 @@ import time
 from pathlib import Path
 
 from .. import disk
-from ..ensemble import jobs
 from ..errors import SlopeError
 from ..options import count
 from ..programs import find_lmp
+from ..runs import jobs
 from ..validation import verification
-from ..validation.verify import compared, judge, line, made, NAME, Runner, write
+from ..validation.verify import NAME, Runner, compared, judge, line, made, write
 
 EPILOG = """\
 units: SI; each claim states its own.

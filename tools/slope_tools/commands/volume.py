@@ -6,8 +6,8 @@ import argparse
 from pathlib import Path
 
 from .. import disk, errors
-from ..deposit import volume
-from ..deposit.volume import BLOCKED, CUT_ANGLE, MUCH_BELOW, SAMPLES
+from ..deposits import volume
+from ..deposits.volume import BLOCKED, CUT_ANGLE, MUCH_BELOW, SAMPLES
 from ..options import number, whole
 
 EPILOG = """\

@@ -4,9 +4,10 @@ from typing import NamedTuple, Tuple
 
 import numpy as np
 
-from ..case import site_choices, site_folder
 from ..errors import SlopeError
-from ..survey import rasters, release, release_area
+from ..releases import release, release_area
+from ..sites import site_choices, site_folder
+from ..survey import rasters
 from ..survey.rasters import Raster
 from ..survey.resampling import sample
 

@@ -3,7 +3,7 @@ from pathlib import Path
 from typing import Any, Dict, NamedTuple, Optional
 
 from .. import digits, disk
-from ..ensemble import headline
+from ..statistics import headline
 from ..survey.rasters import crs_name
 from .heading import site_file
 

@@ -6,8 +6,8 @@ import re
 from typing import Any, List, NamedTuple, Optional, Sequence, Tuple
 
 from .. import digits
-from ..case.site_warnings import LARGE
-from ..deposit.volume import MUCH_BELOW
+from ..deposits.volume import MUCH_BELOW
+from ..sites.site_warnings import LARGE
 from .warnings import SMALL
 
 MOST = 3

@@ -6,9 +6,9 @@ import numpy as np
 
 from ..drawing import figures
 from ..drawing.figures import COLOURS, plt
-from ..ensemble import chain_files
 from ..errors import SlopeError
-from .ensemble_charts import THOUSANDS
+from ..plots.ensemble_charts import THOUSANDS
+from ..seismic import chain_files
 
 MOST_ROWS = 12          # of the contributions; smaller ones are joined
 HOW = ("The runs release one body each. Bodies that fail together in an earthquake have their volumes added, the "

@@ -1,14 +1,14 @@
 """The charts of a study: its values against the first variable that it varies, compared with chance."""
 from typing import Any, Dict
 
-from ..deposit import travel_shares
+from ..deposits import travel_shares
 from ..drawing.figures import FULL, HALF, WIDE
-from ..ensemble import headline
-from ..ensemble.quantities import NAMES
-from ..ensemble.repeats import key_of
-from . import figure_charts
+from ..plots import figure_charts
+from ..plots.figure_charts import Series
+from ..runs.repeats import key_of
+from ..statistics import headline
+from ..tables.quantities import NAMES
 from .data import is_number
-from .figure_charts import Series
 
 AXIS = {"rolling": "rolling resistance (-)", "friction": "friction angle (degrees)", "restitution": "restitution (-)",
         "d": "diameter of the balls (m)", "field_d": "diameter of the field balls (m)",

@@ -5,8 +5,9 @@ No names of options, variables or files: these are in the appendix, and on the c
 from typing import Any, Dict, List, Optional, Sequence
 
 from .. import digits
-from ..deposit import travel_shares
-from ..ensemble import headline, known_study
+from ..deposits import travel_shares
+from ..ensembles import known_study
+from ..statistics import headline
 from . import body, caveats
 from .numbers import farthest_of
 

@@ -2,11 +2,11 @@
 from pathlib import Path
 
 from .. import disk
-from ..ensemble import headline
 from ..errors import SlopeError
-from . import figure_charts
+from ..plots import figure_charts
+from ..plots.figure_charts import Convergence
+from ..statistics import headline
 from .charts import AXIS
-from .figure_charts import Convergence
 
 WHAT = "a converge.yaml of `slope sensitivity --converge`"
 FILE = "converge.yaml"

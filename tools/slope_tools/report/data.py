@@ -8,10 +8,10 @@ from affine import Affine
 
 from .. import disk
 from ..case import logs, run_folders
-from ..deposit import deposit, rest, travel_shares
-from ..ensemble.study_file import read_study
+from ..deposits import deposit, rest, travel_shares
 from ..errors import SlopeError
 from ..survey import rasters
+from ..tables.study_file import read_study
 from .release_part import release
 
 MOST_SHOWN = 9          # runs that get a map and a line in the section
@@ -210,7 +210,7 @@ class Data:
     def connected(self):
         """The connected deposit of the shown run; None where it is nowhere thick enough."""
         if self._connected is None:
-            from ..deposit.connected import connected
+            from ..deposits.connected import connected
             self._connected = connected(self.result.deposit), True
         return self._connected[0]
 

@@ -5,9 +5,10 @@ from typing import Any, Dict, List, Mapping
 import numpy as np
 
 from ..drawing import figures, palettes
-from ..ensemble import ensemble, quantities, withheld_words
+from ..ensembles import ensemble
 from ..errors import SlopeError
-from . import ensemble_charts, figure_maps
+from ..plots import ensemble_charts, figure_maps
+from ..tables import quantities, withheld_words
 from .charts import AXIS
 from .data import is_number
 

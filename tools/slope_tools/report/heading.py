@@ -3,8 +3,8 @@ from pathlib import Path
 from typing import Any, Dict, Optional
 
 from .. import disk
-from ..case.site_choices import check_text
 from ..errors import SlopeError
+from ..sites.site_choices import check_text
 
 SITE = "site.yaml"          # of `slope site`; its study is a folder in the site's
 FIELDS = {"project": "name", "client": "client", "author": "author"}      # option: key below `project` in that file

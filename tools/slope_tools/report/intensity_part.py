@@ -1,8 +1,8 @@
 """What a report shows of a study over an intensity: volume on the road against it, and how likely more is."""
 from ..drawing.figures import HALF
-from ..ensemble.intensity import percent
-from . import figure_charts
-from .figure_charts import Series
+from ..plots import figure_charts
+from ..plots.figure_charts import Series
+from ..tables.intensity import percent
 
 AXIS = {"peak": "peak acceleration (gal)", "pga": "peak acceleration (gal)"}
 MOST_CURVES = 4         # probabilities in the chart

@@ -1,9 +1,10 @@
 """What a report shows of an ensemble that is weighted by known events: share that is reached, numbers, curve, maps."""
 from typing import Any, Dict, List, Mapping, Optional
 
-from ..ensemble import known_events, quantities
+from ..ensembles import known_events
 from ..mobility.results import percent
-from . import ensemble_charts
+from ..plots import ensemble_charts
+from ..tables import quantities
 from .ensemble_part import Ensemble, read_curve
 
 

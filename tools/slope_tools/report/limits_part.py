@@ -3,9 +3,9 @@ import math
 from typing import List, Tuple
 
 from .. import disk
-from ..case.site_warnings import LARGE
-from ..deposit import travel_shares
-from ..ensemble import headline
+from ..deposits import travel_shares
+from ..sites.site_warnings import LARGE
+from ..statistics import headline
 
 CONTENT = List[Tuple[str, str]]
 

@@ -5,9 +5,9 @@ import numpy as np
 
 from .. import digits, geometry
 from ..drawing import figures, palettes
+from ..plots import figure_maps
+from ..plots.ground import box_of
 from ..survey.rasters import crs_name
-from . import figure_maps
-from .ground import box_of
 
 OPEN = " The last class is open: it holds the few thicker cells, most of them in the release."
 

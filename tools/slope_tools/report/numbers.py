@@ -3,8 +3,9 @@ import csv
 import io
 
 from .. import digits, disk
-from ..deposit import rest, travel_shares
-from ..ensemble import headline, withheld_words
+from ..deposits import rest, travel_shares
+from ..statistics import headline
+from ..tables import withheld_words
 from .release_part import over_runs
 
 UNKNOWN = "unknown"

@@ -4,19 +4,19 @@ import re
 from typing import Any, Dict, List
 
 from .. import provenance
+from ..animation import film, frames, view
 from ..case import decks
-from ..ensemble.quantities import NAMES
+from ..plots.ground import Ground
+from ..plots.section import Section
 from ..survey.rasters import crs_name
-from . import (body, chain_part, client_part, convergence_part, film, frames, heading, intensity_part, limits_part,
-               mobility_part, view)
+from ..tables.quantities import NAMES
+from . import body, chain_part, client_part, convergence_part, heading, intensity_part, limits_part, mobility_part
 from .asked import Asked
 from .charts import Charts, REMOVE, TERMS, differences, quantities, single_row
 from .data import Data, find_deck
-from .ground import Ground
 from .maps_part import Maps
 from .numbers import Numbers, answer, balance, cards, travel_rows
 from .reference import read as read_reference
-from .section import Section
 from .structures_part import Structures
 from .warnings import AMBER, warnings
 

@@ -5,8 +5,8 @@ from typing import Any, Dict
 import numpy as np
 
 from .. import digits
-from ..ensemble import structures
-from . import figure_structures
+from ..plots import figure_structures
+from ..tables import structures
 
 
 LENGTHWISE = "mean_force_n_m"       # the largest lasting force per metre of the structure

@@ -2,11 +2,11 @@
 import re
 from typing import Any, Dict
 
-from ..case.site_warnings import LARGE
-from ..deposit.travel_shares import BEYOND
-from ..deposit.volume import MUCH_BELOW
+from ..deposits.travel_shares import BEYOND
+from ..deposits.volume import MUCH_BELOW
 from ..digits import rounded, to_three
-from ..ensemble import headline
+from ..sites.site_warnings import LARGE
+from ..statistics import headline
 
 SMALL = 1e-6            # of the released volume
 NAMED = 4               # runs that a line names

@@ -5,9 +5,9 @@ from pathlib import Path
 
 from .. import processes
 from ..case import last_words, logs
-from ..deposit import dumps
-from ..ensemble import launcher
+from ..deposits import dumps
 from ..errors import SlopeError
+from ..runs import launcher
 
 DATA, DECK, LOG, SCREEN, FINAL, SERIES = "balls.data", "in.scene", "log.scene", "screen.txt", "final.txt", "series.txt"
 COLUMNS = "x y z vx vy vz omegax omegay omegaz"

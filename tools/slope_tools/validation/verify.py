@@ -15,8 +15,8 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from .. import disk, processes, provenance
 from ..case import last_words, logs
-from ..ensemble import jobs
 from ..errors import SlopeError
+from ..runs import jobs
 from . import verification
 from .verification.claims import Result
 from .verification.errata import errata

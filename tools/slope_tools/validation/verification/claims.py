@@ -8,7 +8,7 @@ from typing import Callable, NamedTuple, Tuple, Union
 import numpy as np
 
 from ...case import logs
-from ...deposit import dumps
+from ...deposits import dumps
 from ...errors import SlopeError
 
 INPUTS = Path(__file__).resolve().parents[4] / "inputs"

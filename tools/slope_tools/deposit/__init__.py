@@ -1,1 +1,0 @@
-"""What a run left: volumes, travel, comparison with a mapped deposit."""

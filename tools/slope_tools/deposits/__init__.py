@@ -1,0 +1,1 @@
+"""What a run left: volumes, run-out, agreement with what was observed."""

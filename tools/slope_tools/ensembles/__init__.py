@@ -1,0 +1,1 @@
+"""Runs of drawn parameters, as given or weighted by known events."""

@@ -1,0 +1,159 @@
+"""How likely a value is exceeded if the runs end where known events ended: weighted curves, quantiles and bounds.
+
+The share of known events whose run exceeds v is an integral over their lengths, of which the weights (mobility.weights)
+make a sum over the runs in the order of their lengths. What scatters in it is whether a run of a length exceeds v, not
+where the runs lie: so the variance is that of successive differences, for neighbours in this order have nearly the same
+length (Wolter, Introduction to Variance Estimation, 2007, chapter 8). The plain bootstrap, which draws the
+lengths anew, is too narrow where the response jumps.
+
+The points of a design are more even than independent ones. By how much this lowers the variance is found on emulators
+of the length and of the quantity: many designs of the same kind against as many of independent points, each weighted
+as the ensemble is. Where the emulator knows little, chance (its residuals) prevails, and nothing is gained.
+
+Known events before the shortest run count as the runs of the shortest window, which are the graver ones; those beyond
+the longest exceed every value, in a lower bound none.
+"""
+from dataclasses import dataclass
+from typing import Callable, List, NamedTuple, Optional, Sequence
+
+import numpy as np
+from scipy import linalg, stats
+
+from ..mobility import weights
+from ..statistics import designs, hazard
+
+SIMULATED = 100         # designs of either kind
+LEVELS = 25             # values at which designs are compared
+UNSEEN = 0.5            # pairs of neighbours that differ, beside those that are seen: a few, or none, say little
+MOST_EMULATED = 400     # runs; with more of them the evenness of a design counts for nothing
+NORMAL = float(stats.norm.ppf((1 + hazard.CONFIDENCE) / 2))
+
+
+@dataclass(frozen=True)
+class Masses:
+    """Of the runs of an ensemble, in their own order.
+
+    share: of the known events that each run stands for, with those before the shortest run; far: of those beyond the
+    longest; order: of the runs by length; effective: number of runs of equal weight; window: runs, see weights.Weights.
+    """
+    share: np.ndarray
+    far: float
+    order: np.ndarray
+    effective: float
+    window: int
+
+
+def masses(found: weights.Weights) -> Masses:
+    share = found.weights.copy()
+    first = found.order[:found.window]
+    share[first] += found.short / len(first)
+    inside = share.sum()
+    effective = float(inside ** 2 / (share ** 2).sum()) if inside > 0 else 0.0
+    return Masses(share, found.far, found.order, effective, found.window)
+
+
+def above(values: np.ndarray, levels: np.ndarray) -> np.ndarray:
+    """Whether each run (rows) has more than each level (columns)."""
+    return values[:, None] > levels
+
+
+def estimate(exceeding: np.ndarray, mass: Masses, factor=1.0, several: float = 1.0, failed: float = 0.0):
+    """Share of the known events within reach whose run exceeds, and its bounds: three arrays, of the columns.
+
+    exceeding: of each run (rows), in the runs' own order; factor: of the variance, of the design (Design.effect);
+    several: runs of a point; failed: share of the runs that have no length, which could have been anything.
+    """
+    inside = float(mass.share.sum())
+    part = mass.share @ exceeding
+    if inside <= 0:
+        return part, np.zeros_like(part), np.full_like(part, inside + failed)
+    ordered, share = exceeding[mass.order], mass.share[mass.order]
+    pair = (share[1:] ** 2 + share[:-1] ** 2) / 4         # variance of a pair of which one run exceeds
+    differ = ordered[1:] != ordered[:-1]
+    found = (differ.T @ pair + UNSEEN * pair.mean()) * several * factor / inside ** 2
+    low, high = bounds(np.clip(part / inside, 0, 1), found, mass.effective / several)
+    low, high = inside * low, inside * high
+    return part, low * (1 - failed), high + failed * (1 - high)
+
+
+def curve(values: hazard.Values, mass: Masses, effect: Optional[Callable] = None, several: float = 1.0,
+          failed: float = 0.0) -> hazard.Curve:
+    """The share of known events above each value of the runs, with bounds; it begins as hazard.curve does.
+
+    effect: factor of the variance at each of an array of values, of the design (Design.effect); see estimate().
+    """
+    given = np.asarray(values, float)
+    at = hazard.levels_of(given)
+    part, low, high = estimate(above(given, at), mass, effect(at) if effect else 1.0, several, failed)
+    high = np.maximum.accumulate((high + mass.far)[::-1])[::-1]
+    return hazard.Curve(at, part + mass.far, np.minimum.accumulate(low), np.minimum(high, 1.0))
+
+
+def bounds(share: np.ndarray, found: np.ndarray, runs: float):
+    """Wilson's bounds of shares with variances; none is less sure than of so many independent runs."""
+    number = np.maximum(share * (1 - share) / found, runs)
+    square = NORMAL ** 2
+    middle = (share + square / (2 * number)) / (1 + square / number)
+    half = NORMAL / (1 + square / number) * np.sqrt(share * (1 - share) / number + square / (4 * number ** 2))
+    return np.clip(middle - half, 0, share), np.clip(middle + half, share, 1)
+
+
+def quantiles(found: hazard.Curve, shares: Sequence[float] = hazard.SHARES) -> List["Quantile"]:
+    """Values that shares of the known events stay within; None where events beyond the longest run decide."""
+    # a curve may begin just below its runs
+    values = np.maximum(found.values, min(found.values[1], 0.0))
+    sides = found.share, found.low, found.high
+    return [Quantile(share, *(first_within(values, one, 1 - share) for one in sides)) for share in shares]
+
+
+class Quantile(NamedTuple):
+    """As hazard.Quantile, but there may be no value at all."""
+    share: float
+    value: Optional[float]
+    low: Optional[float]
+    high: Optional[float]
+
+
+def first_within(values: np.ndarray, share: np.ndarray, left: float) -> Optional[float]:
+    within = np.flatnonzero(share <= left + 1e-12)
+    return float(values[within[0]]) if len(within) else None
+
+
+# --- the design ---
+
+class Design:
+    """By how much the evenness of a design lowers the variance.
+
+    kind: of designs; places: points of the runs (n, d) in the unit cube, one run of each; lengths: of the runs (m);
+    exceedance: share of the known events beyond lengths; snap: see emulator.analyse.
+    """
+
+    def __init__(self, kind: str, places: np.ndarray, lengths: np.ndarray, exceedance: Callable, snap=lambda u: u):
+        from ..statistics.emulator import Emulator
+        self.process, self.places = Emulator, places
+        number, dimensions = places.shape
+        rng = np.random.default_rng(1)
+        self.points = [snap(designs.points(kind, dimensions, number, seed)) for seed in range(SIMULATED)]
+        self.points += [snap(rng.random((number, dimensions))) for _ in range(SIMULATED)]
+        self.chance = rng.integers(0, number, (len(self.points), number))
+        simulated = 10 ** self.simulate(np.log10(lengths))
+        self.masses = [masses(weights.of_lengths(one, exceedance(one))) for one in simulated]
+
+    def simulate(self, values: np.ndarray) -> np.ndarray:
+        """Values of the runs of each simulated ensemble: the emulator's, with residuals of runs that it left out."""
+        fitted = self.process(self.places, values)
+        inverse = linalg.cho_solve((fitted.process.L_, True), np.eye(len(values)))
+        left_out = fitted.scale * fitted.process.alpha_.ravel() / np.diag(inverse)
+        found = fitted.at(np.concatenate(self.points)).reshape(self.chance.shape) + left_out[self.chance]
+        return np.clip(found, values.min(), values.max())
+
+    def effect(self, values: hazard.Values) -> Callable:
+        """The factor of the variance, at most 1, as a function of the levels of a quantity."""
+        given = np.asarray(values, float)
+        levels = np.unique(np.quantile(given, (np.arange(LEVELS) + 0.5) / LEVELS, method="inverted_cdf"))
+        shares = np.array([mass.share @ above(one, levels) + mass.far
+                           for one, mass in zip(self.simulate(given), self.masses)])
+        even, independent = (part.var(axis=0, ddof=1) for part in (shares[:SIMULATED], shares[SIMULATED:]))
+        ratio = np.divide(even, independent, out=np.ones_like(even), where=independent > 0)
+        factor = np.minimum(ratio, 1.0)
+        return lambda at: np.interp(at, levels, factor)

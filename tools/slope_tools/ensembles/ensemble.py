@@ -1,0 +1,192 @@
+"""What the runs of an ensemble say together: quantiles and hazard curves, which variables matter, maps over all runs.
+
+Order of the work: the numbers of each quantity (hazard.py), which variables it depends on (emulator.py), maps
+(ensemble_maps.py); what study.yaml says of them, hazard.csv and influence.csv.
+"""
+import csv
+import io
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Dict, List, Mapping, Optional, Sequence
+
+import numpy as np
+
+from .. import disk
+from ..case import run_folders
+from ..deposits import travel_shares
+from ..errors import SlopeError
+from ..statistics import emulator, hazard
+from ..tables import quantities, study_table, withheld_words
+from . import ensemble_maps, known_events
+from .sample import Sample
+
+MAPS = "ensemble"           # folder of the maps
+HAZARD, INFLUENCE = "hazard.csv", "influence.csv"
+ON_ROAD = "remove_on_road_m3"
+QUANTITIES = {**quantities.NAMES, "max_thickness_m": ("largest thickness at any time", "m"),
+              "max_speed_m_s": ("largest speed", "m/s"), "stop_time_s": ("end of the run", "s")}
+# those whose dependence on the variables is looked at
+MAIN = ("remove_m3", ON_ROAD, "beyond_road_m3", "blocked_m", travel_shares.DISTANCE, "connected_m", "centroid_m",
+        "thickness_m", "max_speed_m_s")
+FEW = 0.2       # share of failed runs from which on an ensemble is doubted
+SIGN = ("first", "first_error", "total", "total_error")
+
+
+@dataclass(frozen=True)
+class Order:
+    """What is asked of an ensemble: its plan, the quantity of the hazard curve, thresholds of the maps.
+
+    condition: the known events that its runs are weighted by.
+    """
+    sample: Sample
+    of: str
+    levels: ensemble_maps.Thresholds
+    condition: Optional[known_events.Condition] = None
+
+
+def check_quantity(of: Optional[str], road: bool) -> str:
+    """The column of --of, or its default; SlopeError if there is none of that name."""
+    if of is None:
+        return ON_ROAD if road else travel_shares.DISTANCE
+    if of not in QUANTITIES:
+        raise SlopeError("--of", f"must be one of {', '.join(QUANTITIES)}", of)
+    if of in study_table.ROAD_COLUMNS and not road:
+        raise SlopeError("--road", f"must be given for {of}")
+    return of
+
+
+def evaluate(order: Order, rows: Sequence[Mapping[str, Any]], output: Path, place, grids: Optional[str]):
+    """What study.yaml says of an ensemble (None where all runs failed); writes its tables and maps to output.
+
+    rows: of study.csv, finished and failed; place: CRS and offset of the maps; grids: why there can be no maps.
+    """
+    finished = [row for row in rows if row["status"] == "finished"]
+    if not finished:
+        return None
+    failed = len(rows) - len(finished)
+    point = points_of(order.sample, finished)
+    of_quantity = {name: QUANTITIES[name] for name in QUANTITIES
+                   if all(row.get(name) is not None for row in finished)}
+    curves = {name: hazard.curve(column(finished, name), point, failed) for name in of_quantity}
+    about: Dict[str, Any] = {
+        "design": order.sample.about, "runs": len(rows), "finished": len(finished), "failed": failed,
+        "points": len(set(point)), "confidence": hazard.CONFIDENCE, "of": order.of if order.of in curves else None,
+        "quantities": {name: numbers(finished, name, point, failed) for name in of_quantity}}
+    places = order.sample.places(finished)
+    main = [name for name in dict.fromkeys((order.of, *MAIN)) if name in of_quantity]
+    analyses = {name: emulator.analyse(order.sample.names, places, column(finished, name), point, order.sample.snap)
+                for name in main}
+    about["influence"] = {name: influence(one) for name, one in analyses.items()}
+    about["doubts"] = doubts(about)
+    about["maps"] = [] if grids else ensemble_maps.write(
+        output / MAPS, [run_folders.prefix_of(output / row["summary"]) for row in finished], len(set(point)), failed,
+        order.levels, place)
+    about["known_events"] = order.condition and known_events.evaluate(
+        order.condition, order.sample, rows, output, of_quantity, main, order.levels, place, grids)
+    disk.write(output / HAZARD, hazard.table(curves))
+    disk.write(output / INFLUENCE, influence_table(analyses))
+    return about
+
+
+def points_of(sample: Sample, finished: Sequence[Mapping[str, Any]]) -> List[int]:
+    """Which point of the design each run is of."""
+    known: Dict[tuple, int] = {}
+    return [known.setdefault(tuple(row["set"][name] for name in sample.names), len(known)) for row in finished]
+
+
+def column(finished: Sequence[Mapping[str, Any]], name: str) -> np.ndarray:
+    return np.array([float(row[name]) for row in finished])
+
+
+# --- numbers ---
+
+def numbers(finished, name: str, point: Sequence[int], failed: int) -> Dict[str, Any]:
+    """Of a quantity: name, unit, mean, deviation, range and quantiles."""
+    values = column(finished, name)
+    what, unit = QUANTITIES[name]
+    return {"name": what, "unit": unit, "mean": float(values.mean()),
+            "standard_deviation": float(values.std(ddof=1)) if len(values) > 1 else None,
+            "smallest": float(values.min()), "largest": float(values.max()),
+            "quantiles": [one._asdict() for one in hazard.quantiles(values, point, failed)]}
+
+
+def influence(analysis: emulator.Analysis) -> Dict[str, Any]:
+    """Of a quantity: what the emulator is worth, and each variable's rank correlation and indices."""
+    check = analysis.check
+    return {"text": analysis.text,
+            "emulator": check and {"verdict": check.verdict, "explained": check.explained, "error": check.error,
+                                   "noise": check.noise, "standard_deviation": check.deviation},
+            "variables": {one.name: {"rank": one.rank, "rank_clear": one.rank_clear,
+                                     **{key: getattr(one, key) for key in SIGN}} for one in analysis.influences}}
+
+
+def doubts(about: Mapping[str, Any]) -> List[str]:
+    """The caveats on the numbers."""
+    found = []
+    if about["failed"]:
+        share = about["failed"] / about["runs"]
+        found.append(f"{about['failed']} of {about['runs']} runs failed: the estimates exclude them, and the bounds "
+                     "allow any value for them" + (", so they are wide" if share > FEW else ""))
+    of = about["of"]
+    if of:
+        open_ = [entry["share"] for entry in about["quantities"][of]["quantiles"] if entry["high"] is None]
+        if open_:
+            shares = ", ".join(f"{100 * share:g} %" for share in open_)
+            found.append(f"{about['finished']} runs do not bound the {shares} quantile from above: "
+                         f"{about['quantities'][of]['name']}")
+        one = about["influence"][of]
+        if one["emulator"] and one["emulator"]["verdict"] != "good":
+            found.append(f"{about['quantities'][of]['name']}: {one['text']}")
+    return found
+
+
+# --- tables ---
+
+def influence_table(analyses: Mapping[str, emulator.Analysis]) -> str:
+    """The CSV of ranks and indices; a cell is empty where the emulator says nothing."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["quantity", "variable", "rank", "rank_clear", *SIGN, "emulator_explains", "emulator_error"])
+    for name, analysis in analyses.items():
+        check = analysis.check
+        for one in analysis.influences:
+            writer.writerow([name, one.name, one.rank, "yes" if one.rank_clear else "no",
+                             *(getattr(one, key) for key in SIGN),
+                             *((check.explained, check.error) if check else (None, None))])
+    return text.getvalue()
+
+
+# --- words ---
+
+def describe(about: Mapping[str, Any]) -> List[str]:
+    """The ensemble in a few lines: the quantiles of the main quantity, what it depends on, the caveats."""
+    lines = [f"ensemble: {about['finished']} runs of {about['points']} points; bounds hold with "
+             f"{100 * about['confidence']:g} %"]
+    of = about["of"]
+    lines += withheld_words.lines(about["withheld"]) if about.get("withheld") else []
+    if of:
+        entry = about["quantities"][of]
+        if not about.get("withheld"):
+            shares = (quantile_text(one, entry["unit"]) for one in entry["quantiles"])
+            lines.append(f"{entry['name']}: " + "; ".join(shares))
+        lines.append(f"{entry['name']} depends on " + dependence_text(about["influence"][of]))
+    lines += [f"caveat: {text}" for text in about["doubts"]]
+    return lines + (known_events.describe(about["known_events"], of) if about.get("known_events") else [])
+
+
+def quantile_text(one: Mapping[str, Any], unit: str) -> str:
+    number = quantities.number
+    low = "?" if one["low"] is None else number(one["low"])
+    high = "?" if one["high"] is None else number(one["high"])
+    return f"{100 * one['share']:g} % of the runs stay within {number(one['value'])} {unit} ({low} to {high})"
+
+
+def dependence_text(entry: Mapping[str, Any]) -> str:
+    """The variables, the one that matters most first."""
+    variables = entry["variables"]
+    if all(one["total"] is None for one in variables.values()):
+        order = sorted(variables, key=lambda name: -abs(variables[name]["rank"]))
+        return ", ".join(f"{name} (rank {variables[name]['rank']:+.2f})" for name in order) + f"; {entry['text']}"
+    order = sorted(variables, key=lambda name: -variables[name]["total"])
+    return ", ".join(f"{name} ({variables[name]['first']:.2f} alone, {variables[name]['total']:.2f} with others, +- "
+                     f"{variables[name]['total_error']:.2f})" for name in order) + f"; {entry['text']}"

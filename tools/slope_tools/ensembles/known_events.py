@@ -1,0 +1,255 @@
+"""An ensemble that is weighted by known events: what study.yaml says of it, and its tables.
+
+Order of the work: where known events end on the path of this mass (mobility), the weights that make the runs end there
+(mobility.weights), curves and quantiles of the weighted runs (conditioned), the parameters that they have, maps
+(known_maps). The numbers of the ensemble as its distributions have it are not touched.
+"""
+import csv
+import io
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
+
+import numpy as np
+
+from .. import disk
+from ..case import logs, run_folders
+from ..deposits import deposit
+from ..digits import rounded
+from ..errors import SlopeError
+from ..mobility import body, events, exceedance, relation, weights
+from ..mobility.results import percent
+from ..sites import site_choices
+from ..statistics import emulator, hazard
+from ..tables import quantities
+from . import conditioned, known_maps
+from .sample import Sample
+
+FOLDER, HAZARD, WEIGHTS = "known_events", "hazard_known_events.csv", "weights.csv"
+REACHED = 0.95          # share of the known events that the runs should reach
+LEAST_EFFECTIVE = 20    # runs; fewer say little
+LEFT = 0.01             # share of the released volume beyond the grid, from which on a run's length is not its own
+MIDDLE = 0.05, 0.5, 0.95        # quantiles of the parameters of the weighted runs
+NOT_FARTHER = "released_m3", "stop_time_s"      # columns that a mass that goes farther need not exceed; nor any angle
+
+
+@dataclass(frozen=True)
+class Condition:
+    """What --mobility asks for.
+
+    confined: None for the severe curve; mobility: that of the site; None: of the body of the first run that finished.
+    """
+    path: Path
+    events: Sequence[events.Event]
+    left_out: Sequence[str]
+    confined: Optional[bool]
+    mobility: Optional[exceedance.Mobility]
+
+
+def check(name: str, left_out: Sequence[str], confined: Optional[bool], deck: Path) -> Condition:
+    """The Condition of the options; SlopeError if there is no such set, or if it does not cover the deck's site."""
+    path = events.OWN if name == events.OWN.stem else Path(name)
+    known = events.chosen(path, left_out)
+    relation.of_events(known, path)
+    found = None
+    if (deck.parent / site_choices.NAME).is_file():
+        found = exceedance.of_body(body.of_site(deck.parent), known, confined, path)
+        if not found.in_range:
+            raise SlopeError("--mobility", f"must be a set that covers the mass: {'; '.join(found.outside)}", name)
+    return Condition(path, known, left_out, confined, found)
+
+
+def mobility_of(condition: Condition, folder: Path, summary: Path) -> exceedance.Mobility:
+    """The Mobility of the condition; folder, summary: of a run, of whose body it is if there is no site."""
+    if condition.mobility:
+        return condition.mobility
+    log = logs.Log(folder / logs.LOG).update()
+    terrain = log.terrain and folder / log.terrain
+    if not terrain or not terrain.is_file():
+        raise SlopeError(folder, "must have a deck with region terrain, for the ground before the collapse")
+    prefix = run_folders.prefix_of(summary)
+    found = deposit.read(prefix, terrain, lambda text: None)
+    mass = body.of_ground(found.raster, found.base, terrain, str(prefix))
+    return exceedance.of_body(mass, condition.events, condition.confined, condition.path)
+
+
+# --- evaluation ---
+
+class Runs:
+    """Those runs of an ensemble that have a length: rows; point: of the design; failed: number of others."""
+
+    def __init__(self, sample: Sample, rows: Sequence[Mapping[str, Any]], found: exceedance.Mobility):
+        self.sample = sample
+        self.rows = [row for row in rows if row["status"] == "finished" and row.get("connected_m") is not None]
+        self.failed = len(rows) - len(self.rows)
+        self.point = [tuple(row["set"][name] for name in sample.names) for row in self.rows]
+        self.lengths = self.column("connected_m") if self.rows else np.empty(0)
+        self.exceedance = found.exceedance
+        self.beyond = np.asarray(found.exceedance(self.lengths), float)
+        if len(self.rows) >= 2:
+            self.weights = weights.of_lengths(self.lengths, self.beyond)
+            self.mass = conditioned.masses(self.weights)
+
+    def column(self, name: str) -> np.ndarray:
+        return np.array([float(row[name]) for row in self.rows])
+
+    @property
+    def several(self) -> float:
+        return len(self.rows) / len(set(self.point))
+
+    @property
+    def failed_share(self) -> float:
+        return self.failed / (len(self.rows) + self.failed)
+
+    def design(self) -> Optional[conditioned.Design]:
+        """What tells how even the design is; None where it cannot be told, which makes the bounds wider."""
+        few = max(emulator.LEAST_POINTS, 2 * len(self.sample.names) + 2)
+        if self.failed or self.several > 1 or not few <= len(self.rows) <= conditioned.MOST_EMULATED:
+            return None
+        return conditioned.Design(self.sample.kind, self.sample.places(self.rows), self.lengths, self.exceedance,
+                                  self.sample.snap)
+
+
+def evaluate(condition: Condition, sample: Sample, rows: Sequence[Mapping[str, Any]], output: Path,
+             names: Mapping[str, Tuple[str, str]], main: Sequence[str], levels, place, grids) -> Dict[str, Any]:
+    """What study.yaml says of the weighted runs; writes their tables and maps to output.
+
+    rows: of study.csv, finished and failed; names: {column: (what, unit)} of the quantities; main: those whose
+    dependence counts; levels, place, grids: of the maps, see ensemble.evaluate.
+    """
+    first = next(row for row in rows if row["status"] == "finished")
+    found = mobility_of(condition, output / first["run"], output / first["summary"])
+    about: Dict[str, Any] = {
+        "set": condition.path.name, "events": len(condition.events), "left_out": list(condition.left_out),
+        "path": exceedance.WORDS[found.severe], "volume_Mm3": found.volume, "outside": found.outside}
+    for name in (HAZARD, WEIGHTS):
+        (output / name).unlink(missing_ok=True)         # of a study before this one
+    runs = Runs(sample, rows, found)
+    if found.outside or len(runs.rows) < 2:
+        return {**about, "reached": None, "doubts": found.outside or ["fewer than two runs have a deposit"]}
+    about.update(reach(runs, found))
+    names = {name: one for name, one in names.items() if name not in NOT_FARTHER and not name.endswith("_deg")}
+    main = [name for name in main if name in names]
+    design = runs.design()
+    factors = {name: design.effect(runs.column(name)) for name in main} if design else {}
+    curves = {name: conditioned.curve(runs.column(name), runs.mass, factors.get(name), runs.several, runs.failed_share)
+              for name in names}
+    about["quantities"] = {
+        name: {"name": names[name][0], "unit": names[name][1],
+               "quantiles": [one._asdict() for one in conditioned.quantiles(curve)]} for name, curve in curves.items()}
+    about["variables"] = {name: variable(runs, k, main) for k, name in enumerate(sample.names)}
+    about["doubts"] = doubts(about, runs)
+    about["maps"] = [] if grids else known_maps.write(
+        output / FOLDER, [run_folders.prefix_of(output / row["summary"]) for row in runs.rows], runs.mass,
+        runs.several, runs.failed_share, levels, place)
+    disk.write(output / HAZARD, hazard.table(curves))
+    disk.write(output / WEIGHTS, weights_table(runs))
+    return disk.plain(about)
+
+
+def reach(runs: Runs, found: exceedance.Mobility) -> Dict[str, Any]:
+    """How much of the known events the runs reach, and how many runs that is."""
+    one = runs.weights
+    return {"reached": one.reached, "short": one.short, "far": one.far, "runs": len(runs.rows), "failed": runs.failed,
+            "effective": one.effective, "distance": one.distance,
+            "gaps": [{"low_m": gap.low, "high_m": gap.high, "share": gap.share} for gap in one.gaps],
+            "shortest_m": float(runs.lengths.min()), "longest_m": float(runs.lengths.max()),
+            "half_beyond_m": found.length_at(0.5), "path_m": float(found.path.length[-1]),
+            "beyond_path": found.beyond_path()}
+
+
+def variable(runs: Runs, k: int, main: Sequence[str]) -> Dict[str, Any]:
+    """Of a variable of the weighted runs: quantiles, and rank correlations with the main quantities."""
+    places = runs.sample.places(runs.rows)[:, k]
+    one = runs.sample.variables[k]
+    return {"quantiles": [one.value(place) for place in quantiles(places, runs.mass.share, MIDDLE)],
+            "rank": {name: rank(places, runs.column(name), runs.mass.share) for name in main}}
+
+
+def quantiles(values: np.ndarray, share: np.ndarray, wanted: Sequence[float]) -> List[float]:
+    """Values that shares of the weight lie at or below."""
+    order = np.argsort(values, kind="stable")
+    upto = np.cumsum(share[order])
+    return [float(values[order][min(int(np.searchsorted(upto, one * upto[-1] * (1 - 1e-12))), len(order) - 1)])
+            for one in wanted]
+
+
+def rank(x: np.ndarray, y: np.ndarray, share: np.ndarray) -> Optional[float]:
+    """Rank correlation (Spearman) of weighted values; None where one of them is the same in all."""
+    if share.sum() <= 0:
+        return None
+    w = share / share.sum()
+    both = []
+    for values in (x, y):
+        ranks = (values[:, None] > values) @ w + (values[:, None] == values) @ w / 2
+        both.append(ranks - w @ ranks)
+    scale = float((w @ both[0] ** 2) * (w @ both[1] ** 2))
+    return float(w @ (both[0] * both[1])) / scale ** 0.5 if scale > 1e-18 else None
+
+
+def doubts(about: Mapping[str, Any], runs: Runs) -> List[str]:
+    """The caveats, in the order of their weight."""
+    found = []
+    if about["reached"] < REACHED:
+        if about["far"] > (1 - REACHED) / 2:
+            found.append(f"no run goes beyond {rounded(about['longest_m'], 4)} m; {percent(about['far'])} of known "
+                         "events do: they count as exceeding every value; vary towards more mobile masses")
+        if about["short"] > (1 - REACHED) / 2:
+            found.append(f"no run ends before {rounded(about['shortest_m'], 4)} m; {percent(about['short'])} of known "
+                         "events do: they count as the shortest runs")
+    found += [f"between {rounded(gap['low_m'], 4)} and {rounded(gap['high_m'], 4)} m no run ends; "
+              f"{percent(gap['share'])} of known events do: they count as the runs on either side"
+              for gap in about["gaps"]]
+    if about["effective"] < LEAST_EFFECTIVE:
+        found.append(f"the weighted runs say as much as {about['effective']:.0f} runs of equal weight: take more "
+                     "points")
+    if runs.failed:
+        found.append(f"{runs.failed} of {len(runs.rows) + runs.failed} runs have no length (they failed, or left no "
+                     "deposit): the bounds allow any value for them")
+    left = sum(row["off_grid_m3"] + row["lost_m3"] > LEFT * row["released_m3"] for row in runs.rows)
+    if left:
+        found.append(f"{left} of {len(runs.rows)} runs lost more than {100 * LEFT:g} % of their volume over the edge: "
+                     "their lengths, and so the weights, are those of what stayed; take a larger terrain")
+    return found
+
+
+# --- tables ---
+
+def weights_table(runs: Runs) -> str:
+    """The CSV of the runs' weights; they add up to what is reached."""
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(["run", "length_m", "beyond", "weight"])
+    for row, length, beyond, weight in zip(runs.rows, runs.lengths, runs.beyond, runs.weights.weights):
+        writer.writerow([row["run"], f"{length:.6g}", f"{beyond:.6g}", f"{weight:.6g}"])
+    return out.getvalue()
+
+
+# --- words ---
+
+def describe(about: Mapping[str, Any], of: Optional[str]) -> List[str]:
+    """The weighted ensemble in a few lines: what is reached, by how many runs, the quantiles, the caveats."""
+    lines = []
+    if about["reached"] is not None:
+        lines = ["known events: " + summary(about)]
+        if of in about["quantities"]:
+            entry = about["quantities"][of]
+            lines.append(f"{entry['name']}: " + "; ".join(quantile_text(one, entry["unit"])
+                                                          for one in entry["quantiles"]))
+    return lines + [f"caveat: known events: {text}" for text in about["doubts"]]
+
+
+def summary(about: Mapping[str, Any]) -> str:
+    return (f"the runs reach from {rounded(about['shortest_m'], 4)} to {rounded(about['longest_m'], 4)} m, where "
+            f"{percent(about['reached'])} of {about['events']} events of {about['set']} end ({percent(about['short'])} "
+            f"before, {percent(about['far'])} beyond; {about['path']}); weighted by them the {about['runs']} runs say "
+            f"as much as {about['effective']:.0f}")
+
+
+def quantile_text(one: Mapping[str, Any], unit: str) -> str:
+    """A quantile with its bounds; without a value, what is known instead."""
+    share = f"{100 * one['share']:g} % of known events"
+    if one["value"] is None:
+        return f"{share}: unknown, they go beyond the runs"
+    low, high = ("?" if one[side] is None else quantities.number(one[side]) for side in ("low", "high"))
+    return f"{share} stay within {quantities.number(one['value'])} {unit} ({low} to {high})"

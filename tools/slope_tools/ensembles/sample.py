@@ -1,0 +1,105 @@
+"""The plan of an ensemble: how many runs, where they lie in the distributions of --vary, what may be added later."""
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Dict, List, Mapping, Sequence, Tuple
+
+import numpy as np
+import yaml
+
+from .. import disk
+from ..case.settings import MOST_RUNS
+from ..errors import SlopeError
+from ..runs import repeats
+from ..statistics import designs, distributions
+
+FILE = "design.yaml"
+WHAT = "what `slope study --sample` wrote"
+
+
+@dataclass(frozen=True)
+class Sample:
+    """number points of a design of a seed, over variables (distributions.Range or Listed)."""
+    number: int
+    kind: str
+    seed: int
+    variables: Tuple[Any, ...]
+
+    @property
+    def names(self) -> List[str]:
+        return [one.name for one in self.variables]
+
+    @property
+    def about(self) -> Dict[str, Any]:
+        """What design.yaml and study.yaml say of it."""
+        return {"kind": self.kind, "seed": self.seed, "points": self.number,
+                "variables": {one.name: one.text for one in self.variables}}
+
+    def combinations(self) -> List[Dict[str, str]]:
+        """The values of each point."""
+        points = designs.points(self.kind, len(self.variables), self.number, self.seed)
+        return [{one.name: one.value(u) for one, u in zip(self.variables, point)} for point in points]
+
+    def places(self, rows: Sequence[Mapping[str, Any]]) -> np.ndarray:
+        """The points of rows of the study's table in the unit cube."""
+        return np.array([[one.unit(row["set"][one.name]) for one in self.variables] for row in rows])
+
+    def snap(self, u: np.ndarray) -> np.ndarray:
+        return designs.snapped(self.variables, u)
+
+
+def check(number: int, kind: str, seed: int, vary: Sequence[str], deck: Path, fixed: Mapping[str, str],
+          repeated: Mapping[str, Sequence[str]]) -> Sample:
+    """The Sample of the options; SlopeError if they do not go together."""
+    if not vary:
+        raise SlopeError("--vary", "must give the variables of the ensemble that --sample asks for")
+    variables = distributions.parse(vary, deck)
+    if not 0 <= seed < 2 ** 32:
+        raise SlopeError("--seed", "must be from 0 to 4294967295", seed)
+    for one in variables:
+        for option, names in (("--set", fixed), ("--repeat", repeated)):
+            if one.name in names:
+                raise SlopeError("--vary", f"must not name a variable of {option}", one.name)
+    if number <= len(variables):
+        raise SlopeError("--sample", f"must be more runs than there are parameters, {len(variables)}", number)
+    if number > MOST_RUNS:
+        raise SlopeError("--sample", f"must make at most {MOST_RUNS} runs", number)
+    return Sample(number, kind, seed, tuple(variables))
+
+
+def plan(output: Path, sample: Sample, fixed: Mapping[str, str], repeated: Mapping[str, Sequence[str]],
+         defaults: Mapping[str, str]) -> List[repeats.Repeat]:
+    """The runs: each point, followed by its repeats."""
+    chances = repeats.chances_of(repeated, {**defaults, **fixed})
+    if sample.number * (1 + len(chances)) > MOST_RUNS:
+        raise SlopeError("--sample", f"must make at most {MOST_RUNS} runs with the repeats of each",
+                         sample.number * (1 + len(chances)))
+    combinations = [{**fixed, **one} for one in sample.combinations()]
+    if len({tuple(one.values()) for one in combinations}) < len(combinations):
+        if any(isinstance(one, distributions.Range) for one in sample.variables):
+            raise SlopeError("--sample", "must make points that differ in the six digits of a value: two are the same, "
+                             "give fewer or another --seed", sample.number)
+        raise SlopeError("--vary", "must have a range among its variables, or points would be twice: lists alone are "
+                         "what --set is for", ", ".join(sample.names))
+    return repeats.with_repeats(output, combinations, chances, sample.names)
+
+
+def settings_of(todo: Sequence[repeats.Repeat]) -> Dict[str, List[str]]:
+    """{name: its values} over the runs, as a study of lists has them."""
+    return {name: list(dict.fromkeys(one.combination[name] for one in todo)) for name in todo[0].combination}
+
+
+def check_growth(folder: Path, sample: Sample) -> None:
+    """Raise SlopeError if the folder has a Latin hypercube, or is to have one, that this is not."""
+    path = folder / FILE
+    if not path.is_file():
+        return
+    before: Mapping[str, Any] = disk.load_yaml(path, WHAT)
+    if designs.LHS in (before.get("kind"), sample.kind) and before != sample.about:
+        raise SlopeError("--design", f"lhs cannot grow or change: {folder} has {before.get('points')} points of "
+                         f"{before.get('kind')} with seed {before.get('seed')}; give another -o, or take sobol",
+                         f"{sample.number} of {sample.kind} with seed {sample.seed}")
+
+
+def keep(folder: Path, sample: Sample) -> None:
+    """Write design.yaml, before the first run."""
+    disk.write(folder / FILE, f"# {WHAT}\n" + yaml.safe_dump(sample.about, sort_keys=False))

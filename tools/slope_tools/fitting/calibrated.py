@@ -1,0 +1,61 @@
+"""The sets of values that a calibration found equally good, as the points of an ensemble."""
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
+
+import jsonschema
+
+from .. import disk
+from ..ensembles.sample import Sample
+from ..errors import SlopeError
+from ..statistics import distributions
+from .fit import ABOUT
+
+KIND = "calibrated"
+NUMBER = 32             # of the sets, unless --sample says otherwise
+WHAT = "what `slope calibrate` wrote, with its sets"
+SCHEMA = {"type": "object", "required": ["calibration", "sets"], "properties": {
+    "calibration": {"type": "object", "required": ["variables"], "properties": {
+        "variables": {"type": "object", "minProperties": 1, "additionalProperties": {"type": "string"}}}},
+    "sets": {"type": "array", "minItems": 2, "items": {"type": "object", "additionalProperties": {"type": "string"}}}}}
+
+
+@dataclass(frozen=True)
+class Calibrated(Sample):
+    """A Sample whose points are the sets of a calibration, in their order."""
+    sets: Tuple[Mapping[str, str], ...] = ()
+    fit: str = ""           # SHA-256 of its file
+
+    @property
+    def about(self) -> Dict[str, Any]:
+        return {**super().about, "fit": self.fit}
+
+    def combinations(self) -> List[Dict[str, str]]:
+        return [dict(one) for one in self.sets[:self.number]]
+
+
+def sample(folder: Path, number: Optional[int], deck: Path, fixed: Mapping[str, str],
+           repeated: Mapping[str, Sequence[str]]) -> Calibrated:
+    """The sets of a calibration's folder for a deck that has its variables; number: of them (None: NUMBER)."""
+    path = folder / ABOUT
+    if not path.is_file():
+        raise SlopeError("--from", f"must be a folder with {ABOUT}, which slope calibrate writes", folder)
+    found = disk.load_yaml(path, WHAT)
+    try:
+        jsonschema.validate(found, SCHEMA)
+    except jsonschema.ValidationError as error:
+        raise SlopeError(path, f"must be {WHAT}", error.message[:80]) from error
+    texts = found["calibration"]["variables"]
+    variables = distributions.parse([f"{name}={text}" for name, text in texts.items()], deck, "--from", True)
+    for option, names in (("--set", fixed), ("--repeat", repeated)):
+        both = sorted(texts.keys() & set(names))
+        if both:
+            raise SlopeError("--from", f"must not have a variable of {option}", ", ".join(both))
+    if any(list(one) != list(texts) for one in found["sets"]):
+        raise SlopeError(path, f"must be {WHAT}, each of them with {', '.join(texts)}")
+    different = list({tuple(one.values()): one for one in found["sets"]}.values())
+    if number is not None and not len(variables) < number <= len(different):
+        raise SlopeError("--sample", f"must be from {len(variables) + 1} to {len(different)} with --from {folder}, of "
+                         "which that many sets differ", number)
+    return Calibrated(number or min(NUMBER, len(different)), KIND, found["calibration"].get("seed", 1),
+                      tuple(variables), tuple(different), disk.sha256(path))

@@ -1,0 +1,199 @@
+"""Fitting the variables of a deck to an observed deposit."""
+import csv
+from pathlib import Path
+from typing import Any, Dict, List, Mapping, Optional, Sequence
+
+import io
+import numpy as np
+import yaml
+
+from .. import disk, provenance
+from ..case import run_folders
+from ..deposits import deposit, score
+from ..runs import jobs, repeats
+from ..studies import results, study
+from ..studies.setup import Setup
+from ..tables import quantities
+from . import backanalysis, calibration, fit_words, observations
+
+SETS = 64               # sets of values that stand for the region
+TABLE, ABOUT, CHART, MAP = "calibrate.csv", "calibrate.yaml", "calibrate.png", "predicted.png"
+
+
+def in_words(number: int) -> str:
+    """A small number as a sentence has it."""
+    return ("no", "one", "two", "three", "four", "five", "six")[number] if number < 7 else str(number)
+
+
+class Fit:
+    """A calibration under way: makes its runs, measures them, and writes what came out."""
+
+    def __init__(self, setup: Setup, wanted: observations.Wanted, plan: calibration.Calibration, work: jobs.Work):
+        self.setup, self.wanted, self.plan, self.work = setup, wanted, plan, work
+        self.observed = observations.Observations(wanted)
+        self.rows: Dict[str, Mapping[str, Any]] = {}
+
+    @property
+    def variables(self):
+        return self.plan.ledger.variables
+
+    def do(self) -> None:
+        found = self.plan.do(self.evaluate, lambda: self.observed.targets, lambda line: print(line, flush=True))
+        self.write(found)
+
+    def evaluate(self, todo: Sequence[repeats.Repeat]) -> List[Optional[np.ndarray]]:
+        """Run what is not finished, and measure all."""
+        study.check_names(todo)
+        study.check_folder(self.setup, todo)
+        for one in todo:
+            jobs.check_finished(one, self.work.depends)
+        self.work.do(todo)
+        rows, _ = results.rows_of(self.setup, todo, results.Maps(()), pictures=False)
+        found: List[Optional[np.ndarray]] = []
+        for one, row in zip(todo, rows):
+            self.rows[one.name] = row
+            told = not one.error and self.observed.told_by(row)
+            found.append(self.observed.measure(self.summary(row), self.terrain(one), row) if told else None)
+        return found
+
+    def summary(self, row: Mapping[str, Any]) -> Path:
+        return self.setup.output / row["summary"]
+
+    @staticmethod
+    def terrain(one: repeats.Repeat) -> Optional[Path]:
+        path = one.log.terrain and one.folder / one.log.terrain
+        return path if path and path.is_file() else None
+
+    # --- results ---
+
+    def write(self, found: backanalysis.Posterior) -> None:
+        """Table, YAML, chart, and the map of the run at the best values."""
+        output, plan, targets = self.setup.output, self.plan, self.observed.targets
+        best = plan.runs[plan.number - 1]
+        predicted = plan.outputs[plan.number - 1]
+        words = [*fit_words.misses(found, targets, predicted), *fit_words.jumps(found, targets),
+                 *backanalysis.judgement(found, self.variables)]
+        doubts = self.doubts(found)
+        failed = [one.name for one in plan.runs if one.error]
+        about: Dict[str, Any] = {
+            "calibration": {**plan.ledger.about, "runs": plan.number, "failed": len(failed), "package":
+                            self.work.package, "collected": provenance.now(), "machine": provenance.machine()},
+            "best": {"set": plan.ledger.points[plan.number - 1], "run": best.name,
+                     "score": None if predicted is None else float(backanalysis.misfits(
+                         predicted[None], found, targets)[0])},
+            "variables": {one.name: self.known(found, i) for i, one in enumerate(self.variables)},
+            "correlation": [[round(float(value), 3) for value in row] for row in found.correlation()],
+            "misfit": found.misfit, "words": words, "doubts": doubts,
+            "targets": [{"name": one.name, "unit": one.unit, "observed": one.value, "attainable": float(goal),
+                         "tolerance": one.deviation, "chance": float(noise),
+                         "predicted": None if predicted is None else float(predicted[i])}
+                        for i, (one, goal, noise) in enumerate(zip(targets, found.goals, found.noise))],
+            "sets": [{one.name: one.value(float(u)) for one, u in zip(self.variables, place)}
+                     for place in backanalysis.sets(found, SETS)],
+            "pairs": self.pairs(found)}
+        with disk.complete(output, ABOUT) as new:
+            disk.write(new / TABLE, self.table(found))
+            disk.write(new / ABOUT, "# slope calibrate: lengths in m, areas in m2, volumes in m3 of ground (bulk)\n"
+                       + yaml.safe_dump(about, sort_keys=False))
+            from . import calibrate_charts
+            calibrate_charts.draw(new / CHART, found, self.variables, plan.ledger.places(plan.finished()),
+                                  f"{self.setup.deck.name}: {len(plan.finished())} runs")
+            names = [TABLE, ABOUT, CHART]
+            if self.wanted.observed is not None and predicted is not None:
+                self.draw_map(new / MAP, best)
+                names.append(MAP)
+        print("\n".join([*words, *self.comparison(about["targets"]), *(f"caveat: {text}" for text in doubts)]))
+        print(f"best values: run {best.name}; written to {output}: {' '.join(names)}")
+
+    def doubts(self, found: backanalysis.Posterior) -> List[str]:
+        """The caveats on the result."""
+        plan, targets = self.plan, self.observed.targets
+        failed = [one.name for one in plan.runs if one.error]
+        doubts = [f"{len(failed)} of {len(plan.runs)} runs failed and are left out: {', '.join(failed[:3])}"] \
+            if failed else []
+        gone = self.gone()
+        if gone:
+            most = max(row["lost_m3"] for row in gone)
+            doubts.append(f"{len(gone)} of {len(plan.runs)} runs lost up to {most:,.0f} m3 over the edge of the "
+                          "terrain or the box: how far they went is unknown, and they are left out; use a larger one")
+        if len(targets) < len(self.variables):
+            known, asked = len(targets), len(self.variables)
+            doubts.append(f"{in_words(known)} observed number{'s' * (known > 1)} cannot determine {in_words(asked)} "
+                          "variables")
+        blind = [target.name for target, one in zip(targets, found.emulators) if not one.noise_seen]
+        if blind:
+            doubts.append(f"too few runs to measure the scatter by chance of {', '.join(blind)}: the region may be too "
+                          "narrow")
+        offsets = repeats.unmoved([*(name for one in plan.chances for name in one),
+                                   *(one.name for one in self.variables)], self.work.defaults)
+        if offsets:
+            doubts.append(f"all runs have the same lattice, {', '.join(offsets)} not being repeated: the scatter by "
+                          "chance (s) lacks what another lattice changes, and the region may be too narrow or beside "
+                          "the truth")
+        moving = sum(not row["at_rest"] for row in self.rows.values() if row["status"] == "finished")
+        if moving:
+            doubts.append(f"{moving} deposits are not at rest")
+        return doubts
+
+    def gone(self) -> List[Mapping[str, Any]]:
+        """The runs that lost so much that they are left out."""
+        return [row for row in self.rows.values() if row["status"] == "finished" and not self.observed.told_by(row)]
+
+    def known(self, found: backanalysis.Posterior, i: int) -> Dict[str, Any]:
+        """What is known of a variable."""
+        one = self.variables[i]
+        low, high = found.interval(i)
+        return {"best": float(self.plan.ledger.points[self.plan.number - 1][one.name]), "low": float(one.value(low)),
+                "high": float(one.value(high)), "share_of_range": high - low,
+                "identifiable": "no" if high - low > backanalysis.UNKNOWN else
+                "roughly" if high - low > backanalysis.ROUGH else "yes"}
+
+    def pairs(self, found: backanalysis.Posterior) -> List[Dict[str, Any]]:
+        """The regions over pairs of variables: rows of bins, x for those that belong to it."""
+        pairs = []
+        for j in range(len(self.variables)):
+            for i in range(j):
+                pair = found.pair(i, j)
+                sides = {self.variables[k].name: [float(self.variables[k].value(pair.low[n])),
+                                                  float(self.variables[k].value(pair.high[n]))]
+                         for n, k in enumerate((i, j))}
+                pairs.append({"box": sides, "rows_of": self.variables[j].name,
+                              "region": ["".join(".x"[int(one)] for one in row) for row in pair.inside.T]})
+        return pairs
+
+    def table(self, found: backanalysis.Posterior) -> str:
+        """The CSV over all runs: values, outputs, score."""
+        targets, plan = self.observed.targets, self.plan
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        names = [one.name for one in self.variables]
+        writer.writerow(["run", *names, "repeat", "score", *(f"{one.name} ({one.unit})" for one in targets), "status"])
+        for i, one in enumerate(plan.runs):
+            outputs = plan.outputs[i]
+            cells = [""] * (1 + len(targets)) if outputs is None else [
+                f"{backanalysis.misfits(outputs[None], found, targets)[0]:.6g}", *(f"{value:.9g}" for value in outputs)]
+            writer.writerow([one.name, *(plan.ledger.points[i][name] for name in names), one.key, *cells,
+                             "failed" if one.error else "finished" if outputs is not None else "left the terrain"])
+        return text.getvalue()
+
+    def draw_map(self, path: Path, best: repeats.Repeat) -> None:
+        """Predicted against mapped."""
+        prefix = run_folders.prefix_of(self.summary(self.rows[best.name]))
+        run_ = deposit.read(prefix, self.terrain(best), lambda text: None)
+        mapped, simulated = self.observed.mapped, run_.raster.z > self.wanted.threshold
+        about = {"prefix": best.name, "threshold": self.wanted.threshold,
+                 "area": score.overlap(simulated, mapped, run_.cell), "runout": score.runout(run_, simulated, mapped)}
+        score.draw(path, run_, simulated, mapped, about)
+
+    @staticmethod
+    def comparison(targets: Sequence[Mapping[str, Any]]) -> List[str]:
+        """Predicted against observed, a line each."""
+        number_ = quantities.number
+        lines = []
+        for one in targets:
+            goal = f"{number_(one['attainable'])} at the least" if one["observed"] is None else number_(one["observed"])
+            predicted = "unknown, the run failed or left the terrain" if one["predicted"] is None else \
+                number_(one["predicted"])
+            lines.append(f"{one['name']}: predicted {predicted}, observed {goal} ({one['unit']}; s of a run "
+                         f"by chance {number_(one['chance'])})")
+        return lines

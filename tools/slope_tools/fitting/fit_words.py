@@ -1,0 +1,35 @@
+"""What is said first of a calibration: that its best values miss the observation, and where no run stops."""
+import math
+from typing import List, Optional, Sequence
+
+import numpy as np
+
+from ..tables.quantities import number
+from .backanalysis import Posterior, Target
+
+BEYOND = 2.0            # standard deviations of tolerance and chance together
+
+
+def misses(found: Posterior, targets: Sequence[Target], predicted: Optional[np.ndarray]) -> List[str]:
+    """The observed numbers that the run at the best values is far from; predicted: its outputs, None if it has none."""
+    if predicted is None:
+        return ["the run at the best values says nothing: it failed, or left the terrain"]
+    lines = []
+    for one, value, noise in zip(targets, predicted, found.noise):
+        if one.value is not None and abs(value - one.value) > BEYOND * math.hypot(one.deviation, noise):
+            lines.append("the run at the best values misses the observation by more than tolerance and chance "
+                         f"explain: {one.name} {number(value)} instead of {number(one.value)} {one.unit}")
+    return lines
+
+
+def jumps(found: Posterior, targets: Sequence[Target]) -> List[str]:
+    """The gaps of the observed numbers."""
+    lines = []
+    for one, several in zip(targets, found.gaps):
+        for gap in several:
+            text = (f"{one.name}: no run gives a value between {number(gap.low)} and {number(gap.high)} {one.unit}, "
+                    "where the response jumps, as over a step of the ground")
+            if one.value is not None and gap.holds(one.value):
+                text += f"; the observed {number(one.value)} lies there, and no values reproduce it"
+            lines.append(text)
+    return lines

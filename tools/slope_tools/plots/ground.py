@@ -1,0 +1,97 @@
+"""What the maps and the section of a report share: the ground before and after, where the mass was, what is shown."""
+import math
+
+import numpy as np
+from shapely.geometry import LineString, box
+
+from .. import geometry
+from ..deposits import scar
+from ..drawing import maps
+from ..errors import SlopeError
+from ..survey.resampling import sample
+from . import obstacles
+
+TALLEST, FLATTEST = 0.7, 0.22       # height / width of a map, where the terrain is large enough
+
+
+class Ground:
+    """Arrays of cells, rows from the north.
+
+    x, y: of the centres (local m); before: ground before (m); base: without the body; slip_depth: between the two;
+    arrival (s), max_thickness (m), max_speed (m/s) of the shown run; release: mask of cells that held the mass at the
+    start; touched: mask of cells that the mass ever touched, in any of the runs that are drawn; obstacles: structures
+    and control lines.
+    """
+
+    def __init__(self, data):
+        one = data.result
+        self.raster, self.base, self.cell = one.deposit.raster, one.deposit.base, one.deposit.cell
+        rows, columns = self.base.shape
+        self.x, self.y = self.raster.transform * np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
+        self.before, self.slip_depth = scar.before(self.raster, self.base, one.terrain_path)
+        self.arrival, self.max_thickness = one.raster("arrival"), one.raster("max_thickness")
+        self.max_speed = one.raster("max_speed")
+        # balls larger than the cells leave holes between them
+        side = (one.summary["volume"]["released"] / one.summary["balls"]["released"]) ** (1 / 3)
+        self.release = closed(self.arrival == 0, math.ceil(side / self.cell / 2))
+        self.touched = self.max_thickness > 0
+        for other in data.drawn:
+            self.touched = self.touched | (other.thickness > 0)
+        self.obstacles = obstacles.of_run(one)
+        if not self.touched.any():
+            raise SlopeError(f"{one.prefix}.max_thickness.asc", "must have a cell that the mass ever touched")
+
+    @property
+    def source(self):
+        """Mask of the release and the scar: where the mass was, not where it went."""
+        return self.release | (self.slip_depth > 0)
+
+    @property
+    def extent(self):
+        return geometry.extent(self.raster)
+
+    def along(self, values, x, y):
+        """Values of cells at points, NaN outside."""
+        return sample(self.raster._replace(z=values), x, y)
+
+    def boxes(self):
+        """Local xlo, ylo, xhi, yhi of what the mass touched, and of structures and lines that are not far from it."""
+        found = [box_of(self.raster, self.touched)]
+        far = max(found[0][2] - found[0][0], found[0][3] - found[0][1])
+        near = geometry.box_of(self.raster).intersection(box(*found[0]).buffer(far))
+        for one in (*self.obstacles.footprints.values(), *map(LineString, self.obstacles.lines.values())):
+            part = one.intersection(near)
+            found += [] if part.is_empty else [part.bounds]
+        return found
+
+    def window(self, *boxes):
+        """The part of the terrain that a map shows: the boxes and some room, of a shape that is good to print."""
+        xlo, ylo, xhi, yhi = maps.window(self.raster, *boxes)
+        whole = self.extent
+        more = (yhi - ylo) / TALLEST - (xhi - xlo)
+        if more > 0:
+            xlo, xhi = max(whole[0], xlo - more / 2), min(whole[2], xhi + more / 2)
+        more = FLATTEST * (xhi - xlo) - (yhi - ylo)
+        if more > 0:
+            ylo, yhi = max(whole[1], ylo - more / 2), min(whole[3], yhi + more / 2)
+        return xlo, ylo, xhi, yhi
+
+
+def closed(mask, cells):
+    """The mask with gaps of up to 2 x cells filled: grown by so many cells, and shrunk again."""
+    mask = np.pad(mask, cells)
+    for _ in range(2):
+        grown = mask.copy()
+        for down in range(-cells, cells + 1):
+            for right in range(-cells, cells + 1):
+                grown |= np.roll(mask, (down, right), (0, 1))
+        mask = ~grown
+    return mask[cells:-cells, cells:-cells]
+
+
+def box_of(raster, mask):
+    """Local xlo, ylo, xhi, yhi of the cells of a mask."""
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    xlo, yhi = raster.transform * (columns[0], rows[0])
+    xhi, ylo = raster.transform * (columns[-1] + 1, rows[-1] + 1)
+    return xlo, ylo, xhi, yhi

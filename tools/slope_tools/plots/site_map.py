@@ -1,0 +1,92 @@
+"""The map of a site, to check by eye: ground, body, road, structures, and where the trial run went."""
+import base64
+from pathlib import Path
+from typing import List
+
+import numpy as np
+
+from ..drawing import figures, palettes
+from ..drawing.maps import outline, window
+from ..geometry import extent
+from ..sites.site_layers import Shown
+from ..survey.rasters import Raster, crs_name
+from . import figure_maps, sheets
+from .figure_maps import LINE, WALL
+from .sheets import Entry
+
+RELEASE = {"color": figures.RELEASE, "lw": 1.0, "ls": "--"}
+OBSERVED = {"color": "#d1603d", "lw": 1.1}
+TRIAL = {"color": "#1f7a4d", "lw": 1.0, "ls": ":"}
+REACHED = 0.1       # m of thickness
+
+
+def draw(path: Path, layers: Shown, title: str) -> None:
+    """Write the map as a PNG."""
+    raster, crs = layers.raster, crs_name(layers.raster.crs) if layers.raster.crs is not None else ""
+    shown = window(raster, *boxes(layers))
+    base = figure_maps.Layers(raster, raster.z, shown, None, layers.road, None, figures.contour_interval(raster.z))
+    bounds = figures.even(float(layers.depth.max()))
+    with figures.plt.rc_context(figures.STYLE):
+        frame = figure_maps.frame_of(base, True, crs)
+        sheet, axes, size, beside, below = sheets.single(figures.FULL, frame, title,
+                                                         figure_maps.TALL[figures.FULL], bounds)
+        figure_maps.base_map(axes, base)
+        image = figure_maps.draw_values(axes, base, layers.depth, bounds, palettes.DEPTH, layers.depth > 0)
+        entries = draw_outlines(axes, layers)
+        sheets.draw_axes(axes, frame, size)
+        sheets.colour_bar(sheet, image, bounds, "depth of the body (m)", beside, below)
+        scale = size[0] / (shown[2] - shown[0])
+        sheets.scale_and_legend(sheet, sheets.margins(frame)[0], scale, min(shown[2] - shown[0], 2.5 / scale),
+                                [*figure_maps.entries(base), *entries], raster.crs is not None)
+        uri = figures.data_uri(sheet.finish())
+    path.write_bytes(base64.b64decode(uri.partition(",")[2]))
+
+
+def boxes(layers: Shown) -> List:
+    """The boxes of all that must be seen; parts beyond the terrain are cut off."""
+    raster = layers.raster
+    row, column = np.nonzero(layers.depth > 0)
+    found = [cells_box(raster, row, column)]
+    found += [one.bounds for one in (layers.release, layers.road, layers.observed) if one is not None]
+    found += [(*one.low[:2], *one.high[:2]) for one in layers.structures]
+    found += [(*one.points.min(axis=0), *one.points.max(axis=0)) for one in layers.lines]
+    if layers.reached is not None:
+        row, column = np.nonzero(layers.reached.z > REACHED)
+        found += [cells_box(layers.reached, row, column)] if len(row) else []
+    whole = extent(raster)
+    return [(*np.clip(one[:2], whole[:2], whole[2:]), *np.clip(one[2:], whole[:2], whole[2:])) for one in found]
+
+
+def cells_box(raster: Raster, row: np.ndarray, column: np.ndarray):
+    xlo, yhi = raster.transform * (column.min(), row.min())
+    xhi, ylo = raster.transform * (column.max() + 1, row.max() + 1)
+    return xlo, ylo, xhi, yhi
+
+
+def draw_outlines(axes, layers: Shown) -> List[Entry]:
+    """Everything that is a line; what it is, for the legend."""
+    entries = []
+    for geometry, style, name in ((layers.release, RELEASE, "release polygon"),
+                                  (layers.observed, OBSERVED, "mapped deposit")):
+        if geometry is not None:
+            outline(axes, geometry, color=style["color"], linewidth=style["lw"], linestyle=style.get("ls", "-"),
+                    zorder=6)
+            entries.append(Entry(name, style))
+    for one in layers.structures:
+        (xlo, ylo), (xhi, yhi) = one.low[:2], one.high[:2]
+        axes.plot([xlo, xhi, xhi, xlo, xlo], [ylo, ylo, yhi, yhi, ylo], color=WALL["color"], lw=WALL["lw"],
+                  zorder=7)
+        axes.annotate(one.name, (xhi, yhi), fontsize=6, xytext=(2, 2), textcoords="offset points", zorder=8)
+    if layers.structures:
+        entries.append(Entry("structure", WALL))
+    for line in layers.lines:
+        axes.plot(*line.points.T, color=LINE["color"], lw=LINE["lw"], zorder=7)
+        axes.annotate(line.name, line.points[-1], fontsize=6, xytext=(2, 2), textcoords="offset points", zorder=8)
+    if layers.lines:
+        entries.append(Entry("control line", LINE))
+    if layers.reached is not None and (layers.reached.z > REACHED).any():
+        xlo, ylo, xhi, yhi = extent(layers.reached)
+        axes.contour(np.nan_to_num(layers.reached.z), [REACHED], extent=(xlo, xhi, ylo, yhi), origin="upper",
+                     colors=TRIAL["color"], linewidths=TRIAL["lw"], linestyles=TRIAL["ls"], zorder=5)
+        entries.append(Entry("reached in the trial run", TRIAL))
+    return entries

@@ -1,0 +1,1 @@
+"""Records of earthquakes, and the ground motion that is made of them."""

@@ -1,0 +1,284 @@
+"""The body that is released, below a polygon or from a scar."""
+import math
+from pathlib import Path
+from typing import Any, Dict, List, NamedTuple, Optional
+
+import numpy as np
+from scipy.ndimage import label
+
+from ..digits import rounded
+from ..errors import SlopeError
+from ..survey import plausible, polygons, rasters
+from ..survey.crs import as_crs
+from . import release_area, release_bodies, release_scar, release_solve
+
+SHAPES = ("sphere", "ellipsoid", "plane", "slbl")
+LITTLE = 0.75   # share of the polygon; a base level that takes less of it is a doubtful body
+SCAR_REMEDY = ": --polygon takes a part of the scar, --least D leaves out the noise of two surveys"
+CLIFF = 60.0    # degrees, mean of a body's ground; it may be in feet
+TINY = 0.02     # of the volume; a smaller part of a body is none
+SHIFT = 0.25    # m between two surveys, beside the body
+COARSE = 50     # cells; a body of fewer is drawn with a coarse brush
+
+
+class Wanted(NamedTuple):
+    """Which body: below a polygon, or a scar."""
+    terrain: str                        # the ground before
+    polygon: Optional[str] = None
+    shape: Optional[str] = None         # of SHAPES; None: what the numbers below belong to
+    depth: Optional[float] = None       # m
+    volume: Optional[float] = None      # m3
+    curvature: Optional[float] = None   # 1/m, of slbl
+    dip: Optional[float] = None         # degrees, of a plane
+    direction: Optional[float] = None   # degrees from north, of a plane
+    scar: Optional[str] = None          # raster
+    scar_is: Optional[str] = None       # of release_scar.KINDS; None: heights, if they look like it
+    least: float = 0.0                  # m; a scar is where it is deeper
+    crs: Optional[str] = None           # of the polygon, whatever it says
+    scar_crs: Optional[str] = None      # of the scar
+    local: bool = False                 # the polygon is in local metres
+    advice: Optional[polygons.Advice] = None        # for messages on the polygon's place
+
+    @property
+    def where(self) -> str:
+        """What messages name: the file that says where the body is."""
+        return self.polygon or self.scar or "--polygon"
+
+
+class Body(NamedTuple):
+    """A body that is released."""
+    raster: rasters.Raster              # the ground before
+    geometry: Any                       # the polygon, in local metres; None without
+    area: release_area.Area
+    slip: np.ndarray                    # m, on the nodes of the area
+    choices: Dict[str, Any]             # shape and its numbers
+    measures: release_solve.Measures
+    warnings: List[str]
+
+
+def body_of(wanted: Wanted) -> Body:
+    """The body; raises SlopeError on bad input."""
+    wanted = check(wanted)
+    raster = read_terrain(wanted.terrain)
+    geometry = None
+    doubts: List[str] = []
+    if wanted.polygon:
+        crs = as_crs("--assign-crs", wanted.crs) if wanted.crs else None
+        geometry = polygons.read_local(wanted.polygon, raster, local=wanted.local, crs=crs,
+                                       advice=wanted.advice or polygons.OF_ASSIGN_CRS._replace(terrain=wanted.terrain),
+                                       warn=doubts.append)
+    if wanted.polygon:
+        check_pits(raster, geometry, wanted)
+    area, surface, choices = (from_scar if wanted.scar else from_shape)(wanted, raster, geometry)
+    slip = release_solve.slip_surface(area, release_solve.depths(area, surface), wanted.where)
+    found = release_solve.measures(area, slip)
+    doubts += [*warnings(choices, found, area), *in_parts(area, slip, geometry)]
+    return Body(raster, geometry, area, slip, choices, found, doubts)
+
+
+def check(wanted: Wanted) -> Wanted:
+    """Check what can be checked before any reading; the same, with the shape that is not named."""
+    for name in ("depth", "volume"):
+        value = getattr(wanted, name)
+        if value is not None and not value > 0:
+            raise SlopeError(f"--{name}", "must be > 0", f"{value:g}")
+    if wanted.least < 0:
+        raise SlopeError("--least", "must be >= 0", f"{wanted.least:g}")
+    if wanted.scar:
+        for name in ("shape", "depth", "volume", "curvature", "dip", "direction"):
+            if getattr(wanted, name) is not None:
+                raise SlopeError(f"--{name}", "must not be given with --scar, whose depths are not changed")
+        return wanted
+    for name, value, default in (("least", f"{wanted.least:g}", "0"), ("scar-is", wanted.scar_is, None)):
+        if value != default:
+            raise SlopeError(f"--{name}", "must be given with --scar only", value)
+    if not wanted.polygon:
+        raise SlopeError("--polygon", "must be given, unless --scar says where the body is")
+    if wanted.shape is None:
+        plane = wanted.dip is not None or wanted.direction is not None
+        wanted = wanted._replace(shape="plane" if plane else "slbl" if wanted.curvature is not None else "sphere")
+    check_shape(wanted)
+    return wanted
+
+
+def check_shape(wanted: Wanted) -> None:
+    """What goes with which shape."""
+    if wanted.shape == "plane":
+        if wanted.dip is None:
+            raise SlopeError("--dip", "must be given for a plane, degrees below the horizontal")
+        if not 0 < wanted.dip < 90:
+            raise SlopeError("--dip", "must be > 0 and < 90 degrees", f"{wanted.dip:g}")
+        if wanted.direction is not None and not 0 <= wanted.direction <= 360:
+            raise SlopeError("--direction", "must be a compass bearing, 0 to 360 degrees", f"{wanted.direction:g}")
+    elif wanted.dip is not None or wanted.direction is not None:
+        raise SlopeError("--dip" if wanted.dip is not None else "--direction", "must be given for a plane only",
+                         f"--shape {wanted.shape}")
+    if wanted.curvature is not None and wanted.shape != "slbl":
+        raise SlopeError("--curvature", "must be given for slbl only", f"--shape {wanted.shape}")
+    if wanted.shape != "plane" and wanted.depth is None and wanted.volume is None and wanted.curvature is None:
+        raise SlopeError("--depth", f"must be given for --shape {wanted.shape}, or --volume"
+                         + (", or --curvature" * (wanted.shape == "slbl")))
+
+
+def read_terrain(path):
+    """The ground; SlopeError if region terrain could not read it as it is."""
+    raster = rasters.read_asc_local(path)
+    t = raster.transform
+    if Path(path).suffix != ".asc" or t.b or t.d or t.e >= 0 or abs(t.a + t.e) > 1e-9 * t.a:
+        raise SlopeError(path, "must be an .asc with square cells, which region terrain reads: slope terrain makes it")
+    return raster
+
+
+def check_pits(raster, geometry, wanted: Wanted) -> None:
+    """Raise SlopeError if the ground of a polygon has pits of a NODATA value that no file declares."""
+    rows, columns = np.nonzero(release_area.nodes_inside(raster, geometry))
+    if not len(rows):
+        return
+    rim = release_area.RIM
+    part = tuple(slice(max(0, one.min() - rim), one.max() + rim + 1) for one in (rows, columns))
+    found = plausible.pits(raster.z[part], float(raster.transform.a))
+    if found is None:
+        return
+    row, column = np.argwhere(found.cells)[0] + [part[0].start, part[1].start]
+    x, y = raster.transform * (column + 0.5, row + 0.5)
+    raise SlopeError(wanted.polygon, f"the ground in it must have no pits: {int(found.cells.sum())} cells of "
+                     f"{found.mark:g} m lie {found.least:.4g} m or more below all cells beside them; "
+                     f"{plausible.remedy(found)} (slope terrain, slope site)",
+                     f"the first at east {x + raster.offset[0]:.1f} north {y + raster.offset[1]:.1f}")
+
+
+def from_scar(wanted: Wanted, raster, geometry):
+    """Area, slip surface on its nodes and choices of a body that a raster gives."""
+    assert wanted.scar
+    crs = as_crs(f"--assign-crs {wanted.scar}", wanted.scar_crs) if wanted.scar_crs else None
+    scar = release_scar.read(wanted.scar, wanted.scar_is, raster, wanted.least, crs)
+    depth, inside = scar.depth, None
+    if geometry is not None:
+        inside = release_area.nodes_inside(raster, geometry)
+        depth = np.where(inside, depth, 0.0)
+        if not depth.any():
+            raise SlopeError(wanted.polygon, f"must hold some of the scar in {wanted.scar}")
+    area = release_area.area_of(raster, depth > 0, wanted.where, wanted.terrain, SCAR_REMEDY)
+    row, column = area.corner
+    part = depth[row:row + area.z.shape[0], column:column + area.z.shape[1]]
+    return area, area.z - part, {"shape": "scar", "scar": wanted.scar, "scar_is": scar.kind, "least": wanted.least,
+                                 "beside_m": release_scar.beside(scar, inside)}
+
+
+def from_shape(wanted: Wanted, raster, geometry):
+    """The same of a body below a polygon."""
+    area = release_area.area_of(raster, release_area.nodes_inside(raster, geometry), wanted.where, wanted.terrain)
+    release_area.require_slope(area, wanted.where)
+    parts = len(polygons.polygons_of(geometry))
+    if wanted.shape != "slbl" and parts > 1:
+        raise SlopeError(wanted.polygon, f"must be one polygon for --shape {wanted.shape}; slbl takes several", parts)
+    if wanted.shape == "sphere":
+        shape = release_bodies.sphere_shape(area, geometry, wanted.where)
+    elif wanted.shape == "ellipsoid":
+        shape = release_bodies.ellipsoid_shape(area, geometry, wanted.where)
+    elif wanted.shape == "plane":
+        assert wanted.dip is not None       # check() has seen to it
+        direction = release_bodies.bearing(area.downhill) if wanted.direction is None else wanted.direction
+        shape = release_bodies.plane_shape(area, wanted.dip, direction)
+    else:
+        shape = release_bodies.slbl_shape(area)
+    if wanted.depth is not None:
+        free, depth = release_solve.to_depth(area, shape, wanted.depth)
+    elif wanted.volume is not None:
+        free, depth = release_solve.to_volume(area, shape, wanted.volume)
+    else:
+        free = shape.most if wanted.curvature is None else wanted.curvature
+        if not shape.least <= free <= shape.most:
+            raise SlopeError("--curvature", f"must be >= {shape.least:.3g} and <= {shape.most:.3g} /m for "
+                             f"{shape.about['length_m']:.4g} m of slope in the release polygon", f"{free:g}")
+        depth = release_solve.depths(area, shape.surface(free))
+    choices = {"shape": shape.name, "given": {"depth_m": wanted.depth, "volume_m3": wanted.volume,
+                                              "curvature_per_m": wanted.curvature},
+               shape.number: free, **shape.about}
+    if wanted.shape == "slbl":
+        choices["tolerance_m"] = free * area.cell ** 2 / 4
+    return area, area.z - depth, choices
+
+
+def warnings(choices, found, area):
+    """What makes the body doubtful."""
+    lines = []
+    if choices.get("sagitta_m", 1) < 0:
+        lines.append(f"the ground bulges above the line from toe to shoulder, and so does the {choices['shape']}: a "
+                     "smaller polygon, or --shape slbl?")
+    share = found.cells / int(area.inside.sum())
+    curvature = choices.get("curvature_per_m", 0)
+    if choices["shape"] == "plane" and (steep := no_way_out(choices, area)) is not None:
+        lines.append(f"the plane dips {choices['dip_degrees']:.3g} degrees towards {choices['direction_degrees']:.3g}, "
+                     f"where the ground falls by {steep:.3g}: it does not come out of the ground below the body, which "
+                     "cannot slide out; a smaller --dip, or another --direction?")
+    if choices["shape"] == "slbl" and (curvature < 0 or share < LITTLE):
+        what = f"bulges (curvature {curvature:.3g} /m) and " if curvature < 0 else ""
+        lines.append(f"the base level {what}takes {100 * share:.0f} % of the polygon, {found.mean_depth:.3g} m deep on "
+                     "average: is this the intended body? A larger depth or a smaller polygon gives another one")
+    if found.mean_slope > CLIFF:
+        lines.append(f"the ground of the body falls by {found.mean_slope:.0f} degrees on average: a cliff, or "
+                     f"heights in feet ({plausible.in_feet(found.mean_slope):.0f} degrees)? slope terrain and site "
+                     "have --z-unit")
+    if found.cells < COARSE:
+        lines.append(f"the body covers {found.cells} cells of {area.cell:g} m: use a finer terrain")
+    if found.wall > 0.5 * found.largest_depth:
+        lines.append(f"the body is {found.wall:.3g} m deep at the rim of its area, where it ends in a wall: "
+                     + {"sphere": "a wider polygon, or --shape ellipsoid?",
+                        "scar": "does the raster, or the polygon, end in the middle of the scar?"}
+                     .get(choices["shape"], "is the polygon large enough?"))
+    if abs(shift := choices.get("beside_m") or 0.0) > SHIFT:
+        lines.append(f"beside the body {choices['scar']} lies {abs(shift):.3g} m {'below' if shift > 0 else 'above'} "
+                     "the terrain (median), which counts in the depths: vertical datums are not compared, are they the "
+                     "same?")
+    return lines
+
+
+def in_parts(area, slip, geometry) -> List[str]:
+    """A warning of a body in more parts than the polygon, None for a scar, has; tiny ones do not count."""
+    if geometry is None:
+        return []
+    depth = np.where(np.isnan(area.z), 0.0, area.z - slip)
+    numbers, count = label(depth > 0, np.ones((3, 3)))
+    volumes = np.sort(np.bincount(numbers.ravel(), depth.ravel(), count + 1)[1:])[::-1] * area.cell ** 2
+    volumes = volumes[volumes > TINY * volumes.sum()]
+    if len(volumes) <= len(polygons.polygons_of(geometry)):
+        return []
+    return [f"the body is in {len(volumes)} parts that do not touch, of " + " and ".join(map(rounded, volumes[:3]))
+            + " m3" + " and less" * (len(volumes) > 3) + ": is that the body you mean?"]
+
+
+def no_way_out(choices, area) -> Optional[float]:
+    """Degrees by which the ground falls in the direction of a plane, if that dips more; else None."""
+    bearing = math.radians(choices["direction_degrees"])
+    fall = math.tan(math.radians(area.slope)) * float(area.downhill @ (math.sin(bearing), math.cos(bearing)))
+    return math.degrees(math.atan(fall)) if math.tan(math.radians(choices["dip_degrees"])) > fall else None
+
+
+def text(body: Body) -> str:
+    """What the user needs to know of the body before anything is written."""
+    choices, found, cell = body.choices, body.measures, body.area.cell
+    shape = choices["shape"]
+    if shape == "scar":
+        what = f"scar of {choices['scar']} ({choices['scar_is']})"
+        if choices["scar_is"] == "surface":
+            what += "; vertical datums are not compared"
+            if choices["beside_m"] is not None:
+                what += f", beside the body the two surveys differ by {abs(choices['beside_m']):.2g} m (median)"
+    elif shape == "plane":
+        what = (f"plane that dips {choices['dip_degrees']:.4g} degrees towards {choices['direction_degrees']:.4g}, "
+                f"{choices['drop_m']:.4g} m below the plane that touches the highest ground")
+    elif shape == "slbl":
+        what = (f"sloping local base level, curvature {choices['curvature_per_m']:.4g} /m (tolerance "
+                f"{choices['tolerance_m']:.4g} m for cells of {cell:g} m)")
+    else:
+        toe, shoulder = (" ".join(f"{value:.1f}" for value in choices[end]) for end in ("toe", "shoulder"))
+        wide = f", {choices['width_m']:.4g} m wide" if shape == "ellipsoid" else ""
+        sagitta = choices["sagitta_m"]
+        what = (f"{shape} through toe {toe} and shoulder {shoulder}, {abs(sagitta):.4g} m "
+                f"{'below' if sagitta > 0 else 'above'} its chord of {choices['chord_m']:.4g} m{wide}")
+    return (f"{what}\n"
+            f"volume {rounded(found.volume)} m3, largest depth {found.largest_depth:.4g} m, mean depth "
+            f"{found.mean_depth:.4g} m, area {rounded(found.area)} m2 ({found.cells} cells of {cell:g} m)\n"
+            f"mean slope {found.mean_slope:.1f} degrees, of the slip surface {found.slip_slope:.1f}, towards "
+            f"{found.bearing:.0f} degrees from north; ground at {found.lowest:.1f} to {found.highest:.1f} m")

@@ -1,0 +1,61 @@
+"""The lines of a deck for a body between two terrains: regions, balls, walls, deposit."""
+import math
+from typing import NamedTuple, Tuple
+
+from ..case.decks import quoted
+from ..digits import rounded
+
+BALLS = 20000       # that the suggested diameter makes of the body
+
+
+class Body(NamedTuple):
+    """What the lines need to know; lengths in m, local coordinates."""
+    terrain: str            # file of the ground, as the deck finds it
+    slip: str               # file of the ground without the body
+    output: str             # prefix of the deposit's files
+    volume: float           # m3
+    cell: float             # of the terrain
+    lower: float            # the slip surface's lowest height is so far below the terrain's, >= 0
+    box: Tuple[float, float, float, float, float, float]    # xlo xhi ylo yhi zlo zhi of the body
+
+
+def diameter(volume: float) -> float:
+    """A ball's diameter (m), to two digits, so that some 20,000 stand for a volume (m3)."""
+    return float(f"{(volume / BALLS) ** (1 / 3):.2g}")
+
+
+def text(body: Body) -> str:
+    """The lines, in the order in which a deck needs them; all of it but the contact model and the loading."""
+    box = " ".join(f"{value:.10g}" for value in body.box)
+    bottom = math.ceil(body.lower)
+    return f"""\
+# Lines of a deck that release the body, {rounded(body.volume)} m3, in their order, for lmp in the folder of this file
+
+# --- geometry ---
+
+variable    d index {diameter(body.volume):g}       # diameter of the balls, m
+variable    bottom equal {bottom}+10*v_d    # of the ground below its lowest height, and room above the highest
+region      ground terrain {quoted(body.terrain)} depth ${{bottom}} headroom ${{bottom}}
+region      base terrain {quoted(body.slip)} depth ${{bottom}} headroom ${{bottom}}    # without the body
+region      above terrain {quoted(body.slip)} depth ${{bottom}} headroom ${{bottom}} side out
+region      around block {box} units box    # of the body: shortens searches
+region      slip intersect 3 ground above around    # the body that is released
+
+create_box  3 ground    # 1 soil, 2 slip surface, 3 field
+lattice     sc ${{d}}
+create_atoms 1 region slip
+group       soil type 1
+set         group soil diameter ${{d}} density 3411.4
+
+# --- contact model: pair_style gran/restitution, pair_coeff 1 1, 1 2 and 1 3 come here ---
+
+variable    half equal v_d/2
+fix         slip soil wall/gran/balls 2 ${{d}} surface slip lower spacing ${{half}} sink ${{d}}
+fix         field soil wall/gran/balls 3 ${{d}} surface ground upper spacing ${{d}} outside slip
+delete_balls soil overlap 0.0
+
+# --- output; loading and time step of the deck ---
+
+fix         deposit soil deposit/grid 100 0 cell {body.cell:.10g} terrain base output {quoted(body.output)} &
+            bulk region slip
+"""

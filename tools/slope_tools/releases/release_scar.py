@@ -1,0 +1,113 @@
+"""A body from a raster: a second survey of the surface, depths, or the change between two surveys."""
+from typing import NamedTuple, Optional
+
+import numpy as np
+from affine import Affine
+from rasterio.crs import CRS
+
+from ..errors import SlopeError
+from ..survey import rasters
+from ..survey.crs import same_crs, transform
+from ..survey.rasters import Raster, crs_name
+from ..survey.resampling import sample
+from .release_solve import THINNEST
+
+KINDS = ("surface", "depth", "change")
+ALIKE = 0.7     # of the terrain's scatter: that of the differences to a second survey of it is smaller
+FEW = 50        # nodes on which two surveys must have heights, to be compared beside the scar
+
+
+class Scar(NamedTuple):
+    """What a raster says of a body."""
+    depth: np.ndarray           # m, >= 0, on the nodes of the terrain, 0 where there is none
+    kind: str                   # of KINDS
+    above: Optional[np.ndarray]     # m, of heights: the terrain's less the raster's, NaN where either has none
+
+
+def read(path: str, kind: Optional[str], raster: Raster, least: float, crs: Optional[CRS] = None) -> Scar:
+    """The scar of a raster on the nodes of a terrain.
+
+    kind: "surface", heights after the event; "depth", of the slip surface below the terrain, positive down; "change",
+    after minus before, of which what is negative counts; None: heights, if they follow the terrain's. crs: of the
+    raster, whatever it says. Depths below `least` (m) are 0. The scar's grid may be
+    another one: bilinear between its cell centres, and reprojected. A raster without a CRS is taken to be in the
+    terrain's. Depths below a millimetre, to which a terrain's heights are rounded, are none. Raises SlopeError on a
+    raster that is none, lies elsewhere, or holds no depth.
+    """
+    values = on_nodes(path, raster, kind in (None, "surface"), crs)
+    if kind is None:
+        check_heights(path, values, raster)
+        kind = "surface"
+    if kind == "depth":
+        wrong = np.nanmin(values)
+        if wrong < 0:
+            raise SlopeError(path, "must hold depths >= 0, positive down; if it is the change of the surface, give "
+                             "--scar-is change", f"{wrong:.6g}")
+    depth = raster.z - values if kind == "surface" else values if kind == "depth" else -values
+    with np.errstate(invalid="ignore"):
+        depth = np.where(depth >= max(least, THINNEST), depth, 0.0)      # NaN too
+    depth = np.maximum(depth, 0.0)
+    if not depth.any():
+        what = {"surface": "be lower than the terrain (are the surveys before and after exchanged?)",
+                "depth": "hold a depth > 0", "change": "hold a change < 0"}
+        raise SlopeError(path, f"must {what[kind]} somewhere" + (f", by --least {least:g} m" if least else ""))
+    return Scar(depth, kind, raster.z - values if kind == "surface" else None)
+
+
+def check_heights(path: str, values: np.ndarray, raster: Raster) -> None:
+    """Raise SlopeError if values (m) on the nodes of a terrain do not follow its heights: they may be depths."""
+    both = np.isfinite(values) & np.isfinite(raster.z)
+    z, scar = raster.z[both], values[both]
+    if len(z) < FEW or np.std(z - scar) <= ALIKE * np.std(z):
+        return
+    meant = "depths? Then --scar-is depth" if scar.min() >= 0 else "the change of the surface? Then --scar-is change"
+    raise SlopeError(path, f"must be heights that follow the terrain's, {z.min():.6g} to {z.max():.6g} m: did you mean "
+                     f"{meant}; --scar-is surface if they are heights", f"{scar.min():.6g} to {scar.max():.6g}")
+
+
+def beside(scar: Scar, inside: Optional[np.ndarray]) -> Optional[float]:
+    """How far (m, median) the terrain lies above a second survey of it beside the body.
+
+    inside: mask of the nodes in the polygon of the body. None where that is not known: no two surveys, or no nodes
+    beside the body.
+    """
+    if scar.above is None:
+        return None
+    known = np.isfinite(scar.above)
+    if inside is not None:
+        known &= ~inside
+    elif known.any() and np.mean(scar.depth[known] > 0.5) > 0.5:
+        return None         # a survey of the scar alone
+    return float(np.median(scar.above[known])) if known.sum() >= FEW else None
+
+
+def on_nodes(path: str, raster: Raster, heights: bool, crs: Optional[CRS] = None) -> np.ndarray:
+    """Values of a raster file at the nodes of a terrain; bilinear, exact at its own centres.
+
+    Heights are NaN where the raster has none. Depths and changes are 0 there, also between a cell that has one and a
+    cell beyond the raster: what they sum up to does not depend on how the file marks the ground beside the scar.
+    """
+    scar = rasters.read_asc_local(path) if heights else _read_values(path)
+    scar = scar._replace(crs=crs or scar.crs)
+    if not np.isfinite(scar.z).any():
+        raise SlopeError(path, "must hold a value, all cells are NODATA")
+    if not heights:
+        scar = scar._replace(z=np.pad(np.nan_to_num(scar.z), 1), transform=scar.transform * Affine.translation(-1, -1))
+    rows, columns = raster.z.shape
+    x, y = np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
+    x, y = Affine.translation(*raster.offset) * raster.transform * (x, y)
+    if scar.crs is not None and raster.crs is None:
+        raise SlopeError(path, f"is in {crs_name(scar.crs)}, and the terrain must have a CRS, too: slope terrain --crs",
+                         "none")
+    if scar.crs is not None and not same_crs(scar.crs, raster.crs):
+        x, y = transform(raster.crs, scar.crs, x, y)
+    values = sample(scar._replace(transform=Affine.translation(*scar.offset) * scar.transform), x, y)
+    if not np.isfinite(values).any():
+        raise SlopeError(path, "must overlap the terrain")
+    return values
+
+
+def _read_values(path: str) -> Raster:
+    """A raster of other values than heights, with the place that its sidecar says, if it has one."""
+    raster, place = rasters.read(path, heights=False), rasters.read_sidecar(path)
+    return raster if place is None else raster._replace(crs=place.crs, offset=place.offset)

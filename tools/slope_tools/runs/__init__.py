@@ -1,0 +1,1 @@
+"""Runs of a deck: started, shown, found finished, on this machine or a cluster."""

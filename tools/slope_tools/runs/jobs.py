@@ -1,0 +1,318 @@
+"""The runs of a study: their folders, their processes, and how far they are."""
+import contextlib
+import os
+import re
+import shutil
+import signal
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Dict, List, Optional
+
+import yaml
+from .. import disk, processes, provenance
+from ..case import decks, last_words, logs, restarts, run_folders
+from ..errors import SlopeError
+from ..sites import site_choices
+from . import dependencies, launcher
+from .job_display import Display
+
+POLL = 0.1              # s between two looks at the runs
+SCREEN = "screen.txt"
+KILLED = {base for code in (signal.SIGKILL, signal.SIGTERM) for base in (-code, 128 + code)}     # lmp, or mpirun of it
+CONTINUES = "read_restart ${restart}"      # what a deck that can be continued has in it
+SAFE = re.compile(r"[^A-Za-z0-9.+-]+")
+
+
+def cores():
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
+def physical_cores():
+    """What mpirun takes as its number of slots."""
+    siblings = {path.read_text(encoding="ascii") for path in
+                Path("/sys/devices/system/cpu").glob("cpu[0-9]*/topology/thread_siblings_list")}
+    return min(len(siblings) or 1, cores())
+
+
+class Run:
+    """One run: its values, its folder, and what became of it."""
+
+    def __init__(self, output, chosen):
+        self.chosen: Dict[str, str] = chosen
+        self.name = "_".join(f"{name}_{SAFE.sub('-', value)}" for name, value in chosen.items()) or "base"
+        self.folder = Path(output) / self.name
+        self.varied = self.name     # for a narrow terminal: the values that differ
+        self.error = None
+        self.log = logs.Log(self.folder / logs.LOG)
+        self.restart = None         # step and path of the restart file from which it continues
+        self.refused = set()        # restart files that LAMMPS could not read
+        self.unlaunched: Optional[str] = None       # what was said when it failed before LAMMPS began
+        self.output_before = 0              # bytes of screen output of its earlier parts
+
+    @property
+    def marker(self):
+        return self.folder / run_folders.MARKER
+
+    def state(self):
+        if self.marker.exists():
+            return "finished"
+        return "unfinished" if self.folder.exists() else "new"
+
+    def fail(self, status):
+        """Keep why it failed."""
+        how = f"ended with status {status}" if status >= 0 else f"ended by {signal.Signals(-status).name}"
+        if status == 0:
+            how = "lmp ended with status 0, but left no complete run"
+        words = last_words.reason(self.log.update(), self.screen())
+        where = self.folder / logs.LOG
+        self.error = f"{words or 'no word in its log'} ({how}; see {where if where.exists() else self.folder / SCREEN})"
+
+    def screen(self):
+        """What it said since it was started."""
+        return last_words.Screen(self.folder / SCREEN, self.output_before)
+
+
+# --- folders ---
+
+@contextlib.contextmanager
+def copied(files, folder):
+    """Copy the deck and its data: what is edited while the study runs does not reach its later runs.
+
+    Gives {name: digest}.
+    """
+    shutil.rmtree(folder, ignore_errors=True)
+    try:
+        for name, source in files.items():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(source, folder / name)
+        yield {name: disk.sha256(folder / name) for name in files}
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def check_finished(run, depends: dependencies.Dependencies):
+    """Raise SlopeError if a finished run depends on something that is not what it was; comments in decks may differ."""
+    changed = depends.changed(run) if run.marker.exists() else None
+    if changed:
+        deck = depends.source
+        other = "" if (deck.parent / site_choices.NAME).is_file() else ", or give another -o"
+        whose = f"that of {deck.parent}" if changed in depends.digests else "the present one"
+        raise SlopeError(run.folder, f"was run with another {changed} than {whose}: remove the folder to run it again "
+                         f"(or {run.folder.parent}, for all of them){other}")
+
+
+# --- processes ---
+
+@contextlib.contextmanager
+def signals_interrupt():
+    """What a batch system or a closed terminal sends ends the study as Ctrl-C does."""
+    def interrupt(*_):
+        raise KeyboardInterrupt
+    before = {name: signal.signal(name, interrupt) for name in (signal.SIGTERM, signal.SIGHUP)
+              if signal.getsignal(name) != signal.SIG_IGN}      # nohup ignores SIGHUP
+    try:
+        yield
+    finally:
+        for name, handler in before.items():
+            signal.signal(name, handler)
+
+
+@dataclass
+class Active:
+    """An active run; process: a subprocess.Popen, or an object with its interface."""
+    run: Run
+    process: Any
+    began: float            # time.monotonic()
+
+
+class Work:
+    """Runs the deck in the run folders, some at a time."""
+
+    def __init__(self, deck, digests, inputs, lmp, ranks, jobs, start: Optional[str] = None):
+        """start: the launcher.words of --launcher, None of mpirun."""
+        self.deck, self.digests, self.inputs = deck, digests, inputs
+        self.lmp, self.ranks, self.jobs, self.start = lmp, ranks, jobs, start
+        self.package = provenance.package_version()
+        self.depends = dependencies.Dependencies(inputs / deck.name, digests, lmp, deck)
+        self.defaults = decks.index_variables(inputs / deck.name)
+        self.continues = any(CONTINUES in word for words in decks.commands(inputs / deck.name)
+                             for word in (*words, " ".join(words)))
+        self.active: List[Active] = []
+
+    def do(self, todo):
+        """Run what is not finished. On an interruption, end the runs under way and leave their folders unfinished."""
+        waiting = [run for run in todo if not run.marker.exists()]
+        with Display(todo, waiting, self.at_a_time) as display:
+            try:
+                while waiting or self.active:
+                    for run, said in self._begin(waiting):
+                        display.started(run, said)
+                    time.sleep(POLL)
+                    for active in list(self.active):
+                        active.run.log.update()
+                        if active.process.poll() is not None:
+                            self.active.remove(active)
+                            if self._again(active):
+                                waiting.insert(0, active.run)
+                                continue
+                            self._ended(active)
+                            display.ended(active)
+                    display.update(self._shown(), len(waiting))
+            except BaseException:
+                self._stop()
+                raise
+
+    def at_a_time(self):
+        """How many runs may be active at a time."""
+        return self.jobs
+
+    def _begin(self, waiting):
+        """Start what may run now, taking it from waiting; (run, line for the user) of each."""
+        while waiting and len(self.active) < self.jobs:
+            run = waiting.pop(0)
+            yield run, self._start(run)
+
+    def _again(self, active):
+        """Whether a run that ended is to be started once more."""
+        return (self._refused(active.run, active.process.returncode)
+                or self._unlaunched(active.run, active.process.returncode))
+
+    def _shown(self):
+        """The runs that the display shows as under way."""
+        return self.active
+
+    def command(self, run):
+        """Arguments of lmp."""
+        words = ["-in", self.deck.name, "-log", logs.LOG]
+        for name, value in run.chosen.items():
+            words += ["-var", name, value]
+        if run.restart:
+            words += ["-var", "restart", str(run.restart[1].relative_to(run.folder))]
+        return words
+
+    def _start(self, run):
+        """Start a run, from its last restart file if there is one; returns a line for the user."""
+        try:
+            said = self._prepare(run)
+            with open(run.folder / SCREEN, "ab" if run.restart else "wb") as screen:
+                run.output_before = screen.tell()
+                process = processes.start(self._line(run), run.folder, screen)
+        except OSError as error:
+            raise SlopeError(run.folder, f"cannot be run: {error.strerror} ({error.filename})") from error
+        self.active.append(Active(run, process, time.monotonic()))
+        return said
+
+    def _prepare(self, run):
+        """Make the folder of a run, or prepare it for a continuation; returns a line for the user."""
+        said = "started"
+        if run.folder.exists():
+            run.restart, why = self._last_restart(run)
+            said = f"starts again: {why}"
+        if run.restart:
+            step, path = run.restart
+            said = f"continues at step {step}, from {path}"
+            self._reopen_folder(run)
+        else:
+            self._make_folder(run)
+        if run.unlaunched:
+            said += f"; its launch failed once: {run.unlaunched}"
+        return said
+
+    def _line(self, run):
+        """The whole command of a run."""
+        return [*launcher.words(self.start, self.ranks, physical_cores()), str(self.lmp), *self.command(run)]
+
+    def _last_restart(self, run):
+        """Step and path of the restart file from which an unfinished run can continue, or None; and why it cannot."""
+        if not self.continues:
+            return None, f"{self.deck.name} has no {CONTINUES}"
+        changed = self.depends.changed(run) or self.depends.copies_changed(run)
+        if changed:
+            return None, f"it was started with another {changed}"
+        for step, path in restarts.restarts(run.folder):
+            # from a restart file at or after its halt a run would continue, as LAMMPS does not know that it halted
+            if (path not in run.refused and str(path.relative_to(run.folder)) not in self.digests
+                    and (run.log.halted is None or step < run.log.halted)):
+                return (step, path), None
+        return None, "it left no complete restart file"
+
+    def _reopen_folder(self, run):
+        """Prepare the folder of an interrupted run for its continuation."""
+        about = disk.load_yaml(run.folder / run_folders.VARIABLES, "what `slope study` wrote")
+        about["ranks"] = self.ranks
+        step, path = run.restart
+        about.setdefault("continued", []).append({"step": step, "restart": str(path.relative_to(run.folder)),
+                                                  "ranks": self.ranks, "started": provenance.now()})
+        disk.write(run.folder / run_folders.VARIABLES, yaml.safe_dump(about, sort_keys=False))
+        if run.log.path.exists():
+            logs.part(run.log.path)
+        run.log = logs.Log(run.log.path)
+
+    @staticmethod
+    def _refused(run, status):
+        """Whether LAMMPS could not read the restart file although it looked complete: then it is not used again."""
+        if status == 0 or status in KILLED or not run.restart:
+            return False
+        if not last_words.spoiled_restart(run.log.update(), run.screen(), crashed=status < 0 or status > 128):
+            return False
+        run.refused.add(run.restart[1])
+        return True
+
+    @staticmethod
+    def _unlaunched(run, status):
+        """Whether MPI failed before LAMMPS began: once, the run is started again."""
+        if status == 0 or status in KILLED or run.unlaunched or run.log.path.exists():
+            return False
+        run.unlaunched = run.screen().launcher
+        return run.unlaunched is not None
+
+    def _make_folder(self, run):
+        """Make the folder with all input of the run, in place of that of an unfinished run."""
+        new = run.folder.with_name(f".{run.name}.new")
+        old = run.folder.with_name(f".{run.name}.old")
+        for rest in (new, old):
+            shutil.rmtree(rest, ignore_errors=True)
+        shutil.copytree(self.inputs, new)
+        run.log = logs.Log(run.log.path)        # what was read so far belongs to the old run
+        state = self.depends.now(run)
+        about = {"deck": self.deck.name, "set": run.chosen, "variables": {**self.defaults, **run.chosen},
+                 "command": " ".join([self.lmp.name, *self.command(run)]), "ranks": self.ranks,
+                 "package": self.package, "lmp_sha256": state.program["LAMMPS program"],
+                 "started": provenance.now(), "program": state.program, "environment": state.environment,
+                 "inputs": {**state.files, **self.digests}}
+        disk.write(new / run_folders.VARIABLES, yaml.safe_dump(about, sort_keys=False))
+        if run.folder.exists():
+            run.folder.rename(old)
+        new.rename(run.folder)
+        shutil.rmtree(old, ignore_errors=True)
+
+    def _ended(self, active):
+        """Mark the run as finished, or keep why it is not."""
+        run, status = active.run, active.process.returncode
+        summaries = run_folders.summaries(run.folder)
+        if status != 0 or len(summaries) != 1:
+            return run.fail(status)
+        try:
+            summary = run_folders.load_summary(summaries[0])
+            if summary["ranks"] != self.ranks:
+                raise SlopeError(self.lmp, f"must be built with MPI to run on {self.ranks} ranks", summary["ranks"])
+        except SlopeError as error:
+            run.error = str(error)
+            return None
+        run.log.update()
+        state = self.depends.now(run)
+        begun = disk.load_yaml(run.folder / run_folders.VARIABLES, dependencies.WHAT)
+        about = {"finished": provenance.now(), "wall_seconds": round(time.monotonic() - active.began, 1),
+                 "summary": summaries[0].name, "machine": provenance.machine(),
+                 "environment": {**state.environment, **begun["environment"]},
+                 "inputs": {name: begun["inputs"].get(name, digest) for name, digest in state.files.items()}}
+        disk.flush_all(run.folder)      # what it says is there, is
+        disk.write(run.marker, yaml.safe_dump(about, sort_keys=False))
+        return None
+
+    def _stop(self):
+        """End the runs under way, each by its own process id."""
+        processes.stop(active.process for active in self.active)
+        self.active.clear()

@@ -1,0 +1,1 @@
+"""From an earthquake to failures, and to a volume on the road."""

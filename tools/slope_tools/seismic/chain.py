@@ -1,0 +1,164 @@
+"""From an earthquake to the volume on the road: how likely bodies fail, and what runs of each leave there.
+
+Of each sample of the strength and each record it is known from which peak acceleration on each body fails (fragility).
+The bodies that fail together at a peak are a set. Of each body there are runs, whose volumes have a distribution; of a
+set the volumes are added rank by rank, the largest of one body with the largest of the other, as if the bodies did not
+overlap. P(V > v | peak) is the mean over the samples, the annual frequency its integral over the hazard curve; the set
+is constant between two capacities, so that this integral is a sum. Bounds: those of the runs (hazard.curve), all bodies
+at their upper or lower one together, and the scatter between the sequences of samples. Every function is pure.
+"""
+from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
+
+import numpy as np
+
+from ..statistics import hazard
+from . import fragility
+from .fragility import Band, Hazard
+
+MOST_BODIES = 60        # bits of a number
+
+
+class Steps(NamedTuple):
+    """A distribution of volumes: the largest first, and the share of the runs up to each of them, rising to 1."""
+    volumes: np.ndarray
+    shares: np.ndarray
+
+
+class Left(NamedTuple):
+    """What a body leaves on the road: as its runs say, and the distributions of the bounds."""
+    value: Steps
+    low: Steps
+    high: Steps
+
+
+class Frequency(NamedTuple):
+    """How often per year volumes are exceeded."""
+    total: Band                                         # arrays, one number for each volume
+    parts: List[Tuple[float, float, np.ndarray]]        # from and to which peak (gal), and how much comes from there
+    beyond: np.ndarray      # that the total can be larger by: peaks above the curve's last count as the last
+
+
+def steps(values: np.ndarray, exceeded: np.ndarray, most: float) -> Steps:
+    """The distribution with P(V > value) = exceeded at rising values; beyond the last of them volumes are `most`."""
+    return Steps(np.concatenate([[most], values[::-1]]), np.concatenate([exceeded[::-1], [1.0]]))
+
+
+def left(values: Sequence[float], point: Sequence[int], most: float, failed: int = 0) -> Left:
+    """What the runs of a body leave on the road; most: its whole volume, which counts where no run says less.
+
+    point: of each run, see hazard.curve; failed: further runs that gave none.
+    """
+    if not len(values):
+        all_of_it, nothing = Steps(np.array([most]), np.ones(1)), Steps(np.zeros(1), np.ones(1))
+        return Left(all_of_it, nothing, all_of_it)
+    found = hazard.curve(values, point, failed)
+    at, most = np.maximum(found.values, 0.0), max(most, float(np.max(values)))
+    low = np.minimum.accumulate(found.low)
+    high = np.maximum.accumulate(found.high[::-1])[::-1]
+    return Left(*(steps(at, one, most) for one in (found.share, low, high)))
+
+
+def exceeded(bodies: Sequence[Steps], volumes: np.ndarray) -> np.ndarray:
+    """P(V > v) at volumes >= 0, if these bodies fail together: their volumes are added, rank by rank."""
+    if not bodies:
+        return np.zeros(len(volumes))
+    ends = np.unique(np.concatenate([one.shares for one in bodies]))
+    total = np.zeros(len(ends))
+    for one in bodies:      # up to a share its volume is that of the first one that reaches it
+        total += one.volumes[np.searchsorted(one.shares, ends, "left")]
+    above = len(ends) - np.searchsorted(total[::-1], volumes, "right")
+    return np.concatenate([[0.0], ends])[above]
+
+
+def exceeded_by_set(sets: Sequence[int], bodies: Sequence[Left], volumes: np.ndarray) -> Band:
+    """exceeded() of sets, whose bits are the bodies: arrays (sets, volumes), with the bounds of the runs."""
+    def of(side: str) -> np.ndarray:
+        return np.array([exceeded([getattr(one, side) for k, one in enumerate(bodies) if number >> k & 1], volumes)
+                         for number in sets])
+    return Band(of("value"), of("low"), of("high"))
+
+
+def over_sets(weights: Dict[int, np.ndarray], bodies: Sequence[Left], volumes: np.ndarray) -> Band:
+    """The mean over sets with a weight for each sequence of samples, {set: weights}, at volumes."""
+    sets = sorted(weights)
+    share = np.stack([weights[number] for number in sets], axis=1)
+    each = exceeded_by_set(sets, bodies, volumes)
+    low, high = (fragility.banded(share @ side) for side in (each.low, each.high))
+    return Band(share.mean(axis=0) @ each.value, np.minimum.accumulate(low.low),
+                np.maximum.accumulate(high.high[::-1])[::-1])
+
+
+def summed(sets: np.ndarray, weights: np.ndarray) -> Dict[int, np.ndarray]:
+    """{set: its mean weight in each sequence} of arrays whose first axis are the samples."""
+    number = len(sets) // fragility.REPLICATES * int(np.prod(sets.shape[1:2]))      # samples and records of a sequence
+    sets, weights = (fragility.replicates(one).reshape(fragility.REPLICATES, -1) for one in (sets, weights))
+    known, index = np.unique(sets, return_inverse=True)
+    index = index.reshape(sets.shape)
+    each = np.array([np.bincount(row, weight, len(known)) for row, weight in zip(index, weights)]) / number
+    return {int(one): each[:, k] for k, one in enumerate(known)}
+
+
+def bits(fails: np.ndarray) -> np.ndarray:
+    """The sets of bodies (last axis) that fail, as numbers."""
+    return fails @ (1 << np.arange(fails.shape[-1], dtype=np.int64))
+
+
+def family(capacity: np.ndarray, peaks: np.ndarray, bodies: Sequence[Left], volumes: np.ndarray) -> Band:
+    """P(V > v | peak) of capacities (samples, records, bodies) in gal: arrays (peaks, volumes)."""
+    found = []
+    none = float(hazard.share_bounds(0, len(capacity))[1])
+    for peak in peaks:
+        sets = bits(capacity < peak)
+        band = over_sets(summed(sets, np.ones(sets.shape)), bodies, volumes)
+        high = band.high if sets.any() else np.maximum(band.high, none)
+        found.append(Band(band.value, band.low, np.minimum(high, 1.0)))
+    return Band(*(np.array(side) for side in zip(*found)))
+
+
+def of_failures(capacity: np.ndarray, rate: Hazard, low: float, high: float) -> Tuple[np.ndarray, np.ndarray]:
+    """The sets that fail between two peaks, and how often per year: arrays (samples, records, places).
+
+    At the curve's last peak counts what is above it, too. Each place is a body in the order of failure, with those
+    that have failed before it, until the next one does.
+    """
+    first, last = rate.peaks[0], rate.peaks[-1]
+    order = np.argsort(capacity, axis=-1)
+    ordered = np.take_along_axis(capacity, order, axis=-1)
+    failed = np.cumsum(np.int64(1) << order, axis=-1)
+    to = 0.0 if high > last else float(rate.at(high))
+    with np.errstate(invalid="ignore"):
+        counted = np.where(ordered < last, rate.at(np.clip(ordered, max(low, first), last)), 0.0)
+    counted = np.maximum(counted - to, 0.0)
+    return failed, counted - np.concatenate([counted[..., 1:], np.zeros_like(counted[..., :1])], axis=-1)
+
+
+def frequency(capacity: np.ndarray, rate: Hazard, peaks: np.ndarray, bodies: Sequence[Left],
+              volumes: np.ndarray) -> Frequency:
+    """The annual frequency of volumes > v for capacities (samples, records, bodies); peaks: between which it is parted.
+
+    Peaks below the curve's first are not counted; those above its last count as the last.
+    """
+    first, last = float(rate.peaks[0]), float(rate.peaks[-1])
+
+    def between(low: float, high: float) -> Band:
+        return over_sets(summed(*of_failures(capacity, rate, low, high)), bodies, volumes)
+
+    ends = [first, *(float(one) for one in peaks if first < one < last), last, np.inf]
+    parts = [(a, b, between(a, b).value) for a, b in zip(ends[:-1], ends[1:])]
+    at_last = bits(capacity < last)
+    share = over_sets(summed(at_last, np.ones(at_last.shape)), bodies, volumes).value
+    return Frequency(between(first, np.inf), parts, (1 - share) * float(rate.rates[-1]))
+
+
+def weights(capacity: np.ndarray, peaks: np.ndarray, rate: Optional[Hazard] = None) -> np.ndarray:
+    """How likely each body fails, given that one does: with a hazard per year, else at peaks that are equally likely.
+
+    Bodies that fail together count each; the sum is 1. All are 0 if none ever fails.
+    """
+    if rate is not None:
+        last = rate.peaks[-1]
+        with np.errstate(invalid="ignore"):
+            each = np.where(capacity < last, rate.at(np.clip(capacity, rate.peaks[0], last)), 0.0).mean(axis=(0, 1))
+    else:
+        each = np.array([(capacity < peak).mean(axis=(0, 1)) for peak in peaks]).mean(axis=0)
+    return each / each.sum() if each.sum() > 0 else each

@@ -1,0 +1,215 @@
+"""The chain of a study: what `slope fragility` wrote, its bodies as a variable of the runs, and what they say together.
+
+The mathematics are in chain.py; here are the checks, the tables, the entry of study.yaml and its words.
+"""
+import csv
+import io
+import math
+from pathlib import Path
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+
+import numpy as np
+
+from .. import disk
+from ..errors import SlopeError
+from ..sites.site_bodies import VARIABLE
+from ..statistics import hazard
+from ..tables import intensity
+from . import chain, fragility
+from .fragility_files import ABOUT, CAPACITIES
+
+CURVES, PER_YEAR = "chain.csv", "chain_per_year.csv"
+QUANTITY = intensity.QUANTITY
+LEVELS = 41             # volumes of the curves, beside those that are asked for
+BEYOND = 0.1            # of a frequency; if peaks above the curve's last may add more, it is said
+WHAT = "what `slope fragility` wrote"
+
+
+class Fragility(NamedTuple):
+    """Of the bodies of a search."""
+    folder: Path
+    bodies: List[str]               # their ranks
+    bases: List[str]                # digests of their surfaces
+    capacity: np.ndarray            # gal: samples, records, bodies
+    peaks: np.ndarray               # gal
+    rate: Optional[fragility.Hazard]
+    warnings: List[str]
+
+
+class Chain(NamedTuple):
+    """What is asked of the runs of a study."""
+    fragility: Fragility
+    weights: Dict[str, float]       # {body: how likely it fails, given that one does}
+    volumes: Dict[str, float]       # {body: m3}
+    more_than: Sequence[float]      # m3; none: three round ones
+
+
+# --- before the runs ---
+
+def read(folder: Path) -> Fragility:
+    """What `slope fragility` left in a folder."""
+    about: Mapping[str, Any] = disk.load_yaml(folder / ABOUT, WHAT)
+    path = folder / CAPACITIES
+    try:
+        names = [str(one["body"]) for one in about["bodies"]]
+        with open(path, encoding="ascii") as lines:
+            head = next(csv.reader([lines.readline()]))
+            rows = np.loadtxt(lines, delimiter=",", ndmin=2)
+        records = int(rows[:, 1].max())
+        capacity = rows[:, 2:].reshape(-1, records, len(names))
+        if head != ["sample", "record", *names] or len(capacity) % fragility.REPLICATES or not (capacity >= 0).all():
+            raise ValueError("other bodies or samples than in " + ABOUT)
+        curve = about["hazard_curve"]
+        return Fragility(folder, names, [str(one["base_sha256"]) for one in about["bodies"]], capacity,
+                         np.array(about["peaks_gal"], float),
+                         fragility.Hazard(*np.array(curve, float).T) if curve else None, list(about["warnings"]))
+    except (OSError, LookupError, TypeError, ValueError) as error:
+        raise SlopeError(path, f"must be {WHAT}, with {ABOUT}: repeat that command ({error})") from error
+
+
+def check(found: Fragility, bodies: Mapping[Any, Mapping[str, Any]], site: Path, more_than: Sequence[float]) -> Chain:
+    """The Chain of a site whose bodies (site.yaml: found) are those of a fragility; SlopeError if they are not."""
+    here = {str(rank): one for rank, one in bodies.items()}
+    if not here:
+        raise SlopeError("--fragility", "needs a site with bodies of slope stability, which slope site --slips makes",
+                         site)
+    share = chain.weights(found.capacity, found.peaks, found.rate)
+    weights = {name: float(one) for name, one in zip(found.bodies, share) if one > 0}
+    if not weights:
+        raise SlopeError("--fragility", "must have a body that fails at one of its peaks", found.folder)
+    for name, digest in zip(found.bodies, found.bases):
+        if name in weights and name not in here:
+            raise SlopeError("--fragility", f"must be of the bodies of {site}, {', '.join(here)}: body {name} may "
+                             "fail, too; slope site --slips without --body has all of them", found.folder)
+        if name in here and here[name]["base_sha256"] != digest:
+            raise SlopeError("--fragility", f"must be of the bodies of {site}: body {name} is another one there",
+                             found.folder)
+    for name in here:
+        if name not in found.bodies:
+            raise SlopeError("--fragility", f"must have all bodies of {site}, but has no body {name}", found.folder)
+    return Chain(found, weights, {name: float(here[name]["volume_m3"]) for name in weights}, more_than)
+
+
+def options(asked: Chain) -> Tuple[List[str], List[str]]:
+    """The bodies as values of a variable of the study: of --set if one alone may fail, else of --vary."""
+    if len(asked.weights) == 1:
+        return [f"{VARIABLE}={next(iter(asked.weights))}"], []
+    return [], [f"{VARIABLE}=list:" + ",".join(f"{name}@{max(one, 1e-9):.6f}" for name, one in asked.weights.items())]
+
+
+# --- after them ---
+
+def left(asked: Chain, rows: Sequence[Mapping[str, Any]]) -> List[chain.Left]:
+    """What each body leaves on the road; of those that never fail nothing."""
+    found = []
+    for name in asked.fragility.bodies:
+        if name not in asked.weights:
+            found.append(chain.left([0.0], [0], 0.0))
+            continue
+        mine = [row for row in rows if row["set"][VARIABLE] == name]
+        done = [row for row in mine if row["status"] == "finished"]
+        point = [tuple(row["set"].values()) for row in done]
+        known = {one: k for k, one in enumerate(dict.fromkeys(point))}
+        found.append(chain.left([float(row[QUANTITY]) for row in done], [known[one] for one in point],
+                                asked.volumes[name], len(mine) - len(done)))
+    return found
+
+
+def evaluate(asked: Chain, rows: Sequence[Mapping[str, Any]], output: Path,
+             withheld: Sequence[Mapping[str, Any]]) -> Dict[str, Any]:
+    """The entry of study.yaml; writes the tables. rows: of study.csv; withheld: why their volumes may not be used."""
+    found, bodies = asked.fragility, left(asked, rows)
+    seen = [float(row[QUANTITY]) for row in rows if row["status"] == "finished"]
+    more_than = list(asked.more_than) or intensity.round_volumes(max(seen)) or [0.0]
+    largest = sum(float(one.value.volumes[1:].max(initial=0.0)) for one in bodies)
+    volumes = np.unique([*np.linspace(0.0, max(largest, 1.0), LEVELS), *more_than])
+    at = np.searchsorted(volumes, more_than)
+    family = chain.family(found.capacity, found.peaks, bodies, volumes)
+    disk.write(output / CURVES, table(
+        ("peak_gal", "volume_m3", "probability", "low", "high"),
+        ((peak, volume, *(side[i, k] for side in family)) for i, peak in enumerate(found.peaks)
+         for k, volume in enumerate(volumes))))
+    about: Dict[str, Any] = {
+        "fragility": found.folder.name, "quantity": QUANTITY, "confidence": hazard.CONFIDENCE,
+        "bodies": [of_body(asked, name, rows) for name in found.bodies], "more_than_m3": more_than,
+        "peaks_gal": found.peaks.tolist(),
+        "curves": [{"more_than_m3": volume, **{name: side[:, k].tolist() for name, side in
+                                               zip(("probability", "low", "high"), family)}}
+                   for volume, k in zip(more_than, at)],
+        "per_year": None, "withheld": list(withheld), "files": [CURVES]}
+    (output / PER_YEAR).unlink(missing_ok=True)      # of a study before this one in the folder
+    if found.rate is not None:
+        yearly = chain.frequency(found.capacity, found.rate, found.peaks, bodies, volumes)
+        disk.write(output / PER_YEAR, table(("volume_m3", "per_year", "low", "high"), zip(volumes, *yearly.total)))
+        about["per_year"] = [of_year(yearly, volume, k) for volume, k in zip(more_than, at)]
+        about["files"].append(PER_YEAR)
+    about["doubts"] = doubts(about, found.warnings)
+    return about
+
+
+def of_body(asked: Chain, name: str, rows: Sequence[Mapping[str, Any]]) -> Dict[str, Any]:
+    """What study.yaml says of a body."""
+    mine = [row["status"] for row in rows if row["set"][VARIABLE] == name]
+    return {"body": name, "weight": asked.weights.get(name, 0.0), "volume_m3": asked.volumes.get(name),
+            "runs": len(mine), "finished": mine.count("finished")}
+
+
+def of_year(yearly: chain.Frequency, volume: float, k: int) -> Dict[str, Any]:
+    """What study.yaml says of how often a volume is exceeded, the k-th."""
+    return {"more_than_m3": volume, "value": float(yearly.total.value[k]), "low": float(yearly.total.low[k]),
+            "high": float(yearly.total.high[k]), "more_at_most": float(yearly.beyond[k]),
+            "contributions": [{"from_gal": a, "to_gal": None if math.isinf(b) else b, "per_year": float(part[k])}
+                              for a, b, part in yearly.parts]}
+
+
+def doubts(about: Mapping[str, Any], warnings: Sequence[str]) -> List[str]:
+    """The caveats."""
+    found = [f"fragility: {text}" for text in warnings]
+    for one in about["bodies"]:
+        if one["weight"] > 0 and not one["finished"]:
+            found.append(f"body {one['body']} has no finished run: all of it, {one['volume_m3']:,.0f} m3, counts as on "
+                         "the road; more points (--sample)")
+    for one in about["per_year"] or ():
+        if one["more_at_most"] > BEYOND * one["value"]:
+            found.append(f"peaks above the hazard curve's last may add up to {one['more_at_most']:.2g} per year to "
+                         f"more than {one['more_than_m3']:,.6g} m3")
+    return found
+
+
+def table(head: Sequence[str], rows) -> str:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(head)
+    writer.writerows([f"{value:.6g}" for value in row] for row in rows)
+    return text.getvalue()
+
+
+# --- words ---
+
+def sentences(about: Mapping[str, Any]) -> List[str]:
+    """How often, or at which peaks, the road is blocked by more than each of the volumes."""
+    sure = f"{100 * about['confidence']:g} %"
+    if about["per_year"]:
+        return [f"the road is blocked by more than {one['more_than_m3']:,.6g} m3 with {one['value']:.2g} per year "
+                f"({sure}: {one['low']:.2g} to {one['high']:.2g})" for one in about["per_year"]]
+    found = []
+    for one in about["curves"]:
+        k = int(np.argmin(np.abs(np.array(one["probability"]) - 0.5)))
+        low, value, high = (percent(one[side][k]) for side in ("low", "probability", "high"))
+        found.append(f"an earthquake of {about['peaks_gal'][k]:.4g} gal blocks the road by more than "
+                     f"{one['more_than_m3']:,.6g} m3 with {value} ({sure}: {low} to {high})")
+    return found
+
+
+def percent(share: float) -> str:
+    return f"{100 * share:.2g} %"
+
+
+def describe(about: Mapping[str, Any], output: Path) -> List[str]:
+    """The lines of the console; ensemble.describe() says why volumes are withheld."""
+    lines = [f"caveat: {text}" for text in about["doubts"]]
+    if about["withheld"]:
+        lines.append("how likely the road is blocked is withheld, as the volumes are")
+    else:
+        lines = [*sentences(about), *lines]
+    return [*lines, f"{', '.join(str(output / name) for name in about['files'])}: how likely which volume is exceeded"]

@@ -1,0 +1,1 @@
+"""The folder of a site: choices, layers, deck, size of the balls."""

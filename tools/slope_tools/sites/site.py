@@ -1,0 +1,305 @@
+"""A site's folder: terrain, body, layers, deck, map and site.yaml; all of it or nothing.
+
+Order of the work: terrain and body (survey), layers (site_inputs), trial run and size of the balls (site_budget), deck
+(site_deck), map (site_map), site.yaml (site_choices). It is built in a folder of its own; then its files take their
+places (site_folder).
+"""
+import contextlib
+import os
+import shutil
+from pathlib import Path
+from shlex import quote
+from typing import Any, Callable, List, NamedTuple, Optional
+
+import numpy as np
+
+from .. import disk, provenance
+from ..errors import SlopeError
+from ..releases import release, release_files
+from ..survey import local_terrain, polygons, rasters
+from ..survey.rasters import Raster, crs_name
+from . import site_bodies, site_budget, site_choices, site_deck, site_folder, site_warnings
+from .site_budget import Size, Trial
+from .site_choices import Choices, Derived
+from .site_folder import BODY, BODY_DECK, MAP, TERRAIN
+from .site_layers import Layers, Shown, advice, read_layers, swapped
+
+# field balls of masses that known events cover, in cube roots of the volume: doc/src/events.rst, both events
+OF_EVENTS = 0.0455
+THROUGH = 0.6495          # half of 1.299, see field_diameter()
+
+
+class Machine(NamedTuple):
+    """With what a site is tried, and its study will run."""
+    lmp: Optional[Path]     # None: there is none, nothing is tried
+    jobs: int               # runs at a time
+    # m3 of a body -> runs of an ensemble weighted by known events; 0: none cover it
+    points: Callable[[float], int] = lambda volume: 0
+
+
+class Made(NamedTuple):
+    """What was made."""
+    folder: Path
+    files: List[str]
+    size: Size
+
+
+def check_target(folder: Path, again: bool) -> None:
+    """Raise SlopeError unless a site can be made in a folder; again: rebuilt from its own site.yaml."""
+    if not folder.absolute().parent.is_dir():
+        raise SlopeError("-o", "must be in an existing folder", folder)
+    if again:
+        deck = folder / site_deck.NAME
+        known = site_choices.found(folder).get("deck_sha256")
+        if deck.is_file() and known != disk.sha256(deck):
+            raise SlopeError(deck, "must not have been changed by hand, the changes would be lost: rename or remove it "
+                             "first")
+    elif site_folder.was_not_made(folder):
+        return
+    elif (folder / site_choices.NAME).is_file():
+        raise SlopeError("-o", f"must be a new folder; `slope site {quote(str(folder))}` rebuilds this one from its "
+                         f"{site_choices.NAME}", folder)
+    elif folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise SlopeError("-o", "must be a new folder, or an empty one", folder)
+
+
+Draw = Callable[[Path, Shown, str], None]       # of the map: file, what it shows, title
+
+
+def make(choices: Choices, folder: Path, machine: Machine, tell: Callable[[str], Any],
+         warn: Callable[[str], Any], draw: Draw, again: bool = False,
+         known: Optional[Derived] = None) -> Made:
+    """Make a site's folder, or rebuild it, from complete choices whose paths are relative to the working folder.
+
+    tell and warn are called with lines for the user, draw draws the map; again: the folder is a site, which is
+    rebuilt; known: the choices that were determined when it was made before. Raises SlopeError on bad input; the folder
+    is then as it was, and a new one has site.yaml alone, to be changed.
+    """
+    place = folder.absolute()
+    new = disk.beside_folder(place)
+    check_target(folder, again)
+    known_files = again or site_folder.was_not_made(folder)
+    old = set(site_choices.found(folder).get("files") or ()) if known_files else set()
+    site_folder.check(choices, folder, old)
+    try:
+        with disk.alone_in(folder) if again else contextlib.nullcontext():
+            new.mkdir()
+            try:
+                made = built(choices, known or {}, new, folder, machine, tell, warn, draw)
+                site_folder.exchange(new, place, old)
+            except SlopeError as error:
+                if not again and site_folder.is_free(folder):       # no other one has made it meanwhile
+                    site_folder.keep_choices(choices, folder, error)
+                    tell(f"{folder / site_choices.NAME} was kept: change it, then: tools/slope site "
+                         f"{quote(str(folder))}; or repeat the command")
+                raise
+            finally:
+                shutil.rmtree(new, ignore_errors=True)
+    except OSError as error:
+        raise SlopeError(folder, f"cannot be written: {error.strerror or error}") from None
+    return made
+
+
+def built(choices: Choices, known: Derived, new: Path, folder: Path, machine: Machine, tell, warn,
+          draw: Draw) -> Made:
+    """build(), whose messages do not name the temporary folder."""
+    try:
+        return build(choices, known, new, folder, machine, tell, warn, draw)
+    except SlopeError as error:
+        error.args = (str(error).replace(f"{new}/", ""),)
+        raise
+
+
+def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Machine, tell, warn, draw: Draw) -> Made:
+    """Everything, into the folder `new`, which will be `folder`."""
+    warnings: List[str] = []
+
+    def keep(line: str) -> None:
+        warnings.append(line)
+        warn(line)
+    choices = {name: dict(section) for name, section in given.items()}
+    wanted = wanted_body(choices, new)
+    raster = terrain(choices, new, tell, keep)
+    found = body_of(choices, wanted, raster, keep)
+    tell(release.text(found))
+    for line in found.warnings:
+        keep(line)
+    several = site_bodies.write(choices, new, BODY, wanted, keep)
+    body = site_bodies.around(write_body(new, wanted, found), BODY, several)
+    layers = read_layers(choices, raster, new, tell, keep)
+    title = choices["project"]["name"] or folder.absolute().name
+    parts = site_deck.Parts(title, ", ".join(Path(name).name for name in choices["terrain"]["files"]), body,
+                            layers.structures, layers.lines, layers.motion)
+    trial, reached = tried(choices, parts, found, new, machine, tell)
+    model = choices["model"]
+    if model["field_ratio"] is None and machine.points(found.measures.volume):
+        model["field_ratio"] = OF_EVENTS
+    if model["field_diameter"] is None and model["field_ratio"]:
+        model["field_diameter"] = site_budget.three_digits(model["field_ratio"] * found.measures.volume ** (1 / 3))
+    chosen = model["field_diameter"]
+    size = settle(choices, parts, found, trial, machine, raster)
+    derived = site_choices.derived(given, choices, known)
+    too_large = None if chosen == model["field_diameter"] else chosen
+    say_size(choices, size, found, machine, too_large, tell)
+    for line in site_warnings.site_warnings(found.measures, size, trial):
+        keep(line)
+    site_warnings.write(new, warnings)
+    deck = site_deck.text(choices, parts, numbers(choices, trial, size))
+    disk.write(new / site_deck.NAME, deck)
+    draw(new / MAP, shown(found, layers, reached), f"{title}: {found.measures.volume:,.0f} m\u00b3")
+    files = sorted([path.name for path in new.iterdir()] + [site_choices.NAME])
+    about = {"slope_version": provenance.version(), "made": provenance.now(), "files": files,
+             "derived": derived,
+             "deck_sha256": disk.sha256(new / site_deck.NAME),
+             "choices_sha256": site_choices.fingerprint(choices, folder),
+             "sources_sha256": site_choices.sources(choices, folder),
+             "crs": crs_name(raster.crs),
+             "origin": {"east": float(raster.offset[0]), "north": float(raster.offset[1])},
+             "body": found.measures._asdict(), "bodies": site_bodies.about(several), "balls": size.balls,
+             "trial": trial and trial._asdict(), "study": {"runs": size.runs, "seconds": size.seconds,
+                                                           "gigabytes": size.gigabytes, "at_a_time": machine.jobs}}
+    disk.write(new / site_choices.NAME, site_choices.text(choices, about, folder.absolute()))
+    return Made(folder, files, size)
+
+
+# --- ground ---
+
+def wanted_body(choices: Choices, new: Path) -> release.Wanted:
+    """What is asked of the body, checked before anything is read."""
+    given = {key: value for key, value in choices["release"].items() if key != "bodies"}
+    if not (given["polygon"] or given["scar"]):
+        raise SlopeError("--release", "must be given, a polygon, or --scar, a raster")
+    site_choices.check_assigned(choices)
+    crs, scar_crs = (given[key] and site_choices.assigned(choices, given[key]) for key in ("polygon", "scar"))
+    return release.check(release.Wanted(str(new / TERRAIN), **given, crs=crs, scar_crs=scar_crs,
+                                        advice=advice(choices, given["polygon"] or given["scar"])))
+
+
+def terrain(choices: Choices, new: Path, tell, warn) -> Raster:
+    """Write the terrain and read it back, as the deck will."""
+    given = choices["terrain"]
+    own = {path: crs for path in given["files"] if (crs := site_choices.assigned(choices, path))}
+    wanted = local_terrain.Wanted(given["crs"], None, given["cell"], given["bounds"], given["fill"],
+                                  given["assign_crs"], own, given["z_unit"], given["nodata"])
+    about = local_terrain.make(given["files"], new / TERRAIN, wanted, tell, warn)
+    tell(local_terrain.summary(TERRAIN, about))
+    return rasters.read_asc_local(new / TERRAIN)
+
+
+def body_of(choices: Choices, wanted: release.Wanted, raster: Raster, warn) -> release.Body:
+    """The body; SlopeError, in other words where release area and road seem to be swapped."""
+    try:
+        found = release.body_of(wanted)
+    except SlopeError:
+        if line := swapped(choices, raster):
+            raise SlopeError("--release, --road", "must not be swapped, the mass falls from the release area onto the "
+                             "road", line) from None
+        raise
+    if line := swapped(choices, raster, wholly=True):
+        warn(f"--release and --road may be swapped, the road lies above the release area: {line}")
+    return found
+
+
+def write_body(new: Path, wanted: release.Wanted, found: release.Body):
+    """The body's files, and what the deck needs to know of it."""
+    name = new / BODY
+    release_files.write_body(name, wanted._replace(terrain=TERRAIN), found)
+    name.with_name(BODY_DECK).unlink()
+    if found.geometry is not None:
+        polygons.write(new / f"{BODY}.csv", found.geometry, found.raster)
+    return release_files.deck_body(name, wanted.terrain, found.raster, found.area, found.slip)
+
+
+# --- balls ---
+
+def numbers(choices: Choices, trial: Optional[Trial], size: Optional[Size], diameter: Optional[float] = None):
+    """What the choices leave open, for the deck."""
+    model = choices["model"]
+    d = diameter or (size.diameter if size else 0.0)
+    seconds = None
+    if trial and size:
+        steps = trial.rest / site_budget.time_step(d, model["speed"], model["density"])
+        seconds = trial.setup + steps * size.balls * trial.cost
+    return site_deck.Numbers(d, model["field_diameter"] or d, model["speed"] or site_budget.SPEED,
+                             model["duration"] or site_budget.LONGEST, model["cell"] or 1.0,
+                             choices["motion"]["peak_friction"] or site_deck.LEAST_PEAK, trial and trial.rest, seconds)
+
+
+def tried(choices: Choices, parts: site_deck.Parts, found: release.Body, new: Path, machine: Machine, tell):
+    """The Trial of a run with coarse balls, and its largest thickness; None, None where there is no LAMMPS."""
+    if choices["motion"]["peak_friction"] is None and parts.motion:
+        choices["motion"]["peak_friction"] = site_deck.peak_friction(found.measures.slip_slope)
+    if machine.lmp is None:
+        return None, None
+    d = site_budget.trial_diameter(choices, parts.body.volume)
+    coarse = {**choices, "model": {**choices["model"], "field_diameter": d, "cell": max(found.area.cell, d / 2)}}
+    folder = new / "trial"
+    folder.mkdir()
+    for path in list(new.iterdir()):
+        if path.suffix in (".asc", ".stl", ".csv", ".txt"):
+            os.symlink(f"../{path.name}", folder / path.name)
+    disk.write(folder / site_deck.NAME, site_deck.text(coarse, parts, numbers(coarse, None, None, d)))
+    try:
+        trial = site_budget.measure(folder, site_deck.NAME, machine.lmp)._replace(diameter=d)
+    except SlopeError as error:
+        if parts.motion:
+            site_warnings.require_standing(error, choices["motion"]["peak_friction"], found.measures.mean_slope)
+        raise
+    reached = rasters.read(next(iter(folder.glob("*.max_thickness.asc"))), heights=False)
+    shutil.rmtree(folder)
+    tell(f"trial run, {trial.balls} balls of {d:g} m: {'at rest' if trial.at_rest else 'not at rest'} after "
+         f"{trial.rest:.0f} s, up to {trial.speed:.0f} m/s; took {trial.seconds:.1f} s")
+    return trial, reached
+
+
+def settle(choices: Choices, parts: site_deck.Parts, found: release.Body, trial: Optional[Trial], machine: Machine,
+           raster: Raster) -> Size:
+    """Fill in what the choices leave open, and with it the size of the balls."""
+    model, balls = choices["model"], choices["balls"]
+    model["speed"] = model["speed"] or site_budget.stiff_to(trial)
+    model["duration"] = model["duration"] or site_budget.duration(trial)
+    size = site_budget.size(choices, parts.body.volume, trial, machine.jobs, raster.z.size,
+                            machine.points(found.measures.volume))
+    balls["diameter"] = size.diameter
+    model["field_diameter"] = field_diameter(choices, size.diameter)
+    model["cell"] = model["cell"] or max(found.area.cell, site_budget.three_digits(size.diameter / 2))
+    return size
+
+
+def field_diameter(choices: Choices, diameter: float) -> float:
+    """That of the field balls (m): the ground's roughness stays, but no ball of the study may fall through them.
+
+    The smallest passes where its radius and a field ball's together are below spacing/1.299, on steep ground
+    (fix wall/gran/balls warns of it).
+    """
+    chosen = choices["model"]["field_diameter"] or diameter
+    spacing, smallest = choices["model"]["spacing"], diameter * min([1.0, *choices["study"]["sizes"]])
+    if spacing <= THROUGH:
+        return chosen
+    return min(chosen, site_budget.three_digits(0.99 * THROUGH * smallest / (spacing - THROUGH)))
+
+
+def say_size(choices: Choices, size: Size, found: release.Body, machine: Machine, chosen: Optional[float], tell):
+    """Tell the user the size of the balls, and the time and memory of the study.
+
+    chosen: diameter of the field balls (m) that was too large; None: it was not.
+    """
+    thick = found.measures.mean_depth / size.diameter, found.measures.largest_depth / size.diameter
+    tell(f"balls of {size.diameter:g} m: {size.balls:,} of them, the body is {thick[0]:.1f} balls thick on average, "
+         f"{thick[1]:.1f} at most")
+    tell(f"field balls of {choices['model']['field_diameter']:g} m (field_diameter): the roughness of the ground"
+         + (f"; not {chosen:g} m, through which the smallest balls would fall" if chosen else ""))
+    took = "" if size.seconds is None else f", about {site_budget.duration_text(size.seconds)} if nothing else runs"
+    tell(f"the study: {size.text}; {machine.jobs} at a time{took}, {size.gigabytes:.2g} GB")
+
+
+# --- map ---
+
+def shown(found: release.Body, layers: Layers, reached: Optional[Raster]) -> Shown:
+    """What the map shows; reached: the largest thickness of the trial run."""
+    depth = np.zeros(found.raster.z.shape)
+    row, column = found.area.corner
+    rows, columns = found.slip.shape
+    depth[row:row + rows, column:column + columns] = np.nan_to_num(found.area.z - found.slip)
+    return Shown(found.raster, depth, found.geometry, layers.road, layers.observed, layers.structures, layers.lines,
+                 reached)

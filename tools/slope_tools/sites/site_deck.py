@@ -1,0 +1,115 @@
+"""The deck of a site: in.site.j2 filled in, plain LAMMPS with every number an index variable."""
+import math
+import re
+from pathlib import Path
+from typing import Any, Dict, NamedTuple, Optional, Sequence
+
+import jinja2
+
+from ..releases.release_deck import Body
+from ..slips.bodies import rank_of
+from .site_choices import Choices
+from .site_inputs import Line, Motion, Structure
+
+NAME = "in.site"
+TEMPLATE = "in.site.j2"
+KNOB = re.compile(r"variable +\w+ +index ")
+FRAMES = 40             # snapshots of a run, about
+STEEPER = 7.0           # degrees: default of a strength that holds a body, above the slope of its slip surface
+LEAST_PEAK, MOST_PEAK = 33.0, 80.0
+
+
+class Parts(NamedTuple):
+    """What a deck is made of, beside the choices."""
+    title: str
+    terrain: str            # what the terrain was made of, for the first line
+    body: Body
+    structures: Sequence[Structure]
+    lines: Sequence[Line]
+    motion: Optional[Motion]
+
+
+class Numbers(NamedTuple):
+    """What the choices leave open."""
+    diameter: float         # m
+    field_diameter: float
+    speed: float            # m/s
+    duration: float         # s
+    cell: float             # m
+    peak_friction: float    # degrees
+    rest: Optional[float] = None        # s, expected
+    run_seconds: Optional[float] = None
+
+
+def text(choices: Choices, parts: Parts, numbers: Numbers) -> str:
+    """The deck."""
+    loader = jinja2.FileSystemLoader(Path(__file__).parent)
+    environment = jinja2.Environment(loader=loader, trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True,
+                                     undefined=jinja2.StrictUndefined)
+    return aligned(environment.get_template(TEMPLATE).render(values(choices, parts, numbers)))
+
+
+def values(choices: Choices, parts: Parts, numbers: Numbers) -> Dict[str, Any]:
+    """What the template is filled in with."""
+    model, motion, body = choices["model"], choices["motion"], parts.body
+    balls = body.volume / numbers.diameter ** 3
+    parameters: Dict[str, Any] = {
+        "title": parts.title, "terrain": parts.terrain, "deck": NAME, "volume": f"{body.volume:,.0f}",
+        "balls": f"about {balls:,.0f}", "rest": "some" if numbers.rest is None else f"{numbers.rest:.0f}",
+        "run_time": run_time(numbers.run_seconds), "lower": math.ceil(body.lower),
+        "box": " ".join(plain(value) for value in body.box), "types": 4 if parts.structures else 3,
+        "film": plain(frame(numbers.rest or numbers.duration / 3)),
+        "slip_file": body.slip, "body": choices["release"]["bodies"] and body_number(choices),
+        "structures": [{"name": one.name, "file": one.file, "point": words(one.point),
+                        "move": f" move {words(one.move)}" if any(one.move) else ""} for one in parts.structures],
+        "lines": parts.lines, "motion": parts.motion.file if parts.motion else "", }
+    parameters.update({name: plain(value) for name, value in (
+        ("d", numbers.diameter), ("field_d", numbers.field_diameter), ("spacing", model["spacing"]),
+        ("rolling", choices["study"]["rolling"][0]), ("friction", model["friction"]), ("slip", model["slip_friction"]),
+        ("restitution", model["restitution"]), ("field_e", model["field_restitution"]), ("density", model["density"]),
+        ("speed", numbers.speed), ("duration", numbers.duration), ("cell", numbers.cell),
+        ("concrete", choices["structures"]["friction"]), ("concrete_e", choices["structures"]["restitution"]),
+        ("scale", motion["scale"]), ("shaking", parts.motion.length if parts.motion else 0),
+        ("peak_friction", numbers.peak_friction), ("peak_rolling", motion["peak_rolling"]),
+        ("trigger", motion["trigger"]))})
+    return parameters
+
+
+def body_number(choices: Choices) -> int:
+    """Which of the bodies of slope stability the site's is."""
+    return rank_of(Path(choices["release"]["scar"]))
+
+
+def plain(value: float) -> str:
+    """A number as a word of a deck."""
+    return f"{value:.10g}"
+
+
+def words(numbers: Sequence[float]) -> str:
+    return " ".join(plain(value) for value in numbers)
+
+
+def frame(rest: float) -> float:
+    """Seconds between two snapshots: a round number, so that there are about FRAMES."""
+    power = 10.0 ** math.floor(math.log10(rest / FRAMES))
+    return min((step * power for step in (1, 2, 5, 10)), key=lambda step: abs(math.log(step * FRAMES / rest)))
+
+
+def peak_friction(slip_slope: float) -> float:
+    """Friction angle (degrees) that holds a body on a slip surface of that mean slope: a first guess."""
+    return min(MOST_PEAK, max(LEAST_PEAK, float(math.ceil(slip_slope + STEEPER))))
+
+
+def run_time(seconds: Optional[float]) -> str:
+    """Of one run on one core."""
+    if seconds is None:
+        return "not measured"
+    return f"about {seconds / 60:.0f} minutes on one core" if seconds > 90 else f"about {seconds:.0f} s on one core"
+
+
+def aligned(deck: str) -> str:
+    """The comments behind the index variables on the deck's top in one column."""
+    parts = [line.partition("  # ") if KNOB.match(line) else (line, "", "") for line in deck.splitlines()]
+    wide = max(len(code.rstrip()) for code, mark, _ in parts if mark)
+    return "".join(f"{code.rstrip():<{wide}}  # {comment.strip()}\n" if mark else f"{code}\n"
+                   for code, mark, comment in parts)

@@ -1,0 +1,163 @@
+"""What a site may have beside terrain, body and road: structures, control lines, the motion of an earthquake.
+
+Each is read, checked, brought to the terrain's local metres, and written into the site's folder for the deck.
+"""
+import re
+import shutil
+from pathlib import Path
+from typing import Iterable, List, NamedTuple, Optional, Set, Tuple
+
+import numpy as np
+from rasterio.crs import CRS
+
+from ..errors import SlopeError
+from ..geometry import extent
+from ..quakes import motion_file
+from ..survey import lines, polygons, vectors
+from ..survey.rasters import Raster, crs_name
+
+# names of the deck's own fixes and groups, and of files that a run writes beside them
+TAKEN = {"all", "soil", "slip", "field", "spread", "move", "weight", "deposit", "rest", "shake", "drag", "stands",
+         "fails", "balls", "road", "release", "observed", "terrain", "body", "ground", "base", "summary"}
+MOTION = "motion.txt"
+
+
+class Structure(NamedTuple):
+    """A mesh for fix wall/gran/mesh."""
+    name: str               # ID of its fix
+    file: str               # in the site's folder
+    move: Tuple[float, float, float]        # from its coordinates to local metres
+    point: Tuple[float, float, float]       # middle of its foot, local metres
+    low: np.ndarray         # its box, local metres
+    high: np.ndarray
+    triangles: int
+
+    @property
+    def summary(self) -> str:
+        where = "local metres" if not any(self.move) else "coordinates of the terrain's CRS"
+        size = " x ".join(f"{side:.4g}" for side in self.high - self.low)
+        return f"{self.file}: {self.triangles} triangles in {where}, {size} m"
+
+
+class Line(NamedTuple):
+    """A control line."""
+    name: str
+    file: str
+    points: np.ndarray      # local x, y
+
+
+class Motion(NamedTuple):
+    """An acceleration of the ground."""
+    file: str
+    length: float           # s
+    peak: float             # largest horizontal acceleration, m/s2
+
+
+def unused(stem: str, taken: Set[str]) -> str:
+    """A name for a fix that no other has, from that of a file; it is then taken."""
+    name = re.sub(r"\W", "_", stem, flags=re.ASCII) or "one"
+    if name in taken:
+        name = next(f"{name}_{k}" for k in range(2, 10 ** 6) if f"{name}_{k}" not in taken)
+    taken.add(name)
+    return name
+
+
+def stem(name: str) -> str:
+    """Of a file, or of the layer of it that a name has: what its fix may be called."""
+    where = vectors.source(name)
+    return where.layer or Path(where.path).stem
+
+
+# --- structures ---
+
+def corners(path: str) -> np.ndarray:
+    """The corners of the triangles of an STL file, text or binary: an array (triangles, 3, 3)."""
+    try:
+        data = Path(path).read_bytes()
+    except OSError as error:
+        raise SlopeError(path, f"must be an STL file ({error.strerror})") from None
+    if len(data) >= 84 and len(data) == 84 + 50 * int.from_bytes(data[80:84], "little"):
+        records = np.frombuffer(data, np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("more", "<u2")]),
+                                offset=84)
+        points = records["corners"].astype(float)
+    else:
+        found = re.findall(rb"^\s*vertex\s+(\S+)\s+(\S+)\s+(\S+)\s*$", data, re.MULTILINE | re.IGNORECASE)
+        try:
+            points = np.array([[float(value) for value in point] for point in found]).reshape(-1, 3, 3)
+        except ValueError:
+            points = np.empty((0, 3, 3))
+    if not len(points) or not np.isfinite(points).all():
+        raise SlopeError(path, "must be an STL file of triangles, text or binary")
+    return points
+
+
+def structures(paths: Iterable[str], raster: Raster, folder: Path, taken: Set[str]) -> List[Structure]:
+    """Copy STL files into a folder. Coordinates: local metres, or the terrain's CRS, as they fit."""
+    return [structure(path, raster, folder, taken) for path in paths]
+
+
+def structure(path: str, raster: Raster, folder: Path, taken: Set[str]) -> Structure:
+    points = corners(path)
+    low, high = points.min(axis=(0, 1)), points.max(axis=(0, 1))
+    xlo, ylo, xhi, yhi = extent(raster)
+    for move in ((0.0, 0.0, 0.0), (-float(raster.offset[0]), -float(raster.offset[1]), 0.0)):
+        a, b = low + move, high + move
+        if xlo <= a[0] and ylo <= a[1] and b[0] <= xhi and b[1] <= yhi:
+            break
+    else:
+        raise SlopeError(path, f"must lie within the terrain, local x y {polygons.numbers((xlo, ylo, xhi, yhi))}, or "
+                         f"that plus {polygons.numbers(raster.offset)} in {crs_name(raster.crs)}",
+                         polygons.numbers((*low[:2], *high[:2])))
+    bottom, top = np.nanmin(raster.z), np.nanmax(raster.z)
+    if not (a[2] <= top and b[2] >= bottom):
+        raise SlopeError(path, f"must have heights (m) of the terrain, {bottom:.6g} to {top:.6g}",
+                         f"{a[2]:.6g} to {b[2]:.6g}")
+    name = unused(Path(path).stem, taken)
+    copy(path, folder / f"{name}.stl")
+    point = float(a[0] + b[0]) / 2, float(a[1] + b[1]) / 2, float(a[2])
+    return Structure(name, f"{name}.stl", move, point, a, b, len(points))
+
+
+# --- lines ---
+
+class Drawn(NamedTuple):
+    """A file with a control line."""
+    path: str
+    crs: Optional[CRS]          # assigned to it
+    advice: polygons.Advice
+
+
+def control_lines(files: Iterable[Drawn], raster: Raster, folder: Path, taken: Set[str], warn) -> List[Line]:
+    """Write control lines in local metres into a folder."""
+    found = []
+    for path, crs, advice in files:
+        parts = lines.read_local(path, raster, False, advice=advice, crs=crs, warn=warn).geoms
+        if len(parts) != 1:
+            raise SlopeError(path, "must hold one line", f"{len(parts)} that do not meet")
+        points = np.round(np.asarray(parts[0].coords)[:, :2], 4) + 0.0
+        xlo, ylo, xhi, yhi = extent(raster)
+        if not ((points >= (xlo, ylo)) & (points <= (xhi, yhi))).all():
+            raise SlopeError(path, f"must lie within the terrain, local x y {polygons.numbers((xlo, ylo, xhi, yhi))}",
+                             polygons.numbers((*points.min(axis=0), *points.max(axis=0))))
+        name = unused(stem(path), taken)
+        rows = "".join(f"{x:.10g},{y:.10g}\n" for x, y in points.tolist())
+        head = "# control line, local x,y in m; forward is from its left to its right\n"
+        (folder / f"{name}.csv").write_text(head + rows, encoding="ascii")
+        found.append(Line(name, f"{name}.csv", points))
+    return found
+
+
+# --- motion ---
+
+def motion(path: str, folder: Path) -> Motion:
+    """Copy the motion of the ground, lines "t ax ay az" in s and m/s2, into a folder."""
+    values = motion_file.read(path)
+    copy(path, folder / MOTION)
+    return Motion(MOTION, float(values[-1, 0]), motion_file.peak(values))
+
+
+def copy(source: str, target: Path) -> None:
+    try:
+        shutil.copyfile(source, target)
+    except OSError as error:
+        raise SlopeError(error.filename2 or source, f"cannot be copied: {error.strerror}") from None

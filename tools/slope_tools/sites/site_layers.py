@@ -1,0 +1,170 @@
+"""What lies on a site's terrain: road, structures, control lines, a mapped deposit, and the motion of the ground."""
+import shlex
+from pathlib import Path
+from typing import List, NamedTuple, Optional, Sequence, Set
+
+import numpy as np
+from rasterio.crs import CRS
+from shapely.geometry import box
+from shapely.geometry.base import BaseGeometry
+
+from ..errors import SlopeError
+from ..geometry import extent
+from ..releases import release_area
+from ..survey import polygons, rasters, vectors
+from ..survey.crs import as_crs, same_crs
+from ..survey.rasters import Raster, crs_name
+from . import site_choices, site_inputs
+from .site_choices import Choices
+from .site_inputs import Line, Motion, Structure
+
+ROAD = "road.csv"
+OBSERVED = "observed"       # .csv of an outline, .tif of a raster
+RASTERS = {".tif", ".tiff", ".asc", ".vrt", ".img", ".bil"}
+
+
+class Layers(NamedTuple):
+    """What was read and written into the folder; geometries in local metres."""
+    road: Optional[BaseGeometry]
+    observed: Optional[BaseGeometry]        # None of a raster, too
+    structures: List[Structure]
+    lines: List[Line]
+    motion: Optional[Motion]
+
+
+class Shown(NamedTuple):
+    """What the map of a site shows; geometries in local metres."""
+    raster: Raster                      # the ground before
+    depth: np.ndarray                   # of the body on its nodes, m, 0 where there is none
+    release: Optional[BaseGeometry]
+    road: Optional[BaseGeometry]
+    observed: Optional[BaseGeometry]
+    structures: Sequence[Structure]
+    lines: Sequence[Line]
+    reached: Optional[Raster]           # largest thickness of the trial run, m
+
+
+def read_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> Layers:
+    """Read all layers of the choices, and write what the deck and the study need into a folder.
+
+    Raises SlopeError, which names the file, if one does not fit the terrain.
+    """
+    road = polygon_layer(choices, choices["road"]["file"], raster, folder / ROAD, tell, warn)
+    observed = observed_layer(choices, raster, folder, tell, warn)
+    taken: Set[str] = set(site_inputs.TAKEN)
+    structures = site_inputs.structures(choices["structures"]["files"], raster, folder, taken)
+    drawn = [site_inputs.Drawn(path, assigned(choices, path), advice(choices, path))
+             for path in choices["lines"]["files"]]
+    lines = site_inputs.control_lines(drawn, raster, folder, taken, warn)
+    motion = site_inputs.motion(choices["motion"]["file"], folder) if choices["motion"]["file"] else None
+    for one in structures:
+        tell(one.summary)
+    for line in lines:
+        tell(f"{line.file}: control line of {len(line.points)} points")
+    if motion:
+        tell(f"{motion.file}: {motion.length:g} s, up to {100 * motion.peak * choices['motion']['scale']:.4g} gal "
+             "horizontally")
+    return Layers(road, observed, structures, lines, motion)
+
+
+def advice(choices: Choices, path: str) -> polygons.Advice:
+    """What can be done in slope site where a file does not fit the terrain."""
+    own = f"--assign-crs {shlex.quote(Path(vectors.source(path).path).name + '=EPSG:n')}, or save it with its CRS"
+    return polygons.Advice(choices["terrain"]["files"][0], "--crs EPSG:n gives it one", own,
+                           f"{own}; a GeoJSON that names none is in longitude and latitude")
+
+
+def assigned(choices: Choices, path: str) -> Optional[CRS]:
+    """The CRS that the choices assign to a file, None if they do not."""
+    name = site_choices.assigned(choices, path)
+    return as_crs(f"--assign-crs {path}", name) if name else None
+
+
+class Ground(NamedTuple):
+    """The ground in a polygon."""
+    mean: float         # m
+    low: float
+    high: float
+    slope: float        # degrees, of the plane that fits it best
+
+    @property
+    def words(self) -> str:
+        return f"{self.mean:.0f} m on average, a slope of {self.slope:.0f} degrees"
+
+
+def ground_of(choices: Choices, path: str, raster: Raster) -> Optional[Ground]:
+    """The ground in a polygon file, None if that cannot be read or has too few nodes."""
+    try:
+        geometry = polygons.read_local(path, raster, crs=assigned(choices, path))
+    except SlopeError:
+        return None
+    inside = release_area.nodes_inside(raster, geometry) & np.isfinite(raster.z)
+    if inside.sum() < release_area.FEWEST:
+        return None
+    z = raster.z[inside]
+    columns, rows = raster.transform * np.meshgrid(np.arange(raster.z.shape[1]) + 0.5, np.arange(len(raster.z)) + 0.5)
+    _, slope = release_area.fall(columns[0], rows[:, 0], raster.z, inside)
+    return Ground(float(z.mean()), float(z.min()), float(z.max()), slope)
+
+
+def swapped(choices: Choices, raster: Raster, wholly: bool = False) -> Optional[str]:
+    """What speaks for release area and road having been swapped, None if nothing does.
+
+    That is a road on higher and steeper ground; wholly: no part of it as low as the top of the release area.
+    """
+    paths = choices["release"]["polygon"], choices["road"]["file"]
+    release, road = (ground_of(choices, path, raster) if path else None for path in paths)
+    higher = release and road and (road.low > release.high if wholly else road.mean > release.mean)
+    if release and road and higher and road.slope > release.slope:
+        return f"--release {paths[0]}: {release.words}; --road {paths[1]}: {road.words}"
+    return None
+
+
+def polygon_layer(choices: Choices, path: Optional[str], raster: Raster, target: Path, tell, warn):
+    """A polygon in local metres, written for the deck; None if there is none."""
+    if not path:
+        return None
+    geometry = polygons.read_local(path, raster, crs=assigned(choices, path), advice=advice(choices, path), warn=warn)
+    beyond = 1 - geometry.intersection(box(*extent(raster))).area / geometry.area
+    if beyond > 1e-9:
+        warn(f"{path}: {100 * beyond:.2g} % of the area lies outside of the terrain")
+    geometry = polygons.write(target, geometry, raster)
+    tell(f"{target.name}: {len(polygons.polygons_of(geometry))} polygon, {geometry.area:,.0f} m2")
+    return geometry
+
+
+def observed_layer(choices: Choices, raster: Raster, folder: Path, tell, warn):
+    """The mapped deposit: an outline in local metres, or None after a raster was copied."""
+    path = choices["observed"]["file"]
+    if not path:
+        return None
+    if Path(path).suffix.lower() not in RASTERS:
+        return polygon_layer(choices, path, raster, folder / f"{OBSERVED}.csv", tell, warn)
+    mapped = rasters.read(path, heights=False)
+    mapped = mapped._replace(crs=assigned(choices, path) or mapped.crs)
+    if mapped.crs is None:
+        mapped = mapped._replace(crs=raster.crs)
+        warn(f"{path} has no CRS: taken to be in that of the terrain")
+    if not same_crs(mapped.crs, raster.crs):
+        raise SlopeError(path, f"must be in the CRS of the terrain, {crs_name(raster.crs)} (gdalwarp -t_srs "
+                         "reprojects)", crs_name(mapped.crs))
+    wrong = np.argwhere(mapped.z < 0)
+    if len(wrong) or not np.nansum(mapped.z) > 0:
+        raise SlopeError(path, "must be thicknesses >= 0, somewhere > 0",
+                         f"{mapped.z[tuple(wrong[0])]:g}" if len(wrong) else "none")
+    check_overlap(path, mapped, raster)
+    target = folder / f"{OBSERVED}.tif"
+    rasters.write_geotiff(target, {"thickness": mapped.z}, mapped)
+    tell(f"{target.name}: thickness, {mapped.z.shape[1]} x {mapped.z.shape[0]} cells")
+    return None
+
+
+def check_overlap(path: str, mapped: Raster, raster: Raster) -> None:
+    """Raise SlopeError unless something of a mapped thickness, in coordinates of the CRS, lies on the terrain."""
+    rows, columns = np.nonzero(np.nan_to_num(mapped.z) > 0)
+    x, y = mapped.transform * (columns + 0.5, rows + 0.5)
+    xlo, ylo, xhi, yhi = extent(raster)
+    x, y = x + mapped.offset[0] - raster.offset[0], y + mapped.offset[1] - raster.offset[1]
+    if not np.any((x >= xlo) & (x <= xhi) & (y >= ylo) & (y <= yhi)):
+        far = np.hypot(x - (xlo + xhi) / 2, y - (ylo + yhi) / 2).min()
+        raise SlopeError(path, "must have thickness on the terrain", f"{far:,.0f} m from its centre at the nearest")

@@ -1,0 +1,79 @@
+"""The warnings of a site: slope site prints them, and keeps them in the folder for the report."""
+from pathlib import Path
+from typing import List, Optional, Sequence
+
+import yaml
+
+from .. import disk
+from ..errors import SlopeError
+from ..releases.release_solve import Measures
+from .site_budget import Size, Trial
+
+NAME = "warnings.yaml"
+ROUGH = 3.0             # balls, mean thickness of the body: below, the numbers are rough
+THICK = 10.0            # balls, largest thickness: below, a site should be repeated with more balls
+LARGE = 1e6             # m3: larger masses run farther than laboratory friction suggests
+LOST = 0.001            # share of the mass that may leave the terrain
+STEEP = 65.0            # degrees; tried: some faces of balls stand at 60, none at 70 and 80, whatever their friction
+# what a run says whose body falls while it settles
+FALLS = ("does not stand before it is shaken", "Lost atoms", "must be the body that the balls fill")
+MORE = "use more balls (--balls, --minutes)"
+
+
+def site_warnings(found: Measures, size: Size, trial: Optional[Trial]) -> List[str]:
+    """Warnings on a body and its balls; trial: None where there is no LAMMPS program."""
+    return [*of_trial(trial), *of_volume(found.volume),
+            *of_thickness(found.mean_depth / size.diameter, found.largest_depth / size.diameter)]
+
+
+def of_trial(trial: Optional[Trial]) -> List[str]:
+    """What the trial run showed."""
+    if trial is None:
+        return ["no LAMMPS program (LMP, --lmp, build/lmp): no trial run, time and speeds are unknown"]
+    lines = []
+    if trial.left > LOST:
+        lines.append(f"{100 * trial.left:.2g} % of the mass left the terrain in the trial run: use a larger elevation "
+                     "model")
+    if not trial.at_rest:
+        lines.append(f"the trial run was not at rest after {trial.rest:.0f} s: the run time of the study is a guess")
+    return lines
+
+
+def of_volume(volume: float) -> List[str]:
+    """Whether the default friction can be that of so large a mass (m3)."""
+    if volume < LARGE:
+        return []
+    return [f"the body has {volume / 1e6:.3g} million m3: masses of {LARGE / 1e6:g} million m3 and more run farther "
+            "than laboratory friction gives; calibrate with a past event of that size (slope calibrate), or see "
+            "--mobile"]
+
+
+def of_thickness(mean: float, largest: float) -> List[str]:
+    """Whether the body is thick enough; mean and largest thickness in balls."""
+    if mean < ROUGH:
+        return [f"the body is {mean:.1f} balls thick on average, below {ROUGH:g}: the numbers will be rough; {MORE}"]
+    if largest < THICK:
+        return [f"the body is {largest:.1f} balls thick at most, below {THICK:g}: a first look; to repeat it, {MORE}"]
+    return []
+
+
+def require_standing(error: SlopeError, peak_friction: float, slope: float) -> None:
+    """Raise SlopeError with what can be done if a trial run failed because the body does not stand before it is shaken.
+
+    peak_friction and slope (of the ground of the body) in degrees.
+    """
+    if not any(words in str(error) for words in FALLS):
+        return
+    alone = ("leave out --motion (motion.file: null in site.yaml), the body then fails by the loss of its strength "
+             "alone")
+    if slope >= STEEP:
+        raise SlopeError("--motion", "the body must stand before it is shaken, but a face of spheres as steep as this "
+                         f"one stands at no --peak-friction: {alone}", f"{slope:.0f} degrees") from None
+    raise SlopeError("--peak-friction", "must hold the body before it is shaken: try a larger one, up to 80, or a "
+                     f"thinner body; or {alone}", f"{peak_friction:g}") from None
+
+
+def write(folder: Path, lines: Sequence[str]) -> None:
+    """All warnings of a site into its folder: a YAML list, empty if there are none."""
+    about = "# slope site: what makes this site doubtful\n"
+    disk.write(folder / NAME, about + yaml.safe_dump(list(lines), allow_unicode=True, width=1000))

@@ -1,0 +1,1 @@
+"""Distributions, designs, emulators, bands and rules, without files."""

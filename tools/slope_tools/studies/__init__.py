@@ -1,0 +1,1 @@
+"""Studies: what is asked for, its runs, its results."""

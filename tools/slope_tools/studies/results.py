@@ -1,0 +1,337 @@
+"""What came out of the runs of a study: their numbers, the table, the maps over all runs, the conservative volume."""
+import os
+import sys
+from pathlib import Path
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
+
+import numpy as np
+import yaml
+
+from .. import disk, provenance
+from ..case import run_folders
+from ..deposits import left, rest, travel_shares
+from ..digits import rounded
+from ..ensembles import ensemble, known_study
+from ..runs import repeats
+from ..seismic import chain_files
+from ..survey import rasters
+from ..tables import combinations, intensity, size_error, step_check, structures, study_table, usable, withheld_words
+from ..tables.size_error import SizeErrors
+from ..tables.study_maps import Maps
+from .setup import Road, Setup
+
+BALANCE = 1e-9          # of the released volume
+NAMED = 3               # runs that a warning names
+SHOWN = 20              # runs of an ensemble whose table is printed
+
+
+def warn(text):
+    print(f"slope study: warning: {text}", file=sys.stderr)
+
+
+class Questions(NamedTuple):
+    """What is asked of the runs of a study together."""
+    settings: Mapping[str, Sequence[str]]           # of --set: choices
+    repeated: Mapping[str, Sequence[str]]           # of --repeat: chance
+    thresholds: Sequence[float]                     # m, of the maps of exceedance
+    errors: Optional[SizeErrors] = None             # by the size of the balls
+    order: Any = None                               # the ensemble.Order that the runs were made for, None of lists
+    intensity: Optional[str] = None                 # variable that is one; None: the one that is called so
+    more_than: Sequence[float] = ()                 # m3, volumes exceeded at each intensity
+    notes: Sequence[str] = ()                       # warnings of what was before the study, which go into its results
+    size_error_unusable: Optional[str] = None       # why the size error, which was to be measured, is not used
+    site: Optional[Path] = None                     # folder of the site whose study it is
+    sizes: Optional[Path] = None                    # converge.yaml of the runs with balls of several sizes
+    step: Optional[step_check.Step] = None          # the run with half the time step
+    method: str = ""                                # of a site's study, in words
+    chain: Optional[chain_files.Chain] = None       # of an ensemble: how likely its bodies fail in an earthquake
+
+
+def collect(setup: Setup, questions: Questions, todo, work) -> None:
+    """Table, maps and study.yaml over all runs that finished."""
+    settings, repeated, thresholds, errors, order = questions[:5]
+    output, deck = setup.output, setup.deck
+    if order and all(run.error for run in todo):
+        return      # study.perform says so
+    maps = Maps(thresholds)
+    rows, thickness = rows_of(setup, todo, maps, pictures=order is None)
+    warnings = [*questions.notes, *doubts(rows)]
+    if maps.problem:
+        warnings.append(maps.problem)
+    finished = [row for row in rows if row["status"] == "finished"]
+    groups = combinations.grouped(rows)
+    names = combinations.quantities(groups)
+    scatters = combinations.scatters(groups)
+    first = next((run for run in todo if not run.error), None)
+    written = maps.write(output, terrain_place(first) if first else None)
+    keys = ["front_m", "thickness_m", "max_thickness_m", "max_speed_m_s"]
+    keys += [key for key in (travel_shares.DISTANCE, "connected_m") if key in names]
+    about = {
+        "study": {"deck": deck.name, "set": settings, "repeat": repeated, "runs": len(rows), "finished": len(finished),
+                  "method": questions.method, "ranks": work.ranks, "jobs": work.jobs, "package": work.package,
+                  "collected": provenance.now(), "machine": provenance.machine()},
+        "largest": {key: largest(finished, key) for key in keys if finished},
+        "farthest": travel_shares.farthest(finished)["run"] if finished else None,
+        "conservative": None, "size_error_unusable": questions.size_error_unusable, "ensemble": None, "step": None,
+        "scatter": {name: known and {"deviation": known.deviation, "degrees_of_freedom": known.degrees_of_freedom}
+                    for name, known in scatters.items()},
+        "combinations": combinations.entries(groups, names), **written, "warnings": warnings, "runs": rows}
+    if setup.road and finished:
+        about["study"]["road"] = write_road(output, setup.road, first, thickness)
+    if order:
+        about["ensemble"] = ensemble.evaluate(order, rows, output, first and terrain_place(first), maps.problem)
+        about["ensemble"]["withheld"] = usable.reasons_of_ensemble(
+            rows, events_of(setup, first, finished[0]),
+            case_of(setup, questions, finished[0])._replace(sampled=True)) if setup.road and finished else []
+    elif setup.road and finished:
+        distrust = untrusted(errors, groups)
+        trusted = None if distrust else errors
+        about["size_error_unusable"] = questions.size_error_unusable or distrust
+        best = about["conservative"] = combinations.conservative(settings, rows, groups, trusted)
+        if trusted:
+            # from the folder of study.yaml, so that both may move together
+            best["size"]["file"] = os.path.relpath(trusted.path.resolve(), output.resolve())
+            best["doubts"] += trusted.doubts(deck.name, {**work.defaults, **best["set"]}, [*settings, *repeated],
+                                             about["study"]["road"])
+        best["doubts"] += unseen(repeated, work.defaults)
+        if questions.step:
+            about["step"] = step_check.compare(questions.step, groups, scatters[step_check.QUANTITY])
+            if about["step"]["within_chance"] is False:
+                best["doubts"].append(about["step"]["text"])
+        unknown = about["size_error_unusable"] or ""
+        if unknown and questions.sizes and size_error.falls(questions.sizes, "remove_m3"):
+            about["size_error_unusable"] = f"{unknown}. The volume falls with the size of the balls: nothing is added"
+            unknown = ""
+        usable.judge(best, rows, events_of(setup, first, finished[0]), case_of(setup, questions, finished[0]), unknown)
+    about["chain"] = chain_files.evaluate(questions.chain, rows, output, about["ensemble"]["withheld"]) \
+        if questions.chain and order and finished else None
+    about["intensity"] = intensity.collect(
+        output, questions.intensity, questions.more_than, settings, bool(setup.road), groups) \
+        if finished and not order else None      # of values that are drawn, each has one run
+    if not about["intensity"]:
+        (output / intensity.FILE).unlink(missing_ok=True)       # of a study before this one in the folder
+    else:
+        about["conservative"]["doubts"] += intensity.doubts(about["intensity"])
+    structures.collect(output, finished)
+    for text in warnings:
+        warn(text)
+    disk.write(output / "study.csv", study_table.table(settings, repeated, rows, work.defaults))
+    disk.write(output / "combinations.csv", combinations.table(groups, names, settings))
+    disk.write(output / "study.yaml", "# slope study: volumes in m3 of ground (bulk), lengths in m, times in s\n"
+               + yaml.safe_dump(about, sort_keys=False))
+    if not order or len(rows) <= SHOWN:
+        study_table.print_runs(settings, rows, scatters,
+                               f"{deck.name}: {len(rows)} run{'s' * (len(rows) != 1)}, volumes in m3 of ground")
+    if any(scatters.values()) and not order:
+        study_table.print_combinations(settings, groups, scatters)
+    print(f"{output / 'study.yaml'}, {output / 'study.csv'}, {output / 'combinations.csv'}: all numbers")
+    if about["conservative"]:
+        print("\n".join(combinations.describe(about["conservative"])))
+        if about["step"]:
+            print(about["step"]["text"])
+    if about["ensemble"]:
+        print("\n".join(ensemble.describe(about["ensemble"])))
+        print(f"{output / ensemble.HAZARD}, {output / ensemble.INFLUENCE}: all curves and indices; "
+              f"{output / ensemble.MAPS}: {len(about['ensemble']['maps'])} maps of quantiles and exceedance")
+    if about["chain"]:
+        print("\n".join(chain_files.describe(about["chain"], output)))
+    for entry in [*(written["envelope"] or {}).values(), *(written["exceedance"] or ())]:
+        print(f"{output / entry['file']}: {entry['what']}")
+
+
+def untrusted(errors: Optional[SizeErrors], groups) -> Optional[str]:
+    """Why a size error does not count, None where it does, or where there is none."""
+    if errors is None:
+        return None
+    return "; ".join(errors.distrust(str(group.rows[0]["variables"][errors.variable]) for group in groups)) or None
+
+
+def events_of(setup: Setup, run, row) -> Optional[usable.Events]:
+    """Known events of the mass of a run, of its row."""
+    from ..survey import polygons
+    summary = setup.output / row["summary"]
+    raster = placed(run_folders.load_raster(run_folders.prefix_of(summary), "thickness"), run)
+    road = polygons.read_local(setup.road.file, raster, setup.road.local) if setup.road else None
+    return usable.known_events(run_folders.prefix_of(summary), terrain_of(run), row["released_m3"], road)
+
+
+def case_of(setup: Setup, questions: Questions, row) -> withheld_words.Case:
+    asked = " --paper" if questions.method == known_study.ASKED else ""
+    return withheld_words.Case(setup.deck, questions.site, row["variables"], round(row["released_m3"] / row["ball_m3"]),
+                               asked=asked)
+
+
+def unseen(repeated, defaults):
+    """The caveat that the scatter is incomplete: only seeds were repeated, though the deck can move its lattice."""
+    offsets = repeats.only_seeds(repeated, defaults)
+    return [f"the scatter is that of {', '.join(repeated)} alone: {', '.join(offsets)} of the deck "
+            f"{'was' if len(offsets) == 1 else 'were'} not repeated"] if offsets else []
+
+
+def rows_of(setup: Setup, todo, maps, pictures=True):
+    """A row for each run, finished or failed, and the final thickness of the last one that finished.
+
+    pictures: whether `slope volume` draws its map of each, which takes longest.
+    """
+    rows, thickness = [], None
+    for run in rasters.progress(todo, "collecting the runs"):
+        row = {"run": run.name, "status": "failed" if run.error else "finished", "set": run.combination,
+               "repeat": run.repeat}
+        if run.error:
+            rows.append({**row, "error": run.error, "log_warnings": run.log.warnings})
+            continue
+        row, thickness = result(run, row, maps)
+        if setup.road:
+            row.update(on_road(run, setup, row, thickness, pictures))
+        rows.append(row)
+    return rows, thickness
+
+
+def moving_warnings(finished):
+    """The warning of those deposits that are not at rest, in a list; an empty one without any."""
+    moving = [row for row in finished if not row["at_rest"]]
+    if not moving:
+        return []
+    more = f"; and {len(moving) - NAMED} more" if len(moving) > NAMED else ""
+    return [f"{len(moving)} of {len(finished)} deposits are not at rest at the end: " + "; ".join(
+        f"{row['run']} at {row['stop_time_s']:.1f} s ({row['end']})" for row in moving[:NAMED]) + more]
+
+
+def doubts(rows):
+    """Warnings about runs."""
+    warnings = [f"{row['run']}: failed: {row['error']}" for row in rows if row["status"] == "failed"]
+    finished = [row for row in rows if row["status"] == "finished"]
+    warnings += moving_warnings(finished)
+    for row in finished:
+        left = row["off_grid_m3"] + row["lost_m3"]
+        if left > 1e-6 * row["released_m3"]:
+            warnings.append(f"{row['run']}: {rounded(left, 3)} m3 left the grid or the box")
+        if not abs(row["mass_error"]) <= BALANCE:
+            warnings.append(f"{row['run']}: the volume in the thickness raster differs from released - off the grid - "
+                            f"lost by {row['mass_error']:.1e} of the released volume")
+    of_road: Dict[str, List[str]] = {}
+    for row in finished:
+        for text in row.get("road_warnings", ()):
+            of_road.setdefault(text, []).append(row["run"])
+    for text, names in of_road.items():
+        warnings.append(text if len(names) == len(finished) else f"{', '.join(names)}: {text}")
+    for what in ("slope_version", "lammps_version", "lmp_sha256"):
+        if len({row[what] for row in finished}) > 1:
+            warnings.append(f"the runs are of different programs: {what} "
+                            + ", ".join(sorted({str(row[what]) for row in finished})))
+    return warnings
+
+
+def result(run, row, maps):
+    """The row of a finished run, and its final thickness; adds its rasters to the maps."""
+    marker = disk.load_yaml(run.marker, "what `slope study` wrote")
+    path = run.folder / str(marker.get("summary"))
+    about = disk.load_yaml(run.folder / run_folders.VARIABLES, "what `slope study` wrote")
+    summary = run_folders.load_summary(path)
+    prefix = run_folders.prefix_of(path)
+    thickness = run_folders.load_raster(prefix, "thickness")
+    maps.add(run.name, thickness, run_folders.load_raster(prefix, "max_thickness"))
+    run.log.update()
+    volume, travel = summary["volume"], summary["travel"]
+    stays = volume["released"] - volume["off_grid"] - volume["lost"]
+    on_grid = float(np.nansum(thickness.z)) * thickness.transform.a ** 2
+    state, whole = rest.state(summary, path), whole_deposit(prefix, thickness, summary)
+    row = {**row, "variables": about.get("variables"), "ranks": about.get("ranks"), "package": about.get("package"),
+           "released_m3": volume["released"], "ball_m3": volume["released"] / summary["balls"]["released"],
+           "on_grid_m3": volume["on_grid"], "off_grid_m3": volume["off_grid"], "lost_m3": volume["lost"],
+           "residual_m3": volume["residual"], "mass_error": (on_grid - stays) / volume["released"],
+           "front_m": travel["front"], "reach_angle_deg": travel["reach_angle"], "centroid_m": travel["centroid"],
+           **travel_shares.columns(summary, path), **whole,
+           "thickness_m": summary["largest"]["thickness"], "max_thickness_m": summary["largest"]["max_thickness"],
+           "max_speed_m_s": summary["largest"]["max_speed"], "stop_time_s": summary["stop"]["time"],
+           "stop_reason": summary["stop"]["reason"], "moving": summary["moving"],
+           "at_rest": state.at_rest, "end": state.text, "end_short": state.short, "moves_share": state.share,
+           "moving_share": summary["motion"]["moving_share"], "fast_share": summary["motion"].get("fast_share"),
+           "fast_volume_m3": summary["motion"].get("fast_volume"),
+           "fast_speed_m_s": summary["motion"].get("fast_speed"),
+           "change_rate": summary.get("change_rate"),
+           "wall_s": marker.get("wall_seconds"), "summary": f"{run.name}/{path.name}",
+           "slope_version": summary["slope_version"], "lammps_version": summary["lammps_version"],
+           "lmp_sha256": about.get("lmp_sha256"), "log_warnings": run.log.warnings,
+           **structures.of_run(run.folder, run.log.settings)}
+    return row, thickness
+
+
+def whole_deposit(prefix, thickness, summary):
+    """How far the connected deposit reaches from the highest released ball: m in plan, and reach angle in degrees."""
+    from ..deposits import connected, deposit
+    base = run_folders.load_raster(prefix, "surface").z - thickness.z
+    found = connected.connected(deposit.Deposit(str(prefix), thickness, base, summary, None))
+    return {"connected_m": found and found.distance, "connected_deg": found and found.reach_angle}
+
+
+def on_road(run, setup: Setup, row, thickness, picture=True) -> Dict[str, Any]:
+    """What `slope volume` says of a run, all of which goes to the folder volume of the run; and what lies beyond."""
+    from ..deposits import volume
+    from ..survey import polygons
+    road, summary = setup.road, setup.output / row["summary"]
+    assert road
+    prefix = run_folders.prefix_of(summary)
+    terrain = terrain_of(run)
+    found = volume.of_run(str(prefix), volume.Wanted(road.file, road.mesh, road.cut_angle, road.local), terrain)
+    volume.write(found, run.folder / "volume", picture)
+    about = disk.plain(found.about)       # numpy has no place in study.yaml
+    released = run_folders.load_raster(prefix, "arrival").z == 0
+    polygon = polygons.read_local(road.file, placed(thickness, run), road.local)
+    gone, passed = row["off_grid_m3"] + row["lost_m3"], run_folders.load_raster(prefix, "max_thickness")
+    return {"remove_m3": about["volume"]["remove"], "remove_on_road_m3": about["volume"]["remove_on_road"],
+            "remove_beside_road_m3": about["volume"]["remove_beside_road"],
+            "beyond_road_m3": beyond(thickness, released, polygon),
+            "left_before_road_m3": left.before_road(gone, passed, released, polygon),
+            "blocked_m": about["axis"]["blocked_length"], "axis_thickness_m": about["axis"]["largest_thickness"],
+            # what it says of the summary is in the table
+            "road_warnings": [text.replace(f"{run.folder}/", "") for text in about["warnings"]
+                              if not text.startswith(f"{summary}:")]}
+
+
+def beyond(thickness, released, road):
+    """Volume (m3) on those parts of the grid that the road (local metres) cuts off from the released mass (a mask).
+
+    None if the road does not divide the grid.
+    """
+    from shapely.geometry import box
+    from .. import geometry
+    rows, columns = thickness.z.shape
+    lines = np.arange(columns + 1.0), np.arange(rows + 1.0)
+    parts = geometry.polygons_of(box(0, 0, columns, rows).difference(geometry.to_index(road, thickness)))
+    shares = [geometry.coverage(part, *lines)[0] for part in parts]
+    shares = [share for share in shares if share.sum() > 1e-6]
+    if len(shares) < 2:
+        return None
+    shares.sort(key=lambda share: (share * released).sum())     # the last one is where the mass comes from
+    return float(sum((share * thickness.z).sum() for share in shares[:-1]) * thickness.transform.a ** 2)
+
+
+def placed(raster, run):
+    """The raster with the CRS and the offset of the run's terrain."""
+    place = terrain_place(run)
+    return raster._replace(crs=place.crs, offset=place.offset) if place else raster
+
+
+def write_road(output, road: Road, run, thickness) -> Dict[str, Any]:
+    """Keep the road, in local metres, with the study; what study.yaml says of it."""
+    from ..survey import polygons
+    raster = placed(thickness, run)
+    polygons.write(output / "road.csv", polygons.read_local(road.file, raster, road.local), raster)
+    return {"file": road.file.name, "local": "road.csv", "cut_angle": road.cut_angle, "mesh": road.mesh}
+
+
+def terrain_place(run):
+    """CRS and offset of the runs' local metres, from the sidecar of their terrain; None without one."""
+    return run.log.terrain and rasters.read_sidecar(run.folder / run.log.terrain)
+
+
+def terrain_of(run):
+    """The terrain file of a run, None without one."""
+    return run.folder / run.log.terrain if run.log.terrain else None
+
+
+def largest(rows, key):
+    """The largest value of a column and the first run that has it."""
+    best = max(rows, key=lambda row: row[key])
+    return {"value": best[key], "run": best["run"]}

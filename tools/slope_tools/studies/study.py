@@ -1,0 +1,170 @@
+"""Planning, checking and making the runs of a study."""
+import argparse
+import contextlib
+import functools
+from pathlib import Path
+from typing import Callable, Dict, Optional
+
+from .. import disk
+from ..case import decks, run_folders
+from ..case.data_files import data_files
+from ..errors import SlopeError
+from ..options import number
+from ..programs import find_lmp
+from ..runs import dependencies, jobs, launcher, slurm
+from ..survey import rasters
+from . import results
+from .setup import Road, Setup
+
+MOST_LETTERS = 200      # of a folder's name; file systems take 255
+
+
+def perform(setup: Setup, settings, todo, collect, begin=None):
+    """Run what is not finished of todo, then collect(todo, work); RunsFailed after that if a run failed.
+
+    begin: called once the folder is there, before the first run.
+    """
+    files = data_files(setup.deck, settings)
+    if setup.road:
+        check_road(setup.road, setup.deck, settings)
+    check_folder(setup, todo)
+    if setup.dry_run:
+        digests = {name: disk.sha256(source) for name, source in files.items()}
+        depends = dependencies.Dependencies(setup.deck, digests, program_of(setup))
+        for one in todo:
+            jobs.check_finished(one, depends)
+        return list_runs(todo)
+    with prepared(setup, files, len(todo)) as work:
+        for one in todo:
+            jobs.check_finished(one, work.depends)
+        if begin:
+            begin()
+        work.do(todo)
+        collect(todo, work)
+    raise_failed(setup.output, todo)
+
+
+def program_of(setup: Setup) -> Optional[Path]:
+    """The LAMMPS program; None where none is given or built, which does not matter as long as nothing is run."""
+    try:
+        return find_lmp(setup.lmp)
+    except SlopeError:
+        if setup.lmp:
+            raise
+        return None
+
+
+@contextlib.contextmanager
+def prepared(setup: Setup, files, number):
+    """The jobs.Work of so many runs, while the output folder is ours; files: of data_files()."""
+    lmp = find_lmp(setup.lmp)
+    cores = jobs.cores()
+    most = setup.jobs or max(1, cores // setup.ranks)
+    make: Callable[..., jobs.Work] = jobs.Work
+    launcher.check(setup.launcher, setup.ranks)
+    if setup.engine == "slurm":
+        slurm.check(setup.slurm)
+        make = functools.partial(slurm.Work, options=setup.slurm, throttle=setup.jobs)
+    elif setup.slurm:
+        raise SlopeError("--slurm", "must be given with --engine slurm", setup.slurm)
+    elif min(most, number) * setup.ranks > cores:
+        results.warn(f"{min(most, number)} runs of {setup.ranks} ranks at a time on {cores} cores: they slow each "
+                     "other down")
+    try:
+        setup.output.mkdir(parents=True, exist_ok=True)
+        inputs = setup.output / ".inputs"
+        with disk.alone_in(setup.output), jobs.signals_interrupt(), jobs.copied(files, inputs) as digests:
+            yield make(setup.deck, digests, inputs, lmp, setup.ranks, most, setup.launcher)
+    except OSError as error:
+        place = error.filename2 or error.filename or setup.output        # of a copy, the second is where it goes
+        raise SlopeError(place, f"cannot be used: {error.strerror}") from error
+
+
+class RunsFailed(SlopeError):
+    """Runs failed; all others were made and collected."""
+
+
+def raise_failed(output, todo):
+    """RunsFailed if runs failed, with the first of them."""
+    failed = [one for one in todo if one.error]
+    if failed:
+        more = f" and {len(failed) - 1} more" if len(failed) > 1 else ""
+        raise RunsFailed(output, f"{len(failed)} of {len(todo)} runs failed: {failed[0].name}{more}: "
+                         f"{failed[0].error}")
+
+
+# --- what is to be run ---
+
+def check_thresholds(text, option="--exceed", what="thicknesses"):
+    """The thicknesses of --exceed, m, or what an option like it holds."""
+    found = []
+    for part in text.split(","):
+        try:
+            value = number(part)
+        except argparse.ArgumentTypeError:
+            value = -1.0
+        if value < 0 or value in found:
+            raise SlopeError(option, f"must be different {what} >= 0, with commas between", text)
+        found.append(value)
+    return found
+
+
+def check_road(road: Road, deck: Path, settings) -> None:
+    """Raise SlopeError now if the road cannot be used after the runs, as far as the deck names its terrain."""
+    from ..survey import polygons
+    if not road.file.is_file():
+        raise SlopeError("--road", "must be an existing file", road.file)
+    if not 0 < road.cut_angle < 90:
+        raise SlopeError("--cut-angle", "must be > 0 and < 90 degrees", f"{road.cut_angle:g}")
+    if road.mesh <= 0:
+        raise SlopeError("--mesh", "must be > 0", f"{road.mesh:g}")
+    path = terrain_of(deck, {name: several[0] for name, several in settings.items()})
+    if path:
+        polygons.read_local(road.file, rasters.read_place(path), road.local)
+
+
+def terrain_of(deck, chosen):
+    """The terrain file that a deck names, with the values chosen of its variables; None if it is not in reach."""
+    known = {**decks.index_variables(deck), **chosen}
+    for words in decks.commands(deck):
+        if words[0] == "region" and words[2:3] == ["terrain"] and len(words) > 3:
+            path = deck.parent / decks.filled(words[3], known)
+            return path if path.is_file() else None
+    return None
+
+
+def check_names(todo):
+    """Raise SlopeError unless each run has a folder of its own."""
+    names: Dict[str, Dict[str, str]] = {}
+    for one in todo:
+        if len(one.name) > MOST_LETTERS:
+            raise SlopeError("--set", f"must make folder names of at most {MOST_LETTERS} letters", one.name)
+        if one.name in names:
+            raise SlopeError("--set", f"must not give two runs the folder {one.name}",
+                             f"{list(names[one.name].values())} and {list(one.chosen.values())}")
+        names[one.name] = one.chosen
+
+
+def check_folder(setup: Setup, todo) -> None:
+    """Raise SlopeError unless the output is a folder, or can become one, whose run folders are this study's."""
+    if setup.output.exists() and not setup.output.is_dir():
+        raise SlopeError("-o", "must be a folder", setup.output)
+    if setup.output.exists() and setup.output.samefile(setup.deck.parent):
+        raise SlopeError("-o", "must not be the folder of the deck", setup.output)
+    for one in todo:
+        if not one.folder.exists():
+            continue
+        about = one.folder / run_folders.VARIABLES
+        if not about.is_file():
+            raise SlopeError(one.folder, f"must be a run folder of a study, with {run_folders.VARIABLES}: remove it, "
+                             "or give another -o")
+        if disk.load_yaml(about, "what `slope study` wrote").get("set") != one.chosen:
+            raise SlopeError(about, f"must be of the run {one.name}: remove the folder, or give another -o")
+
+
+def list_runs(todo):
+    for one in todo:
+        values = " ".join(f"{name} {value}" for name, value in one.chosen.items())
+        print(f"{one.name}: {values}, {one.state()}")
+    done = sum(one.marker.exists() for one in todo)
+    print(f"{len(todo)} run{'s' * (len(todo) != 1)}, {done} of them finished")

@@ -1,0 +1,223 @@
+"""The runs of a study by combinations of choices: mean and scatter of each, and the conservative volume over all."""
+import csv
+import io
+from dataclasses import dataclass, field
+from typing import Any, Dict, List, Mapping, Optional, Sequence
+
+from ..case.settings import as_number
+from ..deposits.travel_shares import DISTANCE, REACH
+from ..runs import jobs
+from ..runs.repeats import key_of
+from ..statistics import headline
+from ..statistics.headline import Combination, Scatter
+from . import withheld_words
+from .size_error import SizeErrors
+
+# what a combination has a mean of, if all runs have it
+QUANTITIES = {"remove_m3": "to remove", "remove_on_road_m3": "on the road", "beyond_road_m3": "beyond the road",
+              DISTANCE: "99 % within m", REACH: "99 % within deg", "connected_m": "connected m",
+              "centroid_m": "centroid m", "front_m": "farthest ball m", "released_m3": "released"}
+# runs that are the same in all of these are one run: two of chance never are
+SAME = ("released_m3", "centroid_m", "front_m", "max_speed_m_s", "remove_m3")
+
+Row = Mapping[str, Any]
+
+
+@dataclass
+class Group:
+    """The finished runs of one combination; same: those left out because another one has the same numbers."""
+    name: str
+    set: Dict[str, str]
+    rows: List[Row] = field(default_factory=list)
+    same: List[Row] = field(default_factory=list)
+
+    def of(self, column: str) -> Combination:
+        return Combination(self.name, {key_of(row["repeat"]): row[column] for row in self.rows})
+
+
+def grouped(rows: Sequence[Row]) -> List[Group]:
+    """The finished runs by their combinations, in the order of the rows."""
+    found: Dict[tuple, Group] = {}
+    for row in rows:
+        if row["status"] != "finished":
+            continue
+        group = found.setdefault(tuple(row["set"].values()), Group(jobs.Run("", row["set"]).name, row["set"]))
+        numbers = [row.get(name) for name in SAME]
+        same = any([other.get(name) for name in SAME] == numbers for other in group.rows)
+        (group.same if same else group.rows).append(row)
+    return list(found.values())
+
+
+def quantities(groups: Sequence[Group]) -> List[str]:
+    """Columns that every run has a number in."""
+    return [name for name in QUANTITIES if all(row.get(name) is not None for group in groups for row in group.rows)]
+
+
+def scatters(groups: Sequence[Group]) -> Dict[str, Optional[Scatter]]:
+    """The scatter of one run in each column, pooled over the combinations."""
+    return {name: headline.pooled([group.of(name) for group in groups]) for name in quantities(groups)}
+
+
+def entries(groups: Sequence[Group], names: Sequence[str]) -> List[Dict[str, Any]]:
+    """What study.yaml says of each combination: of each column mean, scatter (None of one run), smallest, largest."""
+    found = []
+    for group in groups:
+        entry: Dict[str, Any] = {"combination": group.name, "set": dict(group.set),
+                                 "runs": [row["run"] for row in group.rows], "repeats": len(group.rows)}
+        for name in names:
+            one = group.of(name)
+            entry[name] = {"mean": one.mean, "scatter": one.scatter, "smallest": min(one.volumes.values()),
+                           "largest": max(one.volumes.values())}
+        found.append(entry)
+    return found
+
+
+def table(groups: Sequence[Group], names: Sequence[str], settings: Mapping[str, Sequence[str]]) -> str:
+    """The CSV over all combinations."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["combination", *settings, "repeats",
+                     *(column for name in names for column in (f"{name}_mean", f"{name}_scatter"))])
+    for group in groups:
+        several = [group.of(name) for name in names]
+        writer.writerow([group.name, *group.set.values(), len(group.rows),
+                         *(cell for one in several for cell in (one.mean, one.scatter))])
+    return text.getvalue()
+
+
+def label(chosen: Mapping[str, str], settings: Mapping[str, Sequence[str]]) -> str:
+    """A combination in words: the values that vary."""
+    return ", ".join(f"{name} {value}" for name, value in chosen.items() if len(settings[name]) > 1)
+
+
+# --- the conservative volume ---
+
+def straight(settings: Mapping[str, Sequence[str]], groups: Sequence[Group], chosen: Mapping[str, str]):
+    """For each variable with several values: the groups that differ from a combination in this variable only."""
+    for name, several in settings.items():
+        if len(several) > 1:
+            rest = {other: value for other, value in chosen.items() if other != name}
+            yield name, [group for group in groups
+                         if all(group.set[other] == value for other, value in rest.items())]
+
+
+FEW = 0.05      # of the largest volume of runs that differ by chance alone: less is another outcome
+
+
+def conservative(settings, rows, groups: Sequence[Group], errors: Optional[SizeErrors] = None) -> Dict[str, Any]:
+    """The entry of the conservative volume in study.yaml: its parts, what it is based on, its caveats (doubts)."""
+    parts = [group.of("remove_m3") for group in groups]
+    sizes = {group.name: errors.at(str(group.rows[0]["variables"][errors.variable])) for group in groups} \
+        if errors else None
+    best = headline.headline(parts, sizes)
+    governing = next(group for group in groups if group.name == best.combination)
+    largest = max(governing.rows, key=lambda row: row["remove_m3"])
+    differences = []
+    for name, line in straight(settings, groups, governing.set):
+        if len(line) < 2:
+            continue
+        found = headline.difference([group.of("remove_m3") for group in line], best.scatter)
+        value = {group.name: group.set[name] for group in line}
+        differences.append({"variable": name, "largest_at": value[found.largest], "smallest_at": value[found.smallest],
+                            "by_m3": found.by, "chance_m3": found.chance, "clear": found.clear})
+    scatter, size = best.scatter, sizes and sizes[best.combination]
+    return {
+        "volume_m3": best.volume, "mean_m3": best.mean, "chance_m3": best.chance, "size_m3": best.size,
+        "rounded": {f"{name}_m3": value for name, value in best.rounded().items()}, "place_m3": best.place,
+        "kind": best.kind, "combination": best.combination, "set": dict(governing.set),
+        "label": label(governing.set, settings), "repeats": best.repeats, "runs": best.runs,
+        "combinations": len(groups), "scatter_m3": scatter and scatter.deviation,
+        "degrees_of_freedom": scatter and scatter.degrees_of_freedom, "quantile": scatter and scatter.quantile,
+        # the run whose maps represent it
+        "run": largest["run"], "remove_m3": largest["remove_m3"],
+        "size": size and errors and {
+            "file": str(errors.path), "variable": errors.variable,
+            "value": str(governing.rows[0]["variables"][errors.variable]), "error_percent": 100 * size.share,
+            "half_percent": None if size.half is None else 100 * size.half},
+        "differences": differences, "doubts": doubts(settings, rows, groups, best, differences),
+        "withheld": [], "zero": None}       # see usable.judge
+
+
+def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline, differences) -> List[str]:
+    """The caveats: reasons why the volume may be larger than the headline."""
+    found = []
+    finished = [row for row in rows if row["status"] == "finished"]
+    if len(rows) == 1:
+        found.append("nothing was varied: it comes from a single run")
+    if len(finished) < len(rows):
+        found.append(f"{len(rows) - len(finished)} of {len(rows)} runs failed")
+    moving = sum(not row["at_rest"] for row in finished)
+    if moving:
+        found.append(f"{moving} of {len(finished)} deposits are not at rest")
+    chosen = next(group.set for group in groups if group.name == best.combination)
+    ends = []
+    for entry in differences:
+        name = entry["variable"]
+        numbers = [as_number(value) for value in settings[name]]
+        value = as_number(chosen[name])
+        if entry["clear"] is not False and value == as_number(entry["largest_at"]) and value != 0 \
+                and all(isinstance(one, float) for one in numbers) and value in (min(numbers), max(numbers)):
+            ends.append(f"it lies at the end of the range of {name}, {min(numbers):g} to {max(numbers):g}")
+    if best.chance is not None:
+        found += ends
+    elif len(rows) > 1:
+        found.append("; ".join(["without repeats (--repeat) the scatter by chance is unknown", *ends]))
+    same = [row["run"] for group in groups for row in group.same]
+    if same:
+        found.append(f"a repeated variable has no effect: {', '.join(same[:3])}{' and more' * (len(same) > 3)} "
+                     f"{'is' if len(same) == 1 else 'are'} identical to another run to the last digit and "
+                     f"{'is' if len(same) == 1 else 'are'} not counted")
+    released = max(row["released_m3"] for row in finished)
+    if best.volume > released:
+        found.append(f"it is more than the {headline.text(released, best.place)} m3 that are released, which is "
+                     "impossible: the scatter or the size error is too uncertain to give a number")
+    for group in groups:
+        volumes = list(group.of("remove_m3").volumes.values())
+        few = sum(volume < FEW * max(volumes) for volume in volumes)
+        if few:
+            found.append(f"{few} of the {len(volumes)} runs of {group.name} have less than {100 * FEW:g} % of the "
+                         "volume of the others, which the scatter by chance does not describe (did the slope fail in "
+                         "some runs only?)")
+    above = max(finished, key=lambda row: row["remove_m3"])
+    if above["remove_m3"] > best.volume:
+        found.append(f"{above['run']} gave more, {headline.text(above['remove_m3'], best.place)} m3")
+    parts = [group.of("remove_m3") for group in groups]
+    odd = headline.odd_one(parts, best.combination)
+    if odd:
+        mine, others = (headline.text(one, headline.place(odd[1] or odd[0])) for one in odd)
+        found.append(f"its runs scatter more than the others, by {mine} instead of {others} m3: the common scatter may "
+                     "be too small for it")
+    return found
+
+
+def describe(best: Mapping[str, Any]) -> List[str]:
+    """The conservative volume and its parts, rounded to what is known, differences and caveats; a line each.
+
+    In its place why it is withheld, if it is.
+    """
+    def number(value):
+        return headline.text(value, best["place_m3"])
+
+    if best["withheld"]:
+        return [*withheld_words.lines(best["withheld"]), *(f"caveat: {doubt}" for doubt in best["doubts"])]
+    parts = {name: best["rounded"][f"{name}_m3"] for name in ("volume", "mean", "chance", "size")}
+    if parts["chance"] is None:
+        text = f"{best['kind']}: {number(parts['volume'])} m3 to remove"
+        if parts["size"] is not None:
+            text += f", of which {number(parts['size'])} for the size of the balls"
+        text += f"; run {best['run']}"
+    else:
+        text = (f"conservative volume to remove: {number(parts['volume'])} m3 = {number(parts['mean'])}, mean of "
+                f"{best['repeats']} runs ({best['label'] or best['combination']}) + {number(parts['chance'])}, chance "
+                f"(s {number(best['scatter_m3'])}, {best['degrees_of_freedom']:.3g} degrees of freedom)")
+        text += (f" + {number(parts['size'])}, size of the balls" if parts["size"] is not None
+                 else "; the size of the balls is not in it")
+    lines = [text, *([best["zero"]["text"]] if best["zero"] else [])]
+    for entry in best["differences"]:
+        if entry["clear"] is not None:
+            word = "more than" if entry["clear"] else "no more than"
+            by, chance = (headline.text(entry[key], headline.place_of_digits(entry["chance_m3"]))
+                          for key in ("by_m3", "chance_m3"))
+            lines.append(f"{entry['variable']}: {by} m3 between {entry['smallest_at']} and {entry['largest_at']}, "
+                         f"{word} expected by chance, {chance} m3")
+    return lines + [f"it may be exceeded: {doubt}" for doubt in best["doubts"]]

@@ -1,0 +1,40 @@
+"""What half the time step changes: one run with it, against the mean of the runs that are otherwise the same."""
+from typing import Any, Dict, NamedTuple, Optional, Sequence
+
+from ..statistics import headline
+from .combinations import Group
+
+HALF = "0.5"            # of the rule's step, the deck's variable `step`
+QUANTITY = "remove_m3"
+
+
+class Step(NamedTuple):
+    """The run with half the step; where there is none, why."""
+    rolling: str                # its rolling resistance
+    volume: Optional[float]     # m3 to remove
+    why: str = ""
+
+
+def compare(step: Step, groups: Sequence[Group], scatter: Optional[headline.Scatter]) -> Dict[str, Any]:
+    """The entry of study.yaml; its text is one sentence.
+
+    within_chance: None where the scatter of a run is unknown. Chance: a single run differs from the mean of n by less
+    than t s sqrt(1 + 1/n) in 95 % of cases (Hahn and Meeker, Statistical Intervals, 1991, section 4.7).
+    """
+    entry: Dict[str, Any] = {"step": float(HALF), "rolling": step.rolling, "volume_m3": step.volume, "mean_m3": None,
+                             "chance_m3": None, "within_chance": None}
+    same = next((group for group in groups if group.set.get("rolling") == step.rolling), None)
+    if step.volume is None or same is None:
+        return {**entry, "text": f"half the time step: not tried: {step.why or 'no run with the same values finished'}"}
+    volumes = same.of(QUANTITY)
+    difference = step.volume - volumes.mean
+    entry["mean_m3"] = volumes.mean
+    text = f"half the time step, rolling {step.rolling}: {step.volume:,.0f} m3 instead of {volumes.mean:,.0f} to remove"
+    if volumes.mean > 0:
+        text += f", {100 * difference / volumes.mean:+.1f} %"
+    if scatter is None:
+        return {**entry, "text": f"{text}; chance unknown"}
+    chance = scatter.chance(volumes.runs)
+    within = abs(difference) <= chance
+    return {**entry, "chance_m3": chance, "within_chance": within,
+            "text": f"{text}; {'no more' if within else 'more'} than chance explains, {chance:,.0f} m3"}

@@ -1,0 +1,108 @@
+"""The tables over all runs of a study, and over its combinations: as a CSV and on the screen."""
+import csv
+import io
+import sys
+from typing import Any, Dict, Tuple
+
+from rich.console import Console
+from rich.table import Table
+
+from ..deposits import rest, travel_shares
+from ..statistics import headline
+from . import combinations
+
+COLUMNS = ("released_m3", "on_grid_m3", "off_grid_m3", "lost_m3", "residual_m3", *travel_shares.COLUMNS, "connected_m",
+           "connected_deg", "front_m", "reach_angle_deg", "centroid_m", "thickness_m", "max_thickness_m",
+           "max_speed_m_s", "stop_time_s", "stop_reason", "moving", "at_rest", "end", "wall_s")
+ROAD_COLUMNS = ("remove_m3", "remove_on_road_m3", "remove_beside_road_m3", "beyond_road_m3", "blocked_m",
+                "axis_thickness_m")
+MAYBE = (*travel_shares.COLUMNS, "connected_m", "connected_deg", "wall_s", "beyond_road_m3")     # that may be unknown
+ANSWER = {True: "yes", False: "no"}
+
+SHOWN: Dict[str, Tuple[str, Any]] = {      # head, format
+    "released_m3": ("released", "{:,.0f}"), "on_grid_m3": ("on grid", "{:,.0f}"), "lost_m3": ("lost", "{:,.0f}"),
+    travel_shares.DISTANCE: ("99 % within m", "{:.1f}"), travel_shares.REACH: ("deg", "{:.1f}"),
+    "connected_m": ("connected m", "{:.1f}"), "front_m": ("farthest ball m", "{:.1f}"),
+    "stop_time_s": ("stop s", "{:.1f}"), "end_short": ("end", "{}"), "moves_share": ("moves", rest.percent),
+    "wall_s": ("wall s", "{:.0f}")}
+SHOWN_ROAD: Dict[str, Tuple[str, Any]] = {
+    "remove_m3": ("to remove", None), "remove_on_road_m3": ("on the road", None),
+    "beyond_road_m3": ("beyond it", None), "blocked_m": ("blocked m", "{:.0f}")}
+
+
+def table(settings, repeated, rows, defaults):
+    """The CSV over all runs."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    columns = [*COLUMNS, *(ROAD_COLUMNS if any("remove_m3" in row for row in rows) else ()), "status", "error"]
+    more = [name for name in repeated if name not in settings]
+    writer.writerow(["run", *settings, *more, *columns])
+    for row in rows:
+        cells = {**row, **{name: ANSWER.get(row.get(name)) for name in ("moving", "at_rest")}}
+        chosen = {**defaults, **row["set"], **row["repeat"]}
+        writer.writerow([row["run"], *(chosen[name] for name in (*settings, *more)),
+                         *(cells.get(key) for key in columns)])
+    return text.getvalue()
+
+
+def volume(value, scatter):
+    """A volume rounded to what is known: by its scatter, else to three digits; if repeats agree, to whole m3."""
+    if scatter is not None and scatter.deviation > 0:
+        return headline.text(value, headline.place(scatter.deviation))
+    place = headline.place_of_digits(value)
+    return headline.text(value, min(1.0, place) if scatter else place)
+
+
+def varied(settings):
+    """Names of several values, and a caption that tells the others."""
+    same = {name: several[0] for name, several in settings.items() if len(several) == 1}
+    caption = "in all runs " + ", ".join(f"{name} {value}" for name, value in same.items()) if same else None
+    return [name for name in settings if name not in same], caption
+
+
+def print_runs(settings, rows, scatters, title):
+    names, caption = varied(settings)
+    shown = Table(title=title, caption=caption)
+    columns = {**SHOWN, **(SHOWN_ROAD if any("remove_m3" in row for row in rows) else {})}
+    finished = [row for row in rows if row["status"] == "finished"]
+    columns = {key: column for key, column in columns.items() if any(row[key] is not None for row in finished)}
+    repeated = any(row["repeat"] for row in rows)
+    for head in (*names, *(["repeat"] * repeated)):
+        shown.add_column(head, justify="right", no_wrap=True)
+    for head, _ in columns.values():
+        shown.add_column(head, justify="right")
+    for row in rows:
+        cells = [row["set"][name] for name in names] + [combinations.key_of(row["repeat"])] * repeated
+        if row["status"] == "failed":
+            cells += ["failed"]
+        else:
+            cells += ["-" if row[key] is None else volume(row[key], scatters.get(key)) if form is None else
+                      form(row[key]) if callable(form) else form.format(row[key])
+                      for key, (_, form) in columns.items()]
+        shown.add_row(*cells)
+    show(shown)
+
+
+def print_combinations(settings, groups, scatters):
+    """Mean and scatter of each combination, rounded to what is known of one run."""
+    names, _ = varied(settings)
+    shown = Table(title="mean and scatter (standard deviation of a run) of the repeats; below: over all combinations")
+    for head in (*names, "runs", *(combinations.QUANTITIES[key] for key in scatters)):
+        shown.add_column(head, justify="right")
+
+    def cell(value, deviation, scatter):
+        text = volume(value, scatter)
+        return text if deviation is None else f"{text} s {volume(deviation, scatter)}"
+
+    for group in groups:
+        several = {key: group.of(key) for key in scatters}
+        shown.add_row(*(group.set[name] for name in names), str(len(group.rows)),
+                      *(cell(one.mean, one.scatter, scatters[key]) for key, one in several.items()))
+    shown.add_section()
+    shown.add_row(*[""] * len(names), "all",
+                  *(f"s {volume(one.deviation, one)}" if one else "" for one in scatters.values()))
+    show(shown)
+
+
+def show(shown):
+    (Console() if sys.stdout.isatty() else Console(width=180)).print(shown)

@@ -1,0 +1,71 @@
+"""Whether the number of a study may be used: the Facts that withheld looks at, from its rows."""
+from pathlib import Path
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
+
+from ..deposits import deposit, scar
+from ..mobility import known
+from ..mobility.road import at_road
+from ..statistics import withheld
+from ..statistics.withheld import Facts
+from . import withheld_words
+from .withheld_words import Case
+
+Row = Mapping[str, Any]
+
+
+class Events(NamedTuple):
+    """What known events of the mass's volume and height did, those that are not laterally confined."""
+    median: float           # m, length that half of them exceed; that of the fall path where it ends before
+    at_road: float          # share of them that go as far as the road
+
+
+def known_events(prefix: Path, terrain: Optional[Path], volume: float, road) -> Optional[Events]:
+    """Those of a run; None where no set covers its mass.
+
+    prefix: of its deposit; terrain: the ground before it; volume: released, m3; road: polygons in local metres.
+    """
+    found = deposit.read(prefix, terrain, lambda text: None)
+    mobility = known.of_mass(found.raster, *scar.before(found.raster, found.base, terrain), volume).mobility
+    if mobility is None:
+        return None
+    median = mobility.length_at(0.5, False)
+    return Events(float(mobility.path.length[-1]) if median is None else median,
+                  float(mobility.exceedance(at_road(mobility.path, road).length, False)))
+
+
+def facts(rows: Sequence[Row], volume: float, on_road: float, events: Optional[Events], size: str = "") -> Facts:
+    """Of the rows of a study with a road, of which one finished at least.
+
+    volume, on_road: the number that is to be used, and its part on the road itself, m3; size: why the size error is
+    not trusted.
+    """
+    finished = [row for row in rows if row["status"] == "finished"]
+    lengths = [row["connected_m"] for row in finished if row["connected_m"] is not None]
+    return Facts(volume, on_road, min(row["ball_m3"] for row in finished), len(rows), len(rows) - len(finished),
+                 sum(not row["at_rest"] for row in finished),
+                 max(row["left_before_road_m3"] / row["released_m3"] for row in finished),
+                 max(lengths, default=None), events and events.median, size)
+
+
+def reasons_of_ensemble(rows: Sequence[Row], events: Optional[Events], case: Case) -> List[Dict[str, Any]]:
+    """Why the quantiles of an ensemble with a road are withheld, as study.yaml has it; empty: they may stand.
+
+    Of volumes the largest of all runs count: where even those govern nothing, no quantile does.
+    """
+    finished = [row for row in rows if row["status"] == "finished"]
+    largest, on_road = (max(row[key] for row in finished) for key in ("remove_m3", "remove_on_road_m3"))
+    return withheld_words.entries(withheld.reasons(facts(rows, largest, on_road, events)), case)
+
+
+def judge(best: Dict[str, Any], rows: Sequence[Row], events: Optional[Events], case: Case, size: str = "") -> None:
+    """Add to the entry of the conservative volume why it is withheld, and if it is 0, what that is worth.
+
+    A volume that is withheld is None there, so that no reader takes it for one.
+    """
+    mine = [row["remove_on_road_m3"] for row in rows if row["status"] == "finished" and row["set"] == best["set"]]
+    found = withheld.reasons(facts(rows, best["volume_m3"], sum(mine) / len(mine), events, size))
+    best["withheld"], best["zero"] = withheld_words.entries(found, case), None
+    if found:
+        best["volume_m3"] = best["rounded"]["volume_m3"] = None
+    elif best["volume_m3"] == 0:
+        best["zero"] = withheld_words.zero(sum(row["status"] == "finished" for row in rows), events and events.at_road)

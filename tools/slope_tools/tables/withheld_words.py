@@ -1,0 +1,131 @@
+"""What is said in the place of a number that is withheld: the reasons, and for each the command that mends it."""
+import math
+from pathlib import Path
+from shlex import quote
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
+
+from ..digits import rounded
+from ..mobility.results import percent
+from ..statistics.withheld import BALLS, CONFIDENCE, FAILED, Kind, Reason, UNFINISHED, exceeded_at_most
+
+UNUSABLE = "not usable as a conservative volume"
+FINER = 8               # times the balls: half their diameter
+MARGIN = 1.1            # of the balls: chance
+
+
+class Case(NamedTuple):
+    """What was run: for the command that mends a reason."""
+    deck: Path
+    site: Optional[Path]            # its folder, where it is one
+    variables: Mapping[str, Any]    # of a run: name and value
+    balls: int                      # in the body
+    sampled: bool = False           # an ensemble
+    asked: str = ""                 # option that chose the study of the site
+
+
+def text(reason: Reason) -> str:
+    """A reason in words."""
+    number, bound = reason.number or 0.0, reason.bound or 0.0
+    if reason.kind is Kind.BALLS:
+        return f"on the road lies the volume of {number:.2g} ball{'s' * (number != 1)}, fewer than {bound:g}"
+    if reason.kind is Kind.MOBILITY:
+        longest = "there is no connected deposit" if reason.number is None else \
+            f"the longest connected deposit ends at {rounded(number, 3)} m"
+        return f"no run reaches {rounded(bound, 3)} m, as half of known events of this volume and height do; {longest}"
+    if reason.kind is Kind.LEFT:
+        return (f"{100 * number:.2g} % of the released volume left the terrain before or beside the road, more than "
+                f"{100 * bound:g} %")
+    if reason.kind is Kind.RUNS:
+        return (f"{number:g} of {bound:g} runs failed or {'is' if bound == 1 else 'are'} not at rest, more than "
+                f"{100 * UNFINISHED:g} %")
+    return f"the size error is not trusted: {reason.detail}"
+
+
+def remedy(reason: Reason, case: Case) -> str:
+    """The command that mends it."""
+    if reason.kind is Kind.BALLS:
+        return finer(case, BALLS / max(reason.number or 0.0, 1.0))
+    if reason.kind is Kind.SIZE:
+        return finer(case, FINER)
+    if reason.kind is Kind.MOBILITY:
+        return mobile(case)
+    if reason.kind is Kind.LEFT:
+        return changed(case, "a larger elevation model (terrain.files, terrain.bounds)",
+                       "a larger terrain and box in the deck")
+    if reason.detail == FAILED:
+        return "the same command again, once the cause of the failures is removed"
+    return changed(case, "more time (model.duration)", "the same command with more time"
+                   + ("" if "duration" not in case.variables else f", --set duration={twice(case)}"))
+
+
+def finer(case: Case, factor: float) -> str:
+    """The same with so many times the balls."""
+    number = round(MARGIN * factor * case.balls, -max(0, int(math.log10(max(factor * case.balls, 1))) - 1))
+    if case.site:
+        return anew(case, f" --balls {number:.0f}")
+    try:
+        return f"the same command with --set d={float(case.variables['d']) / (MARGIN * factor) ** (1 / 3):.3g}"
+    except (KeyError, ValueError):
+        return f"the same with smaller balls, about {number:,.0f} of them"
+
+
+def mobile(case: Case) -> str:
+    """An ensemble that has mobile masses too, weighted by the known events."""
+    if case.sampled:
+        return "the same command with --vary of more mobile masses: less friction and rolling, a denser field"
+    sample = "--sample 64 --mobility rock_avalanches"
+    if case.site:
+        return f"tools/slope study {quote(str(case.site))} {sample}"
+    words = " ".join(f"--vary {name}={span}" for name, span in (("friction", "10:30"), ("rolling", "0:0.1"))
+                     if name in case.variables)
+    if not words:
+        return f"tools/slope calibrate {quote(str(case.deck))}, with a past event"
+    return f"tools/slope study {quote(str(case.deck))} {sample} {words} --road ROAD -o DIR"
+
+
+def changed(case: Case, in_site: str, in_deck: str) -> str:
+    """What must be changed, and what is run then."""
+    if not case.site:
+        return in_deck
+    return f"{in_site} in {quote(str(case.site))}/site.yaml, then: {anew(case)}"
+
+
+def anew(case: Case, options: str = "") -> str:
+    """A site and its study, or ensemble, once more; runs of the deck before are not mixed with new ones."""
+    site = quote(str(case.site))
+    if case.sampled:
+        return f"tools/slope site {site}{options}; the same command with another -o"
+    return (f"rm -r {site}/study {site}/sizes {site}/step; tools/slope site {site}{options} && "
+            f"tools/slope study {site}{case.asked}")
+
+
+def twice(case: Case) -> str:
+    try:
+        return f"{2 * float(case.variables['duration']):g}"
+    except ValueError:
+        return "SECONDS"
+
+
+def entries(found: Sequence[Reason], case: Case) -> List[Dict[str, Any]]:
+    """What study.yaml says of reasons."""
+    return [{"kind": one.kind.value, "number": one.number, "bound": one.bound, "text": text(one),
+             "remedy": remedy(one, case)} for one in found]
+
+
+def lines(withheld: Sequence[Mapping[str, Any]]) -> List[str]:
+    """What stands in the place of the number, of entries()."""
+    return [f"{UNUSABLE}:", *(f"  {one['text']}; {one['remedy']}" for one in withheld)]
+
+
+def zero(runs: int, known: Optional[float]) -> Dict[str, Any]:
+    """What study.yaml says of a volume of 0: with which probability it is exceeded.
+
+    known: the share of known events that go as far as the road, None where no set covers the mass.
+    """
+    most = exceeded_at_most(runs)
+    which = f"any of {runs} runs" if runs > 1 else "the only run"
+    words = (f"nothing is to be removed in {which}: in another one something is with a probability of at most "
+             f"{100 * most:.2g} % ({100 * CONFIDENCE:g} % confidence)")
+    if known is not None:
+        words += f"; {percent(known)} of known events of this volume and height go as far as the road"
+    return {"runs": runs, "exceeded_at_most": most, "known_events": known, "text": words}
