@@ -13,8 +13,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "tools"))
 from slope_tools.case import run_folders  # noqa: E402  (after the path is set)
 from slope_tools.deposits import volume  # noqa: E402
 from slope_tools.drawing import maps  # noqa: E402
-from slope_tools.tables.study_file import read_study  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
+from slope_tools.tables.study_file import read_study  # noqa: E402
 
 ANGLES = 20.0, 30.0, 40.0       # degrees
 
