@@ -65,10 +65,11 @@ def typeset(value):
 
 
 def render(content):
-    """The page, from the template beside this file."""
+    """The page, from the templates beside this file and of the 3-D view."""
     import jinja2
     import markupsafe
-    loader = jinja2.FileSystemLoader(Path(__file__).parent)
+    from ..animation import view
+    loader = jinja2.FileSystemLoader([Path(__file__).parent, view.HERE])
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True,
                                      undefined=jinja2.StrictUndefined, finalize=typeset)
     environment.filters.update(verbatim=markupsafe.escape, percent=lambda value: f"{100 * value:.1f} %",
