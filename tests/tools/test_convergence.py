@@ -346,7 +346,8 @@ def test_the_size_error_counts_in_the_conservative_volume(slope):
     ("good", ROAD + " --set d=1,3", "--size-error: must know the error of all values of d; converge.yaml does from 0 "
      "to 2, got 3"),
     ("good", "", "--size-error: needs --road"),
-    ("zero", ROAD, "converge.yaml: must have a value of remove_m3 for small d that is clearly above 0"),
+    ("zero", ROAD, "converge.yaml: must have a value of remove_m3 for small d that is clearly above 0, "
+     "so that errors are shares of it, got "),
     ("far", ROAD, "converge.yaml: must have an error of more than -100 % at d 1, got -100 %"),
     ("nan", ROAD, "converge.yaml: must be a converge.yaml of `slope sensitivity --converge`"),
 ])

@@ -57,7 +57,7 @@ SET_CHOICES = {"slips", "body", "mobile"}       # of several keys
 TRIAL = {"lmp", "jobs"}                         # what the trial run finds is written as a choice
 # keys that slope study and the report read from site.yaml
 LATER = {("project", "name"), ("project", "client"), ("project", "author"), ("road", "cut_angle"), ("road", "mesh"),
-         ("study", "rolling"), ("study", "xoffset"), ("study", "sizes")}
+         ("study", "rolling"), ("study", "xoffset"), ("study", "yoffset"), ("study", "zoffset"), ("study", "sizes")}
 KEYS = [(section, key) for section, about in site_choices.sections() for key in about["properties"]]
 NOT_FILES = {("terrain", "crs"), ("terrain", "assign_crs"), ("terrain", "z_unit"), ("release", "shape"),
              ("release", "scar_is"), ("project", "name"), ("project", "client"), ("project", "author")}

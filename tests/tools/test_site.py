@@ -173,12 +173,12 @@ def test_the_deck_by_hand_gives_the_numbers_of_the_study(done, tmp_path):
     hand.mkdir()
     for name in ("in.site", "terrain.asc", "terrain.yaml", "release.slip.asc", "road.csv"):
         shutil.copy(folder / "mine" / name, hand)
-    subprocess.run([LMP, "-in", "in.site", "-var", "rolling", "0.05", "-var", "xoffset", "0.25"], cwd=hand, check=True,
+    subprocess.run([LMP, "-in", "in.site", "-var", "rolling", "0.05", "-var", "yoffset", "0.5"], cwd=hand, check=True,
                    stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
     volume = slope(hand, "volume", "site", "--road", "road.csv", "--cut-angle", "30", "--mesh", "10", "-o", "removal")
     assert volume.returncode == 0, volume.stderr
     by_hand = yaml.safe_load((hand / "removal" / "volume.yaml").read_text())["volume"]
-    run = folder / "mine" / "study" / "rolling_0.05_xoffset_0.25" / "volume" / "volume.yaml"
+    run = folder / "mine" / "study" / "rolling_0.05_yoffset_0.5" / "volume" / "volume.yaml"
     assert by_hand == yaml.safe_load(run.read_text())["volume"] and by_hand["remove"] > 0
     other = folder / "mine" / "study" / "rolling_0.05" / "volume" / "volume.yaml"
     assert by_hand != yaml.safe_load(other.read_text())["volume"]
@@ -242,7 +242,7 @@ def test_structures_lines_and_a_mapped_deposit(gis):
     assert (mine / "behind.csv").read_text().splitlines()[1:] == ["36,50", "36,30"]
     path = mine / "site.yaml"
     text = re.sub(r"rolling: \[.*?\]", "rolling: [0.05]", path.read_text())
-    path.write_text(re.sub(r"sizes: \[.*?\]", "sizes: []", re.sub(r"xoffset: \[.*?\]", "xoffset: []", text)))
+    path.write_text(re.sub(r"sizes: \[.*?\]", "sizes: []", re.sub(r"([xy])offset: \[.*?\]", r"\1offset: []", text)))
     study = slope(gis, "study", "mine")
     assert study.returncode == 0, study.stderr
     run = mine / "study" / "rolling_0.05"

@@ -359,7 +359,7 @@ def test_an_end_from_outside_ends_the_trial_run(gis):  # noqa: F811
 def test_a_failed_run_leaves_score_and_report_of_the_others(inside, mine, monkeypatch, capsys):
     write_layer(mine.parent / "mapped.geojson", [(25, 25), (60, 25), (60, 55), (25, 55)])
     inside("mine --observed mapped.geojson --balls 60")
-    edit(mine, "study", rolling=[0.05, 0.1], xoffset=[], sizes=[])
+    edit(mine, "study", rolling=[0.05, 0.1], xoffset=[], yoffset=[], sizes=[])
     Path("some").write_text(f"""#!/bin/sh\ncase "$*" in *"rolling 0.1"*) exit 1;; esac\nexec {LMP} "$@"\n""")
     Path("none").write_text("#!/bin/sh\nexit 1\n")
     for name in ("some", "none"):
@@ -480,7 +480,7 @@ def test_the_report_is_written_though_the_score_fails(gis):  # noqa: F811
     assert made.returncode == 0, made.stderr
     path = gis / "mine" / "site.yaml"
     about = yaml.safe_load(path.read_text())
-    about["study"].update(rolling=[0.05], xoffset=[], sizes=[])
+    about["study"].update(rolling=[0.05], xoffset=[], yoffset=[], sizes=[])
     path.write_text(yaml.safe_dump(about))
     (gis / "mine" / "score").mkdir()
     (gis / "mine" / "score" / "score.yaml").write_text("of other runs\n")

@@ -15,7 +15,7 @@ from .. import disk, processes
 from ..case import last_words, logs
 from ..digits import rounded
 from ..errors import SlopeError
-from .site_choices import Choices
+from .site_choices import Choices, OFFSETS
 
 DEFAULT = 4000          # balls, if no budget is given
 TRIAL = 800             # balls of the trial run
@@ -141,7 +141,7 @@ def plan(choices: Choices, points: int = 0) -> Plan:
     if points:
         return Plan([(1.0, points)], False, f"{points} runs, weighted by known events (study --paper makes others)")
     study = choices["study"]
-    each = 1 + len(study["xoffset"])
+    each = 1 + sum(len(study[name]) for name in OFFSETS)
     parts = [(1.0, each * len(study["rolling"])), *((float(factor), each) for factor in study["sizes"])]
     text = (f"{sum(runs for _, runs in parts)} runs: {len(study['rolling'])} rolling resistances x {each} lattice "
             "positions")

@@ -21,6 +21,7 @@ from ..survey.crs import as_crs
 NAME = "site.yaml"
 VERSION = 1             # of site.yaml, also in its schema
 LONGEST_TEXT = 200      # letters of a name in the heading of a report
+OFFSETS = ("xoffset", "yoffset", "zoffset")        # of the study: its repeats
 SCHEMA = Path(__file__).with_name("site_schema.json")
 WHAT = "a site.yaml of `slope site`"
 # keys that hold one file, and lists of files

@@ -15,7 +15,7 @@ from ..errors import SlopeError
 from ..runs import repeats
 from ..sites import site_choices, site_deck, site_warnings
 from ..sites.site_budget import three_digits
-from ..sites.site_choices import Choices
+from ..sites.site_choices import Choices, OFFSETS
 from ..sites.site_layers import OBSERVED, ROAD
 from ..tables.quantities import NAMES
 from ..tables.size_error import SizeErrors, WHAT
@@ -77,7 +77,7 @@ def run_alone(folder: Path, choices: Choices, engine: Setup, method: str) -> Don
     if road["file"]:
         setup = setup._replace(road=Road(folder / ROAD, road["cut_angle"], road["mesh"]))
     several = choices["study"]
-    repeated = {"xoffset": words(several["xoffset"])} if several["xoffset"] else {}
+    repeated = {name: words(several[name]) for name in OFFSETS if several[name]}
     found = Sizes(None, (), None)
     if len(several["sizes"]) > 1:
         found = sizes(setup._replace(output=folder / SIZES), choices, repeated)

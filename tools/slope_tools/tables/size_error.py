@@ -4,6 +4,7 @@ from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence
 
 from .. import disk
 from ..case.settings import as_number
+from ..digits import three
 from ..errors import SlopeError
 from ..statistics.convergence import Estimate, error_of_line
 from ..statistics.headline import SizeError
@@ -65,8 +66,10 @@ class SizeErrors:
         except (KeyError, TypeError, AttributeError, ValueError) as error:
             raise SlopeError(path, f"must be {WHAT} ({error!r})") from error
         if not self.known:
-            raise SlopeError(path, f"must have a value of {quantity} for small {self.variable} that is clearly above "
-                             "0, so that errors are shares of it", f"{self.small.value:g}")
+            sure = self.quantile and self.small.standard_error and self.quantile * self.small.standard_error
+            raise SlopeError(path, f"must have a value of {quantity} for small {self.variable} that is clearly above 0, "
+                             "so that errors are shares of it", three(self.small.value)
+                             + (f" +- {three(sure)} (95 %)" if sure else ""))
 
     def at(self, value: str, option: str = "--size-error") -> SizeError:
         """The error at a value of the variable: of its own runs if there are some, else of the line."""
