@@ -67,8 +67,8 @@ class SizeErrors:
             raise SlopeError(path, f"must be {WHAT} ({error!r})") from error
         if not self.known:
             sure = self.quantile and self.small.standard_error and self.quantile * self.small.standard_error
-            raise SlopeError(path, f"must have a value of {quantity} for small {self.variable} that is clearly above 0, "
-                             "so that errors are shares of it", three(self.small.value)
+            raise SlopeError(path, f"must have a value of {quantity} for small {self.variable} that is clearly above "
+                             "0, so that errors are shares of it", three(self.small.value)
                              + (f" +- {three(sure)} (95 %)" if sure else ""))
 
     def at(self, value: str, option: str = "--size-error") -> SizeError:
