@@ -13,6 +13,7 @@ shorter, command by command.
 import argparse
 import datetime
 import random
+import re
 import subprocess
 import sys
 import tempfile
@@ -50,8 +51,9 @@ def draw(rng):
 
 
 def head(case, begin, now, out):
-    """The deck before its first run, from a data or a restart file."""
-    deck = collapse_deck("", begin=begin, scheme=case["scheme"], newton=case["newton"], every=1000000, out=out)
+    """The deck before its first run, from a data or a restart file; without its dump, which forbids reset_timestep."""
+    deck = collapse_deck("", begin=begin, scheme=case["scheme"], newton=case["newton"], out=out)
+    deck = re.sub(r"^dump.*\n", "", deck, flags=re.MULTILINE)
     return (deck.replace("timestep 0.0015", f"timestep {now['dt']}")
             .replace(WEIGHT.format("0 0 -1"), WEIGHT.format(now["weight"])))
 

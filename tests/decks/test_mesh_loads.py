@@ -60,7 +60,7 @@ def test_step_numbers_that_recur_neither_lose_a_row_nor_bring_an_old_load(tmp_pa
     last = int(touches[-1, 0])
     assert 2 < last < 50 and touches[-1, 5] != 0
     for step, steps in ((0, last), (50, 10)):    # the ball flies
-        run_case(tmp_path, f"run 60\nreset_timestep {step}\nrun {steps}", **case)
+        run_case(tmp_path, f"run 60\nundump path\nreset_timestep {step}\nrun {steps}", **case)
         series = np.genfromtxt(tmp_path / "out.csv", delimiter=",", names=True)
         assert list(series["step"]) == [*range(10, 61, 10), *range(step // 10 * 10 + 10, step + steps + 1, 10)]
         triangles = np.genfromtxt(tmp_path / "out.triangles.csv", delimiter=",", names=True)
