@@ -6,6 +6,7 @@
 #include "slip_search.h"
 
 #include "constants.h"
+#include "nelder_mead.h"
 
 #include <algorithm>
 #include <limits>
@@ -299,91 +300,40 @@ bool SlipSearch::enter(const SlipBody &start, int lines, SlipBody &body)
 }
 
 /* ----------------------------------------------------------------------
-   Nelder and Mead's simplex. The variables are the centre, and how far below a pivot the surface passes:
-   the pivot is on the first surface below its thickest column, so that the radius follows the centre.
-   If it is wide, the width's logarithm and the direction, too.
+   The variables are the centre, and how far below a pivot the surface passes: the pivot is on the first
+   surface below its thickest column, so that the radius follows the centre. If it is wide, the width's
+   logarithm and the direction, too.
 ------------------------------------------------------------------------- */
 
 SlipBody SlipSearch::improve(const SlipBody &start, bool wide, int lines, int steps)
 {
-  static constexpr int MOST = 6;
-  typedef std::array<double, MOST> Point;
-  const int dim = wide ? MOST : 4;
   SlipBody best, body;
   if (!enter(start, lines, best)) return best;
   const SlipColumns &c = maker.columns();
   const size_t thickest = std::max_element(c.thick.begin(), c.thick.end()) - c.thick.begin();
-  const SlipSurface &s = best.surface;
-  const double pivot[3] = {s.x + c.dx[thickest], s.y + c.dy[thickest], s.z - c.depth[thickest]};
-  const auto value = [&](const Point &p) {
-    SlipSurface tried(p[0], p[1], p[2], 0.0, p[5]);
-    tried.across = std::exp(p[4]);
-    if (tried.across > WIDEST || tried.across * WIDEST < 1.0) return HUGE_VAL;
-    const double dx = pivot[0] - p[0], dy = pivot[1] - p[1], dz = pivot[2] - p[2];
-    const double c = std::cos(p[5]), s = std::sin(p[5]);
-    const double u = dx * c + dy * s, v = (dx * s - dy * c) / tried.across;
-    tried.radius = p[3] + std::sqrt(u * u + v * v + dz * dz);
-    if (!(tried.radius > 0.0) || !compute(tried, lines, body)) return HUGE_VAL;
+  const SlipSurface first = best.surface;
+  const double pivot[3] = {first.x + c.dx[thickest], first.y + c.dy[thickest],
+                           first.z - c.depth[thickest]};
+  const auto value = [&](const std::vector<double> &p) {
+    SlipSurface s(p[0], p[1], p[2], 0.0, wide ? p[5] : first.direction);
+    s.across = wide ? std::exp(p[4]) : first.across;
+    if (s.across > WIDEST || s.across * WIDEST < 1.0) return HUGE_VAL;
+    const double dx = pivot[0] - s.x, dy = pivot[1] - s.y, dz = pivot[2] - s.z;
+    const double cosine = std::cos(s.direction), sine = std::sin(s.direction);
+    const double u = dx * cosine + dy * sine, v = (dx * sine - dy * cosine) / s.across;
+    s.radius = p[3] + std::sqrt(u * u + v * v + dz * dz);
+    if (!(s.radius > 0.0) || !compute(s, lines, body)) return HUGE_VAL;
     if (body.factor < best.factor) best = body;
     return body.factor;
   };
-
-  const double far_off = 0.2 * std::sqrt(best.area);
-  const double step[MOST] = {far_off, far_off, far_off, 0.1 * best.depth, 0.2, 0.1};
-  std::array<Point, MOST + 1> simplex;
-  std::array<double, MOST + 1> f;
-  const auto end = f.begin() + dim + 1;
-  for (int k = 0; k <= dim; k++) {
-    simplex[k] = {s.x, s.y, s.z, 0.0, std::log(s.across), s.direction};
-    if (k > 0) simplex[k][k - 1] += step[k - 1];
-    f[k] = value(simplex[k]);
-    if (k > 0 && f[k] == HUGE_VAL) {
-      simplex[k][k - 1] -= 2.0 * step[k - 1];
-      f[k] = value(simplex[k]);
-    }
+  const double away = 0.2 * std::sqrt(best.area);
+  std::vector<double> from = {first.x, first.y, first.z, 0.0};
+  std::vector<double> step = {away, away, away, 0.1 * best.depth};
+  if (wide) {
+    from.insert(from.end(), {std::log(first.across), first.direction});
+    step.insert(step.end(), {0.2, 0.1});
   }
-  for (int n = 0; n < steps; n++) {
-    const int low = std::min_element(f.begin(), end) - f.begin();
-    const int high = std::max_element(f.begin(), end) - f.begin();
-    if (f[high] - f[low] < 1.0e-7 * f[low]) break;
-    double second = f[low];
-    for (int k = 0; k <= dim; k++)
-      if (k != high) second = std::max(second, f[k]);
-    const auto along = [&](double by) {
-      Point p = simplex[high];
-      for (int d = 0; d < dim; d++) {
-        double middle = 0.0;
-        for (int k = 0; k <= dim; k++)
-          if (k != high) middle += simplex[k][d] / dim;
-        p[d] = middle + by * (simplex[high][d] - middle);
-      }
-      return p;
-    };
-    const auto take = [&](const Point &p, double fp) {
-      simplex[high] = p;
-      f[high] = fp;
-    };
-    const Point mirror = along(-1.0);
-    const double fm = value(mirror);
-    if (fm < f[low]) {
-      const Point far = along(-2.0);
-      const double ff = value(far);
-      ff < fm ? take(far, ff) : take(mirror, fm);
-    } else if (fm < second)
-      take(mirror, fm);
-    else {
-      const Point near = along(fm < f[high] ? -0.5 : 0.5);
-      const double fn = value(near);
-      if (fn < std::min(fm, f[high]))
-        take(near, fn);
-      else
-        for (int k = 0; k <= dim; k++) {
-          if (k == low) continue;
-          for (int d = 0; d < dim; d++) simplex[k][d] = 0.5 * (simplex[k][d] + simplex[low][d]);
-          f[k] = value(simplex[k]);
-        }
-    }
-  }
+  nelder_mead(from, step, steps, value);
   return best;
 }
 

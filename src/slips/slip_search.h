@@ -9,7 +9,6 @@
 #include "elevation_grid.h"
 #include "slip_body.h"
 
-#include <array>
 #include <cmath>
 #include <functional>
 #include <vector>

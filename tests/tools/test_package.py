@@ -45,7 +45,7 @@ def test_the_example_tells_bad_input_in_one_line(tmp_path):
 
 
 def test_the_calls_of_the_page_are_there():
-    rooms = "mobility|survey|case|deposit|ensemble|report|drawing"
+    rooms = "mobility|survey|case|releases|deposits|tables|report|drawing"
     calls = re.findall(rf"``((?:{rooms})\.[\w.]+)", PAGE.read_text(encoding="ascii"))
     assert len(calls) > 12
     for call in calls:
