@@ -21,6 +21,8 @@ static constexpr int ACROSS = 24;          // columns across a body, on the latt
 static constexpr double ROUGH = 1.0e-4;    // precision of a factor there
 static constexpr double STARTS_OVERLAP = 0.8;
 static constexpr size_t TRIED = 4000;       // best of the lattice, to find starts among
+static constexpr int AGAIN = 8;             // new simplices at most
+static constexpr double GAIN = 1.0e-5;      // share of the factor that one must gain
 static constexpr double SMALLEST = 10.0;    // body, in cells along its plan
 
 // a cap whose depth is a sixth of its diameter has nearly this volume / diameter^3
@@ -338,7 +340,7 @@ SlipBody SlipSearch::improve(const SlipBody &start, bool wide, int lines, int st
 }
 
 /* ----------------------------------------------------------------------
-   shared by the ranks; a second simplex begins where the first one ended
+   shared by the ranks; a new simplex begins where the one before ended, as long as it gains
 ------------------------------------------------------------------------- */
 
 std::vector<SlipBody> SlipSearch::improve_all(const char *stage,
@@ -349,7 +351,12 @@ std::vector<SlipBody> SlipSearch::improve_all(const char *stage,
   std::vector<double> values(WIDTH * starts.size(), HUGE_VAL);
   ranks.progress(stage, 0.0);
   for (size_t k = ranks.me; k < starts.size(); k += ranks.all) {
-    const SlipBody b = improve(improve(starts[k], wide, lines, steps), wide, lines, steps);
+    SlipBody b = improve(starts[k], wide, lines, steps);
+    for (int n = 0; n < AGAIN; n++) {
+      const double before = b.factor;
+      b = improve(b, wide, lines, steps);
+      if (!(before - b.factor > GAIN * before)) break;
+    }
     const double of_body[WIDTH] = {
         b.surface.x, b.surface.y, b.surface.z, b.surface.radius, b.surface.direction,
         b.factor,    b.volume,    b.area,      b.depth,          b.surface.across};
