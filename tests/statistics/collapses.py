@@ -21,8 +21,8 @@ sys.path[:0] = [str(TOP / "tests" / "tools"), str(TOP / "tools")]
 
 from tiny_collapse import LMP, write_case  # noqa: E402  (after the path is set)
 from slope_tools import cli, provenance  # noqa: E402
-from slope_tools.fitting import backanalysis, observations  # noqa: E402
-from slope_tools.statistics import distributions  # noqa: E402
+from slope_tools.fitting import observations  # noqa: E402
+from slope_tools.statistics import backanalysis, distributions  # noqa: E402
 
 RANGES = {"friction": "10:40", "rolling": "0:0.3", "spacing": "0.5:1.4"}
 CLOSE = np.array([2.0, 0.02, 0.1])

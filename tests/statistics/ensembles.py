@@ -14,8 +14,7 @@ sys.path[:0] = [str(TOP / "tests" / "tools"), str(TOP / "tools")]
 
 import twins  # noqa: E402  (after the path is set)
 from test_ensemble import ishigami, ishigami_indices, noisy  # noqa: E402
-from slope_tools.fitting import backanalysis  # noqa: E402
-from slope_tools.statistics import designs, emulator, hazard  # noqa: E402
+from slope_tools.statistics import backanalysis, designs, emulator, hazard  # noqa: E402
 
 
 def indices(seeds=5):

@@ -23,8 +23,8 @@ sys.path.insert(0, str(TOOLS))
 
 from slope_tools.deposits import travel_shares  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
-from slope_tools.fitting import backanalysis, calibration, fit_words, observations  # noqa: E402
-from slope_tools.statistics import designs, distributions, emulator, tempering  # noqa: E402
+from slope_tools.fitting import calibration, fit_words, observations  # noqa: E402
+from slope_tools.statistics import backanalysis, designs, distributions, emulator, tempering  # noqa: E402
 from slope_tools.survey import rasters  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")

@@ -145,10 +145,20 @@ def test_an_ensemble_is_weighted(slope, capsys):
     assert found["reached"] + found["short"] + found["far"] == pytest.approx(1) and found["reached"] > 0.05
     with open("out/weights.csv", encoding="ascii") as lines:
         rows = list(csv.DictReader(lines))
-    weight, length, beyond = (np.array([float(row[key]) for row in rows]) for key in ("weight", "length_m", "beyond"))
+    weight, length, beyond, ratio = (np.array([float(row[key]) for row in rows])
+                                     for key in ("weight", "length_m", "beyond", "ratio"))
     assert weight.sum() == pytest.approx(found["reached"], abs=1e-4)
-    again = weights.of_lengths(length, beyond)
+    again = weights.of_lengths(length, beyond, ratio)
     assert again.weights == pytest.approx(weight, abs=1e-4)
+
+    # the runs do not reach far enough: half as many are added, which count in nothing but what is weighted
+    line = next(line for line in out.splitlines() if "more points towards" in line)
+    assert line.startswith("no run goes beyond ") and "% of known events do; 4 more points towards " in line
+    assert found["added"]["points"] == 4 and len(rows) == 12 and found["runs"] == 12 and (ratio[8:] < 1).all()
+    whole = yaml.safe_load(Path("out/study.yaml").read_text())["ensemble"]
+    assert (whole["runs"], whole["points"], whole["design"]["points"]) == (8, 8, 8)
+    status, second, err = slope(words)
+    assert status == 0 and "more points towards" not in second and "0 to go" not in second, err
 
     # curve and map, by hand
     mass = conditioned.masses(again)
@@ -163,8 +173,7 @@ def test_an_ensemble_is_weighted(slope, capsys):
         assert float(row["low"]) - 1e-9 <= share <= float(row["high"]) + 1e-4
     stack = np.array([read_asc(f"out/{row['run']}/tiny.thickness.asc") for row in rows])
     share = mass.share + 0
-    share[mass.order[-1]] += mass.far       # the window of 8 runs is one
-    assert again.window == 1
+    share[mass.order[-again.window:]] += mass.far / again.window
     there = read_asc("out/known_events/thickness_above_0.1.asc")
     assert there == pytest.approx(np.tensordot(share, stack > 0.1, 1), abs=1e-3) and there.max() > 0.5
     with rasterio.open("out/known_events/thickness.tif") as tif:

@@ -8,8 +8,7 @@ import numpy as np
 TOP = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))))
 
-from slope_tools.fitting import backanalysis  # noqa: E402
-from slope_tools.statistics import distributions  # noqa: E402
+from slope_tools.statistics import backanalysis, distributions  # noqa: E402
 
 VARIABLES = [distributions.distribution(name, text, "--vary", text) for name, text in
              (("friction", "15:40"), ("rolling", "0:0.2"), ("spacing", "0.5:1.5"))]

@@ -151,7 +151,7 @@ TEST(SlipSearch, EllipsoidsAreNotAboveSpheres)
     EXPECT_TRUE(c.within(wide));
     EXPECT_EQ(c.stages.back(), "ellipsoids");
   }
-  EXPECT_LT(gain, 0.99);    // the spheres of the hill are the best
+  EXPECT_LT(gain, 0.999);    // on one of them at least
 }
 
 TEST(SlipSearch, KeepsBodiesThatDifferInOrder)

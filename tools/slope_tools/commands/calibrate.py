@@ -11,11 +11,11 @@ from ..case import data_files, decks
 from ..case.settings import check_settings, one_value_each
 from ..deposits.score import THRESHOLD
 from ..errors import SlopeError
-from ..fitting import backanalysis, calibration, observations
+from ..fitting import calibration, observations
 from ..fitting.fit import Fit
 from ..options import number
 from ..runs import jobs, repeats
-from ..statistics import distributions
+from ..statistics import backanalysis, distributions
 from ..studies import study
 from . import run_arguments
 

@@ -243,8 +243,9 @@ def chances(choices):
 
 def run_ensemble(args, settings, repeated, thresholds, defaults, condition, chain=None):
     """The runs of --sample, and what they say together."""
-    from ..ensembles import ensemble, ensemble_maps
+    from ..ensembles import ensemble, ensemble_maps, farther
     from ..fitting import calibrated
+    from ..studies import farther_runs
     if args.sample is None and args.fit is None:
         raise SlopeError("--sample", "must be given with --vary: how many runs")
     if args.size_error:
@@ -261,7 +262,14 @@ def run_ensemble(args, settings, repeated, thresholds, defaults, condition, chai
     sample.check_growth(args.output, plan)
     several = sample.settings_of(todo)
     setup = setup_of(args)
-    questions = results.Questions(several, repeated, thresholds, None, ensemble.Order(plan, of, levels, condition),
-                                  site=getattr(args, "site", None), method=getattr(args, "method", ""), chain=chain)
-    perform(setup, {**several, **repeated}, todo, lambda todo, work: results.collect(setup, questions, todo, work),
+    order = ensemble.Order(plan, of, levels, condition, condition and farther.Added(args.output, plan))
+    questions = results.Questions(several, repeated, thresholds, None, order, site=getattr(args, "site", None),
+                                  method=getattr(args, "method", ""), chain=chain)
+
+    def collect(todo, work):
+        if condition:
+            farther_runs.make(setup, order, fixed, repeats.chances_of(repeated, {**defaults, **fixed}), todo, work)
+        results.collect(setup, questions._replace(settings=sample.settings_of(todo)), todo, work)
+
+    perform(setup, {**sample.all_values(several, plan), **repeated}, todo, collect,
             begin=lambda: sample.keep(args.output, plan))

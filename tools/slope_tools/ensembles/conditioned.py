@@ -46,7 +46,7 @@ class Masses:
 def masses(found: weights.Weights) -> Masses:
     share = found.weights.copy()
     first = found.order[:found.window]
-    share[first] += found.short / len(first)
+    share[first] += found.short * found.ratio[first] / found.ratio[first].sum()
     inside = share.sum()
     effective = float(inside ** 2 / (share ** 2).sum()) if inside > 0 else 0.0
     return Masses(share, found.far, found.order, effective, found.window)

@@ -17,7 +17,7 @@ from ..deposits import travel_shares
 from ..errors import SlopeError
 from ..statistics import emulator, hazard
 from ..tables import quantities, study_table, withheld_words
-from . import ensemble_maps, known_events
+from . import ensemble_maps, farther, known_events
 from .sample import Sample
 
 MAPS = "ensemble"           # folder of the maps
@@ -36,12 +36,13 @@ SIGN = ("first", "first_error", "total", "total_error")
 class Order:
     """What is asked of an ensemble: its plan, the quantity of the hazard curve, thresholds of the maps.
 
-    condition: the known events that its runs are weighted by.
+    condition: the known events that its runs are weighted by; added: the runs beside the plan that these ask for.
     """
     sample: Sample
     of: str
     levels: ensemble_maps.Thresholds
     condition: Optional[known_events.Condition] = None
+    added: Optional[farther.Added] = None
 
 
 def check_quantity(of: Optional[str], road: bool) -> str:
@@ -60,16 +61,17 @@ def evaluate(order: Order, rows: Sequence[Mapping[str, Any]], output: Path, plac
 
     rows: of study.csv, finished and failed; place: CRS and offset of the maps; grids: why there can be no maps.
     """
-    finished = [row for row in rows if row["status"] == "finished"]
+    planned = [row for row in rows if not row.get("batch")]
+    finished = [row for row in planned if row["status"] == "finished"]
     if not finished:
         return None
-    failed = len(rows) - len(finished)
+    failed = len(planned) - len(finished)
     point = points_of(order.sample, finished)
     of_quantity = {name: QUANTITIES[name] for name in QUANTITIES
                    if all(row.get(name) is not None for row in finished)}
     curves = {name: hazard.curve(column(finished, name), point, failed) for name in of_quantity}
     about: Dict[str, Any] = {
-        "design": order.sample.about, "runs": len(rows), "finished": len(finished), "failed": failed,
+        "design": order.sample.about, "runs": len(planned), "finished": len(finished), "failed": failed,
         "points": len(set(point)), "confidence": hazard.CONFIDENCE, "of": order.of if order.of in curves else None,
         "quantities": {name: numbers(finished, name, point, failed) for name in of_quantity}}
     places = order.sample.places(finished)
@@ -82,7 +84,7 @@ def evaluate(order: Order, rows: Sequence[Mapping[str, Any]], output: Path, plac
         output / MAPS, [run_folders.prefix_of(output / row["summary"]) for row in finished], len(set(point)), failed,
         order.levels, place)
     about["known_events"] = order.condition and known_events.evaluate(
-        order.condition, order.sample, rows, output, of_quantity, main, order.levels, place, grids)
+        order.condition, order.sample, order.added, rows, output, of_quantity, main, order.levels, place, grids)
     disk.write(output / HAZARD, hazard.table(curves))
     disk.write(output / INFLUENCE, influence_table(analyses))
     return about

@@ -22,11 +22,10 @@ from ..mobility.results import percent
 from ..sites import site_choices
 from ..statistics import emulator, hazard
 from ..tables import quantities
-from . import conditioned, known_maps
+from . import conditioned, farther, known_maps
 from .sample import Sample
 
 FOLDER, HAZARD, WEIGHTS = "known_events", "hazard_known_events.csv", "weights.csv"
-REACHED = 0.95          # share of the known events that the runs should reach
 LEAST_EFFECTIVE = 20    # runs; fewer say little
 LEFT = 0.01             # share of the released volume beyond the grid, from which on a run's length is not its own
 MIDDLE = 0.05, 0.5, 0.95        # quantiles of the parameters of the weighted runs
@@ -78,8 +77,9 @@ def mobility_of(condition: Condition, folder: Path, summary: Path) -> exceedance
 class Runs:
     """Those runs of an ensemble that have a length: rows; point: of the design; failed: number of others."""
 
-    def __init__(self, sample: Sample, rows: Sequence[Mapping[str, Any]], found: exceedance.Mobility):
-        self.sample = sample
+    def __init__(self, sample: Sample, added: Sequence[farther.Batch], rows: Sequence[Mapping[str, Any]],
+                 found: exceedance.Mobility):
+        self.sample, self.added = sample, added
         self.rows = [row for row in rows if row["status"] == "finished" and row.get("connected_m") is not None]
         self.failed = len(rows) - len(self.rows)
         self.point = [tuple(row["set"][name] for name in sample.names) for row in self.rows]
@@ -87,11 +87,16 @@ class Runs:
         self.exceedance = found.exceedance
         self.beyond = np.asarray(found.exceedance(self.lengths), float)
         if len(self.rows) >= 2:
-            self.weights = weights.of_lengths(self.lengths, self.beyond)
+            ratio = farther.ratio(self.places, [row["batch"] for row in self.rows], added) if added else None
+            self.weights = weights.of_lengths(self.lengths, self.beyond, ratio)
             self.mass = conditioned.masses(self.weights)
 
     def column(self, name: str) -> np.ndarray:
         return np.array([float(row[name]) for row in self.rows])
+
+    @property
+    def places(self) -> np.ndarray:
+        return self.sample.places(self.rows)
 
     @property
     def several(self) -> float:
@@ -104,14 +109,15 @@ class Runs:
     def design(self) -> Optional[conditioned.Design]:
         """What tells how even the design is; None where it cannot be told, which makes the bounds wider."""
         few = max(emulator.LEAST_POINTS, 2 * len(self.sample.names) + 2)
-        if self.failed or self.several > 1 or not few <= len(self.rows) <= conditioned.MOST_EMULATED:
+        if self.added or self.failed or self.several > 1 or not few <= len(self.rows) <= conditioned.MOST_EMULATED:
             return None
-        return conditioned.Design(self.sample.kind, self.sample.places(self.rows), self.lengths, self.exceedance,
+        return conditioned.Design(self.sample.kind, self.places, self.lengths, self.exceedance,
                                   self.sample.snap)
 
 
-def evaluate(condition: Condition, sample: Sample, rows: Sequence[Mapping[str, Any]], output: Path,
-             names: Mapping[str, Tuple[str, str]], main: Sequence[str], levels, place, grids) -> Dict[str, Any]:
+def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: Sequence[Mapping[str, Any]],
+             output: Path, names: Mapping[str, Tuple[str, str]], main: Sequence[str], levels, place,
+             grids) -> Dict[str, Any]:
     """What study.yaml says of the weighted runs; writes their tables and maps to output.
 
     rows: of study.csv, finished and failed; names: {column: (what, unit)} of the quantities; main: those whose
@@ -124,10 +130,10 @@ def evaluate(condition: Condition, sample: Sample, rows: Sequence[Mapping[str, A
         "path": exceedance.WORDS[found.severe], "volume_Mm3": found.volume, "outside": found.outside}
     for name in (HAZARD, WEIGHTS):
         (output / name).unlink(missing_ok=True)         # of a study before this one
-    runs = Runs(sample, rows, found)
+    runs = Runs(sample, added.batches, rows, found)
     if found.outside or len(runs.rows) < 2:
         return {**about, "reached": None, "doubts": found.outside or ["fewer than two runs have a deposit"]}
-    about.update(reach(runs, found))
+    about.update(reach(runs, found), added=added.about())
     names = {name: one for name, one in names.items() if name not in NOT_FARTHER and not name.endswith("_deg")}
     main = [name for name in main if name in names]
     design = runs.design()
@@ -160,7 +166,7 @@ def reach(runs: Runs, found: exceedance.Mobility) -> Dict[str, Any]:
 
 def variable(runs: Runs, k: int, main: Sequence[str]) -> Dict[str, Any]:
     """Of a variable of the weighted runs: quantiles, and rank correlations with the main quantities."""
-    places = runs.sample.places(runs.rows)[:, k]
+    places = runs.places[:, k]
     one = runs.sample.variables[k]
     return {"quantiles": [one.value(place) for place in quantiles(places, runs.mass.share, MIDDLE)],
             "rank": {name: rank(places, runs.column(name), runs.mass.share) for name in main}}
@@ -189,12 +195,13 @@ def rank(x: np.ndarray, y: np.ndarray, share: np.ndarray) -> Optional[float]:
 
 def doubts(about: Mapping[str, Any], runs: Runs) -> List[str]:
     """The caveats, in the order of their weight."""
-    found = []
-    if about["reached"] < REACHED:
-        if about["far"] > (1 - REACHED) / 2:
+    found, stopped = [], (about.get("added") or {}).get("stopped")
+    if about["reached"] < farther.REACHED:
+        if about["far"] > (1 - farther.REACHED) / 2:
             found.append(f"no run goes beyond {rounded(about['longest_m'], 4)} m; {percent(about['far'])} of known "
-                         "events do: they count as exceeding every value; vary towards more mobile masses")
-        if about["short"] > (1 - REACHED) / 2:
+                         "events do: they count as exceeding every value; "
+                         + (stopped or "vary towards more mobile masses"))
+        if about["short"] > (1 - farther.REACHED) / 2:
             found.append(f"no run ends before {rounded(about['shortest_m'], 4)} m; {percent(about['short'])} of known "
                          "events do: they count as the shortest runs")
     found += [f"between {rounded(gap['low_m'], 4)} and {rounded(gap['high_m'], 4)} m no run ends; "
@@ -219,9 +226,10 @@ def weights_table(runs: Runs) -> str:
     """The CSV of the runs' weights; they add up to what is reached."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(["run", "length_m", "beyond", "weight"])
-    for row, length, beyond, weight in zip(runs.rows, runs.lengths, runs.beyond, runs.weights.weights):
-        writer.writerow([row["run"], f"{length:.6g}", f"{beyond:.6g}", f"{weight:.6g}"])
+    writer.writerow(["run", "length_m", "beyond", "ratio", "weight"])
+    numbers = np.column_stack([runs.lengths, runs.beyond, runs.weights.ratio, runs.weights.weights])
+    for row, several in zip(runs.rows, numbers):
+        writer.writerow([row["run"], *(f"{one:.6g}" for one in several)])
     return out.getvalue()
 
 
@@ -240,10 +248,12 @@ def describe(about: Mapping[str, Any], of: Optional[str]) -> List[str]:
 
 
 def summary(about: Mapping[str, Any]) -> str:
+    added = (about.get("added") or {}).get("points")
+    more = f" (those of {added} points towards longer ones among them)" if added else ""
     return (f"the runs reach from {rounded(about['shortest_m'], 4)} to {rounded(about['longest_m'], 4)} m, where "
             f"{percent(about['reached'])} of {about['events']} events of {about['set']} end ({percent(about['short'])} "
-            f"before, {percent(about['far'])} beyond; {about['path']}); weighted by them the {about['runs']} runs say "
-            f"as much as {about['effective']:.0f}")
+            f"before, {percent(about['far'])} beyond; {about['path']}); weighted by them the {about['runs']} "
+            f"runs{more} say as much as {about['effective']:.0f}")
 
 
 def quantile_text(one: Mapping[str, Any], unit: str) -> str:

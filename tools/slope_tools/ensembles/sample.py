@@ -88,6 +88,12 @@ def settings_of(todo: Sequence[repeats.Repeat]) -> Dict[str, List[str]]:
     return {name: list(dict.fromkeys(one.combination[name] for one in todo)) for name in todo[0].combination}
 
 
+def all_values(settings: Mapping[str, List[str]], sample: Sample) -> Dict[str, List[str]]:
+    """settings_of the runs, with the values of lists that none of them has: a run that is added may have them."""
+    lists = {one.name: one.values for one in sample.variables if isinstance(one, distributions.Listed)}
+    return {name: list(dict.fromkeys([*several, *lists.get(name, ())])) for name, several in settings.items()}
+
+
 def check_growth(folder: Path, sample: Sample) -> None:
     """Raise SlopeError if the folder has a Latin hypercube, or is to have one, that this is not."""
     path = folder / FILE

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..drawing import palettes, pictures
 from ..drawing.figures import COLOURS, FULL, GRAY, STYLE, plt
-from .backanalysis import Posterior, SHARE
+from ..statistics.backanalysis import Posterior, SHARE
 
 BINS = 30
 

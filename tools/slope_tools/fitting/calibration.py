@@ -9,7 +9,7 @@ from .. import disk
 from ..deposits import travel_shares
 from ..errors import SlopeError
 from ..runs import repeats
-from . import backanalysis
+from ..statistics import backanalysis
 
 LEDGER = "calibrate.ledger.yaml"
 WHAT = "what `slope calibrate` wrote"

@@ -11,10 +11,11 @@ from .. import disk, provenance
 from ..case import run_folders
 from ..deposits import deposit, score
 from ..runs import jobs, repeats
+from ..statistics import backanalysis
 from ..studies import results, study
 from ..studies.setup import Setup
 from ..tables import quantities
-from . import backanalysis, calibration, fit_words, observations
+from . import calibration, fit_words, observations
 
 SETS = 64               # sets of values that stand for the region
 TABLE, ABOUT, CHART, MAP = "calibrate.csv", "calibrate.yaml", "calibrate.png", "predicted.png"

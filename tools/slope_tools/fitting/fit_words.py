@@ -4,8 +4,8 @@ from typing import List, Optional, Sequence
 
 import numpy as np
 
+from ..statistics.backanalysis import Posterior, Target
 from ..tables.quantities import number
-from .backanalysis import Posterior, Target
 
 BEYOND = 2.0            # standard deviations of tolerance and chance together
 

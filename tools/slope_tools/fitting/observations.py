@@ -15,8 +15,8 @@ import numpy as np
 from ..case import run_folders
 from ..deposits import connected, deposit, reach, score, travel_shares
 from ..errors import SlopeError
+from ..statistics.backanalysis import Target
 from ..survey import rasters
-from .backanalysis import Target
 
 ZONES = 6
 SHARES = {True: (0.5, 0.9, 0.99), False: (0.99,)}      # of an outline, of a raster

@@ -9,6 +9,10 @@ scatters as the distance to the next run does; so a weight is the mean of the ce
 number of runs, reflected at both ends. A kernel density of log L was tried instead: it follows the known events less
 well, and needs a width and a correction at the ends.
 
+Points that do not follow the parameters' distribution have a ratio, of its density over theirs. A cell is divided among
+the runs of its window in proportion to the ratio over its mean around each run: this makes up for the parameters of
+runs of one length, and leaves the lengths as the cells have them. With equal ratios that is the mean again.
+
 Known events shorter than the shortest run, and those longer than the longest one, are in no weight: they are reported.
 """
 import math
@@ -35,7 +39,7 @@ class Weights(NamedTuple):
     before and beyond it, 1 together; effective: number of runs of equal weight that say as much (Kish), of
     weights / reached; distance: largest difference (Kolmogorov) of the distribution of the weighted runs from that of
     the known events, within the range; gaps: in it, by length; window: number of cells that a weight is the mean of;
-    order: of the runs, by length.
+    order: of the runs, by length; ratio: of_lengths'.
     """
     weights: np.ndarray
     reached: float
@@ -46,11 +50,13 @@ class Weights(NamedTuple):
     gaps: List[Gap]
     window: int
     order: np.ndarray
+    ratio: np.ndarray
 
 
-def of_lengths(lengths, exceedance) -> Weights:
+def of_lengths(lengths, exceedance, ratio=None) -> Weights:
     """The weights of at least two runs; lengths: m; exceedance: share of known events that go beyond each of them.
 
+    ratio: density of the parameters' distribution over that of the points, of each run; None: they are the same.
     The exceedance must not rise with the length. If no known event lies within the range of the runs, all weights are
     0, and so is effective.
     """
@@ -62,14 +68,16 @@ def of_lengths(lengths, exceedance) -> Weights:
     reached = float(below[-1] - below[0])
     rest = float(1 - below[-1])
     weights = np.zeros(len(lengths))
+    given = np.ones(len(lengths)) if ratio is None else np.asarray(ratio, float)
     if reached <= 0:
-        return Weights(weights, 0.0, float(below[0]), rest, 0.0, 0.0, [], window, order)
-    smooth = averaged(cells, window)
+        return Weights(weights, 0.0, float(below[0]), rest, 0.0, 0.0, [], window, order, given)
+    counts = given[order] / averaged(given[order], window)
+    smooth = counts * averaged(cells / averaged(counts, window), window)
     weights[order] = smooth
     upto = below[0] + np.cumsum(smooth)
     distance = max(np.abs(upto - below).max(), np.abs(upto - smooth - below).max())
     return Weights(weights, reached, float(below[0]), rest, float(reached ** 2 / (smooth ** 2).sum()), float(distance),
-                   gaps(lengths[order], below), window, order)
+                   gaps(lengths[order], below), window, order, given)
 
 
 def window_of(number: int) -> int:

@@ -17,7 +17,11 @@ NONE: Dict[str, str] = {}
 
 
 class Repeat(jobs.Run):
-    """A run of a combination of choices, with one of the repeats' values, or with none: the combination's first run."""
+    """A run of a combination of choices, with one of the repeats' values, or with none: the combination's first run.
+
+    batch: which one of those that an ensemble added (farther) it is of, from 1; 0: none.
+    """
+    batch = 0
 
     def __init__(self, output, combination: Dict[str, str], repeat: Optional[Dict[str, str]] = None):
         super().__init__(output, {**combination, **(repeat or {})})

@@ -176,7 +176,7 @@ def rows_of(setup: Setup, todo, maps, pictures=True):
     rows, thickness = [], None
     for run in rasters.progress(todo, "collecting the runs"):
         row = {"run": run.name, "status": "failed" if run.error else "finished", "set": run.combination,
-               "repeat": run.repeat}
+               "repeat": run.repeat, "batch": run.batch}
         if run.error:
             rows.append({**row, "error": run.error, "log_warnings": run.log.warnings})
             continue
@@ -230,7 +230,7 @@ def result(run, row, maps):
     summary = run_folders.load_summary(path)
     prefix = run_folders.prefix_of(path)
     thickness = run_folders.load_raster(prefix, "thickness")
-    maps.add(run.name, thickness, run_folders.load_raster(prefix, "max_thickness"))
+    maps.add(run.name, thickness, run_folders.load_raster(prefix, "max_thickness"), not run.batch)
     run.log.update()
     volume, travel = summary["volume"], summary["travel"]
     stays = volume["released"] - volume["off_grid"] - volume["lost"]

@@ -19,7 +19,8 @@ class Maps:
         self.grid = self.problem = None
         self.count, self.first = 0, None
 
-    def add(self, name, thickness, max_thickness):
+    def add(self, name, thickness, max_thickness, counted=True):
+        """counted: whether the run counts in the shares of the runs."""
         if self.grid is None:
             self.grid, self.first = thickness, name
             shape = thickness.z.shape
@@ -32,9 +33,10 @@ class Maps:
             return
         for key, raster in (("thickness", thickness), ("max_thickness", max_thickness)):
             np.fmax(self.envelope[key], raster.z, out=self.envelope[key])
-        for threshold, exceeding in zip(self.thresholds, self.exceeding):
-            exceeding += thickness.z > threshold
-        self.count += 1
+        if counted:
+            for threshold, exceeding in zip(self.thresholds, self.exceeding):
+                exceeding += thickness.z > threshold
+            self.count += 1
 
     def write(self, output, place):
         """Write all rasters, remove those of an earlier call; what study.yaml says of them."""

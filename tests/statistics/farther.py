@@ -1,0 +1,58 @@
+"""What ensembles gain by the runs that they add, on the stand-in of tests/tools/test_farther.py: not in the suite.
+
+    /usr/bin/python3 tests/statistics/farther.py [repetitions]
+
+Of so many (40) ensembles of 64 runs, without and with the added ones: how many bounds of 90 % hold the reference of
+40,000 runs at four volumes, the mean width of the bounds, and means of the share beyond the longest run, of the
+effective number, and of the error of the weighted mean of log10 L. Two minutes on one core. What came out is in
+doc/src/tool_study.rst.
+"""
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+TOP = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(TOP / "tests" / "tools"), str(TOP / "tools")]
+
+import known_twins as twins  # noqa: E402  (after the path is set)
+import test_farther as stand_in  # noqa: E402
+from slope_tools.ensembles import conditioned  # noqa: E402
+from slope_tools.mobility import weights  # noqa: E402
+from slope_tools.statistics import designs  # noqa: E402
+
+
+def error(one, found):
+    """Of the weighted mean of log10 L, against the known events between the shortest and the longest run."""
+    lengths = one.lengths[:len(found.weights)]
+    at = np.linspace(lengths.min(), lengths.max(), 4000)
+    share = -np.diff(twins.exceedance(at))
+    wanted = share @ np.log10((at[1:] + at[:-1]) / 2) / share.sum()
+    return found.weights @ np.log10(lengths) / found.reached - wanted
+
+
+def main(repetitions=40):
+    lengths, volumes = stand_in.response(designs.points(designs.SOBOL, 3, 40000, 10), np.random.default_rng(1))
+    mass = conditioned.masses(weights.of_lengths(lengths, twins.exceedance(lengths)))
+    truth = mass.share @ conditioned.above(volumes, stand_in.LEVELS) + mass.far
+    held = {True: [], False: []}
+    for seed in range(repetitions):
+        with tempfile.TemporaryDirectory() as folder:
+            one = stand_in.Ensemble(folder, seed)
+        for first in held:
+            found = one.weights(not first, first)
+            curve = conditioned.curve(one.volumes[:len(found.weights)], conditioned.masses(found))
+            _, low, high = np.transpose([curve.at(level) for level in stand_in.LEVELS])
+            held[first].append([*((low <= truth) & (truth <= high)), *(high - low), found.far, found.effective,
+                                error(one, found)])
+    for first, several in held.items():
+        found = np.array(several)
+        print(f"{'design alone' if first else 'with added points'}: {found[:, :4].sum(axis=0).astype(int)} of "
+              f"{repetitions} hold {truth.round(3)}, width {found[:, 4:8].mean(axis=0).round(3)}; beyond "
+              f"{found[:, 8].mean():.3f}, effective {found[:, 9].mean():.1f}, mean of log10 L "
+              f"{found[:, 10].mean():+.4f}")
+
+
+if __name__ == "__main__":
+    main(*map(int, sys.argv[1:]))

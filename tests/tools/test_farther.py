@@ -1,0 +1,169 @@
+"""Runs that an ensemble adds towards longer ones, on a stand-in: how they count, when they are made, when they end."""
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from run_helpers import TOOLS
+
+sys.path.insert(0, str(TOOLS))
+
+import known_twins as twins  # noqa: E402  (after the path is set)
+from slope_tools.ensembles import conditioned, farther, sample  # noqa: E402
+from slope_tools.errors import SlopeError  # noqa: E402
+from slope_tools.mobility import weights  # noqa: E402
+from slope_tools.statistics import designs, distributions  # noqa: E402
+
+RUNS, SEEDS, PATH = 64, 4, 1e5
+LEVELS = np.array([5e3, 2e4, 4e4, 7e4])     # m3
+
+
+def response(u, chance=None):
+    """The twin's, of which one run in twenty is mobile."""
+    v = u.copy()
+    v[:, 0] = u[:, 0] ** 0.25
+    return twins.response(v, False, chance)
+
+
+def planned(number=RUNS, seed=0, high=1.0):
+    return sample.Sample(number, designs.SOBOL, seed, tuple(
+        distributions.Range(name, f"uniform:0:{high}", 0.0, high, stats.uniform(0, high), high) for name in "abc"))
+
+
+def places_of(batch):
+    return np.array([[float(value) for value in one.values()] for one in batch.points])
+
+
+class Ensemble:
+    """A design and what is added to it."""
+
+    def __init__(self, folder, seed):
+        rng = np.random.default_rng(seed)
+        self.added = farther.Added(Path(folder), planned(seed=seed))
+        self.u = designs.points(designs.SOBOL, 3, RUNS, seed)
+        self.lengths, self.volumes = response(self.u, rng)
+        self.batch = np.zeros(RUNS, int)
+        while True:
+            new = self.added.propose(self.u, self.lengths, twins.exceedance(self.lengths), PATH)
+            if new is None:
+                break
+            u = places_of(new)
+            lengths, volumes = response(u, rng)
+            self.u, self.batch = np.vstack([self.u, u]), np.append(self.batch, np.full(len(u), self.batch.max() + 1))
+            self.lengths, self.volumes = np.append(self.lengths, lengths), np.append(self.volumes, volumes)
+
+    def weights(self, ratio=True, first=False):
+        part = slice(RUNS if first else None)
+        given = farther.ratio(self.u, self.batch, self.added.batches) if ratio else None
+        return weights.of_lengths(self.lengths[part], twins.exceedance(self.lengths[part]), given)
+
+
+@pytest.fixture(scope="module")
+def ensembles(tmp_path_factory):
+    return [Ensemble(tmp_path_factory.mktemp("added"), seed) for seed in range(SEEDS)]
+
+
+@pytest.fixture(scope="module")
+def reference():
+    u = designs.points(designs.SOBOL, 3, 20000, 10)
+    lengths, volumes = response(u, np.random.default_rng(1))
+    return u, volumes, conditioned.masses(weights.of_lengths(lengths, twins.exceedance(lengths)))
+
+
+def test_more_is_reached(ensembles):
+    for one in ensembles:
+        before, after = one.weights(False, True), one.weights()
+        assert before.reached < farther.REACHED and 0 < one.added.number <= farther.MOST * RUNS
+        assert after.far < 0.7 * before.far and after.effective > before.effective
+        assert after.weights.sum() == pytest.approx(after.reached) and after.reached == pytest.approx(
+            1 - after.far - after.short)
+
+
+def test_the_weighted_lengths_are_those_of_known_events(ensembles):
+    for one in ensembles:
+        found, logs = one.weights(), np.log10(one.lengths)
+        at = np.linspace(one.lengths.min(), one.lengths.max(), 4000)
+        share = -np.diff(twins.exceedance(at))
+        wanted = share @ np.log10((at[1:] + at[:-1]) / 2) / share.sum()
+        w = found.weights / found.reached
+        deviation = np.sqrt(w @ (logs - w @ logs) ** 2)
+        assert abs(w @ logs - wanted) < 2 * deviation / np.sqrt(found.effective)
+
+
+def test_added_points_count_as_the_parameters_are_distributed(ensembles, reference):
+    """Shares above volumes within their bounds; a parameter's mean nearer to the truth than without the ratios."""
+    u, volumes, mass = reference
+    truth = mass.share @ conditioned.above(volumes, LEVELS) + mass.far
+    held, wrong = 0, {True: [], False: []}
+    for one in ensembles:
+        curve = conditioned.curve(one.volumes, conditioned.masses(one.weights()))
+        bounds = np.array([curve.at(level) for level in LEVELS])
+        held += int(((bounds[:, 1] <= truth) & (truth <= bounds[:, 2])).sum())
+        # a box holds less of the second variable than the design, at the same length
+        for ratio in wrong:
+            w = one.weights(ratio).weights
+            wrong[ratio].append(w @ one.u[:, 1] / w.sum() - mass.share @ u[:, 1] / mass.share.sum())
+    assert held >= 0.9 * SEEDS * len(LEVELS)
+    assert abs(np.mean(wrong[True])) < abs(np.mean(wrong[False]))
+
+
+def test_ratios_by_hand():
+    box = [[0.0, 0.5], [0.0, 0.2]]
+    places = np.array([[0.1, 0.1], [0.3, 0.2], [0.9, 0.1], [0.2, 0.3], [0.4, 0.05]])
+    ratio = farther.ratio(places, [0, 0, 0, 0, 1], [farther.Batch(box, [{}])])
+    inside, outside = 5 / (4 + 1 / 0.1), 5 / 4
+    assert ratio == pytest.approx([inside, inside, outside, outside, inside])
+    lengths = np.random.default_rng(3).uniform(900, 4000, 60)
+    plain = weights.of_lengths(lengths, twins.exceedance(lengths))
+    same = weights.of_lengths(lengths, twins.exceedance(lengths), np.full(60, 0.3))
+    assert same.weights == pytest.approx(plain.weights, rel=1e-12)
+
+
+def test_nothing_is_added_where_the_runs_reach_far_enough(tmp_path):
+    added = farther.Added(tmp_path, planned())
+    u = designs.points(designs.SOBOL, 3, RUNS, 1)
+    lengths = np.geomspace(500, 9000, RUNS)
+    assert twins.exceedance(9000.0) < 0.025 and twins.exceedance(500.0) > 0.975
+    assert added.propose(u, lengths, twins.exceedance(lengths), PATH) is None
+    assert (added.stopped, added.number, list(tmp_path.iterdir())) == ("", 0, [])
+    # nor where only the sluggish ones are missing
+    beyond = np.minimum(twins.exceedance(lengths), 0.7)
+    assert added.propose(u, lengths, beyond, PATH) is None and added.stopped == ""
+
+
+def test_why_no_more_are_added(tmp_path):
+    u = designs.points(designs.SOBOL, 3, RUNS, 1)
+    lengths = response(u)[0]
+    beyond = twins.exceedance(lengths)
+
+    def stopped(added, runs=RUNS, lengths=lengths, path=PATH):
+        assert added.propose(u[:runs], lengths[:runs], beyond[:runs], path) is None
+        return added.stopped
+
+    assert "take a larger terrain" in stopped(farther.Added(tmp_path, planned()), path=lengths.max())
+    assert "too few" in stopped(farther.Added(tmp_path, planned()), runs=7)
+    u[0] = 0, 0, 1          # the corner where the longest run is
+    assert "give wider ranges" in stopped(farther.Added(tmp_path, planned()), lengths=response(u)[0])
+    u[0] = 0.5
+    added = farther.Added(tmp_path, planned())
+    for k in range(4):
+        assert len(added.propose(u, lengths, beyond, PATH).points) == 8
+    assert stopped(added) == "32 runs were added; a larger --sample allows more"
+
+
+def test_a_study_is_continued(tmp_path):
+    added = farther.Added(tmp_path, planned(high=10.0))
+    u = designs.points(designs.SOBOL, 3, RUNS, 1)
+    lengths = response(u)[0]
+    batch = added.propose(u, lengths, twins.exceedance(lengths), PATH)
+    assert added.line(batch, lengths, twins.exceedance(lengths)).startswith("no run goes beyond ")
+    assert "8 more points towards a 0.0 to " in added.line(batch, lengths, twins.exceedance(lengths))
+    added.keep()
+    assert farther.Added(tmp_path, planned(2 * RUNS, high=10.0)).batches == added.batches
+    assert farther.Added(tmp_path, planned(high=9.0)).batches == []
+    text = (tmp_path / farther.FILE).read_text()
+    (tmp_path / farther.FILE).write_text(text.replace("box:", "bax:"))
+    with pytest.raises(SlopeError, match="must be what `slope study --mobility` wrote"):
+        farther.Added(tmp_path, planned(high=10.0))

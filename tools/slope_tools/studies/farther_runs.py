@@ -1,0 +1,57 @@
+"""Making the runs that an ensemble adds towards longer ones (farther), batch by batch."""
+from typing import Any, Dict, List, Mapping, Sequence
+
+from ..ensembles import known_events
+from ..ensembles.ensemble import Order
+from ..runs import jobs, repeats
+from . import results, study
+from .setup import Setup
+
+
+def make(setup: Setup, order: Order, fixed: Mapping[str, str], chances: Sequence[Dict[str, str]],
+         todo: List[repeats.Repeat], work: jobs.Work) -> None:
+    """Add runs to todo, which were made, until they reach far enough or Added.propose has no more.
+
+    fixed, chances: of all runs, see sample.plan.
+    """
+    added, rows = order.added, rows_of(setup, todo)
+    assert added
+    for k in range(len(added.batches)):
+        rows += batch(setup, order, fixed, chances, todo, work, k)
+    while True:
+        finished = [row for row in rows if row["status"] == "finished"]
+        if not finished:
+            return
+        found = known_events.mobility_of(order.condition, setup.output / finished[0]["run"],
+                                         setup.output / finished[0]["summary"])
+        runs = known_events.Runs(order.sample, added.batches, rows, found)
+        if found.outside or len(runs.rows) < 2:
+            return
+        new = added.propose(runs.places, runs.lengths, runs.beyond, float(found.path.length[-1]))
+        if new is None:
+            return
+        print(added.line(new, runs.lengths, runs.beyond), flush=True)
+        added.keep()
+        rows += batch(setup, order, fixed, chances, todo, work, len(added.batches) - 1)
+
+
+def batch(setup: Setup, order: Order, fixed: Mapping[str, str], chances: Sequence[Dict[str, str]],
+          todo: List[repeats.Repeat], work: jobs.Work, k: int) -> List[Dict[str, Any]]:
+    """Make the runs of a batch and add them to todo; their rows."""
+    assert order.added
+    more = repeats.with_repeats(setup.output, [{**fixed, **one} for one in order.added.batches[k].points], chances,
+                                order.sample.names)
+    for one in more:
+        one.batch = k + 1
+    study.check_names([*todo, *more])
+    study.check_folder(setup, more)
+    for one in more:
+        jobs.check_finished(one, work.depends)
+    work.do(more)
+    todo += more
+    return rows_of(setup, more)
+
+
+def rows_of(setup: Setup, todo: Sequence[repeats.Repeat]) -> List[Dict[str, Any]]:
+    """The runs' rows of study.csv, without the road."""
+    return results.rows_of(setup._replace(road=None), todo, results.Maps(()), pictures=False)[0]
