@@ -83,8 +83,11 @@ def evaluate(order: Order, rows: Sequence[Mapping[str, Any]], output: Path, plac
     about["maps"] = [] if grids else ensemble_maps.write(
         output / MAPS, [run_folders.prefix_of(output / row["summary"]) for row in finished], len(set(point)), failed,
         order.levels, place)
-    about["known_events"] = order.condition and known_events.evaluate(
-        order.condition, order.sample, order.added, rows, output, of_quantity, main, order.levels, place, grids)
+    about["known_events"] = None
+    if order.condition:
+        assert order.added
+        about["known_events"] = known_events.evaluate(
+            order.condition, order.sample, order.added, rows, output, of_quantity, main, order.levels, place, grids)
     disk.write(output / HAZARD, hazard.table(curves))
     disk.write(output / INFLUENCE, influence_table(analyses))
     return about

@@ -15,7 +15,7 @@ def make(setup: Setup, order: Order, fixed: Mapping[str, str], chances: Sequence
     fixed, chances: of all runs, see sample.plan.
     """
     added, rows = order.added, rows_of(setup, todo)
-    assert added
+    assert added and order.condition
     for k in range(len(added.batches)):
         rows += batch(setup, order, fixed, chances, todo, work, k)
     while True:
