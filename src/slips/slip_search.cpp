@@ -345,14 +345,14 @@ SlipBody SlipSearch::improve(const SlipBody &start, bool wide, int lines, int st
 
 std::vector<SlipBody> SlipSearch::improve_all(const char *stage,
                                               const std::vector<SlipBody> &starts, bool wide,
-                                              int lines, int steps)
+                                              int lines, int steps, int again)
 {
   static constexpr size_t WIDTH = 10;
   std::vector<double> values(WIDTH * starts.size(), HUGE_VAL);
   ranks.progress(stage, 0.0);
   for (size_t k = ranks.me; k < starts.size(); k += ranks.all) {
     SlipBody b = improve(starts[k], wide, lines, steps);
-    for (int n = 0; n < AGAIN; n++) {
+    for (int n = 0; n < again; n++) {
       const double before = b.factor;
       b = improve(b, wide, lines, steps);
       if (!(before - b.factor > GAIN * before)) break;
@@ -381,17 +381,20 @@ std::vector<SlipBody> SlipSearch::run()
   static constexpr int LINES = 96;
   const size_t keep = limits.keep;
   std::vector<SlipBody> found = distinct(lattice(), 8 + 4 * keep, STARTS_OVERLAP);
-  found = distinct(improve_all("simplex", found, false, 0, 100), keep + 2, OVERLAP);
+  found = distinct(improve_all("simplex", found, false, 0, 100, 1), keep + 2, OVERLAP);
 
-  // one that slides into a better one's place is kept as it was before
+  // one that slides into a better one's place is kept as it was on the way, or before
 
-  std::vector<SlipBody> all = improve_all("exact columns", found, false, LINES, 100);
-  const std::vector<SlipBody> before = improve_all("exact columns", found, false, LINES, 0);
-  all.insert(all.end(), before.begin(), before.end());
-  if (limits.ellipsoids) {
-    const std::vector<SlipBody> wide = improve_all("ellipsoids", all, true, LINES, 200);
-    all.insert(all.end(), wide.begin(), wide.end());
-  }
+  std::vector<SlipBody> all;
+  const auto add = [&all](const std::vector<SlipBody> &more) {
+    all.insert(all.end(), more.begin(), more.end());
+  };
+  const std::vector<SlipBody> way = improve_all("exact columns", found, false, LINES, 100, 0);
+  add(improve_all("exact columns", way, false, LINES, 100, AGAIN));
+  add(way);
+  add(improve_all("exact columns", found, false, LINES, 0, 0));
+  if (limits.ellipsoids)
+    add(improve_all("ellipsoids", distinct(all, keep + 2, OVERLAP), true, LINES, 200, AGAIN));
   std::vector<SlipBody> kept = distinct(all, keep, OVERLAP);
   for (SlipBody &body : kept) {
     maker.exact(body.surface, body, LINES);

@@ -86,7 +86,7 @@ class SlipSearch {
   bool enter(const SlipBody &, int lines, SlipBody &);
   SlipBody improve(const SlipBody &, bool wide, int lines, int steps);
   std::vector<SlipBody> improve_all(const char *stage, const std::vector<SlipBody> &, bool wide,
-                                    int lines, int steps);
+                                    int lines, int steps, int again);
 };
 
 }    // namespace Slope

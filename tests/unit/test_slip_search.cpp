@@ -177,7 +177,7 @@ TEST(SlipSearch, KeepsBodiesThatDifferInOrder)
       }
       EXPECT_LE(common, 1.1 * SlipSearch::OVERLAP * std::min(of_a, of_b));    // blocks of cells
     }
-  ASSERT_EQ(c.stages.size(), 4u);
+  ASSERT_EQ(c.stages.size(), 5u);
   EXPECT_EQ(c.stages[0], "lattice");
 }
 
