@@ -85,7 +85,7 @@ def test_the_estimate_is_of_the_study_that_is_made(large):
     choices = site_choices.read(large)
     assert site_choices.found(large)["study"]["runs"] == known_study.POINTS == 64
     plan = site_budget.plan(choices, 64)
-    assert plan.runs == 64 and not plan.half_step and "known events" in plan.text
+    assert plan.runs == 64 and not plan.half_step and "up to half as many more" in plan.text
     plan = site_budget.plan(choices)
     assert plan.runs == 18 and plan.half_step
     assert plan.text == "18 runs: 3 rolling resistances x 3 lattice positions, 3 sizes of balls x 3"

@@ -139,7 +139,8 @@ class Plan(NamedTuple):
 def plan(choices: Choices, points: int = 0) -> Plan:
     """points: of an ensemble that is weighted by known events; 0: the study by the paper's method."""
     if points:
-        return Plan([(1.0, points)], False, f"{points} runs, weighted by known events (study --paper makes others)")
+        return Plan([(1.0, points)], False, f"{points} runs, weighted by known events, and up to half as many more "
+                    "where these go farther (study --paper makes others)")
     study = choices["study"]
     each = 1 + sum(len(study[name]) for name in OFFSETS)
     parts = [(1.0, each * len(study["rolling"])), *((float(factor), each) for factor in study["sizes"])]
