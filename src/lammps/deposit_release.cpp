@@ -12,6 +12,7 @@
 #include "deposit_ground.h"
 #include "deposit_options.h"
 #include "lammps_compat.h"
+#include "region_columns.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -20,6 +21,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <numeric>
 #include <stdexcept>
 #include <vector>
 
@@ -29,6 +32,9 @@ using Slope::BodyVolume;
 static constexpr double UNBOUNDED = 1.0e19;          // LAMMPS writes INF as 1e20
 static constexpr double ASTRAY = 0.05;               // of the balls may lie far from the body
 static constexpr double LEAST = 1.0, MOST = 10.0;    // bulk factor: volume of a body / of its balls
+
+static constexpr int COARSE = 1000, FINE = 1400;    // columns along the longer side
+static constexpr double SAME = 1.0e-3;              // two sums of such columns
 
 enum { X, Y, Z };
 
@@ -182,7 +188,46 @@ double DepositRelease::integrate(Region *region) const
   BodyVolume body(box, inside, {comm->me, comm->nprocs, sum});
   for (int i = 0; i < atom->nlocal; i++)
     if (balls.selected(i)) body.mark(atom->x[i][X], atom->x[i][Y]);
-  return body.volume();
+  try {
+    return body.volume();
+  } catch (std::runtime_error &) {
+    // thin bodies in many parts, whose pieces a search misses: exactly, if the shapes are known
+    const std::unique_ptr<RegionColumns> columns = RegionColumns::of(lmp, region);
+    if (!columns) throw;
+    const double coarse = by_columns(*columns, region, COARSE);
+    const double fine = by_columns(*columns, region, FINE);
+    if (!(std::fabs(fine - coarse) <= SAME * fine)) throw;
+    return fine;
+  }
+}
+
+/* ----------------------------------------------------------------------
+   volume by a column in each of square cells, so many along the longer side, at places that repeat no
+   grid; the same on any number of ranks
+------------------------------------------------------------------------- */
+
+double DepositRelease::by_columns(const RegionColumns &columns, const Region *region,
+                                  int most) const
+{
+  const double length_x = region->extent_xhi - region->extent_xlo;
+  const double length_y = region->extent_yhi - region->extent_ylo;
+  const double cell = std::max(length_x, length_y) / most;
+  const int nx = static_cast<int>(std::ceil(length_x / cell));
+  const int ny = static_cast<int>(std::ceil(length_y / cell));
+  std::vector<double> mine(ny, 0.0), rows(ny);
+  Slope::Intervals found;
+  for (int j = comm->me; j < ny; j += comm->nprocs)
+    for (int i = 0; i < nx; i++) {
+      const double k = static_cast<double>(j) * nx + i + 1.0;
+      const double u = std::fmod(k * 0.7548776662466927, 1.0);
+      const double v = std::fmod(k * 0.5698402909980532, 1.0);
+      columns.column(region->extent_xlo + (i + u) * cell, region->extent_ylo + (j + v) * cell,
+                     found);
+      found.intersect(Slope::Interval{region->extent_zlo, region->extent_zhi});
+      for (size_t k = 0; k < found.size(); k++) mine[j] += found[k].hi - found[k].lo;
+    }
+  MPI_Allreduce(mine.data(), rows.data(), ny, MPI_DOUBLE, MPI_SUM, world);
+  return std::accumulate(rows.begin(), rows.end(), 0.0) * cell * cell;
 }
 
 /* ----------------------------------------------------------------------

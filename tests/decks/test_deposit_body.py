@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from scipy import ndimage
 
 from deck_helpers import read_asc, run_deck, write_asc
 
@@ -271,3 +272,22 @@ region thin block -5 5 -5 5 0 0.9 units box
         return
     log = run_deck(deck(regions=regions, **settings), plane, np=np_, expect_error=message)
     assert "Step" not in log.replace("Time step", "") and not list(plane.glob("out.*"))
+
+
+def test_thin_parts_on_a_steep_slope(tmp_path):
+    """A search in height misses some of them; the shapes of the region are known, and so are its columns."""
+    n, fine = 150, 10
+    row, column = np.indices((n, n)) + 0.5
+    low = 2.0 * column
+    bumps = 0.7 * np.sin(2 * np.pi * column / 7) * np.sin(2 * np.pi * row / 7)
+    bumps[np.minimum.reduce([row, column, n - row, n - column]) < 3] = 0.0
+    write_asc(tmp_path / "low.asc", low)
+    write_asc(tmp_path / "high.asc", low + bumps)
+    regions = "region top terrain high.asc\nregion under terrain low.asc side out\nregion parts intersect 2 top under"
+    text = deck(regions=regions, d=0.6, small=0.6, filled="parts", bulk="region parts")
+    text = text.replace("terrain ground.asc depth 5 headroom 20", "terrain low.asc")
+    run_deck(text.replace("lattice sc 0.6", "lattice sc 0.6 origin 0.3 0.3 0.2"), tmp_path, np=2)
+    places = (np.arange((n - 1) * fine) + 0.5) / fine      # bilinear between the centres of the cells
+    between = ndimage.map_coordinates(bumps, np.meshgrid(places, places, indexing="ij"), order=1)
+    exact = np.maximum(between, 0.0).sum() / fine ** 2
+    assert summary(tmp_path)["release"]["body_volume"] == pytest.approx(exact, rel=1e-3)
