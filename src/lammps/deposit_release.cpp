@@ -224,7 +224,7 @@ double DepositRelease::by_columns(const RegionColumns &columns, const Region *re
       columns.column(region->extent_xlo + (i + u) * cell, region->extent_ylo + (j + v) * cell,
                      found);
       found.intersect(Slope::Interval{region->extent_zlo, region->extent_zhi});
-      for (size_t k = 0; k < found.size(); k++) mine[j] += found[k].hi - found[k].lo;
+      for (size_t n = 0; n < found.size(); n++) mine[j] += found[n].hi - found[n].lo;
     }
   MPI_Allreduce(mine.data(), rows.data(), ny, MPI_DOUBLE, MPI_SUM, world);
   return std::accumulate(rows.begin(), rows.end(), 0.0) * cell * cell;
