@@ -4,6 +4,7 @@ from typing import List, Tuple
 
 from .. import disk
 from ..deposits import travel_shares
+from ..digits import rounded
 from ..sites.site_warnings import LARGE
 from ..statistics import headline
 
@@ -89,7 +90,7 @@ def model(data) -> CONTENT:
                      f"ground, a cube of {side} m: a parameter of the model, not the size of blocks. Speeds and "
                      "energies of single balls are those of such a block. Dry: no water, no pore pressure, no "
                      "liquefaction. No cohesion, no breakage, no bulking on the way."),
-        ("The ground", f"That of the elevation model; the deposit is sampled in cells of {data.result.deposit.cell:g} "
-                       "m. Anything narrower than a cell or a ball, such as a ditch, has no effect. There is no "
+        ("The ground", "That of the elevation model; the deposit is sampled in cells of "
+                       f"{rounded(data.result.deposit.cell, 3)} m. Anything narrower than a cell or a ball, such as a ditch, has no effect. There is no "
                        "erosion or entrainment; there are no trees, and no walls or buildings except those in the "
                        "deck.")]
