@@ -91,6 +91,7 @@ def model(data) -> CONTENT:
                      "energies of single balls are those of such a block. Dry: no water, no pore pressure, no "
                      "liquefaction. No cohesion, no breakage, no bulking on the way."),
         ("The ground", "That of the elevation model; the deposit is sampled in cells of "
-                       f"{rounded(data.result.deposit.cell, 3)} m. Anything narrower than a cell or a ball, such as a ditch, has no effect. There is no "
+                       f"{rounded(data.result.deposit.cell, 3)} m. Anything narrower than a cell or a "
+                       "ball, such as a ditch, has no effect. There is no "
                        "erosion or entrainment; there are no trees, and no walls or buildings except those in the "
                        "deck.")]
