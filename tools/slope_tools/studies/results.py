@@ -230,7 +230,7 @@ def result(run, row, maps):
     summary = run_folders.load_summary(path)
     prefix = run_folders.prefix_of(path)
     thickness = run_folders.load_raster(prefix, "thickness")
-    maps.add(run.name, thickness, run_folders.load_raster(prefix, "max_thickness"), not run.batch)
+    maps.add(run.name, thickness, run_folders.load_raster(prefix, "max_thickness"), not row.get("batch"))
     run.log.update()
     volume, travel = summary["volume"], summary["travel"]
     stays = volume["released"] - volume["off_grid"] - volume["lost"]
