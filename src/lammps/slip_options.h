@@ -26,7 +26,7 @@ class SlipOptions : protected Pointers {
   const Slope::ElevationGrid &ground() const;
   Slope::SlipSoil soil() const;         // collective: reads the rasters
   std::vector<char> allowed() const;    // a flag for each cell of the ground, or empty
-  const std::string &variable() const { return name; }    // begin of the variables' names
+  const std::string &variable() const { return name; }    // beginning of the variables' names
 
   Slope::SlipTask task;
   Slope::SlipLimits limits;

@@ -58,7 +58,7 @@ def bounds_of(largest: float, scale: str, smallest: float = 0.0) -> List[float]:
     """Upper bounds of the classes, the last one at or above the largest value.
 
     even: round numbers at equal distances from the smallest value, or from 0; of SERIES: CLASSES numbers of the series
-    up to the largest value, so that thin and thick, slow and fast are told apart on one map.
+    up to the largest value, so that thin and thick, slow and fast can be distinguished on one map.
     """
     if scale in FIXED:
         return list(FIXED[scale])

@@ -16,7 +16,7 @@ from .road import AtRoad
 
 TABLE, SUMMARY, MAP, PROFILE = "mobility.csv", "mobility.yaml", "mobility_map.png", "mobility_profile.png"
 FILES = (TABLE, MAP, PROFILE, SUMMARY)
-SHARES = (0.95, 0.9, 0.5, 0.1, 0.05)        # of known events, whose lengths are told
+SHARES = (0.95, 0.9, 0.5, 0.1, 0.05)        # of known events, whose lengths are given
 NAMES = {True: "confined", False: "unconfined"}
 
 
