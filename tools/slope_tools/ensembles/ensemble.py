@@ -29,7 +29,6 @@ QUANTITIES = {**quantities.NAMES, "max_thickness_m": ("largest thickness at any 
 MAIN = ("remove_m3", ON_ROAD, "beyond_road_m3", "blocked_m", travel_shares.DISTANCE, "connected_m", "centroid_m",
         "thickness_m", "max_speed_m_s")
 FEW = 0.2       # share of failed runs from which on an ensemble is doubted
-SIGN = ("first", "first_error", "total", "total_error")
 
 
 @dataclass(frozen=True)
@@ -78,7 +77,7 @@ def evaluate(order: Order, rows: Sequence[Mapping[str, Any]], output: Path, plac
     main = [name for name in dict.fromkeys((order.of, *MAIN)) if name in of_quantity]
     analyses = {name: emulator.analyse(order.sample.names, places, column(finished, name), point, order.sample.snap)
                 for name in main}
-    about["influence"] = {name: influence(one) for name, one in analyses.items()}
+    about["influence"] = {name: one.about() for name, one in analyses.items()}
     about["doubts"] = doubts(about)
     about["maps"] = [] if grids else ensemble_maps.write(
         output / MAPS, [run_folders.prefix_of(output / row["summary"]) for row in finished], len(set(point)), failed,
@@ -115,16 +114,6 @@ def numbers(finished, name: str, point: Sequence[int], failed: int) -> Dict[str,
             "quantiles": [one._asdict() for one in hazard.quantiles(values, point, failed)]}
 
 
-def influence(analysis: emulator.Analysis) -> Dict[str, Any]:
-    """Of a quantity: what the emulator is worth, and each variable's rank correlation and indices."""
-    check = analysis.check
-    return {"text": analysis.text,
-            "emulator": check and {"verdict": check.verdict, "explained": check.explained, "error": check.error,
-                                   "noise": check.noise, "standard_deviation": check.deviation},
-            "variables": {one.name: {"rank": one.rank, "rank_clear": one.rank_clear,
-                                     **{key: getattr(one, key) for key in SIGN}} for one in analysis.influences}}
-
-
 def doubts(about: Mapping[str, Any]) -> List[str]:
     """The caveats on the numbers."""
     found = []
@@ -151,12 +140,12 @@ def influence_table(analyses: Mapping[str, emulator.Analysis]) -> str:
     """The CSV of ranks and indices; a cell is empty where the emulator says nothing."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["quantity", "variable", "rank", "rank_clear", *SIGN, "emulator_explains", "emulator_error"])
+    writer.writerow(["quantity", "variable", "rank", "rank_clear", *emulator.SIGN, "emulator_explains", "emulator_error"])
     for name, analysis in analyses.items():
         check = analysis.check
         for one in analysis.influences:
             writer.writerow([name, one.name, one.rank, "yes" if one.rank_clear else "no",
-                             *(getattr(one, key) for key in SIGN),
+                             *(getattr(one, key) for key in emulator.SIGN),
                              *((check.explained, check.error) if check else (None, None))])
     return text.getvalue()
 

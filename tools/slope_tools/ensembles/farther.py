@@ -97,7 +97,7 @@ class Added:
         box = None
         if max(lengths) >= path_m:
             self.stopped = "the fall path, or the terrain, ends there: take a larger terrain"
-        elif len(lengths) < max(emulator.LEAST_POINTS, 2 * places.shape[1] + 2):
+        elif not emulator.enough(len(lengths), places.shape[1]):
             self.stopped = "the runs are too few to tell which parameters go farther: take more points"
         elif left <= 0:
             self.stopped = f"{self.number} runs were added; a larger --sample allows more"

@@ -22,7 +22,7 @@ from ..mobility.results import percent
 from ..sites import site_choices
 from ..statistics import emulator, hazard
 from ..tables import quantities
-from . import conditioned, farther, known_maps
+from . import conditioned, farther, known_influence, known_maps
 from .sample import Sample
 
 FOLDER, HAZARD, WEIGHTS = "known_events", "hazard_known_events.csv", "weights.csv"
@@ -108,8 +108,8 @@ class Runs:
 
     def design(self) -> Optional[conditioned.Design]:
         """What tells how even the design is; None where it cannot be told, which makes the bounds wider."""
-        few = max(emulator.LEAST_POINTS, 2 * len(self.sample.names) + 2)
-        if self.added or self.failed or self.several > 1 or not few <= len(self.rows) <= conditioned.MOST_EMULATED:
+        if self.added or self.failed or self.several > 1 or len(self.rows) > conditioned.MOST_EMULATED or \
+                not emulator.enough(len(self.rows), len(self.sample.names)):
             return None
         return conditioned.Design(self.sample.kind, self.places, self.lengths, self.exceedance,
                                   self.sample.snap)
@@ -144,6 +144,7 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
         name: {"name": names[name][0], "unit": names[name][1],
                "quantiles": [one._asdict() for one in conditioned.quantiles(curve)]} for name, curve in curves.items()}
     about["variables"] = {name: variable(runs, k, main) for k, name in enumerate(sample.names)}
+    about["influence"] = {name: known_influence.evaluate(runs, name) for name in main[:1]}
     about["doubts"] = doubts(about, runs)
     about["maps"] = [] if grids else known_maps.write(
         output / FOLDER, [run_folders.prefix_of(output / row["summary"]) for row in runs.rows], runs.mass,

@@ -8,6 +8,7 @@ from ..drawing import figures, palettes
 from ..ensembles import ensemble
 from ..errors import SlopeError
 from ..plots import ensemble_charts, figure_maps
+from ..statistics import emulator
 from ..tables import quantities, withheld_words
 from .charts import AXIS
 from .data import is_number
@@ -87,7 +88,7 @@ class Ensemble:
             if len(found) == 3 or any(one["total"] is None for one in variables.values()):
                 continue
             what = self.about["quantities"][name]["name"]
-            bars = [ensemble_charts.Bar(key, *(one[part] for part in ensemble.SIGN)) for key, one in variables.items()]
+            bars = [ensemble_charts.Bar(key, *(one[part] for part in emulator.SIGN)) for key, one in variables.items()]
             text = entry["text"] if "text" in entry else entry["told"]      # the latter in older files
             title = f"What matters: {what}"
             found.append(self.picture(ensemble_charts.influence(bars, title), title,
@@ -123,8 +124,7 @@ class Ensemble:
             for key in self.about["design"]["variables"]:
                 one = found and found["variables"][key]
                 of_variables.append("" if not one else f"rank {one['rank']:+.2f}" if one["total"] is None else
-                                    f"{one['first']:.2f} / {one['total']:.2f} \N{PLUS-MINUS SIGN} "
-                                    f"{one['total_error']:.2f}")
+                                    indices_text(one))
             check = found and found["emulator"]
             rows.append({"what": entry["name"], "unit": entry["unit"], "cells": cells, "variables": of_variables,
                          "explains": "" if not check else f"{100 * max(0, check['explained']):.0f} %",
@@ -184,3 +184,8 @@ def draw(entries, maps):
         bands = f" Its bounds are bands of {entry['bounds']}." if entry["bounds"] else ""
         pictures.append(maps.picture(uri, title, f"{title}.{bands}"))
     return pictures
+
+
+def indices_text(one: Mapping[str, Any]) -> str:
+    """First and total Sobol index of a variable that has them, with the error of the latter."""
+    return f"{one['first']:.2f} / {one['total']:.2f} \N{PLUS-MINUS SIGN} {one['total_error']:.2f}"

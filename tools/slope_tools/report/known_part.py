@@ -5,7 +5,7 @@ from ..ensembles import known_events
 from ..mobility.results import percent
 from ..plots import ensemble_charts
 from ..tables import quantities
-from .ensemble_part import Ensemble, read_curve
+from .ensemble_part import Ensemble, indices_text, read_curve
 
 
 class KnownEvents:
@@ -72,10 +72,12 @@ class KnownEvents:
     def variables(self) -> List[Dict[str, Any]]:
         """Which parameters the weighted runs have, and how the quantity that counts depends on them."""
         found = []
+        indices = (self.about.get("influence") or {}).get(self.of, {}).get("variables", {})    # none in older files
         for name, entry in self.about["variables"].items():
-            rank = entry["rank"].get(self.of)
+            rank, one = entry["rank"].get(self.of), indices.get(name)
             found.append({"name": name, "cells": [str(value) for value in entry["quantiles"]],
-                          "rank": "-" if rank is None else f"{rank:+.2f}"})
+                          "rank": "-" if rank is None else f"{rank:+.2f}",
+                          "indices": indices_text(one) if one and one["total"] is not None else "-"})
         return found
 
     def maps(self):

@@ -7,7 +7,7 @@ cross-validation: runs of points that the process has not seen. What a bad fit s
 import math
 import warnings
 from dataclasses import dataclass
-from typing import List, Optional, Sequence
+from typing import Any, Dict, List, NamedTuple, Optional, Sequence
 
 import numpy as np
 from scipy import linalg, stats
@@ -15,6 +15,8 @@ from scipy.stats import qmc
 from sklearn.exceptions import ConvergenceWarning
 from sklearn.gaussian_process import GaussianProcessRegressor
 from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
+
+from . import dependent
 
 FOLDS = 8
 GOOD, ROUGH = 0.8, 0.5      # share of the variance of unseen runs that is explained: good, rough from here, bad below
@@ -25,6 +27,7 @@ SMOOTHNESS = 2.5, math.inf      # of Matern's kernels; inf is the Gaussian one
 LENGTHS = 0.05, 20.0        # of the kernel, in units of the cube
 NOISE = 1e-8, 2.0           # share of the variance
 SEED = 1
+SIGN = "first", "first_error", "total", "total_error"      # of an Influence, what stands for it in files
 
 
 class Emulator:
@@ -135,6 +138,15 @@ class Analysis:
     influences: List[Influence]
     text: str
 
+    def about(self) -> Dict[str, Any]:
+        """What study.yaml says of it: what the emulator is worth, and each variable's rank correlation and indices."""
+        check = self.check
+        return {"text": self.text,
+                "emulator": check and {"verdict": check.verdict, "explained": check.explained, "error": check.error,
+                                       "noise": check.noise, "standard_deviation": check.deviation},
+                "variables": {one.name: {"rank": one.rank, "rank_clear": one.rank_clear,
+                                         **{key: getattr(one, key) for key in SIGN}} for one in self.influences}}
+
 
 def folds(point: np.ndarray) -> List[np.ndarray]:
     """Masks of the runs that are left out together: all of the same point, points dealt out in turn."""
@@ -144,11 +156,37 @@ def folds(point: np.ndarray) -> List[np.ndarray]:
     return [order[index] % number == k for k in range(number)]
 
 
+class Validated(NamedTuple):
+    """An emulator of all runs, those without each of the folds, and what these say of it."""
+    whole: Emulator
+    parts: List[Emulator]
+    check: Check
+
+
+def enough(points: int, variables: int) -> bool:
+    """Whether so many different points are enough for an emulator."""
+    return points >= max(LEAST_POINTS, 2 * variables + 2)
+
+
+def validated(points: np.ndarray, values: np.ndarray, point: np.ndarray) -> Validated:
+    """The emulator of values, which differ, of runs at points (n, d), cross-validated; point: see analyse."""
+    whole = Emulator(points, values)
+    parts, predicted = [], np.empty(len(values))
+    for out in folds(point):
+        part = Emulator(points[~out], values[~out], whole.kernel, restarts=0)
+        predicted[out] = part.at(points[out])
+        parts.append(part)
+    error = float(np.sqrt(np.mean((predicted - values) ** 2)))
+    return Validated(whole, parts,
+                     Check(1 - error ** 2 / float(values.var()), error, whole.noise, float(values.std(ddof=1))))
+
+
 def analyse(names: Sequence[str], points: np.ndarray, values: np.ndarray, point: Sequence[int],
-            snap=lambda u: u) -> Analysis:
+            snap=lambda u: u, weighting: Optional[dependent.Weighting] = None) -> Analysis:
     """Influence of each variable on values of runs at points (n, d); point: which point of the design each run is of.
 
-    snap: moves places in the cube to where runs can be, for variables of a list.
+    snap: moves places in the cube to where runs can be, for variables of a list; weighting: of the places, for the
+    indices; None: all weigh the same.
     """
     points, of = np.asarray(points, float), np.asarray(point)
     values = np.asarray(values, float)
@@ -161,23 +199,21 @@ def analyse(names: Sequence[str], points: np.ndarray, values: np.ndarray, point:
 
     if np.ptp(values) <= 1e-9 * max(1e-300, float(np.abs(values).max())):
         return without("it is the same in all runs")
-    if different < max(LEAST_POINTS, 2 * len(names) + 2):
+    if not enough(different, len(names)):
         return without(f"{different} points are too few for an emulator of {len(names)} variables")
-    whole = Emulator(points, values)
-    parts, predicted = [], np.empty(len(values))
-    for out in folds(of):
-        part = Emulator(points[~out], values[~out], whole.kernel, restarts=0)
-        predicted[out] = part.at(points[out])
-        parts.append(part)
-    error = float(np.sqrt(np.mean((predicted - values) ** 2)))
-    check = Check(1 - error ** 2 / float(values.var()), error, whole.noise, float(values.std(ddof=1)))
+    whole, parts, check = validated(points, values, of)
     if check.verdict == "bad":
         return without(f"no indices: of runs that it has not seen the emulator explains {percent(check.explained)} of "
                        "the variance", check)
-    first, total = indices(whole, len(names), snap)
-    many = np.array([indices(part, len(names), snap, BASE_OF_FOLD) for part in parts])
+    if weighting is None:
+        first, total = indices(whole, len(names), snap)
+        many = np.array([indices(part, len(names), snap, BASE_OF_FOLD) for part in parts])
+    else:
+        first, total = dependent.indices(whole.at, weighting.whole, len(names), snap)
+        many = np.array([dependent.indices(part.at, weight, len(names), snap)
+                         for part, weight in zip(parts, weighting.parts)])
     jackknife = (len(parts) - 1) / len(parts) * ((many - many.mean(axis=0)) ** 2).sum(axis=0)
-    errors = np.sqrt(jackknife + check.unseen ** 2)
+    errors = np.sqrt(jackknife + check.unseen ** 2 + (weighting.unseen ** 2 if weighting else 0))
     text = f"the emulator explains {percent(check.explained)} of the variance of runs that it has not seen"
     if check.verdict == "rough":
         text += ": take the indices as rough"
