@@ -41,16 +41,17 @@ inline double held(const SpringDashpot &law, double most, double limit, const do
 // the same of all springs of a contact, J, as they act
 inline double elastic_energy(const ContactStep &step, const Contact &c, const double *history)
 {
-  const double elastic = step.kn * c.overlap, vn = normal_velocity(c);
+  const double elastic = spring_force(step, c.overlap), vn = normal_velocity(c);
   const double pressing = elastic - step.cn * vn;
   double vt[3], w[3];
   sliding_velocity(c, vn, vt);
   flatten(c.n, c.w, w);
   for (double &x : w) x *= c.rolling_radius;
-  return 0.5 *
-      (elastic * c.overlap +
-       held({step.kt, step.ct}, step.friction * elastic, step.friction * pressing, history, vt) +
-       held({step.kr, step.cr}, step.rolling * elastic, step.rolling * pressing, history + 3, w));
+  return spring_energy(step, c.overlap) +
+      0.5 *
+      held({step.kt, step.ct}, step.friction * elastic, step.friction * pressing, history, vt) +
+      0.5 *
+      held({step.kr, step.cr}, step.rolling * elastic, step.rolling * pressing, history + 3, w);
 }
 
 // The same of a list, this rank's share, J; see(entry, overlap) is called for each contact that touched in the last step.

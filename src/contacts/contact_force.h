@@ -293,7 +293,7 @@ SLOPE_INLINE void contact_force(const ContactStepOf<N> &step, const ContactOf<T,
 {
   const T *n = c.n;
   const T vn = normal_velocity(c), zero = T();
-  const T elastic = step.kn * (larger(c.overlap, zero) + c.beyond);
+  const T elastic = spring_force(step, T(larger(c.overlap, zero) + c.beyond));
   const T cn = step.cn * held_back(step.taken_n, contacts, MOST_NORMAL);
   const T own =
       1.0 + AHEAD * c.first * c.weight * step.taken_n;    // its force is not in c.ahead yet

@@ -66,6 +66,16 @@ struct ContactLaw {
   double cn(double m) const { return cn_given + cn_root * std::sqrt(m); }
 };
 
+// The normal spring at an overlap (m): its force, N, and what it holds, J. Law: ContactLaw, or what a step makes of it.
+template <class Law, class T> SLOPE_INLINE T spring_force(const Law &law, T overlap)
+{
+  return law.kn * overlap;
+}
+template <class Law, class T> SLOPE_INLINE T spring_energy(const Law &law, T overlap)
+{
+  return 0.5 * spring_force(law, overlap) * overlap;
+}
+
 // ----------------------------------------------------------------------
 // the two sides of a contact
 // ----------------------------------------------------------------------

@@ -10,6 +10,7 @@
 #ifndef SLOPE_CONTACT_WORKS_H
 #define SLOPE_CONTACT_WORKS_H
 
+#include "contact_law.h"
 #include "vector3.h"
 
 #include <algorithm>
@@ -33,12 +34,20 @@ class ContactWorks {
   void clear() { forces.clear(); }
 
   // f: on ball i, N; delta: from the partner to the ball, m; share: of the contact that is this rank's
-  void add(int i, int j, double ri, double rj, double kn, double share, const Vector &f,
+  void add(int i, int j, double ri, double rj, const ContactLaw &law, double share, const Vector &f,
            const Vector &delta)
   {
     const double r = std::sqrt(dot(delta, delta));
-    forces.push_back(
-        {i, j, ri, rj, kn, share, ri + rj - r, f, {delta.x / r, delta.y / r, delta.z / r}});
+    const double overlap = std::max(ri + rj - r, 0.0);
+    forces.push_back({i,
+                      j,
+                      ri,
+                      rj,
+                      share,
+                      spring_force(law, overlap),
+                      spring_energy(law, overlap),
+                      f,
+                      {delta.x / r, delta.y / r, delta.z / r}});
   }
 
   // in a step of dt (s), with the velocities of its end
@@ -55,13 +64,13 @@ class ContactWorks {
                         c.ri * wi.z + c.rj * wj.z};
       const Vector spin = {w.y * n.z - w.z * n.y, w.z * n.x - w.x * n.z, w.x * n.y - w.y * n.x};
       const double un = dot(u, n), part = dt * c.share;
-      const double elastic = c.kn * std::max(c.overlap, 0.0), normal = dot(c.f, n);
+      const double elastic = c.elastic, normal = dot(c.f, n);
       const double torque = -part * dot(c.f, spin);
       sum.spring += part * elastic * un;
       sum.dashpot += part * (normal - elastic) * un;
       sum.sliding += part * (dot(c.f, u) - normal * un) + torque;
       sum.by_torque += torque;
-      sum.stored += 0.5 * c.share * elastic * std::max(c.overlap, 0.0);
+      sum.stored += c.share * c.stored;
     }
     return sum;
   }
@@ -69,7 +78,7 @@ class ContactWorks {
  private:
   struct Force {
     int i, j;
-    double ri, rj, kn, share, overlap;
+    double ri, rj, share, elastic, stored;    // elastic: N, stored: J, of the normal spring
     Vector f, n;
   };
   std::vector<Force> forces;

@@ -5,8 +5,6 @@
 
 #include "deposit_rasters.h"
 
-#include "deposit_bins.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -162,11 +160,8 @@ std::vector<double> DepositRasters::touched(int band) const
       const double *cell = block + DepositBlocks::index(i, j);
       for (int k = i; k < std::min(i + SIDE, cells.n[X]); k++, cell++) {
         if (cell[MAX_THICKNESS * CELLS] == 0.0 && std::isnan(cell[ARRIVAL * CELLS])) continue;
-        const double values[PER_CELL] = {(double) j * cells.n[X] + k, cell[MAX_THICKNESS * CELLS],
-                                         cell[MAX_SPEED * CELLS],     cell[MAX_ENERGY * CELLS],
-                                         cell[ARRIVAL * CELLS],       cell[LAST_MOTION * CELLS],
-                                         cell[SNAPSHOT * CELLS]};
-        found.insert(found.end(), values, values + PER_CELL);
+        found.push_back((double) j * cells.n[X] + k);
+        for (int kind = MAX_THICKNESS; kind < KINDS; kind++) found.push_back(cell[kind * CELLS]);
       }
     }
   return found;
@@ -180,5 +175,5 @@ void DepositRasters::restore(const double *values)
   const int i = (int) (number % cells.n[X]), j = (int) (number / cells.n[X]);
   if (!rows.mine(j / SIDE)) return;
   double *cell = blocks.make(i / SIDE, j / SIDE) + DepositBlocks::index(i, j);
-  for (int kind = MAX_THICKNESS; kind <= SNAPSHOT; kind++) cell[kind * CELLS] = values[kind];
+  for (int kind = MAX_THICKNESS; kind < KINDS; kind++) cell[kind * CELLS] = values[kind];
 }

@@ -7,6 +7,7 @@
 #define SLOPE_DEPOSIT_RASTERS_H
 
 #include "deposit_bands.h"
+#include "deposit_bins.h"
 #include "deposit_blocks.h"
 #include "plan_grid.h"
 
@@ -19,11 +20,19 @@ namespace Slope {
 // the records of each cell so far. A sample is clear(), add() of all blocks of bins, finish().
 class DepositRasters {
  public:
-  enum Name { THICKNESS, MAX_THICKNESS, MAX_SPEED, MAX_ENERGY, ARRIVAL, LAST_MOTION, SNAPSHOT };
-  static constexpr int KINDS = 7;
+  enum Name {
+    THICKNESS,
+    MAX_THICKNESS,
+    MAX_SPEED,
+    MAX_ENERGY,
+    ARRIVAL,
+    LAST_MOTION,
+    SNAPSHOT,
+    KINDS
+  };
 
   // if the mass was in every cell: base, all kinds, and the bins of the balls
-  static constexpr double MOST_BYTES_PER_CELL = 8.0 * (1 + KINDS + 3);
+  static constexpr double MOST_BYTES_PER_CELL = 8.0 * (1 + KINDS + DepositBins::KINDS);
 
   DepositRasters();
 
@@ -56,8 +65,8 @@ class DepositRasters {
   double bytes() const;
 
   // what cells that the mass touched saw, of a band and in the order of rows and columns, for restart
-  // files: number of the cell, values
-  static constexpr int PER_CELL = 7;
+  // files: number of the cell, all kinds but the thickness
+  static constexpr int PER_CELL = KINDS;
   std::vector<double> touched(int band) const;
   void restore(const double *values);    // of one cell; nothing if it is another rank's
 

@@ -235,17 +235,17 @@ void FixWallGranBalls::apply(bool starting)
 {
   const MovingBalls moving = pair->moving_balls();
   const FixedPartners fixed = partners();
-  double kn = 0.0;
+  const ContactLaw *law = nullptr;
   auto visit = [&](int i, int, const Vector &f, const Vector &d) {
-    pair->works.add(i, ContactWorks::FIXED, atom->radius[i], radius, kn, 1.0, f, d);
+    pair->works.add(i, ContactWorks::FIXED, atom->radius[i], radius, *law, 1.0, f, d);
   };
   ContactTally tally = pair->works.wanted ? tally_of(visit) : ContactTally();
 
   for (int type = 1; type <= atom->ntypes; type++) {
     ContactList &l = lists[type];
     if (l.entries.empty()) continue;
-    kn = law_of(type).kn;
-    l.apply(law_of(type), update->dt, starting, moving, fixed, &tally);
+    law = &law_of(type);
+    l.apply(*law, update->dt, starting, moving, fixed, &tally);
   }
 
   force_mine[0] = -tally.force.x;

@@ -496,19 +496,18 @@ void PairGranRestitution::compute(int eflag, int vflag)
   const int nlocal = atom->nlocal, newton_pair = force->newton_pair;
   const MovingBalls balls = moving_balls();
   const MovingPartners partners = {balls, newton_pair ? INT_MAX : nlocal};
-  double kn = 0.0;
+  const ContactLaw *law = nullptr;
   auto visit = [&](int i, int j, const Vector &f, const Vector &d) {
     if (evflag) ev_tally_xyz(i, j, nlocal, newton_pair, 0.0, 0.0, f.x, f.y, f.z, d.x, d.y, d.z);
     if (works.wanted)
-      works.add(i, j, atom->radius[i], atom->radius[j], kn, partners.share(j), f, d);
+      works.add(i, j, atom->radius[i], atom->radius[j], *law, partners.share(j), f, d);
   };
   works.clear();
   ContactTally tally = tally_of(visit);
   const bool visited = evflag || works.wanted;
   for (size_t k = 0; k < lists.size(); k++) {
-    const ContactLaw &law = table.law(k / 3);
-    kn = law.kn;
-    lists[k].apply(law, dt, starting, balls, partners, visited ? &tally : nullptr);
+    law = &table.law(k / 3);
+    lists[k].apply(*law, dt, starting, balls, partners, visited ? &tally : nullptr);
   }
   fix_history->lists_used = true;
 }

@@ -7,8 +7,16 @@ from ..disk import is_number, load_yaml
 from ..errors import SlopeError
 from ..survey import rasters
 
-# what fix deposit/grid writes, PREFIX.KIND.asc
-RASTERS = ("base", "surface", "thickness", "max_thickness", "max_speed", "max_energy", "arrival", "last_motion")
+RASTERS = {     # what fix deposit/grid writes, PREFIX.KIND.asc: quantity, unit
+    "base": ("ground without the body", "m"),
+    "surface": ("ground and deposit", "m"),
+    "thickness": ("thickness of the deposit", "m"),
+    "max_thickness": ("largest thickness so far", "m"),
+    "max_speed": ("largest speed of a ball so far", "m/s"),
+    "max_energy": ("largest kinetic energy of a ball so far", "J"),
+    "arrival": ("time when the first ball came", "s"),
+    "last_motion": ("time when a ball last moved", "s"),
+}
 OF_RUN = "output of fix deposit/grid: its prefix, one of its files, or the folder of a run, a study or a site"
 VARIABLES = "variables.yaml"       # what `slope study` runs, written before the run
 MARKER = "finished.yaml"           # written when the run is complete

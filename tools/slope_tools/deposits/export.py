@@ -5,38 +5,29 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..case.run_folders import RASTERS
 from ..errors import SlopeError
 from ..survey import rasters
 
-KINDS = {    # what fix deposit/grid writes: quantity, unit
-    "base": ("ground without the body", "m"),
-    "surface": ("ground and deposit", "m"),
-    "thickness": ("thickness of the deposit", "m"),
-    "max_thickness": ("largest thickness so far", "m"),
-    "max_speed": ("largest speed of a ball so far", "m/s"),
-    "max_energy": ("largest kinetic energy of a ball so far", "J"),
-    "arrival": ("time when the first ball came", "s"),
-    "last_motion": ("time when a ball last moved", "s"),
-}
-NAME = re.compile(r"(?:(\d+)\.)?(%s)\.asc" % "|".join(KINDS))    # after PREFIX and a point
+NAME = re.compile(r"(?:(\d+)\.)?(%s)\.asc" % "|".join(RASTERS))    # after PREFIX and a point
 
 
 class Layer(NamedTuple):
     """A raster of a run."""
     path: Path
-    kind: str           # key of KINDS
+    kind: str           # key of RASTERS
     step: int           # of a numbered copy (series yes of the fix), -1: none
 
 
 def layers(prefix):
-    """The rasters of a prefix, in the order of KINDS, numbered copies last."""
+    """The rasters of a prefix, in the order of RASTERS, numbered copies last."""
     prefix = Path(prefix)
     found = []
     for path in prefix.parent.glob("*.asc"):
         match = NAME.fullmatch(path.name[len(prefix.name) + 1:]) if path.name.startswith(f"{prefix.name}.") else None
         if match:
             found.append(Layer(path, match[2], -1 if match[1] is None else int(match[1])))
-    return sorted(found, key=lambda layer: (layer.step, list(KINDS).index(layer.kind)))
+    return sorted(found, key=lambda layer: (layer.step, list(RASTERS).index(layer.kind)))
 
 
 def write(folder, layer, place):
@@ -44,7 +35,7 @@ def write(folder, layer, place):
     raster = rasters.read(layer.path, heights=False)
     if raster.z.shape != place.z.shape or raster.transform != place.transform:
         raise SlopeError(layer.path, "must have the grid of the run's thickness: is it of another run?")
-    quantity, unit = KINDS[layer.kind]
+    quantity, unit = RASTERS[layer.kind]
     name = f"{layer.path.stem}.tif"
     rasters.write_geotiff(folder / name, {f"{quantity} ({unit})": raster.z}, place)
     there = raster.z[np.isfinite(raster.z)]
