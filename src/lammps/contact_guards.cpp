@@ -207,8 +207,11 @@ void ContactGuards::watch_energy(double elastic)
 ContactGuards::Found ContactGuards::found() const
 {
   Found f;
-  MPI_Allreduce(&overlaps.most, &f.deepest, 1, MPI_DOUBLE, MPI_MAX, world);
-  MPI_Allreduce(&overlaps.count, &f.deep, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  // copies: LAMMPS' stand-in for MPI takes no const
+  double most = overlaps.most;
+  bigint count = overlaps.count;
+  MPI_Allreduce(&most, &f.deepest, 1, MPI_DOUBLE, MPI_MAX, world);
+  MPI_Allreduce(&count, &f.deep, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   f.energy_growth = energy.growth();
   f.energy_grew = energy.seen();
   f.dangerous_builds = neighbor->ndanger;

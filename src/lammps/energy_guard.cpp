@@ -103,7 +103,7 @@ bool EnergyGuard::check(double elastic)
     int dim;
     given += *static_cast<double *>(fix->extract("work", dim));
   }
-  const double mine[3] = {moving, height, given};
+  double mine[3] = {moving, height, given};
   double all[3];
   MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_SUM, world);
   const double energy = all[0] + all[1] - all[2];

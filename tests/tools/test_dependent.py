@@ -56,12 +56,12 @@ def test_weighted_runs_have_the_indices_of_their_response():
     """64 runs, with chance, against the response itself and the weights of 4,096 runs."""
     many = runs_of(4096, 1)
     order = many.mass.order
-    exact = dependent.indices(
-        speed, lambda u: np.interp(np.log(twins.response(u)[0]), np.log(many.lengths[order]), many.mass.share[order]), 3)
+    by_length = np.log(many.lengths[order]), many.mass.share[order]
+    exact = dependent.indices(speed, lambda u: np.interp(np.log(twins.response(u)[0]), *by_length), 3)
     found = known_influence.evaluate(runs_of(64, 3, np.random.default_rng(3)), "speed")
     variables = found["variables"]
     plain = dependent.indices(speed, lambda u: np.ones(len(u)), 3)
-    assert plain[0][0] - exact[0][0] > 0.15 and exact[1][1] - plain[1][1] > 0.1      # the weights matter
+    assert plain[0][0] - exact[0][0] > 0.15 and exact[1][1] - plain[1][1] > 0.1   # weights matter
     for k, name in enumerate("abc"):
         one = variables[name]
         assert one["first"] == pytest.approx(exact[0][k], abs=0.08)

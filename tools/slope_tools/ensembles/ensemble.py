@@ -140,7 +140,8 @@ def influence_table(analyses: Mapping[str, emulator.Analysis]) -> str:
     """The CSV of ranks and indices; a cell is empty where the emulator says nothing."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["quantity", "variable", "rank", "rank_clear", *emulator.SIGN, "emulator_explains", "emulator_error"])
+    writer.writerow(["quantity", "variable", "rank", "rank_clear", *emulator.SIGN, "emulator_explains",
+                     "emulator_error"])
     for name, analysis in analyses.items():
         check = analysis.check
         for one in analysis.influences:
