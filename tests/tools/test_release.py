@@ -323,6 +323,20 @@ def bilinear_volume(slip, ground, parts=8):
     return total / parts ** 2 * 4.0
 
 
+def test_a_steep_head_on_coarse_cells_is_no_wall():
+    """A cap that runs out within its last cells, 3 of 5 m deep there; the same that a line cuts off is one."""
+    x, y = np.meshgrid(np.arange(-20, 21, 2.0), np.arange(-20, 21, 2.0))
+    depth = np.maximum(5 - 0.05 * (x ** 2 + y ** 2) ** 0.88, 0)
+    steep = np.where(x < -6.5, 0, np.maximum(depth, np.where(x < -5.5, 3, 0) * (depth > 0)))
+    inside = depth > 0
+    assert depth[inside].min() < 2 and release_solve.wall(depth, inside) == 0
+    assert release_solve.wall(steep, steep > 0) > 2.5
+    sphere = np.maximum(np.sqrt(np.maximum(14.5 ** 2 - x ** 2 - y ** 2, 0)) - 9.5, 0)      # dips by 45 degrees and more
+    assert sphere[sphere > 0].min() > 0 and release_solve.wall(sphere, sphere > 0) == 0
+    cut = np.where(np.abs(y) < 5, sphere, 0)
+    assert release_solve.wall(cut, cut > 0) == cut[np.abs(y) == 4].max() > 3
+
+
 def test_the_files(slope, here):        # noqa: F811
     _, _, z = terrain(hill)
     digits = z + np.random.default_rng(1).uniform(-1e-6, 1e-6, z.shape)     # more than a millimetre has

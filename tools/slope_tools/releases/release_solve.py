@@ -3,7 +3,7 @@ import math
 from typing import Callable, NamedTuple, Tuple
 
 import numpy as np
-from scipy.ndimage import binary_erosion
+from scipy.ndimage import binary_erosion, generate_binary_structure, maximum_filter
 from scipy.optimize import brentq
 
 from ..digits import at_least, at_most
@@ -116,12 +116,23 @@ def measures(area: Area, slip: np.ndarray) -> Measures:
     """The numbers of the body between the ground and a slip surface."""
     depth = np.where(np.isnan(area.z), 0.0, area.z - slip)      # NODATA beside the body
     body = depth > 0
-    rim = area.inside & ~binary_erosion(area.inside)
     east = area.downhill
     return Measures(volume(depth, area.cell), float(depth.max()), float(depth[body].mean()),
                     float(body.sum()) * area.cell ** 2, int(body.sum()), slope_of(area.z, area.cell, body),
                     slope_of(slip, area.cell, body), math.degrees(math.atan2(east[0], east[1])) % 360,
-                    float(depth[rim].max(initial=0)), float(area.z[body].max()), float(area.z[body].min()))
+                    wall(depth, area.inside), float(area.z[body].max()), float(area.z[body].min()))
+
+
+def wall(depth: np.ndarray, inside: np.ndarray) -> float:
+    """The largest depth (m) with which a body ends at the rim of a mask, instead of running out; 0: it runs out.
+
+    A body that runs out within the cell beyond the rim falls there by no less than from the next cell inside to the
+    rim; half as steeply is still taken for that.
+    """
+    rim = inside & ~binary_erosion(inside)
+    within = np.where(inside, depth, 0.0)
+    next_inside = maximum_filter(within, footprint=generate_binary_structure(2, 1), mode="constant")
+    return float(depth[rim & (depth > 2 * (next_inside - within))].max(initial=0))
 
 
 def slope_of(z: np.ndarray, cell: float, where: np.ndarray) -> float:
