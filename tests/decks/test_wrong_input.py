@@ -499,13 +499,13 @@ HEAD = "ncols {0}\nnrows {0}\nxllcorner 0\nyllcorner 0\ncellsize 1\n"
     (6_400, 40_000_000, None, "6400 rows x 6400 columns need 0.4 GB of memory, more than is free"),
 ])
 def test_a_raster_beyond_the_memory_is_refused(tmp_path, monkeypatch, cells, written, size, message):
-    """Without room for the text, of which the disk has only the first bytes, and for the heights: of 500 MB."""
+    """Without room for the text, of which the disk has only the first bytes, and for the heights: of 400 MB."""
     with open(tmp_path / "large.asc", "w") as out:
         out.write(HEAD.format(cells) + "1 " * written)
         out.flush()
         if size:
             out.truncate(size)
-    monkeypatch.setattr(subprocess, "run", limited(subprocess.run, 500_000_000))
+    monkeypatch.setattr(subprocess, "run", limited(subprocess.run, 400_000_000))
     run_deck("region ground terrain large.asc\n", tmp_path, expect_error=f"Region terrain: large.asc: {message}")
 
 
