@@ -244,6 +244,20 @@ def test_what_lies_beyond_a_road(ring, expected):
     assert results.beyond(raster, released, road) == (expected and pytest.approx(expected))
 
 
+@pytest.mark.parametrize("ring, expected", [
+    ([(8, 0), (12, 0), (12, 24), (8, 24)], 4 * 16.0),      # across the body
+    ([(0, 0), (6, 0), (6, 24), (0, 24)], 0.0),             # a column of it, its rim
+    ([(0, 0), (2, 0), (2, 24), (0, 24)], 0.0),             # beside it
+])
+def test_a_road_on_the_body(ring, expected):
+    """Cells of 2 m, the body's balls of 3 m in every other one of those from 4 to 20 m both ways."""
+    raster = rasters.Raster(np.zeros((12, 12)), rasters.Affine(2, 0, 0, 0, -2, 24), None)
+    released = np.zeros((12, 12), bool)
+    released[2:10, 2:10] = True
+    released[3:9:2, 3:9:2] = False
+    assert results.on_body(raster, released, Polygon(ring), 27.0) == pytest.approx(expected)
+
+
 def test_without_repeats_the_largest_volume_is_called_that(finished):
     folder, out, _ = finished
     about, table = load(folder)

@@ -15,8 +15,8 @@ MUCH = 0.01             # of the released volume that is lost: more weighs as mu
 SIDE = 0.5              # of the mass at the most touched edge: another edge with as much is named too
 THIN = re.compile(r"the body is ([\d.]+) balls thick on average, below ([\d.]+)")
 # by weight, the heaviest first
-(FAILED, MOVING, LOST_MUCH, BODY, LARGE_MASS, NOT_AT_REST, NO_REPEATS, NO_SIZES, CUT, THIN_BODY, LOST,
- SLIP) = range(12)
+(FAILED, MOVING, LOST_MUCH, BODY, ROAD, LARGE_MASS, NOT_AT_REST, NO_REPEATS, NO_SIZES, CUT, THIN_BODY, LOST,
+ SLIP) = range(13)
 
 
 class Caveat(NamedTuple):
@@ -27,7 +27,8 @@ class Caveat(NamedTuple):
 
 def caveats(data, ground) -> List[Caveat]:
     """All of a data.Data on its ground.Ground, by weight, one of each kind."""
-    found = [failed(data), *at_rest(data), lost(data, ground), body(data), large(data), repeats(data), sizes(data),
+    found = [failed(data), *at_rest(data), lost(data, ground), body(data), road(data),
+             large(data), repeats(data), sizes(data),
              below_ground(data), thin(data),
              Caveat(SLIP, "The slip surface is an assumption: whether, and how likely, the slope fails is not said "
                           "here.")]
@@ -118,6 +119,13 @@ def sizes(data) -> Optional[Caveat]:
     if best and best["size_m3"] is not None or data.study and data.study.get("ensemble"):
         return None
     return Caveat(NO_SIZES, "What smaller balls in the model would change is unknown.")
+
+
+def road(data) -> Optional[Caveat]:
+    if not any(row.get("road_on_body_m2") for row in data.finished):       # none in older files
+        return None
+    return Caveat(ROAD, "A part of the road lies on the mass that is released, and goes with it: what it takes to "
+                        "build it anew is not in the volume.")
 
 
 def below_ground(data) -> Optional[Caveat]:

@@ -1,4 +1,5 @@
 """What came out of the runs of a study: their numbers, the table, the maps over all runs, the conservative volume."""
+import math
 import os
 import sys
 from pathlib import Path
@@ -279,7 +280,12 @@ def on_road(run, setup: Setup, row, thickness, picture=True) -> Dict[str, Any]:
     released = run_folders.load_raster(prefix, "arrival").z == 0
     polygon = polygons.read_local(road.file, placed(thickness, run), road.local)
     gone, passed = row["off_grid_m3"] + row["lost_m3"], run_folders.load_raster(prefix, "max_thickness")
-    return {"remove_m3": about["volume"]["remove"], "remove_on_road_m3": about["volume"]["remove_on_road"],
+    taken = on_body(thickness, released, polygon, row["ball_m3"])
+    if taken > 0:
+        about["warnings"].append(f"{road.file.name}: a part of the road lies on the body, and goes with it: the "
+                                 "volume to remove does not tell what it takes to build the road anew")
+    return {"road_on_body_m2": taken, "remove_m3": about["volume"]["remove"],
+            "remove_on_road_m3": about["volume"]["remove_on_road"],
             "remove_beside_road_m3": about["volume"]["remove_beside_road"],
             "beyond_road_m3": beyond(thickness, released, polygon),
             "left_before_road_m3": left.before_road(gone, passed, released, polygon),
@@ -305,6 +311,26 @@ def beyond(thickness, released, road):
         return None
     shares.sort(key=lambda share: (share * released).sum())     # the last one is where the mass comes from
     return float(sum((share * thickness.z).sum() for share in shares[:-1]) * thickness.transform.a ** 2)
+
+
+def on_body(thickness, released, road, ball_m3) -> float:
+    """Area (m2) of the road (local metres) on the body; 0 if it meets the rim only.
+
+    released: mask of the cells that the middles of its balls, each for ball_m3 of ground, are in; those between them
+    count. The rim is a cell and half a ball wide.
+    """
+    from scipy.ndimage import binary_closing, binary_erosion
+    from .. import geometry
+    cell = thickness.transform.a
+    ball = ball_m3 ** (1 / 3) / cell
+    near, rim = math.ceil(ball), 1 + math.ceil(ball / 2)
+    rows, columns = released.shape
+    body = binary_closing(np.pad(released, near), iterations=near)[near:near + rows, near:near + columns]
+    lines = np.arange(columns + 1.0), np.arange(rows + 1.0)
+    share = sum(geometry.coverage(part, *lines)[0] for part in geometry.polygons_of(geometry.to_index(road, thickness)))
+    if not (share * binary_erosion(body, iterations=rim)).any():
+        return 0.0
+    return float((share * body).sum() * cell ** 2)
 
 
 def placed(raster, run):
