@@ -91,6 +91,10 @@ int SlipOptions::keyword()
     output = text(1);
     return 1;
   }
+  if (keyword == "bedrock") {
+    bedrock = text(1);
+    return 1;
+  }
   if (keyword == "within") {
     within = text(1);
     return 1;
@@ -109,8 +113,8 @@ int SlipOptions::keyword()
   if (keyword == "shape") return read_shape();
   if (keyword == "surface") return read_surface();
   error->all(FLERR,
-             "Find_slip: unknown keyword {}, must be strength, layer, water, seismic, within, "
-             "volume, depth, keep, direction, method, shape, surface or output",
+             "Find_slip: unknown keyword {}, must be strength, layer, water, bedrock, seismic, "
+             "within, volume, depth, keep, direction, method, shape, surface or output",
              keyword);
   return 0;
 }
@@ -308,6 +312,7 @@ SlipSoil SlipOptions::soil() const
   for (const Layer &layer : layers) soil.add_layer(raster(layer.file), layer.strength);
   soil.set_ratio(ru);
   if (!table.empty()) soil.set_table(raster(table));
+  if (!bedrock.empty()) soil.set_bedrock(raster(bedrock));
   const std::string problem = soil.contradiction(ground());
   if (!problem.empty()) error->all(FLERR, "Find_slip {}", problem);
   return soil;

@@ -37,7 +37,7 @@ class SlipOptions : protected Pointers {
  private:
   int narg, iarg;
   char **arg;
-  std::string region, within, table, name;
+  std::string region, within, table, bedrock, name;
   double ru;
   bool has_strength;
   Slope::SlipSoil::Strength top;

@@ -7,11 +7,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 using namespace Slope;
 
 static constexpr double GAUSS = 0.28867513459481287;    // from the middle, of an interval
 static constexpr double TOUCH = 1.0e-9;                 // of a cell: ends of runs that are one
+static constexpr double NONE = std::numeric_limits<double>::quiet_NaN();
 
 /* ---------------------------------------------------------------------- */
 
@@ -19,7 +21,7 @@ void SlipColumns::clear()
 {
   resize(0);
   volume = plan_area = greatest_depth = 0.0;
-  at_edge = overhang = outside = false;
+  at_edge = overhang = outside = rocky = false;
 }
 
 void SlipColumns::resize(size_t n)
@@ -27,6 +29,8 @@ void SlipColumns::resize(size_t n)
   for (std::vector<double> *v :
        {&dx, &dy, &depth, &area, &thick, &weight, &arm, &cohesion, &friction, &pore})
     v->resize(n);
+  slope_x.resize(rocky ? n : 0);
+  slope_y.resize(rocky ? n : 0);
 }
 
 void SlipColumns::keep(size_t first, size_t last, size_t to)
@@ -35,6 +39,9 @@ void SlipColumns::keep(size_t first, size_t last, size_t to)
   for (std::vector<double> *v :
        {&dx, &dy, &depth, &area, &thick, &weight, &arm, &cohesion, &friction, &pore})
     std::copy(v->begin() + first, v->begin() + last, v->begin() + to);
+  if (!rocky) return;
+  for (std::vector<double> *v : {&slope_x, &slope_y})
+    std::copy(v->begin() + first, v->begin() + last, v->begin() + to);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -42,8 +49,9 @@ void SlipColumns::keep(size_t first, size_t last, size_t to)
 SlipColumnMaker::SlipColumnMaker(const ElevationGrid &_ground, const SlipSoil &_soil,
                                  const std::vector<char> &_allowed) :
     ground(_ground),
-    soil(_soil), allowed(_allowed), cosine(1.0), sine(0.0)
+    soil(_soil), allowed(_allowed), cosine(1.0), sine(0.0), rocky(_soil.has_bedrock())
 {
+  if (rocky) rock = soil.bedrock_below(ground);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -54,6 +62,7 @@ void SlipColumnMaker::begin(const SlipSurface &s, SlipColumns &columns)
   cosine = std::cos(s.direction);
   sine = std::sin(s.direction);
   columns.clear();
+  columns.rocky = rocky;
   runs.clear();
   outside.clear();
 }
@@ -67,9 +76,21 @@ double SlipColumnMaker::depth(double dx, double dy) const
   return square > 0.0 ? std::sqrt(square) : 0.0;
 }
 
-void SlipColumnMaker::add(SlipColumns &c, double dx, double dy, double depth, double zground,
-                          double area)
+// the ground above the base, which is the surface, or the bedrock where that is higher
+bool SlipColumnMaker::is_above(double zground, double deep, const Rock &r) const
 {
+  return deep > 0.0 && zground > surface.z - deep && !(zground <= r.z);
+}
+
+void SlipColumnMaker::add(SlipColumns &c, double dx, double dy, double deep, const Rock &r,
+                          double zground, double area)
+{
+  const bool on_rock = rocky && r.z > surface.z - deep;
+  const double depth = on_rock ? surface.z - r.z : deep;
+  if (rocky) {
+    c.slope_x.push_back(on_rock ? r.slope_x : NONE);
+    c.slope_y.push_back(on_rock ? r.slope_y : NONE);
+  }
   const double x = surface.x + dx, y = surface.y + dy, zbase = surface.z - depth;
   const SlipSoil::State state = soil.state(x, y, zbase, zground);
   c.dx.push_back(dx);
@@ -131,22 +152,40 @@ void SlipColumnMaker::coarse_row(SlipColumns &c, int j, int stride)
     const int column = std::min(i * stride + stride / 2, ground.nx - 1);
     const double dx = ground.xlo + (column + 0.5) * ground.cell - surface.x;
     const double z = ground.at(column, row), deep = depth(dx, dy);
+    const Rock below = rock_in_cell(column, row);
     const double lo = ground.xlo + i * step;
     if (std::isnan(z) && deep > 0.0)
       runs.push_back({j, runs.size(), lo, lo + step, c.size(), c.size(), 0.0, true, false, false});
-    const bool inside = deep > 0.0 && z > surface.z - deep;
-    const bool wall = deep <= 0.0 && z > surface.z;
+    const bool inside = is_above(z, deep, below);
+    const bool wall = deep <= 0.0 && z > std::fmax(surface.z, below.z);
     if (inside) {
       Run &run = run_from(j, lo, c);
       run.hi = lo + step;
       run.overhang |= was_wall;
       run.at_edge |= edge_row || i == 0 || i == last;
-      add(c, dx, dy, deep, z, step * step);
+      add(c, dx, dy, deep, below, z, step * step);
     } else if (was_inside && wall)
       runs.back().overhang = true;
     was_inside = inside;
     was_wall = wall;
   }
+}
+
+// slopes between the neighbouring cells that have a value
+SlipColumnMaker::Rock SlipColumnMaker::rock_in_cell(int i, int j) const
+{
+  if (!rocky) return {NONE, NONE, NONE};
+  const double z = rock.at(i, j);
+  const auto slope = [&](double before, double after) {
+    const double lo = std::isnan(before) ? z : before, hi = std::isnan(after) ? z : after;
+    const int cells = !std::isnan(before) + !std::isnan(after);
+    return cells ? (hi - lo) / (cells * ground.cell) : 0.0;
+  };
+  const auto at = [&](int column, int row) {
+    const bool beside = column < 0 || row < 0 || column == ground.nx || row == ground.ny;
+    return beside ? NONE : rock.at(column, row);
+  };
+  return {z, slope(at(i - 1, j), at(i + 1, j)), slope(at(i, j - 1), at(i, j + 1))};
 }
 
 /* ----------------------------------------------------------------------
@@ -160,12 +199,21 @@ void SlipColumnMaker::row_of(double y, int &j, double &t) const
   t = ground.ny > 1 ? at - j : 0.0;
 }
 
-double SlipColumnMaker::ground_at_node(int i, int j, double t) const
+double SlipColumnMaker::between_rows(const ElevationGrid &grid, int i, int j, double t)
 {
-  const double a = ground.at(i, j);
+  const double a = grid.at(i, j);
   if (t == 0.0) return a;
-  const double b = ground.at(i, j + 1);
+  const double b = grid.at(i, j + 1);
   return t == 1.0 ? b : a + t * (b - a);
+}
+
+SlipColumnMaker::Node SlipColumnMaker::node(int i, int j, double t) const
+{
+  Node n = {ground.xlo + (i + 0.5) * ground.cell, between_rows(ground, i, j, t), NONE, NONE};
+  if (!rocky) return n;
+  n.rock = between_rows(rock, i, j, t);
+  n.rock_slope_y = ground.ny > 1 ? (rock.at(i, j + 1) - rock.at(i, j)) / ground.cell : 0.0;
+  return n;
 }
 
 // work(from, to) for all straight pieces of the ground above the surface's plan
@@ -180,11 +228,19 @@ template <typename Work> void SlipColumnMaker::along(double y, Work work) const
   const int pieces = std::max(ground.nx - 1, 1);
   const int first = std::max(0.0, std::min(std::floor((lo - ground.xlo) / h - 0.5), pieces - 1.0));
   for (int i = first; i < pieces; i++) {
-    const double x = ground.xlo + (i + 0.5) * h, z = ground_at_node(i, j, t);
-    const double slope = ground.nx > 1 ? (ground_at_node(i + 1, j, t) - z) / h : 0.0;
-    const double from = i == 0 ? ground.xlo : x, to = i == pieces - 1 ? xhi : x + h;
+    const Node p = node(i, j, t);
+    Node q = ground.nx > 1 ? node(i + 1, j, t) : p;
+    q.x = p.x + h;
+    const double from = i == 0 ? ground.xlo : p.x, to = i == pieces - 1 ? xhi : q.x;
     if (from >= hi) return;
-    work(Node{from, z + slope * (from - x)}, Node{to, z + slope * (to - x)});
+    const auto at = [&](double x) {
+      const Rock r = p.rock_at(q, x);
+      return Node{x, p.ground_at(q, x), r.z, r.slope_y};
+    };
+    if (from == p.x && to == q.x)
+      work(p, q);
+    else
+      work(at(from), at(to));
   }
 }
 
@@ -217,15 +273,19 @@ void SlipColumnMaker::find_cuts(double y, const Node &p, const Node &q)
   };
 
   const double z0 = p.z + slope * (surface.x - p.x) - surface.z;    // ground at dx = 0
+  const double rise = (q.rock - p.rock) / length;    // of the bedrock: no number if there is none
+  const double r0 = p.rock + rise * (surface.x - p.x) - surface.z;
   for (int part = h > 0.0 ? -1 : 0; part <= (h > 0.0 ? 1 : 0); part++) {
     const double w0 = h > 0.0 && part == 0 ? 0.0 : v0 - part * h,
                  w1 = h > 0.0 && part == 0 ? 0.0 : v1;
     const double a = u1 * u1 / a2 + w1 * w1 / b2, b = u0 * u1 / a2 + w0 * w1 / b2;
     const double c = u0 * u0 / a2 + w0 * w0 / b2 - surface.radius * surface.radius;
-    roots(a, b, c);                                           // the rim of the plan
-    roots(a + slope * slope, b + z0 * slope, c + z0 * z0);    // the ground
+    roots(a, b, c);                                                   // the rim of the plan
+    roots(a + slope * slope, b + z0 * slope, c + z0 * z0);            // the ground
+    if (rocky) roots(a + rise * rise, b + r0 * rise, c + r0 * r0);    // the bedrock
     if (part != 0 && v1 != 0.0) keep((part * h - v0) / v1);
   }
+  if (rocky && rise != slope) keep((z0 - r0) / (rise - slope));    // where the bedrock crops out
   std::sort(cuts.begin(), cuts.end());
 }
 
@@ -237,9 +297,8 @@ bool SlipColumnMaker::is_cut(double y)
     find_cuts(y, p, q);
     for (size_t k = 0; k + 1 < cuts.size() && !found; k++) {
       const double x = 0.5 * (cuts[k] + cuts[k + 1]);
-      const double z = p.z + (q.z - p.z) * (x - p.x) / (q.x - p.x);
       const double deep = depth(x - surface.x, y - surface.y);
-      found = cuts[k + 1] > cuts[k] && deep > 0.0 && z > surface.z - deep;
+      found = cuts[k + 1] > cuts[k] && is_above(p.ground_at(q, x), deep, p.rock_at(q, x));
     }
   });
   return found;
@@ -326,18 +385,15 @@ void SlipColumnMaker::piece(SlipColumns &c, int number, double y, double width, 
 
   find_cuts(y, p, q);
   const std::vector<double> &at = cuts;
-  const auto ground_over = [&](double x) {
-    return p.z + (q.z - p.z) * (x - p.x) / (q.x - p.x);
-  };
   const auto wall_at = [&](double x) {    // the surface is vertical there, and the ground higher
-    return ground_over(x) > surface.z + TOUCH * surface.radius &&
+    return p.ground_at(q, x) > std::fmax(surface.z, p.rock_at(q, x).z) + TOUCH * surface.radius &&
         depth(x - surface.x, dy) < 1.0e-4 * surface.radius;
   };
   for (size_t k = 0; k + 1 < at.size(); k++) {
     const double lo = at[k], hi = at[k + 1], middle = 0.5 * (lo + hi);
     if (!(hi > lo)) continue;
     const double deep = depth(middle - surface.x, dy);
-    if (!(deep > 0.0 && ground_over(middle) > surface.z - deep)) continue;
+    if (!is_above(p.ground_at(q, middle), deep, p.rock_at(q, middle))) continue;
     Run &run = run_from(number, lo, c);
     run.hi = hi;
     run.overhang |= wall_at(lo) || wall_at(hi);
@@ -347,7 +403,7 @@ void SlipColumnMaker::piece(SlipColumns &c, int number, double y, double width, 
     for (int m = 0; m < 2 * n; m++) {
       const double x = lo + (m / 2 + 0.5) * step + (m % 2 ? GAUSS : -GAUSS) * step;
       const double below = depth(x - surface.x, dy);
-      add(c, x - surface.x, dy, below, ground_over(x), 0.5 * step * width);
+      add(c, x - surface.x, dy, below, p.rock_at(q, x), p.ground_at(q, x), 0.5 * step * width);
     }
   }
 }

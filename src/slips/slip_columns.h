@@ -10,12 +10,13 @@
 #include "slip_soil.h"
 #include "slip_surface.h"
 
+#include <cmath>
 #include <vector>
 
 namespace Slope {
 
-// The body above a slip surface as vertical columns: the largest connected part of where the ground
-// is above the surface. Memory is kept from surface to surface.
+// The body above a slip surface, or above the bedrock where that is higher, as vertical columns: the
+// largest connected part of where the ground is above this base. Memory is kept from surface to surface.
 struct SlipColumns {
   // of each column
   std::vector<double> dx, dy;      // in plan, from the centre of the surface
@@ -27,11 +28,14 @@ struct SlipColumns {
   std::vector<double> cohesion;    // Pa
   std::vector<double> friction;    // tangent
   std::vector<double> pore;        // Pa
+  std::vector<double> slope_x;    // dz/dx of the bedrock where it is the base, no number elsewhere;
+  std::vector<double> slope_y;    // both are empty if there is no bedrock
 
   double volume, plan_area, greatest_depth;
   bool at_edge;     // the body reaches the edge of the terrain, or cells without a value
   bool overhang;    // the rim is where the surface is vertical: it would leave a wall
   bool outside;     // a column is in a cell that is not allowed
+  bool rocky;       // slope_x and slope_y are there
 
   size_t size() const { return area.size(); }
   void clear();
@@ -51,8 +55,9 @@ class SlipColumnMaker {
   bool coarse(const SlipSurface &, int stride, SlipColumns &);
 
   // The ground is bilinear between the cells' centres, as region terrain has it: along a line in x it
-  // is a polyline, whose intersections with the surface are roots of a quadratic equation. Gauss
-  // points between these roots along at least so many lines across the body. No staircase.
+  // is a polyline, whose intersections with the surface are roots of a quadratic equation, and so is the
+  // bedrock. Gauss points between these roots along at least so many lines across the body. No
+  // staircase.
   bool exact(const SlipSurface &, SlipColumns &, int lines = 96);
 
  private:
@@ -69,8 +74,23 @@ class SlipColumnMaker {
     bool unknown;    // no ground there
     bool at_edge, overhang;
   };
+  struct Rock {    // the bedrock at a place, no numbers if there is none
+    double z, slope_x, slope_y;
+  };
   struct Node {    // of the ground along a line
     double x, z;
+    double rock, rock_slope_y;
+
+    double ground_at(const Node &q, double at) const { return z + (q.z - z) * share(q, at); }
+    Rock rock_at(const Node &q, double at) const
+    {
+      if (std::isnan(rock)) return {rock, rock, rock};
+      return {rock + (q.rock - rock) * share(q, at), (q.rock - rock) / (q.x - x),
+              rock_slope_y + (q.rock_slope_y - rock_slope_y) * share(q, at)};
+    }
+
+   private:
+    double share(const Node &q, double at) const { return (at - x) / (q.x - x); }
   };
   std::vector<Run> runs;
   std::vector<double> cuts;
@@ -78,15 +98,21 @@ class SlipColumnMaker {
 
   SlipSurface surface;
   double cosine, sine;
+  ElevationGrid rock;    // in the ground's cells
+  const bool rocky;
 
   void begin(const SlipSurface &, SlipColumns &);
   double depth(double dx, double dy) const;
-  void add(SlipColumns &, double dx, double dy, double depth, double zground, double area);
+  bool is_above(double zground, double deep, const Rock &) const;
+  void add(SlipColumns &, double dx, double dy, double deep, const Rock &, double zground,
+           double area);
   Run &run_from(int line, double lo, const SlipColumns &);
 
   void coarse_row(SlipColumns &, int j, int stride);
 
-  double ground_at_node(int i, int j, double t) const;
+  Rock rock_in_cell(int i, int j) const;
+  static double between_rows(const ElevationGrid &, int i, int j, double t);
+  Node node(int i, int j, double t) const;
   void row_of(double y, int &j, double &t) const;
   template <typename Work> void along(double y, Work work) const;
   void find_cuts(double y, const Node &, const Node &);

@@ -39,7 +39,11 @@ void SlipFactor::take(const SlipColumns &c, const SlipSurface &s)
   for (size_t i = 0; i < c.size(); i++) {
     const double u = -(c.dx[i] * cd + c.dy[i] * sd);
     const double v = s.beyond(c.dx[i] * sd - c.dy[i] * cd), e = c.depth[i];
-    const double rise = u / (a2 * e), rise_across = v / (b2 * e);
+    double rise = u / (a2 * e), rise_across = v / (b2 * e);
+    if (c.rocky && !std::isnan(c.slope_x[i])) {
+      rise = -(c.slope_x[i] * cd + c.slope_y[i] * sd);
+      rise_across = c.slope_x[i] * sd - c.slope_y[i] * cd;
+    }
     Base &b = bases[i];
     b.cosine = 1.0 / std::sqrt(1.0 + rise * rise);
     b.sine = rise * b.cosine;

@@ -302,8 +302,8 @@ bool SlipSearch::enter(const SlipBody &start, int lines, SlipBody &body)
 }
 
 /* ----------------------------------------------------------------------
-   The variables are the centre, and how far below a pivot the surface passes: the pivot is on the first
-   surface below its thickest column, so that the radius follows the centre. If it is wide, the width's
+   The variables are the centre, and how far below a pivot the surface passes: the pivot is at the base of
+   the first body's thickest column, so that the radius follows the centre. If it is wide, the width's
    logarithm and the direction, too.
 ------------------------------------------------------------------------- */
 
@@ -316,20 +316,23 @@ SlipBody SlipSearch::improve(const SlipBody &start, bool wide, int lines, int st
   const SlipSurface first = best.surface;
   const double pivot[3] = {first.x + c.dx[thickest], first.y + c.dy[thickest],
                            first.z - c.depth[thickest]};
+  const auto to_pivot = [&](const SlipSurface &s) {    // radius of the surface through it
+    const double dx = pivot[0] - s.x, dy = pivot[1] - s.y, dz = pivot[2] - s.z;
+    const double cosine = std::cos(s.direction), sine = std::sin(s.direction);
+    const double u = dx * cosine + dy * sine, v = (dx * sine - dy * cosine) / s.across;
+    return std::sqrt(u * u + v * v + dz * dz);
+  };
   const auto value = [&](const std::vector<double> &p) {
     SlipSurface s(p[0], p[1], p[2], 0.0, wide ? p[5] : first.direction);
     s.across = wide ? std::exp(p[4]) : first.across;
     if (s.across > WIDEST || s.across * WIDEST < 1.0) return HUGE_VAL;
-    const double dx = pivot[0] - s.x, dy = pivot[1] - s.y, dz = pivot[2] - s.z;
-    const double cosine = std::cos(s.direction), sine = std::sin(s.direction);
-    const double u = dx * cosine + dy * sine, v = (dx * sine - dy * cosine) / s.across;
-    s.radius = p[3] + std::sqrt(u * u + v * v + dz * dz);
+    s.radius = p[3] + to_pivot(s);
     if (!(s.radius > 0.0) || !compute(s, lines, body)) return HUGE_VAL;
     if (body.factor < best.factor) best = body;
     return body.factor;
   };
   const double away = 0.2 * std::sqrt(best.area);
-  std::vector<double> from = {first.x, first.y, first.z, 0.0};
+  std::vector<double> from = {first.x, first.y, first.z, first.radius - to_pivot(first)};
   std::vector<double> step = {away, away, away, 0.1 * best.depth};
   if (wide) {
     from.insert(from.end(), {std::log(first.across), first.direction});

@@ -30,6 +30,24 @@ void SlipSoil::set_table(const ElevationGrid &heights)
 
 /* ---------------------------------------------------------------------- */
 
+void SlipSoil::set_bedrock(const ElevationGrid &heights)
+{
+  bedrock = heights;
+  rocky = true;
+}
+
+ElevationGrid SlipSoil::bedrock_below(const ElevationGrid &ground) const
+{
+  ElevationGrid below(ground.nx, ground.ny, ground.xlo, ground.ylo, ground.cell, 0.0);
+  for (int j = 0; j < ground.ny; j++)
+    for (int i = 0; i < ground.nx; i++)
+      below.at(i, j) = bedrock.height(ground.xlo + (i + 0.5) * ground.cell,
+                                      ground.ylo + (j + 0.5) * ground.cell);
+  return below;
+}
+
+/* ---------------------------------------------------------------------- */
+
 double SlipSoil::least_cohesion() const
 {
   double least = strengths[0].cohesion;

@@ -14,7 +14,8 @@
 
 namespace Slope {
 
-// Strength, weight and water of the ground below a raster, in SI units.
+// Strength, weight and water of the ground below a raster, and the bedrock that no surface cuts, in SI
+// units.
 class SlipSoil {
  public:
   static constexpr double GRAVITY = 9.80665;    // m/s2
@@ -33,7 +34,10 @@ class SlipSoil {
     double pore;        // water pressure at the base, Pa
   };
 
-  explicit SlipSoil(const Strength &top) : strengths(1, top), ru(0.0), has_table(false) {}
+  explicit SlipSoil(const Strength &top) :
+      strengths(1, top), ru(0.0), has_table(false), rocky(false)
+  {
+  }
 
   // Below this raster, and below the layers before, another strength begins. Where the raster has
   // no value, the layer is not there.
@@ -43,6 +47,11 @@ class SlipSoil {
   // raster, and 0 where that has no value.
   void set_ratio(double ratio) { ru = ratio; }
   void set_table(const ElevationGrid &heights);
+
+  // The base of a body is nowhere below this raster; where that has no value there is no bedrock.
+  void set_bedrock(const ElevationGrid &heights);
+  bool has_bedrock() const { return rocky; }
+  ElevationGrid bedrock_below(const ElevationGrid &ground) const;    // in the centres of its cells
 
   // What contradicts itself somewhere below the ground, in one line with item, rule, value and
   // place: a layer above the one over it, or a water table above the ground; empty if nothing.
@@ -65,7 +74,7 @@ class SlipSoil {
     for (size_t k = 0; k < layers.size(); k++) {
       const double begins = layers[k].height(x, y);
       if (!std::isfinite(begins)) continue;
-      if (begins <= base) break;
+      if (begins <= base || (rocky && begins <= bedrock.height(x, y))) break;    // not in the rock
       add(std::fmin(begins, top));
       at = &strengths[k + 1];
     }
@@ -85,8 +94,8 @@ class SlipSoil {
   std::vector<Strength> strengths;      // from the top
   std::vector<ElevationGrid> layers;    // where the next one begins
   double ru;
-  bool has_table;
-  ElevationGrid table;
+  bool has_table, rocky;
+  ElevationGrid table, bedrock;
 };
 
 }    // namespace Slope

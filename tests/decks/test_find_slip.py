@@ -189,6 +189,32 @@ def test_the_search_finds_the_least_on_any_number_of_ranks(tmp_path):
     assert (tmp_path / "crit.factor.asc").read_bytes() == log
 
 
+def test_no_body_goes_below_the_bedrock(tmp_path):
+    """The same rows on two ranks; a search finds no less than without bedrock; the base is where the files say."""
+    of_10_m(tmp_path)
+    ground = raster(tmp_path / "ground.asc")
+    head = (tmp_path / "ground.asc").read_text().splitlines()[:6]
+    rock = ground - 2.5
+    numpy.savetxt(tmp_path / "rock.asc", rock[::-1], fmt="%.9g", header="\n".join(head), comments="")
+    limits = "volume 300 3000"
+    run_deck(deck(more=limits), tmp_path)
+    free = rows(tmp_path)[0]
+    run_deck(deck(more=limits + " bedrock rock.asc"), tmp_path)
+    cut = rows(tmp_path)[0]
+    table = (tmp_path / "crit.slips.csv").read_bytes()
+    assert cut["depth"] <= 2.5 * (1 + 1e-9) < free["depth"] and 300 <= cut["volume"] <= 3000
+    assert cut["factor"] > free["factor"]
+    base = raster(tmp_path / "crit.1.base.asc")
+    there = numpy.isfinite(base)
+    assert (base[there] >= rock[there] - 1e-6).all() and (base[there] < rock[there] + 1e-6).any()
+    sphere = "surface sphere {x:.10g} {y:.10g} {z:.10g} {radius:.10g}".format(**cut)
+    run_deck(deck(more=sphere + " bedrock rock.asc"), tmp_path)
+    assert rows(tmp_path)[0]["factor"] == pytest.approx(cut["factor"], rel=1e-5)
+    run_deck(deck(more=limits + " bedrock rock.asc"), tmp_path, np=2)
+    assert (tmp_path / "crit.slips.csv").read_bytes() == table
+    run_deck(deck(more=sphere + " bedrock none.asc"), tmp_path, expect_error="none.asc")
+
+
 def test_wide_surfaces_on_an_extruded_profile(tmp_path):
     """A capped cylinder and a long ellipsoid on the circle with the least factor in two dimensions, 1.405."""
     embankment(tmp_path, 133, 401, 15, 36, 1 / 3, 60)

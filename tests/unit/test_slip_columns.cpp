@@ -75,6 +75,57 @@ TEST_F(Columns, EllipsoidAndStraightPart)
   }
 }
 
+// a cap less the smaller one below the bedrock
+TEST_F(Columns, CapsCutByBedrock)
+{
+  for (const double dip : {0.0, 0.4})
+    for (const double height : {2.5, 3.0, 6.0}) {
+      ground = plane(60, 1.0, dip);
+      ElevationGrid rock = ground;
+      for (double &z : rock.z) z -= 2.0 / std::cos(dip);
+      SlipSoil soil({1000.0, 0.5, 2000.0});
+      soil.set_bedrock(rock);
+      const double radius = 12.0, expected = cap_volume(radius, height) - cap_volume(radius, height - 2.0);
+      const SlipSurface surface = cap(radius, std::acos(1.0 - height / radius), dip);
+      SlipColumnMaker maker(ground, soil, allowed);
+      ASSERT_TRUE(maker.exact(surface, exact));
+      ASSERT_TRUE(maker.coarse(surface, 1, coarse));
+      EXPECT_NEAR(exact.volume / expected, 1.0, 2e-4) << dip << " " << height;
+      EXPECT_NEAR(coarse.volume / expected, 1.0, 3e-2) << dip << " " << height;
+      EXPECT_NEAR(exact.greatest_depth, 2.0 / std::cos(dip), 1e-9);
+    }
+}
+
+// the bedrock rises through the ground, and beyond there is none
+TEST_F(Columns, BedrockThatCropsOut)
+{
+  ElevationGrid rock = ground;
+  for (int j = 0; j < rock.ny; j++)
+    for (int i = 0; i < rock.nx; i++) {
+      const double x = rock.xlo + i + 0.5;
+      rock.at(i, j) = x < -5.0 ? NaN : 0.3 * (x - 1.2);
+    }
+  SlipSoil soil({1000.0, 0.5, 2000.0});
+  soil.set_bedrock(rock);
+  const SlipSurface s(0.0, 0.0, 9.0, 12.0);
+  double expected = 0.0;
+  const double step = 0.005, width = 5.0 + 0.5;    // the first cell with bedrock has its centre at -4.5
+  for (double x = -8.0 + 0.5 * step; x < 1.2; x += step)
+    for (double y = -8.0 + 0.5 * step; y < 8.0; y += step) {
+      const double square = 144.0 - x * x - y * y, base = square > 0.0 ? 9.0 - std::sqrt(square) : 0.0;
+      const double top = x < -width + 1.0 ? -HUGE_VAL : 0.3 * (x - 1.2);
+      expected += std::max(0.0, -std::max(base, top)) * step * step;
+    }
+  SlipColumnMaker maker(ground, soil, allowed);
+  ASSERT_TRUE(maker.exact(s, exact));
+  EXPECT_NEAR(exact.volume / expected, 1.0, 1e-3);
+  EXPECT_NEAR(*std::max_element(exact.dx.begin(), exact.dx.end()), 1.2, 0.1);
+  EXPECT_FALSE(exact.at_edge || exact.overhang || exact.outside);
+  ASSERT_EQ(exact.slope_x.size(), exact.size());
+  for (size_t k = 0; k < exact.size(); k++)
+    if (!std::isnan(exact.slope_x[k])) EXPECT_NEAR(exact.slope_x[k], 0.3, 1e-12);
+}
+
 // no cell's middle is below it, and still it has its volume
 TEST_F(Columns, SmallerThanACell)
 {

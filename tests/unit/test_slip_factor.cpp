@@ -110,6 +110,71 @@ TEST(SlipFactor, SphereInClayOnAPlaneSlope)
   expect_ratio(r.factor, moment / (weight * volume * centroid * std::sin(dip)), 1e-3);
 }
 
+TEST(SlipFactor, BedrockBelowTheSurfaceChangesNothing)
+{
+  const ElevationGrid ground = of_10_m();
+  ElevationGrid rock = ground;
+  for (double &z : rock.z) z = 10.0;
+  SlipSoil soil(strength_10_m());
+  const Result without = analyse(ground, soil, sphere_10_m());
+  soil.set_bedrock(rock);
+  const Result with = analyse(ground, soil, sphere_10_m());
+  EXPECT_DOUBLE_EQ(with.factor, without.factor);
+  EXPECT_DOUBLE_EQ(with.yield, without.yield);
+  EXPECT_DOUBLE_EQ(with.volume, without.volume);
+}
+
+// a bedrock with the form of the critical sphere, below a larger one about the same axis: its dips are the sphere's
+TEST(SlipFactor, BedrockWithTheFormOfASphere)
+{
+  const ElevationGrid ground = of_20_m();
+  ElevationGrid rock = ground;
+  const SlipSurface sphere = sphere_20_m();
+  for (int j = 0; j < rock.ny; j++)
+    for (int i = 0; i < rock.nx; i++) {
+      const double x = rock.xlo + (i + 0.5) * rock.cell - sphere.x, y = rock.ylo + (j + 0.5) * rock.cell - sphere.y;
+      rock.at(i, j) = sphere.z - std::sqrt(std::max(0.0, sphere.radius * sphere.radius - x * x - y * y));
+    }
+  SlipSoil soil(strength_20_m());
+  soil.set_bedrock(rock);
+  SlipSurface larger = sphere;
+  larger.radius += 0.5;
+  for (const SlipFactor::Method method : METHODS) {
+    const Result expected = analyse(ground, SlipSoil(strength_20_m()), sphere, method);
+    const Result r = analyse(ground, soil, larger, method);
+    expect_ratio(r.volume, expected.volume, 2e-3);
+    expect_ratio(r.factor, expected.factor, 3e-3);
+    EXPECT_NEAR(r.yield, expected.yield, 3e-3);
+  }
+}
+
+// a thin slab of sand on a bedrock along the slope moves as a whole, below a sphere that would turn
+TEST(SlipFactor, SlabOnBedrockIsAnInfiniteSlope)
+{
+  const double dip = 25.0 * PI / 180.0, phi = 35.0, expected = std::tan(phi * PI / 180.0) / std::tan(dip);
+  const ElevationGrid ground = plane(80, 1.0, dip);
+  const SlipSurface surface = cap(50.0, 40.0 * PI / 180.0, dip);
+  const Result turning = analyse(ground, SlipSoil(strength(0.0, phi, 18.0)), surface);
+  EXPECT_GT(turning.factor, 1.1 * expected);
+  ElevationGrid rock = ground;
+  for (double &z : rock.z) z -= 0.1;    // the rim, on the sphere, is thinner still
+  SlipSoil soil(strength(0.0, phi, 18.0));
+  soil.set_bedrock(rock);
+  for (const SlipFactor::Method method : METHODS) {
+    const Result r = analyse(ground, soil, surface, method);
+    EXPECT_LT(r.volume, 0.05 * turning.volume);
+    expect_ratio(r.factor, expected, 1e-2);
+  }
+
+  // the ground slides on the rock, not in it, also where a layer of rock has other cells
+  ElevationGrid layer = plane(32, 2.5, dip);
+  for (double &z : layer.z) z -= 0.1;
+  const double before = analyse(ground, soil, surface).factor;
+  soil.set_bedrock(layer);
+  soil.add_layer(layer, strength(5000.0, 45.0, 26.0));
+  expect_ratio(analyse(ground, soil, surface).factor, before, 1e-6);
+}
+
 TEST(SlipFactor, ShallowCapInSandIsAnInfiniteSlope)
 {
   const double dip = 25.0 * PI / 180.0, phi = 35.0, tangent = std::tan(phi * PI / 180.0);
