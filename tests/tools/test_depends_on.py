@@ -146,6 +146,7 @@ FILES = {
     "command/create_balls": ["create_balls 3 1.0 2000 file {}"],
     "command/find_slip": ["find_slip ground strength 1e4 30 2000 layer {} 1e3 20 1800 output o",
                           "find_slip ground strength 1e4 30 2000 water table {} output o",
+                          "find_slip ground strength 1e4 30 2000 bedrock {} output o",
                           "find_slip ground strength 1e4 30 2000 surface raster {} output o"],
     "LAMMPS": ["read_data {}", "read_restart {}", "include {}", "molecule m {}", "python f file {}",
                "variable x file {}", "variable x atomfile {}", "jump {}", "read_dump {} 0 x y z", "plugin load {}",
@@ -153,7 +154,7 @@ FILES = {
 NO_FILES = {"pair/gran/restitution", "fix/energy/ledger", "fix/deposit/grid", "fix/gravity/slope",
             "fix/nve/sphere/slope", "command/delete_balls", "fix/CONTACT_HISTORY", "fix/DEPOSIT_GRID_PART"}
 # words that the parsers compare with: what follows is a file, or not
-NAMES_FILE = {"file", "terrain", "layer", "table", "raster"}
+NAMES_FILE = {"file", "terrain", "layer", "table", "raster", "bedrock"}
 NAMES_NONE = {
     "bulk", "cell", "damping", "deposit", "depth", "direction", "extent", "friction", "headroom", "inside", "keep",
     "limit_damping", "lower", "mass", "method", "motion", "move", "open", "origin", "output", "outside", "overlap",
