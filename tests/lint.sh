@@ -27,7 +27,7 @@ usable() {
 # --- layout: src/.clang-format ---
 
 files=()
-usable clang-format "layout of the C++" && files=({src,tools/dump2vtk}/*.h src/*/*.h {src/*,tools/dump2vtk}/*.cpp)
+usable clang-format "layout of the C++" && mapfile -t files < <(find src tools/dump2vtk -name "*.h" -o -name "*.cpp" | sort)
 for file in "${files[@]}"; do
   if ! clang-format --style=file:src/.clang-format --dry-run -Werror "$file" >/dev/null 2>&1; then
     echo "lint: $file: run clang-format -i --style=file:src/.clang-format on it; it would change"
@@ -48,7 +48,7 @@ if usable mypy "types of the Python"; then mypy --no-error-summary || failed=1; 
 
 if usable cppcheck "static analysis of the C++"; then
   mkdir -p build/cppcheck # what has not changed is not looked at again
-  rooms=(src/*/)
+  mapfile -t rooms < <(find src -mindepth 1 -type d)
   cppcheck --std=c++11 --language=c++ -j "${JOBS:-2}" --cppcheck-build-dir=build/cppcheck \
     --enable=warning,style,performance,portability --suppressions-list=tests/cppcheck.txt --quiet --error-exitcode=1 \
     -I src "${rooms[@]/#/-I}" --suppress=missingInclude --suppress=missingIncludeSystem --suppress=unmatchedSuppression \

@@ -165,7 +165,7 @@ WORD = re.compile(r'(?:strcmp\(\w+\[[^]]*\], |\b(?:keyword|word|key|name) == )"(
 
 
 def sources():
-    return [path for room in ("styles", "lammps") for path in (TOP / "src" / room).iterdir()
+    return [path for room in ("styles", "lammps") for path in (TOP / "src" / room).rglob("*")
             if path.suffix in (".cpp", ".h")]
 
 

@@ -10,7 +10,7 @@ import pytest
 
 TOP = Path(__file__).resolve().parents[2]
 BUILD = Path(os.environ.get("SLOPE_BUILD", TOP / "build"))
-CALLING = sorted(path for path in (TOP / "src").glob("*/*.cpp") if re.search(r"\bMPI_[A-Z]\w+\(", path.read_text()))
+CALLING = sorted(path for path in (TOP / "src").glob("**/*.cpp") if re.search(r"\bMPI_[A-Z]\w+\(", path.read_text()))
 
 
 @pytest.fixture(scope="module")
@@ -20,7 +20,7 @@ def compiler():
     source = Path(cache["LAMMPS_SOURCE_DIR"]) / "src"
     day = re.search(r'LAMMPS_VERSION "(.*)"', (source / "version.h").read_text()).group(1)
     version = datetime.strptime(day.replace(" ", ""), "%d%b%Y").strftime("%Y%m%d")
-    rooms = [f"-I{path}" for path in sorted((TOP / "src").iterdir()) if path.is_dir()]
+    rooms = [f"-I{path}" for path in sorted((TOP / "src").rglob("*")) if path.is_dir()]
     return [cache["CMAKE_CXX_COMPILER"], "-std=c++17", "-fsyntax-only", "-w", "-DLAMMPS_SMALLBIG",
             f"-DSLOPE_LAMMPS_VERSION={version}", f"-I{source}/STUBS", f"-I{source}", f"-I{source}/GRANULAR",
             f"-I{source}/RIGID", f"-I{TOP}/src", *rooms]
