@@ -108,9 +108,11 @@ def test_the_pages(slope):
     assert "A ball &lt;bounces&gt;" in html and "Seen &amp; noted." in html and "FAIL" not in html
     assert "<h2>01_restitution: A ball rebounds</h2>" in html and "It falls on another one." in html
     assert rst.isascii() and "A ball rebounds\n---------------\n" in rst and "* A ball <bounces>: Seen & noted." in rst
+    assert "`A ball rebounds`_\n     - 1\n     - 1\n     - 1\n" in rst
+    assert '"A ball <bounces> (m)","paper, Table 2","0.25","0.003","0.25","yes","another e: 0.3"' in rst
+    assert "lmp -in in.restitution -var e 0.25" in html
     for page in (html, rst):
         assert "0.344" in page and "8.41e+05" in page and "3.5 tan(10) = 0.617" in page and "1.19e+06 N s/m" in page
-        assert "lmp -in in.restitution -var e 0.25" in page
 
 
 PEERS = """\

@@ -237,4 +237,12 @@ def render(template, content):
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(Path(__file__).parent),
                                      autoescape=template.endswith(".html.j2"), trim_blocks=True, lstrip_blocks=True,
                                      undefined=jinja2.StrictUndefined, keep_trailing_newline=True)
+    environment.filters["as_csv"] = as_csv
     return environment.get_template(template).render(content)
+
+
+def as_csv(values):
+    """A line of a table."""
+    line = io.StringIO()
+    csv.writer(line, quoting=csv.QUOTE_ALL, lineterminator="").writerow(values)
+    return line.getvalue()
