@@ -469,11 +469,9 @@ TEST(SlipFactor, EllipsoidOfZhang)
   expect_ratio(analyse(of_40_feet(261), SlipSoil(strength_40_feet()), s, SlipFactor::SPENCER).factor, 2.122, 2e-2);
 }
 
-// without friction the normal forces do not matter, and the moments have the factor
-TEST(SlipFactor, SpencerWithoutFrictionIsBishop)
+// without friction the factor of the moments is the same for all inclinations, and none closes the forces of this sphere
+TEST(SlipFactor, SpencerHasNoFactorWhereNothingBalances)
 {
-  const ElevationGrid ground = of_20_m();
-  const SlipSoil clay(strength(40.0, 0.0, 19.0));
-  expect_ratio(analyse(ground, clay, sphere_20_m(), SlipFactor::SPENCER).factor,
-               analyse(ground, clay, sphere_20_m()).factor, 1e-9);
+  const Result r = analyse(of_20_m(), SlipSoil(strength(40.0, 0.0, 19.0)), sphere_20_m(), SlipFactor::SPENCER);
+  EXPECT_TRUE(std::isnan(r.factor));
 }
