@@ -211,9 +211,9 @@ def test_a_site_of_a_body(low, capsys):
 
 @pytest.fixture
 def on_rock(low, capsys):
-    """What a search finds above a bedrock that dips along the slope and across it."""
+    """What a search finds above a bedrock that dips along the slope, and across it towards the middle."""
     x, y = columns.centres(CASES[0][0])
-    write_asc("rock.asc", CASES[0][0].z - 1.5 + 0.05 * (y - 25) + 0.02 * (x - 20), 0.5)
+    write_asc("rock.asc", CASES[0][0].z - 2.2 + 0.05 * np.abs(y - 24) + 0.01 * (x - 20), 0.5)
     status, _, err = ran(capsys, f"{LOW} --volume 200 500 --keep 2 --bedrock rock.asc -o slips")
     assert status == 0, err
     return table()
@@ -255,8 +255,8 @@ def test_back_analysis_fragility_and_site_of_a_body_above_a_bedrock(on_rock, cap
     status, _, err = ran(capsys, "terrain.asc --failed slips --bedrock rock.asc --density 2000 -o back")
     assert status == 2 and "--bedrock: must be given with X,Y,Z,R" in err
 
-    status, _, err = called(capsys, "fragility slips --terrain terrain.asc --density 2039.43 --cohesion 2e3:6e3 --friction "
-                            "18:30 --peaks 50:900:50 --pseudo-static 1 --sample 256 -o curves".split())
+    status, _, err = called(capsys, "fragility slips --terrain terrain.asc --density 2039.43 --cohesion 2e3:6e3 "
+                            "--friction 18:30 --peaks 50:900:50 --pseudo-static 1 --sample 256 -o curves".split())
     assert status == 0, err
     status, _, err = called(capsys, "site --terrain terrain.asc --balls 100 --slips slips --body 1 -o mine".split())
     assert status == 0, err

@@ -35,7 +35,8 @@ def run(args):
     for text in warnings_of(body, line, far):
         warn(text)
     about = {"terrain": args.terrain, "failed": args.failed, "density": args.density, "seismic": shaking,
-             "water": args.water, "water_table": args.water_table, "bedrock": args.bedrock, "volume": body.columns.volume,
+             "water": args.water, "water_table": args.water_table,
+             "bedrock": args.bedrock, "volume": body.columns.volume,
              "cells": len(body.columns.area), "bearing": (90.0 - body.direction) % 360.0, "centre": body.centre,
              "radius": body.radius, "cohesion_without_friction": line.cohesion[0],
              "friction_without_cohesion": line.friction[-1] if line.cohesion[-1] < 1e-6 * line.cohesion[0] else None,

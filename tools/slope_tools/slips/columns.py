@@ -106,8 +106,9 @@ def of_raster(ground: Raster, bottom: np.ndarray, kept: np.ndarray, centre: Sequ
 
     The dip of the base is that of the raster. The axis of moments goes through `centre`, across the direction.
     """
-    gradient = tuple(np.gradient(bottom, abs(ground.transform.a)))
-    return balanced(ground, bottom, kept, *dips(gradient, kept, direction), centre, direction, density, table)
+    south, east = np.gradient(bottom, abs(ground.transform.a))
+    dip, across = dips((south, east), kept, direction)
+    return balanced(ground, bottom, kept, dip, across, centre, direction, density, table)
 
 
 def balanced(ground: Raster, bottom: np.ndarray, kept: np.ndarray, dip: np.ndarray, across: np.ndarray,
@@ -138,7 +139,8 @@ def slopes(heights: np.ndarray, raster: Raster) -> Tuple[np.ndarray, np.ndarray]
     return found[0], found[1]
 
 
-def dips(gradient: Tuple[np.ndarray, np.ndarray], kept: np.ndarray, direction: float):
+def dips(gradient: Tuple[np.ndarray, np.ndarray], kept: np.ndarray,
+         direction: float) -> Tuple[np.ndarray, np.ndarray]:
     """Tangents of the dip in the direction of sliding and across it, from dz to the south and to the east."""
     south, east = (one[kept] for one in gradient)
     along = np.cos(np.radians(direction)), np.sin(np.radians(direction))
