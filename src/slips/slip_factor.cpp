@@ -13,6 +13,7 @@ using namespace Slope;
 
 static constexpr double INFINITE = std::numeric_limits<double>::infinity();
 static constexpr double NONE = std::numeric_limits<double>::quiet_NaN();
+static constexpr double STEEPEST = 2.0;    // inclination of forces between columns, tangent
 static constexpr int MOST = 200;    // steps of an iteration, of which few are needed
 
 /* ---------------------------------------------------------------------- */
@@ -61,46 +62,59 @@ void SlipFactor::take(const SlipColumns &c, const SlipSurface &s)
 
 /* ---------------------------------------------------------------------- */
 
-void SlipFactor::moments(double factor, const Seismic &k, double &resisting, double &driving) const
+SlipFactor::Balance SlipFactor::balance(double factor, const Seismic &k, double inclination) const
 {
   const SlipColumns &c = *columns;
-  const double down = 1.0 - k.vertical;
-  double shear = 0.0, normal = 0.0, at_bound = 0.0, pulling = 0.0;
+  const double down = 1.0 - k.vertical, across = k.horizontal * inclination;
+  double shear = 0.0, normal = 0.0, holding = 0.0, pushing = 0.0, at_bound = 0.0, pulling = 0.0;
   for (size_t i = 0; i < bases.size(); i++) {
     const Base &b = bases[i];
     const double w = c.weight[i] * down, tangent = c.friction[i];
-    double effective;
-    if (method == BISHOP) {
-      double m = b.up + b.sine * tangent / factor;
+    double effective, push = 0.0;    // of the unit normal, in the direction of sliding
+    if (method == ORDINARY) {
+      const double inertia = k.horizontal * c.weight[i] * b.sine / b.cosine;
+      effective = std::max((w - inertia) * b.cosine * b.cosine / b.up - b.lift, 0.0);
+    } else {
+      double turned = b.sine / factor, m = b.up;
+      if (method == SPENCER) {
+        push = b.up * b.sine / b.cosine;
+        turned -= inclination * b.cosine / factor;
+        m += inclination * push;
+      }
+      m += turned * tangent;
       if (m < LEAST_M) {
         m = LEAST_M;
         at_bound += c.weight[i];
       }
-      effective = (w - (b.cohesive - b.lift * tangent) * b.sine / factor) / m - b.lift;
+      const double load = w - across * c.weight[i];
+      effective = (load - (b.cohesive - b.lift * tangent) * turned) / m - b.lift;
       if (effective < 0.0) pulling += c.weight[i];
-    } else {
-      const double inertia = k.horizontal * c.weight[i] * b.sine / b.cosine;
-      effective = std::max((w - inertia) * b.cosine * b.cosine / b.up - b.lift, 0.0);
     }
-    shear += b.lever * (b.cohesive + effective * tangent);
-    normal += (effective + b.lift) * b.normal;
+    const double strength = b.cohesive + effective * tangent, force = effective + b.lift;
+    shear += b.lever * strength;
+    normal += force * b.normal;
+    if (method != SPENCER) continue;
+    holding += b.cosine * strength;
+    pushing += force * push;
   }
-  resisting = shear;
-  driving = down * weight_u + k.horizontal * weight_arm + normal;
   bounded = weight > 0.0 ? at_bound / weight : 0.0;
   pulled = weight > 0.0 ? pulling / weight : 0.0;
+  inclined = inclination;
+  return {shear, down * weight_u + k.horizontal * weight_arm + normal, holding,
+          pushing + k.horizontal * weight};
 }
 
 /* ----------------------------------------------------------------------
-   by steps F -> resisting / driving, which Aitken's rule shortens
+   balance of moments: by steps F -> resisting / driving, which Aitken's rule shortens
 ------------------------------------------------------------------------- */
 
-double SlipFactor::factor(const Seismic &k, double precision) const
+double SlipFactor::factor_at(double inclination, const Seismic &k, double precision,
+                             double start) const
 {
-  double resisting, driving, f = 1.0;
+  double f = start;
   const auto next = [&](double from) {
-    moments(from, k, resisting, driving);
-    return driving > 0.0 ? std::max(resisting / driving, 0.0) : INFINITE;
+    const Balance b = balance(from, k, inclination);
+    return b.driving > 0.0 ? std::max(b.resisting / b.driving, 0.0) : INFINITE;
   };
   for (int step = 0; step < MOST; step++) {
     const double first = next(f);
@@ -117,16 +131,15 @@ double SlipFactor::factor(const Seismic &k, double precision) const
 }
 
 /* ----------------------------------------------------------------------
-   with F = 1 Bishop's normal forces do not depend on k, and the driving moment is linear in it: the
+   with F = 1 the normal forces of Bishop and Spencer are linear in k, and so is the driving moment: the
    second step has it; the ordinary method's are linear, too, but where columns lose their normal force
 ------------------------------------------------------------------------- */
 
-double SlipFactor::yield(double vertical) const
+double SlipFactor::yield_at(double inclination, double vertical) const
 {
   const auto excess = [&](double k) {
-    double resisting, driving;
-    moments(1.0, {k, vertical}, resisting, driving);
-    return resisting - driving;
+    const Balance b = balance(1.0, {k, vertical}, inclination);
+    return b.resisting - b.driving;
   };
   double k0 = 0.0, e0 = excess(k0), k1 = 0.1, e1 = excess(k1);
   for (int step = 0; step < MOST && e1 != e0; step++) {
@@ -138,4 +151,56 @@ double SlipFactor::yield(double vertical) const
     if (std::fabs(k1 - k0) < 1.0e-12 * std::max(1.0, std::fabs(k1))) return k1;
   }
   return e1 == 0.0 || std::fabs(k1 - k0) < 1.0e-9 ? k1 : NONE;
+}
+
+/* ----------------------------------------------------------------------
+   The inclination, by secants, at which what balances the moments, solve(inclination), leaves no
+   excess(inclination, solution) of horizontal forces, as a share of them.
+------------------------------------------------------------------------- */
+
+template <typename Solve, typename Excess>
+double SlipFactor::inclined_to(Solve solve, Excess excess, double precision) const
+{
+  double i0 = 0.0, found = solve(i0);
+  if (method != SPENCER || !std::isfinite(found) || found == 0.0) return found;
+  double e0 = excess(i0, found), i1 = 0.1;
+  for (int step = 0; step < MOST; step++) {
+    found = solve(i1);
+    if (!std::isfinite(found)) return NONE;
+    const double e1 = excess(i1, found);
+    if (std::fabs(e1) <= precision) return found;
+    const double next = i1 - e1 * (i1 - i0) / (e1 - e0);
+    if (!(std::fabs(next) <= STEEPEST)) return NONE;
+    i0 = i1;
+    e0 = e1;
+    i1 = next;
+  }
+  return NONE;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double SlipFactor::factor(const Seismic &k, double precision) const
+{
+  double f = 1.0;
+  const auto solve = [&](double inclination) {
+    return f = factor_at(inclination, k, precision, f);
+  };
+  const auto excess = [&](double inclination, double at) {
+    const Balance b = balance(at, k, inclination);
+    return 1.0 - b.holding / (at * b.pushing);
+  };
+  return inclined_to(solve, excess, precision);
+}
+
+double SlipFactor::yield(double vertical) const
+{
+  const auto solve = [&](double inclination) {
+    return yield_at(inclination, vertical);
+  };
+  const auto excess = [&](double inclination, double at) {
+    const Balance b = balance(1.0, {at, vertical}, inclination);
+    return 1.0 - b.holding / b.pushing;
+  };
+  return inclined_to(solve, excess, PRECISION);
 }

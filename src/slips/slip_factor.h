@@ -13,11 +13,11 @@
 
 namespace Slope {
 
-// Factor of safety of a body by the balance of moments about the surface's axis;
-// doc/src/slip_analysis.rst has the equations.
+// Factor of safety of a body by the balance of moments about the surface's axis, and with Spencer's method
+// of horizontal forces, too; doc/src/slip_analysis.rst has the equations.
 class SlipFactor {
  public:
-  enum Method { ORDINARY, BISHOP };
+  enum Method { ORDINARY, BISHOP, SPENCER };
   static constexpr double LEAST_M = 0.2;    // bound of m_alpha (Whitman and Bailey 1967)
   static constexpr double PRECISION = 1.0e-10;
 
@@ -26,30 +26,38 @@ class SlipFactor {
     double horizontal, vertical;
   };
 
+  // moments, the resisting one times the factor; horizontal forces likewise, with Spencer's method only
+  struct Balance {
+    double resisting, driving;
+    double holding, pushing;
+  };
+
   explicit SlipFactor(Method _method) :
-      method(_method), columns(nullptr), bounded(0.0), pulled(0.0), weight(0.0), weight_u(0.0),
-      weight_arm(0.0)
+      method(_method), columns(nullptr), bounded(0.0), pulled(0.0), inclined(0.0), weight(0.0),
+      weight_u(0.0), weight_arm(0.0)
   {
   }
 
   // the columns of a surface, for sliding in its direction; they must exist while the others are asked
   void take(const SlipColumns &, const SlipSurface &);
 
-  // infinite if nothing drives the body
+  // infinite if nothing drives the body; NaN if no inclination of the forces between columns balances it
   double factor(const Seismic &, double precision = PRECISION) const;
 
   // horizontal coefficient at which the factor is 1, with this vertical one; negative if the body
   // slides without an earthquake; NaN if no coefficient does it
   double yield(double vertical) const;
 
-  // shares of the weight at the last factor(), with Bishop's method: in columns whose m_alpha was below
+  // tangent of the inclination of the forces between columns at the last factor() or yield()
+  double inclination() const { return inclined; }
+
+  // shares of the weight at the last factor(), not with the ordinary method: in columns whose m_alpha was below
   // its bound; in columns whose effective normal force was negative, which is left as it is
   double share_bounded() const { return bounded; }
   double share_pulled() const { return pulled; }
 
-  // resisting moment times factor, and driving moment, if the factor in the normal forces is this
-  // one: their quotient is the factor where both are the same
-  void moments(double factor, const Seismic &, double &resisting, double &driving) const;
+  // with this factor and this inclination in the normal forces
+  Balance balance(double factor, const Seismic &, double inclination) const;
 
   // direction of sliding, radians, in which the weight's moment about the centre is largest
   static double steepest(const SlipColumns &);
@@ -57,7 +65,7 @@ class SlipFactor {
  private:
   Method method;
   const SlipColumns *columns;
-  mutable double bounded, pulled;
+  mutable double bounded, pulled, inclined;
   double weight;
   double weight_u, weight_arm;    // sums of W u, and of W x arm
 
@@ -69,6 +77,10 @@ class SlipFactor {
     double cohesive, lift;    // c A and u A, over the area of the base
   };
   std::vector<Base> bases;
+
+  double factor_at(double inclination, const Seismic &, double precision, double start) const;
+  double yield_at(double inclination, double vertical) const;
+  template <typename Solve, typename Excess> double inclined_to(Solve, Excess, double) const;
 };
 
 }    // namespace Slope

@@ -69,6 +69,10 @@ std::vector<SlipBody> FindSlip::given(const SlipOptions &options, SlipBodyMaker 
                "{:.8g} {:.8g} {:.8g}: {}",
                s.round() && s.along == 1.0 ? "sphere" : "ellipsoid", s.x, s.y, s.z, s.radius,
                problem);
+  if (std::isnan(body.factor))
+    error->all(FLERR,
+               "Find_slip method spencer must find forces between columns of one inclination, at most 2, that "
+               "balance the body, got none: use bishop");
   if (!std::isfinite(body.factor))
     error->all(FLERR,
                "Find_slip direction must be one in which the weight drives the body, got {:.6g}",

@@ -147,7 +147,7 @@ def test_layers_and_water(tmp_path):
     ("surface ellipsoid 10.25 25.25 54.0 28.9617 1 0 0 direction 180", "Find_slip surface A and B must be > 0 (of R)"),
     ("surface ellipsoid 10.25 25.25 54.0 28.9617 1 1 -1 direction 180", "Find_slip surface L must be >= 0, got -1"),
     ("surface ellipsoid 10.25 2 54 29 1 1.5 0 direction 180", "got ellipsoid 10.25 2 54 29: the body reaches the edge"),
-    (f"{LOW_SPHERE} method spencer", "Find_slip method spencer is not available"),
+    (f"{LOW_SPHERE} method janbu", "Find_slip method must be bishop, ordinary or spencer, got janbu"),
     ("surface raster ground.asc", "Find_slip surface raster is not available"),
     (f"{LOW_SPHERE} shape cube", "Find_slip shape must be sphere or ellipsoid, got cube"),
     (f"{LOW_SPHERE} water ru 1.5", "Find_slip water ru must be 0 to below 1, got 1.5"),

@@ -100,6 +100,7 @@ def test_a_sphere_its_table_and_its_raster(here, capsys):
     base = columns.base_of(HIGH[0], HIGH[1], radius)
     write_asc("scar.asc", np.where(columns.largest(HIGH[0], base), base, HIGH[0].z), 0.5)
     Path("crit.slips.csv").write_text(f"rank,x,y,z,radius,direction,volume\n1,{x},{y},{z},{radius},180,14420\n")
+    write_asc("crit.1.base.asc", base, 0.5)
     found = []
     for name in (f"{x},{y},{z},{radius}", "crit.slips.csv", "scar.asc"):
         status, out, err = ran(capsys, f"--failed {name} --seismic 0.2939 -o out")

@@ -244,8 +244,10 @@ def test_bad_input_is_one_line(slips, capsys, words, rule):
     assert not Path("out").exists()
 
 
-def test_a_base_that_is_no_sphere(slips, capsys):
+@pytest.mark.parametrize("up, rule", [(-0.3, "must not be below the surface of body 1 by more than 0.05 m, got 0.3 m"),
+                                      (0.3, "on which body 1 has")])
+def test_a_base_of_another_body(slips, capsys, up, rule):
     ground, centre, radius = CASES[0][:3]
-    write_asc("slips/out.1.base.asc", columns.base_of(ground, centre, radius) + 0.3, 0.5)
+    write_asc("slips/out.1.base.asc", columns.base_of(ground, centre, radius) + up, 0.5)
     status, _, err = ran(capsys, f"slips {SOIL} --peaks 100:500 --pseudo-static 1 -o out")
-    assert status == 2 and "must be the surface" in err
+    assert status == 2 and rule in err

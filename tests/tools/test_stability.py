@@ -150,6 +150,7 @@ def test_doubts_of_places():
     ("--volume 1e7 1e8", "Find_slip limits must leave a sphere inside the terrain"),
     ("--water 1.5", "Find_slip water ru must be 0 to below 1, got 1.5"),
     ("--water-table high.asc", "water table"),
+    ("--bedrock none.asc", "none.asc: must be an existing file"),
     ("--layer none.asc 1 2 3", "none.asc: must be an existing file"),
     ("--layer terrain.asc 1 x 3", "--layer: must be a finite number, got 'x'"),
     ("--seismic 0.1 0.2 0.3", "--seismic: must be KH, or KH KV, got 0.1 0.2 0.3"),
@@ -206,6 +207,61 @@ def test_a_site_of_a_body(low, capsys):
         status, _, err = site(f"{words} -o other")
         assert status == 2 and err.count("\n") == 1 and rule in err
         assert not Path("other").exists()
+
+
+@pytest.fixture
+def on_rock(low, capsys):
+    """What a search finds above a bedrock that dips along the slope, and across it towards the middle."""
+    x, y = columns.centres(CASES[0][0])
+    write_asc("rock.asc", CASES[0][0].z - 2.2 + 0.05 * np.abs(y - 24) + 0.01 * (x - 20), 0.5)
+    status, _, err = ran(capsys, f"{LOW} --volume 200 500 --keep 2 --bedrock rock.asc -o slips")
+    assert status == 0, err
+    return table()
+
+
+SOIL = bishop.Strengths(3e3, np.tan(np.radians(19.6)))
+
+
+@needs_lmp
+def test_bodies_above_a_bedrock(on_rock):
+    """The columns that slope fragility uses have the factor, yield coefficient and volume of find_slip."""
+    rock = bodies.rasters.read(Path("rock.asc")).z
+    found = bodies.read(Path("slips"), Path("terrain.asc"), 2039.43)
+    assert [body.name for body in found] == [f"{row['body']:.0f}" for row in on_rock]
+    for body, row in zip(found, on_rock):
+        base = bodies.rasters.read(body.base).z
+        inside = np.isfinite(base)
+        assert (base[inside] >= rock[inside] - 1e-6).all()
+        assert 0.2 < (base[inside] < rock[inside] + 1e-4).mean() < 1
+        assert body.columns.volume == pytest.approx(row["volume"], rel=5e-3)
+        assert bishop.factor_of_safety(body.columns, SOIL)[0] == pytest.approx(row["factor"], rel=1e-2)
+        assert bishop.yield_coefficient(body.columns, SOIL)[0] == pytest.approx(row["yield"], abs=5e-3)
+        sphere = columns.of_surface(CASES[0][0], bodies.centre_of(row), row["radius"], 90.0 - row["bearing"], 2039.43)
+        assert sphere.volume > 1.05 * row["volume"]
+
+
+@needs_lmp
+def test_back_analysis_fragility_and_site_of_a_body_above_a_bedrock(on_rock, capsys):
+    row = on_rock[0]
+    sphere = ",".join(f"{row[name]:.10g}" for name in ("x", "y", "z", "radius"))
+    lines = []
+    for words in ("slips", f"{sphere} --bedrock rock.asc --direction {row['bearing']}"):
+        status, _, err = ran(capsys, f"terrain.asc --failed {words} --density 2039.43 -o back")
+        assert status == 0, err
+        about = yaml.safe_load(Path("back/back.yaml").read_text())
+        assert about["volume"] == pytest.approx(row["volume"], rel=5e-3)
+        lines.append(about["cohesion_without_friction"])
+    assert lines[1] == pytest.approx(lines[0], rel=5e-3)
+    status, _, err = ran(capsys, "terrain.asc --failed slips --bedrock rock.asc --density 2000 -o back")
+    assert status == 2 and "--bedrock: must be given with X,Y,Z,R" in err
+
+    status, _, err = called(capsys, "fragility slips --terrain terrain.asc --density 2039.43 --cohesion 2e3:6e3 "
+                            "--friction 18:30 --peaks 50:900:50 --pseudo-static 1 --sample 256 -o curves".split())
+    assert status == 0, err
+    status, _, err = called(capsys, "site --terrain terrain.asc --balls 100 --slips slips --body 1 -o mine".split())
+    assert status == 0, err
+    about = yaml.safe_load(Path("mine/release.yaml").read_text())
+    assert about["body"]["volume"] == pytest.approx(row["volume"], rel=2e-3)
 
 
 @needs_lmp

@@ -21,10 +21,10 @@ using namespace embankment;
 namespace {
 
 const SlipFactor::Seismic STILL = {0.0, 0.0};
-const SlipFactor::Method METHODS[] = {SlipFactor::ORDINARY, SlipFactor::BISHOP};
+const SlipFactor::Method METHODS[] = {SlipFactor::ORDINARY, SlipFactor::BISHOP, SlipFactor::SPENCER};
 
 struct Result {
-  double factor, yield, volume, bounded;
+  double factor, yield, volume, bounded, inclination;
   bool at_edge;
 };
 
@@ -37,8 +37,8 @@ Result analyse(const ElevationGrid &ground, const SlipSoil &soil, const SlipSurf
   EXPECT_TRUE(maker.exact(surface, columns));
   SlipFactor safety(method);
   safety.take(columns, surface);
-  const double factor = safety.factor(k);
-  return {factor, safety.yield(k.vertical), columns.volume, safety.share_bounded(), columns.at_edge};
+  const double factor = safety.factor(k), inclination = safety.inclination();
+  return {factor, safety.yield(k.vertical), columns.volume, safety.share_bounded(), inclination, columns.at_edge};
 }
 
 void expect_ratio(double value, double expected, double tolerance)
@@ -352,8 +352,8 @@ TEST(SlipFactor, BoundOfMAlphaIsReported)
   SlipFactor safety(SlipFactor::BISHOP);
   safety.take(columns, deep);
   const double f = 0.8;
-  double resisting, driving, below = 0.0, all = 0.0, expected = 0.0;
-  safety.moments(f, STILL, resisting, driving);
+  double below = 0.0, all = 0.0, expected = 0.0;
+  const double resisting = safety.balance(f, STILL, 0.0).resisting;
   for (size_t i = 0; i < columns.size(); i++) {
     const double u = columns.dx[i], e = columns.depth[i], tangent = columns.friction[i];
     const double m = e / deep.radius + u / std::hypot(u, e) * tangent / f;
@@ -372,4 +372,106 @@ TEST(SlipFactor, NothingDrivesABodyUnderFlatGround)
   const SlipSurface bowl(0.0, 0.0, 10.0, 15.0, 0.0);
   const Result r = analyse(plane(60, 1.0, 0.0), SlipSoil(strength(10.0, 20.0, 18.0)), bowl);
   EXPECT_GT(r.factor, 1e6);
+}
+
+// the equilibrium of each column, solved for its normal force and the force between columns, and the sums of all
+TEST(SlipFactor, SpencerClosesForcesAndMoments)
+{
+  const std::vector<char> everywhere;
+  SlipSurface wide = sphere_20_m();
+  wide.across = 1.4;
+  const SlipFactor::Seismic shaken[] = {STILL, {0.15, 0.0}, {0.2, -0.1}};
+  for (const SlipSurface &s : {sphere_20_m(), wide})
+    for (const SlipFactor::Seismic &k : shaken) {
+      const ElevationGrid ground = of_20_m();
+      SlipSoil soil(strength_20_m());
+      soil.set_ratio(0.15);
+      SlipColumnMaker maker(ground, soil, everywhere);
+      SlipColumns c;
+      ASSERT_TRUE(maker.exact(s, c));
+      SlipFactor safety(SlipFactor::SPENCER);
+      safety.take(c, s);
+      const double f = safety.factor(k), slope = safety.inclination();
+      const double cosine = 1.0 / std::hypot(1.0, slope), sine = slope * cosine;
+      double moment = 0.0, turning = 0.0, between = 0.0, pushed = 0.0;
+      for (size_t i = 0; i < c.size(); i++) {
+        const double u = c.dx[i], v = c.dy[i], e = c.depth[i];    // sliding to -x
+        const double zu = u / e, zv = v / (s.across * s.across * e), length = std::sqrt(1.0 + zu * zu + zv * zv);
+        const double area = c.area[i] * length, w = c.weight[i], tangent = c.friction[i];
+        const double tu = 1.0 / std::hypot(1.0, zu), tz = zu * tu;    // of the shear force
+        const double fixed = (c.cohesion[i] - c.pore[i] * tangent) * area / f;
+        // n (normal + tangent / f shear) + q (cosine, sine) = load
+        const double au = -zu / length + tangent / f * tu, az = 1.0 / length + tangent / f * tz;
+        const double bu = k.horizontal * w - fixed * tu, bz = (1.0 - k.vertical) * w - fixed * tz;
+        const double det = au * sine - az * cosine;
+        const double n = (bu * sine - bz * cosine) / det, q = (au * bz - az * bu) / det;
+        const double fu = n * au + fixed * tu, fz = n * az + fixed * tz;
+        moment += fu * e + fz * u - (1.0 - k.vertical) * w * u - k.horizontal * w * c.arm[i];
+        turning += w * std::fabs(u);
+        between += q;
+        pushed += std::fabs(q);
+      }
+      EXPECT_NEAR(moment / turning, 0.0, 1e-6);
+      EXPECT_NEAR(between / pushed, 0.0, 1e-6);
+      EXPECT_GT(slope, 0.1);
+    }
+}
+
+constexpr double FOOT = 0.3048, PSF = 1e-3 * 4.4482216152605 / (FOOT * FOOT);    // m, kPa
+
+// 2:1 and 40 ft high, heights 20 to 60 ft, the toe 140 ft from the edge
+ElevationGrid of_40_feet(int ny)
+{
+  ElevationGrid ground(101, ny, -FOOT, -ny * FOOT, 2.0 * FOOT, 0.0);
+  for (int j = 0; j < ground.ny; j++)
+    for (int i = 0; i < ground.nx; i++) ground.at(i, j) = FOOT * std::min(60.0, std::max(20.0, 90.0 - i));
+  return ground;
+}
+
+SlipSoil::Strength strength_40_feet() { return strength(600.0 * PSF, 20.0, 120.0 * PSF / FOOT); }
+
+/* Fredlund and Krahn 1977, the circle with the centre at 120 and 90 ft and the radius 80 ft in plane strain: published
+   factors of Bishop and Spencer, and Spencer's inclination.  With a weak layer, it is a foot thick and lies on rock. */
+TEST(SlipFactor, SlopeOfFredlundAndKrahn)
+{
+  const ElevationGrid ground = of_40_feet(41);
+  ElevationGrid weak = ground, rock = ground;
+  for (double &z : weak.z) z = 16.0 * FOOT;
+  for (double &z : rock.z) z = 15.0 * FOOT;
+  SlipSurface s(120.0 * FOOT, 0.0, 90.0 * FOOT, 80.0 * FOOT, 0.0);
+  s.straight = 1000.0;    // ends beyond the terrain
+  const struct {
+    bool layered;
+    double ru, bishop, spencer, inclination;
+  } published[] = {{false, 0.0, 2.080, 2.073, 0.237},
+                   {true, 0.0, 1.377, 1.373, 0.185},
+                   {false, 0.25, 1.766, 1.761, 0.255},
+                   {true, 0.25, 1.124, 1.118, 0.139}};
+  for (const auto &p : published) {
+    SlipSoil soil(strength_40_feet());
+    soil.set_ratio(p.ru);
+    if (p.layered) {
+      soil.add_layer(weak, {0.0, std::tan(10.0 * PI / 180.0), strength_40_feet().density});
+      soil.set_bedrock(rock);
+    }
+    const Result spencer = analyse(ground, soil, s, SlipFactor::SPENCER);
+    expect_ratio(analyse(ground, soil, s).factor, p.bishop, 1e-2);
+    expect_ratio(spencer.factor, p.spencer, 1e-2);
+    EXPECT_NEAR(spencer.inclination, p.inclination, 0.04);
+  }
+}
+
+// the ellipsoid of Zhang 1988 on that circle, 66.9 m wide to 24.4 m: 2.122, as later papers quote it
+TEST(SlipFactor, EllipsoidOfZhang)
+{
+  SlipSurface s(120.0 * FOOT, 0.0, 90.0 * FOOT, 80.0 * FOOT, 0.0);
+  s.across = 66.9 / 24.4;
+  expect_ratio(analyse(of_40_feet(261), SlipSoil(strength_40_feet()), s, SlipFactor::SPENCER).factor, 2.122, 2e-2);
+}
+
+// without friction the factor of the moments is the same for all inclinations, and none closes the forces of this sphere
+TEST(SlipFactor, SpencerHasNoFactorWhereNothingBalances)
+{
+  const Result r = analyse(of_20_m(), SlipSoil(strength(40.0, 0.0, 19.0)), sphere_20_m(), SlipFactor::SPENCER);
+  EXPECT_TRUE(std::isnan(r.factor));
 }

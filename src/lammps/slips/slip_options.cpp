@@ -180,10 +180,14 @@ int SlipOptions::read_limits()
 int SlipOptions::read_method()
 {
   const std::string method = text(1);
-  if (method == "spencer") error->all(FLERR, "Find_slip method spencer is not available");
-  if (method != "bishop" && method != "ordinary")
-    error->all(FLERR, "Find_slip method must be bishop or ordinary, got {}", method);
-  task.method = method == "bishop" ? SlipFactor::BISHOP : SlipFactor::ORDINARY;
+  if (method == "bishop")
+    task.method = SlipFactor::BISHOP;
+  else if (method == "ordinary")
+    task.method = SlipFactor::ORDINARY;
+  else if (method == "spencer")
+    task.method = SlipFactor::SPENCER;
+  else
+    error->all(FLERR, "Find_slip method must be bishop, ordinary or spencer, got {}", method);
   return 1;
 }
 

@@ -15,7 +15,7 @@ class Stability(Algorithm):
     command = "stability"
     title = "Slip surfaces"
     about = """
-    The slip surfaces with the least factor of safety below a terrain, by Bishop's method in three dimensions.
+    The slip surfaces with the least factor of safety below a terrain, in three dimensions, by Bishop's method or another.
 
     Ground: cohesion (Pa), friction (degrees), density (kg/m3), water, horizontal acceleration of an earthquake in parts
     of the weight. Limits of volume (m3), depth (m) and place make the search shorter.
@@ -30,13 +30,14 @@ class Stability(Algorithm):
         Option("DENSITY", "--density", "number", "Density of the ground (kg/m3)", needed=True),
         Option("WATER", "--water", "number", "Pore pressure over the weight per area (-; default: dry)"),
         Option("WATER_TABLE", "--water-table", "raster", "Heights of the water table (m), instead", advanced=True),
+        Option("BEDROCK", "--bedrock", "raster", "Heights of the bedrock, which no body cuts (m)", advanced=True),
         Option("SEISMIC", "--seismic", "numbers", "Inertia in parts of the weight: horizontal, and vertical (-)"),
         Option("VOLUME", "--volume", "numbers", "Volume of a body: from, to (m3)"),
         Option("DEPTH", "--depth", "numbers", "Greatest depth of a body below the ground: from, to (m)"),
         Option("WITHIN", "--within", "polygons", "Polygon in which the bodies lie"),
         Option("DIRECTION", "--direction", "number", "Compass bearing of sliding (degrees; default: fall line)",
                advanced=True),
-        Option("METHOD", "--method", "choice", "Method (default: bishop)", choices=("bishop", "ordinary"),
+        Option("METHOD", "--method", "choice", "Method (default: bishop)", choices=("bishop", "ordinary", "spencer"),
                advanced=True),
         Option("KEEP", "--keep", "whole", "Bodies that differ (default: 3)", least=1), LOCAL,
         Option("OUTPUT", "-o", "new folder", "Folder for the results", own=True))

@@ -38,6 +38,7 @@ class Asked(NamedTuple):
     method: str = "bishop"
     keep: int = 3
     shape: str = "sphere"
+    bedrock: Optional[Path] = None          # its heights
 
 
 def text(asked: Asked, named: Callable[[Path], str]) -> str:
@@ -49,6 +50,8 @@ def text(asked: Asked, named: Callable[[Path], str]) -> str:
         words.append(f"water table {quoted(named(asked.table))}")
     elif asked.ratio is not None:
         words.append(f"water ru {asked.ratio:.12g}")
+    if asked.bedrock is not None:
+        words.append(f"bedrock {quoted(named(asked.bedrock))}")
     if any(asked.seismic):
         words.append("seismic {:.12g} {:.12g}".format(*asked.seismic))
     for name, limits in (("volume", asked.volume), ("depth", asked.depth)):

@@ -11,7 +11,7 @@ from ..errors import SlopeError
 from ..options import number, whole
 
 EPILOG = """\
-SLIPS: PREFIX.slips.csv of find_slip, or the folder with it; PREFIX.N.base.asc lie beside it. Spheres only.
+SLIPS: PREFIX.slips.csv of find_slip, or the folder with it; PREFIX.N.base.asc lie beside it.
 DIST: a number, or as in `slope study --vary`: LO:HI, uniform:LO:HI, loguniform:LO:HI, triangular:LO:MODE:HI,
 normal:MEAN:DEVIATION:LO:HI, lognormal:MEDIAN:DEVIATION_OF_LN:LO:HI, list:V1@WEIGHT,V2@WEIGHT,...
 MOTION: lines "t ax ay az" (s, m/s2), which `slope quake` makes of a record.

@@ -21,6 +21,7 @@ examples:
       --within slope.geojson --keep 5 -o slips
   tools/slope stability terrain.asc --cohesion 5e3 --friction 28 --density 1800 --layer rock.asc 2e5 40 2500 \\
       --water-table water.asc -o slips
+  tools/slope stability terrain.asc --cohesion 5e3 --friction 28 --density 1800 --bedrock rock.asc -o slips
   tools/slope stability terrain.asc --failed 25.75,33.25,49,36.63 --density 1919 --seismic 0.3 -o back
 
 Writes body.slips.csv and body.N.base.asc, which `slope fragility` reads, body.factor.asc, stability.csv,
@@ -60,6 +61,7 @@ def add_soil(group):
     water.add_argument("--water", metavar="RU", type=number,
                        help="pore pressure over the weight per area, 0 to below 1 (default: dry)")
     water.add_argument("--water-table", metavar="RASTER", type=Path, help="heights of the water table")
+    group.add_argument("--bedrock", metavar="RASTER", type=Path, help="no body goes below the heights in this raster")
     group.add_argument("--seismic", metavar="K", type=number, nargs="+",
                        help="KH [KV]: horizontal inertia in the direction of sliding, and vertical one upwards, in "
                             "parts of the weight")
@@ -74,7 +76,7 @@ def add_search(group):
                        help="compass bearing of sliding, degrees (default: where the weight drives most)")
     group.add_argument("--shape", choices=("sphere", "ellipsoid"),
                        help="ellipsoid: the width across the direction of sliding is free, too (default: sphere)")
-    group.add_argument("--method", choices=("bishop", "ordinary"), help="default: bishop")
+    group.add_argument("--method", choices=("bishop", "ordinary", "spencer"), help="default: bishop")
     group.add_argument("--keep", metavar="N", type=count, help="bodies that differ (default 3)")
 
 
@@ -122,7 +124,7 @@ def asked_of(args) -> slip_deck.Asked:
     for option in ("cohesion", "friction"):
         if getattr(args, option) is None:
             raise SlopeError(f"--{option}", "must be given, or --failed a body that failed")
-    for path in (args.terrain, args.water_table, *(layer[0] for layer in args.layer)):
+    for path in (args.terrain, args.water_table, args.bedrock, *(layer[0] for layer in args.layer)):
         if path is not None and not Path(path).is_file():
             raise SlopeError(path, "must be an existing file")
     shaking = args.seismic or [0.0]
@@ -134,7 +136,8 @@ def asked_of(args) -> slip_deck.Asked:
         args.terrain, slip_deck.Strength(args.cohesion, args.friction, args.density), layers, args.water,
         args.water_table, (shaking[0], shaking[-1] if len(shaking) > 1 else 0.0), bool(args.within),
         pair(args.volume), pair(args.depth), None if args.direction is None else (90.0 - args.direction) % 360.0,
-        args.method or "bishop", args.keep or 3, args.shape or "sphere")
+        args.method or "bishop", args.keep or 3, args.shape or "sphere",
+        args.bedrock)
 
 
 def pair(limits) -> Optional[Tuple[float, float]]:
@@ -161,8 +164,8 @@ def numbers_of(raster, row: Dict[str, float], mask) -> Dict[str, float]:
 
 def write(folder, args, raster, rows, masks, found) -> None:
     """stability.csv, .png and .yaml."""
-    from ..slips import chart
-    from ..survey import rasters
+    from ..slips import chart, columns
+    from ..survey import rasters, resampling
 
     with open(folder / FILES[0], "w", encoding="ascii", newline="") as out:
         table = csv.DictWriter(out, list(found["bodies"][0]), lineterminator="\n")
@@ -171,10 +174,11 @@ def write(folder, args, raster, rows, masks, found) -> None:
     factor = rasters.read(folder / f"{PREFIX}.factor.asc", heights=False).z
     title = f"c {args.cohesion:g} Pa, friction {args.friction:g} degrees" + (
         f", k {args.seismic[0]:g}" if args.seismic else "")
-    chart.draw(folder / FILES[1], raster, factor, rows, masks, title)
+    rock = args.bedrock and resampling.sample(rasters.read(args.bedrock), *columns.centres(raster))
+    chart.draw(folder / FILES[1], raster, factor, rows, masks, title, rock)
     about = {name: getattr(args, name) for name in ("terrain", "cohesion", "friction", "density", "layer", "water",
-                                                    "water_table", "seismic", "volume", "depth", "within", "local",
-                                                    "direction")}
+                                                    "water_table", "bedrock", "seismic", "volume", "depth",
+                                                    "within", "local", "direction")}
     disk.write_yaml(folder / FILES[2], {**about, **found}, "slope stability: Pa, degrees, kg/m3, m, m3; bearings")
 
 

@@ -24,9 +24,10 @@ def run(args):
         raise SlopeError("--water", "must be 0 to below 1", f"{ratio:g}")
     disk.check_folder(args.output)
     raster = rasters.read_asc_local(args.terrain)
-    table = args.water_table and resampling.sample(rasters.read(args.water_table), *columns.centres(raster))
+    table, rock = (path and resampling.sample(rasters.read(path), *columns.centres(raster))
+                   for path in (args.water_table, args.bedrock))
     way = None if args.direction is None else (90.0 - args.direction) % 360.0
-    body = failed.read(args.failed, raster, way, args.density, table)
+    body = failed.read(args.failed, raster, way, args.density, table, rock)
     line = back.line(body.columns, horizontal, vertical, ratio)
     far = back.line(body.far, horizontal, vertical, ratio) if body.far else None
     kept: List[str] = []
@@ -34,7 +35,8 @@ def run(args):
     for text in warnings_of(body, line, far):
         warn(text)
     about = {"terrain": args.terrain, "failed": args.failed, "density": args.density, "seismic": shaking,
-             "water": args.water, "water_table": args.water_table, "volume": body.columns.volume,
+             "water": args.water, "water_table": args.water_table,
+             "bedrock": args.bedrock, "volume": body.columns.volume,
              "cells": len(body.columns.area), "bearing": (90.0 - body.direction) % 360.0, "centre": body.centre,
              "radius": body.radius, "cohesion_without_friction": line.cohesion[0],
              "friction_without_cohesion": line.friction[-1] if line.cohesion[-1] < 1e-6 * line.cohesion[0] else None,

@@ -3,7 +3,7 @@ import csv
 import math
 import re
 from pathlib import Path
-from typing import Dict, List, NamedTuple, Sequence
+from typing import Dict, List, NamedTuple, Sequence, Tuple
 
 import numpy as np
 
@@ -13,7 +13,8 @@ from . import columns
 
 END = ".slips.csv"
 NUMBERS = ("x", "y", "z", "radius", "direction", "volume")
-SAME_BASE = 0.05        # m; a base that differs more from the sphere is none
+SAME_BASE = 0.05        # m; a base that is more below the surface is none
+ON_ROCK = 1e-3          # m; where a base is more above the surface it is the bedrock
 SAME_VOLUME = 0.05      # a larger difference means another terrain
 
 
@@ -107,27 +108,37 @@ def prefix_of(table: Path) -> str:
 def read(path: Path, terrain: Path, density: float) -> List[Body]:
     """The bodies of a table on their terrain; density kg/m3.
 
-    Columns have the exact base of the surface within the raster of the body. SlopeError for another terrain or base.
+    Columns have the exact base of the surface within the raster of the body, or the raster where that is higher, on
+    bedrock. SlopeError for another terrain or base.
     """
     source = table_of(path)
     ground = rasters.read_asc_local(terrain)
-    prefix = prefix_of(source)
     found = []
     for row in rows_of(source):
         rank = f"{row['rank']:g}"
-        file = source.with_name(f"{prefix}.{rank}.base.asc")
-        base = rasters.read(file)
-        if base.z.shape != ground.z.shape or not base.transform.almost_equals(ground.transform, 1e-6):
-            raise SlopeError(file, f"must be on the cells of {terrain}")
-        centre, radius, shape = (row["x"], row["y"], row["z"]), row["radius"], shape_of(row)
-        inside = columns.largest(ground, base.z)
-        off = np.abs(base.z - columns.base_of(ground, centre, radius, row["direction"], shape))[inside]
-        if not np.nanmedian(off) <= SAME_BASE:
-            raise SlopeError(file, f"must be the surface of {source.name}, within {SAME_BASE:g} m",
-                             f"{np.nanmedian(off):.3g} m")
-        body = columns.of_surface(ground, centre, radius, row["direction"], density, inside, shape=shape)
+        file = source.with_name(f"{prefix_of(source)}.{rank}.base.asc")
+        inside, rock = cells_of(ground, row, file)
+        body = columns.of_surface(ground, centre_of(row), row["radius"], row["direction"], density, inside,
+                                  shape=shape_of(row), rock=rock)
         if not abs(body.volume / row["volume"] - 1) <= SAME_VOLUME:
             raise SlopeError(terrain, f"must be the terrain of {source.name}, on which body {rank} has "
                              f"{row['volume']:.5g} m3", f"{body.volume:.5g} m3")
         found.append(Body(rank, row["direction"], body, file))
     return found
+
+
+def centre_of(row: Dict[str, float]) -> Tuple[float, float, float]:
+    return row["x"], row["y"], row["z"]
+
+
+def cells_of(ground: rasters.Raster, row: Dict[str, float], file: Path):
+    """The mask of a body in PREFIX.N.base.asc, and the heights of the bedrock that cuts it, NaN elsewhere."""
+    base = rasters.read(file)
+    if base.z.shape != ground.z.shape or not base.transform.almost_equals(ground.transform, 1e-6):
+        raise SlopeError(file, "must be on the cells of the terrain")
+    inside = columns.largest(ground, base.z)
+    over = base.z - columns.base_of(ground, centre_of(row), row["radius"], row["direction"], shape_of(row))
+    if not np.nanmin(over[inside]) >= -SAME_BASE:
+        raise SlopeError(file, f"must not be below the surface of body {row['rank']:g} by more than {SAME_BASE:g} m",
+                         f"{-np.nanmin(over[inside]):.3g} m")
+    return inside, np.where(over > ON_ROCK, base.z, np.nan)

@@ -1,7 +1,7 @@
 """The picture of a search: the factor of safety and the bodies in plan, a section of each."""
 import math
 from pathlib import Path
-from typing import Dict, List, Sequence
+from typing import Dict, List, Optional, Sequence
 
 import numpy as np
 from matplotlib.colors import BoundaryNorm
@@ -22,8 +22,11 @@ POINTS = 600
 
 
 def draw(path: Path, raster: Raster, factor: np.ndarray, rows: Sequence[Dict[str, float]], masks: List[np.ndarray],
-         title: str) -> None:
-    """Write the picture. factor: the least one in each cell; masks: the cells of each body, as in rows."""
+         title: str, rock: Optional[np.ndarray] = None) -> None:
+    """Write the picture.
+
+    factor: the least one in each cell; masks: the cells of each body, as in rows; rock: heights of the bedrock.
+    """
     boxes = [box_of(raster, mask) for mask in (np.isfinite(factor), *masks) if mask.any()]
     shown = window(raster, *boxes) if boxes else extent(raster)
     sections = min(len(rows), MOST)
@@ -38,7 +41,8 @@ def draw(path: Path, raster: Raster, factor: np.ndarray, rows: Sequence[Dict[str
             colour = COLOURS[k % len(COLOURS)]
             draw_body(axes, raster, row, mask, colour)
             if k < sections:
-                draw_section(figure.add_subplot(grid[1 + k // 2, k % 2]), raster, row, mask, colour)
+                draw_section(figure.add_subplot(grid[1 + k // 2, k % 2]), raster, row, mask, colour,
+                             rock)
         axes.set_title(title)
         pictures.save(figure, path, bbox_inches="tight")
 
@@ -86,21 +90,26 @@ def draw_body(axes, raster: Raster, row: Dict[str, float], mask: np.ndarray, col
                   bbox={"boxstyle": "circle,pad=0.15", "fc": "white", "ec": colour, "lw": 0.8})
 
 
-def draw_section(axes, raster: Raster, row: Dict[str, float], mask: np.ndarray, colour: str) -> None:
-    """Ground and surface along the direction of sliding through the middle of a body, down to the right."""
+def draw_section(axes, raster: Raster, row: Dict[str, float], mask: np.ndarray, colour: str,
+                 rock: Optional[np.ndarray] = None) -> None:
+    """Ground, bedrock and base along the direction of sliding through the middle of a body, down to the right."""
     along = np.array([math.cos(math.radians(row["direction"])), math.sin(math.radians(row["direction"]))])
     long = length(raster, mask, row["direction"])
     place = np.linspace(-(0.5 + ROOM) * long, (0.5 + ROOM) * long, POINTS)
     x, y = (middle_of(raster, mask)[:, None] + along[:, None] * place)
     ground = sample(raster, x, y)
-    base = columns.height_at(x, y, (row["x"], row["y"], row["z"]), row["radius"], row["direction"],
-                             bodies.shape_of(row))
+    base = columns.height_at(x, y, bodies.centre_of(row), row["radius"], row["direction"], bodies.shape_of(row))
+    below = None if rock is None else sample(raster._replace(z=rock), x, y)
+    base = columns.above(base, below)
     inside = sample(raster._replace(z=mask.astype(float)), x, y) > 0.25     # other parts above it do not slide
     with np.errstate(invalid="ignore"):
         there = inside & (ground > base)
     way = place - place[0]
     axes.fill_between(way, base, ground, where=there, color=colour, alpha=0.25, lw=0)
     axes.plot(way, ground, color="black", lw=1.0)
+    if below is not None:
+        axes.plot(way, np.fmin(below, ground), color="gray", lw=1.0, ls="--", label="bedrock")
+        axes.legend(loc="best")
     axes.plot(way, np.where(there, base, np.nan), color=colour, lw=1.2)
     axes.set(xlabel="in the direction of sliding (m)", ylabel="height (m)", aspect="equal")
     axes.set_title(f"{row['rank']:.0f}: F = {row['factor']:.3f}, yield coefficient {row['yield']:.3f}", loc="left")

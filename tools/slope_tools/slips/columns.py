@@ -1,9 +1,9 @@
 """The columns of a body above a sphere, one per cell of the terrain: see doc/src/slip_analysis.rst.
 
-u is the horizontal distance from the centre against the direction of sliding, v the one across; the base is
-e = sqrt(R^2 - u^2 - v^2) below the centre.
+u is the horizontal distance from the centre against the direction of sliding, v the one across; the base of a sphere is
+e = sqrt(R^2 - u^2 - v^2) below the centre, or where the bedrock is.
 """
-from typing import NamedTuple, Optional, Sequence
+from typing import NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 from scipy import ndimage
@@ -74,27 +74,30 @@ def largest(raster: Raster, base: np.ndarray) -> np.ndarray:
     return parts == 1 + np.argmax(np.bincount(parts.ravel())[1:])
 
 
+def above(surface: np.ndarray, rock: Optional[np.ndarray]) -> np.ndarray:
+    """Heights of the base of a body: of the surface, or of the bedrock where that is higher; NaN beside the surface."""
+    return surface if rock is None else np.where(np.isfinite(surface), np.fmax(surface, rock), np.nan)
+
+
 def of_surface(ground: Raster, centre: Sequence[float], radius: float, direction: float, density: float,
                inside: Optional[np.ndarray] = None, table: Optional[np.ndarray] = None,
-               shape: Shape = SPHERE) -> Columns:
+               shape: Shape = SPHERE, rock: Optional[np.ndarray] = None) -> Columns:
     """The columns of the body above a surface; direction of sliding in degrees counterclockwise from +x, density kg/m3.
 
     inside: mask of the cells of the body (default: its largest connected part); table: heights of the water table,
-    NaN where there is no water. It does not change the density.
+    NaN where there is no water. It does not change the density. rock: heights of the bedrock, NaN where there is none.
     """
-    bottom = base_of(ground, centre, radius, direction, shape)
+    surface = base_of(ground, centre, radius, direction, shape)
+    bottom = above(surface, rock)
     kept = largest(ground, bottom) if inside is None else inside & (ground.z > bottom)
-    top, low = ground.z[kept], bottom[kept]
     u, v = from_axis(ground, kept, centre, direction)
-    e = centre[2] - low
-    area = np.full(len(u), abs(ground.transform.a * ground.transform.e))
-    dip, dip_across = u / (shape.along ** 2 * e), shape.beyond(v) / (shape.across ** 2 * e)
-    cosine = 1 / np.sqrt(1 + dip ** 2 + dip_across ** 2)
-    sine = dip / np.hypot(1, dip)
-    volume = area * (top - low)
-    return Columns(area, area / cosine, density * GRAVITY * volume, u, centre[2] - (top + low) / 2,
-                   u * sine + e / np.hypot(1, dip), sine, cosine, pressure_of(table, kept, low), float(volume.sum()),
-                   None if shape.along == 1.0 else cosine * (e * dip - u))
+    e = centre[2] - surface[kept]
+    dip, across = u / (shape.along ** 2 * e), shape.beyond(v) / (shape.across ** 2 * e)
+    cut = bottom[kept] > surface[kept]
+    if rock is not None:
+        dip, across = (np.where(cut, *two) for two in zip(dips(slopes(rock, ground), kept, direction), (dip, across)))
+    return balanced(ground, bottom, kept, dip, across, centre, direction, density, table,
+                    turns=shape.along == 1.0 and not cut.any())
 
 
 def of_raster(ground: Raster, bottom: np.ndarray, kept: np.ndarray, centre: Sequence[float], direction: float,
@@ -103,19 +106,45 @@ def of_raster(ground: Raster, bottom: np.ndarray, kept: np.ndarray, centre: Sequ
 
     The dip of the base is that of the raster. The axis of moments goes through `centre`, across the direction.
     """
+    south, east = np.gradient(bottom, abs(ground.transform.a))
+    dip, across = dips((south, east), kept, direction)
+    return balanced(ground, bottom, kept, dip, across, centre, direction, density, table)
+
+
+def balanced(ground: Raster, bottom: np.ndarray, kept: np.ndarray, dip: np.ndarray, across: np.ndarray,
+             centre: Sequence[float], direction: float, density: float, table: Optional[np.ndarray],
+             turns: bool = False) -> Columns:
+    """Columns from the tangents of the dip of their base; turns: all normals of the base meet the axis of moments."""
     top, low = ground.z[kept], bottom[kept]
-    south, east = (one[kept] for one in np.gradient(bottom, abs(ground.transform.a)))
-    turned = np.radians(direction)
-    dip = -(east * np.cos(turned) - south * np.sin(turned))       # tangent, in the direction of sliding
     u, _ = from_axis(ground, kept, centre, direction)
     e = centre[2] - low
     area = np.full(len(u), abs(ground.transform.a * ground.transform.e))
-    cosine = 1 / np.sqrt(1 + east ** 2 + south ** 2)
+    cosine = 1 / np.sqrt(1 + dip ** 2 + across ** 2)
     sine = dip / np.hypot(1, dip)
     volume = area * (top - low)
     return Columns(area, area / cosine, density * GRAVITY * volume, u, centre[2] - (top + low) / 2,
                    u * sine + e / np.hypot(1, dip), sine, cosine, pressure_of(table, kept, low), float(volume.sum()),
-                   cosine * (e * dip - u))
+                   None if turns else cosine * (e * dip - u))
+
+
+def slopes(heights: np.ndarray, raster: Raster) -> Tuple[np.ndarray, np.ndarray]:
+    """dz to the south and to the east, between the neighbours of each cell that have a value."""
+    found = []
+    for axis in (0, 1):
+        wide = np.pad(heights, [(1, 1) if one == axis else (0, 0) for one in (0, 1)], constant_values=np.nan)
+        before, after = (np.take(wide, np.arange(heights.shape[axis]) + k, axis) for k in (0, 2))
+        cells = np.isfinite(before).astype(int) + np.isfinite(after)
+        rise = np.where(np.isfinite(after), after, heights) - np.where(np.isfinite(before), before, heights)
+        found.append(rise / np.maximum(cells, 1) / abs(raster.transform.a))
+    return found[0], found[1]
+
+
+def dips(gradient: Tuple[np.ndarray, np.ndarray], kept: np.ndarray,
+         direction: float) -> Tuple[np.ndarray, np.ndarray]:
+    """Tangents of the dip in the direction of sliding and across it, from dz to the south and to the east."""
+    south, east = (one[kept] for one in gradient)
+    along = np.cos(np.radians(direction)), np.sin(np.radians(direction))
+    return -(east * along[0] - south * along[1]), east * along[1] + south * along[0]
 
 
 def from_axis(ground: Raster, kept: np.ndarray, centre: Sequence[float], direction: float):

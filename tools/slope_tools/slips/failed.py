@@ -31,11 +31,11 @@ def numbers(text: str):
 
 
 def of_surface(raster: Raster, centre, radius: float, direction: Optional[float], density: float, table,
-               shape: columns.Shape = columns.SPHERE) -> Failed:
-    base = columns.base_of(raster, centre, radius, direction or 0.0, shape)
+               shape: columns.Shape = columns.SPHERE, rock=None) -> Failed:
+    base = columns.above(columns.base_of(raster, centre, radius, direction or 0.0, shape), rock)
     inside = columns.largest(raster, base)
     way = back.steepest(raster, base, inside, centre) if direction is None else direction
-    return Failed(columns.of_surface(raster, centre, radius, way, density, inside, table, shape), None, way,
+    return Failed(columns.of_surface(raster, centre, radius, way, density, inside, table, shape, rock), None, way,
                   np.asarray(centre, float), radius)
 
 
@@ -57,19 +57,24 @@ def of_base(raster: Raster, path: Path, direction: Optional[float], density: flo
 
 
 def read(text: str, raster: Raster, direction: Optional[float], density: float,
-         table: Optional[np.ndarray] = None) -> Failed:
+         table: Optional[np.ndarray] = None, rock: Optional[np.ndarray] = None) -> Failed:
     """The body that BODY names: X,Y,Z,R; the table of find_slip or a folder with it; a raster.
 
-    direction: degrees counterclockwise from +x; None: where the weight has the largest moment about the centre.
+    direction: degrees counterclockwise from +x; None: where the weight has the largest moment about the centre. table,
+    rock: heights of the water table, and of the bedrock that cuts a sphere; what find_slip wrote shows its own.
     """
     if numbers(text):
         *centre, radius = numbers(text)
-        return of_surface(raster, centre, radius, direction, density, table)
+        return of_surface(raster, centre, radius, direction, density, table, rock=rock)
     path = Path(text)
+    if rock is not None:
+        raise SlopeError("--bedrock", "must be given with X,Y,Z,R, as other bodies are as cut", text)
     if path.is_dir() or path.suffix == ".csv":
         row = bodies.rows_of(bodies.table_of(path))[0]
-        return of_surface(raster, (row["x"], row["y"], row["z"]), row["radius"],
-                          row["direction"] if direction is None else direction, density, table, bodies.shape_of(row))
+        _, rock = bodies.cells_of(raster, row, bodies.base_file(path, int(row["rank"])))
+        return of_surface(raster, bodies.centre_of(row), row["radius"],
+                          row["direction"] if direction is None else direction, density, table, bodies.shape_of(row),
+                          rock)
     if not path.is_file():
         raise SlopeError("--failed", "must be X,Y,Z,R of a sphere (m), what find_slip wrote, or a raster of the ground "
                          "without the body", text)
