@@ -142,7 +142,8 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
     derived = site_choices.derived(given, choices, known)
     too_large = None if chosen == model["field_diameter"] else chosen
     say_size(choices, size, found, machine, too_large, tell)
-    for one in site_warnings.site_warnings(found.measures, size, trial):
+    for one in (*site_warnings.of_resistance(choices),
+                *site_warnings.site_warnings(found.measures, size, trial)):
         keep(one)
     site_warnings.write(new, warnings)
     deck = site_deck.text(choices, parts, numbers(choices, trial, size))

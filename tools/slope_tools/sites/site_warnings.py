@@ -1,4 +1,5 @@
 """The warnings of a site: slope site prints them, and keeps them in the folder for the report."""
+import math
 from pathlib import Path
 from typing import List, Optional, Sequence
 
@@ -9,12 +10,15 @@ from ..errors import SlopeError
 from ..releases.release_solve import Measures
 from ..warned import Warned, entries
 from .site_budget import Size, Trial
+from .site_choices import Choices
 
 NAME = "warnings.yaml"
 ROUGH = 3.0             # balls, mean thickness of the body: below, the numbers are rough
 THICK = 10.0            # balls, largest thickness: below, a site should be repeated with more balls
 LARGE = 1e6             # m3: larger masses run farther than laboratory friction suggests
 LOST = 0.001            # share of the mass that may leave the terrain
+COEFFICIENT = 3.0       # degrees: smaller angles of friction, or of a cut, may be meant as tangents
+ROLLS_NOT = 1.0         # larger coefficients of rolling resistance may be meant as angles or percents
 STEEP = 65.0            # degrees; tried: some faces of balls stand at 60, none at 70 and 80, whatever their friction
 # what a run says whose body falls while it settles
 FALLS = ("does not stand before it is shaken", "Lost atoms", "must be the body that the balls fill")
@@ -43,6 +47,17 @@ def of_volume(volume: float) -> List[Warned]:
     if volume < LARGE:
         return []
     return [Warned("large", {"millions": volume / 1e6, "limit": LARGE / 1e6})]
+
+
+def of_resistance(choices: Choices) -> List[Warned]:
+    """Angles that look like coefficients, and coefficients that look like angles or percents."""
+    angles = {"--friction": choices["model"]["friction"], "--slip-friction": choices["model"]["slip_friction"]}
+    if choices["road"]["file"]:
+        angles["--cut-angle"] = choices["road"]["cut_angle"]
+    return [*(Warned("small angle", {"option": option, "degrees": value, "meant": math.degrees(math.atan(value))})
+              for option, value in angles.items() if 0 < value < COEFFICIENT),
+            *(Warned("large rolling", {"rolling": value, "limit": ROLLS_NOT})
+              for value in choices["study"]["rolling"] if value > ROLLS_NOT)]
 
 
 def of_thickness(mean: float, largest: float) -> List[Warned]:
