@@ -44,7 +44,7 @@ fix move all nve/sphere
 variable second equal ceil(1/dt)
 """
 BIN = START + """
-fix weight all gravity 9.80665 vector 0 0 -1
+fix weight all gravity $(9.80665*{share}) vector 0 0 -1
 fix floor all wall/gran/mesh 2 floor.stl
 fix x0 all wall/gran/mesh 2 x0.stl
 fix x1 all wall/gran/mesh 2 x1_0.stl
@@ -58,9 +58,12 @@ variable fy0 equal -f_y0[2]
 variable fy1 equal f_y1[2]
 variable down equal -f_floor[3]-f_x0[3]-f_x1[3]-f_y0[3]-f_y1[3]
 thermo 100000
-if {gently} then "fix slow all viscous 13000"
+if {gently} then "fix slow all viscous $(13000*{share})"
 run $(v_second*{settle})
 if {gently} then "unfix slow" "run $(v_second*8)"
+variable grows equal ramp($(9.80665*{share}),9.80665)
+if "{share} < 1" then "unfix weight" "fix weight all gravity v_grows vector 0 0 -1" "run $(v_second*8)" &
+  "unfix weight" "fix weight all gravity 9.80665 vector 0 0 -1" "run $(v_second*4)"
 print "REST ${{weight}} ${{moment}} ${{down}} ${{fx0}} ${{fx1}} ${{fy0}} ${{fy1}} $(f_x0) $(f_x1) $(f_y0) $(f_y1)"
 """
 MOVE = """
@@ -130,7 +133,8 @@ def run(lmp, folder, deck, words, **values):
     return [[float(x) for x in line[1:]] for line in lines if line and line[0] in words]
 
 
-def bin_of(args, folder, seed, friction, rolling, gently, sign=None, step=0.0, moves=0):
+def bin_of(args, folder, seed, friction, rolling, gently, sign=None, step=0.0, moves=0, share=1.0, wait=0.03):
+    """share: of the weight under which the balls settle; the rest of it comes slowly"""
     shifts = {"0": 0.0}
     shifts.update({f"{sign}{k}": (step if sign == "out" else -step) * k for k in range(1, moves + 1)})
     high = args.height
@@ -138,7 +142,7 @@ def bin_of(args, folder, seed, friction, rolling, gently, sign=None, step=0.0, m
     deck = BIN + (MOVE if moves else "")
     rows = run(args.lmp, folder, deck, ("REST", "MOVED"), boundary="f f f", xhi=args.width + 1, width=args.width,
                top=2 * high, high=high, seed=seed, friction=friction, rolling=rolling, floor=0, gently=int(gently),
-               settle=args.settle, sign=sign, moves=moves, wait=0.03)
+               settle=args.settle, sign=sign, moves=moves, wait=wait, share=share)
     weight, moment, down, *rest = rows[0]
     fluid = GRAVITY * moment / args.width    # of a wall: the weight above each height over the area, times its width
     return {"carried": down / weight, "K": [f / fluid for f in rest[:4]], "contacts": rest[4:8],

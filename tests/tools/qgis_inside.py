@@ -166,11 +166,10 @@ def project(prefix, road):
     return {layer.name(): style(layer) for layer in QgsProject.instance().mapLayers().values()}
 
 
-def progress(*lines):
-    """Percent after each line."""
-    from slope.process import Progress
-    update = Progress().update
-    return [update(line) for line in lines]
+def said(*lines):
+    """What is made of lines of standard error."""
+    from slope import process
+    return [process.said(line) for line in lines]
 
 
 def study(deck, word, *settings):

@@ -327,12 +327,10 @@ def test_a_study_is_cancelled_and_goes_on(inside, place):
     assert any(line.startswith("1 of 3 runs are finished already") for line in ended["lines"])
 
 
-def test_progress_of_a_study_in_two_parts(inside):
-    lines = ["[1/2] a: started", "[2/2] b: started", "[1/2] a: step 50 of 100, 0.5 s, ends by 12:00", "no word of it",
-             "[2/2] b: finished at 1 s, wall time 1 s", "[1/2] a: failed: lost atoms (see a/log.lammps)",
-             "[1/4] a: started", "[1/4] a: finished at 1 s, wall time 1 s; 3 to go", "3 of 4 runs are finished already",
-             "[4/4] d: starts anew: no restart file", "[4/4] d: finished at 1 s, wall time 1 s"]
-    assert inside("progress", *lines) == [0, 0, 25, None, 75, 100, 0, 25, 75, None, 100]
+def test_what_is_no_object_of_the_tool_is_text(inside):
+    progress = {"level": "progress", "share": 0.5, "runs": 2, "ended": 1, "failed": 0}
+    words = ["no word of it", "3", '{"share": 1}', '{"level"']
+    assert inside("said", json.dumps(progress), *words) == [progress, *({"level": "", "text": word} for word in words)]
 
 
 # --- errors ---

@@ -602,8 +602,9 @@ def test_one_line_for_each_kind_of_warning(slope, here):
         row["log_warnings"] = [f"Pair gran/restitution: {k + 3} contacts were seen deeper than 10 %", "Neighbor lists"]
     about["runs"][0]["log_warnings"] += ["Pair gran/restitution: 99 contacts were seen deeper than 10 %"]
     about["runs"][4]["log_warnings"] = ["Only here"]
-    about["warnings"] += ["the road ends in the grid", f"{about['runs'][1]['run']}: the volume differs by 1e-5",
-                          f"{about['runs'][2]['run']}: the volume differs by 3e-5"]
+    about["warnings"] += ["the road ends in the grid", *(
+        {"kind": "balance", "numbers": {"share": share}, "runs": [about["runs"][k]["run"]]}
+        for k, share in ((1, 1e-5), (2, 3e-5)))]
     for name in ("a", "b", "c"):
         about["runs"].append({"run": name, "status": "failed", "set": {"rolling": name, "steps": "1200"}, "repeat": {},
                               "error": f"ERROR: 1{len(about['runs'])} atoms lost", "log_warnings": []})
@@ -618,7 +619,8 @@ def test_one_line_for_each_kind_of_warning(slope, here):
     [only] = [text for text in texts if "Only here" in text]
     assert only.endswith("(1 of 9 runs: rolling 0.3, seed 1)")
     assert "the road ends in the grid" in texts
-    [differ] = [text for text in texts if "the volume differs by" in text]
+    [differ] = [text for text in texts if "differs from released" in text]
+    assert "1.0e-05" in differ
     assert "2 of 6 runs: rolling 0, seed 1; rolling 0, seed 2" in differ
     [failed] = [text for text in texts if "atoms lost" in text]
     assert failed.startswith("3 runs failed: ERROR: ") and "(rolling a; rolling b; rolling c)" in failed
@@ -667,22 +669,21 @@ def test_the_fix_s_lines_of_lost_balls_are_folded_into_that(slope, here):
 def test_warnings_of_the_study_s_tools_are_shown_each(slope, here):
     """Those of the study as a whole are in red, above all others; those of runs of its own are folded as they were."""
     texts = ["the body is thinner than 3 balls everywhere: the numbers will be rough",
-             "runs of several sizes: d_1.5: 149.673 m3 left the grid or the box",
-             "runs of several sizes: d_3: 23.1 m3 left the grid or the box",
+             "the body is in 2 parts",
              "the size error is unknown: got -2.53e+06"]
     set_moving(here / "out", 0.0)
     without_log_warnings(here / "out")
     stands("out")
     about = yaml.safe_load(Path("out/study.yaml").read_text())
-    about["warnings"] = [*texts, "rolling_0_steps_1200: 3 m3 left the grid or the box",
-                         "2 of 2 deposits are not at rest at the end: all"]
+    about["warnings"] = [*texts, {"kind": "lost", "numbers": {"volume": 3.0}, "runs": ["rolling_0_steps_1200"]},
+                         {"kind": "moving", "numbers": {"moving": 2, "finished": 2, "which": "all"}}]
     about["size_error_unusable"] = "small balls would give -2.53e+06 m3"
     Path("out/study.yaml").write_text(yaml.safe_dump(about))
     status, out, _ = slope("out")
     page, reader = read("out/report.html")
     assert status == 0 and [text for level, text in reader.warnings if level == "red"] == [
         text.replace("m3", "m\N{SUPERSCRIPT THREE}") for text in texts]
-    assert [level for level, _ in reader.warnings if level] == ["red"] * 4
+    assert [level for level, _ in reader.warnings if level] == ["red"] * 3
     assert all(f"WARNING: {text}" in out for text in texts)
     # measured, and useless: not "not measured"
     assert "measured, but not usable: small balls would give -2.53e+06 m³" in page and "not measured" not in page

@@ -12,6 +12,7 @@ from test_report import stands
 
 from slope_tools import digits
 from slope_tools.report import body, caveats, client_part, warnings
+from slope_tools.warned import Warned, warned
 
 made, here, slope = test_report.made, test_report.here, test_report.slope       # its fixtures
 # of options, files, runs and variables
@@ -77,7 +78,7 @@ def study_of(masses, **more):
     """What caveats() takes of a study, of (lost m3, released m3) of each run."""
     finished = [{"off_grid_m3": 0.0, "lost_m3": lost, "released_m3": released} for lost, released in masses]
     found = {"study": {"conservative": None, "warnings": []}, "rows": finished, "finished": finished, "repeats": {},
-             "ends": lambda: [], "releases": lambda: [], "below_ground": lambda: None,
+             "ends": lambda: [], "warnings": lambda: [], "releases": lambda: [], "below_ground": lambda: None,
              "largest_release": lambda: max(released for _, released in masses)}
     return SimpleNamespace(**{**found, **more})
 
@@ -107,8 +108,8 @@ def test_what_was_lost_is_counted_in_one_line_with_its_side():
 def test_the_weightiest_come_first_and_three_are_shown():
     rows = [(6000.0, 2e6)] * 4
     data = study_of(rows, rows=[*study_of(rows).finished, {}],
+                    warnings=lambda: [Warned("thin", {"balls": 1.83, "limit": 3.0})],
                     ends=lambda: [SimpleNamespace(at_rest=k > 1, moving=k == 0) for k in range(4)])
-    data.study["warnings"] = ["the body is 1.8 balls thick on average, below 3: the numbers will be rough; use --balls"]
     found = caveats.caveats(data, ground_of())
     assert [one.order for one in found] == sorted(one.order for one in found)
     told, rest = caveats.shown(found, 7)
@@ -122,11 +123,25 @@ def test_the_weightiest_come_first_and_three_are_shown():
 
 
 def test_runs_of_several_sizes_are_one_line():
-    texts = ["sizes of balls: rolling_0_d_1: 4.21 m3 left the grid or the box", "the slope is steep",
-             "sizes of balls: rolling_0_d_2: 337 m3 left the grid or the box"]
-    assert warnings.of_sizes(texts) == [
-        "sizes of balls: 4.21 m3 left the grid or the box (2 runs, other numbers in the others)", "the slope is steep"]
-    assert warnings.of_sizes(texts[:1]) == ["sizes of balls: 4.21 m3 left the grid or the box"]
+    sizes = [Warned("lost", {"volume": volume}, (f"rolling_0_d_{volume:g}",), "sizes of balls")
+             for volume in (4.21, 337.0)]
+    several = [sizes[0], warned("the slope is steep"), sizes[1], warned("the toe is wet"), Warned("moving", {})]
+    data = SimpleNamespace(rows=[], finished=[], warnings=lambda: several)
+    assert warnings.of_study(data) == [("red", text) for text in (
+        "sizes of balls: 4.21 m3 left the grid or the box (2 runs, other numbers in the others)", "the slope is steep",
+        "the toe is wet")]
+    del several[2:]
+    assert warnings.of_study(data)[0] == ("red", "sizes of balls: 4.21 m3 left the grid or the box")
+
+
+def test_a_warning_survives_its_file():
+    """Also one of another version, of which the text counts, and a plain line of an older one."""
+    one = Warned("lost", {"volume": 12345.678}, ("a", "b"), "sizes of balls")
+    assert str(one) == "a, b: sizes of balls: 12,346 m3 left the grid or the box"
+    assert warned(yaml.safe_load(yaml.safe_dump(one.entry()))) == one
+    newer = {"kind": "of tomorrow", "text": "it rains", "numbers": {"mm": 3}}
+    assert str(warned(newer)) == str(warned("it rains")) == "it rains"
+    assert str(warned({"kind": "lost", "text": "12 m3 left"})) == "12 m3 left"
 
 
 # --- words ---

@@ -80,6 +80,7 @@ def test_structures_of_each_run_are_those_of_its_files(studied):
     assert float(wall["largest_force_n"]) == series["largest_force"].max() > 0
     assert float(wall["at_s"]) == series["time"][series["largest_force"].argmax()]
     assert float(wall["impulse_ns"]) == pytest.approx(np.sqrt(sum(series[f"j{k}"][-1] ** 2 for k in "xyz")), rel=1e-12)
+    assert int(wall["end_contacts"]) == series["contacts"][-1]
     assert float(wall["largest_pressure_pa"]) == pressure["largest_pressure"].max()
     assert 0 < float(wall["mean_force_n"]) < float(wall["largest_force_n"])
     assert float(post["largest_force_n"]) == float(post["largest_pressure_pa"]) == 0 and post["at_s"] == ""
@@ -141,7 +142,7 @@ def series_of(time, force):
     impulse = np.concatenate([[0], np.cumsum(force[:-1] * np.diff(time))])
     triple = np.column_stack([force, 0 * force, 0 * force])
     return structures.Series(time, triple, 0 * triple, np.column_stack([impulse, 0 * impulse, 0 * impulse]),
-                             np.abs(force))
+                             np.zeros(len(time)), np.abs(force))
 
 
 def test_mean_force_of_a_constant_force_and_of_a_pulse():
@@ -179,12 +180,21 @@ def test_a_mesh_file_that_is_none(tmp_path, text):
         structures.polydata(tmp_path / "a.vtp")
 
 
+def test_the_force_at_rest_scatters_between_equal_runs_only():
+    def row(rolling, force):
+        return {"set": {"rolling": rolling}, "structures": {"dam": {"end_force_n": force}}}
+    rows = [row("0", 90.0), row("0", 110.0), row("1", 1000.0)]
+    assert structures.scatter_at_rest(rows)["dam"] == (pytest.approx(0.1 * 2 ** 0.5), 2)
+    assert structures.scatter_at_rest(rows[1:]) == structures.scatter_at_rest([]) == {}
+
+
 def test_a_series_of_a_run_without_output(tmp_path):
     """Its head alone: no force, and no end of the study."""
     (tmp_path / "a.csv").write_text(",".join(structures.SERIES) + "\n")
     (tmp_path / "a.triangles.csv").write_text("x,y,z,largest_pressure\n")
     numbers = structures.of_structure(tmp_path, "a")
     assert numbers["largest_force_n"] == numbers["mean_force_n"] == 0 and numbers["at_s"] is None
+    assert numbers["end_contacts"] == 0
     (tmp_path / "a.vtp").write_text("<VTKFile><DataArray Name='corners'>0 0 0 0 2 0 0 0 1</DataArray>"
                                     "<DataArray Name='largest_pressure'>5</DataArray></VTKFile>")
     data = SimpleNamespace(result=SimpleNamespace(folder=tmp_path), drawn=[])

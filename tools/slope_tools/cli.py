@@ -15,6 +15,7 @@ import sys
 import traceback
 from pathlib import Path
 
+from . import warned
 from .errors import SlopeError
 from .provenance import version
 
@@ -62,8 +63,11 @@ def main(argv=None):
     parser.add_argument("--version", action="version", version=f"SLOPE {version()}")
     parser.add_argument("--debug", action="store_true",
                         help="before COMMAND: where in the tools an error comes from, as a traceback")
+    parser.add_argument("--progress", choices=("words", "json"), default="words",
+                        help="before COMMAND: json: progress, warnings and errors as JSON, an object a line on "
+                             "standard error, for programs that call this one (default words)")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    asked = next((word for word in argv if not word.startswith("-")), None)
+    asked = next((word for word in argv if word in COMMANDS), None)
     for name, summary in COMMANDS.items():
         if name == asked:
             module = importlib.import_module(f"{__package__}.commands.{name}")
@@ -71,18 +75,25 @@ def main(argv=None):
         else:
             commands.add_parser(name, help=summary)
     args = parser.parse_args(argv)
+    warned.as_json = args.progress == "json"
+
+    def fail(text):
+        if warned.as_json:
+            warned.say_json("error", command=args.command, text=str(text))
+        else:
+            print(f"slope {args.command}: {text}", file=sys.stderr)
     try:
         args.run(args)
     except SlopeError as error:
         if args.debug:
             traceback.print_exc()
-        print(f"slope {args.command}: {error}", file=sys.stderr)
+        fail(error)
         return 2
     except MemoryError as error:
-        print(f"slope {args.command}: not enough memory: {error}", file=sys.stderr)
+        fail(f"not enough memory: {error}")
         return 2
     except KeyboardInterrupt:
-        print(f"slope {args.command}: interrupted", file=sys.stderr)
+        fail("interrupted")
         return 130
     except BrokenPipeError:         # `slope ... | head`: nobody reads on
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -91,8 +102,7 @@ def main(argv=None):
         if args.debug:
             raise
         place = traceback.extract_tb(error.__traceback__)[-1]
-        print(f"slope {args.command}: a bug in the tools: {type(error).__name__}: {' '.join(str(error).split())[:200]} "
-              f"({Path(place.filename).name}, line {place.lineno}); slope --debug {args.command} shows where",
-              file=sys.stderr)
+        fail(f"a bug in the tools: {type(error).__name__}: {' '.join(str(error).split())[:200]} "
+             f"({Path(place.filename).name}, line {place.lineno}); slope --debug {args.command} shows where")
         return 1
     return 0

@@ -1,5 +1,4 @@
-"""The one exception for bad input, and warnings."""
-import sys
+"""The one exception for bad input."""
 
 
 class SlopeError(Exception):
@@ -18,18 +17,3 @@ class SlopeError(Exception):
             got = str(got)
             line += f", got {got[:self.LONGEST]}{'...' * (len(got) > self.LONGEST)}"
         super().__init__("".join(c if c.isprintable() else "?" for c in " ".join(line.split())))
-
-
-def printer(command):
-    """A function that prints a warning of a command on standard error."""
-    return lambda text: print(f"slope {command}: warning: {text}", file=sys.stderr)
-
-
-def warner(command, kept):
-    """The same, which keeps the warnings in a list, too."""
-    tell = printer(command)
-
-    def warn(text):
-        kept.append(text)
-        tell(text)
-    return warn

@@ -1,7 +1,7 @@
 """Runs tools/slope as a process: what it says, how far it is, how it is stopped. The one place that does it."""
+import json
 import os
 import queue
-import re
 import shlex
 import shutil
 import signal
@@ -17,8 +17,6 @@ PROGRAM, LAMMPS = "SLOPE_PROGRAM", "SLOPE_LMP"      # settings
 BESIDE = Path(__file__).resolve().parents[2] / "slope"      # of a checkout or an installation, also through a link
 POLL = 0.2              # s between two looks at the Cancel button
 PATIENCE = 30.0         # s which a command has to end its runs
-RUN = re.compile(r"\[(\d+)/(\d+)\] .*?: (?:(finished|failed)|(started)|step (\d+) of (\d+))")
-BEFORE = re.compile(r"(\d+) of (\d+) runs are finished already")
 
 
 def program():
@@ -41,25 +39,13 @@ def environment():
     return {**found, "PYTHONUNBUFFERED": "1", **({"LMP": lammps} if lammps else {})}
 
 
-class Progress:
-    """How far a command is, in percent, from what `slope study` prints of its runs; a site's has several parts."""
-
-    def __init__(self):
-        self.shares, self.before = {}, 0
-
-    def update(self, line):
-        """Percent after this line; None if it says nothing of it."""
-        before, run = BEFORE.match(line), RUN.match(line)
-        if before:
-            self.shares, self.before = {}, int(before[1])
-            return 100 * self.before / int(before[2])
-        if not run:
-            return None
-        number, total, ended, started, step, last = run.groups()
-        if started and self.shares.get(number) == 1.0:      # a run of the next part
-            self.shares, self.before = {}, 0
-        self.shares[number] = 1.0 if ended else 0.0 if started else int(step) / max(1, int(last))
-        return min(100.0, 100 * (self.before + sum(self.shares.values())) / int(total))
+def said(line):
+    """What a line of standard error says: the object of `slope --progress json`, or {"text": line} of anything else."""
+    try:
+        found = json.loads(line)
+    except ValueError:
+        found = None
+    return found if isinstance(found, dict) and "level" in found else {"level": "", "text": line}
 
 
 def listen(process):
@@ -81,7 +67,7 @@ def run(words, feedback):
 
     A command that is cancelled gets what Ctrl-C sends: it ends its runs and leaves no half-written file.
     """
-    line = [program(), *map(str, words)]
+    line = [program(), "--progress", "json", *map(str, words)]
     feedback.pushCommandInfo(shlex.join(line))
     try:
         process = subprocess.Popen(line, env=environment(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
@@ -98,7 +84,7 @@ def run(words, feedback):
 
 def follow(process, feedback):
     """Hand on what a process says until it ends; gives its last line on standard error if that is why it failed."""
-    lines, progress = listen(process), Progress()
+    lines = listen(process)
     left, last, asked = 2, "", None
     while left:
         if asked is None and feedback.isCanceled():
@@ -112,20 +98,18 @@ def follow(process, feedback):
             continue
         if is_error is None:
             left -= 1
-        elif is_error:
-            tell(last, feedback)
-            last = line
-        else:
+        elif not is_error:
             feedback.pushInfo(line)
-            percent = progress.update(line)
-            if percent is not None:
-                feedback.setProgress(percent)
-    if process.wait() == 0 or feedback.isCanceled():
-        tell(last, feedback)
+        else:
+            one = said(line)
+            if one["level"] == "progress":
+                feedback.setProgress(100 * one["share"])
+            elif one["level"] == "warning":
+                feedback.pushWarning(f"{one['command']}: {one['text']}")
+            else:
+                if last:
+                    feedback.pushInfo(last)
+                last = f"slope {one['command']}: {one['text']}" if one["level"] == "error" else one["text"]
+    if last and (process.wait() == 0 or feedback.isCanceled()):
+        feedback.pushInfo(last)
     return last
-
-
-def tell(line, feedback):
-    """Hand on a line of standard error."""
-    if line:
-        (feedback.pushWarning if ": warning: " in line else feedback.pushInfo)(line)

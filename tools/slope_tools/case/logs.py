@@ -1,7 +1,7 @@
 """What the log of a run says."""
 import re
 from pathlib import Path
-from typing import List
+from typing import Iterable, List, Optional
 
 from . import decks
 
@@ -9,6 +9,10 @@ LOG = "log.lammps"
 # lines in which SLOPE's styles and LAMMPS report what they made
 NOTES = ("Region terrain", "Fix wall/gran/balls", "Fix deposit/grid", "Delete_balls:", "Create_balls:", "Created ")
 TIMES = ("Time", "v_time")             # thermo columns; LAMMPS' own time restarts at 0 after read_restart
+NUMBER = re.compile(r"\d[\d.,]*(?:[eE][+-]?\d+)?")
+REMOVED = re.compile(r"Delete_balls: ([\d.]+) balls of group .*?; ([\d.]+) balls left")
+REMOVED_SHARE = re.compile(r"Delete_balls: ([\d.]+) % of the volume of group")
+LOST = re.compile(r"Fix deposit/grid \S+: ball \d+ left the box")
 INPUT_PLACE = re.compile(r"\s*\([^()]*\.(?:cpp|h):\d+\)\s*$")     # LAMMPS names its source line at the end of a message
 
 
@@ -164,3 +168,23 @@ def part(path):
 def message(line):
     """A message of LAMMPS without the place in its source."""
     return INPUT_PLACE.sub("", line.strip())
+
+
+# --- what our own styles and LAMMPS say in words, which nothing but this file reads ---
+
+def kind(line: str) -> str:
+    """What a warning is about: removed (balls, at the start), lost (mass), or its words without their numbers."""
+    return "removed" if REMOVED_SHARE.match(line) else "lost" if LOST.match(line) else NUMBER.sub("#", line)
+
+
+def removed(lines: Iterable[str]) -> Optional[float]:
+    """Share of the balls that delete_balls took away, by the lines of a log; None if they do not tell."""
+    lines = list(lines)
+    for line in lines:
+        if match := REMOVED.search(line):
+            gone, left = float(match[1]), float(match[2].rstrip("."))
+            return gone / (gone + left) if gone + left > 0 else None
+    for line in lines:
+        if match := REMOVED_SHARE.search(line):
+            return min(float(match[1]), 99.0) / 100
+    return None

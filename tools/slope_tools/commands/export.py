@@ -3,7 +3,7 @@ import argparse
 from pathlib import Path
 from typing import List
 
-from .. import disk, errors
+from .. import disk, warned
 from ..case import run_folders
 from ..deposits import deposit
 from ..deposits.export import layers, write
@@ -40,7 +40,7 @@ def add_parser(commands, **kwargs):
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints what was written."""
     warnings: List[str] = []
-    warn = errors.warner("export", warnings)
+    warn = warned.warner("export", warnings)
     named = run_folders.named_run(args.prefix)
     run_ = deposit.read(named.prefix, args.terrain, warn)
     folder = args.output or (named.folder / "export" if named.folder else Path(f"{named.prefix}.export"))

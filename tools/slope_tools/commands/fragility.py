@@ -6,7 +6,7 @@ from typing import Any, List
 
 import numpy as np
 
-from .. import disk, errors
+from .. import disk, warned
 from ..errors import SlopeError
 from ..options import number, whole
 
@@ -85,7 +85,7 @@ def run(args):
                           fragility.frequency(one, hazard, peaks) if hazard else None,
                           float((one <= 0).all(axis=1).mean())) for name, one in zip(names, columns)]
     kept: List[str] = []
-    warn = errors.warner("fragility", kept)
+    warn = warned.warner("fragility", kept)
     for text in warnings_of(curves, found, args.pseudo_static, len(args.record), hazard):
         warn(text)
     about = {"bodies": [{"body": body.name, "volume_m3": body.columns.volume,

@@ -3,12 +3,13 @@ import argparse
 from pathlib import Path
 
 from .. import disk
-from ..errors import SlopeError, printer
+from ..errors import SlopeError
 from ..mobility import body, events, exceedance, fall_path, relation, results, road
 from ..releases import release
 from ..sites.site_layers import ROAD
 from ..survey import lines, polygons
 from ..survey.crs import as_crs
+from ..warned import printer
 from .release_arguments import add_body, wanted
 
 EPILOG = """\

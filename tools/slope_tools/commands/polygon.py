@@ -7,9 +7,9 @@ from shapely.geometry import box
 
 from ..case.decks import quoted, warn_of_name
 from ..disk import check_file
-from ..errors import printer
 from ..survey import polygons, rasters, vectors
 from ..survey.crs import as_crs
+from ..warned import printer
 
 SLOW = 5.0     # s; a run that took longer says so
 EPILOG = """\

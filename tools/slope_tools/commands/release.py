@@ -3,7 +3,7 @@ import argparse
 import os
 from pathlib import Path
 
-from .. import errors
+from .. import warned
 from ..case import decks
 from ..releases import release, release_files
 from ..survey import vectors
@@ -46,7 +46,7 @@ def run(args):
                                       for path in (args.terrain, asked.polygon, args.scar) if path])
     body = release.body_of(asked)
     print(release.text(body), flush=True)
-    tell = errors.printer("release")
+    tell = warned.printer("release")
     for line in body.warnings:
         tell(line)
     for path in (os.path.relpath(args.terrain, args.output.parent), args.output.name):

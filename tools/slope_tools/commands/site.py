@@ -7,7 +7,7 @@ from shlex import quote
 from typing import Any, Dict
 
 from ..ensembles import known_study
-from ..errors import SlopeError, printer
+from ..errors import SlopeError
 from ..options import count, number, whole
 from ..plots import site_map
 from ..programs import find_lmp
@@ -17,6 +17,7 @@ from ..runs import jobs
 from ..sites import site, site_choices
 from ..slips import bodies
 from ..survey.rasters import UNITS
+from ..warned import printer
 
 # option -> section and key of site.yaml
 OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),

@@ -4,7 +4,7 @@ import csv
 from pathlib import Path
 from typing import Dict, List, Optional, Tuple
 
-from .. import disk, errors
+from .. import disk, warned
 from ..case import slip_deck
 from ..case.slip_deck import PREFIX
 from ..errors import SlopeError
@@ -95,7 +95,7 @@ def run(args):
     raster = rasters.read_asc_local(args.terrain)
     polygon = polygons.read_local(args.within, raster, args.local) if args.within else None
     kept: List[str] = []
-    warn = errors.warner("stability", kept)
+    warn = warned.warner("stability", kept)
     with disk.complete(args.output, FILES[-1]) as folder:
         said = slip_run.run(asked, polygon, raster, folder, lmp, args.np or 1,
                             lambda line: print(line, flush=True))

@@ -1,7 +1,7 @@
 """slope stability --failed: on which strengths a body that failed has F = 1."""
 from typing import List
 
-from .. import disk, errors
+from .. import disk, warned
 from ..errors import SlopeError
 
 SEARCH = ("cohesion", "friction", "layer", "volume", "depth", "within", "method", "shape", "keep", "np", "lmp")
@@ -31,7 +31,7 @@ def run(args):
     line = back.line(body.columns, horizontal, vertical, ratio)
     far = back.line(body.far, horizontal, vertical, ratio) if body.far else None
     kept: List[str] = []
-    warn = errors.warner("stability", kept)
+    warn = warned.warner("stability", kept)
     for text in warnings_of(body, line, far):
         warn(text)
     about = {"terrain": args.terrain, "failed": args.failed, "density": args.density, "seismic": shaking,

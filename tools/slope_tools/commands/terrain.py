@@ -4,9 +4,10 @@ from pathlib import Path
 
 from ..case.decks import quoted, warn_of_name
 from ..disk import check_file
-from ..errors import SlopeError, printer
+from ..errors import SlopeError
 from ..options import number, whole
 from ..survey import local_terrain, rasters
+from ..warned import printer
 
 EPILOG = """\
 units: metres for heights, --cell, and coordinates; N of --fill is a number of cells of the input.

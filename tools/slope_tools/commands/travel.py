@@ -2,7 +2,7 @@
 import argparse
 from pathlib import Path
 
-from .. import disk, errors
+from .. import disk, warned
 from ..deposits import travel
 from ..options import number, whole
 
@@ -57,7 +57,7 @@ def run(args):
     wanted = travel.Wanted(args.axis, args.origin, args.along, args.across, args.type)
     travel.check(args.dumps, args.start, wanted)
     disk.check_folder(args.output)
-    about = travel.of_dumps(args.dumps, args.start, wanted, args.output, errors.printer("travel"))
+    about = travel.of_dumps(args.dumps, args.start, wanted, args.output, warned.printer("travel"))
     print(summary(about, args.output))
 
 

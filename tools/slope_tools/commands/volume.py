@@ -5,7 +5,7 @@ Order of the work: read the run, the road and its axis; cut (cut.py); sum per me
 import argparse
 from pathlib import Path
 
-from .. import disk, errors
+from .. import disk, warned
 from ..deposits import volume
 from ..deposits.volume import BLOCKED, CUT_ANGLE, MUCH_BELOW, SAMPLES
 from ..options import number, whole
@@ -60,7 +60,7 @@ def run(args):
     volume.check(wanted)
     folder = args.output or Path(f"{args.prefix}.volume")
     disk.check_folder(folder)
-    found = volume.of_run(args.prefix, wanted, args.terrain, errors.printer("volume"))
+    found = volume.of_run(args.prefix, wanted, args.terrain, warned.printer("volume"))
     volume.write(found, folder, picture=not args.no_picture)
     print(summary(found.about, folder))
 

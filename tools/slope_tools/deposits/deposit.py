@@ -13,6 +13,7 @@ from ..errors import SlopeError
 from ..geometry import extent, numbers
 from ..survey import rasters
 from ..survey.rasters import Raster
+from ..warned import Warned
 
 SAME_BALANCE = 1e-6    # relative; volume of the raster and in the summary
 SAME_HEIGHT = 1e-7     # of the largest height; two rasters of nine digits
@@ -44,7 +45,7 @@ class Deposit(NamedTuple):
 def read(prefix, terrain, warn):
     """The Deposit that a run wrote to PREFIX, in the CRS of terrain (None: terrain.asc in the same folder, if any).
 
-    warn is called with one line for each thing that makes the numbers doubtful.
+    warn is called with a Warned for each thing that makes the numbers doubtful.
     """
     names = [f"{prefix}.{kind}" for kind in ("thickness.asc", "surface.asc", "summary.yaml")]
     for name in names:
@@ -69,10 +70,10 @@ def read(prefix, terrain, warn):
         raise SlopeError(names[0], f"must hold the volume of {names[2]}, {reported:.10g} m3: are they of one run?",
                          f"{deposit.volume:.10g} m3")
     if summary["moving"]:
-        warn(f"{names[2]}: the mass was still moving at {summary['time']:g} s: these are not final numbers")
+        warn(Warned("moves", {"file": names[2], "seconds": summary["time"]}))
     lost = summary["volume"]["off_grid"] + summary["volume"]["lost"]
     if lost > SAME_BALANCE * deposit.volume:
-        warn(f"{names[2]}: {lost:.6g} m3 of the mass left the grid or the box and are not counted")
+        warn(Warned("not counted", {"file": names[2], "volume": lost}))
     return deposit
 
 
@@ -115,7 +116,7 @@ def find_terrain(prefix, terrain, raster, warn):
     """The file that tells where the run's grid lies and its Place; a warning and None, None without one."""
     found = terrain or Path(prefix).with_name("terrain.asc")
     if terrain is None and not found.is_file():
-        warn(f"no --terrain and no {found}: no CRS, coordinates are the local metres of the run")
+        warn(Warned("no terrain", {"file": str(found)}))
         return None, None
     place = rasters.read_place(found)
     grid, slack = extent(raster), 1e-6 * raster.transform.a
@@ -127,6 +128,6 @@ def find_terrain(prefix, terrain, raster, warn):
         raise SlopeError(found, f"must be the terrain of the run, whose grid is {numbers(grid)}; --terrain names "
                          "another", numbers(place.extent))
     if place.crs is None:
-        warn(f"{found} has no CRS: coordinates are metres as in that file" if place.offset != (0, 0) else
-             f"{found} has no CRS: coordinates are the local metres of the run")
+        warn(Warned("no CRS", {"file": str(found), "coordinates": "metres as in that file" if place.offset != (0, 0)
+                               else "the local metres of the run"}))
     return str(found), place

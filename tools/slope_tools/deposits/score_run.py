@@ -2,7 +2,7 @@
 from pathlib import Path
 from typing import List, Optional
 
-from .. import disk, errors
+from .. import disk, warned
 from ..errors import SlopeError
 from ..survey.rasters import crs_name
 from . import deposit
@@ -23,7 +23,7 @@ def make(prefix: str, mapped: Path, folder: Path, threshold: float = THRESHOLD, 
     if mesh is not None and mesh <= 0:
         raise SlopeError("--mesh", "must be > 0", f"{mesh:g}")
     warnings: List[str] = []
-    warn = errors.warner("score", warnings)
+    warn = warned.warner("score", warnings)
     run_ = deposit.read(prefix, terrain, warn)
     disk.check_folder(folder)
     squares = make_mesh(mesh or run_.cell, run_.raster)

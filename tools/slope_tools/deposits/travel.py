@@ -73,7 +73,7 @@ def of_dumps(paths: Sequence[str], starts: Optional[Sequence[str]], wanted: Want
     warnings: List[str] = []
 
     def warn(text):
-        warnings.append(text)
+        warnings.append(str(text))
         tell(text)
 
     for one in arrivals:

@@ -14,6 +14,7 @@ from ..geometry import Mesh
 from ..survey import polygons, rasters
 from ..survey.lines import read_local
 from ..survey.rasters import crs_name
+from ..warned import Warned, warned
 from . import cut, deposit, volume_files
 from .road_axis import along, eastward, middle, stretches
 
@@ -48,6 +49,7 @@ class Removal(NamedTuple):
     profile: Dict[str, np.ndarray]      # along the axis
     factor: Optional[float]             # by which the volumes change at the other bulk factor
     about: Dict[str, Any]               # content of volume.yaml
+    warnings: List[Warned]
 
 
 def of_run(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], None] = lambda text: None) -> Removal:
@@ -56,11 +58,11 @@ def of_run(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], None] = l
     terrain: the run's, whose sidecar has the CRS (default: terrain.asc beside PREFIX). Raises SlopeError on bad input.
     """
     check(wanted)
-    warnings: List[str] = []
+    warnings: List[Warned] = []
 
-    def warn(text):
-        warnings.append(text)
-        tell(text)
+    def warn(said):
+        warnings.append(warned(said))
+        tell(said)
 
     run = deposit.read(prefix, terrain, warn)
     mesh = make_mesh(wanted.mesh, run.raster)
@@ -78,11 +80,11 @@ def of_run(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], None] = l
     profile = along(axis, run, result.removed, wanted.blocked, wanted.axis or wanted.road)
     about = totals(wanted, run, mesh, result, profile, source)
     if result.unknown > 0:
-        warn(f"{result.unknown:.6g} m3 lie on cells without ground, beside the road: not in the volume to remove")
+        warn(Warned("no ground", {"volume": float(result.unknown)}))
         about["volume"]["unknown"] = result.unknown
-    about["warnings"] = warnings
+    about["warnings"] = [str(one) for one in warnings]
     return Removal(run, road, axis, mesh, result, profile, wanted.bulk / run.bulk if wanted.bulk else None,
-                   disk.plain(about))
+                   disk.plain(about), warnings)
 
 
 def write(found: Removal, folder: Path, picture: bool = True) -> None:
@@ -135,7 +137,7 @@ def in_grid(polygon, raster, path, warn):
                          "metres)", geometry.numbers(polygon.bounds))
     outside = 1 - inside.area / polygon.area
     if outside > 1e-9:
-        warn(f"{path}: {100 * outside:.3g} % of the polygon lies outside of the grid of the run: cut off")
+        warn(Warned("cut off", {"file": str(path), "percent": 100 * outside}))
     return inside
 
 

@@ -2,7 +2,6 @@
 
 The appendix has all warnings, with the runs concerned and what mends them; see warnings.py.
 """
-import re
 from typing import Any, List, NamedTuple, Optional, Sequence, Tuple
 
 from .. import digits
@@ -13,7 +12,6 @@ from .warnings import SMALL
 MOST = 3
 MUCH = 0.01             # of the released volume that is lost: more weighs as much as a wrong body
 SIDE = 0.5              # of the mass at the most touched edge: another edge with as much is named too
-THIN = re.compile(r"the body is ([\d.]+) balls thick on average, below ([\d.]+)")
 # by weight, the heaviest first
 (FAILED, MOVING, LOST_MUCH, BODY, ROAD, LARGE_MASS, NOT_AT_REST, NO_REPEATS, NO_SIZES, CUT, THIN_BODY, LOST,
  SLIP) = range(13)
@@ -137,9 +135,9 @@ def below_ground(data) -> Optional[Caveat]:
 
 
 def thin(data) -> Optional[Caveat]:
-    match = next((match for text in (data.study or {}).get("warnings") or () if (match := THIN.match(str(text)))), None)
-    return None if match is None else Caveat(
-        THIN_BODY, f"The body is only {match[1]} of the model's balls thick on average: the numbers are rough.")
+    balls = next((one.numbers["balls"] for one in data.warnings() if one.kind == "thin"), None)
+    return None if balls is None else Caveat(
+        THIN_BODY, f"The body is only {balls:.1f} of the model's balls thick on average: the numbers are rough.")
 
 
 def shown(found: Sequence[Caveat], all_warnings: int) -> Tuple[List[str], str]:

@@ -12,6 +12,7 @@ from ..deposits import deposit, rest, travel_shares
 from ..errors import SlopeError
 from ..survey import rasters
 from ..tables.study_file import read_study
+from ..warned import Warned, warned
 from .release_part import release
 
 MOST_SHOWN = 9          # runs that get a map and a line in the section
@@ -186,6 +187,10 @@ class Data:
         stop = one.summary["stop"]
         return [End(None, state.at_rest, stop["reason"] == CUT, state.text, state.share, one.summary["moving"],
                     stop["time"])]
+
+    def warnings(self) -> List[Warned]:
+        """Those of study.yaml; none of a run alone."""
+        return [warned(one) for one in (self.study or {}).get("warnings") or ()]
 
     def releases(self):
         """(name, Release) of each finished run whose summary is in reach."""

@@ -1,14 +1,12 @@
 """What a run released, compared with the body that it represents."""
 import math
-import re
 from typing import NamedTuple, Optional
 
 from .. import disk
+from ..case.logs import removed
 
 CUBIC = 6 / math.pi         # bulk volume of balls in a simple cubic packing / volume of the balls
 DOUBTFUL = 0.15             # the bulk factor is farther from that only if the balls are not the body
-REMOVED = re.compile(r"Delete_balls: ([\d.]+) balls of group .*?; ([\d.]+) balls left")
-REMOVED_SHARE = re.compile(r"Delete_balls: ([\d.]+) % of the volume of group")
 
 
 class Release(NamedTuple):
@@ -92,15 +90,3 @@ def release(summary, texts):
     factor = factor if disk.is_number(factor) and factor > 0 else summary["bulk_factor"]
     return Release(summary["volume"]["released"], body if disk.is_number(body) and body > 0 else None, factor,
                    off if disk.is_number(off) else factor / CUBIC - 1, removed(texts))
-
-
-def removed(texts):
-    """Share of the balls that delete_balls took away, by the lines of a log; None if they do not tell."""
-    for text in texts:
-        if match := REMOVED.search(text):
-            gone, left = float(match[1]), float(match[2].rstrip("."))
-            return gone / (gone + left) if gone + left > 0 else None
-    for text in texts:
-        if match := REMOVED_SHARE.search(text):
-            return min(float(match[1]), 99.0) / 100
-    return None

@@ -13,7 +13,7 @@ LENGTHWISE = "mean_force_n_m"       # the largest lasting force per metre of the
 COLUMNS = {
     "structures": (("largest force", "N", "largest_force_n"), ("at", "s", "at_s"),
                    (f"largest mean over {structures.WINDOW:g} s", "N", "mean_force_n"),
-                   ("the same per metre", "N/m", LENGTHWISE), ("at the end", "N", "end_force_n"),
+                   ("the same per metre", "N/m", LENGTHWISE), ("at the end", "N", "end_force_n"), ("on contacts", "", "end_contacts"),
                    ("impulse", "N s", "impulse_ns"), ("largest moment", "N m", "moment_nm"),
                    ("largest pressure", "Pa", "largest_pressure_pa")),
     "lines": (("forward", "m3", "forward_m3"), ("back", "m3", "back_m3"), ("net", "m3", "net_m3"),
@@ -37,7 +37,9 @@ class Structures:
         lines = self.by_name("control/line")
         if not walls and not lines:
             return None
-        return {"structures": self.table("structures"), "lines": self.table("lines"),
+        scatter = structures.scatter_at_rest(self.data.finished) if self.data.study else {}
+        return {"scatter": [f"{name}: {100 * share:.2g} % over {runs} runs" for name, (share, runs) in scatter.items()],
+                "structures": self.table("structures"), "lines": self.table("lines"),
                 "forces": [self.forces(name, found) for name, found in walls.items()],
                 "pressures": [one for one in map(self.pressures, self.mine("wall/gran/mesh").items()) if one],
                 "energies": [one for one in (self.energies(name, found) for name, found in lines.items()) if one]}
@@ -66,7 +68,7 @@ class Structures:
                 if what == "structures":
                     length = self.lengths.get(name)
                     numbers = {**numbers, LENGTHWISE: length and numbers["mean_force_n"] / length}
-                cells = [self.cell(f"{name}: {head}", unit, numbers[key], label) for head, unit, key in COLUMNS[what]]
+                cells = [self.cell(f"{name}: {head}", unit, numbers.get(key), label) for head, unit, key in COLUMNS[what]]
                 rows.append({"run": label, "name": name, "cells": cells})
         heads = [(head, "" if unit in PREFIXED else unit) for head, unit, _ in COLUMNS[what]]
         return {"heads": heads, "rows": rows} if rows else None
@@ -75,7 +77,7 @@ class Structures:
         """A number of the table, with its unit where that has a prefix."""
         if value is None:
             return "-"
-        text = self.numbers(what, unit, value, of=label)
+        text = (self.numbers if unit else self.numbers.whole)(what, unit, value, of=label)
         return digits.si(value, unit) if unit in PREFIXED else text
 
     def forces(self, name, found):

@@ -1,22 +1,18 @@
 """The warnings of a report: one line for each kind, with the runs concerned."""
-import re
 from typing import Any, Dict
 
+from ..case.logs import kind
 from ..deposits.travel_shares import BEYOND
 from ..deposits.volume import MUCH_BELOW
 from ..digits import rounded, to_three
 from ..sites.site_warnings import LARGE
 from ..statistics import headline
+from ..warned import OTHER
 
 SMALL = 1e-6            # of the released volume
 NAMED = 4               # runs that a line names
-NUMBER = re.compile(r"\d[\d.,]*(?:[eE][+-]?\d+)?")
-# what the page says in its own words here, or beside the maps: about single runs, and about all of them
-SAID_OF_RUNS = ("failed: ", "still moves", "left the grid or the box", "has no CRS")
-SAID_OF_ALL = re.compile(r"\d+ of \d+ deposits are not at rest at the end|.*has no CRS")
-OF_SIZES = re.compile(r"sizes of balls: \S+?: (.*)")     # of one of the runs with balls of several sizes
-LEFT = "left the box"     # in the lines of fix deposit/grid
-SAID_TOO = re.compile(r"runs failed$|deposits are not at rest$")
+# kinds of warnings of a study that the page says in its own words here, or beside the maps
+SAID = ("failed", "moving", "lost", "no CRS")
 RED, AMBER = "red", "amber"
 
 
@@ -25,52 +21,43 @@ def warnings(data):
     found = failures(data)
     found += not_at_rest(data)
     found += (gone := lost(data))
-    found += releases(data)
+    found += (doubtful := releases(data))
     found += below_ground(data)
     found += large(data)
     if data.study:
         for text in (data.study["conservative"] or {}).get("doubts") or ():
-            if not SAID_TOO.search(text):
-                found.append((AMBER, f"The volume to remove: {text}"))
+            found.append((AMBER, f"The volume to remove: {text}"))
         ensemble = data.study.get("ensemble") or {}
         for what, about in (("ensemble", ensemble), ("known events", ensemble.get("known_events") or {})):
             found += [(AMBER, f"The {what}: {text}") for text in about.get("doubts") or ()]
         found += of_study(data)
-    found += from_logs(data, any("released mass" in text for _, text in found), bool(gone))
+    found += from_logs(data, ["removed"] * bool(doubtful) + ["lost"] * bool(gone))
     return sorted(found, key=lambda one: one[0] != RED)
 
 
 def of_study(data):
-    """The warnings of study.yaml: those of the study as a whole, each in red, and those of single runs."""
+    """The warnings of study.yaml: those of the study and of its parts, each kind in red, and those of runs."""
     names = {row["run"]: data.label_of(row) for row in data.rows}
-    whole, entries = [], []
-    for text in map(str, data.study.get("warnings") or ()):
-        who, colon, rest = text.partition(": ")
-        runs = who.split(", ")
-        if not (colon and all(run in names for run in runs)):
-            whole += [] if SAID_OF_ALL.match(text) else [text]
-        elif not any(said in rest for said in SAID_OF_RUNS):
-            entries += [(rest, names[run]) for run in runs]
-    return [*((RED, text) for text in of_sizes(whole)), *by_kind(entries, len(data.finished))]
-
-
-def of_sizes(texts):
-    """The same lines, but one for each kind of those on the single runs with balls of several sizes."""
-    found: Dict[str, Any] = {}
-    for text in texts:
-        match = OF_SIZES.fullmatch(text)
-        kind = NUMBER.sub("#", match[1]) if match else text
-        found.setdefault(kind, []).append(match[1] if match else text)
-    return [f"sizes of balls: {mine[0]} ({plural(len(mine), 'run')}, other numbers in the others)"
-            if len(mine) > 1 and kind not in texts else f"sizes of balls: {mine[0]}" if kind not in texts else mine[0]
-            for kind, mine in found.items()]
+    whole: Dict[Any, Any] = {}
+    entries = []
+    for one in data.warnings():
+        if one.part or not one.runs:
+            if one.part or one.kind not in SAID:
+                whole.setdefault((one.part, one.kind, one.text if one.kind == OTHER else None), []).append(one)
+        elif one.kind not in SAID:
+            entries += [(one.text, one.text if one.kind == OTHER else one.kind, names.get(run, run))
+                        for run in one.runs]
+    return [*((RED, mine[0].text + (f" ({plural(len(mine), 'run')}, other numbers in the others)"
+                                    if len(mine) > 1 else "")) for mine in whole.values()),
+            *by_kind(entries, len(data.finished))]
 
 
 def failures(data):
     """Runs that failed, by their error."""
-    failed = [(str(row.get("error")), data.label_of(row)) for row in data.rows if row["status"] != "finished"]
-    return [(RED, f"{plural(len(names), 'run')} failed: {text}" + of_runs(names, None))
-            for text, names in kinds(failed).values()]
+    failed = [(text := str(row.get("error")), kind(text), data.label_of(row))
+              for row in data.rows if row["status"] != "finished"]
+    return [(RED, f"{plural(len(names), 'run')} failed: {texts[0]}" + of_runs(names, None))
+            for texts, names in kinds(failed)]
 
 
 def not_at_rest(data):
@@ -114,7 +101,7 @@ def lost(data):
 
 def releases(data):
     """Reasons why the released mass may not be the body."""
-    entries = [(release.doubt, name) for name, release in data.releases() if release.doubt]
+    entries = [(release.doubt, kind(release.doubt), name) for name, release in data.releases() if release.doubt]
     return by_kind(entries, len(data.finished))
 
 
@@ -141,44 +128,35 @@ def below_ground(data):
                     "the deposit on it is counted; a steeper cut angle gives less.")]
 
 
-def from_logs(data, released, gone):
-    """The warnings of LAMMPS and its styles; released, gone: whether other lines cover released and lost mass."""
-    entries = []
-    if data.study:
-        for row in data.rows:
-            entries += [(f"LAMMPS: {text}", data.label_of(row)) for text in row.get("log_warnings") or ()]
-    else:
-        entries = [(f"LAMMPS: {text}", None) for text in data.result.log.warnings]
-    entries = [(text, name) for text, name in entries
-               if not (released and text.startswith("LAMMPS: Delete_balls") or gone and LEFT in text)]
-    return by_kind(entries, len(data.rows))
+def from_logs(data, said):
+    """The warnings of LAMMPS and its styles; said: kinds that other lines cover."""
+    lines = [(line, data.label_of(row)) for row in data.rows for line in row.get("log_warnings") or ()] \
+        if data.study else [(line, None) for line in data.result.log.warnings]
+    return by_kind([(f"LAMMPS: {line}", kind(line), name) for line, name in lines if kind(line) not in said],
+                   len(data.rows))
 
 
 # --- kinds ---
 
 def kinds(entries):
-    """{kind: (its first text, names of its runs)} of (text, name or None); texts that differ only in numbers are of one
-    kind.
-    """
+    """(their different texts, names of their runs) of each kind, of (text, kind, name or None)."""
     found: Dict[str, Any] = {}
-    for text, name in entries:
-        found.setdefault(NUMBER.sub("#", text), (text, []))[1].append(name)
-    return found
+    for text, one, name in entries:
+        texts, names = found.setdefault(one, ([], []))
+        texts += [text] * (text not in texts)
+        names.append(name)
+    return found.values()
 
 
 def by_kind(entries, runs):
     """A line for each kind; runs: how many there are."""
-    texts: Dict[str, Any] = {}
-    for text, _ in entries:
-        texts.setdefault(NUMBER.sub("#", text), set()).add(text)
     found = []
-    for kind, (text, names) in kinds(entries).items():
-        several = len(texts[kind]) > 1
+    for (text, *others), names in kinds(entries):
         known = list(dict.fromkeys(name for name in names if name is not None))
         if known:
-            text += of_runs(known, runs, "; other numbers in some" if several else "")
+            text += of_runs(known, runs, "; other numbers in some" if others else "")
         elif len(names) > 1:
-            text += f" ({len(names)} times, with other numbers)" if several else f" ({len(names)} times)"
+            text += f" ({len(names)} times, with other numbers)" if others else f" ({len(names)} times)"
         found.append((AMBER, text))
     return found
 

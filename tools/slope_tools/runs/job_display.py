@@ -8,6 +8,8 @@ from rich.live import Live
 from rich.progress_bar import ProgressBar
 from rich.table import Table
 
+from .. import warned
+
 TELL = 30.0             # s between two lines about a run, where there is no terminal
 
 
@@ -22,7 +24,8 @@ class Display:
         self.walls = []
         self.printed = {}      # name -> when the last line about it was printed
         self.live = None
-        if sys.stderr.isatty():
+        self.share = 0.0       # done, as it was said last
+        if sys.stderr.isatty() and not warned.as_json:
             # without auto_refresh there is no thread, and the study may fork
             self.live = Live(console=Console(stderr=True), auto_refresh=False, transient=True)
         self.done_before = self.total - self.waiting
@@ -30,6 +33,7 @@ class Display:
     def __enter__(self):
         if self.done_before:
             self.say(f"{self.done_before} of {self.total} runs are finished already")
+            self._say_share()
         if self.live:
             self.live.start()
         return self
@@ -59,6 +63,7 @@ class Display:
         one, wall = active.run, time.monotonic() - active.began
         self.ended_runs += 1
         self.walls.append(wall)
+        self._say_share()
         if one.error:
             self.failed += 1
             self.say(f"{self.label(one)}: failed: {one.error}")
@@ -79,12 +84,23 @@ class Display:
     def update(self, active, waiting):
         if self.live:
             return self.live.update(self._table(active, waiting), refresh=True)
+        self._say_share(active)
         for job in active:
             if time.monotonic() - self.printed[job.run.name] > TELL:
                 self.printed[job.run.name] = time.monotonic()
                 _, text, end = self._progress(job)
                 self.say(f"{self.label(job.run)}: {text}" + (f", ends by {end}" if end else ""))
         return None
+
+    def _say_share(self, active=()):
+        """How much of all runs is done, for programs that call this one, if it has changed by 1 %."""
+        if not warned.as_json:
+            return
+        share = (self.done_before + self.ended_runs + sum(self._progress(job)[0] or 0 for job in active)) / self.total
+        if abs(share - self.share) >= 0.01:
+            self.share = share
+            warned.say_json("progress", share=share, runs=self.total, ended=self.done_before + self.ended_runs,
+                            failed=self.failed)
 
     @staticmethod
     def _progress(job):

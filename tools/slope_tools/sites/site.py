@@ -18,6 +18,7 @@ from ..errors import SlopeError
 from ..releases import release, release_files
 from ..survey import local_terrain, polygons, rasters
 from ..survey.rasters import Raster, crs_name
+from ..warned import Warned, warned
 from . import site_bodies, site_budget, site_choices, site_deck, site_folder, site_warnings
 from .site_budget import Size, Trial
 from .site_choices import Choices, Derived
@@ -112,11 +113,11 @@ def built(choices: Choices, known: Derived, new: Path, folder: Path, machine: Ma
 
 def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Machine, tell, warn, draw: Draw) -> Made:
     """Everything, into the folder `new`, which will be `folder`."""
-    warnings: List[str] = []
+    warnings: List[Warned] = []
 
-    def keep(line: str) -> None:
-        warnings.append(line)
-        warn(line)
+    def keep(said) -> None:
+        warnings.append(warned(said))
+        warn(said)
     choices = {name: dict(section) for name, section in given.items()}
     wanted = wanted_body(choices, new)
     raster = terrain(choices, new, tell, keep)
@@ -141,8 +142,9 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
     derived = site_choices.derived(given, choices, known)
     too_large = None if chosen == model["field_diameter"] else chosen
     say_size(choices, size, found, machine, too_large, tell)
-    for line in site_warnings.site_warnings(found.measures, size, trial):
-        keep(line)
+    for one in (*site_warnings.of_resistance(choices),
+                *site_warnings.site_warnings(found.measures, size, trial)):
+        keep(one)
     site_warnings.write(new, warnings)
     deck = site_deck.text(choices, parts, numbers(choices, trial, size))
     disk.write(new / site_deck.NAME, deck)

@@ -1,4 +1,5 @@
 """The warnings of a site: slope site prints them, and keeps them in the folder for the report."""
+import math
 from pathlib import Path
 from typing import List, Optional, Sequence
 
@@ -7,53 +8,64 @@ import yaml
 from .. import disk
 from ..errors import SlopeError
 from ..releases.release_solve import Measures
+from ..warned import Warned, entries
 from .site_budget import Size, Trial
+from .site_choices import Choices
 
 NAME = "warnings.yaml"
 ROUGH = 3.0             # balls, mean thickness of the body: below, the numbers are rough
 THICK = 10.0            # balls, largest thickness: below, a site should be repeated with more balls
 LARGE = 1e6             # m3: larger masses run farther than laboratory friction suggests
 LOST = 0.001            # share of the mass that may leave the terrain
+COEFFICIENT = 3.0       # degrees: smaller angles of friction, or of a cut, may be meant as tangents
+ROLLS_NOT = 1.0         # larger coefficients of rolling resistance may be meant as angles or percents
 STEEP = 65.0            # degrees; tried: some faces of balls stand at 60, none at 70 and 80, whatever their friction
 # what a run says whose body falls while it settles
 FALLS = ("does not stand before it is shaken", "Lost atoms", "must be the body that the balls fill")
-MORE = "use more balls (--balls, --minutes)"
 
 
-def site_warnings(found: Measures, size: Size, trial: Optional[Trial]) -> List[str]:
+def site_warnings(found: Measures, size: Size, trial: Optional[Trial]) -> List[Warned]:
     """Warnings on a body and its balls; trial: None where there is no LAMMPS program."""
     return [*of_trial(trial), *of_volume(found.volume),
             *of_thickness(found.mean_depth / size.diameter, found.largest_depth / size.diameter)]
 
 
-def of_trial(trial: Optional[Trial]) -> List[str]:
+def of_trial(trial: Optional[Trial]) -> List[Warned]:
     """What the trial run showed."""
     if trial is None:
-        return ["no LAMMPS program (LMP, --lmp, build/lmp): no trial run, time and speeds are unknown"]
+        return [Warned("no program")]
     lines = []
     if trial.left > LOST:
-        lines.append(f"{100 * trial.left:.2g} % of the mass left the terrain in the trial run: use a larger elevation "
-                     "model")
+        lines.append(Warned("left terrain", {"percent": 100 * trial.left}))
     if not trial.at_rest:
-        lines.append(f"the trial run was not at rest after {trial.rest:.0f} s: the run time of the study is a guess")
+        lines.append(Warned("not at rest", {"seconds": trial.rest}))
     return lines
 
 
-def of_volume(volume: float) -> List[str]:
+def of_volume(volume: float) -> List[Warned]:
     """Whether the default friction can be that of so large a mass (m3)."""
     if volume < LARGE:
         return []
-    return [f"the body has {volume / 1e6:.3g} million m3: masses of {LARGE / 1e6:g} million m3 and more run farther "
-            "than laboratory friction gives; calibrate with a past event of that size (slope calibrate), or see "
-            "--mobile"]
+    return [Warned("large", {"millions": volume / 1e6, "limit": LARGE / 1e6})]
 
 
-def of_thickness(mean: float, largest: float) -> List[str]:
+def of_resistance(choices: Choices) -> List[Warned]:
+    """Angles that look like coefficients, and coefficients that look like angles or percents."""
+    angles = {"--friction": choices["model"]["friction"], "--slip-friction": choices["model"]["slip_friction"]}
+    if choices["road"]["file"]:
+        angles["--cut-angle"] = choices["road"]["cut_angle"]
+    return [*(Warned("small angle", {"option": option, "degrees": value, "meant": math.degrees(math.atan(value))})
+              for option, value in angles.items() if 0 < value < COEFFICIENT),
+            *(Warned("large rolling", {"rolling": value, "limit": ROLLS_NOT})
+              for value in choices["study"]["rolling"] if value > ROLLS_NOT)]
+
+
+def of_thickness(mean: float, largest: float) -> List[Warned]:
     """Whether the body is thick enough; mean and largest thickness in balls."""
     if mean < ROUGH:
-        return [f"the body is {mean:.1f} balls thick on average, below {ROUGH:g}: the numbers will be rough; {MORE}"]
+        return [Warned("thin", {"balls": mean, "limit": ROUGH})]
     if largest < THICK:
-        return [f"the body is {largest:.1f} balls thick at most, below {THICK:g}: a first look; to repeat it, {MORE}"]
+        return [Warned("first look", {"balls": largest, "limit": THICK})]
     return []
 
 
@@ -73,7 +85,7 @@ def require_standing(error: SlopeError, peak_friction: float, slope: float) -> N
                      f"thinner body; or {alone}", f"{peak_friction:g}") from None
 
 
-def write(folder: Path, lines: Sequence[str]) -> None:
+def write(folder: Path, several: Sequence[Warned]) -> None:
     """All warnings of a site into its folder: a YAML list, empty if there are none."""
     about = "# slope site: what makes this site doubtful\n"
-    disk.write(folder / NAME, about + yaml.safe_dump(list(lines), allow_unicode=True, width=1000))
+    disk.write(folder / NAME, about + yaml.safe_dump(entries(several), allow_unicode=True, sort_keys=False))

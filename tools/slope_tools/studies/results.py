@@ -1,9 +1,8 @@
 """What came out of the runs of a study: their numbers, the table, the maps over all runs, the conservative volume."""
 import math
 import os
-import sys
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
+from typing import Any, Dict, Mapping, NamedTuple, Optional, Sequence
 
 import numpy as np
 import yaml
@@ -11,7 +10,6 @@ import yaml
 from .. import disk, provenance
 from ..case import run_folders
 from ..deposits import left, rest, travel_shares
-from ..digits import rounded
 from ..ensembles import ensemble, known_study
 from ..runs import repeats
 from ..seismic import chain_files
@@ -19,15 +17,14 @@ from ..survey import rasters
 from ..tables import combinations, intensity, size_error, step_check, structures, study_table, usable, withheld_words
 from ..tables.size_error import SizeErrors
 from ..tables.study_maps import Maps
+from ..warned import Warned, entries, printer, warned
 from .setup import Road, Setup
 
 BALANCE = 1e-9          # of the released volume
 NAMED = 3               # runs that a warning names
+OF_SUMMARY = ("moves", "not counted")      # kinds of warnings
+warn = printer("study")
 SHOWN = 20              # runs of an ensemble whose table is printed
-
-
-def warn(text):
-    print(f"slope study: warning: {text}", file=sys.stderr)
 
 
 class Questions(NamedTuple):
@@ -39,7 +36,7 @@ class Questions(NamedTuple):
     order: Any = None                               # the ensemble.Order that the runs were made for, None of lists
     intensity: Optional[str] = None                 # variable that is one; None: the one that is called so
     more_than: Sequence[float] = ()                 # m3, volumes exceeded at each intensity
-    notes: Sequence[str] = ()                       # warnings of what was before the study, which go into its results
+    notes: Sequence[Any] = ()                       # warnings of what was before the study, which go into its results
     size_error_unusable: Optional[str] = None       # why the size error, which was to be measured, is not used
     site: Optional[Path] = None                     # folder of the site whose study it is
     sizes: Optional[Path] = None                    # converge.yaml of the runs with balls of several sizes
@@ -56,9 +53,9 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         return      # study.perform says so
     maps = Maps(thresholds)
     rows, thickness = rows_of(setup, todo, maps, pictures=order is None)
-    warnings = [*questions.notes, *doubts(rows)]
+    warnings = [*map(warned, questions.notes), *doubts(rows)]
     if maps.problem:
-        warnings.append(maps.problem)
+        warnings.append(warned(maps.problem))
     finished = [row for row in rows if row["status"] == "finished"]
     groups = combinations.grouped(rows)
     names = combinations.quantities(groups)
@@ -76,7 +73,7 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         "conservative": None, "size_error_unusable": questions.size_error_unusable, "ensemble": None, "step": None,
         "scatter": {name: known and {"deviation": known.deviation, "degrees_of_freedom": known.degrees_of_freedom}
                     for name, known in scatters.items()},
-        "combinations": combinations.entries(groups, names), **written, "warnings": warnings, "runs": rows}
+        "combinations": combinations.entries(groups, names), **written, "warnings": entries(warnings), "runs": rows}
     if setup.road and finished:
         about["study"]["road"] = write_road(output, setup.road, first, thickness)
     if order:
@@ -114,8 +111,8 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
     else:
         about["conservative"]["doubts"] += intensity.doubts(about["intensity"])
     structures.collect(output, finished)
-    for text in warnings:
-        warn(text)
+    for one in warnings:
+        warn(one)
     disk.write(output / "study.csv", study_table.table(settings, repeated, rows, work.defaults))
     disk.write(output / "combinations.csv", combinations.table(groups, names, settings))
     disk.write(output / "study.yaml", "# slope study: volumes in m3 of ground (bulk), lengths in m, times in s\n"
@@ -194,32 +191,32 @@ def moving_warnings(finished):
     if not moving:
         return []
     more = f"; and {len(moving) - NAMED} more" if len(moving) > NAMED else ""
-    return [f"{len(moving)} of {len(finished)} deposits are not at rest at the end: " + "; ".join(
-        f"{row['run']} at {row['stop_time_s']:.1f} s ({row['end']})" for row in moving[:NAMED]) + more]
+    return [Warned("moving", {"moving": len(moving), "finished": len(finished), "which": "; ".join(
+        f"{row['run']} at {row['stop_time_s']:.1f} s ({row['end']})" for row in moving[:NAMED]) + more})]
 
 
 def doubts(rows):
     """Warnings about runs."""
-    warnings = [f"{row['run']}: failed: {row['error']}" for row in rows if row["status"] == "failed"]
+    warnings = [Warned("failed", {"error": row["error"]}, (row["run"],)) for row in rows if row["status"] == "failed"]
     finished = [row for row in rows if row["status"] == "finished"]
     warnings += moving_warnings(finished)
     for row in finished:
         left = row["off_grid_m3"] + row["lost_m3"]
         if left > 1e-6 * row["released_m3"]:
-            warnings.append(f"{row['run']}: {rounded(left, 3)} m3 left the grid or the box")
+            warnings.append(Warned("lost", {"volume": float(left)}, (row["run"],)))
         if not abs(row["mass_error"]) <= BALANCE:
-            warnings.append(f"{row['run']}: the volume in the thickness raster differs from released - off the grid - "
-                            f"lost by {row['mass_error']:.1e} of the released volume")
-    of_road: Dict[str, List[str]] = {}
+            warnings.append(Warned("balance", {"share": float(row["mass_error"])}, (row["run"],)))
+    of_road: Dict[str, Any] = {}
     for row in finished:
-        for text in row.get("road_warnings", ()):
-            of_road.setdefault(text, []).append(row["run"])
-    for text, names in of_road.items():
-        warnings.append(text if len(names) == len(finished) else f"{', '.join(names)}: {text}")
+        for entry in row.get("road_warnings", ()):
+            one = warned(entry)
+            of_road.setdefault(one.text, (one, []))[1].append(row["run"])
+    for one, names in of_road.values():
+        warnings.append(one if len(names) == len(finished) else one._replace(runs=tuple(names)))
     for what in ("slope_version", "lammps_version", "lmp_sha256"):
         if len({row[what] for row in finished}) > 1:
-            warnings.append(f"the runs are of different programs: {what} "
-                            + ", ".join(sorted({str(row[what]) for row in finished})))
+            warnings.append(Warned("programs", {"what": what, "which": ", ".join(
+                sorted({str(row[what]) for row in finished}))}))
     return warnings
 
 
@@ -282,8 +279,7 @@ def on_road(run, setup: Setup, row, thickness, picture=True) -> Dict[str, Any]:
     gone, passed = row["off_grid_m3"] + row["lost_m3"], run_folders.load_raster(prefix, "max_thickness")
     taken = on_body(thickness, released, polygon, row["ball_m3"])
     if taken > 0:
-        about["warnings"].append(f"{road.file.name}: a part of the road lies on the body, and goes with it: the "
-                                 "volume to remove does not tell what it takes to build the road anew")
+        found.warnings.append(Warned("road on body", {"file": road.file.name}))
     return {"road_on_body_m2": taken, "remove_m3": about["volume"]["remove"],
             "remove_on_road_m3": about["volume"]["remove_on_road"],
             "remove_beside_road_m3": about["volume"]["remove_beside_road"],
@@ -291,8 +287,14 @@ def on_road(run, setup: Setup, row, thickness, picture=True) -> Dict[str, Any]:
             "left_before_road_m3": left.before_road(gone, passed, released, polygon),
             "blocked_m": about["axis"]["blocked_length"], "axis_thickness_m": about["axis"]["largest_thickness"],
             # what it says of the summary is in the table
-            "road_warnings": [text.replace(f"{run.folder}/", "") for text in about["warnings"]
-                              if not text.startswith(f"{summary}:")]}
+            "road_warnings": entries(in_folder(one, run.folder) for one in found.warnings
+                                     if one.kind not in OF_SUMMARY)}
+
+
+def in_folder(one: Warned, folder: Path) -> Warned:
+    """The same, whose files are named as from a run's folder: one warning for all runs."""
+    return one._replace(numbers={name: value.replace(f"{folder}/", "") if isinstance(value, str) else value
+                                 for name, value in one.numbers.items()})
 
 
 def beyond(thickness, released, road):

@@ -19,6 +19,7 @@ from ..runs import jobs
 from ..statistics.headline import Scatter
 from ..tables import study_table
 from ..tables.quantities import NAMES, number
+from ..warned import Warned, entries, printer
 from . import results, study
 from .setup import Setup
 
@@ -73,7 +74,7 @@ def collect(setup: Setup, base, of, todo, work):
         row = {"run": one.name, "kind": one.kind, "variable": one.variable,
                "value": one.chosen[one.variable] if one.variable else None}
         if one.error:
-            warnings.append(f"{one.name}: failed: {one.error}")
+            warnings.append(Warned("failed", {"error": one.error}, (one.name,)))
             continue
         found, thickness = results.result(one, row, maps)
         if setup.road:
@@ -91,9 +92,10 @@ def collect(setup: Setup, base, of, todo, work):
                        "ranks": work.ranks, "package": work.package, "collected": provenance.now(),
                        "machine": provenance.machine(),
                        "road": setup.road.about() if setup.road else None},
-             "scatter": scatter, "trust": [trust(rows, name, scatter[name]) for name in of], "warnings": warnings}
-    for text in warnings:
-        print(f"slope sensitivity: warning: {text}", flush=True)
+             "scatter": scatter, "trust": [trust(rows, name, scatter[name]) for name in of],
+             "warnings": entries(warnings)}
+    for one in warnings:
+        printer("sensitivity")(one)
     disk.write(setup.output / "sensitivity.csv", table(rows, of, scatter, defaults))
     disk.write(setup.output / "sensitivity.yaml", "# slope sensitivity: volumes in m3 of ground (bulk), lengths in m, "
                "angles in degrees\n" + yaml.safe_dump(about, sort_keys=False))

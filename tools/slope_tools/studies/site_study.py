@@ -4,7 +4,6 @@ Order of the work: the error of the size (size_study), a run with half the step,
 the score of the run that the answer rests on. Every part is resumed by the same call.
 """
 import shutil
-import sys
 from pathlib import Path
 from shlex import quote
 from typing import Dict, Iterable, List, NamedTuple, Optional, Sequence
@@ -20,6 +19,7 @@ from ..sites.site_layers import OBSERVED, ROAD
 from ..tables.quantities import NAMES
 from ..tables.size_error import SizeErrors, WHAT
 from ..tables.step_check import HALF, QUANTITY, Step
+from ..warned import Warned, warned
 from . import results, size_study, study
 from .sensitivity import quantities
 from .setup import Road, Setup
@@ -107,16 +107,16 @@ def run_alone(folder: Path, choices: Choices, engine: Setup, method: str) -> Don
     return Done(setup.output, failed)
 
 
-def warnings_of(folder: Path) -> List[str]:
+def warnings_of(folder: Path) -> List[Warned]:
     """The warnings of `slope site`, which the results repeat; none for a site of an older version."""
     path = folder / site_warnings.NAME
-    return [str(text) for text in disk.parse_yaml(path, "what `slope site` wrote") or ()] if path.is_file() else []
+    return [warned(one) for one in disk.parse_yaml(path, "what `slope site` wrote") or ()] if path.is_file() else []
 
 
 class Sizes(NamedTuple):
     """What the runs with balls of several sizes found."""
     errors: Optional[SizeErrors]
-    warnings: Sequence[str]         # of these runs
+    warnings: Sequence[Warned]      # of these runs
     unusable: Optional[str]         # why there are no errors although they were to be measured
     path: Optional[Path] = None     # converge.yaml, with the means of all sizes
 
@@ -132,7 +132,7 @@ def sizes(setup: Setup, choices: Choices, repeated: Dict[str, List[str]]) -> Siz
         size_study.run(setup, "d=" + ",".join(values), {"rolling": rolling[len(rolling) // 2]}, repeated, of,
                        {name: NAMES[name] for name in of})
     except study.RunsFailed as error:
-        print(f"slope study: warning: sizes of balls: {error}", file=sys.stderr)
+        results.warn(f"sizes of balls: {error}")
     except SlopeError as error:
         return unusable(str(error))
     path = setup.output / "converge.yaml"
@@ -140,7 +140,7 @@ def sizes(setup: Setup, choices: Choices, repeated: Dict[str, List[str]]) -> Siz
         return Sizes(None, (), None)
     if not path.is_file():
         return unusable("too few of its runs finished")
-    said = [f"sizes of balls: {text}" for text in disk.load_yaml(path, WHAT).get("warnings") or ()]
+    said = [warned(one)._replace(part="sizes of balls") for one in disk.load_yaml(path, WHAT).get("warnings") or ()]
     try:
         errors = SizeErrors(path, "remove_m3")
         errors.check({}, variables)
@@ -168,7 +168,7 @@ def half_step(setup: Setup, rolling: List[str]) -> Optional[Step]:
 
 
 def unusable(why: str, shortly: str = "") -> Sizes:
-    print(f"slope study: warning: the size error is unknown: {why}", file=sys.stderr)
+    results.warn(f"the size error is unknown: {why}")
     return Sizes(None, (), shortly or why)
 
 

@@ -16,6 +16,7 @@ from ..errors import SlopeError
 from ..runs import repeats
 from ..statistics import convergence, headline
 from ..tables import combinations, study_table
+from ..warned import Warned, entries, printer
 from . import results, study
 from .setup import Setup
 
@@ -55,7 +56,7 @@ def collect(setup: Setup, settings, repeated, variable, of, names, todo, work):
     warnings = results.doubts(rows)
     same = [row["run"] for group in groups for row in group.same]
     if same:
-        warnings.append(f"a repeated variable has no effect, to the last digit, in {', '.join(same)}: left out")
+        warnings.append(Warned("no effect", {"which": ", ".join(same)}))
     fits = {}
     for name in of:
         fits[name] = convergence.fit([(float(group.set[variable]), list(group.of(name).volumes.values()))
@@ -69,9 +70,9 @@ def collect(setup: Setup, settings, repeated, variable, of, names, todo, work):
                        "package": work.package, "collected": provenance.now(), "machine": provenance.machine(),
                        "road": setup.road.about() if setup.road else None},
              "quantities": {name: entry(fit, names[name], sentences[name]) for name, fit in fits.items()},
-             "warnings": warnings}
-    for text in warnings:
-        print(f"slope sensitivity: warning: {text}", flush=True)
+             "warnings": entries(warnings)}
+    for one in warnings:
+        printer("sensitivity")(one)
     disk.write(setup.output / "converge.csv", table(fits, variable))
     disk.write(setup.output / "converge_runs.csv", study_table.table(settings, repeated, rows, work.defaults))
     disk.write(setup.output / "converge.yaml", f"# slope sensitivity --converge: a line V0 + b {variable} through the "

@@ -144,11 +144,6 @@ def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline, dif
     finished = [row for row in rows if row["status"] == "finished"]
     if len(rows) == 1:
         found.append("nothing was varied: it comes from a single run")
-    if len(finished) < len(rows):
-        found.append(f"{len(rows) - len(finished)} of {len(rows)} runs failed")
-    moving = sum(not row["at_rest"] for row in finished)
-    if moving:
-        found.append(f"{moving} of {len(finished)} deposits are not at rest")
     chosen = next(group.set for group in groups if group.name == best.combination)
     ends = []
     for entry in differences:

@@ -19,17 +19,18 @@ from . import study_table
 
 WINDOW = 0.5            # s, of the mean force: single impacts are those of the model's balls, what lasts is the mass's
 SHARES = (0.5, 0.9, 0.95, 0.99)
-SERIES = ("time", "fx", "fy", "fz", "mx", "my", "mz", "jx", "jy", "jz", "largest_force")
+SERIES = ("time", "fx", "fy", "fz", "mx", "my", "mz", "jx", "jy", "jz", "contacts", "largest_force")
 FILES = {"structures": "structures.csv", "lines": "lines.csv"}
 
 
 @dataclass(frozen=True)
 class Series:
-    """What acted on a structure: force, moment, impulse (n, 3) at times (n), largest force since the time before."""
+    """What acted on a structure at times (n): force, moment, impulse (n, 3), contacts, largest force since before."""
     time: np.ndarray
     force: np.ndarray
     moment: np.ndarray
     impulse: np.ndarray
+    contacts: np.ndarray
     largest: np.ndarray
 
     def mean_force(self, window=WINDOW):
@@ -69,7 +70,7 @@ def table_of(path: Path, columns: Sequence[str]) -> Dict[str, np.ndarray]:
 def series(folder: Path, prefix: str) -> Series:
     found = table_of(folder / f"{prefix}.csv", SERIES)
     force, moment, impulse = (np.stack([found[f"{letter}{axis}"] for axis in "xyz"], axis=-1) for letter in "fmj")
-    return Series(found["time"], force, moment, impulse, found["largest_force"])
+    return Series(found["time"], force, moment, impulse, found["contacts"], found["largest_force"])
 
 
 def pressures(folder: Path, prefix: str) -> Dict[str, np.ndarray]:
@@ -102,12 +103,12 @@ def of_structure(folder: Path, prefix: str) -> Dict[str, Any]:
     one, pressure = series(folder, prefix), pressures(folder, prefix)
     time, mean = one.mean_force()
     found: Dict[str, Any] = {"largest_force_n": 0.0, "at_s": None, "mean_force_n": 0.0, "mean_at_s": None,
-                             "end_force_n": 0.0, "impulse_ns": 0.0, "moment_nm": 0.0, "largest_pressure_pa": 0.0,
+                             "end_force_n": 0.0, "end_contacts": 0, "impulse_ns": 0.0, "moment_nm": 0.0, "largest_pressure_pa": 0.0,
                              "pressure_at": None}
     if len(time) and one.largest.max() > 0:
         found.update(largest_force_n=float(one.largest.max()), at_s=float(time[one.largest.argmax()]),
                      mean_force_n=float(mean.max()), mean_at_s=float(time[mean.argmax()]),
-                     end_force_n=float(np.linalg.norm(one.force[-1])),
+                     end_force_n=float(np.linalg.norm(one.force[-1])), end_contacts=int(one.contacts[-1]),
                      impulse_ns=float(np.linalg.norm(one.impulse[-1])),
                      moment_nm=float(np.linalg.norm(one.moment, axis=1).max()))
     largest = pressure["largest_pressure"]
@@ -157,6 +158,24 @@ def of_run(folder, settings: Sequence[str]) -> Dict[str, Dict[str, Dict[str, Any
 
 # --- a study ---
 
+def scatter_at_rest(rows: Sequence[Mapping[str, Any]]) -> Dict[str, Tuple[float, int]]:
+    """{structure: (scatter of its force at the end between runs with equal values, a share of the mean; runs)}.
+
+    Pooled over the values that vary; none where no run was repeated.
+    """
+    forces: Dict[str, Dict[tuple, List[float]]] = {}
+    for row in rows:
+        for name, numbers in (row.get("structures") or {}).items():
+            forces.setdefault(name, {}).setdefault(tuple(row["set"].values()), []).append(numbers["end_force_n"])
+    found = {}
+    for name, groups in forces.items():
+        several = [np.array(one) / np.mean(one) for one in groups.values() if len(one) > 1 and np.mean(one) > 0]
+        if several:
+            free = sum(len(one) - 1 for one in several)
+            found[name] = float(np.sqrt(sum(((one - 1) ** 2).sum() for one in several) / free)), sum(map(len, several))
+    return found
+
+
 def table(rows: Sequence[Mapping[str, Any]], what: str) -> str:
     """The CSV over all runs: a row for each structure, or line, of each; '' if there is none."""
     entries = [(row, name, numbers) for row in rows for name, numbers in (row.get(what) or {}).items()]
@@ -175,7 +194,7 @@ def table(rows: Sequence[Mapping[str, Any]], what: str) -> str:
 
 SHOWN: Dict[str, Tuple[Tuple[str, str, float], ...]] = {
     "structures": (("largest kN", "largest_force_n", 1e3), (f"in {WINDOW:g} s kN", "mean_force_n", 1e3),
-                   ("at the end kN", "end_force_n", 1e3), ("impulse kN s", "impulse_ns", 1e3),
+                   ("at the end kN", "end_force_n", 1e3), ("on contacts", "end_contacts", 1), ("impulse kN s", "impulse_ns", 1e3),
                    ("pressure kPa", "largest_pressure_pa", 1e3)),
     "lines": (("forward m3", "forward_m3", 1), ("back m3", "back_m3", 1), ("speed 95 % m/s", "speed_95_m_s", 1),
               ("height 95 % m", "height_95_m", 1), ("energy 95 % kJ", "energy_95_j", 1e3),
@@ -203,7 +222,7 @@ def collect(output: Path, rows: Sequence[Mapping[str, Any]]) -> List[Path]:
             shown.add_column(head, justify="right")
         for row in rows:
             for name, numbers in (row.get(what) or {}).items():
-                shown.add_row(row["run"], name, *(cell(numbers[key], unit) for _, key, unit in SHOWN[what]))
+                shown.add_row(row["run"], name, *(cell(numbers.get(key), unit) for _, key, unit in SHOWN[what]))
         study_table.show(shown)
     if written:
         print(f"{', '.join(map(str, written))}: of each run")

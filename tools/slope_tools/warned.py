@@ -1,0 +1,123 @@
+"""A warning as a value: what kind it is of, its numbers, the runs concerned. Its words are made here, and only here."""
+import json
+import sys
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Sequence, Union
+
+from .digits import rounded
+
+OTHER = "other"         # of the kinds that no reader tells apart, and of what older files say
+WORDS = {
+    OTHER: "{text}",
+    # of a body and its balls
+    "no program": "no LAMMPS program (LMP, --lmp, build/lmp): no trial run, time and speeds are unknown",
+    "left terrain": "{percent:.2g} % of the mass left the terrain in the trial run: use a larger elevation model",
+    "not at rest": "the trial run was not at rest after {seconds:.0f} s: the run time of the study is a guess",
+    "large": "the body has {millions} million m3: masses of {limit:g} million m3 and more run farther than laboratory "
+             "friction gives; calibrate with a past event of that size (slope calibrate), or see --mobile",
+    "thin": "the body is {balls:.1f} balls thick on average, below {limit:g}: the numbers will be rough; use more "
+            "balls (--balls, --minutes)",
+    "first look": "the body is {balls:.1f} balls thick at most, below {limit:g}: a first look; to repeat it, use more "
+                  "balls (--balls, --minutes)",
+    "small angle": "{option} {degrees:g}: is it in degrees? A coefficient of {degrees:g} is {meant:.3g} degrees",
+    "large rolling": "--rolling {rolling:g}: is it a coefficient? More than {limit:g} stands for bodies that do not roll",
+    # of runs
+    "failed": "failed: {error}",
+    "moving": "{moving} of {finished} deposits are not at rest at the end: {which}",
+    "lost": "{volume} m3 left the grid or the box",
+    "balance": "the volume in the thickness raster differs from released - off the grid - lost by {share:.1e} of the "
+               "released volume",
+    "programs": "the runs are of different programs: {what} {which}",
+    "no effect": "a repeated variable has no effect, to the last digit, in {which}: left out",
+    # of a run and its road, in the metres of its terrain
+    "moves": "{file}: the mass was still moving at {seconds:g} s: these are not final numbers",
+    "not counted": "{file}: {volume:.6g} m3 of the mass left the grid or the box and are not counted",
+    "no terrain": "no --terrain and no {file}: no CRS, coordinates are the local metres of the run",
+    "no CRS": "{file} has no CRS: coordinates are {coordinates}",
+    "cut off": "{file}: {percent:.3g} % of the polygon lies outside of the grid of the run: cut off",
+    "no ground": "{volume:.6g} m3 lie on cells without ground, beside the road: not in the volume to remove",
+    "road on body": "{file}: a part of the road lies on the body, and goes with it: the volume to remove does not tell "
+                    "what it takes to build the road anew",
+}
+
+
+class _Three(float):
+    """A number that is written with three digits where the words ask for none."""
+
+    def __format__(self, spec):
+        return format(float(self), spec) if spec else rounded(self, 3)
+
+
+class Warned(NamedTuple):
+    """A warning; kind: of WORDS; numbers: and names, that its words take; runs: concerned, none if it is about all.
+
+    part: of a study, before its words.
+    """
+    kind: str
+    numbers: Mapping[str, Any] = {}
+    runs: Sequence[str] = ()
+    part: str = ""
+
+    @property
+    def text(self) -> str:
+        """Its words, without the runs."""
+        shown = {name: _Three(value) if isinstance(value, float) else value for name, value in self.numbers.items()}
+        return f"{self.part}: " * bool(self.part) + WORDS[self.kind].format(**shown)
+
+    def __str__(self):
+        return f"{', '.join(self.runs)}: " * bool(self.runs) + self.text
+
+    def entry(self) -> Dict[str, Any]:
+        """What a YAML file and JSON have of it."""
+        found = {"kind": self.kind, "text": str(self), "numbers": dict(self.numbers), "runs": list(self.runs),
+                 "part": self.part}
+        return {key: value for key, value in found.items() if value}
+
+
+def warned(said: Union[str, Mapping[str, Any], Warned]) -> Warned:
+    """The Warned of one, of its entry in a file, or of a line; a file of another version may have unknown kinds."""
+    if isinstance(said, Warned):
+        return said
+    if not isinstance(said, Mapping):
+        return Warned(OTHER, {"text": str(said)})
+    found = Warned(str(said.get("kind")), said.get("numbers") or {}, tuple(said.get("runs") or ()),
+                   str(said.get("part") or ""))
+    try:
+        str(found)
+    except (KeyError, ValueError, TypeError, AttributeError):
+        return Warned(OTHER, {"text": str(said.get("text"))})
+    return found
+
+
+def entries(several) -> List[Dict[str, Any]]:
+    """The same of several, as a file has them."""
+    return [warned(one).entry() for one in several]
+
+
+# --- on standard error: words, or after `slope --progress json` an object a line ---
+
+as_json = False     # pylint: disable=invalid-name
+
+
+def say_json(level: str, **values) -> None:
+    """level: progress, warning or error."""
+    print(json.dumps({"level": level, **values}), file=sys.stderr, flush=True)
+
+
+def printer(command: str) -> Callable[[Union[str, Warned]], None]:
+    """A function that prints a warning of a command."""
+    def tell(said):
+        if as_json:
+            say_json("warning", command=command, **warned(said).entry())
+        else:
+            print(f"slope {command}: warning: {said}", file=sys.stderr)
+    return tell
+
+
+def warner(command: str, kept: List[str]) -> Callable[[Union[str, Warned]], None]:
+    """The same, which keeps the words in a list, too."""
+    tell = printer(command)
+
+    def warn(said):
+        kept.append(str(said))
+        tell(said)
+    return warn
