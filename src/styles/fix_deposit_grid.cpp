@@ -55,17 +55,7 @@ FixDepositGrid::FixDepositGrid(LAMMPS *lmp, int narg, char **arg) :
 
 FixDepositGrid::~FixDepositGrid()
 {
-  restart_data.remove_parts();
   delete[] extlist;
-}
-
-/* ----------------------------------------------------------------------
-   the fix is known to LAMMPS now, and may add others
-------------------------------------------------------------------------- */
-
-void FixDepositGrid::post_constructor()
-{
-  restart_data.add_parts(id);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -295,13 +285,6 @@ void FixDepositGrid::write_restart(FILE *fp)
 {
   if (started) losses.end_command();
   if (started && (sampled != update->ntimestep || update->whichflag == 0)) sample(false);
-  write_piece(fp, 0);
-}
-
-/* ---------------------------------------------------------------------- */
-
-void FixDepositGrid::write_piece(FILE *fp, int piece)
-{
   const DepositRestart::Saved saved = {(double) started,
                                        results.released,
                                        balls.bulk(),
@@ -310,23 +293,15 @@ void FixDepositGrid::write_piece(FILE *fp, int piece)
                                        update->whichflag == 1 ? now() : elapsed,
                                        rasters.snapshot_time,
                                        rasters.change};
-  restart_data.write(fp, piece, saved, rasters);
+  restart_data.write(fp, id, saved, rasters);
 }
 
 /* ---------------------------------------------------------------------- */
 
 void FixDepositGrid::restart(char *buffer)
 {
-  read_piece(buffer, 0);
-}
-
-/* ---------------------------------------------------------------------- */
-
-void FixDepositGrid::read_piece(const char *buffer, int piece)
-{
   DepositRestart::Saved saved;
-  restart_data.read(id, buffer, piece, saved, rasters);
-  if (piece > 0) return;
+  restart_data.read(id, buffer, saved, rasters);
   started = saved.started;
   results.released = saved.released;
   balls.set_bulk(saved.bulk);

@@ -81,10 +81,6 @@ class FixWallGranMesh : public FixContactWall {
   std::unique_ptr<SurfaceRecorder> recorder;    // nullptr without output
   Slope::RunClock clock;
   double given[3];    // momentum per time in this step, as velocity Verlet hands it over
-  double
-      last[3];    // and in a step that ended a run, which the set-up of the next one only estimates
-  bigint last_step;
-  bool first_step;
   bool started;    // with the first run
 
   FastBalls fast;
@@ -98,7 +94,6 @@ class FixWallGranMesh : public FixContactWall {
   void take_contacts() override;
   std::vector<double> restart_values() override;
   void apply(bool);
-  void keep_given();
   void reduce();
 };
 

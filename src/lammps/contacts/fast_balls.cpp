@@ -6,9 +6,9 @@
 #include "fast_balls.h"
 
 #include "atom.h"
-#include "comm.h"
 #include "contact_guards.h"
 #include "error.h"
+#include "large_messages.h"
 #include "update.h"
 
 #include <cmath>
@@ -53,12 +53,7 @@ void FastBalls::report(ContactGuards &guards)
   bigint all;
   MPI_Allreduce(&count, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (all == 0) return;
-  struct {
-    double share;
-    int rank;
-  } mine = {worst.share, comm->me}, most;
-  MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
-  MPI_Bcast(&worst, sizeof(worst), MPI_BYTE, most.rank, world);
+  with_largest(world, worst.share, worst);
   guards.say(fmt::format(
       "{}: balls hit it too fast {} times, the worst at {:.4g} m/s (ball {:.0f}, step "
       "{:.0f}), {:.3g} times the speed up to which no ball passes, {:g} R sqrt(kn/m): the "

@@ -38,8 +38,6 @@ class DepositLosses : protected Pointers {
 
  private:
   const class DepositBalls &balls;
-
-  std::vector<Slope::MassLedger::Loss> first_of_all_ranks();
 };
 
 }    // namespace LAMMPS_NS

@@ -45,7 +45,6 @@ class DepositRelease : protected Pointers {
   double body_volume(const Mass &) const;
   class Region *body() const;
   double integrate(class Region *) const;
-  double by_columns(const class RegionColumns &, const class Region *, int most) const;
   void check_balls(class Region *, const Mass &) const;
 };
 
