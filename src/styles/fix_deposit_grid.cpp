@@ -120,10 +120,15 @@ void FixDepositGrid::pre_exchange()
 void FixDepositGrid::start()
 {
   DepositRelease release(lmp, balls, options);
-  results.released = release.find();
-  if (!options.body.empty()) losses.begin_command();    // now that the volume of balls is known
+  DepositRelease::Released &released = results.released;
+  released = release.find();
+  if (!options.body.empty()) {
+    balls.set_bulk(released.body / released.mass.solid);
+    losses.begin_command();    // now that the volume of balls is known
+  }
+  released.volume = balls.volume();
   started = fresh = true;
-  release.log(id, results.released);
+  release.log(id, released);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -186,17 +191,16 @@ void FixDepositGrid::sample(bool record)
   const DepositBalls::Sums sums = balls.bin(bins);    // of all ranks
   for (const std::string &line : losses.add_up()) report.warn(line);
 
-  const MassLedger &ledger = losses.ledger;
   const double released = results.released.volume;
   double *value = results.vector;
   results.present = sums.number;
   value[Result::RELEASED] = released;
   value[Result::ON_GRID] = add_bins(record);
   value[Result::OFF_GRID] = sums.off_grid;
-  value[Result::LOST] = ledger.lost.volume;
-  value[Result::RESIDUAL] = ledger.residual(released, value[Result::ON_GRID], sums.off_grid);
+  value[Result::LOST] = losses.lost.volume;
+  value[Result::RESIDUAL] = losses.residual(released, value[Result::ON_GRID], sums.off_grid);
   value[Result::CHANGE] = rasters.change;
-  value[Result::NLOST] = ledger.lost.number;
+  value[Result::NLOST] = losses.lost.number;
   value[Result::FAST_SHARE] = sums.fast / released;
   find_travel(sums);
   sampled = update->ntimestep;
@@ -288,8 +292,8 @@ void FixDepositGrid::write_restart(FILE *fp)
   const DepositRestart::Saved saved = {(double) started,
                                        results.released,
                                        balls.bulk(),
-                                       losses.ledger.lost,
-                                       (double) losses.ledger.nlogged,
+                                       losses.lost,
+                                       (double) losses.nlogged,
                                        update->whichflag == 1 ? now() : elapsed,
                                        rasters.snapshot_time,
                                        rasters.change};
@@ -305,8 +309,8 @@ void FixDepositGrid::restart(char *buffer)
   started = saved.started;
   results.released = saved.released;
   balls.set_bulk(saved.bulk);
-  losses.ledger.lost = saved.lost;
-  losses.ledger.nlogged = (int) saved.nlogged;
+  losses.lost = saved.lost;
+  losses.nlogged = (int) saved.nlogged;
   elapsed = saved.elapsed;
   rasters.snapshot_time = saved.snapshot_time;
   results.vector[Result::CHANGE] = rasters.change = saved.change;

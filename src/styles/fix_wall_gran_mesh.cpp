@@ -313,7 +313,7 @@ void FixWallGranMesh::end_of_step()
    called by the pair style before it computes forces
 ------------------------------------------------------------------------- */
 
-void FixWallGranMesh::find_contacts(bool starting)
+void FixWallGranMesh::find_contacts(bool repeat)
 {
   find_features();
   const MovingBalls moving = pair->moving_balls();
@@ -321,15 +321,15 @@ void FixWallGranMesh::find_contacts(bool starting)
   for (auto &entry : lists) {
     ContactList &l = entry.second;
     const FixedPartners phantoms(centres.data(), entry.first.radius);
-    if (starting)
+    if (repeat)
       l.adopt_overlaps(moving, phantoms, [&](const ContactList::Entry &e, double) {
         const SurfaceWatch::Slot &slot = watch.slots[e.j];
         initial.record(slot.depth(), atom->radius[e.i], atom->tag[e.i], atom->x[e.i],
                        fmt::format("triangle {}", slot.contact.at.triangle + 1));
       });
-    l.find(starting, moving, phantoms);
+    l.find(repeat, moving, phantoms);
   }
-  if (starting)
+  if (repeat)
     initial.check(caller, "move the surface, or remove the balls there with delete_atoms region");
 }
 
@@ -337,7 +337,7 @@ void FixWallGranMesh::find_contacts(bool starting)
    contact forces of the surface on the balls
 ------------------------------------------------------------------------- */
 
-void FixWallGranMesh::apply(bool starting)
+void FixWallGranMesh::apply(bool repeat)
 {
   const MovingBalls moving = pair->moving_balls();
   Vector force = {0.0, 0.0, 0.0}, moment = force, momentum = force;
@@ -371,12 +371,12 @@ void FixWallGranMesh::apply(bool starting)
       moment = moved(moment, -1.0, cross(minus(at, options.point), shown));
       moment = moved(moment, 1.0, torque);
       contacts += !has_ended(age);
-      if (recorder && !starting)
+      if (recorder && !repeat)
         recorder->add(touched.triangle, dot(shown, touched.normal),
                       dot(f, touched.normal) * update->dt);
     };
     ContactTally tally = tally_of(add);
-    entry.second.apply(law, update->dt, starting, moving, phantoms, &tally);
+    entry.second.apply(law, update->dt, repeat, moving, phantoms, &tally);
   }
   torque_of_balls(-1.0);
 

@@ -15,7 +15,7 @@ FixStyle(wall/gran/mesh,FixWallGranMesh);
 #include "fix_contact_wall.h"
 
 #include "contact_list.h"
-#include "fast_balls.h"
+#include "speed_guard.h"
 #include "run_clock.h"
 #include "surface_options.h"
 #include "surface_recorder.h"
@@ -47,7 +47,7 @@ class FixWallGranMesh : public FixContactWall {
   double memory_usage() override;
   void restart(char *) override;
 
-  void find_contacts(bool starting) override;
+  void find_contacts(bool repeat) override;
   double elastic_energy() const override;
 
  private:
@@ -83,7 +83,7 @@ class FixWallGranMesh : public FixContactWall {
   double given[3];    // momentum per time in this step, as velocity Verlet hands it over
   bool started;    // with the first run
 
-  FastBalls fast;
+  SpeedGuard fast;
 
   Slope::ContactLaw smooth_law(int type) const;
   void add_contact(int slot, const double *from);

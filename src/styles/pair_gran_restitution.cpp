@@ -347,7 +347,7 @@ void PairGranRestitution::store_flags() const
 void PairGranRestitution::find_ahead()
 {
   const std::vector<Vector> &half_v = fix_history->continuation.v;
-  ahead_known = table.is_exact() && (!half_v.empty() || !starting);
+  ahead_known = table.is_exact() && (!half_v.empty() || !repeat);
   if (!ahead_known) return;
 
   const int nlocal = atom->nlocal, nall = nlocal + atom->nghost;
@@ -386,7 +386,7 @@ void PairGranRestitution::find_contacts()
   counts.clear(atom->nlocal + atom->nghost);
   const MovingBalls balls = moving_balls();
   const MovingPartners partners = {balls, force->newton_pair ? INT_MAX : atom->nlocal};
-  if (starting) {
+  if (repeat) {
     InitialOverlap initial(lmp);
     for (ContactList &l : lists)
       l.adopt_overlaps(balls, partners, [&](const ContactList::Entry &e, double overlap) {
@@ -395,8 +395,8 @@ void PairGranRestitution::find_contacts()
       });
     initial.check("Pair gran/restitution");
   }
-  for (ContactList &l : lists) l.find(starting, balls, partners);
-  for (ContactHolder *wall : walls) wall->find_contacts(starting);
+  for (ContactList &l : lists) l.find(repeat, balls, partners);
+  for (ContactHolder *wall : walls) wall->find_contacts(repeat);
   if (force->newton_pair) compat::reverse_comm(comm, this);
   compat::forward_comm(comm, this);
 }
@@ -449,10 +449,9 @@ void PairGranRestitution::transfer_history(double *source, double *target, int, 
 void PairGranRestitution::compute(int eflag, int vflag)
 {
   ev_init(eflag, vflag);
-  starting = update->setupflag;
-  const bool lists_new = starting || fix_history->lists_new;
-  if (lists_new) build_lists();
-  if (starting)
+  repeat = update->setupflag;
+  if (repeat || fix_history->lists_new) build_lists();
+  if (repeat)
     fix_history->continuation.find_half_step();
   else
     fix_history->continuation.forget_half_step();
@@ -473,7 +472,7 @@ void PairGranRestitution::compute(int eflag, int vflag)
   const bool visited = evflag || works.wanted;
   for (size_t k = 0; k < lists.size(); k++) {
     law = &table.law(k / 3);
-    lists[k].apply(*law, dt, starting, balls, partners, visited ? &tally : nullptr);
+    lists[k].apply(*law, dt, repeat, balls, partners, visited ? &tally : nullptr);
   }
   fix_history->lists_used = true;
 }

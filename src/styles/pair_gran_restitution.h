@@ -80,7 +80,7 @@ class PairGranRestitution : public Pair, public ContactHistoryOwner {
   ContactTable table;
 
   double dt = 0.0;
-  bool starting = false;    // at set-up
+  bool repeat = false;    // the forces of the last step are found once more: at a set-up
   int freeze_group_bit;
   class FixContactHistory *fix_history;
   std::vector<Slope::ContactList> lists;    // by type pair and by which side is frozen

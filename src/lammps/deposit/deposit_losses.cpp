@@ -15,36 +15,36 @@ using Slope::MassLedger;
 
 void DepositLosses::begin_command()
 {
-  ledger.begin_command(balls.outside(nullptr));
+  MassLedger::begin_command(balls.outside(nullptr));
 }
 
 /* ---------------------------------------------------------------------- */
 
 void DepositLosses::end_command()
 {
-  if (ledger.in_command()) ledger.end_command(balls.outside(nullptr));
+  if (in_command()) MassLedger::end_command(balls.outside(nullptr));
 }
 
 /* ---------------------------------------------------------------------- */
 
 void DepositLosses::before_exchange()
 {
-  ledger.lose(balls.outside(&ledger));
+  lose(balls.outside(this));
 }
 
 /* ---------------------------------------------------------------------- */
 
 std::vector<std::string> DepositLosses::add_up()
 {
-  double mine[2] = {ledger.lost_here().number, ledger.lost_here().volume}, all[2];
+  double mine[2] = {lost_here().number, lost_here().volume}, all[2];
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
-  MassLedger::Mass gone;
+  Mass gone;
   gone.number = all[0];
   gone.volume = all[1];
-  const double before = ledger.lost.number;
-  ledger.take_here(gone);
-  if (gone.number == 0.0 || !ledger.must_log()) return {};
-  std::vector<MassLedger::Loss> first = gather_records(world, ledger.take_notes());
+  const double before = lost.number;
+  take_here(gone);
+  if (gone.number == 0.0 || !must_log()) return {};
+  std::vector<Loss> first = gather_records(world, take_notes());
   share(world, first);
-  return ledger.lines(first, before);
+  return lines(first, before);
 }

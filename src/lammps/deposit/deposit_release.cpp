@@ -35,7 +35,7 @@ enum { X, Y, Z };
 
 /* ---------------------------------------------------------------------- */
 
-DepositRelease::DepositRelease(LAMMPS *lmp, DepositBalls &balls_in,
+DepositRelease::DepositRelease(LAMMPS *lmp, const DepositBalls &balls_in,
                                const DepositOptions &options_in) :
     Pointers(lmp),
     balls(balls_in), options(options_in)
@@ -44,16 +44,12 @@ DepositRelease::DepositRelease(LAMMPS *lmp, DepositBalls &balls_in,
 
 /* ---------------------------------------------------------------------- */
 
-DepositRelease::Released DepositRelease::find()
+DepositRelease::Released DepositRelease::find() const
 {
   Released found = {find_mass(), 0.0, 0.0, 0.0};
   DepositGround(lmp, options.terrain).check(balls);
-  if (!options.body.empty()) {
-    found.body = body_volume(found.mass);
-    balls.set_bulk(found.body / found.mass.solid);
-  }
+  if (!options.body.empty()) found.body = body_volume(found.mass);
   double z;
-  found.volume = balls.volume();
   balls.farthest(found.mass.top, found.front, z);
   return found;
 }

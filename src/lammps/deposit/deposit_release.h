@@ -29,16 +29,15 @@ class DepositRelease : protected Pointers {
     double front;     // plan distance of the farthest ball from the top
   };
 
-  DepositRelease(class LAMMPS *, class DepositBalls &, const class DepositOptions &);
+  DepositRelease(class LAMMPS *, const class DepositBalls &, const class DepositOptions &);
 
-  // with a bulk region the balls get their bulk factor
-  Released find();
+  Released find() const;    // all but the bulk volume
 
   // to the log
   void log(const std::string &fix_id, const Released &) const;
 
  private:
-  class DepositBalls &balls;
+  const class DepositBalls &balls;
   const class DepositOptions &options;
 
   Mass find_mass() const;

@@ -3,7 +3,7 @@
    Distributed under the GNU General Public License, version 2
 ------------------------------------------------------------------------- */
 
-#include "fast_balls.h"
+#include "speed_guard.h"
 
 #include "atom.h"
 #include "contact_guards.h"
@@ -17,12 +17,12 @@ using namespace LAMMPS_NS;
 
 /* ---------------------------------------------------------------------- */
 
-FastBalls::FastBalls(LAMMPS *lmp, const std::string &_caller) : Pointers(lmp), caller(_caller)
+SpeedGuard::SpeedGuard(LAMMPS *lmp, const std::string &_caller) : Pointers(lmp), caller(_caller)
 {
   start();
 }
 
-void FastBalls::start()
+void SpeedGuard::start()
 {
   worst = {0.0, 0.0, 0.0, 0.0};
   count = 0;
@@ -30,7 +30,7 @@ void FastBalls::start()
 
 /* ---------------------------------------------------------------------- */
 
-void FastBalls::record(int i, double speed, double stiffness)
+void SpeedGuard::record(int i, double speed, double stiffness)
 {
   const double deep = speed * std::sqrt(atom->rmass[i] / stiffness);
   const double share = deep / (DEEPEST * atom->radius[i]);
@@ -48,7 +48,7 @@ void FastBalls::record(int i, double speed, double stiffness)
 
 /* ---------------------------------------------------------------------- */
 
-void FastBalls::report(ContactGuards &guards)
+void SpeedGuard::report(ContactGuards &guards)
 {
   bigint all;
   MPI_Allreduce(&count, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
