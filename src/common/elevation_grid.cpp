@@ -15,7 +15,6 @@
 #include <cstdlib>
 #include <limits>
 #include <map>
-#include <new>
 #include <sys/stat.h>
 
 using namespace Slope;
@@ -28,13 +27,6 @@ static const double POWER[] = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
 
 namespace {
 
-std::string to_text(double value)
-{
-  char text[32];
-  snprintf(text, sizeof(text), "%.10g", value);
-  return text;
-}
-
 // as few digits as keep the value
 
 std::string exact(double value)
@@ -45,21 +37,14 @@ std::string exact(double value)
   return text;
 }
 
-std::string gigabytes(double bytes)
-{
-  char text[32];
-  snprintf(text, sizeof(text), "%.3g GB", 1e-9 * bytes);
-  return text;
-}
-
 // Linux gives more memory than there is, and kills who uses it: what cannot fit is refused before
 
 void check_memory(const std::string &what, double need)
 {
   const double have = free_memory();
-  if (need > have)
-    throw std::runtime_error(what + " need " + gigabytes(need) + " of memory, " + gigabytes(have) +
-                             " are free");
+  char text[80];
+  snprintf(text, sizeof(text), " need %.3g GB of memory, %.3g GB are free", 1e-9 * need, 1e-9 * have);
+  if (need > have) throw std::runtime_error(what + text);
 }
 
 bool ends_word(char c)
@@ -94,25 +79,10 @@ class GridText {
  public:
   explicit GridText(const std::string &_path) : path(_path), pos(0), last(0)
   {
-    FILE *fp = fopen(path.c_str(), "rb");
-    if (!fp) throw std::runtime_error("cannot read " + path + ": " + strerror(errno));
     struct stat info;
-    const double size = fstat(fileno(fp), &info) == 0 && S_ISREG(info.st_mode) ? info.st_size : 0;
-    std::string reason;
-    try {
-      check_memory(path + ": its text would", size);
-      text.reserve(size);
-      std::vector<char> chunk(1 << 16);
-      size_t n;
-      while ((n = fread(chunk.data(), 1, chunk.size(), fp)) > 0) text.append(chunk.data(), n);
-      if (ferror(fp)) reason = std::string("cannot read ") + path + ": " + strerror(errno);
-    } catch (std::bad_alloc &) {
-      reason = path + ": its text needs " + gigabytes(size) + " of memory, more than is free";
-    } catch (std::runtime_error &e) {
-      reason = e.what();
-    }
-    fclose(fp);
-    if (!reason.empty()) throw std::runtime_error(reason);
+    const bool known = stat(path.c_str(), &info) == 0 && S_ISREG(info.st_mode);
+    check_memory(path + ": its text would", known ? info.st_size : 0);
+    text = bytes_of(path);
     pos = text_start(text);
   }
 
@@ -151,10 +121,7 @@ class GridText {
     if (at_end()) return "the end of the file";
     last = pos;
     while (pos < text.size() && !isspace((unsigned char) text[pos])) pos++;
-    std::string found = text.substr(last, std::min<size_t>(pos - last, 24));
-    for (char &c : found)
-      if (!isprint((unsigned char) c)) c = '?';
-    return found;
+    return excerpt(text.substr(last, pos - last));
   }
 
   // one line: file, line of the word that was taken last, what is wrong
@@ -190,11 +157,11 @@ Header read_header(GridText &text)
     double value;
     if (!text.number(value)) throw text.error(key + " must be a number, got " + text.word());
     if (!std::isfinite(value) && name != "nodata_value")
-      throw text.error(key + " must be finite, got " + to_text(value));
+      throw text.error(key + " must be finite, got " + number_text(value));
     if ((name == "ncols" || name == "nrows") && (value < 1.0 || value != std::floor(value)))
-      throw text.error(key + " must be a whole number >= 1, got " + to_text(value));
+      throw text.error(key + " must be a whole number >= 1, got " + number_text(value));
     if (name == "cellsize" && value <= 0.0)
-      throw text.error(key + " must be > 0, got " + to_text(value));
+      throw text.error(key + " must be > 0, got " + number_text(value));
     for (const std::string axis : {"xll", "yll"})
       for (const bool center : {false, true})
         if (name == axis + (center ? "center" : "corner") &&
@@ -209,9 +176,9 @@ Header read_header(GridText &text)
 
   const double ncells = header["ncols"] * header["nrows"];
   if (ncells > ElevationGrid::MAXCELLS)
-    throw text.error(to_text(header["ncols"]) + " x " + to_text(header["nrows"]) +
-                     " cells would need " + to_text(std::round(8e-9 * ncells)) +
-                     " GB of memory, at most " + to_text(ElevationGrid::MAXCELLS) +
+    throw text.error(number_text(header["ncols"]) + " x " + number_text(header["nrows"]) +
+                     " cells would need " + number_text(std::round(8e-9 * ncells)) +
+                     " GB of memory, at most " + number_text(ElevationGrid::MAXCELLS) +
                      " cells are possible");
 
   Header found;
@@ -306,14 +273,8 @@ ElevationGrid ElevationGrid::read(const std::string &path)
   // a value and what separates it are two bytes: a short file cannot ask for a lot of memory
 
   const size_t most = std::min(ncells, text.size() / 2 + 1);
-  const double need = text.size() + 8.0 * most;
-  check_memory(path + ": " + size, need);
-  try {
-    grid.z.reserve(most);
-  } catch (std::bad_alloc &) {
-    throw std::runtime_error(path + ": " + size + " need " + gigabytes(need) +
-                             " of memory, more than is free");
-  }
+  check_memory(path + ": " + size, text.size() + 8.0 * most);
+  grid.z.reserve(most);
 
   // a NODATA value beyond any height may have been rounded, as in -3.40282e+38
 
@@ -334,7 +295,7 @@ ElevationGrid ElevationGrid::read(const std::string &path)
         (std::isnan(value) && std::isnan(nodata)))
       value = NaN;
     else if (!std::isfinite(value))
-      throw text.error("height must be finite, got " + to_text(value));
+      throw text.error("height must be finite, got " + number_text(value));
     else
       any = true;
     grid.z.push_back(value);

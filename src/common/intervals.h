@@ -40,6 +40,18 @@ class Intervals {
     if (!only.empty()) parts.push_back(only);
   }
 
+  void append(const Interval &above)    // above all that there is
+  {
+    if (!above.empty()) parts.push_back(above);
+  }
+
+  double length() const
+  {
+    double sum = 0.0;
+    for (const Interval &part : parts) sum += part.hi - part.lo;
+    return sum;
+  }
+
   void intersect(const Interval &with)
   {
     size_t left = 0;

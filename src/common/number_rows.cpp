@@ -14,6 +14,8 @@
 
 using namespace Slope;
 
+static const char *const BLANK = " \t\r\v\f";
+
 /* ----------------------------------------------------------------------
    all numbers of a line; false if there is anything else in it
 ------------------------------------------------------------------------- */
@@ -49,7 +51,7 @@ std::vector<NumberRow> Slope::read_number_rows(const std::string &path, int coun
 {
   const std::string text = text_of(path);
   std::vector<NumberRow> rows;
-  NumberRow row = {0, {}};
+  NumberRow row = {0, false, {}};
   for (size_t pos = 0; pos < text.size();) {
     const size_t end = std::min(text.find('\n', pos), text.size());
     const std::string whole = text.substr(pos, end - pos);
@@ -57,13 +59,18 @@ std::vector<NumberRow> Slope::read_number_rows(const std::string &path, int coun
     row.line++;
     const std::string content = whole.substr(0, whole.find('#'));
     const bool numbers = parse(content, row.values);
-    if (numbers && row.values.empty()) continue;
-    if (!numbers || (int) row.values.size() != count)
+    if (numbers && row.values.empty()) {
+      row.apart = row.apart || content == whole;
+      continue;
+    }
+    if (!numbers || (int) row.values.size() != count) {
+      const size_t from = content.find_first_not_of(BLANK), to = content.find_last_not_of(BLANK);
       throw line_error(path, row.line,
                        "must be " + std::to_string(count) + " numbers, " + names + ", got " +
-                           excerpt(content.substr(
-                               std::min(content.find_first_not_of(" \t\r"), content.size()))));
+                           excerpt(content.substr(from, to - from + 1)));
+    }
     rows.push_back(row);
+    row.apart = false;
   }
   return rows;
 }

@@ -14,6 +14,7 @@ namespace Slope {
 // A line of a text file of numbers.
 struct NumberRow {
   int line;                      // in the file, from 1
+  bool apart;                    // after an empty line
   std::vector<double> values;    // finite
 };
 

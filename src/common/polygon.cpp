@@ -5,15 +5,11 @@
 
 #include "polygon.h"
 
+#include "number_rows.h"
 #include "text_file.h"
 
 #include <algorithm>
-#include <cctype>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <stdexcept>
 #include <utility>
 
@@ -22,8 +18,7 @@ using namespace Slope;
 static constexpr double LARGEST = 1.0e12;        // coordinates; their products must be finite
 static constexpr double MOST_PARTS = 64.0;       // of edges in strips, per edge: bounds the memory
 static constexpr double ROUNDING = 4.0e-16;      // relative error of a determinant's terms
-static constexpr double COORDINATE = 1.0e-14;    // more than the relative rounding of a coordinate
-static constexpr double ON_LINE = 1.0e-9;        // of a cell, a strip, or the bounding box
+static constexpr double ON_LINE = 1.0e-9;        // of a cell
 
 namespace {
 
@@ -49,59 +44,22 @@ struct Rings {
   std::vector<std::vector<int>> lines;
 };
 
-std::string trimmed(const std::string &text)
-{
-  const char *space = " \t\r\v\f";
-  const size_t begin = text.find_first_not_of(space);
-  if (begin == std::string::npos) return "";
-  return text.substr(begin, text.find_last_not_of(space) - begin + 1);
-}
-
-// "x,y" and nothing else
-
-bool parse(const std::string &text, Point &p)
-{
-  char *end;
-  p.x = strtod(text.c_str(), &end);
-  if (end == text.c_str()) return false;
-  while (isspace((unsigned char) *end)) end++;
-  if (*end != ',') return false;
-  const char *second = end + 1;
-  p.y = strtod(second, &end);
-  return end != second && end == text.c_str() + text.size();    // no NUL in it
-}
-
 Rings read_rings(const std::string &path)
 {
-  const std::string text = text_of(path);
-
   Rings rings;
-  bool open = false;    // the last ring continues
-  int line = 0;
-  for (size_t pos = 0; pos < text.size();) {
-    const size_t end = std::min(text.find('\n', pos), text.size());
-    const std::string whole = trimmed(text.substr(pos, end - pos));
-    const std::string content = trimmed(whole.substr(0, whole.find('#')));
-    pos = end + 1;
-    line++;
-    if (whole.empty()) open = false;
-    if (content.empty()) continue;
-
-    Point p;
-    if (!parse(content, p))
-      throw line_error(path, line, "must be two numbers, x,y, got " + excerpt(content));
-    if (!(std::fabs(p.x) <= LARGEST && std::fabs(p.y) <= LARGEST))    // NaN, too
-      throw line_error(path, line,
-                       "x and y must be numbers within +-" + number_text(LARGEST) + ", got " +
-                           excerpt(content));
-    if (!open) {
+  for (const NumberRow &row : read_number_rows(path, 2, "x,y")) {
+    const Point p = {row.values[0], row.values[1]};
+    if (!(std::fabs(p.x) <= LARGEST && std::fabs(p.y) <= LARGEST))
+      throw line_error(path, row.line,
+                       "x and y must be within +-" + number_text(LARGEST) + ", got " +
+                           number_text(p.x) + "," + number_text(p.y));
+    if (row.apart || rings.points.empty()) {
       rings.points.emplace_back();
       rings.lines.emplace_back();
-      open = true;
     }
     if (!rings.points.back().empty() && rings.points.back().back() == p) continue;
     rings.points.back().push_back(p);
-    rings.lines.back().push_back(line);
+    rings.lines.back().push_back(row.line);
   }
   if (rings.points.empty())
     throw std::runtime_error(path + ": must hold a ring of points x,y, it has none");
@@ -313,7 +271,7 @@ Polygon::Polygon(const std::vector<double> &_xy, const std::vector<int> &_sizes)
 int Polygon::strip(double y) const
 {
   const double at = (y - ylo) * scale;    // of a height that is next to none, scale is infinite
-  return at > 0.0 ? (int) std::min(first_ending.size() - 2.0, at) : 0;
+  return at > 0.0 ? (int) std::min(first.size() - 2.0, at) : 0;
 }
 
 void Polygon::cut_into_strips()
@@ -327,56 +285,26 @@ void Polygon::cut_into_strips()
   do {
     n = (n + 1) / 2;
     scale = n / (yhi - ylo);
-    first_ending.assign(n + 1, 0);
+    first.assign(n + 1, 0);
     parts = 0.0;
     for (const Edge &e : edges) parts += strip(e.y1) - strip(e.y0) + 1;
   } while (n > 1 && parts > MOST_PARTS * edges.size());
 
   // counted, then put
 
-  first_through.assign(n + 1, 0);
-  for (const Edge &e : edges) {
-    const int lo = strip(e.y0), hi = strip(e.y1);
-    first_ending[lo + 1]++;
-    if (hi > lo) first_ending[hi + 1]++;
-    for (int k = lo + 1; k < hi; k++) first_through[k + 1]++;
-  }
-  for (int k = 0; k < n; k++) {
-    first_ending[k + 1] += first_ending[k];
-    first_through[k + 1] += first_through[k];
-  }
-  ending.resize(first_ending[n]);
-  through.resize(first_through[n]);
-  std::vector<int> place_ending = first_ending, place_through = first_through;
-  const double slack =
-      ON_LINE * (xhi - xlo) + COORDINATE * std::max(std::fabs(xlo), std::fabs(xhi));
-  const double rim = ON_LINE / scale + COORDINATE * std::max(std::fabs(ylo), std::fabs(yhi));
-  for (size_t i = 0; i < edges.size(); i++) {
-    const Edge &e = edges[i];
-    const int lo = strip(e.y0), hi = strip(e.y1);
-    ending[place_ending[lo]++] = (int) i;
-    if (hi > lo) ending[place_ending[hi]++] = (int) i;
-    for (int k = lo + 1; k < hi; k++) {
-      const double xa = e.xat(ylo + k / scale - rim);
-      const double xb = e.xat(ylo + (k + 1) / scale + rim);
-      through[place_through[k]++] = {std::min(xa, xb) - slack, std::max(xa, xb) + slack, 0.0,
-                                     (int) i};
-    }
-  }
-
-  for (int k = 0; k < n; k++) {
-    std::sort(ending.begin() + first_ending[k], ending.begin() + first_ending[k + 1],
-              [this](int a, int b) {
-                return edges[a].xmax() > edges[b].xmax();
-              });
-    std::sort(through.begin() + first_through[k], through.begin() + first_through[k + 1],
-              [](const Through &a, const Through &b) {
-                return a.xmin > b.xmin;
-              });
-    double reach = -LARGEST;
-    for (int i = first_through[k + 1] - 1; i >= first_through[k]; i--)
-      through[i].reach = reach = std::max(reach, through[i].xmax);
-  }
+  first.assign(n + 1, 0);
+  for (const Edge &e : edges)
+    for (int k = strip(e.y0); k <= strip(e.y1); k++) first[k + 1]++;
+  for (int k = 0; k < n; k++) first[k + 1] += first[k];
+  members.resize(first[n]);
+  std::vector<int> place = first;
+  for (size_t i = 0; i < edges.size(); i++)
+    for (int k = strip(edges[i].y0); k <= strip(edges[i].y1); k++)
+      members[place[k]++] = static_cast<int>(i);
+  for (int k = 0; k < n; k++)
+    std::sort(members.begin() + first[k], members.begin() + first[k + 1], [this](int a, int b) {
+      return edges[a].xmax() > edges[b].xmax();
+    });
 }
 
 /* ---------------------------------------------------------------------- */
@@ -428,20 +356,11 @@ bool Polygon::inside(double x, double y) const
 
   const int k = strip(y);
   bool odd = false;
-  for (int i = first_ending[k]; i < first_ending[k + 1]; i++) {
-    const Edge &e = edges[ending[i]];
+  for (int i = first[k]; i < first[k + 1]; i++) {
+    const Edge &e = edges[members[i]];
     if (e.xmax() <= x) break;
     if (e.y0 <= y && y < e.y1 && is_east(e)) odd = !odd;
   }
-
-  const auto begin = through.begin() + first_through[k];
-  const auto end = through.begin() + first_through[k + 1];
-  auto t = std::partition_point(begin, end, [=](const Through &t) {
-    return t.xmin > x;
-  });
-  if ((t - begin) % 2) odd = !odd;
-  for (; t != end && t->reach > x; t++)
-    if (is_east(edges[t->edge])) odd = !odd;
   return odd;
 }
 

@@ -47,19 +47,9 @@ class Polygon {
   };
   std::vector<Edge> edges;
 
-  // The bounding box is cut into strips along x. An edge that goes all through a strip counts for
-  // each point to the west of it there, whatever the point's y: such edges are sorted by the x
-  // that they have in the strip, and most are counted without a look at them. Of an edge that
-  // ends in the strip y must be looked at.
-  struct Through {
-    double xmin, xmax;    // of the edge in this strip, a little more than that
-    double reach;         // largest xmax of this one and those after it
-    int edge;
-  };
-  double scale;                             // strips per height
-  std::vector<int> first_through;           // of strip k: from first[k] to first[k+1]
-  std::vector<Through> through;             // in a strip: by xmin, from the east
-  std::vector<int> first_ending, ending;    // in a strip: by their largest x, from the east
+  // The bounding box is cut into strips along x: only the edges in its strip may be east of a point
+  double scale;                       // strips per height
+  std::vector<int> first, members;    // of strip k: members first[k] to first[k+1], by xmax, from the east
 
   int strip(double y) const;
   void cut_into_strips();

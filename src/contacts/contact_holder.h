@@ -12,8 +12,8 @@ namespace LAMMPS_NS {
 // init(); the pair style asks all of them for their contacts before any force is computed.
 class ContactHolder {
  public:
-  // which contacts touch now (starting: in the step that has just ended), counted with each ball
-  virtual void find_contacts(bool starting) = 0;
+  // which contacts touch now (repeat: in the step that has just ended, at a set-up), counted with each ball
+  virtual void find_contacts(bool repeat) = 0;
 
   // of the springs of this rank's contacts, J
   virtual double elastic_energy() const = 0;

@@ -24,6 +24,7 @@
 #include "style_name.h"
 
 #include <string>
+#include <typeinfo>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -185,11 +186,16 @@ struct Cylinder {
   double c1, c2, radius, lo, hi;    // c1 c2: y z, x z, x y of the axis
 };
 
-// false if the region is none of these
+// false if the region is none of these; a class that is derived from one may be another shape
+
+template <typename Shape> Shape *exactly(Region *region)
+{
+  return typeid(*region) == typeid(Shape) ? static_cast<Shape *>(region) : nullptr;
+}
 
 inline bool shape(Region *region, Sphere &s)
 {
-  auto *r = dynamic_cast<RegSphere *>(region);
+  auto *r = exactly<RegSphere>(region);
   if (!r) return false;
   s = {r->*reveal(RegSphere_xc()), r->*reveal(RegSphere_yc()), r->*reveal(RegSphere_zc()),
        r->*reveal(RegSphere_radius())};
@@ -198,7 +204,7 @@ inline bool shape(Region *region, Sphere &s)
 
 inline bool shape(Region *region, Block &b)
 {
-  auto *r = dynamic_cast<RegBlock *>(region);
+  auto *r = exactly<RegBlock>(region);
   if (!r) return false;
   b = {{r->*reveal(RegBlock_xlo()), r->*reveal(RegBlock_ylo()), r->*reveal(RegBlock_zlo())},
        {r->*reveal(RegBlock_xhi()), r->*reveal(RegBlock_yhi()), r->*reveal(RegBlock_zhi())}};
@@ -207,7 +213,7 @@ inline bool shape(Region *region, Block &b)
 
 inline bool shape(Region *region, Plane &p)
 {
-  auto *r = dynamic_cast<RegPlane *>(region);
+  auto *r = exactly<RegPlane>(region);
   if (!r) return false;
   const double *normal = r->*reveal(RegPlane_normal());
   p = {r->*reveal(RegPlane_xp()),
@@ -219,7 +225,7 @@ inline bool shape(Region *region, Plane &p)
 
 inline bool shape(Region *region, Cylinder &c)
 {
-  auto *r = dynamic_cast<RegCylinder *>(region);
+  auto *r = exactly<RegCylinder>(region);
   if (!r) return false;
   c = {r->*reveal(RegCylinder_axis()), r->*reveal(RegCylinder_c1()),
        r->*reveal(RegCylinder_c2()),   r->*reveal(RegCylinder_radius()),

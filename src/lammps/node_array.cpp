@@ -7,9 +7,9 @@
 
 #include "comm.h"
 #include "free_memory.h"
+#include "node_memory.h"
 
 #include <algorithm>
-#include <new>
 
 using namespace LAMMPS_NS;
 
@@ -22,41 +22,20 @@ static constexpr size_t CHUNK = 1 << 24;    // numbers of a message: MPI counts 
 
 /* ---------------------------------------------------------------------- */
 
-NodeArray::NodeArray(LAMMPS *lmp, size_t size_in) :
-    Pointers(lmp), size(size_in), numbers(nullptr), shared(false)
+NodeArray::NodeArray(LAMMPS *lmp, size_t size_in, const std::string &what) :
+    Pointers(lmp), size(size_in), numbers(nullptr), node(ranks_of_node(lmp)), shared(false)
 {
-#ifdef SLOPE_NODES
-  MPI_Comm_split_type(world, MPI_COMM_TYPE_SHARED, comm->me, MPI_INFO_NULL, &node);
-#else
-  MPI_Comm_split(world, comm->me, comm->me, &node);
-#endif
-  int ranks;
-  MPI_Comm_size(node, &ranks);
   const double bytes = static_cast<double>(size) * sizeof(double);
-  need(is_first() ? bytes : 0.0);
+  const std::string remedy = "cut it to the site, or make its cells larger";
+  check_node_memory(lmp, is_first() ? bytes : 0.0, what, remedy);
   share();
 
   // a copy on each rank of a node that shares none
 
-  need(shared ? 0.0 : bytes * ranks);
-  int lacking = 0, any;
-  try {
-    if (!shared) own.resize(size);
-  } catch (std::bad_alloc &) {
-    lacking = 1;
-  }
-  MPI_Allreduce(&lacking, &any, 1, MPI_INT, MPI_MAX, world);
-  if (any) throw std::bad_alloc();
-  if (!shared) numbers = own.data();
-}
-
-// bytes that a node is to give: std::bad_alloc on all ranks if one has less
-
-void NodeArray::need(double bytes) const
-{
-  int lacking = bytes > Slope::free_memory(), any;
-  MPI_Allreduce(&lacking, &any, 1, MPI_INT, MPI_MAX, world);
-  if (any) throw std::bad_alloc();
+  check_node_memory(lmp, shared ? 0.0 : bytes, what, remedy);
+  if (shared) return;
+  own.resize(size);
+  numbers = own.data();
 }
 
 /* ---------------------------------------------------------------------- */

@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <mpi.h>
+#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -18,8 +19,8 @@ namespace LAMMPS_NS {
 // share (MPI 3); a copy on each rank where the node gives no such memory, or MPI does not know it.
 class NodeArray : protected Pointers {
  public:
-  // All ranks. std::bad_alloc on all of them if a node does not have the memory.
-  NodeArray(class LAMMPS *, size_t size);
+  // All ranks. The run ends if a node does not have the memory: "WHAT need ..." (check_node_memory())
+  NodeArray(class LAMMPS *, size_t size, const std::string &what);
   ~NodeArray() override;    // all ranks
   NodeArray(const NodeArray &) = delete;
   NodeArray &operator=(const NodeArray &) = delete;
@@ -40,7 +41,6 @@ class NodeArray : protected Pointers {
 
   bool is_first() const;    // of those who share a copy
   void share();
-  void need(double bytes) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -12,17 +12,15 @@
 
 using namespace LAMMPS_NS;
 
-/* ----------------------------------------------------------------------
-   the ranks that share the memory of this one
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
-static MPI_Comm ranks_of_node(LAMMPS *lmp)
+MPI_Comm LAMMPS_NS::ranks_of_node(LAMMPS *lmp)
 {
   MPI_Comm node;
-#ifdef MPI_STUBS
-  MPI_Comm_dup(lmp->world, &node);
-#else
+#if defined(MPI_VERSION) && MPI_VERSION >= 3
   MPI_Comm_split_type(lmp->world, MPI_COMM_TYPE_SHARED, lmp->comm->me, MPI_INFO_NULL, &node);
+#else
+  MPI_Comm_split(lmp->world, lmp->comm->me, lmp->comm->me, &node);
 #endif
   return node;
 }

@@ -12,6 +12,9 @@
 
 namespace LAMMPS_NS {
 
+// Collective: the ranks that share the memory of this one, to be freed; this one alone where MPI does not know
+MPI_Comm ranks_of_node(class LAMMPS *);
+
 // Collective. Each rank says how many bytes it is going to ask for: if the ranks of any node need
 // more than the node has left, the run ends on all ranks with one line:
 // "WHAT need 5.1 GB of memory on a node (2 ranks), which has 3.2 GB left: REMEDY".

@@ -16,30 +16,21 @@
 
 namespace LAMMPS_NS {
 
-// Collective: rank 0 does something that may throw, such as reading a file; what went wrong
-// there ends the run on all ranks, with one line that starts with caller. Nobody hangs.
-template <typename Work> void on_rank_zero(LAMMPS *lmp, const std::string &caller, Work work)
+// Collective: the problem of the first rank that has one (not empty) ends the run on all ranks, with one
+// line that starts with caller. Nobody hangs.
+inline void end_if_any(LAMMPS *lmp, const std::string &caller, std::string problem)
 {
-  std::string problem;
-  if (lmp->comm->me == 0) {
-    try {
-      work();
-    } catch (std::bad_alloc &) {
-      problem = "not enough memory";
-    } catch (std::exception &e) {
-      problem = e.what();
-    }
-  }
+  int mine = problem.empty() ? lmp->comm->nprocs : lmp->comm->me, first;
+  MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, lmp->world);
+  if (first == lmp->comm->nprocs) return;
   int length = problem.size();
-  MPI_Bcast(&length, 1, MPI_INT, 0, lmp->world);
-  if (length == 0) return;
+  MPI_Bcast(&length, 1, MPI_INT, first, lmp->world);
   problem.resize(length);
-  MPI_Bcast(&problem[0], length, MPI_CHAR, 0, lmp->world);
+  MPI_Bcast(&problem[0], length, MPI_CHAR, first, lmp->world);
   lmp->error->all(FLERR, "{}: {}", caller, problem);
 }
 
-// Collective: all ranks do something that may throw on any of them; what went wrong first ends the
-// run on all ranks in the same way.
+// Collective: all ranks do something that may throw on any of them, which ends the run in this way.
 template <typename Work> void on_all_ranks(LAMMPS *lmp, const std::string &caller, Work work)
 {
   std::string problem;
@@ -50,15 +41,15 @@ template <typename Work> void on_all_ranks(LAMMPS *lmp, const std::string &calle
   } catch (std::exception &e) {
     problem = e.what();
   }
-  const int me = lmp->comm->me, nprocs = lmp->comm->nprocs;
-  int mine = problem.empty() ? nprocs : me, first;
-  MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, lmp->world);
-  if (first == nprocs) return;
-  int length = problem.size();
-  MPI_Bcast(&length, 1, MPI_INT, first, lmp->world);
-  problem.resize(length);
-  MPI_Bcast(&problem[0], length, MPI_CHAR, first, lmp->world);
-  lmp->error->all(FLERR, "{}: {}", caller, problem);
+  end_if_any(lmp, caller, problem);
+}
+
+// The same of rank 0 alone: reading a file, writing one.
+template <typename Work> void on_rank_zero(LAMMPS *lmp, const std::string &caller, Work work)
+{
+  on_all_ranks(lmp, caller, [&]() {
+    if (lmp->comm->me == 0) work();
+  });
 }
 
 }    // namespace LAMMPS_NS

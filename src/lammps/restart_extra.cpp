@@ -6,8 +6,7 @@
 #include "restart_extra.h"
 
 #include "atom.h"
-#include "comm.h"
-#include "error.h"
+#include "rank_zero.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,16 +44,9 @@ const double *RestartExtra::reject(int i, double number)
 
 void RestartExtra::check(const std::string &caller) const
 {
-  int mine = ball ? comm->me : comm->nprocs, first;
-  MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, world);
-  if (first == comm->nprocs) return;
-  tagint which = ball;
-  double number = wrong;
-  MPI_Bcast(&which, 1, MPI_LMP_TAGINT, first, world);
-  MPI_Bcast(&number, 1, MPI_DOUBLE, first, world);
-  error->all(
-      FLERR,
-      "{}: the contacts of ball {} in the restart file must have a whole number of values that "
-      "fits in it, got {:g}: the file is damaged, take an earlier one",
-      caller, which, number);
+  const std::string problem = fmt::format(
+      "the contacts of ball {} in the restart file must have a whole number of values that fits in "
+      "it, got {:g}: the file is damaged, take an earlier one",
+      ball, wrong);
+  end_if_any(lmp, caller, ball ? problem : "");
 }

@@ -4,9 +4,8 @@
 ------------------------------------------------------------------------- */
 
 /* What pair gran/restitution remembers: LAMMPS' own neighbor history for the contacts and, for
-   each ball, force and torque of the last step, so that a continued run starts from those, and
-   from the half-step velocities, with which the one before ended. LAMMPS finds the partners of a
-   ball by ID: IDs that change between runs are followed. Made by the pair style. */
+   each ball, what a continuation needs. LAMMPS finds the partners of a ball by ID: IDs that change
+   between runs are followed. Made by the pair style. */
 
 #include "fix_contact_history.h"
 
@@ -19,21 +18,19 @@
 #include "update.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <unordered_map>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
 
-static constexpr double ROUNDING = 1.0e-10;    // of the largest force
+static constexpr int STORED = Continuation::STORED;
 
 /* ---------------------------------------------------------------------- */
 
 FixContactHistory::FixContactHistory(LAMMPS *lmp, int narg, char **arg) :
     FixNeighHistory(lmp, narg, arg), owner(nullptr), lists_new(true), lists_used(false),
-    force(nullptr), before(nullptr), forces_taken_back(false), force_step(-1), force_dt(0.0),
-    known_as(nullptr), restart_extra(lmp)
+    continuation(lmp), known_as(nullptr), restart_extra(lmp)
 {
   comm_forward = 1;
   nevery = EnergyGuard::FINITE_EVERY;
@@ -44,8 +41,6 @@ FixContactHistory::FixContactHistory(LAMMPS *lmp, int narg, char **arg) :
 
 FixContactHistory::~FixContactHistory()
 {
-  memory->destroy(force);
-  memory->destroy(before);
   memory->destroy(known_as);
 }
 
@@ -148,63 +143,16 @@ void FixContactHistory::end_of_step()
 void FixContactHistory::post_run()
 {
   FixNeighHistory::post_run();
-  if (!forces_known()) keep_forces();
+  if (!continuation.forces_known()) continuation.keep_forces();
   if (update->ntimestep % EnergyGuard::EVERY) owner->watch_energy();
   owner->report_guards();
 }
 
-/* ----------------------------------------------------------------------
-   forces of a step that ends a run or goes into a restart file
-------------------------------------------------------------------------- */
-
-void FixContactHistory::keep_forces()
-{
-  for (int i = 0; i < atom->nlocal; i++) {
-    memcpy(force[i], atom->f[i], 3 * sizeof(double));
-    memcpy(&force[i][3], atom->torque[i], 3 * sizeof(double));
-  }
-  force_step = update->ntimestep;
-  force_dt = update->dt;
-}
-
-/* ----------------------------------------------------------------------
-   Before the first step of a continued run: the set-up has found the forces of the last step
-   once more, to rounding. With the very same ones the run is the uncut one to the bit. If they
-   differ by more, something has been changed in between, and those of the set-up stand.
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 void FixContactHistory::initial_integrate(int)
 {
-  take_back_forces();
-  if (atom->nlocal) memcpy(before[0], atom->f[0], atom->nlocal * BEFORE * sizeof(double));
-}
-
-void FixContactHistory::take_back_forces()
-{
-  forces_taken_back = false;
-  const bool kept = force_step == update->ntimestep - 1 && force_step == update->firststep;
-  force_step = -1;    // a step of this number may come again: reset_timestep
-  if (!kept) return;
-  double mine[4] = {0.0, 0.0, 0.0, 0.0}, most[4];    // largest force, torque; differences
-  for (int i = 0; i < atom->nlocal; i++)
-    for (int d = 0; d < 3; d++) {
-      mine[0] = std::max(mine[0], std::fabs(force[i][d]));
-      mine[1] = std::max(mine[1], std::fabs(force[i][3 + d]));
-      mine[2] = std::max(mine[2], std::fabs(force[i][d] - atom->f[i][d]));
-      mine[3] = std::max(mine[3], std::fabs(force[i][3 + d] - atom->torque[i][d]));
-    }
-  MPI_Allreduce(mine, most, 4, MPI_DOUBLE, MPI_MAX, world);
-  if (most[2] > ROUNDING * most[0] || most[3] > ROUNDING * most[1]) return;
-  forces_taken_back = true;
-  for (int i = 0; i < atom->nlocal; i++) {
-    memcpy(atom->f[i], force[i], 3 * sizeof(double));
-    memcpy(atom->torque[i], &force[i][3], 3 * sizeof(double));
-  }
-}
-
-bool FixContactHistory::forces_known() const
-{
-  return force_step == update->ntimestep && force_dt == update->dt;
+  continuation.begin_step();
 }
 
 /* ----------------------------------------------------------------------
@@ -220,24 +168,21 @@ double FixContactHistory::memory_usage()
 void FixContactHistory::grow_arrays(int nmax)
 {
   FixNeighHistory::grow_arrays(nmax);
-  memory->grow(force, nmax, FORCE, "contact_history:force");
-  memory->grow(before, nmax, BEFORE, "contact_history:before");
+  continuation.grow(nmax);
   memory->grow(known_as, nmax, "contact_history:known_as");
 }
 
 void FixContactHistory::copy_arrays(int i, int j, int delflag)
 {
   FixNeighHistory::copy_arrays(i, j, delflag);
-  memcpy(force[j], force[i], FORCE * sizeof(double));
-  memcpy(before[j], before[i], BEFORE * sizeof(double));
+  continuation.copy(i, j);
   known_as[j] = known_as[i];
 }
 
 void FixContactHistory::set_arrays(int i)
 {
   FixNeighHistory::set_arrays(i);
-  memset(force[i], 0, FORCE * sizeof(double));
-  memset(before[i], 0, BEFORE * sizeof(double));
+  continuation.clear(i);
   known_as[i] = 0;
 }
 
@@ -245,28 +190,14 @@ int FixContactHistory::pack_exchange(int i, double *buf)
 {
   int m = FixNeighHistory::pack_exchange(i, buf);
   buf[m++] = ubuf(known_as[i]).d;
-  return m + pack_forces(i, &buf[m]);
+  return m + continuation.pack(i, &buf[m]);
 }
 
 int FixContactHistory::unpack_exchange(int i, double *buf)
 {
   int m = FixNeighHistory::unpack_exchange(i, buf);
   known_as[i] = static_cast<tagint>(ubuf(buf[m++]).i);
-  return m + unpack_forces(i, &buf[m]);
-}
-
-int FixContactHistory::pack_forces(int i, double *buf) const
-{
-  memcpy(buf, force[i], FORCE * sizeof(double));
-  memcpy(buf + FORCE, before[i], BEFORE * sizeof(double));
-  return STORED;
-}
-
-int FixContactHistory::unpack_forces(int i, const double *buf)
-{
-  memcpy(force[i], buf, FORCE * sizeof(double));
-  memcpy(before[i], buf + FORCE, BEFORE * sizeof(double));
-  return STORED;
+  return m + continuation.unpack(i, &buf[m]);
 }
 
 /* ----------------------------------------------------------------------
@@ -277,27 +208,27 @@ void FixContactHistory::write_restart(FILE *fp)
 {
   if (update->whichflag == 0) rename_partners();
   pre_exchange();
-  if (!forces_known() && update->whichflag == 1) keep_forces();    // in a run: forces are known
+  if (!continuation.forces_known() && update->whichflag == 1)    // in a run: forces are known
+    continuation.keep_forces();
   if (comm->me == 0) {
-    const double list[2] = {static_cast<double>(force_step), force_dt};
-    const int size = sizeof(list);
+    const Continuation::Numbers numbers = continuation.numbers();
+    const int size = sizeof(numbers);
     fwrite(&size, sizeof(int), 1, fp);
-    fwrite(list, sizeof(double), 2, fp);
+    fwrite(&numbers, size, 1, fp);
   }
 }
 
 void FixContactHistory::restart(char *buf)
 {
-  double list[2];
-  memcpy(list, buf, sizeof(list));
-  force_step = static_cast<bigint>(list[0]);
-  force_dt = list[1];
+  Continuation::Numbers numbers;
+  memcpy(&numbers, buf, sizeof(numbers));
+  continuation.set_numbers(numbers);
 }
 
 int FixContactHistory::pack_restart(int i, double *buf)
 {
   int m = FixNeighHistory::pack_restart(i, buf);
-  m += pack_forces(i, &buf[m]);
+  m += continuation.pack(i, &buf[m]);
   buf[0] = m;
   return m;
 }
@@ -308,7 +239,7 @@ void FixContactHistory::unpack_restart(int i, int nth)
   if (!list) return;
   FixNeighHistory::unpack_restart(i, nth);
   known_as[i] = atom->tag[i];
-  unpack_forces(i, list + static_cast<int>(list[0]) - STORED);
+  continuation.unpack(i, list + static_cast<int>(list[0]) - STORED);
 }
 
 int FixContactHistory::size_restart(int i)

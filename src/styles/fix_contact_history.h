@@ -14,6 +14,7 @@ FixStyle(CONTACT_HISTORY,FixContactHistory);
 
 #include "fix_neigh_history.h"
 
+#include "continuation.h"
 #include "restart_extra.h"
 
 namespace LAMMPS_NS {
@@ -52,24 +53,13 @@ class FixContactHistory : public FixNeighHistory {
   bool lists_new;     // the neighbor list has been rebuilt
   bool lists_used;    // its histories are newer than those stored by atom
 
-  // force (3) and torque (3) on each ball in the last step of a run, or when a restart file is written
-  double **force;
-  double **before;    // force (3) on each ball in the step before the last one
-  bool forces_known() const;
-  bool forces_taken_back;    // they are those that the first step of this run has begun with
+  Continuation continuation;
 
  private:
-  static constexpr int FORCE = 6, BEFORE = 3, STORED = FORCE + BEFORE;    // numbers of each ball
-  bigint force_step;    // the step that they belong to
-  double force_dt;      // and its length
   tagint
       *known_as;    // ID of each ball when the contacts were stored by atom; 0: it came after that
   RestartExtra restart_extra;
 
-  int pack_forces(int, double *) const;
-  int unpack_forces(int, const double *);
-  void keep_forces();
-  void take_back_forces();
   void rename_partners();
 };
 

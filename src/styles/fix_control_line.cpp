@@ -11,8 +11,8 @@
 #include "constants.h"
 #include "file_set.h"
 #include "fix_deposit_grid.h"
-#include "gather_records.h"
 #include "lammps_compat.h"
+#include "large_messages.h"
 #include "rank_zero.h"
 #include "region_surface.h"
 #include "requirements.h"
@@ -99,10 +99,7 @@ void FixControlLine::read_line()
   on_rank_zero(lmp, "Fix control/line", [&]() {
     xy = PlanLine::read(file).xy;
   });
-  int n = (int) xy.size();
-  MPI_Bcast(&n, 1, MPI_INT, 0, world);
-  xy.resize(n);
-  MPI_Bcast(xy.data(), n, MPI_DOUBLE, 0, world);
+  share(world, xy);
   line = PlanLine(xy);
 }
 

@@ -55,17 +55,7 @@ FixDepositGrid::FixDepositGrid(LAMMPS *lmp, int narg, char **arg) :
 
 FixDepositGrid::~FixDepositGrid()
 {
-  restart_data.remove_parts();
   delete[] extlist;
-}
-
-/* ----------------------------------------------------------------------
-   the fix is known to LAMMPS now, and may add others
-------------------------------------------------------------------------- */
-
-void FixDepositGrid::post_constructor()
-{
-  restart_data.add_parts(id);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -130,10 +120,15 @@ void FixDepositGrid::pre_exchange()
 void FixDepositGrid::start()
 {
   DepositRelease release(lmp, balls, options);
-  results.released = release.find();
-  if (!options.body.empty()) losses.begin_command();    // now that the volume of balls is known
+  DepositRelease::Released &released = results.released;
+  released = release.find();
+  if (!options.body.empty()) {
+    balls.set_bulk(released.body / released.mass.solid);
+    losses.begin_command();    // now that the volume of balls is known
+  }
+  released.volume = balls.volume();
   started = fresh = true;
-  release.log(id, results.released);
+  release.log(id, released);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -196,17 +191,16 @@ void FixDepositGrid::sample(bool record)
   const DepositBalls::Sums sums = balls.bin(bins);    // of all ranks
   for (const std::string &line : losses.add_up()) report.warn(line);
 
-  const MassLedger &ledger = losses.ledger;
   const double released = results.released.volume;
   double *value = results.vector;
   results.present = sums.number;
   value[Result::RELEASED] = released;
   value[Result::ON_GRID] = add_bins(record);
   value[Result::OFF_GRID] = sums.off_grid;
-  value[Result::LOST] = ledger.lost.volume;
-  value[Result::RESIDUAL] = ledger.residual(released, value[Result::ON_GRID], sums.off_grid);
+  value[Result::LOST] = losses.lost.volume;
+  value[Result::RESIDUAL] = losses.residual(released, value[Result::ON_GRID], sums.off_grid);
   value[Result::CHANGE] = rasters.change;
-  value[Result::NLOST] = ledger.lost.number;
+  value[Result::NLOST] = losses.lost.number;
   value[Result::FAST_SHARE] = sums.fast / released;
   find_travel(sums);
   sampled = update->ntimestep;
@@ -295,43 +289,28 @@ void FixDepositGrid::write_restart(FILE *fp)
 {
   if (started) losses.end_command();
   if (started && (sampled != update->ntimestep || update->whichflag == 0)) sample(false);
-  write_piece(fp, 0);
-}
-
-/* ---------------------------------------------------------------------- */
-
-void FixDepositGrid::write_piece(FILE *fp, int piece)
-{
   const DepositRestart::Saved saved = {(double) started,
                                        results.released,
                                        balls.bulk(),
-                                       losses.ledger.lost,
-                                       (double) losses.ledger.nlogged,
+                                       losses.lost,
+                                       (double) losses.nlogged,
                                        update->whichflag == 1 ? now() : elapsed,
                                        rasters.snapshot_time,
                                        rasters.change};
-  restart_data.write(fp, piece, saved, rasters);
+  restart_data.write(fp, id, saved, rasters);
 }
 
 /* ---------------------------------------------------------------------- */
 
 void FixDepositGrid::restart(char *buffer)
 {
-  read_piece(buffer, 0);
-}
-
-/* ---------------------------------------------------------------------- */
-
-void FixDepositGrid::read_piece(const char *buffer, int piece)
-{
   DepositRestart::Saved saved;
-  restart_data.read(id, buffer, piece, saved, rasters);
-  if (piece > 0) return;
+  restart_data.read(id, buffer, saved, rasters);
   started = saved.started;
   results.released = saved.released;
   balls.set_bulk(saved.bulk);
-  losses.ledger.lost = saved.lost;
-  losses.ledger.nlogged = (int) saved.nlogged;
+  losses.lost = saved.lost;
+  losses.nlogged = (int) saved.nlogged;
   elapsed = saved.elapsed;
   rasters.snapshot_time = saved.snapshot_time;
   results.vector[Result::CHANGE] = rasters.change = saved.change;

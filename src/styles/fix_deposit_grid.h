@@ -33,7 +33,6 @@ class FixDepositGrid : public Fix {
  public:
   FixDepositGrid(class LAMMPS *, int, char **);
   ~FixDepositGrid() override;
-  void post_constructor() override;
   int setmask() override;
   void init() override;
   void setup_pre_exchange() override;
@@ -54,10 +53,6 @@ class FixDepositGrid : public Fix {
     return balls.bulk();
   }    // bulk volume / volume of a ball; 0: not known yet
   const std::string &terrain() const { return options.terrain; }    // region of the ground
-
-  // for the fixes that have the further pieces of a large grid in restart files
-  void write_piece(FILE *, int piece);
-  void read_piece(const char *, int piece);
 
  private:
   const DepositOptions options;

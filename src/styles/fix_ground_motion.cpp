@@ -10,6 +10,7 @@
 #include "fix_ground_motion.h"
 
 #include "lammps_compat.h"
+#include "large_messages.h"
 #include "rank_zero.h"
 #include "requirements.h"
 #include "style_argument.h"
@@ -75,11 +76,7 @@ void FixGroundMotion::read_record()
   on_rank_zero(lmp, "Fix ground/motion", [&]() {
     points = MotionRecord::read(file, scale).list();
   });
-  int n = (int) points.size();
-  MPI_Bcast(&n, 1, MPI_INT, 0, world);
-  points.resize(n);
-  const int width = sizeof(MotionRecord::Point) / sizeof(double);
-  MPI_Bcast(points.data(), n * width, MPI_DOUBLE, 0, world);
+  share(world, points);
   record = MotionRecord(points, scale);
 }
 
@@ -157,47 +154,22 @@ void FixGroundMotion::check_integrators()
         id, all[1], all[0]);
 }
 
-/* ----------------------------------------------------------------------
-   The forces of a set-up are those of the last step, and pair gran/restitution finds them from the
-   velocities in its middle: what the force changed since it takes back itself, and the kick since is
-   taken back here.
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 void FixGroundMotion::setup_pre_force(int)
 {
-  kept.clear();
   if (update->whichflag != 1) return;
   const bool goes_on = clock.begin(update->ntimestep, update->dt);
   record.velocity(clock.now() - start, ground);
   if (!goes_on) std::fill(last_kick, last_kick + 3, 0.0);
-  if (!goes_on || !force->pair_match("gran/restitution", 1)) return;
-
-  double **const v = atom->v;
-  const int n = atom->nlocal;
-  if (n > 0 && !others_keep()) kept.assign(v[0], v[0] + 3 * n);
-  for (int i = 0; i < n; i++)
-    for (int c = 0; c < 3 && follows(atom->mask[i]); c++) v[i][c] -= last_kick[c];
-}
-
-/* ----------------------------------------------------------------------
-   of several such fixes, the first that takes back its kick keeps the velocities for all
-------------------------------------------------------------------------- */
-
-bool FixGroundMotion::others_keep() const
-{
-  for (Fix *fix : compat::fixes_of_style(lmp, "ground/motion")) {
-    if (fix == this) break;
-    if (!static_cast<FixGroundMotion *>(fix)->kept.empty()) return true;
-  }
-  return false;
 }
 
 /* ---------------------------------------------------------------------- */
 
-void FixGroundMotion::setup(int)
+void FixGroundMotion::take_back_kick()
 {
-  if (!kept.empty()) std::copy(kept.begin(), kept.end(), atom->v[0]);
-  std::vector<double>().swap(kept);
+  for (int i = 0; i < atom->nlocal; i++)
+    for (int c = 0; c < 3 && follows(atom->mask[i]); c++) atom->v[i][c] -= last_kick[c];
 }
 
 /* ---------------------------------------------------------------------- */

@@ -14,6 +14,7 @@ FixStyle(ground/motion,FixGroundMotion);
 
 #include "fix.h"
 
+#include "continuation.h"
 #include "motion_record.h"
 #include "run_clock.h"
 
@@ -22,19 +23,19 @@ FixStyle(ground/motion,FixGroundMotion);
 
 namespace LAMMPS_NS {
 
-class FixGroundMotion : public Fix {
+class FixGroundMotion : public Fix, public Kick {
  public:
   FixGroundMotion(class LAMMPS *, int, char **);
   int setmask() override;
   void init() override;
   void setup_pre_force(int) override;
-  void setup(int) override;
   void initial_integrate(int) override;
   void post_integrate() override;
   void final_integrate() override;
   void reset_dt() override;
   double compute_vector(int) override;
   void *extract(const char *, int &) override;
+  void take_back_kick() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
   double memory_usage() override;
@@ -52,14 +53,12 @@ class FixGroundMotion : public Fix {
   double ground[3];            // velocity up to which the balls have been kicked
   double last_kick[3];         // over the second half of the last step
   double work;                 // of the motion on balls of this rank, J
-  std::vector<double> kept;    // velocities during a set-up
 
   void read_keywords(int, char **);
   void read_record();
   void announce() const;
   bool follows(int mask) const { return (mask & groupbit) && (mask & kicked) && !(mask & frozen); }
   void check_integrators();
-  bool others_keep() const;
   void kick_until(double time, bool first_half);
 
   struct Key {

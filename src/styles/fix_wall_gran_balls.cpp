@@ -209,29 +209,29 @@ void FixWallGranBalls::post_force(int)
    called by the pair style before it computes forces
 ------------------------------------------------------------------------- */
 
-void FixWallGranBalls::find_contacts(bool starting)
+void FixWallGranBalls::find_contacts(bool repeat)
 {
   const MovingBalls moving = pair->moving_balls();
   const FixedPartners fixed = partners();
   InitialOverlap initial(lmp);
   for (ContactList &l : lists) {
-    if (starting)
+    if (repeat)
       l.adopt_overlaps(moving, fixed, [&](const ContactList::Entry &e, double overlap) {
         const Vector &ball = balls->places()[e.j];
         initial.record(
             overlap, std::min(atom->radius[e.i], radius), atom->tag[e.i], atom->x[e.i],
             fmt::format("the fixed ball at {:.6g} {:.6g} {:.6g},", ball.x, ball.y, ball.z));
       });
-    l.find(starting, moving, fixed);
+    l.find(repeat, moving, fixed);
   }
-  if (starting) initial.check(caller);
+  if (repeat) initial.check(caller);
 }
 
 /* ----------------------------------------------------------------------
    contact forces of the fixed balls on the moving ones
 ------------------------------------------------------------------------- */
 
-void FixWallGranBalls::apply(bool starting)
+void FixWallGranBalls::apply(bool repeat)
 {
   const MovingBalls moving = pair->moving_balls();
   const FixedPartners fixed = partners();
@@ -245,7 +245,7 @@ void FixWallGranBalls::apply(bool starting)
     ContactList &l = lists[type];
     if (l.entries.empty()) continue;
     law = &law_of(type);
-    l.apply(*law, update->dt, starting, moving, fixed, &tally);
+    l.apply(*law, update->dt, repeat, moving, fixed, &tally);
   }
 
   force_mine[0] = -tally.force.x;

@@ -38,7 +38,7 @@ class FixWallGranBalls : public FixContactWall, public BallBody {
   double memory_usage() override;
   void restart(char *) override;
 
-  void find_contacts(bool starting) override;
+  void find_contacts(bool repeat) override;
   double elastic_energy() const override;
 
   // largest overlap (m) of a ball at x with any fixed ball, <= 0 if it touches none

@@ -32,8 +32,8 @@ using namespace Slope;
 
 static constexpr double SAME_SURFACE = 1.0e-9;
 static constexpr double COARSE = 0.05;    // largest rounding of a file, in smallest radii
-static constexpr double RESTART_FORMAT = 2.0;
-static constexpr int RESTART_SIZE = 16;    // numbers, without those of the recorder
+static constexpr double RESTART_FORMAT = 3.0;
+static constexpr int RESTART_SIZE = 12;    // numbers, without those of the recorder
 
 static Vector vector_of(const double *x)
 {
@@ -46,7 +46,7 @@ static Vector vector_of(const double *x)
 
 FixWallGranMesh::FixWallGranMesh(LAMMPS *lmp, int narg, char **arg) :
     FixContactWall(lmp, narg, arg, 3), options(lmp, caller, narg - 3, arg + 3),
-    surface(options.surface()), all_ready(false), first_step(false), started(false),
+    surface(options.surface()), all_ready(false), started(false),
     fast(lmp, caller)
 {
   wall_type = options.type;
@@ -54,8 +54,7 @@ FixWallGranMesh::FixWallGranMesh(LAMMPS *lmp, int narg, char **arg) :
 
   std::fill(mine, mine + NVALUE, 0.0);
   std::fill(all, all + NVALUE, 0.0);
-  for (int d = 0; d < 3; d++) given[d] = last[d] = 0.0;
-  last_step = -1;
+  for (int d = 0; d < 3; d++) given[d] = 0.0;
   if (options.every) {
     nevery = options.every;
     recorder.reset(new SurfaceRecorder(lmp, caller, options.output, *surface));
@@ -284,17 +283,12 @@ void FixWallGranMesh::setup(int)
   }
   started = true;
   apply(true);
-  first_step = true;
 }
 
 void FixWallGranMesh::post_force(int)
 {
   double before[3];
   std::copy(given, given + 3, before);
-  if (first_step && last_step == update->ntimestep - 1 && pair->forces_taken_back())
-    std::copy(last, last + 3, before);
-  if (first_step) last_step = -1;    // a step of this number may come again: reset_timestep
-  first_step = false;
   apply(false);
   for (int d = 0; d < 3; d++) mine[IMPULSE + d] += 0.5 * update->dt * (before[d] + given[d]);
   clock.pass(update->ntimestep);
@@ -319,7 +313,7 @@ void FixWallGranMesh::end_of_step()
    called by the pair style before it computes forces
 ------------------------------------------------------------------------- */
 
-void FixWallGranMesh::find_contacts(bool starting)
+void FixWallGranMesh::find_contacts(bool repeat)
 {
   find_features();
   const MovingBalls moving = pair->moving_balls();
@@ -327,15 +321,15 @@ void FixWallGranMesh::find_contacts(bool starting)
   for (auto &entry : lists) {
     ContactList &l = entry.second;
     const FixedPartners phantoms(centres.data(), entry.first.radius);
-    if (starting)
+    if (repeat)
       l.adopt_overlaps(moving, phantoms, [&](const ContactList::Entry &e, double) {
         const SurfaceWatch::Slot &slot = watch.slots[e.j];
         initial.record(slot.depth(), atom->radius[e.i], atom->tag[e.i], atom->x[e.i],
                        fmt::format("triangle {}", slot.contact.at.triangle + 1));
       });
-    l.find(starting, moving, phantoms);
+    l.find(repeat, moving, phantoms);
   }
-  if (starting)
+  if (repeat)
     initial.check(caller, "move the surface, or remove the balls there with delete_atoms region");
 }
 
@@ -343,7 +337,7 @@ void FixWallGranMesh::find_contacts(bool starting)
    contact forces of the surface on the balls
 ------------------------------------------------------------------------- */
 
-void FixWallGranMesh::apply(bool starting)
+void FixWallGranMesh::apply(bool repeat)
 {
   const MovingBalls moving = pair->moving_balls();
   Vector force = {0.0, 0.0, 0.0}, moment = force, momentum = force;
@@ -377,12 +371,12 @@ void FixWallGranMesh::apply(bool starting)
       moment = moved(moment, -1.0, cross(minus(at, options.point), shown));
       moment = moved(moment, 1.0, torque);
       contacts += !has_ended(age);
-      if (recorder && !starting)
+      if (recorder && !repeat)
         recorder->add(touched.triangle, dot(shown, touched.normal),
                       dot(f, touched.normal) * update->dt);
     };
     ContactTally tally = tally_of(add);
-    entry.second.apply(law, update->dt, starting, moving, phantoms, &tally);
+    entry.second.apply(law, update->dt, repeat, moving, phantoms, &tally);
   }
   torque_of_balls(-1.0);
 
@@ -423,20 +417,8 @@ double FixWallGranMesh::elastic_energy() const
 void FixWallGranMesh::post_run()
 {
   FixContactWall::post_run();
-  keep_given();
   if (recorder && update->whichflag == 1) recorder->write();
   fast.report(pair->guards);
-}
-
-/* ----------------------------------------------------------------------
-   as the forces of the balls are kept (fix_contact_history.cpp)
-------------------------------------------------------------------------- */
-
-void FixWallGranMesh::keep_given()
-{
-  if (last_step == update->ntimestep) return;    // run 0 only has what the set-up found
-  std::copy(given, given + 3, last);
-  last_step = update->ntimestep;
 }
 
 /* ----------------------------------------------------------------------
@@ -479,19 +461,14 @@ double FixWallGranMesh::memory_usage()
 
 std::vector<double> FixWallGranMesh::restart_values()
 {
-  double momentum[3];
-  if (update->whichflag == 1) keep_given();
-  MPI_Allreduce(last, momentum, 3, MPI_DOUBLE, MPI_SUM, world);
   reduce();
   std::vector<double> recorded;
   if (recorder) recorded = recorder->pack();
   std::vector<double> list = {RESTART_FORMAT, static_cast<double>(surface->count()),
                               surface->checksum()};
   list.insert(list.end(), all + IMPULSE, all + IMPULSE + 3);
-  list.insert(list.end(), momentum, momentum + 3);
   const RunClock::State at = clock.state();
   list.insert(list.end(), {at.base, at.base_step, at.last, at.step_size, at.on});
-  list.push_back(static_cast<double>(last_step));
   list.push_back(static_cast<double>(recorded.size()));
   list.insert(list.end(), recorded.begin(), recorded.end());
   return list;
@@ -509,13 +486,9 @@ void FixWallGranMesh::restart(char *buf)
       std::fabs(list[2] - surface->checksum()) > SAME_SURFACE * std::fabs(surface->checksum()))
     error->all(FLERR, "{}: the restart file was written with another surface ({} there, {} here)",
                caller, counted(list[1], "triangle"), counted(surface->count(), "triangle"));
-  for (int d = 0; d < 3 && comm->me == 0; d++) {
-    mine[IMPULSE + d] = list[3 + d];
-    last[d] = list[6 + d];
-  }
+  for (int d = 0; d < 3 && comm->me == 0; d++) mine[IMPULSE + d] = list[3 + d];
   all_ready = false;
-  clock.set_state({list[9], list[10], list[11], list[12], list[13]});
-  last_step = static_cast<bigint>(list[14]);
+  clock.set_state({list[6], list[7], list[8], list[9], list[10]});
   std::vector<double> recorded(static_cast<size_t>(list[RESTART_SIZE - 1]));
   if (!recorder || recorded.empty()) return;
   memcpy(recorded.data(), buf + sizeof(list), recorded.size() * sizeof(double));

@@ -15,7 +15,7 @@ FixStyle(wall/gran/mesh,FixWallGranMesh);
 #include "fix_contact_wall.h"
 
 #include "contact_list.h"
-#include "fast_balls.h"
+#include "speed_guard.h"
 #include "run_clock.h"
 #include "surface_options.h"
 #include "surface_recorder.h"
@@ -47,7 +47,7 @@ class FixWallGranMesh : public FixContactWall {
   double memory_usage() override;
   void restart(char *) override;
 
-  void find_contacts(bool starting) override;
+  void find_contacts(bool repeat) override;
   double elastic_energy() const override;
 
  private:
@@ -81,13 +81,9 @@ class FixWallGranMesh : public FixContactWall {
   std::unique_ptr<SurfaceRecorder> recorder;    // nullptr without output
   Slope::RunClock clock;
   double given[3];    // momentum per time in this step, as velocity Verlet hands it over
-  double
-      last[3];    // and in a step that ended a run, which the set-up of the next one only estimates
-  bigint last_step;
-  bool first_step;
   bool started;    // with the first run
 
-  FastBalls fast;
+  SpeedGuard fast;
 
   Slope::ContactLaw smooth_law(int type) const;
   void add_contact(int slot, const double *from);
@@ -98,7 +94,6 @@ class FixWallGranMesh : public FixContactWall {
   void take_contacts() override;
   std::vector<double> restart_values() override;
   void apply(bool);
-  void keep_given();
   void reduce();
 };
 

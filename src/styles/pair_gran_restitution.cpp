@@ -15,17 +15,18 @@
 #include "fix_dummy.h"
 #include "force.h"
 #include "initial_overlap.h"
-#include "kernel_choice.h"
 #include "lammps_compat.h"
 #include "memory.h"
 #include "neigh_list.h"
 #include "neighbor.h"
+#include "rank_zero.h"
 #include "requirements.h"
 #include "update.h"
 
 #include <algorithm>
 #include <climits>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 
 using namespace LAMMPS_NS;
@@ -54,7 +55,12 @@ PairGranRestitution::PairGranRestitution(LAMMPS *lmp) : Pair(lmp), guards(lmp, t
   single_extra = 10;
   svector = new double[single_extra];
 
-  choose_contact_kernel(lmp);
+  int kernel = 0, of_all;
+  on_all_ranks(lmp, "Pair gran/restitution", [&]() {
+    kernel = ContactKernels::choose(getenv(ContactKernels::ENVIRONMENT));
+  });
+  MPI_Allreduce(&kernel, &of_all, 1, MPI_INT, MPI_MIN, world);
+  ContactKernels::set_current(of_all);
   freeze_group_bit = 0;
   dt = update->dt;
 
@@ -334,52 +340,21 @@ void PairGranRestitution::store_flags() const
 }
 
 /* ----------------------------------------------------------------------
-   At set-up velocities are those of the end of a step, while a step's forces are made with
-   those of its middle. A run that goes on, from a restart file too, gets these back: then its
-   first forces are the ones that the last step had.
-------------------------------------------------------------------------- */
-
-void PairGranRestitution::find_half_step()
-{
-  half_v.clear();
-  half_omega.clear();
-  if (!fix_history->forces_known()) return;
-
-  const int nlocal = atom->nlocal, nall = nlocal + atom->nghost;
-  Vector *const v = vectors(atom->v), *const omega = vectors(atom->omega);
-  half_v.reserve(nall + 1);    // see build_lists()
-  half_omega.reserve(nall + 1);
-  half_v.assign(v, v + nall);
-  half_omega.assign(omega, omega + nall);
-  for (int i = 0; i < nlocal; i++) {
-    const double *f =
-        fix_history->force[i];    // velocity Verlet's second half step, for solid balls
-    const double a = 0.5 * dt / atom->rmass[i];
-    const double b = a / (0.4 * atom->radius[i] * atom->radius[i]);
-    v[i] = {v[i].x - a * f[0], v[i].y - a * f[1], v[i].z - a * f[2]};
-    omega[i] = {omega[i].x - b * f[3], omega[i].y - b * f[4], omega[i].z - b * f[5]};
-  }
-  comm->forward_comm();    // to the ghosts
-  std::swap_ranges(v, v + nall, half_v.begin());
-  std::swap_ranges(omega, omega + nall, half_omega.begin());
-}
-
-/* ----------------------------------------------------------------------
    The velocities of the middle of the step, and a part of what the last step's force adds to them until
    its end. At the set-up of a new run those of the end are known, and the force is not.
 ------------------------------------------------------------------------- */
 
 void PairGranRestitution::find_ahead()
 {
-  const bool half = !half_v.empty();
-  ahead_known = table.is_exact() && (half || !starting);
+  const std::vector<Vector> &half_v = fix_history->continuation.v;
+  ahead_known = table.is_exact() && (!half_v.empty() || !repeat);
   if (!ahead_known) return;
 
   const int nlocal = atom->nlocal, nall = nlocal + atom->nghost;
-  const Vector *const v = half ? half_v.data() : vectors(atom->v);
+  const Vector *const v = half_v.empty() ? vectors(atom->v) : half_v.data();
   if (static_cast<int>(ahead.size()) <= nall) ahead.resize(atom->nmax + 1);    // see build_lists()
   for (int i = 0; i < nlocal; i++) {
-    const double *f = fix_history->before[i];
+    const double *f = fix_history->continuation.before[i];
     const double a = AHEAD * dt / atom->rmass[i];
     ahead[i] = {v[i].x + a * f[0], v[i].y + a * f[1], v[i].z + a * f[2]};
   }
@@ -389,17 +364,16 @@ void PairGranRestitution::find_ahead()
 
 MovingBalls PairGranRestitution::moving_balls()
 {
-  const bool half = !half_v.empty();
+  Continuation &half = fix_history->continuation;
+  const Vector *const v = half.v.empty() ? vectors(atom->v) : half.v.data();
   return {vectors(atom->x),
-          half ? half_v.data() : vectors(atom->v),
-          half ? half_omega.data() : vectors(atom->omega),
+          v,
+          half.v.empty() ? vectors(atom->omega) : half.omega.data(),
           atom->radius,
           atom->rmass,
           vectors(atom->f),
           vectors(atom->torque),
-          ahead_known ? ahead.data()
-              : half  ? half_v.data()
-                      : vectors(atom->v),
+          ahead_known ? ahead.data() : v,
           counts.now.data()};
 }
 
@@ -412,7 +386,7 @@ void PairGranRestitution::find_contacts()
   counts.clear(atom->nlocal + atom->nghost);
   const MovingBalls balls = moving_balls();
   const MovingPartners partners = {balls, force->newton_pair ? INT_MAX : atom->nlocal};
-  if (starting) {
+  if (repeat) {
     InitialOverlap initial(lmp);
     for (ContactList &l : lists)
       l.adopt_overlaps(balls, partners, [&](const ContactList::Entry &e, double overlap) {
@@ -421,8 +395,8 @@ void PairGranRestitution::find_contacts()
       });
     initial.check("Pair gran/restitution");
   }
-  for (ContactList &l : lists) l.find(starting, balls, partners);
-  for (ContactHolder *wall : walls) wall->find_contacts(starting);
+  for (ContactList &l : lists) l.find(repeat, balls, partners);
+  for (ContactHolder *wall : walls) wall->find_contacts(repeat);
   if (force->newton_pair) compat::reverse_comm(comm, this);
   compat::forward_comm(comm, this);
 }
@@ -455,11 +429,6 @@ void PairGranRestitution::unpack_reverse_comm(int n, int *list, double *buf)
   counts.unpack_reverse(n, list, buf);
 }
 
-bool PairGranRestitution::forces_taken_back() const
-{
-  return fix_history && fix_history->forces_taken_back;
-}
-
 /* ----------------------------------------------------------------------
    history of a contact as its partner sees it
 ------------------------------------------------------------------------- */
@@ -480,16 +449,12 @@ void PairGranRestitution::transfer_history(double *source, double *target, int, 
 void PairGranRestitution::compute(int eflag, int vflag)
 {
   ev_init(eflag, vflag);
-  starting = update->setupflag;
-  const bool lists_new = starting || fix_history->lists_new;
-  if (lists_new) build_lists();
-  if (starting)
-    find_half_step();
-  else if (!half_v.empty()) {
-    half_v.clear();
-    half_omega.clear();
-  }
-
+  repeat = update->setupflag;
+  if (repeat || fix_history->lists_new) build_lists();
+  if (repeat)
+    fix_history->continuation.find_half_step();
+  else
+    fix_history->continuation.forget_half_step();
   find_ahead();
   find_contacts();
 
@@ -507,7 +472,7 @@ void PairGranRestitution::compute(int eflag, int vflag)
   const bool visited = evflag || works.wanted;
   for (size_t k = 0; k < lists.size(); k++) {
     law = &table.law(k / 3);
-    lists[k].apply(*law, dt, starting, balls, partners, visited ? &tally : nullptr);
+    lists[k].apply(*law, dt, repeat, balls, partners, visited ? &tally : nullptr);
   }
   fix_history->lists_used = true;
 }
@@ -619,7 +584,7 @@ double PairGranRestitution::memory_usage()
   double bytes = table.memory_usage();
   for (const ContactList &l : lists) bytes += l.memory_usage();
   bytes += counts.now.capacity();
-  bytes += (half_v.capacity() + half_omega.capacity() + ahead.capacity()) * sizeof(Vector);
+  bytes += ahead.capacity() * sizeof(Vector);
   return bytes;
 }
 

@@ -68,7 +68,6 @@ class PairGranRestitution : public Pair, public ContactHistoryOwner {
   void announce_wall(class ContactHolder *wall, int wall_type, int groupbit, const char *style);
   Slope::MovingBalls moving_balls();
   void store_flags() const override;
-  bool forces_taken_back() const;    // in the first step of a run: its forces are the last step's
   bool sizes_vary = false;           // between two neighbor lists, by fix adapt
 
   void watch_energy() override;
@@ -81,22 +80,20 @@ class PairGranRestitution : public Pair, public ContactHistoryOwner {
   ContactTable table;
 
   double dt = 0.0;
-  bool starting = false;    // at set-up
+  bool repeat = false;    // the forces of the last step are found once more: at a set-up
   int freeze_group_bit;
   class FixContactHistory *fix_history;
   std::vector<Slope::ContactList> lists;    // by type pair and by which side is frozen
   std::vector<class ContactHolder *> walls;
   Slope::ContactCounts counts;
-  std::vector<Slope::Vector> half_v, half_omega;    // at set-up, where they are known
-  std::vector<Slope::Vector> ahead;                 // that normal dashpots act on, if
-  bool ahead_known;                                 // they are others than these
+  std::vector<Slope::Vector> ahead;    // velocities that normal dashpots act on, if they are
+  bool ahead_known;                    // others than those of the middle of the step
 
   std::string history_id, dummy_id;
 
   void allocate();
   void build_lists();
   void find_contacts();
-  void find_half_step();
   void find_ahead();
 };
 

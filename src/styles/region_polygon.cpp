@@ -8,10 +8,9 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "large_messages.h"
 #include "rank_zero.h"
-#include "style_argument.h"
 
-#include <cstring>
 #include <vector>
 
 using namespace LAMMPS_NS;
@@ -22,21 +21,8 @@ static constexpr double BIG = 1.0e20;    // what LAMMPS' regions write for INF
    region ID polygon FILE.csv keyword value ...
 ------------------------------------------------------------------------- */
 
-RegPolygon::RegPolygon(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, arg)
+RegPolygon::RegPolygon(LAMMPS *lmp, int narg, char **arg) : FileRegion(lmp, narg, arg)
 {
-  if (narg < 3) error->all(FLERR, "Region polygon: file name of the rings is missing");
-
-  std::vector<char *> rest;
-  for (int iarg = 3, n; iarg < narg; iarg += n) {
-    n = region_keyword(lmp, "Region polygon", "", narg - iarg, &arg[iarg]);
-    if (strcmp(arg[iarg], "units") != 0) rest.insert(rest.end(), &arg[iarg], &arg[iarg] + n);
-  }
-
-  std::string units = "units", box = "box";
-  rest.push_back(&units[0]);
-  rest.push_back(&box[0]);
-  options((int) rest.size(), rest.data());
-
   read(arg[2]);
 
   bboxflag = interior;
@@ -46,8 +32,6 @@ RegPolygon::RegPolygon(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
   extent_yhi = polygon.yhi;
   extent_zlo = -BIG;
   extent_zhi = BIG;
-
-  cmax = tmax = 0;
 
   if (comm->me == 0)
     utils::logmesg(lmp,
@@ -78,18 +62,14 @@ void RegPolygon::init()
 
 void RegPolygon::read(const char *path)
 {
-  on_rank_zero(lmp, "Region polygon", [&]() {
+  on_rank_zero(lmp, caller, [&]() {
     polygon = Slope::Polygon::read(path);
   });
 
   std::vector<double> xy = polygon.xy;
   std::vector<int> sizes = polygon.sizes;
-  int n[2] = {(int) xy.size(), (int) sizes.size()};
-  MPI_Bcast(n, 2, MPI_INT, 0, world);
-  xy.resize(n[0]);
-  sizes.resize(n[1]);
-  MPI_Bcast(xy.data(), n[0], MPI_DOUBLE, 0, world);
-  MPI_Bcast(sizes.data(), n[1], MPI_INT, 0, world);
+  share(world, xy);
+  share(world, sizes);
   if (comm->me != 0) polygon = Slope::Polygon(xy, sizes);
 }
 
@@ -98,29 +78,4 @@ void RegPolygon::read(const char *path)
 int RegPolygon::inside(double x, double y, double /*z*/)
 {
   return covers(x, y);
-}
-
-/* ---------------------------------------------------------------------- */
-
-int RegPolygon::surface_interior(double * /*x*/, double /*cutoff*/)
-{
-  return no_contacts();
-}
-
-/* ---------------------------------------------------------------------- */
-
-int RegPolygon::surface_exterior(double * /*x*/, double /*cutoff*/)
-{
-  return no_contacts();
-}
-
-/* ---------------------------------------------------------------------- */
-
-int RegPolygon::no_contacts()
-{
-  error->one(FLERR,
-             "Region polygon {} has no smooth wall: fixed balls make walls, see fix "
-             "wall/gran/balls",
-             id);
-  return 0;
 }

@@ -12,27 +12,24 @@ RegionStyle(polygon,RegPolygon);
 #ifndef LMP_REGION_POLYGON_H
 #define LMP_REGION_POLYGON_H
 
-#include "region.h"
+#include "file_region.h"
 
 #include "polygon.h"
 #include "region_shapes.h"
 
 namespace LAMMPS_NS {
 
-class RegPolygon : public Region, public PrismRegion {
+class RegPolygon : public FileRegion, public PrismRegion {
  public:
   RegPolygon(class LAMMPS *, int, char **);
   void init() override;
   bool covers(double x, double y) const override { return polygon.inside(x, y); }
   int inside(double, double, double) override;
-  int surface_interior(double *, double) override;
-  int surface_exterior(double *, double) override;
 
  private:
   Slope::Polygon polygon;
 
   void read(const char *);
-  int no_contacts();
 };
 
 }    // namespace LAMMPS_NS

@@ -12,9 +12,6 @@
 #include "style_argument.h"
 
 #include <cmath>
-#include <cstring>
-#include <new>
-#include <vector>
 
 using namespace LAMMPS_NS;
 
@@ -24,41 +21,13 @@ static constexpr double DEFAULT_CELLS = 5.0;    // depth and headroom, in cells 
    region ID terrain FILE.asc keyword value ...
 ------------------------------------------------------------------------- */
 
-RegTerrain::RegTerrain(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, arg)
+RegTerrain::RegTerrain(LAMMPS *lmp, int narg, char **arg) :
+    FileRegion(lmp, narg, arg, {"depth", "headroom"})
 {
-  if (narg < 3) error->all(FLERR, "Region terrain: file name of the elevation grid is missing");
-
-  // own keywords are taken here, those of every region are checked and passed on
-
-  double depth = -1.0, headroom = -1.0;
-  std::vector<char *> rest;
-  for (int iarg = 3; iarg < narg;) {
-    const std::string keyword = arg[iarg];
-    if (keyword == "depth" || keyword == "headroom") {
-      if (iarg + 1 >= narg) error->all(FLERR, "Region terrain {}: value is missing", keyword);
-      const double value = number_argument(lmp, "Region terrain " + keyword, arg[iarg + 1]);
-      if (!(value > 0.0))
-        error->all(FLERR, "Region terrain {} must be > 0, got {:.15g}", keyword, value);
-      (keyword == "depth" ? depth : headroom) = value;
-      iarg += 2;
-    } else {
-      const int n =
-          region_keyword(lmp, "Region terrain", "depth, headroom, ", narg - iarg, &arg[iarg]);
-      if (keyword != "units") rest.insert(rest.end(), &arg[iarg], &arg[iarg] + n);
-      iarg += n;
-    }
-  }
-
-  std::string units = "units", box = "box";
-  rest.push_back(&units[0]);
-  rest.push_back(&box[0]);
-  options((int) rest.size(), rest.data());
-
   read(arg[2]);
 
-  if (depth < 0.0) depth = DEFAULT_CELLS * elevation.cell;
-  if (headroom < 0.0) headroom = DEFAULT_CELLS * elevation.cell;
-  bottom = zmin - depth;
+  const double cells = DEFAULT_CELLS * elevation.cell;
+  bottom = zmin - given("depth", cells);
 
   bboxflag = interior;
   extent_xlo = elevation.xlo;
@@ -66,7 +35,7 @@ RegTerrain::RegTerrain(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
   extent_ylo = elevation.ylo;
   extent_yhi = elevation.yhi();
   extent_zlo = bottom;
-  extent_zhi = zmax + headroom;
+  extent_zhi = zmax + given("headroom", cells);
 
   if (!(extent_xlo >= -FARTHEST && extent_xlo < extent_xhi && extent_xhi <= FARTHEST &&
         extent_ylo >= -FARTHEST && extent_ylo < extent_yhi && extent_yhi <= FARTHEST &&
@@ -76,8 +45,6 @@ RegTerrain::RegTerrain(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
         "Region terrain: {} with depth and headroom must have an extent within +-{:g}, got x "
         "{:.8g} to {:.8g}, y {:.8g} to {:.8g}, z {:.8g} to {:.8g}",
         arg[2], FARTHEST, extent_xlo, extent_xhi, extent_ylo, extent_yhi, extent_zlo, extent_zhi);
-
-  cmax = tmax = 0;
 
   if (comm->me == 0)
     utils::logmesg(lmp,
@@ -96,7 +63,7 @@ RegTerrain::~RegTerrain() = default;
 void RegTerrain::read(const char *path)
 {
   double head[6];
-  on_rank_zero(lmp, "Region terrain", [&]() {
+  on_rank_zero(lmp, caller, [&]() {
     elevation = Slope::ElevationGrid::read(path);
     head[0] = elevation.xlo;
     head[1] = elevation.ylo;
@@ -118,14 +85,8 @@ void RegTerrain::read(const char *path)
   nodata = static_cast<int>(head[5]);
   if (comm->nprocs == 1) return;
 
-  try {
-    heights.reset(new NodeArray(lmp, static_cast<size_t>(size[0]) * size[1]));
-  } catch (std::bad_alloc &) {
-    error->all(FLERR,
-               "Region terrain: {}: {} x {} cells need {:.3g} GB of memory on each node, more than "
-               "is free",
-               path, size[0], size[1], 8.0e-9 * size[0] * size[1]);
-  }
+  heights.reset(new NodeArray(lmp, static_cast<size_t>(size[0]) * size[1],
+                              fmt::format("Region terrain: {}: {} x {} cells", path, size[0], size[1])));
   heights->fill(elevation.z.data());
   elevation.refer_to(heights->data());
 }
@@ -137,27 +98,4 @@ void RegTerrain::read(const char *path)
 int RegTerrain::inside(double x, double y, double z)
 {
   return z >= bottom && z <= elevation.height(x, y);
-}
-
-/* ---------------------------------------------------------------------- */
-
-int RegTerrain::surface_interior(double * /*x*/, double /*cutoff*/)
-{
-  return no_contacts();
-}
-
-/* ---------------------------------------------------------------------- */
-
-int RegTerrain::surface_exterior(double * /*x*/, double /*cutoff*/)
-{
-  return no_contacts();
-}
-
-/* ---------------------------------------------------------------------- */
-
-int RegTerrain::no_contacts()
-{
-  error->one(FLERR,
-             "Region terrain {} makes no wall: take fix wall/gran/balls or fix wall/gran/mesh", id);
-  return 0;
 }

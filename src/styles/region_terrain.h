@@ -12,7 +12,7 @@ RegionStyle(terrain,RegTerrain);
 #ifndef LMP_REGION_TERRAIN_H
 #define LMP_REGION_TERRAIN_H
 
-#include "region.h"
+#include "file_region.h"
 
 #include "elevation_grid.h"
 #include "region_shapes.h"
@@ -21,13 +21,11 @@ RegionStyle(terrain,RegTerrain);
 
 namespace LAMMPS_NS {
 
-class RegTerrain : public Region, public RasterRegion {
+class RegTerrain : public FileRegion, public RasterRegion {
  public:
   RegTerrain(class LAMMPS *, int, char **);
   ~RegTerrain() override;
   int inside(double, double, double) override;
-  int surface_interior(double *, double) override;
-  int surface_exterior(double *, double) override;
 
   const Slope::ElevationGrid &grid() const override { return elevation; }
 
@@ -38,7 +36,6 @@ class RegTerrain : public Region, public RasterRegion {
   int nodata;
 
   void read(const char *);
-  int no_contacts();
 };
 
 }    // namespace LAMMPS_NS

@@ -468,13 +468,10 @@ def heap(begin, dep, run):
     return HEAP.format(begin=begin, dep=dep, run=run)
 
 
-@pytest.mark.parametrize("np_write, np_read, pieces", [(1, 4, 1), (4, 2, 1), (2, 3, 2), (1, 1, 2)])
-def test_restart(tmp_path, monkeypatch, np_write, np_read, pieces):
+@pytest.mark.parametrize("np_write, np_read", [(1, 4), (4, 2)])
+def test_restart(tmp_path, np_write, np_read):
     """A restarted run ends with the files of the continuous one: all maxima, times, balls lost
-    before and after. The restart is written in the run, in the middle of a window; also one in
-    pieces, as LAMMPS needs it of a grid with more than 2 GB of cells."""
-    if pieces > 1:
-        monkeypatch.setitem(deck_helpers.ENVIRONMENT, "SLOPE_RESTART_PIECE", "6720")    # 8 rows
+    before and after. The restart is written in the run, in the middle of a window."""
     flat(tmp_path, 12, z=0.0, xlo=-2.0, ylo=-2.0, cell=1.0)
     begin = """
 region box block -2 10 -2 10 -0.5 8 units box
@@ -516,28 +513,22 @@ set group all density 2000
                  expect_error="Fix deposit/grid dep must have the grid of the restart file, "
                  "cell 0.7, 15 x 15 cells from -2 -2, bulk 1.909859317; got")
 
-    # and so is data of an older format, whose first number is 2 and not 3
+    # and so is data of an older format, whose first number is 3 and not 4; and a file without the cells, which
+    # would have taken more than 2 GB: then their number is negative
     data = (tmp_path / "a.1500.restart").read_bytes()
-    key = struct.pack("<4d", 3.0, 0.7, 15.0, 15.0)
-    assert data.count(key) == pieces and data.count(b"DEPOSIT_GRID_PART\0") == pieces - 1
-    (tmp_path / "old.restart").write_bytes(data.replace(key, struct.pack("<d", 2.0) + key[8:]))
-    run_deck(heap("read_restart old.restart", DEP.format("two"), "run 0"), tmp_path,
-             expect_error="Fix deposit/grid dep must have restart data of format 3, got 2: the file "
-             "is of another version of SLOPE")
-
-
-def test_pieces_come_and_go_with_the_fix(tmp_path, monkeypatch):
-    """Removed, replaced under its ID, cleared: no piece is left behind, and none is missing."""
-    monkeypatch.setitem(deck_helpers.ENVIRONMENT, "SLOPE_RESTART_PIECE", "1")
-    flat(tmp_path, 20)
-    write_balls(tmp_path / "balls.data", [[5, 5, 5]], 0.5, None, [(0.0, 20.0)] * 3)
-    fix = "fix dep all deposit/grid 10 0 cell {} terrain ground output out\n"
-    show = "info out log fixes\n"
-    log = run_deck(head() + fix.format(0.5) + show + "unfix dep\n" + show + fix.format(1) + fix.format(2) + show
-                   + "run 10\nwrite_restart a.restart\nunfix dep\n" + show, tmp_path)
-    counts = [part.count("style = DEPOSIT_GRID_PART") for part in log.split("Info-Info")[1:]]
-    assert [count for count in counts if count] == [4, 1] and len(counts) >= 4, counts
-    assert (tmp_path / "a.restart").read_bytes().count(b"DEPOSIT_GRID_PART\0") == 1
+    key = struct.pack("<4d", 4.0, 0.7, 15.0, 15.0)
+    assert data.count(key) == 1
+    cells = data.index(key) + 8 * (7 + 18)       # key, numbers
+    number = struct.unpack_from("<d", data, cells)[0]
+    assert 0 < number <= 15 * 15 and number == int(number)
+    for name, changed, message in [
+            ("old", data.replace(key, struct.pack("<d", 3.0) + key[8:]),
+             "Fix deposit/grid dep must have restart data of format 4, got 3: the file is of another version of SLOPE"),
+            ("large", data[:cells] + struct.pack("<d", -4e7) + data[cells + 8:],
+             "Fix deposit/grid dep cannot go on from this restart file, in which it may have 38347903 cells that the "
+             "mass touched, got 40000000: start again, with a larger cell")]:
+        (tmp_path / f"{name}.restart").write_bytes(changed)
+        run_deck(heap(f"read_restart {name}.restart", DEP.format("two"), "run 0"), tmp_path, expect_error=message)
 
 
 @pytest.mark.parametrize("np_", [1, 2])

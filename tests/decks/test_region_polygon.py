@@ -145,14 +145,14 @@ comm_modify cutoff 1
 fix nve all nve/sphere
 fix w all wall/gran/region hooke/history 1e5 NULL 10 NULL 0.5 1 region road
 run 1
-""", tmp_path, expect_error="Region polygon road has no smooth wall: fixed balls make walls, see fix "
+""", tmp_path, expect_error="Region polygon road makes no wall: take fix "
              "wall/gran/balls")
 
 
 @pytest.mark.parametrize("np_, content, message", [
     (2, None, "Region polygon: cannot read road.csv: No such file or directory"),
     (1, "0,0\n1,1\n", "Region polygon: road.csv, line 1: a ring must have at least 3 points, got 2"),
-    (1, "0,0\n10,10\n10,0\n{,10\n", "Region polygon: road.csv, line 4: must be two numbers, x,y, got {,10"),
+    (1, "0,0\n10,10\n10,0\n{,10\n", "Region polygon: road.csv, line 4: must be 2 numbers, x,y, got {,10"),
     (2, "0,0\n10,10\n10,0\n0,10\n", "Region polygon: road.csv, line 1: a ring must not cross or touch itself, "
      "the edges from lines 1 and 3 meet at 5,5"),
 ])
@@ -174,7 +174,7 @@ def test_bad_options(tmp_path, options, message):
 
 def test_missing_file_name(tmp_path):
     run_deck("region road polygon\n", tmp_path,
-             expect_error="Region polygon: file name of the rings is missing")
+             expect_error="Region polygon: file name is missing")
 
 
 def test_what_slope_polygon_writes(tmp_path):

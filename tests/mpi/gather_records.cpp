@@ -1,7 +1,7 @@
 // gather_records() on several ranks: all records in the order of the ranks, whatever the size of a message;
 // ends with status 1 and a line if not.
 
-#include "gather_records.h"
+#include "large_messages.h"
 
 #include <cstdio>
 
@@ -38,7 +38,7 @@ int main(int argc, char **argv)
   // messages of one record (also where it is larger than a message), of a few, of all; ranks without any
   const std::vector<std::vector<int>> cases = {{0, 0, 0}, {0, 7, 0}, {5, 0, 12}, {1, 1000, 999}};
   for (const std::vector<int> &some : cases)
-    for (const bigint bytes : {bigint(1), bigint(3 * sizeof(Record) + 1), RECORD_BYTES}) {
+    for (const bigint bytes : {bigint(1), bigint(3 * sizeof(Record) + 1), MESSAGE_BYTES}) {
       std::vector<int> counts(nprocs, 4);
       for (int rank = 0; rank < nprocs && rank < 3; rank++) counts[rank] = some[rank];
       if (is_right(me, counts, bytes)) continue;

@@ -118,7 +118,7 @@ def test_every_option_is_said(command):
 # --- environment variables ---
 
 PROGRAM = {"LMP", "LAMMPS_PLUGIN_PATH", "LD_LIBRARY_PATH"}      # by what they lead to
-SAME = {"SLOPE_KERNEL", "SLOPE_RESTART_PIECE", "OMP_NUM_THREADS"}   # of one result, but for rounding
+SAME = {"SLOPE_KERNEL", "OMP_NUM_THREADS"}   # of one result, but for rounding
 
 
 def test_every_environment_variable_is_guarded():
@@ -152,7 +152,7 @@ FILES = {
                "variable x file {}", "variable x atomfile {}", "jump {}", "read_dump {} 0 x y z", "plugin load {}",
                "shell cp {} other.txt", 'if "$(is_file({}))" then "run 1"', "region r mesh {}"]}
 NO_FILES = {"pair/gran/restitution", "fix/energy/ledger", "fix/deposit/grid", "fix/gravity/slope",
-            "fix/nve/sphere/slope", "command/delete_balls", "fix/CONTACT_HISTORY", "fix/DEPOSIT_GRID_PART"}
+            "fix/nve/sphere/slope", "command/delete_balls", "fix/CONTACT_HISTORY"}
 # words that the parsers compare with: what follows is a file, or not
 NAMES_FILE = {"file", "terrain", "layer", "table", "raster", "bedrock"}
 NAMES_NONE = {
@@ -161,7 +161,7 @@ NAMES_NONE = {
     "point", "restitution", "rolling", "rolling_radius", "rolling_spring", "rotate", "scale", "scheme", "seismic",
     "series", "shape", "side", "sink", "smallest", "spacing", "stiffness", "strength", "sunk", "surface", "units",
     "upper", "volume", "water", "window", "within", "write"}
-WORD = re.compile(r'(?:strcmp\(\w+\[[^]]*\], |\b(?:keyword|word|key|name) == )"([a-z_]+)"')
+WORD = re.compile(r'(?:strcmp\(\w+\[[^]]*\], |given\(|\b(?:keyword|word|key|name) == )"([a-z_]+)"')
 
 
 def sources():

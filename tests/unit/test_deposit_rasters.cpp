@@ -7,7 +7,6 @@
 // change of the deposit; the cells in restart files, in pieces; the files.
 
 #include "deposit_bins.h"
-#include "deposit_pieces.h"
 #include "deposit_rasters.h"
 #include "deposit_writer.h"
 #include "elevation_grid.h"
@@ -253,31 +252,6 @@ TEST(DepositRasters, TouchedCells)
   EXPECT_EQ(next, cells.size());
   for (int band = 0; band < again.rasters[0].bands().number(); band++)
     EXPECT_TRUE(again.rasters[(band + 1) % 3].touched(band).empty());    // not in others' rows
-}
-
-// pieces of a restart file: all bands once, in order, each piece within its bytes
-TEST(DepositPieces, FitAndAreComplete)
-{
-  const PlanGrid grid(EXTENT, 0.02);    // 615 x 300 cells in 38 bands
-  const double band = 8.0 * 7 * 8 * 615;
-  EXPECT_EQ(DepositPieces::bytes_of_band(grid), band);
-  EXPECT_EQ(DepositPieces(grid, 2147483647.0).number(), 1);
-  for (const double most : {38.0 * band, 37.9 * band, 5.5 * band, band, 0.5 * band}) {
-    const DepositPieces pieces(grid, most);
-    int next = 0;
-    for (int k = 0; k < pieces.number(); k++) {
-      EXPECT_EQ(pieces.first_band(k), next);
-      next = pieces.last_band(k) + 1;
-      EXPECT_GT(next, pieces.first_band(k));
-      if (most >= band) EXPECT_LE((next - pieces.first_band(k)) * band, most);
-    }
-    EXPECT_EQ(next, 38);
-    EXPECT_EQ(pieces.number(), std::ceil(38 / std::max(1.0, std::floor(most / band))));
-  }
-
-  // 4e8 cells that are all touched are 22 GB
-  const double large[4] = {0.0, 2e4, 0.0, 2e4};
-  EXPECT_EQ(DepositPieces(PlanGrid(large, 1.0), 2147483647.0).number(), 11);
 }
 
 // bands put together are the file that one raster would write

@@ -99,16 +99,15 @@ TEST_F(PolygonFile, BadFiles)
   EXPECT_EQ(error("0,0\n1,1\n"), "p.csv, line 1: a ring must have at least 3 points, got 2");
   EXPECT_EQ(error(s + "\n0,0\n1,1\n0,0\n"),
             "p.csv, line 6: a ring must have at least 3 points, got 2");
-  EXPECT_EQ(error("0,0\n1;1\n"), "p.csv, line 2: must be two numbers, x,y, got 1;1");
-  EXPECT_EQ(error("x,y\n0,0\n"), "p.csv, line 1: must be two numbers, x,y, got x,y");
-  EXPECT_EQ(error("1,2,3\n"), "p.csv, line 1: must be two numbers, x,y, got 1,2,3");
-  EXPECT_EQ(error("1 2\n"), "p.csv, line 1: must be two numbers, x,y, got 1 2");
-  EXPECT_EQ(error("1,\n"), "p.csv, line 1: must be two numbers, x,y, got 1,");
+  EXPECT_EQ(error("0,0\n1;1\n"), "p.csv, line 2: must be 2 numbers, x,y, got 1;1");
+  EXPECT_EQ(error("x,y\n0,0\n"), "p.csv, line 1: must be 2 numbers, x,y, got x,y");
+  EXPECT_EQ(error("1,2,3\n"), "p.csv, line 1: must be 2 numbers, x,y, got 1,2,3");
+  EXPECT_EQ(error("1,\n"), "p.csv, line 1: must be 2 numbers, x,y, got 1,");
   EXPECT_EQ(error("0,0\n1,nan\n"),
-            "p.csv, line 2: x and y must be numbers within +-1e+12, got 1,nan");
-  EXPECT_EQ(error("0,0\n1e400,1\n"),
-            "p.csv, line 2: x and y must be numbers within +-1e+12, got 1e400,1");
-  EXPECT_EQ(error("\x89PNG\r\n"), "p.csv, line 1: must be two numbers, x,y, got ?PNG");
+            "p.csv, line 2: must be 2 numbers, x,y, got 1,nan");
+  EXPECT_EQ(error("0,0\n1e13,1\n"),
+            "p.csv, line 2: x and y must be within +-1e+12, got 1e+13,1");
+  EXPECT_EQ(error("\x89PNG\r\n"), "p.csv, line 1: must be 2 numbers, x,y, got ?PNG");
   EXPECT_EQ(error("0,0\n1,1\n3,3\n2,2\n"),
             "p.csv, line 1: a ring must have an area > 0, its points are on a line");
   EXPECT_EQ(error("0.1,0.1\n0.2,0.2\n0.7,0.7\n"),

@@ -11,6 +11,7 @@
 #include "contact_table.h"
 #include "error.h"
 #include "fix.h"
+#include "large_messages.h"
 #include "modify.h"
 #include "neighbor.h"
 #include "update.h"
@@ -235,17 +236,12 @@ void ContactGuards::report()
 {
   const Found f = found();
   if (f.deep) {
-    struct {
-      double most;
-      int rank;
-    } mine = {overlaps.most, comm->me}, all;
-    MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
-    bigint where[2] = {overlaps.ball, overlaps.step};
-    MPI_Bcast(where, 2, MPI_LMP_BIGINT, all.rank, world);
+    Overlaps deepest = overlaps;
+    with_largest(world, overlaps.most, deepest);
     warn(
         "{} contacts were seen deeper than {:g} % of the smaller radius, the deepest {:.3g} % "
         "(ball {}, step {}): the stiffness is too small for the speeds, or the time step too large",
-        f.deep, 100.0 * DEEP, 100.0 * all.most, where[0], where[1]);
+        f.deep, 100.0 * DEEP, 100.0 * deepest.most, deepest.ball, deepest.step);
   }
   if (f.energy_grew > 1)
     warn("the energy of the balls had grown at {} of the checks every {} steps, by {:.3g} % of the "

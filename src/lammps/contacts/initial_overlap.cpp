@@ -5,8 +5,8 @@
 
 #include "initial_overlap.h"
 
-#include "comm.h"
 #include "error.h"
+#include "large_messages.h"
 
 #include <cstring>
 
@@ -34,21 +34,12 @@ void InitialOverlap::check(const std::string &caller, const std::string &remedy)
   MPI_Allreduce(&count, &total, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (total == 0) return;
 
-  struct {
-    double value;
-    int rank;
-  } mine, all;
-  mine.value = worst;
-  mine.rank = comm->me;
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
-
-  char buffer[256];
+  char buffer[256] = "";
   strncpy(buffer, text.c_str(), sizeof(buffer) - 1);
-  buffer[sizeof(buffer) - 1] = '\0';
-  MPI_Bcast(buffer, sizeof(buffer), MPI_CHAR, all.rank, world);
+  const double most = with_largest(world, worst, buffer);
 
   error->all(FLERR,
              "{}: {} pairs overlap at the start by more than {:g} % of the radius, worst {:.4g} % "
              "between {} ({})",
-             caller, total, 100.0 * LIMIT, 100.0 * all.value, buffer, remedy);
+             caller, total, 100.0 * LIMIT, 100.0 * most, buffer, remedy);
 }

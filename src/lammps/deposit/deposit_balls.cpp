@@ -7,9 +7,9 @@
 
 #include "constants.h"
 #include "histogram.h"
+#include "large_messages.h"
 
 #include "atom.h"
-#include "comm.h"
 #include "domain.h"
 #include "update.h"
 
@@ -168,10 +168,7 @@ double DepositBalls::volume() const
 
 bool DepositBalls::farthest(const double *place, double &distance, double &z) const
 {
-  struct {
-    double square;
-    int rank;
-  } mine = {-1.0, comm->me}, all;
+  double most = -1.0;
   z = 0.0;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!selected(i)) continue;
@@ -179,15 +176,14 @@ bool DepositBalls::farthest(const double *place, double &distance, double &z) co
     unwrap(i, x);
     const double dx = x[X] - place[X], dy = x[Y] - place[Y];
     const double square = dx * dx + dy * dy;
-    if (square > mine.square) {
-      mine.square = square;
+    if (square > most) {
+      most = square;
       z = x[Z];
     }
   }
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
-  MPI_Bcast(&z, 1, MPI_DOUBLE, all.rank, world);
-  distance = sqrt(std::max(0.0, all.square));
-  return all.square >= 0.0;
+  most = with_largest(world, most, z);
+  distance = sqrt(std::max(0.0, most));
+  return most >= 0.0;
 }
 
 /* ----------------------------------------------------------------------

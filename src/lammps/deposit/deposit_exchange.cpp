@@ -5,10 +5,11 @@
 
 #include "deposit_exchange.h"
 
+#include "large_messages.h"
+
 #include "comm.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <map>
 
@@ -127,7 +128,7 @@ void DepositExchange::batch_to_rank_zero(const DepositBands &bands, const std::v
   std::vector<bigint> all(now.size());
   MPI_Reduce(sizes.data(), all.data(), (int) now.size(), MPI_LMP_BIGINT, MPI_SUM, 0, world);
   if (comm->me > 0) {
-    if (!mine.empty()) send(mine);
+    send_bytes(world, mine.data(), mine.size(), 0);
     return;
   }
 
@@ -138,31 +139,14 @@ void DepositExchange::batch_to_rank_zero(const DepositBands &bands, const std::v
   for (size_t k = 0; k < now.size(); k++) {
     if (all[k] == 0) continue;    // perhaps after the last byte of its rank
     const int owner = bands.owner(now[k]);
-    if (owner > 0 && next[owner] == 0) texts[owner] = receive(owner, total[owner]);
+    if (owner > 0 && next[owner] == 0) {
+      texts[owner].resize(total[owner]);
+      receive_bytes(world, &texts[owner][0], total[owner], owner);
+    }
     take(texts[owner].substr(next[owner], all[k]));
     next[owner] += all[k];
     if (next[owner] == total[owner]) texts[owner] = std::string();
   }
-}
-
-/* ---------------------------------------------------------------------- */
-
-void DepositExchange::send(const std::string &bytes)
-{
-  const bigint size = bytes.size();
-  for (bigint k = 0; k < size; k += MOST_BYTES)
-    MPI_Send(bytes.data() + k, (int) std::min<bigint>(MOST_BYTES, size - k), MPI_BYTE, 0, 0, world);
-}
-
-/* ---------------------------------------------------------------------- */
-
-std::string DepositExchange::receive(int rank, bigint size)
-{
-  std::string bytes(size, '\0');
-  for (bigint k = 0; k < size; k += MOST_BYTES)
-    MPI_Recv(&bytes[k], (int) std::min<bigint>(MOST_BYTES, size - k), MPI_BYTE, rank, 0, world,
-             MPI_STATUS_IGNORE);
-  return bytes;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -172,25 +156,4 @@ double DepositExchange::sum(double value)
   double found;
   MPI_Allreduce(&value, &found, 1, MPI_DOUBLE, MPI_SUM, world);
   return found;
-}
-
-/* ---------------------------------------------------------------------- */
-
-double DepositExchange::smallest(double value)
-{
-  double found;
-  MPI_Allreduce(&value, &found, 1, MPI_DOUBLE, MPI_MIN, world);
-  return found;
-}
-
-/* ---------------------------------------------------------------------- */
-
-int DepositExchange::rank_of_smallest(double value)
-{
-  struct {
-    double value;
-    int rank;
-  } mine = {value, comm->me}, all;
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
-  return all.value < HUGE_VAL ? all.rank : -1;
 }

@@ -17,12 +17,10 @@
 namespace LAMMPS_NS {
 
 // How the ranks of fix deposit/grid exchange their parts of the plan grid. All methods are
-// collective. No message has more than MOST_BYTES, whatever the size of the grid, and what a rank
-// keeps for them does not grow with its rows.
+// collective. No message is too large for MPI, whatever the size of the grid, and what a rank keeps for
+// them does not grow with its rows.
 class DepositExchange : protected Pointers {
  public:
-  static constexpr int MOST_BYTES = 1 << 28;
-
   explicit DepositExchange(class LAMMPS *lmp) : Pointers(lmp) {}
 
   // All blocks to the ranks that hold their bands; there take() gets column, band and values of each,
@@ -37,20 +35,13 @@ class DepositExchange : protected Pointers {
   void to_rank_zero(const Slope::DepositBands &, int from, int to, const MakeBytes &make,
                     const TakeBytes &take);
 
-  // of all ranks
-  double sum(double value);
-  double smallest(double value);
-
-  // rank on which a value is smallest, the first of several; all of them HUGE_VAL: -1
-  int rank_of_smallest(double value);
+  double sum(double value);    // of all ranks
 
  private:
   void one_round(const Slope::DepositBlocks &, size_t begin, size_t end,
                  const Slope::DepositBands &, const TakeBlock &);
   void batch_to_rank_zero(const Slope::DepositBands &, const std::vector<int> &bands,
                           const MakeBytes &, const TakeBytes &);
-  void send(const std::string &bytes);
-  std::string receive(int rank, bigint size);
 };
 
 }    // namespace LAMMPS_NS

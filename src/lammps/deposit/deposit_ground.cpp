@@ -7,8 +7,8 @@
 
 #include "constants.h"
 #include "deposit_balls.h"
-#include "deposit_exchange.h"
 #include "lammps_compat.h"
+#include "large_messages.h"
 #include "region_shapes.h"
 #include "region_surface.h"
 
@@ -82,9 +82,8 @@ void DepositGround::check(const DepositBalls &balls)
     std::copy(x, x + 3, worst + 1);
     worst[4] = diameter;
   }
-  const int rank = DepositExchange(lmp).rank_of_smallest(worst[0]);
-  if (rank < 0) return;
-  MPI_Bcast(worst, 5, MPI_DOUBLE, rank, world);
+  with_largest(world, -worst[0], worst);
+  if (worst[0] == HUGE_VAL) return;
   error->all(FLERR,
              "Fix deposit/grid terrain region {} must have a height within one diameter {:g} of "
              "every released ball, got none at ball {:.0f}, {:.8g} {:.8g} {:.8g}: there the slip "

@@ -14,8 +14,9 @@
 
 namespace LAMMPS_NS {
 
-// Balls that LAMMPS deletes because they left the box, counted when LAMMPS does it.
-class DepositLosses : protected Pointers {
+// The ledger of a fix deposit/grid: balls that LAMMPS deletes because they left the box are counted when
+// LAMMPS does it.
+class DepositLosses : public Slope::MassLedger, protected Pointers {
  public:
   DepositLosses(class LAMMPS *lmp, const class DepositBalls &balls_in) :
       Pointers(lmp), balls(balls_in)
@@ -34,12 +35,8 @@ class DepositLosses : protected Pointers {
   // collective: what all ranks lost since the last time; returns lines on the first balls
   std::vector<std::string> add_up();
 
-  Slope::MassLedger ledger;
-
  private:
   const class DepositBalls &balls;
-
-  std::vector<Slope::MassLedger::Loss> first_of_all_ranks();
 };
 
 }    // namespace LAMMPS_NS

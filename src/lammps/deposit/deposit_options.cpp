@@ -6,7 +6,6 @@
 #include "deposit_options.h"
 
 #include "constants.h"
-#include "deposit_pieces.h"
 #include "deposit_rasters.h"
 #include "elevation_grid.h"
 #include "lammps_compat.h"
@@ -22,7 +21,6 @@
 #include <cstring>
 
 using namespace LAMMPS_NS;
-using Slope::DepositPieces;
 using Slope::DepositRasters;
 using Slope::PlanGrid;
 
@@ -207,11 +205,4 @@ void DepositOptions::make_grid()
                "{:.3g} GB of memory",
                most, ncells, 1.0e-9 * ncells * DepositRasters::MOST_BYTES_PER_CELL);
   grid = PlanGrid(extent, cell);
-  const double band = DepositPieces::bytes_of_band(grid);
-  if (band > DepositPieces::MOST_BYTES)
-    error->all(FLERR,
-               "Fix deposit/grid cell must give rows of which {} fit into the {:.0f} bytes that a "
-               "fix has in a restart file, got {:.0f} bytes in {} columns: a larger cell, or a "
-               "smaller extent along x",
-               +Slope::DepositBands::ROWS, +DepositPieces::MOST_BYTES, band, grid.n[0]);
 }

@@ -8,10 +8,10 @@
 #include "body_volume.h"
 #include "constants.h"
 #include "deposit_balls.h"
-#include "deposit_exchange.h"
 #include "deposit_ground.h"
 #include "deposit_options.h"
 #include "lammps_compat.h"
+#include "large_messages.h"
 #include "region_columns.h"
 
 #include "atom.h"
@@ -21,26 +21,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <numeric>
 #include <stdexcept>
 #include <vector>
 
 using namespace LAMMPS_NS;
-using Slope::BodyVolume;
 
 static constexpr double UNBOUNDED = 1.0e19;          // LAMMPS writes INF as 1e20
 static constexpr double ASTRAY = 0.05;               // of the balls may lie far from the body
+static constexpr double SEARCH_STEPS = 1000.0;       // through a part of an unknown style
 static constexpr double LEAST = 1.0, MOST = 10.0;    // bulk factor: volume of a body / of its balls
-
-static constexpr int COARSE = 1000, FINE = 1400;    // columns along the longer side
-static constexpr double SAME = 1.0e-3;              // two sums of such columns
 
 enum { X, Y, Z };
 
 /* ---------------------------------------------------------------------- */
 
-DepositRelease::DepositRelease(LAMMPS *lmp, DepositBalls &balls_in,
+DepositRelease::DepositRelease(LAMMPS *lmp, const DepositBalls &balls_in,
                                const DepositOptions &options_in) :
     Pointers(lmp),
     balls(balls_in), options(options_in)
@@ -49,16 +44,12 @@ DepositRelease::DepositRelease(LAMMPS *lmp, DepositBalls &balls_in,
 
 /* ---------------------------------------------------------------------- */
 
-DepositRelease::Released DepositRelease::find()
+DepositRelease::Released DepositRelease::find() const
 {
   Released found = {find_mass(), 0.0, 0.0, 0.0};
   DepositGround(lmp, options.terrain).check(balls);
-  if (!options.body.empty()) {
-    found.body = body_volume(found.mass);
-    balls.set_bulk(found.body / found.mass.solid);
-  }
+  if (!options.body.empty()) found.body = body_volume(found.mass);
   double z;
-  found.volume = balls.volume();
   balls.farthest(found.mass.top, found.front, z);
   return found;
 }
@@ -111,10 +102,9 @@ DepositRelease::Mass DepositRelease::find_mass() const
                "Fix deposit/grid group must hold balls when the run starts, got none: its region "
                "or lattice made no ball");
 
-  DepositExchange exchange(lmp);
-  const double zmax = -exchange.smallest(-top.x[Z]);
-  const int rank = exchange.rank_of_smallest(top.x[Z] == zmax ? top.tag : HUGE_VAL);
-  MPI_Bcast(&top, 4, MPI_DOUBLE, std::max(0, rank), world);
+  double zmax;
+  MPI_Allreduce(&top.x[Z], &zmax, 1, MPI_DOUBLE, MPI_MAX, world);
+  with_largest(world, top.x[Z] == zmax ? -top.tag : -HUGE_VAL, top);
   return {all[0], all[1], all[3] / all[2], all[4] / all[2], {top.x[X], top.x[Y], top.x[Z]}};
 }
 
@@ -176,58 +166,29 @@ Region *DepositRelease::body() const
 
 double DepositRelease::integrate(Region *region) const
 {
-  const BodyVolume::Box box = {{region->extent_xlo, region->extent_ylo, region->extent_zlo},
-                               {region->extent_xhi, region->extent_yhi, region->extent_zhi}};
-  auto inside = [region](double x, double y, double z) {
-    return region->match(x, y, z) != 0;
+  const double zlo = region->extent_zlo, zhi = region->extent_zhi;
+  const auto columns = RegionColumns::of(lmp, region, {zlo, zhi, (zhi - zlo) / SEARCH_STEPS});
+  Slope::Intervals found;
+  auto length = [&](double x, double y) {
+    columns->column(x, y, found);
+    found.intersect(Slope::Interval{zlo, zhi});
+    return found.length();
   };
   auto sum = [this](std::vector<double> &values) {
     std::vector<double> mine = values;
     MPI_Allreduce(mine.data(), values.data(), (int) values.size(), MPI_DOUBLE, MPI_SUM, world);
   };
-  BodyVolume body(box, inside, {comm->me, comm->nprocs, sum});
+
+  double mine[4] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL}, ends[4];    // of the balls; lo, -hi
   for (int i = 0; i < atom->nlocal; i++)
-    if (balls.selected(i)) body.mark(atom->x[i][X], atom->x[i][Y]);
-  try {
-    return body.volume();
-  } catch (std::runtime_error &) {
-    // thin bodies in many parts, whose pieces a search misses: exactly, if the shapes are known
-    const std::unique_ptr<RegionColumns> columns = RegionColumns::of(lmp, region);
-    if (!columns) throw;
-    const double coarse = by_columns(*columns, region, COARSE);
-    const double fine = by_columns(*columns, region, FINE);
-    if (!(std::fabs(fine - coarse) <= SAME * fine)) throw;
-    return fine;
-  }
-}
-
-/* ----------------------------------------------------------------------
-   volume by a column in each of square cells, so many along the longer side, at places that repeat no
-   grid; the same on any number of ranks
-------------------------------------------------------------------------- */
-
-double DepositRelease::by_columns(const RegionColumns &columns, const Region *region,
-                                  int most) const
-{
-  const double length_x = region->extent_xhi - region->extent_xlo;
-  const double length_y = region->extent_yhi - region->extent_ylo;
-  const double cell = std::max(length_x, length_y) / most;
-  const int nx = static_cast<int>(std::ceil(length_x / cell));
-  const int ny = static_cast<int>(std::ceil(length_y / cell));
-  std::vector<double> mine(ny, 0.0), rows(ny);
-  Slope::Intervals found;
-  for (int j = comm->me; j < ny; j += comm->nprocs)
-    for (int i = 0; i < nx; i++) {
-      const double k = static_cast<double>(j) * nx + i + 1.0;
-      const double u = std::fmod(k * 0.7548776662466927, 1.0);
-      const double v = std::fmod(k * 0.5698402909980532, 1.0);
-      columns.column(region->extent_xlo + (i + u) * cell, region->extent_ylo + (j + v) * cell,
-                     found);
-      found.intersect(Slope::Interval{region->extent_zlo, region->extent_zhi});
-      for (size_t n = 0; n < found.size(); n++) mine[j] += found[n].hi - found[n].lo;
+    for (int d = X; d <= Y && balls.selected(i); d++) {
+      mine[d] = std::min(mine[d], atom->x[i][d]);
+      mine[2 + d] = std::min(mine[2 + d], -atom->x[i][d]);
     }
-  MPI_Allreduce(mine.data(), rows.data(), ny, MPI_DOUBLE, MPI_SUM, world);
-  return std::accumulate(rows.begin(), rows.end(), 0.0) * cell * cell;
+  MPI_Allreduce(mine, ends, 4, MPI_DOUBLE, MPI_MIN, world);
+  return Slope::body_volume(
+      {{region->extent_xlo, region->extent_ylo}, {region->extent_xhi, region->extent_yhi}},
+      {{ends[0], ends[1]}, {-ends[2], -ends[3]}}, length, {comm->me, comm->nprocs, sum});
 }
 
 /* ----------------------------------------------------------------------

@@ -29,23 +29,21 @@ class DepositRelease : protected Pointers {
     double front;     // plan distance of the farthest ball from the top
   };
 
-  DepositRelease(class LAMMPS *, class DepositBalls &, const class DepositOptions &);
+  DepositRelease(class LAMMPS *, const class DepositBalls &, const class DepositOptions &);
 
-  // with a bulk region the balls get their bulk factor
-  Released find();
+  Released find() const;    // all but the bulk volume
 
   // to the log
   void log(const std::string &fix_id, const Released &) const;
 
  private:
-  class DepositBalls &balls;
+  const class DepositBalls &balls;
   const class DepositOptions &options;
 
   Mass find_mass() const;
   double body_volume(const Mass &) const;
   class Region *body() const;
   double integrate(class Region *) const;
-  double by_columns(const class RegionColumns &, const class Region *, int most) const;
   void check_balls(class Region *, const Mass &) const;
 };
 

@@ -7,18 +7,25 @@
 
 #include "comm.h"
 #include "error.h"
-#include "modify.h"
 
-#include <algorithm>
-#include <cstdlib>
+#include <cmath>
 #include <cstring>
 
 using namespace LAMMPS_NS;
 using Slope::DepositRasters;
 using Slope::PlanGrid;
 
-static constexpr double FORMAT = 3.0;    // first number of what a restart file holds
+static constexpr double FORMAT = 4.0;    // first number of what a restart file holds
 static constexpr int PER_CELL = DepositRasters::PER_CELL;
+static constexpr double BYTES_PER_CELL = PER_CELL * sizeof(double);
+static constexpr int MOST_CELLS = (MAXSMALLINT - 1024) / static_cast<int>(BYTES_PER_CELL);
+
+static std::string too_many(double ncells)
+{
+  return fmt::format("in which it may have {} cells that the mass touched, got {:.0f}: start "
+                     "again, with a larger cell",
+                     MOST_CELLS, std::fabs(ncells));
+}
 
 /* ---------------------------------------------------------------------- */
 
@@ -26,64 +33,37 @@ DepositRestart::DepositRestart(LAMMPS *lmp, const DepositOptions &options) :
     Pointers(lmp),
     key({FORMAT, options.grid.cell, (double) options.grid.n[0], (double) options.grid.n[1],
          options.grid.lo[0], options.grid.lo[1], options.bulk}),
-    pieces(options.grid, most_bytes(lmp)), exchange(lmp)
+    exchange(lmp)
 {
-}
-
-/* ----------------------------------------------------------------------
-   tests cannot fill 2 GB: they make pieces smaller
-------------------------------------------------------------------------- */
-
-double DepositRestart::most_bytes(LAMMPS *lmp)
-{
-  const char *smaller = getenv("SLOPE_RESTART_PIECE");
-  double bytes = Slope::DepositPieces::MOST_BYTES;
-  if (smaller) bytes = utils::is_double(smaller) ? strtod(smaller, nullptr) : 0.0;
-  MPI_Bcast(&bytes, 1, MPI_DOUBLE, 0, lmp->world);
-  if (!(bytes > 0.0)) lmp->error->all(FLERR, "SLOPE_RESTART_PIECE must be a number of bytes > 0");
-  return std::min(bytes, +Slope::DepositPieces::MOST_BYTES);
-}
-
-/* ---------------------------------------------------------------------- */
-
-void DepositRestart::add_parts(const std::string &fix_id)
-{
-  for (int piece = 1; piece < pieces.number(); piece++) {
-    parts.push_back(fmt::format("{}_DEPOSIT_GRID_PART_{}", fix_id, piece));
-    modify->add_fix(fmt::format("{} all DEPOSIT_GRID_PART {} {}", parts.back(), fix_id, piece));
-  }
-}
-
-/* ---------------------------------------------------------------------- */
-
-void DepositRestart::remove_parts()
-{
-  for (const std::string &id : parts)
-    if (modify->nfix && modify->find_fix(id) >= 0) modify->delete_fix(id);
-  parts.clear();
 }
 
 /* ----------------------------------------------------------------------
    the cells go to rank 0 band by band, so that it never holds more than one
 ------------------------------------------------------------------------- */
 
-void DepositRestart::write(FILE *fp, int piece, const Saved &saved, const DepositRasters &rasters)
+void DepositRestart::write(FILE *fp, const std::string &fix_id, const Saved &saved,
+                           const DepositRasters &rasters)
 {
   const Slope::DepositBands &bands = rasters.bands();
-  const int first = pieces.first_band(piece), last = pieces.last_band(piece);
   double mine = 0.0, ncells;
-  for (int band = first; band <= last; band++)
-    if (bands.mine(band)) mine += rasters.touched(band).size() / PER_CELL;
+  for (int band = bands.first(); band < bands.number(); band += bands.step())
+    mine += rasters.touched(band).size() / PER_CELL;
   MPI_Allreduce(&mine, &ncells, 1, MPI_DOUBLE, MPI_SUM, world);
+  const bool fits = ncells <= MOST_CELLS;
+  if (!fits) ncells = -ncells;
 
   if (comm->me == 0) {
-    const double head = sizeof(Key) + (piece == 0 ? sizeof(Saved) : 0) + sizeof(double);
-    const int size = (int) (head + ncells * PER_CELL * sizeof(double));
+    const double head = sizeof(Key) + sizeof(Saved) + sizeof(double);
+    const int size = (int) (head + (fits ? ncells * BYTES_PER_CELL : 0.0));
     fwrite(&size, sizeof(int), 1, fp);
     fwrite(&key, sizeof(Key), 1, fp);
-    if (piece == 0) fwrite(&saved, sizeof(Saved), 1, fp);
+    fwrite(&saved, sizeof(Saved), 1, fp);
     fwrite(&ncells, sizeof(double), 1, fp);
+    if (!fits)
+      error->warning(FLERR, "Fix deposit/grid {}: nothing can go on from this restart file, {}",
+                     fix_id, too_many(ncells));
   }
+  if (!fits) return;
   auto make = [&](int band) {
     const std::vector<double> cells = rasters.touched(band);
     return std::string(reinterpret_cast<const char *>(cells.data()), cells.size() * sizeof(double));
@@ -91,12 +71,12 @@ void DepositRestart::write(FILE *fp, int piece, const Saved &saved, const Deposi
   auto take = [fp](const std::string &bytes) {
     fwrite(bytes.data(), 1, bytes.size(), fp);
   };
-  exchange.to_rank_zero(bands, first, last, make, take);
+  exchange.to_rank_zero(bands, 0, bands.number() - 1, make, take);
 }
 
 /* ---------------------------------------------------------------------- */
 
-void DepositRestart::read(const std::string &fix_id, const char *buffer, int piece, Saved &saved,
+void DepositRestart::read(const std::string &fix_id, const char *buffer, Saved &saved,
                           DepositRasters &rasters) const
 {
   auto take = [&](void *to, size_t bytes) {
@@ -107,9 +87,12 @@ void DepositRestart::read(const std::string &fix_id, const char *buffer, int pie
   Key found;
   take(&found, sizeof(Key));
   check_key(fix_id, found);
-  if (piece == 0) take(&saved, sizeof(Saved));
+  take(&saved, sizeof(Saved));
   double ncells;
   take(&ncells, sizeof(double));
+  if (ncells < 0.0)
+    error->all(FLERR, "Fix deposit/grid {} cannot go on from this restart file, {}", fix_id,
+               too_many(ncells));
   for (double c = 0.0; c < ncells; c++) {
     double values[PER_CELL];
     take(values, sizeof(values));

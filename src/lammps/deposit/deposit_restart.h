@@ -8,7 +8,6 @@
 
 #include "deposit_exchange.h"
 #include "deposit_options.h"
-#include "deposit_pieces.h"
 #include "deposit_rasters.h"
 #include "deposit_release.h"
 #include "mass_ledger.h"
@@ -16,13 +15,11 @@
 
 #include <cstdio>
 #include <string>
-#include <vector>
 
 namespace LAMMPS_NS {
 
-// What fix deposit/grid has in restart files: numbers, and the cells that the mass touched. LAMMPS
-// gives a fix at most 2 GB there, so the cells of a large grid are in several pieces: the first one is
-// the fix's, each other one that of a fix DEPOSIT_GRID_PART, which this class adds and removes.
+// What fix deposit/grid has in restart files: numbers, and the cells that the mass touched. LAMMPS gives a
+// fix at most 2 GB there: cells that need more are left out, with a warning, and such a file is refused.
 // All methods are collective.
 class DepositRestart : protected Pointers {
  public:
@@ -36,13 +33,8 @@ class DepositRestart : protected Pointers {
 
   DepositRestart(class LAMMPS *, const DepositOptions &);
 
-  void add_parts(const std::string &fix_id);
-  void remove_parts();
-
-  // saved: in the first piece
-  void write(FILE *, int piece, const Saved &, const Slope::DepositRasters &);
-  void read(const std::string &fix_id, const char *buffer, int piece, Saved &,
-            Slope::DepositRasters &) const;
+  void write(FILE *, const std::string &fix_id, const Saved &, const Slope::DepositRasters &);
+  void read(const std::string &fix_id, const char *buffer, Saved &, Slope::DepositRasters &) const;
 
  private:
   struct Key {
@@ -50,11 +42,8 @@ class DepositRestart : protected Pointers {
   };
 
   Key key;
-  Slope::DepositPieces pieces;
   DepositExchange exchange;
-  std::vector<std::string> parts;    // IDs of the fixes
 
-  static double most_bytes(class LAMMPS *);
   void check_key(const std::string &fix_id, const Key &) const;
 };
 

@@ -10,6 +10,7 @@
 #include "ball_ground.h"
 #include "comm.h"
 #include "error.h"
+#include "large_messages.h"
 #include "rank_zero.h"
 #include "region_surface.h"
 #include "style_argument.h"
@@ -32,7 +33,6 @@ static constexpr double COUNTED = 131072.0;     // plan nodes of a ground that i
 static constexpr int MARKS = 4096;              // columns that tell one ground from another
 static constexpr double SAME_PLACE = 1.0e-6;    // in diameters
 static constexpr double IN_ORDER = 1.0e-8;      // of a file's balls, in diameters, in the mean
-static constexpr size_t CHUNK = 1 << 26;        // of a message: MPI counts in int
 
 static std::string line_of(const PlacedBall &b)
 {
@@ -104,7 +104,8 @@ void BallPlacement::place_file()
   on_rank_zero(lmp, caller, [this]() {
     read_file();
   });
-  share_file();
+  share(world, from_file);
+  find_sums();
   counted = from_file.size();
   if (counted == 0) error->all(FLERR, "{}: file {} holds no balls", caller, arguments.file);
   SurfaceCounts counts;
@@ -291,24 +292,13 @@ std::vector<PlacedBall> BallPlacement::all()
       share->sample(tile, mine, unused);
   });
   for (int from = 0; from < comm->nprocs; from++) {
-    bigint n = mine.size();
-    MPI_Bcast(&n, 1, MPI_LMP_BIGINT, from, world);
-    const size_t before = together.size();
-    together.resize(before + n);
-    if (from == comm->me) std::copy(mine.begin(), mine.end(), together.begin() + before);
-    bcast(&together[before], n * sizeof(PlacedBall), from);
+    std::vector<PlacedBall> theirs;
+    if (from == comm->me) theirs.swap(mine);
+    share(world, theirs, from);
+    together.insert(together.end(), theirs.begin(), theirs.end());
   }
   Slope::in_order(together);
   return together;
-}
-
-// MPI counts in int
-
-void BallPlacement::bcast(void *data, size_t bytes, int from) const
-{
-  char *at = static_cast<char *>(data);
-  for (size_t done = 0; done < bytes; done += CHUNK)
-    MPI_Bcast(at + done, static_cast<int>(std::min(CHUNK, bytes - done)), MPI_CHAR, from, world);
 }
 
 /* ----------------------------------------------------------------------
@@ -450,16 +440,10 @@ void BallPlacement::read_file()
 // sums: of the coordinates with a weight of -1 to 1 that each ball's number decides on: two balls that
 // change places change them
 
-void BallPlacement::share_file()
+void BallPlacement::find_sums()
 {
-  bigint size = from_file.size();
-  MPI_Bcast(&size, 1, MPI_LMP_BIGINT, 0, world);
-  on_all_ranks(lmp, caller, [&]() {
-    from_file.resize(size);
-  });
-  bcast(from_file.data(), size * sizeof(PlacedBall), 0);
   long double sum[3] = {0.0, 0.0, 0.0};
-  for (bigint k = 0; k < size; k++) {
+  for (size_t k = 0; k < from_file.size(); k++) {
     const double x[3] = {from_file[k].x, from_file[k].y, from_file[k].z};
     for (int d = 0; d < 3; d++) sum[d] += (2.0 * part(0.6180339887498949, k) - 1.0) * x[d];
   }
@@ -481,7 +465,13 @@ void BallPlacement::write_file(std::vector<std::string> &text, bigint n) const
   });
   for (std::string &lines : text)
     for (int from = 0; from < comm->nprocs; from++) {
-      if (from > 0) send_to_rank_zero(lines, from);
+      bigint size = lines.size();
+      if (from > 0) MPI_Bcast(&size, 1, MPI_LMP_BIGINT, from, world);
+      if (from > 0 && comm->me == from) send_bytes(world, lines.data(), size, 0);
+      if (from > 0 && comm->me == 0) {
+        lines.resize(size);
+        receive_bytes(world, &lines[0], size, from);
+      }
       on_rank_zero(lmp, caller, [&]() {
         out->write(lines);
       });
@@ -489,22 +479,4 @@ void BallPlacement::write_file(std::vector<std::string> &text, bigint n) const
   on_rank_zero(lmp, caller, [&]() {
     out->commit();
   });
-}
-
-// lines of rank from replace those of rank 0
-
-void BallPlacement::send_to_rank_zero(std::string &lines, int from) const
-{
-  bigint size = lines.size();
-  if (comm->me == from) MPI_Send(&size, 1, MPI_LMP_BIGINT, 0, 0, world);
-  if (comm->me == 0) {
-    MPI_Recv(&size, 1, MPI_LMP_BIGINT, from, 0, world, MPI_STATUS_IGNORE);
-    lines.resize(size);
-  }
-  if (comm->me != 0 && comm->me != from) return;
-  for (size_t done = 0; done < static_cast<size_t>(size); done += CHUNK) {
-    const int n = static_cast<int>(std::min(CHUNK, static_cast<size_t>(size) - done));
-    if (comm->me == from) MPI_Send(&lines[done], n, MPI_CHAR, 0, 0, world);
-    if (comm->me == 0) MPI_Recv(&lines[done], n, MPI_CHAR, from, 0, world, MPI_STATUS_IGNORE);
-  }
 }

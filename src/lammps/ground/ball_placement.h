@@ -77,11 +77,9 @@ class BallPlacement : protected Pointers {
   Slope::SurfaceCounts
   count_all(std::vector<std::string> *text) const;    // text: lines, of nodes, extra
   void report(const Slope::SurfaceCounts &, bool known) const;
-  void bcast(void *data, size_t bytes, int from) const;
   void write_file(std::vector<std::string> &text, bigint n) const;
-  void send_to_rank_zero(std::string &lines, int from) const;
   void read_file();
-  void share_file();
+  void find_sums();
 };
 
 }    // namespace LAMMPS_NS

@@ -6,6 +6,7 @@
 #include "surface_options.h"
 
 #include "elevation_grid.h"
+#include "large_messages.h"
 #include "node_array.h"
 #include "rank_zero.h"
 #include "stl_file.h"
@@ -21,7 +22,6 @@
 
 #include <algorithm>
 #include <exception>
-#include <new>
 #include <utility>
 
 using namespace LAMMPS_NS;
@@ -103,13 +103,9 @@ std::unique_ptr<TouchedSurface> SurfaceOptions::read_stl() const
   on_rank_zero(lmp, caller, [&]() {
     stl = StlFile::read(file, scale, move);
   });
-  int n[2] = {static_cast<int>(stl.triangles.size()), stl.skipped};
-  MPI_Bcast(n, 2, MPI_INT, 0, world);
+  share(world, stl.triangles);
   MPI_Bcast(&stl.rounding, 1, MPI_DOUBLE, 0, world);
-  stl.triangles.resize(n[0]);
-  const int width = sizeof(Triangle) / sizeof(double), most = MAXSMALLINT / 16 / width;
-  for (int k = 0; k < n[0]; k += most)
-    MPI_Bcast(&stl.triangles[k], std::min(n[0] - k, most) * width, MPI_DOUBLE, 0, world);
+  const double n = static_cast<double>(stl.triangles.size());
   std::unique_ptr<TouchedSurface> made;
   on_all_ranks(lmp, caller, [&]() {
     made.reset(new TriangleMesh(stl.triangles));
@@ -123,16 +119,16 @@ std::unique_ptr<TouchedSurface> SurfaceOptions::read_stl() const
     utils::logmesg(lmp,
                    "{}: {}, area {:.6g}, x {:.8g} to {:.8g}, y {:.8g} to {:.8g}, z {:.8g} to "
                    "{:.8g}\n",
-                   caller, counted(n[0], "triangle"), area, low.x, high.x, low.y, high.y, low.z,
+                   caller, counted(n, "triangle"), area, low.x, high.x, low.y, high.y, low.z,
                    high.z);
-    if (n[1])
-      error->warning(FLERR, "{}: {} of the {} triangles of {} have no area and are skipped", caller,
-                     n[1], n[0] + n[1], file);
+    if (stl.skipped)
+      error->warning(FLERR, "{}: {} of the {:.0f} triangles of {} have no area and are skipped",
+                     caller, stl.skipped, n + stl.skipped, file);
     if (stl.surplus > 0.0)
       error->warning(
           FLERR,
           "{}: {} should end after the {} that its head says, got {} more, which {} not read",
-          caller, file, counted(n[0] + n[1], "triangle"), counted(stl.surplus, "byte"),
+          caller, file, counted(n + stl.skipped, "triangle"), counted(stl.surplus, "byte"),
           stl.surplus == 1.0 ? "is" : "are");
   }
   return made;
@@ -184,15 +180,9 @@ std::unique_ptr<TouchedSurface> SurfaceOptions::shared(std::unique_ptr<TerrainSu
   TerrainSurface::About about;
   if (read) about = read->about();
   MPI_Bcast(&about, sizeof(about), MPI_BYTE, 0, world);
-  std::unique_ptr<NodeArray> values;
-  const size_t size = static_cast<size_t>(about.nx) * about.ny;
-  try {
-    values.reset(new NodeArray(lmp, size));
-  } catch (std::bad_alloc &) {
-    error->all(FLERR,
-               "{}: {}: {} x {} cells need {:.3g} GB of memory on each node, more than is free",
-               caller, file, about.nx - 2, about.ny - 2, 1.0e-9 * sizeof(double) * size);
-  }
+  std::unique_ptr<NodeArray> values(
+      new NodeArray(lmp, static_cast<size_t>(about.nx) * about.ny,
+                    fmt::format("{}: {}: {} x {} cells", caller, file, about.nx - 2, about.ny - 2)));
   values->fill(read ? read->heights() : nullptr);
   return std::unique_ptr<TouchedSurface>(new SharedTerrain(about, std::move(values)));
 }

@@ -6,7 +6,7 @@
 #include "surface_recorder.h"
 
 #include "file_set.h"
-#include "gather_records.h"
+#include "large_messages.h"
 #include "rank_zero.h"
 
 #include "comm.h"

@@ -18,10 +18,6 @@ using namespace LAMMPS_NS;
 using Slope::Interval;
 using Slope::Intervals;
 
-static constexpr int LOOKS = 64;        // columns in which a region is held against its intervals
-static constexpr double FAR = 1.0e6;    // beyond this an unbounded region is not examined
-static constexpr double CLOSE = 1.0e-6;    // to an end, of the region's size: rounding may decide
-
 /* ---------------------------------------------------------------------- */
 
 namespace LAMMPS_NS {
@@ -122,6 +118,50 @@ class CylinderColumns : public RegionColumns {
   const compat::Cylinder cylinder;
 };
 
+// a style of which only the inside is known; the ends of what is found are exact
+
+class SearchedColumns : public RegionColumns {
+ public:
+  SearchedColumns(Region *r, const Search &s) : region(r), search(s)
+  {
+    if (!r->bboxflag) return;
+    search.zlo = std::max(s.zlo, r->extent_zlo);
+    search.zhi = std::min(s.zhi, r->extent_zhi);
+  }
+
+ protected:
+  void inside(double x, double y, Intervals &found) const override
+  {
+    found.set(Interval::none());
+    double z = search.zlo, lo = z;
+    bool in = has(x, y, z);
+    for (bigint k = 1; z < search.zhi; k++) {
+      const double next = std::min(search.zlo + k * search.step, search.zhi);
+      const bool was = in;
+      in = has(x, y, next);
+      if (in && !was) lo = edge(x, y, z, next);
+      if (was && !in) found.append({lo, edge(x, y, next, z)});
+      z = next;
+    }
+    if (in) found.append({lo, z});
+  }
+  int cost() const override { return 3; }
+
+ private:
+  Region *const region;
+  Search search;
+
+  bool has(double x, double y, double z) const { return (region->match(x, y, z) != 0) == side_in; }
+
+  double edge(double x, double y, double out, double in) const
+  {
+    for (double middle = 0.5 * (out + in); middle != out && middle != in;
+         middle = 0.5 * (out + in))
+      (has(x, y, middle) ? in : out) = middle;
+    return in;
+  }
+};
+
 // an intersection or a union; the parts that take the least time come first
 
 class CombinedColumns : public RegionColumns {
@@ -170,25 +210,16 @@ void RegionColumns::column(double x, double y, Intervals &found) const
 
 /* ---------------------------------------------------------------------- */
 
-std::unique_ptr<RegionColumns> RegionColumns::of(LAMMPS *lmp, Region *region)
+std::unique_ptr<RegionColumns> RegionColumns::of(LAMMPS *lmp, Region *region, const Search &search)
 {
-  auto columns = make(lmp, region);
-  if (columns && !agrees(*columns, region)) columns.reset();
+  auto columns = make_shape(lmp, region, search);
+  columns->side_in = region->interior;
+  columns->everything = region->openflag;    // as Region::match() has it
   return columns;
 }
 
-std::unique_ptr<RegionColumns> RegionColumns::make(LAMMPS *lmp, Region *region)
-{
-  if (region->dynamic_check()) return nullptr;
-  auto columns = make_shape(lmp, region);
-  if (columns) {
-    columns->side_in = region->interior;
-    columns->everything = region->openflag;    // as Region::match() has it
-  }
-  return columns;
-}
-
-std::unique_ptr<RegionColumns> RegionColumns::make_shape(LAMMPS *lmp, Region *region)
+std::unique_ptr<RegionColumns> RegionColumns::make_shape(LAMMPS *lmp, Region *region,
+                                                         const Search &search)
 {
   typedef std::unique_ptr<RegionColumns> Columns;
   compat::Sphere sphere;
@@ -204,45 +235,9 @@ std::unique_ptr<RegionColumns> RegionColumns::make_shape(LAMMPS *lmp, Region *re
   if (compat::shape(region, cylinder)) return Columns(new CylinderColumns(cylinder));
 
   const bool intersect = dynamic_cast<RegIntersect *>(region);
-  if (!intersect && !dynamic_cast<RegUnion *>(region)) return nullptr;
+  if (!intersect && !dynamic_cast<RegUnion *>(region))
+    return Columns(new SearchedColumns(region, search));
   std::vector<Columns> parts;
-  for (Region *part : compat::parts_of(lmp, region)) {
-    parts.push_back(make(lmp, part));
-    if (!parts.back()) return nullptr;
-  }
+  for (Region *part : compat::parts_of(lmp, region)) parts.push_back(of(lmp, part, search));
   return Columns(new CombinedColumns(intersect, std::move(parts)));
-}
-
-/* ----------------------------------------------------------------------
-   a region may be of a class that was derived from a known one, and be another shape: what is said
-   of some points must be what the region itself says
-------------------------------------------------------------------------- */
-
-bool RegionColumns::agrees(const RegionColumns &columns, Region *region)
-{
-  if (!region->bboxflag) return true;
-  const double lo[3] = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
-  const double hi[3] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
-  double from[3], size[3];
-  for (int d = 0; d < 3; d++) {
-    from[d] = std::max(lo[d], -FAR);
-    size[d] = std::min(hi[d], FAR) - from[d];
-  }
-  Intervals found;
-  for (int k = 0; k < LOOKS; k++) {
-    // places that repeat no grid: multiples of irrational numbers
-    const double u = std::fmod((k + 1) * 0.7548776662466927, 1.0);
-    const double v = std::fmod((k + 1) * 0.5698402909980532, 1.0);
-    const double w = std::fmod((k + 1) * 0.4301597090019468, 1.0);
-    const double x = from[0] + u * size[0], y = from[1] + v * size[1], z = from[2] + w * size[2];
-    columns.column(x, y, found);
-    bool in = false, close = false;
-    for (size_t p = 0; p < found.size(); p++) {
-      in |= z > found[p].lo && z < found[p].hi;
-      close |= std::fabs(z - found[p].lo) <= CLOSE * size[2] ||
-          std::fabs(z - found[p].hi) <= CLOSE * size[2];
-    }
-    if (!close && in != (region->match(x, y, z) != 0)) return false;
-  }
-  return true;
 }

@@ -14,13 +14,16 @@ namespace LAMMPS_NS {
 class LAMMPS;
 class Region;
 
-// What a region that stands still takes of the vertical line at x,y, exactly: terrain, polygon,
-// sphere, block, plane, cylinder, and any intersection and union of these, side in or out.
+// What a region that stands still takes of the vertical line at x,y: of terrain, polygon, sphere, block,
+// plane and cylinder exactly, of any other style by a search, and of any intersection and union of
+// these, side in or out.
 class RegionColumns {
  public:
-  // nullptr for a region with any other style in it, or if a region of a known style does not
-  // contain the points that it should: then its columns have to be searched
-  static std::unique_ptr<RegionColumns> of(LAMMPS *, Region *);
+  // where a search looks, and how far its steps are: it may miss what is thinner
+  struct Search {
+    double zlo, zhi, step;
+  };
+  static std::unique_ptr<RegionColumns> of(LAMMPS *, Region *, const Search &);
   virtual ~RegionColumns() = default;
 
   void column(double x, double y, Slope::Intervals &found) const;
@@ -33,9 +36,7 @@ class RegionColumns {
   virtual int cost() const { return 0; }    // the order of an intersection's parts
 
  private:
-  static std::unique_ptr<RegionColumns> make(LAMMPS *, Region *);
-  static std::unique_ptr<RegionColumns> make_shape(LAMMPS *, Region *);
-  static bool agrees(const RegionColumns &, Region *);
+  static std::unique_ptr<RegionColumns> make_shape(LAMMPS *, Region *, const Search &);
   friend class CombinedColumns;
 };
 

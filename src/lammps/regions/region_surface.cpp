@@ -20,9 +20,7 @@
 using namespace LAMMPS_NS;
 
 static constexpr double UNBOUNDED = 1.0e19;     // LAMMPS writes INF as 1e20
-static constexpr double PRECISION = 1.0e-12;    // of the region's height
 static constexpr double DEFAULT_STEPS = 1000.0;
-static constexpr double ROUGHLY = 1.0e-3;    // of a step
 static constexpr int NEAR_STEPS = 16;
 static constexpr double THIN =
     0.008;    // of a step: no part of a region, but two surfaces in one place
@@ -68,14 +66,13 @@ RegionSurface::RegionSurface(LAMMPS *lmp, const std::string &caller, const char 
     if (*hi[d] >= UNBOUNDED) *hi[d] = boxhi[d];
   }
 
-  start = side == LOWER ? zlo : zhi;
-  direction = side == LOWER ? 1.0 : -1.0;
+  lower = side == LOWER;
   step = step_in > 0.0 ? step_in : (zhi - zlo) / DEFAULT_STEPS;
 
   // the upper boundary of a terrain is its elevation grid: no search
 
   if (side == UPPER && region->interior) terrain = dynamic_cast<RasterRegion *>(region);
-  if (!terrain) columns = RegionColumns::of(lmp, region);
+  if (!terrain) columns = RegionColumns::of(lmp, region, {zlo, zhi, step});
   note_parts(region);
 }
 
@@ -114,9 +111,8 @@ bool RegionSurface::height(double x, double y, double &z) const
     return !std::isnan(z);
   }
 
-  if (!columns) return search(x, y, z);
   if (!column(x, y)) return false;
-  z = direction > 0.0 ? parts.lowest().lo : parts.topmost().hi;
+  z = lower ? parts.lowest().lo : parts.topmost().hi;
   return true;
 }
 
@@ -131,30 +127,6 @@ bool RegionSurface::column(double x, double y) const
   return !parts.empty();
 }
 
-/* ---------------------------------------------------------------------- */
-
-bool RegionSurface::search(double x, double y, double &z) const
-{
-  // the first point inside, walking into the region
-
-  const double length = zhi - zlo;
-  double out = 0.0, in = 0.0;    // distance walked
-  while (!inside(x, y, in)) {
-    if (in >= length) return false;
-    out = in;
-    in = std::min(in + step, length);
-  }
-
-  return between(x, y, out, in, PRECISION * length, z);
-}
-
-/* ---------------------------------------------------------------------- */
-
-bool RegionSurface::inside(double x, double y, double walked) const
-{
-  return region->match(x, y, start + direction * walked);
-}
-
 /* ----------------------------------------------------------------------
    of the part at the known height, or of the next one on the way into the region, not too far away
 ------------------------------------------------------------------------- */
@@ -163,12 +135,9 @@ bool RegionSurface::height_near(double x, double y, double near, double &z) cons
 {
   if (terrain || std::isnan(near)) return height(x, y, z);
   if (x < xlo || x > xhi || y < ylo || y > yhi) return false;
-  if (!columns) return search_near(x, y, near, z);
-
   if (!column(x, y)) return false;
   near = std::min(std::max(near, zlo), zhi);
   const double reach = NEAR_STEPS * step;
-  const bool lower = direction > 0.0;
   for (size_t k = 0; k < parts.size(); k++) {
     const Slope::Interval &part = parts[lower ? k : parts.size() - 1 - k];
     const double end = lower ? part.lo : part.hi;
@@ -180,33 +149,9 @@ bool RegionSurface::height_near(double x, double y, double near, double &z) cons
   return false;
 }
 
-bool RegionSurface::search_near(double x, double y, double near, double &z) const
-{
-  // from the known height walk out of the region or into it
-
-  const double length = zhi - zlo;
-  double here = 0.0, next = std::min(std::max(direction * (near - start), 0.0), length);
-  const bool above = inside(x, y, next);
-  bool passed = false;
-  for (int k = 0; k < NEAR_STEPS && !passed; k++) {
-    here = next;
-    next += above ? -step : step;
-    if (next < 0.0 || next > length) return height(x, y, z);
-    passed = inside(x, y, next) != above;
-  }
-  if (!passed) return false;
-
-  const double precision = ROUGHLY * step;
-  return above ? between(x, y, next, here, precision, z) : between(x, y, here, next, precision, z);
-}
-
-/* ---------------------------------------------------------------------- */
-
 bool RegionSurface::height_below(double x, double y, double top, double &z) const
 {
   if (x < xlo || x > xhi || y < ylo || y > yhi) return false;
-  if (!columns) return search_below(x, y, top, z);
-
   if (!column(x, y)) return false;
   for (size_t k = parts.size(); k > 0; k--) {
     const Slope::Interval &part = parts[k - 1];
@@ -215,32 +160,6 @@ bool RegionSurface::height_below(double x, double y, double top, double &z) cons
     return part.hi >= top - step;
   }
   return false;
-}
-
-bool RegionSurface::search_below(double x, double y, double top, double &z) const
-{
-  double in = top - zlo - 0.5 * step;
-  if (in < 0.0 || !inside(x, y, in)) return false;
-  for (double out = in - step; out >= 0.0; in = out, out -= step)
-    if (!inside(x, y, out)) return between(x, y, out, in, ROUGHLY * step, z);
-  return height(x, y, z);
-}
-
-// the boundary between a point outside and one inside, distances walked, to a precision in m
-
-bool RegionSurface::between(double x, double y, double out, double in, double precision,
-                            double &z) const
-{
-  while (in - out > precision) {
-    const double middle = 0.5 * (in + out);
-    if (middle <= out || middle >= in) break;
-    if (inside(x, y, middle))
-      in = middle;
-    else
-      out = middle;
-  }
-  z = start + direction * in;
-  return true;
 }
 
 /* ---------------------------------------------------------------------- */

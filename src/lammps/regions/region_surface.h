@@ -17,15 +17,12 @@
 namespace LAMMPS_NS {
 
 // The lower or upper boundary of any region that stands still, as a height over the plan.
-// Columns of known styles are intervals; of others only Region::match() is asked, so intersections
-// and unions of whatever regions do.
 class RegionSurface : protected Pointers {
  public:
   enum { LOWER, UPPER };
 
-  // A column of an unknown style is searched in steps: a part of the region thinner than the step may
-  // be missed. Of a known one parts thinner than a small part of the step count as rounding. step 0: a
-  // thousandth of the region's height. Errors start with caller.
+  // What is far thinner than a step counts as rounding, and the columns of some styles are searched in
+  // steps (region_columns.h). step 0: a thousandth of the region's height. Errors start with caller.
   RegionSurface(class LAMMPS *, const std::string &caller, const char *region_id, int side,
                 double step = 0.0);
   ~RegionSurface() override;
@@ -34,12 +31,11 @@ class RegionSurface : protected Pointers {
   // No communication: any rank may ask for any column.
   bool height(double x, double y, double &z) const;
 
-  // The same, but the boundary is looked for only where it is near the height of a column close by
-  // (NaN: anywhere), found to a thousandth of the step. Far sooner, and it may be another part's.
+  // The same, but only where the boundary is near the height of a column close by (NaN: anywhere): it
+  // may be another part's.
   bool height_near(double x, double y, double near, double &z) const;
 
-  // The lower boundary of what is right below a height, by a walk down from there: false if the region
-  // is not there, or thinner than a step.
+  // The lower boundary of what is right below a height: false if the region is not there.
   bool height_below(double x, double y, double top, double &z) const;
 
   // whether height() is known for any column of the rectangle: what the constructor asks for, said
@@ -60,7 +56,8 @@ class RegionSurface : protected Pointers {
  private:
   class Region *region;
   const class RasterRegion *terrain;    // set if its grid is the boundary
-  double start, direction, step;        // of the search along z
+  bool lower;
+  double step;
 
   struct Part {
     std::string id;
@@ -70,16 +67,11 @@ class RegionSurface : protected Pointers {
   std::vector<Part> made_of;
   bool bounded;
 
-  std::unique_ptr<class RegionColumns> columns;    // empty: they are searched
+  std::unique_ptr<class RegionColumns> columns;    // empty: a terrain's
   mutable Slope::Intervals parts;                  // keeps its memory
 
   void note_parts(class Region *);
   bool column(double x, double y) const;
-  bool search(double x, double y, double &z) const;
-  bool search_near(double x, double y, double near, double &z) const;
-  bool search_below(double x, double y, double top, double &z) const;
-  bool inside(double x, double y, double walked) const;
-  bool between(double x, double y, double out, double in, double precision, double &z) const;
 };
 
 }    // namespace LAMMPS_NS

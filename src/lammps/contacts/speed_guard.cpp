@@ -3,12 +3,12 @@
    Distributed under the GNU General Public License, version 2
 ------------------------------------------------------------------------- */
 
-#include "fast_balls.h"
+#include "speed_guard.h"
 
 #include "atom.h"
-#include "comm.h"
 #include "contact_guards.h"
 #include "error.h"
+#include "large_messages.h"
 #include "update.h"
 
 #include <cmath>
@@ -17,12 +17,12 @@ using namespace LAMMPS_NS;
 
 /* ---------------------------------------------------------------------- */
 
-FastBalls::FastBalls(LAMMPS *lmp, const std::string &_caller) : Pointers(lmp), caller(_caller)
+SpeedGuard::SpeedGuard(LAMMPS *lmp, const std::string &_caller) : Pointers(lmp), caller(_caller)
 {
   start();
 }
 
-void FastBalls::start()
+void SpeedGuard::start()
 {
   worst = {0.0, 0.0, 0.0, 0.0};
   count = 0;
@@ -30,7 +30,7 @@ void FastBalls::start()
 
 /* ---------------------------------------------------------------------- */
 
-void FastBalls::record(int i, double speed, double stiffness)
+void SpeedGuard::record(int i, double speed, double stiffness)
 {
   const double deep = speed * std::sqrt(atom->rmass[i] / stiffness);
   const double share = deep / (DEEPEST * atom->radius[i]);
@@ -48,17 +48,12 @@ void FastBalls::record(int i, double speed, double stiffness)
 
 /* ---------------------------------------------------------------------- */
 
-void FastBalls::report(ContactGuards &guards)
+void SpeedGuard::report(ContactGuards &guards)
 {
   bigint all;
   MPI_Allreduce(&count, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (all == 0) return;
-  struct {
-    double share;
-    int rank;
-  } mine = {worst.share, comm->me}, most;
-  MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
-  MPI_Bcast(&worst, sizeof(worst), MPI_BYTE, most.rank, world);
+  with_largest(world, worst.share, worst);
   guards.say(fmt::format(
       "{}: balls hit it too fast {} times, the worst at {:.4g} m/s (ball {:.0f}, step "
       "{:.0f}), {:.3g} times the speed up to which no ball passes, {:g} R sqrt(kn/m): the "

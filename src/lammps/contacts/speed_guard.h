@@ -3,8 +3,8 @@
    Distributed under the GNU General Public License, version 2
 ------------------------------------------------------------------------- */
 
-#ifndef SLOPE_FAST_BALLS_H
-#define SLOPE_FAST_BALLS_H
+#ifndef SLOPE_SPEED_GUARD_H
+#define SLOPE_SPEED_GUARD_H
 
 #include "pointers.h"
 
@@ -15,11 +15,11 @@ namespace LAMMPS_NS {
 // The guard against balls so fast that they may pass through a surface. A ball that hits along
 // the normal at v penetrates to v sqrt(m/kn), undamped. Up to a quarter of its radius no ball
 // passes, whatever the edges that it meets.
-class FastBalls : protected Pointers {
+class SpeedGuard : protected Pointers {
  public:
   static constexpr double DEEPEST = 0.25;    // overlap over radius
 
-  FastBalls(class LAMMPS *, const std::string &caller);
+  SpeedGuard(class LAMMPS *, const std::string &caller);
 
   void start();    // of a run
   void record(int i, double speed,

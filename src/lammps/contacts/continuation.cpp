@@ -1,0 +1,152 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#include "continuation.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "lammps_compat.h"
+#include "memory.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using Slope::Vector;
+
+static constexpr double ROUNDING = 1.0e-10;    // of the largest force
+
+/* ---------------------------------------------------------------------- */
+
+Continuation::Continuation(LAMMPS *lmp) :
+    Pointers(lmp), before(nullptr), force(nullptr), step(-1), dt(0.0)
+{
+}
+
+Continuation::~Continuation()
+{
+  memory->destroy(force);
+  memory->destroy(before);
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool Continuation::forces_known() const
+{
+  return step == update->ntimestep && dt == update->dt;
+}
+
+void Continuation::keep_forces()
+{
+  for (int i = 0; i < atom->nlocal; i++) {
+    memcpy(force[i], atom->f[i], 3 * sizeof(double));
+    memcpy(&force[i][3], atom->torque[i], 3 * sizeof(double));
+  }
+  step = update->ntimestep;
+  dt = update->dt;
+}
+
+/* ----------------------------------------------------------------------
+   less velocity Verlet's second half step, for solid balls
+------------------------------------------------------------------------- */
+
+void Continuation::find_half_step()
+{
+  forget_half_step();
+  if (!forces_known()) return;
+
+  const int nlocal = atom->nlocal, nall = nlocal + atom->nghost;
+  Vector *const now = reinterpret_cast<Vector *>(nall ? atom->v[0] : nullptr);
+  Vector *const spin = reinterpret_cast<Vector *>(nall ? atom->omega[0] : nullptr);
+  v.reserve(nall + 1);    // contacts are read 32 bytes at a time, 8 beyond a vector
+  omega.reserve(nall + 1);
+  v.assign(now, now + nall);
+  omega.assign(spin, spin + nall);
+  for (Fix *fix : compat::fixes_of_style(lmp, "ground/motion"))
+    dynamic_cast<Kick *>(fix)->take_back_kick();
+  for (int i = 0; i < nlocal; i++) {
+    const double *f = force[i];
+    const double a = 0.5 * dt / atom->rmass[i];
+    const double b = a / (0.4 * atom->radius[i] * atom->radius[i]);
+    now[i] = {now[i].x - a * f[0], now[i].y - a * f[1], now[i].z - a * f[2]};
+    spin[i] = {spin[i].x - b * f[3], spin[i].y - b * f[4], spin[i].z - b * f[5]};
+  }
+  comm->forward_comm();    // to the ghosts
+  std::swap_ranges(now, now + nall, v.begin());
+  std::swap_ranges(spin, spin + nall, omega.begin());
+}
+
+void Continuation::forget_half_step()
+{
+  v.clear();
+  omega.clear();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void Continuation::begin_step()
+{
+  const bool kept = step == update->ntimestep - 1 && step == update->firststep;
+  step = -1;    // a step of this number may come again: reset_timestep
+  double mine[4] = {0.0, 0.0, 0.0, 0.0}, most[4];    // largest force, torque; differences
+  for (int i = 0; i < atom->nlocal && kept; i++)
+    for (int d = 0; d < 3; d++) {
+      mine[0] = std::max(mine[0], std::fabs(force[i][d]));
+      mine[1] = std::max(mine[1], std::fabs(force[i][3 + d]));
+      mine[2] = std::max(mine[2], std::fabs(force[i][d] - atom->f[i][d]));
+      mine[3] = std::max(mine[3], std::fabs(force[i][3 + d] - atom->torque[i][d]));
+    }
+  if (kept) MPI_Allreduce(mine, most, 4, MPI_DOUBLE, MPI_MAX, world);
+  const bool same = kept && most[2] <= ROUNDING * most[0] && most[3] <= ROUNDING * most[1];
+  for (int i = 0; i < atom->nlocal && same; i++) {
+    memcpy(atom->f[i], force[i], 3 * sizeof(double));
+    memcpy(atom->torque[i], &force[i][3], 3 * sizeof(double));
+  }
+  if (atom->nlocal) memcpy(before[0], atom->f[0], atom->nlocal * BEFORE * sizeof(double));
+}
+
+/* ----------------------------------------------------------------------
+   storage by atom
+------------------------------------------------------------------------- */
+
+void Continuation::grow(int nmax)
+{
+  memory->grow(force, nmax, FORCE, "continuation:force");
+  memory->grow(before, nmax, BEFORE, "continuation:before");
+}
+
+void Continuation::copy(int from, int to)
+{
+  memcpy(force[to], force[from], FORCE * sizeof(double));
+  memcpy(before[to], before[from], BEFORE * sizeof(double));
+}
+
+void Continuation::clear(int i)
+{
+  memset(force[i], 0, FORCE * sizeof(double));
+  memset(before[i], 0, BEFORE * sizeof(double));
+}
+
+int Continuation::pack(int i, double *buf) const
+{
+  memcpy(buf, force[i], FORCE * sizeof(double));
+  memcpy(buf + FORCE, before[i], BEFORE * sizeof(double));
+  return STORED;
+}
+
+int Continuation::unpack(int i, const double *buf)
+{
+  memcpy(force[i], buf, FORCE * sizeof(double));
+  memcpy(before[i], buf + FORCE, BEFORE * sizeof(double));
+  return STORED;
+}
+
+void Continuation::set_numbers(const Numbers &found)
+{
+  step = static_cast<bigint>(found.step);
+  dt = found.dt;
+}
