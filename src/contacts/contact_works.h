@@ -37,15 +37,22 @@ class ContactWorks {
   void add(int i, int j, double ri, double rj, const ContactLaw &law, double share, const Vector &f,
            const Vector &delta)
   {
+    const double overlap = std::max(ri + rj - std::sqrt(dot(delta, delta)), 0.0);
+    add(i, j, ri, rj, law, share, f, delta, overlap, overlap);
+  }
+
+  // compression: of the spring in the energy, m, where it is not the overlap that gives the force
+  void add(int i, int j, double ri, double rj, const ContactLaw &law, double share, const Vector &f,
+           const Vector &delta, double overlap, double compression)
+  {
     const double r = std::sqrt(dot(delta, delta));
-    const double overlap = std::max(ri + rj - r, 0.0);
     forces.push_back({i,
                       j,
                       ri,
                       rj,
                       share,
                       spring_force(law, overlap),
-                      spring_energy(law, overlap),
+                      spring_energy(law, compression),
                       f,
                       {delta.x / r, delta.y / r, delta.z / r}});
   }

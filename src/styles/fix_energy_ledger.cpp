@@ -38,7 +38,7 @@ static inline double dot(const double *a, const double *b)
 /* ---------------------------------------------------------------------- */
 
 FixEnergyLedger::FixEnergyLedger(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), begun(false), first(0.0), stored_first(0.0), springs(0.0)
+    Fix(lmp, narg, arg), begun(false), balls(0), shaken(0.0)
 {
   if (narg != 3) error->all(FLERR, "Fix energy/ledger takes no arguments, got {}", arg[3]);
   if (igroup != 0) error->all(FLERR, "Fix energy/ledger: the group must be all, got {}", arg[1]);
@@ -62,11 +62,13 @@ void FixEnergyLedger::init()
   if (!PairGranRestitution::of(lmp))
     error->all(FLERR, "Fix energy/ledger requires pair_style gran/restitution");
   require_run(lmp, "Fix energy/ledger");
-  for (const char *style : {"wall/gran/mesh", "ground/motion"})
-    for (const Fix *fix : compat::fixes_of_style(lmp, style))
-      error->all(FLERR,
-                 "Fix energy/ledger does not know the work of fix {} {}: run without one of them",
-                 fix->id, style);
+}
+
+// of fixes that are there in this run
+
+void FixEnergyLedger::setup(int)
+{
+  shaken = shaking();
 }
 
 /* ----------------------------------------------------------------------
@@ -104,6 +106,20 @@ double FixEnergyLedger::gravity() const
   return update->dt * work;
 }
 
+/* ----------------------------------------------------------------------
+   work of fixes ground/motion so far
+------------------------------------------------------------------------- */
+
+double FixEnergyLedger::shaking() const
+{
+  double work = 0.0;
+  for (Fix *fix : compat::fixes_of_style(lmp, "ground/motion")) {
+    int dim;
+    work += *static_cast<double *>(fix->extract("work", dim));
+  }
+  return work;
+}
+
 /* ---------------------------------------------------------------------- */
 
 void FixEnergyLedger::end_of_step()
@@ -111,30 +127,38 @@ void FixEnergyLedger::end_of_step()
   comm->forward_comm();    // the velocities of the end of the step to the ghosts
   const ContactWorks::Sum c =
       PairGranRestitution::of(lmp)->works.work(update->dt, vectors(atom->v), vectors(atom->omega));
+  const double moving = kinetic(), motion = shaking();
+  const bigint mine = atom->nlocal, before = balls;
+  MPI_Allreduce(&mine, &balls, 1, MPI_LMP_BIGINT, MPI_SUM, world);
 
-  if (!begun) {
-    begun = true;
-    first = kinetic();
-    stored_first = c.stored;
-  } else {
+  if (begun) {
     double on_places = 0.0, on_spins = 0.0;
     for (int i = 0; i < atom->nlocal; i++) {
       on_places += update->dt * dot(atom->f[i], atom->v[i]);
       on_spins += update->dt * dot(atom->torque[i], atom->omega[i]);
     }
-    const double fallen = gravity();
+    const double fallen = gravity(), ground = motion - shaken;
     item[GRAVITY] += fallen;
     item[OTHERS] += on_places - fallen - (c.spring + c.dashpot + c.sliding - c.by_torque);
+    item[GROUND] += ground;
     item[DASHPOTS] -= c.dashpot;
     item[SLIDING] -= c.sliding;
     item[ROLLING] -= on_spins - c.by_torque;
-    springs += c.spring;
+
+    // what springs gave less than they lost; what is missing in all, that less
+
+    const double begin_end = item[STORED] - c.spring - c.stored;
+    const double missing = item[KINETIC] + on_places + on_spins + ground - moving;
+    if (balls == before) {
+      item[BEGIN_END] += begin_end;
+      item[RESIDUAL] -= missing;
+    } else
+      item[LEFT] += begin_end + missing;
   }
-  item[KINETIC] = kinetic();
+  begun = true;
+  shaken = motion;
+  item[KINETIC] = moving;
   item[STORED] = c.stored;
-  item[BEGIN_END] = stored_first - springs - c.stored;
-  item[RESIDUAL] = item[KINETIC] - first + item[STORED] - stored_first + item[DASHPOTS] +
-      item[SLIDING] + item[ROLLING] + item[BEGIN_END] - item[GRAVITY] - item[OTHERS];
 }
 
 /* ---------------------------------------------------------------------- */

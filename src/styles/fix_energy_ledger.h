@@ -21,19 +21,34 @@ class FixEnergyLedger : public Fix {
   FixEnergyLedger(class LAMMPS *, int, char **);
   int setmask() override;
   void init() override;
+  void setup(int) override;
   void end_of_step() override;
   double compute_vector(int) override;
 
  private:
-  enum { KINETIC, GRAVITY, OTHERS, STORED, DASHPOTS, SLIDING, ROLLING, BEGIN_END, RESIDUAL, NITEM };
+  enum {
+    KINETIC,
+    GRAVITY,
+    OTHERS,
+    STORED,
+    DASHPOTS,
+    SLIDING,
+    ROLLING,
+    BEGIN_END,
+    RESIDUAL,
+    GROUND,
+    LEFT,
+    NITEM
+  };
 
   bool begun;
-  double first;                    // kinetic energy when the ledger began, this rank's, J
-  double stored_first, springs;    // in normal springs then; their work since, this rank's, J
-  double item[NITEM];              // this rank's, J
+  bigint balls;          // in the last step
+  double shaken;         // work of the ground's motion until then, this rank's, J
+  double item[NITEM];    // this rank's, J
 
   double kinetic() const;
   double gravity() const;
+  double shaking() const;
 };
 
 }    // namespace LAMMPS_NS

@@ -355,8 +355,13 @@ void FixWallGranMesh::apply(bool repeat)
   for (auto &entry : lists) {
     const FixedPartners phantoms(centres.data(), entry.first.radius);
     const ContactLaw law = smooth_law(entry.first.type);
-    auto add = [&](int i, int j, const Vector &f, const Vector &) {
+    auto add = [&](int i, int j, const Vector &f, const Vector &d) {
       const SurfaceWatch::Slot &slot = watch.slots[j];
+      if (pair->works.wanted) {
+        const double overlap = std::max(slot.contact.overlap, 0.0), r = atom->radius[i];
+        pair->works.add(i, ContactWorks::FIXED, r, r, law, 1.0, f, d, overlap,
+                        overlap > 0.0 ? slot.contact.spring : 0.0);
+      }
       // of a contact that began in the step, f is the force of more or less than a step
 
       const double age = history[j][AGE];
