@@ -1,6 +1,6 @@
 """tools/slope: one program, one table of subcommands.
 
-A subcommand NAME is the module slope_tools.commands.NAME with
+A subcommand NAME is the module slope_tools.commands.NAME (of IN_TESTS: tests/other_codes/NAME.py) with
 
     add_parser(commands, **kwargs)   calls commands.add_parser(NAME, **kwargs), adds its arguments, returns the parser
     run(args)                        does the work; raises SlopeError on bad input
@@ -33,12 +33,16 @@ COMMANDS = {
     "mobility": "estimate from known events how likely a mass passes each point of its fall path",
     "stability": "find the slip surfaces with the least factor of safety below a terrain",
     "fragility": "estimate how likely the bodies of find_slip fail at a peak acceleration, and how often per year",
-    "bench": "measure the speed: against other codes, with more ranks, balls and ground",
-    "crosscheck": "run the same scenes in other codes: bounce, slide, roll, rolling resistance, a collapse",
     "verify": "check every case against closed forms and published numbers, and write a report",
     "report": "write one self-contained HTML page on a study or a run: maps, section, tables, warnings",
     "travel": "show where balls come to rest: cumulative distributions along and across the slope",
 }
+# those of developers, modules of tests/other_codes
+IN_TESTS = {
+    "bench": "measure the speed: against other codes, with more ranks, balls and ground",
+    "crosscheck": "run the same scenes in other codes: bounce, slide, roll, rolling resistance, a collapse",
+}
+TESTS = Path(__file__).resolve().parents[2] / "tests"
 
 
 class Parser(argparse.ArgumentParser):
@@ -54,6 +58,17 @@ class Parser(argparse.ArgumentParser):
         self.exit(2, f"{self.prog}: {message}\n")
 
 
+def module_of(name, parser):
+    """The module of a subcommand; ends the program where it is not installed."""
+    if name in COMMANDS:
+        return importlib.import_module(f"{__package__}.commands.{name}")
+    if not (TESTS / "other_codes" / f"{name}.py").is_file():
+        parser.exit(2, f"slope {name}: must be called in a checkout of SLOPE, whose tests/other_codes it needs, "
+                    f"not in an installation, got {TESTS.parent}\n")
+    sys.path.append(str(TESTS))
+    return importlib.import_module(f"other_codes.{name}")
+
+
 def main(argv=None):
     """Run one subcommand on argv (default: the command line); the status is 0, 1 (a bug), 2 (bad input) or 130."""
     argv = sys.argv[1:] if argv is None else argv
@@ -64,9 +79,9 @@ def main(argv=None):
                         help="before COMMAND: where in the tools an error comes from, as a traceback")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
     asked = next((word for word in argv if not word.startswith("-")), None)
-    for name, summary in COMMANDS.items():
+    for name, summary in {**COMMANDS, **IN_TESTS}.items():
         if name == asked:
-            module = importlib.import_module(f"{__package__}.commands.{name}")
+            module = module_of(name, parser)
             module.add_parser(commands, help=summary).set_defaults(run=module.run)
         else:
             commands.add_parser(name, help=summary)
