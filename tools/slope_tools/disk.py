@@ -1,8 +1,10 @@
-"""Reading YAML, and writing files whole or not at all."""
+"""Reading YAML, making CSV, and writing files whole or not at all."""
+import csv
 import fcntl
 import functools
 import glob
 import hashlib
+import io
 import math
 import os
 import platform
@@ -20,6 +22,13 @@ def write(path, content):
     """Write a file of text or bytes: complete, or not touched."""
     with beside(path) as (new,):
         new.write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
+
+
+def csv_text(columns, rows) -> str:
+    """A CSV: a line of names, then the rows; None is an empty cell."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows([columns, *rows])
+    return text.getvalue()
 
 
 @contextmanager
