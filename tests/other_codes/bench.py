@@ -45,7 +45,7 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--field-factor", type=number, default=1.0, metavar="F",
                         help="area of the terrain, times that of the scene (default 1: about 28,000 fixed balls)")
     parser.add_argument("--steps", type=count, metavar="N", help="timed steps of a run (default 1000; --quick 300)")
-    parser.add_argument("--repeat", type=count, metavar="N", help="runs of each kind (default 5; --quick 3)")
+    parser.add_argument("--runs", type=count, metavar="N", help="runs of each kind (default 5; --quick 3)")
     parser.add_argument("--np", default="2", metavar="N1,N2,...",
                         help="ranks of the parts ranks and weak, besides one (default 2)")
     parser.add_argument("--only", metavar="PART,...", help=f"these parts: {', '.join(PARTS)} (default all)")
@@ -78,7 +78,7 @@ def run(args):
     if args.output.exists() and not args.output.is_dir():
         raise SlopeError("-o", "must be a folder", args.output)
     plan = Plan(args.output, lmp, programs, args.steps or (300 if args.quick else 1000),
-                args.repeat or (3 if args.quick else 5), balls, args.field_factor, args.quick)
+                args.runs or (3 if args.quick else 5), balls, args.field_factor, args.quick)
     try:
         args.output.mkdir(parents=True, exist_ok=True)
         with disk.alone_in(args.output), jobs.signals_interrupt(), plan:

@@ -17,7 +17,7 @@ sys.path.insert(0, str(TOP / "tests"))
 
 from other_codes import bench as bench_command, bench_report, bench_runs, bench_scenes, peers  # noqa: E402
 
-SMALL = "--quick --balls 300 --steps 40 --repeat 1"
+SMALL = "--quick --balls 300 --steps 40 --runs 1"
 
 
 @pytest.fixture
@@ -92,7 +92,7 @@ def test_terrain_and_throughput(slope):
 
 def test_more_balls_on_one_rank_and_on_two(slope, monkeypatch):
     monkeypatch.setattr(bench_runs, "MANY", 1000)
-    status, _, err = slope("--only weak --balls 300 --steps 40 --repeat 1 --np 2")
+    status, _, err = slope("--only weak --balls 300 --steps 40 --runs 1 --np 2")
     assert status == 0, err
     measures = yaml.safe_load(Path("bench/bench.yaml").read_text())["measures"]
     assert set(measures) == {"weak_time", "weak_time_2", "weak_bytes", "weak_bytes_reported"}

@@ -42,6 +42,12 @@ IN_TESTS = {
     "bench": "measure the speed: against other codes, with more ranks, balls and ground",
     "crosscheck": "run the same scenes in other codes: bounce, slide, roll, rolling resistance, a collapse",
 }
+# older names of options: another command has the name for something else
+RENAMED = {
+    "polygon": {"--crs": "--assign-crs"}, "release": {"--crs": "--assign-crs"}, "mobility": {"--crs": "--assign-crs"},
+    "calibrate": {"--volume": "--road-volume"}, "sensitivity": {"--vary": "--levels"},
+    "report": {"--project": "--name"}, "bench": {"--repeat": "--runs"},
+}
 TESTS = Path(__file__).resolve().parents[2] / "tests"
 
 
@@ -69,6 +75,18 @@ def module_of(name, parser):
     return importlib.import_module(f"other_codes.{name}")
 
 
+def with_new_names(command, argv):
+    """The words with the present names of options; a note on standard error for each older one."""
+    names = RENAMED.get(command, {})
+    words = []
+    for word in argv:
+        old, equals, value = word.partition("=")
+        if old in names:
+            print(f"slope {command}: note: {old} is {names[old]} now", file=sys.stderr)
+        words.append(names.get(old, old) + equals + value)
+    return words
+
+
 def main(argv=None):
     """Run one subcommand on argv (default: the command line); the status is 0, 1 (a bug), 2 (bad input) or 130."""
     argv = sys.argv[1:] if argv is None else argv
@@ -85,7 +103,7 @@ def main(argv=None):
             module.add_parser(commands, help=summary).set_defaults(run=module.run)
         else:
             commands.add_parser(name, help=summary)
-    args = parser.parse_args(argv)
+    args = parser.parse_args(with_new_names(asked, argv))
     try:
         args.run(args)
     except SlopeError as error:

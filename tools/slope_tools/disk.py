@@ -153,13 +153,13 @@ def is_alive(process: int) -> bool:
 
 
 @contextmanager
-def complete(folder, marker):
+def complete(folder, marker, called=None):
     """A folder to write a set of results into; when all are there they move to `folder`, else nothing changes.
 
     marker: the file that makes the set valid. It goes first and comes last: a kill or a power cut between the renames
-    leaves files without it, which are void.
+    leaves files without it, which are void. called: what errors name instead of the folder.
     """
-    asked, folder = folder, Path(folder).resolve()
+    asked, folder = called or folder, Path(folder).resolve()
     new = beside_folder(folder)
     try:
         new.mkdir()

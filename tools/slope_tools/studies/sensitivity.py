@@ -57,7 +57,7 @@ def plan(setup: Setup, base: Mapping[str, str], kinds) -> List[Trial]:
                     continue
                 todo.append(Trial(setup.output, {**base, name: value}, kind, name))
     if len(todo) == 1:
-        raise SlopeError("--vary, --repeat", "must give a value that is not the base's")
+        raise SlopeError("--levels, --repeat", "must give a value that is not the base's")
     study.check_names(todo)
     return todo
 
