@@ -3,6 +3,7 @@ import csv
 import os
 import re
 import shlex
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -12,10 +13,11 @@ import yaml
 from run_helpers import TOP, here, run_command  # noqa: F401
 from tiny_collapse import LMP
 
-from slope_tools.commands import bench as bench_command
-from slope_tools.validation import bench, bench_report, bench_scenes, peers
+sys.path.insert(0, str(TOP / "tests"))
 
-SMALL = "--quick --balls 300 --steps 40 --repeat 1"
+from other_codes import bench as bench_command, bench_report, bench_runs, bench_scenes, peers  # noqa: E402
+
+SMALL = "--quick --balls 300 --steps 40 --runs 1"
 
 
 @pytest.fixture
@@ -89,8 +91,8 @@ def test_terrain_and_throughput(slope):
 
 
 def test_more_balls_on_one_rank_and_on_two(slope, monkeypatch):
-    monkeypatch.setattr(bench, "MANY", 1000)
-    status, _, err = slope("--only weak --balls 300 --steps 40 --repeat 1 --np 2")
+    monkeypatch.setattr(bench_runs, "MANY", 1000)
+    status, _, err = slope("--only weak --balls 300 --steps 40 --runs 1 --np 2")
     assert status == 0, err
     measures = yaml.safe_load(Path("bench/bench.yaml").read_text())["measures"]
     assert set(measures) == {"weak_time", "weak_time_2", "weak_bytes", "weak_bytes_reported"}
@@ -165,6 +167,6 @@ def examples():
 def test_every_example_of_the_page_and_the_help_is_understood(slope, monkeypatch, command):
     """They would take minutes: here the plan is made, and not run."""
     plans = []
-    monkeypatch.setattr(bench.Plan, "do", lambda self, *what: plans.append(what))
+    monkeypatch.setattr(bench_runs.Plan, "do", lambda self, *what: plans.append(what))
     status, out, err = slope(command)
     assert (status, err) == (0, "") and (len(plans) == 1 or "--help" in shlex.split(command))

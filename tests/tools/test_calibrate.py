@@ -341,8 +341,8 @@ def test_numbers_alone_with_a_failing_run(slope, here):
     deck = Path("case/in.tiny")
     deck.write_text(deck.read_text().replace("group       soil", 'if "${friction} > 37" then "nonsense"\n'
                                              "group       soil"))
-    status, out, err = slope(f"calibrate case/in.tiny --front 14 --area 180 --volume 40 --road case/road.csv --local "
-                             f"{WORDS} --tolerance area=0.2 --runs 12 --set steps=300 -o out")
+    status, out, err = slope(f"calibrate case/in.tiny --front 14 --area 180 --road-volume 40 --road case/road.csv "
+                             f"--local {WORDS} --tolerance area=0.2 --runs 12 --set steps=300 -o out")
     assert status == 0, err
     about, table = load()
     assert [entry["tolerance"] for entry in about["targets"]] == pytest.approx([0.05 * 14, 0.2 * 180, 0.05 * 40])
@@ -407,7 +407,7 @@ def test_all_runs_failed_is_one_line(slope, here):
 
 
 @pytest.mark.parametrize("arguments, message", [
-    (f"{WORDS} --runs 20", "--observed, --front, --area, --volume: must give at least one of them"),
+    (f"{WORDS} --runs 20", "--observed, --front, --area, --road-volume: must give at least one of them"),
     (f"{WORDS} --runs 6 --front 10", "--runs: must be at least 7 for 2 parameters, got 6"),
     ("--vary friction=40:5 --runs 20 --front 10", "--vary: friction must have its lower bound first"),
     ("--vary friction=5:95 --runs 20 --front 10", "--vary: friction must stay within the deck's range, >= 0 and < 90"),
@@ -415,7 +415,7 @@ def test_all_runs_failed_is_one_line(slope, here):
     ("--vary out=1:2 --runs 20 --front 10 --dry-run", "--vary: must not vary out, which only names the files that a"),
     (f"{WORDS} --runs 20 --front 9 --set cell=0 --dry-run", "--set: cell must stay within the deck's range, > 0, got"),
     (f"{WORDS} --runs 20 --front -3", "--front: must be > 0, got -3"),
-    (f"{WORDS} --runs 20 --volume 40", "--volume: needs --road"),
+    (f"{WORDS} --runs 20 --road-volume 40", "--road-volume: needs --road"),
     (f"{WORDS} --runs 20 --front 9 --tolerance 2", "--tolerance: must be a share"),
     (f"{WORDS} --runs 20 --front 9 --tolerance front=1", "--tolerance: must be a share, >= 0 and < 1, got 1"),
     (f"{WORDS} --runs 20 --front 9 --tolerance area=0.1", "--tolerance: must be of what is observed: needs --area"),

@@ -4,6 +4,7 @@ import math
 import os
 import re
 import shlex
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -13,9 +14,10 @@ import yaml
 from run_helpers import TOP, here, run_command  # noqa: F401
 from tiny_collapse import LMP
 
-from slope_tools.commands import crosscheck as crosscheck_command
-from slope_tools.errors import SlopeError
-from slope_tools.validation import crosscheck, peers
+sys.path.insert(0, str(TOP / "tests"))
+
+from other_codes import crosscheck as crosscheck_command, crosscheck_cases as crosscheck, peers  # noqa: E402
+from slope_tools.errors import SlopeError  # noqa: E402
 
 
 @pytest.fixture

@@ -23,14 +23,14 @@ from slope_tools.sites import site_choices  # noqa: E402
 # --- options of the commands that make runs ---
 
 # values of variables: the name of a run's folder
-CHOSEN = {"set", "vary", "sample", "fit", "paper", "design", "seed", "repeat", "converge", "runs",
+CHOSEN = {"set", "vary", "levels", "sample", "fit", "paper", "design", "seed", "repeat", "converge", "runs",
           "fragility"}
 FOLLOWED = {"deck", "lmp"}              # dependencies.py
 PLACE = {"output", "help", "dry_run"}   # where to, or no run
 ONE_RESULT = {"np", "jobs", "launcher", "engine", "slurm"}      # how it is run: the same but for rounding
 # computed from the runs, each time that the command is given
 ANEW = {"road", "cut_angle", "mesh", "local", "intensity", "more_than", "of", "exceed", "exceed_speed",
-        "exceed_energy", "size_error", "equally_good", "observed", "front", "front_is", "area", "volume",
+        "exceed_energy", "size_error", "equally_good", "observed", "front", "front_is", "area", "road_volume",
         "tolerance", "threshold", "mobility", "confined", "left_out"}
 
 

@@ -56,6 +56,22 @@ def test_abbreviations_are_no_options(words, short, capsys):
     assert ended.value.code == 2 and err.count("\n") == 1 and "unrecognized" in err and short in err
 
 
+@pytest.mark.parametrize("command, words, now", [
+    ("polygon", "a.csv --crs EPSG:6677", "a.csv --assign-crs EPSG:6677"),
+    ("release", "t.asc --crs=EPSG:6677", "t.asc --assign-crs=EPSG:6677"),
+    ("calibrate", "in.x --vary a=0:1 --volume 5", "in.x --vary a=0:1 --road-volume 5"),
+    ("sensitivity", "in.x --vary a=0,1", "in.x --levels a=0,1"),
+    ("report", "out --project A", "out --name A"), ("bench", "--repeat 3", "--runs 3")])
+def test_older_names_of_options_are_taken_with_a_note(command, words, now, capsys):
+    assert cli.with_new_names(command, words.split()) == now.split()
+    old, new = (set(text.replace("=E", " E").split()) for text in (words, now))
+    assert capsys.readouterr().err == f"slope {command}: note: {', '.join(old - new)} is {', '.join(new - old)} now\n"
+    assert cli.with_new_names("study", words.split()) == words.split()
+    module = cli.module_of(command, None)
+    help_ = module.add_parser(argparse.ArgumentParser().add_subparsers()).format_help()
+    assert (new - old).pop() in help_ and not re.search(rf"{(old - new).pop()}\b", help_)
+
+
 def test_the_two_commands_of_the_readme_are_of_files_that_are_here():
     top = Path(__file__).parents[2]
     lines = (top / "README.md").read_text().replace("$e", "inputs/20_embankment").splitlines()

@@ -141,21 +141,22 @@ TEXT_CSV = "\n\n".join("\n".join(f"{x + EAST!r},{y + NORTH!r}" for x, y in ring.
 @pytest.mark.parametrize("name, make, options", [
     ("a.geojson", lambda path: geojson(path, moved(ROAD), crs=CRS_M), ""),
     ("a.geojson", lambda path: geojson(path, moved(ROAD, WGS)), ""),
-    ("a.geojson", lambda path: geojson(path, moved(ROAD)), "--crs EPSG:6677"),
+    ("a.geojson", lambda path: geojson(path, moved(ROAD)), "--assign-crs EPSG:6677"),
     ("a.geojson", lambda path: geojson(path, moved(ROAD)), "--assign-crs EPSG:6677"),
     ("a.geojson", lambda path: geojson(path, moved(ROAD), crs="EPSG:6676"), "--assign-crs EPSG:6677"),
     ("a.geojson", lambda path: geojson(path, ROAD), "--local"),
     ("a.shp", lambda path: shapefile(path, moved(ROAD), crs=CRS_M), ""),
     ("a.shp", lambda path: shapefile(path, moved(ROAD, "EPSG:6676"), crs="EPSG:6676"), ""),
     ("a.shp", lambda path: shapefile(path, moved(ROAD, "EPSG:6668"), crs="EPSG:6668"), ""),
-    ("a.shp", lambda path: shapefile(path, moved(ROAD)), "--crs EPSG:6677"),
+    ("a.shp", lambda path: shapefile(path, moved(ROAD)), "--assign-crs EPSG:6677"),
     ("a.csv", lambda path: Path(path).write_text(TEXT_CSV), ""),
     ("a.csv", lambda path: Path(path).write_bytes(f"\ufeffeast,north\n{TEXT_CSV}".replace("\n", "\r\n").encode()), ""),
     ("a.csv", lambda path: Path(path).write_text("\n\n".join("\n".join(f"{x},{y}  # point" for x, y in ring.coords)
                                                              for ring in (ROAD.exterior, *ROAD.interiors))), "--local"),
     ("a.wkt", lambda path: Path(path).write_text(moved(ROAD).wkt), ""),
     ("a.txt", lambda path: Path(path).write_text("# road\n" + moved(ROAD).wkt.replace("), (", "),\n(")), ""),
-    ("a.wkt", lambda path: Path(path).write_text("GEOMETRYCOLLECTION(" + moved(ROAD, WGS).wkt + ")"), f"--crs {WGS}"),
+    ("a.wkt", lambda path: Path(path).write_text("GEOMETRYCOLLECTION(" + moved(ROAD, WGS).wkt + ")"),
+     f"--assign-crs {WGS}"),
 ], ids=lambda value: value if isinstance(value, str) else "")
 def test_every_format(written, name, make, options):
     make(name)
@@ -378,7 +379,7 @@ SQUARE = "10,10\n20,10\n20,20\n10,20\n"
      "be brought together (--assign-crs EPSG:n; a .prj file beside a shapefile; --local if"),
     ("a.shp", wkt("no shapes"), "", "a.shp: must be polygons that GDAL can read"),
     ("a.wkt", wkt(moved(ROAD).wkt), "--assign-crs EPSG:1", "--assign-crs: must be a CRS such as EPSG:6677, got EPSG:1"),
-    ("a.wkt", wkt(moved(ROAD).wkt), "--crs EPSG:6668", "a.wkt: coordinates in EPSG:6668 must be longitude and "
+    ("a.wkt", wkt(moved(ROAD).wkt), "--assign-crs EPSG:6668", "a.wkt: coordinates in EPSG:6668 must be longitude and "
      "latitude"),
 ])
 def test_bad_input_is_one_line_and_nothing_is_written(slope, here, name, make, options, message):
@@ -397,7 +398,7 @@ def test_bad_input_is_one_line_and_nothing_is_written(slope, here, name, make, o
     ("b.csv -o b.csv", "t.asc", "-o: must not be the input, got b.csv"),
     ("a.wkt -o out.csv", "none.asc", "none.asc: must be an existing file"),
     ("a.wkt -o out.csv", "a.wkt", "a.wkt: must be a raster that GDAL can read"),
-    ("a.wkt -o out.csv --local --crs EPSG:6677", "t.asc", "argument --assign-crs/--crs: not allowed with argument "
+    ("a.wkt -o out.csv --local --assign-crs EPSG:6677", "t.asc", "argument --assign-crs: not allowed with argument "
      "--local"),
 ])
 def test_bad_arguments(slope, here, arguments, terrain, message):

@@ -28,7 +28,7 @@ def client(path):
 
 @pytest.mark.parametrize("folder", ["out", "repeated", "one"])
 def test_the_first_page_has_no_words_of_the_tools(slope, here, folder):
-    assert slope(f"{folder} --project Slope")[0] == 0
+    assert slope(f"{folder} --name Slope")[0] == 0
     text = client(here / folder / "report.html")
     assert not TOOLS_WORDS.search(text), TOOLS_WORDS.search(text)[0]
     page = (here / folder / "report.html").read_text(encoding="utf-8")

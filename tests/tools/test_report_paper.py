@@ -46,7 +46,7 @@ def pdf(made):
     """The report of it as a PDF."""
     patch = pytest.MonkeyPatch()
     patch.setattr(figures, "DPI", 60)
-    assert cli.main(["report", str(made), "--no-film", "--pdf", "--project", "Cut 7"]) == 0
+    assert cli.main(["report", str(made), "--no-film", "--pdf", "--name", "Cut 7"]) == 0
     patch.undo()
     return made / "report.pdf"
 

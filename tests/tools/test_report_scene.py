@@ -523,7 +523,7 @@ def plain(case):
 
 
 def test_project_client_and_author_from_options(plain):
-    assert cli.main(["report", "case", "--project", "Cut <4> & 5", "--client", "Road office", "--author", "A. B."]) == 0
+    assert cli.main(["report", "case", "--name", "Cut <4> & 5", "--client", "Road office", "--author", "A. B."]) == 0
     text = (plain / "report.html").read_text()
     assert "<h1>Cut &lt;4&gt; &amp; 5</h1>" in text and "<b>Slope collapse, one run</b>" in text
     assert "<small>Client</small> Road office" in text and "<small>Author</small> A. B." in text

@@ -74,9 +74,19 @@ def test_a_module(path):
 def test_every_command_is_a_module_and_every_module_in_a_room():
     commands = {path.stem for path in (PACKAGE / "commands").glob("*.py")}
     assert set(cli.COMMANDS) <= commands
+    assert all((cli.TESTS / "other_codes" / f"{name}.py").is_file() for name in cli.IN_TESTS)
     assert {path.name for path in PACKAGE.iterdir() if (path / "__init__.py").is_file()} == {*ROOMS[1:]}
     for name in ROOMS[1:]:
         assert len(list((PACKAGE / name).glob("*.py"))) <= MOST, name
+
+
+@pytest.mark.parametrize("name", cli.IN_TESTS)
+def test_a_command_of_developers_needs_a_checkout(name, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(cli, "TESTS", tmp_path / "tests")
+    with pytest.raises(SystemExit) as ended:
+        cli.main([name, "--quick"])
+    err = capsys.readouterr().err
+    assert ended.value.code == 2 and err.count("\n") == 1 and err.startswith(f"slope {name}: ") and "checkout" in err
 
 
 def test_rooms_take_no_arguments_of_the_command_line():

@@ -46,7 +46,8 @@ def rows():
 
 
 def test_one_variable_at_a_time_against_the_scatter_of_equivalent_runs(slope):
-    words = f"--vary friction=10,30,50 --vary cell=0.5 --repeat xoffset=0.0,0.25,0.5 --set rolling=0.05 {ROAD} -o out"
+    words = f"--levels friction=10,30,50 --levels cell=0.5 --repeat xoffset=0.0,0.25,0.5 --set rolling=0.05 " \
+        f"{ROAD} -o out"
     status, out, err = slope(words)
     assert status == 0, err
     # the values of the base run are not run again
@@ -83,7 +84,7 @@ def test_one_variable_at_a_time_against_the_scatter_of_equivalent_runs(slope):
 
     # what is finished is kept, and a value may be added; the base is a row, too
     before = Path(f"out/{names[0]}/finished.yaml").read_bytes()
-    status, out, err = slope(words.replace("--vary cell=0.5", "--vary cell=0.5 --vary steps=100"))
+    status, out, err = slope(words.replace("--levels cell=0.5", "--levels cell=0.5 --levels steps=100"))
     assert status == 0 and "6 of 7 runs are finished already" in out, err
     assert Path(f"out/{names[0]}/finished.yaml").read_bytes() == before
     status, out, err = slope(words + " --of front_m")
@@ -99,7 +100,7 @@ def test_what_is_clear_depends_on_the_number_of_equivalent_runs():
 
 
 def test_without_repeats_the_scatter_is_said_to_be_unknown(slope):
-    status, out, err = slope(f"--vary rolling=0.2 --set steps=100 {ROAD} -o out")
+    status, out, err = slope(f"--levels rolling=0.2 --set steps=100 {ROAD} -o out")
     assert status == 0, err
     assert "without --repeat its scatter is unknown" in out
     assert [row["clear_of_remove_m3"] for row in rows()] == ["", ""]
@@ -107,21 +108,22 @@ def test_without_repeats_the_scatter_is_said_to_be_unknown(slope):
 
 def test_a_failed_run_is_told_and_the_others_are_collected(slope):
     shutil.copy("case/terrain.asc", "case/same.asc")
-    status, _, err = slope(f"--vary terrain=same.asc,none.asc --set steps=100 {ROAD} -o out")
+    status, _, err = slope(f"--levels terrain=same.asc,none.asc --set steps=100 {ROAD} -o out")
     assert status == 2 and "steps_100_terrain_none.asc: ERROR: Region terrain" in err
     assert [row["value"] for row in rows()] == ["", "same.asc"]
 
 
 @pytest.mark.parametrize("arguments, message", [
-    ("--vary colour=1", "--vary: must name an index variable of case/in.tiny"),
-    ("--vary friction=20 --repeat friction=30", "--repeat: must not name a variable of --vary, got friction"),
-    ("--vary friction=20,20.0", "--vary: must have every value once"),
+    ("--levels colour=1", "--levels: must name an index variable of case/in.tiny"),
+    ("--levels friction=20 --repeat friction=30", "--repeat: must not name a variable of --levels, got friction"),
+    ("--levels friction=20,20.0", "--levels: must have every value once"),
     ("--set friction=20,25", "--set: must give one value"),
-    ("--vary friction=30", "--vary, --repeat: must give a value that is not the base's"),
-    ("--vary friction=20 --of colour", "--of: must be different ones of remove_m3, "),
-    ("--vary terrain=../x,..-x", "must not give two runs the folder terrain_..-x"),
-    ("--vary friction=20,95", "--vary: friction must stay within the deck's range, >= 0 and < 90, got friction=20,95"),
-    ("--vary out=x", "--vary: must not vary out, which only names the files that a run writes"),
+    ("--levels friction=30", "--levels, --repeat: must give a value that is not the base's"),
+    ("--levels friction=20 --of colour", "--of: must be different ones of remove_m3, "),
+    ("--levels terrain=../x,..-x", "must not give two runs the folder terrain_..-x"),
+    ("--levels friction=20,95",
+     "--levels: friction must stay within the deck's range, >= 0 and < 90, got friction=20,95"),
+    ("--levels out=x", "--levels: must not vary out, which only names the files that a run writes"),
 ])
 def test_wrong_input_is_one_line(slope, arguments, message):
     status, _, err = slope(f"{arguments} {ROAD} -o out")
@@ -131,5 +133,5 @@ def test_wrong_input_is_one_line(slope, arguments, message):
 
 
 def test_the_road_is_required(slope):
-    status, _, err = slope("--vary friction=20 -o out")
+    status, _, err = slope("--levels friction=20 -o out")
     assert status == 2 and "--road" in err and err.count("\n") == 1

@@ -1,6 +1,6 @@
 """tools/slope: one program, one table of subcommands.
 
-A subcommand NAME is the module slope_tools.commands.NAME with
+A subcommand NAME is the module slope_tools.commands.NAME (of IN_TESTS: tests/other_codes/NAME.py) with
 
     add_parser(commands, **kwargs)   calls commands.add_parser(NAME, **kwargs), adds its arguments, returns the parser
     run(args)                        does the work; raises SlopeError on bad input
@@ -34,12 +34,22 @@ COMMANDS = {
     "mobility": "estimate from known events how likely a mass passes each point of its fall path",
     "stability": "find the slip surfaces with the least factor of safety below a terrain",
     "fragility": "estimate how likely the bodies of find_slip fail at a peak acceleration, and how often per year",
-    "bench": "measure the speed: against other codes, with more ranks, balls and ground",
-    "crosscheck": "run the same scenes in other codes: bounce, slide, roll, rolling resistance, a collapse",
     "verify": "check every case against closed forms and published numbers, and write a report",
     "report": "write one self-contained HTML page on a study or a run: maps, section, tables, warnings",
     "travel": "show where balls come to rest: cumulative distributions along and across the slope",
 }
+# those of developers, modules of tests/other_codes
+IN_TESTS = {
+    "bench": "measure the speed: against other codes, with more ranks, balls and ground",
+    "crosscheck": "run the same scenes in other codes: bounce, slide, roll, rolling resistance, a collapse",
+}
+# older names of options: another command has the name for something else
+RENAMED = {
+    "polygon": {"--crs": "--assign-crs"}, "release": {"--crs": "--assign-crs"}, "mobility": {"--crs": "--assign-crs"},
+    "calibrate": {"--volume": "--road-volume"}, "sensitivity": {"--vary": "--levels"},
+    "report": {"--project": "--name"}, "bench": {"--repeat": "--runs"},
+}
+TESTS = Path(__file__).resolve().parents[2] / "tests"
 
 
 class Parser(argparse.ArgumentParser):
@@ -55,6 +65,29 @@ class Parser(argparse.ArgumentParser):
         self.exit(2, f"{self.prog}: {message}\n")
 
 
+def module_of(name, parser):
+    """The module of a subcommand; ends the program where it is not installed."""
+    if name in COMMANDS:
+        return importlib.import_module(f"{__package__}.commands.{name}")
+    if not (TESTS / "other_codes" / f"{name}.py").is_file():
+        parser.exit(2, f"slope {name}: must be called in a checkout of SLOPE, whose tests/other_codes it needs, "
+                    f"not in an installation, got {TESTS.parent}\n")
+    sys.path.append(str(TESTS))
+    return importlib.import_module(f"other_codes.{name}")
+
+
+def with_new_names(command, argv):
+    """The words with the present names of options; a note on standard error for each older one."""
+    names = RENAMED.get(command, {})
+    words = []
+    for word in argv:
+        old, equals, value = word.partition("=")
+        if old in names:
+            print(f"slope {command}: note: {old} is {names[old]} now", file=sys.stderr)
+        words.append(names.get(old, old) + equals + value)
+    return words
+
+
 def main(argv=None):
     """Run one subcommand on argv (default: the command line); the status is 0, 1 (a bug), 2 (bad input) or 130."""
     argv = sys.argv[1:] if argv is None else argv
@@ -67,14 +100,15 @@ def main(argv=None):
                         help="before COMMAND: json: progress, warnings and errors as JSON, an object a line on "
                              "standard error, for programs that call this one (default words)")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    asked = next((word for word in argv if word in COMMANDS), None)
-    for name, summary in COMMANDS.items():
+    every = {**COMMANDS, **IN_TESTS}
+    asked = next((word for word in argv if word in every), None)
+    for name, summary in every.items():
         if name == asked:
-            module = importlib.import_module(f"{__package__}.commands.{name}")
+            module = module_of(name, parser)
             module.add_parser(commands, help=summary).set_defaults(run=module.run)
         else:
             commands.add_parser(name, help=summary)
-    args = parser.parse_args(argv)
+    args = parser.parse_args(with_new_names(asked, argv))
     warned.as_json = args.progress == "json"
 
     def fail(text):

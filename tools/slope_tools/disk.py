@@ -1,8 +1,10 @@
-"""Reading YAML, and writing files whole or not at all."""
+"""Reading YAML, making CSV, and writing files whole or not at all."""
+import csv
 import fcntl
 import functools
 import glob
 import hashlib
+import io
 import math
 import os
 import platform
@@ -20,6 +22,13 @@ def write(path, content):
     """Write a file of text or bytes: complete, or not touched."""
     with beside(path) as (new,):
         new.write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
+
+
+def csv_text(columns, rows) -> str:
+    """A CSV: a line of names, then the rows; None is an empty cell."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows([columns, *rows])
+    return text.getvalue()
 
 
 @contextmanager
@@ -144,13 +153,13 @@ def is_alive(process: int) -> bool:
 
 
 @contextmanager
-def complete(folder, marker):
+def complete(folder, marker, called=None):
     """A folder to write a set of results into; when all are there they move to `folder`, else nothing changes.
 
     marker: the file that makes the set valid. It goes first and comes last: a kill or a power cut between the renames
-    leaves files without it, which are void.
+    leaves files without it, which are void. called: what errors name instead of the folder.
     """
-    asked, folder = folder, Path(folder).resolve()
+    asked, folder = called or folder, Path(folder).resolve()
     new = beside_folder(folder)
     try:
         new.mkdir()

@@ -29,7 +29,7 @@ class Calibrate(Algorithm):
         Option("FRONT_IS", "--front-is", "choice", "What of a run is compared with it (default: connected)",
                choices=("connected", "95", "99"), advanced=True),
         Option("AREA", "--area", "number", "Area that was covered at any time (m2)"),
-        Option("VOLUME", "--volume", "number", "Volume on the road (m3)"),
+        Option("VOLUME", "--road-volume", "number", "Volume on the road (m3)"),
         Option("ROAD", "--road", "polygons", "Road (polygons), for that volume"), CUT_ANGLE, MESH,
         Option("TOLERANCE", "--tolerance", "words", "Standard deviation of what was observed, as a share of it "
                "(default: 0.05), or NAME=SHARE per line", advanced=True),

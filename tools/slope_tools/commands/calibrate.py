@@ -53,7 +53,7 @@ def add_parser(commands, **kwargs):
                              "single balls do not move, or the distance that 95 or 99 %% of the volume stay within")
     parser.add_argument("--area", metavar="A", type=number,
                         help="total area that was covered at any time by more than --threshold, m2")
-    parser.add_argument("--volume", metavar="V", type=number, help="volume on the road of --road, m3")
+    parser.add_argument("--road-volume", metavar="V", type=number, help="volume on the road of --road, m3")
     parser.add_argument("--tolerance", metavar="[NAME=]SHARE", type=tolerance, action="append", default=[],
                         help="standard deviation of what was observed, as a share of it "
                              f"(default {TOLERANCE:g}); chance comes on top. NAME=SHARE: of one observation, observed, "
@@ -84,7 +84,7 @@ def tolerance(text):
 def run(args):
     """Do the command; raises SlopeError on bad input, and where too few runs finished."""
     shares = dict(args.tolerance)
-    wanted = observations.Wanted(args.observed, args.front, args.area, args.volume, shares.pop(None, TOLERANCE),
+    wanted = observations.Wanted(args.observed, args.front, args.area, args.road_volume, shares.pop(None, TOLERANCE),
                                  args.threshold, args.local, shares, args.front_is)
     variables = distributions.parse(args.vary, args.deck, ranges_only=True)
     fixed = one_value_each(check_settings(args.set, args.deck), "--set", "--vary")

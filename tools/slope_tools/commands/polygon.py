@@ -40,7 +40,7 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--layer", metavar="NAME", help="of the layers of IN this one (default: the only one, or the "
                         "only one of polygons)")
     place = parser.add_mutually_exclusive_group()
-    place.add_argument("--assign-crs", "--crs", dest="crs", metavar="EPSG:n",
+    place.add_argument("--assign-crs", dest="crs", metavar="EPSG:n",
                        help="the coordinates of IN are in this CRS, whatever IN says")
     place.add_argument("--local", action="store_true",
                        help="the coordinates of IN are the terrain's local metres, whatever IN says")

@@ -27,7 +27,7 @@ def add_body(parser) -> None:
     parser.add_argument("--least", metavar="D", type=number, default=0.0,
                         help="depths of a scar below this count as none, m (default 0): the noise of two surveys")
     place = parser.add_mutually_exclusive_group()
-    place.add_argument("--assign-crs", "--crs", dest="crs", metavar="EPSG:n",
+    place.add_argument("--assign-crs", dest="crs", metavar="EPSG:n",
                        help="the coordinates of P are in this CRS, whatever P says")
     place.add_argument("--local", action="store_true", help="the coordinates of P are the terrain's local metres")
 

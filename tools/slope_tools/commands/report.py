@@ -53,7 +53,7 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--converge", metavar="DIR", type=Path,
                         help="effect of the size of the balls: the folder of `slope sensitivity --converge`, or its "
                              "converge.yaml (default: the one that the study took its size error from)")
-    for name, what in (("project", "name of the project or the site, the title of the page"),
+    for name, what in (("name", "name of the project or the site, the title of the page"),
                        ("client", "recipient of the report"), ("author", "author of the report")):
         parser.add_argument(f"--{name}", metavar="TEXT", help=f"{what} (default: what {SITE} says, in DIR or above it)")
     parser.add_argument("--pdf", action="store_true",
@@ -104,7 +104,7 @@ def run(args):
         return
     if args.pdf:
         paper.require_browser()
-    asked = Asked(folder, args.shown, args.section, args.local, args.reference, args.converge, args.project,
+    asked = Asked(folder, args.shown, args.section, args.local, args.reference, args.converge, args.name,
                   args.client, args.author, None if args.no_film else output.with_suffix(".mp4"))
     first, *notes = document.write(asked, output)
     print(first)

@@ -18,7 +18,7 @@ units: metres, seconds, m3 of ground (bulk).
 
 example: what the size of the balls and the time step do, against the scatter over offsets of the lattice:
   tools/slope sensitivity inputs/20_embankment/in.embankment --road inputs/20_embankment/road.csv --local \\
-      --set d=2.5 --vary d=1.25 --vary step=0.5 --repeat xoffset=0.25,0.5,0.75 -o out
+      --set d=2.5 --levels d=1.25 --levels step=0.5 --repeat xoffset=0.25,0.5,0.75 -o out
 
 the effect of the size of the balls, with constant field balls: the value for small balls, the error of each size:
   tools/slope sensitivity inputs/20_embankment/in.embankment --road inputs/20_embankment/road.csv --local \\
@@ -36,12 +36,12 @@ def add_parser(commands, **kwargs):
         description="One variable of a deck at a time: what it does to the volumes, and how far one run can be "
                     "trusted.", **kwargs)
     run_arguments.add_deck(parser)
-    parser.add_argument("--vary", metavar="NAME=V1,V2,...", action="append", default=[],
+    parser.add_argument("--levels", metavar="NAME=V1,V2,...", action="append", default=[],
                         help="values of an index variable of the deck that are a choice, each in a run of its own; "
                              "A:B:STEP stands for A, A + STEP, ... up to B")
     parser.add_argument("--converge", metavar="NAME=V1,V2,...",
                         help="sizes of the balls, or another variable that should tend to zero; fits a line and gives "
-                             "its value at 0; with --repeat at each size, without --vary")
+                             "its value at 0; with --repeat at each size, without --levels")
     run_arguments.add_repeats(parser)
     parser.add_argument("--set", metavar="NAME=VALUE", action="append", default=[],
                         help="value of an index variable in the base run (default: the deck's)")
@@ -54,17 +54,18 @@ def add_parser(commands, **kwargs):
 
 def run(args):
     """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
-    base = one_value_each(check_settings(args.set, args.deck), "--set", "--vary, --repeat and --converge")
+    base = one_value_each(check_settings(args.set, args.deck), "--set", "--levels, --repeat and --converge")
     repeated = check_settings(args.repeat, args.deck, "--repeat")
-    kinds = {"vary": check_settings(args.vary, args.deck, "--vary"), "repeat": repeated}
+    kinds = {"vary": check_settings(args.levels, args.deck, "--levels"), "repeat": repeated}
     for name in kinds["vary"].keys() & repeated.keys():
-        raise SlopeError("--repeat", "must not name a variable of --vary", name)
+        raise SlopeError("--repeat", "must not name a variable of --levels", name)
     repeats.check(list(repeated), args.equally_good)
     of = quantities(args.of, args.road is not None, args.converge is not None)
     setup = run_arguments.setup_of(args)
     if args.converge:
-        if args.vary:
-            raise SlopeError("--converge", "must be given without --vary: one kind of study at a time", args.vary[0])
+        if args.levels:
+            raise SlopeError("--converge", "must be given without --levels: one kind of study at a time",
+                             args.levels[0])
         from ..studies import size_study
         return size_study.run(setup, args.converge, base, repeated, of, {name: NAMES[name] for name in of})
     todo = plan(setup, base, kinds)

@@ -1,6 +1,5 @@
 """slope stability: the slip surfaces with the least factor of safety below a terrain."""
 import argparse
-import csv
 from pathlib import Path
 from typing import Dict, List, Optional, Tuple
 
@@ -167,10 +166,8 @@ def write(folder, args, raster, rows, masks, found) -> None:
     from ..slips import chart, columns
     from ..survey import rasters, resampling
 
-    with open(folder / FILES[0], "w", encoding="ascii", newline="") as out:
-        table = csv.DictWriter(out, list(found["bodies"][0]), lineterminator="\n")
-        table.writeheader()
-        table.writerows({name: f"{value:.8g}" for name, value in row.items()} for row in found["bodies"])
+    disk.write(folder / FILES[0], disk.csv_text(found["bodies"][0], (
+        [f"{value:.8g}" for value in row.values()] for row in found["bodies"])))
     factor = rasters.read(folder / f"{PREFIX}.factor.asc", heights=False).z
     title = f"c {args.cohesion:g} Pa, friction {args.friction:g} degrees" + (
         f", k {args.seismic[0]:g}" if args.seismic else "")

@@ -1,12 +1,11 @@
 """Comparison of a run's deposit with a mapped one."""
-import csv
 import math
 from typing import List, NamedTuple, Optional, Tuple
 
 import numpy as np
 from affine import Affine
 
-from .. import geometry
+from .. import disk, geometry
 from ..drawing import maps
 from ..errors import SlopeError
 from ..geometry import coverage, extent
@@ -246,14 +245,14 @@ def write_csv(path, run_, mesh, table):
     """One row per mesh cell with a deposit, simulated or mapped."""
     east, north = run_.raster.offset
     listed = np.argwhere(np.any([np.abs(values) > 0 for values in table.values()], axis=0))
-    with open(path, "w", encoding="ascii", newline="") as out:
-        writer = csv.writer(out, lineterminator="\n")
-        writer.writerow(["row", "column", "xlo", "ylo", "east", "north", *table])
-        for row, column in listed.tolist():
-            x, y = mesh.corner(row, column)
-            places = map(float, (x, y, x + east, y + north))
-            writer.writerow([row + 1, column + 1, *map(text, places),
-                             *(text(float(values[row, column])) for values in table.values())])
+
+    def line(row, column):
+        x, y = mesh.corner(row, column)
+        return [row + 1, column + 1, *map(text, map(float, (x, y, x + east, y + north))),
+                *(text(float(values[row, column])) for values in table.values())]
+
+    disk.write(path, disk.csv_text(["row", "column", "xlo", "ylo", "east", "north", *table],
+                                   (line(row, column) for row, column in listed.tolist())))
 
 
 def draw(path, run_, simulated, observed, about):

@@ -1,5 +1,4 @@
 """Where balls come to rest: cumulative distributions along and across the slope, over several runs."""
-import csv
 import math
 from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence
 
@@ -244,29 +243,26 @@ def known(one):
 # --- output ---
 
 def write_csv(path, arrivals, tables):
-    with open(path, "w", encoding="utf-8", newline="") as out:
-        writer = csv.writer(out, lineterminator="\n")
-        writer.writerow(["direction", "position", "lowest", "median", "highest", "all",
-                         *(one.name for one in arrivals)])
-        for name, (at, shares, together) in tables.items():
-            rows = np.column_stack([at, shares.min(axis=0), np.median(shares, axis=0), shares.max(axis=0), together,
-                                    shares.T])
-            writer.writerows([name, *(f"{value:.9g}" for value in row)] for row in rows)
+    disk.write(path, disk.csv_text(
+        ["direction", "position", "lowest", "median", "highest", "all", *(one.name for one in arrivals)],
+        ([name, *(f"{value:.9g}" for value in row)] for name, (at, shares, together) in tables.items()
+         for row in np.column_stack([at, shares.min(axis=0), np.median(shares, axis=0), shares.max(axis=0), together,
+                                     shares.T]))))
 
 
 def write_balls(path, arrivals):
     """Where each ball is, and how far, how deep and at which angle it came from its start."""
     moved = arrivals[0].start is not None
-    with open(path, "w", encoding="utf-8", newline="") as out:
-        writer = csv.writer(out, lineterminator="\n")
-        writer.writerow(["run", "id", "along", "across", "z", *(("travel", "drop", "angle") if moved else ())])
-        for one in arrivals:
-            columns = [one.at["along"], one.at["across"], one.place[:, 2]]
-            if moved:
-                distance, drop = plan(one.place - one.start), one.start[:, 2] - one.place[:, 2]
-                columns += [distance, drop, np.degrees(np.arctan2(drop, distance))]
-            writer.writerows([one.name, ball, *(f"{value:.9g}" for value in row)] for ball, row in
-                             sorted(zip(one.id.tolist(), np.column_stack(columns))))
+    rows: List[List[Any]] = []
+    for one in arrivals:
+        columns = [one.at["along"], one.at["across"], one.place[:, 2]]
+        if moved:
+            distance, drop = plan(one.place - one.start), one.start[:, 2] - one.place[:, 2]
+            columns += [distance, drop, np.degrees(np.arctan2(drop, distance))]
+        rows += [[one.name, ball, *(f"{value:.9g}" for value in row)] for ball, row in
+                 sorted(zip(one.id.tolist(), np.column_stack(columns)))]
+    disk.write(path, disk.csv_text(["run", "id", "along", "across", "z",
+                                    *(("travel", "drop", "angle") if moved else ())], rows))
 
 
 def draw(path, arrivals, tables, wanted: Wanted) -> None:

@@ -1,11 +1,11 @@
 """The files of a volume: tables, GeoJSON, a map."""
-import csv
 import json
 from typing import Any, Dict, Tuple
 
 import numpy as np
 import rasterio.warp
 
+from .. import disk
 from ..drawing import maps
 from ..survey.rasters import epsg
 
@@ -33,12 +33,9 @@ def text(value, digits=9):
 
 
 def write_csv(path, run_, mesh, result, factor):
-    with open(path, "w", encoding="ascii", newline="") as out:
-        writer = csv.writer(out, lineterminator="\n")
-        for number_, values in enumerate(rows(run_, mesh, result, factor)):  # at least one: the road's
-            if number_ == 0:
-                writer.writerow(values)
-            writer.writerow(text(value, max(6, result.digits)) for value in values.values())
+    found = list(rows(run_, mesh, result, factor))      # at least one: the road's
+    disk.write(path, disk.csv_text(found[0], ([text(value, max(6, result.digits)) for value in values.values()]
+                                              for values in found)))
 
 
 def write_geojson(path, run_, mesh, result, factor):
@@ -68,11 +65,8 @@ def write_profile(path, run_, profile):
     east, north = run_.raster.offset
     columns = {**profile, "east": profile["x"] + east, "north": profile["y"] + north}
     order = ("from", "to", "x", "y", "east", "north", "ground", "thickness", "removed", "blocked")
-    with open(path, "w", encoding="ascii", newline="") as out:
-        writer = csv.writer(out, lineterminator="\n")
-        writer.writerow(order)
-        for values in zip(*(columns[key].tolist() for key in order)):
-            writer.writerow(map(text, values))
+    disk.write(path, disk.csv_text(order, (map(text, values)
+                                           for values in zip(*(columns[key].tolist() for key in order)))))
 
 
 def draw(path, run_, road, axis, mesh, result, about):

@@ -3,8 +3,6 @@
 Order of the work: the numbers of each quantity (hazard.py), which variables it depends on (emulator.py), maps
 (ensemble_maps.py); what study.yaml says of them, hazard.csv and influence.csv.
 """
-import csv
-import io
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Optional, Sequence
@@ -138,17 +136,11 @@ def doubts(about: Mapping[str, Any]) -> List[str]:
 
 def influence_table(analyses: Mapping[str, emulator.Analysis]) -> str:
     """The CSV of ranks and indices; a cell is empty where the emulator says nothing."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["quantity", "variable", "rank", "rank_clear", *emulator.SIGN, "emulator_explains",
-                     "emulator_error"])
-    for name, analysis in analyses.items():
-        check = analysis.check
-        for one in analysis.influences:
-            writer.writerow([name, one.name, one.rank, "yes" if one.rank_clear else "no",
-                             *(getattr(one, key) for key in emulator.SIGN),
-                             *((check.explained, check.error) if check else (None, None))])
-    return text.getvalue()
+    return disk.csv_text(
+        ["quantity", "variable", "rank", "rank_clear", *emulator.SIGN, "emulator_explains", "emulator_error"],
+        ([name, one.name, one.rank, "yes" if one.rank_clear else "no", *(getattr(one, key) for key in emulator.SIGN),
+          *((analysis.check.explained, analysis.check.error) if analysis.check else (None, None))]
+         for name, analysis in analyses.items() for one in analysis.influences))
 
 
 # --- words ---

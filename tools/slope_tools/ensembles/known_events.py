@@ -4,8 +4,6 @@ Order of the work: where known events end on the path of this mass (mobility), t
 (mobility.weights), curves and quantiles of the weighted runs (conditioned), the parameters that they have, maps
 (known_maps). The numbers of the ensemble as its distributions have it are not touched.
 """
-import csv
-import io
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
@@ -225,13 +223,9 @@ def doubts(about: Mapping[str, Any], runs: Runs) -> List[str]:
 
 def weights_table(runs: Runs) -> str:
     """The CSV of the runs' weights; they add up to what is reached."""
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(["run", "length_m", "beyond", "ratio", "weight"])
     numbers = np.column_stack([runs.lengths, runs.beyond, runs.weights.ratio, runs.weights.weights])
-    for row, several in zip(runs.rows, numbers):
-        writer.writerow([row["run"], *(f"{one:.6g}" for one in several)])
-    return out.getvalue()
+    return disk.csv_text(["run", "length_m", "beyond", "ratio", "weight"], (
+        [row["run"], *(f"{one:.6g}" for one in several)] for row, several in zip(runs.rows, numbers)))
 
 
 # --- words ---

@@ -1,9 +1,7 @@
 """Fitting the variables of a deck to an observed deposit."""
-import csv
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Optional, Sequence
 
-import io
 import numpy as np
 import yaml
 
@@ -165,17 +163,16 @@ class Fit:
     def table(self, found: backanalysis.Posterior) -> str:
         """The CSV over all runs: values, outputs, score."""
         targets, plan = self.observed.targets, self.plan
-        text = io.StringIO()
-        writer = csv.writer(text, lineterminator="\n")
         names = [one.name for one in self.variables]
-        writer.writerow(["run", *names, "repeat", "score", *(f"{one.name} ({one.unit})" for one in targets), "status"])
+        rows = []
         for i, one in enumerate(plan.runs):
             outputs = plan.outputs[i]
             cells = [""] * (1 + len(targets)) if outputs is None else [
                 f"{backanalysis.misfits(outputs[None], found, targets)[0]:.6g}", *(f"{value:.9g}" for value in outputs)]
-            writer.writerow([one.name, *(plan.ledger.points[i][name] for name in names), one.key, *cells,
-                             "failed" if one.error else "finished" if outputs is not None else "left the terrain"])
-        return text.getvalue()
+            rows.append([one.name, *(plan.ledger.points[i][name] for name in names), one.key, *cells,
+                         "failed" if one.error else "finished" if outputs is not None else "left the terrain"])
+        return disk.csv_text(["run", *names, "repeat", "score", *(f"{one.name} ({one.unit})" for one in targets),
+                              "status"], rows)
 
     def draw_map(self, path: Path, best: repeats.Repeat) -> None:
         """Predicted against mapped."""

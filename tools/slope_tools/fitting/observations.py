@@ -49,14 +49,14 @@ class Wanted:
 
     def check(self, road: bool) -> None:
         """Raise SlopeError unless something is observed, and every number can be."""
-        numbers = {"--front": self.front, "--area": self.area, "--volume": self.volume}
+        numbers = {"--front": self.front, "--area": self.area, "--road-volume": self.volume}
         if self.observed is None and all(value is None for value in numbers.values()):
-            raise SlopeError("--observed, --front, --area, --volume", "must give at least one of them")
+            raise SlopeError("--observed, --front, --area, --road-volume", "must give at least one of them")
         for option, value in numbers.items():
             if value is not None and not value > 0:
                 raise SlopeError(option, "must be > 0", f"{value:g}")
         if self.volume is not None and not road:
-            raise SlopeError("--volume", "needs --road: it is the volume on it")
+            raise SlopeError("--road-volume", "needs --road: it is the volume on it")
         if self.observed is not None and not self.observed.is_file():
             raise SlopeError("--observed", "must be an existing file", self.observed)
         for value in (self.tolerance, *self.own.values()):

@@ -1,6 +1,4 @@
 """The Mobility of a body in words, as a table and as files; all of them or none."""
-import csv
-import io
 from pathlib import Path
 from typing import Any, Dict, List, NamedTuple, Optional, Sequence
 
@@ -36,12 +34,8 @@ def table(mobility: Mobility) -> str:
     columns = {"length_m": path.length, "height_m": path.fall, "x": path.x, "y": path.y,
                "exceedance": mobility.curves[severe]}
     columns.update({f"exceedance_{NAMES[kind]}": curve for kind, curve in mobility.curves.items() if kind != severe})
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(columns)
-    for row in zip(*columns.values()):
-        writer.writerow([*(f"{value:.3f}" for value in row[:4]), *(f"{value:.6g}" for value in row[4:])])
-    return out.getvalue()
+    return disk.csv_text(columns, ([*(f"{value:.3f}" for value in row[:4]), *(f"{value:.6g}" for value in row[4:])]
+                                   for row in zip(*columns.values())))
 
 
 def doubts(mobility: Mobility) -> List[str]:

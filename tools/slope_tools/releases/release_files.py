@@ -1,13 +1,12 @@
 """The files of a release: rasters with their sidecars, picture, numbers, lines of the deck; all of them or none."""
 import os
-import shutil
 from pathlib import Path
 from typing import Iterable, List
 
 import numpy as np
 from scipy.ndimage import binary_dilation
 
-from ..disk import beside_folder, write_yaml
+from ..disk import complete, write_yaml
 from ..errors import SlopeError
 from ..provenance import version
 from ..survey import rasters
@@ -60,26 +59,17 @@ def write(name: Path, terrain: str, raster: Raster, area: Area, slip: np.ndarray
     """
     from . import release_chart     # matplotlib: only once the body is there
 
-    folder = beside_folder(name)
-    new = folder / name.name
-    made = dict(zip(SUFFIXES, paths(new)))
     whole, depth = ground_without(raster, area, slip), np.full(raster.z.shape, np.nan)
     part = part_of(area, slip)
     depth[part] = np.where(slip < area.z, area.z - slip, np.nan)
     sidecar = {"terrain": str(terrain), "release": name.name + ".yaml"}
-    try:
-        folder.mkdir()
+    with complete(name.parent, name.name + ".yaml", name) as folder:
+        made = dict(zip(SUFFIXES, paths(folder / name.name)))
         rasters.write_asc_local(made[".slip.asc"], raster._replace(z=whole), sidecar, exact=True)
         rasters.write_asc_local(made[".depth.asc"], raster._replace(z=depth), sidecar, exact=True)
         release_chart.draw(made[".png"], raster, area, slip, geometry, title)
         write_yaml(made[".yaml"], about, "slope release: lengths in m, local x y, volumes in m3, angles in degrees")
         made[".deck.txt"].write_text(release_deck.text(deck_body(name, terrain, raster, area, slip)), encoding="utf-8")
-        for path, final in zip(made.values(), paths(name)):
-            os.replace(path, final)
-    except OSError as error:
-        raise SlopeError(name, f"cannot be written: {error.strerror or error}") from None
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
 
 
 def write_body(name: Path, wanted: Wanted, body: Body) -> None:

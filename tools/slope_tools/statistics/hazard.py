@@ -5,14 +5,14 @@ Bounds are those of Clopper and Pearson for a share k of n; where a point has se
 independent runs that they are worth (Korn and Graubard, Survey Methodology, 24, 193, 1998). Failed runs could have
 given anything: in a lower bound they do not exceed a value, in an upper one they do. Every function is pure.
 """
-import csv
-import io
 import math
 from dataclasses import dataclass
 from typing import List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from scipy import stats
+
+from .. import disk
 
 Values = Union[Sequence[float], np.ndarray]
 CONFIDENCE = 0.9                # of bounds, two-sided: 5 % beyond either
@@ -49,13 +49,14 @@ class Curve:
         return Band(float(self.share[i]), float(self.low[i]), float(self.high[i]))
 
 
-def share_bounds(k, n: int, failed: int = 0, effect: float = 1.0) -> Tuple[np.ndarray, np.ndarray]:
-    """Bounds of the share of which k of n finished runs are seen; k may be an array.
+def share_bounds(k, n: int, failed: int = 0, effect: float = 1.0,
+                 confidence: float = CONFIDENCE) -> Tuple[np.ndarray, np.ndarray]:
+    """Bounds (Clopper and Pearson) of the share of which k of n finished runs are seen; k may be an array.
 
     effect: how many of the runs are worth one independent run, >= 1.
     """
     k = np.asarray(k, float)
-    tail = (1 - CONFIDENCE) / 2
+    tail = (1 - confidence) / 2
     total = (n + failed) / effect
     few, many = k / effect, (k + failed) / effect
     with np.errstate(invalid="ignore"):
@@ -141,12 +142,10 @@ def levels_of(given: np.ndarray) -> np.ndarray:
 
 def table(curves: Mapping[str, Curve]) -> str:
     """The CSV of hazard curves of quantities: the share above each value, with bounds."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["quantity", "value", "exceeded", "low", "high"])
+    rows = []
     for name, one in curves.items():
         # what levels_of() put just below a value stands for all below it, and is no value
         first = int(len(one.values) > 1 and np.nextafter(one.values[0], math.inf) == one.values[1])
-        for row in list(zip(one.values, one.share, one.low, one.high))[first:]:
-            writer.writerow([name, *(f"{value:.9g}" for value in row)])
-    return text.getvalue()
+        rows += [[name, *(f"{value:.9g}" for value in row)]
+                 for row in list(zip(one.values, one.share, one.low, one.high))[first:]]
+    return disk.csv_text(["quantity", "value", "exceeded", "low", "high"], rows)

@@ -1,11 +1,9 @@
 """What one variable of a deck does to a quantity, beside the scatter by chance."""
-import csv
 import math
 import statistics
 import sys
 from typing import Any, Dict, List, Mapping, Optional
 
-import io
 import yaml
 from rich.console import Console
 from rich.table import Table
@@ -60,7 +58,7 @@ def plan(setup: Setup, base: Mapping[str, str], kinds) -> List[Trial]:
                     continue
                 todo.append(Trial(setup.output, {**base, name: value}, kind, name))
     if len(todo) == 1:
-        raise SlopeError("--vary, --repeat", "must give a value that is not the base's")
+        raise SlopeError("--levels, --repeat", "must give a value that is not the base's")
     study.check_names(todo)
     return todo
 
@@ -168,18 +166,18 @@ def share(value, mean, sign=""):
 
 def table(rows, of, scatter, defaults):
     """The CSV over all runs."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
     columns = (*study_table.COLUMNS, *(study_table.ROAD_COLUMNS if any("remove_m3" in row for row in rows) else ()))
-    writer.writerow(["run", "kind", "variable", "value", "base_value",
-                     *(f"{what}_of_{name}" for name in of for what in ("effect", "clear")), *columns])
-    for row in rows:
+
+    def line(row):
         cells = {**row, "moving": answer(row["moving"]), "at_rest": answer(row["at_rest"])}
         mine = [cell for name in of for cell in (effect(row, name, scatter[name]),
                                                  answer(is_clear(row, name, scatter[name])))]
-        writer.writerow([row["run"], row["kind"], row["variable"], row["value"], defaults.get(row["variable"]), *mine,
-                         *(cells.get(key) for key in columns)])
-    return text.getvalue()
+        return [row["run"], row["kind"], row["variable"], row["value"], defaults.get(row["variable"]), *mine,
+                *(cells.get(key) for key in columns)]
+
+    return disk.csv_text(["run", "kind", "variable", "value", "base_value",
+                          *(f"{what}_of_{name}" for name in of for what in ("effect", "clear")), *columns],
+                         map(line, rows))
 
 
 def answer(value):

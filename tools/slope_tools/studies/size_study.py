@@ -3,9 +3,6 @@
 Order of the work: plan sizes and repeats (repeats.py), run them as `slope study` does (study.py, jobs.py), fit
 (convergence.py), write converge.yaml, converge.csv, converge_runs.csv and the chart (convergence_chart.py).
 """
-import csv
-import io
-
 import yaml
 from rich.table import Table
 
@@ -122,17 +119,15 @@ def entry(fit, name, sentences):
 
 def table(fits, variable):
     """The CSV: a row per quantity and size; the last of a quantity is that of small balls, at 0."""
-    text = io.StringIO()
-    out = csv.writer(text, lineterminator="\n")
-    out.writerow(["quantity", variable, "runs", "mean", "scatter", "fitted", "standard_error", "error_percent",
-                  "standard_error_percent"])
+    rows = []
     for name, fit in fits.items():
         for size in fit.sizes:
-            out.writerow([name, size.d, size.runs, size.mean, size.scatter, size.fitted, fit.line_at(size.d)[1],
-                          percent(size.error), percent(size.standard_error)])
-        out.writerow([name, 0, None, None, None, fit.small.value, fit.small.standard_error, 0 if fit.known else None,
-                      None])
-    return text.getvalue()
+            rows.append([name, size.d, size.runs, size.mean, size.scatter, size.fitted, fit.line_at(size.d)[1],
+                         percent(size.error), percent(size.standard_error)])
+        rows.append([name, 0, None, None, None, fit.small.value, fit.small.standard_error, 0 if fit.known else None,
+                     None])
+    return disk.csv_text(["quantity", variable, "runs", "mean", "scatter", "fitted", "standard_error",
+                          "error_percent", "standard_error_percent"], rows)
 
 
 def show(fits, variable, names, deck):

@@ -1,9 +1,8 @@
 """The runs of a study by combinations of choices: mean and scatter of each, and the conservative volume over all."""
-import csv
-import io
 from dataclasses import dataclass, field
 from typing import Any, Dict, List, Mapping, Optional, Sequence
 
+from .. import disk
 from ..case.settings import as_number
 from ..deposits.travel_shares import DISTANCE, REACH
 from ..runs import jobs
@@ -74,15 +73,10 @@ def entries(groups: Sequence[Group], names: Sequence[str]) -> List[Dict[str, Any
 
 def table(groups: Sequence[Group], names: Sequence[str], settings: Mapping[str, Sequence[str]]) -> str:
     """The CSV over all combinations."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["combination", *settings, "repeats",
-                     *(column for name in names for column in (f"{name}_mean", f"{name}_scatter"))])
-    for group in groups:
-        several = [group.of(name) for name in names]
-        writer.writerow([group.name, *group.set.values(), len(group.rows),
-                         *(cell for one in several for cell in (one.mean, one.scatter))])
-    return text.getvalue()
+    return disk.csv_text(
+        ["combination", *settings, "repeats", *(f"{name}_{what}" for name in names for what in ("mean", "scatter"))],
+        ([group.name, *group.set.values(), len(group.rows),
+          *(cell for one in map(group.of, names) for cell in (one.mean, one.scatter))] for group in groups))
 
 
 def label(chosen: Mapping[str, str], settings: Mapping[str, Sequence[str]]) -> str:

@@ -4,19 +4,17 @@ An intensity is a variable of the study such as the peak acceleration of an eart
 as all values of --set; what differs by chance at one of them are the repeats. Of n runs at an intensity, k with more
 than a volume v: P(V > v) is k/n, with the interval of Clopper and Pearson (Biometrika 26, 1934, 404).
 """
-import csv
-import io
 import math
 import re
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from rich.table import Table
-from scipy import stats
 
 from .. import disk
 from ..case.settings import as_number
 from ..errors import SlopeError
+from ..statistics import hazard
 from . import study_table
 from .combinations import Group
 
@@ -67,10 +65,8 @@ def round_volumes(largest: float) -> List[float]:
 
 def probability(above: int, of: int) -> Tuple[float, float, float]:
     """k of n runs: k/n and its interval of Clopper and Pearson."""
-    tail = (1 - CONFIDENCE) / 2
-    low = 0.0 if above == 0 else float(stats.beta.ppf(tail, above, of - above + 1))
-    high = 1.0 if above == of else float(stats.beta.ppf(1 - tail, above + 1, of - above))
-    return above / of, low, high
+    low, high = hazard.share_bounds(above, of, confidence=CONFIDENCE)
+    return above / of, float(low), float(high)
 
 
 def entry(name: str, groups: Sequence[Group], volumes: Sequence[float]) -> Optional[Dict[str, Any]]:
@@ -118,17 +114,14 @@ def doubts(about: Mapping[str, Any]) -> List[str]:
 
 def table(about: Mapping[str, Any]) -> str:
     """The CSV: a row for each point."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
     columns = ("runs", "mean_m3", "scatter_m3", "smallest_m3", "largest_m3", "share_of_released")
     volumes = [f"{volume:g}" for volume in about["more_than_m3"]]
-    writer.writerow([*about["lines"][0]["set"], about["variable"], *columns,
-                     *(f"{what}_{volume}_m3" for volume in volumes for what in ("p_more_than", "low", "high"))])
-    for line in about["lines"]:
-        for one in line["points"]:
-            writer.writerow([*line["set"].values(), f"{one['at']:g}", *(one[key] for key in columns),
-                             *(each[key] for each in one["exceed"] for key in ("probability", "low", "high"))])
-    return text.getvalue()
+    return disk.csv_text(
+        [*about["lines"][0]["set"], about["variable"], *columns,
+         *(f"{what}_{volume}_m3" for volume in volumes for what in ("p_more_than", "low", "high"))],
+        ([*line["set"].values(), f"{one['at']:g}", *(one[key] for key in columns),
+          *(each[key] for each in one["exceed"] for key in ("probability", "low", "high"))]
+         for line in about["lines"] for one in line["points"]))
 
 
 def percent(share: float) -> str:

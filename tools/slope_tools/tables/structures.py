@@ -4,7 +4,6 @@ Which ones a run had is known from the commands in its log, so that files which 
 this one's. Forces in N, times in s, pressures in Pa, volumes in m3 of ground, energies in J.
 """
 import csv
-import io
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Sequence, Tuple
@@ -181,15 +180,11 @@ def table(rows: Sequence[Mapping[str, Any]], what: str) -> str:
     entries = [(row, name, numbers) for row in rows for name, numbers in (row.get(what) or {}).items()]
     if not entries:
         return ""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
     columns = [key for key in entries[0][2] if key != "pressure_at"]
     place = ["pressure_x_m", "pressure_y_m", "pressure_z_m"] if what == "structures" else []
-    writer.writerow(["run", *entries[0][0]["set"], what[:-1], *columns, *place])
-    for row, name, numbers in entries:
-        more = (numbers["pressure_at"] or [None] * 3) if place else []
-        writer.writerow([row["run"], *row["set"].values(), name, *(numbers[key] for key in columns), *more])
-    return text.getvalue()
+    return disk.csv_text(["run", *entries[0][0]["set"], what[:-1], *columns, *place], (
+        [row["run"], *row["set"].values(), name, *(numbers[key] for key in columns),
+         *((numbers["pressure_at"] or [None] * 3) if place else [])] for row, name, numbers in entries))
 
 
 SHOWN: Dict[str, Tuple[Tuple[str, str, float], ...]] = {

@@ -1,12 +1,11 @@
 """The tables over all runs of a study, and over its combinations: as a CSV and on the screen."""
-import csv
-import io
 import sys
 from typing import Any, Dict, Tuple
 
 from rich.console import Console
 from rich.table import Table
 
+from .. import disk
 from ..deposits import rest, travel_shares
 from ..statistics import headline
 from . import combinations
@@ -32,17 +31,15 @@ SHOWN_ROAD: Dict[str, Tuple[str, Any]] = {
 
 def table(settings, repeated, rows, defaults):
     """The CSV over all runs."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
     columns = [*COLUMNS, *(ROAD_COLUMNS if any("remove_m3" in row for row in rows) else ()), "status", "error"]
     more = [name for name in repeated if name not in settings]
-    writer.writerow(["run", *settings, *more, *columns])
-    for row in rows:
+
+    def line(row):
         cells = {**row, **{name: ANSWER.get(row.get(name)) for name in ("moving", "at_rest")}}
         chosen = {**defaults, **row["set"], **row["repeat"]}
-        writer.writerow([row["run"], *(chosen[name] for name in (*settings, *more)),
-                         *(cells.get(key) for key in columns)])
-    return text.getvalue()
+        return [row["run"], *(chosen[name] for name in (*settings, *more)), *(cells.get(key) for key in columns)]
+
+    return disk.csv_text(["run", *settings, *more, *columns], map(line, rows))
 
 
 def volume(value, scatter):

@@ -1,5 +1,4 @@
 """Runs that check claims, and their report."""
-import csv
 import platform
 import shutil
 import sys
@@ -7,7 +6,6 @@ import time
 from pathlib import Path
 from typing import Any, Dict, NamedTuple, Union
 
-import io
 import numpy as np
 import yaml
 from rich.console import Console
@@ -206,10 +204,7 @@ def compared(path):
 def write(output, outcomes, about, peers=None):
     """The report in its four forms."""
     rows = [row(outcome) for outcome in outcomes]
-    table = io.StringIO()
-    out = csv.DictWriter(table, COLUMNS, lineterminator="\n")
-    out.writeheader()
-    out.writerows({**entry, "commands": "; ".join(entry["commands"])} for entry in rows)
+    table = disk.csv_text(COLUMNS, ({**entry, "commands": "; ".join(entry["commands"])}.values() for entry in rows))
 
     def of_module(case):        # several modules may be about one folder
         names = {claim.name for claim in case.CLAIMS}
@@ -226,7 +221,7 @@ def write(output, outcomes, about, peers=None):
                                                          if entry["name"] in erratum.claims]}
                           for erratum in errata()]}
     whole = yaml.safe_dump({**about, "results": rows}, sort_keys=False)
-    for name, data in ((".csv", table.getvalue()), (".yaml", whole),
+    for name, data in ((".csv", table), (".yaml", whole),
                        (".rst", render("verify.rst.j2", content)), (".html", render("verify.html.j2", content))):
         disk.write(output / f"{NAME}{name}", data)
 

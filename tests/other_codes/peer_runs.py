@@ -3,11 +3,11 @@ import re
 import time
 from pathlib import Path
 
-from .. import processes
-from ..case import last_words, logs
-from ..deposits import dumps
-from ..errors import SlopeError
-from ..runs import launcher
+from slope_tools import processes
+from slope_tools.case import last_words, logs
+from slope_tools.deposits import dumps
+from slope_tools.errors import SlopeError
+from slope_tools.runs import launcher
 
 DATA, DECK, LOG, SCREEN, FINAL, SERIES = "balls.data", "in.scene", "log.scene", "screen.txt", "final.txt", "series.txt"
 COLUMNS = "x y z vx vy vz omegax omegay omegaz"

@@ -10,8 +10,8 @@ from typing import Dict, NamedTuple, Optional, Sequence
 
 import numpy as np
 
-from .. import disk
-from ..errors import SlopeError
+from slope_tools import disk
+from slope_tools.errors import SlopeError
 from .peer_runs import COLUMNS, DATA, DECK, FINAL, LOG, LOOP, SCREEN, SERIES, failure, read_dump, read_text
 
 MANY = 100          # moving balls from which on the box follows them

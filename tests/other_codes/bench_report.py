@@ -11,7 +11,7 @@ import yaml
 from rich.console import Console
 from rich.table import Table
 
-from .. import disk, provenance
+from slope_tools import disk, provenance
 from . import peers
 from .bench_scenes import PREPARED
 
@@ -152,8 +152,8 @@ def against(value):
 
 def draw(path, about):
     """The codes against ours with their targets, the other measures, and where our time goes."""
-    from ..drawing import figures, pictures
-    from ..drawing.figures import plt
+    from slope_tools.drawing import figures, pictures
+    from slope_tools.drawing.figures import plt
     measures, codes, parts = about["measures"], about["codes"], about["breakdown_seconds"]
     with plt.rc_context(figures.STYLE):
         figure, axes = plt.subplots(1, 2, figsize=(figures.FULL, 2.3), width_ratios=(1.5, 1))

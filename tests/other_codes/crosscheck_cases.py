@@ -8,13 +8,13 @@ from typing import Any, Dict, List, NamedTuple, Optional, Tuple
 
 import numpy as np
 
-from .. import disk
-from ..case.data_files import data_files
-from ..errors import SlopeError
+from slope_tools import disk
+from slope_tools.case.data_files import data_files
+from slope_tools.errors import SlopeError
 from . import peer_runs, peers
 from .peers import Contact, Scene
 
-INPUTS = Path(__file__).resolve().parents[3] / "inputs"
+INPUTS = Path(__file__).resolve().parents[2] / "inputs"
 START = "start.dump"
 DROPS = 10              # phases of a step at which a contact begins
 NOISE = 1e-6            # diameters by which the balls of a repeated collapse are moved at the start

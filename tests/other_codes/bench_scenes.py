@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import disk
+from slope_tools import disk
 from . import peers
 from .peers import Contact
 
@@ -16,7 +16,7 @@ TOE, SHOULDER, RISE, DEPTH, MIDDLE = 84.0, 156.0, 36.0, 18.0, 80.0      # m; see
 WEST, EAST, SOUTH, NORTH = 22.0, 222.0, 5.0, 155.0      # edges of the terrain, m
 PREPARED = 2.0          # s of collapse before the clock starts
 SKIN = 0.2              # of the neighbour lists, diameters
-CASE = Path(__file__).resolve().parents[3] / "inputs" / "20_embankment" / "in.embankment"
+CASE = Path(__file__).resolve().parents[2] / "inputs" / "20_embankment" / "in.embankment"
 
 
 def terrain(size, factor):

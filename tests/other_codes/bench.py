@@ -7,14 +7,14 @@ import argparse
 import shutil
 from pathlib import Path
 
-from .. import disk
-from ..errors import SlopeError
-from ..options import count, number
-from ..programs import lmp_of_each
-from ..runs import jobs
-from ..validation import peers
-from ..validation.bench import Plan
-from ..validation.bench_scenes import BALLS
+from slope_tools import disk
+from slope_tools.errors import SlopeError
+from slope_tools.options import count, number
+from slope_tools.programs import find_lmp
+from slope_tools.runs import jobs
+from . import peers
+from .bench_runs import Plan
+from .bench_scenes import BALLS
 
 PARTS = {"peers": "against the other codes, one core",
          "terrain": "terrain ten times larger, the same moving mass",
@@ -45,7 +45,7 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--field-factor", type=number, default=1.0, metavar="F",
                         help="area of the terrain, times that of the scene (default 1: about 28,000 fixed balls)")
     parser.add_argument("--steps", type=count, metavar="N", help="timed steps of a run (default 1000; --quick 300)")
-    parser.add_argument("--repeat", type=count, metavar="N", help="runs of each kind (default 5; --quick 3)")
+    parser.add_argument("--runs", type=count, metavar="N", help="runs of each kind (default 5; --quick 3)")
     parser.add_argument("--np", default="2", metavar="N1,N2,...",
                         help="ranks of the parts ranks and weak, besides one (default 2)")
     parser.add_argument("--only", metavar="PART,...", help=f"these parts: {', '.join(PARTS)} (default all)")
@@ -78,7 +78,7 @@ def run(args):
     if args.output.exists() and not args.output.is_dir():
         raise SlopeError("-o", "must be a folder", args.output)
     plan = Plan(args.output, lmp, programs, args.steps or (300 if args.quick else 1000),
-                args.repeat or (3 if args.quick else 5), balls, args.field_factor, args.quick)
+                args.runs or (3 if args.quick else 5), balls, args.field_factor, args.quick)
     try:
         args.output.mkdir(parents=True, exist_ok=True)
         with disk.alone_in(args.output), jobs.signals_interrupt(), plan:
@@ -104,3 +104,21 @@ def whole_numbers(option, text):
         return [count(word) for word in text.split(",")]
     except argparse.ArgumentTypeError as error:
         raise SlopeError(option, str(error)) from error
+
+
+def lmp_of_each(options, names):
+    """The program that --lmp FILE names (default: find_lmp's), and {code: program} of --lmp CODE=FILE; absolute
+    paths. names: the codes that may have a program of their own.
+    """
+    everybody, own = None, {}
+    for option in options or ():
+        code, equals, file = option.partition("=")
+        if not equals:
+            if everybody is not None:
+                raise SlopeError("--lmp", "must name one program for all, others as CODE=FILE", option)
+            everybody = option
+        elif code not in names:
+            raise SlopeError("--lmp", f"must be FILE, or CODE=FILE with CODE of {', '.join(names)}", option)
+        else:
+            own[code] = find_lmp(file)
+    return find_lmp(everybody), own

@@ -7,8 +7,8 @@ import yaml
 from rich.console import Console
 from rich.table import Table
 
-from .. import disk, provenance
-from .crosscheck import Check, road_corners
+from slope_tools import disk, provenance
+from .crosscheck_cases import Check, road_corners
 
 
 def report(work):
@@ -61,8 +61,8 @@ def cell(value):
 
 def draw(path, work):
     """The deposit of every code along x, with the road."""
-    from ..drawing import figures, pictures
-    from ..drawing.figures import plt
+    from slope_tools.drawing import figures, pictures
+    from slope_tools.drawing.figures import plt
     with plt.rc_context(figures.STYLE):
         figure, axes = plt.subplots(figsize=(figures.FULL, 2.7))
         road = road_corners()[:, 0]

@@ -10,7 +10,7 @@ import numpy as np
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from .. import disk
+from slope_tools import disk
 from . import peer_runs, peers
 from .bench_report import BUSY, TARGETS, report
 from .bench_scenes import BALLS, CASE, D, DENSITY, PREPARED, SKIN, collapse, contacts, copies, time_step, write_terrain

@@ -8,13 +8,13 @@ limit_damping yes). What remains is explained in Code.differs; what ours does di
 import argparse
 from pathlib import Path
 
-from .. import disk
-from ..errors import SlopeError
-from ..programs import find_lmp
-from ..runs import jobs
-from ..validation import peers
-from ..validation.crosscheck import PEERS, Work, bounce, collapse, rolling, slide_roll
-from ..validation.crosscheck_report import report
+from slope_tools import disk
+from slope_tools.errors import SlopeError
+from slope_tools.programs import find_lmp
+from slope_tools.runs import jobs
+from . import peers
+from .crosscheck_cases import PEERS, Work, bounce, collapse, rolling, slide_roll
+from .crosscheck_report import report
 
 EPILOG = """\
 units: metres, seconds, m3 of ground (bulk).
