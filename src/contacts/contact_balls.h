@@ -37,8 +37,10 @@ struct MovingPartners {
   SLOPE_INLINE bool gets_force(int j) const { return j < nforce; }
   SLOPE_INLINE void prefetch(int j) const
   {
+    __builtin_prefetch(&balls.x[j]);
     __builtin_prefetch(&balls.v[j]);
     __builtin_prefetch(&balls.omega[j]);
+    __builtin_prefetch(&balls.ahead[j]);
     __builtin_prefetch(&balls.f[j], 1);
     __builtin_prefetch(&balls.torque[j], 1);
   }

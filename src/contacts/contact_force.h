@@ -7,7 +7,7 @@
    spring, rolling resistance with a rolling spring. One contact, pure functions,
    no LAMMPS. Nothing else computes a contact force. Derivations: doc/src/theory.rst.
 
-   T is double, for one contact, or Four, for four at a time (SIMD): what differs
+   T is double, for one contact, or Four or Eight, for several at a time (SIMD): what differs
    between contacts is chosen, never branched on. N is the same, or double if all
    contacts share it.
 

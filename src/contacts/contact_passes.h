@@ -4,7 +4,7 @@
 ------------------------------------------------------------------------- */
 
 /* The two passes over a list of contacts, for one set of instructions: find() and apply() of
-   ContactKernel. Contacts are evaluated four at a time (SIMD). Included by contact_kernel_*.cpp alone. No
+   ContactKernel. Contacts are evaluated four or eight at a time (SIMD). Included by contact_kernel_*.cpp alone. No
    LAMMPS. */
 
 #ifndef SLOPE_CONTACT_PASSES_H
@@ -19,6 +19,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 namespace Slope {
 inline namespace SLOPE_INSTRUCTIONS {
@@ -92,7 +93,10 @@ class ContactPasses : ContactView {
     ContactStepOf<N> step;
   };
 
-  // contacts to be evaluated four at a time
+  // of a T
+  template <class T> static constexpr int lanes() { return sizeof(T) / sizeof(double); }
+
+  // contacts to be evaluated
   struct Batch {
     int found[2 * BLOCK + FETCHED + 3], count = 0;
 
@@ -113,35 +117,41 @@ class ContactPasses : ContactView {
     const Sizes<double> same = {
         radius_i, radius_j, step_of(moves, law, dt, repeat, radius_i, radius_j, mass_i, mass_j)};
     Batch lasting, changing;    // the second: those that begin or end in the step
-    auto evaluate = [&](bool changes, const int *k, int count) {
+    auto evaluate_four = [&](bool changes, const int *k, int count) {
       if (changes)
-        apply_four<true, ROLLING, N, TALLY>(k, count, law, same, repeat, balls, partners, tally);
+        apply_several<Four, true, ROLLING, N, TALLY>(k, count, law, same, repeat, balls, partners,
+                                                     tally);
       else
-        apply_four<false, ROLLING, N, TALLY>(k, count, law, same, repeat, balls, partners, tally);
+        apply_several<Four, false, ROLLING, N, TALLY>(k, count, law, same, repeat, balls, partners,
+                                                      tally);
     };
-    auto evaluate_all_but = [&](Batch &batch, bool changes, int left) {
-      int c = 0;
-      for (; c + 4 + left <= batch.count; c += 4) {
-        for (int m = 0; m < 4 && left > 0; m++) prefetch(batch.found[c + left + m], partners);
-        evaluate(changes, &batch.found[c], 4);
-      }
-      batch.drop(c);
-    };
+    // of those that last as many at a time as there are lanes, where the balls are equal
+
+    typedef typename std::conditional<sizeof(N) == sizeof(double), Widest, Four>::type Several;
+    constexpr int MANY = lanes<Several>();
     for (size_t block = 0; block < blocks; block++) {
       if (law.exact > 0.0)
         sort(block, repeat, lasting, changing);
       else
         sort_plain(block, repeat, lasting);
-      evaluate_all_but(lasting, false, FETCHED);
-      evaluate_all_but(changing, true, 0);
+      int done = 0;
+      for (; done + MANY + FETCHED <= lasting.count; done += MANY) {
+        for (int m = 0; m < MANY; m++) prefetch(lasting.found[done + FETCHED + m], partners);
+        apply_several<Several, false, ROLLING, N, TALLY>(&lasting.found[done], MANY, law, same,
+                                                         repeat, balls, partners, tally);
+      }
+      lasting.drop(done);
+      for (done = 0; done + 4 <= changing.count; done += 4)
+        evaluate_four(true, &changing.found[done], 4);
+      changing.drop(done);
     }
-    evaluate_all_but(lasting, false, 0);
-    for (Batch *batch : {&lasting, &changing}) {
-      const int count = batch->count;
-      if (count == 0) continue;
-      std::fill(batch->found + count, batch->found + 4, batch->found[count - 1]);    // idle
-      evaluate(batch == &changing, batch->found, count);
-    }
+    for (Batch *batch : {&lasting, &changing})
+      for (int done = 0; done < batch->count; done += 4) {
+        int *const k = &batch->found[done];
+        const int count = std::min(4, batch->count - done);
+        std::fill(k + count, k + 4, k[count - 1]);    // idle
+        evaluate_four(batch == &changing, k, count);
+      }
   }
 
   SLOPE_INLINE static void push(Batch &batch, size_t block, std::uint64_t bits)
@@ -201,8 +211,9 @@ class ContactPasses : ContactView {
       for (int m = 0; m < 4; m++) __builtin_prefetch(&partners.x(next[k + m].j));
       N reach = all<N>(sum);
       find_reach(&e[k], balls, partners, reach);
-      const Columns d = distances(&e[k], balls, partners);
-      const Four rsq = d.x * d.x + d.y * d.y + d.z * d.z;
+      Four d[3];
+      find_distances(&e[k], balls, partners, d);
+      const Four rsq = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
       now |= static_cast<std::uint64_t>(bits(rsq < reach * reach)) << k;
     }
     if (listed < BLOCK) now &= (std::uint64_t(1) << listed) - 1;
@@ -227,97 +238,134 @@ class ContactPasses : ContactView {
     for (int m = 0; m < 4; m++) reach[m] = balls.radius[e[m].i] + partners.radius(e[m].j);
   }
 
-  template <class Partners>
-  SLOPE_INLINE static Columns distances(const Entry *e, const MovingBalls &balls,
-                                        const Partners &partners)
+  // vectors row(m), of several contacts m, by component
+  template <class T, class Row> SLOPE_INLINE static void gather(Row row, T *components)
   {
-    Four d[4];
-    for (int m = 0; m < 4; m++) d[m] = four(&balls.x[e[m].i].x) - four(&partners.x(e[m].j).x);
-    return Columns(d[0], d[1], d[2], d[3]);
+    Four parts[3][lanes<T>() / 4];
+    for (int h = 0; h < lanes<T>() / 4; h++) {
+      const Columns c(row(4 * h), row(4 * h + 1), row(4 * h + 2), row(4 * h + 3));
+      parts[0][h] = c.x;
+      parts[1][h] = c.y;
+      parts[2][h] = c.z;
+    }
+    for (int d = 0; d < 3; d++) join(parts[d], components[d]);
   }
 
-  // The contacts k of which count, of four, are not idle; CHANGES: they begin or end in the step
-  template <bool CHANGES, bool ROLLING, class N, bool TALLY, class Partners>
-  SLOPE_INLINE void apply_four(const int *k, int count, const ContactLaw &law,
-                               const Sizes<double> &same, bool repeat, const MovingBalls &balls,
-                               const Partners &partners, ContactTally *tally)
+  template <class T, class Partners>
+  SLOPE_INLINE static void find_distances(const Entry *e, const MovingBalls &balls,
+                                          const Partners &partners, T *delta)
   {
-    const Entry e[4] = {entries[k[0]], entries[k[1]], entries[k[2]], entries[k[3]]};
-    double *const h[4] = {histories[k[0]], histories[k[1]], histories[k[2]], histories[k[3]]};
+    gather(
+        [&](int m) -> Four {
+          return four(&balls.x[e[m].i].x) - four(&partners.x(e[m].j).x);
+        },
+        delta);
+  }
+
+  // The contacts k of which count, of four or eight (T), are not idle; CHANGES: they begin or end in the step
+  template <class T, bool CHANGES, bool ROLLING, class N, bool TALLY, class Partners>
+  SLOPE_INLINE void apply_several(const int *k, int count, const ContactLaw &law,
+                                  const Sizes<double> &same, bool repeat, const MovingBalls &balls,
+                                  const Partners &partners, ContactTally *tally)
+  {
+    Entry e[lanes<T>()];
+    double *h[lanes<T>()];
+    for (int m = 0; m < lanes<T>(); m++) {
+      e[m] = entries[k[m]];
+      h[m] = histories[k[m]];
+    }
     Sizes<N> sizes;
     find_sizes(k, e, same, balls, partners, sizes);
     const N ri = sizes.radius_i, rj = sizes.radius_j;
 
-    ContactOf<Four, N> c;
+    ContactOf<T, N> c;
     c.rolling_radius = law.rolling_factor * ri * rj / (ri + rj);
 
-    const Columns delta = distances(e, balls, partners);
-    const Four rsq = delta.x * delta.x + delta.y * delta.y + delta.z * delta.z;
-    const Four r = root(rsq), rinv = 1.0 / rsq * r;
+    T delta[3];
+    find_distances(e, balls, partners, delta);
+    const T rsq = delta[0] * delta[0] + delta[1] * delta[1] + delta[2] * delta[2];
+    const T r = root(rsq), rinv = 1.0 / rsq * r;
     c.overlap = ri + rj - r;
-    c.n[0] = delta.x * rinv;
-    c.n[1] = delta.y * rinv;
-    c.n[2] = delta.z * rinv;
+    for (int d = 0; d < 3; d++) c.n[d] = delta[d] * rinv;
     find_velocities(e, ri, rj, balls, partners, c);
     c.follow_whole_step();
-    if (CHANGES) find_times(k, repeat, delta, rinv, Four(N(ri + rj) + Four()), same.step.dt, c);
+    if (CHANGES) find_times(k, repeat, delta, rinv, T(N(ri + rj) + T()), same.step.dt, c);
 
-    Four history[6];
+    T history[6];
     load(h, history);
-    ContactForceOf<Four> out;
-    contact_force<ROLLING>(sizes.step, c, contacts(e, sizes.step, balls, partners), history, out);
+    ContactForceOf<T> out;
+    contact_force<ROLLING>(sizes.step, c, contacts<T>(e, sizes.step, balls, partners), history,
+                           out);
     if (!repeat) store<ROLLING>(h, history);    // otherwise it is what the step has left
 
-    const Four none = Four();
-    const Columns f(out.f[0], out.f[1], out.f[2], none);
-    const Columns ti(out.m[0] - ri * out.t[0], out.m[1] - ri * out.t[1], out.m[2] - ri * out.t[2],
-                     none);
-    const Columns tj(out.m[0] + rj * out.t[0], out.m[1] + rj * out.t[1], out.m[2] + rj * out.t[2],
-                     none);
-    give(e[0], f.x, ti.x, tj.x, balls, partners);
-    if (count > 1) give(e[1], f.y, ti.y, tj.y, balls, partners);
-    if (count > 2) give(e[2], f.z, ti.z, tj.z, balls, partners);
-    if (count > 3) give(e[3], f.w, ti.w, tj.w, balls, partners);
+    T ti[3], tj[3];
+    for (int d = 0; d < 3; d++) {
+      ti[d] = out.m[d] - ri * out.t[d];
+      tj[d] = out.m[d] + rj * out.t[d];
+    }
+    for (int m = 0; m < lanes<T>(); m += 4) {
+      const Columns f = vectors(out.f, m / 4), on_i = vectors(ti, m / 4), on_j = vectors(tj, m / 4);
+      give(e[m], f.x, on_i.x, on_j.x, balls, partners);
+      if (count > m + 1) give(e[m + 1], f.y, on_i.y, on_j.y, balls, partners);
+      if (count > m + 2) give(e[m + 2], f.z, on_i.z, on_j.z, balls, partners);
+      if (count > m + 3) give(e[m + 3], f.w, on_i.w, on_j.w, balls, partners);
+    }
     if (TALLY)
       for (int m = 0; m < count; m++)
         add_to(*tally, e[m], Vector{out.f[0][m], out.f[1][m], out.f[2][m]},
-               Vector{delta.x[m], delta.y[m], delta.z[m]});
+               Vector{delta[0][m], delta[1][m], delta[2][m]});
   }
 
-  template <class N, class Partners>
+  // the vectors of four contacts from their components
+  template <class T> SLOPE_INLINE static Columns vectors(const T *components, int which)
+  {
+    return Columns(four_of(components[0], which), four_of(components[1], which),
+                   four_of(components[2], which), Four());
+  }
+
+  template <class T, class N, class Partners>
   SLOPE_INLINE static void find_velocities(const Entry *e, const N &ri, const N &rj,
                                            const MovingBalls &balls, const Partners &partners,
-                                           ContactOf<Four, N> &c)
+                                           ContactOf<T, N> &c)
   {
-    Four v[4], rw[4], w[4];
-    for (int m = 0; m < 4; m++) {
-      v[m] = four(&balls.v[e[m].i].x);
-      w[m] = four(&balls.omega[e[m].i].x);
-      rw[m] = lane(ri, m) * w[m];
-      if (Partners::MOVE) {
-        v[m] -= four(&partners.v(e[m].j).x);
-        rw[m] += lane(rj, m) * four(&partners.omega(e[m].j).x);
-        w[m] -= four(&partners.omega(e[m].j).x);
-      }
-    }
-    put(Columns(v[0], v[1], v[2], v[3]), c.v);
-    put(Columns(rw[0], rw[1], rw[2], rw[3]), c.rw);
-    put(Columns(w[0], w[1], w[2], w[3]), c.w);
-
-    for (int m = 0; m < 4; m++) {
-      v[m] = four(&balls.ahead[e[m].i].x);
-      if (Partners::MOVE) v[m] -= four(&partners.ahead(e[m].j).x);
-    }
-    const Columns ahead(v[0], v[1], v[2], v[3]);
-    c.ahead = ahead.x * c.n[0] + ahead.y * c.n[1] + ahead.z * c.n[2];
+    gather(
+        [&](int m) -> Four {
+          Four v = four(&balls.v[e[m].i].x);
+          if (Partners::MOVE) v -= four(&partners.v(e[m].j).x);
+          return v;
+        },
+        c.v);
+    gather(
+        [&](int m) -> Four {
+          Four rw = lane(ri, m) * four(&balls.omega[e[m].i].x);
+          if (Partners::MOVE) rw += lane(rj, m) * four(&partners.omega(e[m].j).x);
+          return rw;
+        },
+        c.rw);
+    gather(
+        [&](int m) -> Four {
+          Four w = four(&balls.omega[e[m].i].x);
+          if (Partners::MOVE) w -= four(&partners.omega(e[m].j).x);
+          return w;
+        },
+        c.w);
+    T ahead[3];
+    gather(
+        [&](int m) -> Four {
+          Four v = four(&balls.ahead[e[m].i].x);
+          if (Partners::MOVE) v -= four(&partners.ahead(e[m].j).x);
+          return v;
+        },
+        ahead);
+    c.ahead = ahead[0] * c.n[0] + ahead[1] * c.n[1] + ahead[2] * c.n[2];
   }
 
-  template <class N, class Partners>
-  SLOPE_INLINE Four contacts(const Entry *e, const ContactStepOf<N> &step, const MovingBalls &balls,
-                             const Partners &partners) const
+  template <class T, class N, class Partners>
+  SLOPE_INLINE T contacts(const Entry *e, const ContactStepOf<N> &step, const MovingBalls &balls,
+                          const Partners &partners) const
   {
-    Four ni, nj = Four();
-    for (int m = 0; m < 4; m++) {
+    T ni, nj = T();
+    for (int m = 0; m < lanes<T>(); m++) {
       ni[m] = balls.count[e[m].i];
       if (Partners::MOVE) nj[m] = balls.count[e[m].j];
     }
@@ -330,62 +378,71 @@ class ContactPasses : ContactView {
   // shorter than a step are found in that part of the cases only, and count for a whole one. A spring that
   // is stretched at a rate V then has V (f - 1/2)^2/2, V (g - 1/2)^2/2 more than the overlaps say.
   // f and g are those of the overlaps now and a step ago; delta: vector of the centres, reach: of the radii.
-  template <class N>
-  SLOPE_INLINE void find_times(const int *k, bool repeat, const Columns &delta, Four rinv,
-                               Four reach, double dt, ContactOf<Four, N> &c) const
+  template <class T, class N>
+  SLOPE_INLINE void find_times(const int *k, bool repeat, const T *delta, T rinv, T reach,
+                               double dt, ContactOf<T, N> &c) const
   {
-    const Four zero = Four(), one = all<Four>(1.0), vn = normal_velocity(c);
-    Four lasted;       // as a step ago; < 0 if it ends
-    FourFlags ends;    // as find() saw it: an overlap of 0 is one or the other by rounding
-    for (int m = 0; m < 4; m++) {
+    const T zero = T(), one = all<T>(1.0), vn = normal_velocity(c);
+    typedef decltype(T() < T()) Flags;
+    T lasted;      // as a step ago; < 0 if it ends
+    Flags ends;    // as find() saw it: an overlap of 0 is one or the other by rounding
+    for (int m = 0; m < lanes<T>(); m++) {
       lasted[m] = histories[k[m]][AGE];
       ends[m] = touching[k[m] / BLOCK] >> (k[m] % BLOCK) & 1 ? 0 : -1;
     }
-    const Four x = delta.x - dt * c.v[0], y = delta.y - dt * c.v[1], z = delta.z - dt * c.v[2];
-    const Four was = reach - root(Four(x * x + y * y + z * z));
-    const Four f = choose(was < zero, c.overlap / (c.overlap - was), one);
-    const Four g = choose(was > zero, was / (was - c.overlap), zero);
+    const T x = delta[0] - dt * c.v[0], y = delta[1] - dt * c.v[1], z = delta[2] - dt * c.v[2];
+    const T was = reach - root(T(x * x + y * y + z * z));
+    const T f = choose(was < zero, c.overlap / (c.overlap - was), one);
+    const T g = choose(was > zero, was / (was - c.overlap), zero);
     // a partner of which the overlaps say something else has been put in place, or taken away
 
-    const Four real = choose(ends, choose(was > zero, one, zero), choose(was < zero, one, zero));
-    const Four late = real * (choose(ends, g, f) - 0.5);
-    const Four before = repeat ? Four(-lasted) : lasted;
-    c.weight = choose(ends, real * (larger(g, Four(one - before)) - 0.5), one + real * (f - 0.5));
+    const T real = choose(ends, choose(was > zero, one, zero), choose(was < zero, one, zero));
+    const T late = real * (choose(ends, g, f) - 0.5);
+    const T before = repeat ? T(-lasted) : lasted;
+    c.weight = choose(ends, real * (larger(g, T(one - before)) - 0.5), one + real * (f - 0.5));
     c.beyond = 0.5 * late * late *
-        choose(real > zero, larger(Four(c.overlap - was), Four(was - c.overlap)), zero);
+        choose(real > zero, larger(T(c.overlap - was), T(was - c.overlap)), zero);
 
     // the normal turns: vn in the middle of these times
 
-    const Four across = c.v[0] * c.v[0] + c.v[1] * c.v[1] + c.v[2] * c.v[2] - vn * vn;
+    const T across = c.v[0] * c.v[0] + c.v[1] * c.v[1] + c.v[2] * c.v[2] - vn * vn;
     c.turn = 0.5 * real * choose(ends, g - 1.5, 0.5 - f) * dt * rinv * across;
     c.touches = choose(ends, zero, one);
     c.first = c.touches * real;
     c.grown = choose(ends, zero, f);
     c.early = choose(ends, zero, 0.5 * dt * late * late);
     if (repeat) return;
-    const Four age = choose(ends, -before, choose(real > zero, f, all<Four>(OLD)));
-    for (int m = 0; m < 4; m++) histories[k[m]][AGE] = age[m];
+    const T age = choose(ends, -before, choose(real > zero, f, all<T>(OLD)));
+    for (int m = 0; m < lanes<T>(); m++) histories[k[m]][AGE] = age[m];
   }
 
-  SLOPE_INLINE static void load(double *const *h, Four *springs)
+  template <class T> SLOPE_INLINE static void load(double *const *h, T *springs)
   {
-    const Columns begin(four(h[0]), four(h[1]), four(h[2]), four(h[3]));
-    const Columns end(four(h[0] + 2), four(h[1] + 2), four(h[2] + 2), four(h[3] + 2));
-    put(begin, springs);
-    springs[3] = begin.w;
-    springs[4] = end.z;
-    springs[5] = end.w;
+    gather(
+        [&](int m) -> Four {
+          return four(h[m]);
+        },
+        springs);
+    gather(
+        [&](int m) -> Four {
+          return four(h[m] + 3);
+        },
+        springs + 3);
   }
 
-  template <bool ROLLING> SLOPE_INLINE static void store(double *const *h, const Four *springs)
+  template <bool ROLLING, class T>
+  SLOPE_INLINE static void store(double *const *h, const T *springs)
   {
-    const Columns rows(springs[0], springs[1], springs[2], springs[3]);
-    four(h[0]) = rows.x;
-    four(h[1]) = rows.y;
-    four(h[2]) = rows.z;
-    four(h[3]) = rows.w;
+    for (int m = 0; m < lanes<T>(); m += 4) {
+      const Columns rows(four_of(springs[0], m / 4), four_of(springs[1], m / 4),
+                         four_of(springs[2], m / 4), four_of(springs[3], m / 4));
+      four(h[m]) = rows.x;
+      four(h[m + 1]) = rows.y;
+      four(h[m + 2]) = rows.z;
+      four(h[m + 3]) = rows.w;
+    }
     if (ROLLING)
-      for (int m = 0; m < 4; m++) {
+      for (int m = 0; m < lanes<T>(); m++) {
         h[m][4] = springs[4][m];
         h[m][5] = springs[5][m];
       }
@@ -412,13 +469,6 @@ class ContactPasses : ContactView {
 
   SLOPE_INLINE static double lane(double same, int) { return same; }
   SLOPE_INLINE static double lane(Four several, int m) { return several[m]; }
-
-  SLOPE_INLINE static void put(const Columns &columns, Four *rows)
-  {
-    rows[0] = columns.x;
-    rows[1] = columns.y;
-    rows[2] = columns.z;
-  }
 
   // force f on i, minus f on j; torque ti on i, minus tj on j
   template <class Partners>

@@ -31,7 +31,7 @@ static double quantile(std::vector<double> values, double share)
 }
 
 struct Lattice {
-  std::vector<Vector> x, v, omega, f, torque;
+  std::vector<Vector> x, v, omega, ahead, f, torque;
   std::vector<double> radius, mass;
   std::vector<unsigned char> count;
   std::vector<std::array<double, HISTORY>> histories;
@@ -49,6 +49,7 @@ struct Lattice {
       v.push_back(vector(0.1));
       omega.push_back(vector(0.1));
     }
+    ahead = v;
     f.assign(all, {0.0, 0.0, 0.0});
     torque = f;
     radius.assign(all, 0.5);
@@ -83,7 +84,7 @@ int main(int argc, char **argv)
   law.exact = 1.0;
   const MovingBalls balls = {lattice.x.data(),      lattice.v.data(),    lattice.omega.data(),
                              lattice.radius.data(), lattice.mass.data(), lattice.f.data(),
-                             lattice.torque.data(), lattice.v.data(),    lattice.count.data()};
+                             lattice.torque.data(), lattice.ahead.data(), lattice.count.data()};
   const MovingPartners partners = {balls, static_cast<int>(lattice.x.size())};
 
   const auto &kernels = ContactKernels::all();
