@@ -102,7 +102,7 @@ def test_a_sphere_its_table_and_its_raster(here, capsys):
     Path("crit.slips.csv").write_text(f"rank,x,y,z,radius,direction,volume\n1,{x},{y},{z},{radius},180,14420\n")
     found = []
     for name in (f"{x},{y},{z},{radius}", "crit.slips.csv", "scar.asc"):
-        status, out, err = ran(capsys, f"--failed {name} --seismic 0.2939 -o out")
+        status, out, err = ran(capsys, f"--failed {name} --seismic 0.2939 --overwrite -o out")
         assert status == 0, err
         found.append(table())
         assert "sliding to 270.0 degrees" in out
