@@ -103,7 +103,7 @@ def test_a_sphere_its_table_and_its_raster(here, capsys):
     write_asc("crit.1.base.asc", base, 0.5)
     found = []
     for name in (f"{x},{y},{z},{radius}", "crit.slips.csv", "scar.asc"):
-        status, out, err = ran(capsys, f"--failed {name} --seismic 0.2939 -o out")
+        status, out, err = ran(capsys, f"--failed {name} --seismic 0.2939 --overwrite -o out")
         assert status == 0, err
         found.append(table())
         assert "sliding to 270.0 degrees" in out

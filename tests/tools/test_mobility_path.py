@@ -329,7 +329,7 @@ def test_a_site(place):
     for key, values in rows()[1].items():
         assert rows("site/known")[1][key] == pytest.approx(values, abs=1e-3)
     assert summary("site/known")["road"] == pytest.approx(summary()["road"], abs=1e-4)
-    status, _, err = place("site --depth 3 -o out")
+    status, _, err = place("site --depth 3 -o other")
     assert status == 2 and "site: is the folder of a site" in err and err.count("\n") == 1
 
 

@@ -385,7 +385,7 @@ SQUARE = "10,10\n20,10\n20,20\n10,20\n"
 def test_bad_input_is_one_line_and_nothing_is_written(slope, here, name, make, options, message):
     (here / "out.csv").write_text("from before\n")
     make(name)
-    status, out, err = slope(f"{name} {options} -o out.csv")
+    status, out, err = slope(f"{name} {options} --overwrite -o out.csv")
     assert status == 2 and out == "", (out, err)
     assert err.startswith(f"slope polygon: {message}") and err.count("\n") == 1, err
     assert (here / "out.csv").read_text() == "from before\n"

@@ -372,7 +372,7 @@ def test_output_that_is_wrong(slope):
     refused(slope, "a.EW -o motion.csv", "-o: must be a file that ends in .txt, got motion.csv")
     refused(slope, "a.EW -o no/motion.txt", "-o: must be in an existing folder, got no/motion.txt")
     refused(slope, "a.txt -o a.txt", "-o: must not be a record, got a.txt")
-    refused(slope, "no.EW -o a.txt", "no.EW: cannot be read: No such file or directory")
+    refused(slope, "no.EW -o b.txt", "no.EW: cannot be read: No such file or directory")
 
 
 # --- the numbers that describe a motion ---

@@ -45,7 +45,7 @@ def no_picture(monkeypatch):
 def body(slope, no_picture):
     """Run it to `r`, which must succeed; gives the body's numbers in r.yaml, and all of r.yaml."""
     def run(arguments):
-        status, out, err = slope(f"{arguments} -o r")
+        status, out, err = slope(f"{arguments} --overwrite -o r")
         assert status == 0, err
         about = yaml.safe_load(Path("r.yaml").read_text())
         printed = float(re.search(r"^volume (\S+) m3", out, re.MULTILINE)[1].replace(",", ""))

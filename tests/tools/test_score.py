@@ -41,7 +41,7 @@ def scored(slope, no_map):
     def run(observed, arguments=""):
         if not isinstance(observed, str):
             observed = write_geojson("observed.geojson", observed)
-        status, _, err = slope(f"run --observed {observed} --local -o out {arguments}")
+        status, _, err = slope(f"run --observed {observed} --local --overwrite -o out {arguments}")
         assert status == 0, err
         return yaml.safe_load(Path("out/score.yaml").read_text())
     return run
@@ -156,7 +156,7 @@ def test_place_of_a_raster(slope, no_map):
     write_geojson("mapped.geojson", translate(box(40, 30, 80, 60), EAST, NORTH), crs=CRS_M)
     write_asc("local.asc", square(), 2.5)
     for observed in ("mapped.tif", "mapped.geojson", "local.asc --local"):
-        status, out, err = slope(f"run --observed {observed}")
+        status, out, err = slope(f"run --observed {observed} --overwrite")
         assert (status, err) == (0, "") and "Jaccard 1.000" in out and "run-out: " in out
     assert rows("run.score/score.csv")[0]["east"] == EAST + 40
 
@@ -170,13 +170,13 @@ def test_a_raster_without_a_crs_is_taken_to_be_in_that_of_the_terrain(slope, no_
     assert status == 2 and "--terrain: must have a CRS" in err
     write_sidecar(40, 60, 2.5)
     write_tif("nocrs.tif", square(), place, None)
-    status, out, err = slope("run --observed nocrs.tif")
+    status, out, err = slope("run --observed nocrs.tif --overwrite")
     assert status == 0 and "Jaccard 1.000" in out
     assert err.startswith("slope score: warning: nocrs.tif has no CRS: taken to be in that of the terrain")
     assert err.count("\n") == 1 and yaml.safe_load(Path("run.score/score.yaml").read_text())["warnings"] == [
         err[len("slope score: warning: "):-1]]
     write_asc("local.asc", square(), 2.5)       # in local metres, but --local was not said
-    status, out, err = slope("run --observed local.asc")
+    status, out, err = slope("run --observed local.asc --overwrite")
     assert (status, out) == (2, "") and "warning: local.asc has no CRS" in err and "--local" in err
     assert err.splitlines()[-1].startswith("slope score: local.asc: must overlap the grid of the run, 0 0 150 100")
 

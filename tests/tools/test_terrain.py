@@ -84,7 +84,7 @@ def slope(here, capsys):
 def written(slope):
     """Run it, which must succeed; gives heights, east and north of the centres, the sidecar, stdout."""
     def run(arguments):
-        status, out, err = slope(f"{arguments} -o out.asc")
+        status, out, err = slope(f"{arguments} --overwrite -o out.asc")
         assert status == 0, err
         z, transform, _, offset = rasters.read_asc_local("out.asc")
         east, north = centres(Affine.translation(*offset) * transform, z.shape)
@@ -152,7 +152,7 @@ def test_corner_and_center_headers_and_geotiff_are_one_raster(slope, here):
     write_tif("dem.tif", z, transform)
     results = set()
     for name in ("corner.asc", "center.asc", "dem.tif"):
-        assert slope(f"{name} -o out.asc --crs {CRS_M}")[0] == 0
+        assert slope(f"{name} --overwrite -o out.asc --crs {CRS_M}")[0] == 0
         results.add((here / "out.asc").read_bytes())
     assert len(results) == 1
 
@@ -395,7 +395,7 @@ def test_pits_and_a_ground_in_feet_are_said(slope, written):
     assert_plane(*found[:3])
     assert np.isfinite(found[0]).all() and slope("pits.tif --nodata 0 -o out.asc")[2] == ""
     write_tif("steep.tif", 3.28084 * survey()[0], transform)
-    _, _, err = slope("steep.tif -o out.asc")
+    _, _, err = slope("steep.tif -o steep.asc")
     assert "the ground falls by " in err and "are the heights in feet? Then --z-unit ft, which makes it 37" in err
 
 

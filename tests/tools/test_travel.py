@@ -32,7 +32,7 @@ def slope(here, capsys):  # noqa: F811
 def travelled(slope, no_picture):
     """Run it; it must succeed; gives travel.yaml."""
     def run(arguments):
-        status, _, err = slope(f"{arguments} -o out")
+        status, _, err = slope(f"{arguments} --overwrite -o out")
         assert status == 0, err
         return yaml.safe_load(Path("out/travel.yaml").read_text())
     return run

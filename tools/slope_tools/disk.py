@@ -152,6 +152,11 @@ def is_alive(process: int) -> bool:
     return True
 
 
+def void_of(marker: Path) -> Path:
+    """The file beside a marker that says of a set without it that it is void, and complete()'s."""
+    return marker.with_name(f".{marker.name}.void")
+
+
 @contextmanager
 def complete(folder, marker, called=None):
     """A folder to write a set of results into; when all are there they move to `folder`, else nothing changes.
@@ -167,6 +172,8 @@ def complete(folder, marker, called=None):
         flush_all(new)
         folder.mkdir(exist_ok=True)
         names = sorted(path.name for path in new.iterdir() if path.name != marker)
+        void = void_of(folder / marker)
+        void.touch()
         (folder / marker).unlink(missing_ok=True)
         flush(folder)
         for name in names:
@@ -174,6 +181,7 @@ def complete(folder, marker, called=None):
         flush(folder)
         os.replace(new / marker, folder / marker)
         flush(folder)
+        void.unlink()
         flush(folder.parent)
     except OSError as error:
         raise SlopeError(asked, f"cannot be written: {error.strerror or error}") from error
@@ -186,12 +194,45 @@ def complete(folder, marker, called=None):
         shutil.rmtree(new, ignore_errors=True)
 
 
-def check_folder(folder):
-    """Raise SlopeError if results cannot go to that folder, before the work is done."""
+def texts(value):
+    """All texts in what YAML holds."""
+    if isinstance(value, str):
+        yield value
+    for inner in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
+        yield from texts(inner)
+
+
+def check_standing(record, files, sources, overwrite, called=None):
+    """Raise SlopeError if one of the files stands and is not the result of the same sources, before the work is done.
+
+    record: the file that names the sources of a result; called: what they are called in the message, if not by their
+    names. What complete() left void may be replaced.
+    """
+    standing = next((path for path in map(Path, files) if path.exists()), None)
+    if overwrite or standing is None or void_of(Path(record)).exists():
+        return
+    try:
+        text = Path(record).read_text(encoding="utf-8")
+        known = set(texts(yaml.safe_load(text))) if Path(record).suffix == ".yaml" else text
+    except (OSError, ValueError, RecursionError, yaml.YAMLError):
+        known = ""
+    others = [name for name in map(str, sources) if name not in known]
+    if others:
+        raise SlopeError("-o", f"{standing} must be the result of {called or ', '.join(others)} to be replaced: give "
+                         "another name, or --overwrite")
+
+
+def check_folder(folder, files=(), sources=(), overwrite=False):
+    """Raise SlopeError if results cannot go to that folder, before the work is done.
+
+    files: their names, the last one that of the record of their sources, see check_standing().
+    """
     if folder.exists() and not folder.is_dir():
         raise SlopeError("-o", "must be a folder", folder)
     if not folder.resolve().parent.is_dir():
         raise SlopeError("-o", "must be in an existing folder", folder)
+    if files:
+        check_standing(folder / files[-1], [folder / name for name in files], sources, overwrite)
 
 
 def check_file(path, suffix, inputs=(), called="an input"):

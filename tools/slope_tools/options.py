@@ -6,6 +6,12 @@ import re
 MOST = 10 ** 9      # of anything counted; more exceeds any memory or time
 
 
+def add_overwrite(parser):
+    """--overwrite, for disk.check_standing()."""
+    parser.add_argument("--overwrite", action="store_true", help="replace files of the same names that are not the "
+                        "result of the same input (default: refuse)")
+
+
 def number(text):
     """argparse type: a finite number."""
     try:

@@ -6,7 +6,8 @@ from typing import List
 from .. import disk, warned
 from ..case import run_folders
 from ..deposits import deposit
-from ..deposits.export import layers, write
+from ..deposits.export import file_of, layers, write
+from ..options import add_overwrite
 from ..survey import rasters
 from ..survey.rasters import crs_name
 
@@ -34,6 +35,7 @@ def add_parser(commands, **kwargs):
                         help="folder for the results (default PREFIX.export; of a folder, FOLDER/export)")
     parser.add_argument("--terrain", metavar="TERRAIN.asc", type=Path,
                         help="the run's terrain, whose sidecar holds the CRS (default: terrain.asc beside PREFIX)")
+    add_overwrite(parser)
     return parser
 
 
@@ -44,9 +46,9 @@ def run(args):
     named = run_folders.named_run(args.prefix)
     run_ = deposit.read(named.prefix, args.terrain, warn)
     folder = args.output or (named.folder / "export" if named.folder else Path(f"{named.prefix}.export"))
-    disk.check_folder(folder)
     place = run_.raster
     found = layers(named.prefix)
+    disk.check_folder(folder, [*(file_of(layer) for layer in found), "export.yaml"], [named.prefix], args.overwrite)
     about = {"prefix": run_.prefix, "terrain": run_.terrain, "crs": None if place.crs is None else crs_name(place.crs),
              "origin": {"east": place.offset[0], "north": place.offset[1]}, "cell": run_.cell,
              "run": {"slope_version": run_.summary.get("slope_version"), "time": run_.summary["time"]}, "rasters": []}

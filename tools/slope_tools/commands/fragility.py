@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import disk, warned
 from ..errors import SlopeError
-from ..options import number, whole
+from ..options import add_overwrite, number, whole
 
 EPILOG = """\
 SLIPS: PREFIX.slips.csv of find_slip, or the folder with it; PREFIX.N.base.asc lie beside it.
@@ -56,6 +56,7 @@ def add_parser(commands, **kwargs):
                         help="samples of the strength, at least 256 (default 4096)")
     parser.add_argument("--seed", metavar="S", type=whole, default=1, help="seed of the samples (default 1)")
     parser.add_argument("-o", dest="output", metavar="DIR", type=Path, required=True, help="folder for the results")
+    add_overwrite(parser)
     return parser
 
 
@@ -69,7 +70,7 @@ def run(args):
     check(args)
     soil = soil_of(args)
     hazard = files.read_hazard(args.hazard) if args.hazard else None
-    disk.check_folder(args.output)
+    disk.check_folder(args.output, files.FILES, [args.slips, args.terrain], args.overwrite)
     limit = 0.1 if args.displacement is None else args.displacement
     failure: Any = fragility.PseudoStatic(args.pseudo_static) if args.pseudo_static is not None else \
         fragility.Slide(limit, [motion_file.read(path) for path in args.record], args.vertical)

@@ -5,6 +5,7 @@ from pathlib import Path
 from .. import disk
 from ..errors import SlopeError
 from ..mobility import body, events, exceedance, fall_path, relation, results, road
+from ..options import add_overwrite
 from ..releases import release
 from ..sites.site_layers import ROAD
 from ..survey import lines, polygons
@@ -47,12 +48,13 @@ def add_parser(commands, **kwargs):
                         help="how likely the mass reaches it (default with SITE: its road)")
     parser.add_argument("--path", metavar="LINE", type=Path,
                         help="a line from the crown down, instead of the steepest descent")
+    add_overwrite(parser)
     return parser
 
 
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints what was found and written."""
-    disk.check_folder(args.output)
+    disk.check_folder(args.output, results.FILES, [args.terrain], args.overwrite)
     known = events.chosen(args.events, args.left_out)
     relation.of_events(known, args.events)      # before the terrain is read
     tell = printer("mobility")

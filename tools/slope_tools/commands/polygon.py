@@ -6,7 +6,8 @@ from pathlib import Path
 from shapely.geometry import box
 
 from ..case.decks import quoted, warn_of_name
-from ..disk import check_file
+from ..disk import check_file, check_standing
+from ..options import add_overwrite
 from ..survey import polygons, rasters, vectors
 from ..survey.crs import as_crs
 from ..warned import printer
@@ -44,6 +45,7 @@ def add_parser(commands, **kwargs):
                        help="the coordinates of IN are in this CRS, whatever IN says")
     place.add_argument("--local", action="store_true",
                        help="the coordinates of IN are the terrain's local metres, whatever IN says")
+    add_overwrite(parser)
     return parser
 
 
@@ -51,6 +53,7 @@ def run(args):
     """Do the command; raises SlopeError on bad input. Prints what was written and the line for the deck."""
     start = time.monotonic()
     check_file(args.output, ".csv", [vectors.source(args.input).path], "the input")
+    check_standing(args.output, [args.output], [polygons.HEAD], args.overwrite, "slope polygon")
     crs = as_crs("--assign-crs", args.crs) if args.crs else None
     place = rasters.read_place(args.terrain)
     warn = printer("polygon")

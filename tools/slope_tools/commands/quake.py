@@ -3,9 +3,9 @@ import argparse
 from pathlib import Path
 
 from ..case.decks import quoted
-from ..disk import check_file
+from ..disk import check_file, check_standing
 from ..errors import SlopeError
-from ..options import number
+from ..options import add_overwrite, number
 from ..quakes import quake_motion as motions, quake_records as records
 from ..quakes.quake import Processing, processed, write
 
@@ -43,6 +43,7 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--baseline", choices=("rest", "mean", "none"), default="rest",
                         help="rest: the ground ends at rest where it began (default); mean: subtract the mean; none")
     parser.add_argument("--unit", choices=("gal", "g", "m/s2"), help="unit of a CSV that names none")
+    add_overwrite(parser)
     return parser
 
 
@@ -63,6 +64,7 @@ def run(args):
 def check(args):
     """The numbers, what would be overwritten, and where nothing can be written, before there is any work."""
     check_file(args.output, ".txt", args.records, "a record")
+    check_standing(args.output.with_suffix(".yaml"), [args.output], args.records, args.overwrite)
     for name in ("peak", "scale"):
         value = getattr(args, name)
         if value is not None and not (value > 0 if name == "peak" else value != 0):

@@ -3,10 +3,11 @@ import argparse
 import os
 from pathlib import Path
 
-from .. import warned
+from .. import disk, warned
 from ..case import decks
 from ..releases import release, release_files
 from ..survey import vectors
+from ..options import add_overwrite
 from .release_arguments import add_body, wanted
 
 EPILOG = """\
@@ -36,14 +37,17 @@ def add_parser(commands, **kwargs):
     parser.add_argument("-o", dest="output", metavar="NAME", required=True, type=Path,
                         help="first part of the names of all files")
     add_body(parser)
+    add_overwrite(parser)
     return parser
 
 
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints the body's numbers before it writes any file."""
     asked = wanted(args)
-    release_files.check(args.output, [vectors.source(path).path
-                                      for path in (args.terrain, asked.polygon, args.scar) if path])
+    sources = [path for path in (args.terrain, asked.polygon, args.scar) if path]
+    release_files.check(args.output, [vectors.source(path).path for path in sources])
+    made = release_files.paths(args.output)
+    disk.check_standing(args.output.with_name(args.output.name + ".yaml"), made, sources, args.overwrite)
     body = release.body_of(asked)
     print(release.text(body), flush=True)
     tell = warned.printer("release")

@@ -1,7 +1,10 @@
 """Arguments of the commands that run decks."""
 import argparse
+import sys
 from pathlib import Path
 from typing import Optional
+
+from rich.console import Console
 
 from ..case.settings import check_settings
 from ..ensembles import known_events
@@ -10,6 +13,7 @@ from ..options import count, number, whole
 from ..statistics import designs
 from ..studies.setup import Road, Setup
 from ..tables import intensity
+from ..warned import printer
 
 
 def add_deck(parser, site=False):
@@ -132,9 +136,17 @@ def volumes(text):
     return sorted(found)
 
 
+def tell(what):
+    """Print a line, or a table of rich."""
+    if isinstance(what, str):
+        print(what, flush=True)
+    else:
+        (Console() if sys.stdout.isatty() else Console(width=180)).print(what)
+
+
 def setup_of(args) -> Setup:
     """What these arguments say."""
     given = {name: value for name in ("cut_angle", "mesh") if (value := getattr(args, name)) is not None}
     road = Road(args.road, **given, local=args.local) if args.road else None
     return Setup(args.deck, args.output, args.np, args.jobs, road, args.lmp, args.launcher, args.engine, args.slurm,
-                 args.dry_run)
+                 args.dry_run, tell, printer(args.command))

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ..deposits import score_run
 from ..deposits.score import THRESHOLD
-from ..options import number
+from ..options import add_overwrite, number
 
 EPILOG = """\
 units: metres, m2, m3, degrees. PREFIX is what fix deposit/grid was given as output.
@@ -40,10 +40,11 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--terrain", metavar="TERRAIN.asc", type=Path,
                         help="the run's terrain, whose sidecar holds the CRS (default: terrain.asc beside PREFIX)")
     parser.add_argument("--local", action="store_true", help="the mapped deposit is in local metres, not in a CRS")
+    add_overwrite(parser)
     return parser
 
 
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints the scores."""
     print(score_run.make(args.prefix, args.observed, args.output or Path(f"{args.prefix}.score"), args.threshold,
-                         args.mesh, args.terrain, args.local))
+                         args.mesh, args.terrain, args.local, args.overwrite))

@@ -7,7 +7,7 @@ from .. import disk, warned
 from ..case import slip_deck
 from ..case.slip_deck import PREFIX
 from ..errors import SlopeError
-from ..options import count, number
+from ..options import add_overwrite, count, number
 from ..programs import find_lmp
 from . import stability_failed
 
@@ -45,6 +45,7 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--lmp", metavar="FILE", help="the LAMMPS program (default: LMP of the environment, then "
                         "build/lmp beside tools/)")
     parser.add_argument("-o", dest="output", metavar="DIR", type=Path, required=True, help="folder for the results")
+    add_overwrite(parser)
     return parser
 
 
@@ -90,7 +91,7 @@ def run(args):
 
     asked = asked_of(args)
     lmp = find_lmp(args.lmp)
-    disk.check_folder(args.output)
+    disk.check_folder(args.output, FILES, [args.terrain], args.overwrite)
     raster = rasters.read_asc_local(args.terrain)
     polygon = polygons.read_local(args.within, raster, args.local) if args.within else None
     kept: List[str] = []

@@ -22,7 +22,7 @@ def run(args):
         raise SlopeError("--density", "must be > 0 kg/m3", f"{args.density:g}")
     if not 0 <= ratio < 1:
         raise SlopeError("--water", "must be 0 to below 1", f"{ratio:g}")
-    disk.check_folder(args.output)
+    disk.check_folder(args.output, back_files.FILES, [args.terrain, args.failed], args.overwrite)
     raster = rasters.read_asc_local(args.terrain)
     table, rock = (path and resampling.sample(rasters.read(path), *columns.centres(raster))
                    for path in (args.water_table, args.bedrock))

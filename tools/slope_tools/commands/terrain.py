@@ -3,9 +3,9 @@ import argparse
 from pathlib import Path
 
 from ..case.decks import quoted, warn_of_name
-from ..disk import check_file
+from ..disk import check_file, check_standing
 from ..errors import SlopeError
-from ..options import number, whole
+from ..options import add_overwrite, number, whole
 from ..survey import local_terrain, rasters
 from ..warned import printer
 
@@ -55,6 +55,7 @@ def add_parser(commands, **kwargs):
                              "or E N, in the output's CRS, m")
     parser.add_argument("--fill", type=whole, default=0, metavar="N",
                         help="fill NODATA holes of at most N cells (default 0: none); holes at the edge stay")
+    add_overwrite(parser)
     return parser
 
 
@@ -70,6 +71,7 @@ def run(args):
 def check(args):
     """Check what can be checked before any reading; return what is wanted."""
     check_file(args.output, ".asc", args.inputs)
+    check_standing(args.output.with_suffix(".yaml"), [args.output], args.inputs, args.overwrite)
     origin = None
     if args.origin != ["auto"]:
         try:

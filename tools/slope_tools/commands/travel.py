@@ -4,7 +4,7 @@ from pathlib import Path
 
 from .. import disk, warned
 from ..deposits import travel
-from ..options import number, whole
+from ..options import add_overwrite, number, whole
 
 EPILOG = """\
 units: metres, degrees. A dump is text as LAMMPS' dump custom writes it, with the columns id x y z in any place; its
@@ -41,6 +41,7 @@ def add_parser(commands, **kwargs):
                              "and reach angle, and the number of balls that are missing at the end")
     parser.add_argument("-o", dest="output", metavar="DIR", type=Path, default=Path("travel"),
                         help="folder for the results (default travel)")
+    add_overwrite(parser)
     return parser
 
 
@@ -56,7 +57,7 @@ def run(args):
     """Do the command; raises SlopeError on bad input. Prints the percentiles."""
     wanted = travel.Wanted(args.axis, args.origin, args.along, args.across, args.type)
     travel.check(args.dumps, args.start, wanted)
-    disk.check_folder(args.output)
+    disk.check_folder(args.output, travel.FILES, args.dumps, args.overwrite)
     about = travel.of_dumps(args.dumps, args.start, wanted, args.output, warned.printer("travel"))
     print(summary(about, args.output))
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from .. import disk, warned
 from ..deposits import volume
 from ..deposits.volume import BLOCKED, CUT_ANGLE, MUCH_BELOW, SAMPLES
-from ..options import number, whole
+from ..options import add_overwrite, number, whole
 
 EPILOG = """\
 units: metres, m3, degrees. PREFIX is what fix deposit/grid was given as output.
@@ -50,6 +50,7 @@ def add_parser(commands, **kwargs):
                         help=f"parts of a cell along a side for round corners and rough ground, even (default "
                              f"{SAMPLES}); planes are exact with any")
     parser.add_argument("--no-picture", action="store_true", help="without volume.png, which takes longest")
+    add_overwrite(parser)
     return parser
 
 
@@ -59,7 +60,7 @@ def run(args):
                            args.samples)
     volume.check(wanted)
     folder = args.output or Path(f"{args.prefix}.volume")
-    disk.check_folder(folder)
+    disk.check_folder(folder, volume.FILES, [args.prefix, args.road], args.overwrite)
     found = volume.of_run(args.prefix, wanted, args.terrain, warned.printer("volume"))
     volume.write(found, folder, picture=not args.no_picture)
     print(summary(found.about, folder))

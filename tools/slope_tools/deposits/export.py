@@ -30,16 +30,20 @@ def layers(prefix):
     return sorted(found, key=lambda layer: (layer.step, list(RASTERS).index(layer.kind)))
 
 
+def file_of(layer):
+    """The name of its GeoTIFF."""
+    return f"{layer.path.stem}.tif"
+
+
 def write(folder, layer, place):
     """Write a layer as a GeoTIFF on the grid of place (a Raster with CRS and offset); what export.yaml tells of it."""
     raster = rasters.read(layer.path, heights=False)
     if raster.z.shape != place.z.shape or raster.transform != place.transform:
         raise SlopeError(layer.path, "must have the grid of the run's thickness: is it of another run?")
     quantity, unit = RASTERS[layer.kind]
-    name = f"{layer.path.stem}.tif"
-    rasters.write_geotiff(folder / name, {f"{quantity} ({unit})": raster.z}, place)
+    rasters.write_geotiff(folder / file_of(layer), {f"{quantity} ({unit})": raster.z}, place)
     there = raster.z[np.isfinite(raster.z)]
-    about = {"file": name, "quantity": quantity, "unit": unit}
+    about = {"file": file_of(layer), "quantity": quantity, "unit": unit}
     if layer.step >= 0:
         about["step"] = layer.step
     return {**about, "nodata_cells": int(raster.z.size - there.size), "min": there.min() if there.size else None,

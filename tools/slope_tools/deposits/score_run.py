@@ -10,9 +10,11 @@ from .score import (THRESHOLD, balls, connected_runout, draw, mesh_table, overla
                     write_csv)
 from .volume import make_mesh
 
+FILES = ("score.csv", "score.png", "score.yaml")
+
 
 def make(prefix: str, mapped: Path, folder: Path, threshold: float = THRESHOLD, mesh: Optional[float] = None,
-         terrain: Optional[Path] = None, local: bool = False) -> str:
+         terrain: Optional[Path] = None, local: bool = False, overwrite: bool = False) -> str:
     """Write score.yaml, score.csv and score.png of a run to a folder; returns what the user needs to know.
 
     mapped: a file, outline or raster; threshold: m; mesh: side of the cells of score.csv, m, None: the run's; terrain:
@@ -25,7 +27,7 @@ def make(prefix: str, mapped: Path, folder: Path, threshold: float = THRESHOLD, 
     warnings: List[str] = []
     warn = warned.warner("score", warnings)
     run_ = deposit.read(prefix, terrain, warn)
-    disk.check_folder(folder)
+    disk.check_folder(folder, FILES, [run_.prefix, mapped], overwrite)
     squares = make_mesh(mesh or run_.cell, run_.raster)
     observed = read_observed(mapped, run_.raster, threshold, local, warn)
     if observed.outside > 0:
@@ -49,7 +51,7 @@ def make(prefix: str, mapped: Path, folder: Path, threshold: float = THRESHOLD, 
     with disk.complete(folder, "score.yaml") as new:
         write_csv(new / "score.csv", run_, squares, table)
         draw(new / "score.png", run_, simulated, observed, about)
-        about["files"] = ["score.csv", "score.png", "score.yaml"]
+        about["files"] = list(FILES)
         disk.write_yaml(new / "score.yaml", about, "slope score: simulated against mapped; m, m2, m3, degrees")
     return summary(about, folder)
 

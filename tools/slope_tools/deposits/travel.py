@@ -16,6 +16,7 @@ SHARES = {"min": 0, "p1": 1, "p5": 5, "p10": 10, "p25": 25, "p50": 50, "p75": 75
           "max": 100}        # percentiles
 MOVING = 0.1                 # m/s; a ball that is faster has not arrived
 POINTS = 200                 # about as many positions in travel.csv per direction
+FILES = ("travel.csv", "balls.csv", "travel.png", "travel.yaml")
 
 
 class Wanted(NamedTuple):
@@ -101,7 +102,7 @@ def of_dumps(paths: Sequence[str], starts: Optional[Sequence[str]], wanted: Want
         write_csv(new / "travel.csv", arrivals, tables)
         write_balls(new / "balls.csv", arrivals)
         draw(new / "travel.png", arrivals, tables, wanted)
-        about["files"] = ["travel.csv", "balls.csv", "travel.png", "travel.yaml"]
+        about["files"] = list(FILES)
         disk.write_yaml(new / "travel.yaml", about, "slope travel: arrival positions; m, degrees")
     return about
 

@@ -25,6 +25,7 @@ SAMPLES = 4            # parts of a cell along a side
 MOST_MESH = 4_000_000  # mesh cells
 MUCH_BELOW = 0.1       # of the volume to remove: so much where the cut is below the ground is worth a warning
 EXACT = 1e-13          # of the deposit's volume: volumes are rounded to this once, so that they add up in every output
+FILES = ("volume.csv", "volume.geojson", "volume.tif", "volume_mesh.tif", "axis.csv", "volume.png", "volume.yaml")
 
 
 class Wanted(NamedTuple):

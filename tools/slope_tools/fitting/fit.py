@@ -37,7 +37,7 @@ class Fit:
         return self.plan.ledger.variables
 
     def do(self) -> None:
-        found = self.plan.do(self.evaluate, lambda: self.observed.targets, lambda line: print(line, flush=True))
+        found = self.plan.do(self.evaluate, lambda: self.observed.targets, self.setup.tell)
         self.write(found)
 
     def evaluate(self, todo: Sequence[repeats.Repeat]) -> List[Optional[np.ndarray]]:
@@ -101,8 +101,9 @@ class Fit:
             if self.wanted.observed is not None and predicted is not None:
                 self.draw_map(new / MAP, best)
                 names.append(MAP)
-        print("\n".join([*words, *self.comparison(about["targets"]), *(f"caveat: {text}" for text in doubts)]))
-        print(f"best values: run {best.name}; written to {output}: {' '.join(names)}")
+        self.setup.tell("\n".join([*words, *self.comparison(about["targets"]),
+                                   *(f"caveat: {text}" for text in doubts)]))
+        self.setup.tell(f"best values: run {best.name}; written to {output}: {' '.join(names)}")
 
     def doubts(self, found: backanalysis.Posterior) -> List[str]:
         """The caveats on the result."""

@@ -30,7 +30,7 @@ def make(setup: Setup, order: Order, fixed: Mapping[str, str], chances: Sequence
         new = added.propose(runs.places, runs.lengths, runs.beyond, float(found.path.length[-1]))
         if new is None:
             return
-        print(added.line(new, runs.lengths, runs.beyond), flush=True)
+        setup.tell(added.line(new, runs.lengths, runs.beyond))
         added.keep()
         rows += batch(setup, order, fixed, chances, todo, work, len(added.batches) - 1)
 

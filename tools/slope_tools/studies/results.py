@@ -17,13 +17,12 @@ from ..survey import rasters
 from ..tables import combinations, intensity, size_error, step_check, structures, study_table, usable, withheld_words
 from ..tables.size_error import SizeErrors
 from ..tables.study_maps import Maps
-from ..warned import Warned, entries, printer, warned
+from ..warned import Warned, entries, warned
 from .setup import Road, Setup
 
 BALANCE = 1e-9          # of the released volume
 NAMED = 3               # runs that a warning names
 OF_SUMMARY = ("moves", "not counted")      # kinds of warnings
-warn = printer("study")
 SHOWN = 20              # runs of an ensemble whose table is printed
 
 
@@ -104,37 +103,38 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
     about["chain"] = chain_files.evaluate(questions.chain, rows, output, about["ensemble"]["withheld"]) \
         if questions.chain and order and finished else None
     about["intensity"] = intensity.collect(
-        output, questions.intensity, questions.more_than, settings, bool(setup.road), groups) \
+        output, questions.intensity, questions.more_than, settings, bool(setup.road), groups, setup.tell) \
         if finished and not order else None      # of values that are drawn, each has one run
     if not about["intensity"]:
         (output / intensity.FILE).unlink(missing_ok=True)       # of a study before this one in the folder
     else:
         about["conservative"]["doubts"] += intensity.doubts(about["intensity"])
-    structures.collect(output, finished)
+    structures.collect(output, finished, setup.tell)
     for one in warnings:
-        warn(one)
+        setup.warn(one)
     disk.write(output / "study.csv", study_table.table(settings, repeated, rows, work.defaults))
     disk.write(output / "combinations.csv", combinations.table(groups, names, settings))
     disk.write(output / "study.yaml", "# slope study: volumes in m3 of ground (bulk), lengths in m, times in s\n"
                + yaml.safe_dump(about, sort_keys=False))
     if not order or len(rows) <= SHOWN:
-        study_table.print_runs(settings, rows, scatters,
-                               f"{deck.name}: {len(rows)} run{'s' * (len(rows) != 1)}, volumes in m3 of ground")
+        setup.tell(study_table.runs_shown(
+            settings, rows, scatters,
+            f"{deck.name}: {len(rows)} run{'s' * (len(rows) != 1)}, volumes in m3 of ground"))
     if any(scatters.values()) and not order:
-        study_table.print_combinations(settings, groups, scatters)
-    print(f"{output / 'study.yaml'}, {output / 'study.csv'}, {output / 'combinations.csv'}: all numbers")
+        setup.tell(study_table.combinations_shown(settings, groups, scatters))
+    setup.tell(f"{output / 'study.yaml'}, {output / 'study.csv'}, {output / 'combinations.csv'}: all numbers")
     if about["conservative"]:
-        print("\n".join(combinations.describe(about["conservative"])))
+        setup.tell("\n".join(combinations.describe(about["conservative"])))
         if about["step"]:
-            print(about["step"]["text"])
+            setup.tell(about["step"]["text"])
     if about["ensemble"]:
-        print("\n".join(ensemble.describe(about["ensemble"])))
-        print(f"{output / ensemble.HAZARD}, {output / ensemble.INFLUENCE}: all curves and indices; "
-              f"{output / ensemble.MAPS}: {len(about['ensemble']['maps'])} maps of quantiles and exceedance")
+        setup.tell("\n".join(ensemble.describe(about["ensemble"])))
+        setup.tell(f"{output / ensemble.HAZARD}, {output / ensemble.INFLUENCE}: all curves and indices; "
+                   f"{output / ensemble.MAPS}: {len(about['ensemble']['maps'])} maps of quantiles and exceedance")
     if about["chain"]:
-        print("\n".join(chain_files.describe(about["chain"], output)))
+        setup.tell("\n".join(chain_files.describe(about["chain"], output)))
     for entry in [*(written["envelope"] or {}).values(), *(written["exceedance"] or ())]:
-        print(f"{output / entry['file']}: {entry['what']}")
+        setup.tell(f"{output / entry['file']}: {entry['what']}")
 
 
 def untrusted(errors: Optional[SizeErrors], groups) -> Optional[str]:

@@ -1,11 +1,9 @@
 """What one variable of a deck does to a quantity, beside the scatter by chance."""
 import math
 import statistics
-import sys
 from typing import Any, Dict, List, Mapping, Optional
 
 import yaml
-from rich.console import Console
 from rich.table import Table
 
 from .. import disk, provenance
@@ -17,7 +15,7 @@ from ..runs import jobs
 from ..statistics.headline import Scatter
 from ..tables import study_table
 from ..tables.quantities import NAMES, number
-from ..warned import Warned, entries, printer
+from ..warned import Warned, entries
 from . import results, study
 from .setup import Setup
 
@@ -93,17 +91,17 @@ def collect(setup: Setup, base, of, todo, work):
              "scatter": scatter, "trust": [trust(rows, name, scatter[name]) for name in of],
              "warnings": entries(warnings)}
     for one in warnings:
-        printer("sensitivity")(one)
+        setup.warn(one)
     disk.write(setup.output / "sensitivity.csv", table(rows, of, scatter, defaults))
     disk.write(setup.output / "sensitivity.yaml", "# slope sensitivity: volumes in m3 of ground (bulk), lengths in m, "
                "angles in degrees\n" + yaml.safe_dump(about, sort_keys=False))
     from ..drawing import figures
     figures.tornado(setup.output / "sensitivity.png", panels(rows, of, scatter), bars(rows, defaults),
                     f"{setup.deck.name}: one variable at a time, {len(rows)} runs")
-    show(rows, of, scatter, defaults, setup.deck.name)
-    print(f"{setup.output / 'sensitivity.csv'}, {setup.output / 'sensitivity.yaml'}, "
-          f"{setup.output / 'sensitivity.png'}: all numbers, and the chart")
-    print("\n".join(about["trust"]))
+    setup.tell(shown_of(rows, of, scatter, defaults, setup.deck.name))
+    setup.tell(f"{setup.output / 'sensitivity.csv'}, {setup.output / 'sensitivity.yaml'}, "
+               f"{setup.output / 'sensitivity.png'}: all numbers, and the chart")
+    setup.tell("\n".join(about["trust"]))
 
 
 # --- numbers ---
@@ -201,7 +199,7 @@ def panels(rows, of, scatter):
     return found
 
 
-def show(rows, of, scatter, defaults, deck):
+def shown_of(rows, of, scatter, defaults, deck) -> Table:
     shown = Table(title=f"{deck}: one variable at a time; * more than chance")
     for head in ("variable", "base", "value", "released m3"):
         shown.add_column(head, justify="right")
@@ -216,4 +214,4 @@ def show(rows, of, scatter, defaults, deck):
             star = "*" if row["kind"] == "vary" and is_clear(row, name, scatter[name]) else " "
             cells += [number(row[name]), f"{number(by, '+')}{share(by, scatter[name]['mean'], '+')}{star}"]
         shown.add_row(*cells, style="dim" if row["kind"] == "repeat" else None)
-    (Console() if sys.stdout.isatty() else Console(width=160)).print(shown)
+    return shown

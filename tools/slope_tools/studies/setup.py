@@ -1,6 +1,6 @@
 """The request for a set of runs: deck, folder, program, and what is measured of each run."""
 from pathlib import Path
-from typing import Any, Dict, NamedTuple, Optional
+from typing import Any, Callable, Dict, NamedTuple, Optional
 
 
 class Road(NamedTuple):
@@ -27,3 +27,5 @@ class Setup(NamedTuple):
     engine: str = "local"               # or slurm
     slurm: str = ""                     # options of sbatch
     dry_run: bool = False               # only list the runs
+    tell: Callable[[Any], None] = lambda line: None     # what gets lines for the user, and tables (rich.table.Table)
+    warn: Callable[[str], None] = lambda text: None     # what gets warnings

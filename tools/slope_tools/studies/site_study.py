@@ -132,20 +132,21 @@ def sizes(setup: Setup, choices: Choices, repeated: Dict[str, List[str]]) -> Siz
         size_study.run(setup, "d=" + ",".join(values), {"rolling": rolling[len(rolling) // 2]}, repeated, of,
                        {name: NAMES[name] for name in of})
     except study.RunsFailed as error:
-        results.warn(f"sizes of balls: {error}")
+        setup.warn(f"sizes of balls: {error}")
     except SlopeError as error:
-        return unusable(str(error))
+        return unusable(setup, str(error))
     path = setup.output / "converge.yaml"
     if setup.dry_run or not setup.road:
         return Sizes(None, (), None)
     if not path.is_file():
-        return unusable("too few of its runs finished")
+        return unusable(setup, "too few of its runs finished")
     said = [warned(one)._replace(part="sizes of balls") for one in disk.load_yaml(path, WHAT).get("warnings") or ()]
     try:
         errors = SizeErrors(path, "remove_m3")
         errors.check({}, variables)
     except SlopeError as error:
-        return unusable(str(error), "its runs do not tell what small balls give")._replace(warnings=said, path=path)
+        why = "its runs do not tell what small balls give"
+        return unusable(setup, str(error), why)._replace(warnings=said, path=path)
     return Sizes(errors, said, None, path)
 
 
@@ -167,8 +168,8 @@ def half_step(setup: Setup, rolling: List[str]) -> Optional[Step]:
     return Step(middle, volumes[0]) if volumes else None
 
 
-def unusable(why: str, shortly: str = "") -> Sizes:
-    results.warn(f"the size error is unknown: {why}")
+def unusable(setup: Setup, why: str, shortly: str = "") -> Sizes:
+    setup.warn(f"the size error is unknown: {why}")
     return Sizes(None, (), shortly or why)
 
 
@@ -179,6 +180,6 @@ def scored(folder: Path, setup: Setup) -> None:
     name = run_folders.governing_run(path)
     row = next(row for row in disk.load_yaml(path, "what `slope study` wrote")["runs"] if row["run"] == name)
     outline = folder / f"{OBSERVED}.csv"
-    print(f"{row['run']} against the mapped deposit:")
-    print(score_run.make(str(setup.output / row["summary"]).removesuffix(".summary.yaml"),
-                         outline if outline.is_file() else folder / f"{OBSERVED}.tif", folder / SCORE))
+    setup.tell(f"{row['run']} against the mapped deposit:")
+    setup.tell(score_run.make(str(setup.output / row["summary"]).removesuffix(".summary.yaml"),
+                              outline if outline.is_file() else folder / f"{OBSERVED}.tif", folder / SCORE))

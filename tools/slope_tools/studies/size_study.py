@@ -13,7 +13,7 @@ from ..errors import SlopeError
 from ..runs import repeats
 from ..statistics import convergence, headline
 from ..tables import combinations, study_table
-from ..warned import Warned, entries, printer
+from ..warned import Warned, entries
 from . import results, study
 from .setup import Setup
 
@@ -69,7 +69,7 @@ def collect(setup: Setup, settings, repeated, variable, of, names, todo, work):
              "quantities": {name: entry(fit, names[name], sentences[name]) for name, fit in fits.items()},
              "warnings": entries(warnings)}
     for one in warnings:
-        printer("sensitivity")(one)
+        setup.warn(one)
     disk.write(setup.output / "converge.csv", table(fits, variable))
     disk.write(setup.output / "converge_runs.csv", study_table.table(settings, repeated, rows, work.defaults))
     disk.write(setup.output / "converge.yaml", f"# slope sensitivity --converge: a line V0 + b {variable} through the "
@@ -79,10 +79,10 @@ def collect(setup: Setup, settings, repeated, variable, of, names, todo, work):
         setup.output / "converge.png", variable, [(*names[name], fits[name], [
             (float(group.set[variable]), row[name]) for group in groups for row in group.rows]) for name in of],
         f"{setup.deck.name}: {len(finished)} runs, {len(groups)} values of {variable}")
-    show(fits, variable, names, setup.deck.name)
-    print(", ".join(str(setup.output / f"converge.{kind}") for kind in ("yaml", "csv", "png"))
-          + f", {setup.output / 'converge_runs.csv'}: all numbers, the chart, and the runs")
-    print("\n".join(text for several in sentences.values() for text in several))
+    setup.tell(shown_of(fits, variable, names, setup.deck.name))
+    setup.tell(", ".join(str(setup.output / f"converge.{kind}") for kind in ("yaml", "csv", "png"))
+               + f", {setup.output / 'converge_runs.csv'}: all numbers, the chart, and the runs")
+    setup.tell("\n".join(text for several in sentences.values() for text in several))
 
 
 def writer(fit):
@@ -130,7 +130,7 @@ def table(fits, variable):
                           "error_percent", "standard_error_percent"], rows)
 
 
-def show(fits, variable, names, deck):
+def shown_of(fits, variable, names, deck) -> Table:
     shown = Table(title=f"{deck}: a line in {variable}; errors against its value at 0, with standard errors")
     heads = [head for name in fits for head in (" ".join(names[name]), "error")]
     for head in (variable, "runs", *heads):
@@ -149,4 +149,4 @@ def show(fits, variable, names, deck):
         cells += [write(fit.small.value) + (f" +- {write(error)}" if error is not None else ""), ""]
     shown.add_section()
     shown.add_row(*cells)
-    study_table.show(shown)
+    return shown

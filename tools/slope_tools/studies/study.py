@@ -13,7 +13,6 @@ from ..options import number
 from ..programs import find_lmp
 from ..runs import dependencies, jobs, launcher, slurm
 from ..survey import rasters
-from . import results
 from .setup import Road, Setup
 
 MOST_LETTERS = 200      # of a folder's name; file systems take 255
@@ -33,7 +32,7 @@ def perform(setup: Setup, settings, todo, collect, begin=None):
         depends = dependencies.Dependencies(setup.deck, digests, program_of(setup))
         for one in todo:
             jobs.check_finished(one, depends)
-        return list_runs(todo)
+        return setup.tell("\n".join(listed(todo)))
     with prepared(setup, files, len(todo)) as work:
         for one in todo:
             jobs.check_finished(one, work.depends)
@@ -68,8 +67,8 @@ def prepared(setup: Setup, files, number):
     elif setup.slurm:
         raise SlopeError("--slurm", "must be given with --engine slurm", setup.slurm)
     elif min(most, number) * setup.ranks > cores:
-        results.warn(f"{min(most, number)} runs of {setup.ranks} ranks at a time on {cores} cores: they slow each "
-                     "other down")
+        setup.warn(f"{min(most, number)} runs of {setup.ranks} ranks at a time on {cores} cores: they slow each "
+                   "other down")
     try:
         setup.output.mkdir(parents=True, exist_ok=True)
         inputs = setup.output / ".inputs"
@@ -162,9 +161,10 @@ def check_folder(setup: Setup, todo) -> None:
             raise SlopeError(about, f"must be of the run {one.name}: remove the folder, or give another -o")
 
 
-def list_runs(todo):
+def listed(todo):
+    """A line for each run, and one for all."""
     for one in todo:
         values = " ".join(f"{name} {value}" for name, value in one.chosen.items())
-        print(f"{one.name}: {values}, {one.state()}")
+        yield f"{one.name}: {values}, {one.state()}"
     done = sum(one.marker.exists() for one in todo)
-    print(f"{len(todo)} run{'s' * (len(todo) != 1)}, {done} of them finished")
+    yield f"{len(todo)} run{'s' * (len(todo) != 1)}, {done} of them finished"

@@ -25,7 +25,8 @@ from .rasters import crs_name
 
 FARTHEST = 1e12    # m or degrees: larger coordinates are mistakes, region polygon refuses them, too
 DIGITS = 6     # decimals of a written coordinate, m: beyond them is the noise of origins and projections
-PLACE = re.compile(r"^# local metres: .+", re.MULTILINE)
+HEAD = "local metres:"       # in the first line of what write() wrote
+PLACE = re.compile(rf"^# {HEAD} .+", re.MULTILINE)
 WKT = re.compile(r"[A-Za-z]+\s*(?:Z|M|ZM)?\s*(?:\(|EMPTY)", re.IGNORECASE)
 
 
@@ -268,7 +269,7 @@ def _is_local(path, text, raster):
 
 def _place_line(raster):
     east, north = (repr(float(value)) for value in raster.offset)
-    return f"# local metres: east = x + {east}, north = y + {north}, CRS {crs_name(raster.crs)}"
+    return f"# {HEAD} east = x + {east}, north = y + {north}, CRS {crs_name(raster.crs)}"
 
 
 # --- coordinates ---

@@ -7,7 +7,7 @@ than a volume v: P(V > v) is k/n, with the interval of Clopper and Pearson (Biom
 import math
 import re
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from rich.table import Table
 
@@ -15,7 +15,6 @@ from .. import disk
 from ..case.settings import as_number
 from ..errors import SlopeError
 from ..statistics import hazard
-from . import study_table
 from .combinations import Group
 
 NAME = re.compile(r"peak|pga|\w*intensity")     # names of variables that are one without being named
@@ -128,7 +127,7 @@ def percent(share: float) -> str:
     return f"{100 * share:.0f} %"
 
 
-def show(about: Mapping[str, Any]) -> None:
+def shown_of(about: Mapping[str, Any]) -> Table:
     """The table on the screen."""
     shown = Table(title=f"volume on the road (m3 of ground) against {about['variable']}, and P(V > v), in brackets the "
                         f"{100 * about['confidence']:.0f} % interval of so few runs")
@@ -141,16 +140,16 @@ def show(about: Mapping[str, Any]) -> None:
                           *(f"{one[key]:,.0f}" for key in ("mean_m3", "smallest_m3", "largest_m3")),
                           *(f"{percent(each['probability'])} ({percent(each['low'])} to {percent(each['high'])})"
                             for each in one["exceed"]))
-    study_table.show(shown)
+    return shown
 
 
 def collect(output: Path, named: Optional[str], more_than: Sequence[float], settings: Settings, road: bool,
-            groups: Sequence[Group]) -> Optional[Dict[str, Any]]:
-    """The entry of study.yaml, None without an intensity; writes intensity.csv and prints the table."""
+            groups: Sequence[Group], tell: Callable[[Any], None]) -> Optional[Dict[str, Any]]:
+    """The entry of study.yaml, None without an intensity; writes intensity.csv and tells the table."""
     name = check(named, settings, road)
     about = entry(name, groups, more_than) if name else None
     if about:
         disk.write(output / FILE, table(about))
-        show(about)
-        print(f"{output / FILE}: volume on the road against {name}, and how likely more is")
+        tell(shown_of(about))
+        tell(f"{output / FILE}: volume on the road against {name}, and how likely more is")
     return about

@@ -6,7 +6,7 @@ this one's. Forces in N, times in s, pressures in Pa, volumes in m3 of ground, e
 import csv
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Sequence, Tuple
+from typing import Any, Callable, Dict, List, Mapping, Sequence, Tuple
 from xml.etree import ElementTree
 
 import numpy as np
@@ -14,7 +14,6 @@ from rich.table import Table
 
 from .. import disk
 from ..errors import SlopeError
-from . import study_table
 
 WINDOW = 0.5            # s, of the mean force: single impacts are those of the model's balls, what lasts is the mass's
 SHARES = (0.5, 0.9, 0.95, 0.99)
@@ -202,8 +201,8 @@ def cell(value, unit):
     return "-" if value is None else f"{value / unit:,.3g}" if abs(value) < 1000 * unit else f"{value / unit:,.0f}"
 
 
-def collect(output: Path, rows: Sequence[Mapping[str, Any]]) -> List[Path]:
-    """Write structures.csv and lines.csv and print the tables, where there is something; the files."""
+def collect(output: Path, rows: Sequence[Mapping[str, Any]], tell: Callable[[Any], None]) -> List[Path]:
+    """Write structures.csv and lines.csv and tell the tables, where there is something; the files."""
     written = []
     for what, file in FILES.items():
         text = table(rows, what)
@@ -218,7 +217,7 @@ def collect(output: Path, rows: Sequence[Mapping[str, Any]]) -> List[Path]:
         for row in rows:
             for name, numbers in (row.get(what) or {}).items():
                 shown.add_row(row["run"], name, *(cell(numbers.get(key), unit) for _, key, unit in SHOWN[what]))
-        study_table.show(shown)
+        tell(shown)
     if written:
-        print(f"{', '.join(map(str, written))}: of each run")
+        tell(f"{', '.join(map(str, written))}: of each run")
     return written

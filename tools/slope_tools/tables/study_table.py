@@ -1,8 +1,6 @@
 """The tables over all runs of a study, and over its combinations: as a CSV and on the screen."""
-import sys
 from typing import Any, Dict, Tuple
 
-from rich.console import Console
 from rich.table import Table
 
 from .. import disk
@@ -57,7 +55,8 @@ def varied(settings):
     return [name for name in settings if name not in same], caption
 
 
-def print_runs(settings, rows, scatters, title):
+def runs_shown(settings, rows, scatters, title) -> Table:
+    """A line for each run."""
     names, caption = varied(settings)
     shown = Table(title=title, caption=caption)
     columns = {**SHOWN, **(SHOWN_ROAD if any("remove_m3" in row for row in rows) else {})}
@@ -77,10 +76,10 @@ def print_runs(settings, rows, scatters, title):
                       form(row[key]) if callable(form) else form.format(row[key])
                       for key, (_, form) in columns.items()]
         shown.add_row(*cells)
-    show(shown)
+    return shown
 
 
-def print_combinations(settings, groups, scatters):
+def combinations_shown(settings, groups, scatters) -> Table:
     """Mean and scatter of each combination, rounded to what is known of one run."""
     names, _ = varied(settings)
     shown = Table(title="mean and scatter (standard deviation of a run) of the repeats; below: over all combinations")
@@ -98,8 +97,4 @@ def print_combinations(settings, groups, scatters):
     shown.add_section()
     shown.add_row(*[""] * len(names), "all",
                   *(f"s {volume(one.deviation, one)}" if one else "" for one in scatters.values()))
-    show(shown)
-
-
-def show(shown):
-    (Console() if sys.stdout.isatty() else Console(width=180)).print(shown)
+    return shown
