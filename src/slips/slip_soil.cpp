@@ -62,11 +62,13 @@ double SlipSoil::least_cohesion() const
 std::string SlipSoil::contradiction(const ElevationGrid &ground) const
 {
   char text[200];
+  bool above_rock = !rocky;
   for (int j = 0; j < ground.ny; j++)
     for (int i = 0; i < ground.nx; i++) {
       const double x = ground.xlo + (i + 0.5) * ground.cell;
       const double y = ground.ylo + (j + 0.5) * ground.cell, z = ground.at(i, j);
       if (!std::isfinite(z)) continue;
+      above_rock = above_rock || !(bedrock.height(x, y) >= z);
       const double level = has_table ? table.height(x, y) : z;
       if (level > z + ROUNDING) {
         snprintf(text, sizeof(text),
@@ -88,5 +90,5 @@ std::string SlipSoil::contradiction(const ElevationGrid &ground) const
         above = begins;
       }
     }
-  return "";
+  return above_rock ? "" : "bedrock must be below the ground somewhere, got none of it";
 }

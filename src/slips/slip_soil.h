@@ -54,7 +54,8 @@ class SlipSoil {
   ElevationGrid bedrock_below(const ElevationGrid &ground) const;    // in the centres of its cells
 
   // What contradicts itself somewhere below the ground, in one line with item, rule, value and
-  // place: a layer above the one over it, or a water table above the ground; empty if nothing.
+  // place: a layer above the one over it, a water table above the ground, or a bedrock that is nowhere below
+  // it; empty if nothing.
   std::string contradiction(const ElevationGrid &ground) const;
 
   double least_cohesion() const;

@@ -153,6 +153,7 @@ def test_layers_and_water(tmp_path):
     (f"{LOW_SPHERE} water ru 1.5", "Find_slip water ru must be 0 to below 1, got 1.5"),
     (f"{LOW_SPHERE} seismic -0.1", "Find_slip seismic KH must be >= 0 (of the weight), got -0.1"),
     (f"{LOW_SPHERE} layer none.asc 1 2 3", "none.asc"),
+    (f"{LOW_SPHERE} bedrock ground.asc", "Find_slip bedrock must be below the ground somewhere, got none of it"),
     (f"{LOW_SPHERE} within ground", "Find_slip within: region ground must be of style polygon, got terrain"),
     ("surface sphere 10 25 54 20", "no ground is above it"),
     ("surface sphere 10 2 54 29", "the body reaches the edge of the terrain"),
@@ -162,6 +163,19 @@ def test_wrong_words_end_the_run_with_one_line(tmp_path, more, message):
     of_10_m(tmp_path)
     run_deck(deck(more=more), tmp_path, expect_error=message)
     assert not list(tmp_path.glob("crit.*"))
+
+
+def test_spencer_balances_a_body_or_says_that_nothing_does(tmp_path):
+    of_10_m(tmp_path)
+    more = f"{LOW_SPHERE} method spencer"
+    run_deck(deck(more=more), tmp_path)
+    [row] = rows(tmp_path)
+    assert row["factor"] == pytest.approx(1.0405, rel=0.01)       # of Bishop
+    run_deck(deck(more=f"{more} seismic {row['yield']:.10g}"), tmp_path)
+    assert rows(tmp_path)[0]["factor"] == pytest.approx(1, abs=1e-6)
+    of_20_m(tmp_path)
+    run_deck(deck(f"40000 0 {19000 / GRAVITY:.12g}", f"{HIGH_SPHERE} method spencer"), tmp_path,
+             expect_error="Find_slip method spencer must find forces between columns")
 
 
 def test_the_search_finds_the_least_on_any_number_of_ranks(tmp_path):

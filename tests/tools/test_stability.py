@@ -1,4 +1,5 @@
 """slope stability: what find_slip finds on the embankments of Scoops3D, and what is said of it."""
+import argparse
 import csv
 import os
 import subprocess
@@ -15,6 +16,7 @@ import test_depends_on
 from run_helpers import called, write_asc
 from test_slips import CASES
 
+from slope_tools.commands import stability  # noqa: E402
 from slope_tools.slips import bishop, bodies, columns, doubts  # noqa: E402
 from slope_tools.survey.rasters import Raster  # noqa: E402
 
@@ -207,6 +209,15 @@ def test_a_site_of_a_body(low, capsys):
         status, _, err = site(f"{words} -o other")
         assert status == 2 and err.count("\n") == 1 and rule in err
         assert not Path("other").exists()
+
+
+def test_doubtful_input_is_named():
+    args = argparse.Namespace(cohesion=8.0, density=19.0)
+    half = np.array([[1.0, np.nan], [np.nan, np.nan]])
+    found = list(stability.warnings_of(args, [{"rank": 1}, {"rank": 2}], [half == 1.0, np.ones((2, 2), bool)], half))
+    assert [one.split(":")[0] for one in found] == ["--cohesion 8", "--density 19", "body 2"]
+    assert "no value below 75 % of its cells" in found[2]
+    assert not list(stability.warnings_of(argparse.Namespace(cohesion=0.0, density=1900.0), [], [], None))
 
 
 @pytest.fixture

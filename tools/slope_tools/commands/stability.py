@@ -28,6 +28,7 @@ stability.yaml, stability.png, and the deck in.slips with its log. With --failed
 """
 HUGE = 100.0        # factor of safety that no slope has
 FAINT = 100.0       # Pa
+LIGHT = 500.0       # kg/m3
 FILES = ["stability.csv", "stability.png", "stability.yaml"]
 
 
@@ -86,8 +87,8 @@ def run(args):
         stability_failed.run(args)
         return
     from ..runs import slip_run         # numpy, rasterio
-    from ..slips import bodies, doubts
-    from ..survey import polygons, rasters
+    from ..slips import bodies, columns, doubts
+    from ..survey import polygons, rasters, resampling
 
     asked = asked_of(args)
     lmp = find_lmp(args.lmp)
@@ -104,19 +105,32 @@ def run(args):
             raise SlopeError(args.terrain, "must be steep enough, and the strengths in Pa, for a factor of safety "
                              f"below {HUGE:g} somewhere", f"{rows[0]['factor']:.4g}")
         masks = [bodies.mask_of(folder / f"{PREFIX}.{k + 1}.base.asc") for k in range(len(rows))]
-        if 0 < args.cohesion < FAINT:
-            warn(f"--cohesion {args.cohesion:g}: is it in Pa? Values in kPa are a thousand times smaller")
-        for line in said.warnings:
+        rock = args.bedrock and resampling.sample(rasters.read(args.bedrock), *columns.centres(raster))
+        for line in [*warnings_of(args, rows, masks, rock), *said.warnings]:
             warn(line)
         for doubt in doubts.of_all(raster, rows, masks, asked.volume, asked.depth,
                                    polygon and doubts.cells_in(raster, polygon)):
             warn(doubts.words(doubt))
         table = [numbers_of(raster, row, mask) for row, mask in zip(rows, masks)]
-        write(folder, args, raster, rows, masks, {"method": asked.method, "shape": asked.shape, "keep": asked.keep,
+        write(folder, args, raster, rows, masks, rock, {"method": asked.method, "shape": asked.shape, "keep": asked.keep,
                                                   "bodies": table, "warnings": kept})
         slip_run.settle(asked, raster, folder, len(rows), args.output)
     slip_run.remove_others(args.output, len(rows))
     print(summary(table, args.output, said.notes))
+
+
+def warnings_of(args, rows, masks, rock):
+    """What a reader must know of the input, in words."""
+    import numpy as np
+
+    if 0 < args.cohesion < FAINT:
+        yield f"--cohesion {args.cohesion:g}: is it in Pa? Values in kPa are a thousand times smaller"
+    if args.density < LIGHT:
+        yield f"--density {args.density:g}: is it in kg/m3? Values in kN/m3 are about a hundred times smaller"
+    for row, mask in zip(rows, masks):
+        share = 0.0 if rock is None else np.isnan(rock[mask]).mean()
+        if share > 0:
+            yield f"body {row['rank']:.0f}: --bedrock has no value below {100 * share:.2g} % of its cells"
 
 
 def asked_of(args) -> slip_deck.Asked:
@@ -162,17 +176,16 @@ def numbers_of(raster, row: Dict[str, float], mask) -> Dict[str, float]:
             "cells": int(mask.sum()), **{name: row[name] for name in ("x", "y", "z", "radius", "across")}}
 
 
-def write(folder, args, raster, rows, masks, found) -> None:
-    """stability.csv, .png and .yaml."""
-    from ..slips import chart, columns
-    from ..survey import rasters, resampling
+def write(folder, args, raster, rows, masks, rock, found) -> None:
+    """stability.csv, .png and .yaml; rock: heights of the bedrock in the cells of the terrain, or None."""
+    from ..slips import chart
+    from ..survey import rasters
 
     disk.write(folder / FILES[0], disk.csv_text(found["bodies"][0], (
         [f"{value:.8g}" for value in row.values()] for row in found["bodies"])))
     factor = rasters.read(folder / f"{PREFIX}.factor.asc", heights=False).z
     title = f"c {args.cohesion:g} Pa, friction {args.friction:g} degrees" + (
         f", k {args.seismic[0]:g}" if args.seismic else "")
-    rock = args.bedrock and resampling.sample(rasters.read(args.bedrock), *columns.centres(raster))
     chart.draw(folder / FILES[1], raster, factor, rows, masks, title, rock)
     about = {name: getattr(args, name) for name in ("terrain", "cohesion", "friction", "density", "layer", "water",
                                                     "water_table", "bedrock", "seismic", "volume", "depth",
