@@ -119,7 +119,7 @@ FIXED = "create_atoms 2 single 5 5 0\nset type 2 diameter 1.0 density 2500"
 
 
 @pytest.mark.parametrize("frozen", [False, True])
-@pytest.mark.parametrize("guide", ["move linear 0 0 0", "setforce 0 0 0"])
+@pytest.mark.parametrize("guide", ["move linear 0 0 0", "setforce 0 0 0", "nve/noforce"])
 def test_guided_balls(tmp_path, guide, frozen):
     """A ball on a path of its own is as good as infinitely heavy, which the law does not know."""
     extra = f"group stay type 2\nfix path stay {guide}\n" + ("fix stay stay freeze" if frozen else "")

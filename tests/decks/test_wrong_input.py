@@ -103,6 +103,7 @@ TABLE = {
         1 1 stiffness 1e6 1e6 restitution 0.5 rolling_spring 1 -> rolling_spring: value 2 is missing
         1 1 stiffness 1e6 1e6 restitution 0.5 rolling_spring -1 1 -> rolling_spring must be >= 0 (kr), got -1
         1 1 stiffness 1e6 1e6 restitution 0.5 rolling_spring 1 -1 -> rolling_spring must be >= 0 (cr), got -1
+        1 1 stiffness 1e6 1e6 restitution 0.5 rolling 0.05 rolling_spring 0 0 -> pair_coeff 1 1: rolling_spring must not be 0 0
         1 1 stiffness 1e6 1e6 restitution 0.5 7 -> pair_coeff: unknown keyword 7, must be stiffness, restitution
         1 1 stiffness 1e6 1e6 restitution 0.5 color red -> pair_coeff: unknown keyword color, must be stiffness
         """,  # noqa: E501

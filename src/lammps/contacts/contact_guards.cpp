@@ -157,7 +157,7 @@ void ContactGuards::check_fixed_balls(int freeze_group_bit)
     const bool integrates = fix->time_integrate;
     if (integrates) moved |= fix->groupbit;
     if (!(integrates && utils::strmatch(fix->style, "^move")) &&
-        !utils::strmatch(fix->style, "^setforce"))
+        !utils::strmatch(fix->style, "^setforce") && !utils::strmatch(fix->style, "^nve/noforce"))
       continue;
     guided |= fix->groupbit;
     guides += (guides.empty() ? "" : ", ") + std::string(fix->style);

@@ -177,6 +177,11 @@ ContactTable::Coeff ContactTable::read_coeff(const std::string &types, int narg,
         "Pair gran/restitution pair_coeff {}: ct must be 0 where kt is 0, got {:.15g}: give the "
         "contact a tangential stiffness",
         types, c.ct);
+  if (c.rolling > 0.0 && c.spring_set && c.kr == 0.0 && c.cr == 0.0)
+    error->all(FLERR,
+               "Pair gran/restitution pair_coeff {}: rolling_spring must not be 0 0 where rolling "
+               "is > 0, got rolling {:.15g}: without spring and dashpot nothing resists rolling",
+               types, c.rolling);
   if (damping == (c.restitution_set == 1))
     error->all(FLERR,
                "Pair gran/restitution pair_coeff {}: exactly one of restitution and damping is "
