@@ -15,7 +15,8 @@ class Stability(Algorithm):
     command = "stability"
     title = "Slip surfaces"
     about = """
-    The slip surfaces with the least factor of safety below a terrain, in three dimensions, by Bishop's method or another.
+    The slip surfaces with the least factor of safety below a terrain, in three dimensions, by Bishop's method or
+    another.
 
     Ground: cohesion (Pa), friction (degrees), density (kg/m3), water, horizontal acceleration of an earthquake in parts
     of the weight. Limits of volume (m3), depth (m) and place make the search shorter.

@@ -112,8 +112,8 @@ def run(args):
                                    polygon and doubts.cells_in(raster, polygon)):
             warn(doubts.words(doubt))
         table = [numbers_of(raster, row, mask) for row, mask in zip(rows, masks)]
-        write(folder, args, raster, rows, masks, rock, {"method": asked.method, "shape": asked.shape, "keep": asked.keep,
-                                                  "bodies": table, "warnings": kept})
+        write(folder, args, raster, rows, masks, rock, {"method": asked.method, "shape": asked.shape,
+                                                        "keep": asked.keep, "bodies": table, "warnings": kept})
         slip_run.settle(asked, raster, folder, len(rows), args.output)
     slip_run.remove_others(args.output, len(rows))
     print(summary(table, args.output, said.notes))
