@@ -60,7 +60,7 @@ template <class N> struct ContactStepOf {
 };
 using ContactStep = ContactStepOf<double>;
 
-// exp(-x), x >= 0, to 1e-9; no call, so that it takes four at a time
+// exp(-x), x >= 0, to 3e-8, and to 5e-9 of itself up to x = 2; no call, so that it takes several at a time
 template <class N> SLOPE_INLINE N decay_factor(N x)
 {
   const N y = 0.125 * smaller(x, all<N>(24.0));    // Pade approximant, to the eighth power
