@@ -3,8 +3,8 @@
 
     tests/runout_step.py [--lmp FILE] [--part 0.1] [--spacing 0.25,0.35,0.5,0.8,1] [--e 0.1,0.3,0.5] [-o DIR]
 
-2,400 balls of 1 m that do not touch each other, or a mass of 400 that do (friction 12), on a field of fixed balls of 1 m: 6 s down 32
-degrees, then level until they rest. Prints for each field the mean of the distances and the distance of 99 % of the
+2,400 balls of 1 m that do not touch each other, or a mass of 400 that do (friction 12), on a field of fixed balls of
+1 m: 6 s down 32 degrees, then level until they rest. Prints for each field the mean of the distances and the distance of 99 % of the
 balls at the rule's step, each less that at the part of it, in % of the latter, with the standard error of this
 difference: of single balls by bootstrap, of the mass over its seeds (pairs of runs from the same start).
 """
@@ -73,7 +73,8 @@ def measures(far):
 def single(args, spacing, e):
     rng = np.random.default_rng(1)
     block = f"2 12 2 {2 + 1.3 * (args.balls // 40)} 1.6 8"
-    runs = [distances(args, f"single_{spacing}_{e}_{part}", mass=block, spacing=spacing, e=e, part=part, seed=42, **SINGLE)
+    runs = [distances(args, f"single_{spacing}_{e}_{part}", mass=block, spacing=spacing, e=e, part=part, seed=42,
+                      **SINGLE)
             for part in (1, args.part)]
     drawn = [[measures(rng.choice(far, far.size)) for _ in range(500)] for far, _ in runs]
     change = 100 * (np.divide(*drawn) - 1)

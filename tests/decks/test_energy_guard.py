@@ -119,7 +119,7 @@ def test_sliding_is_no_alarm(tmp_path, deck, e, part):
 
 
 def test_impact_is_no_alarm(tmp_path):
-    """At the rule's step a contact has up to kn dt^2/(4 m) = 3.1 % less energy while it begins; the guard's bound is 4 %."""
+    """A contact that begins has up to kn dt^2/(4 m) = 3.1 % less energy at the rule's step; the bound is 4 %."""
     assert alarms(run_deck(ELASTIC, tmp_path)) == []
 
 

@@ -1,4 +1,4 @@
-"""Fix energy/ledger in every deck of inputs/, shortened: the sum closes, and contacts begin and end without much loss."""
+"""Fix energy/ledger in every deck of inputs/, shortened: the sum closes, and beginnings and ends take little."""
 import re
 import shutil
 from pathlib import Path
@@ -34,9 +34,13 @@ SHORT = {
     "21_earthquake/in.earthquake": {"d": 4, "duration": 15},
     "22_structures/in.structures": {"d": 4, "duration": 15},
 }
-# Of the energy with which two free balls of one mass meet, the beginning takes up to kn dt^2/(8 m): 3.2 % of what is dissipated
-# at most, 2.1 % on average; half of that on a fixed ball.
+# Where two free balls of one mass meet, the beginning takes up to a quarter of kn dt^2/(m/2) of what is dissipated,
+# 3.2 %, and 2.1 % on average; on a fixed ball half of that.
 BEGIN_END = {"08_collisions/in.chain": 0.032}
+
+# walls and dampers of LAMMPS, whose work is item 3
+OTHERS = {"10_tochigi/in.tochigi", "11_column_collapse/in.column_collapse", "12_heap/in.heap",
+          "21_earthquake/in.earthquake"}
 
 
 def with_ledger(deck):
@@ -66,7 +70,7 @@ def test_every_deck_is_listed():
     assert known | set(SHORT) == {str(path.relative_to(INPUTS)) for path in INPUTS.glob("*/in.*")}
 
 
-def check(folder, deck, values, begin_end=0.02):
+def check(folder, deck, values, begin_end=0.02, others=False):
     rows = rows_of(run_deck(with_ledger(deck), folder, vars=values))
     last, most = rows[-1], max(row["kinetic"] for row in rows)
     dissipated = sum(last[name] for name in ("dashpots", "sliding", "rolling"))
@@ -75,13 +79,14 @@ def check(folder, deck, values, begin_end=0.02):
           f"begin and end {last['begin_end'] / dissipated:+.4f}", " ".join(f"{k} {v:.3g}" for k, v in last.items()))
     assert residual < 1e-3 * (dissipated + most)
     assert abs(last["begin_end"]) < begin_end * dissipated
+    assert others or abs(last["others"]) < 1e-6 * dissipated
 
 
 @pytest.mark.parametrize("deck", SHORT)
 def test_closes(tmp_path, deck):
     folder = tmp_path / "case"
     shutil.copytree((INPUTS / deck).parent, folder)
-    check(folder, (INPUTS / deck).read_text(), SHORT[deck], BEGIN_END.get(deck, 0.02))
+    check(folder, (INPUTS / deck).read_text(), SHORT[deck], BEGIN_END.get(deck, 0.02), deck in OTHERS)
 
 
 def test_closes_frank(frank):  # noqa: F811
