@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 import yaml
 
-import deck_helpers
 from deck_helpers import doc_examples, flat_numbers, flight_head as head, read_asc, run_deck, write_asc, write_balls
 
 
