@@ -43,7 +43,8 @@ void check_memory(const std::string &what, double need)
 {
   const double have = free_memory();
   char text[80];
-  snprintf(text, sizeof(text), " need %.3g GB of memory, %.3g GB are free", 1e-9 * need, 1e-9 * have);
+  snprintf(text, sizeof(text), " need %.3g GB of memory, %.3g GB are free", 1e-9 * need,
+           1e-9 * have);
   if (need > have) throw std::runtime_error(what + text);
 }
 

@@ -15,10 +15,10 @@
 
 using namespace Slope;
 
-static constexpr double LARGEST = 1.0e12;        // coordinates; their products must be finite
-static constexpr double MOST_PARTS = 64.0;       // of edges in strips, per edge: bounds the memory
-static constexpr double ROUNDING = 4.0e-16;      // relative error of a determinant's terms
-static constexpr double ON_LINE = 1.0e-9;        // of a cell
+static constexpr double LARGEST = 1.0e12;      // coordinates; their products must be finite
+static constexpr double MOST_PARTS = 64.0;     // of edges in strips, per edge: bounds the memory
+static constexpr double ROUNDING = 4.0e-16;    // relative error of a determinant's terms
+static constexpr double ON_LINE = 1.0e-9;      // of a cell
 
 namespace {
 

@@ -48,8 +48,9 @@ class Polygon {
   std::vector<Edge> edges;
 
   // The bounding box is cut into strips along x: only the edges in its strip may be east of a point
-  double scale;                       // strips per height
-  std::vector<int> first, members;    // of strip k: members first[k] to first[k+1], by xmax, from the east
+  double scale;    // strips per height
+  std::vector<int> first,
+      members;    // of strip k: members first[k] to first[k+1], by xmax, from the east
 
   int strip(double y) const;
   void cut_into_strips();

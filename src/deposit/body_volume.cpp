@@ -14,7 +14,7 @@ using namespace Slope;
 
 static constexpr int FIRST_CELLS = 128, MOST_CELLS = 3500;    // along the longer side
 static constexpr double FINER = 1.5;
-static constexpr double SAME = 3.0e-4;            // two sums; the finer one is less than half as wrong
+static constexpr double SAME = 3.0e-4;    // two sums; the finer one is less than half as wrong
 static constexpr double ENOUGH_FILLED = 20000;    // columns: fewer may agree by chance
 
 enum { X, Y };

@@ -289,14 +289,10 @@ void FixDepositGrid::write_restart(FILE *fp)
 {
   if (started) losses.end_command();
   if (started && (sampled != update->ntimestep || update->whichflag == 0)) sample(false);
-  const DepositRestart::Saved saved = {(double) started,
-                                       results.released,
-                                       balls.bulk(),
-                                       losses.lost,
-                                       (double) losses.nlogged,
-                                       update->whichflag == 1 ? now() : elapsed,
-                                       rasters.snapshot_time,
-                                       rasters.change};
+  const DepositRestart::Saved saved = {
+      (double) started,      results.released,        balls.bulk(),
+      losses.lost,           (double) losses.nlogged, update->whichflag == 1 ? now() : elapsed,
+      rasters.snapshot_time, rasters.change};
   restart_data.write(fp, id, saved, rasters);
 }
 

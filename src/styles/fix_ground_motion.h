@@ -50,9 +50,9 @@ class FixGroundMotion : public Fix, public Kick {
   int placed;    // of those that have been moved already when this fix has its turn
   int frozen;    // of fix freeze
 
-  double ground[3];            // velocity up to which the balls have been kicked
-  double last_kick[3];         // over the second half of the last step
-  double work;                 // of the motion on balls of this rank, J
+  double ground[3];       // velocity up to which the balls have been kicked
+  double last_kick[3];    // over the second half of the last step
+  double work;            // of the motion on balls of this rank, J
 
   void read_keywords(int, char **);
   void read_record();

@@ -46,8 +46,7 @@ static Vector vector_of(const double *x)
 
 FixWallGranMesh::FixWallGranMesh(LAMMPS *lmp, int narg, char **arg) :
     FixContactWall(lmp, narg, arg, 3), options(lmp, caller, narg - 3, arg + 3),
-    surface(options.surface()), all_ready(false), started(false),
-    fast(lmp, caller)
+    surface(options.surface()), all_ready(false), started(false), fast(lmp, caller)
 {
   wall_type = options.type;
   size_vector = IMPULSE + 3;

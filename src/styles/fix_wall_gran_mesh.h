@@ -15,8 +15,8 @@ FixStyle(wall/gran/mesh,FixWallGranMesh);
 #include "fix_contact_wall.h"
 
 #include "contact_list.h"
-#include "speed_guard.h"
 #include "run_clock.h"
+#include "speed_guard.h"
 #include "surface_options.h"
 #include "surface_recorder.h"
 #include "surface_watch.h"
@@ -81,7 +81,7 @@ class FixWallGranMesh : public FixContactWall {
   std::unique_ptr<SurfaceRecorder> recorder;    // nullptr without output
   Slope::RunClock clock;
   double given[3];    // momentum per time in this step, as velocity Verlet hands it over
-  bool started;    // with the first run
+  bool started;       // with the first run
 
   SpeedGuard fast;
 

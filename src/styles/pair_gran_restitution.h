@@ -68,7 +68,7 @@ class PairGranRestitution : public Pair, public ContactHistoryOwner {
   void announce_wall(class ContactHolder *wall, int wall_type, int groupbit, const char *style);
   Slope::MovingBalls moving_balls();
   void store_flags() const override;
-  bool sizes_vary = false;           // between two neighbor lists, by fix adapt
+  bool sizes_vary = false;    // between two neighbor lists, by fix adapt
 
   void watch_energy() override;
   void check_finite() const override { guards.check_finite(); }

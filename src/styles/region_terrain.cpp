@@ -85,8 +85,9 @@ void RegTerrain::read(const char *path)
   nodata = static_cast<int>(head[5]);
   if (comm->nprocs == 1) return;
 
-  heights.reset(new NodeArray(lmp, static_cast<size_t>(size[0]) * size[1],
-                              fmt::format("Region terrain: {}: {} x {} cells", path, size[0], size[1])));
+  heights.reset(
+      new NodeArray(lmp, static_cast<size_t>(size[0]) * size[1],
+                    fmt::format("Region terrain: {}: {} x {} cells", path, size[0], size[1])));
   heights->fill(elevation.z.data());
   elevation.refer_to(heights->data());
 }

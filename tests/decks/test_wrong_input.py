@@ -495,11 +495,8 @@ HEAD = "ncols {0}\nnrows {0}\nxllcorner 0\nyllcorner 0\ncellsize 1\n"
 
 
 @pytest.mark.skipif("ASAN_OPTIONS" in os.environ, reason="a sanitizer reserves more address space than there is memory")
-@pytest.mark.parametrize("cells, written, size, message", [
-    (20_000, 0, 800_000_000, "its text needs 0.8 GB of memory, more than is free"),
-    (6_400, 40_000_000, None, "6400 rows x 6400 columns need 0.4 GB of memory, more than is free"),
-])
-def test_a_raster_beyond_the_memory_is_refused(tmp_path, monkeypatch, cells, written, size, message):
+@pytest.mark.parametrize("cells, written, size", [(20_000, 0, 800_000_000), (6_400, 40_000_000, None)])
+def test_a_raster_beyond_the_memory_is_refused(tmp_path, monkeypatch, cells, written, size):
     """Without room for the text, of which the disk has only the first bytes, and for the heights: of 400 MB."""
     with open(tmp_path / "large.asc", "w") as out:
         out.write(HEAD.format(cells) + "1 " * written)
@@ -507,7 +504,7 @@ def test_a_raster_beyond_the_memory_is_refused(tmp_path, monkeypatch, cells, wri
         if size:
             out.truncate(size)
     monkeypatch.setattr(subprocess, "run", limited(subprocess.run, 400_000_000))
-    run_deck("region ground terrain large.asc\n", tmp_path, expect_error=f"Region terrain: large.asc: {message}")
+    run_deck("region ground terrain large.asc\n", tmp_path, expect_error="Region terrain: not enough memory")
 
 
 def limited(run, limit):

@@ -14,12 +14,13 @@
 
 namespace LAMMPS_NS {
 
-// A run in pieces, or from a restart file, is the uncut one to the bit. LAMMPS finds the forces anew at a
-// set-up, with the velocities of the end of the last step, while that step made them with those of its
-// middle. So the force on each ball at the end of a run is kept, moves between ranks with it and goes into
-// restart files; taken back, it gives the velocities of the middle, and with these the set-up finds the
-// forces of the last step once more, but for rounding. Before the first step those that were kept take
-// their place. If they differ by more, something has been changed in between, and those of the set-up stand.
+// A run in pieces, or from a restart file, is the uncut one, to the bit as long as the neighbor lists have
+// the same order. LAMMPS finds the forces anew at a set-up, with the velocities of the end of the last
+// step, while that step made them with those of its middle. So the force on each ball at the end of a run
+// is kept, moves between ranks with it and goes into restart files; taken back, it gives the velocities of
+// the middle, and with these the set-up finds the forces of the last step once more, but for rounding.
+// Before the first step those that were kept take their place. If they differ by more, something has been
+// changed in between, and those of the set-up stand.
 class Continuation : protected Pointers {
  public:
   explicit Continuation(class LAMMPS *);

@@ -180,9 +180,9 @@ std::unique_ptr<TouchedSurface> SurfaceOptions::shared(std::unique_ptr<TerrainSu
   TerrainSurface::About about;
   if (read) about = read->about();
   MPI_Bcast(&about, sizeof(about), MPI_BYTE, 0, world);
-  std::unique_ptr<NodeArray> values(
-      new NodeArray(lmp, static_cast<size_t>(about.nx) * about.ny,
-                    fmt::format("{}: {}: {} x {} cells", caller, file, about.nx - 2, about.ny - 2)));
+  std::unique_ptr<NodeArray> values(new NodeArray(
+      lmp, static_cast<size_t>(about.nx) * about.ny,
+      fmt::format("{}: {}: {} x {} cells", caller, file, about.nx - 2, about.ny - 2)));
   values->fill(read ? read->heights() : nullptr);
   return std::unique_ptr<TouchedSurface>(new SharedTerrain(about, std::move(values)));
 }

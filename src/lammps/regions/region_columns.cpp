@@ -155,8 +155,7 @@ class SearchedColumns : public RegionColumns {
 
   double edge(double x, double y, double out, double in) const
   {
-    for (double middle = 0.5 * (out + in); middle != out && middle != in;
-         middle = 0.5 * (out + in))
+    for (double middle = 0.5 * (out + in); middle != out && middle != in; middle = 0.5 * (out + in))
       (has(x, y, middle) ? in : out) = middle;
     return in;
   }

@@ -19,7 +19,7 @@
 
 using namespace LAMMPS_NS;
 
-static constexpr double UNBOUNDED = 1.0e19;     // LAMMPS writes INF as 1e20
+static constexpr double UNBOUNDED = 1.0e19;    // LAMMPS writes INF as 1e20
 static constexpr double DEFAULT_STEPS = 1000.0;
 static constexpr int NEAR_STEPS = 16;
 static constexpr double THIN =
