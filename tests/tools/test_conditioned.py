@@ -10,7 +10,7 @@ import yaml
 from scipy import stats
 
 from run_helpers import called
-from tiny_collapse import LMP, read_asc, write_case
+from tiny_collapse import read_asc
 
 import known_twins as twins  # noqa: E402  (run_helpers has set the path)
 from slope_tools import cli  # noqa: E402
@@ -124,11 +124,8 @@ def write_set(path):
 
 
 @pytest.fixture
-def slope(tmp_path, monkeypatch, capsys):
+def slope(tiny_case, capsys):
     """Run `slope study case/in.tiny ARGUMENTS` in the test's folder; gives status, stdout, stderr."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("LMP", LMP)
-    write_case(tmp_path / "case")
     Path("case/road.csv").write_text("13,0\n18,0\n18,24\n13,24\n")
     write_set("small.csv")
     return lambda arguments: called(capsys, ["study", "case/in.tiny", *shlex.split(arguments)])

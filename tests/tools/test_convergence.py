@@ -13,7 +13,7 @@ import yaml
 from scipy import stats
 
 from run_helpers import called
-from tiny_collapse import LMP, TOP, write_case
+from tiny_collapse import TOP
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
@@ -204,11 +204,9 @@ def test_a_size_error_of_balls_that_are_too_large_is_not_trusted(tmp_path, runs,
 # --- the command ---
 
 @pytest.fixture
-def slope(tmp_path, monkeypatch, capsys):
+def slope(tiny_case, capsys):
     """Run `slope COMMAND case/in.tiny ARGUMENTS` in the test's folder; gives status, stdout, stderr."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("LMP", LMP)
-    deck = write_case(tmp_path / "case")
+    deck = tiny_case / "case" / "in.tiny"
     text = deck.read_text()
     for old, new in (("index 150", "index 300\nvariable  d index 1.0\nvariable  field_d index 1.0\n"
                       "variable  xoffset index 0.0"), ("sc 1.0", "sc ${d} origin ${xoffset} 0 0"),

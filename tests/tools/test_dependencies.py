@@ -10,7 +10,7 @@ import pytest
 import yaml
 
 from run_helpers import called, write_sidecar
-from tiny_collapse import LMP, read_asc, write_case, write_stl
+from tiny_collapse import LMP, read_asc, write_stl
 
 from slope_tools.case import decks
 from slope_tools.runs import dependencies
@@ -19,11 +19,8 @@ RUN = "out/rolling_0_steps_10"
 
 
 @pytest.fixture
-def here(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("LMP", LMP)
-    write_case(tmp_path / "case")
-    return tmp_path
+def here(tiny_case):
+    return tiny_case
 
 
 @pytest.fixture

@@ -14,7 +14,7 @@ import yaml
 from scipy import stats
 
 from run_helpers import called
-from tiny_collapse import LMP, TOP, read_asc, write_case
+from tiny_collapse import TOP, read_asc
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
@@ -254,11 +254,8 @@ def test_runs_of_a_point_are_left_out_together():
 # --- an ensemble of small collapses ---
 
 @pytest.fixture
-def slope(tmp_path, monkeypatch, capsys):
+def slope(tiny_case, capsys):
     """Run `slope study case/in.tiny ARGUMENTS` in the test's folder; gives status, stdout, stderr."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("LMP", LMP)
-    write_case(tmp_path / "case")
     Path("case/road.csv").write_text("13,0\n18,0\n18,24\n13,24\n")
 
     def run(arguments):

@@ -10,7 +10,7 @@ import pytest
 import yaml
 
 from run_helpers import called
-from tiny_collapse import LMP, TOP, write_case
+from tiny_collapse import TOP
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
@@ -27,11 +27,9 @@ ROAD = "--road case/road.csv --local"
 
 
 @pytest.fixture
-def slope(tmp_path, monkeypatch, capsys):
+def slope(tiny_case, capsys):
     """Run `slope study case/in.tiny ARGUMENTS` in the test's folder; gives status, stdout, stderr."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("LMP", LMP)
-    deck = write_case(tmp_path / "case")
+    deck = tiny_case / "case" / "in.tiny"
     text = deck.read_text()
     for old, new in (("index 150", "index 150\nvariable  xoffset index 0.0\nvariable  seed index 0\n"
                       "variable  unused index 1"), ("sc 1.0", "sc 1.0 origin ${xoffset} 0 0"),

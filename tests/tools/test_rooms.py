@@ -100,6 +100,23 @@ def test_rooms_take_no_arguments_of_the_command_line():
             assert not (isinstance(node, ast.Attribute) and node.attr in ("parse_args", "ArgumentParser")), path
 
 
+# the line of an error, a warning, progress, the names of a report's pictures
+PRINT = {"cli.py", "errors.py", "runs/job_display.py", "validation/verify.py", "report/document.py"}
+
+
+def prints(text):
+    """Lines on which a module calls print()."""
+    return [node.lineno for node in ast.walk(ast.parse(text))
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "print"]
+
+
+def test_rooms_print_nothing():
+    assert prints("def f(line):\n    print(line)\n") == [2] and prints("def f(print_):\n    print_.show(1)\n") == []
+    found = {path.relative_to(PACKAGE).as_posix() for path in MODULES
+             if path.parent.name != "commands" and prints(path.read_text(encoding="utf-8"))}
+    assert found == PRINT
+
+
 @pytest.mark.parametrize("name", ["study", "volume", "polygon"])
 def test_a_command_loads_only_what_it_needs(name):
     """Other commands, and rooms that it does not need, stay unloaded."""

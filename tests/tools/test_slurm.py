@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from tiny_collapse import LMP, TOP, write_case
+from tiny_collapse import LMP, TOP
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
@@ -68,11 +68,8 @@ def slurm(*words):
 
 
 @pytest.fixture
-def here(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("LMP", LMP)
-    write_case(tmp_path / "case")
-    return tmp_path
+def here(tiny_case):
+    return tiny_case
 
 
 class Stub:

@@ -36,11 +36,8 @@ PROGRAM = [sys.executable, str(TOOLS / "slope")]
 
 
 @pytest.fixture
-def here(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("LMP", LMP)
-    write_case(tmp_path / "case")
-    return tmp_path
+def here(tiny_case):
+    return tiny_case
 
 
 @pytest.fixture
