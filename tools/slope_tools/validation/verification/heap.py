@@ -15,7 +15,7 @@ SEEDS = range(1, 7)                 # an angle scatters by a degree or two
 D = 0.01                            # m
 AI = "Ai et al. (2011)"
 NO_SPRING = "no rolling spring, a rolling dashpot only"
-NOTHING = "rolling_spring $(v_spring*v_kn) ${cr}", "rolling_spring 0 0"
+NOTHING = "rolling_spring $(v_spring*v_kn) ${cr}", "rolling_spring 0 1e-30"
 
 
 def tops(balls):
