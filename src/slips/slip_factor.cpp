@@ -14,7 +14,7 @@ using namespace Slope;
 static constexpr double INFINITE = std::numeric_limits<double>::infinity();
 static constexpr double NONE = std::numeric_limits<double>::quiet_NaN();
 static constexpr double STEEPEST = 2.0;    // inclination of forces between columns, tangent
-static constexpr int MOST = 200;    // steps of an iteration, of which few are needed
+static constexpr int MOST = 200;           // steps of an iteration, of which few are needed
 
 /* ---------------------------------------------------------------------- */
 

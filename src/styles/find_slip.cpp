@@ -71,7 +71,8 @@ std::vector<SlipBody> FindSlip::given(const SlipOptions &options, SlipBodyMaker 
                problem);
   if (std::isnan(body.factor))
     error->all(FLERR,
-               "Find_slip method spencer must find forces between columns of one inclination, at most 2, that "
+               "Find_slip method spencer must find forces between columns of one inclination, at "
+               "most 2, that "
                "balance the body, got none: use bishop");
   if (!std::isfinite(body.factor))
     error->all(FLERR,
