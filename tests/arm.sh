@@ -44,8 +44,8 @@ aarch64-linux-gnu-ar qcs "$out/librooms.a" "$out"/*.*.o
 
 failed=0
 for name in "${tests[@]}"; do
-  aarch64-linux-gnu-g++ -static "$out/$name.o" "$out"/gtest{-all,_main}.o "$out/librooms.a" -o "$out/$name" -lpthread
-  qemu-aarch64 "$out/$name" --gtest_brief=1 >"$out/$name.log" 2>&1 || failed=1
+  aarch64-linux-gnu-g++ "$out/$name.o" "$out"/gtest{-all,_main}.o "$out/librooms.a" -o "$out/$name" -lpthread
+  qemu-aarch64 -L /usr/aarch64-linux-gnu "$out/$name" --gtest_brief=1 >"$out/$name.log" 2>&1 || failed=1
   echo "$name: $(tail -1 "$out/$name.log")"
 done
 exit $failed

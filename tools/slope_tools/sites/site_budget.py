@@ -24,7 +24,7 @@ MOST = 10 ** 9          # far below LAMMPS' own limit, and more than any memory 
 PER_BALL = 800e-9       # GB, see the page on scaling
 PER_RUN = 0.06          # GB, program and libraries
 PER_CELL = 16e-9        # GB, two terrains of doubles; the deposit's rasters only cover where balls were
-COLLECT = 3.0           # s of a run after it: volume, maps
+COLLECT = 1.5           # s of a run's volume and maps: after all runs, one after the other
 REPORT = 15.0           # s of the report
 SPEED = 47.0            # m/s for which the paper's stiffness is sufficient
 AIR = 1.2               # margin of the stiffness over the trial run's largest speed
@@ -154,15 +154,15 @@ def plan(choices: Choices, points: int = 0) -> Plan:
 def study_seconds(d: float, volume: float, trial: Trial, speed: float, density: float, wanted: Plan,
                   jobs: int) -> float:
     """What a study takes on this machine, with balls of diameter d in a body of that volume (m3)."""
-    total = 0.0
+    total, number = 0.0, wanted.runs + wanted.half_step
     for factor, runs in wanted.parts:
         size = factor * d
         steps = trial.rest / time_step(size, speed, density)
-        total += runs * (trial.setup + COLLECT + steps * volume / size ** 3 * trial.cost)
+        total += runs * (trial.setup + steps * volume / size ** 3 * trial.cost)
     if wanted.half_step:
         steps = 2 * trial.rest / time_step(d, speed, density)
-        total += trial.setup + COLLECT + steps * volume / d ** 3 * trial.cost
-    return total / jobs + REPORT
+        total += trial.setup + steps * volume / d ** 3 * trial.cost
+    return total / jobs + COLLECT * number + REPORT
 
 
 def gigabytes(d: float, volume: float, cells: int, jobs: int) -> float:
