@@ -4,9 +4,10 @@
     tests/runout_step.py [--lmp FILE] [--part 0.1] [--spacing 0.25,0.35,0.5,0.8,1] [--e 0.1,0.3,0.5] [-o DIR]
 
 2,400 balls of 1 m that do not touch each other, or a mass of 400 that do (friction 12), on a field of fixed balls of
-1 m: 6 s down 32 degrees, then level until they rest. Prints for each field the mean of the distances and the distance
-of 99 % of the balls at the rule's step, each less that at the part of it, in % of the latter, with the standard error of this
-difference: of single balls by bootstrap, of the mass over its seeds (pairs of runs from the same start).
+1 m: 6 s down 32 degrees, then level until they rest. Prints for each field the mean of the distances and the
+distance of 99 % of the balls at the rule's step, each less that at the part of it, in % of the latter, with the
+standard error of this difference: of single balls by bootstrap, of the mass over its seeds (pairs of runs from the
+same start).
 """
 import argparse
 import os
