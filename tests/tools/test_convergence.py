@@ -292,7 +292,7 @@ def test_a_failed_size_is_told_and_the_others_are_fitted(slope):
     ("--converge steps=1,0", "--converge: must give numbers > 0 for steps, which tends to 0, got 0"),
     ("--converge terrain=a.asc,b.asc", "--converge: must give numbers > 0 for terrain"),
     ("--converge colour=1,2", "--converge: must name an index variable of case/in.tiny"),
-    ("--converge d=1,2 --vary friction=20", "--converge: must be given without --vary"),
+    ("--converge d=1,2 --levels friction=20", "--converge: must be given without --levels"),
     ("--converge d=1,2 --set d=3", "--converge: must not name a variable of --set, got d"),
     ("--converge d=1,2 --repeat xoffset=0", "--repeat: must give a value that the first run does not have, got "
      "xoffset=0"),
@@ -300,7 +300,7 @@ def test_a_failed_size_is_told_and_the_others_are_fitted(slope):
      "...offset; if the values of friction are equally good, say --equally-good friction, got friction"),
     ("--converge d=1,2 --equally-good rolling", "--equally-good: must name variables of --repeat, got rolling"),
     ("--converge d=1,2 --of remove_m3 ", "--road: must be given for remove_m3"),
-    ("--vary friction=20", "--road: must be given for remove_m3"),
+    ("--levels friction=20", "--road: must be given for remove_m3"),
 ])
 def test_wrong_input_is_one_line(slope, arguments, message):
     status, _, err = slope(f"{arguments} -o out")

@@ -26,7 +26,7 @@ from slope_tools.sites import site_choices  # noqa: E402
 CHOSEN = {"set", "vary", "levels", "sample", "fit", "paper", "design", "seed", "repeat", "converge", "runs",
           "fragility"}
 FOLLOWED = {"deck", "lmp"}              # dependencies.py
-PLACE = {"output", "help", "dry_run"}   # where to, or no run
+PLACE = {"output", "overwrite", "help", "dry_run"}      # where to, or no run
 ONE_RESULT = {"np", "jobs", "launcher", "engine", "slurm"}      # how it is run: the same but for rounding
 # computed from the runs, each time that the command is given
 ANEW = {"road", "cut_angle", "mesh", "local", "intensity", "more_than", "of", "exceed", "exceed_speed",
