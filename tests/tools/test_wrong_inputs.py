@@ -12,6 +12,7 @@ import fiona
 import numpy as np
 import pytest
 import rasterio
+import rasterio.warp
 from affine import Affine
 from rasterio.crs import CRS
 from shapely.geometry import LineString, MultiLineString, Point, Polygon, box, mapping
@@ -52,6 +53,15 @@ def asc(path, z=None, crs=CRS_M):
     raster = rasters.Raster(ground() if z is None else z, Affine(CELL, 0, 0, 0, -CELL, ROWS * CELL),
                             crs and CRS.from_string(crs), (EAST, NORTH))
     rasters.write_asc_local(path, raster, {})
+
+
+def kml(path, geometry):
+    """A geometry in local metres as a file of Google Earth, with heights."""
+    ring = translate(geometry, EAST, NORTH).exterior.coords
+    points = zip(*rasterio.warp.transform(CRS_M, "EPSG:4326", *zip(*ring)))
+    text(path, '<?xml version="1.0"?><kml xmlns="http://www.opengis.net/kml/2.2"><Document><Placemark><Polygon>'
+         "<outerBoundaryIs><LinearRing><coordinates>" + " ".join(f"{x:.9f},{y:.9f},0" for x, y in points)
+         + "</coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark></Document></kml>")
 
 
 def layer(path, *geometries, crs=CRS_M, local=False, driver="GeoJSON", name=None, kind=None):
@@ -293,6 +303,10 @@ CASES = [
          lambda: text("dem.asc", "ncols 2\nnrows 1\nxllcorner 0\ncellsize 5\n1 2\n"),
          ["terrain", "dem.asc", "-o", "new.asc"],
          "dem.asc: header: must have xllcorner and yllcorner, or xllcenter and"),
+    Case("files of a globe", "a KML of the area", lambda: kml("p.kml", ROAD), ["polygon", "p.kml", *POLYGON[2:]],
+         "right: 1 polygon, "),
+    Case("files of a globe", "a KML of another area", lambda: kml("p.kml", translate(ROAD, 9000)),
+         ["polygon", "p.kml", *POLYGON[2:]], "p.kml: must overlap the terrain, local x y "),
     Case("another kind of file", "a raster as --structure", nothing, [*SITE, "--structure", "dem.tif"],
          "dem.tif: must be an STL file of triangles, text or binary"),
     Case("another kind of file", "a strong-motion record as --motion",

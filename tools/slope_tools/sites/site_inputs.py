@@ -105,8 +105,9 @@ def structure(path: str, raster: Raster, folder: Path, taken: Set[str]) -> Struc
         if xlo <= a[0] and ylo <= a[1] and b[0] <= xhi and b[1] <= yhi:
             break
     else:
-        raise SlopeError(path, f"must lie within the terrain, local x y {polygons.numbers((xlo, ylo, xhi, yhi))}, or "
-                         f"that plus {polygons.numbers(raster.offset)} in {crs_name(raster.crs)}",
+        raise SlopeError(path, "must lie within the terrain, in m, x east and y north: local "
+                         f"{polygons.numbers((xlo, ylo, xhi, yhi))}, or that plus {polygons.numbers(raster.offset)} in "
+                         f"{crs_name(raster.crs)}",
                          polygons.numbers((*low[:2], *high[:2])))
     bottom, top = np.nanmin(raster.z), np.nanmax(raster.z)
     if not (a[2] <= top and b[2] >= bottom):

@@ -18,6 +18,7 @@ from ..errors import SlopeError
 MARK = "layername="         # QGIS: FILE|layername=NAME|geometrytype=...
 MAGIC = bytes([0, 0, 0x27, 0x0a])       # begins a shapefile
 SHOWN = 6                   # names of layers in a message
+fiona.drvsupport.supported_drivers.update(KML="r", LIBKML="r")      # GDAL reads them, fiona leaves them out
 
 
 class Source(NamedTuple):
