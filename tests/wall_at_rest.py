@@ -3,11 +3,13 @@
 
     tests/wall_at_rest.py [--lmp FILE] [--repeat 5] [--width 12] [-o DIR]
 
-Balls of 0.8 to 1.2 m come to rest in a bin with smooth side walls: sunk slowly, or dropped. Prints for each repeat
-(another seed): what walls and floor carry over the weight; K, a wall's force over that of a fluid of the same weight
-at each height, for balls without and with friction; K while one wall is moved away by 0.1 m and pushed in by 1 m,
-means of the last third of that. Then the bulk friction angle of the same balls: the inclination at which a layer of
-them on frozen ones begins to flow.
+Balls of 0.8 to 1.2 m come to rest in a bin with smooth side walls: sunk slowly, or dropped, or at rest before most of
+their weight comes, slowly. Prints for each repeat (another seed): what walls and floor carry over the weight; K, a
+wall's force over that of a fluid of the same weight at each height, for balls without and with friction; K while one
+wall is moved away by 0.1 m and pushed in by 1 m, means of the last third of that.
+
+Then without walls, in a periodic box: K of the same balls that are squeezed in one direction from 20 kPa on, and their
+bulk friction angle in plane strain: shortened in z, kept in y, at 100 kPa in x.
 """
 import argparse
 import math
@@ -25,7 +27,7 @@ atom_style sphere
 boundary {boundary}
 comm_modify vel yes
 newton off
-region box block 0 {xhi} 0 {width} -1 {top} units box
+region box block 0 {xhi} 0 {width} {bottom} {top} units box
 create_box 2 box
 region fill block 0 $({width}-0.01) 0 $({width}-0.01) 0 {high} units box
 lattice sc 1.5 origin 0.5 0.5 0.5
@@ -76,29 +78,29 @@ print "MOVED $k ${{moment}} ${{fx1}} $(f_x1)"
 next k
 jump SELF again
 """
-TILT = START + """
-fix weight all gravity 9.80665 chute 0
-region low block INF INF INF INF -1 2.0 units box
-fix floor all wall/gran/mesh 2 floor.stl
-fix slow all viscous 13000
-run $(v_second*{settle})
+BULK = START + """
+fix slow all viscous 1300
+compute p all pressure NULL virial
+variable p equal c_p
+variable px equal c_p[1]
+variable pz equal c_p[3]
+variable solid equal mass(all)/2600/vol
+thermo 100000
+fix shrink all deform 1 x trate -0.02 y trate -0.02 z trate -0.02 remap x
+fix stop all halt 10 v_p > {pressure} error continue
+run $(v_second*60)
+unfix shrink
+unfix stop
+fix confine all press/berendsen aniso {pressure} {pressure} 0.2 modulus 1e7
+fix_modify confine press p
+run $(v_second*6)
 unfix slow
 run $(v_second*3)
-group low region low
-group high subtract all low
-unfix move
-fix move high nve/sphere
-fix hold low freeze
-reset_timestep 0
-variable angle equal step*dt*{rate}
-unfix weight
-fix weight all gravity 9.80665 chute v_angle
-variable speed equal vcm(high,x)
-thermo_style custom step v_angle v_speed
-fix stop all halt 100 v_speed > 0.2 error continue
-thermo 100000
-run $(v_second*{tilt})
-print "FLOWS ${{angle}} ${{speed}}"
+unfix confine
+fix mean all ave/time 10 100 1000 v_px v_pz v_solid file mean.txt
+fix shorten all deform 1 z trate -{rate} remap x
+if {hold} then "fix hold all press/berendsen x {pressure} {pressure} 0.15 modulus 1e6" "fix_modify hold press p"
+run $(ceil(v_second*{strain}/{rate}))
 """
 
 
@@ -133,7 +135,7 @@ def run(lmp, folder, deck, words, **values):
     return [[float(x) for x in line[1:]] for line in lines if line and line[0] in words]
 
 
-def bin_of(args, folder, seed, friction, rolling, gently, sign=None, step=0.0, moves=0, share=1.0, wait=0.03):
+def bin_of(args, folder, seed, friction, rolling, gently, sign=None, step=0.0, moves=0, share=1):
     """share: of the weight under which the balls settle; the rest of it comes slowly"""
     shifts = {"0": 0.0}
     shifts.update({f"{sign}{k}": (step if sign == "out" else -step) * k for k in range(1, moves + 1)})
@@ -141,12 +143,22 @@ def bin_of(args, folder, seed, friction, rolling, gently, sign=None, step=0.0, m
     walls(folder, args.width, 2 * high, shifts)
     deck = BIN + (MOVE if moves else "")
     rows = run(args.lmp, folder, deck, ("REST", "MOVED"), boundary="f f f", xhi=args.width + 1, width=args.width,
-               top=2 * high, high=high, seed=seed, friction=friction, rolling=rolling, floor=0, gently=int(gently),
-               settle=args.settle, sign=sign, moves=moves, wait=wait, share=share)
+               bottom=-1, top=2 * high, high=high, seed=seed, friction=friction, rolling=rolling, floor=0,
+               gently=int(gently), settle=args.settle, sign=sign, moves=moves, wait=0.03, share=share)
     weight, moment, down, *rest = rows[0]
     fluid = GRAVITY * moment / args.width    # of a wall: the weight above each height over the area, times its width
     return {"carried": down / weight, "K": [f / fluid for f in rest[:4]], "contacts": rest[4:8],
             "moved": [(row[2] / (GRAVITY * row[1] / args.width), row[3]) for row in rows[1:]]}
+
+
+def bulk_of(args, folder, seed, pressure, hold, rate, strain):
+    """(pressure in x, pressure in z, share of balls in the volume) while a periodic box is shortened in z"""
+    folder.mkdir(parents=True, exist_ok=True)
+    run(args.lmp, folder, BULK, (), boundary="p p p", xhi=18, width=18, bottom=0, top=18, high=18, seed=seed,
+        friction=args.friction, rolling=args.rolling, floor=0, pressure=pressure, hold=int(hold), rate=rate,
+        strain=strain)
+    lines = (folder / "mean.txt").read_text().splitlines()
+    return [[float(x) for x in line.split()[1:]] for line in lines if not line.startswith("#")]
 
 
 def main():
@@ -158,17 +170,18 @@ def main():
     parser.add_argument("--settle", type=float, default=20, help="s")
     parser.add_argument("--friction", type=float, default=25)
     parser.add_argument("--rolling", type=float, default=0.05)
-    parser.add_argument("--only", choices=["fluid", "dropped", "rest", "away", "pushed", "tilt"])
+    parser.add_argument("--only", choices=["fluid", "dropped", "rest", "grown", "away", "pushed", "bulk"])
     parser.add_argument("-o", dest="output", type=Path, default=Path("wall_at_rest"))
     args = parser.parse_args()
     args.lmp = Path(args.lmp).resolve()
     seeds = [7919 + 100 * k for k in range(args.repeat)]
-    for name, friction, rolling, gently in (("fluid", 0, 0, True), ("dropped", args.friction, args.rolling, False),
-                                            ("rest", args.friction, args.rolling, True)):
+    soil = args.friction, args.rolling
+    for name, (friction, rolling), gently, share in (("fluid", (0, 0), True, 1), ("dropped", soil, False, 1),
+                                                     ("rest", soil, True, 1), ("grown", soil, True, 0.02)):
         if args.only in (None, name):
             all_k, all_n = [], []
             for seed in seeds:
-                r = bin_of(args, args.output / name, seed, friction, rolling, gently)
+                r = bin_of(args, args.output / name, seed, friction, rolling, gently, share=share)
                 all_k += r["K"]
                 all_n += r["contacts"]
                 print(f"{name}: carried {r['carried']:.5f}, K", *(f"{k:.3f}" for k in r["K"]), "contacts",
@@ -186,21 +199,23 @@ def main():
                 tenths = [f"{k:.3f}" for k, _ in r["moved"]][moves // 10 - 1::moves // 10]
                 print(f"{name}: K at rest {r['K'][1]:.3f}, then", *tenths, flush=True)
             print(f"{name}: K {mean(ends):.3f} ({min(ends):.3f} to {max(ends):.3f})", flush=True)
-    if args.only in (None, "tilt"):
-        angles = []
+    if args.only in (None, "bulk"):
+        ratios = []
         for seed in seeds:
-            folder = args.output / "tilt"
-            walls(folder, args.width, 2 * args.height, {})
-            stl(folder / "floor.stl", [(-1, -1, 0), (args.width + 1, -1, 0), (args.width + 1, args.width + 1, 0),
-                                       (-1, args.width + 1, 0)])
-            rows = run(args.lmp, folder, TILT, ("FLOWS",), boundary="p p f", xhi=args.width, width=args.width,
-                       top=2 * args.height, high=args.height, seed=seed, friction=args.friction, rolling=args.rolling,
-                       floor=args.friction, settle=args.settle, rate=1.5, tilt=32)
-            angles.append(rows[0][0])
-            print(f"tilt: flows at {rows[0][0]:.1f} degrees", flush=True)
-        phi = math.radians(mean(angles))
-        print(f"tilt: {math.degrees(phi):.1f} degrees: K0 = 1 - sin phi {1 - math.sin(phi):.3f}, "
-              f"Ka {(1 - math.sin(phi)) / (1 + math.sin(phi)):.3f}, Kp {(1 + math.sin(phi)) / (1 - math.sin(phi)):.2f}")
+            squeezed = bulk_of(args, args.output / "squeezed", seed, 2e4, False, 0.01, 0.02)
+            print("squeezed: K", *(f"{px / pz:.2f} at {pz / 1e3:.0f} kPa" for px, pz, _ in squeezed))
+            sheared = bulk_of(args, args.output / "sheared", seed, 1e5, True, 0.02, 0.2)
+            each = [pz / px for px, pz, _ in sheared]
+            ratios.append((max(each), mean(each[-4:])))
+            print(f"sheared: largest ratio of pressures {max(each):.2f}, of the last fifth {mean(each[-4:]):.2f}",
+                  flush=True)
+        for what, several in zip(("largest", "at the end"), zip(*ratios)):
+            each = [(one - 1) / (one + 1) for one in several]
+            sine = mean(each)
+            print(f"bulk friction angle, {what}: {math.degrees(math.asin(sine)):.1f} degrees "
+                  f"({math.degrees(math.asin(min(each))):.1f} to {math.degrees(math.asin(max(each))):.1f}): "
+                  f"K0 = 1 - sin phi {1 - sine:.3f}, Ka {(1 - sine) / (1 + sine):.3f}, Kp "
+                  f"{(1 + sine) / (1 - sine):.2f}")
 
 
 if __name__ == "__main__":
