@@ -19,7 +19,8 @@ WORDS = {
     "first look": "the body is {balls:.1f} balls thick at most, below {limit:g}: a first look; to repeat it, use more "
                   "balls (--balls, --minutes)",
     "small angle": "{option} {degrees:g}: is it in degrees? A coefficient of {degrees:g} is {meant:.3g} degrees",
-    "large rolling": "--rolling {rolling:g}: is it a coefficient? More than {limit:g} stands for bodies that do not roll",
+    "large rolling": "--rolling {rolling:g}: is it a coefficient? More than {limit:g} stands for bodies that do not "
+                     "roll",
     # of runs
     "failed": "failed: {error}",
     "moving": "{moving} of {finished} deposits are not at rest at the end: {which}",

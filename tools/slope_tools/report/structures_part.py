@@ -13,7 +13,8 @@ LENGTHWISE = "mean_force_n_m"       # the largest lasting force per metre of the
 COLUMNS = {
     "structures": (("largest force", "N", "largest_force_n"), ("at", "s", "at_s"),
                    (f"largest mean over {structures.WINDOW:g} s", "N", "mean_force_n"),
-                   ("the same per metre", "N/m", LENGTHWISE), ("at the end", "N", "end_force_n"), ("on contacts", "", "end_contacts"),
+                   ("the same per metre", "N/m", LENGTHWISE), ("at the end", "N", "end_force_n"),
+                   ("on contacts", "", "end_contacts"),
                    ("impulse", "N s", "impulse_ns"), ("largest moment", "N m", "moment_nm"),
                    ("largest pressure", "Pa", "largest_pressure_pa")),
     "lines": (("forward", "m3", "forward_m3"), ("back", "m3", "back_m3"), ("net", "m3", "net_m3"),
@@ -68,7 +69,8 @@ class Structures:
                 if what == "structures":
                     length = self.lengths.get(name)
                     numbers = {**numbers, LENGTHWISE: length and numbers["mean_force_n"] / length}
-                cells = [self.cell(f"{name}: {head}", unit, numbers.get(key), label) for head, unit, key in COLUMNS[what]]
+                cells = [self.cell(f"{name}: {head}", unit, numbers.get(key), label)
+                         for head, unit, key in COLUMNS[what]]
                 rows.append({"run": label, "name": name, "cells": cells})
         heads = [(head, "" if unit in PREFIXED else unit) for head, unit, _ in COLUMNS[what]]
         return {"heads": heads, "rows": rows} if rows else None

@@ -103,7 +103,8 @@ def of_structure(folder: Path, prefix: str) -> Dict[str, Any]:
     one, pressure = series(folder, prefix), pressures(folder, prefix)
     time, mean = one.mean_force()
     found: Dict[str, Any] = {"largest_force_n": 0.0, "at_s": None, "mean_force_n": 0.0, "mean_at_s": None,
-                             "end_force_n": 0.0, "end_contacts": 0, "impulse_ns": 0.0, "moment_nm": 0.0, "largest_pressure_pa": 0.0,
+                             "end_force_n": 0.0, "end_contacts": 0,
+                             "impulse_ns": 0.0, "moment_nm": 0.0, "largest_pressure_pa": 0.0,
                              "pressure_at": None}
     if len(time) and one.largest.max() > 0:
         found.update(largest_force_n=float(one.largest.max()), at_s=float(time[one.largest.argmax()]),
@@ -194,7 +195,8 @@ def table(rows: Sequence[Mapping[str, Any]], what: str) -> str:
 
 SHOWN: Dict[str, Tuple[Tuple[str, str, float], ...]] = {
     "structures": (("largest kN", "largest_force_n", 1e3), (f"in {WINDOW:g} s kN", "mean_force_n", 1e3),
-                   ("at the end kN", "end_force_n", 1e3), ("on contacts", "end_contacts", 1), ("impulse kN s", "impulse_ns", 1e3),
+                   ("at the end kN", "end_force_n", 1e3), ("on contacts", "end_contacts", 1),
+                   ("impulse kN s", "impulse_ns", 1e3),
                    ("pressure kPa", "largest_pressure_pa", 1e3)),
     "lines": (("forward m3", "forward_m3", 1), ("back m3", "back_m3", 1), ("speed 95 % m/s", "speed_95_m_s", 1),
               ("height 95 % m", "height_95_m", 1), ("energy 95 % kJ", "energy_95_j", 1e3),
