@@ -164,7 +164,8 @@ def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline, dif
         volumes = list(group.of("remove_m3").volumes.values())
         few = sum(volume < FEW * max(volumes) for volume in volumes)
         if few:
-            found.append(f"{few} of the {len(volumes)} runs of {group.name} have less than {100 * FEW:g} % of the "
+            found.append(f"{few} of the {len(volumes)} runs of {group.name} "
+                         f"{'has' if few == 1 else 'have'} less than {100 * FEW:g} % of the "
                          "volume of the others, which the scatter by chance does not describe (did the slope fail in "
                          "some runs only?)")
     above = max(finished, key=lambda row: row["remove_m3"])

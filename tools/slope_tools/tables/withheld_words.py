@@ -27,7 +27,7 @@ def text(reason: Reason) -> str:
     """A reason in words."""
     number, bound = reason.number or 0.0, reason.bound or 0.0
     if reason.kind is Kind.BALLS:
-        return f"on the road lies the volume of {number:.2g} ball{'s' * (number != 1)}, fewer than {bound:g}"
+        return f"on the road lies the volume of {number:.2g} ball{'s' * (f'{number:.2g}' != '1')}, fewer than {bound:g}"
     if reason.kind is Kind.MOBILITY:
         longest = "there is no connected deposit" if reason.number is None else \
             f"the longest connected deposit ends at {rounded(number, 3)} m"
