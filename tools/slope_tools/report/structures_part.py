@@ -14,7 +14,7 @@ COLUMNS = {
     "structures": (("largest force", "N", "largest_force_n"), ("at", "s", "at_s"),
                    (f"largest mean over {structures.WINDOW:g} s", "N", "mean_force_n"),
                    ("the same per metre", "N/m", LENGTHWISE), ("at the end", "N", "end_force_n"),
-                    ("on contacts", "", "end_contacts"),
+                   ("on contacts", "", "end_contacts"),
                    ("impulse", "N s", "impulse_ns"), ("largest moment", "N m", "moment_nm"),
                    ("largest pressure", "Pa", "largest_pressure_pa")),
     "lines": (("forward", "m3", "forward_m3"), ("back", "m3", "back_m3"), ("net", "m3", "net_m3"),
