@@ -199,13 +199,13 @@ def test_the_base_level_is_what_the_method_comes_to(curvature):
 
 
 def test_the_sphere_of_the_embankment():
-    """inputs/20: toe x 84, shoulder x 156, depth 18; its body, region slip, has 48,859 m3."""
+    """inputs/20: toe x 84, shoulder x 156, depth 18; its body, region slip, has 48,858 m3."""
     raster = rasters.read_asc_local(TOP / "inputs" / "20_embankment" / "terrain.asc")
     whole = box(60, 10, 200, 150)
     found = release_area.area_of(raster, release_area.nodes_inside(raster, whole), "p", "t")
     line = release_area.FallLine(np.array([84.0, 80, 0]), np.array([156.0, 80, 36]))
     depth = release_solve.depths(found, release_bodies.cap(found, line, 18.0))
-    assert release_solve.volume(depth, found.cell) == pytest.approx(48859, rel=0.005)
+    assert release_solve.volume(depth, found.cell) == pytest.approx(48858, rel=0.005)
     face = box(84, 30, 156, 130)
     inside = release_area.nodes_inside(raster, face)
     line = release_area.fall_line(release_area.area_of(raster, inside, "p", "t"), face, "p")

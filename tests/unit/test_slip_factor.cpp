@@ -461,7 +461,7 @@ TEST(SlipFactor, SlopeOfFredlundAndKrahn)
   }
 }
 
-// the ellipsoid of Zhang 1988 on that circle, 66.9 m wide to 24.4 m: 2.122, as later papers quote it
+// the ellipsoid of Zhang 1988 on that circle, 66.9 m wide to 24.4 m: 2.122 is quoted by others and was not checked at its source
 TEST(SlipFactor, EllipsoidOfZhang)
 {
   SlipSurface s(120.0 * FOOT, 0.0, 90.0 * FOOT, 80.0 * FOOT, 0.0);
