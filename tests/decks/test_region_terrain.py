@@ -146,7 +146,7 @@ def test_bad_options(tmp_path, options, message):
 
 def test_missing_file_name(tmp_path):
     run_deck("region ground terrain\n", tmp_path,
-             expect_error="Region terrain: file name of the elevation grid is missing")
+             expect_error="Region terrain: file name is missing")
 
 
 def test_doc_examples(tmp_path):

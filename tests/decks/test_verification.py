@@ -37,9 +37,9 @@ def test_control_fails(runner, claim):
 
 @pytest.mark.parametrize("claim", CLAIMS, ids=[claim.name for claim in CLAIMS])
 def test_no_false_alarm(runner, claim):
-    """In no run of a claim does the energy rise, so the guard must not say so."""
+    """The guard warns where the energy rises, and nowhere else: dense elastic gases heat by 6 % (doc/src/limits.rst)."""
     for run in claim.runs:
-        assert alarms(runner.result(run).log) == []
+        assert bool(alarms(runner.result(run).log)) == claim.name.startswith("dense_gas")
 
 
 @pytest.mark.parametrize("name", ["rough_gas_1", "rough_gas_0.99"])

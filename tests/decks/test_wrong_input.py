@@ -178,7 +178,7 @@ TABLE = {
         2 1.0 file balls.txt inside nowhere -> region nowhere does not exist
         """,
     ("terrain", "region ground terrain", "Region terrain"): """
-        -> : file name of the elevation grid is missing
+        -> : file name is missing
         missing.asc -> : cannot read missing.asc: No such file or directory
         . -> : cannot read .: Is a directory
         short.asc -> : short.asc, line 7: only 3 of 4 values (2 rows x 2 columns)
@@ -208,15 +208,15 @@ TABLE = {
         ground.asc rotate v_a 0 0 0 0 0 up -> rotate must be a finite number, got up
         """,
     ("polygon", "region road polygon", "Region polygon"): """
-        -> : file name of the rings is missing
+        -> : file name is missing
         missing.csv -> : cannot read missing.csv: No such file or directory
         . -> : cannot read .: Is a directory
         empty.csv -> : empty.csv: must hold a ring of points x,y, it has none
         line.csv -> : line.csv, line 1: a ring must have at least 3 points, got 2
         bow.csv -> : bow.csv, line 1: a ring must not cross or touch itself, the edges from lines 1 and 3 meet at
-        word.csv -> : word.csv, line 2: must be two numbers, x,y, got x
-        far.csv -> : far.csv, line 2: x and y must be numbers within +-1e+12, got 1e13,0
-        ground.asc -> : ground.asc, line 1: must be two numbers, x,y, got ncols 8
+        word.csv -> : word.csv, line 2: must be 2 numbers, x,y, got x
+        far.csv -> : far.csv, line 2: x and y must be within +-1e+12, got 1e+13,0
+        ground.asc -> : ground.asc, line 1: must be 2 numbers, x,y, got ncols 8
         road.csv color red -> : unknown keyword color, must be side, units, move or rotate
         road.csv 5 -> : unknown keyword 5, must be side, units, move or rotate
         road.csv units -> units must be followed by 1 value, got 0
