@@ -279,7 +279,7 @@ def test_a_run_that_is_cut_is_not_at_rest_and_the_study_says_so(slope):
     assert [(row["at_rest"], row["moving"]) for row in table] == [("no", "no")] * 2
     assert table[0]["end"].startswith("stopped at its duration; 0 % of the volume")
     assert "2 of 2 deposits are not at rest at the end: rolling_0_steps_2 at 0.0 s (stopped at its duration; " in err
-    assert [(one["kind"], one["numbers"]["moving"]) for one in about["warnings"]] == [("moving", 2)]
+    assert [one["numbers"]["moving"] for one in about["warnings"] if one["kind"] == "moving"] == [2]
 
 
 @pytest.mark.parametrize("step, at_rest, end", [
@@ -320,7 +320,7 @@ def test_wrong_motion_is_one_line():
 
 def test_few_of_many_deposits_that_move_are_named():
     several = [{"run": f"a{i}", "at_rest": i == 0, "stop_time_s": 2.0, "end": "stopped"} for i in range(9)]
-    [text] = results.moving_warnings(several)
+    text, = map(str, results.moving_warnings(several))
     assert text.startswith("8 of 9 deposits are not at rest at the end: a1 at 2.0 s (stopped); ")
     assert text.endswith("a3 at 2.0 s (stopped); and 5 more")
     assert results.moving_warnings(several[:1]) == []
