@@ -37,7 +37,7 @@ def test_control_fails(runner, claim):
 
 @pytest.mark.parametrize("claim", CLAIMS, ids=[claim.name for claim in CLAIMS])
 def test_no_false_alarm(runner, claim):
-    """The guard warns where the energy rises, and nowhere else: dense elastic gases heat by 6 % (doc/src/limits.rst)."""
+    """The guard warns where the energy rises, and nowhere else: dense elastic gases heat by 6 % (limits.rst)."""
     for run in claim.runs:
         assert bool(alarms(runner.result(run).log)) == claim.name.startswith("dense_gas")
 
