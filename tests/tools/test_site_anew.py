@@ -24,6 +24,7 @@ from slope_tools.case import decks
 from slope_tools.errors import SlopeError
 from slope_tools.sites import site, site_choices, site_deck, site_folder, site_warnings
 from slope_tools.studies import site_study
+from slope_tools.studies.setup import Setup
 
 
 @pytest.fixture
@@ -416,10 +417,12 @@ def test_warnings_of_a_site_are_those_of_its_study(tmp_path):
     assert list(map(str, site_study.warnings_of(tmp_path))) == ["too thin"]
 
 
-def test_a_size_error_that_is_not_usable_has_its_reason_alone(capsys):
+def test_a_size_error_that_is_not_usable_has_its_reason_alone():
     """The report itself says that the size error was measured and is not usable."""
-    assert site_study.unusable("too few runs") == site_study.Sizes(None, (), "too few runs")
-    assert "size error is unknown: too few runs" in capsys.readouterr().err
+    warned = []
+    setup = Setup(Path("in.deck"), Path("out"), warn=warned.append)
+    assert site_study.unusable(setup, "too few runs") == site_study.Sizes(None, (), "too few runs")
+    assert warned == ["the size error is unknown: too few runs"]
 
 
 # --- sources that change after the folder was made ---

@@ -169,6 +169,17 @@ ContactTable::Coeff ContactTable::read_coeff(const std::string &types, int narg,
     }
   }
 
+  check_coeff(types, c, stiffness, damping);
+  return c;
+}
+
+/* ----------------------------------------------------------------------
+   what the keywords of a pair_coeff must be together
+------------------------------------------------------------------------- */
+
+void ContactTable::check_coeff(const std::string &types, const Coeff &c, bool stiffness,
+                               bool damping) const
+{
   if (!stiffness)
     error->all(FLERR, "Pair gran/restitution pair_coeff {}: stiffness kn kt is required", types);
   if (c.kt == 0.0 && c.ct > 0.0)
@@ -187,8 +198,9 @@ ContactTable::Coeff ContactTable::read_coeff(const std::string &types, int narg,
                "Pair gran/restitution pair_coeff {}: exactly one of restitution and damping is "
                "required, got {}",
                types, damping ? "both" : "neither");
-  return c;
 }
+
+/* ---------------------------------------------------------------------- */
 
 void ContactTable::set(int itype, int jtype, const Coeff &c)
 {

@@ -87,6 +87,8 @@ class ContactTable : protected Pointers {
   enum Scheme { EXACT, PLAIN };
   int scheme;    // which velocities the dashpots have: theory.rst
 
+  void check_coeff(const std::string &types, const Coeff &, bool stiffness, bool damping) const;
+
   std::vector<Coeff> coeffs;              // (ntypes+1) x (ntypes+1), both triangles filled
   std::vector<Slope::ContactLaw> laws;    // same layout
   std::vector<TypeRange> ranges;          // by type

@@ -91,7 +91,7 @@ void Continuation::forget_half_step()
 void Continuation::begin_step()
 {
   const bool kept = step == update->ntimestep - 1 && step == update->firststep;
-  step = -1;    // a step of this number may come again: reset_timestep
+  step = -1;                            // a step of this number may come again: reset_timestep
   double mine[4] = {}, most[4] = {};    // largest force, torque; differences
   for (int i = 0; i < atom->nlocal && kept; i++)
     for (int d = 0; d < 3; d++) {
