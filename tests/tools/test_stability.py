@@ -257,7 +257,7 @@ def test_back_analysis_fragility_and_site_of_a_body_above_a_bedrock(on_rock, cap
     sphere = ",".join(f"{row[name]:.10g}" for name in ("x", "y", "z", "radius"))
     lines = []
     for words in ("slips", f"{sphere} --bedrock rock.asc --direction {row['bearing']}"):
-        status, _, err = ran(capsys, f"terrain.asc --failed {words} --density 2039.43 -o back")
+        status, _, err = ran(capsys, f"terrain.asc --failed {words} --density 2039.43 -o back --overwrite")
         assert status == 0, err
         about = yaml.safe_load(Path("back/back.yaml").read_text())
         assert about["volume"] == pytest.approx(row["volume"], rel=5e-3)
