@@ -128,7 +128,8 @@ void FixEnergyLedger::end_of_step()
   const ContactWorks::Sum c =
       PairGranRestitution::of(lmp)->works.work(update->dt, vectors(atom->v), vectors(atom->omega));
   const double moving = kinetic(), motion = shaking();
-  const bigint mine = atom->nlocal, before = balls;
+  const bigint before = balls;
+  bigint mine = atom->nlocal;    // LAMMPS' stand-in for MPI takes no const
   MPI_Allreduce(&mine, &balls, 1, MPI_LMP_BIGINT, MPI_SUM, world);
 
   if (begun) {
