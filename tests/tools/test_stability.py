@@ -263,7 +263,7 @@ def test_back_analysis_fragility_and_site_of_a_body_above_a_bedrock(on_rock, cap
         assert about["volume"] == pytest.approx(row["volume"], rel=5e-3)
         lines.append(about["cohesion_without_friction"])
     assert lines[1] == pytest.approx(lines[0], rel=5e-3)
-    status, _, err = ran(capsys, "terrain.asc --failed slips --bedrock rock.asc --density 2000 -o back")
+    status, _, err = ran(capsys, "terrain.asc --failed slips --bedrock rock.asc --density 2000 -o back --overwrite")
     assert status == 2 and "--bedrock: must be given with X,Y,Z,R" in err
 
     status, _, err = called(capsys, "fragility slips --terrain terrain.asc --density 2039.43 --cohesion 2e3:6e3 "
