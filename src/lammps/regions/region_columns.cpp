@@ -20,109 +20,72 @@ using Slope::Intervals;
 
 /* ---------------------------------------------------------------------- */
 
+// what a shape takes of the line at x,y
+
+struct Terrain {
+  const Slope::ElevationGrid *grid;
+  double bottom;
+};
+
+static Interval column_of(const Terrain &t, double x, double y)
+{
+  return {t.bottom, t.grid->height(x, y)};
+}
+
+static Interval column_of(const PrismRegion *prism, double x, double y)
+{
+  return prism->covers(x, y) ? Interval::all() : Interval::none();
+}
+
+static Interval column_of(const compat::Sphere &s, double x, double y)
+{
+  return Slope::column_of_sphere(x - s.x, y - s.y, s.z, s.radius);
+}
+
+static Interval column_of(const compat::Block &b, double x, double y)
+{
+  const bool in = x >= b.lo[0] && x <= b.hi[0] && y >= b.lo[1] && y <= b.hi[1];
+  return in ? Interval{b.lo[2], b.hi[2]} : Interval::none();
+}
+
+static Interval column_of(const compat::Plane &p, double x, double y)
+{
+  return Slope::column_of_half_space(x - p.x, y - p.y, p.z, p.normal[0], p.normal[1], p.normal[2]);
+}
+
+static Interval column_of(const compat::Cylinder &c, double x, double y)
+{
+  if (c.axis == 'z') {
+    const double dx = x - c.c1, dy = y - c.c2;
+    const bool in = std::sqrt(dx * dx + dy * dy) <= c.radius;
+    return in ? Interval{c.lo, c.hi} : Interval::none();
+  }
+  const double along = c.axis == 'x' ? x : y, across = c.axis == 'x' ? y : x;
+  const bool in = along >= c.lo && along <= c.hi;
+  return in ? Slope::column_of_sphere(across - c.c1, 0.0, c.c2, c.radius) : Interval::none();
+}
+
 namespace LAMMPS_NS {
 
-class TerrainColumns : public RegionColumns {
+template <class Shape> class ShapeColumns : public RegionColumns {
  public:
-  TerrainColumns(const RasterRegion &r, double _bottom) : grid(r.grid()), bottom(_bottom) {}
+  explicit ShapeColumns(const Shape &s, int rank = 0) : RegionColumns(rank), shape(s) {}
 
  protected:
   void inside(double x, double y, Intervals &found) const override
   {
-    found.set({bottom, grid.height(x, y)});
-  }
-  int cost() const override { return 1; }
-
- private:
-  const Slope::ElevationGrid &grid;
-  const double bottom;
-};
-
-class PrismColumns : public RegionColumns {
- public:
-  explicit PrismColumns(const PrismRegion &r) : prism(r) {}
-
- protected:
-  void inside(double x, double y, Intervals &found) const override
-  {
-    found.set(prism.covers(x, y) ? Interval::all() : Interval::none());
+    found.set(column_of(shape, x, y));
   }
 
  private:
-  const PrismRegion &prism;
-};
-
-class SphereColumns : public RegionColumns {
- public:
-  explicit SphereColumns(const compat::Sphere &s) : sphere(s) {}
-
- protected:
-  void inside(double x, double y, Intervals &found) const override
-  {
-    found.set(Slope::column_of_sphere(x - sphere.x, y - sphere.y, sphere.z, sphere.radius));
-  }
-
- private:
-  const compat::Sphere sphere;
-};
-
-class BlockColumns : public RegionColumns {
- public:
-  explicit BlockColumns(const compat::Block &b) : block(b) {}
-
- protected:
-  void inside(double x, double y, Intervals &found) const override
-  {
-    const bool in = x >= block.lo[0] && x <= block.hi[0] && y >= block.lo[1] && y <= block.hi[1];
-    found.set(in ? Interval{block.lo[2], block.hi[2]} : Interval::none());
-  }
-
- private:
-  const compat::Block block;
-};
-
-class PlaneColumns : public RegionColumns {
- public:
-  explicit PlaneColumns(const compat::Plane &p) : plane(p) {}
-
- protected:
-  void inside(double x, double y, Intervals &found) const override
-  {
-    found.set(Slope::column_of_half_space(x - plane.x, y - plane.y, plane.z, plane.normal[0],
-                                          plane.normal[1], plane.normal[2]));
-  }
-
- private:
-  const compat::Plane plane;
-};
-
-class CylinderColumns : public RegionColumns {
- public:
-  explicit CylinderColumns(const compat::Cylinder &c) : cylinder(c) {}
-
- protected:
-  void inside(double x, double y, Intervals &found) const override
-  {
-    const compat::Cylinder &c = cylinder;
-    if (c.axis == 'z') {
-      const double dx = x - c.c1, dy = y - c.c2;
-      const bool in = std::sqrt(dx * dx + dy * dy) <= c.radius;
-      return found.set(in ? Interval{c.lo, c.hi} : Interval::none());
-    }
-    const double along = c.axis == 'x' ? x : y, across = c.axis == 'x' ? y : x;
-    const bool in = along >= c.lo && along <= c.hi;
-    found.set(in ? Slope::column_of_sphere(across - c.c1, 0.0, c.c2, c.radius) : Interval::none());
-  }
-
- private:
-  const compat::Cylinder cylinder;
+  const Shape shape;
 };
 
 // a style of which only the inside is known; the ends of what is found are exact
 
 class SearchedColumns : public RegionColumns {
  public:
-  SearchedColumns(Region *r, const Search &s) : region(r), search(s)
+  SearchedColumns(Region *r, const Search &s) : RegionColumns(3), region(r), search(s)
   {
     if (!r->bboxflag) return;
     search.zlo = std::max(s.zlo, r->extent_zlo);
@@ -145,7 +108,6 @@ class SearchedColumns : public RegionColumns {
     }
     if (in) found.append({lo, z});
   }
-  int cost() const override { return 3; }
 
  private:
   Region *const region;
@@ -166,12 +128,12 @@ class SearchedColumns : public RegionColumns {
 class CombinedColumns : public RegionColumns {
  public:
   CombinedColumns(bool intersect_in, std::vector<std::unique_ptr<RegionColumns>> parts_in) :
-      intersect(intersect_in), parts(std::move(parts_in))
+      RegionColumns(2), intersect(intersect_in), parts(std::move(parts_in))
   {
     std::stable_sort(
         parts.begin(), parts.end(),
         [](const std::unique_ptr<RegionColumns> &a, const std::unique_ptr<RegionColumns> &b) {
-          return a->cost() < b->cost();
+          return a->cost < b->cost;
         });
   }
 
@@ -188,7 +150,6 @@ class CombinedColumns : public RegionColumns {
         found.unite(part);
     }
   }
-  int cost() const override { return 2; }
 
  private:
   const bool intersect;
@@ -217,21 +178,29 @@ std::unique_ptr<RegionColumns> RegionColumns::of(LAMMPS *lmp, Region *region, co
   return columns;
 }
 
+// false if the region is no such shape
+
+template <class Shape>
+static bool take_shape(Region *region, std::unique_ptr<RegionColumns> &columns)
+{
+  Shape shape;
+  if (!compat::shape(region, shape)) return false;
+  columns.reset(new ShapeColumns<Shape>(shape));
+  return true;
+}
+
 std::unique_ptr<RegionColumns> RegionColumns::make_shape(LAMMPS *lmp, Region *region,
                                                          const Search &search)
 {
   typedef std::unique_ptr<RegionColumns> Columns;
-  compat::Sphere sphere;
-  compat::Block block;
-  compat::Plane plane;
-  compat::Cylinder cylinder;
-  if (auto *raster = dynamic_cast<RasterRegion *>(region))
-    return Columns(new TerrainColumns(*raster, region->extent_zlo));
-  if (auto *prism = dynamic_cast<PrismRegion *>(region)) return Columns(new PrismColumns(*prism));
-  if (compat::shape(region, sphere)) return Columns(new SphereColumns(sphere));
-  if (compat::shape(region, block)) return Columns(new BlockColumns(block));
-  if (compat::shape(region, plane)) return Columns(new PlaneColumns(plane));
-  if (compat::shape(region, cylinder)) return Columns(new CylinderColumns(cylinder));
+  if (const auto *raster = dynamic_cast<RasterRegion *>(region))
+    return Columns(new ShapeColumns<Terrain>({&raster->grid(), region->extent_zlo}, 1));
+  if (const auto *prism = dynamic_cast<PrismRegion *>(region))
+    return Columns(new ShapeColumns<const PrismRegion *>(prism));
+  Columns columns;
+  if (take_shape<compat::Sphere>(region, columns) || take_shape<compat::Block>(region, columns) ||
+      take_shape<compat::Plane>(region, columns) || take_shape<compat::Cylinder>(region, columns))
+    return columns;
 
   const bool intersect = dynamic_cast<RegIntersect *>(region);
   if (!intersect && !dynamic_cast<RegUnion *>(region))

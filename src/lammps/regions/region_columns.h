@@ -29,11 +29,12 @@ class RegionColumns {
   void column(double x, double y, Slope::Intervals &found) const;
 
  protected:
+  explicit RegionColumns(int rank) : cost(rank) {}
   bool side_in = true, everything = false;
+  const int cost;    // the order of an intersection's parts
 
   // with side in
   virtual void inside(double x, double y, Slope::Intervals &found) const = 0;
-  virtual int cost() const { return 0; }    // the order of an intersection's parts
 
  private:
   static std::unique_ptr<RegionColumns> make_shape(LAMMPS *, Region *, const Search &);
