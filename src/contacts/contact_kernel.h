@@ -25,21 +25,34 @@ struct ContactEntry {
   int i, j;    // moving ball, partner
 };
 
-// a contact list as the kernels see it
-struct ContactView {
-  static constexpr int BLOCK = 64, ROW = 12;
-
-  const ContactEntry *entries;
-  double *const *histories;    // HISTORY values of each
-  size_t size, blocks;
-  std::uint64_t *touching, *before, *fresh, *ended;    // a bit of each contact: see ContactList
+// what the contacts of a list have in common
+struct ContactSizes {
   Sides moves;
 
   // equal: radii (m) and masses (kg) are these for all contacts; otherwise each looks up its own
   bool equal;
   double radius_i, radius_j, mass_i, mass_j;
+};
 
-  // otherwise the numbers of the row of each contact that has a force (contact_rows.h), and the contacts whose
+// a bit of each of 64 contacts that follow one another
+struct ContactBits {
+  std::uint64_t touching;    // in the last step
+  std::uint64_t before;      // in the one before, in the second pass
+  std::uint64_t fresh;       // began in the last step
+  std::uint64_t ended;       // came apart in the last step, and had a force in it
+  std::uint64_t solved;      // has a row: see ContactView
+};
+
+// a contact list as the kernels see it
+struct ContactView : ContactSizes {
+  static constexpr int BLOCK = 64, ROW = 12;
+
+  const ContactEntry *entries;
+  double *const *histories;    // HISTORY values of each
+  size_t size, blocks;
+  ContactBits *bits;
+
+  // if not equal, the numbers of the row of each contact that has a force (contact_rows.h), and the contacts whose
   // row is still to be solved for
   const int *row_numbers;
   double *rows;

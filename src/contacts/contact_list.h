@@ -20,19 +20,13 @@
 
 namespace Slope {
 
-class ContactList {
+class ContactList : public ContactSizes {
  public:
   typedef ContactEntry Entry;
 
   std::vector<Entry> entries;
   std::vector<double *> histories;    // HISTORY values of each
   std::vector<int *> flags;    // where LAMMPS wants to know what has a history: store_flags()
-
-  Sides moves;
-
-  // if so, radii (m) and masses (kg) are these for all contacts; otherwise each looks up its own
-  bool equal;
-  double radius_i, radius_j, mass_i, mass_j;
 
   ContactList() { clear(); }
 
@@ -42,11 +36,7 @@ class ContactList {
     radius_i = radius_j = mass_i = mass_j = 1.0;
     entries.clear();
     histories.clear();
-    touching.clear();
-    before.clear();
-    fresh.clear();
-    ended.clear();
-    solved.clear();
+    bits.clear();
     flags.clear();
     equal = true;
     varying = false;
@@ -64,9 +54,7 @@ class ContactList {
       mass_j = mj;
     }
     equal = equal && ri == radius_i && rj == radius_j && mi == mass_i && mj == mass_j;
-    if (entries.size() % BLOCK == 0)
-      for (std::vector<std::uint64_t> *bits : {&touching, &before, &fresh, &ended, &solved})
-        bits->push_back(0);
+    if (entries.size() % BLOCK == 0) bits.push_back({0, 0, 0, 0, 0});
     entries.push_back({i, j});
     histories.push_back(history);
     if (has_history) set_history(entries.size() - 1);
@@ -83,25 +71,26 @@ class ContactList {
   void set_history(size_t k)
   {
     const double age = histories[k][AGE];
-    set(has_ended(age) ? ended : touching, k);
-    if (is_new(age)) set(fresh, k);
+    ContactBits &b = bits[k / BLOCK];
+    (has_ended(age) ? b.ended : b.touching) |= bit(k);
+    if (is_new(age)) b.fresh |= bit(k);
   }
 
-  bool touches(size_t k) const { return is_set(touching, k); }    // in the last step
-  bool has_history(size_t k) const { return touches(k) || is_set(ended, k); }
+  bool touches(size_t k) const { return bits[k / BLOCK].touching & bit(k); }    // in the last step
+  bool has_history(size_t k) const { return touches(k) || bits[k / BLOCK].ended & bit(k); }
 
   // visit(k) for each contact that touched in the last step
   template <class Visit> void for_each_touching(Visit visit) const
   {
-    for (size_t block = 0; block < touching.size(); block++)
-      for (std::uint64_t bits = touching[block]; bits; bits &= bits - 1)
-        visit(block * BLOCK + __builtin_ctzll(bits));
+    for (size_t block = 0; block < bits.size(); block++)
+      for (std::uint64_t left = bits[block].touching; left; left &= left - 1)
+        visit(block * BLOCK + __builtin_ctzll(left));
   }
 
   double memory_usage() const
   {
     return entries.capacity() * sizeof(Entry) + histories.capacity() * sizeof(double *) +
-        5 * touching.capacity() * sizeof(std::uint64_t) + flags.capacity() * sizeof(int *) +
+        bits.capacity() * sizeof(ContactBits) + flags.capacity() * sizeof(int *) +
         (row_numbers.capacity() + unsolved.capacity()) * sizeof(int) +
         rows.capacity() * sizeof(double);
   }
@@ -118,8 +107,8 @@ class ContactList {
       if (touches(k) || overlap <= 0.0) continue;
       visit(e, overlap);
       std::memset(histories[k], 0, HISTORY * sizeof(double));
-      set(touching, k);
-      ended[k / BLOCK] &= ~bit(k);
+      bits[k / BLOCK].touching |= bit(k);
+      bits[k / BLOCK].ended &= ~bit(k);
     }
   }
 
@@ -148,22 +137,17 @@ class ContactList {
  private:
   static constexpr int BLOCK = ContactView::BLOCK;
 
-  // a bit of each contact, a number of each block
-  std::vector<std::uint64_t> touching;    // in the last step
-  std::vector<std::uint64_t> before;      // in the one before, in the second pass
-  std::vector<std::uint64_t> fresh;       // began in the last step
-  std::vector<std::uint64_t> ended;       // came apart in the last step, and had a force in it
+  std::vector<ContactBits> bits;
 
   // where the balls are unequal: see ContactView
   bool varying;
-  std::vector<std::uint64_t> solved;    // has a row
   std::vector<int> row_numbers, unsolved;
   std::vector<double> rows;
   double solved_dt = 0.0;
 
   void forget_rows()
   {
-    std::fill(solved.begin(), solved.end(), 0);
+    for (ContactBits &b : bits) b.solved = 0;
     rows.clear();
     unsolved.clear();
   }
@@ -176,10 +160,11 @@ class ContactList {
     unsolved.clear();
     row_numbers.resize(entries.size());
     int next = static_cast<int>(rows.size() / ContactView::ROW);
-    for (size_t block = 0; block < solved.size(); block++) {
-      std::uint64_t bits = (touching[block] | before[block] | ended[block]) & ~solved[block];
-      for (solved[block] |= bits; bits; bits &= bits - 1) {
-        const int k = static_cast<int>(block) * BLOCK + __builtin_ctzll(bits);
+    for (size_t block = 0; block < bits.size(); block++) {
+      ContactBits &b = bits[block];
+      std::uint64_t left = (b.touching | b.before | b.ended) & ~b.solved;
+      for (b.solved |= left; left; left &= left - 1) {
+        const int k = static_cast<int>(block) * BLOCK + __builtin_ctzll(left);
         row_numbers[k] = next++;
         unsolved.push_back(k);
       }
@@ -188,18 +173,21 @@ class ContactList {
   }
 
   static std::uint64_t bit(size_t k) { return std::uint64_t(1) << (k % BLOCK); }
-  static bool is_set(const std::vector<std::uint64_t> &bits, size_t k)
-  {
-    return bits[k / BLOCK] & bit(k);
-  }
-  static void set(std::vector<std::uint64_t> &bits, size_t k) { bits[k / BLOCK] |= bit(k); }
 
   ContactView view()
   {
-    return {entries.data(), histories.data(), entries.size(), touching.size(), touching.data(),
-            before.data(),  fresh.data(),     ended.data(),   moves,           equal,
-            radius_i,       radius_j,         mass_i,         mass_j,          row_numbers.data(),
-            rows.data(),    unsolved.data(),  unsolved.size()};
+    ContactView v;
+    static_cast<ContactSizes &>(v) = *this;
+    v.entries = entries.data();
+    v.histories = histories.data();
+    v.size = entries.size();
+    v.blocks = bits.size();
+    v.bits = bits.data();
+    v.row_numbers = row_numbers.data();
+    v.rows = rows.data();
+    v.unsolved = unsolved.data();
+    v.unsolved_size = unsolved.size();
+    return v;
   }
 };
 

@@ -33,11 +33,11 @@ class ContactPasses : ContactView {
   {
     for (size_t block = 0; block < blocks; block++) {
       if (!repeat) {
-        before[block] = touching[block];
-        touching[block] = equal ? touching_bits<double>(block, balls, partners)
-                                : touching_bits<Four>(block, balls, partners);
+        bits[block].before = bits[block].touching;
+        bits[block].touching = equal ? touching_bits<double>(block, balls, partners)
+                                     : touching_bits<Four>(block, balls, partners);
       }
-      count(block, touching[block], balls.count, partners);
+      count(block, bits[block].touching, balls.count, partners);
     }
   }
 
@@ -76,12 +76,12 @@ class ContactPasses : ContactView {
   SLOPE_INLINE static void increase(unsigned char &n) { n += n < 255; }
 
   template <class Partners>
-  SLOPE_INLINE void count(size_t block, std::uint64_t bits, unsigned char *counts,
+  SLOPE_INLINE void count(size_t block, std::uint64_t left, unsigned char *counts,
                           const Partners &partners) const
   {
     const Entry *e = entries + block * BLOCK;
-    for (; bits; bits &= bits - 1) {
-      const Entry &contact = e[__builtin_ctzll(bits)];
+    for (; left; left &= left - 1) {
+      const Entry &contact = e[__builtin_ctzll(left)];
       increase(counts[contact.i]);
       if (Partners::MOVE && partners.gets_force(contact.j)) increase(counts[contact.j]);
     }
@@ -154,41 +154,42 @@ class ContactPasses : ContactView {
       }
   }
 
-  SLOPE_INLINE static void push(Batch &batch, size_t block, std::uint64_t bits)
+  SLOPE_INLINE static void push(Batch &batch, size_t block, std::uint64_t left)
   {
-    for (; bits; bits &= bits - 1)
-      batch.found[batch.count++] = static_cast<int>(block) * BLOCK + __builtin_ctzll(bits);
+    for (; left; left &= left - 1)
+      batch.found[batch.count++] = static_cast<int>(block) * BLOCK + __builtin_ctzll(left);
   }
 
   // contacts of a block that have a force: those that touch, and those that touched a step ago
   SLOPE_INLINE void sort(size_t block, bool repeat, Batch &lasting, Batch &changing)
   {
-    const std::uint64_t now = touching[block];
+    ContactBits &b = bits[block];
+    const std::uint64_t now = b.touching, was = b.before;
     if (repeat) {
-      push(lasting, block, now & ~fresh[block]);
-      push(changing, block, (now & fresh[block]) | ended[block]);
+      push(lasting, block, now & ~b.fresh);
+      push(changing, block, (now & b.fresh) | b.ended);
       return;
     }
-    const std::uint64_t was = before[block];
-    for (std::uint64_t bits = now & was & fresh[block]; bits; bits &= bits - 1)
-      histories[block * BLOCK + __builtin_ctzll(bits)][AGE] = OLD;
+    for (std::uint64_t left = now & was & b.fresh; left; left &= left - 1)
+      histories[block * BLOCK + __builtin_ctzll(left)][AGE] = OLD;
     push(lasting, block, now & was);
-    fresh[block] = now & ~was;
-    ended[block] = was & ~now;
-    clear_histories(block, fresh[block]);
-    push(changing, block, fresh[block] | ended[block]);
+    b.fresh = now & ~was;
+    b.ended = was & ~now;
+    clear_histories(block, b.fresh);
+    push(changing, block, b.fresh | b.ended);
   }
 
   SLOPE_INLINE void sort_plain(size_t block, bool repeat, Batch &batch)
   {
-    if (!repeat) clear_histories(block, touching[block] & ~before[block]);
-    push(batch, block, touching[block]);
+    const ContactBits &b = bits[block];
+    if (!repeat) clear_histories(block, b.touching & ~b.before);
+    push(batch, block, b.touching);
   }
 
-  SLOPE_INLINE void clear_histories(size_t block, std::uint64_t bits)
+  SLOPE_INLINE void clear_histories(size_t block, std::uint64_t left)
   {
-    for (; bits; bits &= bits - 1)
-      std::memset(histories[block * BLOCK + __builtin_ctzll(bits)], 0, HISTORY * sizeof(double));
+    for (; left; left &= left - 1)
+      std::memset(histories[block * BLOCK + __builtin_ctzll(left)], 0, HISTORY * sizeof(double));
   }
 
   // a bit of each contact of a block that touches
@@ -214,7 +215,7 @@ class ContactPasses : ContactView {
       Four d[3];
       find_distances(&e[k], balls, partners, d);
       const Four rsq = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-      now |= static_cast<std::uint64_t>(bits(rsq < reach * reach)) << k;
+      now |= static_cast<std::uint64_t>(Slope::bits(rsq < reach * reach)) << k;
     }
     if (listed < BLOCK) now &= (std::uint64_t(1) << listed) - 1;
     return now;
@@ -388,7 +389,7 @@ class ContactPasses : ContactView {
     Flags ends;    // as find() saw it: an overlap of 0 is one or the other by rounding
     for (int m = 0; m < lanes<T>(); m++) {
       lasted[m] = histories[k[m]][AGE];
-      ends[m] = touching[k[m] / BLOCK] >> (k[m] % BLOCK) & 1 ? 0 : -1;
+      ends[m] = bits[k[m] / BLOCK].touching >> (k[m] % BLOCK) & 1 ? 0 : -1;
     }
     const T x = delta[0] - dt * c.v[0], y = delta[1] - dt * c.v[1], z = delta[2] - dt * c.v[2];
     const T was = reach - root(T(x * x + y * y + z * z));
