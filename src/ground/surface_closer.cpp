@@ -53,18 +53,17 @@ static Point between(const Point &a, const Point &b, double t)
 
 /* ---------------------------------------------------------------------- */
 
+// a strip between the last nodes and the edge of the rectangle belongs to cells beyond
+
 SurfaceCloser::SurfaceCloser(PlanNodes &n, double r) :
+    ilo(n.x(0) - n.grid.xlo > PITCH * r ? -1 : 0),
+    ihi(n.grid.xhi - n.x(n.nx - 1) > PITCH * r ? n.nx : n.nx - 1),
+    jlo(n.y(0) - n.grid.ylo > PITCH * r ? -1 : 0),
+    jhi(n.grid.yhi - n.y(n.ny - 1) > PITCH * r ? n.ny : n.ny - 1),
+    reach(1 + static_cast<int>(cover_radius(n.grid.spacing, r) / n.grid.spacing + 1.0e-6)),
     nodes(n), radius(r), cover2(std::pow(cover_radius(n.grid.spacing, r), 2.0)), pitch(PITCH * r),
     here(0), look_only(false), leak(false)
 {
-  // a strip between the last nodes and the edge of the rectangle belongs to cells beyond
-
-  const NodeGrid &grid = nodes.grid;
-  ilo = nodes.x(0) - grid.xlo > pitch ? -1 : 0;
-  jlo = nodes.y(0) - grid.ylo > pitch ? -1 : 0;
-  ihi = grid.xhi - nodes.x(nodes.nx - 1) > pitch ? nodes.nx : nodes.nx - 1;
-  jhi = grid.yhi - nodes.y(nodes.ny - 1) > pitch ? nodes.ny : nodes.ny - 1;
-  reach = 1 + static_cast<int>(std::sqrt(cover2) / grid.spacing + 1.0e-6);
 }
 
 void SurfaceCloser::start()

@@ -14,6 +14,7 @@
 
 #include <cstdint>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace Slope {
@@ -32,11 +33,11 @@ class SurfaceCloser {
   SurfaceCloser(PlanNodes &nodes, double radius);
 
   // cells from -1 on that may need balls: within ilo <= i < ihi, jlo <= j < jhi
-  int ilo, ihi, jlo, jhi;
+  const int ilo, ihi, jlo, jhi;
   bool in_range(int i, int j) const { return i >= ilo && i < ihi && j >= jlo && j < jhi; }
 
   // balls of one cell decide on those of others that are at most so many cells away
-  int reach;
+  const int reach;
 
   // by its corners alone a cell is done, or is to be looked at, or the kept surface ends in it
   enum Kind { DONE, STEEP, RIM };
@@ -61,13 +62,14 @@ class SurfaceCloser {
   void close(int i, int j);                      // a steep cell
   void refine(int i, int j, const Columns &);    // one in which the kept surface ends
 
-  // balls added, by the cell that asked for them, in their order
-  std::unordered_map<int64_t, std::vector<Point>> added;
+  // the balls that a cell has asked for, in their order; once
+  std::vector<Point> take(int64_t cell) { return std::move(added[cell]); }
 
  private:
   PlanNodes &nodes;
   const double radius, cover2, pitch;
-  std::unordered_map<int64_t, std::vector<Point>> lying;    // the same by the cell that they lie in
+  // balls added by the cell that asked for them, and by the one that they lie in
+  std::unordered_map<int64_t, std::vector<Point>> added, lying;
   std::vector<Point> samples;
   int64_t here;            // cell that asks
   bool look_only, leak;    // whether a sample is not covered, instead of adding balls

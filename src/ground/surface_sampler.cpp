@@ -240,7 +240,7 @@ void SurfaceSampler::close_patch(int64_t seed)
 
   for (const int64_t cell : cells) {
     Points &balls = closed[cell];
-    balls.swap(closer.added[cell]);
+    balls = closer.take(cell);
     if (balls.size() >= OF_CELL - 1)
       throw std::length_error("a cell of the plan grid needs 2^20 balls");
   }
