@@ -11,6 +11,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "contact_guards.h"
 #include "contact_history_owner.h"
 #include "energy_guard.h"
 #include "lammps_compat.h"
@@ -135,7 +136,7 @@ void FixContactHistory::setup(int)
 void FixContactHistory::end_of_step()
 {
   if (update->ntimestep % EnergyGuard::EVERY)
-    owner->check_finite();
+    owner->run_guards().check_finite();
   else
     owner->watch_energy();
 }
@@ -145,7 +146,7 @@ void FixContactHistory::post_run()
   FixNeighHistory::post_run();
   if (!continuation.forces_known()) continuation.keep_forces();
   if (update->ntimestep % EnergyGuard::EVERY) owner->watch_energy();
-  owner->report_guards();
+  owner->run_guards().report();
 }
 
 /* ---------------------------------------------------------------------- */

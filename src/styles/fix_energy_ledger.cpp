@@ -23,12 +23,6 @@
 using namespace LAMMPS_NS;
 using namespace FixConst;
 using Slope::ContactWorks;
-using Slope::Vector;
-
-static inline const Vector *vectors(double **array)
-{
-  return reinterpret_cast<const Vector *>(array ? array[0] : nullptr);
-}
 
 static inline double dot(const double *a, const double *b)
 {

@@ -6,15 +6,13 @@
 #include "pair_gran_restitution.h"
 
 #include "atom.h"
-#include "atom_vec.h"
 #include "comm.h"
-#include "contact_energy.h"
+#include "contact_geometry.h"
 #include "contact_holder.h"
 #include "error.h"
 #include "fix_contact_history.h"
 #include "fix_dummy.h"
 #include "force.h"
-#include "initial_overlap.h"
 #include "lammps_compat.h"
 #include "memory.h"
 #include "neigh_list.h"
@@ -24,7 +22,6 @@
 #include "update.h"
 
 #include <algorithm>
-#include <climits>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -32,16 +29,11 @@
 using namespace LAMMPS_NS;
 using namespace Slope;
 
-// LAMMPS keeps the rows of these arrays one after the other
-
-static inline Vector *vectors(double **array)
-{
-  return reinterpret_cast<Vector *>(array ? array[0] : nullptr);
-}
-
 /* ---------------------------------------------------------------------- */
 
-PairGranRestitution::PairGranRestitution(LAMMPS *lmp) : Pair(lmp), guards(lmp, table), table(lmp)
+PairGranRestitution::PairGranRestitution(LAMMPS *lmp) :
+    Pair(lmp), guards(lmp, table), table(lmp), lists(lmp, table), states(lmp), freeze_group_bit(0),
+    fix_history(nullptr)
 {
   single_enable = 1;
   no_virial_fdotr_compute = 1;
@@ -49,9 +41,8 @@ PairGranRestitution::PairGranRestitution(LAMMPS *lmp) : Pair(lmp), guards(lmp, t
   finitecutflag = 1;
   nondefault_history_transfer = 1;    // the age is the same from both sides
   beyond_contact = 1;                 // a contact that has ended keeps its history for a step
-  comm_forward = 4;                   // number of contacts, velocity ahead
-  ahead_known = false;
-  comm_reverse = 1;    // number of contacts
+  comm_forward = BallStates::FORWARD;
+  comm_reverse = BallStates::REVERSE;
   single_extra = 10;
   svector = new double[single_extra];
 
@@ -61,14 +52,11 @@ PairGranRestitution::PairGranRestitution(LAMMPS *lmp) : Pair(lmp), guards(lmp, t
   });
   MPI_Allreduce(&kernel, &of_all, 1, MPI_INT, MPI_MIN, world);
   ContactKernels::set_current(of_all);
-  freeze_group_bit = 0;
-  dt = update->dt;
 
   // a placeholder holds the history's place in the order of the fixes
   // numbered by the lowest free number, not by instance_me, which clear does not reset:
   // a restart file hands the history back to a fix of the same ID
 
-  fix_history = nullptr;
   for (int n = 0;
        history_id.empty() || modify->find_fix(history_id) >= 0 || modify->find_fix(dummy_id) >= 0;
        n++) {
@@ -190,7 +178,6 @@ void PairGranRestitution::init_style()
   require_whole_contacts(lmp, "Pair gran/restitution");
 
   compat::request_history_list(neighbor, this, instance_me);
-  dt = update->dt;
 
   if (!fix_history) {
     fix_history = static_cast<FixContactHistory *>(modify->replace_fix(
@@ -236,16 +223,7 @@ void PairGranRestitution::announce_wall(ContactHolder *wall, int type, int group
                                         const char *style)
 {
   walls.push_back(wall);
-  for (int itype = 1; itype <= atom->ntypes; itype++) {
-    int mine = 0, any;
-    for (int i = 0; i < atom->nlocal && !mine; i++)
-      if ((atom->mask[i] & groupbit) && atom->type[i] == itype) mine = 1;
-    MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-    if (any && !law(itype, type))
-      error->all(FLERR, "Fix {}: pair_coeff {} {} is not set (moving type {}, wall type {})", style,
-                 std::min(itype, type), std::max(itype, type), itype, type);
-  }
-  if (allocated) table.add_wall_type(type);
+  table.add_wall(type, groupbit, style);
 }
 
 /* ----------------------------------------------------------------------
@@ -254,15 +232,7 @@ void PairGranRestitution::announce_wall(ContactHolder *wall, int type, int group
 
 void PairGranRestitution::setup()
 {
-  dt = update->dt;
   guards.start(freeze_group_bit);
-}
-
-/* ---------------------------------------------------------------------- */
-
-void PairGranRestitution::reset_dt()
-{
-  dt = update->dt;
 }
 
 /* ----------------------------------------------------------------------
@@ -271,134 +241,10 @@ void PairGranRestitution::reset_dt()
 
 void PairGranRestitution::watch_energy()
 {
-  const MovingBalls balls = moving_balls();
-  const MovingPartners partners = {balls, force->newton_pair ? INT_MAX : atom->nlocal};
-  double elastic = 0.0;
-  for (size_t k = 0; k < lists.size(); k++)
-    elastic += elastic_energy(lists[k], table.law(k / 3), dt, balls, partners,
-                              [this](const ContactList::Entry &e, double overlap) {
-                                guards.record_overlap(
-                                    e.i, overlap, std::min(atom->radius[e.i], atom->radius[e.j]));
-                              });
+  const MovingBalls balls = states.balls();
+  double elastic = lists.elastic_energy(balls, states.partners(balls), guards);
   for (const ContactHolder *wall : walls) elastic += wall->elastic_energy();
   guards.watch_energy(elastic);
-}
-
-/* ----------------------------------------------------------------------
-   lists of what may touch, by law, from a new neighbor list
-------------------------------------------------------------------------- */
-
-void PairGranRestitution::build_lists()
-{
-  // contacts are read 32 bytes at a time, 8 beyond a vector: there must be something beyond the last
-
-  if (atom->nlocal + atom->nghost >= atom->nmax) atom->avec->grow(0);
-
-  const int n = atom->ntypes + 1;
-  lists.resize(3 * n * n);
-  for (size_t k = 0; k < lists.size(); k++) lists[k].clear(k % 3 != 1, k % 3 != 2);
-
-  const Vector *const x = vectors(atom->x);
-  const double *const radius = atom->radius;
-  const double *const rmass = atom->rmass;
-  const int *const mask = atom->mask;
-  const int *const type = atom->type;
-  for (int ii = 0; ii < list->inum; ii++) {
-    const int i = list->ilist[ii];
-    const bool frozen_i = mask[i] & freeze_group_bit;
-    const int *const jlist = list->firstneigh[i];
-    int *const flags = fix_history->firstflag[i];
-    double *const values = fix_history->firstvalue[i];
-
-    for (int jj = 0; jj < list->numneigh[i]; jj++) {
-      const int j = jlist[jj] & NEIGHMASK;
-      const bool frozen_j = mask[j] & freeze_group_bit;
-      if (frozen_i && frozen_j) continue;
-      ContactList &l = lists[3 * (type[i] * n + type[j]) + (frozen_i ? 1 : frozen_j ? 2 : 0)];
-      l.add(i, j, &values[HISTORY * jj], flags[jj], radius[i], radius[j], rmass[i], rmass[j]);
-      l.flags.push_back(&flags[jj]);
-
-      if (!flags[jj]) continue;
-      const Vector a = x[i], b = x[j];
-      const double r =
-          sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y) + (a.z - b.z) * (a.z - b.z));
-      guards.record_overlap(i, radius[i] + radius[j] - r, std::min(radius[i], radius[j]));
-    }
-  }
-  if (sizes_vary)
-    for (ContactList &l : lists) l.let_vary();
-  fix_history->lists_new = false;
-}
-
-/* ----------------------------------------------------------------------
-   which contacts touch, to the history that is to be stored
-------------------------------------------------------------------------- */
-
-void PairGranRestitution::store_flags() const
-{
-  for (const ContactList &l : lists) l.store_flags();
-}
-
-/* ----------------------------------------------------------------------
-   The velocities of the middle of the step, and a part of what the last step's force adds to them until
-   its end. At the set-up of a new run those of the end are known, and the force is not.
-------------------------------------------------------------------------- */
-
-void PairGranRestitution::find_ahead()
-{
-  const std::vector<Vector> &half_v = fix_history->continuation.v;
-  ahead_known = table.is_exact() && (!half_v.empty() || !repeat);
-  if (!ahead_known) return;
-
-  const int nlocal = atom->nlocal, nall = nlocal + atom->nghost;
-  const Vector *const v = half_v.empty() ? vectors(atom->v) : half_v.data();
-  if (static_cast<int>(ahead.size()) <= nall) ahead.resize(atom->nmax + 1);    // see build_lists()
-  for (int i = 0; i < nlocal; i++) {
-    const double *f = fix_history->continuation.before[i];
-    const double a = AHEAD * dt / atom->rmass[i];
-    ahead[i] = {v[i].x + a * f[0], v[i].y + a * f[1], v[i].z + a * f[2]};
-  }
-}
-
-/* ---------------------------------------------------------------------- */
-
-MovingBalls PairGranRestitution::moving_balls()
-{
-  Continuation &half = fix_history->continuation;
-  const Vector *const v = half.v.empty() ? vectors(atom->v) : half.v.data();
-  return {vectors(atom->x),
-          v,
-          half.v.empty() ? vectors(atom->omega) : half.omega.data(),
-          atom->radius,
-          atom->rmass,
-          vectors(atom->f),
-          vectors(atom->torque),
-          ahead_known ? ahead.data() : v,
-          counts.now.data()};
-}
-
-/* ----------------------------------------------------------------------
-   what touches, here and at the walls, and the number of contacts of each ball
-------------------------------------------------------------------------- */
-
-void PairGranRestitution::find_contacts()
-{
-  counts.clear(atom->nlocal + atom->nghost);
-  const MovingBalls balls = moving_balls();
-  const MovingPartners partners = {balls, force->newton_pair ? INT_MAX : atom->nlocal};
-  if (repeat) {
-    InitialOverlap initial(lmp);
-    for (ContactList &l : lists)
-      l.adopt_overlaps(balls, partners, [&](const ContactList::Entry &e, double overlap) {
-        initial.record(overlap, std::min(atom->radius[e.i], atom->radius[e.j]), atom->tag[e.i],
-                       atom->x[e.i], fmt::format("ball {}", atom->tag[e.j]));
-      });
-    initial.check("Pair gran/restitution");
-  }
-  for (ContactList &l : lists) l.find(repeat, balls, partners);
-  for (ContactHolder *wall : walls) wall->find_contacts(repeat);
-  if (force->newton_pair) compat::reverse_comm(comm, this);
-  compat::forward_comm(comm, this);
 }
 
 /* ----------------------------------------------------------------------
@@ -407,26 +253,22 @@ void PairGranRestitution::find_contacts()
 
 int PairGranRestitution::pack_forward_comm(int n, int *list, double *buf, int, int *)
 {
-  int m = counts.pack_forward(n, list, buf);
-  for (int k = 0; k < n && ahead_known; k++, m += 3)
-    memcpy(&buf[m], &ahead[list[k]], sizeof(Vector));
-  return m;
+  return states.pack_forward(n, list, buf);
 }
 
 void PairGranRestitution::unpack_forward_comm(int n, int begin, double *buf)
 {
-  counts.unpack_forward(n, begin, buf);
-  if (ahead_known) memcpy(&ahead[begin], &buf[n], n * sizeof(Vector));
+  states.unpack_forward(n, begin, buf);
 }
 
 int PairGranRestitution::pack_reverse_comm(int n, int begin, double *buf)
 {
-  return counts.pack_reverse(n, begin, buf);
+  return states.counts.pack_reverse(n, begin, buf);
 }
 
 void PairGranRestitution::unpack_reverse_comm(int n, int *list, double *buf)
 {
-  counts.unpack_reverse(n, list, buf);
+  states.counts.unpack_reverse(n, list, buf);
 }
 
 /* ----------------------------------------------------------------------
@@ -449,18 +291,21 @@ void PairGranRestitution::transfer_history(double *source, double *target, int, 
 void PairGranRestitution::compute(int eflag, int vflag)
 {
   ev_init(eflag, vflag);
-  repeat = update->setupflag;
-  if (repeat || fix_history->lists_new) build_lists();
-  if (repeat)
-    fix_history->continuation.find_half_step();
-  else
-    fix_history->continuation.forget_half_step();
-  find_ahead();
-  find_contacts();
+  const bool repeat = update->setupflag;    // the forces of the last step are found once more
+  if (repeat || fix_history->lists_new)
+    lists.build(*list, *fix_history, freeze_group_bit, sizes_vary, guards);
+  fix_history->lists_new = false;
+
+  // what touches, here and at the walls, and the number of contacts of each ball
+
+  states.begin_step(fix_history->continuation, repeat, table.is_exact());
+  const MovingBalls balls = states.balls();
+  const MovingPartners partners = states.partners(balls);
+  lists.find(repeat, balls, partners);
+  for (ContactHolder *wall : walls) wall->find_contacts(repeat);
+  states.share_counts(this);
 
   const int nlocal = atom->nlocal, newton_pair = force->newton_pair;
-  const MovingBalls balls = moving_balls();
-  const MovingPartners partners = {balls, newton_pair ? INT_MAX : nlocal};
   const ContactLaw *law = nullptr;
   auto visit = [&](int i, int j, const Vector &f, const Vector &d) {
     if (evflag) ev_tally_xyz(i, j, nlocal, newton_pair, 0.0, 0.0, f.x, f.y, f.z, d.x, d.y, d.z);
@@ -470,10 +315,10 @@ void PairGranRestitution::compute(int eflag, int vflag)
   works.clear();
   ContactTally tally = tally_of(visit);
   const bool visited = evflag || works.wanted;
-  for (size_t k = 0; k < lists.size(); k++) {
-    law = &table.law(k / 3);
-    lists[k].apply(*law, dt, repeat, balls, partners, visited ? &tally : nullptr);
-  }
+  lists.for_each([&](ContactList &l, const ContactLaw &its) {
+    law = &its;
+    l.apply(its, update->dt, repeat, balls, partners, visited ? &tally : nullptr);
+  });
   fix_history->lists_used = true;
 }
 
@@ -502,7 +347,7 @@ double PairGranRestitution::single(int i, int j, int itype, int jtype, double rs
   const ContactLaw &acts = table.law(itype, jtype);
   ContactLaw law = acts;
   law.exact = 0.0;
-  MovingBalls balls = moving_balls();
+  MovingBalls balls = states.balls();
   balls.v = balls.ahead = vectors(atom->v);
   balls.omega = vectors(atom->omega);
   const Sides moves = {(atom->mask[i] & freeze_group_bit) ? 0.0 : 1.0,
@@ -512,7 +357,7 @@ double PairGranRestitution::single(int i, int j, int itype, int jtype, double rs
   const MovingPartners partners = {balls, INT_MAX};
   set_contact(law, balls, partners, i, j, contact, delta);
   auto step_with = [&](const ContactLaw &l) {
-    return step_of(moves, l, dt, true, atom->radius[i], atom->radius[j], atom->rmass[i],
+    return step_of(moves, l, update->dt, true, atom->radius[i], atom->radius[j], atom->rmass[i],
                    atom->rmass[j]);
   };
   ContactStep step = step_with(law);
@@ -567,25 +412,9 @@ void PairGranRestitution::read_restart_settings(FILE *fp)
 
 /* ---------------------------------------------------------------------- */
 
-void *PairGranRestitution::extract(const char *name, int &dim)
-{
-  dim = 0;
-  if (strcmp(name, "history_size") == 0) {
-    static int size = HISTORY;
-    return &size;
-  }
-  return nullptr;
-}
-
-/* ---------------------------------------------------------------------- */
-
 double PairGranRestitution::memory_usage()
 {
-  double bytes = table.memory_usage();
-  for (const ContactList &l : lists) bytes += l.memory_usage();
-  bytes += counts.now.capacity();
-  bytes += ahead.capacity() * sizeof(Vector);
-  return bytes;
+  return table.memory_usage() + lists.memory_usage() + states.memory_usage();
 }
 
 /* ---------------------------------------------------------------------- */

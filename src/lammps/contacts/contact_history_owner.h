@@ -14,10 +14,9 @@ class ContactHistoryOwner {
   // histories from the contact lists to where the neighbor list has them
   virtual void store_flags() const = 0;
 
-  // guards, see EnergyGuard: every EVERY steps, every FINITE_EVERY steps, and at the end of a run
+  // guards of a run: with the energy of all springs at the set-up, every EnergyGuard::EVERY steps and at the end
   virtual void watch_energy() = 0;
-  virtual void check_finite() const = 0;
-  virtual void report_guards() = 0;
+  virtual class ContactGuards &run_guards() = 0;
 
  protected:
   ~ContactHistoryOwner() = default;

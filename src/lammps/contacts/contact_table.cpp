@@ -127,25 +127,25 @@ ContactTable::Coeff ContactTable::read_coeff(const std::string &types, int narg,
       if (!holds || !std::isfinite(got))
         error->all(FLERR, "Pair gran/restitution {} must be {}, got {:.15g}", keyword, text, got);
     };
-    if (keyword == "stiffness") {
-      c.kn = value(1);
-      c.kt = value(2);
-      rule(c.kn > 0.0, "> 0 (kn)", c.kn);
-      rule(c.kt >= 0.0, ">= 0 (kt)", c.kt);
-      stiffness = true;
+    auto read_two = [&](double &a, const char *rule_a, double &b, const char *rule_b) {
+      a = value(1);
+      b = value(2);
+      rule(a >= 0.0, rule_a, a);
+      rule(b >= 0.0, rule_b, b);
       iarg += 3;
+    };
+    if (keyword == "stiffness") {
+      read_two(c.kn, "> 0 (kn)", c.kt, ">= 0 (kt)");
+      rule(c.kn > 0.0, "> 0 (kn)", c.kn);
+      stiffness = true;
     } else if (keyword == "restitution") {
       c.e = value(1);
       rule(c.e > 0.0 && c.e <= 1.0, "> 0 and <= 1", c.e);
       c.restitution_set = 1;
       iarg += 2;
     } else if (keyword == "damping") {
-      c.cn = value(1);
-      c.ct = value(2);
-      rule(c.cn >= 0.0, ">= 0 (cn)", c.cn);
-      rule(c.ct >= 0.0, ">= 0 (ct)", c.ct);
+      read_two(c.cn, ">= 0 (cn)", c.ct, ">= 0 (ct)");
       damping = true;
-      iarg += 3;
     } else if (keyword == "friction") {
       c.phi = value(1);
       rule(c.phi >= 0.0 && c.phi < 90.0, ">= 0 and < 90 degrees", c.phi);
@@ -155,12 +155,8 @@ ContactTable::Coeff ContactTable::read_coeff(const std::string &types, int narg,
       rule(c.rolling >= 0.0, ">= 0", c.rolling);
       iarg += 2;
     } else if (keyword == "rolling_spring") {
-      c.kr = value(1);
-      c.cr = value(2);
-      rule(c.kr >= 0.0, ">= 0 (kr)", c.kr);
-      rule(c.cr >= 0.0, ">= 0 (cr)", c.cr);
+      read_two(c.kr, ">= 0 (kr)", c.cr, ">= 0 (cr)");
       c.spring_set = 1;
-      iarg += 3;
     } else {
       error->all(FLERR,
                  "Pair gran/restitution pair_coeff: unknown keyword {}, must be stiffness, "
@@ -282,6 +278,24 @@ void ContactTable::find_ranges(int freeze_group_bit)
       }
   }
   std::fill(wall_type.begin(), wall_type.end(), 0);    // wall fixes announce themselves after
+}
+
+/* ----------------------------------------------------------------------
+   a wall needs the law of every type that it meets
+------------------------------------------------------------------------- */
+
+void ContactTable::add_wall(int type, int groupbit, const char *style)
+{
+  for (int itype = 1; itype <= atom->ntypes; itype++) {
+    int mine = 0, any;
+    for (int i = 0; i < atom->nlocal && !mine; i++)
+      if ((atom->mask[i] & groupbit) && atom->type[i] == itype) mine = 1;
+    MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+    if (any && (coeffs.empty() || !is_set(itype, type)))
+      error->all(FLERR, "Fix {}: pair_coeff {} {} is not set (moving type {}, wall type {})", style,
+                 std::min(itype, type), std::max(itype, type), itype, type);
+  }
+  if (!coeffs.empty()) wall_type[type] = 1;
 }
 
 /* ----------------------------------------------------------------------

@@ -57,7 +57,7 @@ class ContactTable : protected Pointers {
 
   // at init: the balls of each type; walls are announced afterwards
   void find_ranges(int freeze_group_bit);
-  void add_wall_type(int type) { wall_type[type] = 1; }
+  void add_wall(int type, int groupbit, const char *style);    // meets the balls of a group
 
   // one side moves, the other one does too, is frozen or a wall
   bool can_touch(int itype, int jtype) const;    // and there is a law

@@ -1,0 +1,55 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+/* The balls as the contacts of a step see them, ghosts included: velocities of the middle of the step, those
+   that normal dashpots act on, and the number of contacts of each ball, which all ranks that know a ball
+   share. The pair style hands LAMMPS the buffers. */
+
+#ifndef SLOPE_BALL_STATES_H
+#define SLOPE_BALL_STATES_H
+
+#include "pointers.h"
+
+#include "contact_balls.h"
+#include "contact_counts.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class BallStates : protected Pointers {
+ public:
+  explicit BallStates(LAMMPS *lmp) : Pointers(lmp), continuation(nullptr), ahead_known(false) {}
+
+  // of this step; repeat: of the last one, once more, at a set-up. exact: dashpots look ahead
+  void begin_step(class Continuation &, bool repeat, bool exact);
+  void share_counts(class Pair *);    // when this rank has counted; collective
+
+  Slope::MovingBalls balls();
+  Slope::MovingPartners partners(const Slope::MovingBalls &) const;
+
+  // of the pair style that is handed over
+  int pack_forward(int n, const int *list, double *buf) const;
+  void unpack_forward(int n, int begin, const double *buf);
+  static constexpr int FORWARD = 4, REVERSE = 1;    // values of a ball
+  Slope::ContactCounts counts;
+
+  double memory_usage() const;
+
+ private:
+  const Continuation *continuation;
+  std::vector<Slope::Vector> ahead;    // velocities that normal dashpots act on, if they are
+  bool ahead_known;                    // others than those of the middle of the step
+};
+
+// LAMMPS keeps the rows of such an array one after the other
+inline Slope::Vector *vectors(double **array)
+{
+  return reinterpret_cast<Slope::Vector *>(array ? array[0] : nullptr);
+}
+
+}    // namespace LAMMPS_NS
+
+#endif
