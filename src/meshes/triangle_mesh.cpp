@@ -80,26 +80,36 @@ int TriangleMesh::build(const std::vector<Vector> &middles, int first, int last)
 
 /* ---------------------------------------------------------------------- */
 
-void TriangleMesh::find_near(const Vector &x, double reach, std::vector<int> &numbers) const
+template <class Beside, class Use> void TriangleMesh::each(Beside beside, Use use) const
 {
-  auto beyond = [reach](double at, double low, double high) {
-    return at < low - reach || at > high + reach;
-  };
   int todo[64], ntodo = 1;    // the boxes halve: never more than their depth
   todo[0] = 0;
   while (ntodo) {
     const int number = todo[--ntodo];
     const Box &box = boxes[number];
-    if (beyond(x.x, box.low.x, box.high.x) || beyond(x.y, box.low.y, box.high.y) ||
-        beyond(x.z, box.low.z, box.high.z))
-      continue;
+    if (beside(box)) continue;
     if (box.other) {
       todo[ntodo++] = box.other;
       todo[ntodo++] = number + 1;
     } else {
-      numbers.insert(numbers.end(), order.begin() + box.first, order.begin() + box.last);
+      for (int k = box.first; k < box.last; k++) use(order[k]);
     }
   }
+}
+
+void TriangleMesh::find_near(const Vector &x, double reach, std::vector<int> &numbers) const
+{
+  auto beyond = [reach](double at, double low, double high) {
+    return at < low - reach || at > high + reach;
+  };
+  each(
+      [&](const Box &box) {
+        return beyond(x.x, box.low.x, box.high.x) || beyond(x.y, box.low.y, box.high.y) ||
+            beyond(x.z, box.low.z, box.high.z);
+      },
+      [&](int number) {
+        numbers.push_back(number);
+      });
 }
 
 /* ----------------------------------------------------------------------
@@ -156,22 +166,14 @@ static bool above(const Triangle &t, const Vector &x)
 bool TriangleMesh::encloses(const Vector &x) const
 {
   bool inside = false;
-  int todo[64], ntodo = 1;    // as in find_near()
-  todo[0] = 0;
-  while (ntodo) {
-    const int number = todo[--ntodo];
-    const Box &box = boxes[number];
-    if (x.x < box.low.x || x.x > box.high.x || x.y < box.low.y || x.y > box.high.y ||
-        x.z > box.high.z)
-      continue;
-    if (box.other) {
-      todo[ntodo++] = box.other;
-      todo[ntodo++] = number + 1;
-    } else {
-      for (int k = box.first; k < box.last; k++)
-        if (above(triangles[order[k]], x)) inside = !inside;
-    }
-  }
+  each(
+      [&x](const Box &box) {
+        return x.x < box.low.x || x.x > box.high.x || x.y < box.low.y || x.y > box.high.y ||
+            x.z > box.high.z;
+      },
+      [&](int number) {
+        inside ^= above(triangles[number], x);
+      });
   return inside;
 }
 

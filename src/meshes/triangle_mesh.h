@@ -45,6 +45,9 @@ class TriangleMesh : public TouchedSurface {
   double sum;
 
   int build(const std::vector<Vector> &middles, int first, int last);
+
+  // use(number) for the triangles of all leaves that are not in a box beside what is looked for
+  template <class Beside, class Use> void each(Beside beside, Use use) const;
 };
 
 }    // namespace Slope

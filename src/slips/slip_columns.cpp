@@ -19,28 +19,29 @@ static constexpr double NONE = std::numeric_limits<double>::quiet_NaN();
 
 void SlipColumns::clear()
 {
+  rocky = true;    // the bedrock's, too
   resize(0);
   volume = plan_area = greatest_depth = 0.0;
   at_edge = overhang = outside = rocky = false;
 }
 
+std::vector<std::vector<double> *> SlipColumns::arrays()
+{
+  std::vector<std::vector<double> *> all = {&dx,     &dy,  &depth,    &area,     &thick,
+                                            &weight, &arm, &cohesion, &friction, &pore};
+  if (rocky) all.insert(all.end(), {&slope_x, &slope_y});
+  return all;
+}
+
 void SlipColumns::resize(size_t n)
 {
-  for (std::vector<double> *v :
-       {&dx, &dy, &depth, &area, &thick, &weight, &arm, &cohesion, &friction, &pore})
-    v->resize(n);
-  slope_x.resize(rocky ? n : 0);
-  slope_y.resize(rocky ? n : 0);
+  for (std::vector<double> *v : arrays()) v->resize(n);
 }
 
 void SlipColumns::keep(size_t first, size_t last, size_t to)
 {
   if (first == to) return;
-  for (std::vector<double> *v :
-       {&dx, &dy, &depth, &area, &thick, &weight, &arm, &cohesion, &friction, &pore})
-    std::copy(v->begin() + first, v->begin() + last, v->begin() + to);
-  if (!rocky) return;
-  for (std::vector<double> *v : {&slope_x, &slope_y})
+  for (std::vector<double> *v : arrays())
     std::copy(v->begin() + first, v->begin() + last, v->begin() + to);
 }
 

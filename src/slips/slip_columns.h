@@ -41,6 +41,9 @@ struct SlipColumns {
   void clear();
   void keep(size_t first, size_t last, size_t to);    // columns, moved to a place before them
   void resize(size_t n);
+
+ private:
+  std::vector<std::vector<double> *> arrays();    // those that there are
 };
 
 // Makes columns of surfaces below one terrain.

@@ -90,12 +90,8 @@ int DepositOptions::keyword()
       error->all(FLERR, "Fix deposit/grid cell must be at most {:g}, got {}", MAXCELL, text(1));
     return 1;
   }
-  if (keyword == "terrain") {
-    terrain = text(1);
-    return 1;
-  }
-  if (keyword == "output") {
-    prefix = text(1);
+  if (keyword == "terrain" || keyword == "output") {
+    (keyword == "terrain" ? terrain : prefix) = text(1);
     return 1;
   }
   if (keyword == "motion") {

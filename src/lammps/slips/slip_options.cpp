@@ -87,16 +87,8 @@ int SlipOptions::keyword()
     layers.push_back({text(1), strength(2)});
     return 4;
   }
-  if (keyword == "output") {
-    output = text(1);
-    return 1;
-  }
-  if (keyword == "bedrock") {
-    bedrock = text(1);
-    return 1;
-  }
-  if (keyword == "within") {
-    within = text(1);
+  if (keyword == "output" || keyword == "bedrock" || keyword == "within") {
+    (keyword == "output" ? output : keyword == "bedrock" ? bedrock : within) = text(1);
     return 1;
   }
   if (keyword == "water") return read_water();
@@ -251,20 +243,19 @@ void SlipOptions::check()
                "of variables' names, got {}",
                output);
 
-  Region *found = compat::find_region(lmp, region);
-  if (!found) error->all(FLERR, "Find_slip region {} does not exist", region);
-  if (!dynamic_cast<RasterRegion *>(found))
-    error->all(FLERR, "Find_slip region {} must be of style terrain, got {}", region, found->style);
+  check_region<RasterRegion>("Find_slip", region, "terrain");
+  if (!within.empty()) check_region<PrismRegion>("Find_slip within:", within, "polygon");
+}
+
+template <class Kind>
+void SlipOptions::check_region(const char *what, const std::string &named, const char *style) const
+{
+  Region *found = compat::find_region(lmp, named);
+  if (!found) error->all(FLERR, "{} region {} does not exist", what, named);
+  if (!dynamic_cast<Kind *>(found))
+    error->all(FLERR, "{} region {} must be of style {}, got {}", what, named, style, found->style);
   if (found->dynamic_check() || !found->interior)
-    error->all(FLERR, "Find_slip region {} must stand still and have side in", region);
-  if (within.empty()) return;
-  found = compat::find_region(lmp, within);
-  if (!found) error->all(FLERR, "Find_slip within: region {} does not exist", within);
-  if (!dynamic_cast<PrismRegion *>(found))
-    error->all(FLERR, "Find_slip within: region {} must be of style polygon, got {}", within,
-               found->style);
-  if (found->dynamic_check() || !found->interior)
-    error->all(FLERR, "Find_slip within: region {} must stand still and have side in", within);
+    error->all(FLERR, "{} region {} must stand still and have side in", what, named);
 }
 
 /* ---------------------------------------------------------------------- */

@@ -59,6 +59,8 @@ class SlipOptions : protected Pointers {
   int read_shape();
   int read_surface();
   void check();
+  template <class Kind>
+  void check_region(const char *what, const std::string &named, const char *style) const;
   Slope::ElevationGrid raster(const std::string &file) const;
 };
 
