@@ -1,0 +1,110 @@
+// Laws from the words of pair_style and pair_coeff, and from the balls of all ranks what can touch, how near and in
+// which step
+
+#include "contact_table.h"
+#include "deck.h"
+
+using namespace LAMMPS_NS;
+
+struct Table {
+  Deck deck{4};
+  ContactTable table{deck.lmp.get()};
+  static constexpr double DENSITY = 2650.0;
+
+  Table()
+  {
+    table.allocate();
+    deck.add_ball(1, 1.0, 0.2, DENSITY);
+    deck.add_ball(1, 9.0, 0.4, DENSITY);
+    deck.add_ball(2, 5.0, 0.3, DENSITY);
+    deck.add_ball(3, 9.5, 0.6, DENSITY);    // held
+    deck.one("group held type 3");
+  }
+
+  void settings(std::vector<std::string> words)
+  {
+    std::vector<char *> arg;
+    for (std::string &word : words) arg.push_back(&word[0]);
+    table.read_settings(static_cast<int>(arg.size()), arg.data());
+  }
+
+  void coeff(int i, int j, std::vector<std::string> words)
+  {
+    std::vector<char *> arg;
+    for (std::string &word : words) arg.push_back(&word[0]);
+    table.set(i, j, table.read_coeff("test", static_cast<int>(arg.size()), arg.data()));
+    table.make_laws();
+  }
+
+  void find_ranges() { table.find_ranges(deck.lmp->group->bitmask[deck.lmp->group->find("held")]); }
+};
+
+// dashpots that give the restitution: e = exp(-pi zeta/sqrt(1 - zeta^2)), c = 2 zeta sqrt(k m)
+TEST(ContactTable, Laws)
+{
+  Table t;
+  t.coeff(1, 2, {"stiffness", "2e6", "1e6", "restitution", "0.3", "friction", "30", "rolling", "0.05"});
+  const double log_e = std::log(0.3), zeta = -log_e / std::hypot(std::acos(-1.0), log_e);
+  const Slope::ContactLaw &law = t.table.law(2, 1);    // in both orders
+  EXPECT_DOUBLE_EQ(law.kn, 2e6);
+  EXPECT_NEAR(law.cn(7.0), 2.0 * zeta * std::sqrt(2e6 * 7.0), 1e-3 * law.cn(7.0));
+  EXPECT_NEAR(law.friction, std::tan(std::acos(-1.0) / 6.0), 1e-12);
+  EXPECT_DOUBLE_EQ(law.rolling, 0.05);
+  EXPECT_TRUE(t.table.is_exact());
+  EXPECT_FALSE(t.table.is_set(1, 1));
+}
+
+TEST(ContactTable, Settings)
+{
+  Table t;
+  t.coeff(1, 1, {"stiffness", "2e6", "1e6", "damping", "100", "50"});
+  t.settings({"mass", "ball", "scheme", "plain", "rolling_radius", "reduced", "limit_damping", "yes"});
+  const Slope::ContactLaw &law = t.table.law(1, 1);
+  EXPECT_TRUE(t.table.is_plain());
+  EXPECT_EQ(law.mass_factor, 2.0);
+  EXPECT_EQ(law.rolling_factor, 1.0);
+  EXPECT_EQ(law.fn_least, 0.0);
+  EXPECT_EQ(law.exact, 0.0);
+  EXPECT_DOUBLE_EQ(law.cn(7.0), 100.0);
+  t.settings({});    // back to what is without words
+  EXPECT_TRUE(t.table.is_exact());
+  EXPECT_EQ(t.table.law(1, 1).mass_factor, 1.0);
+}
+
+// balls of any rank count; frozen ones do not touch one another, and a wall only what moves
+TEST(ContactTable, WhatCanTouch)
+{
+  Table t;
+  for (int i = 1; i <= 4; i++)
+    for (int j = i; j <= 4; j++) t.coeff(i, j, {"stiffness", "2e6", "1e6", "restitution", "0.3"});
+  t.find_ranges();
+  EXPECT_TRUE(t.table.can_touch(1, 2));
+  EXPECT_TRUE(t.table.can_touch(3, 1));
+  EXPECT_FALSE(t.table.can_touch(3, 3));
+  EXPECT_FALSE(t.table.balls_can_touch(3, 3));
+  EXPECT_FALSE(t.table.can_touch(1, 4));
+  t.table.add_wall(4, 1, "test");
+  EXPECT_TRUE(t.table.can_touch(1, 4));
+  EXPECT_FALSE(t.table.can_touch(3, 4));
+  EXPECT_FALSE(t.table.balls_can_touch(1, 4));
+  EXPECT_NEAR(t.table.cutoff(1, 2), 0.2 + 0.15, 1e-12);
+  EXPECT_NEAR(t.table.cutoff(1, 3), 0.2 + 0.3, 1e-12);
+  EXPECT_EQ(t.table.cutoff(3, 3), 0.3);    // no frozen with frozen
+  EXPECT_EQ(t.table.cutoff(4, 4), 0.0);
+}
+
+// the step of the lightest moving ball: sqrt(m/kn)/4, and with scheme plain 0.15 m/cn
+TEST(ContactTable, Step)
+{
+  Table t;
+  t.coeff(1, 2, {"stiffness", "2e6", "1e6", "damping", "500", "50"});
+  t.coeff(1, 3, {"stiffness", "8e6", "1e6", "restitution", "1"});
+  t.find_ranges();
+  const double light = Deck::mass(0.2, Table::DENSITY);
+  EXPECT_NEAR(t.table.lightest(1, 2), light, 1e-9 * light);
+  EXPECT_NEAR(t.table.bound_on_step(1, 2), 0.25 * std::sqrt(light / 2e6), 1e-12);
+  EXPECT_NEAR(t.table.bound_on_step(1, 3), 0.25 * std::sqrt(light / 8e6), 1e-12);
+  t.settings({"scheme", "plain"});
+  EXPECT_NEAR(t.table.dashpot_bound(1, 2), 0.15 * light / 500.0, 1e-12);
+  EXPECT_EQ(t.table.dashpot_bound(1, 3), HUGE_VAL);
+}
