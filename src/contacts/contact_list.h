@@ -176,7 +176,7 @@ class ContactList : public ContactSizes {
 
   ContactView view()
   {
-    ContactView v;
+    ContactView v = ContactView();
     static_cast<ContactSizes &>(v) = *this;
     v.entries = entries.data();
     v.histories = histories.data();
