@@ -33,7 +33,6 @@ class DepositBlocks {
   void set_grid(const PlanGrid &);
   void clear();    // no blocks; their memory is used again
 
-  int kinds() const { return (int) start.size(); }
   size_t values_per_block() const { return CELLS * start.size(); }
 
   // values of the block in this column and band of blocks, made if it is not there

@@ -260,15 +260,3 @@ void Slope::in_order(std::vector<PlacedBall> &balls)
     return is_extra(a) != is_extra(b) ? is_extra(b) : a.number < b.number;
   });
 }
-
-SurfaceBalls Slope::sample_surface(const NodeGrid &grid, double radius, const Surface &surface)
-{
-  SurfaceSampler sampler(grid, radius, surface);
-  SurfaceBalls all;
-  std::vector<PlacedBall> balls;
-  for (int tile = 0; tile < sampler.tiles(); tile++) sampler.sample(tile, balls, all);
-  all.nodes = static_cast<int64_t>(sampler.plan().nx) * sampler.plan().ny;
-  in_order(balls);
-  for (const PlacedBall &b : balls) all.xyz.insert(all.xyz.end(), {b.x, b.y, b.z});
-  return all;
-}

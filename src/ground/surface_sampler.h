@@ -95,13 +95,6 @@ class SurfaceSampler {
   void remember_less(int tile_j);
 };
 
-// all balls of a surface, those on nodes row by row, then the extra ones
-struct SurfaceBalls : SurfaceCounts {
-  std::vector<double> xyz;
-  int64_t nodes = 0;
-};
-SurfaceBalls sample_surface(const NodeGrid &grid, double radius, const Surface &surface);
-
 }    // namespace Slope
 
 #endif

@@ -97,6 +97,14 @@ template <typename Record> double with_largest(MPI_Comm world, double value, Rec
   return most.value;
 }
 
+// Collective: each value becomes the sum of all ranks'.
+inline void add_up(MPI_Comm world, std::vector<double> &values)
+{
+  std::vector<double> mine = values;
+  MPI_Allreduce(mine.data(), values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM,
+                world);
+}
+
 }    // namespace LAMMPS_NS
 
 #endif

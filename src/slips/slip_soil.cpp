@@ -5,7 +5,6 @@
 
 #include "slip_soil.h"
 
-#include <algorithm>
 #include <cstdio>
 
 using namespace Slope;
@@ -47,13 +46,6 @@ ElevationGrid SlipSoil::bedrock_below(const ElevationGrid &ground) const
 }
 
 /* ---------------------------------------------------------------------- */
-
-double SlipSoil::least_cohesion() const
-{
-  double least = strengths[0].cohesion;
-  for (const Strength &s : strengths) least = std::min(least, s.cohesion);
-  return least;
-}
 
 /* ----------------------------------------------------------------------
    in the centres of the ground's cells

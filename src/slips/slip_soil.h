@@ -58,8 +58,6 @@ class SlipSoil {
   // it; empty if nothing.
   std::string contradiction(const ElevationGrid &ground) const;
 
-  double least_cohesion() const;
-
   // base below the ground
   State state(double x, double y, double base, double ground) const
   {

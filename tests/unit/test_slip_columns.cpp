@@ -210,7 +210,6 @@ TEST(SlipSoil, LayersAndWater)
   soil.add_layer(third, {3000.0, 0.3, 3000.0});
   soil.set_table(water);
   EXPECT_EQ(soil.contradiction(ground), "");
-  EXPECT_DOUBLE_EQ(soil.least_cohesion(), 1000.0);
 
   SlipSoil::State s = soil.state(0.0, 0.0, -1.5, 0.0);
   EXPECT_DOUBLE_EQ(s.weight, g * 1500.0);

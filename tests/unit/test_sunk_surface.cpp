@@ -9,11 +9,11 @@
    H beyond a wall; balls on it and on the ground around leave no way through, and no place for a ball
    of the ground near the body. */
 
+#include "all_balls.h"
 #include "sunk_surface.h"
 
 #include "ball_flood.h"
 #include "elevation_grid.h"
-#include "surface_sampler.h"
 
 #include <gtest/gtest.h>
 

@@ -8,8 +8,8 @@
    Looked at here in many more points than the sampler looks at, found in another way.
    The plan grid is left as it is where it is good. */
 
-#include "surface_sampler.h"
 
+#include "all_balls.h"
 #include "ball_flood.h"
 
 #include <gtest/gtest.h>

@@ -56,46 +56,29 @@ void ContactTable::read_settings(int narg, char **arg)
   mass_ball = limit_damping = rolling_reduced = 0;
   scheme = EXACT;
 
-  int iarg = 0;
-  while (iarg < narg) {
+  struct Setting {
+    int *value;
+    const char *names[2];
+  };
+  for (int iarg = 0; iarg < narg; iarg += 2) {
     const std::string keyword = arg[iarg];
     if (iarg + 2 > narg)
       error->all(FLERR, "Pair gran/restitution {}: value missing or unknown keyword", keyword);
-    const std::string value = arg[iarg + 1];
-    int *setting;
-    const char *off, *on;
-    if (keyword == "mass") {
-      setting = &mass_ball;
-      off = "pair";
-      on = "ball";
-    } else if (keyword == "limit_damping") {
-      setting = &limit_damping;
-      off = "no";
-      on = "yes";
-    } else if (keyword == "rolling_radius") {
-      setting = &rolling_reduced;
-      off = "ball";
-      on = "reduced";
-    } else if (keyword == "scheme") {
-      const char *const names[] = {"exact", "plain"};    // as Scheme
-      const auto name = std::find(names, names + 2, value);
-      if (name == names + 2)
-        error->all(FLERR, "Pair gran/restitution scheme must be exact or plain, got {}", value);
-      scheme = static_cast<int>(name - names);
-      iarg += 2;
-      continue;
-    } else {
+    const Setting setting = keyword == "mass" ? Setting{&mass_ball, {"pair", "ball"}}
+        : keyword == "limit_damping"          ? Setting{&limit_damping, {"no", "yes"}}
+        : keyword == "rolling_radius"         ? Setting{&rolling_reduced, {"ball", "reduced"}}
+        : keyword == "scheme"                 ? Setting{&scheme, {"exact", "plain"}}    // as Scheme
+                                              : Setting{nullptr, {nullptr, nullptr}};
+    if (!setting.value)
       error->all(FLERR,
                  "Pair gran/restitution: unknown keyword {}, must be mass, limit_damping, "
                  "rolling_radius or scheme",
                  keyword);
-      return;
-    }
-    if (value != off && value != on)
-      error->all(FLERR, "Pair gran/restitution {} must be {} or {}, got {}", keyword, off, on,
-                 value);
-    *setting = (value == on);
-    iarg += 2;
+    const std::string value = arg[iarg + 1];
+    if (value != setting.names[0] && value != setting.names[1])
+      error->all(FLERR, "Pair gran/restitution {} must be {} or {}, got {}", keyword,
+                 setting.names[0], setting.names[1], value);
+    *setting.value = value == setting.names[1];
   }
   make_laws();
 }

@@ -85,14 +85,6 @@ double DepositBalls::speed_of(int i) const
 
 /* ---------------------------------------------------------------------- */
 
-void DepositBalls::add_up(std::vector<double> &values) const
-{
-  std::vector<double> mine = values;
-  MPI_Allreduce(mine.data(), values.data(), (int) values.size(), MPI_DOUBLE, MPI_SUM, world);
-}
-
-/* ---------------------------------------------------------------------- */
-
 DepositBalls::Sums DepositBalls::bin(DepositBins &bins) const
 {
   for (int dim = X; dim <= Y; dim++)
@@ -229,8 +221,8 @@ std::vector<DepositSummary::Quantile> DepositBalls::quantiles(const double *plac
     distances.add(distance, volume_of(i));
     angles.add(-angle, volume_of(i));
   }
-  add_up(distances.weights);
-  add_up(angles.weights);
+  add_up(world, distances.weights);
+  add_up(world, angles.weights);
 
   // of the volume that was released: what was lost went farther than what is left
 
@@ -270,7 +262,7 @@ DepositSummary::Motion DepositBalls::motion(double threshold, double &moving) co
   Histogram speeds(log(SLOWEST), 0.0);
   for (int i = 0; i < atom->nlocal; i++)
     if (selected(i)) speeds.add(log(std::max(SLOWEST, speed_of(i) / found.largest)), 1.0);
-  add_up(speeds.weights);
+  add_up(world, speeds.weights);
   const double median = exp(speeds.quantile(0.5));
   found.median = median > SLOWEST * (1.0 + 0.01) ? found.largest * median : 0.0;
   return found;

@@ -62,7 +62,6 @@ class DepositBalls : protected Pointers {
   double volume_of(int i) const;
   double speed_of(int i) const;
   void seen_from(const double *place, int i, double &distance, double &angle) const;
-  void add_up(std::vector<double> &) const;
 };
 
 }    // namespace LAMMPS_NS

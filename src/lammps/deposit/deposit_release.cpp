@@ -175,8 +175,7 @@ double DepositRelease::integrate(Region *region) const
     return found.length();
   };
   auto sum = [this](std::vector<double> &values) {
-    std::vector<double> mine = values;
-    MPI_Allreduce(mine.data(), values.data(), (int) values.size(), MPI_DOUBLE, MPI_SUM, world);
+    add_up(world, values);
   };
 
   double mine[4] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL}, ends[4];    // of the balls; lo, -hi
