@@ -74,9 +74,11 @@ def measures(far):
 def single(args, spacing, e):
     rng = np.random.default_rng(1)
     block = f"2 12 2 {2 + 1.3 * (args.balls // 40)} 1.6 8"
-    runs = [distances(args, f"single_{spacing}_{e}_{part}", mass=block, spacing=spacing, e=e, part=part, seed=42,
-                      **SINGLE)
-            for part in (1, args.part)]
+    runs = []
+    for part in (1, args.part):
+        starts = [distances(args, f"single_{spacing}_{e}_{seed}_{part}", mass=block, spacing=spacing, e=e, part=part,
+                            seed=seed, **SINGLE) for seed in range(42, 42 + args.starts)]
+        runs.append((np.concatenate([far for far, _ in starts]), sum(moving for _, moving in starts)))
     drawn = [[measures(rng.choice(far, far.size)) for _ in range(500)] for far, _ in runs]
     change = 100 * (np.divide(*drawn) - 1)
     return [measures(far) for far, _ in runs], change.std(axis=0), runs
@@ -100,6 +102,7 @@ def main():
     parser.add_argument("--spacing", type=numbers, default="0.25,0.35,0.5,0.8,1", help="of the field, diameters")
     parser.add_argument("--e", type=numbers, default="0.1,0.3,0.5", help="restitution")
     parser.add_argument("--balls", type=int, default=2400, help="that do not touch each other, a multiple of 40")
+    parser.add_argument("--starts", type=int, default=1, help="of these, all taken together")
     parser.add_argument("--seeds", type=int, default=8, help="of the mass of 400")
     parser.add_argument("--only", choices=["single", "mass"])
     parser.add_argument("-o", dest="output", type=Path, default=Path("runout_step"))

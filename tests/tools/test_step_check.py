@@ -8,8 +8,9 @@ import pytest
 TOP = Path(__file__).resolve().parents[2]
 sys.path.insert(0, os.environ.get("SLOPE_TOOLS", str(TOP / "tools")))
 
+from slope_tools.errors import SlopeError  # noqa: E402
 from slope_tools.statistics.headline import Scatter  # noqa: E402
-from slope_tools.tables import combinations, step_check  # noqa: E402
+from slope_tools.tables import combinations, energy, step_check  # noqa: E402
 from slope_tools.tables.step_check import Step  # noqa: E402
 
 
@@ -40,3 +41,30 @@ def test_a_run_that_was_not_made_says_why():
     assert entry["text"] == "half the time step: not tried: the disk is full"
     entry = step_check.compare(Step("0.2", 5.0), groups(), None)
     assert entry["text"] == "half the time step: not tried: no run with the same values finished"
+
+
+def written(here, *rows):
+    path = here / "site.energy"
+    path.write_text("# Time-averaged data for fix spent\n# TimeStep f_ledger[1]\n"
+                    + "".join(" ".join(map(str, row)) + "\n" for row in rows))
+    return path
+
+
+def test_where_the_energy_went(tmp_path):
+    path = written(tmp_path, [0] + 11 * [0], [100, 1e6, 2e9, 0, 3e6, 1e8, 7e8, 1.9e8, 1e7, 1e3, 0, 5e5])
+    spent = energy.read(path)
+    assert (spent["sliding"], spent["residual"], spent["left"]) == (7e8, 1e3, 5e5)
+    assert spent["text"] == (
+        "of 2.00 GJ that weight and ground motion put in, 1.00 GJ was taken: 70.0 % by sliding, 19.0 % by rolling "
+        "resistance, 10.0 % by impacts (normal dashpots), 1.00 % by the finite step at the start and end of contacts; "
+        "500 kJ left with balls; not accounted for: less than 0.01 %")
+
+
+def test_the_energy_of_a_continued_run_is_not_known(tmp_path):
+    assert energy.read(written(tmp_path, [300] + 11 * [1])) is None
+
+
+def test_a_file_of_the_energy_that_is_damaged_is_named(tmp_path):
+    for rows in ([[0] + 10 * [1]], [[0] + 10 * [1] + ["nan"]]):
+        with pytest.raises(SlopeError, match="site.energy: must be what the run wrote of its energy"):
+            energy.read(written(tmp_path, *rows))

@@ -146,7 +146,7 @@ TEST(SlipSearch, EllipsoidsAreNotAboveSpheres)
     const SlipBody wide = c.search().run().front();
     EXPECT_LE(wide.factor, sphere);
     gain = std::min(gain, wide.factor / sphere);
-    EXPECT_LE(wide.surface.across, SlipSearch::WIDEST);
+    EXPECT_LE(wide.surface.across, double(SlipSearch::WIDEST));
     EXPECT_GE(wide.surface.across * SlipSearch::WIDEST, 1.0);
     EXPECT_TRUE(c.within(wide));
     EXPECT_EQ(c.stages.back(), "ellipsoids");

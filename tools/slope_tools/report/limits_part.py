@@ -48,6 +48,8 @@ def uncertainty(data, numbers) -> CONTENT:
     step = (study or {}).get("step")
     chance.append(("Time step", f"{step['text'][0].upper()}{step['text'][1:]}." if step else
                    "What half the time step changes was not tried (the study of a site does, or --set step=0.5)."))
+    if energy := (step or {}).get("energy"):
+        chance.append(("Energy", f"In the run with half the time step, {energy['text']}."))
     return chance
 
 

@@ -26,6 +26,7 @@ PER_RUN = 0.06          # GB, program and libraries
 PER_CELL = 16e-9        # GB, two terrains of doubles; the deposit's rasters only cover where balls were
 COLLECT = 1.5           # s of a run's volume and maps: after all runs, one after the other
 REPORT = 15.0           # s of the report
+LEDGER = 1.4            # times as long takes a run that keeps account of its energy: that with half the step
 SPEED = 47.0            # m/s for which the paper's stiffness is sufficient
 AIR = 1.2               # margin of the stiffness over the trial run's largest speed
 PATIENCE = 3.0          # duration: times the trial's time to rest
@@ -159,10 +160,11 @@ def study_seconds(d: float, volume: float, trial: Trial, speed: float, density: 
         size = factor * d
         steps = trial.rest / time_step(size, speed, density)
         total += runs * (trial.setup + steps * volume / size ** 3 * trial.cost)
-    if wanted.half_step:
-        steps = 2 * trial.rest / time_step(d, speed, density)
-        total += trial.setup + steps * volume / d ** 3 * trial.cost
-    return total / jobs + COLLECT * number + REPORT
+    alone = 0.0
+    if wanted.half_step:        # nothing else runs beside it
+        steps = LEDGER * 2 * trial.rest / time_step(d, speed, density)
+        alone = trial.setup + steps * volume / d ** 3 * trial.cost
+    return total / jobs + alone + COLLECT * number + REPORT
 
 
 def gigabytes(d: float, volume: float, cells: int, jobs: int) -> float:

@@ -6,7 +6,7 @@ the score of the run that the answer rests on. Every part is resumed by the same
 import shutil
 from pathlib import Path
 from shlex import quote
-from typing import Dict, Iterable, List, NamedTuple, Optional, Sequence
+from typing import Any, Dict, Iterable, List, NamedTuple, Optional, Sequence
 
 from .. import disk
 from ..case import decks, run_folders
@@ -18,6 +18,7 @@ from ..sites.site_choices import Choices, OFFSETS
 from ..sites.site_layers import OBSERVED, ROAD
 from ..tables.quantities import NAMES
 from ..tables.size_error import SizeErrors, WHAT
+from ..tables import energy
 from ..tables.step_check import HALF, QUANTITY, Step
 from ..warned import Warned, warned
 from . import results, size_study, study
@@ -151,21 +152,33 @@ def sizes(setup: Setup, choices: Choices, repeated: Dict[str, List[str]]) -> Siz
 
 
 def half_step(setup: Setup, rolling: List[str]) -> Optional[Step]:
-    """One run with half the time step, at the rolling resistance in the middle; None of a dry run."""
+    """One run with half the time step, at the rolling resistance in the middle; None of a dry run.
+
+    It keeps account of its energy, too, unless the deck is of a version that cannot.
+    """
     middle = rolling[len(rolling) // 2]
     settings = {"rolling": [middle], "step": [HALF]}
-    todo = repeats.plan(setup.output, settings, {}, decks.index_variables(setup.deck))
+    variables = decks.index_variables(setup.deck)
+    if "ledger" in variables:
+        settings["ledger"] = ["1"]
+    todo = repeats.plan(setup.output, settings, {}, variables)
     volumes: List[float] = []
+    spent: List[Optional[Dict[str, Any]]] = []
 
     def collect(todo, _):
         rows, _ = results.rows_of(setup, todo, results.Maps(()), pictures=False)
-        volumes.extend(row[QUANTITY] for row in rows if row["status"] == "finished")
+        for row in rows:
+            if row["status"] == "finished":
+                volumes.append(row[QUANTITY])
+                if "ledger" in settings:
+                    prefix = str(setup.output / row["summary"]).removesuffix(".summary.yaml")
+                    spent.append(energy.read(Path(f"{prefix}.{energy.SUFFIX}")))
 
     try:
         study.perform(setup, settings, todo, collect)
     except SlopeError as error:
         return Step(middle, None, str(error))
-    return Step(middle, volumes[0]) if volumes else None
+    return Step(middle, volumes[0], energy=spent[0] if spent else None) if volumes else None
 
 
 def unusable(setup: Setup, why: str, shortly: str = "") -> Sizes:

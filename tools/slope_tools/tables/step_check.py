@@ -13,6 +13,7 @@ class Step(NamedTuple):
     rolling: str                # its rolling resistance
     volume: Optional[float]     # m3 to remove
     why: str = ""
+    energy: Optional[Dict[str, Any]] = None     # of energy.read()
 
 
 def compare(step: Step, groups: Sequence[Group], scatter: Optional[headline.Scatter]) -> Dict[str, Any]:
@@ -22,7 +23,7 @@ def compare(step: Step, groups: Sequence[Group], scatter: Optional[headline.Scat
     than t s sqrt(1 + 1/n) in 95 % of cases (Hahn and Meeker, Statistical Intervals, 1991, section 4.7).
     """
     entry: Dict[str, Any] = {"step": float(HALF), "rolling": step.rolling, "volume_m3": step.volume, "mean_m3": None,
-                             "chance_m3": None, "within_chance": None}
+                             "chance_m3": None, "within_chance": None, "energy": step.energy}
     same = next((group for group in groups if group.set.get("rolling") == step.rolling), None)
     if step.volume is None or same is None:
         return {**entry, "text": f"half the time step: not tried: {step.why or 'no run with the same values finished'}"}

@@ -1,0 +1,48 @@
+"""Where the energy of a run went: the last line of what fix ave/time writes of fix energy/ledger."""
+from pathlib import Path
+from typing import Any, Dict, Optional
+
+import numpy as np
+
+from ..digits import si, three
+from ..errors import SlopeError
+
+SUFFIX = "energy"       # of the file, after the run's prefix
+# columns after the step, J; one line each second (doc/src/fix_energy_ledger.rst)
+ITEMS = ("kinetic", "gravity", "other_forces", "stored", "normal_dashpots", "sliding", "rolling", "begin_end",
+         "residual", "ground_motion", "left")
+TAKEN = {"sliding": "sliding", "rolling": "rolling resistance", "normal_dashpots": "impacts (normal dashpots)",
+         "begin_end": "the finite step at the start and end of contacts"}
+
+
+def read(path: Path) -> Optional[Dict[str, Any]]:
+    """Energies in J at the last full second of a run, with a sentence; None where the run was continued.
+
+    A ledger is not in restart files, so that of a continued run lacks what came before. Raises SlopeError if the file
+    cannot be read.
+    """
+    try:
+        table = np.loadtxt(path, ndmin=2)
+        joules = dict(zip(ITEMS, table[-1, 1:].tolist(), strict=True))
+        if not np.isfinite(table).all():
+            raise ValueError("a number that is not finite")
+    except (OSError, IndexError, ValueError) as error:
+        raise SlopeError(path, f"must be what the run wrote of its energy ({error})") from error
+    if table[0, 0] != 0:
+        return None
+    return {**joules, "text": words(joules)}
+
+
+def words(joules: Dict[str, float]) -> str:
+    taken = sum(joules[name] for name in TAKEN)
+    if not taken > 0:
+        return "nothing has moved"
+    gained = joules["gravity"] + joules["ground_motion"]
+    shares = ", ".join(f"{percent(joules[name] / taken)} by {what}" for name, what in TAKEN.items())
+    left = f"; {si(joules['left'], 'J')} left with balls" if joules["left"] > 0 else ""
+    return (f"of {si(gained, 'J')} that weight and ground motion put in, {si(taken, 'J')} was taken: {shares}{left}; "
+            f"not accounted for: {percent(abs(joules['residual']) / taken)}")
+
+
+def percent(share: float) -> str:
+    return "less than 0.01 %" if 0 <= share < 1e-4 else f"{three(100 * share)} %"
