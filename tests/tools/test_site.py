@@ -98,12 +98,17 @@ def make(folder, *words, run=slope, **environment):
                **environment)
 
 
+def write_files(folder):
+    """dem.tif, release.geojson (in degrees), road.geojson."""
+    write_dem(folder / "dem.tif")
+    write_layer(folder / "release.geojson", RELEASE, "EPSG:4326")
+    write_layer(folder / "road.geojson", ROAD)
+
+
 @pytest.fixture
 def gis(tmp_path):
-    """dem.tif, release.geojson (in degrees), road.geojson."""
-    write_dem(tmp_path / "dem.tif")
-    write_layer(tmp_path / "release.geojson", RELEASE, "EPSG:4326")
-    write_layer(tmp_path / "road.geojson", ROAD)
+    """The folder with these files."""
+    write_files(tmp_path)
     return tmp_path
 
 
@@ -111,9 +116,7 @@ def gis(tmp_path):
 def done(tmp_path_factory):
     """The two commands of a new user; gives the folder and what both printed."""
     folder = tmp_path_factory.mktemp("site")
-    write_dem(folder / "dem.tif")
-    write_layer(folder / "release.geojson", RELEASE, "EPSG:4326")
-    write_layer(folder / "road.geojson", ROAD)
+    write_files(folder)
     first = make(folder, "--shape", "ellipsoid", "--depth", "5", "--road", "road.geojson", "--balls", BALLS,
                  "--author", "A. N. Engineer")
     assert first.returncode == 0, first.stderr
@@ -510,7 +513,8 @@ def test_a_file_of_another_version(done, tmp_path):
                            ("spacing: 1", "spacing: -1", r" model\.spacing: must be > 0, got -1"),
                            ("rolling: [0", "rolling: 0.05 #", r" study\.rolling: must be a list in brackets, such as "
                             r"\[0\.05\], got 0\.05"),
-                           ("rolling: [0, ", "rolling: [0, x, ", " study.rolling: second value: must be a number"),
+                           ("rolling: [0, ", "rolling: [0, x, ",
+                            " study.rolling: second value: must be a finite number"),
                            (good, "a: [", " must be")):
         mine = tmp_path / "mine"
         mine.mkdir(exist_ok=True)

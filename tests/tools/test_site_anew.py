@@ -16,23 +16,33 @@ import yaml
 from affine import Affine
 from shapely.geometry import LineString
 
-from test_site import BODY, EAST, NORTH, ROAD, TOOLS, gis, make, refused, slope, write_layer  # noqa: F401
+from test_site import (BODY, EAST, NORTH, ROAD, TOOLS, gis, make, refused, slope, write_files,  # noqa: F401
+                       write_layer)
 from tiny_collapse import LMP, processes_in
 
 from slope_tools import cli, disk, programs
 from slope_tools.case import decks
 from slope_tools.errors import SlopeError
+from slope_tools.plots import site_map
+from slope_tools.releases import release_chart
 from slope_tools.sites import site, site_choices, site_deck, site_folder, site_warnings
 from slope_tools.studies import site_study
 from slope_tools.studies.setup import Setup
 
 
+def work_in(folder, patch):
+    """In the folder of the GIS files, without a LAMMPS program, and without the pictures, which take longest."""
+    patch.chdir(folder)
+    patch.delenv("LMP", raising=False)
+    patch.setattr(programs, "BESIDE", folder / "nowhere")
+    for module in (release_chart, site_map):
+        patch.setattr(module, "draw", lambda path, *_: Path(path).write_bytes(b""))
+
+
 @pytest.fixture
 def inside(gis, monkeypatch, capsys):  # noqa: F811
-    """Run `slope site ARGUMENTS` in the folder of the GIS files, without a LAMMPS program; gives stdout and stderr."""
-    monkeypatch.chdir(gis)
-    monkeypatch.delenv("LMP", raising=False)
-    monkeypatch.setattr(programs, "BESIDE", gis / "nowhere")
+    """Run `slope site ARGUMENTS` there; gives stdout and stderr."""
+    work_in(gis, monkeypatch)
 
     def run(arguments, status=0):
         capsys.readouterr()
@@ -43,10 +53,21 @@ def inside(gis, monkeypatch, capsys):  # noqa: F811
     return run
 
 
+@pytest.fixture(scope="module")
+def once(tmp_path_factory):
+    """The standard files, and a site of them without a trial run, which each test gets a copy of."""
+    folder = tmp_path_factory.mktemp("once")
+    write_files(folder)
+    with pytest.MonkeyPatch.context() as patch:
+        work_in(folder, patch)
+        assert cli.main(["site", "--terrain", "dem.tif", "--release", "release.geojson", *BODY, "--road",
+                         "road.geojson", "-o", "mine"]) == 0
+    return folder
+
+
 @pytest.fixture
-def mine(inside, gis):  # noqa: F811
-    """A site of the standard files, without a trial run."""
-    inside(f"--terrain dem.tif --release release.geojson {shlex.join(BODY)} --road road.geojson -o mine")
+def mine(inside, gis, once):  # noqa: F811
+    shutil.copytree(once, gis, dirs_exist_ok=True)
     return gis / "mine"
 
 
