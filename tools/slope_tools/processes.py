@@ -18,8 +18,6 @@ def environment() -> Dict[str, str]:
     values = {**os.environ, "OMP_NUM_THREADS": "1"}
     # Open MPI on one machine: what a rank sends each step goes at once, without a handshake
     values.setdefault("OMPI_MCA_btl_vader_eager_limit", "131072")
-    # a run without mpirun starts half a second sooner without a daemon for processes that it never adds
-    values.setdefault("OMPI_MCA_ess_singleton_isolated", "1")
     if os.geteuid() == 0:
         values.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
     return values
@@ -36,6 +34,8 @@ def start(words: Sequence[str], folder: Path, screen) -> subprocess.Popen:
     session = None
     if SESSION not in values:       # two programs that start at once fail now and then over the folder of both
         session = values[SESSION] = tempfile.mkdtemp(prefix="slope")       # short: sockets go there
+        # a run without mpirun starts half a second sooner without a daemon for processes that it never adds
+        values.setdefault("OMPI_MCA_ess_singleton_isolated", "1")
     guard = ["setpriv", "--pdeathsig", "TERM"] if shutil.which("setpriv") else []
     try:
         process = subprocess.Popen([*guard, *words], cwd=folder, env=values, stdin=subprocess.DEVNULL, stdout=screen,
