@@ -968,7 +968,7 @@ BAD = {
     "no arrival": (without("one/tiny.arrival.asc"), "one", "one/tiny.arrival.asc: must be there: fix deposit/grid"),
     "no summary": (without("one/tiny.summary.yaml"), "one", "one: must be the folder of a study"),
     "broken summary": (text_of("one/tiny.summary.yaml", "volume: {released: 3}"), "one", "one/tiny.summary.yaml: must "
-                       "be a summary that fix deposit/grid wrote: volume: must have on_grid"),
+                       "be a summary that fix deposit/grid wrote: must have travel"),
     "cut raster": (lambda: Path("one/tiny.arrival.asc").write_text(Path("one/tiny.arrival.asc").read_text()[:900]),
                    "one", "one/tiny.arrival.asc: values: must be 24 rows of 40"),
     "broken study": (text_of("out/study.yaml", "runs: ["), "out", "out/study.yaml: must be what `slope study` wrote"),
