@@ -18,6 +18,10 @@ ENVIRONMENT = {
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
 }
 
+# of a run without mpirun: Open MPI 4 starts no daemon, which takes half a second, and has no folder, which runs that
+# start at once would share
+ALONE = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_orte_create_session_dirs": "0"}
+
 
 @functools.lru_cache
 def serial():
@@ -62,9 +66,8 @@ def run_deck(text, tmp_path, np=1, vars={}, expect_error=None, timeout=300):
     if np > 1:
         # bind-to none: tests that run side by side would all be bound to the same cores
         command = ["mpirun", "--oversubscribe", "--bind-to", "none", "-np", str(np)] + command
-    run = subprocess.run(command, cwd=tmp_path, env=ENVIRONMENT, timeout=timeout, text=True,
-                         stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                         stderr=subprocess.STDOUT)
+    run = subprocess.run(command, cwd=tmp_path, env={**ENVIRONMENT, **(ALONE if np == 1 else {})}, timeout=timeout,
+                         text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     log = tmp_path / "log.deck"
     log = log.read_text() if log.exists() else ""
     errors = [line for line in run.stdout.splitlines() if line.startswith("ERROR")]

@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy
 import pytest
-from deck_helpers import ENVIRONMENT, LMP, run_deck, write_asc
+from deck_helpers import ALONE, ENVIRONMENT, LMP, run_deck, write_asc
 
 # every style of the package once; a row of the tables below replaces a line
 DECK = {
@@ -469,8 +469,8 @@ def said(tmp_path_factory):
             (folder / name).write_text(text)
         write_asc(folder / "ground.asc", numpy.zeros((8, 8)))
         deck = "\n".join({**DECK, **(ROWS[number][0] if number >= 0 else {})}.values()) + "\n"
-        done = subprocess.run([LMP, "-log", "none"], input=deck, cwd=folder, env=ENVIRONMENT, timeout=60, text=True,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        done = subprocess.run([LMP, "-log", "none"], input=deck, cwd=folder, env={**ENVIRONMENT, **ALONE}, timeout=60,
+                              text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         return done.returncode, done.stdout
     with ThreadPoolExecutor(2) as pool:
         return dict(zip(range(-1, len(ROWS)), pool.map(run, range(-1, len(ROWS)))))

@@ -38,7 +38,7 @@ TOOLS = Path(os.environ.get("SLOPE_TOOLS", HERE.parents[1] / "tools"))
 sys.path[:0] = [str(TOOLS), str(HERE.parent / "tools")]
 
 from slope_tools.case import run_folders  # noqa: E402
-from slope_tools.deposits import deposit, dumps  # noqa: E402
+from slope_tools.deposits import dumps  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
 from slope_tools.survey import crs, fggml, polygons, rasters  # noqa: E402
 
@@ -322,7 +322,8 @@ TARGETS = {
     "dump": (one("a.dump", DUMP), mutate, None, of("a.dump", lambda path: dumps.last(path, ("type", "vx")))),
     "dump_gz": (one("a.gz", lambda: gzip.compress(DUMP)), mutate_gz, None, of("a.gz", dumps.last)),
     "summary": (one("a.summary.yaml", yaml.safe_dump(SUMMARY).encode()), mutate_yaml, None,
-                of("a.summary.yaml", lambda path: (deposit.read_summary(path), run_folders.load_summary(path)))),
+                of("a.summary.yaml", lambda path: [run_folders.load_summary(path, schema)
+                                                   for schema in (run_folders.OF_DEPOSIT, run_folders.SUMMARY)])),
     "reference": (one("r.yaml", yaml.safe_dump(REFERENCE).encode()), mutate_yaml, None, of("r.yaml", reference_of)),
     "converge": (one("c.yaml", yaml.safe_dump(CONVERGE).encode()), mutate_yaml, None, of("c.yaml", sizes)),
     "study": (lambda: [study()], mutate_yaml, ("study.yaml", "tiny.summary.yaml", "variables.yaml", "finished.yaml",

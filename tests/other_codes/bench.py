@@ -21,6 +21,7 @@ PARTS = {"peers": "against the other codes, one core",
          "ranks": "MPI ranks against one",
          "throughput": "two single-rank runs side by side against one",
          "weak": "many copies of the scene: 1e6 moving balls"}
+DESCRIPTION = "How fast a collapse runs: against other codes, on larger terrains, on ranks, with more balls."
 EPILOG = """\
 units: metres, seconds, bytes; time per ball and step in ns.
 
@@ -33,12 +34,7 @@ Writes DIR/bench.csv (every run), DIR/bench.yaml, DIR/bench.png, and the input o
 """
 
 
-def add_parser(commands, **kwargs):
-    """Add `bench` and its arguments to argparse's commands; return its parser."""
-    parser = commands.add_parser(
-        "bench", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
-        description="How fast a collapse runs: against other codes, on larger terrains, on ranks, with more balls.",
-        **kwargs)
+def add_arguments(parser):
     parser.add_argument("--quick", action="store_true",
                         help="a small scene, few steps and repeats, without 1e6 balls and runs to rest; two minutes")
     parser.add_argument("--balls", type=count, metavar="N", help=f"moving balls, about (default {BALLS}; --quick 8000)")
@@ -57,7 +53,6 @@ def add_parser(commands, **kwargs):
                         "with CODE= that of one code: granular, hooke, or build for another build of ours")
     parser.add_argument("-o", dest="output", metavar="DIR", type=Path, default=Path("bench"),
                         help="folder of the results (default bench)")
-    return parser
 
 
 def run(args):

@@ -5,7 +5,6 @@ Order of the work: read a deck's final numbers (its run, with zero steps), write
 A peer is held against its twin: pair gran/restitution with those keywords that make it as the peer is (scheme plain,
 limit_damping yes). What remains is explained in Code.differs; what ours does differently by default shows in the table.
 """
-import argparse
 from pathlib import Path
 
 from slope_tools import disk
@@ -16,6 +15,7 @@ from . import peers
 from .crosscheck_cases import PEERS, Work, bounce, collapse, rolling, slide_roll
 from .crosscheck_report import report
 
+DESCRIPTION = "The same scenes in other codes: bounce, slide, roll, rolling resistance, a collapse."
 EPILOG = """\
 units: metres, seconds, m3 of ground (bulk).
 
@@ -29,11 +29,7 @@ Writes DIR/crosscheck.csv, DIR/crosscheck.yaml, DIR/crosscheck.png, and the inpu
 CASES = {"bounce": bounce, "slide_roll": slide_roll, "rolling": rolling, "collapse": collapse}
 
 
-def add_parser(commands, **kwargs):
-    """Add `crosscheck` and its arguments to argparse's commands; return its parser."""
-    parser = commands.add_parser(
-        "crosscheck", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
-        description="The same scenes in other codes: bounce, slide, roll, rolling resistance, a collapse.", **kwargs)
+def add_arguments(parser):
     parser.add_argument("--quick", action="store_true", help="a collapse of balls of 4 m instead of 2.5 m")
     parser.add_argument("--only", metavar="CASE,...", help=f"these cases: {', '.join(CASES)} (default all)")
     parser.add_argument("--peers", metavar="CODE,...",
@@ -42,7 +38,6 @@ def add_parser(commands, **kwargs):
                         "build/lmp beside tools/)")
     parser.add_argument("-o", dest="output", metavar="DIR", type=Path, default=Path("crosscheck"),
                         help="folder of the results (default crosscheck)")
-    return parser
 
 
 def run(args):

@@ -1,12 +1,19 @@
 """Fixtures of several tests of the tools."""
 import pytest
 
+import run_helpers  # noqa: F401  (its path of the tools)
 import tiny_collapse
+
+from slope_tools.deposits import volume_files
 
 
 @pytest.fixture
 def tiny_case(tmp_path, monkeypatch):
-    """A folder to work in, with the tiny collapse in case/ and the program in the environment."""
+    """A folder to work in, with the tiny collapse in case/ and the program in the environment.
+
+    The maps of slope volume, which take longest in a study, are empty; test_volume.py has one.
+    """
+    monkeypatch.setattr(volume_files, "draw", lambda path, *_: path.touch())
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("LMP", tiny_collapse.LMP)
     tiny_collapse.write_case(tmp_path / "case")

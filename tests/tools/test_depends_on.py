@@ -35,9 +35,9 @@ ANEW = {"road", "cut_angle", "mesh", "local", "intensity", "more_than", "of", "e
 
 
 def options(command):
-    made = importlib.import_module(f"slope_tools.commands.{command}").add_parser(
-        argparse.ArgumentParser().add_subparsers())
-    return {action.dest for action in made._actions}
+    parser = argparse.ArgumentParser()
+    importlib.import_module(f"slope_tools.commands.{command}").add_arguments(parser)
+    return {action.dest for action in parser._actions}
 
 
 @pytest.mark.parametrize("command", ["study", "calibrate", "sensitivity"])

@@ -4,7 +4,7 @@ import pytest
 
 from run_helpers import called
 from test_site import gis  # noqa: F401
-from test_site_anew import inside, mine  # noqa: F401
+from test_site_anew import inside, mine, once  # noqa: F401
 from tiny_collapse import LMP
 
 from slope_tools.ensembles import known_study

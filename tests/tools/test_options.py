@@ -68,7 +68,7 @@ def test_older_names_of_options_are_taken_with_a_note(command, words, now, capsy
     assert capsys.readouterr().err == f"slope {command}: note: {', '.join(old - new)} is {', '.join(new - old)} now\n"
     assert cli.with_new_names("study", words.split()) == words.split()
     module = cli.module_of(command, None)
-    help_ = module.add_parser(argparse.ArgumentParser().add_subparsers()).format_help()
+    help_ = cli.add_command(argparse.ArgumentParser().add_subparsers(), command, module).format_help()
     assert (new - old).pop() in help_ and not re.search(rf"{(old - new).pop()}\b", help_)
 
 
@@ -79,7 +79,7 @@ def test_the_two_commands_of_the_readme_are_of_files_that_are_here():
     assert f"    tools/slope study {site[site.index('-o') + 1]}" in lines
     parser = cli.Parser()
     commands = parser.add_subparsers()
-    cli.importlib.import_module("slope_tools.commands.site").add_parser(commands)
+    cli.add_command(commands, "site", cli.module_of("site", parser))
     args = parser.parse_args(site)
     for path in [*args.terrain, args.release, args.road]:
         assert (top / str(path)).is_file()

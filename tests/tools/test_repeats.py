@@ -15,11 +15,12 @@ from tiny_collapse import TOP
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
+from slope_tools import schemas  # noqa: E402
+from slope_tools.case import run_folders  # noqa: E402
 from slope_tools.deposits import rest, travel_shares  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
 from slope_tools.runs import repeats  # noqa: E402
 from slope_tools.statistics import headline  # noqa: E402
-from slope_tools.studies import results  # noqa: E402
 from slope_tools.tables import combinations, study_file, study_table  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
@@ -267,7 +268,7 @@ def fast(share, volume=940.0, speed=30.0):
     (summary(moving=True), False, "ended by its rest criterion; 2 % of the volume is faster than 0.1 m/s"),
 ])
 def test_at_rest_is_what_ended_by_its_criterion_and_does_not_move(about, at_rest, text):
-    found = rest.state(about, "a.summary.yaml")
+    found = rest.state(about)
     assert found.at_rest is at_rest and found.text.startswith(text)
 
 
@@ -296,31 +297,28 @@ def test_a_run_that_its_deck_halts_is_at_rest_unless_it_moves(slope, step, at_re
 
 def test_shares_of_travel_come_from_the_summary():
     about = summary()
-    assert travel_shares.columns(about, "a") == dict.fromkeys(travel_shares.COLUMNS)
+    assert travel_shares.columns(about) == dict.fromkeys(travel_shares.COLUMNS)
     about["travel"]["quantiles"] = [{"share": share, "distance": 100 * share, "reach_angle": 30 - share}
                                     for share in (0.5, 0.9, 0.95, 0.99, 0.999)]
-    found = travel_shares.columns(about, "a")
+    found = travel_shares.columns(about)
     assert [found[f"distance_{share}_m"] for share in (50, 90, 95, 99)] == pytest.approx([50, 90, 95, 99])
     assert found["reach_99_deg"] == pytest.approx(29.01)
 
 
-@pytest.mark.parametrize("quantiles", [5, [5], [{"share": 0.5}], [{"share": 0.5, "distance": "x", "reach_angle": 1}],
-                                       [{"share": 0.5, "distance": float("nan"), "reach_angle": 1}]])
-def test_wrong_shares_of_travel_are_one_line(quantiles):
-    about = summary()
-    about["travel"]["quantiles"] = quantiles
-    with pytest.raises(SlopeError, match="a.yaml: travel: quantiles must be a list of share, distance"):
-        travel_shares.columns(about, "a.yaml")
+TRAVEL = {"front": 1.0, "front_at_release": 1.0, "centroid": 1.0, "reach_angle": 30.0}
 
 
-def test_wrong_motion_is_one_line():
-    with pytest.raises(SlopeError, match="a.yaml: motion: fast_volume must be a finite number, got None"):
-        rest.state(summary(fast_share=0.1), "a.yaml")
-
-
-def test_few_of_many_deposits_that_move_are_named():
-    several = [{"run": f"a{i}", "at_rest": i == 0, "stop_time_s": 2.0, "end": "stopped"} for i in range(9)]
-    text, = map(str, results.moving_warnings(several))
-    assert text.startswith("8 of 9 deposits are not at rest at the end: a1 at 2.0 s (stopped); ")
-    assert text.endswith("a3 at 2.0 s (stopped); and 5 more")
-    assert results.moving_warnings(several[:1]) == []
+@pytest.mark.parametrize("section, value, rule", [
+    ("travel", {**TRAVEL, "quantiles": 5}, "quantiles: must be a list in brackets or null, such as .5., got 5"),
+    ("travel", {**TRAVEL, "quantiles": [5]}, "quantiles: first value: must be a section with keys, got 5"),
+    ("travel", {**TRAVEL, "quantiles": [{"share": 0.5}]}, "must have distance and reach_angle"),
+    ("travel", {**TRAVEL, "quantiles": [{"share": 0.5, "distance": "x", "reach_angle": 1}]},
+     "quantiles: first value: distance: must be a finite number or null, got 'x'"),
+    ("travel", {**TRAVEL, "quantiles": [{"share": 0.5, "distance": float("nan"), "reach_angle": 1}]}, "got nan"),
+    ("motion", {"moving_share": 0.0, "threshold": 0.1, "fast_share": 0.1}, "must be valid: 'fast_volume' is a dep"),
+    ("motion", {"moving_share": 0.0, "threshold": 0.1, **fast(None)}, "fast_share: must be a finite number, got"),
+    ("moving", 1, "must be true or false, got 1"), ("dt", 0, "must be > 0, got 0"),
+    ("volume", {"released": 1.0}, "must have on_grid and off_grid and lost and residual")])
+def test_wrong_values_of_a_summary_are_one_line(section, value, rule):
+    with pytest.raises(SlopeError, match=f"a.yaml: must be a summary that fix deposit/grid wrote: .*{rule}"):
+        schemas.check(value, run_folders.SUMMARY["properties"][section], "a.yaml", run_folders.WHAT)

@@ -142,8 +142,8 @@ def change(folder, function):
         path.write_text(yaml.safe_dump(summary))
         for row in about["runs"] if about else ():
             if row["status"] == "finished" and row["summary"] == str(path.relative_to(folder)):
-                state = results.rest.state(summary, path)
-                motion, far = summary["motion"], results.travel_shares.columns(summary, path)
+                state = results.rest.state(summary)
+                motion, far = summary["motion"], results.travel_shares.columns(summary)
                 row.update(moving=summary["moving"], moving_share=motion["moving_share"], at_rest=state.at_rest,
                            fast_share=motion.get("fast_share"), fast_volume_m3=motion.get("fast_volume"),
                            fast_speed_m_s=motion.get("fast_speed"), stop_reason=summary["stop"]["reason"],
@@ -475,8 +475,8 @@ def test_a_study_of_an_older_version_is_one_line(slope, here):
         del row["at_rest"]
     Path("out/study.yaml").write_text(yaml.safe_dump(about))
     status, out, err = slope("out")
-    assert (status, out) == (2, "") and "of another version; `slope study` with the same arguments" in err
-    assert err.count("\n") == 1
+    assert (status, out) == (2, "") and err.count("\n") == 1
+    assert "of this version (the same command rewrites it, and keeps the runs): must have at_rest" in err
 
 
 @pytest.mark.parametrize("body, factor, words, doubt", [
@@ -968,7 +968,7 @@ BAD = {
     "no arrival": (without("one/tiny.arrival.asc"), "one", "one/tiny.arrival.asc: must be there: fix deposit/grid"),
     "no summary": (without("one/tiny.summary.yaml"), "one", "one: must be the folder of a study"),
     "broken summary": (text_of("one/tiny.summary.yaml", "volume: {released: 3}"), "one", "one/tiny.summary.yaml: must "
-                       "be a summary that fix deposit/grid wrote, with volume: on_grid"),
+                       "be a summary that fix deposit/grid wrote: must have travel"),
     "cut raster": (lambda: Path("one/tiny.arrival.asc").write_text(Path("one/tiny.arrival.asc").read_text()[:900]),
                    "one", "one/tiny.arrival.asc: values: must be 24 rows of 40"),
     "broken study": (text_of("out/study.yaml", "runs: ["), "out", "out/study.yaml: must be what `slope study` wrote"),

@@ -15,7 +15,7 @@ TOP = Path(__file__).resolve().parents[2]
 SUITE = re.search(r"^VERSION_CODENAME=(\w+)", Path("/etc/os-release").read_text(), re.MULTILINE)[1]
 
 # state in files beside it: what is installed; what cannot be had, with apt's words; what fails while it is installed
-APT_GET = """#!{python}
+APT_GET = """#!{python} -IS
 import sys
 from pathlib import Path
 state = Path({state!r})
@@ -50,7 +50,7 @@ bad = [name for name in names if name in lines["failing"]]
 state.joinpath("installed").write_text("".join(name + "\\n" for name in lines["installed"] + names if name not in bad))
 sys.exit(100 if bad else 0)
 """
-DPKG_QUERY = """#!{python}
+DPKG_QUERY = """#!{python} -IS
 import sys
 from pathlib import Path
 state = Path({state!r})

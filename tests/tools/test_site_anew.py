@@ -16,23 +16,34 @@ import yaml
 from affine import Affine
 from shapely.geometry import LineString
 
-from test_site import BODY, EAST, NORTH, ROAD, TOOLS, gis, make, refused, slope, write_layer  # noqa: F401
+from test_site import (BODY, EAST, NORTH, ROAD, TOOLS, gis, inside as in_process, make,  # noqa: F401
+                       refused, slope, write_files, write_layer)
 from tiny_collapse import LMP, processes_in
 
 from slope_tools import cli, disk, programs
+from slope_tools.animation import film
 from slope_tools.case import decks
 from slope_tools.errors import SlopeError
+from slope_tools.plots import site_map
+from slope_tools.releases import release_chart
 from slope_tools.sites import site, site_choices, site_deck, site_folder, site_warnings
 from slope_tools.studies import site_study
 from slope_tools.studies.setup import Setup
 
 
+def work_in(folder, patch):
+    """In the folder of the GIS files, without a LAMMPS program, and without the pictures, which take longest."""
+    patch.chdir(folder)
+    patch.delenv("LMP", raising=False)
+    patch.setattr(programs, "BESIDE", folder / "nowhere")
+    for module in (release_chart, site_map):
+        patch.setattr(module, "draw", lambda path, *_: Path(path).write_bytes(b""))
+
+
 @pytest.fixture
 def inside(gis, monkeypatch, capsys):  # noqa: F811
-    """Run `slope site ARGUMENTS` in the folder of the GIS files, without a LAMMPS program; gives stdout and stderr."""
-    monkeypatch.chdir(gis)
-    monkeypatch.delenv("LMP", raising=False)
-    monkeypatch.setattr(programs, "BESIDE", gis / "nowhere")
+    """Run `slope site ARGUMENTS` there; gives stdout and stderr."""
+    work_in(gis, monkeypatch)
 
     def run(arguments, status=0):
         capsys.readouterr()
@@ -43,10 +54,21 @@ def inside(gis, monkeypatch, capsys):  # noqa: F811
     return run
 
 
+@pytest.fixture(scope="module")
+def once(tmp_path_factory):
+    """The standard files, and a site of them without a trial run, which each test gets a copy of."""
+    folder = tmp_path_factory.mktemp("once")
+    write_files(folder)
+    with pytest.MonkeyPatch.context() as patch:
+        work_in(folder, patch)
+        assert cli.main(["site", "--terrain", "dem.tif", "--release", "release.geojson", *BODY, "--road",
+                         "road.geojson", "-o", "mine"]) == 0
+    return folder
+
+
 @pytest.fixture
-def mine(inside, gis):  # noqa: F811
-    """A site of the standard files, without a trial run."""
-    inside(f"--terrain dem.tif --release release.geojson {shlex.join(BODY)} --road road.geojson -o mine")
+def mine(inside, gis, once):  # noqa: F811
+    shutil.copytree(once, gis, dirs_exist_ok=True)
     return gis / "mine"
 
 
@@ -358,6 +380,7 @@ def test_an_end_from_outside_ends_the_trial_run(gis):  # noqa: F811
 # --- a study of which a run fails ---
 
 def test_a_failed_run_leaves_score_and_report_of_the_others(inside, mine, monkeypatch, capsys):
+    monkeypatch.setattr(film, "encode", lambda *_: b"")
     write_layer(mine.parent / "mapped.geojson", [(25, 25), (60, 25), (60, 55), (25, 55)])
     inside("mine --observed mapped.geojson --balls 60")
     edit(mine, "study", rolling=[0.05, 0.1], xoffset=[], yoffset=[], sizes=[])
@@ -388,8 +411,8 @@ def test_a_changed_site_is_not_run_with_the_old_deck(inside, mine, gis):  # noqa
                      ("file: ../road.geojson", "file: ../other.geojson")):
         assert old in text
         (mine / "site.yaml").write_text(text.replace(old, new, 1))
-        refused(slope(gis, "study", "mine", "--dry-run"), "mine/site.yaml: must not have been changed since in.site "
-                "was made from it: `slope site mine` rebuilds the deck")
+        refused(in_process(gis, "study", "mine", "--dry-run"), "mine/site.yaml: must not have been changed since "
+                "in.site was made from it: `slope site mine` rebuilds the deck")
     (mine / "site.yaml").write_text(text.replace("  friction: 30", "  friction: 20"))
     inside("mine")
     assert cli.main(["study", "mine", "--dry-run"]) == 0
@@ -398,14 +421,14 @@ def test_a_changed_site_is_not_run_with_the_old_deck(inside, mine, gis):  # noqa
 @pytest.mark.parametrize("name", ["in.site", "terrain.asc", "release.slip.asc", "road.csv"])
 def test_a_site_without_one_of_its_files(mine, gis, name):  # noqa: F811
     (mine / name).unlink()
-    refused(slope(gis, "study", "mine", "--dry-run"), f"mine/{name}: must exist; `slope site mine` rebuilds it")
+    refused(in_process(gis, "study", "mine", "--dry-run"), f"mine/{name}: must exist; `slope site mine` rebuilds it")
     assert not (mine / "study").exists()
 
 
 def test_one_command_at_a_time_works_in_a_site(inside, mine, gis):  # noqa: F811
     before = contents(mine)
     with disk.alone_in(mine):
-        refused(slope(gis, "study", "mine"), "mine: must not be in use by another study: wait for it, or end it")
+        refused(in_process(gis, "study", "mine"), "mine: must not be in use by another study: wait for it, or end it")
         _, err = inside("mine --client Me", 2)
         assert "mine: must not be in use by another study" in err
     assert contents(mine) == {**before, Path(".lock"): b""}
@@ -477,9 +500,11 @@ def test_a_mapped_raster_must_lie_on_the_terrain(inside, mine, gis, east, fits):
         assert {**before, Path(".lock"): b""} == contents(mine)
 
 
-def test_the_report_is_written_though_the_score_fails(gis):  # noqa: F811
+def test_the_report_is_written_though_the_score_fails(gis, monkeypatch):  # noqa: F811
+    monkeypatch.setattr(film, "encode", lambda *_: b"")
     write_layer(gis / "mapped.geojson", [(25, 25), (60, 25), (60, 55), (25, 55)])
-    made = make(gis, "--shape", "ellipsoid", "--depth", "5", "--balls", "60", "--observed", "mapped.geojson")
+    made = make(gis, "--shape", "ellipsoid", "--depth", "5", "--balls", "60", "--observed", "mapped.geojson",
+                run=in_process)
     assert made.returncode == 0, made.stderr
     path = gis / "mine" / "site.yaml"
     about = yaml.safe_load(path.read_text())
@@ -488,6 +513,6 @@ def test_the_report_is_written_though_the_score_fails(gis):  # noqa: F811
     (gis / "mine" / "score").mkdir()
     (gis / "mine" / "score" / "score.yaml").write_text("of other runs\n")
     (gis / "mine" / "observed.csv").write_text("no outline\n")
-    study = slope(gis, "study", "mine")
+    study = in_process(gis, "study", "mine")
     assert study.returncode == 2 and study.stderr.splitlines()[-1].startswith("slope study: mine/observed.csv: "), study
     assert (gis / "mine" / "report.html").exists() and not (gis / "mine" / "score").exists()

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from tiny_collapse import LMP, TOP
+import tiny_collapse
 
-TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
+TOOLS = Path(os.environ.get("SLOPE_TOOLS", tiny_collapse.TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
 from slope_tools import cli  # noqa: E402
@@ -151,8 +151,16 @@ def states():
     return dict(line.split()[:2] for line in slurm("squeue", "-h", "-r", "-o", "%F_%K %T").splitlines())
 
 
-def test_an_array_goes_on_when_runs_are_cancelled_and_a_node_is_drained(cluster, here):
-    lists = "study case/in.tiny --set rolling=0:0.11:0.01 --set steps=1500"
+def test_an_array_goes_on_when_runs_are_cancelled_and_a_node_is_drained(cluster, here, monkeypatch):
+    """No run begins before one was cancelled: the program waits for a file."""
+    held = here / "lmp"
+    held.write_text(f"""#!/bin/bash
+while ! [[ "$*" == *-h* || -e {here}/begin ]]; do sleep 0.1; done
+exec {tiny_collapse.LMP} "$@"
+""")
+    held.chmod(0o755)
+    monkeypatch.setenv("LMP", str(held))
+    lists = "study case/in.tiny --set rolling=0:0.11:0.01"
     process = subprocess.Popen([*PROGRAM, *shlex.split(f"{lists} --engine slurm -o out")], stdout=subprocess.PIPE,
                                stderr=subprocess.PIPE, text=True)
     end = time.monotonic() + 120
@@ -164,6 +172,10 @@ def test_an_array_goes_on_when_runs_are_cancelled_and_a_node_is_drained(cluster,
     waiting = [name for name, state in states().items() if state == "PENDING"]
     slurm("scancel", running[0], waiting[-1])
     slurm("scontrol", "update", "nodename=n2", "state=drain", "reason=test")
+    while running[0] in states():
+        assert time.monotonic() < end and process.poll() is None
+        time.sleep(0.2)
+    (here / "begin").touch()
     out, err = process.communicate(timeout=500)
     assert process.returncode == 0, err
     assert out.count("task") == 14 and len(list((here / "out" / ".slurm").glob("*.runs"))) >= 2
@@ -243,7 +255,7 @@ def test_a_run_is_started_by_the_launcher(here):
     Path("mine").write_text("#!/bin/sh\nprintf '%s ' \"$@\" > started\nshift 2\nexec \"$@\"\n")
     Path("mine").chmod(0o755)
     assert cli.main(shlex.split(f"study case/in.tiny --set steps=20 --launcher {here}/mine -o out")) == 0
-    assert (here / "out" / "steps_20" / "started").read_text().startswith(f"-n 1 {LMP} -in in.tiny")
+    assert (here / "out" / "steps_20" / "started").read_text().startswith(f"-n 1 {tiny_collapse.LMP} -in in.tiny")
 
 
 def test_a_launcher_of_the_working_folder_is_found_from_that_of_a_run(here, monkeypatch):

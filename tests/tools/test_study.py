@@ -510,7 +510,7 @@ def test_a_failing_run_is_told_and_the_others_go_on(slope, here):
     ("echo 'ERROR: bad (src/a/pair.cpp:12)' > log.lammps; kill -SEGV $$", "ERROR: bad (ended by SIGSEGV"),
     ("exit 0", "no word in its log (lmp ended with status 0, but left no complete run"),
     ("echo 'step: 3' > tiny.summary.yaml; exit 0", "out/rolling_0/tiny.summary.yaml: must be a summary that fix "
-                                                   "deposit/grid wrote, with volume: released"),
+                                                   "deposit/grid wrote: must have volume"),
 ])
 def test_how_a_run_failed(slope, here, body, message):
     Path("lmp.sh").write_text(f"#!/bin/bash\n{body}\n")

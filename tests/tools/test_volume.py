@@ -269,24 +269,22 @@ def test_mass_is_conserved_and_every_file_has_the_same_numbers(cleared, seed, me
 
 
 @pytest.mark.parametrize("seed, rise", [(1, 0.0), (2, 0.1), (3, 1.5), (4, -1.5)])
-def test_blocks_are_pruned_only_where_that_changes_nothing(monkeypatch, seed, rise):
-    """Small blocks against a single one, all pieces of the edge near everywhere, and no bounds."""
+def test_strips_and_bounds_change_nothing(monkeypatch, seed, rise):
+    """Strips of a few rows against a single one, ten times as many pieces of the edge near, and no bounds."""
     thickness, base, road = rough(seed)
     base += rise * centres(*base.shape, 2.0)[0]
     run = plain_deposit(thickness, base, 2.0)
     mesh = volume.make_mesh(7, run.raster)
     results = []
-    for leaf in (4, 10 ** 9):
-        monkeypatch.setattr(cut, "LEAF", leaf)
-        monkeypatch.setattr(cut, "LEAF_FEW", leaf)
+    for strip_, near, diagonal in ((1000, cut.NEAR, cut.HALF_DIAGONAL), (10 ** 9, 40, 10 ** 9)):
+        for name, value in (("STRIP", strip_), ("NEAR", near), ("HALF_DIAGONAL", diagonal)):
+            monkeypatch.setattr(cut, name, value)
         results.append(volume.evaluate(run, road, 30, mesh, 2))
-        monkeypatch.setattr(cut, "HALF_DIAGONAL", 10 ** 9)
-        monkeypatch.setattr(cut.Edge, "candidates", lambda self, which, *box_: which)
     pruned, plain = results
     assert np.abs(pruned.removed - plain.removed).max() < 1e-12
     for key in ("deposit", "road", "beside", "road_area", "steep"):
         assert np.abs(getattr(pruned, key) - getattr(plain, key)).max() < 1e-9
-    assert plain.steep > 0.3 * plain.total(plain.beside) or abs(rise) < 1  # whole blocks are taken on steep ground
+    assert plain.steep > 0.3 * plain.total(plain.beside) or abs(rise) < 1  # whole cells are taken on steep ground
 
 
 def test_against_a_sum_over_points():

@@ -1,6 +1,5 @@
 """When the conservative volume is withheld: each rule alone, none, and several; the words; what left before a road."""
 import argparse
-import importlib
 import os
 import re
 import shlex
@@ -15,6 +14,7 @@ from shapely.geometry import box
 TOP = Path(__file__).resolve().parents[2]
 sys.path.insert(0, os.environ.get("SLOPE_TOOLS", str(TOP / "tools")))
 
+from slope_tools import cli  # noqa: E402
 from slope_tools.deposits import left  # noqa: E402
 from slope_tools.statistics import withheld  # noqa: E402
 from slope_tools.statistics.withheld import Facts, Kind  # noqa: E402
@@ -85,8 +85,7 @@ def test_the_commands_are_ones_that_the_tools_take(case, changed):
     assert typed or case.site is None or case.sampled
     for words in map(shlex.split, typed):
         parser = argparse.ArgumentParser()
-        command = importlib.import_module(f"slope_tools.commands.{words[1]}")
-        command.add_parser(parser.add_subparsers())
+        cli.add_command(parser.add_subparsers(), words[1], cli.module_of(words[1], parser))
         try:
             parser.parse_args(words[1:])
         except SystemExit:

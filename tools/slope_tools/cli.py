@@ -2,8 +2,9 @@
 
 A subcommand NAME is the module slope_tools.commands.NAME (of IN_TESTS: tests/other_codes/NAME.py) with
 
-    add_parser(commands, **kwargs)   calls commands.add_parser(NAME, **kwargs), adds its arguments, returns the parser
-    run(args)                        does the work; raises SlopeError on bad input
+    DESCRIPTION, EPILOG     its help, before and after the options
+    add_arguments(parser)   adds its options to an argparse parser
+    run(args)               does the work; raises SlopeError on bad input
 
 Only the module that is asked for is imported: a subcommand starts fast, and needs only its own libraries.
 """
@@ -76,6 +77,15 @@ def module_of(name, parser):
     return importlib.import_module(f"other_codes.{name}")
 
 
+def add_command(commands, name, module, **kwargs):
+    """The parser of a subcommand, added to argparse's commands."""
+    parser = commands.add_parser(name, formatter_class=argparse.RawDescriptionHelpFormatter, epilog=module.EPILOG,
+                                 description=module.DESCRIPTION, **kwargs)
+    module.add_arguments(parser)
+    parser.set_defaults(run=module.run)
+    return parser
+
+
 def with_new_names(command, argv):
     """The words with the present names of options; a note on standard error for each older one."""
     names = RENAMED.get(command, {})
@@ -104,8 +114,7 @@ def main(argv=None):
     asked = next((word for word in argv if word in every), None)
     for name, summary in every.items():
         if name == asked:
-            module = module_of(name, parser)
-            module.add_parser(commands, help=summary).set_defaults(run=module.run)
+            add_command(commands, name, module_of(name, parser), help=summary)
         else:
             commands.add_parser(name, help=summary)
     args = parser.parse_args(with_new_names(asked, argv))

@@ -3,8 +3,10 @@ import re
 from pathlib import Path
 from typing import NamedTuple, Optional
 
-from ..disk import is_number, load_yaml
+from .. import schemas
+from ..disk import load_yaml
 from ..errors import SlopeError
+from ..schemas import ABOVE_0, ANY, FLAG, MAYBE, NUMBER, listed, mapping, numbers
 from ..survey import rasters
 
 RASTERS = {     # what fix deposit/grid writes, PREFIX.KIND.asc: quantity, unit
@@ -20,16 +22,23 @@ RASTERS = {     # what fix deposit/grid writes, PREFIX.KIND.asc: quantity, unit
 OF_RUN = "output of fix deposit/grid: its prefix, one of its files, or the folder of a run, a study or a site"
 VARIABLES = "variables.yaml"       # what `slope study` runs, written before the run
 MARKER = "finished.yaml"           # written when the run is complete
-SUMMARY_KEYS = {"volume": ("released", "on_grid", "off_grid", "lost", "residual"),
-                "travel": ("front", "front_at_release", "centroid", "reach_angle"),
-                "largest": ("thickness", "max_thickness", "max_speed", "max_energy"),
-                "stop": ("step", "time", "reason"), "grid": ("cell", "extent"), "balls": ("released", "lost"),
-                "motion": ("moving_share", "threshold"), "moving": (), "ranks": (), "dt": (), "bulk_factor": (),
-                "slope_version": (), "lammps_version": (), "change_rate": (),
-                "guards": ("largest_overlap", "deep_contacts", "energy_growth", "dangerous_builds")}
-OPTIONAL = {"change_rate", "guards"}        # among them: older summaries, and other pair styles, have none
-NO_NUMBERS = {"reason", "extent", "moving", "slope_version", "lammps_version"}    # among them
-ABOVE_ZERO = {("volume", "released"), ("balls", "released"), ("grid", "cell"), ("dt", None), ("bulk_factor", None)}
+WHAT = "a summary that fix deposit/grid wrote"
+# what `slope volume`, `score` and `export` need of one, and what the others do
+OF_DEPOSIT = mapping({"volume": mapping(numbers("on_grid", "off_grid", "lost")), "time": NUMBER, "moving": FLAG,
+                      "bulk_factor": ABOVE_0})
+SUMMARY = mapping(
+    {"volume": mapping({"released": ABOVE_0, **numbers("on_grid", "off_grid", "lost", "residual")}),
+     "travel": mapping(numbers("front", "front_at_release", "centroid", "reach_angle"), quantiles=listed(mapping(
+         {"share": NUMBER, "distance": MAYBE, "reach_angle": MAYBE}), null=True)),
+     "largest": mapping(numbers("thickness", "max_thickness", "max_speed", "max_energy")),
+     "stop": mapping({"step": NUMBER, "time": NUMBER, "reason": ANY}),
+     "grid": mapping({"cell": ABOVE_0, "extent": ANY}), "balls": mapping({"released": ABOVE_0, "lost": NUMBER}),
+     "motion": {**mapping(numbers("moving_share", "threshold"), **numbers("fast_share", "fast_volume", "fast_speed")),
+                "dependentRequired": {"fast_share": ["fast_volume", "fast_speed"]}},
+     "moving": FLAG, "ranks": NUMBER, "dt": ABOVE_0, "bulk_factor": ABOVE_0, "slope_version": ANY,
+     "lammps_version": ANY},
+    change_rate=NUMBER,     # older summaries, and other pair styles, have neither this nor the next
+    guards=mapping(numbers("largest_overlap", "deep_contacts", "energy_growth", "dangerous_builds")))
 
 
 def summaries(folder):
@@ -89,25 +98,9 @@ def governing_run(study: Path) -> str:
         raise SlopeError(study, f"must be {what} ({error!r})") from error
 
 
-def load_summary(path):
+def load_summary(path, schema=SUMMARY):
     """The summary of fix deposit/grid as a dict, with all that the tools need of it."""
-    about = load_yaml(path, "a summary that fix deposit/grid wrote")
-    for key, entries in SUMMARY_KEYS.items():
-        if key in OPTIONAL and key not in about:
-            continue
-        for entry in entries or (None,):
-            if key not in about or (entry and (not isinstance(about[key], dict) or entry not in about[key])):
-                raise SlopeError(path, "must be a summary that fix deposit/grid wrote, with "
-                                 + (f"{key}: {entry}" if entry else key))
-            value = about[key][entry] if entry else about[key]
-            name = f"{key}: {entry}" if entry else key
-            if (entry or key) not in NO_NUMBERS and not is_number(value):
-                raise SlopeError(path, f"{name} must be a finite number", repr(value)[:60])
-            if (key, entry) in ABOVE_ZERO and not value > 0:
-                raise SlopeError(path, f"{name} must be > 0", value)
-    if not isinstance(about["moving"], bool):
-        raise SlopeError(path, "moving must be true or false", repr(about["moving"])[:60])
-    return about
+    return schemas.load(path, WHAT, schema)
 
 
 def load_raster(prefix, name, heights=True):

@@ -20,6 +20,7 @@ from ..studies import study
 from . import run_arguments
 
 TOLERANCE = 0.05
+DESCRIPTION = "Which values of a deck's variables give a deposit that was observed, and how well they are known."
 EPILOG = """\
 units: metres, m2, m3 of ground (bulk).
 
@@ -37,12 +38,7 @@ mapped DIR/predicted.png.
 """
 
 
-def add_parser(commands, **kwargs):
-    """Add `calibrate` and its arguments to argparse's commands; return its parser."""
-    parser = commands.add_parser(
-        "calibrate", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
-        description="Which values of a deck's variables give a deposit that was observed, and how well they are "
-                    "known.", **kwargs)
+def add_arguments(parser):
     run_arguments.add_deck(parser)
     parser.add_argument("--observed", metavar="POLYGON|RASTER", type=Path,
                         help="the mapped deposit: its outline, or its thickness in metres, as for `slope score`")
@@ -70,7 +66,6 @@ def add_parser(commands, **kwargs):
                         help="seed of the first points (default 1)")
     run_arguments.add_repeats(parser)
     run_arguments.add_runs(parser)
-    return parser
 
 
 def tolerance(text):

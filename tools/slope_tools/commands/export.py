@@ -1,5 +1,4 @@
 """slope export: every raster of a run as a GeoTIFF in the coordinates of the survey, for a GIS."""
-import argparse
 from pathlib import Path
 from typing import List
 
@@ -11,6 +10,7 @@ from ..options import add_overwrite
 from ..survey import rasters
 from ..survey.rasters import crs_name
 
+DESCRIPTION = "Every raster of a run as a GeoTIFF in the coordinates of the survey."
 EPILOG = """\
 units: metres, m/s, J, s. PREFIX is what fix deposit/grid was given as output.
 
@@ -23,11 +23,7 @@ Writes PREFIX.thickness.tif and so on, and export.yaml.
 """
 
 
-def add_parser(commands, **kwargs):
-    """Add `export` and its arguments to argparse's commands; return its parser."""
-    parser = commands.add_parser(
-        "export", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
-        description="Every raster of a run as a GeoTIFF in the coordinates of the survey.", **kwargs)
+def add_arguments(parser):
     parser.add_argument("prefix", metavar="PREFIX",
                         help="output of fix deposit/grid: PREFIX.thickness.asc and so on; or one of these files; or "
                              "the folder of a run, or of a study or site, which stands for its governing run")
@@ -36,7 +32,6 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--terrain", metavar="TERRAIN.asc", type=Path,
                         help="the run's terrain, whose sidecar holds the CRS (default: terrain.asc beside PREFIX)")
     add_overwrite(parser)
-    return parser
 
 
 def run(args):

@@ -1,5 +1,4 @@
 """slope fragility: how likely the bodies of find_slip fail at a peak acceleration."""
-import argparse
 import math
 from pathlib import Path
 from typing import Any, List
@@ -10,6 +9,7 @@ from .. import disk, warned
 from ..errors import SlopeError
 from ..options import add_overwrite, number, whole
 
+DESCRIPTION = "How likely the bodies of find_slip fail at a peak acceleration."
 EPILOG = """\
 SLIPS: PREFIX.slips.csv of find_slip, or the folder with it; PREFIX.N.base.asc lie beside it.
 DIST: a number, or as in `slope study --vary`: LO:HI, uniform:LO:HI, loguniform:LO:HI, triangular:LO:MODE:HI,
@@ -27,11 +27,7 @@ this folder `slope study SITE --sample N --fragility DIR` says how likely which 
 """
 
 
-def add_parser(commands, **kwargs):
-    """Add `fragility` and its arguments to argparse's commands; return its parser."""
-    parser = commands.add_parser(
-        "fragility", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
-        description="How likely the bodies of find_slip fail at a peak acceleration.", **kwargs)
+def add_arguments(parser):
     parser.add_argument("slips", metavar="SLIPS", type=Path, help="what find_slip wrote")
     parser.add_argument("--terrain", metavar="TERRAIN.asc", type=Path, required=True, help="the terrain of find_slip")
     parser.add_argument("--density", metavar="R", type=number, required=True, help="density of the ground, kg/m3")
@@ -57,7 +53,6 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--seed", metavar="S", type=whole, default=1, help="seed of the samples (default 1)")
     parser.add_argument("-o", dest="output", metavar="DIR", type=Path, required=True, help="folder for the results")
     add_overwrite(parser)
-    return parser
 
 
 def run(args):

@@ -1,5 +1,4 @@
 """slope mobility: how likely a mass goes beyond each point of its fall path, by how far known events went."""
-import argparse
 from pathlib import Path
 
 from .. import disk
@@ -13,6 +12,8 @@ from ..survey.crs import as_crs
 from ..warned import printer
 from .release_arguments import add_body, wanted
 
+DESCRIPTION = ("The probability that a mass goes beyond each point of its fall path, by known events of its volume "
+               "and height. No run is needed.")
 EPILOG = """\
 EVENTS.csv: columns name, fall_m, length_m (crown to toe, in plan along the path), volume_Mm3 (million m3) and
 confinement (frontal, lateral or unconfined); at least 12 events.
@@ -26,12 +27,7 @@ examples:
 """
 
 
-def add_parser(commands, **kwargs):
-    """Add `mobility` and its arguments to argparse's commands; return its parser."""
-    parser = commands.add_parser(
-        "mobility", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
-        description="The probability that a mass goes beyond each point of its fall path, by known events of its "
-                    "volume and height. No run is needed.", **kwargs)
+def add_arguments(parser):
     parser.add_argument("terrain", metavar="TERRAIN.asc|SITE",
                         help="the ground before the collapse, as slope terrain wrote it; or the folder of a site")
     parser.add_argument("-o", dest="output", metavar="DIR", required=True, type=Path, help="folder of the results")
@@ -49,7 +45,6 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--path", metavar="LINE", type=Path,
                         help="a line from the crown down, instead of the steepest descent")
     add_overwrite(parser)
-    return parser
 
 
 def run(args):

@@ -1,5 +1,4 @@
 """slope polygon: polygons of a GIS to the rings in local metres that `region polygon` reads."""
-import argparse
 import time
 from pathlib import Path
 
@@ -13,6 +12,7 @@ from ..survey.crs import as_crs
 from ..warned import printer
 
 SLOW = 5.0     # s; a run that took longer says so
+DESCRIPTION = "Polygons (GeoJSON, shapefile, CSV, WKT) to the .csv in local metres that decks read."
 EPILOG = """\
 IN: GeoJSON, shapefile, or another format of GDAL, one layer of it (FILE|layername=NAME, or --layer); or text
   (.csv, .txt, .wkt) with
@@ -28,11 +28,7 @@ example:
 """
 
 
-def add_parser(commands, **kwargs):
-    """Add `polygon` and its arguments to argparse's commands; return its parser."""
-    parser = commands.add_parser(
-        "polygon", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
-        description="Polygons (GeoJSON, shapefile, CSV, WKT) to the .csv in local metres that decks read.", **kwargs)
+def add_arguments(parser):
     parser.add_argument("input", metavar="IN", help="polygons, also several and with holes; what overlaps becomes one")
     parser.add_argument("-o", dest="output", metavar="OUT.csv", required=True, type=Path,
                         help="rings for region polygon")
@@ -46,7 +42,6 @@ def add_parser(commands, **kwargs):
     place.add_argument("--local", action="store_true",
                        help="the coordinates of IN are the terrain's local metres, whatever IN says")
     add_overwrite(parser)
-    return parser
 
 
 def run(args):

@@ -1,5 +1,4 @@
 """slope quake: strong-motion records to the acceleration of the ground that fix ground/motion reads."""
-import argparse
 from pathlib import Path
 
 from ..case.decks import quoted
@@ -9,6 +8,7 @@ from ..options import add_overwrite, number
 from ..quakes import quake_motion as motions, quake_records as records
 from ..quakes.quake import Processing, processed, write
 
+DESCRIPTION = "Strong-motion records to the acceleration of the ground that fix ground/motion reads."
 EPILOG = """\
 RECORD: one file for each component, or one with all of them
   K-NET, KiK-net ASCII (.EW .NS .UD, .EW2 .NS2 .UD2, ...): direction, factor to gal and length are in the header
@@ -22,11 +22,7 @@ examples:
 """
 
 
-def add_parser(commands, **kwargs):
-    """Add `quake` and its arguments to argparse's commands; return its parser."""
-    parser = commands.add_parser(
-        "quake", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
-        description="Strong-motion records to the acceleration of the ground that fix ground/motion reads.", **kwargs)
+def add_arguments(parser):
     parser.add_argument("records", metavar="RECORD", nargs="+", help="files with the components of one record")
     parser.add_argument("-o", dest="output", metavar="OUT.txt", required=True, type=Path,
                         help="the motion; OUT.yaml, OUT.spectrum.csv and OUT.png are written beside it")
@@ -44,7 +40,6 @@ def add_parser(commands, **kwargs):
                         help="rest: the ground ends at rest where it began (default); mean: subtract the mean; none")
     parser.add_argument("--unit", choices=("gal", "g", "m/s2"), help="unit of a CSV that names none")
     add_overwrite(parser)
-    return parser
 
 
 def run(args):

@@ -1,5 +1,4 @@
 """slope release: the body that is released, below a polygon or from a scar, as rasters and lines of a deck."""
-import argparse
 import os
 from pathlib import Path
 
@@ -10,6 +9,7 @@ from ..survey import vectors
 from ..options import add_overwrite
 from .release_arguments import add_body, wanted
 
+DESCRIPTION = "The body that is released: a slip surface below a polygon, or a scar, to a depth or volume."
 EPILOG = """\
 P: polygons as slope polygon takes them (GeoJSON, shapefile, FILE|layername=NAME, CSV, WKT)
 shapes: sphere (default) through the ends of the fall line in the polygon; ellipsoid, the same, but as wide as the
@@ -26,19 +26,13 @@ examples:
 """
 
 
-def add_parser(commands, **kwargs):
-    """Add `release` and its arguments to argparse's commands; return its parser."""
-    parser = commands.add_parser(
-        "release", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
-        description="The body that is released: a slip surface below a polygon, or a scar, to a depth or volume.",
-        **kwargs)
+def add_arguments(parser):
     parser.add_argument("terrain", metavar="TERRAIN.asc",
                         help="the ground before the collapse, as slope terrain wrote it")
     parser.add_argument("-o", dest="output", metavar="NAME", required=True, type=Path,
                         help="first part of the names of all files")
     add_body(parser)
     add_overwrite(parser)
-    return parser
 
 
 def run(args):

@@ -18,6 +18,7 @@ from ..studies import site_study
 
 STUDY = "study.yaml"
 
+DESCRIPTION = "One self-contained HTML page on a study or a run."
 EPILOG = """\
 units: metres; the ends of --section are local coordinates of the run's terrain.
 
@@ -30,11 +31,7 @@ along the section; report.numbers.csv, the numbers on the page with all their di
 """
 
 
-def add_parser(commands, **kwargs):
-    """Add `report` and its arguments to argparse's commands; return its parser."""
-    parser = commands.add_parser(
-        "report", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
-        description="One self-contained HTML page on a study or a run.", **kwargs)
+def add_arguments(parser):
     parser.add_argument("folder", metavar="DIR", type=Path, nargs="?",
                         help="folder of a study (study.yaml), of a site with its study, or of a single run "
                              "(PREFIX.summary.yaml)")
@@ -69,7 +66,6 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--pictures", action="store_true",
                         help="write the maps as files too, REPORT.1.png, REPORT.2.png, ... in the page's order; "
                              "charts, drawn as lines, stay in the page")
-    return parser
 
 
 def study_of(folder: Path) -> Path:

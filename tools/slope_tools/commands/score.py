@@ -3,13 +3,13 @@
 Mapped is a polygon, or a raster of thickness. Areas are exact: a simulated deposit is made of whole cells, and the
 polygon is cut by them; a mapped raster on another grid is spread over the run's cells by the areas that they share.
 """
-import argparse
 from pathlib import Path
 
 from ..deposits import score_run
 from ..deposits.score import THRESHOLD
 from ..options import add_overwrite, number
 
+DESCRIPTION = "Compare a run's deposit with a mapped one: overlap, run-out, volume."
 EPILOG = """\
 units: metres, m2, m3, degrees. PREFIX is what fix deposit/grid was given as output.
 
@@ -21,11 +21,7 @@ Writes score.yaml, score.csv (one row per cell of the run or of the mesh) and sc
 """
 
 
-def add_parser(commands, **kwargs):
-    """Add `score` and its arguments to argparse's commands; return its parser."""
-    parser = commands.add_parser(
-        "score", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
-        description="Compare a run's deposit with a mapped one: overlap, run-out, volume.", **kwargs)
+def add_arguments(parser):
     parser.add_argument("prefix", metavar="PREFIX", help="output of fix deposit/grid: PREFIX.thickness.asc and so on")
     parser.add_argument("--observed", metavar="POLYGON|RASTER", required=True, type=Path,
                         help="the mapped deposit: its outline (GeoJSON, shapefile, CSV, WKT), or its thickness in "
@@ -41,7 +37,6 @@ def add_parser(commands, **kwargs):
                         help="the run's terrain, whose sidecar holds the CRS (default: terrain.asc beside PREFIX)")
     parser.add_argument("--local", action="store_true", help="the mapped deposit is in local metres, not in a CRS")
     add_overwrite(parser)
-    return parser
 
 
 def run(args):

@@ -3,7 +3,6 @@
 Order of the work: plan the base run and those that differ from it by one variable, run them as `slope study` does
 (study.py, jobs.py), hold each against the mean of the equivalent runs. With --converge: size_study.py.
 """
-import argparse
 
 from ..case.settings import check_settings, one_value_each
 from ..errors import SlopeError
@@ -13,6 +12,7 @@ from ..studies.sensitivity import OF_ROAD, OF_TRAVEL, collect, plan, quantities
 from ..tables.quantities import NAMES
 from . import run_arguments
 
+DESCRIPTION = "One variable of a deck at a time: what it does to the volumes, and how far one run can be trusted."
 EPILOG = """\
 units: metres, seconds, m3 of ground (bulk).
 
@@ -29,12 +29,7 @@ chart DIR/sensitivity.png; with --converge DIR/converge.csv, DIR/converge_runs.c
 """
 
 
-def add_parser(commands, **kwargs):
-    """Add `sensitivity` and its arguments to argparse's commands; return its parser."""
-    parser = commands.add_parser(
-        "sensitivity", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
-        description="One variable of a deck at a time: what it does to the volumes, and how far one run can be "
-                    "trusted.", **kwargs)
+def add_arguments(parser):
     run_arguments.add_deck(parser)
     parser.add_argument("--levels", metavar="NAME=V1,V2,...", action="append", default=[],
                         help="values of an index variable of the deck that are a choice, each in a run of its own; "
@@ -49,7 +44,6 @@ def add_parser(commands, **kwargs):
                         help=f"quantities to examine (default {OF_ROAD}; {OF_TRAVEL} of --converge without a road), of "
                              f"{', '.join(NAMES)}")
     run_arguments.add_runs(parser)
-    return parser
 
 
 def run(args):

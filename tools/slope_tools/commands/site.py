@@ -1,5 +1,4 @@
 """slope site: make a folder with terrain, body, deck and map from GIS files, ready for `slope study`."""
-import argparse
 import math
 import os
 from pathlib import Path
@@ -50,6 +49,7 @@ MOBILE = {"friction": 6, "rolling": [0.05, 0.14], "spacing": 0.33, "field_ratio"
 LIGHT = 100                 # kg/m3; less is not a ground's density, but one in t/m3 or relative to water's
 OF_BALL = 6 / math.pi       # density of a ball over that of the ground, in a cubic packing
 
+DESCRIPTION = "A folder for a site: terrain, body, layers, deck, map, and site.yaml with every choice."
 EPILOG = """\
 units: metres, m3, degrees; minutes of the whole study on this machine, GB of all runs that are active at a time.
 
@@ -74,11 +74,7 @@ FOLDER/site.yaml holds every choice, and what each means; change it and give FOL
 """
 
 
-def add_parser(commands, **kwargs):
-    """Add `site` and its arguments to argparse's commands; return its parser."""
-    parser = commands.add_parser(
-        "site", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
-        description="A folder for a site: terrain, body, layers, deck, map, and site.yaml with every choice.", **kwargs)
+def add_arguments(parser):
     parser.add_argument("folder", metavar="FOLDER", type=Path, nargs="?",
                         help="a site's folder that is rebuilt from its site.yaml; options change its choices")
     parser.add_argument("-o", dest="output", metavar="FOLDER", type=Path, help="the new folder")
@@ -94,7 +90,6 @@ def add_parser(commands, **kwargs):
                         "environment, then build/lmp beside tools/)")
     parser.add_argument("--jobs", type=count, metavar="J", help="runs at a time, for the estimate (default: "
                         "as many as the cores)")
-    return parser
 
 
 def add_ground(group):

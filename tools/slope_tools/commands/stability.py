@@ -11,6 +11,7 @@ from ..options import add_overwrite, count, number
 from ..programs import find_lmp
 from . import stability_failed
 
+DESCRIPTION = "The slip surfaces with the least factor of safety below a terrain."
 EPILOG = """\
 units: Pa, degrees, kg/m3; m and m3; directions are compass bearings.
 
@@ -32,11 +33,7 @@ LIGHT = 500.0       # kg/m3
 FILES = ["stability.csv", "stability.png", "stability.yaml"]
 
 
-def add_parser(commands, **kwargs):
-    """Add `stability` and its arguments to argparse's commands; return its parser."""
-    parser = commands.add_parser(
-        "stability", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
-        description="The slip surfaces with the least factor of safety below a terrain.", **kwargs)
+def add_arguments(parser):
     parser.add_argument("terrain", metavar="TERRAIN.asc", type=Path, help="the ground, as slope terrain wrote it")
     add_soil(parser.add_argument_group("ground"))
     add_search(parser.add_argument_group("search"))
@@ -47,7 +44,6 @@ def add_parser(commands, **kwargs):
                         "build/lmp beside tools/)")
     parser.add_argument("-o", dest="output", metavar="DIR", type=Path, required=True, help="folder for the results")
     add_overwrite(parser)
-    return parser
 
 
 def add_soil(group):

@@ -3,7 +3,6 @@
 Order of the work: check the deck and the settings, plan the runs (repeats.py), make their folders and run what is not
 finished (jobs.py), collect (results.py), combine (combinations.py, headline.py).
 """
-import argparse
 from pathlib import Path
 
 from ..case import decks
@@ -26,6 +25,7 @@ OF_A_ROAD = ("size_error", "road", "cut_angle", "mesh", "local")
 NOT_OF_A_SITE = ("set", "repeat", "vary", "sample", *OF_A_ROAD, "equally_good", "output", "exceed", "left_out",
                  *OF_A_KIND)
 OPTIONS = {"output": "-o", "left_out": "--except"}
+DESCRIPTION = "Run one deck for all combinations of values of its variables, or for an ensemble."
 EPILOG = """\
 units: metres, seconds, m3 of ground (bulk); thresholds of --exceed in metres.
 
@@ -58,11 +58,7 @@ DIR/combinations.csv (mean and scatter), DIR/study.yaml, and the maps envelope_*
 """
 
 
-def add_parser(commands, **kwargs):
-    """Add `study` and its arguments to argparse's commands; return its parser."""
-    parser = commands.add_parser(
-        "study", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
-        description="Run one deck for all combinations of values of its variables, or for an ensemble.", **kwargs)
+def add_arguments(parser):
     add_deck(parser, site=True)
     parser.add_argument("--set", metavar="NAME=V1,V2,...", action="append", default=[],
                         help="values of an index variable of the deck; A:B:STEP stands for A, A + STEP, ... up to B")
@@ -89,7 +85,6 @@ def add_parser(commands, **kwargs):
                              "remove_on_road_m3; without a road distance_99_m)")
     add_intensity(parser)
     add_runs(parser, output=False)
-    return parser
 
 
 def run(args):

@@ -9,6 +9,7 @@ from ..options import add_overwrite, number, whole
 from ..survey import local_terrain, rasters
 from ..warned import printer
 
+DESCRIPTION = "Survey rasters (GeoTIFF, ESRI ASCII grid, FG-GML) to the plain terrain.asc that decks read."
 EPILOG = """\
 units: metres for heights, --cell, and coordinates; N of --fill is a number of cells of the input.
 
@@ -24,12 +25,7 @@ Writes terrain.asc and terrain.yaml (CRS, origin, sources, what was done).
 """
 
 
-def add_parser(commands, **kwargs):
-    """Add `terrain` and its arguments to argparse's commands; return its parser."""
-    parser = commands.add_parser(
-        "terrain", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
-        description="Survey rasters (GeoTIFF, ESRI ASCII grid, FG-GML) to the plain terrain.asc that decks read.",
-        **kwargs)
+def add_arguments(parser):
     parser.add_argument("inputs", metavar="IN", nargs="+",
                         help="raster of heights in metres, or FG-GML (.xml, or .zip of them); several are merged, "
                              "which needs one CRS and one grid")
@@ -56,7 +52,6 @@ def add_parser(commands, **kwargs):
     parser.add_argument("--fill", type=whole, default=0, metavar="N",
                         help="fill NODATA holes of at most N cells (default 0: none); holes at the edge stay")
     add_overwrite(parser)
-    return parser
 
 
 def run(args):

@@ -6,6 +6,7 @@ from .. import disk, warned
 from ..deposits import travel
 from ..options import add_overwrite, number, whole
 
+DESCRIPTION = "Where balls come to rest: cumulative distributions along and across the slope."
 EPILOG = """\
 units: metres, degrees. A dump is text as LAMMPS' dump custom writes it, with the columns id x y z in any place; its
 last snapshot counts. Name DUMPs before other options.
@@ -19,11 +20,7 @@ Writes travel.yaml (percentiles), travel.csv (distributions), balls.csv (one row
 """
 
 
-def add_parser(commands, **kwargs):
-    """Add `travel` and its arguments to argparse's commands; return its parser."""
-    parser = commands.add_parser(
-        "travel", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
-        description="Where balls come to rest: cumulative distributions along and across the slope.", **kwargs)
+def add_arguments(parser):
     parser.add_argument("dumps", metavar="DUMP", nargs="+", help="dump of the final state, one for each run")
     parser.add_argument("--axis", metavar="x|y|DEG", type=axis, default=0.0,
                         help="direction along the slope, in plan: x, y, or degrees from x towards y; across is 90 "
@@ -42,7 +39,6 @@ def add_parser(commands, **kwargs):
     parser.add_argument("-o", dest="output", metavar="DIR", type=Path, default=Path("travel"),
                         help="folder for the results (default travel)")
     add_overwrite(parser)
-    return parser
 
 
 def axis(text):

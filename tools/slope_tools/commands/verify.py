@@ -2,7 +2,6 @@
 
 Order of the work: collect the claims and their runs, run these (a run that several claims need once), evaluate, write.
 """
-import argparse
 import time
 from pathlib import Path
 
@@ -14,6 +13,7 @@ from ..runs import jobs
 from ..validation import verification
 from ..validation.verify import NAME, Runner, compared, judge, line, made, write
 
+DESCRIPTION = "Run the cases of inputs/, compare them with closed forms and published numbers, write a report."
 EPILOG = """\
 units: SI; each claim states its own.
 
@@ -28,12 +28,7 @@ holds and every control fails, as it must, else 2.
 """
 
 
-def add_parser(commands, **kwargs):
-    """Add `verify` and its arguments to argparse's commands; return its parser."""
-    parser = commands.add_parser(
-        "verify", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
-        description="Run the cases of inputs/, compare them with closed forms and published numbers, write a report.",
-        **kwargs)
+def add_arguments(parser):
     parser.add_argument("--quick", action="store_true", help="only runs that take seconds")
     parser.add_argument("--only", metavar="CASE,...",
                         help="these folders of inputs/, such as 01_restitution (default all)")
@@ -45,7 +40,6 @@ def add_parser(commands, **kwargs):
                         "report")
     parser.add_argument("-o", dest="output", metavar="DIR", type=Path, default=Path(NAME),
                         help=f"folder of the report and of the runs (default {NAME})")
-    return parser
 
 
 def run(args):

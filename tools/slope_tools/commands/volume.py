@@ -2,7 +2,6 @@
 
 Order of the work: read the run, the road and its axis; cut (cut.py); sum per mesh cell; write tables and maps.
 """
-import argparse
 from pathlib import Path
 
 from .. import disk, warned
@@ -10,6 +9,8 @@ from ..deposits import volume
 from ..deposits.volume import BLOCKED, CUT_ANGLE, MUCH_BELOW, SAMPLES
 from ..options import add_overwrite, number, whole
 
+DESCRIPTION = ("Volume to remove from a road, per mesh cell and in total, above a cut surface that rises from the "
+               "road's edges.")
 EPILOG = """\
 units: metres, m3, degrees. PREFIX is what fix deposit/grid was given as output.
 
@@ -20,12 +21,7 @@ Writes volume.yaml, volume.csv, volume.geojson, volume_mesh.tif, volume.tif, axi
 """
 
 
-def add_parser(commands, **kwargs):
-    """Add `volume` and its arguments to argparse's commands; return its parser."""
-    parser = commands.add_parser(
-        "volume", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EPILOG,
-        description="Volume to remove from a road, per mesh cell and in total, above a cut surface that rises from "
-                    "the road's edges.", **kwargs)
+def add_arguments(parser):
     parser.add_argument("prefix", metavar="PREFIX", help="output of fix deposit/grid: PREFIX.thickness.asc and so on")
     parser.add_argument("--road", metavar="POLYGON", required=True, type=Path,
                         help="the road: GeoJSON, shapefile, CSV or WKT")
@@ -51,7 +47,6 @@ def add_parser(commands, **kwargs):
                              f"{SAMPLES}); planes are exact with any")
     parser.add_argument("--no-picture", action="store_true", help="without volume.png, which takes longest")
     add_overwrite(parser)
-    return parser
 
 
 def run(args):

@@ -8,7 +8,7 @@ from typing import NamedTuple, Optional
 
 import numpy as np
 
-from .. import disk
+from ..case import run_folders
 from ..errors import SlopeError
 from ..geometry import extent, numbers
 from ..survey import rasters
@@ -51,7 +51,7 @@ def read(prefix, terrain, warn):
     for name in names:
         if not Path(name).is_file():
             raise SlopeError(name, f"must be an existing file; {prefix} must be the output of fix deposit/grid")
-    summary = read_summary(names[2])
+    summary = run_folders.load_summary(names[2], run_folders.OF_DEPOSIT)
     thickness, surface = (rasters.read(name, heights=False) for name in names[:2])
     if thickness.z.shape != surface.z.shape or thickness.transform != surface.transform:
         raise SlopeError(names[1], f"must have the grid of {names[0]}")
@@ -95,21 +95,6 @@ def read_base(prefix, thickness, surface):
                          f"must be {prefix}.surface.asc less the thickness, {difference[row, column]:.9g}: are they of "
                          "one run?", f"{base.z[row, column]:.9g}")
     return base.z
-
-
-def read_summary(path):
-    what = "a summary that fix deposit/grid wrote"
-    summary = disk.parse_yaml(path, what)
-    try:
-        for value in (summary["bulk_factor"], summary["time"],
-                      *(summary["volume"][key] for key in ("on_grid", "off_grid", "lost"))):
-            if not disk.is_number(value):
-                raise ValueError(str(value)[:60])
-        if not (isinstance(summary["moving"], bool) and summary["bulk_factor"] > 0):
-            raise ValueError("moving, bulk_factor")
-    except (ValueError, KeyError, TypeError) as error:
-        raise SlopeError(path, f"must be {what} ({error!r})") from error
-    return summary
 
 
 def find_terrain(prefix, terrain, raster, warn):

@@ -2,9 +2,6 @@
 from dataclasses import dataclass
 from typing import Any, Mapping, Optional
 
-from .. import disk
-from ..errors import SlopeError
-
 FAST = 0.1              # m/s: what is slower creeps or jitters (motion: fast_... of fix deposit/grid)
 MOST_FAST = 0.01        # share of the released volume that may be faster in a deposit at rest
 ENDS = {"halted": "ended by its rest criterion", "run completed": "stopped at its duration",
@@ -51,8 +48,8 @@ def percent(share: float) -> str:
     return f"{100 * share:.2g} %" if share < 0.1 else f"{100 * share:.0f} %"
 
 
-def state(summary: Mapping[str, Any], where: Any) -> Rest:
-    """The state of a run by its summary (run_folders.load_summary); where: the file, for messages.
+def state(summary: Mapping[str, Any]) -> Rest:
+    """The state of a run by its summary (run_folders.load_summary).
 
     At rest is a deposit whose run ended by the deck's criterion of rest, and of which less than 1 % is faster than
     0.1 m/s; a summary without fast_share has only the share that is faster than a threshold of the deck's.
@@ -62,8 +59,5 @@ def state(summary: Mapping[str, Any], where: Any) -> Rest:
     if "fast_share" not in motion:
         still = motion["moving_share"] < MOST_FAST and motion["threshold"] <= FAST and not summary["moving"]
         return Rest(halted, ended, halted and still, motion["moving_share"], motion["threshold"])
-    for key in ("fast_share", "fast_volume", "fast_speed"):
-        if not disk.is_number(motion.get(key)):
-            raise SlopeError(where, f"motion: {key} must be a finite number", repr(motion.get(key))[:60])
     share = float(motion["fast_share"])
     return Rest(halted, ended, halted and share < MOST_FAST, share, FAST, motion["fast_volume"], motion["fast_speed"])

@@ -1,9 +1,6 @@
 """How far the volume travels, by the shares that stay within a distance: what a summary's travel: quantiles say."""
 from typing import Any, Dict, Mapping, Optional, Sequence
 
-from .. import disk
-from ..errors import SlopeError
-
 SHARES = (50, 90, 95, 99)       # percent of the volume
 HEADLINE = SHARES[-1]           # the distance that counts: one stray ball does not move it
 COLUMNS = (*(f"distance_{share}_m" for share in SHARES), *(f"reach_{share}_deg" for share in SHARES))
@@ -12,29 +9,16 @@ REACH = f"reach_{HEADLINE}_deg"
 BEYOND = 1 - HEADLINE / 100       # of the volume; where more left the box, that distance is beyond it
 
 
-def columns(summary: Mapping[str, Any], where: Any) -> Dict[str, Optional[float]]:
-    """{column: m in plan from the highest released ball, or degrees}; None where a summary does not know it.
+def columns(summary: Mapping[str, Any]) -> Dict[str, Optional[float]]:
+    """{column: m in plan from the highest released ball, or degrees} of a summary (run_folders.load_summary).
 
     None: a run of an older version, or so much left the box that this share of the released volume lies beyond it.
-
-    where: the file, for messages.
     """
     found: Dict[str, Optional[float]] = dict.fromkeys(COLUMNS)
-    entries = summary["travel"].get("quantiles")
-    if entries is None:
-        return found
-    try:
-        for entry in entries:
-            share = round(100 * entry["share"])
-            if share not in SHARES:
-                continue
-            for key, column in (("distance", f"distance_{share}_m"), ("reach_angle", f"reach_{share}_deg")):
-                if entry[key] is not None and not disk.is_number(entry[key]):
-                    raise ValueError(key)
-                found[column] = entry[key]
-    except (TypeError, KeyError, ValueError, OverflowError) as error:
-        raise SlopeError(where, "travel: quantiles must be a list of share, distance (m) and reach_angle (degrees)",
-                         repr(error)[:60]) from error
+    for entry in summary["travel"].get("quantiles") or ():
+        share = round(100 * entry["share"])
+        if share in SHARES:
+            found.update({f"distance_{share}_m": entry["distance"], f"reach_{share}_deg": entry["reach_angle"]})
     return found
 
 

@@ -6,7 +6,6 @@ import numpy as np
 import rasterio.warp
 
 from .. import disk
-from ..drawing import maps
 from ..survey.rasters import epsg
 
 LABELS = 150           # mesh cells on a map that get their volume written into them
@@ -70,6 +69,7 @@ def write_profile(path, run_, profile):
 
 
 def draw(path, run_, road, axis, mesh, result, about):
+    from ..drawing import maps      # matplotlib
     raster = run_.raster
     full = np.argwhere(result.deposit > 0)
     deposited: Tuple = ()

@@ -3,21 +3,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
-import jsonschema
-
-from .. import disk
+from .. import disk, schemas
 from ..ensembles.sample import Sample
 from ..errors import SlopeError
+from ..schemas import TEXT, listed, mapping
 from ..statistics import distributions
 from .fit import ABOUT
 
 KIND = "calibrated"
 NUMBER = 32             # of the sets, unless --sample says otherwise
 WHAT = "what `slope calibrate` wrote, with its sets"
-SCHEMA = {"type": "object", "required": ["calibration", "sets"], "properties": {
-    "calibration": {"type": "object", "required": ["variables"], "properties": {
-        "variables": {"type": "object", "minProperties": 1, "additionalProperties": {"type": "string"}}}},
-    "sets": {"type": "array", "minItems": 2, "items": {"type": "object", "additionalProperties": {"type": "string"}}}}}
+TEXTS = {"type": "object", "additionalProperties": TEXT, "minProperties": 1}
+SCHEMA = mapping({"calibration": mapping({"variables": TEXTS}), "sets": listed(TEXTS, 2)})
 
 
 @dataclass(frozen=True)
@@ -40,11 +37,7 @@ def sample(folder: Path, number: Optional[int], deck: Path, fixed: Mapping[str, 
     path = folder / ABOUT
     if not path.is_file():
         raise SlopeError("--from", f"must be a folder with {ABOUT}, which slope calibrate writes", folder)
-    found = disk.load_yaml(path, WHAT)
-    try:
-        jsonschema.validate(found, SCHEMA)
-    except jsonschema.ValidationError as error:
-        raise SlopeError(path, f"must be {WHAT}", error.message[:80]) from error
+    found = schemas.load(path, WHAT, SCHEMA)
     texts = found["calibration"]["variables"]
     variables = distributions.parse([f"{name}={text}" for name, text in texts.items()], deck, "--from", True)
     for option, names in (("--set", fixed), ("--repeat", repeated)):

@@ -7,7 +7,7 @@ from ..plots import figure_charts
 from ..plots.figure_charts import Series
 from ..runs.repeats import key_of
 from ..statistics import headline
-from ..tables.quantities import NAMES
+from ..tables.quantities import NAMES, of_run
 from .data import is_number
 
 AXIS = {"rolling": "rolling resistance (-)", "friction": "friction angle (degrees)", "restitution": "restitution (-)",
@@ -27,19 +27,9 @@ TITLES = {REMOVE: "Volume to remove from the road", "remove_on_road_m3": "Volume
 
 def quantities(data):
     """{column: what it is} of those that all finished runs have a number of; of a single run, of its summary."""
-    rows = data.finished or [single_row(data)]
+    rows = data.finished or [of_run(data.result.summary, data.connected())]
     return {name: label for name, (label, _) in NAMES.items()
             if all(row.get(name) is not None for row in rows)}
-
-
-def single_row(data):
-    """The columns that a study would have of a single run."""
-    summary = data.result.summary
-    found = data.connected()
-    return {"released_m3": summary["volume"]["released"], "front_m": summary["travel"]["front"],
-            "reach_angle_deg": summary["travel"]["reach_angle"], "centroid_m": summary["travel"]["centroid"],
-            "thickness_m": summary["largest"]["thickness"], **travel_shares.columns(summary, data.result.path),
-            "connected_m": found and found.distance, "connected_deg": found and found.reach_angle}
 
 
 def unit(name):

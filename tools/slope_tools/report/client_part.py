@@ -64,7 +64,7 @@ def of_reach(data, numbers) -> Dict[str, Any]:
 def reaches(data) -> List[float]:
     """The 99 % distances of all runs; empty where one of them is unknown."""
     key = travel_shares.DISTANCE
-    rows = data.finished or [travel_shares.columns(data.result.summary, data.result.path)]
+    rows = data.finished or [travel_shares.columns(data.result.summary)]
     return [] if any(row.get(key) is None for row in rows) else [row[key] for row in rows]
 
 

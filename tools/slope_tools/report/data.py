@@ -183,7 +183,7 @@ class Data:
                         row["moving_share"] if row.get("fast_share") is None else row["fast_share"], row["moving"],
                         row["stop_time_s"]) for row in self.finished]
         one = self.result
-        state = rest.state(one.summary, one.path)
+        state = rest.state(one.summary)
         stop = one.summary["stop"]
         return [End(None, state.at_rest, stop["reason"] == CUT, state.text, state.share, one.summary["moving"],
                     stop["time"])]

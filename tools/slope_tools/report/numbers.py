@@ -155,7 +155,7 @@ def travel_card(data, numbers):
         value, angle, name = row[key], row[travel_shares.REACH], data.label_of(row)
         connected = row.get("connected_m")
     else:
-        shares = travel_shares.columns(data.result.summary, data.result.path)
+        shares = travel_shares.columns(data.result.summary)
         value, angle, name = shares[key], shares[travel_shares.REACH], ""
         farthest = f"; farthest ball {numbers('farthest ball', unit, farthest_of(data.result.summary)[0])} m"
         connected = data.connected() and data.connected().distance
@@ -210,7 +210,7 @@ def rest_card(data):
 def travel_rows(data, numbers):
     """Share of the volume, distance and reach angle, of the shown run; the connected deposit and the farthest ball."""
     one = data.result
-    shares = travel_shares.columns(one.summary, one.path)
+    shares = travel_shares.columns(one.summary)
     rows = []
     for share in travel_shares.SHARES:
         keys = f"distance_{share}_m", f"reach_{share}_deg"
@@ -233,7 +233,7 @@ def balance(data, numbers):
     release = next((release for name, release in data.releases()
                     if name is None or name == data.label(data.result)), None)
     one = data.result
-    state = rest.state(one.summary, one.path)
+    state = rest.state(one.summary)
     return {"release": release.text if release else UNKNOWN, "rest": state.text,
             "status": "rest" if state.at_rest else "moving" if one.summary["moving"] else "doubt",
             "energy": digits.si(one.summary["largest"]["max_energy"], "J"),

@@ -9,10 +9,10 @@ from ..case import decks
 from ..plots.ground import Ground
 from ..plots.section import Section
 from ..survey.rasters import crs_name
-from ..tables.quantities import NAMES
+from ..tables.quantities import NAMES, of_run
 from . import body, chain_part, client_part, convergence_part, heading, intensity_part, limits_part, mobility_part
 from .asked import Asked
-from .charts import Charts, REMOVE, TERMS, differences, quantities, single_row
+from .charts import Charts, REMOVE, TERMS, differences, quantities
 from .data import Data, find_deck
 from .maps_part import Maps
 from .numbers import Numbers, answer, balance, cards, travel_rows
@@ -180,7 +180,7 @@ class Page:
         tables: List[Dict[str, Any]] = []
         if self.reference is None:
             return None
-        own = self.data.finished or [single_row(self.data)]
+        own = self.data.finished or [of_run(self.data.result.summary, self.data.connected())]
         for key, quantity in self.reference.quantities.items():
             what, unit = NAMES[key]
             xs = sorted({x for points in quantity.series.values() for x, _ in points})

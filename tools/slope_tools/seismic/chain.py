@@ -15,8 +15,6 @@ from ..statistics import hazard
 from . import fragility
 from .fragility import Band, Hazard
 
-MOST_BODIES = 60        # bits of a number
-
 
 class Steps(NamedTuple):
     """A distribution of volumes: the largest first, and the share of the runs up to each of them, rising to 1."""

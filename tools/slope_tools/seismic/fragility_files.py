@@ -8,8 +8,6 @@ import numpy as np
 from scipy import stats
 
 from .. import disk
-from ..drawing import figures, pictures
-from ..drawing.figures import plt
 from ..errors import SlopeError
 from .fragility import Band, Fit, Frequency, Hazard
 
@@ -110,6 +108,8 @@ def fitted_at(fit: Optional[Fit], peaks: np.ndarray) -> Optional[np.ndarray]:
 
 def draw(path: Path, peaks: np.ndarray, curves: Sequence[Curve]) -> None:
     """The curves with their bands and fits; with a hazard curve also where the frequency of the last one comes from."""
+    from ..drawing import figures, pictures
+    from ..drawing.figures import plt
     parts = curves[-1].frequency
     with plt.rc_context(figures.STYLE):
         figure, axes = plt.subplots(1, 2 if parts else 1, figsize=(figures.FULL, 2.9), squeeze=False,

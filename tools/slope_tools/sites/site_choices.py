@@ -10,10 +10,9 @@ import os
 from pathlib import Path
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Tuple
 
-import jsonschema
 import yaml
 
-from .. import disk
+from .. import disk, schemas
 from ..errors import SlopeError
 from ..survey import vectors
 from ..survey.crs import as_crs
@@ -39,11 +38,6 @@ DERIVED = (("balls", "diameter"), ("balls", "number"), ("model", "speed"), ("mod
 
 # sections that `slope study` and the report read when they run, except for files, of which the folder has copies
 READ_LATER = ("project", "road", "study")
-NTH = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
-# types of a JSON schema
-TYPES = {"array": "a list in brackets", "string": "a text", "number": "a number", "integer": "a whole number",
-         "object": "a section with keys", "boolean": "true or false"}
-
 Choices = Dict[str, Any]        # {section: {key: value}}, complete
 Derived = Dict[str, Any]        # {"section.key": value} of DERIVED
 
@@ -82,14 +76,12 @@ def check(given: Any, where: str, options: Optional[Mapping[Tuple[str, str], str
     if given["slope_site"] != VERSION:
         raise SlopeError(f"{where}: slope_site", f"must be {VERSION}, the version that this program reads: make a new "
                          "site from its files, or use the program that made it", given["slope_site"])
-    validator = jsonschema.Draft202012Validator(schema())
-    errors = sorted(validator.iter_errors(given), key=lambda error: [str(part) for part in error.absolute_path])
-    if errors:
-        place = list(errors[0].absolute_path)
+    if wrong := schemas.first_error(given, schema()):
+        place, rule = wrong
         key = ".".join(str(part) for part in place if isinstance(part, str))
-        at = "".join(f": {nth(part)} value" for part in place if isinstance(part, int))
+        at = "".join(f": {schemas.nth(part)}" for part in place if isinstance(part, int))
         option = (options or {}).get((str(place[0]), str(place[1])) if len(place) > 1 else ("", ""))
-        raise SlopeError((option or (f"{where}: {key}" if key else where)) + at, rule_of(errors[0]))
+        raise SlopeError((option or (f"{where}: {key}" if key else where)) + at, rule)
     for key, text in (given.get("project") or {}).items():      # now, as the report comes last
         check_text((options or {}).get(("project", key), f"{where}: project.{key}"), text)
 
@@ -98,34 +90,6 @@ def check_text(where: str, text: Any) -> None:
     """Raise SlopeError unless a text, or None, fits the heading of a report."""
     if text is not None and not (isinstance(text, str) and text.isprintable() and len(text) <= LONGEST_TEXT):
         raise SlopeError(where, f"must be one line of at most {LONGEST_TEXT} letters", repr(text))
-
-
-def nth(index: int) -> str:
-    """The place of a list's item in words."""
-    return NTH[index] if index < len(NTH) else f"{index + 1}th"
-
-
-def rule_of(error: jsonschema.ValidationError) -> str:
-    """What a validation error says, as a rule."""
-    rule = str(error.validator)
-    if rule == "additionalProperties":
-        extra = sorted(set(error.instance) - set(error.schema["properties"]))
-        return f"must have no {', '.join(extra)}, which is unknown; keys are {', '.join(error.schema['properties'])}"
-    if rule == "required":
-        return f"must have {' and '.join(key for key in error.validator_value if key not in error.instance)}"
-    if rule == "type":
-        types = error.validator_value if isinstance(error.validator_value, list) else [error.validator_value]
-        words = " or ".join(TYPES.get(one, one) for one in types)
-        example = f", such as [{flow(error.instance)}]" if "array" in types and disk.is_number(error.instance) else ""
-        return f"must be {words}{example}, got {error.instance!r}"
-    rules = {"exclusiveMinimum": "be > {}", "minimum": "be >= {}",
-             "exclusiveMaximum": "be < {}", "maximum": "be <= {}", "enum": "be one of {}",
-             "minItems": "have at least {} items", "maxItems": "have at most {} items"}
-    if rule in rules:
-        value = error.validator_value
-        values = ", ".join(str(one) for one in value) if isinstance(value, list) else value
-        return f"must {rules[rule].format(values)}, got {error.instance!r}"
-    return f"must be valid: {error.message}"
 
 
 def read(folder: Path) -> Choices:

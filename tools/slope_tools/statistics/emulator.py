@@ -12,9 +12,6 @@ from typing import Any, Dict, List, NamedTuple, Optional, Sequence
 import numpy as np
 from scipy import linalg, stats
 from scipy.stats import qmc
-from sklearn.exceptions import ConvergenceWarning
-from sklearn.gaussian_process import GaussianProcessRegressor
-from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
 
 from . import dependent
 
@@ -34,6 +31,9 @@ class Emulator:
     """The process fitted to values (n) at points (n, d). noise: standard deviation of a run by chance."""
 
     def __init__(self, points: np.ndarray, values: np.ndarray, kernel=None, restarts: int = 1):
+        from sklearn.exceptions import ConvergenceWarning       # half a second to import
+        from sklearn.gaussian_process import GaussianProcessRegressor
+        from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
         points, values = np.asarray(points, float), np.asarray(values, float)
         self.mean, self.scale = float(values.mean()), float(values.std()) or 1.0
         kernels = [kernel] if kernel else [

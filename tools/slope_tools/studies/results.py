@@ -14,7 +14,8 @@ from ..ensembles import ensemble, known_study
 from ..runs import repeats
 from ..seismic import chain_files
 from ..survey import rasters
-from ..tables import combinations, intensity, size_error, step_check, structures, study_table, usable, withheld_words
+from ..tables import (combinations, intensity, quantities, size_error, step_check, structures, study_table, usable,
+                      withheld_words)
 from ..tables.size_error import SizeErrors
 from ..tables.study_maps import Maps
 from ..warned import Warned, entries, warned
@@ -222,6 +223,7 @@ def doubts(rows):
 
 def result(run, row, maps):
     """The row of a finished run, and its final thickness; adds its rasters to the maps."""
+    from ..deposits import connected, deposit
     marker = disk.load_yaml(run.marker, "what `slope study` wrote")
     path = run.folder / str(marker.get("summary"))
     about = disk.load_yaml(run.folder / run_folders.VARIABLES, "what `slope study` wrote")
@@ -230,37 +232,27 @@ def result(run, row, maps):
     thickness = run_folders.load_raster(prefix, "thickness")
     maps.add(run.name, thickness, run_folders.load_raster(prefix, "max_thickness"), not row.get("batch"))
     run.log.update()
-    volume, travel = summary["volume"], summary["travel"]
+    volume, most, motion = summary["volume"], summary["largest"], summary["motion"]
     stays = volume["released"] - volume["off_grid"] - volume["lost"]
     on_grid = float(np.nansum(thickness.z)) * thickness.transform.a ** 2
-    state, whole = rest.state(summary, path), whole_deposit(prefix, thickness, summary)
+    base = run_folders.load_raster(prefix, "surface").z - thickness.z
+    whole = connected.connected(deposit.Deposit(str(prefix), thickness, base, summary, None))
+    state = rest.state(summary)
     row = {**row, "variables": about.get("variables"), "ranks": about.get("ranks"), "package": about.get("package"),
-           "released_m3": volume["released"], "ball_m3": volume["released"] / summary["balls"]["released"],
+           **quantities.of_run(summary, whole), "ball_m3": volume["released"] / summary["balls"]["released"],
            "on_grid_m3": volume["on_grid"], "off_grid_m3": volume["off_grid"], "lost_m3": volume["lost"],
            "residual_m3": volume["residual"], "mass_error": (on_grid - stays) / volume["released"],
-           "front_m": travel["front"], "reach_angle_deg": travel["reach_angle"], "centroid_m": travel["centroid"],
-           **travel_shares.columns(summary, path), **whole,
-           "thickness_m": summary["largest"]["thickness"], "max_thickness_m": summary["largest"]["max_thickness"],
-           "max_speed_m_s": summary["largest"]["max_speed"], "stop_time_s": summary["stop"]["time"],
-           "stop_reason": summary["stop"]["reason"], "moving": summary["moving"],
-           "at_rest": state.at_rest, "end": state.text, "end_short": state.short, "moves_share": state.share,
-           "moving_share": summary["motion"]["moving_share"], "fast_share": summary["motion"].get("fast_share"),
-           "fast_volume_m3": summary["motion"].get("fast_volume"),
-           "fast_speed_m_s": summary["motion"].get("fast_speed"),
+           "max_thickness_m": most["max_thickness"], "max_speed_m_s": most["max_speed"],
+           "stop_time_s": summary["stop"]["time"], "stop_reason": summary["stop"]["reason"],
+           "moving": summary["moving"], "at_rest": state.at_rest, "end": state.text, "end_short": state.short,
+           "moves_share": state.share, "moving_share": motion["moving_share"], "fast_share": motion.get("fast_share"),
+           "fast_volume_m3": motion.get("fast_volume"), "fast_speed_m_s": motion.get("fast_speed"),
            "change_rate": summary.get("change_rate"),
            "wall_s": marker.get("wall_seconds"), "summary": f"{run.name}/{path.name}",
            "slope_version": summary["slope_version"], "lammps_version": summary["lammps_version"],
            "lmp_sha256": about.get("lmp_sha256"), "log_warnings": run.log.warnings,
            **structures.of_run(run.folder, run.log.settings)}
     return row, thickness
-
-
-def whole_deposit(prefix, thickness, summary):
-    """How far the connected deposit reaches from the highest released ball: m in plan, and reach angle in degrees."""
-    from ..deposits import connected, deposit
-    base = run_folders.load_raster(prefix, "surface").z - thickness.z
-    found = connected.connected(deposit.Deposit(str(prefix), thickness, base, summary, None))
-    return {"connected_m": found and found.distance, "connected_deg": found and found.reach_angle}
 
 
 def on_road(run, setup: Setup, row, thickness, picture=True) -> Dict[str, Any]:

@@ -1,4 +1,6 @@
 """The quantities of a run that studies evaluate, by their columns in the tables: names, units, and format."""
+from typing import Any, Dict
+
 from ..deposits import travel_shares
 
 NAMES = {"remove_m3": ("to remove", "m3"), "remove_on_road_m3": ("on the road", "m3"),
@@ -11,6 +13,15 @@ NAMES = {"remove_m3": ("to remove", "m3"), "remove_on_road_m3": ("on the road", 
          "connected_deg": ("reach angle of the connected deposit", "degrees"),
          "front_m": ("farthest ball", "m"), "reach_angle_deg": ("reach angle of the farthest ball", "degrees"),
          "centroid_m": ("travel of the centroid", "m"), "thickness_m": ("largest thickness", "m")}
+
+
+def of_run(summary, connected) -> Dict[str, Any]:
+    """Of a summary (run_folders.load_summary) and its connected deposit (deposits.connected), or None without one."""
+    travel = summary["travel"]
+    return {"released_m3": summary["volume"]["released"], "front_m": travel["front"],
+            "reach_angle_deg": travel["reach_angle"], "centroid_m": travel["centroid"],
+            **travel_shares.columns(summary), "connected_m": connected and connected.distance,
+            "connected_deg": connected and connected.reach_angle, "thickness_m": summary["largest"]["thickness"]}
 
 
 def number(value, sign=""):

@@ -2,14 +2,22 @@
 from pathlib import Path
 from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence
 
-from .. import disk
+from .. import disk, schemas
 from ..case.settings import as_number
 from ..digits import three
 from ..errors import SlopeError
+from ..schemas import FLAG, MAYBE, NUMBER, OBJECT, TEXT, listed, mapping
 from ..statistics.convergence import Estimate, error_of_line
 from ..statistics.headline import SizeError
 
 WHAT = "a converge.yaml of `slope sensitivity --converge`"
+ESTIMATE = mapping({"value": NUMBER, "standard_error": MAYBE})
+CONVERGE = mapping({
+    "study": mapping({"variable": TEXT, "deck": TEXT, "base": OBJECT}, road={"type": ["object", "null"]}),
+    "quantities": {"type": "object", "additionalProperties": mapping({
+        "errors_known": FLAG, "small_balls": ESTIMATE, "slope": ESTIMATE, "supported": {"type": ["boolean", "null"]},
+        "covariance": MAYBE, "quantile": MAYBE, "sizes": listed(mapping({
+            "value": NUMBER, "mean": NUMBER, "error_percent": MAYBE, "standard_error_percent": MAYBE}), 1)})}})
 # what may differ between the runs of the fit and those of the study without a word
 UNIMPORTANT = {"out", "ranks", "seed"}
 TRUSTED = 0.15          # share: a larger error is that of balls which are too large, however narrow its interval
@@ -20,12 +28,11 @@ def falls(path: Path, quantity: str) -> bool:
 
     A volume is then not too small for the size of its balls, however badly the size of its error is known.
     """
-    about = disk.load_yaml(path, WHAT)
-    try:
-        sizes = sorted((entry["value"], entry["mean"]) for entry in about["quantities"][quantity]["sizes"])
-        field = as_number(about["study"]["base"].get("field_d", ""))
-    except (KeyError, TypeError, AttributeError) as error:
-        raise SlopeError(path, f"must be {WHAT} ({error!r})") from error
+    about = schemas.load(path, WHAT, CONVERGE)
+    if quantity not in about["quantities"]:
+        raise SlopeError(path, f"must be {WHAT}, with {quantity}")
+    sizes = sorted((entry["value"], entry["mean"]) for entry in about["quantities"][quantity]["sizes"])
+    field = as_number(about["study"]["base"].get("field_d", ""))
     means = [mean for _, mean in sizes]
     return (about["study"]["variable"] == "d" and isinstance(field, float) and sizes[0][0] < field * (1 - 1e-9)
             and len(means) > 1 and means[0] > 0 and all(low <= high for low, high in zip(means, means[1:])))
@@ -36,35 +43,21 @@ class SizeErrors:
 
     def __init__(self, path: Path, quantity: str):
         self.path, self.quantity = path, quantity
-        about = disk.load_yaml(path, WHAT)
-        try:
-            quantities = about["quantities"]
-            if quantity not in quantities:
-                raise SlopeError(path, f"must have {quantity}, which `slope sensitivity --converge` finds with --road "
-                                 f"and --of {quantity}", ", ".join(map(str, quantities)) or "none")
-            entry = quantities[quantity]
-            self.variable = str(about["study"]["variable"])
-            self.base: Dict[str, str] = {str(name): str(value) for name, value in about["study"]["base"].items()}
-            self.deck, self.road = str(about["study"]["deck"]), about["study"].get("road") or {}
-            self.supported: Optional[bool] = entry["supported"]
-            small, slope = entry["small_balls"], entry["slope"]
-            self.known = bool(entry["errors_known"])
-            self.small = Estimate(small["value"], small["standard_error"])
-            self.slope = Estimate(slope["value"], slope["standard_error"])
-            self.covariance: Optional[float] = entry["covariance"]
-            self.quantile: Optional[float] = entry["quantile"]
-            self.sizes: List[Mapping[str, Any]] = entry["sizes"]
-            numbers = [small["value"], slope["value"], *(size["value"] for size in self.sizes),
-                       *(size["error_percent"] for size in self.sizes if self.known)]
-            maybe = [small["standard_error"], slope["standard_error"], self.covariance, self.quantile,
-                     *(size["standard_error_percent"] for size in self.sizes)]
-            numbers += [one for one in maybe if one is not None]
-            if not all(map(disk.is_number, numbers)) or not self.sizes:
-                raise ValueError("a number")
-            if not isinstance(self.road, dict):
-                raise ValueError("road")
-        except (KeyError, TypeError, AttributeError, ValueError) as error:
-            raise SlopeError(path, f"must be {WHAT} ({error!r})") from error
+        about = schemas.load(path, WHAT, CONVERGE)
+        study, quantities = about["study"], about["quantities"]
+        if quantity not in quantities:
+            raise SlopeError(path, f"must have {quantity}, which `slope sensitivity --converge` finds with --road "
+                             f"and --of {quantity}", ", ".join(map(str, quantities)) or "none")
+        entry = quantities[quantity]
+        self.variable, self.deck, self.road = study["variable"], study["deck"], study.get("road") or {}
+        self.base: Dict[str, str] = {str(name): str(value) for name, value in study["base"].items()}
+        self.supported: Optional[bool] = entry["supported"]
+        self.small, self.slope = (Estimate(entry[key]["value"], entry[key]["standard_error"])
+                                  for key in ("small_balls", "slope"))
+        self.covariance: Optional[float] = entry["covariance"]
+        self.quantile: Optional[float] = entry["quantile"]
+        self.sizes: List[Mapping[str, Any]] = entry["sizes"]
+        self.known = entry["errors_known"] and all(size["error_percent"] is not None for size in self.sizes)
         if not self.known:
             sure = self.quantile and self.small.standard_error and self.quantile * self.small.standard_error
             raise SlopeError(path, f"must have a value of {quantity} for small {self.variable} that is clearly above "

@@ -1,76 +1,45 @@
 """study.yaml, read by those who work on with it."""
-from .. import disk
+from .. import schemas
 from ..errors import SlopeError
+from ..schemas import ANY, FLAG, MAYBE as PERHAPS, NUMBER, OBJECT, TEXT, listed, mapping, numbers
 from .study_table import COLUMNS, MAYBE, ROAD_COLUMNS
 
-EXCEEDANCE = ("threshold_m", "area_in_any_run_m2", "area_in_every_run_m2")
-# of the conservative volume
-PARTS = ("volume_m3", "mean_m3", "chance_m3", "size_m3", "scatter_m3", "degrees_of_freedom")
-ALWAYS = PARTS[:2]                  # the others may be unknown
+WHAT = "what `slope study` wrote, of this version (the same command rewrites it, and keeps the runs)"
+HEADLINE = mapping(     # the conservative volume
+    {**dict.fromkeys(("volume_m3", "chance_m3", "size_m3", "scatter_m3", "degrees_of_freedom"), PERHAPS),
+     **numbers("mean_m3", "remove_m3"), "kind": ANY, "repeats": ANY, "rounded": ANY, "run": TEXT}, null=True,
+    withheld=listed(mapping({"text": TEXT, "remedy": TEXT}), null=True))        # none in older ones
+STUDY = mapping(
+    {"study": mapping({"deck": TEXT, "runs": NUMBER, "finished": NUMBER,
+                       "set": {"type": "object", "additionalProperties": listed(ANY)}},
+                      road=mapping(numbers("cut_angle", "mesh"), null=True)),
+     "runs": listed(mapping({"run": TEXT, "status": TEXT, "set": OBJECT})), "conservative": HEADLINE,
+     "largest": OBJECT},
+    exceedance=listed(mapping(numbers("threshold_m", "area_in_any_run_m2", "area_in_every_run_m2")), null=True),
+    envelope=mapping({"max_thickness": mapping({"file": ANY})}, null=True))
+OTHERS = {"moving": FLAG, "at_rest": FLAG, "stop_reason": ANY, "end": ANY, "summary": TEXT}     # columns of no number
+
+
+def row_of(columns):
+    """The schema of the row of a finished run."""
+    return mapping({**{key: PERHAPS if key in MAYBE else NUMBER for key in (*columns, "moving_share")}, **OTHERS})
 
 
 def read_study(path):
     """study.yaml as a dict, with all that its readers take from it; SlopeError if something is missing."""
-    what = "what `slope study` wrote"
-    study = disk.load_yaml(path, what)
-    try:
-        rows, about, best = study["runs"], study["study"], study["conservative"]
-        if not all(isinstance(several, list) for several in about["set"].values()):
-            raise ValueError("set")
-        if not any(row["status"] == "finished" for row in rows):
-            raise SlopeError(path, "must have a finished run", f"{len(rows)} that failed")
-        for row in rows:
-            if not (isinstance(row["run"], str) and row["set"].keys() == about["set"].keys()):
-                raise ValueError("runs")
-            if row["status"] == "finished":
-                check_row(f"{path}: run {row['run']}", row, best)
-        names = [row["run"] for row in rows if row["status"] == "finished"]
-        if not all(one is None or one["run"] in names for one in (best, study["largest"]["front_m"])):
-            raise ValueError("conservative, largest")
-        if best:
-            check_headline(path, best)
-            if not about.get("road"):
-                raise ValueError("conservative")
-        if about.get("road") and not all(disk.is_number(about["road"][key]) for key in ("cut_angle", "mesh")):
-            raise ValueError("road")
-        for entry in study.get("exceedance") or ():
-            if not all(disk.is_number(entry[key]) for key in EXCEEDANCE):
-                raise ValueError("exceedance")
-        if study.get("envelope"):
-            study["envelope"]["max_thickness"]["file"]
-        str(about["deck"]), int(about["runs"]), int(about["finished"])
-    except (KeyError, TypeError, AttributeError, ValueError, OverflowError) as error:
-        raise SlopeError(path, f"must be {what} ({error!r})") from error
+    study = schemas.load(path, WHAT, STUDY)
+    rows, about, best = study["runs"], study["study"], study["conservative"]
+    finished = [row for row in rows if row["status"] == "finished"]
+    if not finished:
+        raise SlopeError(path, "must have a finished run", f"{len(rows)} that failed")
+    schema = row_of((*COLUMNS, *(ROAD_COLUMNS if best else ())))
+    for row in finished:
+        schemas.check(row, schema, f"{path}: run {row['run']}", WHAT)
+    farthest = study["largest"].get("front_m")
+    if any(row["set"].keys() != about["set"].keys() for row in rows) or not (
+            isinstance(farthest, dict) and all(one["run"] in [row["run"] for row in finished]
+                                               for one in (best or farthest, farthest))):
+        raise SlopeError(path, f"must be {WHAT}: runs, set, conservative and largest must be of one study")
+    if best and (not about.get("road") or best["volume_m3"] is None and not best.get("withheld")):
+        raise SlopeError(path, f"must be {WHAT}: conservative must have a volume, or why it is withheld, and a road")
     return study
-
-
-def check_headline(path, best):
-    """SlopeError if the conservative volume lacks a part, or has no number there."""
-    for key in (*PARTS, "remove_m3", "kind", "repeats", "rounded"):
-        if key not in best:
-            raise SlopeError(path, f"conservative must have {key}: it is of another version; `slope study` with the "
-                             "same arguments rewrites it and keeps the runs")
-    withheld = best.get("withheld") or []           # none in older ones
-    if not all(isinstance(one["text"], str) and isinstance(one["remedy"], str) for one in withheld):
-        raise ValueError("conservative: withheld")
-    for key in (*PARTS, "remove_m3"):
-        unknown = key == "volume_m3" and withheld or key in PARTS and key not in ALWAYS
-        if not (disk.is_number(best[key]) or best[key] is None and unknown):
-            raise ValueError(f"conservative: {key}")
-
-
-def check_row(where, row, road):
-    """SlopeError if the row of a finished run lacks a column, or has no number there."""
-    for key in (*COLUMNS, "moving_share", *(ROAD_COLUMNS if road else ())):
-        if key not in row:
-            raise SlopeError(where, f"must have {key}: it is of another version; `slope study` with the same "
-                             "arguments rewrites it and keeps the runs")
-        if key in ("moving", "at_rest", "stop_reason", "end") or (key in MAYBE and row[key] is None):
-            continue
-        if not disk.is_number(row[key]):
-            raise SlopeError(where, f"{key} must be a finite number", repr(row[key])[:60])
-    for key in ("moving", "at_rest"):
-        if not isinstance(row[key], bool):
-            raise SlopeError(where, f"{key} must be true or false", repr(row[key])[:60])
-    if not isinstance(row["summary"], str):
-        raise SlopeError(where, "summary must be the name of a file", repr(row["summary"])[:60])

@@ -11,10 +11,11 @@ import yaml
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from .. import disk, processes, provenance
+from .. import disk, processes, provenance, schemas
 from ..case import last_words, logs
 from ..errors import SlopeError
 from ..runs import jobs
+from ..schemas import ANY, OBJECT, listed, mapping, numbers
 from . import verification
 from .verification.claims import Result
 from .verification.errata import errata
@@ -23,6 +24,11 @@ NAME = "verification"       # of the files
 FINISHED = "finished"       # in the folder of a run that ended well: checksums of the program and of the run
 COLUMNS = ("case", "claim", "name", "source", "unit", "expected", "tolerance", "got", "passed", "control",
            "control_got", "control_fails", "remark", "commands")
+# crosscheck.yaml
+PEERS = mapping({
+    "crosscheck": mapping({"versions": OBJECT, "package": ANY, "finished": ANY, **numbers("compared", "failed")}),
+    "checks": listed(mapping(dict.fromkeys(("case", "quantity", "code", "against", "value", "expected", "tolerance",
+                                            "passed"), ANY))), "differs": OBJECT})
 
 
 # --- runs ---
@@ -188,17 +194,13 @@ def row(outcome):
 
 def compared(path):
     """What `slope crosscheck` wrote, for the report."""
-    what = "what `slope crosscheck` wrote"
-    found = disk.load_yaml(path, what)
-    try:
-        about = found["crosscheck"]
-        rows = [{**check, "value": text(check["value"]), "expected": text(check["expected"]),
-                 "tolerance": "for information" if check["tolerance"] is None else text(check["tolerance"])}
-                for check in found["checks"]]
-        return {"rows": rows, "differs": found["differs"], "versions": about["versions"], "package": about["package"],
-                "date": about["finished"], "compared": about["compared"], "failed": about["failed"]}
-    except (AttributeError, KeyError, TypeError, ValueError) as error:
-        raise SlopeError(path, f"must be {what}", repr(error)) from error
+    found = schemas.load(path, "what `slope crosscheck` wrote", PEERS)
+    about = found["crosscheck"]
+    rows = [{**check, "value": text(check["value"]), "expected": text(check["expected"]),
+             "tolerance": "for information" if check["tolerance"] is None else text(check["tolerance"])}
+            for check in found["checks"]]
+    return {"rows": rows, "differs": found["differs"], "date": about["finished"],
+            **{key: about[key] for key in ("versions", "package", "compared", "failed")}}
 
 
 def write(output, outcomes, about, peers=None):

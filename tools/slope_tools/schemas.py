@@ -1,0 +1,83 @@
+"""What a file must hold, as a JSON schema; what of it is wrong, in one line."""
+import functools
+from typing import Any, Dict, List, Mapping, Optional, Tuple
+
+from . import disk
+from .errors import SlopeError
+
+ANY: Dict[str, Any] = {}
+NUMBER = {"type": "number"}             # finite
+MAYBE = {"type": ["number", "null"]}
+ABOVE_0 = {"type": "number", "exclusiveMinimum": 0}
+TEXT, FLAG, OBJECT = {"type": "string"}, {"type": "boolean"}, {"type": "object"}
+NTH = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
+TYPES = {"array": "a list in brackets", "string": "a text", "number": "a finite number", "integer": "a whole number",
+         "object": "a section with keys", "boolean": "true or false", "null": "null"}
+RULES = {"exclusiveMinimum": "be > {}", "minimum": "be >= {}", "exclusiveMaximum": "be < {}", "maximum": "be <= {}",
+         "enum": "be one of {}", "minItems": "have at least {} items", "maxItems": "have at most {} items"}
+
+
+def numbers(*names: str) -> Dict[str, Any]:
+    return dict.fromkeys(names, NUMBER)
+
+
+def mapping(required: Mapping[str, Any], null: bool = False, **optional: Any) -> Dict[str, Any]:
+    """Of a mapping with these keys, or of none; it may have others."""
+    return {"type": ["object", "null"] if null else "object", "required": list(required),
+            "properties": {**required, **optional}}
+
+
+def listed(items: Mapping[str, Any], least: int = 0, null: bool = False) -> Dict[str, Any]:
+    return {"type": ["array", "null"] if null else "array", "items": items, "minItems": least}
+
+
+def load(path, what: str, schema: Mapping[str, Any]) -> Dict[str, Any]:
+    """What a YAML file holds; SlopeError unless it fits the schema. what: the file, for messages."""
+    about = disk.load_yaml(path, what)
+    check(about, schema, path, what)
+    return about
+
+
+def check(value: Any, schema: Mapping[str, Any], where, what: str) -> None:
+    """Raise SlopeError unless a value fits the schema."""
+    wrong = first_error(value, schema)
+    if wrong:
+        place = [nth(part) if isinstance(part, int) else str(part) for part in wrong[0]]
+        raise SlopeError(where, ": ".join([f"must be {what}", *place, wrong[1]]))
+
+
+@functools.lru_cache
+def validator():
+    """jsonschema's, to whom numbers are finite; imported when it is needed."""
+    import jsonschema
+    latest = jsonschema.Draft202012Validator
+    return jsonschema.validators.extend(latest, type_checker=latest.TYPE_CHECKER.redefine(
+        "number", lambda _, value: disk.is_number(value)))
+
+
+def first_error(value: Any, schema: Mapping[str, Any]) -> Optional[Tuple[List[Any], str]]:
+    """Keys and indices of the first place that does not fit, and the rule; None if all does."""
+    errors = sorted(validator()(schema).iter_errors(value), key=lambda one: [str(part) for part in one.absolute_path])
+    return (list(errors[0].absolute_path), rule_of(errors[0])) if errors else None
+
+
+def nth(index: int) -> str:
+    """The place of a list's item in words."""
+    return f"{NTH[index] if index < len(NTH) else f'{index + 1}th'} value"
+
+
+def rule_of(error) -> str:
+    """What a ValidationError of jsonschema says, as a rule."""
+    rule, value, got = str(error.validator), error.validator_value, repr(error.instance)[:60]
+    if rule == "additionalProperties":
+        extra = sorted(set(error.instance) - set(error.schema["properties"]))
+        return f"must have no {', '.join(extra)}, which is unknown; keys are {', '.join(error.schema['properties'])}"
+    if rule == "required":
+        return f"must have {' and '.join(key for key in value if key not in error.instance)}"
+    if rule == "type":
+        types = value if isinstance(value, list) else [value]
+        example = f", such as [{got}]" if "array" in types and disk.is_number(error.instance) else ""
+        return f"must be {' or '.join(TYPES.get(one, one) for one in types)}{example}, got {got}"
+    if rule in RULES:
+        return f"must {RULES[rule].format(', '.join(map(str, value)) if isinstance(value, list) else value)}, got {got}"
+    return f"must be valid: {error.message}"
