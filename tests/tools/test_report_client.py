@@ -66,6 +66,24 @@ def test_a_number_that_is_withheld_gives_way_to_its_reasons(slope, here):
     assert not TOOLS_WORDS.search(text) and "slope study --set d=1" in (here / "out" / "report.html").read_text()
 
 
+def test_only_a_report_on_the_same_folder_is_replaced(slope, here):
+    """In the folder itself any report is, as that may have moved; files of the user's are never, without --overwrite."""
+    assert slope("one -o page.html")[0] == slope("one -o page.html")[0] == 0
+    page = (here / "page.html").read_bytes()
+    status, out, err = slope("repeated -o page.html")
+    assert (status, out, err) == (2, "", "slope report: -o: page.html must be the result of slope report repeated to be "
+                                         "replaced: give another name, or --overwrite\n")
+    assert (here / "page.html").read_bytes() == page
+    assert slope("repeated -o page.html --overwrite")[0] == 0
+    assert slope("one")[0] == 0
+    (here / "one").rename(here / "two")
+    assert slope("two")[0] == 0
+    for name in ("two/report.html", "mine.section.csv"):
+        (here / name).write_text("of the user\n")
+    assert "-o: two/report.html must be the result of slope report two" in slope("two")[2]
+    assert "-o: mine.section.csv must be the result of slope report two" in slope("two -o mine.html")[2]
+
+
 def test_without_a_road_the_reach_is_the_number(slope, here):
     assert slope("one")[0] == 0
     text = client(here / "one" / "report.html")

@@ -352,6 +352,7 @@ BODY = ("--shape", "ellipsoid", "--depth", "5")
     (("--shape", "ellipsoid", "--volume", "1e9"), "--volume: must be at most .*got 1000000000"),
     ((*BODY, "--road", "missing.geojson"), "missing.geojson: must be an existing file"),
     ((*BODY, "--cut-angle", "95"), "--cut-angle: must be < 90, got 95"),
+    ((*BODY, "--cut-angle", "0"), "--cut-angle: must be > 0, got 0"),
     ((*BODY, "--structure", "dem.tif"), "dem.tif: must be an STL file"),
     ((*BODY, "--motion", "road.geojson"), "road.geojson: line 1: must be four numbers"),
     ((*BODY, "--minutes", "0.001"), "--minutes: must be at least .* got 0.001"),

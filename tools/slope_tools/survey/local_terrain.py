@@ -83,6 +83,7 @@ def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[st
     if not np.isfinite(raster.z).any():
         raise SlopeError(", ".join(inputs), "must have a height, all cells are NODATA")
     plausible.warn_of_pits(raster, warn)
+    plausible.warn_of_picture(raster, warn)
     filled = 0
     if wanted.fill:
         holes, count = small_holes(np.isnan(raster.z), wanted.fill)
