@@ -9,8 +9,8 @@ OTHER = "other"         # of the kinds that no reader tells apart, and of what o
 WORDS = {
     OTHER: "{text}",
     # of the files of a GIS
-    "pits": "{cells} cells of {mark:g} m lie at least {depth:.4g} m below all cells beside them, the first at "
-            "{east:.10g} {north:.10g}: NODATA that the file does not declare? {remedy}",
+    "pits": "{cells} cells of {mark:g} m lie at least {depth:.4g} m below all cells beside them, the first "
+            "at {east:.10g} {north:.10g}: NODATA that the file does not declare? {remedy}",
     "picture": "all heights are whole numbers from {low:g} to {high:g}, as the values of a picture: is it a hillshade?",
     "in feet": "the ground falls by {degrees:.0f} degrees on average: are the heights in feet? Then --z-unit ft, which "
                "makes it {in_feet:.0f}",
@@ -27,8 +27,8 @@ WORDS = {
     # of a body
     "bulges": "the ground bulges above the line from toe to shoulder, and so does the {shape}: a smaller polygon, or "
               "--shape slbl?",
-    "no way out": "the plane dips {dip:.3g} degrees towards {direction:.3g}, where the ground falls by {ground:.3g}: it "
-                  "does not come out of the ground below the body, which cannot slide out; a smaller --dip, or another "
+    "no way out": "the plane dips {dip:.3g} degrees towards {direction:.3g}, where the ground falls by {ground:.3g}: "
+                  "it does not come out of the ground below the body, which cannot slide out; a smaller --dip, or another "
                   "--direction?",
     "little": "the base level {form}takes {percent:.0f} % of the polygon, {depth:.3g} m deep on average: is this the "
               "intended body? A larger depth or a smaller polygon gives another one",
@@ -44,7 +44,8 @@ WORDS = {
     "left terrain": "{percent:.2g} % of the mass left the terrain in the trial run: use a larger elevation model",
     "not at rest": "the trial run was not at rest after {seconds:.0f} s: the run time of the study is a guess",
     "large": "the body has {millions} million m3: masses of {limit:g} million m3 and more run farther than laboratory "
-             "friction gives; calibrate with a past event of that size (slope calibrate), or see --mobile",
+             "friction gives; calibrate with a past event of that size (slope calibrate; --mobile has the values of "
+             "one)",
     "thin": "the body is {balls:.1f} balls thick on average, below {limit:g}: the numbers will be rough; use more "
             "balls (--balls, --minutes)",
     "first look": "the body is {balls:.1f} balls thick at most, below {limit:g}: a first look; to repeat it, use more "

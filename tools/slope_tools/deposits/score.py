@@ -43,7 +43,8 @@ def read_observed(path, raster, threshold, local, warn=None):
     if mapped.crs is None and raster.crs is not None and not local:
         mapped = mapped._replace(crs=raster.crs)
         if warn:
-            warn(Warned("CRS of terrain", {"file": str(path), "remedy": " (--local if it is in the run's local metres)"}))
+            warn(Warned("CRS of terrain", {"file": str(path),
+                                           "remedy": " (--local if it is in the run's local metres)"}))
     return from_raster(path, mapped, raster, threshold, local)
 
 

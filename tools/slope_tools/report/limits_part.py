@@ -81,8 +81,8 @@ def model(data) -> CONTENT:
     large = data.largest_release() >= LARGE
     return [
         *([("Large masses", f"Masses of {LARGE / 1e6:g} million m3 and more are known to run farther than laboratory "
-                            "friction suggests, so that the default parameters are not conservative for the run-out: "
-                            "calibrate them with a past event (page on events of the documentation).")] * large),
+                            "friction suggests: the run-out is not conservative unless the friction was calibrated "
+                            "with a past event of that size (page on events of the documentation).")] * large),
         ("The body", "Its slip surface and volume were given, not computed: the report does not say whether, or how "
                      "likely, the slope fails. The body is released at once; no trigger is modelled, except with an "
                      "earthquake."),

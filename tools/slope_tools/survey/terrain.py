@@ -22,8 +22,8 @@ def declare(path, crs, tell, warn, assigned=None, unit=None, nodata=None):
     """
     local = rasters.read_asc_local(path, unit=unit, nodata=nodata)
     if rasters.is_picture(path):
-        raise SlopeError(path, "must be heights, not a picture such as a hillshade; if they are heights, gdal_translate "
-                         "-ot Float32 stores them as such", "values of 8 bits")
+        raise SlopeError(path, "must be heights, not a picture such as a hillshade; if they are heights, "
+                         "gdal_translate -ot Float32 stores them as such", "values of 8 bits")
     said = rasters.height_unit(path)
     if unit and said and said != unit:
         tell(f"{path} says heights in {said}: taken as {unit}")
