@@ -115,8 +115,8 @@ def test_report_draws_them(studied, capsys):
     assert section.count("<tr>") == 2 + 3 + 2       # heads, structures, lines
     assert re.findall(r"<tr><td>(\d)</td><td class=\"left\">(\w+)", section) == [
         ("1", "wall"), ("1", "post"), ("2", "post"), ("1", "fence"), ("2", "fence")]
-    assert re.search(r"(wall|post) is 2.00 m high, [\d.]+ of the model's balls: the loads on it are those of single balls",
-                     html.unescape(section))
+    assert re.search(r"(wall|post) is 2.00 m high, [\d.]+ of the model's balls: the loads on it are those of single "
+                     "balls", html.unescape(section))
     shown = re.search(r"Maps of the run wall (\d)", page)[1]
     assert section.count('alt="Largest pressure on wall"') == int(shown)
     assert "Largest pressure on post" not in section        # nothing touched it

@@ -23,7 +23,9 @@ def uncertainty(data, numbers) -> CONTENT:
     study = data.study
     best = study and study["conservative"]
     found = []
-    if best and best["chance_m3"] is not None:
+    if best and best["chance_m3"] is not None and not best["mean_m3"] and not best["chance_m3"]:
+        found.append(f"In none of the {len(data.finished)} runs anything is to be removed.")
+    elif best and best["chance_m3"] is not None:
         low, high = (headline.text(value, best["place_m3"]) for value in
                      (max(0.0, best["mean_m3"] - best["chance_m3"]), best["mean_m3"] + best["chance_m3"]))
         found.append(f"Another run with the same values gives {low} to {high} m3 to remove, in 95 % of cases.")

@@ -76,7 +76,7 @@ class Page:
             "intensity": intensity_part.content(data, numbers, self.picture),
             "chain": chain_part.content(data, numbers, self.picture),
             "hit": Structures(data, numbers, self.picture, self.ground).content(),
-            "road_chart": REMOVE in one.row, "removal": maps.removal(removal), "over_all": maps.over_all(),
+            "road_chart": charts.has_removal(), "removal": maps.removal(removal), "over_all": maps.over_all(),
             "beyond": self.beyond(),
             "reference": self.reference and self.reference_tables(),
             "sizes": self.sizes and {"charts": self.sizes.pictures(self.picture), "rows": self.sizes.rows(numbers),

@@ -32,7 +32,8 @@ def compare(step: Step, groups: Sequence[Group], scatter: Optional[headline.Scat
     entry["mean_m3"] = volumes.mean
     text = f"half the time step, rolling {step.rolling}: "
     if not step.volume and not volumes.mean:
-        return {**entry, "text": f"{text}nothing to remove, as with the whole step"}
+        return {**entry, "chance_m3": 0.0, "within_chance": True,
+                "text": f"{text}nothing to remove, as with the whole step"}
     text += f"{shown(step.volume)} m3 instead of {shown(volumes.mean)} to remove"
     if volumes.mean > 0:
         text += f", {100 * difference / volumes.mean:+.1f} %"
