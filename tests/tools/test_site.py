@@ -366,6 +366,22 @@ def test_refused(gis, words, start):
     assert list(gis.glob("mine/*")) == [kept] * kept.exists()
 
 
+def test_angles_that_look_like_coefficients_are_asked_about():
+    """That of the cut only where there is a road."""
+    choices = site_choices.complete({})
+    choices["model"].update(friction=0.5, slip_friction=0)
+    choices["road"]["cut_angle"] = 0.6
+
+    def options():
+        return [one.numbers["option"] for one in site_warnings.of_resistance(choices)]
+    assert options() == ["--friction"]
+    choices["road"]["file"] = "road.csv"
+    assert options() == ["--friction", "--cut-angle"]
+    assert "A coefficient of 0.6 is 31 degrees" in str(site_warnings.of_resistance(choices)[1])
+    choices["road"]["cut_angle"] = 3
+    assert options() == ["--friction"]
+
+
 def test_refused_files(gis):
     def outside():
         write_layer(gis / "release.geojson", np.array(RELEASE) + 5000)

@@ -27,9 +27,9 @@ WORDS = {
     # of a body
     "bulges": "the ground bulges above the line from toe to shoulder, and so does the {shape}: a smaller polygon, or "
               "--shape slbl?",
-    "no way out": "the plane dips {dip:.3g} degrees towards {direction:.3g}, where the ground falls by "
-                  "{ground:.3g}: it does not come out of the ground below the body, which cannot slide out; a smaller --dip, or another "
-                  "--direction?",
+    "no way out": "the plane dips {dip:.3g} degrees towards {direction:.3g}, where the ground falls by {ground:.3g}: "
+                  "it does not come out of the ground below the body, which cannot slide out; a smaller --dip, or "
+                  "another --direction?",
     "little": "the base level {form}takes {percent:.0f} % of the polygon, {depth:.3g} m deep on average: is this the "
               "intended body? A larger depth or a smaller polygon gives another one",
     "cliff": "the ground of the body falls by {degrees:.0f} degrees on average: a cliff, or heights in feet "
