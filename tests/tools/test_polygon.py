@@ -169,7 +169,7 @@ def test_a_feature_without_geometry_is_left_out_and_said(slope):
     geojson("a.geojson", None, moved(ROAD, WGS), None)
     status, out, err = slope("a.geojson -o out.csv")
     assert status == 0 and f"area {ROAD.area:.3f} m2" in out
-    assert err == "slope polygon: warning: a.geojson: feature 0 has no geometry, and 1 more: left out\n"
+    assert err == "slope polygon: warning: a.geojson: feature 0 has no geometry (2 of 3 have none): left out\n"
     geojson("none.geojson", None, None)
     assert slope("none.geojson -o none.csv")[2].endswith("none.geojson: must hold polygons, none of its features has a "
                                                          "geometry, got 2\n")

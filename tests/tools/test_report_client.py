@@ -11,7 +11,9 @@ import test_report
 from test_report import stands
 
 from slope_tools import digits
+from slope_tools.plots.obstacles import Obstacles
 from slope_tools.report import body, caveats, client_part, warnings
+from slope_tools.report.numbers import Numbers
 from slope_tools.warned import Warned, warned
 
 made, here, slope = test_report.made, test_report.here, test_report.slope       # its fixtures
@@ -66,6 +68,24 @@ def test_a_number_that_is_withheld_gives_way_to_its_reasons(slope, here):
     assert not TOOLS_WORDS.search(text) and "slope study --set d=1" in (here / "out" / "report.html").read_text()
 
 
+def test_only_a_report_on_the_same_folder_is_replaced(slope, here):
+    """In the folder itself any report is, as that may have moved; files of the user's only with --overwrite."""
+    assert slope("one -o page.html")[0] == slope("one -o page.html")[0] == 0
+    page = (here / "page.html").read_bytes()
+    status, out, err = slope("repeated -o page.html")
+    assert (status, out, err) == (2, "", "slope report: -o: page.html must be the result of slope report repeated "
+                                         "to be replaced: give another name, or --overwrite\n")
+    assert (here / "page.html").read_bytes() == page
+    assert slope("repeated -o page.html --overwrite")[0] == 0
+    assert slope("one")[0] == 0
+    (here / "one").rename(here / "two")
+    assert slope("two")[0] == 0
+    for name in ("two/report.html", "mine.section.csv"):
+        (here / name).write_text("of the user\n")
+    assert "-o: two/report.html must be the result of slope report two" in slope("two")[2]
+    assert "-o: mine.section.csv must be the result of slope report two" in slope("two -o mine.html")[2]
+
+
 def test_without_a_road_the_reach_is_the_number(slope, here):
     assert slope("one")[0] == 0
     text = client(here / "one" / "report.html")
@@ -88,7 +108,7 @@ def ground_of(*touched, crs="EPSG:6677"):
     z = np.zeros((5, 6))
     for row, column, value in touched:
         z[row, column] = value
-    return SimpleNamespace(max_thickness=z, raster=SimpleNamespace(crs=crs))
+    return SimpleNamespace(max_thickness=z, raster=SimpleNamespace(crs=crs), obstacles=Obstacles({}, {}))
 
 
 def test_what_was_lost_is_counted_in_one_line_with_its_side():
@@ -142,6 +162,26 @@ def test_a_warning_survives_its_file():
     newer = {"kind": "of tomorrow", "text": "it rains", "numbers": {"mm": 3}}
     assert str(warned(newer)) == str(warned("it rains")) == "it rains"
     assert str(warned({"kind": "lost", "text": "12 m3 left"})) == "12 m3 left"
+
+
+def test_a_structure_of_few_balls_is_a_caveat():
+    """Its height is that above the ground, wherever that lies."""
+    wall = np.array([[[2, 2, 95.0], [2, 8, 95], [2, 8, 112]]])
+    ground = SimpleNamespace(before=None, along=lambda _, x, y: np.full(len(x), 100.0), obstacles=Obstacles(
+        {"dam": wall}, {}))
+    summary = {"volume": {"released": 64.0e3}, "balls": {"released": 1000}}
+    data = SimpleNamespace(result=SimpleNamespace(summary=summary))
+    assert caveats.coarse(data, ground).text == ("dam is 3 of the model's balls high: the forces on it are those of "
+                                                 "single balls, and rough.")
+    summary["balls"]["released"] = 8000
+    assert caveats.coarse(data, ground) is None
+
+
+def test_a_mean_has_the_digits_that_its_scatter_leaves():
+    found = Numbers()
+    assert found.mean("x", "m", 448724.0, 84123.0, "") == "449,000 ± 84,000"
+    assert found.mean("x", "m", 1471.3, 1.234, "") == "1,471 ± 1"
+    assert found.mean("x", "m", 2787.6, 96.8, "") == "2,788 ± 97" and found.mean("x", "m", 5.126, None, "") == "5.13"
 
 
 # --- words ---

@@ -3,6 +3,7 @@ import re
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ sys.path.insert(0, str(TOOLS))
 from slope_tools import cli  # noqa: E402
 from slope_tools.animation import view  # noqa: E402
 from slope_tools.drawing import figures  # noqa: E402
+from slope_tools.errors import SlopeError  # noqa: E402
 from slope_tools.report import document, paper  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
@@ -128,6 +130,43 @@ def test_a_browser_that_fails_leaves_no_pdf(monkeypatch, tmp_path, script, last)
     with pytest.raises(Exception, match=f"must print {page}, got {last}"):
         paper.write(page, tmp_path / "page.pdf")
     assert not (tmp_path / "page.pdf").exists()
+
+
+def test_a_browser_that_hangs_is_ended_with_all_that_it_started(monkeypatch, tmp_path):
+    program = tmp_path / "bin" / "chromium"
+    program.parent.mkdir()
+    program.write_text(f"#!/bin/sh\nsleep 600 &\necho $! > {tmp_path}/child\nwait\n")
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{program.parent}:/bin:/usr/bin")
+    monkeypatch.setattr(paper, "PATIENCE", 1)
+    page = tmp_path / "page.html"
+    page.write_text("<html></html>")
+    with pytest.raises(SlopeError) as error:
+        paper.write(page, tmp_path / "page.pdf")
+    assert str(error.value) == (f"--pdf: {program} must print {page} within 1 s: try again when less runs on this "
+                                "machine, or print the page from any browser, got nothing by then")
+    assert not (tmp_path / "page.pdf").exists() and not is_running(int((tmp_path / "child").read_text()))
+
+
+def is_running(process):
+    """Whether there is a process of that number that is not a dead one whose parent has not asked for it."""
+    try:
+        return Path(f"/proc/{process}/stat").read_text().split(")")[1].split()[0] != "Z"
+    except FileNotFoundError:
+        return False
+
+
+def test_what_a_browser_leaves_running_is_not_waited_for(monkeypatch, tmp_path):
+    program = tmp_path / "bin" / "chromium"
+    program.parent.mkdir()
+    program.write_text("#!/bin/sh\nsleep 600 &\nfor word; do case $word in --print-to-pdf=*) echo %PDF > "
+                       "${word#*=};; esac; done\n")
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{program.parent}:/bin:/usr/bin")
+    monkeypatch.setattr(paper, "PATIENCE", 60)
+    (tmp_path / "page.html").write_text("<html></html>")
+    paper.write(tmp_path / "page.html", tmp_path / "page.pdf")
+    assert (tmp_path / "page.pdf").read_text() == "%PDF\n"
 
 
 def test_what_is_no_text_keeps_its_letters():

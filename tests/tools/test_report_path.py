@@ -130,6 +130,21 @@ def test_dumps_tell_where_the_centroid_was(tmp_path):
     assert not flow_path.path(result, ground).dumped
 
 
+def test_a_mass_that_runs_back_has_one_line(tmp_path):
+    """Its centroid goes up the other side of a valley and back: the line goes there and on to the front, not back."""
+    ground, result = site()
+    result.folder = tmp_path
+    way = [*np.linspace(15, 200, 14), *np.linspace(190, 150, 5)]
+    for k, (x, y) in enumerate(CENTRE.interpolate(at).coords[0] for at in way):
+        write_dump(tmp_path / f"run.{50 * k:06d}.dump", 50 * k, [(x - 3, y), (x + 3, y), (x, y - 3), (x, y + 3)])
+    found = flow_path.path(result, ground)
+    line = LineString(found.points)
+    assert found.dumped and line.is_simple and Point(found.points[-1]).distance(Point(100, 20)) < 12
+    assert line.length == pytest.approx(240 - 15, rel=0.08)
+    points = section(ground, result).points
+    assert LineString(points).is_simple and points[0][1] < 22
+
+
 def test_a_finer_grid_is_thinned_out(monkeypatch):
     ground, result = site()
     whole = flow_path.path(result, ground)

@@ -366,6 +366,7 @@ BODY = ("--shape", "ellipsoid", "--depth", "5")
     (("--shape", "ellipsoid", "--volume", "1e9"), "--volume: must be at most .*got 1000000000"),
     ((*BODY, "--road", "missing.geojson"), "missing.geojson: must be an existing file"),
     ((*BODY, "--cut-angle", "95"), "--cut-angle: must be < 90, got 95"),
+    ((*BODY, "--cut-angle", "0"), "--cut-angle: must be > 0, got 0"),
     ((*BODY, "--structure", "dem.tif"), "dem.tif: must be an STL file"),
     ((*BODY, "--motion", "road.geojson"), "road.geojson: line 1: must be four numbers"),
     ((*BODY, "--minutes", "0.001"), "--minutes: must be at least .* got 0.001"),
@@ -377,6 +378,22 @@ def test_refused(gis, words, start):
     kept = gis / "mine" / "site.yaml"
     assert not list(gis.glob(".mine*")) and not kept.exists() == (kept.name not in done.stdout)
     assert list(gis.glob("mine/*")) == [kept] * kept.exists()
+
+
+def test_angles_that_look_like_coefficients_are_asked_about():
+    """That of the cut only where there is a road."""
+    choices = site_choices.complete({})
+    choices["model"].update(friction=0.5, slip_friction=0)
+    choices["road"]["cut_angle"] = 0.6
+
+    def options():
+        return [one.numbers["option"] for one in site_warnings.of_resistance(choices)]
+    assert options() == ["--friction"]
+    choices["road"]["file"] = "road.csv"
+    assert options() == ["--friction", "--cut-angle"]
+    assert "A coefficient of 0.6 is 31 degrees" in str(site_warnings.of_resistance(choices)[1])
+    choices["road"]["cut_angle"] = 3
+    assert options() == ["--friction"]
 
 
 def test_refused_files(gis):

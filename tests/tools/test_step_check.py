@@ -31,6 +31,14 @@ def test_half_the_step_against_the_mean_and_chance(volume, within, words):
     assert entry["mean_m3"] == 100 and entry["within_chance"] is within and words in entry["text"]
 
 
+def test_nothing_is_said_in_words():
+    rows = [{"status": "finished", "run": str(k), "set": {"rolling": "0"}, "repeat": {"seed": str(k)}, "remove_m3": 0.0,
+             "front_m": 1.0} for k in range(3)]
+    entry = step_check.compare(Step("0", 0.0), combinations.grouped(rows), Scatter(0.0, 2.0))
+    assert entry["text"] == "half the time step, rolling 0: nothing to remove, as with the whole step"
+    assert entry["within_chance"] is True and entry["chance_m3"] == 0
+
+
 def test_without_repeats_chance_is_unknown():
     entry = step_check.compare(Step("0.1", 61.0), groups(), None)
     assert entry["within_chance"] is None and entry["text"].endswith("instead of 60 to remove, +1.7 %; chance unknown")

@@ -1,5 +1,6 @@
 """Structures and control lines in study and report: numbers against the runs' own files and closed forms."""
 import csv
+import html
 import os
 import re
 import shlex
@@ -17,8 +18,9 @@ from tiny_collapse import LMP, TOP, write_case, write_stl
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 sys.path.insert(0, str(TOOLS))
 
-from slope_tools import cli, errors  # noqa: E402
+from slope_tools import cli, digits, errors  # noqa: E402
 from slope_tools.plots import figure_structures  # noqa: E402
+from slope_tools.plots.obstacles import Obstacles  # noqa: E402
 from slope_tools.report import structures_part as report_structures  # noqa: E402
 from slope_tools.tables import structures  # noqa: E402
 
@@ -111,6 +113,10 @@ def test_report_draws_them(studied, capsys):
     for title in ("Force on wall", "Force on post", "Energies at the line fence"):
         assert section.count(f'alt="{title}"') == 1
     assert section.count("<tr>") == 2 + 3 + 2       # heads, structures, lines
+    assert re.findall(r"<tr><td>(\d)</td><td class=\"left\">(\w+)", section) == [
+        ("1", "wall"), ("1", "post"), ("2", "post"), ("1", "fence"), ("2", "fence")]
+    assert re.search(r"(wall|post) is 2.00 m high, [\d.]+ of the model's balls: the loads on it are those of single "
+                     "balls", html.unescape(section))
     shown = re.search(r"Maps of the run wall (\d)", page)[1]
     assert section.count('alt="Largest pressure on wall"') == int(shown)
     assert "Largest pressure on post" not in section        # nothing touched it
@@ -198,10 +204,30 @@ def test_a_series_of_a_run_without_output(tmp_path):
     (tmp_path / "a.vtp").write_text("<VTKFile><DataArray Name='corners'>0 0 0 0 2 0 0 0 1</DataArray>"
                                     "<DataArray Name='largest_pressure'>5</DataArray></VTKFile>")
     data = SimpleNamespace(result=SimpleNamespace(folder=tmp_path), drawn=[])
-    part = report_structures.Structures(data, None, lambda picture, title, text: title, {})
+    part = report_structures.Structures(data, None, lambda picture, title, text: title,
+                                        SimpleNamespace(obstacles=Obstacles({}, {})))
     assert part.pressures(("wall", "a")) == "Largest pressure on wall"
     data.drawn.append(SimpleNamespace(folder=tmp_path))
     assert part.forces("wall", [(data.drawn[0], "a")]) == "Force on wall"
+
+
+@pytest.mark.parametrize("back", [10, 30])
+def test_a_line_that_was_drawn_against_the_motion(tmp_path, back):
+    """Its numbers are those of the direction in which more crossed, as the fix's own."""
+    (tmp_path / "a.line.yaml").write_text(f"forward: {{volume: 20, crossings: 2}}\nback: {{volume: {back}, crossings: "
+                                          f"1}}\nnet_volume: {20 - back}\n")
+    (tmp_path / "a.line.csv").write_text("time,direction,speed,height,energy,volume\n1,1,2,0,5,10\n3,1,2,0,6,10\n"
+                                         f"2,-1,9,0,800,{back}\n")
+    found = structures.of_line(tmp_path, "a")
+    wanted = ("back", 1, 2, 800, 9) if back > 20 else ("forward", 2, 1, 6, 2)
+    assert tuple(found[key] for key in ("direction", "crossings", "first_s", "largest_energy_j",
+                                        "speed_95_m_s")) == wanted
+
+
+@pytest.mark.parametrize("largest, unit", [(5.6e11, "GN"), (2e6, "MN"), (900, "N")])
+def test_the_unit_of_an_axis_suits_its_values(largest, unit):
+    factor, prefix = digits.prefix(largest)
+    assert f"{prefix}N" == unit and 1 <= largest / factor < 1000
 
 
 @pytest.mark.parametrize("text", ["", "time,fx\n1,2\n", "left by an earlier run\n", "not,text\n\x00\n"])

@@ -500,6 +500,14 @@ def test_part_of_the_road_outside_is_cut_off_with_a_warning(cleared):
     assert about["volume"]["remove"] == pytest.approx(40 * (3 * 20 + 2 * wedge(3, 90, TAN30)), rel=1e-9)
 
 
+@pytest.mark.parametrize("angle, asked", [("0.577", True), ("2.9", True), ("3", False)])
+def test_a_cut_angle_that_looks_like_a_tangent_is_asked_about(slope, angle, asked):
+    write_run(strip(), 7.0, 2.5)
+    write_geojson("road.geojson", box(91.3, 0, 108.9, 200))
+    status, _, err = slope(f"run --road road.geojson --mesh 10 --local --no-picture --cut-angle {angle} -o removal")
+    assert status == 0 and (f"--cut-angle {angle}: is it in degrees? A coefficient of {angle} is" in err) == asked
+
+
 # --- bad input ---
 
 @pytest.mark.parametrize("arguments, message", [

@@ -38,10 +38,15 @@ def ground():
     return np.tile(520 + np.interp(x, [0, 60, 180, 200], [0, 0, 60, 62]), (ROWS, 1)) + 0.001 * np.arange(ROWS)[:, None]
 
 
-def tif(path, z=None, crs=CRS_M, nodata=-9999.0, corner=(EAST, NORTH), units=None, cell=CELL):
+def hillshade():
+    """Of rough ground, as GDAL makes one."""
+    return np.random.default_rng(1).integers(1, 256, (ROWS, COLUMNS)).astype(float)
+
+
+def tif(path, z=None, crs=CRS_M, nodata=-9999.0, corner=(EAST, NORTH), units=None, cell=CELL, kind="float64"):
     bands = np.atleast_3d(ground() if z is None else z)
     with rasterio.open(path, "w", driver="GTiff", height=len(bands), width=bands.shape[1], count=bands.shape[2],
-                       dtype="float64", crs=crs, nodata=nodata,
+                       dtype=kind, crs=crs, nodata=nodata if kind == "float64" else None,
                        transform=Affine(cell, 0, corner[0], 0, -cell, corner[1] + len(bands) * cell)) as out:
         out.write(np.moveaxis(bands, 2, 0))
         if units:
@@ -131,7 +136,7 @@ CASES = [
          "dem.tif: coordinates in EPSG:4326 must be longitude and latitude; --assign-crs EPSG:n overrides a CRS "
          "that is wrong"),
     Case("no CRS", "elevation model without a CRS", lambda: tif("dem.tif", crs=None), TERRAIN,
-         "asked: dem.tif has no CRS: its coordinates are taken as metres; --crs declares one"),
+         "asked: dem.tif has no CRS: coordinates are taken as metres; --crs declares one"),
     Case("no CRS", "terrain without a CRS below a polygon with one", lambda: asc("t.asc", crs=None), RELEASED,
          "t.asc: must have a CRS, so that polygon and terrain can be brought together (slope terrain --crs gives it "
          "one"),
@@ -177,6 +182,11 @@ CASES = [
          "asked: the ground of the body falls by 63 degrees on average: a cliff, or heights in feet (31 degrees)?"),
     Case("cliff", "an elevation model whose heights are exaggerated", lambda: tif("dem.tif", 10 * (ground() - 500)),
          TERRAIN, "asked: are the heights in feet? Then --z-unit ft"),
+    Case("unit of the cells", "kilometres", lambda: tif("dem.tif", ground()[:, 14:34], cell=0.005), TERRAIN,
+         "asked: the ground falls by 90 degrees on average, 90 if it is in feet: are these heights, and the cells in "
+         "metres?"),
+    Case("unit of the cells", "a CRS in kilometres", lambda: tif("dem.tif", crs="+proj=utm +zone=54 +units=km"),
+         TERRAIN, "dem.tif: CRS must be in metres; give --crs EPSG:n of a projected one, got"),
     # --- heights ---
     Case("pits", "cells of 0 m in an elevation model", lambda: tif("dem.tif", spoilt(ground(), HOLE, 0)), TERRAIN,
          "asked: 6 cells of 0 m lie at least 538.8 m below all cells beside them"),
@@ -251,7 +261,7 @@ CASES = [
     Case("crossing outline", "a ring of two points", lambda: text("p.csv", "1,1\n2,2\n"), OF_CSV,
          "p.csv: line 1: a ring must have at least 3 points, got 2"),
     Case("no geometry", "a feature without a geometry among others", lambda: layer("p.geojson", ROAD, None), POLYGON,
-         "asked: p.geojson: feature 1 has no geometry: left out"),
+         "asked: p.geojson: feature 1 has no geometry (1 of 2 have none): left out"),
     Case("no geometry", "features without any", lambda: layer("p.geojson", None), POLYGON,
          "p.geojson: must hold polygons, none of its features has a geometry, got 1"),
     Case("beside the terrain", "a polygon elsewhere", lambda: layer("p.geojson", translate(ROAD, 5000)), POLYGON,
@@ -296,6 +306,12 @@ CASES = [
          lambda: rasterio.open("dem.png", "w", driver="PNG", width=9, height=9, count=1, dtype="uint8").close(),
          ["terrain", "dem.png", "-o", "new.asc"],
          "dem.png: must be georeferenced: place and size of the cells are missing"),
+    Case("hillshade", "a GeoTIFF of 8 bits", lambda: tif("dem.tif", hillshade(), kind="uint8"), TERRAIN,
+         "dem.tif: must be heights, not a picture such as a hillshade; if they are heights, gdal_translate -ot "
+         "Float32 stores them as such, got values of 8 bits"),
+    Case("hillshade", "converted to an ASCII grid", lambda: asc("t.asc", hillshade()),
+         ["terrain", "t.asc", "-o", "new.asc"],
+         "asked: all heights are whole numbers from 1 to 255, as the values of a picture: is it a hillshade?"),
     Case("ASCII grid", "decimal commas",
          lambda: text("dem.asc", "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 5\n1,5 2,5\n"),
          ["terrain", "dem.asc", "-o", "new.asc"], "dem.asc: line 6: must hold numbers with a decimal point, got '1,5'"),

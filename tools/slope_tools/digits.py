@@ -1,6 +1,7 @@
 """Volumes and limits in words: as many digits as a reader can use."""
 import math
 import re
+from typing import Tuple
 
 DIGITS = 5      # of a number in a message; more is known of none
 UNITS = re.compile(r"\b(m)([23])\b")
@@ -53,6 +54,16 @@ def si(value: float, unit: str) -> str:
         return f"0 {unit}"
     factor, prefix = next(((factor, prefix) for factor, prefix in PREFIXES if abs(value) >= factor), PREFIXES[-1])
     return f"{three(value / factor)} {prefix}{unit}"
+
+
+def prefix(largest: float) -> Tuple[float, str]:
+    """The factor and the prefix of an axis with values up to the largest."""
+    return next(((factor, name) for factor, name in PREFIXES if largest >= factor), PREFIXES[-1])
+
+
+def place(value: float) -> str:
+    """A coordinate in m, to a decimetre."""
+    return f"{value:.1f}"
 
 
 def cubic(value: float) -> str:

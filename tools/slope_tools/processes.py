@@ -2,10 +2,12 @@
 import errno
 import os
 import shutil
+import signal
 import subprocess
 import tempfile
 import time
 import weakref
+from contextlib import suppress
 from pathlib import Path
 from typing import Dict, Iterable, Sequence
 
@@ -47,6 +49,13 @@ def start(words: Sequence[str], folder: Path, screen) -> subprocess.Popen:
     if session:
         weakref.finalize(process, shutil.rmtree, session, ignore_errors=True)
     return process
+
+
+def stop_session(process: subprocess.Popen) -> None:
+    """End a program that start() started, and all that it started and left."""
+    stop([process])
+    with suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL)
 
 
 def stop(running: Iterable) -> None:

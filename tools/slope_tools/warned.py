@@ -8,12 +8,44 @@ from .digits import rounded
 OTHER = "other"         # of the kinds that no reader tells apart, and of what older files say
 WORDS = {
     OTHER: "{text}",
+    # of the files of a GIS
+    "pits": "{cells} cells of {mark:g} m lie at least {depth:.4g} m below all cells beside them, the first "
+            "at {east:.10g} {north:.10g}: NODATA that the file does not declare? {remedy}",
+    "picture": "all heights are whole numbers from {low:g} to {high:g}, as the values of a picture: is it a hillshade?",
+    "in feet": "the ground falls by {degrees:.0f} degrees on average: are the heights in feet? Then --z-unit ft, which "
+               "makes it {in_feet:.0f}",
+    "no ground's slope": "the ground falls by {degrees:.0f} degrees on average, {in_feet:.0f} if it is in feet: are "
+                         "these heights, and the cells in metres?",
+    "stretched": "a metre in {crs} is {metres:.3f} m on the ground: choose a local CRS",
+    "CRS of terrain": "{file} has no CRS: taken to be in that of the terrain{remedy}",
+    "datums": "tiles of {datums} are mixed and not converted: {what} may differ where they meet",
+    "cut to input": "--bounds reaches beyond the input, {extent}: cut to it",
+    "outside": "{file}: {percent:.2g} % of the area lies outside of {terrain}",
+    "no geometry": "{feature} has no geometry ({without} of {features} have none): left out",
+    "file name": "{file}: LAMMPS cannot read {characters} in the name of a file: rename it before it goes into a deck",
+    "swapped": "--release and --road may be swapped, the road lies above the release area: {grounds}",
+    # of a body
+    "bulges": "the ground bulges above the line from toe to shoulder, and so does the {shape}: a smaller polygon, or "
+              "--shape slbl?",
+    "no way out": "the plane dips {dip:.3g} degrees towards {direction:.3g}, where the ground falls by {ground:.3g}: "
+                  "it does not come out of the ground below the body, which cannot slide out; a smaller --dip, or "
+                  "another --direction?",
+    "little": "the base level {form}takes {percent:.0f} % of the polygon, {depth:.3g} m deep on average: is this the "
+              "intended body? A larger depth or a smaller polygon gives another one",
+    "cliff": "the ground of the body falls by {degrees:.0f} degrees on average: a cliff, or heights in feet "
+             "({in_feet:.0f} degrees)? slope terrain and site have --z-unit",
+    "few cells": "the body covers {cells} cells of {cell:g} m: use a finer terrain",
+    "rim": "the body is {depth:.3g} m deep at the rim of its area, where it ends in a wall: {remedy}",
+    "shift": "beside the body {file} lies {metres:.3g} m {side} the terrain (median), which counts in the depths: "
+             "vertical datums are not compared, are they the same?",
+    "parts": "the body is in {parts} parts that do not touch, of {volumes} m3: is that the body you mean?",
     # of a body and its balls
     "no program": "no LAMMPS program (LMP, --lmp, build/lmp): no trial run, time and speeds are unknown",
     "left terrain": "{percent:.2g} % of the mass left the terrain in the trial run: use a larger elevation model",
     "not at rest": "the trial run was not at rest after {seconds:.0f} s: the run time of the study is a guess",
     "large": "the body has {millions} million m3: masses of {limit:g} million m3 and more run farther than laboratory "
-             "friction gives; calibrate with a past event of that size (slope calibrate), or see --mobile",
+             "friction gives; calibrate with a past event of that size (slope calibrate; --mobile has the values of "
+             "one)",
     "thin": "the body is {balls:.1f} balls thick on average, below {limit:g}: the numbers will be rough; use more "
             "balls (--balls, --minutes)",
     "first look": "the body is {balls:.1f} balls thick at most, below {limit:g}: a first look; to repeat it, use more "

@@ -10,6 +10,7 @@ from shlex import quote
 
 from ..case import run_folders
 from ..errors import SlopeError
+from ..options import add_overwrite
 from ..plots.section import FALL
 from ..report import document, paper
 from ..report.asked import Asked
@@ -66,6 +67,7 @@ def add_arguments(parser):
     parser.add_argument("--pictures", action="store_true",
                         help="write the maps as files too, REPORT.1.png, REPORT.2.png, ... in the page's order; "
                              "charts, drawn as lines, stay in the page")
+    add_overwrite(parser)
 
 
 def study_of(folder: Path) -> Path:
@@ -98,6 +100,7 @@ def run(args):
     if args.reproduce:
         print("\n".join(document.reproduce(folder)))
         return
+    document.check_standing(output, folder, args.overwrite, inside=output.resolve().parent == args.folder.resolve())
     if args.pdf:
         paper.require_browser()
     asked = Asked(folder, args.shown, args.section, args.local, args.reference, args.converge, args.name,

@@ -40,7 +40,7 @@ def path(result, ground):
         start = bands.start
         points = followed(start[None, :], bands.points) if start is not None else np.empty((0, 2))
     else:
-        track = np.asarray(smooth(track))
+        track = np.asarray(smooth(outward(track, bands)))
         x, y = track[-1]
         at = bands.distance(x, y)
         beyond = bands.points[bands.at > at + bands.width] if at is not None else np.empty((0, 2))
@@ -51,6 +51,12 @@ def path(result, ground):
     if line.length < 3 * ground.cell:
         return None
     return FlowPath(np.asarray(line.coords)[:, :2], track is not None)
+
+
+def outward(track, bands):
+    """A track as far as it leads away from the release: a mass that ran up the other side of a valley comes back."""
+    far = [bands.distance(*point) or 0.0 for point in track]
+    return track[:int(np.argmax(far)) + 1] if max(far) > 0 else track
 
 
 def followed(points, others):

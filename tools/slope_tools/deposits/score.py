@@ -12,6 +12,7 @@ from ..geometry import coverage, extent
 from ..survey import polygons, rasters
 from ..survey.crs import same_crs
 from ..survey.rasters import Raster, crs_name
+from ..warned import Warned
 from . import reach
 from .connected import connected, top
 from .volume_files import text
@@ -42,7 +43,8 @@ def read_observed(path, raster, threshold, local, warn=None):
     if mapped.crs is None and raster.crs is not None and not local:
         mapped = mapped._replace(crs=raster.crs)
         if warn:
-            warn(f"{path} has no CRS: taken to be in that of the terrain (--local if it is in the run's local metres)")
+            warn(Warned("CRS of terrain", {"file": str(path),
+                                           "remedy": " (--local if it is in the run's local metres)"}))
     return from_raster(path, mapped, raster, threshold, local)
 
 

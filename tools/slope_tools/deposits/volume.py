@@ -11,6 +11,7 @@ import numpy as np
 from .. import disk, geometry
 from ..errors import SlopeError
 from ..geometry import Mesh
+from ..sites.site_warnings import of_angles
 from ..survey import polygons, rasters
 from ..survey.lines import read_local
 from ..survey.rasters import crs_name
@@ -65,6 +66,8 @@ def of_run(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], None] = l
         warnings.append(warned(said))
         tell(said)
 
+    for one in of_angles({"--cut-angle": wanted.cut_angle}):
+        warn(one)
     run = deposit.read(prefix, terrain, warn)
     mesh = make_mesh(wanted.mesh, run.raster)
     road = in_grid(polygons.read_local(wanted.road, run.raster, wanted.local, warn=warn), run.raster, wanted.road, warn)

@@ -297,14 +297,14 @@ def convergence(found, x_label, y_label, title, width=HALF):
         return figures.data_uri(sheet.finish(), "svg")
 
 
-def bars(names, values, y_label, title):
+def bars(names, values, y_label, title, width=FULL):
     """Values of runs whose variables are no numbers."""
     with plt.rc_context(STYLE):
-        sheet = Sheet(FULL)
-        names = [shortened(name, 2.6, TICK) for name in names]
+        sheet = Sheet(width)
+        names = [shortened(name, 0.37 * width, TICK) for name in names]
         left = EDGE + OUT + max(text_width(name, TICK) for name in names) + 0.02
         sheet.title(title, left)
-        width = FULL - left - 0.12
+        width = panel_width(width, left)
         axes = sheet.axes(Box(left, sheet.bottom + 0.05, width, 0.15 + 0.2 * len(names)))
         axes.barh(range(len(names)), values, color=COLOURS[0], height=0.7)
         axes.set_yticks(range(len(names)), names)

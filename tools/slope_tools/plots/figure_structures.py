@@ -4,15 +4,17 @@ from matplotlib.collections import PolyCollection
 from matplotlib.colors import LogNorm, to_rgba
 from mpl_toolkits.axes_grid1 import make_axes_locatable
 
+from .. import digits
 from ..drawing import figures, palettes
 from ..drawing.figures import COLOURS, FULL, HALF, STYLE, plt
 
 EMPTY = "#e4e6e9"       # of a panel that nothing touched
+DECADE = 10.0           # values that span less are on a linear axis
 DECADES = 3             # of the pressures that have a colour
 
 
 def curves(lines, x_label, y_label, title, falling=False):
-    """Lines of (name, x, y) as an SVG; falling: y is a share, from 1 down, over x on a log axis."""
+    """Lines of (name, x, y) as an SVG; falling: y is a share, from 1 down, over x on a log axis if x spans DECADE."""
     with plt.rc_context(STYLE):
         figure, axes = plt.subplots(figsize=(HALF, 2.3))
         for k, (name, x, y) in enumerate(lines):
@@ -21,7 +23,11 @@ def curves(lines, x_label, y_label, title, falling=False):
         axes.set(xlabel=x_label, ylabel=y_label, ylim=(0, 1.02 if falling else None))
         axes.set_title(title, loc="left")
         if falling:
-            axes.set_xscale("log")
+            values = np.concatenate([x for _, x, _ in lines])
+            if values.max() > DECADE * values.min():
+                axes.set_xscale("log")
+            else:
+                axes.set_xlim(0, 1.05 * values.max())
         if len(lines) > 1:
             axes.legend(loc="upper right")
         axes.grid(color="#dddddd", lw=0.4)
@@ -40,9 +46,10 @@ def seen_from(corners, direction):
 
 
 def pressure_map(corners, pressure, direction, title):
-    """The largest pressure (kPa) on each triangle, seen along the horizontal direction of the load, as a PNG."""
+    """The largest pressure (Pa) on each triangle, seen along the horizontal direction of the load, as a PNG."""
     places, order = seen_from(corners, direction)
-    values = np.asarray(pressure, float)[order]
+    factor, prefix = digits.prefix(max(pressure))
+    values = np.asarray(pressure, float)[order] / factor
     edges = np.cross(places[:, 1] - places[:, 0], places[:, 2] - places[:, 0])
     seen = np.abs(edges) > 1e-9 * np.abs(edges).max()     # others are seen from their edge
     places, values = places[seen], values[seen]
@@ -62,6 +69,7 @@ def pressure_map(corners, pressure, direction, title):
         axes.set_title(title, loc="left")
         beside = make_axes_locatable(axes).append_axes("right", size=0.1, pad=0.08)
         bar = figure.colorbar(plt.cm.ScalarMappable(norm, palettes.PRESSURE), cax=beside, extend="min")
-        bar.set_label("largest pressure (kPa)", fontsize=6.5)
+        bar.set_label(f"largest pressure ({prefix}Pa)", fontsize=6.5)
+        bar.ax.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
         bar.ax.tick_params(labelsize=6)
         return figures.data_uri(figure)

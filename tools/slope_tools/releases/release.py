@@ -10,6 +10,7 @@ from ..digits import rounded
 from ..errors import SlopeError
 from ..survey import plausible, polygons, rasters
 from ..survey.crs import as_crs
+from ..warned import Warned
 from . import release_area, release_bodies, release_scar, release_solve
 
 SHAPES = ("sphere", "ellipsoid", "plane", "slbl")
@@ -53,7 +54,7 @@ class Body(NamedTuple):
     slip: np.ndarray                    # m, on the nodes of the area
     choices: Dict[str, Any]             # shape and its numbers
     measures: release_solve.Measures
-    warnings: List[str]
+    warnings: List[Warned]
 
 
 def body_of(wanted: Wanted) -> Body:
@@ -61,7 +62,7 @@ def body_of(wanted: Wanted) -> Body:
     wanted = check(wanted)
     raster = read_terrain(wanted.terrain)
     geometry = None
-    doubts: List[str] = []
+    doubts: List[Warned] = []
     if wanted.polygon:
         crs = as_crs("--assign-crs", wanted.crs) if wanted.crs else None
         geometry = polygons.read_local(wanted.polygon, raster, local=wanted.local, crs=crs,
@@ -200,41 +201,35 @@ def from_shape(wanted: Wanted, raster, geometry):
     return area, area.z - depth, choices
 
 
-def warnings(choices, found, area):
+def warnings(choices, found, area) -> List[Warned]:
     """What makes the body doubtful."""
-    lines = []
+    doubts = []
     if choices.get("sagitta_m", 1) < 0:
-        lines.append(f"the ground bulges above the line from toe to shoulder, and so does the {choices['shape']}: a "
-                     "smaller polygon, or --shape slbl?")
+        doubts.append(Warned("bulges", {"shape": choices["shape"]}))
     share = found.cells / int(area.inside.sum())
     curvature = choices.get("curvature_per_m", 0)
     if choices["shape"] == "plane" and (steep := no_way_out(choices, area)) is not None:
-        lines.append(f"the plane dips {choices['dip_degrees']:.3g} degrees towards {choices['direction_degrees']:.3g}, "
-                     f"where the ground falls by {steep:.3g}: it does not come out of the ground below the body, which "
-                     "cannot slide out; a smaller --dip, or another --direction?")
+        doubts.append(Warned("no way out", {"dip": choices["dip_degrees"], "direction": choices["direction_degrees"],
+                                            "ground": steep}))
     if choices["shape"] == "slbl" and (curvature < 0 or share < LITTLE):
-        what = f"bulges (curvature {curvature:.3g} /m) and " if curvature < 0 else ""
-        lines.append(f"the base level {what}takes {100 * share:.0f} % of the polygon, {found.mean_depth:.3g} m deep on "
-                     "average: is this the intended body? A larger depth or a smaller polygon gives another one")
+        doubts.append(Warned("little", {"form": f"bulges (curvature {curvature:.3g} /m) and " * (curvature < 0),
+                                        "percent": 100 * share, "depth": found.mean_depth}))
     if found.mean_slope > CLIFF:
-        lines.append(f"the ground of the body falls by {found.mean_slope:.0f} degrees on average: a cliff, or "
-                     f"heights in feet ({plausible.in_feet(found.mean_slope):.0f} degrees)? slope terrain and site "
-                     "have --z-unit")
+        doubts.append(Warned("cliff", {"degrees": found.mean_slope, "in_feet": plausible.in_feet(found.mean_slope)}))
     if found.cells < COARSE:
-        lines.append(f"the body covers {found.cells} cells of {area.cell:g} m: use a finer terrain")
+        doubts.append(Warned("few cells", {"cells": found.cells, "cell": area.cell}))
     if found.wall > 0.5 * found.largest_depth:
-        lines.append(f"the body is {found.wall:.3g} m deep at the rim of its area, where it ends in a wall: "
-                     + {"sphere": "a wider polygon, or --shape ellipsoid?",
-                        "scar": "does the raster, or the polygon, end in the middle of the scar?"}
-                     .get(choices["shape"], "is the polygon large enough?"))
+        doubts.append(Warned("rim", {"depth": found.wall, "remedy": {
+            "sphere": "a wider polygon, or --shape ellipsoid?",
+            "scar": "does the raster, or the polygon, end in the middle of the scar?"}.get(
+                choices["shape"], "is the polygon large enough?")}))
     if abs(shift := choices.get("beside_m") or 0.0) > SHIFT:
-        lines.append(f"beside the body {choices['scar']} lies {abs(shift):.3g} m {'below' if shift > 0 else 'above'} "
-                     "the terrain (median), which counts in the depths: vertical datums are not compared, are they the "
-                     "same?")
-    return lines
+        doubts.append(Warned("shift", {"file": choices["scar"], "metres": abs(shift),
+                                       "side": "below" if shift > 0 else "above"}))
+    return doubts
 
 
-def in_parts(area, slip, geometry) -> List[str]:
+def in_parts(area, slip, geometry) -> List[Warned]:
     """A warning of a body in more parts than the polygon, None for a scar, has; tiny ones do not count."""
     if geometry is None:
         return []
@@ -244,8 +239,8 @@ def in_parts(area, slip, geometry) -> List[str]:
     volumes = volumes[volumes > TINY * volumes.sum()]
     if len(volumes) <= len(polygons.polygons_of(geometry)):
         return []
-    return [f"the body is in {len(volumes)} parts that do not touch, of " + " and ".join(map(rounded, volumes[:3]))
-            + " m3" + " and less" * (len(volumes) > 3) + ": is that the body you mean?"]
+    return [Warned("parts", {"parts": len(volumes), "volumes": " and ".join(map(rounded, volumes[:3]))
+                             + " and less" * (len(volumes) > 3)})]
 
 
 def no_way_out(choices, area) -> Optional[float]:

@@ -77,7 +77,7 @@ def write_body(name: Path, wanted: Wanted, body: Body) -> None:
     about = {"slope_version": version(), "terrain": wanted.terrain, "polygon": wanted.polygon, **body.choices,
              "body": body.measures._asdict(), "cell": body.area.cell, "crs": crs_name(body.raster.crs),
              "origin": {"east": float(body.raster.offset[0]), "north": float(body.raster.offset[1])},
-             "warnings": body.warnings}
+             "warnings": [str(one) for one in body.warnings]}
     write(name, wanted.terrain, body.raster, body.area, body.slip, about, body.geometry,
           f"{name.name}: {body.measures.volume:,.0f} m\u00b3, up to {body.measures.largest_depth:.3g} m deep")
 

@@ -7,14 +7,15 @@ from typing import Any, List, NamedTuple, Optional, Sequence, Tuple
 from .. import digits
 from ..deposits.volume import MUCH_BELOW
 from ..sites.site_warnings import LARGE
+from . import structures_part
 from .warnings import SMALL
 
 MOST = 3
 MUCH = 0.01             # of the released volume that is lost: more weighs as much as a wrong body
 SIDE = 0.5              # of the mass at the most touched edge: another edge with as much is named too
 # by weight, the heaviest first
-(FAILED, MOVING, LOST_MUCH, BODY, ROAD, LARGE_MASS, NOT_AT_REST, NO_REPEATS, NO_SIZES, CUT, THIN_BODY, LOST,
- SLIP) = range(13)
+(FAILED, MOVING, LOST_MUCH, BODY, ROAD, LARGE_MASS, NOT_AT_REST, NO_REPEATS, NO_SIZES, COARSE, CUT, THIN_BODY, LOST,
+ SLIP) = range(14)
 
 
 class Caveat(NamedTuple):
@@ -26,7 +27,7 @@ class Caveat(NamedTuple):
 def caveats(data, ground) -> List[Caveat]:
     """All of a data.Data on its ground.Ground, by weight, one of each kind."""
     found = [failed(data), *at_rest(data), lost(data, ground), body(data), road(data),
-             large(data), repeats(data), sizes(data),
+             large(data), repeats(data), sizes(data), coarse(data, ground),
              below_ground(data), thin(data),
              Caveat(SLIP, "The slip surface is an assumption: whether, and how likely, the slope fails is not said "
                           "here.")]
@@ -116,7 +117,18 @@ def sizes(data) -> Optional[Caveat]:
     best: Any = data.study and data.study["conservative"]
     if best and best["size_m3"] is not None or data.study and data.study.get("ensemble"):
         return None
+    if best and data.study.get("size_error_unusable") and best.get("withheld"):
+        return None         # the number's place says so
     return Caveat(NO_SIZES, "What smaller balls in the model would change is unknown.")
+
+
+def coarse(data, ground) -> Optional[Caveat]:
+    found = structures_part.coarse_walls(data, ground)
+    if not found:
+        return None
+    name, tall, ball = max(found, key=lambda one: one[2] / one[1])
+    return Caveat(COARSE, f"{name} is {tall / ball:.2g} of the model's balls high: the forces on it are those of "
+                          "single balls, and rough.")
 
 
 def road(data) -> Optional[Caveat]:

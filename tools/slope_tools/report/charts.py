@@ -49,14 +49,18 @@ class Charts:
                   if len(several) > 1 and all(is_number(value) for value in several)]
         return "rolling" if "rolling" in varied else varied[0] if varied else None
 
+    def has_removal(self) -> bool:
+        """Whether something is to be removed: else its chart would be empty."""
+        return any(row.get(REMOVE) for row in self.data.finished)
+
     def all(self):
-        """Pictures; the first one is that of the volume to remove, if there is a road."""
+        """Pictures; the first one is that of the volume to remove, if there is any."""
         data = self.data
         if not data.study or len(data.finished) < 2 or data.study.get("ensemble"):
             return []
         far = [travel_shares.DISTANCE] if all(row.get(travel_shares.DISTANCE) is not None for row in data.finished) \
             else [] if any(map(travel_shares.lost, data.finished)) else ["front_m"]
-        wanted = [*([REMOVE] if REMOVE in data.finished[0] else []), *far, "thickness_m"]
+        wanted = [*([REMOVE] if self.has_removal() else []), *far, "thickness_m"]
         wanted += [name for name in (self.reference.quantities if self.reference else ()) if name not in wanted]
         name = self.variable()
         return [self.bars(key) if name is None else self.chart(key, name) for key in wanted]
@@ -71,7 +75,8 @@ class Charts:
     def bars(self, key):
         rows, title = self.data.finished, self.title(key)
         return self.picture(figure_charts.bars([self.data.label_of(row) for row in rows], [row[key] for row in rows],
-                                               self.label(key), title), title, f"{title} of every run.")
+                                               self.label(key), title, WIDE if key == REMOVE else HALF),
+                            title, f"{title} of every run.")
 
     def chart(self, key, name):
         """A quantity against a variable: a line where the differences are larger than chance."""

@@ -8,7 +8,7 @@ from .. import digits
 from ..deposits import travel_shares
 from ..ensembles import known_study
 from ..statistics import headline
-from . import body, caveats
+from . import body, caveats, structures_part
 from .numbers import farthest_of
 
 WORDS = {"rolling": "the rolling resistance", "friction": "the friction", "d": "the size of the model's balls",
@@ -24,7 +24,8 @@ def content(data, ground, numbers, answers: Sequence[Optional[Dict[str, Any]]], 
     told, rest = caveats.shown(caveats.caveats(data, ground), warnings)
     return {"body": body.sentence(body.of_data(data, ground)),
             "answer": of_answer(data, main, numbers) if main else of_reach(data, numbers),
-            "sentences": sentences(data, numbers, bool(main)), "caveats": told, "rest": rest, "basis": basis(data)}
+            "sentences": sentences(data, ground, numbers, bool(main)), "caveats": told, "rest": rest,
+            "basis": basis(data)}
 
 
 # --- the number ---
@@ -70,9 +71,10 @@ def reaches(data) -> List[float]:
 
 # --- what else is found ---
 
-def sentences(data, numbers, has_road_number: bool) -> List[str]:
+def sentences(data, ground, numbers, has_road_number: bool) -> List[str]:
     """Three at most: how far, what lies on the road, what else."""
-    found = [distance(data, numbers, has_road_number), road(data, numbers), structures(data), thickness(data, numbers)]
+    found = [distance(data, numbers, has_road_number), road(data, numbers), structures(data, ground),
+             thickness(data, numbers)]
     return [text for text in found if text][:3]
 
 
@@ -114,7 +116,7 @@ def road(data, numbers) -> str:
     return f"{text}."
 
 
-def structures(data) -> str:
+def structures(data, ground) -> str:
     """The largest lasting force on a structure."""
     found = [(numbers["mean_force_n"], name) for row in data.finished
              for name, numbers in (row.get("structures") or {}).items()]
@@ -123,7 +125,9 @@ def structures(data) -> str:
     force, name = max(found)
     if not force > 0:
         return "Nothing touches the structures."
-    return f"The largest force that lasts half a second on a structure is {digits.si(force, 'N')}, on {name}."
+    length = structures_part.lengths(ground.obstacles).get(name)
+    each = f", {digits.si(force / length, 'N')} per metre of its length" if length else ""
+    return f"The largest force that lasts half a second on a structure is {digits.si(force, 'N')}, on {name}{each}."
 
 
 def thickness(data, numbers) -> str:

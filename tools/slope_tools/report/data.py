@@ -270,7 +270,7 @@ class Data:
 
     def label_of(self, row):
         repeat = [f"{name} {value}" for name, value in (row.get("repeat") or {}).items()]
-        return ", ".join(self.varied(row) + repeat) or row["run"]
+        return ", ".join(self.varied(row) + repeat) or ("base" if self.repeats else row["run"])
 
     def varied(self, row):
         return [f"{name} {value}" for name, value in row["set"].items() if len(self.settings.get(name) or ()) > 1]

@@ -1,13 +1,33 @@
 """The page of a report as HTML, and its pictures as files."""
 import base64
+import hashlib
 import re
 from contextlib import contextmanager
 from pathlib import Path
+from shlex import quote
 from typing import List
 
 from .. import digits, disk
 from ..errors import SlopeError
 from .asked import Asked
+
+
+MADE_BY = "Made by tools/slope report"      # in each page
+
+
+def mark(folder: Path) -> str:
+    """What a page has of the folder that it is about: its path, as a digest."""
+    return hashlib.sha256(str(folder.resolve()).encode()).hexdigest()[:16]
+
+
+def check_standing(output: Path, folder: Path, overwrite: bool, inside: bool) -> None:
+    """Raise SlopeError if files stand under the names of a page that are not those of a page on this folder.
+
+    inside: the page is in the folder, which may have moved since: any page is replaced.
+    """
+    files = [output, *(output.with_suffix(suffix) for suffix in (".pdf", ".section.csv", ".numbers.csv", ".mp4"))]
+    disk.check_standing(output, files, [MADE_BY, *([] if inside else [mark(folder)])], overwrite,
+                        f"slope report {quote(str(folder))}")
 
 
 def write_pictures(output):
@@ -38,7 +58,7 @@ def make(asked: Asked):
     from .page import Page
     with trusted(asked.folder):
         page = Page(asked)
-        return page, render(page.content())
+        return page, render({**page.content(), "mark": mark(asked.folder)})
 
 
 def reproduce(folder: Path) -> List[str]:

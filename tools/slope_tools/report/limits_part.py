@@ -23,7 +23,9 @@ def uncertainty(data, numbers) -> CONTENT:
     study = data.study
     best = study and study["conservative"]
     found = []
-    if best and best["chance_m3"] is not None:
+    if best and best["chance_m3"] is not None and not best["mean_m3"] and not best["chance_m3"]:
+        found.append(f"In none of the {len(data.finished)} runs anything is to be removed.")
+    elif best and best["chance_m3"] is not None:
         low, high = (headline.text(value, best["place_m3"]) for value in
                      (max(0.0, best["mean_m3"] - best["chance_m3"]), best["mean_m3"] + best["chance_m3"]))
         found.append(f"Another run with the same values gives {low} to {high} m3 to remove, in 95 % of cases.")
@@ -83,8 +85,8 @@ def model(data) -> CONTENT:
     large = data.largest_release() >= LARGE
     return [
         *([("Large masses", f"Masses of {LARGE / 1e6:g} million m3 and more are known to run farther than laboratory "
-                            "friction suggests, so that the default parameters are not conservative for the run-out: "
-                            "calibrate them with a past event (page on events of the documentation).")] * large),
+                            "friction suggests: the run-out is not conservative unless the friction was calibrated "
+                            "with a past event of that size (page on events of the documentation).")] * large),
         ("The body", "Its slip surface and volume were given, not computed: the report does not say whether, or how "
                      "likely, the slope fails. The body is released at once; no trigger is modelled, except with an "
                      "earthquake."),

@@ -12,6 +12,10 @@ from ..survey.rasters import crs_name
 OPEN = " The last class is open: it holds the few thicker cells, most of them in the release."
 
 
+def square(area: float) -> str:
+    return digits.three(area) if area else "0"
+
+
 class Maps:
     """Draws maps; picture(uri, alt, caption) makes what the template takes."""
 
@@ -128,6 +132,6 @@ class Maps:
                                       [0.0, 0.2, 0.4, 0.6, 0.8, 1.0], palettes.SHARE, mask=values > 0),
                 f"Share of the runs thicker than {entry['threshold_m']:g} m",
                 f"Share of the {len(data.finished)} runs with a final thickness > {entry['threshold_m']:g} m: in every "
-                f"run on {entry['area_in_every_run_m2']:,.0f} m2, in any run on "
-                f"{entry['area_in_any_run_m2']:,.0f} m2.{single}"))
+                f"run on {square(entry['area_in_every_run_m2'])} m2, in any run on "
+                f"{square(entry['area_in_any_run_m2'])} m2.{single}"))
         return found

@@ -25,6 +25,19 @@ class Numbers:
         self.rows.append((what, unit, of, text, value))
         return text
 
+    def mean(self, what, unit, value, scatter, of):
+        """A mean and the scatter of a run: both to the second digit of the scatter, but no finer than three digits
+
+        of the mean.
+        """
+        if not scatter:
+            return self(f"mean: {what}", unit, value, of)
+        place = max(10 * headline.place_of_digits(scatter), headline.place_of_digits(value) / 10)
+        texts = [headline.text(one, place) for one in (value, scatter)]
+        for name, text, one in zip(("mean", "scatter"), texts, (value, scatter)):
+            self.rows.append((f"{name}: {what}", unit, of, text, one))
+        return " \N{PLUS-MINUS SIGN} ".join(texts)
+
     def whole(self, what, unit, value, of=""):
         """A volume that has no scatter, to the cubic metre."""
         self.rows.append((what, unit, of, f"{value:,.0f}", value))

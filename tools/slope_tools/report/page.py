@@ -75,8 +75,8 @@ class Page:
             "maps": maps.of_run(), "section": self.picture(*self.section.picture()), "charts": charts.all(),
             "intensity": intensity_part.content(data, numbers, self.picture),
             "chain": chain_part.content(data, numbers, self.picture),
-            "hit": Structures(data, numbers, self.picture, self.ground.obstacles.footprints).content(),
-            "road_chart": REMOVE in one.row, "removal": maps.removal(removal), "over_all": maps.over_all(),
+            "hit": Structures(data, numbers, self.picture, self.ground).content(),
+            "road_chart": charts.has_removal(), "removal": maps.removal(removal), "over_all": maps.over_all(),
             "beyond": self.beyond(),
             "reference": self.reference and self.reference_tables(),
             "sizes": self.sizes and {"charts": self.sizes.pictures(self.picture), "rows": self.sizes.rows(numbers),
@@ -165,11 +165,8 @@ class Page:
         for entry in study["combinations"]:
             cells = []
             for head, unit, key in heads:
-                one, name = entry[key], str(entry["combination"])
-                text = self.numbers(f"mean: {head}", unit, one["mean"], name)
-                if one["scatter"] is not None:
-                    text += f" \N{PLUS-MINUS SIGN} {self.numbers(f'scatter: {head}', unit, one['scatter'], name)}"
-                cells.append(text)
+                cells.append(self.numbers.mean(head, unit, entry[key]["mean"], entry[key]["scatter"],
+                                               str(entry["combination"])))
             best = study["conservative"] and entry["combination"] == study["conservative"]["combination"]
             rows.append({"set": [entry["set"][key] for key in varied], "runs": entry["repeats"], "cells": cells,
                          "best": best})

@@ -4,14 +4,14 @@ import shutil
 import subprocess
 import tempfile
 from pathlib import Path
-from typing import Optional
+from typing import List, Optional, Tuple
 
-from .. import disk
+from .. import disk, processes
 from ..errors import SlopeError
 
 # those that print from the command line; Firefox does not
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "microsoft-edge")
-PATIENCE = 180      # s
+PATIENCE = 300      # s; a page with a 3-D view takes some seconds of a processor that does nothing else
 # the 3-D view is drawn without a graphics card
 OPTIONS = ("--headless", "--disable-extensions", "--use-gl=angle", "--use-angle=swiftshader",
            "--enable-unsafe-swiftshader", "--no-first-run", "--no-pdf-header-footer")
@@ -40,13 +40,28 @@ def write(page: Path, pdf: Path) -> None:
                  page.absolute().as_uri()]
         if os.geteuid() == 0:       # it refuses to run as root with its sandbox
             words.insert(1, "--no-sandbox")
-        try:
-            done = subprocess.run(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
-                                  timeout=PATIENCE, check=False)
-        except (OSError, subprocess.TimeoutExpired) as error:
-            raise SlopeError("--pdf", f"{program} must print {page}", error) from error
+        status, said = run(words, Path(folder))
         content = printed.read_bytes() if printed.is_file() else b""
-        if done.returncode or not content.startswith(b"%PDF"):
-            said = done.stderr.decode("utf-8", "replace").strip().splitlines()
-            raise SlopeError("--pdf", f"{program} must print {page}", (said or [f"status {done.returncode}"])[-1][:200])
+        if status is None:
+            raise SlopeError("--pdf", f"{program} must print {page} within {PATIENCE:g} s: try again when less runs on "
+                             "this machine, or print the page from any browser", "nothing by then")
+        if status or not content.startswith(b"%PDF"):
+            raise SlopeError("--pdf", f"{program} must print {page}", said or f"status {status}")
     disk.write(pdf, content)
+
+
+def run(words: List[str], folder: Path) -> Tuple[Optional[int], str]:
+    """Run a browser: its status, None if it had to be ended, and its last words. No process of it is left."""
+    with open(folder / "said", "wb") as screen:     # a pipe would wait for processes that the browser leaves
+        try:
+            process = processes.start(words, folder, screen)
+        except OSError as error:
+            return 1, str(error)
+        try:
+            status: Optional[int] = process.wait(PATIENCE)
+        except subprocess.TimeoutExpired:
+            status = None
+        finally:
+            processes.stop_session(process)
+    said = (folder / "said").read_bytes().decode("utf-8", "replace").strip().splitlines()
+    return status, said[-1][:200] if said else ""

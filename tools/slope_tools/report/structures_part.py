@@ -1,6 +1,6 @@
 """What a report shows of structures and control lines: forces against time, the largest pressures, energies."""
 from pathlib import Path
-from typing import Any, Dict
+from typing import Any, Dict, List
 
 import numpy as np
 
@@ -9,6 +9,7 @@ from ..plots import figure_structures
 from ..tables import structures
 
 
+FEW = 5             # balls: a structure that is lower is hit by one after another, not by a mass
 LENGTHWISE = "mean_force_n_m"       # the largest lasting force per metre of the structure
 COLUMNS = {
     "structures": (("largest force", "N", "largest_force_n"), ("at", "s", "at_s"),
@@ -18,7 +19,8 @@ COLUMNS = {
                    ("impulse", "N s", "impulse_ns"), ("largest moment", "N m", "moment_nm"),
                    ("largest pressure", "Pa", "largest_pressure_pa")),
     "lines": (("forward", "m3", "forward_m3"), ("back", "m3", "back_m3"), ("net", "m3", "net_m3"),
-              ("first", "s", "first_s"), ("speed 95 %", "m/s", "speed_95_m_s"), ("height 95 %", "m", "height_95_m"),
+              ("counted", "", "direction"), ("first", "s", "first_s"), ("speed 95 %", "m/s", "speed_95_m_s"),
+              ("height 95 %", "m", "height_95_m"),
               ("energy 50 %", "J", "energy_50_j"), ("energy 95 %", "J", "energy_95_j"),
               ("largest energy", "J", "largest_energy_j"))}
 PREFIXED = ("N", "N/m", "N s", "N m", "Pa", "J")     # units that are written with a prefix, beside each number
@@ -27,9 +29,9 @@ PREFIXED = ("N", "N/m", "N s", "N m", "Pa", "J")     # units that are written wi
 class Structures:
     """Draws what hit the structures of a data.Data, and what crossed its lines; picture makes the template's."""
 
-    def __init__(self, data, numbers, picture, footprints):
-        self.data, self.numbers, self.picture = data, numbers, picture
-        self.lengths = {name: longest_side(shape) for name, shape in footprints.items()}
+    def __init__(self, data, numbers, picture, ground):
+        self.data, self.numbers, self.picture, self.ground = data, numbers, picture, ground
+        self.lengths = lengths(ground.obstacles)
         self.runs = data.drawn
 
     def content(self):
@@ -39,11 +41,26 @@ class Structures:
         if not walls and not lines:
             return None
         scatter = structures.scatter_at_rest(self.data.finished) if self.data.study else {}
-        return {"scatter": [f"{name}: {100 * share:.2g} % over {runs} runs" for name, (share, runs) in scatter.items()],
+        return {"points": self.points(), "coarse": self.coarse(),
+                "scatter": [f"{name}: {100 * share:.2g} % over {runs} runs" for name, (share, runs) in scatter.items()],
                 "structures": self.table("structures"), "lines": self.table("lines"),
                 "forces": [self.forces(name, found) for name, found in walls.items()],
                 "pressures": [one for one in map(self.pressures, self.mine("wall/gran/mesh").items()) if one],
                 "energies": [one for one in (self.energies(name, found) for name, found in lines.items()) if one]}
+
+    def points(self) -> List[str]:
+        """The reference points of the moments, as the commands of the shown run have them."""
+        found = []
+        for words in map(str.split, self.data.result.log.settings):
+            if words[:1] == ["fix"] and words[3:4] == ["wall/gran/mesh"] and "point" in words[:-3]:
+                at = words.index("point") + 1
+                found.append(f"{words[1]} {' '.join(digits.place(float(word)) for word in words[at:at + 3])}")
+        return found
+
+    def coarse(self) -> List[str]:
+        """Structures that are not several of the shown run's balls high, with what that means."""
+        return [f"{name} is {digits.three(tall)} m high, {tall / ball:.2g} of the model's balls: the loads on it are "
+                "those of single balls, and rough" for name, tall, ball in coarse_walls(self.data, self.ground)]
 
     def mine(self, style):
         return structures.outputs(self.data.result.log.settings, style)
@@ -62,23 +79,24 @@ class Structures:
     def table(self, what):
         """Heads and rows over the runs; None where no run has any."""
         rows = []
-        each = [(self.data.label_of(row), row.get(what) or {}) for row in self.data.finished] or [
-            ("", structures.of_run(self.data.result.folder, self.data.result.log.settings)[what])]
-        for label, found in each:
+        each = [(self.data.number(row["run"]), self.data.label_of(row), row.get(what) or {})
+                for row in self.data.finished] or [
+            ("", "", structures.of_run(self.data.result.folder, self.data.result.log.settings)[what])]
+        for number, label, found in each:
             for name, numbers in found.items():
                 if what == "structures":
                     length = self.lengths.get(name)
                     numbers = {**numbers, LENGTHWISE: length and numbers["mean_force_n"] / length}
                 cells = [self.cell(f"{name}: {head}", unit, numbers.get(key), label)
                          for head, unit, key in COLUMNS[what]]
-                rows.append({"run": label, "name": name, "cells": cells})
+                rows.append({"run": number, "name": name, "cells": cells})
         heads = [(head, "" if unit in PREFIXED else unit) for head, unit, _ in COLUMNS[what]]
         return {"heads": heads, "rows": rows} if rows else None
 
     def cell(self, what, unit, value, label):
         """A number of the table, with its unit where that has a prefix."""
-        if value is None:
-            return "-"
+        if value is None or isinstance(value, str):
+            return value or "-"
         text = (self.numbers if unit else self.numbers.whole)(what, unit, value, of=label)
         return digits.si(value, unit) if unit in PREFIXED else text
 
@@ -87,9 +105,11 @@ class Structures:
         curves = []
         for run, prefix in found:
             time, force = structures.series(run.folder, prefix).mean_force()
-            curves.append((self.label(run), time, force / 1e6))
+            curves.append((self.label(run), time, force))
+        factor, prefix = digits.prefix(max((force.max(initial=0) for _, _, force in curves)))
+        curves = [(label, time, force / factor) for label, time, force in curves]
         title = f"Force on {name}"
-        return self.picture(figure_structures.curves(curves, "time (s)", "force (MN)", title), title,
+        return self.picture(figure_structures.curves(curves, "time (s)", f"force ({prefix}N)", title), title,
                             f"{title}, its mean over the preceding {structures.WINDOW:g} s. Single impacts depend on "
                             "the size of the model's balls; the table has the largest.")
 
@@ -106,27 +126,52 @@ class Structures:
         top = int(pressure.argmax())
         one, other = corners[top, 1] - corners[top, 0], corners[top, 2] - corners[top, 0]
         area = digits.three(0.5 * float(np.linalg.norm(np.cross(one, other))))
-        return self.picture(figure_structures.pressure_map(corners, pressure / 1e3, direction, title), title,
+        return self.picture(figure_structures.pressure_map(corners, pressure, direction, title), title,
                             f"{title}, of each triangle at any time, seen along the load; grey: never touched. Force "
                             f"of the model's balls in one step over the triangle's area: {area} m2 where it is "
                             "largest. Smaller triangles and larger balls make it larger.")
 
     def energies(self, name, found):
-        """Share of the forward crossings of a line with more than an energy, of each run."""
+        """Share of the crossings of a line with more than an energy, of each run, in the direction of the mass."""
         curves = []
         for run, prefix in found:
             crossings = structures.crossings(Path(run.folder), prefix)
-            energy = np.sort(crossings["energy"][(crossings["direction"] > 0) & (crossings["energy"] > 0)]) / 1e3
+            main = structures.of_line(Path(run.folder), prefix)["direction"]
+            energy = np.sort(crossings["energy"][structures.in_direction(crossings, main) & (crossings["energy"] > 0)])
             if len(energy):
                 share = 1 - np.arange(len(energy) + 1) / len(energy)
                 curves.append((self.label(run), np.concatenate([0.8 * energy[:1], energy]), share))
         if not curves:
             return None
+        factor, prefix = digits.prefix(max(energy[-1] for _, energy, _ in curves))
+        curves = [(label, energy / factor, share) for label, energy, share in curves]
         title = f"Energies at the line {name}"
-        return self.picture(figure_structures.curves(curves, "energy of a ball (kJ)", "share with more (-)", title,
-                                                     falling=True), title,
-                            f"{title}: share of the forward crossings with more than an energy (translation and "
-                            "rotation).")
+        return self.picture(figure_structures.curves(curves, f"energy of a ball ({prefix}J)", "share with more (-)",
+                                                     title, falling=True), title,
+                            f"{title}: share of the crossings with more than an energy (translation and rotation), in "
+                            "the direction in which more crossed.")
+
+
+def coarse_walls(data, ground):
+    """(name, height above the ground, diameter of the balls) of structures of the shown run that are lower than FEW
+
+    balls; m. Not of those below the ground or beside it.
+    """
+    found = []
+    for name, corners in ground.obstacles.walls.items():
+        x, y, z = corners.reshape(-1, 3).T
+        above = z - ground.along(ground.before, x, y)
+        tall = float(above[np.isfinite(above)].max(initial=0.0))
+        summary = data.result.summary
+        ball = (summary["volume"]["released"] / summary["balls"]["released"]) ** (1 / 3)
+        if 0 < tall < FEW * ball:
+            found.append((name, tall, ball))
+    return found
+
+
+def lengths(obstacles) -> Dict[str, float]:
+    """Of structures in plan, m."""
+    return {name: longest_side(shape) for name, shape in obstacles.footprints.items()}
 
 
 def longest_side(shape) -> float:

@@ -12,7 +12,7 @@ from ..warned import OTHER
 SMALL = 1e-6            # of the released volume
 NAMED = 4               # runs that a line names
 # kinds of warnings of a study that the page says in its own words here, or beside the maps
-SAID = ("failed", "moving", "lost", "no CRS")
+SAID = ("failed", "moving", "lost", "no CRS", "large")
 RED, AMBER = "red", "amber"
 
 
@@ -111,8 +111,8 @@ def large(data):
     if volume < LARGE:
         return []
     return [(AMBER, f"The run-out: {volume / 1e6:,.3g} million m3 are released, and such masses are known to run "
-                    "farther than laboratory friction suggests. With the default parameters the run-out is not "
-                    "conservative; calibrate them with a past event (page on events of the documentation).")]
+                    "farther than laboratory friction suggests. The run-out is not conservative unless the friction "
+                    "was calibrated with a past event of that size (page on events of the documentation).")]
 
 
 def below_ground(data):

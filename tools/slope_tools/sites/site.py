@@ -198,7 +198,7 @@ def body_of(choices: Choices, wanted: release.Wanted, raster: Raster, warn) -> r
                              "road", line) from None
         raise
     if line := swapped(choices, raster, wholly=True):
-        warn(f"--release and --road may be swapped, the road lies above the release area: {line}")
+        warn(Warned("swapped", {"grounds": line}))
     return found
 
 

@@ -39,7 +39,7 @@ def write(choices: Choices, folder: Path, name: str, wanted: release.Wanted, war
         body = release.body_of(wanted._replace(scar=path, scar_crs=site_choices.assigned(choices, path)))
         if path != wanted.scar:
             for line in body.warnings:
-                warn(f"body {rank}: {line}")
+                warn(line._replace(part=f"body {rank}"))
         rasters.write_asc_local(folder / slip_name(name, rank),
                                 body.raster._replace(z=release_files.ground_without(body.raster, body.area, body.slip)),
                                 {"terrain": Path(wanted.terrain).name, "body": rank}, exact=True)

@@ -14,6 +14,7 @@ from ..releases import release_area
 from ..survey import polygons, rasters, vectors
 from ..survey.crs import as_crs, same_crs
 from ..survey.rasters import Raster, crs_name
+from ..warned import Warned
 from . import site_choices, site_inputs
 from .site_choices import Choices
 from .site_inputs import Line, Motion, Structure
@@ -127,7 +128,7 @@ def polygon_layer(choices: Choices, path: Optional[str], raster: Raster, target:
     geometry = polygons.read_local(path, raster, crs=assigned(choices, path), advice=advice(choices, path), warn=warn)
     beyond = 1 - geometry.intersection(box(*extent(raster))).area / geometry.area
     if beyond > 1e-9:
-        warn(f"{path}: {100 * beyond:.2g} % of the area lies outside of the terrain")
+        warn(Warned("outside", {"file": str(path), "percent": 100 * beyond, "terrain": "the terrain"}))
     geometry = polygons.write(target, geometry, raster)
     tell(f"{target.name}: {len(polygons.polygons_of(geometry))} polygon, {geometry.area:,.0f} m2")
     return geometry
@@ -144,7 +145,7 @@ def observed_layer(choices: Choices, raster: Raster, folder: Path, tell, warn):
     mapped = mapped._replace(crs=assigned(choices, path) or mapped.crs)
     if mapped.crs is None:
         mapped = mapped._replace(crs=raster.crs)
-        warn(f"{path} has no CRS: taken to be in that of the terrain")
+        warn(Warned("CRS of terrain", {"file": str(path), "remedy": ""}))
     if not same_crs(mapped.crs, raster.crs):
         raise SlopeError(path, f"must be in the CRS of the terrain, {crs_name(raster.crs)} (gdalwarp -t_srs "
                          "reprojects)", crs_name(mapped.crs))

@@ -1,7 +1,7 @@
 """The warnings of a site: slope site prints them, and keeps them in the folder for the report."""
 import math
 from pathlib import Path
-from typing import List, Optional, Sequence
+from typing import List, Mapping, Optional, Sequence
 
 import yaml
 
@@ -54,10 +54,14 @@ def of_resistance(choices: Choices) -> List[Warned]:
     angles = {"--friction": choices["model"]["friction"], "--slip-friction": choices["model"]["slip_friction"]}
     if choices["road"]["file"]:
         angles["--cut-angle"] = choices["road"]["cut_angle"]
-    return [*(Warned("small angle", {"option": option, "degrees": value, "meant": math.degrees(math.atan(value))})
-              for option, value in angles.items() if 0 < value < COEFFICIENT),
-            *(Warned("large rolling", {"rolling": value, "limit": ROLLS_NOT})
-              for value in choices["study"]["rolling"] if value > ROLLS_NOT)]
+    return [*of_angles(angles), *(Warned("large rolling", {"rolling": value, "limit": ROLLS_NOT})
+                                  for value in choices["study"]["rolling"] if value > ROLLS_NOT)]
+
+
+def of_angles(angles: Mapping[str, float]) -> List[Warned]:
+    """Angles (degrees, by their options) that look like coefficients."""
+    return [Warned("small angle", {"option": option, "degrees": value, "meant": math.degrees(math.atan(value))})
+            for option, value in angles.items() if 0 < value < COEFFICIENT]
 
 
 def of_thickness(mean: float, largest: float) -> List[Warned]:

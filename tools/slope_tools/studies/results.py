@@ -53,7 +53,8 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         return      # study.perform says so
     maps = Maps(thresholds)
     rows, thickness = rows_of(setup, todo, maps, pictures=order is None)
-    warnings = [*map(warned, questions.notes), *doubts(rows)]
+    warnings = [warned(one) for one in questions.notes]
+    warnings += [one for one in doubts(rows) if one not in warnings]
     if maps.problem:
         warnings.append(warned(maps.problem))
     finished = [row for row in rows if row["status"] == "finished"]

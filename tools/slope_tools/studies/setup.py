@@ -28,4 +28,4 @@ class Setup(NamedTuple):
     slurm: str = ""                     # options of sbatch
     dry_run: bool = False               # only list the runs
     tell: Callable[[Any], None] = lambda line: None     # what gets lines for the user, and tables (rich.table.Table)
-    warn: Callable[[str], None] = lambda text: None     # what gets warnings
+    warn: Callable[[Any], None] = lambda said: None     # what gets warnings, Warned or text

@@ -12,6 +12,7 @@ from rasterio.crs import CRS
 
 from ..errors import SlopeError
 from ..geometry import numbers
+from ..warned import Warned
 from . import fggml, plausible, rasters
 from .crs import as_crs, require_metres, warn_of_stretch
 from .holes import fill, small_holes
@@ -56,7 +57,7 @@ def own_crs(path: str, wanted: Wanted, assigned: Optional[CRS]) -> Optional[CRS]
 
 
 def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[str], Any],
-         warn: Callable[[str], Any]) -> Dict[str, Any]:
+         warn: Callable[[Warned], Any]) -> Dict[str, Any]:
     """Write the terrain of survey files to output (.asc, with its sidecar); returns the sidecar.
 
     tell is called with a line for each thing that was done, warn with warnings. Raises SlopeError on bad input.
@@ -83,6 +84,7 @@ def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[st
     if not np.isfinite(raster.z).any():
         raise SlopeError(", ".join(inputs), "must have a height, all cells are NODATA")
     plausible.warn_of_pits(raster, warn)
+    plausible.warn_of_picture(raster, warn)
     filled = 0
     if wanted.fill:
         holes, count = small_holes(np.isnan(raster.z), wanted.fill)

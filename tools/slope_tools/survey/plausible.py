@@ -4,12 +4,14 @@ from typing import Any, Callable, NamedTuple, Optional
 
 import numpy as np
 
+from ..warned import Warned
 from .rasters import UNITS, Raster
 
 MARKS = (0.0, -99.0, -999.0, -3276.8)   # m, heights with which programs fill what they do not know
 DEEP = 10.0         # m; a pit is deeper than this and than STEEP_SIDES cells, on all sides
 STEEP_SIDES = 2.0
 STEEPEST = 50.0     # degrees, mean of a terrain; steeper ones may be in feet
+BRIGHT, MOST = 240.0, 255.0     # of a picture: its brightest cell is between these
 ROWS = 1000         # of a terrain that are looked at for its slope
 FOOT = UNITS["ft"]
 
@@ -50,7 +52,7 @@ def remedy(found: Pits) -> str:
     return f"--nodata {found.mark:g} makes them NODATA, with --fill {found.largest} they are filled"
 
 
-def warn_of_pits(raster: Raster, warn: Callable[[str], Any]) -> None:
+def warn_of_pits(raster: Raster, warn: Callable[[Warned], Any]) -> None:
     """Warn of pits in a terrain."""
     found = pits(raster.z, abs(raster.transform.a))
     if found is None:
@@ -58,8 +60,15 @@ def warn_of_pits(raster: Raster, warn: Callable[[str], Any]) -> None:
     row, column = np.argwhere(found.cells)[0]
     x, y = raster.transform * (column + 0.5, row + 0.5)
     x, y = x + raster.offset[0], y + raster.offset[1]
-    warn(f"{int(found.cells.sum())} cells of {found.mark:g} m lie at least {found.least:.4g} m below all cells beside "
-         f"them, the first at {x:.10g} {y:.10g}: NODATA that the file does not declare? {remedy(found)}")
+    warn(Warned("pits", {"cells": int(found.cells.sum()), "mark": found.mark, "depth": found.least, "east": float(x),
+                         "north": float(y), "remedy": remedy(found)}))
+
+
+def warn_of_picture(raster: Raster, warn: Callable[[Warned], Any]) -> None:
+    """Warn of values that only a picture of 8 bits has as a rule, such as a hillshade that was converted."""
+    known = raster.z[np.isfinite(raster.z)]
+    if known.min() >= 0 and BRIGHT <= known.max() <= MOST and not (known % 1).any():
+        warn(Warned("picture", {"low": float(known.min()), "high": float(known.max())}))
 
 
 def mean_slope(raster: Raster) -> float:
@@ -80,9 +89,10 @@ def in_feet(slope: float) -> float:
     return math.degrees(math.atan(math.tan(math.radians(slope)) * FOOT))
 
 
-def warn_of_slope(raster: Raster, warn: Callable[[str], Any]) -> None:
+def warn_of_slope(raster: Raster, warn: Callable[[Warned], Any]) -> None:
     """Warn of a terrain that is too steep for one in metres."""
     slope = mean_slope(raster)
     if slope > STEEPEST > in_feet(slope):
-        warn(f"the ground falls by {slope:.0f} degrees on average: are the heights in feet? Then --z-unit ft, which "
-             f"makes it {in_feet(slope):.0f}")
+        warn(Warned("in feet", {"degrees": slope, "in_feet": in_feet(slope)}))
+    elif slope > STEEPEST:
+        warn(Warned("no ground's slope", {"degrees": slope, "in_feet": in_feet(slope)}))

@@ -140,6 +140,14 @@ def height_unit(path):
             return TAGS.get((source.units[0] or "").lower())
 
 
+def is_picture(path):
+    """Whether a raster file has 8-bit values as they are, as a hillshade has."""
+    with warnings.catch_warnings(), rasterio.Env():
+        warnings.simplefilter("ignore", NotGeoreferencedWarning)
+        with rasterio.open(path) as source:
+            return source.dtypes[0] in ("uint8", "int8") and source.scales[0] == 1 and source.offsets[0] == 0
+
+
 def _read(path, source):
     if source.count != 1:
         raise SlopeError(path, "must have one band, the heights", f"{source.count} bands")

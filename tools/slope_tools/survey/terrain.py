@@ -5,6 +5,7 @@ import numpy as np
 from affine import Affine
 
 from ..errors import SlopeError
+from ..warned import Warned
 from . import fggml, japan, rasters
 from .crs import require_degrees, same_crs
 from .rasters import Raster, crs_name
@@ -20,6 +21,9 @@ def declare(path, crs, tell, warn, assigned=None, unit=None, nodata=None):
     none.
     """
     local = rasters.read_asc_local(path, unit=unit, nodata=nodata)
+    if rasters.is_picture(path):
+        raise SlopeError(path, "must be heights, not a picture such as a hillshade; if they are heights, "
+                         "gdal_translate -ot Float32 stores them as such", "values of 8 bits")
     said = rasters.height_unit(path)
     if unit and said and said != unit:
         tell(f"{path} says heights in {said}: taken as {unit}")
@@ -37,7 +41,7 @@ def declare(path, crs, tell, warn, assigned=None, unit=None, nodata=None):
         tell(f"{path} has no CRS: taken as {crs_name(crs)}")
         return raster._replace(crs=crs)
     if raster.crs is None:
-        warn(f"{path} has no CRS: its coordinates are taken as metres; --crs declares one")
+        warn(Warned("no CRS", {"file": str(path), "coordinates": "taken as metres; --crs declares one"}))
     return raster
 
 

@@ -14,6 +14,7 @@ from shapely.errors import ShapelyError
 from shapely.geometry import shape
 
 from ..errors import SlopeError
+from ..warned import Warned
 
 MARK = "layername="         # QGIS: FILE|layername=NAME|geometrytype=...
 MAGIC = bytes([0, 0, 0x27, 0x0a])       # begins a shapefile
@@ -34,7 +35,7 @@ class Found(NamedTuple):
     empty: int                          # features without a geometry, which are not among them
 
 
-def ignore(_: str) -> None:
+def ignore(_: object) -> None:
     """A function for warnings of which nobody wants to hear."""
 
 
@@ -63,7 +64,7 @@ def require_file(name: object) -> Source:
     return found
 
 
-def read(name: object, kind: str, warn: Callable[[str], Any] = ignore) -> Found:
+def read(name: object, kind: str, warn: Callable[[Warned], Any] = ignore) -> Found:
     """The features of a file, of the layer that it names or the one with geometries of a kind ("Polygon", "Line").
 
     Raises SlopeError, which names the file.
@@ -92,7 +93,7 @@ def read(name: object, kind: str, warn: Callable[[str], Any] = ignore) -> Found:
     empty = len(raw) - len(features)
     if empty:
         first = next(place for place, geometry in raw if geometry is None)
-        warn(f"{first} has no geometry" + f", and {empty - 1} more" * (empty > 1) + ": left out")
+        warn(Warned("no geometry", {"feature": first, "without": empty, "features": len(raw)}))
     return Found(features, crs, empty)
 
 

@@ -1,6 +1,7 @@
 """What half the time step changes: one run with it, against the mean of the runs that are otherwise the same."""
 from typing import Any, Dict, NamedTuple, Optional, Sequence
 
+from ..digits import rounded, to_three
 from ..statistics import headline
 from .combinations import Group
 
@@ -30,7 +31,11 @@ def compare(step: Step, groups: Sequence[Group], scatter: Optional[headline.Scat
     volumes = same.of(QUANTITY)
     difference = step.volume - volumes.mean
     entry["mean_m3"] = volumes.mean
-    text = f"half the time step, rolling {step.rolling}: {step.volume:,.0f} m3 instead of {volumes.mean:,.0f} to remove"
+    text = f"half the time step, rolling {step.rolling}: "
+    if not step.volume and not volumes.mean:
+        return {**entry, "chance_m3": 0.0, "within_chance": True,
+                "text": f"{text}nothing to remove, as with the whole step"}
+    text += f"{shown(step.volume)} m3 instead of {shown(volumes.mean)} to remove"
     if volumes.mean > 0:
         text += f", {100 * difference / volumes.mean:+.1f} %"
     if scatter is None:
@@ -38,4 +43,8 @@ def compare(step: Step, groups: Sequence[Group], scatter: Optional[headline.Scat
     chance = scatter.chance(volumes.runs)
     within = abs(difference) <= chance
     return {**entry, "chance_m3": chance, "within_chance": within,
-            "text": f"{text}; {'no more' if within else 'more'} than chance explains, {chance:,.0f} m3"}
+            "text": f"{text}; {'no more' if within else 'more'} than chance explains, {shown(chance)} m3"}
+
+
+def shown(volume: float) -> str:
+    return rounded(to_three(volume))

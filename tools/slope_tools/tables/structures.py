@@ -117,26 +117,33 @@ def of_structure(folder: Path, prefix: str) -> Dict[str, Any]:
 
 
 def of_line(folder: Path, prefix: str) -> Dict[str, Any]:
-    """Numbers of a control line; speeds, heights, energies of the forward crossings, each of which counts alike."""
+    """Numbers of a control line; speeds, heights, energies of the crossings in the direction of the mass, all alike."""
     path = folder / f"{prefix}.line.yaml"
     about = disk.load_yaml(path, "what fix control/line wrote")
     found = crossings(folder, prefix)
-    forward = found["direction"] > 0
     try:
         numbers: Dict[str, Any] = {
             "forward_m3": float(about["forward"]["volume"]), "back_m3": float(about["back"]["volume"]),
-            "net_m3": float(about["net_volume"]), "crossings": int(about["forward"]["crossings"])}
+            "net_m3": float(about["net_volume"])}
+        main = "back" if numbers["back_m3"] > numbers["forward_m3"] else "forward"      # as the fix has it
+        numbers.update(direction=main, crossings=int(about[main]["crossings"]))
     except (KeyError, TypeError, ValueError) as error:
         raise SlopeError(path, f"must be what fix control/line wrote ({error!r})") from error
-    times = found["time"][forward]
+    mine = in_direction(found, main)
+    times = found["time"][mine]
     numbers["first_s"] = float(times.min()) if len(times) else None
     for name, unit in (("speed", "m_s"), ("height", "m"), ("energy", "j")):
-        values = found[name][forward]
+        values = found[name][mine]
         values = np.sort(values[np.isfinite(values)])
         for share in SHARES:
             numbers[f"{name}_{100 * share:.0f}_{unit}"] = quantile(values, share)
         numbers[f"largest_{name}_{unit}"] = float(values[-1]) if len(values) else None
     return numbers
+
+
+def in_direction(found: Mapping[str, np.ndarray], main: str) -> np.ndarray:
+    """Mask of the crossings forward, or back."""
+    return found["direction"] * (1 if main == "forward" else -1) > 0
 
 
 def quantile(ordered, share):
@@ -194,7 +201,7 @@ SHOWN: Dict[str, Tuple[Tuple[str, str, float], ...]] = {
               ("height 95 % m", "height_95_m", 1), ("energy 95 % kJ", "energy_95_j", 1e3),
               ("largest kJ", "largest_energy_j", 1e3))}
 TITLES = {"structures": f"forces on structures: the largest, and the largest mean over {WINDOW:g} s",
-          "lines": "what crossed the lines; quantiles of the forward crossings"}
+          "lines": "what crossed the lines; quantiles in the direction in which more crossed"}
 
 
 def cell(value, unit):
