@@ -291,8 +291,8 @@ void FixControlLine::write_files()
   collect();
   if (comm->me == 0 && log.main_direction() < 0)
     error->warning(FLERR,
-                   "Fix control/line {}: more volume crossed back than forward, {:.6g} against "
-                   "{:.6g}: largest values and quantiles are those of the crossings back; turn the "
+                   "Fix control/line {}: more volume crossed back than forward, {:.1f} m3 against "
+                   "{:.1f}: largest values and quantiles are those of the crossings back; turn the "
                    "line round, {}, if it was drawn against the motion",
                    id, log.way(-1).volume, log.way(1).volume, file);
   on_rank_zero(lmp, "Fix control/line", [this]() {

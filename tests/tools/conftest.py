@@ -4,8 +4,6 @@ import pytest
 import run_helpers  # noqa: F401  (its path of the tools)
 import tiny_collapse
 
-from slope_tools.deposits import volume_files
-
 
 @pytest.fixture
 def tiny_case(tmp_path, monkeypatch):
@@ -13,7 +11,7 @@ def tiny_case(tmp_path, monkeypatch):
 
     The maps of slope volume, which take longest in a study, are empty; test_volume.py has one.
     """
-    monkeypatch.setattr(volume_files, "draw", lambda path, *_: path.touch())
+    monkeypatch.setattr("slope_tools.deposits.volume_files.draw", lambda path, *_: path.touch())
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("LMP", tiny_collapse.LMP)
     tiny_collapse.write_case(tmp_path / "case")

@@ -581,7 +581,7 @@ def test_the_log_is_read_as_it_grows(tmp_path):
 
 def test_a_terminal_gets_a_live_display(here):
     leader, follower = pty.openpty()
-    process = subprocess.Popen([*PROGRAM, "study", "case/in.tiny", "--set", "steps=700", "--set", "rolling=0,0.1",
+    process = subprocess.Popen([*PROGRAM, "study", "case/in.tiny", "--set", "steps=14000", "--set", "rolling=0,0.1",
                                 "-o", "out", "--jobs", "1"], stdout=subprocess.DEVNULL, stderr=follower,
                                env={**os.environ, "TERM": "xterm", "COLUMNS": "120"})
     os.close(follower)
@@ -597,16 +597,16 @@ def test_a_terminal_gets_a_live_display(here):
     os.close(leader)
     assert process.wait(20) == 0
     text = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", shown.decode())
-    assert re.search(r"\[1/2\] rolling 0 .*step \d+ of 700, \d\.\d\d s +\d\d:\d\d:\d\d", text)
-    assert "[1/2] steps_700_rolling_0: finished at 1.4 s, wall time" in text
+    assert re.search(r"\[1/2\] rolling 0 .*step \d+ of 14000, \d+\.\d\d s +\d\d:\d\d:\d\d", text)
+    assert "[1/2] steps_14000_rolling_0: finished at 28.0 s, wall time" in text
     assert "0 of 2 finished" in text and "1 waiting" in text
 
 
 def test_lines_now_and_then_without_a_terminal(slope, here, monkeypatch):
     monkeypatch.setattr(job_display, "TELL", 0.05)
-    status, out, _ = slope("case/in.tiny --set steps=700 -o out")
+    status, out, _ = slope("case/in.tiny --set steps=14000 -o out")
     assert status == 0
-    assert re.search(r"^\[1/1\] steps_700: step \d+ of 700, \d\.\d\d s, ends by \d\d:\d\d:\d\d$", out, re.MULTILINE)
+    assert re.search(r"^\[1/1\] steps_14000: step \d+ of 14000, \d+\.\d\d s, ends by \d\d:\d\d:\d\d$", out, re.MULTILINE)
 
 
 # --- bad input: one line, status 2, nothing made ---

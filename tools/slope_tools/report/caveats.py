@@ -101,7 +101,7 @@ def body(data) -> Optional[Caveat]:
 def large(data) -> Optional[Caveat]:
     if data.largest_release() < LARGE:
         return None
-    return Caveat(LARGE_MASS, f"Masses of {digits.cubic(LARGE)} and more are known to run farther than laboratory "
+    return Caveat(LARGE_MASS, f"Masses of {LARGE / 1e6:g} million m³ and more are known to run farther than laboratory "
                               "friction suggests: the reach is not conservative unless a past event was used to "
                               "calibrate it.")
 

@@ -156,7 +156,8 @@ def basis(data) -> str:
         text += f"{' and' if known else ', which differ'}, by chance, in how the balls lie at the start"
     method = data.study["study"].get("method") or ""        # of a site's study
     if method.startswith(known_study.PAPER):
-        text += f". {method[0].upper()}{method[1:]}"
+        why = method.removeprefix(known_study.PAPER).removeprefix("; ")
+        text += ". Known events of this size do not count in them" + ("" if method == known_study.ASKED else f": {why}")
     return f"{text}."
 
 
