@@ -1,5 +1,11 @@
 # LAMMPS with our styles in it -> build/lmp
 
+# its target gitversion writes to another folder then
+if(CMAKE_BINARY_DIR MATCHES "[ \t]")
+  message(FATAL_ERROR "The path of the build folder must have no blanks, with which LAMMPS' own build "
+    "does not work: another one by -B, got ${CMAKE_BINARY_DIR}")
+endif()
+
 # In the cache, where LAMMPS' own option() finds them and -D still overrides them.
 # None of these packages downloads anything.
 foreach(option BUILD_MPI PKG_GRANULAR PKG_MISC PKG_PLUGIN PKG_RIGID)

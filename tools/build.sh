@@ -5,6 +5,10 @@ set -euo pipefail
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
+if [[ $top == *[[:space:]]* ]]; then # here, before anything is downloaded
+  echo "build: the path of the checkout must have no blanks, with which LAMMPS' own build does not work: move it, got $top" >&2
+  exit 2
+fi
 "$top/tools/setup.sh"
 # the source is named each time, or cmake would keep that of the previous build
 cmake -S "$top" -B "$top/build" \

@@ -1,7 +1,6 @@
 """Fixtures of several tests of the tools."""
 import pytest
 
-import run_helpers  # noqa: F401  (its path of the tools)
 import tiny_collapse
 
 
@@ -11,6 +10,7 @@ def tiny_case(tmp_path, monkeypatch):
 
     The maps of slope volume, which take longest in a study, are empty; test_volume.py has one.
     """
+    import run_helpers  # noqa: F401  (its path of the tools; here, as most tests need none of it)
     monkeypatch.setattr("slope_tools.deposits.volume_files.draw", lambda path, *_: path.touch())
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("LMP", tiny_collapse.LMP)

@@ -221,3 +221,12 @@ def test_the_list_of_packages():
         assert "without:" not in rest or len(rest) - len(names) > 2, name
     needed = {line[0] for line in lines if "without:" not in line}
     assert {"cmake", "libopenmpi-dev", "python3-numpy"} <= needed and "libvtk9-dev" not in needed
+
+
+def test_a_path_with_blanks_is_refused_before_anything_is_downloaded(tmp_path):
+    tools = tmp_path / "two words" / "tools"
+    tools.mkdir(parents=True)
+    shutil.copy(TOP / "tools" / "build.sh", tools)      # without setup.sh, which it must not come to
+    done = subprocess.run([tools / "build.sh"], stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert re.fullmatch(r"build: the path of the checkout must have no blanks.* got .*two words\n", done.stderr)
