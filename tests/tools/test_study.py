@@ -606,7 +606,8 @@ def test_lines_now_and_then_without_a_terminal(slope, here, monkeypatch):
     monkeypatch.setattr(job_display, "TELL", 0.05)
     status, out, _ = slope("case/in.tiny --set steps=14000 -o out")
     assert status == 0
-    assert re.search(r"^\[1/1\] steps_14000: step \d+ of 14000, \d+\.\d\d s, ends by \d\d:\d\d:\d\d$", out, re.MULTILINE)
+    assert re.search(r"^\[1/1\] steps_14000: step \d+ of 14000, \d+\.\d\d s, ends by \d\d:\d\d:\d\d$", out,
+                     re.MULTILINE)
 
 
 # --- bad input: one line, status 2, nothing made ---
