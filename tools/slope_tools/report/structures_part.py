@@ -153,17 +153,17 @@ class Structures:
 
 
 def coarse_walls(data, ground):
-    """(name, height above the ground, diameter of the balls) of structures of the shown run that are lower than FEW
+    """Structures of the shown run that are lower than FEW balls: (name, height above the ground, size of a ball), m.
 
-    balls; m. Not of those below the ground or beside it.
+    Size: the side of the cube of ground that a ball stands for. Not of those below the ground or beside it.
     """
     found = []
+    summary = data.result.summary
+    ball = (summary["volume"]["released"] / summary["balls"]["released"]) ** (1 / 3)
     for name, corners in ground.obstacles.walls.items():
         x, y, z = corners.reshape(-1, 3).T
         above = z - ground.along(ground.before, x, y)
         tall = float(above[np.isfinite(above)].max(initial=0.0))
-        summary = data.result.summary
-        ball = (summary["volume"]["released"] / summary["balls"]["released"]) ** (1 / 3)
         if 0 < tall < FEW * ball:
             found.append((name, tall, ball))
     return found

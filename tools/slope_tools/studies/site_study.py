@@ -16,9 +16,9 @@ from ..sites import site_choices, site_deck, site_warnings
 from ..sites.site_budget import three_digits
 from ..sites.site_choices import Choices, OFFSETS
 from ..sites.site_layers import OBSERVED, ROAD
+from ..tables import energy
 from ..tables.quantities import NAMES
 from ..tables.size_error import SizeErrors, WHAT
-from ..tables import energy
 from ..tables.step_check import HALF, QUANTITY, Step
 from ..warned import Warned, warned
 from . import results, size_study, study
