@@ -99,7 +99,8 @@ def study_of(masses, **more):
     finished = [{"off_grid_m3": 0.0, "lost_m3": lost, "released_m3": released} for lost, released in masses]
     found = {"study": {"conservative": None, "warnings": []}, "rows": finished, "finished": finished, "repeats": {},
              "ends": lambda: [], "warnings": lambda: [], "releases": lambda: [], "below_ground": lambda: None,
-             "largest_release": lambda: max(released for _, released in masses)}
+             "largest_release": lambda: max(released for _, released in masses),
+             "result": SimpleNamespace(summary={"volume": {"released": masses[0][1]}, "balls": {"released": 1000}})}
     return SimpleNamespace(**{**found, **more})
 
 
