@@ -15,7 +15,7 @@ from slope_tools import programs  # noqa: E402
 from slope_tools.commands import study  # noqa: E402
 from slope_tools.report import chain_part  # noqa: E402
 from slope_tools.report.numbers import Numbers  # noqa: E402
-from slope_tools.seismic import chain_files  # noqa: E402
+from slope_tools.seismic import chain_files, fragility_files  # noqa: E402
 
 needs_lmp = pytest.mark.skipif(not os.environ.get("LMP"), reason="needs the LAMMPS program (LMP)")
 ROAD = "1,0\n8,0\n8,51\n1,51\n"
@@ -116,7 +116,8 @@ def bad(slips, capsys, monkeypatch):  # noqa: F811
         assert ran(capsys, f"site --terrain terrain.asc --slips slips --balls 60 {words} -o {name}")[0] == 0
     for name, words in (("fragility", ""), ("strong", "--cohesion 1e6")):
         assert ran(capsys, f"fragility {FRAGILITY} {words} -o {name}")[0] == 0
-    for name, file, old in (("moved", chain_files.ABOUT, "base_sha256: "), ("short", chain_files.CAPACITIES, "\n1,1,")):
+    for name, file, old in (("moved", fragility_files.ABOUT, "base_sha256: "),
+                            ("short", fragility_files.CAPACITIES, "\n1,1,")):
         shutil.copytree("fragility", name)
         text = Path(name, file).read_text()
         assert old in text

@@ -147,7 +147,8 @@ def test_without_a_value_above_0_there_are_no_shares():
 def write_converge(path, runs, quantity="remove_m3", **study):
     """A converge.yaml of these runs."""
     fit = convergence.fit(runs)
-    about = {"study": {"deck": "in.tiny", "variable": "d", "base": {"rolling": "0"}, "road": None, **study},
+    about = {"study": {"deck": "in.tiny", "variable": "d", "base": {"rolling": "0"}, "road": None,
+                       "finished": len(runs), **study},
              "quantities": {quantity: size_study.entry(fit, ("to remove", "m3"), [])}}
     Path(path).write_text(yaml.safe_dump(about))
     return fit

@@ -774,11 +774,12 @@ def write_converge(path, **changed):
     entry = {"name": "to remove", "unit": "m3",
              "small_balls": {"value": 17400.0, "standard_error": 200.0, "low": 16900.0, "high": 17900.0},
              "slope": {"value": -1200.0, "standard_error": 90.0}, "supported": False,
+             "errors_known": True, "covariance": None, "quantile": None,
              "sizes": [{"value": 4.0, "mean": 12600.0, "scatter": 300.0, "error_percent": -27.6,
                         "standard_error_percent": 2.0},
                        {"value": 2.5, "mean": 14400.0, "scatter": None, "error_percent": -17.2,
                         "standard_error_percent": None}], **changed}
-    Path(path).write_text(yaml.safe_dump({"study": {"variable": "d", "deck": "in.other", "finished": 7},
+    Path(path).write_text(yaml.safe_dump({"study": {"variable": "d", "deck": "in.other", "base": {}, "finished": 7},
                                           "quantities": {"remove_m3": entry}}))
 
 
@@ -954,6 +955,7 @@ def only_failed():
 
 
 RUN = "out/rolling_0_steps_1200"
+REFERENCES = "r.yaml: must be a file of reference values (see the page on `slope report`)"
 BAD = {
     "no folder": (lambda: None, "none", "none: must be an existing folder"),
     "an empty folder": (lambda: Path("empty").mkdir(), "empty", "empty: must be the folder of a study, with "
@@ -994,22 +996,23 @@ BAD = {
                                "must cross the grid of the run, 0 0 40 24 (local metres), got 100 0 120 9"),
     "no folder at all": (lambda: None, "--section 1 2 3 4", "DIR: must be given"),
     "no reference": (lambda: None, "out --reference none.yaml", "none.yaml: must be a file of reference values"),
-    "reference without quantities": (text_of("r.yaml", "title: T\n"), "out --reference r.yaml", "r.yaml: must have "
-                                     "quantities"),
+    "reference without quantities": (text_of("r.yaml", "title: T\n"), "out --reference r.yaml", f"{REFERENCES}: must "
+                                     "have quantities"),
     "reference without a title": (text_of("r.yaml", "quantities: {front_m: {levels: {a: 1}}}"),
-                                  "out --reference r.yaml", "r.yaml: must have a title"),
+                                  "out --reference r.yaml", f"{REFERENCES}: must have title"),
     "unknown quantity": (text_of("r.yaml", "title: T\nquantities: {volume: {levels: {a: 1}}}"),
                          "out --reference r.yaml", "r.yaml: quantities: must be columns that all runs have"),
     "quantity of a road, without one": (text_of("r.yaml", "title: T\nquantities: {remove_m3: {levels: {a: 1}}}"),
                                         "one --reference r.yaml",
                                         "r.yaml: quantities: must be columns that all runs have"),
     "reference level of words": (text_of("r.yaml", "title: T\nquantities: {front_m: {levels: {a: b}}}"),
-                                 "out --reference r.yaml", "r.yaml: quantities: front_m: levels: must be NAME: finite"),
+                                 "out --reference r.yaml", f"{REFERENCES}: quantities: front_m: levels: a: "
+                                 "must be a finite number, got 'b'"),
     "reference without variable": (text_of("r.yaml", "title: T\nquantities: {front_m: {series: {a: {0: 1}}}}"),
-                                   "out --reference r.yaml", "r.yaml: quantities: front_m: must name the variable of"),
+                                   "out --reference r.yaml", f"{REFERENCES}: quantities: front_m: must have "
+                                   "levels: {NAME: VALUE}, or variable and series: {NAME: {X: VALUE}}, or both"),
     "reference of more": (text_of("r.yaml", "title: T\nquantities: {front_m: {levels: {a: 1}}}\nmore: 1"),
-                          "out --reference r.yaml", "r.yaml: must have title, remark and quantities, nothing else, "
-                          "got more"),
+                          "out --reference r.yaml", f"{REFERENCES}: must have no more, which is unknown"),
     "reference that is no mapping": (text_of("r.yaml", "- 1\n"), "out --reference r.yaml", "r.yaml: must be a file"),
     "no convergence": (lambda: None, "out --converge none", "--converge: must be a converge.yaml of `slope "),
     "broken convergence": (text_of("c.yaml", "study: {variable: d}"), "out --converge c.yaml", "c.yaml: must be a "

@@ -736,7 +736,7 @@ def test_every_example_of_the_page_and_the_help_runs(slope, here, command):
     fit = convergence.fit([(4.0, [12.0, 13.0]), (1.0, [18.0, 18.4]), (0.5, [19.0, 19.2])])
     (here / "sizes").mkdir()
     (here / "sizes" / "converge.yaml").write_text(yaml.safe_dump({
-        "study": {"deck": "in.embankment", "variable": "d", "base": {}, "road": None},
+        "study": {"deck": "in.embankment", "variable": "d", "base": {}, "road": None, "finished": 6},
         "quantities": {"remove_m3": size_study.entry(fit, ("to remove", "m3"), [])}}))
     status, _, err = slope(command.removeprefix("study "))
     assert status == 0, err

@@ -107,14 +107,6 @@ def is_number(value):
         return False
 
 
-def load_yaml(path, what):
-    """A YAML file that holds a mapping; what says what it must be."""
-    about = parse_yaml(path, what)
-    if not isinstance(about, dict):
-        raise SlopeError(path, f"must be {what}")
-    return about
-
-
 @contextmanager
 def alone_in(folder, what="study"):
     """No other process works in a folder meanwhile; the lock goes when the process does. SlopeError if one does."""

@@ -9,6 +9,7 @@ ANY: Dict[str, Any] = {}
 NUMBER = {"type": "number"}             # finite
 MAYBE = {"type": ["number", "null"]}
 ABOVE_0 = {"type": "number", "exclusiveMinimum": 0}
+COUNT = {"type": "integer", "minimum": 1}
 TEXT, FLAG, OBJECT = {"type": "string"}, {"type": "boolean"}, {"type": "object"}
 NTH = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
 TYPES = {"array": "a list in brackets", "string": "a text", "number": "a finite number", "integer": "a whole number",
@@ -27,13 +28,18 @@ def mapping(required: Mapping[str, Any], null: bool = False, **optional: Any) ->
             "properties": {**required, **optional}}
 
 
+def named(items: Mapping[str, Any], least: int = 0) -> Dict[str, Any]:
+    """Of a mapping whose keys are names, and whose values are all alike."""
+    return {"type": "object", "additionalProperties": items, "minProperties": least}
+
+
 def listed(items: Mapping[str, Any], least: int = 0, null: bool = False) -> Dict[str, Any]:
     return {"type": ["array", "null"] if null else "array", "items": items, "minItems": least}
 
 
-def load(path, what: str, schema: Mapping[str, Any]) -> Dict[str, Any]:
+def load(path, what: str, schema: Mapping[str, Any]) -> Any:
     """What a YAML file holds; SlopeError unless it fits the schema. what: the file, for messages."""
-    about = disk.load_yaml(path, what)
+    about = disk.parse_yaml(path, what)
     check(about, schema, path, what)
     return about
 
@@ -78,6 +84,10 @@ def rule_of(error) -> str:
         types = value if isinstance(value, list) else [value]
         example = f", such as [{got}]" if "array" in types and disk.is_number(error.instance) else ""
         return f"must be {' or '.join(TYPES.get(one, one) for one in types)}{example}, got {got}"
+    if rule == "anyOf" and "description" in error.schema:
+        return f"must have {error.schema['description']}, got {got}"
+    if rule.startswith("min") and value == 1 and rule != "minimum":
+        return "must not be empty"
     if rule in RULES:
         return f"must {RULES[rule].format(', '.join(map(str, value)) if isinstance(value, list) else value)}, got {got}"
     return f"must be valid: {error.message}"

@@ -3,14 +3,17 @@ import os
 import re
 from typing import Set
 
-from .. import disk
 from ..errors import SlopeError
+from ..schemas import TEXT, listed, mapping
 from . import decks, run_folders
 
 # what runs, and the tools after them, leave in the deck's folder; a file that the deck reads is copied all the same
 OUTPUTS = re.compile(r"^\.|^core|^log\.|\.(restart|dump|lammpstrj|vtp|vts|pvd)(\.gz)?$|\.(yaml|csv|tif)\.new$"
                      r"|\.summary\.yaml$|^report\.(section|numbers)\.csv$|\.(png|jpe?g|svg|pdf|html|tif)$|~$",
                      re.IGNORECASE)
+
+
+WRITTEN = mapping({}, files=listed(TEXT, null=True))     # of a summary
 
 
 def data_files(deck, settings):
@@ -24,7 +27,7 @@ def data_files(deck, settings):
     words.update(value for several in settings.values() for value in several)
     left: Set[str] = set()
     for summary in run_folders.summaries(folder):
-        left.update(map(str, disk.load_yaml(summary, "a summary of fix deposit/grid").get("files") or ()))
+        left.update(run_folders.load_summary(summary, WRITTEN).get("files") or ())
     found = {}
     for path in sorted(folder.iterdir()):
         output = OUTPUTS.search(path.name) or path.name in left or path.name in written

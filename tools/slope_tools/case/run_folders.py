@@ -1,12 +1,11 @@
 """The files of a run: its summary and the rasters that fix deposit/grid wrote."""
 import re
 from pathlib import Path
-from typing import NamedTuple, Optional
+from typing import Any, Dict, NamedTuple, Optional
 
 from .. import schemas
-from ..disk import load_yaml
 from ..errors import SlopeError
-from ..schemas import ABOVE_0, ANY, FLAG, MAYBE, NUMBER, listed, mapping, numbers
+from ..schemas import ABOVE_0, ANY, FLAG, MAYBE, NUMBER, OBJECT, TEXT, listed, mapping, named, numbers
 from ..survey import rasters
 
 RASTERS = {     # what fix deposit/grid writes, PREFIX.KIND.asc: quantity, unit
@@ -22,6 +21,14 @@ RASTERS = {     # what fix deposit/grid writes, PREFIX.KIND.asc: quantity, unit
 OF_RUN = "output of fix deposit/grid: its prefix, one of its files, or the folder of a run, a study or a site"
 VARIABLES = "variables.yaml"       # what `slope study` runs, written before the run
 MARKER = "finished.yaml"           # written when the run is complete
+OF_STUDY = "what `slope study` wrote"
+DIGESTS = {"type": ["object", "null"], "additionalProperties": TEXT}   # {what: SHA-256}
+# of VARIABLES and MARKER, also of older versions
+BEGUN = mapping({}, set=named(TEXT), variables=named(TEXT), program=DIGESTS, environment=DIGESTS, inputs=DIGESTS,
+                continued=listed(OBJECT))
+ENDED = mapping({"summary": TEXT}, wall_seconds=NUMBER, environment=DIGESTS, inputs=DIGESTS)
+GOVERNING = mapping({"conservative": mapping({"run": TEXT}, null=True)}, farthest=TEXT,
+                    largest=mapping({}, front_m=mapping({"run": TEXT})))
 WHAT = "a summary that fix deposit/grid wrote"
 # what `slope volume`, `score` and `export` need of one, and what the others do
 OF_DEPOSIT = mapping({"volume": mapping(numbers("on_grid", "off_grid", "lost")), "time": NUMBER, "moving": FLAG,
@@ -88,14 +95,24 @@ def named_run(name: str) -> Named:
 
 def governing_run(study: Path) -> str:
     """The folder of the run on which a study's answer rests, or which went farthest where it has none."""
-    what = "what `slope study` wrote"
-    about = load_yaml(study, what)
-    try:
-        best = about["conservative"]
-        # studies of older versions have no farthest
-        return str(best["run"] if best else about.get("farthest") or about["largest"]["front_m"]["run"])
-    except (KeyError, TypeError) as error:
-        raise SlopeError(study, f"must be {what} ({error!r})") from error
+    about = schemas.load(study, OF_STUDY, GOVERNING)
+    if about["conservative"]:
+        return about["conservative"]["run"]
+    farthest = about.get("farthest") or about.get("largest", {}).get("front_m", {}).get("run")   # the latter in older
+    if not farthest:
+        raise SlopeError(study, f"must be {OF_STUDY}, with a finished run")
+    return farthest
+
+
+def begun(folder: Path) -> Dict[str, Any]:
+    """What a study wrote before it made the run in a folder: its values, and the digests of what it depends on."""
+    return schemas.load(Path(folder) / VARIABLES, OF_STUDY, BEGUN)
+
+
+def ended(folder: Path) -> Dict[str, Any]:
+    """What it wrote when the run was complete; empty while it is not."""
+    path = Path(folder) / MARKER
+    return schemas.load(path, OF_STUDY, ENDED) if path.exists() else {}
 
 
 def load_summary(path, schema=SUMMARY):

@@ -169,7 +169,7 @@ def chain_of(args):
     """What --fragility asks for, None without it; the bodies become a variable of the ensemble."""
     if args.fragility is None:
         return None
-    from ..seismic import chain_files      # scipy
+    from ..seismic import chain_files, fragility_files      # scipy
     for option, given in (("mobility", args.mobility), ("from", args.fit), ("of", args.of)):
         if given is not None:
             raise SlopeError(f"--{option}", "must not be given with --fragility, whose runs are of several bodies "
@@ -181,8 +181,8 @@ def chain_of(args):
     for words in (*args.vary, *args.set):
         if words.startswith(f"{VARIABLE}="):
             raise SlopeError("--vary", f"must not have {VARIABLE}, which --fragility draws", words)
-    found = chain_files.check(chain_files.read(args.fragility), site_choices.found(args.site).get("bodies") or {},
-                              args.site, args.more_than or ())
+    found = chain_files.check(fragility_files.read(args.fragility),
+                              site_choices.found(args.site).get("bodies") or {}, args.site, args.more_than or ())
     fixed, drawn = chain_files.options(found)
     args.set, args.vary, args.more_than = [*args.set, *fixed], [*args.vary, *drawn], None
     return found

@@ -7,20 +7,22 @@ point counts by the density of the design over that of the mixture (the balance 
 SIGGRAPH 1995); among runs of one length the parameters then have the distribution that was given.
 """
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
+from typing import Any, Dict, List, NamedTuple, Optional, Sequence
 
 import numpy as np
 import yaml
 
-from .. import disk
+from .. import disk, schemas
 from ..digits import rounded
-from ..errors import SlopeError
 from ..mobility.results import percent
+from ..schemas import NUMBER, OBJECT, TEXT, listed, mapping, named
 from ..statistics import backanalysis, designs, distributions, emulator
 from .sample import Sample
 
 FILE = "added.yaml"
 WHAT = "what `slope study --mobility` wrote"
+SCHEMA = mapping({"variables": OBJECT, "batches": listed(mapping({
+    "box": listed(listed(NUMBER, 2), 1), "points": listed(named(TEXT, 1), 1)}))})
 REACHED = 0.95          # share of the known events that the runs should reach
 PART = 8                # a batch is this part of the design
 LEAST = 4               # points of a batch
@@ -65,12 +67,10 @@ class Added:
         self.path, self.sample = folder / FILE, sample
         self.batches: List[Batch] = []
         self.stopped = ""
-        before: Mapping[str, Any] = disk.load_yaml(self.path, WHAT) if self.path.is_file() else {}
-        if before.get("variables") == sample.about["variables"]:
-            try:
-                self.batches = [Batch(**one) for one in before["batches"]]
-            except (KeyError, TypeError) as error:
-                raise SlopeError(self.path, f"must be {WHAT}: remove it") from error
+        if self.path.is_file():
+            before = schemas.load(self.path, f"{WHAT} (remove it)", SCHEMA)
+            if before["variables"] == sample.about["variables"]:
+                self.batches = [Batch(one["box"], one["points"]) for one in before["batches"]]
 
     @property
     def number(self) -> int:

@@ -6,10 +6,11 @@ from typing import Any, Dict, List, Mapping, Sequence, Tuple
 import numpy as np
 import yaml
 
-from .. import disk
+from .. import disk, schemas
 from ..case.settings import MOST_RUNS
 from ..errors import SlopeError
 from ..runs import repeats
+from ..schemas import OBJECT
 from ..statistics import designs, distributions
 
 FILE = "design.yaml"
@@ -99,7 +100,7 @@ def check_growth(folder: Path, sample: Sample) -> None:
     path = folder / FILE
     if not path.is_file():
         return
-    before: Mapping[str, Any] = disk.load_yaml(path, WHAT)
+    before = schemas.load(path, WHAT, OBJECT)
     if designs.LHS in (before.get("kind"), sample.kind) and before != sample.about:
         raise SlopeError("--design", f"lhs cannot grow or change: {folder} has {before.get('points')} points of "
                          f"{before.get('kind')} with seed {before.get('seed')}; give another -o, or take sobol",

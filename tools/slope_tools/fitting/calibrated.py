@@ -6,14 +6,14 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 from .. import disk, schemas
 from ..ensembles.sample import Sample
 from ..errors import SlopeError
-from ..schemas import TEXT, listed, mapping
+from ..schemas import TEXT, listed, mapping, named
 from ..statistics import distributions
 from .fit import ABOUT
 
 KIND = "calibrated"
 NUMBER = 32             # of the sets, unless --sample says otherwise
 WHAT = "what `slope calibrate` wrote, with its sets"
-TEXTS = {"type": "object", "additionalProperties": TEXT, "minProperties": 1}
+TEXTS = named(TEXT, 1)
 SCHEMA = mapping({"calibration": mapping({"variables": TEXTS}), "sets": listed(TEXTS, 2)})
 
 

@@ -5,10 +5,11 @@ from typing import Any, Callable, Dict, List, Mapping, Sequence
 import numpy as np
 import yaml
 
-from .. import disk
+from .. import disk, schemas
 from ..deposits import travel_shares
 from ..errors import SlopeError
 from ..runs import repeats
+from ..schemas import OBJECT, TEXT, listed, mapping
 from ..statistics import backanalysis
 
 LEDGER = "calibrate.ledger.yaml"
@@ -25,14 +26,12 @@ class Ledger:
         self.path, self.about, self.variables = folder / LEDGER, dict(about), list(variables)
         self.points: List[Dict[str, str]] = []
         if self.path.is_file():
-            before = disk.load_yaml(self.path, WHAT)
-            if before.get("about") != self.about:
+            before = schemas.load(self.path, WHAT, mapping({"about": OBJECT, "points": listed(OBJECT)}))
+            if before["about"] != self.about:
                 raise SlopeError(self.path, "must be of the same observation, variables and seed: give another -o")
-            points = before.get("points")
-            names = [one.name for one in self.variables]
-            if not isinstance(points, list) or not all(isinstance(one, dict) and list(one) == names for one in points):
-                raise SlopeError(self.path, f"must be {WHAT}")
-            self.points = points
+            point = mapping({one.name: TEXT for one in self.variables})
+            schemas.check(before["points"], listed(point), self.path, WHAT)
+            self.points = before["points"]
 
     def add(self, places: np.ndarray) -> None:
         """Decide on places in the unit cube; written before they are run."""

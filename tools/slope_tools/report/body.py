@@ -1,11 +1,10 @@
 """The body that a report is about, in a sentence: volume, depth, area, shape, density, coordinates."""
-from pathlib import Path
 from typing import Any, Dict, NamedTuple, Optional
 
-from .. import digits, disk
+from .. import digits
 from ..statistics import headline
 from ..survey.rasters import crs_name
-from .heading import site_file
+from .heading import site_of
 
 SHAPES = {"sphere": "a spherical slip surface", "ellipsoid": "an ellipsoidal slip surface",
           "plane": "a plane slip surface", "slbl": "a slip surface by the sloping local base level"}
@@ -39,12 +38,6 @@ def of_data(data, ground) -> Body:
     ball, factor = data.result.log.density, data.result.summary["bulk_factor"]
     return Body(data.largest_release(), area, depth, found.get("mean_slope"), shape, ball and ball / factor,
                 crs_name(crs) if crs is not None else None, is_assigned(site), release.get("polygon"))
-
-
-def site_of(folder: Path) -> Dict[str, Any]:
-    """The file of the site of a folder; empty without one."""
-    path = site_file(folder)
-    return disk.load_yaml(path, "a file of `slope site`") if path else {}
 
 
 def is_assigned(site: Dict[str, Any]) -> bool:

@@ -1,14 +1,14 @@
 """Effect of the size of the balls on the numbers: converge.yaml of `slope sensitivity --converge`, for a report."""
 from pathlib import Path
 
-from .. import disk
+from .. import schemas
 from ..errors import SlopeError
 from ..plots import figure_charts
 from ..plots.figure_charts import Convergence
 from ..statistics import headline
+from ..tables.size_error import CONVERGE, WHAT
 from .charts import AXIS
 
-WHAT = "a converge.yaml of `slope sensitivity --converge`"
 FILE = "converge.yaml"
 PLUS = "\N{PLUS-MINUS SIGN}"
 
@@ -39,20 +39,13 @@ class Sizes:
 
     def __init__(self, path):
         self.path = path
-        about = disk.load_yaml(path, WHAT)
-        try:
-            study = about["study"]
-            self.variable, self.deck, self.runs = str(study["variable"]), str(study["deck"]), int(study["finished"])
-            self.fits = {str(name): fit(entry) for name, entry in about["quantities"].items()}
-            self.about = {str(name): (str(entry["name"]), str(entry["unit"])) for name, entry in
-                          about["quantities"].items()}
-            self.errors = {str(name): [(size["value"], size["error_percent"], size["standard_error_percent"])
-                                       for size in entry["sizes"]] for name, entry in about["quantities"].items()}
-            numbers = [one for several in self.errors.values() for size in several for one in size if one is not None]
-            if not (self.fits and all(map(disk.is_number, numbers)) and all(what for what, _ in self.about.values())):
-                raise ValueError("quantities")
-        except (KeyError, TypeError, AttributeError, ValueError, OverflowError) as error:
-            raise SlopeError(path, f"must be {WHAT} ({error!r})") from error
+        about = schemas.load(path, WHAT, CONVERGE)
+        study, entries = about["study"], about["quantities"]
+        self.variable, self.deck, self.runs = study["variable"], study["deck"], study["finished"]
+        self.fits = {name: fit(entry) for name, entry in entries.items()}
+        self.about = {name: (entry["name"], entry["unit"]) for name, entry in entries.items()}
+        self.errors = {name: [(size["value"], size["error_percent"], size["standard_error_percent"])
+                              for size in entry["sizes"]] for name, entry in entries.items()}
 
     def pictures(self, picture):
         """A chart for each quantity."""
@@ -88,14 +81,6 @@ class Sizes:
 def fit(entry):
     """The Convergence of a quantity."""
     sizes, small = entry["sizes"], entry["small_balls"]
-    found = Convergence([size["value"] for size in sizes], [size["mean"] for size in sizes],
-                        [size["scatter"] for size in sizes], small["value"], entry["slope"]["value"], small["low"],
-                        small["high"], entry["supported"])
-    known = [*found.sizes, *found.means, found.small, found.slope]
-    known += [one for one in (*found.scatter, found.low, found.high) if one is not None]
-    if not sizes or not all(map(disk.is_number, known)) or not max(found.sizes) > 0:
-        raise ValueError("sizes")
-    low, high = (found.small if end is None else end for end in (found.low, found.high))
-    if (found.low is None) != (found.high is None) or not low <= found.small <= high:
-        raise ValueError("small_balls")
-    return found
+    return Convergence([size["value"] for size in sizes], [size["mean"] for size in sizes],
+                       [size["scatter"] for size in sizes], small["value"], entry["slope"]["value"], small["low"],
+                       small["high"], entry["supported"])

@@ -6,10 +6,11 @@ from typing import Any, Dict, List, NamedTuple, Optional
 import numpy as np
 from affine import Affine
 
-from .. import disk
+from .. import schemas
 from ..case import logs, run_folders
 from ..deposits import deposit, rest, travel_shares
 from ..errors import SlopeError
+from ..schemas import OBJECT, mapping
 from ..survey import rasters
 from ..tables.study_file import read_study
 from ..warned import Warned, warned
@@ -37,9 +38,8 @@ class Result:
         self.folder, self.path = Path(folder), Path(summary)
         self.prefix = run_folders.prefix_of(summary)
         self.summary = run_folders.load_summary(summary)
-        about, marker = (Path(folder) / name for name in (run_folders.VARIABLES, run_folders.MARKER))
-        self.about = disk.load_yaml(about, "what `slope study` wrote") if about.is_file() else {}
-        self.marker = disk.load_yaml(marker, "what `slope study` wrote") if marker.is_file() else {}
+        of_study = (self.folder / run_folders.VARIABLES).is_file()
+        self.about, self.marker = run_folders.begun(folder) if of_study else {}, run_folders.ended(folder)
         self.log = logs.Log(find_log(self.folder)).update()
         self.row = row or {}
         self.name = self.row.get("run", self.prefix.name)
@@ -128,7 +128,8 @@ class Data:
         if road:
             self.removed = self._removed()
             volume = self.result.folder / "volume" / "volume.yaml"
-            self.volumes = disk.load_yaml(volume, "what `slope volume` wrote")["volume"] if volume.is_file() else {}
+            self.volumes = (schemas.load(volume, "what `slope volume` wrote", mapping({"volume": OBJECT}))["volume"]
+                            if volume.is_file() else {})
 
     def _read_single(self, shown):
         if shown:

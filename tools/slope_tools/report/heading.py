@@ -2,11 +2,13 @@
 from pathlib import Path
 from typing import Any, Dict, Optional
 
-from .. import disk
-from ..errors import SlopeError
+from .. import schemas
+from ..schemas import TEXT, listed, mapping
 from ..sites.site_choices import check_text
 
 SITE = "site.yaml"          # of `slope site`; its study is a folder in the site's
+SECTIONS = mapping({}, project=mapping({}, null=True), terrain=mapping({}, null=True, files=listed(TEXT, null=True)),
+                   release=mapping({}, null=True), found=mapping({}, null=True, body=mapping({}, null=True)))
 FIELDS = {"project": "name", "client": "client", "author": "author"}      # option: key below `project` in that file
 
 
@@ -23,15 +25,19 @@ def site_file(folder: Path) -> Optional[Path]:
     return next((place / SITE for place in (folder, folder.absolute().parent) if (place / SITE).is_file()), None)
 
 
+def site_of(folder: Path) -> Dict[str, Any]:
+    """The file of the site of a folder, of whatever version; empty without one."""
+    path = site_file(folder)
+    return schemas.load(path, "a file of `slope site`", SECTIONS) if path else {}
+
+
 def of_site(folder: Path) -> Dict[str, str]:
     """What the file of the site says, in the folder or in the one above it; a site without a name has its folder's."""
     path = site_file(folder)
     if path is None:
         return {}
-    site = disk.load_yaml(path, "a file of `slope site`")
+    site = site_of(folder)
     about = site.get("project") or {}
-    if not isinstance(about, dict):
-        raise SlopeError(path, "project must have name, client and author", repr(about)[:60])
     found = {"project": path.absolute().parent.name, "survey": survey(site)}
     for name, key in FIELDS.items():
         check_text(f"{path}: project: {key}", about.get(key))
@@ -42,7 +48,5 @@ def of_site(folder: Path) -> Dict[str, str]:
 
 def survey(site: Dict[str, Any]) -> str:
     """Names of the files of heights; "" if the site has none."""
-    terrain = site.get("terrain")
-    files = terrain.get("files") if isinstance(terrain, dict) else None
-    names = [Path(str(file)).name for file in files] if isinstance(files, list) else []
+    names = [Path(file).name for file in (site.get("terrain") or {}).get("files") or ()]
     return ", ".join(names[:2]) + (f" and {len(names) - 2} more" if len(names) > 2 else "")

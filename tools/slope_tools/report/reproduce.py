@@ -8,9 +8,8 @@ from typing import Any, Dict, Iterable, List, Tuple
 
 from .. import disk, provenance
 from ..case import run_folders
-from .body import site_of
 from .data import Data
-from .heading import site_file
+from .heading import site_file, site_of
 
 LIBRARIES = ("numpy", "scipy", "rasterio", "shapely", "matplotlib", "scikit-learn")
 # of a study, beside the summaries of its runs
@@ -38,9 +37,8 @@ def runs_of(data) -> Iterable[Run]:
         return
     for row in data.finished:
         folder = (data.folder / row["summary"]).parent
-        about, marker = (disk.load_yaml(folder / name, "what `slope study` wrote") if (folder / name).is_file() else {}
-                         for name in (run_folders.VARIABLES, run_folders.MARKER))
-        yield f"run {data.number(row['run'])}, {data.label_of(row)}", folder, about, marker
+        yield (f"run {data.number(row['run'])}, {data.label_of(row)}", folder, run_folders.begun(folder),
+               run_folders.ended(folder))
 
 
 def versions(data, runs: List[Run]) -> List[str]:

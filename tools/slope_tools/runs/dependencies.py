@@ -17,7 +17,6 @@ PLUGINS = "LAMMPS_PLUGIN_PATH"      # folders of plugins that LAMMPS loads when 
 LIBRARIES = "LD_LIBRARY_PATH"       # folders in which a plugin that a deck loads by its bare name is looked for
 SYSTEM = ("/lib", "/usr/lib")        # folders of the system's own libraries
 BESIDE = (".yaml", ".prj")          # sidecars of a raster or a table: terrain.yaml of terrain.asc
-WHAT = "what `slope study` wrote"
 
 
 class State(NamedTuple):
@@ -79,8 +78,7 @@ class Dependencies:
 
     def changed(self, run) -> Optional[str]:
         """The first thing that a run depends on and that is not what it was when the run was made; None if all is."""
-        about = disk.load_yaml(run.folder / run_folders.VARIABLES, WHAT)
-        marker = disk.load_yaml(run.marker, WHAT) if run.marker.exists() else {}
+        about, marker = run_folders.begun(run.folder), run_folders.ended(run.folder)
         run.log.update()
         now, words = self.now(run), self._words(run)
         before = {**(about.get("program") or {})}

@@ -240,7 +240,7 @@ class Work:
 
     def _reopen_folder(self, run):
         """Prepare the folder of an interrupted run for its continuation."""
-        about = disk.load_yaml(run.folder / run_folders.VARIABLES, "what `slope study` wrote")
+        about = run_folders.begun(run.folder)
         about["ranks"] = self.ranks
         step, path = run.restart
         about.setdefault("continued", []).append({"step": step, "restart": str(path.relative_to(run.folder)),
@@ -303,7 +303,7 @@ class Work:
             return None
         run.log.update()
         state = self.depends.now(run)
-        begun = disk.load_yaml(run.folder / run_folders.VARIABLES, dependencies.WHAT)
+        begun = run_folders.begun(run.folder)
         about = {"finished": provenance.now(), "wall_seconds": round(time.monotonic() - active.began, 1),
                  "summary": summaries[0].name, "machine": provenance.machine(),
                  "environment": {**state.environment, **begun["environment"]},

@@ -2,11 +2,9 @@
 
 The mathematics are in chain.py; here are the checks, the tables, the entry of study.yaml and its words.
 """
-import csv
-import io
 import math
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, NamedTuple, Sequence, Tuple
 
 import numpy as np
 
@@ -15,25 +13,13 @@ from ..errors import SlopeError
 from ..sites.site_bodies import VARIABLE
 from ..statistics import hazard
 from ..tables import intensity
-from . import chain, fragility
-from .fragility_files import ABOUT, CAPACITIES
+from . import chain
+from .fragility_files import Fragility
 
 CURVES, PER_YEAR = "chain.csv", "chain_per_year.csv"
 QUANTITY = intensity.QUANTITY
 LEVELS = 41             # volumes of the curves, beside those that are asked for
 BEYOND = 0.1            # of a frequency; if peaks above the curve's last may add more, it is said
-WHAT = "what `slope fragility` wrote"
-
-
-class Fragility(NamedTuple):
-    """Of the bodies of a search."""
-    folder: Path
-    bodies: List[str]               # their ranks
-    bases: List[str]                # digests of their surfaces
-    capacity: np.ndarray            # gal: samples, records, bodies
-    peaks: np.ndarray               # gal
-    rate: Optional[fragility.Hazard]
-    warnings: List[str]
 
 
 class Chain(NamedTuple):
@@ -45,27 +31,6 @@ class Chain(NamedTuple):
 
 
 # --- before the runs ---
-
-def read(folder: Path) -> Fragility:
-    """What `slope fragility` left in a folder."""
-    about: Mapping[str, Any] = disk.load_yaml(folder / ABOUT, WHAT)
-    path = folder / CAPACITIES
-    try:
-        names = [str(one["body"]) for one in about["bodies"]]
-        with open(path, encoding="ascii") as lines:
-            head = next(csv.reader([lines.readline()]))
-            rows = np.loadtxt(lines, delimiter=",", ndmin=2)
-        records = int(rows[:, 1].max())
-        capacity = rows[:, 2:].reshape(-1, records, len(names))
-        if head != ["sample", "record", *names] or len(capacity) % fragility.REPLICATES or not (capacity >= 0).all():
-            raise ValueError("other bodies or samples than in " + ABOUT)
-        curve = about["hazard_curve"]
-        return Fragility(folder, names, [str(one["base_sha256"]) for one in about["bodies"]], capacity,
-                         np.array(about["peaks_gal"], float),
-                         fragility.Hazard(*np.array(curve, float).T) if curve else None, list(about["warnings"]))
-    except (OSError, LookupError, TypeError, ValueError) as error:
-        raise SlopeError(path, f"must be {WHAT}, with {ABOUT}: repeat that command ({error})") from error
-
 
 def check(found: Fragility, bodies: Mapping[Any, Mapping[str, Any]], site: Path, more_than: Sequence[float]) -> Chain:
     """The Chain of a site whose bodies (site.yaml: found) are those of a fragility; SlopeError if they are not."""
@@ -177,11 +142,7 @@ def doubts(about: Mapping[str, Any], warnings: Sequence[str]) -> List[str]:
 
 
 def table(head: Sequence[str], rows) -> str:
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(head)
-    writer.writerows([f"{value:.6g}" for value in row] for row in rows)
-    return text.getvalue()
+    return disk.csv_text(head, ([f"{value:.6g}" for value in row] for row in rows))
 
 
 # --- words ---

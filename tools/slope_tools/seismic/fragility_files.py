@@ -7,13 +7,17 @@ from typing import Any, Dict, List, NamedTuple, Optional, Sequence
 import numpy as np
 from scipy import stats
 
-from .. import disk
+from .. import disk, schemas
 from ..errors import SlopeError
-from .fragility import Band, Fit, Frequency, Hazard
+from ..schemas import NUMBER, TEXT, listed, mapping
+from .fragility import REPLICATES, Band, Fit, Frequency, Hazard
 
 ANY = "any"
 ABOUT, CAPACITIES = "fragility.yaml", "capacities.csv"
 FILES = ["fragility.csv", "fragility.png", CAPACITIES, ABOUT]
+WHAT = "what `slope fragility` wrote"
+SCHEMA = mapping({"bodies": listed(mapping({"body": TEXT, "base_sha256": TEXT}), 1), "peaks_gal": listed(NUMBER, 1),
+                  "hazard_curve": listed(listed(NUMBER, 2), 2, null=True), "warnings": listed(TEXT)})
 
 
 class Curve(NamedTuple):
@@ -27,6 +31,36 @@ class Curve(NamedTuple):
     @property
     def title(self) -> str:
         return "any body" if self.name == ANY else f"body {self.name}"
+
+
+class Fragility(NamedTuple):
+    """Of the bodies of a search."""
+    folder: Path
+    bodies: List[str]               # their ranks
+    bases: List[str]                # digests of their surfaces
+    capacity: np.ndarray            # gal: samples, records, bodies
+    peaks: np.ndarray               # gal
+    rate: Optional[Hazard]
+    warnings: List[str]
+
+
+def read(folder: Path) -> Fragility:
+    """What `slope fragility` left in a folder; SlopeError if it is not whole."""
+    about = schemas.load(folder / ABOUT, WHAT, SCHEMA)
+    path, curve = folder / CAPACITIES, about["hazard_curve"]
+    names = [one["body"] for one in about["bodies"]]
+    try:
+        with open(path, encoding="ascii") as lines:
+            head = next(csv.reader([lines.readline()]))
+            rows = np.loadtxt(lines, delimiter=",", ndmin=2)
+        capacity = rows[:, 2:].reshape(-1, int(rows[:, 1].max()), len(names))
+        if head != ["sample", "record", *names] or len(capacity) % REPLICATES or not (capacity >= 0).all():
+            raise ValueError("other bodies or samples than in " + ABOUT)
+    except (OSError, LookupError, ValueError) as error:
+        raise SlopeError(path, f"must be {WHAT}, with {ABOUT}: repeat that command ({error})") from error
+    return Fragility(folder, names, [one["base_sha256"] for one in about["bodies"]], capacity,
+                     np.array(about["peaks_gal"], float), Hazard(*np.array(curve, float).T) if curve else None,
+                     about["warnings"])
 
 
 def read_hazard(path: Path) -> Hazard:

@@ -11,8 +11,8 @@ import subprocess
 from pathlib import Path
 from typing import Callable, List, NamedTuple, Optional, Tuple
 
-from .. import disk, processes
-from ..case import last_words, logs
+from .. import processes
+from ..case import last_words, logs, run_folders
 from ..digits import rounded
 from ..errors import SlopeError
 from .site_choices import Choices, OFFSETS
@@ -113,14 +113,14 @@ def measure(folder: Path, deck: str, lmp: Path) -> Trial:
             raise SlopeError("trial run", "must have balls that are much smaller than the terrain: use more balls "
                              "(--balls), or a smaller --diameter, balls.diameter of site.yaml")
         raise SlopeError("trial run", f"must end without an error: {words or f'ended with status {status}'}")
-    about = disk.load_yaml(summaries[0], "a summary that fix deposit/grid wrote")
+    about = run_folders.load_summary(summaries[0])
     text = log.read_text(encoding="utf-8", errors="replace")
     loops = LOOP.findall(text)
     work = sum(int(steps) * int(atoms) for _, steps, atoms in loops)
     computed = sum(float(took) * float(share) / 100 for (took, _, _), share in zip(loops, SHARE.findall(text)))
     volume = about["volume"]
-    return Trial(int(about["balls"]["released"]), 0.0, float(about["stop"]["time"]),
-                 "halt" in str(about["stop"]["reason"]), float(about["largest"]["max_speed"]), computed / max(work, 1),
+    return Trial(about["balls"]["released"], 0.0, about["stop"]["time"],
+                 "halt" in str(about["stop"]["reason"]), about["largest"]["max_speed"], computed / max(work, 1),
                  seconds - computed, seconds, (volume["off_grid"] + volume["lost"]) / volume["released"])
 
 

@@ -23,6 +23,7 @@ LONGEST_TEXT = 200      # letters of a name in the heading of a report
 OFFSETS = ("xoffset", "yoffset", "zoffset")        # of the study: its repeats
 SCHEMA = Path(__file__).with_name("site_schema.json")
 WHAT = "a site.yaml of `slope site`"
+FOUND = schemas.mapping({}, found=schemas.mapping({}, null=True))       # of any version
 # keys that hold one file, and lists of files
 FILES = (("terrain", "files"), ("release", "polygon"), ("release", "scar"), ("release", "bodies"), ("road", "file"),
          ("structures", "files"), ("lines", "files"), ("motion", "file"), ("observed", "file"))
@@ -104,7 +105,7 @@ def read(folder: Path) -> Choices:
 
 def found(folder: Path) -> Dict[str, Any]:
     """What slope site found when it made a folder."""
-    return disk.load_yaml(folder / NAME, WHAT).get("found") or {}
+    return schemas.load(folder / NAME, WHAT, FOUND).get("found") or {}
 
 
 def fingerprint(choices: Choices, folder: Path) -> str:

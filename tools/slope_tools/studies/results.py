@@ -225,9 +225,9 @@ def doubts(rows):
 def result(run, row, maps):
     """The row of a finished run, and its final thickness; adds its rasters to the maps."""
     from ..deposits import connected, deposit
-    marker = disk.load_yaml(run.marker, "what `slope study` wrote")
+    marker = run_folders.ended(run.folder)
     path = run.folder / str(marker.get("summary"))
-    about = disk.load_yaml(run.folder / run_folders.VARIABLES, "what `slope study` wrote")
+    about = run_folders.begun(run.folder)
     summary = run_folders.load_summary(path)
     prefix = run_folders.prefix_of(path)
     thickness = run_folders.load_raster(prefix, "thickness")

@@ -8,10 +8,11 @@ from pathlib import Path
 from shlex import quote
 from typing import Any, Dict, Iterable, List, NamedTuple, Optional, Sequence
 
-from .. import disk
+from .. import disk, schemas
 from ..case import decks, run_folders
 from ..errors import SlopeError
 from ..runs import repeats
+from ..schemas import OBJECT, TEXT, listed, mapping
 from ..sites import site_choices, site_deck, site_warnings
 from ..sites.site_budget import three_digits
 from ..sites.site_choices import Choices, OFFSETS
@@ -20,6 +21,7 @@ from ..tables import energy
 from ..tables.quantities import NAMES
 from ..tables.size_error import SizeErrors, WHAT
 from ..tables.step_check import HALF, QUANTITY, Step
+from ..tables.study_file import read_study
 from ..warned import Warned, warned
 from . import results, size_study, study
 from .sensitivity import quantities
@@ -27,6 +29,7 @@ from .setup import Road, Setup
 
 # folders in the site's
 SIZES, STEP, STUDY, SCORE, ENSEMBLE = "sizes", "step", "study", "score", "ensemble"
+SAID = listed({"anyOf": [OBJECT, TEXT], "description": "warnings"}, null=True)     # of older versions, too
 THRESHOLDS = (0.1, 0.5, 1.0)        # m, of the maps of exceedance
 
 
@@ -111,7 +114,8 @@ def run_alone(folder: Path, choices: Choices, engine: Setup, method: str) -> Don
 def warnings_of(folder: Path) -> List[Warned]:
     """The warnings of `slope site`, which the results repeat; none for a site of an older version."""
     path = folder / site_warnings.NAME
-    return [warned(one) for one in disk.parse_yaml(path, "what `slope site` wrote") or ()] if path.is_file() else []
+    said = schemas.load(path, "what `slope site` wrote", SAID) if path.is_file() else None
+    return [warned(one) for one in said or ()]
 
 
 class Sizes(NamedTuple):
@@ -141,7 +145,8 @@ def sizes(setup: Setup, choices: Choices, repeated: Dict[str, List[str]]) -> Siz
         return Sizes(None, (), None)
     if not path.is_file():
         return unusable(setup, "too few of its runs finished")
-    said = [warned(one)._replace(part="sizes of balls") for one in disk.load_yaml(path, WHAT).get("warnings") or ()]
+    said = [warned(one)._replace(part="sizes of balls")
+            for one in schemas.load(path, WHAT, mapping({}, warnings=SAID)).get("warnings") or ()]
     try:
         errors = SizeErrors(path, "remove_m3")
         errors.check({}, variables)
@@ -191,7 +196,7 @@ def scored(folder: Path, setup: Setup) -> None:
     from ..deposits import score_run
     path = setup.output / "study.yaml"
     name = run_folders.governing_run(path)
-    row = next(row for row in disk.load_yaml(path, "what `slope study` wrote")["runs"] if row["run"] == name)
+    row = next(row for row in read_study(path)["runs"] if row["run"] == name)
     outline = folder / f"{OBSERVED}.csv"
     setup.tell(f"{row['run']} against the mapped deposit:")
     setup.tell(score_run.make(str(setup.output / row["summary"]).removesuffix(".summary.yaml"),

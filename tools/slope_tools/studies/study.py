@@ -157,7 +157,7 @@ def check_folder(setup: Setup, todo) -> None:
         if not about.is_file():
             raise SlopeError(one.folder, f"must be a run folder of a study, with {run_folders.VARIABLES}: remove it, "
                              "or give another -o")
-        if disk.load_yaml(about, "what `slope study` wrote").get("set") != one.chosen:
+        if run_folders.begun(one.folder).get("set") != one.chosen:
             raise SlopeError(about, f"must be of the run {one.name}: remove the folder, or give another -o")
 
 

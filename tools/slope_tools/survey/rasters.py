@@ -20,9 +20,14 @@ from rasterio.errors import CRSError, NotGeoreferencedWarning, RasterioError
 from rich.console import Console
 from rich.progress import track
 
-from .. import disk
+from .. import disk, schemas
 from ..errors import SlopeError
+from ..schemas import COUNT, TEXT, mapping, numbers
 
+WHAT_SIDECAR = "a sidecar that `slope terrain` wrote"
+ORIGIN, EXTENT = ("east", "north"), ("xlo", "ylo", "xhi", "yhi")
+SIDECAR = mapping({"crs": mapping({"wkt": TEXT}, null=True), "origin": mapping(numbers(*ORIGIN)),
+                   "size": mapping({"rows": COUNT, "columns": COUNT}), "extent": mapping(numbers(*EXTENT))})
 NODATA = -9999             # in written files
 HIGHEST = 9000.0           # m; beyond +-HIGHEST a value is a NODATA mark that the file does not declare (-9999, -32768)
 BYTES_PER_CELL = 40        # peak memory of `slope terrain` per cell, measured 22 to 33 for 16 million cells
@@ -255,19 +260,15 @@ def read_sidecar(path):
     sidecar = Path(path).with_suffix(".yaml")
     if Path(path).suffix != ".asc" or not sidecar.exists():
         return None
+    about = schemas.load(sidecar, WHAT_SIDECAR, SIDECAR)
     try:
-        about = yaml.safe_load(sidecar.read_text(encoding="utf-8"))
-        offset = float(about["origin"]["east"]), float(about["origin"]["north"])
-        xlo, ylo, xhi, yhi = (float(about["extent"][side]) for side in ("xlo", "ylo", "xhi", "yhi"))
-        if not np.isfinite((*offset, xlo, ylo, xhi, yhi)).all():
-            raise ValueError("origin and extent must be finite")
         with rasterio.Env():  # GDAL's own messages are not for stderr
             crs = about["crs"] and CRS.from_wkt(about["crs"]["wkt"])
-        return Place(crs, offset, (about["size"]["rows"], about["size"]["columns"]),
-                     (xlo, ylo, xhi, yhi))
-    except (OSError, ValueError, KeyError, TypeError, OverflowError, RecursionError, yaml.YAMLError,
-            CRSError) as error:
-        raise SlopeError(sidecar, f"must be a sidecar that `slope terrain` wrote ({error!r})") from error
+    except CRSError as error:
+        raise SlopeError(sidecar, f"must be {WHAT_SIDECAR} ({error})") from error
+    east, north = (float(about["origin"][side]) for side in ORIGIN)
+    xlo, ylo, xhi, yhi = (float(about["extent"][side]) for side in EXTENT)
+    return Place(crs, (east, north), (about["size"]["rows"], about["size"]["columns"]), (xlo, ylo, xhi, yhi))
 
 
 def read_place(path):

@@ -6,18 +6,21 @@ from .. import disk, schemas
 from ..case.settings import as_number
 from ..digits import three
 from ..errors import SlopeError
-from ..schemas import FLAG, MAYBE, NUMBER, OBJECT, TEXT, listed, mapping
+from ..schemas import ABOVE_0, FLAG, MAYBE, NUMBER, OBJECT, TEXT, listed, mapping, named
 from ..statistics.convergence import Estimate, error_of_line
 from ..statistics.headline import SizeError
 
 WHAT = "a converge.yaml of `slope sensitivity --converge`"
-ESTIMATE = mapping({"value": NUMBER, "standard_error": MAYBE})
+ESTIMATE = {"value": NUMBER, "standard_error": MAYBE}
 CONVERGE = mapping({
-    "study": mapping({"variable": TEXT, "deck": TEXT, "base": OBJECT}, road={"type": ["object", "null"]}),
-    "quantities": {"type": "object", "additionalProperties": mapping({
-        "errors_known": FLAG, "small_balls": ESTIMATE, "slope": ESTIMATE, "supported": {"type": ["boolean", "null"]},
-        "covariance": MAYBE, "quantile": MAYBE, "sizes": listed(mapping({
-            "value": NUMBER, "mean": NUMBER, "error_percent": MAYBE, "standard_error_percent": MAYBE}), 1)})}})
+    "study": mapping({"variable": TEXT, "deck": TEXT, "base": OBJECT, "finished": NUMBER},
+                     road={"type": ["object", "null"]}),
+    "quantities": named(mapping({
+        "name": TEXT, "unit": TEXT, "errors_known": FLAG, "small_balls": mapping({**ESTIMATE, "low": MAYBE,
+                                                                                  "high": MAYBE}),
+        "slope": mapping(ESTIMATE), "supported": {"type": ["boolean", "null"]}, "covariance": MAYBE, "quantile": MAYBE,
+        "sizes": listed(mapping({"value": ABOVE_0, "mean": NUMBER, "scatter": MAYBE, "error_percent": MAYBE,
+                                 "standard_error_percent": MAYBE}), 1)}), 1)})
 # what may differ between the runs of the fit and those of the study without a word
 UNIMPORTANT = {"out", "ranks", "seed"}
 TRUSTED = 0.15          # share: a larger error is that of balls which are too large, however narrow its interval

@@ -12,13 +12,15 @@ from xml.etree import ElementTree
 import numpy as np
 from rich.table import Table
 
-from .. import disk
+from .. import disk, schemas
 from ..errors import SlopeError
 
 WINDOW = 0.5            # s, of the mean force: single impacts are those of the model's balls, what lasts is the mass's
 SHARES = (0.5, 0.9, 0.95, 0.99)
 SERIES = ("time", "fx", "fy", "fz", "mx", "my", "mz", "jx", "jy", "jz", "contacts", "largest_force")
 FILES = {"structures": "structures.csv", "lines": "lines.csv"}
+SIDE = schemas.mapping(schemas.numbers("volume", "crossings"))
+LINE = schemas.mapping({"forward": SIDE, "back": SIDE, "net_volume": schemas.NUMBER})
 
 
 @dataclass(frozen=True)
@@ -118,17 +120,12 @@ def of_structure(folder: Path, prefix: str) -> Dict[str, Any]:
 
 def of_line(folder: Path, prefix: str) -> Dict[str, Any]:
     """Numbers of a control line; speeds, heights, energies of the crossings in the direction of the mass, all alike."""
-    path = folder / f"{prefix}.line.yaml"
-    about = disk.load_yaml(path, "what fix control/line wrote")
+    about = schemas.load(folder / f"{prefix}.line.yaml", "what fix control/line wrote", LINE)
     found = crossings(folder, prefix)
-    try:
-        numbers: Dict[str, Any] = {
-            "forward_m3": float(about["forward"]["volume"]), "back_m3": float(about["back"]["volume"]),
-            "net_m3": float(about["net_volume"])}
-        main = "back" if numbers["back_m3"] > numbers["forward_m3"] else "forward"      # as the fix has it
-        numbers.update(direction=main, crossings=int(about[main]["crossings"]))
-    except (KeyError, TypeError, ValueError) as error:
-        raise SlopeError(path, f"must be what fix control/line wrote ({error!r})") from error
+    forward, back = about["forward"]["volume"], about["back"]["volume"]
+    main = "back" if back > forward else "forward"      # as the fix has it
+    numbers: Dict[str, Any] = {"forward_m3": forward, "back_m3": back, "net_m3": about["net_volume"],
+                               "direction": main, "crossings": about[main]["crossings"]}
     mine = in_direction(found, main)
     times = found["time"][mine]
     numbers["first_s"] = float(times.min()) if len(times) else None

@@ -1,0 +1,91 @@
+"""YAML files that the tools read: each is checked against a schema; what is wrong with one is a line with its place."""
+import re
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+TOP = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(TOP / "tools"))
+
+TOOLS = TOP / "tools" / "slope_tools"
+
+from slope_tools.case import run_folders  # noqa: E402
+from slope_tools.ensembles import farther, sample  # noqa: E402
+from slope_tools.errors import SlopeError  # noqa: E402
+from slope_tools.fitting import calibration  # noqa: E402
+from slope_tools.report import convergence_part, heading, reference  # noqa: E402
+from slope_tools.seismic import fragility_files  # noqa: E402
+from slope_tools.survey import rasters  # noqa: E402
+from slope_tools.tables import size_error, structures  # noqa: E402
+
+LHS = SimpleNamespace(about={"variables": {}}, kind="lhs", number=4, seed=1)
+SIDECAR = ("{crs: null, origin: {east: 0, north: 0}, size: {rows: 3, columns: 4}, extent: {xlo: 0, xhi: 4, ylo: 0, "
+           "yhi: %s}}")
+FILES = {       # file: (its reader, a text, what must be said)
+    "calibrate.ledger.yaml": (lambda folder: calibration.Ledger(folder, {"seed": 1}, [SimpleNamespace(name="a")]), (
+        ("about: {seed: 1}", "must have points"),
+        ("{about: {seed: 1}, points: [{a: '1'}, {b: '1'}]}", "second value: must have a"),
+        ("{about: {seed: 1}, points: [{a: 1}]}", "first value: a: must be a text, got 1"),
+        ("{about: {seed: 2}, points: []}", "must be of the same observation, variables and seed"))),
+    "added.yaml": (lambda folder: farther.Added(folder, LHS), (
+        ("variables: {}", "(remove it): must have batches"),
+        ("{variables: {}, batches: [{box: [[0, 1]]}]}", "batches: first value: must have points"),
+        ("{variables: {}, batches: [{box: [[0]], points: [{a: '1'}]}]}", "must have at least 2 items"))),
+    "design.yaml": (lambda folder: sample.check_growth(folder, LHS), (("- 1", "must be a section with keys"),)),
+    "run.line.yaml": (lambda folder: structures.of_line(folder, "run"), (
+        ("net_volume: 1", "must have forward and back"),
+        ("{forward: {volume: 1, crossings: 2}, back: {volume: .nan, crossings: 0}, net_volume: 1}",
+         "back: volume: must be a finite number, got nan"))),
+    "terrain.yaml": (lambda folder: rasters.read_sidecar(folder / "terrain.asc"), (
+        ("{", "must be a sidecar that `slope terrain` wrote"),
+        (SIDECAR % "high", "extent: yhi: must be a finite number, got 'high'"),
+        (SIDECAR % ".inf", "extent: yhi: must be a finite number, got inf"),
+        ((SIDECAR % "3").replace("rows: 3", "rows: 0"), "size: rows: must be >= 1, got 0"),
+        ((SIDECAR % "3").replace("null", "{wkt: nowhere}"), "must be a sidecar that `slope terrain` wrote (The WKT"))),
+    "fragility.yaml": (fragility_files.read, (
+        ("{bodies: [], peaks_gal: [1], hazard_curve: null, warnings: []}", "bodies: must not be empty"),
+        ("{bodies: [{body: '1', base_sha256: a}], peaks_gal: [a], hazard_curve: null, warnings: []}",
+         "peaks_gal: first value: must be a finite number, got 'a'"))),
+    "variables.yaml": (run_folders.begun, (("inputs: [1]", "inputs: must be a section with keys or null, got [1]"),
+                                           ("set: {d: 2}", "set: d: must be a text, got 2"))),
+    "finished.yaml": (run_folders.ended, (("wall_seconds: 1", "must have summary"),)),
+    "study.yaml": (lambda folder: run_folders.governing_run(folder / "study.yaml"), (
+        ("runs: []", "must have conservative"), ("conservative: null", "with a finished run"),
+        ("conservative: {run: 1}", "conservative: run: must be a text, got 1"))),
+    "site.yaml": (heading.site_of, (("project: [1]", "project: must be a section with keys or null, got [1]"),
+                                    ("terrain: {files: [1]}", "terrain: files: first value: must be a text, got 1"))),
+    "converge.yaml": (lambda folder: convergence_part.Sizes(folder / "converge.yaml"), (
+        ("study: {variable: d}", f"must be {size_error.WHAT}: must have quantities"),
+        ("{study: {variable: d, deck: a, base: {}, finished: 1}, quantities: {}}", "quantities: must not be empty"))),
+    "r.yaml": (lambda folder: reference.read(folder / "r.yaml", {"a": "it"}), (
+        ("{title: '', quantities: {a: {levels: {b: 1}}}}", "title: must not be empty"),
+        ("{title: T, quantities: {a: {variable: v, series: {b: {c: 1}}}}}", "must be a finite number, got 'c'"),
+        ("{title: T, quantities: {a: {levels: {b: 1}, more: 1}}}", "must have no more, which is unknown"))),
+}
+
+
+@pytest.mark.parametrize("name, reader, text, said", [
+    (name, reader, text, said) for name, (reader, several) in FILES.items() for text, said in several])
+def test_what_is_wrong_with_a_file_is_one_line(tmp_path, name, reader, text, said):
+    (tmp_path / name).write_text(text + "\n")
+    with pytest.raises(SlopeError) as caught:
+        reader(tmp_path)
+    assert str(tmp_path / name) in str(caught.value) and said in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_reference_values(tmp_path):
+    path = tmp_path / "reference.yaml"
+    path.write_text("{title: ' T  U ', quantities: {a: {levels: {b: 1}, variable: v, series: {c: {2: 5, 0.5: 4}}}}}")
+    found = reference.read(path, {"a": "it"})
+    assert (found.title, found.remark) == ("T U", "")
+    assert found.quantities == {"a": reference.Quantity("v", {"c": [(0.5, 4.0), (2.0, 5.0)]}, {"b": 1.0})}
+
+
+def test_yaml_is_read_by_its_schema_only():
+    """disk.parse_yaml() checks nothing: site.yaml has its own check, its version first."""
+    calls = {path.relative_to(TOOLS).as_posix() for path in TOOLS.glob("**/*.py")
+             if re.search(r"parse_yaml\(", path.read_text())}
+    assert calls == {"disk.py", "schemas.py", "sites/site_choices.py"}
