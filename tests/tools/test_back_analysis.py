@@ -143,7 +143,7 @@ def test_a_hollow_that_is_no_sphere(here, capsys):
     body = failed.read("scar.asc", HIGH[0], None, 1919.1)
     line = back.line(body.columns)
     assert abs(back.line(body.far).cohesion[0] / line.cohesion[0] - 1) < 0.1
-    [text] = stability_failed.warnings_of(body, line, line._replace(cohesion=1.2 * line.cohesion))
+    [text] = map(str, stability_failed.warnings_of(body, line, line._replace(cohesion=1.2 * line.cohesion)))
     assert "depends on the axis of moments" in text and "+20 %" in text
 
 

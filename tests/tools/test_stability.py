@@ -214,7 +214,8 @@ def test_a_site_of_a_body(low, capsys):
 def test_doubtful_input_is_named():
     args = argparse.Namespace(cohesion=8.0, density=19.0)
     half = np.array([[1.0, np.nan], [np.nan, np.nan]])
-    found = list(stability.warnings_of(args, [{"rank": 1}, {"rank": 2}], [half == 1.0, np.ones((2, 2), bool)], half))
+    masks = [half == 1.0, np.ones((2, 2), bool)]
+    found = list(map(str, stability.warnings_of(args, [{"rank": 1}, {"rank": 2}], masks, half)))
     assert [one.split(":")[0] for one in found] == ["--cohesion 8", "--density 19", "body 2"]
     assert "no value below 75 % of its cells" in found[2]
     assert not list(stability.warnings_of(argparse.Namespace(cohesion=0.0, density=1900.0), [], [], None))

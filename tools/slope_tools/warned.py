@@ -68,6 +68,50 @@ WORDS = {
     "no CRS": "{file} has no CRS: coordinates are {coordinates}",
     "cut off": "{file}: {percent:.3g} % of the polygon lies outside of the grid of the run: cut off",
     "no ground": "{volume:.6g} m3 lie on cells without ground, beside the road: not in the volume to remove",
+    "outside of grid": "{file}: {area:.6g} m2 of it lie outside of the grid of the run: counted as false negative",
+    "nowhere thicker": "{file} is nowhere thicker than {threshold:g} m",
+    "no base": "no {file}, as of a run by an older version: no ground without the body",
+    # of where balls came to
+    "not arrived": "{file}: {moving} of {balls} balls are faster than {speed:g} m/s: they have not arrived",
+    "missing": "{file}: {missing} of {balls} balls of the start are not there: shares of the run-out count them as "
+               "beyond all others, all else leaves them out",
+    "beyond limits": "{option} {low:g} {high:g}: {outside} of {balls} balls lie beyond these limits",
+    # of a slope's stability: bodies of a search, one that failed, fragility
+    "in kPa": "--cohesion {value:g}: is it in Pa? Values in kPa are a thousand times smaller",
+    "in kN": "--density {value:g}: is it in kg/m3? Values in kN/m3 are about a hundred times smaller",
+    "bedrock": "body {body}: --bedrock has no value below {percent:.2g} % of its cells",
+    "columns": "body {body} has {value:.0f} cells of the terrain, fewer than {limit:g}: its numbers are rough",
+    "terrain": "body {body} is within {limit:g} cells of the edge of the terrain or of cells without a height: a "
+               "larger terrain may have a lower factor",
+    "within": "body {body} is at the edge of --within: beyond it the factor may be lower",
+    "volume low": "body {body} has the least volume that is allowed, {limit:.6g} m3: a smaller body may have a lower "
+                  "factor",
+    "volume high": "body {body} has the largest volume that is allowed, {limit:.6g} m3: a larger body may have a lower "
+                   "factor",
+    "depth low": "body {body} has the least depth that is allowed, {limit:.6g} m: a shallower body may have a lower "
+                 "factor",
+    "depth high": "body {body} has the largest depth that is allowed, {limit:.6g} m: a deeper body may have a lower "
+                  "factor",
+    "flat": "body {body} is nearly a plane, radius {value:.4g} m for a length of {limit:.4g} m: at the edge of a "
+            "search of spheres",
+    "wide": "body {body} is {value:.3g} times as wide as a sphere, which is a limit of the search: another width may "
+            "have a lower factor",
+    "fails": "body {body} has a factor of {value:.3f}, below 1: with these numbers it does not stand",
+    "few columns": "the body has {cells} cells, fewer than {limit}: the line is rough",
+    "no sphere": "the body is no sphere, and the line depends on the axis of moments: a far one changes the cohesion "
+                 "by {percent:+.0f} % without friction",
+    "pseudo-static": "pseudo-static: a body that is at F < 1 for an instant counts as failed, which is cautious",
+    "one record": "one record: how much records differ is not seen, beta_r is 0",
+    "at rest": "{which}: {percent:.2g} % of the strengths fail without an earthquake{makes}: if the slope stands, they "
+               "are not its own; raise the lower bounds of the strengths",
+    "no fit": "{which}: no lognormal fit, the peaks show fewer than three probabilities between 0 and 1",
+    "fit is off": "{which}: the lognormal fit is off by up to {difference:.2f}",
+    "HCLPF": "{which}: at the HCLPF {percent:.2g} % fail, the lognormal fit says {fitted:.2g} %: it is too favourable "
+             "there",
+    "beyond the curve": "{which}: peaks above the hazard curve's last may add up to {per_year:.2g} failures per year",
+    # of a study
+    "ranks": "{runs} runs of {ranks} ranks at a time on {cores} cores: they slow each other down",
+    "size error": "the size error is unknown: {why}",
     "road on body": "{file}: a part of the road lies on the body, and goes with it: the volume to remove does not tell "
                     "what it takes to build the road anew",
 }

@@ -48,7 +48,7 @@ def run(args):
              "origin": {"east": place.offset[0], "north": place.offset[1]}, "cell": run_.cell,
              "run": {"slope_version": run_.summary.get("slope_version"), "time": run_.summary["time"]}, "rasters": []}
     if not any(layer.kind == "base" for layer in found):
-        warn(f"no {named.prefix}.base.asc, as of a run by an older version: no ground without the body")
+        warn(warned.Warned("no base", {"file": f"{named.prefix}.base.asc"}))
     with disk.complete(folder, "export.yaml") as new:
         for layer in rasters.progress(found, "writing GeoTIFFs"):
             about["rasters"].append(write(new, layer, place))

@@ -82,8 +82,8 @@ def run(args):
                           float((one <= 0).all(axis=1).mean())) for name, one in zip(names, columns)]
     kept: List[str] = []
     warn = warned.warner("fragility", kept)
-    for text in warnings_of(curves, found, args.pseudo_static, len(args.record), hazard):
-        warn(text)
+    for one in warnings_of(curves, found, args.pseudo_static, len(args.record), hazard):
+        warn(one)
     about = {"bodies": [{"body": body.name, "volume_m3": body.columns.volume,
                          "base_sha256": disk.sha256(body.base)} for body in found],
              "peaks": args.peaks, "peaks_gal": peaks.tolist(),
@@ -164,32 +164,30 @@ def drawn(option, text, low, high, unit):
 
 
 def warnings_of(curves, found, pseudo_static, records, hazard):
-    """What a reader must know, in words."""
+    """What a reader must know."""
     from ..slips.columns import FEWEST
 
     if pseudo_static is not None:
-        yield "pseudo-static: a body that is at F < 1 for an instant counts as failed, which is cautious"
+        yield warned.Warned("pseudo-static")
     elif records == 1:
-        yield "one record: how much records differ is not seen, beta_r is 0"
+        yield warned.Warned("one record")
     for body in found:
         if len(body.columns.area) < FEWEST:
-            yield f"body {body.name} has {len(body.columns.area)} columns, fewer than {FEWEST}: its numbers are rough"
+            yield warned.Warned("columns", {"body": body.name, "value": len(body.columns.area), "limit": FEWEST})
     for one in curves:
         standing = one.at_rest * hazard.rates[0] / one.frequency.total.value if one.frequency else 0.0
         if one.at_rest > 0.01 or standing > 0.05:
-            yield (f"{one.title}: {100 * one.at_rest:.2g} % of the strengths fail without an earthquake"
-                   + (f", which makes {100 * standing:.2g} % of the frequency" if standing > 0.05 else "")
-                   + ": if the slope stands, they are not its own; raise the lower bounds of the strengths")
+            makes = f", which makes {100 * standing:.2g} % of the frequency" if standing > 0.05 else ""
+            yield warned.Warned("at rest", {"which": one.title, "percent": 100 * one.at_rest, "makes": makes})
         if one.fit is None:
-            yield f"{one.title}: no lognormal fit, the peaks show fewer than three probabilities between 0 and 1"
+            yield warned.Warned("no fit", {"which": one.title})
         elif one.fit.off > 0.05:
-            yield f"{one.title}: the lognormal fit is off by up to {one.fit.off:.2f}"
+            yield warned.Warned("fit is off", {"which": one.title, "difference": float(one.fit.off)})
         if one.fit and one.fit.at_hclpf > 1.5 * one.fit.at_hclpf_fitted:
-            yield (f"{one.title}: at the HCLPF {100 * one.fit.at_hclpf:.2g} % fail, the lognormal fit says "
-                   f"{100 * one.fit.at_hclpf_fitted:.2g} %: it is too favourable there")
+            yield warned.Warned("HCLPF", {"which": one.title, "percent": 100 * float(one.fit.at_hclpf),
+                                          "fitted": 100 * float(one.fit.at_hclpf_fitted)})
         if one.frequency and one.frequency.beyond > 0.1 * one.frequency.total.value:
-            yield (f"{one.title}: peaks above the hazard curve's last may add up to {one.frequency.beyond:.2g} "
-                   "failures per year")
+            yield warned.Warned("beyond the curve", {"which": one.title, "per_year": float(one.frequency.beyond)})
 
 
 def summary(curves, folder, files):

@@ -102,11 +102,10 @@ def run(args):
                              f"below {HUGE:g} somewhere", f"{rows[0]['factor']:.4g}")
         masks = [bodies.mask_of(folder / f"{PREFIX}.{k + 1}.base.asc") for k in range(len(rows))]
         rock = args.bedrock and resampling.sample(rasters.read(args.bedrock), *columns.centres(raster))
-        for line in [*warnings_of(args, rows, masks, rock), *said.warnings]:
-            warn(line)
-        for doubt in doubts.of_all(raster, rows, masks, asked.volume, asked.depth,
-                                   polygon and doubts.cells_in(raster, polygon)):
-            warn(doubts.words(doubt))
+        for one in [*warnings_of(args, rows, masks, rock), *said.warnings,
+                    *doubts.of_all(raster, rows, masks, asked.volume, asked.depth,
+                                   polygon and doubts.cells_in(raster, polygon))]:
+            warn(one)
         table = [numbers_of(raster, row, mask) for row, mask in zip(rows, masks)]
         write(folder, args, raster, rows, masks, rock, {"method": asked.method, "shape": asked.shape,
                                                         "keep": asked.keep, "bodies": table, "warnings": kept})
@@ -116,17 +115,17 @@ def run(args):
 
 
 def warnings_of(args, rows, masks, rock):
-    """What a reader must know of the input, in words."""
+    """What a reader must know of the input."""
     import numpy as np
 
     if 0 < args.cohesion < FAINT:
-        yield f"--cohesion {args.cohesion:g}: is it in Pa? Values in kPa are a thousand times smaller"
+        yield warned.Warned("in kPa", {"value": args.cohesion})
     if args.density < LIGHT:
-        yield f"--density {args.density:g}: is it in kg/m3? Values in kN/m3 are about a hundred times smaller"
+        yield warned.Warned("in kN", {"value": args.density})
     for row, mask in zip(rows, masks):
         share = 0.0 if rock is None else np.isnan(rock[mask]).mean()
         if share > 0:
-            yield f"body {row['rank']:.0f}: --bedrock has no value below {100 * share:.2g} % of its cells"
+            yield warned.Warned("bedrock", {"body": int(row["rank"]), "percent": 100 * float(share)})
 
 
 def asked_of(args) -> slip_deck.Asked:

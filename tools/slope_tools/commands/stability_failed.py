@@ -32,8 +32,8 @@ def run(args):
     far = back.line(body.far, horizontal, vertical, ratio) if body.far else None
     kept: List[str] = []
     warn = warned.warner("stability", kept)
-    for text in warnings_of(body, line, far):
-        warn(text)
+    for one in warnings_of(body, line, far):
+        warn(one)
     about = {"terrain": args.terrain, "failed": args.failed, "density": args.density, "seismic": shaking,
              "water": args.water, "water_table": args.water_table,
              "bedrock": args.bedrock, "volume": body.columns.volume,
@@ -56,13 +56,12 @@ def inertia(args):
 
 
 def warnings_of(body, line, far):
-    """What a reader must know, in words."""
+    """What a reader must know."""
     from ..slips.columns import FEWEST
 
     if len(body.columns.area) < FEWEST:
-        yield f"the body has {len(body.columns.area)} cells, fewer than {FEWEST}: the line is rough"
+        yield warned.Warned("few columns", {"cells": len(body.columns.area), "limit": FEWEST})
     if far is not None:
         change = far.cohesion[0] / line.cohesion[0] - 1
         if abs(change) > APART:
-            yield ("the body is no sphere, and the line depends on the axis of moments: a far one changes the cohesion "
-                   f"by {100 * change:+.0f} % without friction")
+            yield warned.Warned("no sphere", {"percent": 100 * float(change)})

@@ -31,10 +31,10 @@ def make(prefix: str, mapped: Path, folder: Path, threshold: float = THRESHOLD, 
     squares = make_mesh(mesh or run_.cell, run_.raster)
     observed = read_observed(mapped, run_.raster, threshold, local, warn)
     if observed.outside > 0:
-        warn(f"{mapped}: {observed.outside:.6g} m2 of it lie outside of the grid of the run: counted as false negative")
+        warn(warned.Warned("outside of grid", {"file": str(mapped), "area": observed.outside}))
     simulated = run_.raster.z > threshold
     if not simulated.any():
-        warn(f"{run_.prefix}.thickness.asc is nowhere thicker than {threshold:g} m")
+        warn(warned.Warned("nowhere thicker", {"file": f"{run_.prefix}.thickness.asc", "threshold": threshold}))
     about = {"prefix": run_.prefix, "observed": mapped, "terrain": run_.terrain,
              "crs": None if run_.raster.crs is None else crs_name(run_.raster.crs),
              "run": {"slope_version": run_.summary.get("slope_version"), "time": run_.summary["time"],

@@ -9,6 +9,7 @@ from ..drawing import figures, pictures
 from ..drawing.figures import plt
 from ..errors import SlopeError
 from ..survey import rasters
+from ..warned import Warned
 from . import dumps, reach
 
 DIRECTIONS = "along", "across"
@@ -78,11 +79,9 @@ def of_dumps(paths: Sequence[str], starts: Optional[Sequence[str]], wanted: Want
 
     for one in arrivals:
         if one.moving:
-            warn(f"{one.name}: {one.moving} of {len(one.id)} balls are faster than {MOVING:g} m/s: they have not "
-                 f"arrived")
+            warn(Warned("not arrived", {"file": one.name, "moving": one.moving, "balls": len(one.id), "speed": MOVING}))
         if one.missing:
-            warn(f"{one.name}: {one.missing} of {one.missing + len(one.id)} balls of the start are not there: shares "
-                 f"of the run-out count them as beyond all others, all else leaves them out")
+            warn(Warned("missing", {"file": one.name, "missing": one.missing, "balls": one.missing + len(one.id)}))
     tables = {name: distribution(arrivals, name, wanted.limits(name), warn) for name in DIRECTIONS}
     about: Dict[str, Any] = {
         "axis": {"along": wanted.axis, "across": wanted.axis + 90, "origin": wanted.origin}, "types": wanted.types,
@@ -163,7 +162,8 @@ def distribution(arrivals, name, limits, warn):
     lo, hi = limits or (balls.min(), balls.max())
     outside = ((balls < lo) | (balls > hi)).sum()
     if outside:
-        warn(f"--{name} {lo:g} {hi:g}: {outside} of {len(balls)} balls lie beyond these limits")
+        warn(Warned("beyond limits", {"option": f"--{name}", "low": float(lo), "high": float(hi),
+                                      "outside": int(outside), "balls": len(balls)}))
     step = step_of(hi - lo)
     first = math.floor(lo / step + 1e-9) if limits else math.ceil(lo / step - 1e-9) - 1    # where the share is still 0
     at = (step * np.arange(first, math.ceil(hi / step - 1e-9) + 1)).round(12)

@@ -137,7 +137,7 @@ def sizes(setup: Setup, choices: Choices, repeated: Dict[str, List[str]]) -> Siz
         size_study.run(setup, "d=" + ",".join(values), {"rolling": rolling[len(rolling) // 2]}, repeated, of,
                        {name: NAMES[name] for name in of})
     except study.RunsFailed as error:
-        setup.warn(f"sizes of balls: {error}")
+        setup.warn(warned(str(error))._replace(part="sizes of balls"))
     except SlopeError as error:
         return unusable(setup, str(error))
     path = setup.output / "converge.yaml"
@@ -187,7 +187,7 @@ def half_step(setup: Setup, rolling: List[str]) -> Optional[Step]:
 
 
 def unusable(setup: Setup, why: str, shortly: str = "") -> Sizes:
-    setup.warn(f"the size error is unknown: {why}")
+    setup.warn(Warned("size error", {"why": why}))
     return Sizes(None, (), shortly or why)
 
 

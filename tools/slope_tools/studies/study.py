@@ -13,6 +13,7 @@ from ..options import number
 from ..programs import find_lmp
 from ..runs import dependencies, jobs, launcher, slurm
 from ..survey import rasters
+from ..warned import Warned
 from .setup import Road, Setup
 
 MOST_LETTERS = 200      # of a folder's name; file systems take 255
@@ -67,8 +68,7 @@ def prepared(setup: Setup, files, number):
     elif setup.slurm:
         raise SlopeError("--slurm", "must be given with --engine slurm", setup.slurm)
     elif min(most, number) * setup.ranks > cores:
-        setup.warn(f"{min(most, number)} runs of {setup.ranks} ranks at a time on {cores} cores: they slow each "
-                   "other down")
+        setup.warn(Warned("ranks", {"runs": min(most, number), "ranks": setup.ranks, "cores": cores}))
     try:
         setup.output.mkdir(parents=True, exist_ok=True)
         inputs = setup.output / ".inputs"
