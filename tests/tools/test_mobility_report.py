@@ -3,11 +3,13 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from shapely.geometry import LineString, Point
 
 from test_mobility_path import ALL, disc, hillside
 
-from slope_tools.mobility import exceedance  # noqa: E402
+from slope_tools.mobility import exceedance, known as known_events  # noqa: E402
 from slope_tools.mobility.results import percent  # noqa: E402
+from slope_tools.plots import known_reach  # noqa: E402
 from slope_tools.report import mobility_part  # noqa: E402
 from slope_tools.report.numbers import Numbers  # noqa: E402
 
@@ -15,13 +17,17 @@ from slope_tools.report.numbers import Numbers  # noqa: E402
 def case(lengths, volume=0.78e6, study=True, scar=1):
     """data, ground and numbers of runs whose connected deposits have these lengths (m)."""
     mass = disc(hillside(), (300, 300))
-    ground = SimpleNamespace(raster=mass.raster._replace(z=np.zeros_like(mass.depth)), before=mass.raster.z,
-                             slip_depth=scar * mass.depth)
+    ground = ground_of(mass.raster._replace(z=np.zeros_like(mass.depth)), mass.raster.z, scar * mass.depth, volume)
     rows = [{"connected_m": length, "released_m3": volume} for length in lengths]
     one = SimpleNamespace(distance=lengths[0]) if lengths and lengths[0] else None
     data = SimpleNamespace(study=study or None, finished=rows, result=None, label=lambda one: "run",
                            largest_release=lambda: volume, connected=lambda: one)
     return data, ground, Numbers()
+
+
+def ground_of(raster, before, depth, volume=0.78e6):
+    return SimpleNamespace(raster=raster, before=before, slip_depth=depth,
+                           known=known_events.of_mass(raster, before, depth, volume))
 
 
 @pytest.fixture(scope="module")
@@ -55,9 +61,9 @@ def test_beyond_the_path_is_at_least(known):
 @pytest.mark.parametrize("columns, length", [(500, None), (340, None), (150, 1340)])
 def test_a_terrain_that_ends_before_half_of_the_events(columns, length):
     data, ground, numbers = case([900.0])
-    part = {"raster": ground.raster._replace(z=ground.raster.z[:, :columns]), "before": ground.before[:, :columns],
-            "slip_depth": ground.slip_depth[:, :columns]}
-    text = mobility_part.content(data, SimpleNamespace(**part), numbers)[0][1]
+    part = ground_of(ground.raster._replace(z=ground.raster.z[:, :columns]), ground.before[:, :columns],
+                     ground.slip_depth[:, :columns])
+    text = mobility_part.content(data, part, numbers)[0][1]
     if length is None:
         assert "leaves the terrain" not in text
         return
@@ -79,6 +85,42 @@ def test_otherwise_it_says_why(change, words):
 def test_a_height_that_no_event_has():
     data, ground, numbers = case([500.0])
     low = ground.before.min()
-    text = mobility_part.content(data, SimpleNamespace(**{**vars(ground), "before": low + (ground.before - low) / 8}),
-                                 numbers)[0][1]
+    lower = ground_of(ground.raster, low + (ground.before - low) / 8, ground.slip_depth)
+    text = mobility_part.content(data, lower, numbers)[0][1]
     assert "No set of known events covers this height" in text and "220 to 1720 m" in text
+
+
+# --- on maps and section ---
+
+def test_marks_lie_across_the_path_where_shares_of_the_events_go_farther(known):
+    reach = known_reach.of_mobility(known)
+    wanted = {(share, kind): length for share in (0.5, 0.1) for kind in (False, True)
+              if (length := known.length_at(share, kind)) is not None}
+    assert wanted and {(mark.share, mark.confined): mark.length for mark in reach.marks} == wanted
+    path = LineString(np.column_stack([known.path.x, known.path.y]))
+    for mark in reach.marks:
+        bar = LineString(mark.ends)
+        assert path.project(Point(mark.middle)) == pytest.approx(mark.length, abs=1e-3 * mark.length)
+        assert bar.centroid.distance(Point(mark.middle)) < 1e-6
+        before, after = (np.array(path.interpolate(mark.length + step).coords[0]) for step in (-20, 20))
+        across = mark.ends[1] - mark.ends[0]
+        assert abs(across @ (after - before)) < 0.1 * np.hypot(*across) * np.hypot(*(after - before))
+    assert LineString(reach.path).length == pytest.approx(max(wanted.values()), rel=1e-3)
+    text = known_reach.words(reach)
+    assert "half of known events" in text and "not laterally confined; farther: laterally confined" in text
+
+
+def test_a_section_shows_the_marks_that_it_passes(known):
+    reach = known_reach.of_mobility(known)
+    along = LineString(reach.path)
+    beyond = LineString([along.coords[0], *[np.array(point) for point in along.coords[1:]],
+                         2 * np.array(along.coords[-1]) - along.coords[-2]])
+    assert [at for _, at in known_reach.on_line(reach, beyond)] == pytest.approx(
+        [mark.length for mark in reach.marks], rel=1e-3)
+    far = LineString(np.array(along.coords) + 0.5 * along.length)
+    assert not list(known_reach.on_line(reach, far))
+
+
+def test_where_no_set_covers_the_mass_there_are_no_marks():
+    assert known_reach.words(known_reach.NOTHING) == "" and not list(
+        known_reach.on_line(known_reach.NOTHING, LineString([(0, 0), (1, 1)])))

@@ -15,6 +15,7 @@ sys.path.insert(0, str(TOOLS))
 from slope_tools.drawing import figures, palettes  # noqa: E402
 from slope_tools.plots import (figure_charts, figure_maps, figure_structures, obstacles,  # noqa: E402
                                section as report_section)
+from slope_tools.plots.known_reach import KnownReach, Mark  # noqa: E402
 from slope_tools.report import charts, structures_part  # noqa: E402
 from slope_tools.statistics import hazard  # noqa: E402
 from slope_tools.survey.rasters import Raster  # noqa: E402
@@ -70,11 +71,15 @@ def texts(figure):
     return {text.get_text() for text in figure.texts}
 
 
+REACH = KnownReach(np.array([[5.0, 12], [30, 12]]), [
+    Mark(0.5, False, 25.0, np.array([30.0, 12]), np.array([[30.0, 10], [30, 14]]))])
+
+
 def test_every_map_has_them(drawn):
     z = np.add.outer(np.arange(24.0), np.arange(40.0))
     raster = Raster(z, Affine(1, 0, 0, 0, -1, 24), None, (0, 0))
     layers = figure_maps.Layers(raster, z, (0, 0, 40, 24), None, box(2, 0, 6, 24), np.array([[1.0, 12], [39, 12]]), 5.0,
-                                {"wall": obstacles.footprint(WALL)}, {"fence": np.array([[11.0, 23], [11, 1]])})
+                                {"wall": obstacles.footprint(WALL)}, {"fence": np.array([[11.0, 23], [11, 1]])}, REACH)
     values, mesh = z / 10, raster._replace(z=np.full((3, 5), 10.0), transform=Affine(8, 0, 0, 0, -8, 24))
     figure_maps.value_map(layers, values, "title", "(m)", [0.0, 1.0, 7.0], palettes.THICKNESS)
     figure_maps.mesh_map(layers, values, mesh, "title", "")
@@ -82,7 +87,9 @@ def test_every_map_has_them(drawn):
     figure_maps.small_maps(layers, [("one", values)], "(m)", [0.0, 1.0, 7.0], palettes.THICKNESS)
     assert len(drawn) == 4
     for figure in drawn:
-        assert {"road", "structure", "control line"} <= texts(figure)
+        assert {"road", "structure", "control line", "half of known events go farther"} <= texts(figure)
+        assert any(np.allclose(line.get_xydata(), REACH.marks[0].ends) for axes in figure.axes for line in axes.lines
+                   if len(line.get_xdata()) == 2)
         assert any(np.allclose(sorted(set(line.get_xdata())), [12, 13]) for axes in figure.axes for line in axes.lines
                    if len(line.get_xdata()) == 5)
 
@@ -92,8 +99,9 @@ def test_the_section_has_them(drawn):
     runs = [("run", 0.5 * s + 1, np.where(s < 20, 1.0, 0.0))]
     cut = np.where(s < 10, 0.5 * s + 0.5, np.nan)
     figure_charts.section(s, 0.5 * s, 0.5 * s, runs, [(2, 6)], cut, "title", (), obstacles.section_of(
-        WALL, np.array([[0.0, 5.0], [40.0, 5.0]])), [11.0])
-    assert {"road", "structure", "control line", "cut surface"} <= texts(drawn[0])
+        WALL, np.array([[0.0, 5.0], [40.0, 5.0]])), [11.0], [(0.1, 30.0)])
+    assert {"road", "structure", "control line", "cut surface", "a tenth of known events go farther"} <= texts(drawn[0])
+    assert any(list(line.get_xdata()) == [30.0, 30.0] for axes in drawn[0].axes for line in axes.lines)
     figure_charts.section(s, 0.5 * s, 0.5 * s, runs, [], None, "title")
     assert not {"structure", "control line", "cut surface"} & texts(drawn[1])
 

@@ -27,7 +27,7 @@ from slope_tools import cli, programs  # noqa: E402  (after the path is set)
 from slope_tools.case import decks  # noqa: E402
 from slope_tools.commands import study as study_command  # noqa: E402
 from slope_tools.releases import release_chart  # noqa: E402
-from slope_tools.sites import site_budget, site_choices, site_warnings  # noqa: E402
+from slope_tools.sites import site_budget, site_choices, site_deck, site_warnings  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
 from slope_tools.plots import site_map  # noqa: E402
 
@@ -326,6 +326,35 @@ def test_the_size_of_the_balls_comes_from_the_budget():
     assert more.balls / some.balls == pytest.approx(10 ** 0.75, rel=0.3)     # time goes with balls^(4/3)
     small = budget(memory=1.0)
     assert 0.97 < small.gigabytes <= 1.0 and small.balls == pytest.approx((0.5 - 0.06) / 800e-9, rel=0.03)
+
+
+def test_a_second_trial_tells_how_long_most_runs_take():
+    """At the rolling resistance in the middle; limits and stiffness are by the longest and the fastest."""
+    def trial(d, rest, speed=13.0):
+        return site_budget.Trial(800, d, rest, True, speed, 1e-7, 0.5, 2.0, 0.0)
+
+    coarse, fine = trial(3.6, 45.0, 21.0), trial(2.4, 26.0)
+    both = site_budget.joined(coarse, fine)
+    assert (coarse.typical, both.typical, both.rest, both.speed) == (45.0, 26.0, 45.0, 21.0)
+    assert site_budget.duration(both) == site_budget.duration(coarse) == 140.0
+
+    choices = site_choices.complete({"terrain": {"files": ["dem.tif"]}, "balls": {"minutes": 1.0}})
+    wanted = site_budget.plan(choices)
+    took = [site_budget.study_seconds(2.0, 3e4, one, 47.0, 3411.0, wanted, 2) for one in (fine, both)]
+    assert took[0] == took[1]
+    assert site_budget.finer_diameter(choices, coarse) == pytest.approx(3.6 / 3 ** (1 / 3), rel=2e-3)
+    assert site_budget.finer_diameter(choices, coarse._replace(seconds=3.0)) is None    # 13 s, more than a fifth of it
+    choices["balls"]["number"] = 3000
+    assert site_budget.finer_diameter(choices, coarse) is None
+
+
+def test_bins_of_a_small_body_in_a_large_box_are_wide():
+    """A thousand for each ball at most, but no wider than five diameters; else those of the list's reach."""
+    room, volume = 1300.0 * 1100.0 * 600.0, 50000.0
+    side = float(site_deck.bins(room, volume))
+    assert 1.2 < side < 5 and room / (side * 2.0) ** 3 == pytest.approx(1000 * volume / 2.0 ** 3, rel=0.01)
+    assert site_deck.bins(1000 * room, volume) == "5"
+    assert site_deck.bins(1000 * volume * 1.2 ** 3 * 0.99, volume) == ""
 
 
 @pytest.mark.parametrize("balls, option", [({"minutes": 0.1}, "--minutes"), ({"memory": 0.01}, "--memory"),

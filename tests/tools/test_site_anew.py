@@ -445,7 +445,7 @@ def test_a_size_error_that_is_not_usable_has_its_reason_alone():
     warned = []
     setup = Setup(Path("in.deck"), Path("out"), warn=warned.append)
     assert site_study.unusable(setup, "too few runs") == site_study.Sizes(None, (), "too few runs")
-    assert warned == ["the size error is unknown: too few runs"]
+    assert list(map(str, warned)) == ["the size error is unknown: too few runs"]
 
 
 # --- sources that change after the folder was made ---

@@ -5,7 +5,7 @@ import numpy as np
 
 from ..drawing import figures
 from ..drawing.figures import COLOURS, FULL, HALF, LINE, ROAD, SECTION, STYLE, plt, shortened, text_width, ticks
-from .figure_maps import LINE as CONTROL, WALL
+from .figure_maps import LINE as CONTROL, MARKS, WALL, entries_of_marks
 from .sheets import Box, EDGE, Entry, LABEL, OUT, Sheet, TICK, keep_in, label, place_entries, widest
 
 VISIBLE = 0.055     # inches: a deposit of this thickness can be seen
@@ -47,14 +47,14 @@ def times(factor):
     return "" if factor == 1 else f", {factor:g} times exaggerated"
 
 
-def section(s, before, base, runs, road, cut, title, bends=(), walls=(), crossings=()):
+def section(s, before, base, runs, road, cut, title, bends=(), walls=(), crossings=(), marks=()):
     """Heights along the section, and below them the thickness where it cannot be seen in the heights.
 
     s: distance (m); before, base: ground before, and slip surface with the ground that stays; runs: list of
     (name, surface after, thickness), the first of them filled; road: list of (from, to); cut: its heights or None;
     bends: distances at which the line turns; walls: pieces of structures, pairs of (distance, height); crossings:
-    distances of control lines. Returns the picture, the exaggeration of the heights, and that of the
-    thickness or None.
+    distances of control lines; marks: (share, distance) of known events. Returns the picture, the exaggeration of the
+    heights, and that of the thickness or None.
     """
     known = np.concatenate([values[np.isfinite(values)] for values in (before, base, *(run[1] for run in runs))])
     room = max(0.05 * np.ptp(known), 0.005 * np.ptp(s), 0.1)
@@ -75,6 +75,9 @@ def section(s, before, base, runs, road, cut, title, bends=(), walls=(), crossin
             axes.plot(s, np.where(cut <= high, cut, np.nan), zorder=7, **CUT)
             found.append(Entry("cut surface", CUT))
         found += draw_obstacles(axes, walls, crossings)
+        for share, at in marks:
+            axes.axvline(at, zorder=2, **MARKS[share])
+        found += entries_of_marks({share for share, _ in marks})
         factor = None
         if 0 < typical * scale.heights < VISIBLE:
             top = 1.05 * max(run[2].max() for run in runs)

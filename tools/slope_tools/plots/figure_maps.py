@@ -11,6 +11,7 @@ from ..drawing.figures import FULL, HALF, RELEASE, ROAD, SECTION, STYLE, TITLE, 
 from ..drawing.maps import RELIEF, contours, outline, part, scheme, shade
 from ..geometry import parts_of, polygons_of
 from . import sheets
+from .known_reach import NOTHING, SHARES, KnownReach
 from .sheets import Box, Entry, Frame
 
 TALL = {FULL: 5.2, HALF: 3.7}       # inches: the tallest map
@@ -19,6 +20,8 @@ SECTION_LINE = {"color": SECTION, "lw": 0.9, "ls": (0, (6, 2, 1, 2))}
 RELEASE_LINE = {"color": RELEASE, "lw": 0.9, "ls": "--"}
 WALL = {"color": "#111111", "lw": 1.2}
 LINE = {"color": "#8a5aa8", "lw": 1.2}
+PATH = {"color": "#00695c", "lw": 0.7, "ls": (0, (1, 1.5))}
+MARKS = {0.5: {"color": "#00695c", "lw": 1.6}, 0.1: {"color": "#00695c", "lw": 1.6, "ls": (0, (1.5, 0.8))}}
 TINTS = LinearSegmentedColormap.from_list(
     "tints", ["#5f8f5a", "#9dbb7c", "#d9d39a", "#c8a36c", "#a87a55", "#e9e4de"])
 
@@ -34,12 +37,13 @@ class Layers(NamedTuple):
     interval: float = 5.0                # of the contours, m
     walls: Mapping[str, Any] = {}        # what structures cover
     lines: Mapping[str, np.ndarray] = {}     # points of control lines, rows of x y
+    reach: KnownReach = NOTHING              # of known events
 
 
 # --- what is drawn into the axes of a map ---
 
 def base_map(axes, layers, labels=True):
-    """Shaded relief, contours, release, road, structures and control lines."""
+    """Shaded relief, contours, release, road, structures, control lines, reach of known events."""
     raster, shown = layers.raster, layers.shown
     z, where = part(raster, layers.ground, shown)
     step = (where[1] - where[0]) / z.shape[1]
@@ -59,6 +63,10 @@ def base_map(axes, layers, labels=True):
         for polygon in polygons_of(layers.road):
             axes.fill(*np.asarray(polygon.exterior.coords)[:, :2].T, color=ROAD, alpha=0.13, lw=0, zorder=1.5)
     draw_obstacles(axes, layers)
+    if layers.reach.marks:
+        axes.plot(*layers.reach.path.T, zorder=6, **PATH)
+    for mark in layers.reach.marks:
+        axes.plot(*mark.ends.T, zorder=6.5, **MARKS[mark.share])
 
 
 def draw_obstacles(axes, layers):
@@ -111,9 +119,15 @@ def entries(layers):
         found.append(Entry("structure", WALL))
     if layers.lines:
         found.append(Entry("control line", LINE))
+    found += entries_of_marks({mark.share for mark in layers.reach.marks})
     if layers.section is not None:
         found.append(Entry("section A-A'", SECTION_LINE))
     return [*found, Entry(f"contours every {layers.interval:g} m", {"color": "#333333", "lw": 0.5})]
+
+
+def entries_of_marks(shares):
+    """What the marks of known events are."""
+    return [Entry(f"{SHARES[share]} of known events go farther", MARKS[share]) for share in SHARES if share in shares]
 
 
 def frame_of(layers, names, crs_name=""):

@@ -1,4 +1,5 @@
 """What the maps and the section of a report share: the ground before and after, where the mass was, what is shown."""
+import functools
 import math
 
 import numpy as np
@@ -8,8 +9,9 @@ from .. import geometry
 from ..deposits import scar
 from ..drawing import maps
 from ..errors import SlopeError
+from ..mobility import known
 from ..survey.resampling import sample
-from . import obstacles
+from . import known_reach, obstacles
 
 TALLEST, FLATTEST = 0.7, 0.22       # height / width of a map, where the terrain is large enough
 
@@ -38,8 +40,20 @@ class Ground:
         for other in data.drawn:
             self.touched = self.touched | (other.thickness > 0)
         self.obstacles = obstacles.of_run(one)
+        self.volume = data.largest_release()
         if not self.touched.any():
             raise SlopeError(f"{one.prefix}.max_thickness.asc", "must have a cell that the mass ever touched")
+
+    @functools.cached_property
+    def known(self) -> known.Known:
+        """The mass among known events."""
+        return known.of_mass(self.raster, self.before, self.slip_depth, self.volume)
+
+    @functools.cached_property
+    def reach(self) -> known_reach.KnownReach:
+        """How far known events go; nothing where no set covers the mass."""
+        mobility = self.known.mobility
+        return known_reach.of_mobility(mobility) if mobility else known_reach.NOTHING
 
     @property
     def source(self):
@@ -55,11 +69,12 @@ class Ground:
         return sample(self.raster._replace(z=values), x, y)
 
     def boxes(self):
-        """Local xlo, ylo, xhi, yhi of what the mass touched, and of structures and lines that are not far from it."""
+        """Local xlo, ylo, xhi, yhi of what the mass touched, and of what else is shown and not far from it."""
         found = [box_of(self.raster, self.touched)]
         far = max(found[0][2] - found[0][0], found[0][3] - found[0][1])
         near = geometry.box_of(self.raster).intersection(box(*found[0]).buffer(far))
-        for one in (*self.obstacles.footprints.values(), *map(LineString, self.obstacles.lines.values())):
+        for one in (*self.obstacles.footprints.values(), *map(LineString, self.obstacles.lines.values()),
+                    *(LineString(mark.ends) for mark in self.reach.marks)):
             part = one.intersection(near)
             found += [] if part.is_empty else [part.bounds]
         return found

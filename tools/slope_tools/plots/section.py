@@ -13,7 +13,7 @@ from ..deposits import cut, flow_path
 from ..errors import SlopeError
 from ..options import number
 from ..survey import lines
-from . import figure_charts, obstacles
+from . import figure_charts, known_reach, obstacles
 
 FALL = "fall"           # --section fall
 NEAR = 0.04             # of its length: a path that is no farther from the fall line is shown by that
@@ -200,12 +200,16 @@ class Section:
         found = [self.line.intersection(LineString(points)) for points in self.ground.obstacles.lines.values()]
         return sorted(self.line.project(Point(place)) for one in found for place in geometry.coordinates(one))
 
+    def marks(self):
+        """(share, distance) of the marks of known events that are not far beside the line."""
+        return [(mark.share, at) for mark, at in known_reach.on_line(self.ground.reach, self.line)]
+
     def picture(self):
         """The picture's data URI, what it shows, and its caption."""
         spans, height = self.road() if self.data.road is not None else ([], None)
         uri, factor, thickness_factor = figure_charts.section(
             self.s, self.before, self.base, self.runs, spans, self._where_it_cuts(height), "Section A-A'", self.bends,
-            self.walls(), self.crossings())
+            self.walls(), self.crossings(), self.marks())
         (x1, y1), (x2, y2) = self.points[0], self.points[-1]
         caption = (f"Section from A ({x1:.1f}, {y1:.1f}) to A' ({x2:.1f}, {y2:.1f}), local metres, {self.how}; "
                    + ("heights not exaggerated" if factor == 1 else f"heights exaggerated {factor:g} times"))

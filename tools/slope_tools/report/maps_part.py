@@ -5,7 +5,7 @@ import numpy as np
 
 from .. import digits, geometry
 from ..drawing import figures, palettes
-from ..plots import figure_maps
+from ..plots import figure_maps, known_reach
 from ..plots.ground import box_of
 from ..survey.rasters import crs_name
 
@@ -28,7 +28,7 @@ class Maps:
             ground.raster, ground.before,
             ground.window(*ground.boxes(), (*line.min(axis=0), *line.max(axis=0))),
             ground.release, data.road, line, figures.contour_interval(ground.before), ground.obstacles.footprints,
-            ground.obstacles.lines)
+            ground.obstacles.lines, ground.reach)
 
     def thickness(self, values, title, alt, caption, width=figures.HALF, layers=None):
         """A map of a thickness, in classes that the release does not set."""
@@ -51,7 +51,8 @@ class Maps:
         found["deposit"] = self.thickness(
             one.thickness, "Thickness of the deposit at the end", "Map of the deposit's thickness at the end",
             f"Final thickness, {digits.three(one.deposit.cell)} m cells."
-            + ("" if not data.study else f" Run {data.number(one.name)} of the appendix."), figures.FULL)
+            + ("" if not data.study else f" Run {data.number(one.name)} of the appendix.")
+            + known_reach.words(ground.reach), figures.FULL)
         found["terrain"] = self.picture(
             figure_maps.terrain_map(layers._replace(shown=whole), layers.shown, self.crs), "Map of the terrain before",
             "Terrain before the collapse, light from the north-west"
@@ -87,7 +88,8 @@ class Maps:
         if data.removed is None or not data.removed[0].max() > 0:
             return None
         removed, mesh = data.removed
-        layers = self.layers._replace(shown=self.ground.window(box_of(self.layers.raster, removed > 0)))
+        layers = self.layers._replace(shown=self.ground.window(box_of(self.layers.raster, removed > 0)),
+                                      reach=known_reach.NOTHING)
         road = data.study["study"]["road"]
         uri, numbered = figure_maps.mesh_map(layers, removed, mesh, "Volume to remove", self.crs)
         squares = f", and its volume in m3 in squares of {mesh.transform.a:g} m" if numbered else ""

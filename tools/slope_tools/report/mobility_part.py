@@ -7,7 +7,7 @@ mobile than it is, which is the safe side. (A cell of the deposit adds up to its
 """
 from typing import List, NamedTuple, Optional, Tuple
 
-from ..mobility import exceedance, known
+from ..mobility import exceedance
 from ..mobility.results import percent
 
 WHAT = "Known events"
@@ -31,7 +31,7 @@ def content(data, ground, numbers) -> List[Tuple[str, str]]:
 def where_lie(data, ground) -> Lies:
     """The runs of a data.Data on its ground.Ground among the events of our own set."""
     lengths = lengths_of(data)
-    found = known.of_mass(ground.raster, ground.before, ground.slip_depth, data.largest_release())
+    found = ground.known
     if found.mobility and not lengths:
         return Lies(lengths, None, "No run has a connected deposit, whose length could be compared with known events.")
     return Lies(lengths, found.mobility, found.why and f"{found.why}.")

@@ -13,7 +13,7 @@ from typing import Any, Callable, List, NamedTuple, Optional
 
 import numpy as np
 
-from .. import disk, provenance
+from .. import disk, geometry, provenance
 from ..errors import SlopeError
 from ..releases import release, release_files
 from ..survey import local_terrain, polygons, rasters
@@ -130,7 +130,7 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
     layers = read_layers(choices, raster, new, tell, keep)
     title = choices["project"]["name"] or folder.absolute().name
     parts = site_deck.Parts(title, ", ".join(Path(name).name for name in choices["terrain"]["files"]), body,
-                            layers.structures, layers.lines, layers.motion)
+                            layers.structures, layers.lines, layers.motion, room_of(raster))
     trial, reached = tried(choices, parts, found, new, machine, tell)
     model = choices["model"]
     if model["field_ratio"] is None and machine.points(found.measures.volume):
@@ -214,26 +214,46 @@ def write_body(new: Path, wanted: release.Wanted, found: release.Body):
 
 # --- balls ---
 
+def room_of(raster: Raster) -> float:
+    """Of the box around a terrain, m3."""
+    return geometry.box_of(raster).area * max(float(np.nanmax(raster.z) - np.nanmin(raster.z)), raster.transform.a)
+
+
 def numbers(choices: Choices, trial: Optional[Trial], size: Optional[Size], diameter: Optional[float] = None):
     """What the choices leave open, for the deck."""
     model = choices["model"]
     d = diameter or (size.diameter if size else 0.0)
     seconds = None
     if trial and size:
-        steps = trial.rest / site_budget.time_step(d, model["speed"], model["density"])
+        steps = trial.typical / site_budget.time_step(d, model["speed"], model["density"])
         seconds = trial.setup + steps * size.balls * trial.cost
     return site_deck.Numbers(d, model["field_diameter"] or d, model["speed"] or site_budget.SPEED,
                              model["duration"] or site_budget.LONGEST, model["cell"] or 1.0,
-                             choices["motion"]["peak_friction"] or site_deck.LEAST_PEAK, trial and trial.rest, seconds)
+                             choices["motion"]["peak_friction"] or site_deck.LEAST_PEAK, trial and trial.typical,
+                             seconds)
 
 
 def tried(choices: Choices, parts: site_deck.Parts, found: release.Body, new: Path, machine: Machine, tell):
-    """The Trial of a run with coarse balls, and its largest thickness; None, None where there is no LAMMPS."""
+    """The Trial of runs with coarse balls, and its largest thickness; None, None where there is no LAMMPS."""
     if choices["motion"]["peak_friction"] is None and parts.motion:
         choices["motion"]["peak_friction"] = site_deck.peak_friction(found.measures.slip_slope)
     if machine.lmp is None:
         return None, None
     d = site_budget.trial_diameter(choices, parts.body.volume)
+    trial, reached = tried_with(d, choices, parts, found, new, machine.lmp, tell)
+    finer = site_budget.finer_diameter(choices, trial)
+    if finer:
+        several = choices["study"]["rolling"]
+        middle = several[len(several) // 2]
+        other = {**choices, "study": {**choices["study"], "rolling": [middle]}}
+        second, reached = tried_with(finer, other, parts, found, new, machine.lmp, tell, f"another, rolling {middle:g}")
+        trial = site_budget.joined(trial, second)
+    return trial, reached
+
+
+def tried_with(d: float, choices: Choices, parts: site_deck.Parts, found: release.Body, new: Path, lmp: Path, tell,
+               what="trial run"):
+    """The Trial of a run with balls of diameter d (m), and its largest thickness."""
     coarse = {**choices, "model": {**choices["model"], "field_diameter": d, "cell": max(found.area.cell, d / 2)}}
     folder = new / "trial"
     folder.mkdir()
@@ -242,14 +262,14 @@ def tried(choices: Choices, parts: site_deck.Parts, found: release.Body, new: Pa
             os.symlink(f"../{path.name}", folder / path.name)
     disk.write(folder / site_deck.NAME, site_deck.text(coarse, parts, numbers(coarse, None, None, d)))
     try:
-        trial = site_budget.measure(folder, site_deck.NAME, machine.lmp)._replace(diameter=d)
+        trial = site_budget.measure(folder, site_deck.NAME, lmp)._replace(diameter=d)
     except SlopeError as error:
         if parts.motion:
             site_warnings.require_standing(error, choices["motion"]["peak_friction"], found.measures.mean_slope)
         raise
     reached = rasters.read(next(iter(folder.glob("*.max_thickness.asc"))), heights=False)
     shutil.rmtree(folder)
-    tell(f"trial run, {trial.balls} balls of {d:g} m: {'at rest' if trial.at_rest else 'not at rest'} after "
+    tell(f"{what}, {trial.balls} balls of {d:g} m: {'at rest' if trial.at_rest else 'not at rest'} after "
          f"{trial.rest:.0f} s, up to {trial.speed:.0f} m/s; took {trial.seconds:.1f} s")
     return trial, reached
 

@@ -19,6 +19,8 @@ from .site_choices import Choices, OFFSETS
 
 DEFAULT = 4000          # balls, if no budget is given
 TRIAL = 800             # balls of the trial run
+FINER = 3               # times as many balls has a second trial run, for a budget of time
+FINER_SHARE = 0.2       # of that budget, which it takes at most
 FEWEST = 100            # balls that a budget must allow for
 MOST = 10 ** 9          # far below LAMMPS' own limit, and more than any memory holds
 PER_BALL = 800e-9       # GB, see the page on scaling
@@ -50,6 +52,12 @@ class Trial(NamedTuple):
     setup: float            # s of a core for what does not depend on balls and steps
     seconds: float          # s of a core that it took
     left: float             # share of the mass that left the terrain
+    middle: Optional[float] = None      # rest of a second trial, with the rolling resistance in the study's middle
+
+    @property
+    def typical(self) -> float:
+        """s of the collapse in most runs of the study; rest is of the first, lowest rolling resistance."""
+        return self.rest if self.middle is None else self.middle
 
 
 class Size(NamedTuple):
@@ -84,6 +92,21 @@ def trial_diameter(choices: Choices, volume: float) -> float:
     elif balls["number"]:
         number = min(number, balls["number"])
     return three_digits((volume / max(number, 1)) ** (1 / 3))
+
+
+def finer_diameter(choices: Choices, trial: Trial) -> Optional[float]:
+    """Of the balls of a second trial run (m); None where there is no budget of time, or not for that."""
+    minutes = choices["balls"]["minutes"]
+    if choices["balls"]["diameter"] or choices["balls"]["number"] or not minutes:
+        return None
+    seconds = trial.seconds * FINER ** (4 / 3)
+    return three_digits(trial.diameter / FINER ** (1 / 3)) if seconds <= FINER_SHARE * 60 * minutes else None
+
+
+def joined(coarse: Trial, fine: Trial) -> Trial:
+    """The finer of two trials, at the rolling resistance in the middle, with what the coarse one found at the first."""
+    return fine._replace(rest=max(coarse.rest, fine.rest), at_rest=coarse.at_rest and fine.at_rest,
+                         speed=max(coarse.speed, fine.speed), left=max(coarse.left, fine.left), middle=fine.rest)
 
 
 def measure(folder: Path, deck: str, lmp: Path) -> Trial:
@@ -129,7 +152,7 @@ def measure(folder: Path, deck: str, lmp: Path) -> Trial:
 class Plan(NamedTuple):
     """The runs that `slope study` makes of a site."""
     parts: List[Tuple[float, int]]      # diameter as a factor of the site's, number of runs
-    half_step: bool                     # and one with half the time step
+    half_step: bool                     # and one with half the time step, which is compared by the volume to remove
     text: str
 
     @property
@@ -149,7 +172,7 @@ def plan(choices: Choices, points: int = 0) -> Plan:
             "positions")
     if study["sizes"]:
         text += f", {len(study['sizes'])} sizes of balls x {each}"
-    return Plan(parts, True, text)
+    return Plan(parts, bool(choices["road"]["file"]), text)
 
 
 def study_seconds(d: float, volume: float, trial: Trial, speed: float, density: float, wanted: Plan,
@@ -158,11 +181,11 @@ def study_seconds(d: float, volume: float, trial: Trial, speed: float, density: 
     total, number = 0.0, wanted.runs + wanted.half_step
     for factor, runs in wanted.parts:
         size = factor * d
-        steps = trial.rest / time_step(size, speed, density)
+        steps = trial.typical / time_step(size, speed, density)
         total += runs * (trial.setup + steps * volume / size ** 3 * trial.cost)
     alone = 0.0
     if wanted.half_step:        # nothing else runs beside it
-        steps = LEDGER * 2 * trial.rest / time_step(d, speed, density)
+        steps = LEDGER * 2 * trial.typical / time_step(d, speed, density)
         alone = trial.setup + steps * volume / d ** 3 * trial.cost
     return total / jobs + alone + COLLECT * number + REPORT
 

@@ -15,6 +15,8 @@ NAME = "in.site"
 TEMPLATE = "in.site.j2"
 KNOB = re.compile(r"variable +\w+ +index ")
 FRAMES = 40             # snapshots of a run, about
+BINS = 1000             # of the neighbor list for a ball, at most: each is cleared whenever the list is built
+REACH, WIDEST = 1.2, 5.0        # diameters: of the neighbor list; wider bins gain no more, and cost in a dense mass
 STEEPER = 7.0           # degrees: default of a strength that holds a body, above the slope of its slip surface
 LEAST_PEAK, MOST_PEAK = 33.0, 80.0
 
@@ -27,6 +29,7 @@ class Parts(NamedTuple):
     structures: Sequence[Structure]
     lines: Sequence[Line]
     motion: Optional[Motion]
+    room: float             # m3, of the box around the ground
 
 
 class Numbers(NamedTuple):
@@ -58,6 +61,7 @@ def values(choices: Choices, parts: Parts, numbers: Numbers) -> Dict[str, Any]:
         "balls": f"about {balls:,.0f}", "rest": "some" if numbers.rest is None else f"{numbers.rest:.0f}",
         "run_time": run_time(numbers.run_seconds), "lower": math.ceil(body.lower),
         "box": " ".join(plain(value) for value in body.box), "types": 4 if parts.structures else 3,
+        "bins": bins(parts.room, body.volume),
         "film": plain(frame(numbers.rest or numbers.duration / 3)),
         "slip_file": body.slip, "body": choices["release"]["bodies"] and body_number(choices),
         "structures": [{"name": one.name, "file": one.file, "point": words(one.point),
@@ -73,6 +77,12 @@ def values(choices: Choices, parts: Parts, numbers: Numbers) -> Dict[str, Any]:
         ("peak_friction", numbers.peak_friction), ("peak_rolling", motion["peak_rolling"]),
         ("trigger", motion["trigger"]))})
     return parameters
+
+
+def bins(room: float, volume: float) -> str:
+    """Side of the neighbor list's bins (diameters) in a box around the ground (m3); "": the list's reach, as usual."""
+    side = (room / (BINS * volume)) ** (1 / 3)
+    return f"{min(side, WIDEST):.3g}" if side > REACH else ""
 
 
 def body_number(choices: Choices) -> int:
