@@ -7,6 +7,7 @@ from shapely.geometry import LineString, Point
 
 from test_mobility_path import ALL, disc, hillside
 
+from slope_tools.digits import three  # noqa: E402
 from slope_tools.mobility import exceedance, known as known_events  # noqa: E402
 from slope_tools.mobility.results import percent  # noqa: E402
 from slope_tools.plots import known_reach  # noqa: E402
@@ -107,7 +108,10 @@ def test_marks_lie_across_the_path_where_shares_of_the_events_go_farther(known):
         assert abs(across @ (after - before)) < 0.1 * np.hypot(*across) * np.hypot(*(after - before))
     assert LineString(reach.path).length == pytest.approx(max(wanted.values()), rel=1e-3)
     text = known_reach.words(reach)
-    assert "half of known events" in text and "not laterally confined; farther: laterally confined" in text
+    assert f"half of known events of this volume and height go farther than {three(wanted[0.5, False])} m (not " in text
+    assert ("would lie beyond the terrain" in text) == (len(reach.marks) < 4)
+    fewer = known_reach.words(reach._replace(marks=reach.marks[:1]))
+    assert "a tenth" not in fewer and fewer.endswith("; other marks would lie beyond the terrain.")
 
 
 def test_a_section_shows_the_marks_that_it_passes(known):

@@ -8,6 +8,7 @@ from typing import Iterator, List, NamedTuple, Tuple
 import numpy as np
 from shapely.geometry import LineString, Point
 
+from .. import digits
 from ..mobility.exceedance import WORDS, Mobility
 
 SHARES = {0.5: "half", 0.1: "a tenth"}      # that go farther
@@ -69,7 +70,10 @@ def words(reach: KnownReach) -> str:
     """What the marks are, for a caption; "" without marks."""
     if not reach.marks:
         return ""
-    kinds = [f"{SHARES[share]} of known events of this volume and height"
-             for share in SHARES if any(mark.share == share for mark in reach.marks)]
-    several = " (nearer: " + "; farther: ".join(WORDS[kind] for kind in (False, True)) + ")"
-    return f" Marks across the fall path: where {' and '.join(kinds)} go farther{several}."
+    parts = []
+    for share, what in SHARES.items():
+        found = [f"{digits.three(one.length)} m ({WORDS[one.confined]})" for one in reach.marks if one.share == share]
+        if found:
+            parts.append(f"{what} of known events of this volume and height go farther than {' and '.join(found)}")
+    more = "" if len(reach.marks) == 2 * len(SHARES) else "; other marks would lie beyond the terrain"
+    return f" Marks across the fall path: {', '.join(parts)}{more}."
