@@ -22,7 +22,7 @@ import numpy as np
 SKIN = 0.2              # of a diameter
 FORWARD = 9 * 8         # bytes per ghost and step: position, velocity, spin
 REVERSE = 6 * 8         # force and torque back
-COUNTS = 2 * 8          # numbers of contacts, there and back
+COUNTS = 5 * 8          # numbers of contacts, there and back, and the velocity that is expected (BallStates)
 SWAPS = 6               # messages of one exchange in a brick: two for each axis
 EXCHANGES = 4           # of a step: positions, numbers of contacts there and back, forces
 
