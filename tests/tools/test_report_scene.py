@@ -558,7 +558,8 @@ def test_only_the_first_line_of_the_deck_s_head_is_the_purpose(plain):
 
 @pytest.mark.parametrize("options, site, where", [
     (["--client", "two\nlines"], "", "--client"), (["--author", "x" * 201], "", "--author"),
-    ([], "project: [a]", "site.yaml: must be a file of `slope site`: project: must"), ([], "project: {client: 5}", "site.yaml: project: client"),
+    ([], "project: [a]", "site.yaml: must be a file of `slope site`: project: must"),
+    ([], "project: {client: 5}", "site.yaml: project: client"),
     ([], "project: {author: [", "site.yaml")])
 def test_a_bad_heading_is_one_line(plain, capsys, options, site, where):
     if site:
