@@ -60,6 +60,8 @@ FILES = {       # file: (its reader, a text, what must be said)
         ("study: {variable: d}", f"must be {size_error.WHAT}: must have quantities"),
         ("{study: {variable: d, deck: a, base: {}, finished: 1}, quantities: {}}", "quantities: must not be empty"))),
     "r.yaml": (lambda folder: reference.read(folder / "r.yaml", {"a": "it"}), (
+        ("{title: T, quantities: {a: {levels: {b: 1}, 7: 1}}}", "must have no 7, which is unknown"),
+        ("{title: T, quantities: {7: {levels: {b: 1}}}}", "must be columns that all runs have, a, got 7"),
         ("{title: '', quantities: {a: {levels: {b: 1}}}}", "title: must not be empty"),
         ("{title: T, quantities: {a: {variable: v, series: {b: {c: 1}}}}}", "must be a finite number, got 'c'"),
         ("{title: T, quantities: {a: {levels: {b: 1}, more: 1}}}", "must have no more, which is unknown"))),

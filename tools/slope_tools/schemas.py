@@ -76,7 +76,7 @@ def rule_of(error) -> str:
     """What a ValidationError of jsonschema says, as a rule."""
     rule, value, got = str(error.validator), error.validator_value, repr(error.instance)[:60]
     if rule == "additionalProperties":
-        extra = sorted(set(error.instance) - set(error.schema["properties"]))
+        extra = sorted(map(str, error.instance.keys() - error.schema["properties"].keys()))
         return f"must have no {', '.join(extra)}, which is unknown; keys are {', '.join(error.schema['properties'])}"
     if rule == "required":
         return f"must have {' and '.join(key for key in value if key not in error.instance)}"

@@ -39,7 +39,7 @@ def read(path, available):
     unknown = about["quantities"].keys() - available.keys()
     if unknown:
         raise SlopeError(f"{path}: quantities", "must be columns that all runs have, " + ", ".join(available),
-                         ", ".join(sorted(unknown)))
+                         ", ".join(sorted(map(str, unknown))))
     return Reference(" ".join(about["title"].split()), " ".join(about.get("remark", "").split()),
                      {name: quantity(entry) for name, entry in about["quantities"].items()})
 
