@@ -61,6 +61,8 @@ FILES = {       # file: (its reader, a text, what must be said)
         ("{study: {variable: d, deck: a, base: {}, finished: 1}, quantities: {}}", "quantities: must not be empty"))),
     "r.yaml": (lambda folder: reference.read(folder / "r.yaml", {"a": "it"}), (
         ("{title: T, quantities: {a: {levels: {b: 1}, 7: 1}}}", "must have no 7, which is unknown"),
+        ("{title: T, quantities: {a: {levels: {b: 1}, 7: 1, more: 1}}}", "must have no 7, more, which is unknown"),
+        ("{title: T, quantities: {a: {variable: v, series: {-9: 1}}}}", "series: -9: must be a section with keys"),
         ("{title: T, quantities: {7: {levels: {b: 1}}}}", "must be columns that all runs have, a, got 7"),
         ("{title: '', quantities: {a: {levels: {b: 1}}}}", "title: must not be empty"),
         ("{title: T, quantities: {a: {variable: v, series: {b: {c: 1}}}}}", "must be a finite number, got 'c'"),

@@ -54,17 +54,31 @@ def check(value: Any, schema: Mapping[str, Any], where, what: str) -> None:
 
 @functools.lru_cache
 def validator():
-    """jsonschema's, to whom numbers are finite; imported when it is needed."""
+    """jsonschema's, to whom numbers are finite, and keys of any type; imported when it is needed."""
     import jsonschema
     latest = jsonschema.Draft202012Validator
-    return jsonschema.validators.extend(latest, type_checker=latest.TYPE_CHECKER.redefine(
-        "number", lambda _, value: disk.is_number(value)))
+
+    def additional(checker, allowed, instance, schema):
+        if allowed is not False:
+            yield from latest.VALIDATORS["additionalProperties"](checker, allowed, instance, schema)
+        elif isinstance(instance, dict) and instance.keys() - schema["properties"].keys():
+            yield jsonschema.ValidationError("other keys")      # jsonschema's own words sort them, numbers beside text
+
+    return jsonschema.validators.extend(
+        latest, {"additionalProperties": additional},
+        type_checker=latest.TYPE_CHECKER.redefine("number", lambda _, value: disk.is_number(value)))
 
 
 def first_error(value: Any, schema: Mapping[str, Any]) -> Optional[Tuple[List[Any], str]]:
-    """Keys and indices of the first place that does not fit, and the rule; None if all does."""
+    """Keys (texts) and indices of the first place that does not fit, and the rule; None if all does."""
     errors = sorted(validator()(schema).iter_errors(value), key=lambda one: [str(part) for part in one.absolute_path])
-    return (list(errors[0].absolute_path), rule_of(errors[0])) if errors else None
+    if not errors:
+        return None
+    place: List[Any] = []
+    for part in errors[0].absolute_path:
+        place.append(part if isinstance(value, list) else str(part))
+        value = value[part]
+    return place, rule_of(errors[0])
 
 
 def nth(index: int) -> str:

@@ -42,6 +42,12 @@ class Sizes:
         about = schemas.load(path, WHAT, CONVERGE)
         study, entries = about["study"], about["quantities"]
         self.variable, self.deck, self.runs = study["variable"], study["deck"], study["finished"]
+        for name, entry in entries.items():
+            one = entry["small_balls"]
+            ends = [one[side] for side in ("low", "high") if one[side] is not None]
+            if len(ends) == 1 or ends and not ends[0] <= one["value"] <= ends[1]:
+                raise SlopeError(path, f"must be {WHAT}: quantities: {name}: small_balls must have a value between low "
+                                 "and high, or neither of these")
         self.fits = {name: fit(entry) for name, entry in entries.items()}
         self.about = {name: (entry["name"], entry["unit"]) for name, entry in entries.items()}
         self.errors = {name: [(size["value"], size["error_percent"], size["standard_error_percent"])

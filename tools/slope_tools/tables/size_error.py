@@ -12,11 +12,12 @@ from ..statistics.headline import SizeError
 
 WHAT = "a converge.yaml of `slope sensitivity --converge`"
 ESTIMATE = {"value": NUMBER, "standard_error": MAYBE}
+NAME: Dict[str, Any] = {**TEXT, "minLength": 1}
 CONVERGE = mapping({
     "study": mapping({"variable": TEXT, "deck": TEXT, "base": OBJECT, "finished": NUMBER},
                      road={"type": ["object", "null"]}),
     "quantities": named(mapping({
-        "name": TEXT, "unit": TEXT, "errors_known": FLAG, "small_balls": mapping({**ESTIMATE, "low": MAYBE,
+        "name": NAME, "unit": TEXT, "errors_known": FLAG, "small_balls": mapping({**ESTIMATE, "low": MAYBE,
                                                                                   "high": MAYBE}),
         "slope": mapping(ESTIMATE), "supported": {"type": ["boolean", "null"]}, "covariance": MAYBE, "quantile": MAYBE,
         "sizes": listed(mapping({"value": ABOVE_0, "mean": NUMBER, "scatter": MAYBE, "error_percent": MAYBE,
