@@ -53,6 +53,7 @@ FILES = {       # file: (its reader, a text, what must be said)
     "finished.yaml": (run_folders.ended, (("wall_seconds: 1", "must have summary"),)),
     "study.yaml": (lambda folder: run_folders.governing_run(folder / "study.yaml"), (
         ("runs: []", "must have conservative"), ("conservative: null", "with a finished run"),
+        ("{conservative: null, farthest: null, largest: {}}", "with a finished run"),
         ("conservative: {run: 1}", "conservative: run: must be a text, got 1"))),
     "site.yaml": (heading.site_of, (("project: [1]", "project: must be a section with keys or null, got [1]"),
                                     ("terrain: {files: [1]}", "terrain: files: first value: must be a text, got 1"))),

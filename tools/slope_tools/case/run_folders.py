@@ -27,7 +27,7 @@ DIGESTS = {"type": ["object", "null"], "additionalProperties": TEXT}   # {what: 
 BEGUN = mapping({}, set=named(TEXT), variables=named(TEXT), program=DIGESTS, environment=DIGESTS, inputs=DIGESTS,
                 continued=listed(OBJECT))
 ENDED = mapping({"summary": TEXT}, wall_seconds=NUMBER, environment=DIGESTS, inputs=DIGESTS)
-GOVERNING = mapping({"conservative": mapping({"run": TEXT}, null=True)}, farthest=TEXT,
+GOVERNING = mapping({"conservative": mapping({"run": TEXT}, null=True)}, farthest={"type": ["string", "null"]},
                     largest=mapping({}, front_m=mapping({"run": TEXT})))
 WHAT = "a summary that fix deposit/grid wrote"
 # what `slope volume`, `score` and `export` need of one, and what the others do
