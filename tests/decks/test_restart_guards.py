@@ -45,8 +45,8 @@ CHANGES = [("2 1.0 surface", "2 0.9 surface", "balls"), ("spacing 1.0", "spacing
            ("motion.txt", "other_motion.txt", "quake"), ("cell 1 ", "cell 2 ", "dep"), ("bulk 1.5", "bulk 1.6", "dep"),
            ("extent 0 16", "extent 0 15", "dep"), ("line.csv", "other.csv", "line")]
 # words of these parsers that a restart file does not guard, as decks may change them, or that another one stands for
-PARSERS = ("lammps/ground/placement_arguments", "lammps/meshes/surface_options", "lammps/deposit/deposit_options",
-           "styles/fix_ground_motion", "styles/fix_control_line")
+PARSERS = ("ground/placement_arguments", "meshes/surface_options", "deposit/deposit_options",
+           "motion/fix_ground_motion", "deposit/fix_control_line")
 OUTPUTS = {"output", "write", "series", "point", "motion", "window", "deposit"}
 LIKE = {"inside": "outside", "upper": "surface", "lower": "surface", "sunk": "sink", "smallest": "file"}
 

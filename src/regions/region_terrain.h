@@ -15,19 +15,19 @@ RegionStyle(terrain,RegTerrain);
 #include "file_region.h"
 
 #include "elevation_grid.h"
-#include "region_shapes.h"
 
 #include <memory>
 
 namespace LAMMPS_NS {
 
-class RegTerrain : public FileRegion, public RasterRegion {
+class RegTerrain : public FileRegion {
  public:
   RegTerrain(class LAMMPS *, int, char **);
   ~RegTerrain() override;
   int inside(double, double, double) override;
 
-  const Slope::ElevationGrid &grid() const override { return elevation; }
+  // the raster that the ground surface is interpolated from
+  const Slope::ElevationGrid &grid() const { return elevation; }
 
  private:
   Slope::ElevationGrid elevation;

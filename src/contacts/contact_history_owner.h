@@ -8,7 +8,7 @@
 
 namespace LAMMPS_NS {
 
-// What fix CONTACT_HISTORY asks of the pair style whose histories it keeps.
+// What fix CONTACT_HISTORY asks of the pair style whose histories it keeps, and which includes its header.
 class ContactHistoryOwner {
  public:
   // histories from the contact lists to where the neighbor list has them

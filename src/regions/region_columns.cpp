@@ -8,7 +8,8 @@
 #include "lammps_compat.h"
 #include "region.h"
 #include "region_intersect.h"
-#include "region_shapes.h"
+#include "region_polygon.h"
+#include "region_terrain.h"
 #include "region_union.h"
 
 #include <algorithm>
@@ -32,7 +33,7 @@ static Interval column_of(const Terrain &t, double x, double y)
   return {t.bottom, t.grid->height(x, y)};
 }
 
-static Interval column_of(const PrismRegion *prism, double x, double y)
+static Interval column_of(const RegPolygon *prism, double x, double y)
 {
   return prism->covers(x, y) ? Interval::all() : Interval::none();
 }
@@ -193,10 +194,10 @@ std::unique_ptr<RegionColumns> RegionColumns::make_shape(LAMMPS *lmp, Region *re
                                                          const Search &search)
 {
   typedef std::unique_ptr<RegionColumns> Columns;
-  if (const auto *raster = dynamic_cast<RasterRegion *>(region))
+  if (const auto *raster = dynamic_cast<RegTerrain *>(region))
     return Columns(new ShapeColumns<Terrain>({&raster->grid(), region->extent_zlo}, 1));
-  if (const auto *prism = dynamic_cast<PrismRegion *>(region))
-    return Columns(new ShapeColumns<const PrismRegion *>(prism));
+  if (const auto *prism = dynamic_cast<RegPolygon *>(region))
+    return Columns(new ShapeColumns<const RegPolygon *>(prism));
   Columns columns;
   if (take_shape<compat::Sphere>(region, columns) || take_shape<compat::Block>(region, columns) ||
       take_shape<compat::Plane>(region, columns) || take_shape<compat::Cylinder>(region, columns))

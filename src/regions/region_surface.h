@@ -55,7 +55,7 @@ class RegionSurface : protected Pointers {
 
  private:
   class Region *region;
-  const class RasterRegion *terrain;    // set if its grid is the boundary
+  const class RegTerrain *terrain;    // set if its grid is the boundary
   bool lower;
   double step;
 

@@ -60,7 +60,8 @@ class Continuation : protected Pointers {
   double dt;         // and its length
 };
 
-// what changes velocities in the second half of a step beside the forces
+// what changes velocities in the second half of a step beside the forces; a class, as the style that does so is in a room
+// above
 class Kick {
  public:
   virtual void take_back_kick() = 0;    // from LAMMPS' velocities of this rank's balls

@@ -9,8 +9,8 @@
 #include "deposit_balls.h"
 #include "lammps_compat.h"
 #include "large_messages.h"
-#include "region_shapes.h"
 #include "region_surface.h"
+#include "region_terrain.h"
 
 #include "atom.h"
 #include "error.h"
@@ -45,7 +45,7 @@ void DepositGround::check(const DepositBalls &balls)
 {
   const RegionSurface ground(lmp, "Fix deposit/grid terrain", region.c_str(), RegionSurface::UPPER);
   Region *solid = compat::find_region(lmp, region);
-  const auto *terrain = dynamic_cast<const RasterRegion *>(solid);
+  const auto *terrain = dynamic_cast<const RegTerrain *>(solid);
   if (terrain && (!solid->interior || terrain->grid().count_nodata() == 0)) terrain = nullptr;
 
   // what was solid below the last place that was searched mostly is so below the next one

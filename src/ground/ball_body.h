@@ -11,7 +11,8 @@
 
 namespace LAMMPS_NS {
 
-// What fixed balls tell those that are placed later of the bodies above them.
+// What fixed balls tell those that are placed later of the bodies above them; both are fixes of one class, whose header
+// includes the placement.
 class BallBody {
  public:
   // the body that the balls lie sunk below, nullptr if they do not

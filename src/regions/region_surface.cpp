@@ -11,7 +11,7 @@
 #include "region.h"
 #include "region_columns.h"
 #include "region_intersect.h"
-#include "region_shapes.h"
+#include "region_terrain.h"
 #include "region_union.h"
 
 #include <algorithm>
@@ -71,7 +71,7 @@ RegionSurface::RegionSurface(LAMMPS *lmp, const std::string &caller, const char 
 
   // the upper boundary of a terrain is its elevation grid: no search
 
-  if (side == UPPER && region->interior) terrain = dynamic_cast<RasterRegion *>(region);
+  if (side == UPPER && region->interior) terrain = dynamic_cast<RegTerrain *>(region);
   if (!terrain) columns = RegionColumns::of(lmp, region, {zlo, zhi, step});
   note_parts(region);
 }

@@ -15,15 +15,15 @@ RegionStyle(polygon,RegPolygon);
 #include "file_region.h"
 
 #include "polygon.h"
-#include "region_shapes.h"
 
 namespace LAMMPS_NS {
 
-class RegPolygon : public FileRegion, public PrismRegion {
+class RegPolygon : public FileRegion {
  public:
   RegPolygon(class LAMMPS *, int, char **);
   void init() override;
-  bool covers(double x, double y) const override { return polygon.inside(x, y); }
+  // at all heights
+  bool covers(double x, double y) const { return polygon.inside(x, y); }
   int inside(double, double, double) override;
 
  private:

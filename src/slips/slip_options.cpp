@@ -8,7 +8,8 @@
 #include "constants.h"
 #include "lammps_compat.h"
 #include "rank_zero.h"
-#include "region_shapes.h"
+#include "region_polygon.h"
+#include "region_terrain.h"
 #include "style_argument.h"
 
 #include "comm.h"
@@ -243,8 +244,8 @@ void SlipOptions::check()
                "of variables' names, got {}",
                output);
 
-  check_region<RasterRegion>("Find_slip", region, "terrain");
-  if (!within.empty()) check_region<PrismRegion>("Find_slip within:", within, "polygon");
+  check_region<RegTerrain>("Find_slip", region, "terrain");
+  if (!within.empty()) check_region<RegPolygon>("Find_slip within:", within, "polygon");
 }
 
 template <class Kind>
@@ -262,7 +263,7 @@ void SlipOptions::check_region(const char *what, const std::string &named, const
 
 const ElevationGrid &SlipOptions::ground() const
 {
-  return dynamic_cast<RasterRegion *>(compat::find_region(lmp, region))->grid();
+  return dynamic_cast<RegTerrain *>(compat::find_region(lmp, region))->grid();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -271,7 +272,7 @@ std::vector<char> SlipOptions::allowed() const
 {
   std::vector<char> flags;
   if (within.empty()) return flags;
-  const auto prism = dynamic_cast<PrismRegion *>(compat::find_region(lmp, within));
+  const auto prism = dynamic_cast<RegPolygon *>(compat::find_region(lmp, within));
   const ElevationGrid &grid = ground();
   for (int j = 0; j < grid.ny; j++)
     for (int i = 0; i < grid.nx; i++)
