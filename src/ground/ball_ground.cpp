@@ -23,7 +23,8 @@ static constexpr double SEARCH_STEP = 0.125;
 /* ---------------------------------------------------------------------- */
 
 BallGround::BallGround(LAMMPS *lmp, const PlacementArguments &a) :
-    Pointers(lmp), arguments(a), plan{0.0, 0.0, 0.0, 0.0, a.spacing, a.origin[0], a.origin[1]}
+    Pointers(lmp), arguments(a), cosine(std::cos(a.angle)),
+    sine(std::sin(a.angle)), plan{0.0, 0.0, 0.0, 0.0, a.spacing, a.origin[0], a.origin[1]}
 {
   const double step = SEARCH_STEP * a.diameter;
   if (!a.filter.empty())
@@ -151,22 +152,61 @@ bool BallGround::scar(double x, double y, double &z) const
   return z < HUGE_VAL;
 }
 
+/* ----------------------------------------------------------------------
+   a plan grid that is turned about its origin
+------------------------------------------------------------------------- */
+
+void BallGround::turn(double &x, double &y, double direction) const
+{
+  if (sine == 0.0 && cosine == 1.0) return;
+  const double dx = x - plan.xorigin, dy = y - plan.yorigin, s = direction * sine;
+  x = plan.xorigin + cosine * dx - s * dy;
+  y = plan.yorigin + s * dx + cosine * dy;
+}
+
+// the rectangle around the plan
+
+Slope::NodeGrid BallGround::grid() const
+{
+  if (arguments.angle == 0.0) return plan;
+  Slope::NodeGrid around = plan;
+  around.xlo = around.ylo = HUGE_VAL;
+  around.xhi = around.yhi = -HUGE_VAL;
+  for (double x : {plan.xlo, plan.xhi})
+    for (double y : {plan.ylo, plan.yhi}) {
+      double u = x, v = y;
+      turn(u, v, -1.0);
+      around.xlo = std::min(around.xlo, u);
+      around.xhi = std::max(around.xhi, u);
+      around.ylo = std::min(around.ylo, v);
+      around.yhi = std::max(around.yhi, v);
+    }
+  return around;
+}
+
 Slope::Surface BallGround::surface() const
 {
+  // beyond the rectangle of the plan, which a turned grid overlaps, nothing is known
+
+  auto in_plan = [this](double &x, double &y) {
+    if (arguments.angle == 0.0) return true;
+    turn(x, y);
+    return x >= plan.xlo && x <= plan.xhi && y >= plan.ylo && y <= plan.yhi;
+  };
   Slope::Surface s;
-  s.height = [this](double x, double y, double &z) {
-    return height(x, y, z);
+  s.height = [=](double x, double y, double &z) {
+    return in_plan(x, y) && height(x, y, z);
   };
   if (!columns) return s;
-  s.keep = [this](double x, double y) {
-    return keep(x, y);
+  s.keep = [=](double x, double y) {
+    return in_plan(x, y) && keep(x, y);
   };
 
   // what lies outside of a region borders on the scar that it leaves
 
   if (!arguments.filter_inside && (columns->has_boundary() || !bodies.empty()))
-    s.scar = [this](double x, double y, double &z) {
-      return scar(x, y, z);
+    s.scar = [=](double x, double y, double &z) {
+      return in_plan(x, y) && scar(x, y, z);
     };
   return s;
 }

@@ -9,7 +9,7 @@
 #include "pointers.h"
 
 #include "placement_arguments.h"
-#include "surface_sampler.h"
+#include "plan_nodes.h"
 
 #include <memory>
 #include <string>
@@ -31,7 +31,11 @@ class BallGround : protected Pointers {
 
   // All ranks: find the sunk surfaces. false if the plan is empty. May throw.
   bool build();
-  Slope::NodeGrid grid() const { return plan; }
+
+  // The plan grid and the surface as it sees it: where the grid is turned, in coordinates that turn with it,
+  // to be turned back.
+  Slope::NodeGrid grid() const;
+  void turn(double &x, double &y, double direction = 1.0) const;    // -1: to those of the grid
 
   // columns of ball centres; any rank alone
   bool keep(double x, double y) const;
@@ -43,6 +47,7 @@ class BallGround : protected Pointers {
  private:
   const PlacementArguments &arguments;
   std::unique_ptr<class RegionSurface> boundary, columns;    // columns: of the filter
+  const double cosine, sine;                                 // of the angle of the grid
   Slope::NodeGrid plan;
 
   void find_bodies();

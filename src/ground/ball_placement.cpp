@@ -9,12 +9,15 @@
 #include "atomic_file.h"
 #include "ball_ground.h"
 #include "comm.h"
+#include "constants.h"
 #include "error.h"
 #include "large_messages.h"
 #include "rank_zero.h"
 #include "region_surface.h"
+#include "scattered_sampler.h"
 #include "style_argument.h"
 #include "sunk_region.h"
+#include "surface_sampler.h"
 #include "tokenizer.h"
 #include "update.h"
 
@@ -29,7 +32,9 @@ using Slope::PlacedBall;
 using Slope::SurfaceCounts;
 
 static constexpr double MAX_BALLS = 2147483647.0;
-static constexpr double COUNTED = 131072.0;     // plan nodes of a ground that is counted at once
+static constexpr double COUNTED = 131072.0;    // plan nodes of a ground that is counted at once
+static constexpr double TAKES = 32.0;          // a scattered ball to make, in plan nodes
+static constexpr double RADIANS = Slope::PI / 180.0;
 static constexpr int MARKS = 4096;              // columns that tell one ground from another
 static constexpr double SAME_PLACE = 1.0e-6;    // in diameters
 static constexpr double IN_ORDER = 1.0e-8;      // of a file's balls, in diameters, in the mean
@@ -129,13 +134,14 @@ void BallPlacement::place_surface()
           "spacing must give fewer than 2^31 balls, got {:.3g} with {}", nodes, arguments.spacing));
     if (nodes > 0.0) sampler = new_sampler();
   });
-  if (comm->me == 0) warn_of_spacing();
+  if (comm->me == 0 && !arguments.scattered) warn_of_spacing();
   if (!any())
     error->all(FLERR, "{}: the surface of region {} holds no balls", caller, arguments.region);
 
   std::vector<std::string> text(2);
   SurfaceCounts counts;
-  const bool writing = !arguments.write.empty(), known = writing || nodes <= COUNTED;
+  const double most = arguments.scattered ? COUNTED / TAKES : COUNTED;
+  const bool writing = !arguments.write.empty(), known = writing || nodes <= most;
   if (known) {
     counts = count_all(writing ? &text : nullptr);
     counted = counts.base + counts.extra;
@@ -151,11 +157,15 @@ void BallPlacement::place_surface()
    holds with half of that for their radius.
 ------------------------------------------------------------------------- */
 
-std::unique_ptr<Slope::SurfaceSampler> BallPlacement::new_sampler() const
+std::unique_ptr<Slope::BallSampler> BallPlacement::new_sampler() const
 {
+  std::unique_ptr<Slope::BallSampler> made;
   const double half = 0.25 * (arguments.diameter + arguments.smallest);
-  return std::unique_ptr<Slope::SurfaceSampler>(
-      new Slope::SurfaceSampler(ground->grid(), half, ground->surface()));
+  if (arguments.scattered)
+    made.reset(new Slope::ScatteredSampler(ground->grid(), ground->surface(), arguments.seed));
+  else
+    made.reset(new Slope::SurfaceSampler(ground->grid(), half, ground->surface()));
+  return made;
 }
 
 void BallPlacement::warn_of_spacing() const
@@ -178,8 +188,17 @@ void BallPlacement::warn_of_spacing() const
 Slope::TilePlan BallPlacement::tiles() const
 {
   if (!sampler) return {0.0, 0.0, HUGE_VAL, 1, 1};
-  const Slope::PlanNodes &plan = sampler->plan();
-  return {plan.xfirst, plan.yfirst, plan.tile * plan.grid.spacing, plan.tiles_x, plan.tiles_y};
+  Slope::TilePlan plan = sampler->tiles();
+  if (arguments.angle != 0.0) plan.turn(arguments.angle, arguments.origin);
+  return plan;
+}
+
+void BallPlacement::sample(Slope::BallSampler &from, int tile, std::vector<PlacedBall> &balls,
+                           SurfaceCounts &counts) const
+{
+  const size_t before = balls.size();
+  from.sample(tile, balls, counts);
+  for (size_t k = before; k < balls.size(); k++) ground->turn(balls[k].x, balls[k].y);
 }
 
 void BallPlacement::make(int tile, std::vector<PlacedBall> &balls)
@@ -194,7 +213,7 @@ void BallPlacement::make(int tile, std::vector<PlacedBall> &balls)
                changed);
   SurfaceCounts unused;
   try {
-    sampler->sample(tile, balls, unused);
+    sample(*sampler, tile, balls, unused);
   } catch (std::exception &e) {
     error->one(FLERR, "{}: {}", caller, e.what());
   }
@@ -211,7 +230,7 @@ void BallPlacement::forget()
 
 void BallPlacement::my_rows(int &first, int &end) const
 {
-  const bigint rows = sampler->tiles_y();
+  const bigint rows = sampler->tiles().ny;
   first = static_cast<int>(rows * comm->me / comm->nprocs);
   end = static_cast<int>(rows * (comm->me + 1) / comm->nprocs);
 }
@@ -221,7 +240,7 @@ void BallPlacement::my_rows(int &first, int &end) const
 bool BallPlacement::any() const
 {
   if (!sampler) return false;
-  const bigint tiles = sampler->tiles();
+  const bigint tiles = static_cast<bigint>(sampler->tiles().nx) * sampler->tiles().ny;
   bigint step = 1 + 618 * tiles / 1000, at = comm->me;    // every tile comes once, far ones in turn
   while (common_divisor(step, tiles) > 1) step++;
   int mine = 0, found = 0, left = 1;
@@ -256,14 +275,15 @@ SurfaceCounts BallPlacement::count_all(std::vector<std::string> *text) const
     std::vector<PlacedBall> balls;
     int first, end;
     my_rows(first, end);
+    const int across = share->tiles().nx;
     for (int row = first; row < end; row++) {
-      for (int i = 0; i < share->tiles_x(); i++) {
+      for (int i = 0; i < across; i++) {
         if (!text) balls.clear();
-        share->sample(row * share->tiles_x() + i, balls, mine);
+        sample(*share, row * across + i, balls, mine);
       }
       if (!text) continue;
       Slope::in_order(balls);
-      for (const PlacedBall &b : balls) (*text)[Slope::is_extra(b)] += line_of(b);
+      for (const PlacedBall &b : balls) (*text)[!b.first_of_cell()] += line_of(b);
       balls.clear();
     }
   });
@@ -288,8 +308,8 @@ std::vector<PlacedBall> BallPlacement::all()
     SurfaceCounts unused;
     int first, end;
     my_rows(first, end);
-    for (int tile = first * share->tiles_x(); tile < end * share->tiles_x(); tile++)
-      share->sample(tile, mine, unused);
+    const int across = share->tiles().nx;
+    for (int tile = first * across; tile < end * across; tile++) sample(*share, tile, mine, unused);
   });
   for (int from = 0; from < comm->nprocs; from++) {
     std::vector<PlacedBall> theirs;
@@ -315,19 +335,29 @@ void BallPlacement::report(const SurfaceCounts &counts, bool known) const
     text +=
         fmt::format("{} fixed balls of diameter {} (from file {}", counts.base, a.diameter, a.file);
     if (!a.filter.empty()) text += fmt::format(", {} not {}", dropped, where);
-  } else if (known) {
-    text +=
-        fmt::format("{} fixed balls of diameter {} ({} on the plan grid every {}, {} extra "
-                    "where the surface is steep or ends",
-                    counts.base + counts.extra, a.diameter, counts.base, a.spacing, counts.extra);
+  } else {
+    const double nodes = Slope::count_nodes(ground->grid());
+    const std::string turned =
+        a.angle == 0.0 ? "" : fmt::format(", turned by {:.6g} degrees", a.angle / RADIANS);
+    const std::string scattered =
+        fmt::format("scattered with seed {}, one for each square of {}", a.seed, a.spacing);
+    if (!known)
+      text += fmt::format("fixed balls of diameter {} ({}, made where balls come near", a.diameter,
+                          a.scattered ? scattered
+                                      : fmt::format("on a plan grid of {:.0f} nodes every {}{}",
+                                                    nodes, a.spacing, turned));
+    else if (a.scattered)
+      text += fmt::format("{} fixed balls of diameter {} ({}", counts.base, a.diameter, scattered);
+    else
+      text += fmt::format("{} fixed balls of diameter {} ({} on the plan grid every {}{}, {} extra "
+                          "where the surface is steep or ends",
+                          counts.base + counts.extra, a.diameter, counts.base, a.spacing, turned,
+                          counts.extra);
     if (counts.without_surface)
       text += fmt::format(", {} plan nodes without surface", counts.without_surface);
-    if (!a.filter.empty()) text += fmt::format(", {} plan nodes not {}", counts.dropped, where);
-  } else {
-    text += fmt::format("fixed balls of diameter {} (on a plan grid of {:.0f} nodes every {}, made "
-                        "where balls come near",
-                        a.diameter, Slope::count_nodes(ground->grid()), a.spacing);
-    if (!a.filter.empty()) text += ", " + where;
+    if (!a.filter.empty() && known && !a.scattered)
+      text += fmt::format(", {} plan nodes not", counts.dropped);
+    if (!a.filter.empty()) text += (known && !a.scattered ? " " : ", ") + where;
   }
   for (size_t k = 0; k < ground->bodies.size(); k++)
     text += fmt::format("{} sunk by {}", k ? "," : "", ground->bodies[k]->sink);
@@ -354,7 +384,7 @@ const std::vector<double> &BallPlacement::fingerprint()
     marks.insert(marks.end(), sums, sums + 3);
     return marks;
   }
-  const Slope::PlanNodes &plan = sampler->plan();
+  const Slope::PlanNodes plan(ground->grid(), ground->surface());
   const double nodes = static_cast<double>(plan.nx) * plan.ny;
   for (const double value :
        {plan.grid.spacing, plan.xfirst, plan.yfirst, plan.nx + 0.0, plan.ny + 0.0})
@@ -362,9 +392,10 @@ const std::vector<double> &BallPlacement::fingerprint()
   for (int k = 0; k < std::min(nodes, MARKS + 0.0); k++) {
     const bigint node =
         static_cast<bigint>(nodes <= MARKS ? k : part(0.6180339887498949, k) * nodes);
-    marks.push_back(
-        sampler->node(static_cast<int>(node % plan.nx), static_cast<int>(node / plan.nx)));
+    marks.push_back(plan.probe(static_cast<int>(node % plan.nx), static_cast<int>(node / plan.nx)));
   }
+  if (arguments.scattered) marks.push_back(arguments.seed);
+  if (arguments.angle != 0.0) marks.insert(marks.end(), {arguments.angle, 0.0});
   return marks;
 }
 
@@ -377,7 +408,7 @@ std::string BallPlacement::unlike(const std::vector<double> &there)
     return fmt::format("{:.0f} there, {:.0f} here", there[0], here[0]);
   if (std::fabs(there[1] - d) > 1.0e-9 * d)
     return fmt::format("diameter {:.15g} there, {:.15g} here", there[1], d);
-  if (there.size() != here.size()) return "another plan grid";
+  if (there.size() != here.size()) return "another pattern or plan grid";
   if (!sampler) {
     for (size_t k = 2; k < here.size(); k++)
       if (!(std::fabs(there[k] - here[k]) <= IN_ORDER * d * here[0]))
@@ -386,6 +417,8 @@ std::string BallPlacement::unlike(const std::vector<double> &there)
   }
   for (size_t k = 2; k < 7; k++)
     if (!(std::fabs(there[k] - here[k]) <= SAME_PLACE * d)) return "another plan grid";
+  if (arguments.scattered && there.back() != here.back())
+    return fmt::format("seed {:.0f} there, {:.0f} here", there.back(), here.back());
   for (size_t k = 7; k < here.size(); k++) {
     if (std::isinf(here[k]) || std::isinf(there[k])) continue;    // rounding may decide there
     if (std::isnan(here[k]) != std::isnan(there[k]) ||

@@ -8,9 +8,8 @@
 
 #include "pointers.h"
 
-#include "ball_tiles.h"
+#include "ball_sampler.h"
 #include "placement_arguments.h"
-#include "surface_sampler.h"
 
 #include <memory>
 #include <string>
@@ -61,7 +60,7 @@ class BallPlacement : protected Pointers {
   const std::string caller;
   const PlacementArguments arguments;
   std::unique_ptr<class BallGround> ground;
-  std::unique_ptr<Slope::SurfaceSampler> sampler;    // empty: a file, or no column at all
+  std::unique_ptr<Slope::BallSampler> sampler;    // empty: a file, or no column at all
   std::vector<Slope::PlacedBall> from_file;
   double sums[3];               // of these
   bigint dropped;               // lines of the file
@@ -70,7 +69,9 @@ class BallPlacement : protected Pointers {
 
   void place_file();
   void place_surface();
-  std::unique_ptr<Slope::SurfaceSampler> new_sampler() const;
+  std::unique_ptr<Slope::BallSampler> new_sampler() const;
+  void sample(Slope::BallSampler &, int tile, std::vector<Slope::PlacedBall> &,
+              Slope::SurfaceCounts &) const;
   void my_rows(int &first, int &end) const;
   void warn_of_spacing() const;
   bool any() const;

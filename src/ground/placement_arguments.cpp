@@ -5,8 +5,10 @@
 
 #include "placement_arguments.h"
 
+#include "constants.h"
 #include "error.h"
 #include "region_surface.h"
+#include "scattered_sampler.h"
 #include "style_argument.h"
 
 #include <cmath>
@@ -23,8 +25,8 @@ PlacementArguments::PlacementArguments(LAMMPS *lmp, const std::string &caller_in
                                        bool may_write) :
     Pointers(lmp),
     caller(caller_in), diameter(diameter_in), side(RegionSurface::UPPER),
-    spacing(0.0), origin{0.0, 0.0}, filter_inside(true), sink(0.0), filter_sink(-1.0),
-    smallest(smallest_in)
+    spacing(0.0), origin{0.0, 0.0}, scattered(false), seed(1), angle(0.0), filter_inside(true),
+    sink(0.0), filter_sink(-1.0), smallest(smallest_in)
 {
   if (!(diameter > 0.0) || !std::isfinite(diameter))
     error->all(FLERR, "{} diameter must be > 0, got {}", caller, diameter);
@@ -33,6 +35,7 @@ PlacementArguments::PlacementArguments(LAMMPS *lmp, const std::string &caller_in
     smallest = 0.0;
   else if (!(smallest > 0.0 && smallest < diameter))
     smallest = diameter;
+  if (scattered) check_pattern();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -77,7 +80,7 @@ void PlacementArguments::parse(int narg, char **arg, bool may_write)
     if (n == 0) n = parse_any(narg - iarg, &arg[iarg], may_write);
     if (n == 0)
       error->all(FLERR, "{} keyword must be {}inside{}, got {}", caller,
-                 region.empty() ? "" : "spacing, origin, sink, sunk, smallest, ",
+                 region.empty() ? "" : "spacing, origin, pattern, angle, sink, sunk, smallest, ",
                  may_write ? ", outside or write" : " or outside", arg[iarg]);
     iarg += n;
   }
@@ -103,6 +106,12 @@ int PlacementArguments::parse_surface(int narg, char **arg)
   } else if (strcmp(arg[0], "smallest") == 0) {
     smallest = number("D", narg, arg);
     if (smallest <= 0.0) error->all(FLERR, "{} smallest must be > 0, got {}", caller, arg[1]);
+  } else if (strcmp(arg[0], "angle") == 0) {
+    angle = number("DEG", narg, arg) * Slope::PI / 180.0;
+    if (std::fabs(angle) > 2.0 * Slope::PI)
+      error->all(FLERR, "{} angle must be within +-360 (degrees), got {}", caller, arg[1]);
+  } else if (strcmp(arg[0], "pattern") == 0) {
+    return parse_pattern(narg, arg);
   } else if (strcmp(arg[0], "origin") == 0) {
     need(2, "x y", narg, arg);
     for (int d = 0; d < 2; d++) {
@@ -117,6 +126,35 @@ int PlacementArguments::parse_surface(int narg, char **arg)
     return 0;
   }
   return 2;
+}
+
+int PlacementArguments::parse_pattern(int narg, char **arg)
+{
+  need(1, "grid or scattered", narg, arg);
+  scattered = strcmp(arg[1], "scattered") == 0;
+  if (!scattered && strcmp(arg[1], "grid") != 0)
+    error->all(FLERR, "{} pattern must be grid or scattered, got {}", caller, arg[1]);
+  if (!scattered || narg < 3 || !utils::is_double(arg[2])) return 2;
+  seed = whole_number_argument(lmp, fmt::format("{} pattern scattered SEED", caller), arg[2]);
+  if (seed < 1) error->all(FLERR, "{} pattern scattered SEED must be > 0, got {}", caller, arg[2]);
+  return 3;
+}
+
+// what the scattered pattern needs: it has no direction, and no closers
+
+void PlacementArguments::check_pattern() const
+{
+  if (angle != 0.0)
+    error->all(FLERR,
+               "{} angle must be 0 with pattern scattered, which has no direction, got {:.6g}",
+               caller, angle * 180.0 / Slope::PI);
+  const double most = Slope::ScatteredSampler::WIDEST * 0.5 * (diameter + smallest);
+  if (spacing > most * (1.0 + 1.0e-9))
+    error->all(
+        FLERR,
+        "{} spacing must be <= {:.6g} with pattern scattered, {} of the distance at which a ball "
+        "of diameter {} touches, or it finds a way through, got {}",
+        caller, most, Slope::ScatteredSampler::WIDEST, smallest, spacing);
 }
 
 void PlacementArguments::check_sink(double value, char **arg) const

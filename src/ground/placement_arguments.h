@@ -15,7 +15,7 @@ namespace LAMMPS_NS {
 // The arguments that say where fixed balls go, which fix wall/gran/balls and create_balls share:
 //
 //   surface REGION upper|lower spacing S [inside REGION | outside REGION [sunk H]] [origin x y]
-//     [sink H] [smallest D]
+//     [sink H] [smallest D] [pattern grid | pattern scattered [SEED]] [angle DEG]
 //   file FILE [inside REGION | outside REGION]
 //   write FILE     in addition, if may_write
 //
@@ -31,6 +31,9 @@ class PlacementArguments : protected Pointers {
   std::string region, file, write;    // region or file is empty
   int side;                           // of RegionSurface
   double spacing, origin[2];
+  bool scattered;
+  int seed;        // of the scattered pattern
+  double angle;    // of the plan grid, counterclockwise, radians
   std::string filter;
   bool filter_inside;
   double sink, filter_sink;    // < 0: the sink of the fix that has sunk the filter's region
@@ -43,6 +46,8 @@ class PlacementArguments : protected Pointers {
   double number(const char *what, int, char **) const;
   void parse(int, char **, bool);
   int parse_surface(int, char **);
+  int parse_pattern(int, char **);
+  void check_pattern() const;
   int parse_any(int, char **, bool);
   void check_sink(double, char **) const;
 };

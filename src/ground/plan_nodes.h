@@ -73,6 +73,10 @@ class PlanNodes {
 
   bool has_ball(int i, int j) { return at(i, j).ball; }
 
+  // height of the ball on a node, NaN without; -infinite where rounding may decide on that, at a rim. Not
+  // remembered.
+  double probe(int i, int j) const;
+
   // 0 to 4 of the corners of a cell that have a ball
   int corners(int i, int j)
   {
