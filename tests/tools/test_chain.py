@@ -93,7 +93,7 @@ def test_without_joint_failures_it_is_the_sum_over_the_bodies():
 
 
 def test_bodies_that_fail_together_add_their_volumes():
-    """Runs of 100 or 300 and of 50 to 80 m3: 0.875 of all pairs are above 155, 0.75 rank by rank; above 371 0.125, 0.25."""
+    """Runs of 100, 300 and 50 to 80 m3: 0.875 of all pairs above 155, 0.75 rank by rank; above 371 0.125 and 0.25."""
     always = np.full((fragility.REPLICATES, 1, 2), 10.0)
     two = bodies([[100.0, 300.0], [50.0, 60.0, 70.0, 80.0]])
     found = chain.family(always, np.array([20.0]), two, np.array([0.0, 149.0, 155.0, 365.0, 371.0, 379.0, 380.0]))
@@ -173,8 +173,8 @@ def test_bands_hold_what_they_promise():
 
 @pytest.mark.parametrize("number", [2, 3])
 def test_upper_bounds_hold_for_the_worst_dependence(number):
-    """Of 100 studies with 24 runs of each body, bounds of 90 % hold P(V > v) of independent bodies 95 times, and the upper
-    one that of the worst dependence: of exponential volumes the best parts of v are equal, here quantiles of 0.8 each.
+    """Of 100 studies with 24 runs of each body, bounds of 90 % hold P(V > v) of independent bodies 95 times, and the
+    upper one that of the worst dependence: of exponential volumes the best parts of v are equal, quantiles of 0.8.
     """
     rng, held = np.random.default_rng(4), np.zeros(2, int)
     quantile = -100 * np.log(0.2)

@@ -1,4 +1,4 @@
-"""Sums of volumes that depend on each other in any way: bounds against the extreme couplings, found by linear programs."""
+"""Sums of volumes that depend on each other in any way: bounds against the extreme couplings, by linear programs."""
 import itertools
 
 import numpy as np
@@ -28,7 +28,8 @@ def extremes(bodies, volume):
     """The smallest and the largest P(sum > volume) over all joint distributions of bodies: two linear programs."""
     joint = list(itertools.product(*(range(len(one.volumes)) for one in bodies)))
     exceeds = np.array([sum(one.volumes[i] for one, i in zip(bodies, at)) > volume for at in joint], float)
-    rows = np.array([[at[k] == i for at in joint] for k, one in enumerate(bodies) for i in range(len(one.volumes))], float)
+    rows = np.array([[at[k] == i for at in joint] for k, one in enumerate(bodies)
+                     for i in range(len(one.volumes))], float)
     given = np.concatenate([weights(one) for one in bodies])
     least, largest = (optimize.linprog(sign * exceeds, A_eq=rows, b_eq=given, method="highs") for sign in (1, -1))
     assert least.status == 0 and largest.status == 0
@@ -74,7 +75,8 @@ def test_both_sums_are_what_they_say():
         assert together.independent(bodies, VOLUMES) == pytest.approx(chance, abs=1e-12)
         ranks = (np.arange(20000) + 0.5) / 20000
         total = sum(one.volumes[np.searchsorted(one.shares, ranks)] for one in bodies)
-        assert together.rank_by_rank(bodies, VOLUMES) == pytest.approx((total[:, None] > VOLUMES).mean(axis=0), abs=2e-4)
+        chance = (total[:, None] > VOLUMES).mean(axis=0)
+        assert together.rank_by_rank(bodies, VOLUMES) == pytest.approx(chance, abs=2e-4)
 
 
 def test_many_runs_are_thinned_out_to_the_unfavourable_side(monkeypatch):
@@ -90,7 +92,7 @@ def test_many_runs_are_thinned_out_to_the_unfavourable_side(monkeypatch):
 
 
 def test_one_run_in_five_reaches_the_road():
-    """Two, three bodies: 1 - 0.8^n of independent ones; n times 0.2 if they never do together, 0.2 if they always do."""
+    """n bodies: 1 - 0.8^n of independent ones; n times 0.2 if they never do together, 0.2 if they always do."""
     of = chain.left([0.0] * 80 + [800.0] * 20, range(100), 5000.0)
     for number in (2, 3):
         bodies = [of] * number
