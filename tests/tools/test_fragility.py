@@ -185,17 +185,31 @@ def test_two_bodies_two_records_and_a_hazard(slips, capsys):
     frequency = last["annual_frequency"]
     assert sum(one["frequency"] for one in frequency["contributions"]) == pytest.approx(frequency["value"], rel=1e-6)
     assert 1e-6 < frequency["value"] < 1e-2 and "any body" in out and "per year" in out
+    most = sum(one["annual_frequency"]["value"] for one in about["curves"][:2])
+    assert f", {most:.3g} at most if each body" in out and most > 1.1 * frequency["value"]
     assert Path("out/fragility.png").stat().st_size > 10000
 
 
 def test_pseudo_static_is_said_to_be_cautious_and_is(slips, capsys):
     status, _, err = ran(capsys, f"slips/out.slips.csv {SOIL} --peaks 50:1500:50 --pseudo-static 1 "
                          "--sample 512 -o out")
-    assert status == 0 and "cautious" in err
+    assert status == 0 and "which is cautious\n" in err
     status, _, err = ran(capsys, f"slips {SOIL} --peaks 50:1500:50 --record motion.txt --sample 512 "
                          "-o slide")
     assert status == 0 and "one record" in err
     assert (table()["1"][1] >= table("slide/fragility.csv")["1"][1]).all()
+
+
+def test_pseudo_static_with_less_than_the_peak_is_not_cautious(slips, capsys):
+    """Of a motion that comes near its peak again and again more strengths fail than at 0.65 times the peak."""
+    t = np.arange(0.0, 20.0, 0.005)
+    x = 2.0 * np.sin(2 * np.pi * t) * np.minimum(1.0, t)
+    np.savetxt("waves.txt", np.column_stack([t, x, 0 * x, 0 * x]))
+    status, _, err = ran(capsys, f"slips {SOIL} --peaks 50:1500:50 --pseudo-static 0.65 --sample 512 -o out")
+    assert status == 0 and "with 0.65 times the peak counts as failed, which is not cautious" in err
+    assert ran(capsys, f"slips {SOIL} --peaks 50:1500:50 --record waves.txt --sample 512 -o slide")[0] == 0
+    less, more = table()["1"][1], table("slide/fragility.csv")["1"][1]
+    assert (less <= more).all() and (less < more - 0.1).any()
 
 
 def test_strengths_with_which_the_slope_would_not_stand_are_named(slips, capsys):

@@ -314,6 +314,7 @@ def test_mobile_values_of_frank(inside, mine):
     volume = site_choices.found(mine)["body"]["volume"]
     assert model["field_diameter"] == pytest.approx(volume ** (1 / 3) / 22, rel=0.005)
     assert "Frank slide of 1903" in told and "friction 9 degrees" in told
+    assert "a mass that passes the road leaves less on it" in told
     inside("mine --mobile --field-diameter 0.8")
     assert site_choices.read(mine)["model"]["field_diameter"] == 0.8
     assert "Frank" not in inside("mine --balls 70").out

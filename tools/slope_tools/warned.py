@@ -100,7 +100,8 @@ WORDS = {
     "few columns": "the body has {cells} cells, fewer than {limit}: the line is rough",
     "no sphere": "the body is no sphere, and the line depends on the axis of moments: a far one changes the cohesion "
                  "by {percent:+.0f} % without friction",
-    "pseudo-static": "pseudo-static: a body that is at F < 1 for an instant counts as failed, which is cautious",
+    "pseudo-static": "pseudo-static: a body that is at F < 1 for an instant with {factor:g} times the peak counts as "
+                     "failed, which is {judged}",
     "one record": "one record: how much records differ is not seen, beta_r is 0",
     "at rest": "{which}: {percent:.2g} % of the strengths fail without an earthquake{makes}: if the slope stands, they "
                "are not its own; raise the lower bounds of the strengths",

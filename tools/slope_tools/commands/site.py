@@ -144,7 +144,8 @@ def add_layers(group):
 
 def add_model(group):
     group.add_argument("--mobile", action="store_true", help="the values of the Frank slide (36 million m3 of rock): "
-                       "less friction, a smoother ground; other options of this group replace single ones")
+                       "less friction, a smoother ground; not safer for a road near the source, which it passes; "
+                       "other options of this group replace single ones")
     group.add_argument("--friction", metavar="DEG", type=number, help="of soil and ground, degrees (default 30)")
     group.add_argument("--rolling", metavar="R", type=number, nargs="+",
                        help="rolling resistances of the study, of which the largest volume counts (default 0 0.05 0.1)")
@@ -242,7 +243,7 @@ def model(args, choices):
     of = choices["model"]
     if args.mobile:
         yield ("--mobile: values of the Frank slide of 1903, 36 million m3 of rock; what is known of smaller or wet "
-               "masses is on the page events of the documentation")
+               "masses is on the page events of the documentation; a mass that passes the road leaves less on it")
     if args.mobile or any(getattr(args, option) is not None for option in (*MOBILE, "density", "slip_friction",
                                                                            "field_diameter")):
         field = f"{of['field_diameter']:g} m" if of["field_diameter"] else \

@@ -12,8 +12,9 @@ from ..seismic import chain_files
 
 MOST_ROWS = 12          # of the contributions; smaller ones are joined
 HOW = ("The runs release one body each. Bodies that fail together in an earthquake have their volumes added, the "
-       "largest with the largest, as if they did not overlap. The bounds show whether there are enough runs and "
-       "samples, not the doubt in strengths, hazard and model.")
+       "largest with the largest or as independent ones, whichever is the likelier to exceed a volume. The bounds hold "
+       "for any dependence between them, and show whether there are enough runs and samples, not the doubt in "
+       "strengths, hazard and model, nor what the masses do to each other on their way.")
 
 
 def content(data, numbers, picture):
