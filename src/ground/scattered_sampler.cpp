@@ -14,8 +14,9 @@ using namespace Slope;
 constexpr double ScatteredSampler::WIDEST;
 
 static constexpr double NEAREST = 0.795;    // of the spacing: gives one ball per spacing^2
-static constexpr int RIM_STEPS = 8;        // halvings between a place on the surface and one off it
-static constexpr int OF_EDGE = 1 << 13;    // candidates between two neighbors, at most
+static constexpr int GLANCE = 4;       // cells between places at which a block is looked for a rim
+static constexpr int RIM_STEPS = 8;    // halvings between a place on the surface and one off it
+static constexpr int OF_EDGE = 1 << 13;           // candidates between two neighbors, at most
 static constexpr size_t MOST_BLOCKS = 1 << 14;    // that are remembered
 
 // mixes all bits of a number (the finalizer of the SplitMix64 generator, Steele et al. 2014)
@@ -68,10 +69,14 @@ ScatteredSampler::ScatteredSampler(const NodeGrid &g, const Surface &s, uint64_t
    candidates
 ------------------------------------------------------------------------- */
 
-bool ScatteredSampler::there(double x, double y, double &z) const
+bool ScatteredSampler::on_surface(double x, double y, double &z) const
 {
   if (x < grid.xlo || x > grid.xhi || y < grid.ylo || y > grid.yhi) return false;
-  if (!surface.height(x, y, z) || !std::isfinite(z)) return false;
+  return surface.height(x, y, z) && std::isfinite(z);
+}
+
+bool ScatteredSampler::kept(double x, double y) const
+{
   return !surface.keep || surface.keep(x, y);
 }
 
@@ -85,7 +90,7 @@ ScatteredSampler::Place ScatteredSampler::place(int64_t i, int64_t j) const
   p.x = grid.xorigin + (i + OF_BITS * static_cast<uint32_t>(p.hash)) * cell;
   p.y = grid.yorigin + (j + OF_BITS * (p.hash >> 32)) * cell;
   p.z = 0.0;
-  p.on = there(p.x, p.y, p.z);
+  p.on = on_surface(p.x, p.y, p.z);
   return p;
 }
 
@@ -95,6 +100,18 @@ void ScatteredSampler::make(Block &made, int64_t bi, int64_t bj) const
   Place places[wide * wide];
   for (int b = 0; b < wide; b++)
     for (int a = 0; a < wide; a++) places[b * wide + a] = place(bi * BLOCK + a, bj * BLOCK + b);
+
+  // What is kept takes long to find out. Where some places of a block are all kept, the others are asked
+  // when they would be balls; only a block that a rim runs through must know all of them.
+
+  int on = 0, off = 0;
+  for (int b = 0; b < wide; b += GLANCE)
+    for (int a = 0; a < wide; a += GLANCE) {
+      const Place &p = places[b * wide + a];
+      if (p.on) (kept(p.x, p.y) ? on : off)++;
+    }
+  for (Place &p : places)
+    if (off > 0) p.on = p.on && on > 0 && kept(p.x, p.y);
 
   for (int b = 0; b < BLOCK; b++)
     for (int a = 0; a < BLOCK; a++) {
@@ -145,7 +162,8 @@ void ScatteredSampler::add_rim(Block &made, const Place &on, const Place &off, u
   Place rim = on, foot = off;
   for (int k = 0; k < RIM_STEPS; k++) {
     Place middle = {0.5 * (rim.x + foot.x), 0.5 * (rim.y + foot.y), 0.0, 0, true};
-    (there(middle.x, middle.y, middle.z) ? rim : foot) = middle;
+    const bool in = on_surface(middle.x, middle.y, middle.z) && kept(middle.x, middle.y);
+    (in ? rim : foot) = middle;
   }
   made.candidates.push_back({rim.x, rim.y, rim.z, mix(hash), number, UNKNOWN});
 
@@ -217,8 +235,8 @@ void ScatteredSampler::decide(Candidate &c)
     if (other.state == UNKNOWN) decide(other);
     return other.state == BALL;
   });
-  c.state = near_ball ? NONE : BALL;
-  if (near_ball) return;
+  c.state = !near_ball && kept(c.x, c.y) ? BALL : NONE;
+  if (c.state == NONE) return;
   any_near(c, [&](Candidate &other) {
     if (other.state == UNKNOWN) other.state = NONE;
     return false;
@@ -252,7 +270,9 @@ bool ScatteredSampler::has_balls(int tile)
   const int64_t i0 = first[0] + static_cast<int64_t>(tile % plan.nx) * side;
   const int64_t j0 = first[1] + static_cast<int64_t>(tile / plan.nx) * side;
   for (int64_t j = j0; j < j0 + side; j += FINER)
-    for (int64_t i = i0; i < i0 + side; i += FINER)
-      if (place(i, j).on) return true;
+    for (int64_t i = i0; i < i0 + side; i += FINER) {
+      const Place p = place(i, j);
+      if (p.on && kept(p.x, p.y)) return true;
+    }
   return false;
 }

@@ -43,9 +43,9 @@ class ScatteredSampler : public BallSampler {
 
  private:
   static constexpr int FINER = 6;    // cells of the lattice along a spacing
-  static constexpr int BLOCK_BITS = 4,
-                       BLOCK = 1
-      << BLOCK_BITS;    // cells along a block, whose candidates are made together
+  static constexpr int BLOCK_BITS =
+      4;    // 2^that cells along a block: its candidates are made together
+  static constexpr int BLOCK = 1 << BLOCK_BITS;
 
   const NodeGrid grid;
   const Surface surface;
@@ -74,7 +74,8 @@ class ScatteredSampler : public BallSampler {
     uint64_t hash;
     bool on;
   };
-  bool there(double x, double y, double &z) const;
+  bool on_surface(double x, double y, double &z) const;
+  bool kept(double x, double y) const;
   Place place(int64_t i, int64_t j) const;
   void make(Block &, int64_t bi, int64_t bj) const;
   void add_between(Block &, const Place &, const Place &, uint64_t hash, int64_t number) const;
