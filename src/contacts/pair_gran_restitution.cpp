@@ -29,6 +29,8 @@
 using namespace LAMMPS_NS;
 using namespace Slope;
 
+static constexpr int ROOM_IN_RESTART = 65536;    // numbers of a ball: of 8,000 contacts
+
 /* ---------------------------------------------------------------------- */
 
 PairGranRestitution::PairGranRestitution(LAMMPS *lmp) :
@@ -64,6 +66,11 @@ PairGranRestitution::PairGranRestitution(LAMMPS *lmp) :
     dummy_id = fmt::format("NEIGH_HISTORY_SLOPE_DUMMY{}", n);
   }
   modify->add_fix(dummy_id + " all DUMMY");
+
+  // a restart file in parts (with % in its name): balls move between ranks with what they have there, as
+  // numbers of a fix of LAMMPS that reserves no room for them, see exchange_size()
+
+  modify->fix[modify->find_fix(dummy_id)]->maxexchange = ROOM_IN_RESTART;
 }
 
 /* ---------------------------------------------------------------------- */
