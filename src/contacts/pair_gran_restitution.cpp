@@ -35,7 +35,7 @@ static constexpr int ROOM_IN_RESTART = 65536;    // numbers of a ball: of 8,000 
 
 PairGranRestitution::PairGranRestitution(LAMMPS *lmp) :
     Pair(lmp), guards(lmp, table), table(lmp), lists(lmp, table), states(lmp), freeze_group_bit(0),
-    fix_history(nullptr)
+    fix_history(nullptr), restart_drops(lmp)
 {
   single_enable = 1;
   no_virial_fdotr_compute = 1;
@@ -198,6 +198,7 @@ void PairGranRestitution::init_style()
     fix_history->pair = this;
     fix_history->owner = this;
   }
+  restart_drops.check();
 
   freeze_group_bit = 0;
   for (const Fix *fix : compat::fixes_of_style(lmp, "freeze")) freeze_group_bit |= fix->groupbit;

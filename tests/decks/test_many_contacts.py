@@ -49,8 +49,9 @@ def write_shell(folder):
     diameter = 0.999 * apart * RADIUS / (1 - 0.4995 * apart)
     reach = RADIUS + 0.5 * diameter - 0.0005
     places = [" ".join(f"{middle + reach * c:.12g}" for middle, c in zip((0.3, 0.1, 0.0), p)) for p in points]
-    lines = ["balls", "", f"{CONTACTS + 1} atoms", "2 atom types", "", "-8 8 xlo xhi", "-8 8 ylo yhi", "-8 8 zlo zhi", "",
-             "Atoms # sphere", "", f"1 1 {2 * RADIUS} 2500 0.3 0.1 0.0"]
+    lines = ["balls", "", f"{CONTACTS + 1} atoms", "2 atom types", ""]
+    lines += [*(f"-8 8 {axis}lo {axis}hi" for axis in "xyz"), "", "Atoms # sphere", ""]
+    lines += [f"1 1 {2 * RADIUS} 2500 0.3 0.1 0.0"]
     lines += [f"{k + 2} 1 {diameter:.12g} 2500 {place}" for k, place in enumerate(places[::2])]
     (folder / "balls.data").write_text("\n".join(lines) + "\n")
     (folder / "places.txt").write_text("\n".join(places[1::2]) + "\n")
@@ -86,7 +87,8 @@ def cut(request, tmp_path_factory):
 @pytest.mark.parametrize("balance", ("", "balance 0.9 x 0.55"))      # ball 1 is at 0.52
 def test_after_a_restart(cut, file, balance):
     deck, folder, expected = cut
-    found = energies(run_deck(DECK.format(begin=f"read_restart {file}", **deck, run=f"{balance}\nrun 20"), folder, np=2))
+    text = DECK.format(begin=f"read_restart {file}", **deck, run=f"{balance}\nrun 20")
+    found = energies(run_deck(text, folder, np=2))
     assert {step: found[step] for step in (20, 30, 40)} == pytest.approx({s: expected[s] for s in (20, 30, 40)})
 
 
