@@ -14,6 +14,7 @@
 #include "contact_guards.h"
 #include "contact_history_owner.h"
 #include "energy_guard.h"
+#include "exchange_size.h"
 #include "lammps_compat.h"
 #include "memory.h"
 #include "update.h"
@@ -35,7 +36,6 @@ FixContactHistory::FixContactHistory(LAMMPS *lmp, int narg, char **arg) :
 {
   comm_forward = 1;
   nevery = EnergyGuard::FINITE_EVERY;
-  maxexchange += 1 + STORED;    // until pre_exchange() knows how many contacts there are
   FixContactHistory::grow_arrays(atom->nmax);
   for (int i = 0; i < atom->nlocal; i++) FixContactHistory::set_arrays(i);
 }
@@ -56,7 +56,7 @@ void FixContactHistory::pre_exchange()
   lists_used = false;
   owner->store_flags();
   FixNeighHistory::pre_exchange();
-  maxexchange += 1 + STORED;
+  maxexchange = exchange_size(lmp, most_packed());
   std::copy_n(atom->tag, atom->nlocal, known_as);
 }
 
@@ -126,6 +126,7 @@ void FixContactHistory::init()
 {
   restart_extra.check("Pair gran/restitution");
   FixNeighHistory::init();
+  maxexchange = exchange_size(lmp, most_packed());    // of a restart file's contacts, too
 }
 
 void FixContactHistory::setup(int)
@@ -187,6 +188,11 @@ void FixContactHistory::set_arrays(int i)
   known_as[i] = 0;
 }
 
+int FixContactHistory::most_packed() const
+{
+  return 1 + (dnum + 1) * maxpartner + 1 + STORED;
+}
+
 int FixContactHistory::pack_exchange(int i, double *buf)
 {
   int m = FixNeighHistory::pack_exchange(i, buf);
@@ -241,6 +247,7 @@ void FixContactHistory::unpack_restart(int i, int nth)
   FixNeighHistory::unpack_restart(i, nth);
   known_as[i] = atom->tag[i];
   continuation.unpack(i, list + static_cast<int>(list[0]) - STORED);
+  maxexchange = std::max(maxexchange, most_packed());
 }
 
 int FixContactHistory::size_restart(int i)

@@ -61,6 +61,7 @@ class FixContactHistory : public FixNeighHistory {
   RestartExtra restart_extra;
 
   void rename_partners();
+  int most_packed() const;    // numbers of a ball of this rank, as pack_exchange() has them
 };
 
 }    // namespace LAMMPS_NS

@@ -8,6 +8,7 @@
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
+#include "exchange_size.h"
 #include "modify.h"
 #include "pair_gran_restitution.h"
 
@@ -65,6 +66,26 @@ void FixContactWall::init()
       error->all(FLERR, "{}: must come before fix {} {}, which moves atoms between ranks", caller,
                  modify->fix[i]->id, modify->fix[i]->style);
   }
+  reserve();    // of a restart file's contacts, too
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixContactWall::pre_exchange()
+{
+  store_contacts();
+  reserve();
+}
+
+void FixContactWall::post_run()
+{
+  store_contacts();
+  reserve();
+}
+
+void FixContactWall::reserve()
+{
+  maxexchange = exchange_size(lmp, records.largest(atom->nlocal));
 }
 
 /* ---------------------------------------------------------------------- */
@@ -89,7 +110,6 @@ void FixContactWall::store_contacts()
   contacts_in_lists = false;
   records.clear();
   take_contacts();
-  maxexchange = records.largest(atom->nlocal);
 }
 
 /* ----------------------------------------------------------------------
@@ -121,9 +141,7 @@ int FixContactWall::pack_exchange(int i, double *buf)
 
 int FixContactWall::unpack_exchange(int i, double *buf)
 {
-  const int m = records.unpack(i, buf);
-  maxexchange = std::max(maxexchange, m);
-  return m;
+  return records.unpack(i, buf);
 }
 
 /* ----------------------------------------------------------------------

@@ -26,8 +26,8 @@ class FixContactWall : public Fix, public ContactHolder {
   ~FixContactWall() override;
   void init() override;
   void setup_post_neighbor() override { post_neighbor(); }
-  void pre_exchange() override { store_contacts(); }
-  void post_run() override { store_contacts(); }
+  void pre_exchange() override;
+  void post_run() override;
 
   void grow_arrays(int) override;
   void copy_arrays(int, int, int) override;
@@ -63,6 +63,7 @@ class FixContactWall : public Fix, public ContactHolder {
   bool kept_by_atom;
   RestartExtra restart_extra;
   void store_contacts();
+  void reserve();    // room for a ball's contacts in messages between ranks; collective
 };
 
 }    // namespace LAMMPS_NS

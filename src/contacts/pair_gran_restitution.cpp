@@ -29,11 +29,13 @@
 using namespace LAMMPS_NS;
 using namespace Slope;
 
+static constexpr int ROOM_IN_RESTART = 65536;    // numbers of a ball: of 8,000 contacts
+
 /* ---------------------------------------------------------------------- */
 
 PairGranRestitution::PairGranRestitution(LAMMPS *lmp) :
     Pair(lmp), guards(lmp, table), table(lmp), lists(lmp, table), states(lmp), freeze_group_bit(0),
-    fix_history(nullptr)
+    fix_history(nullptr), restart_drops(lmp)
 {
   single_enable = 1;
   no_virial_fdotr_compute = 1;
@@ -64,6 +66,11 @@ PairGranRestitution::PairGranRestitution(LAMMPS *lmp) :
     dummy_id = fmt::format("NEIGH_HISTORY_SLOPE_DUMMY{}", n);
   }
   modify->add_fix(dummy_id + " all DUMMY");
+
+  // a restart file in parts (with % in its name): balls move between ranks with what they have there, as
+  // numbers of a fix of LAMMPS that reserves no room for them, see exchange_size()
+
+  modify->fix[modify->find_fix(dummy_id)]->maxexchange = ROOM_IN_RESTART;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -179,12 +186,19 @@ void PairGranRestitution::init_style()
 
   compat::request_history_list(neighbor, this, instance_me);
 
+  const std::string &kept_by = fix_history ? history_id : dummy_id;
+  if (modify->find_fix(kept_by) < 0)
+    error->all(FLERR,
+               "Pair gran/restitution: fix {} must not be removed, as it keeps the contacts: define "
+               "the pair style again, after pair_style none",
+               kept_by);
   if (!fix_history) {
     fix_history = static_cast<FixContactHistory *>(modify->replace_fix(
         dummy_id, fmt::format("{} all CONTACT_HISTORY {}", history_id, HISTORY), 1));
     fix_history->pair = this;
     fix_history->owner = this;
   }
+  restart_drops.check();
 
   freeze_group_bit = 0;
   for (const Fix *fix : compat::fixes_of_style(lmp, "freeze")) freeze_group_bit |= fix->groupbit;

@@ -20,6 +20,7 @@ PairStyle(gran/restitution,PairGranRestitution);
 #include "contact_table.h"
 #include "contact_works.h"
 #include "pair_lists.h"
+#include "restart_drops.h"
 
 #include <string>
 #include <vector>
@@ -81,6 +82,7 @@ class PairGranRestitution : public Pair, public ContactHistoryOwner {
   int freeze_group_bit;
   class FixContactHistory *fix_history;
   std::string history_id, dummy_id;
+  RestartDrops restart_drops;
 
   void allocate();
 };

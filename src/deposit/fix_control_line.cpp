@@ -236,6 +236,10 @@ void FixControlLine::note(int i, const double *from, const double *to, const Pla
   e.x[X] = c.x;
   e.x[Y] = c.y;
   e.x[Z] = from[Z] + c.share * (to[Z] - from[Z]);
+  std::string changed;
+  if (!ground->stands(changed))    // of a run with pre no
+    error->one(FLERR, "Fix control/line {}: region {} must not change before the run ends", id,
+               changed);
   double z;
   e.height = ground->height(c.x, c.y, z) ? e.x[Z] - z : std::numeric_limits<double>::quiet_NaN();
   std::copy(v, v + 3, e.v);

@@ -379,6 +379,7 @@ void BallPlacement::report(const SurfaceCounts &counts, bool known) const
 const std::vector<double> &BallPlacement::fingerprint()
 {
   if (!marks.empty()) return marks;
+  check_regions();
   marks = {static_cast<double>(counted), arguments.diameter};
   if (!sampler) {
     marks.insert(marks.end(), sums, sums + 3);

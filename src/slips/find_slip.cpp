@@ -30,6 +30,9 @@ static constexpr double DOUBTED = 0.05;    // of the weight
 static constexpr double HUGE_FACTOR = 100.0;
 static constexpr double TELL_EVERY = 10.0;    // s
 
+static constexpr int NVARIABLE = 6;
+static const char *const ENDS[NVARIABLE] = {"_x", "_y", "_z", "_r", "_factor", "_yield"};
+
 /* ----------------------------------------------------------------------
    find_slip REGION strength C PHI DENSITY keyword value ... output PREFIX
 ------------------------------------------------------------------------- */
@@ -37,6 +40,7 @@ static constexpr double TELL_EVERY = 10.0;    // s
 void FindSlip::command(int narg, char **arg)
 {
   const SlipOptions options(lmp, narg, arg);
+  check_variables(options);
   on_rank_zero(lmp, "Find_slip", [&]() {
     Slope::SlipWriter::probe(options.output, options.lone ? 1 : options.limits.keep);
   });
@@ -158,22 +162,38 @@ void FindSlip::warn(const SlipBodyMaker &maker) const
 }
 
 /* ----------------------------------------------------------------------
-   internal variables: ${PREFIX_x} and v_PREFIX_x, and a later find_slip replaces them
+   Internal variables: ${PREFIX_x} and v_PREFIX_x. A later find_slip replaces their values by internal_set(): in
+   LAMMPS, set() of an internal variable that is there stores the value where the next new one would be, and
+   takes no nan.
 ------------------------------------------------------------------------- */
+
+static std::string variable(const SlipOptions &options, const char *end)
+{
+  return options.variable() + end;
+}
+
+void FindSlip::check_variables(const SlipOptions &options) const
+{
+  for (const char *end : ENDS) {
+    const std::string name = variable(options, end);
+    const int n = input->variable->find(name.c_str());
+    if (n >= 0 && !input->variable->internalstyle(n))
+      error->all(FLERR,
+                 "Find_slip output must not begin the names of variables that are not of a find_slip, got "
+                 "{}, and there is a variable {}: use another PREFIX, or delete the variable",
+                 options.output, name);
+  }
+}
 
 void FindSlip::set_variables(const SlipOptions &options, const SlipBody &body) const
 {
   const Slope::SlipSurface &s = body.surface;
-  const struct {
-    const char *name;
-    double value;
-  } all[] = {
-      {"_x", s.x},           {"_y", s.y}, {"_z", s.z}, {"_r", s.radius}, {"_factor", body.factor},
-      {"_yield", body.yield}};
-  for (const auto &one : all) {
-    std::string name = options.variable() + one.name, style = "internal",
-                value = fmt::format("{:.17g}", one.value);
+  const double values[] = {s.x, s.y, s.z, s.radius, body.factor, body.yield};
+  Variable *variables = input->variable;
+  for (int k = 0; k < NVARIABLE; k++) {
+    std::string name = variable(options, ENDS[k]), style = "internal", value = "0";
     char *words[3] = {&name[0], &style[0], &value[0]};
-    input->variable->set(3, words);
+    if (variables->find(words[0]) < 0) variables->set(3, words);
+    variables->internal_set(variables->find(words[0]), values[k]);
   }
 }

@@ -35,6 +35,7 @@ class FindSlip : public Command {
                                       Slope::ElevationGrid &least) const;
   void report(const std::vector<Slope::SlipBody> &) const;
   void warn(const Slope::SlipBodyMaker &) const;
+  void check_variables(const class SlipOptions &) const;
   void set_variables(const class SlipOptions &, const Slope::SlipBody &) const;
 };
 

@@ -93,3 +93,38 @@ def test_every_word_is_guarded():
         found |= set(re.findall(r'(?:strcmp\(\w+\[[^]]*\], |\bkeyword == )"([a-z_]+)"', text))
     guarded = {word for old, _, _ in CHANGES for word in old.split()}
     assert found - guarded - OUTPUTS - {*LIKE} == set() and {*LIKE.values()} <= guarded
+
+
+# --- what LAMMPS drops from a restart file before a fix comes ---
+
+
+BALANCE = "balance 1.0 shift x 10 1.01"
+
+
+@pytest.mark.parametrize("fix, command", [
+    *((fix, BALANCE) for fix in ("balls", "places", "house", "quake", "dep", "line")),
+    ("balls", "run 0"), ("balls", "write_restart other.restart")])
+def test_a_fix_that_comes_too_late(site, fix, command):
+    """The contacts of walls, the sums of others: the fix would begin anew, without a word."""
+    deck = DECK.format(begin="read_restart at.restart\ncomm_modify vel yes")
+    line = next(line for line in deck.splitlines() if line.startswith(f"fix {fix} "))
+    early = deck.replace(line, "").replace("fix line soil", "# fix line soil" if fix == "dep" else "fix line soil")
+    run_deck(f"{early}\n{command}\n{line}\nrun 10\n", site, expect_error=f"Fix {fix} {line.split()[3]} must be defined "
+             f"before the first command after read_restart")
+
+
+def test_a_fix_of_lammps_that_comes_too_late(site):
+    wall = "fix stock soil wall/gran hooke/history 1e6 NULL 50 NULL 0.5 0 zplane -1 NULL\n"
+    run_deck(DECK.format(begin=NEW) + wall + "run 1\nwrite_restart stock.restart\n", site)
+    deck = DECK.format(begin="read_restart stock.restart")
+    run_deck(deck + wall + "run 1\n", site)
+    run_deck(deck + "run 1\n" + wall + "run 1\n", site, expect_error="Fix stock wall/gran must be defined before")
+
+
+@pytest.mark.parametrize("ranks", (1, 3))
+def test_with_another_id_or_before_it_goes_on(site, ranks):
+    deck = DECK.format(begin="read_restart at.restart\ncomm_modify vel yes")
+    line = next(line for line in deck.splitlines() if line.startswith("fix places "))
+    early = deck.replace(line, "")
+    run_deck(f"{early}{BALANCE}\n{line.replace('places', 'others', 1)}\nrun 10\n", site, np=ranks)
+    run_deck(f"{deck}{BALANCE}\nunfix places\n{line}\nrun 10\n", site, np=ranks)
