@@ -40,7 +40,6 @@ PairGranRestitution::PairGranRestitution(LAMMPS *lmp) :
   centroidstressflag = CENTROID_NOTAVAIL;
   finitecutflag = 1;
   nondefault_history_transfer = 1;    // the age is the same from both sides
-  beyond_contact = 1;                 // a contact that has ended keeps its history for a step
   comm_forward = BallStates::FORWARD;
   comm_reverse = BallStates::REVERSE;
   single_extra = 10;
