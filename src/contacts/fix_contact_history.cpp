@@ -158,6 +158,7 @@ void FixContactHistory::post_run()
 
 void FixContactHistory::initial_integrate(int)
 {
+  owner->run_guards().begin_step();
   continuation.begin_step();
 }
 
