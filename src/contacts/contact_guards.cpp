@@ -10,9 +10,7 @@
 #include "contact_kernel.h"
 #include "contact_table.h"
 #include "error.h"
-#include "fix.h"
 #include "large_messages.h"
-#include "modify.h"
 #include "neighbor.h"
 #include "update.h"
 
@@ -28,7 +26,7 @@ static constexpr double DEEP = 0.1;    // overlap, of the smaller radius, that i
 /* ---------------------------------------------------------------------- */
 
 ContactGuards::ContactGuards(LAMMPS *lmp, const ContactTable &contacts) :
-    Pointers(lmp), table(contacts), energy(lmp), overlaps{0.0, 0, 0, 0}
+    Pointers(lmp), table(contacts), energy(lmp), motion(lmp), overlaps{0.0, 0, 0, 0}
 {
 }
 
@@ -56,9 +54,9 @@ void ContactGuards::start(int freeze_group_bit)
   check_timestep();
   check_dashpots();
   check_neighbor_lists();
-  check_fixed_balls(freeze_group_bit);
   overlaps = {0.0, 0, 0, 0};
   energy.start();
+  motion.start(freeze_group_bit);
 }
 
 void ContactGuards::print_table()
@@ -144,41 +142,11 @@ void ContactGuards::check_neighbor_lists()
        neighbor->every, neighbor->delay, neighbor->dist_check ? "yes" : "no");
 }
 
-/* ----------------------------------------------------------------------
-   warn of balls that do not move freely but are not frozen: the law would take them for free ones
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
-void ContactGuards::check_fixed_balls(int freeze_group_bit)
+void ContactGuards::begin_step()
 {
-  int moved = 0, guided = 0;    // group bits
-  std::string guides;
-  for (int k = 0; k < modify->nfix; k++) {
-    const Fix *fix = modify->fix[k];
-    const bool integrates = fix->time_integrate;
-    if (integrates) moved |= fix->groupbit;
-    if (!(integrates && utils::strmatch(fix->style, "^move")) &&
-        !utils::strmatch(fix->style, "^setforce") && !utils::strmatch(fix->style, "^nve/noforce"))
-      continue;
-    guided |= fix->groupbit;
-    guides += (guides.empty() ? "" : ", ") + std::string(fix->style);
-  }
-  if (!moved) return;
-
-  bigint mine[2] = {0, 0}, all[2];
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (atom->mask[i] & freeze_group_bit) continue;
-    if (!(atom->mask[i] & moved)) mine[0]++;
-    if (atom->mask[i] & guided) mine[1]++;
-  }
-  MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (all[0])
-    warn("no integrator moves {} balls and no fix freeze holds them: without it a fixed ball has "
-         "the dashpots of a moving one",
-         all[0]);
-  if (all[1])
-    warn("{} balls are guided by fix {} and no fix freeze holds them: their contacts have the "
-         "dashpots of free balls, and rebound faster than the restitution says",
-         all[1], guides);
+  for (const std::string &text : motion.begin_step()) warn("{}", text);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -251,4 +219,5 @@ void ContactGuards::report()
     warn("{} neighbor lists came late (dangerous builds): balls went farther than half the skin "
          "{:g} in one step, and contacts may have started too deep",
          f.dangerous_builds, neighbor->skin);
+  for (const std::string &text : motion.end_run()) warn("{}", text);
 }

@@ -4,7 +4,7 @@
 ------------------------------------------------------------------------- */
 
 /* What is not sensible in a run with contacts, and a warning of each, once: time step, dashpots
-   and masses, neighbor lists, balls that nothing moves, deep contacts, energy that grows. */
+   and masses, neighbor lists, balls that nothing moves or holds, deep contacts, energy that grows. */
 
 #ifndef SLOPE_CONTACT_GUARDS_H
 #define SLOPE_CONTACT_GUARDS_H
@@ -12,6 +12,7 @@
 #include "pointers.h"
 
 #include "energy_guard.h"
+#include "motion_guard.h"
 
 #include <string>
 #include <vector>
@@ -26,6 +27,7 @@ class ContactGuards : protected Pointers {
 
   // once per run, when masses, coefficients and step are final; prints the table if it has changed
   void start(int freeze_group_bit);
+  void begin_step();    // collective
 
   void record_overlap(int i, double overlap, double radius);    // m; radius: the smaller one
   void watch_energy(double elastic);    // J, of this rank's springs; collective
@@ -46,6 +48,7 @@ class ContactGuards : protected Pointers {
   const ContactTable &table;
   std::string printed;    // table as last printed
   EnergyGuard energy;
+  MotionGuard motion;
 
   // contacts that were seen deeper than is sensible: with every neighbor list and by watch_energy()
   struct Overlaps {
@@ -60,7 +63,6 @@ class ContactGuards : protected Pointers {
   void check_dashpots();
   void check_dashpots(int itype, int jtype);
   void check_neighbor_lists();
-  void check_fixed_balls(int freeze_group_bit);
 };
 
 }    // namespace LAMMPS_NS

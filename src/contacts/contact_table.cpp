@@ -11,10 +11,10 @@
 #include "error.h"
 #include "fix.h"
 #include "lammps_compat.h"
+#include "style_argument.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 
 using namespace LAMMPS_NS;
@@ -100,14 +100,11 @@ ContactTable::Coeff ContactTable::read_coeff(const std::string &types, int narg,
     auto value = [&](int k) {
       if (iarg + k >= narg)
         error->all(FLERR, "Pair gran/restitution {}: value {} is missing", keyword, k);
-      if (!utils::is_double(arg[iarg + k]))
-        error->all(FLERR, "Pair gran/restitution {}: value {} must be a number, got {}", keyword, k,
-                   arg[iarg + k]);
-      return strtod(arg[iarg + k],
-                    nullptr);    // numeric() has words of its own for 1e999, in some versions
+      return number_argument(lmp, fmt::format("Pair gran/restitution {}: value {}", keyword, k),
+                             arg[iarg + k]);
     };
     auto rule = [&](bool holds, const char *text, double got) {
-      if (!holds || !std::isfinite(got))
+      if (!holds)
         error->all(FLERR, "Pair gran/restitution {} must be {}, got {:.15g}", keyword, text, got);
     };
     auto read_two = [&](double &a, const char *rule_a, double &b, const char *rule_b) {

@@ -10,6 +10,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix.h"
+#include "force.h"
 #include "lammps_compat.h"
 #include "modify.h"
 #include "update.h"
@@ -36,20 +37,39 @@ void EnergyGuard::start()
   motion = grown = 0.0;
   count = 0;
 
-  // a fix that moves balls or adds forces does work that is its own business; fix ground/motion
-  // does neither, and its work is counted: see check()
+  known = contacts_alone();
+  for (int k = 0; k < modify->nfix && known; k++)
+    known = does_no_work(Slope::plain_style(modify->fix[k]->style), modify->fmask[k]);
+}
 
-  known = true;
-  for (int k = 0; k < modify->nfix; k++) {
-    const Fix *fix = modify->fix[k];
-    const std::string style = Slope::plain_style(fix->style);
-    if (fix->time_integrate && style != "nve/sphere") known = false;
-    if (style == "adapt") known = false;    // sizes, masses
-    if (!(modify->fmask[k] & POST_FORCE)) continue;
-    if (style != "gravity" && style != "wall/gran/balls" && style != "wall/gran/mesh" &&
-        style != "freeze")
-      known = false;
-  }
+// other pair styles, bonds and the like have energies of their own
+
+bool EnergyGuard::contacts_alone() const
+{
+  if (force->bond || force->angle || force->dihedral || force->improper || force->kspace)
+    return false;
+  for (const std::string &style : compat::parts_of_hybrid(force->pair))
+    if (!Slope::is_style(style, "gran/restitution") && !Slope::is_style(style, "zero"))
+      return false;
+  return true;
+}
+
+/* ----------------------------------------------------------------------
+   A fix that moves balls, adds forces or changes velocities does work that is its own business. It acts
+   before, between or after the halves of a step, or has one of the names of those that act at its end.
+   fix ground/motion is counted: see check().
+------------------------------------------------------------------------- */
+
+bool EnergyGuard::does_no_work(const std::string &style, int mask)
+{
+  for (const char *name :
+       {"nve/sphere", "gravity", "freeze", "wall/gran/balls", "wall/gran/mesh", "ground/motion",
+        "control/line", "store/force", "CONTACT_HISTORY", "GROUP"})
+    if (style == name) return true;
+  for (const char *name : {"^adapt", "^deform", "^heat", "^momentum", "^nphug", "^press/",
+                           "^python", "^set$", "^temp/"})
+    if (utils::strmatch(style, name)) return false;
+  return !(mask & (INITIAL_INTEGRATE | POST_INTEGRATE | PRE_FORCE | POST_FORCE | FINAL_INTEGRATE));
 }
 
 /* ----------------------------------------------------------------------

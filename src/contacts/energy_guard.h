@@ -13,6 +13,8 @@
 
 #include "pointers.h"
 
+#include <string>
+
 namespace LAMMPS_NS {
 
 class EnergyGuard : protected Pointers {
@@ -46,6 +48,9 @@ class EnergyGuard : protected Pointers {
   bigint count;
   bigint number;     // of balls, when lowest began
   double pull[3];    // gravity then
+
+  bool contacts_alone() const;
+  static bool does_no_work(const std::string &style, int mask);    // mask: as LAMMPS has it
 };
 
 }    // namespace LAMMPS_NS

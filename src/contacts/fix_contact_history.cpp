@@ -60,9 +60,14 @@ void FixContactHistory::pre_exchange()
   std::copy_n(atom->tag, atom->nlocal, known_as);
 }
 
+// A contact that has ended keeps its history for a step: LAMMPS hands it out beyond contact only if the
+// pair style says that it acts there, which compute fabric refuses, and which would not be true.
+
 void FixContactHistory::post_neighbor()
 {
+  pair->beyond_contact = 1;
   FixNeighHistory::post_neighbor();
+  pair->beyond_contact = 0;
   lists_new = true;
 }
 
@@ -154,6 +159,7 @@ void FixContactHistory::post_run()
 
 void FixContactHistory::initial_integrate(int)
 {
+  owner->run_guards().begin_step();
   continuation.begin_step();
 }
 

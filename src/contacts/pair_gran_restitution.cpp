@@ -42,7 +42,6 @@ PairGranRestitution::PairGranRestitution(LAMMPS *lmp) :
   centroidstressflag = CENTROID_NOTAVAIL;
   finitecutflag = 1;
   nondefault_history_transfer = 1;    // the age is the same from both sides
-  beyond_contact = 1;                 // a contact that has ended keeps its history for a step
   comm_forward = BallStates::FORWARD;
   comm_reverse = BallStates::REVERSE;
   single_extra = 10;
@@ -178,6 +177,11 @@ void PairGranRestitution::init_style()
     error->all(FLERR,
                "Pair gran/restitution pair_modify compute must be yes, got no: balls would fall "
                "through each other and the ground");
+  if (utils::strmatch(force->pair_style, "^hybrid/scaled"))
+    error->all(FLERR,
+               "Pair gran/restitution pair_style must be hybrid or hybrid/overlay with others, got "
+               "{}, which scales the forces between balls but not those of walls",
+               force->pair_style);
   require_run(lmp, "Pair gran/restitution");
   require_plain_units(lmp, "Pair gran/restitution");
   require_single_balls(lmp, "Pair gran/restitution");
@@ -202,6 +206,7 @@ void PairGranRestitution::init_style()
 
   freeze_group_bit = 0;
   for (const Fix *fix : compat::fixes_of_style(lmp, "freeze")) freeze_group_bit |= fix->groupbit;
+  require_spins(lmp, "Pair gran/restitution", freeze_group_bit);
 
   sizes_vary = !compat::fixes_of_style(lmp, "adapt").empty();
   works.wanted = !compat::fixes_of_style(lmp, "energy/ledger").empty();

@@ -11,6 +11,7 @@
 #include "comm.h"
 #include "constants.h"
 #include "error.h"
+#include "lammps_compat.h"
 #include "large_messages.h"
 #include "rank_zero.h"
 #include "region_surface.h"
@@ -235,20 +236,44 @@ void BallPlacement::my_rows(int &first, int &end) const
   end = static_cast<int>(rows * (comm->me + 1) / comm->nprocs);
 }
 
-// does any node have a ball? Asked of a few tiles of each rank first, then of more
+// does any node have a ball? Asked of a few tiles of each rank first, then of more; inside a region there
+// are none beyond its box. All of a large ground may take minutes.
 
 bool BallPlacement::any() const
 {
+  static constexpr double TELL_EVERY = 10.0;    // s
   if (!sampler) return false;
-  const bigint tiles = static_cast<bigint>(sampler->tiles().nx) * sampler->tiles().ny;
+  const Slope::TilePlan plan = sampler->tiles();
+  int lo[2] = {0, 0}, hi[2] = {plan.nx - 1, plan.ny - 1};
+  const auto narrow = [&plan](int &first, int &last, double from, double to) {
+    first = static_cast<int>(std::max(first + 0.0, std::min(from / plan.size - 1.0, last + 1.0)));
+    last = static_cast<int>(std::min(last + 0.0, std::max(to / plan.size + 1.0, first - 1.0)));
+  };
+  if (arguments.filter_inside && !arguments.filter.empty() && arguments.angle == 0.0) {
+    const Region *box = compat::find_region(lmp, arguments.filter);
+    narrow(lo[0], hi[0], box->extent_xlo - plan.xlo, box->extent_xhi - plan.xlo);
+    narrow(lo[1], hi[1], box->extent_ylo - plan.ylo, box->extent_yhi - plan.ylo);
+  }
+  const bigint across = hi[0] - lo[0] + 1, tiles = across * (hi[1] - lo[1] + 1);
+  if (tiles == 0) return false;
+
   bigint step = 1 + 618 * tiles / 1000, at = comm->me;    // every tile comes once, far ones in turn
   while (common_divisor(step, tiles) > 1) step++;
   int mine = 0, found = 0, left = 1;
+  double said = MPI_Wtime();
   for (int some = 16; !found && left; some *= 8) {
     on_all_ranks(lmp, caller, [&]() {
       const auto looks = new_sampler();
-      for (int k = 0; k < some && at < tiles && !mine; k++, at += comm->nprocs)
-        mine = looks->has_balls(static_cast<int>(at * step % tiles));
+      for (int k = 0; k < some && at < tiles && !mine; k++, at += comm->nprocs) {
+        const bigint tile = at * step % tiles;
+        mine = looks->has_balls(
+            static_cast<int>((lo[1] + tile / across) * plan.nx + lo[0] + tile % across));
+        if (comm->me > 0 || MPI_Wtime() - said < TELL_EVERY) continue;
+        said = MPI_Wtime();
+        utils::logmesg(lmp, "{}: no balls on the first {:.0f} % of the surface of region {}\n",
+                       caller, 100.0 * at / tiles, arguments.region);
+        if (screen) fflush(screen);
+      }
     });
     int mine_left = at < tiles;
     MPI_Allreduce(&mine, &found, 1, MPI_INT, MPI_MAX, world);

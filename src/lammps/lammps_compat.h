@@ -16,6 +16,7 @@
 #include "modify.h"
 #include "neigh_request.h"
 #include "neighbor.h"
+#include "pair_hybrid.h"
 #include "region.h"
 #include "region_block.h"
 #include "region_cylinder.h"
@@ -105,6 +106,19 @@ inline bool moves_discs(Fix *fix)
   };
   const auto sphere = dynamic_cast<FixNVESphere *>(fix);
   return sphere && sphere->*Reach::prefactor() > 0.45;    // 0.4 of a sphere, 0.5 of a disc
+}
+
+// pair styles that a pair hybrid is made of, empty if it is none: protected there
+inline std::vector<std::string> parts_of_hybrid(Pair *pair)
+{
+  struct Reach : public PairHybrid {
+    static int PairHybrid::*number() { return &Reach::nstyles; }
+    static char **PairHybrid::*names() { return &Reach::keywords; }
+  };
+  const auto hybrid = dynamic_cast<PairHybrid *>(pair);
+  if (!hybrid) return {};
+  char **const names = hybrid->*Reach::names();
+  return std::vector<std::string>(names, names + hybrid->*Reach::number());
 }
 
 // values of ghost atoms from, and to, those that own them, by the style's pack and unpack

@@ -137,7 +137,7 @@ int SlipOptions::read_seismic()
   task.seismic = {number(1, " KH"), 0.0};
   if (task.seismic.horizontal < 0.0)
     error->all(FLERR, "Find_slip seismic KH must be >= 0 (of the weight), got {}", text(1));
-  if (iarg + 2 >= narg || !utils::is_double(arg[iarg + 2])) return 1;
+  if (iarg + 2 >= narg || isalpha(static_cast<unsigned char>(arg[iarg + 2][0]))) return 1;
   task.seismic.vertical = number(2, " KV");
   if (!(std::fabs(task.seismic.vertical) < 1.0))
     error->all(FLERR, "Find_slip seismic KV must be above -1 and below 1 (of the weight), got {}",
