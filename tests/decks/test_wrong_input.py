@@ -177,7 +177,7 @@ TABLE = {
         2 1.0 surface ground upper spacing 1 inside -> inside must be followed by REGION, got 0 of 1 values
         2 1.0 surface ground upper spacing 1 inside nowhere -> region nowhere does not exist
         2 1.0 surface ground upper spacing 1 inside road outside road -> can have one filter (inside or outside), got
-        2 1.0 surface ground upper spacing 1 color red -> keyword must be spacing, origin, sink, sunk, smallest, inside,
+        2 1.0 surface ground upper spacing 1 color red -> keyword must be spacing, origin, pattern, angle, sink, sunk,
         2 1.0 surface ground upper spacing 1 write -> write must be followed by FILE, got 0 of 1 values
         2 1.0 surface ground upper spacing 1 write none/a.txt -> : cannot write none/a.txt: No such file or directory
         2 1.0 file -> file must be followed by FILE, got 0 of 1 values
