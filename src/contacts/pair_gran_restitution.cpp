@@ -192,10 +192,11 @@ void PairGranRestitution::init_style()
 
   const std::string &kept_by = fix_history ? history_id : dummy_id;
   if (modify->find_fix(kept_by) < 0)
-    error->all(FLERR,
-               "Pair gran/restitution: fix {} must not be removed, as it keeps the contacts: define "
-               "the pair style again, after pair_style none",
-               kept_by);
+    error->all(
+        FLERR,
+        "Pair gran/restitution: fix {} must not be removed, as it keeps the contacts: define "
+        "the pair style again, after pair_style none",
+        kept_by);
   if (!fix_history) {
     fix_history = static_cast<FixContactHistory *>(modify->replace_fix(
         dummy_id, fmt::format("{} all CONTACT_HISTORY {}", history_id, HISTORY), 1));

@@ -22,8 +22,10 @@ void RestartDrops::check()
     const Fix *fix = modify->fix[i];
     if (std::find(dropped.begin(), dropped.end(), Name(fix->id, fix->style)) != dropped.end())
       error->all(FLERR,
-                 "Fix {} {} must be defined before the first command after read_restart that sets up a run, such as "
-                 "balance, at which LAMMPS drops what the file has for it, got it after that: define it before, or "
+                 "Fix {} {} must be defined before the first command after read_restart that sets "
+                 "up a run, such as "
+                 "balance, at which LAMMPS drops what the file has for it, got it after that: "
+                 "define it before, or "
                  "with another ID if it is to begin anew",
                  fix->id, fix->style);
   }

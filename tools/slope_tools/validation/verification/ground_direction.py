@@ -1,7 +1,7 @@
 """The ground of scattered balls has no direction, a plan grid has one
 
-inputs/13_ground_direction: a body slides down a plane of 35 degrees onto a flat, all of it turned about the vertical. Two
-layers of balls, 8 m wide, at three azimuths with two seeds each; in full in tests/ground_direction.py.
+inputs/13_ground_direction: a body slides down a plane of 35 degrees onto a flat, all of it turned about the vertical.
+Two layers of balls, 8 m wide, at three azimuths with two seeds each; in full in tests/ground_direction.py.
 """
 import numpy as np
 
@@ -35,9 +35,10 @@ def aside(*results):
 
 
 CLAIMS = [
-    Claim("ground_direction_travel", "Travel at azimuths 0, 22.5, 45 degrees: largest difference from the mean, over that",
-          "", "isotropy", turned(SMALL), spread, AtMost(0.04),
+    Claim("ground_direction_travel",
+          "Travel at azimuths 0, 22.5, 45 degrees: largest difference from the mean, over that", "", "isotropy", turned(SMALL), spread, AtMost(0.04),
           Control("plan grid, spacing 1 d", turned(SMALL(pattern="grid", spacing=1)))),
     Claim("ground_direction_aside", "Way aside at azimuths 0, 22.5, 45 degrees over the travel", "", "symmetry",
-          turned(SMALL), aside, AtMost(0.02), Control("plan grid, spacing 1 d", turned(SMALL(pattern="grid", spacing=1)))),
+          turned(SMALL), aside, AtMost(0.02),
+          Control("plan grid, spacing 1 d", turned(SMALL(pattern="grid", spacing=1)))),
 ]
