@@ -23,6 +23,7 @@ from run_helpers import CRS_M, EAST, NORTH, TOP, called, write_run
 from slope_tools import programs
 from slope_tools.plots import site_map
 from slope_tools.releases import release_chart
+from slope_tools.sites import site_budget
 from slope_tools.survey import rasters
 
 RIGHT, ASKED = "right: ", "asked: "     # before answers of commands that succeed
@@ -413,6 +414,19 @@ def test_a_wrong_input(case, files, tmp_path, monkeypatch, capsys):
     assert lines[0].startswith(f"slope {case.words[0]}: {case.answer}"), lines[0]
     left = set(os.listdir()) - before
     assert left <= {"new"} and os.listdir("new") == ["site.yaml"] if left else True
+
+
+@pytest.mark.parametrize("value, kind, units, rule", [
+    (-3276.8, "float32", None, "dem.tif: the ground must have no pits of a NODATA value: 6 cells of -3276.8 m lie"),
+    (-999, "float32", "ft", "dem.tif: the ground must have no pits of a NODATA value: 6 cells of -304.495 m (-999 in"),
+    (-9999, "float32", "ft", "dem.tif: row 13 column 21: must be a height in ft between -9000 and 29527")])
+def test_a_site_with_pits_ends_before_the_trial_run(files, tmp_path, monkeypatch, capsys, value, kind, units, rule):
+    shutil.copytree(files, tmp_path, dirs_exist_ok=True)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(site_budget, "trial_diameter", lambda *_: pytest.fail("a trial run"))
+    tif("dem.tif", spoilt(ground() / (0.3048 if units else 1), HOLE, value), units=units, kind=kind)
+    status, _, err = called(capsys, SITE)
+    assert status == 2 and err.startswith(f"slope site: {rule}") and f"--nodata {value:g} " in err
 
 
 # --- the page ---

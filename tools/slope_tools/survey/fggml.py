@@ -24,6 +24,7 @@ from ..errors import SlopeError
 from ..warned import Warned
 from . import rasters
 from .japan import DATUMS
+from .marks import Scale
 from .rasters import HIGHEST, NODATA, Raster
 
 SCHEMA = "http://fgd.gsi.go.jp/spec/"
@@ -339,6 +340,15 @@ def _slow_heights(where, line, text):
 
 
 # --- all tiles of a terrain ---
+
+def without(tile, marks):
+    """A tile without the heights that a Marks is given."""
+    z = tile.raster.z
+    none = np.isnan(z)
+    marks.take(z, none)
+    marks.note(z, none, Scale())
+    return tile._replace(raster=tile.raster._replace(z=np.where(none, np.nan, z)))
+
 
 def spacing(tile):
     """Seconds of arc, along the longitude and the latitude."""
