@@ -24,6 +24,16 @@ def write(path, content):
         new.write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
 
 
+def is_utf8(name: str) -> bool:
+    """Whether the name of a file, which may be any bytes, is UTF-8."""
+    return not any("\ud800" <= letter <= "\udfff" for letter in name)
+
+
+def shown(name: str) -> str:
+    """A name in a message; bytes that are not UTF-8 as \\x93."""
+    return os.fsencode(name).decode("utf-8", "backslashreplace")
+
+
 def csv_text(columns, rows) -> str:
     """A CSV: a line of names, then the rows; None is an empty cell."""
     text = io.StringIO()
