@@ -22,7 +22,7 @@ from rasterio.crs import CRS
 
 from ..errors import SlopeError
 from ..warned import Warned
-from . import rasters
+from . import rasters, zips
 from .japan import DATUMS
 from .marks import Scale
 from .rasters import HIGHEST, NODATA, Raster
@@ -95,7 +95,8 @@ def _read_zip(source, where, room=None):
     except (zipfile.BadZipFile, NotImplementedError, ValueError) as error:
         raise SlopeError(where, f"must be a whole zip file ({str(error)[:LONGEST]})") from error
     wanted = (".xml", ".zip") if outer else (".xml",)
-    members = [member for member in archive.infolist() if member.filename.lower().endswith(wanted)]
+    members = [member for member in archive.infolist() if member.filename.lower().endswith(wanted)
+               and not zips.is_of_macos(member.filename)]
     total = sum(member.file_size for member in members)
     room[0] -= total
     if room[0] < 0 or total > DEFLATE * size:

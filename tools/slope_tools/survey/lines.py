@@ -35,7 +35,8 @@ def read_local(path, raster, local, what="line", advice=None, crs=None, warn=vec
     own = raster.crs
     if text_ is None:
         found = vectors.read(path, "Line", warn)
-        own, geometry = found.crs, GeometryCollection([one for _, one in found.features])
+        own = None if local or crs else found.known_crs(path, (advice or polygons.ADVICE).wrong_crs)
+        geometry = GeometryCollection([one for _, one in found.features])
     else:
         geometry = text_geometry(path, text_)
     lines = lines_of(geometry)
@@ -61,6 +62,9 @@ def read_local(path, raster, local, what="line", advice=None, crs=None, warn=vec
         points = [np.transpose(transform(crs, raster.crs, *line.T)) for line in points]
         if not all(np.isfinite(line).all() for line in points):
             raise SlopeError(path, f"must lie where {crs_name(raster.crs)}, the CRS of the terrain, covers it")
+        if polygons.is_cut(lines, crs):
+            joined = lines_of(GeometryCollection(polygons.snapped(map(LineString, points))))
+            points = [np.asarray(line.coords) for line in joined.geoms]
     return MultiLineString([line - raster.offset for line in points])
 
 

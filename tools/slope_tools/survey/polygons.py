@@ -13,7 +13,8 @@ import rasterio.warp
 from shapely import wkt
 from shapely.errors import ShapelyError
 from shapely.geometry import MultiPolygon, Polygon, box
-from shapely.ops import unary_union
+from shapely.geometry.base import BaseGeometry
+from shapely.ops import snap, unary_union
 from shapely.validation import explain_validity
 
 from .. import disk
@@ -24,6 +25,8 @@ from .crs import require_degrees, same_crs
 from .rasters import crs_name
 
 FARTHEST = 1e12    # m or degrees: larger coordinates are mistakes, region polygon refuses them, too
+AT_180 = 1e-6      # degrees, from 180, at which a geometry is cut there
+CUT = 1e-3         # m, between the halves of a cut geometry in another CRS
 DIGITS = 6     # decimals of a written coordinate, m: beyond them is the noise of origins and projections
 HEAD = "local metres:"       # in the first line of what write() wrote
 PLACE = re.compile(rf"^# {HEAD} .+", re.MULTILINE)
@@ -66,7 +69,7 @@ def read_local(path, raster, local=False, crs=None, advice=ADVICE, warn=vectors.
 def _read_local(path, raster, local, crs, advice, warn):
     text = read_text(path)
     if text is None:
-        polygons, own = _read_layer(path, warn)
+        polygons, own = _read_layer(path, warn, None if local or crs else advice)
     elif WKT.match(re.sub("#.*", "", text).lstrip()):
         polygons, own = _read_wkt(path, text), raster.crs
     else:
@@ -116,13 +119,13 @@ def read_text(path):
 
 # --- formats ---
 
-def _read_layer(path, warn):
-    """Polygons of a file of a GIS, and its CRS or None."""
+def _read_layer(path, warn, advice):
+    """Polygons of a file of a GIS, and its CRS or None; advice: None where the CRS does not matter."""
     found = vectors.read(path, "Polygon", warn)
     polygons = [part for where, geometry in found.features for part in _parts(where, geometry)]
     if not polygons:
         raise SlopeError(path, "must hold a polygon, it is empty")
-    return polygons, found.crs
+    return polygons, found.known_crs(path, advice.wrong_crs) if advice else None
 
 
 def _read_wkt(path, text):
@@ -284,8 +287,25 @@ def _to_local(path, geometry, crs, raster, plain, advice):
                                  f"({remedy})", "none")
         require_degrees(crs, geometry.bounds, path, advice.wrong_crs)
     if not (plain or same_crs(crs, raster.crs)):
-        geometry = _reproject(path, geometry, crs, raster.crs)
+        moved = _reproject(path, geometry, crs, raster.crs)
+        geometry = unary_union(snapped(polygons_of(moved))) if is_cut(geometry, crs) else moved
     return map_points(geometry, lambda points: points - raster.offset)
+
+
+def is_cut(geometry, crs):
+    """Whether a geometry has parts on both sides of 180 degrees, cut there as RFC 7946 demands."""
+    west, _, east, _ = geometry.bounds
+    return crs.is_geographic and abs(west + 180) < AT_180 and abs(east - 180) < AT_180
+
+
+def snapped(parts):
+    """Geometries (m) whose points that are within CUT of those of the ones before are the same points."""
+    done: List[BaseGeometry] = []
+    for part in parts:
+        for other in done:
+            part = snap(part, other, CUT)
+        done = [snap(other, part, CUT) for other in done] + [part]
+    return done
 
 
 def _reproject(path, geometry, crs, target):

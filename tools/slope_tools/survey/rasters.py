@@ -9,7 +9,7 @@ import os
 import sys
 import warnings
 from pathlib import Path
-from typing import NamedTuple, Optional, Tuple
+from typing import Dict, NamedTuple, Optional, Tuple
 
 import numpy as np
 import rasterio
@@ -34,6 +34,9 @@ NODATA = -9999             # in written files
 HIGHEST = 9000.0           # m; beyond +-HIGHEST a value is a NODATA mark that the file does not declare (-9999, -32768)
 BYTES_PER_CELL = 40        # peak memory of `slope terrain` per cell, measured 22 to 33 for 16 million cells
 HEADER = {"ncols", "nrows", "xllcorner", "yllcorner", "xllcenter", "yllcenter", "cellsize", "dx", "dy", "nodata_value"}
+# keys that say the same
+AGAIN = {"xllcorner": {"xllcenter"}, "xllcenter": {"xllcorner"}, "yllcorner": {"yllcenter"}, "yllcenter": {"yllcorner"},
+         "cellsize": {"dx", "dy"}, "dx": {"cellsize"}, "dy": {"cellsize"}}
 UNITS = {"m": 1.0, "ft": 0.3048, "us-ft": 1200 / 3937}      # m, of heights
 TAGS = {"m": "m", "metre": "m", "meter": "m", "metres": "m", "meters": "m", "ft": "ft", "foot": "ft", "feet": "ft",
         "international foot": "ft", "us survey foot": "us-ft", "us survey feet": "us-ft", "ftus": "us-ft",
@@ -177,6 +180,8 @@ def _read(path, source):
     """The values as they are stored, and the mask of those that the file says are none."""
     if source.count != 1:
         raise SlopeError(path, "must have one band, the heights", f"{source.count} bands")
+    if source.dtypes[0].startswith("complex"):
+        raise SlopeError(path, "must hold real numbers", source.dtypes[0])
     rows, columns = source.shape
     check_memory(rows, columns, path)
     if source.driver == "AAIGrid":
@@ -234,7 +239,8 @@ def _check_ascii_header(path, lines):
 
     GDAL takes words for 0 here too, and puts a grid with xllcorner and yllcenter, or without one of them, at 0 0.
     """
-    header, number = {}, 0
+    header: Dict[str, float] = {}
+    number = 0
     for line in lines:
         words = line.split()
         if words and words[0].lower() not in HEADER:
@@ -243,10 +249,15 @@ def _check_ascii_header(path, lines):
         if not words:
             continue
         try:
-            key, value = words
-            header[key.lower()] = float(value)
+            key, word = words
+            value = float(word.replace("_", "?"))       # Python takes 1_5 for 15
         except ValueError:
             raise SlopeError(f"{path}: line {number}", "must be a name and a number", line) from None
+        if key.lower() in header:
+            raise SlopeError(f"{path}: line {number}", f"header key {key} is given twice")
+        if other := AGAIN.get(key.lower(), set()) & header.keys():
+            raise SlopeError(f"{path}: line {number}", f"{min(other)} and {key} are both given")
+        header[key.lower()] = value
     if not ({"xllcorner", "yllcorner"} <= header.keys() or {"xllcenter", "yllcenter"} <= header.keys()):
         raise SlopeError(f"{path}: header", "must have xllcorner and yllcorner, or xllcenter and yllcenter")
     for key in ("cellsize", "dx", "dy"):
