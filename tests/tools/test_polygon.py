@@ -414,6 +414,64 @@ def test_every_example_of_the_page_and_the_help_runs(here, capsys, command):
         assert err == "" and re.search(r"\nregion \w+ polygon \w+.csv\n$", out)
 
 
+# --- heads of text ---
+
+def points_of(names, values, mark=","):
+    return "\n".join([mark.join(names), *(mark.join(map(repr, map(float, row))) for row in values)]) + "\n"
+
+
+@pytest.mark.parametrize("names, order, options", [
+    ("x,y", (0, 1), ""), ('"X","Y"', (0, 1), ""), ("y,x", (1, 0), ""), ("north,east", (1, 0), ""),
+    ("N (m),E (m)", (1, 0), ""),
+    ("Easting,Northing", (0, 1), ""), ("POINT_X,POINT_Y", (0, 1), ""), ("y_m,x_m", (1, 0), ""),
+    ("x,y,z", (0, 1, 0), ""),
+    ("z,y,x", (0, 1, 0), ""), ("lat,lon", (1, 0), "--assign-crs EPSG:4326"),
+    ("lon,lat", (0, 1), "--assign-crs EPSG:4326"),
+    ("Longitude (deg),Latitude (deg),alt", (0, 1, 0), "--assign-crs EPSG:6668")])
+def test_the_head_of_a_text_says_which_column_is_which(written, names, order, options):
+    road = Polygon(ROAD.exterior)
+    ring = np.array(moved(road, "EPSG:4326" if options else CRS_M).exterior.coords)[:-1]
+    if names == "z,y,x":
+        ring = np.column_stack([0 * ring[:, 0], ring[:, ::-1]])
+        order = (0, 1, 2)
+    Path("a.csv").write_text(points_of(names.split(","), ring[:, order]))
+    assert_is(written(f"a.csv {options}")[0], road)
+    line, unit = lines.text_geometry("a.csv", Path("a.csv").read_text())
+    x, y = (2, 1) if names == "z,y,x" else (0, 1)
+    assert np.array_equal(line.geoms[0].coords, ring[:, [x, y]]) and unit in (None, "m", "degrees")
+
+
+@pytest.mark.parametrize("head, options, message", [
+    ("E (ft),N (ft)", "", "a.csv: line 1: columns must be x,y or east,north (m), or lon,lat (degrees), in either"),
+    ("# x (ft), y (ft)", "", "a.csv: line 1: columns must be x,y"),
+    ("x_km,y_km", "", "a.csv: line 1: columns must be x,y"),
+    ("# y,x", "", "a.csv: line 1: a comment that names columns must name x before y, got y,x"),
+    ("# lat lon", "", "a.csv: line 1: a comment that names columns must name x before y, got lat lon"),
+    ("id,x", "", "a.csv: line 1: columns must be x,y"), ("x,x", "", "a.csv: line 1: columns must be x,y"),
+    ("north,south", "", "a.csv: line 1: columns must be x,y"),
+    ("x,y,z", "", "a.csv: line 2: must be three numbers, x,y and z"),
+    ("X\u5ea7\u6a19,Y\u5ea7\u6a19", "", "a.csv: line 1: columns must be x,y"),
+    ("lon,lat", "", "a.csv: columns in degrees must have a CRS in degrees; --assign-crs EPSG:n overrides"),
+    ("lon,lat", "--assign-crs EPSG:6677", "a.csv: columns in degrees must have a CRS in degrees"),
+    ("lat,lon", "--local", "a.csv: must have columns in m, local, got degrees"),
+    ("x (m),y (m)", "--assign-crs EPSG:4326", "a.csv: columns in m must have a CRS in m, got EPSG:4326")])
+def test_a_head_of_text_that_is_another(slope, head, options, message):
+    Path("a.csv").write_text(f"{head}\n{SQUARE}", encoding="utf-8")
+    status, _, err = slope(f"a.csv {options} -o out.csv")
+    assert status == 2 and err.startswith(f"slope polygon: {message}") and err.count("\n") == 1, err
+    if not options and "degrees must" not in message:
+        with pytest.raises(polygons.SlopeError, match="a.csv: must be a line: .* CSV with x,y in its lines .line "):
+            lines.text_geometry("a.csv", Path("a.csv").read_text(encoding="utf-8"))
+
+
+def test_a_text_of_two_lines_is_two():
+    found, _ = lines.text_geometry("a.csv", "\n# one\n0,0\n9,0\n# and\n9,5\n\n20,0\n20,9\n\n")
+    assert [len(line.coords) for line in found.geoms] == [3, 2]
+    for text in ("1,10,20\n2,20,30\n", "1_0,2\n3,4\n", "1,2\n", "1;2\n3;4\n"):
+        with pytest.raises(polygons.SlopeError, match="must be a line"):
+            lines.text_geometry("a.csv", text)
+
+
 # --- bad input ---
 
 def wkt(text):
