@@ -48,13 +48,14 @@ def beside(*paths):
     The last one is what makes them valid, and is named where they cannot be written.
     """
     places = [Path(path) for path in paths]
-    new = [path.with_name(f".{path.name}.{os.getpid()}.new") for path in places]
+    new = [path.with_name(f".{path.name}.{platform.node()}.{os.getpid()}.new") for path in places]
     try:
         yield new
         for part in new:
             flush(part)
-        for part, path in zip(new, places):
-            os.replace(part, path)
+        with renaming(places[-1].parent):
+            for part, path in zip(new, places):
+                os.replace(part, path)
         for folder in {path.parent for path in places}:
             flush(folder)
     except OSError as error:
@@ -63,6 +64,21 @@ def beside(*paths):
         for part in new:
             with suppress(OSError):     # a read-only file system refuses this too
                 part.unlink(missing_ok=True)
+
+
+@contextmanager
+def renaming(folder: Path):
+    """No other process gives files of a folder their names meanwhile: of two sets one is there, not a mixture.
+
+    It waits for the other process. A file system without locks does without.
+    """
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        with suppress(OSError):
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(handle)        # which ends the lock
 
 
 def sha256(path) -> str:
@@ -175,15 +191,16 @@ def complete(folder, marker, called=None):
         folder.mkdir(exist_ok=True)
         names = sorted(path.name for path in new.iterdir() if path.name != marker)
         void = void_of(folder / marker)
-        void.touch()
-        (folder / marker).unlink(missing_ok=True)
-        flush(folder)
-        for name in names:
-            os.replace(new / name, folder / name)
-        flush(folder)
-        os.replace(new / marker, folder / marker)
-        flush(folder)
-        void.unlink()
+        with renaming(folder):
+            void.touch()
+            (folder / marker).unlink(missing_ok=True)
+            flush(folder)
+            for name in names:
+                os.replace(new / name, folder / name)
+            flush(folder)
+            os.replace(new / marker, folder / marker)
+            flush(folder)
+            void.unlink()
         flush(folder.parent)
     except OSError as error:
         raise SlopeError(asked, f"cannot be written: {error.strerror or error}") from error
