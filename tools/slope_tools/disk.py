@@ -48,7 +48,7 @@ def beside(*paths):
     The last one is what makes them valid, and is named where they cannot be written.
     """
     places = [Path(path) for path in paths]
-    new = [path.with_name(f".{path.name}.{platform.node()}.{os.getpid()}.new") for path in places]
+    new = [path.with_name(f".{path.name}.{os.getpid()}.new") for path in places]
     try:
         yield new
         for part in new:
