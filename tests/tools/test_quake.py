@@ -224,10 +224,17 @@ def test_a_table_in_other_units(slope, head, rows, words):
     refused(slope, "a.csv -o motion.txt", words)
 
 
-@pytest.mark.parametrize("size", ["NPTS=  5, DT=  5.0 MSEC", "NPTS=  5, DT=  5.0 SEC", "NPTS=  5, DT=  0.005 MIN"])
+@pytest.mark.parametrize("size", ["NPTS=  5, DT=  5.0 MSEC", "NPTS=  5, DT=  5.0 SEC", "NPTS=  5, DT=  0.005 MIN",
+                                  "5  0.005  NPTS, DT (MS)"])
 def test_the_time_step_of_at2_is_in_seconds(slope, size):
     at2("c.AT2", EW[:5], "090", size=size)
     refused(slope, "c.AT2 -o motion.txt", "c.AT2, line 4: must be NPTS= n, DT= s SEC")
+
+
+def test_a_velocity_is_no_acceleration(slope):
+    at2("c.AT2", EW[:5], "090")
+    Path("c.AT2").write_text(Path("c.AT2").read_text().replace("ACCELERATION", "VELOCITY"))
+    refused(slope, "c.AT2 -o motion.txt", "c.AT2, line 3: must be of an acceleration")
 
 
 @pytest.mark.parametrize("head, rule", [

@@ -437,7 +437,7 @@ def test_the_nodata_that_an_error_proposes_works(slope, written, value, dtype, u
     (-999, "float32", "ft", 0.3048, "6 cells of -304.495 m (-999 in the file) lie at least"),
     (-999, "int16", None, 1, "6 cells of -999 m lie at least"), (0, "uint16", None, 1, "6 cells of 0 m lie at least"),
     (-500, "float32", None, 1, "6 cells of -500 m lie at least"),
-    (9999, "float32", "ft", 0.3048, "6 cells of 3047.7 m (9999 in the file) lie at least 2520 m above")])
+    (9999, "float32", "ft", 0.3048, "6 cells of 3047.7 m (9999 in the file) lie at least 2561 m above")])
 def test_the_nodata_that_a_warning_of_pits_proposes_works(slope, written, value, dtype, unit, factor, words):
     with_hole("dem.tif", value, dtype, unit, factor)
     status, _, err = slope("dem.tif -o out.asc")
@@ -445,6 +445,20 @@ def test_the_nodata_that_a_warning_of_pits_proposes_works(slope, written, value,
     z, *_ = written(f"dem.tif {proposed(err)}")
     assert np.isnan(z[HOLE]).all() and np.isnan(z).sum() == 6
     assert slope(f"dem.tif {proposed(err)} --fill 6 -o out.asc")[2] == ""
+
+
+def test_the_largest_number_of_a_type_is_a_mark(slope, written):
+    """65535 of heights in centimetres, which stands for 655.35 m; a collar of a mark is not filled."""
+    with_hole("dem.tif", 65535, "uint16", factor=0.01, scales=(0.01,))
+    err = slope("dem.tif -o out.asc")[2]
+    assert "6 cells of 655.35 m (65535 in the file) lie at least" in err and " m above all cells beside them" in err
+    assert np.isnan(written(f"dem.tif {proposed(err)}")[0][HOLE]).all()
+    z, transform = survey()
+    z[:, :4] = -999
+    write_tif("collar.tif", z, transform, nodata=None)
+    err = slope("collar.tif -o collar.asc")[2]
+    assert "64 cells of -999 m" in err
+    assert "--nodata -999 makes them NODATA, which stays where it goes on to the edge" in err
 
 
 def test_a_mark_of_scaled_heights_is_that_of_the_file(slope, written):

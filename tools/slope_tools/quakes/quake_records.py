@@ -131,10 +131,13 @@ def at2(path, lines):
     factor = unit_of(unit[1]) if unit else None
     if factor is None:
         raise SlopeError(f"{path}, line 3", "must end in UNITS OF G (or GAL, CM/S2, M/S2)", repr(lines[2].strip()))
+    if re.search("VELOCITY|DISPLACEMENT", lines[2].upper()):
+        raise SlopeError(f"{path}, line 3", "must be of an acceleration", repr(lines[2].strip()))
     size = (re.search(r"NPTS *= *(\d+)(?: *, *| +)DT *= *([\d.eE+-]+)", lines[3].upper()) or
             re.match(r" *(\d+) +([\d.eE+-]+) +NPTS", lines[3].upper()))
     after = re.findall("[A-Z]+", lines[3].upper()[size.end():]) if size else []
-    in_seconds = not after or after[0] in ("S", "SEC", "SECS", "SECONDS", "DT")
+    unit_of_time = [word for word in after[:2] if word != "DT"][:1]
+    in_seconds = {*unit_of_time} <= {"S", "SEC", "SECS", "SECONDS"}
     if not size or not in_seconds or not 0 < heads.number(size[2]) <= SLOWEST:
         raise SlopeError(f"{path}, line 4", "must be NPTS= n, DT= s SEC", repr(lines[3].strip()))
     word = re.split(r"[,\s]+", lines[1].strip().upper())[-1]

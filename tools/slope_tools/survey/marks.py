@@ -8,7 +8,7 @@ from typing import Dict, List, NamedTuple, Sequence, Set, Union
 import numpy as np
 
 # with which programs fill what they do not know, and which may be heights; others are beyond all heights
-KNOWN = (0.0, -99.0, -999.0, -3276.8, -9999.0, -32767.0, -32768.0)
+KNOWN = (0.0, -99.0, -999.0, -3276.8, -9999.0, -32767.0, -32768.0, 9999.0, 32767.0, 65535.0)
 HUGE = 1e30             # beyond any height in any unit; marks of this size are often written with few digits
 FEW_DIGITS = 1e-3       # relative
 
@@ -74,10 +74,11 @@ class Marks:
     def note(self, stored: np.ndarray, none: np.ndarray, scale: Scale) -> None:
         """Of stored heights, which may be marks; none: mask of those that are known to be none."""
         kind = stored.dtype.type
-        least = np.iinfo(kind).min if stored.dtype.kind in "iu" else None
+        limits = np.iinfo(kind) if stored.dtype.kind in "iu" else None
         heights = stored[~none]
         for found, values in (
-                (self.known, [kind(one) for one in KNOWN if least is None or one.is_integer() and one >= least]),
+                (self.known, [kind(one) for one in KNOWN
+                              if limits is None or one.is_integer() and limits.min <= one <= limits.max]),
                 (self.extremes, [heights.min(), heights.max()] if heights.size else [])):
             metres = scale.metres(scale.in_unit(np.array(values, stored.dtype)))
             found.update((height, text(value)) for height, value in zip(metres.tolist(), values))

@@ -37,8 +37,10 @@ def pits(z: np.ndarray, cell: float, marks: Marks) -> Optional[Pits]:
     deep = max(DEEP, STEEP_SIDES * cell)
     for mark, stored in marks.known.items():
         at = z == mark
-        if at.any() and (found := pits_of(z, at, mark, stored, deep)):
+        if at.any() and float(stored) <= 0 and (found := pits_of(z, at, mark, stored, deep)):
             return found
+        if at.any() and float(stored) > 0 and (found := pits_of(-z, at, -mark, stored, deep)):
+            return found._replace(mark=mark, side="above")
     return apart(z, marks, deep)
 
 
@@ -83,7 +85,9 @@ def pits_of(z: np.ndarray, at: np.ndarray, mark: float, stored: str, deep: float
 
 def remedy(found: Pits, marks: Marks) -> str:
     """What can be done about pits."""
-    return f"{marks.options(found.stored)} makes them NODATA, with --fill {found.largest} they are filled"
+    at_edge = any(side.any() for side in (found.cells[[0, -1]], found.cells[:, [0, -1]]))
+    return f"{marks.options(found.stored)} makes them NODATA, " + (
+        "which stays where it goes on to the edge" if at_edge else f"with --fill {found.largest} they are filled")
 
 
 def pits_said(raster: Raster, marks: Marks) -> Optional[Warned]:
