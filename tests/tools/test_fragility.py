@@ -1,5 +1,6 @@
 """Fragility of bodies: closed forms of an infinite slope, displacements, hazard, the command."""
 import csv
+import re
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,8 @@ from run_helpers import called, write_asc
 from test_newmark import noise
 from test_slips import CASES
 
-from slope_tools.seismic import fragility
+from slope_tools.errors import SlopeError
+from slope_tools.seismic import fragility, hazard_file
 from slope_tools.slips import bishop, columns, newmark
 from slope_tools.slips.bodies import Body
 from slope_tools.slips.columns import Columns, GRAVITY
@@ -129,6 +131,33 @@ def test_annual_frequency_is_the_integral():
 # --- the command ---
 
 SOIL = "--terrain terrain.asc --density 2039 --cohesion 3e3:9e3 --friction 22:32"
+
+
+@pytest.mark.parametrize("text", [
+    "50,1e-2\n200,1e-3\n", "peak,exceedance\n50,1e-2\n200,1e-3\n", "rate,peak\n1e-2,50\n1e-3,200\n",
+    "pga (g),annual rate\n0.05098581,1e-2\n0.2039432,1e-3\n", "PGA [m/s2];frequency (1/yr)\n0.5;1e-2\n2;1e-3\n",
+    "# rate, pga_g\n1e-2,0.05098581\n1e-3,0.2039432\n", "pga (cm/s2),return period (years)\n50,100\n200,1000\n",
+    "peak_gal,annual probability of exceedance\n50,0.00995016625\n200,0.000999500167\n"])
+def test_the_head_of_a_hazard_counts(tmp_path, text):
+    (tmp_path / "h.csv").write_text(text)
+    found = hazard_file.read(tmp_path / "h.csv")
+    assert np.array(found) == pytest.approx(np.array([[50, 200], [1e-2, 1e-3]]), rel=1e-6)
+
+
+@pytest.mark.parametrize("text, rule", [
+    ("exceedance,peak\n1e-4,800\n1e-3,400\n1e-2,100\n", "row 3: must have a larger peak than the row before"),
+    ("1e-4,800\n1e-3,400\n1e-2,100\n", "must have peaks in gal, the largest of at least 30, or a head with their unit"),
+    ("0.05,1e-2\n0.8,1e-3\n", "must have peaks in gal, the largest of at least 30"),
+    ("pgv (cm/s),rate\n50,1e-2\n200,1e-3\n", "row 1: columns must be a peak, in gal, g or m/s2"),
+    ("pga (%g),rate\n50,1e-2\n200,1e-3\n", "head: columns must be a peak, in gal, g or m/s2"),
+    ("pga,probability in 50 years\n50,1e-2\n200,1e-3\n", "row 1: columns must be a peak"),
+    ("id,pga,rate\n1,50,1e-2\n2,200,1e-3\n", "row 1: columns must be a peak"),
+    ("50,1e-2x\n200,1e-3\n400,1e-4\n", "row 1: must be a peak (gal) and how often it is exceeded per year"),
+    ("peak;exceedance\n50;0,01\n200;0,001\n", "row 2: must be a peak (gal) and how often")])
+def test_a_hazard_in_another_order_or_unit(tmp_path, text, rule):
+    (tmp_path / "h.csv").write_text(text)
+    with pytest.raises(SlopeError, match=re.escape(f"h.csv: {rule}")):
+        hazard_file.read(tmp_path / "h.csv")
 
 
 @pytest.fixture

@@ -68,6 +68,23 @@ def test_where_the_energy_went(tmp_path):
         "500 kJ left with balls; not accounted for: less than 0.01 %")
 
 
+def test_the_columns_of_an_energy_file_are_those_of_its_head(tmp_path):
+    """Any order of f_ID[1] to f_ID[11] is right, other columns are refused."""
+    values = [0, 1e6, 2e9, 0, 3e6, 1e8, 7e8, 1.9e8, 1e7, 1e3, 0, 5e5]
+    order = [6, 1, 2, 3, 4, 5, 11, 7, 8, 9, 10]
+    path = written(tmp_path, [0] + [values[k] for k in order])
+    path.write_text(path.read_text().replace("f_ledger[1]", " ".join(f"f_ledger[{k}]" for k in order)))
+    spent = energy.read(path)
+    assert (spent["sliding"], spent["left"], spent["kinetic"]) == (7e8, 5e5, 1e6)
+    for names in (" ".join(["v_kinetic"] + 10 * ["v_x"]), " ".join(11 * ["f_ledger[1]"]), "f_ledger[2] f_ledger[1]",
+                  " ".join(f"f_ledger[{k}]" for k in range(2, 13)),
+                  " ".join(["f_a[1]"] + [f"f_b[{k}]" for k in range(2, 12)])):
+        path = written(tmp_path, values)
+        path.write_text(path.read_text().replace("f_ledger[1]", names))
+        with pytest.raises(SlopeError, match="site.energy: must be what the run wrote of its energy"):
+            energy.read(path)
+
+
 def test_the_energy_of_a_continued_run_is_not_known(tmp_path):
     assert energy.read(written(tmp_path, [300] + 11 * [1])) is None
 

@@ -9,8 +9,9 @@ OTHER = "other"         # of the kinds that no reader tells apart, and of what o
 WORDS = {
     OTHER: "{text}",
     # of the files of a GIS
-    "pits": "{cells} cells of {mark:g} m lie at least {depth:.4g} m below all cells beside them, the first "
+    "pits": "{cells} cells of {mark} lie at least {depth:.4g} m {side} all cells beside them, the first "
             "at {east:.10g} {north:.10g}: NODATA that the file does not declare? {remedy}",
+    "no such cell": "--nodata {value}: no cell of the input has that value; its heights are {low:.6g} to {high:.6g} m",
     "picture": "all heights are whole numbers from {low:g} to {high:g}, as the values of a picture: is it a hillshade?",
     "in feet": "the ground falls by {degrees:.0f} degrees on average: are the heights in feet? Then --z-unit ft, which "
                "makes it {in_feet:.0f}",

@@ -58,14 +58,14 @@ def add_arguments(parser):
 
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints medians, HCLPF and frequencies."""
-    from ..seismic import fragility, fragility_files as files      # scipy, matplotlib
+    from ..seismic import fragility, fragility_files as files, hazard_file      # scipy, matplotlib
     from ..slips import bodies
     from ..quakes import motion_file
 
     peaks = peaks_of(args.peaks)
     check(args)
     soil = soil_of(args)
-    hazard = files.read_hazard(args.hazard) if args.hazard else None
+    hazard = hazard_file.read(args.hazard) if args.hazard else None
     disk.check_folder(args.output, files.FILES, [args.slips, args.terrain], args.overwrite)
     limit = 0.1 if args.displacement is None else args.displacement
     failure: Any = fragility.PseudoStatic(args.pseudo_static) if args.pseudo_static is not None else \

@@ -100,8 +100,9 @@ def add_ground(group):
     group.add_argument("--assign-crs", metavar="[FILE=]EPSG:n", action="append", help="the elevation model, or the "
                        "FILE of another option, is in this CRS, whatever it says; may be given several times")
     group.add_argument("--z-unit", choices=UNITS, help="of the heights of the elevation model, whatever it says")
-    group.add_argument("--nodata", type=number, metavar="V",
-                       help="a value of the elevation model that stands for no height, beside the one that it declares")
+    group.add_argument("--nodata", type=number, metavar="V", action="append",
+                       help="a value of the elevation model, in its own unit, that stands for no height, beside the "
+                            "one that it declares; may be given several times")
     group.add_argument("--bounds", nargs=4, type=number, metavar=("W", "S", "E", "N"), help="take this part, m")
     group.add_argument("--cell", type=number, metavar="S", help="wanted cell size, m")
     group.add_argument("--fill", type=whole, metavar="N", help="fill NODATA holes of at most N cells")

@@ -64,8 +64,10 @@ def per_year(data, about: Mapping[str, Any]):
     path = data.folder / chain_files.PER_YEAR
     try:
         with open(path, newline="", encoding="ascii") as lines:
-            return np.array([[float(one) for one in row] for row in list(csv.reader(lines))[1:]]).T.reshape(4, -1)
-    except (OSError, ValueError) as error:
+            rows = csv.DictReader(lines)
+            return np.array([[float(row[name]) for name in ("volume_m3", "per_year", "low", "high")]
+                             for row in rows]).T.reshape(4, -1)
+    except (OSError, ValueError, KeyError, TypeError) as error:
         raise SlopeError(path, f"must be what `slope study --fragility` wrote ({error})") from error
 
 

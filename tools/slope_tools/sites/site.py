@@ -182,10 +182,16 @@ def terrain(choices: Choices, new: Path, tell, warn) -> Raster:
     given = choices["terrain"]
     own = {path: crs for path in given["files"] if (crs := site_choices.assigned(choices, path))}
     wanted = local_terrain.Wanted(given["crs"], None, given["cell"], given["bounds"], given["fill"],
-                                  given["assign_crs"], own, given["z_unit"], given["nodata"])
+                                  given["assign_crs"], own, given["z_unit"], nodata_of(choices), pits=False)
     about = local_terrain.make(given["files"], new / TERRAIN, wanted, tell, warn)
     tell(local_terrain.summary(TERRAIN, about))
     return rasters.read_asc_local(new / TERRAIN)
+
+
+def nodata_of(choices: Choices) -> List[float]:
+    """Values of the rasters that stand for no height; site.yaml may have one, several, or none."""
+    given = choices["terrain"]["nodata"]
+    return given if isinstance(given, list) else [] if given is None else [given]
 
 
 def body_of(choices: Choices, wanted: release.Wanted, raster: Raster, warn) -> release.Body:
