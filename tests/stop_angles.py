@@ -90,13 +90,23 @@ class Ground(NamedTuple):
 
 
 def grounds_of_the_table():
-    s = "scattered"
-    return ([Ground(s, spacing, 30, 0.05) for spacing in (0.8, 0.5, 0.95, 0.7, 0.6, 0.9, 0.35)]
-            + [Ground(s, spacing, 30, rolling) for rolling in (0.0, 0.1) for spacing in (0.8, 0.5, 0.95, 0.7, 0.6, 0.9)]
-            + [Ground(s, spacing, friction, 0.05) for friction in (20, 10) for spacing in (0.8, 0.5, 0.95)]
-            + [Ground(s, 0.8, 30, 0.05, e) for e in (0.1, 0.5)]
-            + [Ground(s, 0.8, 30, 0.05, 0.3, layers) for layers in (1, 5)]
-            + [Ground("grid", spacing, 30, 0.05) for spacing in (0.5, 0.8, 1.0)])
+    every = [Ground("scattered", spacing, 30, rolling) for rolling in (0.05, 0.0, 0.1)
+             for spacing in (0.8, 0.5, 0.95, 0.7, 0.6, 0.9, 0.35)]
+    for friction in (20, 10):
+        every += [Ground("scattered", spacing, friction, 0.05) for spacing in (0.8, 0.5, 0.95)]
+    every += [Ground("scattered", 0.8, 30, 0.05, e) for e in (0.1, 0.5)]
+    every += [Ground("scattered", 0.8, 30, 0.05, 0.3, layers) for layers in (1, 5)]
+    every += [Ground("grid", spacing, 30, 0.05) for spacing in (0.5, 0.8, 1.0)]
+    # the corners
+    every += [Ground("scattered", 0.8, 30, rolling, 0.1) for rolling in (0.0, 0.1)]
+    every += [Ground("scattered", spacing, friction, rolling) for friction in (20, 10) for rolling in (0.0, 0.1)
+              for spacing in (0.8, 0.5, 0.95)]
+    every += [Ground("scattered", spacing, 30, 0.05, 0.1) for spacing in (0.5, 0.95)]
+    every += [Ground("scattered", spacing, 40, 0.05) for spacing in (0.8, 0.5, 0.95)]
+    every += [Ground("scattered", spacing, 30, 0.2) for spacing in (0.8, 0.5, 0.95)]
+    every += [Ground("grid", 0.8, 30, rolling) for rolling in (0.0, 0.1)]
+    return every + [Ground("grid", 0.8, 30, 0.05, 0.1), Ground("grid", 1.0, 20, 0.05),
+                    Ground("scattered", 0.35, 10, 0.0), Ground("scattered", 0.95, 10, 0.0, 0.5)]
 
 
 def ground_of(text):
@@ -253,7 +263,8 @@ def check_sheet(options):
             holds = lost == 0 and (left >= bound if more < 0 else left <= bound)
             good &= holds
             print(f"{ground.name}: {balls:.0f} balls on {slope:g} degrees, {more:+d} from the stop angle: {left:.1f} % "
-                  f"left, bound {bound} %, {moving:.0f} still move, {lost:.0f} lost{'' if holds else '   NOT'}", flush=True)
+                  f"left, bound {bound} %, {moving:.0f} still move, {lost:.0f} lost{'' if holds else '   NOT'}",
+                  flush=True)
     sys.exit(not good)
 
 
