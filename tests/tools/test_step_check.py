@@ -31,6 +31,15 @@ def test_half_the_step_against_the_mean_and_chance(volume, within, words):
     assert entry["mean_m3"] == 100 and entry["within_chance"] is within and words in entry["text"]
 
 
+def test_runs_on_another_ground_are_not_compared():
+    rows = [{"status": "finished", "run": spacing, "set": {"rolling": "0", "spacing": spacing}, "repeat": {},
+             "remove_m3": volume, "front_m": volume} for spacing, volume in (("0.5", 300.0), ("0.9", 100.0))]
+    both = combinations.grouped(rows)
+    assert step_check.compare(Step("0", 100.0, spacing="0.9"), both, None)["mean_m3"] == 100
+    assert step_check.compare(Step("0", 100.0, spacing="0.7"), both, None)["mean_m3"] is None
+    assert step_check.compare(Step("0", 100.0, spacing="0.7"), groups(), None)["mean_m3"] == 100
+
+
 def test_nothing_is_said_in_words():
     rows = [{"status": "finished", "run": str(k), "set": {"rolling": "0"}, "repeat": {"seed": str(k)}, "remove_m3": 0.0,
              "front_m": 1.0} for k in range(3)]

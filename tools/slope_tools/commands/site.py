@@ -32,20 +32,17 @@ OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
            "peak_friction": ("motion", "peak_friction"), "friction": ("model", "friction"),
            "rolling": ("study", "rolling"), "slip_friction": ("model", "slip_friction"),
            "density": ("model", "density"), "spacing": ("model", "spacing"),
-           "field_diameter": ("model", "field_diameter"),
-           "field_ratio": ("model", "field_ratio"), "field_restitution": ("model", "field_restitution"),
+           "field_restitution": ("model", "field_restitution"),
            "observed": ("observed", "file"), "diameter": ("balls", "diameter"), "balls": ("balls", "number"),
            "minutes": ("balls", "minutes"), "memory": ("balls", "memory"), "name": ("project", "name"),
            "client": ("project", "client"), "author": ("project", "author")}
 # options that change neither the body nor its runs: what was determined for these is kept
 BESIDE = {"road", "cut_angle", "mesh", "line", "observed", "name", "client", "author"}
 # of each group, an option that is given replaces the others
-ONE_OF = (("depth", "volume", "curvature"), ("diameter", "balls", "minutes", "memory"),
-          ("field_diameter", "field_ratio"))
+ONE_OF = (("depth", "volume", "curvature"), ("diameter", "balls", "minutes", "memory"))
 # --mobile: the Frank slide of 1903, doc/src/events.rst: its likeliest values, and the least rolling resistance that its
 # length and area allow
-MOBILE = {"friction": 6, "rolling": [0.05, 0.14], "spacing": 0.33, "field_ratio": site.OF_EVENTS,
-          "field_restitution": 0.16}
+MOBILE = {"friction": 6, "rolling": [0.05, 0.14], "spacing": 0.33, "field_restitution": 0.16}
 LIGHT = 100                 # kg/m3; less is not a ground's density, but one in t/m3 or relative to water's
 OF_BALL = 6 / math.pi       # density of a ball over that of the ground, in a cubic packing
 
@@ -153,12 +150,8 @@ def add_model(group):
     group.add_argument("--slip-friction", metavar="DEG", type=number, help="of the slip surface, degrees (default 0)")
     group.add_argument("--density", metavar="R", type=number, help="bulk density of the ground, kg/m3 (default 1786); "
                        "forces and energies are proportional to it, volumes and distances do not depend on it")
-    group.add_argument("--spacing", metavar="S", type=number, help="of the ground's balls, in their diameters (default "
-                       "1); less is smoother")
-    field = group.add_mutually_exclusive_group()
-    field.add_argument("--field-diameter", metavar="D", type=number, help="of the ground's balls, its roughness, m "
-                       "(default: that of the soil's)")
-    field.add_argument("--field-ratio", metavar="K", type=number, help="the same in cube roots of the body's volume")
+    group.add_argument("--spacing", metavar="S", type=number, help="of the ground's balls, in diameters, its "
+                       "roughness: up to 0.95 (default 0.9); less is smoother")
     group.add_argument("--field-restitution", metavar="E", type=number, help="on the ground (default 0.1)")
 
 
@@ -196,14 +189,14 @@ def chosen(args):
     if "density" in given:
         given["density"] = density_of_ball(given["density"])
     if args.mobile:
-        given = {**{option: value for option, value in MOBILE.items()
-                    if not (option == "field_ratio" and "field_diameter" in given)}, **given}
+        given = {**MOBILE, **given}
     if args.folder is not None:
         if args.output is not None:
             raise SlopeError("-o", f"must not be given with the folder of a site, {args.folder}, which is rebuilt",
                              args.output)
         folder, choices = args.folder, site_choices.read(args.folder)
         known = site_choices.found(folder).get("derived") or {}
+        choices = of_new_ground(choices, folder, given)
         if given.keys() - BESIDE:
             site_choices.forget(choices, known)
             known = {}
@@ -217,6 +210,20 @@ def chosen(args):
                        {OPTIONS[option]: "--assign-crs" if option == "assigned" else f"--{option.replace('_', '-')}"
                         for option in given})
     return folder, choices, known
+
+
+def of_new_ground(choices, folder, given):
+    """The choices of a folder, an older one with the ground of this version, which is said."""
+    if not site_choices.has_old_ground(choices):
+        return choices
+    spacing, most = choices["model"]["spacing"], site_choices.widest()
+    if spacing > most and "spacing" not in given:
+        raise SlopeError(f"{folder / site_choices.NAME}: model.spacing", f"must be <= {most:g}: the ground of an older "
+                         "version was a plan grid, now it is scattered balls; give --spacing 0.9, the default, or keep "
+                         "the folder as it is: its study still runs", f"{spacing:g}")
+    print(f"{folder / site_choices.NAME}: {' and '.join(site_choices.RETIRED)} of an older version no longer count: "
+          "the ground is scattered balls as large as those of the soil")
+    return site_choices.without_old_ground(choices)
 
 
 def of_slips(args):
@@ -245,12 +252,9 @@ def model(args, choices):
     if args.mobile:
         yield ("--mobile: values of the Frank slide of 1903, 36 million m3 of rock; what is known of smaller or wet "
                "masses is on the page events of the documentation; a mass that passes the road leaves less on it")
-    if args.mobile or any(getattr(args, option) is not None for option in (*MOBILE, "density", "slip_friction",
-                                                                           "field_diameter")):
-        field = f"{of['field_diameter']:g} m" if of["field_diameter"] else \
-            f"{of['field_ratio']:.3g} of the cube root of the volume" if of["field_ratio"] else "those of the soil"
+    if args.mobile or any(getattr(args, option) is not None for option in (*MOBILE, "density", "slip_friction")):
         yield (f"friction {of['friction']:g} degrees, on the slip surface {of['slip_friction']:g}; rolling resistance "
-               f"{', '.join(f'{one:g}' for one in choices['study']['rolling'])}; the ground: balls of {field}, spacing "
+               f"{', '.join(f'{one:g}' for one in choices['study']['rolling'])}; the ground: spacing "
                f"{of['spacing']:g}, restitution {of['field_restitution']:g}; bulk density "
                f"{of['density'] / OF_BALL:,.0f} kg/m3")
 
