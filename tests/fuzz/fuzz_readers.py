@@ -253,7 +253,7 @@ def read_page(folder):
     """The report on a study, all but the drawing."""
     from slope_tools.plots import figure_charts, figure_maps
     from slope_tools.report import document
-    from slope_tools.report.asked import Asked
+    from slope_tools.report.heading import Asked
     for name in ("value_map", "terrain_map", "mesh_map", "small_maps"):
         setattr(figure_maps, name, lambda *_, **__: "")
     for name in ("bars", "chart", "convergence"):

@@ -6,10 +6,12 @@ from ..errors import SlopeError
 from ..mobility import body, events, exceedance, fall_path, relation, results, road
 from ..options import add_overwrite
 from ..releases import release
+from ..sites import site_choices
 from ..sites.site_layers import ROAD
-from ..survey import lines, polygons
+from ..survey import lines, roads
 from ..survey.crs import as_crs
 from ..warned import printer
+from . import road_arguments
 from .release_arguments import add_body, wanted
 
 DESCRIPTION = ("The probability that a mass goes beyond each point of its fall path, by known events of its volume "
@@ -40,8 +42,9 @@ def add_arguments(parser):
     kind.add_argument("--confined", action="store_const", const=True, dest="confined",
                       help="the path is laterally confined, a valley (default: both are shown)")
     kind.add_argument("--unconfined", action="store_const", const=False, dest="confined", help="the path is not")
-    parser.add_argument("--road", metavar="POLYGON",
-                        help="how likely the mass reaches it (default with SITE: its road)")
+    parser.add_argument("--road", metavar="POLYGON|LINE", help="how likely the mass reaches " + road_arguments.ROAD
+                        + " (default with SITE: its road)")
+    road_arguments.add_width(parser)
     parser.add_argument("--path", metavar="LINE", type=Path,
                         help="a line from the crown down, instead of the steepest descent")
     add_overwrite(parser)
@@ -86,10 +89,18 @@ def of_release(args, tell):
 
 def road_of(args, site, mass):
     """The road in local metres; None without one."""
+    asked = road_arguments.asked(args)
+    roads.check(asked)
     if args.road:
-        return polygons.read_local(args.road, mass.raster, args.local, args.crs and as_crs("--assign-crs", args.crs))
+        crs = args.crs and as_crs("--assign-crs", args.crs)
+        return roads.read_local(args.road, mass.raster, asked, args.local, crs).polygon
+    if asked.width is not None:
+        raise SlopeError("--road-width", "must be given with --road", f"{asked.width:g}")
     own = Path(args.terrain, ROAD)
-    return polygons.read_local(own, mass.raster, local=True) if site and own.is_file() else None
+    if not (site and own.is_file()):
+        return None
+    asked = roads.Asked.of(site_choices.read(Path(args.terrain))["road"])
+    return roads.read_local(own, mass.raster, asked, local=True).polygon
 
 
 def line_of(args, mass):

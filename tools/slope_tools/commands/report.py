@@ -13,7 +13,7 @@ from ..errors import SlopeError
 from ..options import add_overwrite
 from ..plots.section import FALL
 from ..report import document, paper
-from ..report.asked import Asked
+from ..report.heading import Asked
 from ..report.heading import SITE
 from ..studies import site_study
 

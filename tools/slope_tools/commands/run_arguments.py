@@ -14,6 +14,7 @@ from ..statistics import designs
 from ..studies.setup import Road, Setup
 from ..tables import intensity
 from ..warned import printer
+from . import road_arguments
 
 
 def add_deck(parser, site=False):
@@ -28,8 +29,9 @@ def add_runs(parser, road=False, output=True):
     parser.add_argument("--np", type=count, default=1, metavar="N", help="MPI ranks of each run (default 1)")
     parser.add_argument("--jobs", type=count, metavar="J",
                         help="runs at a time (default: as many as the cores of this machine allow)")
-    parser.add_argument("--road", metavar="POLYGON", type=Path, required=road,
-                        help="also compute the volume to remove from this road: GeoJSON, shapefile, CSV or WKT")
+    parser.add_argument("--road", metavar="POLYGON|LINE", type=Path, required=road,
+                        help="also compute the volume to remove from " + road_arguments.ROAD)
+    road_arguments.add_clearing(parser)
     parser.add_argument("--cut-angle", metavar="DEG", type=number,
                         help="rise of the cut surface from the road's edges, degrees (default 30); see `slope volume`")
     parser.add_argument("--mesh", metavar="SIZE", type=number,
@@ -147,6 +149,6 @@ def tell(what):
 def setup_of(args) -> Setup:
     """What these arguments say."""
     given = {name: value for name in ("cut_angle", "mesh") if (value := getattr(args, name)) is not None}
-    road = Road(args.road, **given, local=args.local) if args.road else None
+    road = Road(args.road, **given, local=args.local, asked=road_arguments.asked(args)) if args.road else None
     return Setup(args.deck, args.output, args.np, args.jobs, road, args.lmp, args.launcher, args.engine, args.slurm,
                  args.dry_run, tell, printer(args.command))

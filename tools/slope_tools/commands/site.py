@@ -15,8 +15,10 @@ from ..releases.release_scar import KINDS
 from ..runs import jobs
 from ..sites import site, site_choices
 from ..slips import bodies
+from ..survey import roads
 from ..survey.rasters import UNITS
 from ..warned import printer
+from . import road_arguments
 
 # option -> section and key of site.yaml
 OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
@@ -28,6 +30,7 @@ OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
            "scar": ("release", "scar"), "scar_is": ("release", "scar_is"), "least": ("release", "least"),
            "bodies": ("release", "bodies"),
            "road": ("road", "file"), "cut_angle": ("road", "cut_angle"), "mesh": ("road", "mesh"),
+           **{option: ("road", roads.KEYS[field]) for option, field in road_arguments.OPTIONS.items()},
            "structure": ("structures", "files"), "line": ("lines", "files"), "motion": ("motion", "file"),
            "peak_friction": ("motion", "peak_friction"), "friction": ("model", "friction"),
            "rolling": ("study", "rolling"), "slip_friction": ("model", "slip_friction"),
@@ -37,7 +40,7 @@ OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
            "minutes": ("balls", "minutes"), "memory": ("balls", "memory"), "name": ("project", "name"),
            "client": ("project", "client"), "author": ("project", "author")}
 # options that change neither the body nor its runs: what was determined for these is kept
-BESIDE = {"road", "cut_angle", "mesh", "line", "observed", "name", "client", "author"}
+BESIDE = {"road", *road_arguments.OPTIONS, "cut_angle", "mesh", "line", "observed", "name", "client", "author"}
 # of each group, an option that is given replaces the others
 ONE_OF = (("depth", "volume", "curvature"), ("diameter", "balls", "minutes", "memory"))
 # --mobile: the Frank slide of 1903, doc/src/events.rst: its likeliest values, and the least rolling resistance that its
@@ -124,7 +127,8 @@ def add_ground(group):
 
 
 def add_layers(group):
-    group.add_argument("--road", metavar="P", help="polygon of the road, for the volume to remove")
+    group.add_argument("--road", metavar="P", help="for the volume to remove, " + road_arguments.ROAD)
+    road_arguments.add_clearing(group)
     group.add_argument("--cut-angle", metavar="DEG", type=number, help="rise of the cut from its edges (default 30)")
     group.add_argument("--mesh", metavar="SIZE", type=number, help="side of the mesh cells, m (default 10)")
     group.add_argument("--structure", metavar="STL", action="append",

@@ -15,13 +15,15 @@ from ..sites.site_bodies import VARIABLE
 from ..sites.site_layers import ROAD
 from ..studies import results, site_study
 from ..studies.study import check_names, check_thresholds, perform
+from ..survey import roads
 from ..tables import intensity
 from ..tables.size_error import SizeErrors
+from . import road_arguments
 from .run_arguments import (OF_A_KIND, add_deck, add_intensity, add_mobility, add_repeats, add_runs, add_sample,
                             condition_of, settle_kind, setup_of)
 
 THICKNESSES = "0.1,0.5,1"      # of the maps of exceedance, m; the parser has None, as for all that a site refuses
-OF_A_ROAD = ("size_error", "road", "cut_angle", "mesh", "local")
+OF_A_ROAD = ("size_error", "road", *road_arguments.OPTIONS, "cut_angle", "mesh", "local")
 NOT_OF_A_SITE = ("set", "repeat", "vary", "sample", *OF_A_ROAD, "equally_good", "output", "exceed", "left_out",
                  *OF_A_KIND)
 OPTIONS = {"output": "-o", "left_out": "--except"}
@@ -210,7 +212,7 @@ def refuse(args, options):
 
 def write_report(study, page):
     from ..report import document
-    from ..report.asked import Asked
+    from ..report.heading import Asked
     print("\n".join(document.write(Asked(study, film=page.with_suffix(".mp4")), page)))
 
 
@@ -224,6 +226,8 @@ def run_site_ensemble(args, page=f"{site_study.ENSEMBLE}.html", method=""):
     args.site, args.method, args.output = site, method, args.output or site / site_study.ENSEMBLE
     if choices["road"]["file"]:
         args.road, args.cut_angle, args.mesh = site / ROAD, choices["road"]["cut_angle"], choices["road"]["mesh"]
+        for option, field in road_arguments.OPTIONS.items():
+            setattr(args, option, choices["road"][roads.KEYS[field]])
     run_deck(args)
     if not args.dry_run:
         write_report(args.output, site / page)

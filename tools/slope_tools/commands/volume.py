@@ -6,8 +6,9 @@ from pathlib import Path
 
 from .. import disk, warned
 from ..deposits import volume
-from ..deposits.volume import BLOCKED, CUT_ANGLE, MUCH_BELOW, SAMPLES
+from ..deposits.volume import CUT_ANGLE, MUCH_BELOW, SAMPLES
 from ..options import add_overwrite, number, whole
+from . import road_arguments
 
 DESCRIPTION = ("Volume to remove from a road, per mesh cell and in total, above a cut surface that rises from the "
                "road's edges.")
@@ -17,14 +18,19 @@ units: metres, m3, degrees. PREFIX is what fix deposit/grid was given as output.
 example: meshes of 10 m, the road from a GIS, and the volume also as loosened ground (bulk factor 2.3):
   tools/slope volume embankment --road route4.geojson --cut-angle 30 --mesh 10 --bulk 2.3 -o removal
 
-Writes volume.yaml, volume.csv, volume.geojson, volume_mesh.tif, volume.tif, axis.csv and volume.png.
+the road as a line, a lane of 3.5 m, and the hours of a loader that clears 60 m3 of loosened ground in an hour:
+  tools/slope volume embankment --road axis.geojson --road-width 8 --road-from 12.3 --mesh 10 --lane 3.5 \\
+      --clearing 60 --loosening 1.3 -o removal
+
+Writes volume.yaml, volume.csv, volume.geojson, volume_mesh.tif, volume.tif, axis.csv, stretches.csv, stretches.gpkg and
+volume.png.
 """
 
 
 def add_arguments(parser):
     parser.add_argument("prefix", metavar="PREFIX", help="output of fix deposit/grid: PREFIX.thickness.asc and so on")
-    parser.add_argument("--road", metavar="POLYGON", required=True, type=Path,
-                        help="the road: GeoJSON, shapefile, CSV or WKT")
+    parser.add_argument("--road", metavar="POLYGON|LINE", required=True, type=Path, help=road_arguments.ROAD)
+    road_arguments.add_clearing(parser)
     parser.add_argument("--cut-angle", metavar="DEG", type=number, default=CUT_ANGLE,
                         help=f"rise of the cut surface with distance from the road's edges, degrees (default "
                              f"{CUT_ANGLE:g})")
@@ -40,8 +46,6 @@ def add_arguments(parser):
                         help="also give the volumes for this bulk factor (volume of ground / volume of the balls)")
     parser.add_argument("--axis", metavar="LINE", type=Path,
                         help="the road's axis: GeoJSON, shapefile, CSV or WKT (default: the road's middle)")
-    parser.add_argument("--blocked", metavar="T", type=number, default=BLOCKED,
-                        help=f"the road is blocked where the deposit on the axis is thicker, m (default {BLOCKED:g})")
     parser.add_argument("--samples", metavar="K", type=whole, default=SAMPLES,
                         help=f"parts of a cell along a side for round corners and rough ground, even (default "
                              f"{SAMPLES}); planes are exact with any")
@@ -51,8 +55,8 @@ def add_arguments(parser):
 
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints the totals."""
-    wanted = volume.Wanted(args.road, args.mesh, args.cut_angle, args.local, args.axis, args.bulk, args.blocked,
-                           args.samples)
+    wanted = volume.Wanted(args.road, args.mesh, args.cut_angle, args.local, args.axis, args.bulk,
+                           road_arguments.asked(args), args.samples)
     volume.check(wanted)
     folder = args.output or Path(f"{args.prefix}.volume")
     disk.check_folder(folder, volume.FILES, [args.prefix, args.road], args.overwrite)
@@ -79,6 +83,24 @@ def summary(about, folder):
                       "to remove")
     lines.append(f"axis: blocked over {axis['blocked_length']:.1f} of {axis['length']:.1f} m, where thicker than "
                  f"{axis['blocked_above']:g} m; up to {axis['largest_thickness']:.2f} m")
+    lines += of_stretches(about["stretches"], about["clearing"])
     lines.append(f"mesh of {about['mesh']['size']:g} m: {about['mesh']['cells_to_clear']} cells to clear")
     lines.append(f"written to {folder}: {' '.join(about['files'])}")
     return "\n".join(lines)
+
+
+def of_stretches(stretches, total):
+    """Lines on the blocked stretches, one for each, and on all of them."""
+    def with_hours(one, volume, hours):
+        return f"{one[volume]:.1f} m3" + (f" ({one[hours]:.1f} hours)" if hours in one else "")
+
+    for number_, one in enumerate(stretches, 1):
+        lane = f"; a lane: {with_hours(one, 'remove_lane', 'hours_lane')}, {one['lane_offset']:+.2f} m from the axis" \
+            if "remove_lane" in one else ""
+        yield (f"stretch {number_}: {one['from']:.1f} to {one['to']:.1f} m, up to "
+               f"{one['largest_thickness_on_axis']:.2f} m on the axis, {one['passable_width']:.2f} m passable; "
+               f"to remove: {with_hours(one, 'remove', 'hours')}{lane}")
+    if "hours" in total or "lane" in total:
+        lane = f"; a lane of {total['lane']:g} m: {with_hours(total, 'remove_lane', 'hours_lane')}" \
+            if "lane" in total else ""
+        yield f"all stretches: {with_hours(total, 'remove', 'hours')}{lane}"

@@ -12,6 +12,7 @@ triangles of a part, where the two terms have exact integrals: plane ground and 
 whatever k is; only round corners (the cut around a corner is a cone), the seams between two edges, and rough ground
 depend on k. A part that the edge crosses is divided by it into its exact areas.
 """
+from types import SimpleNamespace
 from typing import NamedTuple
 
 import numpy as np
@@ -21,7 +22,7 @@ from scipy.ndimage import convolve, maximum_filter, minimum_filter
 from scipy.spatial import cKDTree
 from shapely.affinity import translate
 from shapely.geometry import Point, box
-from shapely.ops import triangulate
+from shapely.ops import triangulate, unary_union
 
 from ..geometry import Lines, coverage, edges, polygons_of
 from ..survey.rasters import progress
@@ -119,10 +120,6 @@ class Edge:
         nearest = np.arange(len(place)), square.argmin(axis=1)
         return self.ground.height(*foot[nearest].T) + self.tangent * np.sqrt(square[nearest])
 
-    def above_ground(self, x, y):
-        """Height of the cut above the ground at points x, y (1-d arrays)."""
-        return self.cut(x, y) - self.ground.height(x, y)
-
 
 class NoGround(Exception):
     """Raised with a point (index coordinates) of the road's edge where the ground is not known."""
@@ -164,13 +161,25 @@ def heights(road, ground, tangent, x, y):
     return np.where([road.contains(Point(place)) for place in zip(x, y)], np.nan, z)
 
 
-def removed(thickness, ground, road, tangent, mesh, k):
-    """What must be removed, a Removed. road: polygon in the grid; tangent: rise of the cut (m) per cell of distance."""
-    work = _Work(thickness, ground, road, tangent, mesh, k)
+def one_cell(thickness):
+    """A mesh of one cell, the grid."""
+    rows, columns = thickness.shape
+    return SimpleNamespace(x=np.array([0.0, columns]), y=np.array([0.0, rows]), shape=(1, 1))
+
+
+def removed(thickness, ground, roads, tangent, mesh, k, silent=False):
+    """What must be removed, a Removed: the union of the cuts of all roads.
+
+    roads: polygons in the grid; tangent: rise of the cut (m) per cell of distance; silent: no progress is shown.
+    """
+    if not roads:
+        return Removed(np.zeros(thickness.shape), np.zeros(mesh.shape), np.zeros(mesh.shape), 0.0, 0.0)
+    work = _Work(thickness, ground, roads, tangent, mesh, k)
     at = work.near()
     rows = np.flatnonzero(at.any(axis=1))
     step = max(1, STRIP // (k * k * at.shape[1]))
-    for top in progress(range(rows[0], rows[-1] + 1, step) if len(rows) else (), "cutting"):
+    strips = range(rows[0], rows[-1] + 1, step) if len(rows) else ()
+    for top in strips if silent else progress(strips, "cutting"):
         columns = np.flatnonzero(at[top:top + step].any(axis=0))
         if len(columns):
             work.do(top, min(top + step, rows[-1] + 1), columns[0], columns[-1] + 1)
@@ -178,9 +187,10 @@ def removed(thickness, ground, road, tangent, mesh, k):
 
 
 class _Work:
-    def __init__(self, thickness, ground, road, tangent, mesh, k):
-        self.t, self.ground, self.road, self.tangent = thickness, ground, road, tangent
-        self.edge = Edge(road, ground, tangent)
+    def __init__(self, thickness, ground, roads, tangent, mesh, k):
+        self.t, self.ground, self.tangent = thickness, ground, tangent
+        self.road = roads[0] if len(roads) == 1 else unary_union(roads)
+        self.edges = [Edge(road, ground, tangent) for road in roads]
         self.all, self.bent = self.kinds(*ground.bounds())
         self.lines = [Lines(n, k, lines) for n, lines in zip(thickness.shape, (mesh.y, mesh.x))]
         self.cells = np.zeros(thickness.shape)
@@ -204,13 +214,19 @@ class _Work:
     def kinds(self, low, high):
         """Cells of which all lies above the cut, and those of which neither all nor nothing does: two masks."""
         t, known = self.t, self.t > 0
-        edge_low, edge_high = self.edge.bounds(t.shape)
         row, column = np.nonzero(known)
-        far = np.zeros(t.shape)
-        far[known] = self.edge.points.query(np.column_stack([column, row]) + 0.5)[0]
-        all_ = known & (edge_high + self.tangent * (far + HALF_DIAGONAL) <= low)
-        none = edge_low + self.tangent * (far - HALF_DIAGONAL - STEP) >= high + t
+        all_, none = np.zeros(t.shape, bool), known.copy()
+        for edge in self.edges:
+            edge_low, edge_high = edge.bounds(t.shape)
+            far = np.zeros(t.shape)
+            far[known] = edge.points.query(np.column_stack([column, row]) + 0.5)[0]
+            all_ |= known & (edge_high + self.tangent * (far + HALF_DIAGONAL) <= low)
+            none &= edge_low + self.tangent * (far - HALF_DIAGONAL - STEP) >= high + t
         return all_, known & ~(all_ | none)
+
+    def above_ground(self, x, y):
+        """Height of the lowest cut above the ground at points x, y (1-d arrays)."""
+        return np.min([edge.cut(x, y) for edge in self.edges], axis=0) - self.ground.height(x, y)
 
     def near(self):
         """Cells that may lose something: a mask."""
@@ -241,7 +257,7 @@ class _Work:
                 part |= open_
             h = np.full(corners.shape, np.nan)
             j, i = np.nonzero(corners)
-            h[corners] = self.edge.above_ground(x[i], y[j])
+            h[corners] = self.above_ground(x[i], y[j])
             four = [part[open_] for part in (h[:-1, :-1], h[:-1, 1:], h[1:, 1:], h[1:, :-1])]
             mean[open_] = linear_mean(four[0], four[1], four[2], four[3], t[open_])
             below[open_] = sum(four) < 0
@@ -252,7 +268,7 @@ class _Work:
                 rest = (area - on_road)[mixed]
                 cx = np.clip((np.diff(u ** 2) / 2 * np.diff(v)[:, None] - in_x)[mixed] / rest, u[i], u[i + 1])
                 cy = np.clip((np.diff(v ** 2)[:, None] / 2 * np.diff(u) - in_y)[mixed] / rest, v[j], v[j + 1])
-                centre = self.edge.above_ground(cx + left, cy + top)
+                centre = self.above_ground(cx + left, cy + top)
                 mean[mixed] = np.clip(t[mixed] - centre, 0, t[mixed])
                 below[mixed] = centre < 0
                 # not so where the cut leaves the deposit, above or below, next to the edge
@@ -283,7 +299,7 @@ class _Work:
         (ax, ay), (bx, by), (cx, cy) = corners.transpose(1, 2, 0)
         area = np.abs((bx - ax) * (cy - ay) - (cx - ax) * (by - ay))
         every = corners.reshape(-1, 2)
-        h = self.edge.above_ground(every[:, 0], every[:, 1]).reshape(-1, 3).T
+        h = self.above_ground(every[:, 0], every[:, 1]).reshape(-1, 3).T
         volume = (positive_mean(*(t[number] - h)) - positive_mean(*-h)) * area
         total, area = (np.bincount(number, values, len(parts)) for values in (volume, area))
         return np.clip(np.divide(total, area, out=np.zeros(len(parts)), where=area > 0), 0, t)

@@ -8,6 +8,7 @@ from shapely.geometry import LineString, MultiLineString
 from .. import geometry
 from ..errors import SlopeError
 from ..survey.lines import lines_of
+from .axis import Axis
 
 STATIONS = 500         # cross sections of a curved road
 STRAIGHT = 0.98        # share of the centre line of a straight road that lies in the road
@@ -38,6 +39,17 @@ def middle(road):
     return eastward(rotate(lines_of(LineString(points)), angle, origin=(0, 0))), "middles of the road's cross sections"
 
 
+def axis_of(line, polygon, asked):
+    """The lines of a road's axis, how it was found, and the road's width (m); line: None of a road of polygons."""
+    axis, source = (MultiLineString([line]), "the road's line") if line is not None else middle(polygon)
+    return axis, source, asked.width or width_of(axis, polygon)
+
+
+def width_of(axis, polygon):
+    """The mean width (m) of polygons along an axis."""
+    return polygon.area / (axis.intersection(polygon).length or axis.length)
+
+
 def eastward(lines):
     """The lines, each and all of them from west to east (from south to north if they run more that way)."""
     west, south, east, north = lines.bounds
@@ -47,13 +59,30 @@ def eastward(lines):
     return MultiLineString(sorted(turned, key=lambda line: tuple(way @ line.T)[0]))
 
 
-def along(axis, run_, removed, blocked, path):
-    """Profile along the axis, a dict of arrays: one entry per cell that it crosses. Lengths are exact."""
-    shape = run_.raster.z.shape
-    inside = lines_of(axis.intersection(geometry.box_of(run_.raster)))
+def in_grid_of(axis, raster, path):
+    """The lines of an axis that lie in the grid; SlopeError, which names its file, if none does."""
+    inside = lines_of(axis.intersection(geometry.box_of(raster)))
     if inside.is_empty:
         raise SlopeError(path, "axis of the road must lie in the grid of the run", geometry.numbers(axis.bounds))
-    parts = [np.asarray(line.coords)[:, :2] for line in geometry.to_index(eastward(inside), run_.raster).geoms]
+    return eastward(inside)
+
+
+def axes_of(axis, asked):
+    """The lines of an axis, each an Axis; chainage runs on from one to the next. asked: roads.Asked."""
+    found, start = [], 1000 * asked.start
+    for line in axis.geoms:
+        found.append(Axis(line.coords, start))
+        start += line.length
+    return found
+
+
+def along(axis, run_, removed, asked):
+    """Profile along the axis, a dict of arrays: one entry per cell that it crosses. Lengths are exact.
+
+    asked: roads.Asked, whose start is the chainage of the axis' first point.
+    """
+    shape = run_.raster.z.shape
+    parts = [np.asarray(line.coords)[:, :2] for line in geometry.to_index(axis, run_.raster).geoms]
     start, end = np.concatenate([part[:-1] for part in parts]), np.concatenate([part[1:] for part in parts])
     _, a, b = geometry.pieces(np.arange(shape[1] + 1.0), np.arange(shape[0] + 1.0), start, end)
     length = np.hypot(*(b - a).T)
@@ -65,11 +94,11 @@ def along(axis, run_, removed, blocked, path):
     thickness = [run_.raster.z[side[:, 1], side[:, 0]] for side in sides]
     column, row = np.where((thickness[0] >= thickness[1])[:, None], sides[0], sides[1]).T
     length = length * run_.cell
-    to = np.cumsum(length)
+    to = 1000 * asked.start + np.cumsum(length)
     x, y = run_.raster.transform * tuple(centre.T)
     thickness = run_.raster.z[row, column]
     return {"from": to - length, "to": to, "x": x, "y": y, "ground": run_.base[row, column], "thickness": thickness,
-            "removed": removed[row, column], "blocked": (thickness > blocked).astype(int)}
+            "removed": removed[row, column], "blocked": (thickness > asked.blocked).astype(int)}
 
 
 def stretches(profile):

@@ -12,32 +12,32 @@ from .. import disk, geometry
 from ..errors import SlopeError
 from ..geometry import Mesh
 from ..sites.site_warnings import of_angles
-from ..survey import polygons, rasters
+from ..survey import rasters, roads
 from ..survey.lines import read_local
 from ..survey.rasters import crs_name
 from ..warned import Warned, warned
-from . import cut, deposit, volume_files
-from .road_axis import along, eastward, middle, stretches
+from . import clearing, cut, deposit, stretch_files, volume_files
+from .road_axis import along, axes_of, axis_of, in_grid_of, stretches, width_of
 
 CUT_ANGLE = 30.0       # degrees
-BLOCKED = 0.1          # m
 MOST_SAMPLES = 32
 SAMPLES = 4            # parts of a cell along a side
 MOST_MESH = 4_000_000  # mesh cells
 MUCH_BELOW = 0.1       # of the volume to remove: so much where the cut is below the ground is worth a warning
 EXACT = 1e-13          # of the deposit's volume: volumes are rounded to this once, so that they add up in every output
-FILES = ("volume.csv", "volume.geojson", "volume.tif", "volume_mesh.tif", "axis.csv", "volume.png", "volume.yaml")
+FILES = ("volume.csv", "volume.geojson", "volume.tif", "volume_mesh.tif", "axis.csv", "stretches.csv", "stretches.gpkg",
+         "volume.png", "volume.yaml")
 
 
 class Wanted(NamedTuple):
     """What is asked of a deposit: from which road how much must be removed."""
-    road: Path                          # polygon: GeoJSON, shapefile, CSV or WKT
+    road: Path                          # polygon, or line with a width: GeoJSON, shapefile, CSV or WKT
     mesh: float                         # m, side of the mesh cells
     cut_angle: float = CUT_ANGLE        # degrees, rise of the cut surface from the road's edges
     local: bool = False                 # road and axis are in local metres
     axis: Optional[Path] = None         # of the road; None: its middle
     bulk: Optional[float] = None        # another bulk factor, for which the volumes are given too
-    blocked: float = BLOCKED            # m; the road is blocked where the deposit is thicker
+    asked: roads.Asked = roads.NOTHING  # width of a line, lane, hours
     samples: int = SAMPLES              # parts of a cell along a side
 
 
@@ -49,6 +49,7 @@ class Removal(NamedTuple):
     mesh: Mesh
     result: "Result"
     profile: Dict[str, np.ndarray]      # along the axis
+    clearing: clearing.Clearing         # stretches, lanes, hours
     factor: Optional[float]             # by which the volumes change at the other bulk factor
     about: Dict[str, Any]               # content of volume.yaml
     warnings: List[Warned]
@@ -70,40 +71,50 @@ def of_run(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], None] = l
         warn(one)
     run = deposit.read(prefix, terrain, warn)
     mesh = make_mesh(wanted.mesh, run.raster)
-    road = in_grid(polygons.read_local(wanted.road, run.raster, wanted.local, warn=warn), run.raster, wanted.road, warn)
+    asked = wanted.asked
+    given = roads.read_local(wanted.road, run.raster, asked, wanted.local, warn=warn)
+    road = in_grid(given.polygon, run.raster, wanted.road, warn)
     if wanted.axis:
-        axis, source = eastward(read_local(wanted.axis, run.raster, wanted.local, "axis")), str(wanted.axis)
+        axis = in_grid_of(read_local(wanted.axis, run.raster, wanted.local, "axis"), run.raster, wanted.axis)
+        source, width = str(wanted.axis), width_of(axis, road)
     else:
-        axis, source = middle(road)
+        axis, source, width = axis_of(given.line, road, asked)
+    roads.check_lane(asked.lane, width)
     try:
         result = evaluate(run, road, wanted.cut_angle, mesh, wanted.samples)
+        profile = along(axis, run, result.removed, asked)
+        cleared = clearing.of_road(run, result, profile, axes_of(axis, asked), width,
+                                   road if given.line is None else None, asked, mesh, wanted.cut_angle, wanted.samples)
     except cut.NoGround as error:
         x, y = run.raster.transform * error.args[0]
         raise SlopeError(wanted.road, "ground at the edge of the road must have a height, it has none at",
                          f"{x:.3f} {y:.3f} (local metres)") from None
-    profile = along(axis, run, result.removed, wanted.blocked, wanted.axis or wanted.road)
     about = totals(wanted, run, mesh, result, profile, source)
+    about.update(clearing=cleared.totals, stretches=cleared.entries)
     if result.unknown > 0:
         warn(Warned("no ground", {"volume": float(result.unknown)}))
         about["volume"]["unknown"] = result.unknown
     about["warnings"] = [str(one) for one in warnings]
-    return Removal(run, road, axis, mesh, result, profile, wanted.bulk / run.bulk if wanted.bulk else None,
+    return Removal(run, road, axis, mesh, result, profile, cleared, wanted.bulk / run.bulk if wanted.bulk else None,
                    disk.plain(about), warnings)
 
 
 def write(found: Removal, folder: Path, picture: bool = True) -> None:
     """Tables, rasters, GeoJSON, map and volume.yaml, all of them or none; found.about gets their names."""
     run, mesh, result, about = found.run, found.mesh, found.result, found.about
+    lanes = found.clearing.mesh
     with disk.complete(folder, "volume.yaml") as new:
-        volume_files.write_csv(new / "volume.csv", run, mesh, result, found.factor)
-        volume_files.write_geojson(new / "volume.geojson", run, mesh, result, found.factor)
+        volume_files.write_csv(new / "volume.csv", run, mesh, result, found.factor, lanes)
+        volume_files.write_geojson(new / "volume.geojson", run, mesh, result, found.factor, lanes)
         rasters.write_geotiff(new / "volume.tif", {"thickness to remove (m)": np.where(
             np.isfinite(run.base) | (run.raster.z > 0), result.removed, np.nan)}, run.raster)
         rasters.write_geotiff(new / "volume_mesh.tif", {"volume to remove (m3)": result.volume},
                               run.raster._replace(transform=mesh.transform))
         volume_files.write_profile(new / "axis.csv", run, found.profile)
+        stretch_files.write_csv(new / "stretches.csv", run, found.clearing)
+        stretch_files.write_geopackage(new / "stretches.gpkg", run, found.clearing)
         if picture:
-            volume_files.draw(new / "volume.png", run, found.road, found.axis, mesh, result, about)
+            volume_files.draw(new / "volume.png", run, found.road, found.axis, mesh, result, about, found.clearing)
         about["files"] = sorted(path.name for path in new.iterdir()) + ["volume.yaml"]
         disk.write_yaml(new / "volume.yaml", about, "slope volume: what must be removed; m, m2, m3, degrees")
 
@@ -116,8 +127,10 @@ def check(wanted: Wanted) -> None:
         raise SlopeError("--mesh", "must be > 0", f"{wanted.mesh:g}")
     if wanted.bulk is not None and wanted.bulk <= 0:
         raise SlopeError("--bulk", "must be > 0", f"{wanted.bulk:g}")
-    if wanted.blocked < 0:
-        raise SlopeError("--blocked", "must be >= 0", f"{wanted.blocked:g}")
+    roads.check(wanted.asked)
+    if wanted.axis is not None and wanted.asked.width is not None:
+        raise SlopeError("--axis", "must not be given with --road-width: the axis of such a road is its line",
+                         wanted.axis)
     if not (2 <= wanted.samples <= MOST_SAMPLES and wanted.samples % 2 == 0):
         raise SlopeError("--samples", f"must be even, 2 to {MOST_SAMPLES}", wanted.samples)
 
@@ -173,7 +186,7 @@ class Result:
 def evaluate(run_, road, angle, mesh, samples=SAMPLES):
     """The Result for a Deposit, a road (polygon in local metres, in the grid) and a cut at an angle (degrees)."""
     tangent = math.tan(math.radians(angle)) * run_.cell
-    removed = cut.removed(run_.raster.z, cut.Ground(run_.base), geometry.to_index(road, run_.raster), tangent, mesh,
+    removed = cut.removed(run_.raster.z, cut.Ground(run_.base), [geometry.to_index(road, run_.raster)], tangent, mesh,
                           samples)
     return Result(run_, road, mesh, removed)
 
@@ -210,8 +223,8 @@ def totals(wanted: Wanted, run_, mesh, result, profile, source) -> Dict[str, Any
     about["largest_removed_thickness"] = round(float(result.removed.max()), 6)
     about["axis"] = {
         "source": source,
-        "length": round(profile["to"][-1], 6),
-        "blocked_above": wanted.blocked,
+        "length": round(profile["to"][-1] - profile["from"][0], 6),
+        "blocked_above": wanted.asked.blocked,
         "blocked_length": round(math.fsum(to - start for start, to in blocked), 6),
         "blocked_stretches": [[round(start, 6), round(to, 6)] for start, to in blocked],
         "largest_thickness": round(profile["thickness"][thickest], 6),

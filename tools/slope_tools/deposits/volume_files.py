@@ -12,8 +12,8 @@ LABELS = 150           # mesh cells on a map that get their volume written into 
 WGS84 = "EPSG:4326"
 
 
-def rows(run_, mesh, result, factor):
-    """One dict per listed mesh cell, from the north-west on."""
+def rows(run_, mesh, result, factor, lanes):
+    """One dict per listed mesh cell, from the north-west on; lanes: what lanes take of each, None without any."""
     east, north = run_.raster.offset
     for row, column in result.listed:
         x, y = (round(corner, 9) for corner in mesh.corner(row, column))  # 71 * 0.8 is 56.800000000000004
@@ -23,6 +23,8 @@ def rows(run_, mesh, result, factor):
                   "remove": result.volume[row, column]}
         if factor:
             values["remove_at_other_bulk_factor"] = round(values["remove"] * factor, result.digits)
+        if lanes is not None:
+            values["remove_lane"] = lanes[row, column]
         yield {key: value.item() if isinstance(value, np.generic) else value for key, value in values.items()}
 
 
@@ -31,13 +33,13 @@ def text(value, digits=9):
     return value if isinstance(value, int) else np.format_float_positional(round(value, digits), trim="-")
 
 
-def write_csv(path, run_, mesh, result, factor):
-    found = list(rows(run_, mesh, result, factor))      # at least one: the road's
+def write_csv(path, run_, mesh, result, factor, lanes=None):
+    found = list(rows(run_, mesh, result, factor, lanes))      # at least one: the road's
     disk.write(path, disk.csv_text(found[0], ([text(value, max(6, result.digits)) for value in values.values()]
                                               for values in found)))
 
 
-def write_geojson(path, run_, mesh, result, factor):
+def write_geojson(path, run_, mesh, result, factor, lanes=None):
     """Squares of the mesh. With an EPSG number: in that CRS, which the file names as GDAL and QGIS read and write it;
 
     in another CRS: in degrees of WGS 84, which is what GeoJSON means where it names none.
@@ -45,7 +47,7 @@ def write_geojson(path, run_, mesh, result, factor):
     crs = run_.raster.crs
     known = crs is not None and epsg(crs)
     features = []
-    for values in rows(run_, mesh, result, factor):
+    for values in rows(run_, mesh, result, factor, lanes):
         x, y = values["east"], values["north"]
         ring = [(x, y), (x + mesh.size, y), (x + mesh.size, y + mesh.size), (x, y + mesh.size), (x, y)]
         if crs is not None and not known:
@@ -68,7 +70,7 @@ def write_profile(path, run_, profile):
                                            for values in zip(*(columns[key].tolist() for key in order)))))
 
 
-def draw(path, run_, road, axis, mesh, result, about):
+def draw(path, run_, road, axis, mesh, result, about, cleared):
     from ..drawing import maps      # matplotlib
     raster = run_.raster
     full = np.argwhere(result.deposit > 0)
@@ -91,10 +93,16 @@ def draw(path, run_, road, axis, mesh, result, about):
     for number_, line in enumerate(axis.geoms):
         axes.plot(*np.asarray(line.coords).T, color="tab:blue", linewidth=0.8, linestyle="dashdot",
                   label=None if number_ else "axis")
-    cleared = np.argwhere(result.volume > 0)
-    if 0 < len(cleared) <= LABELS:
+    for number_, one in enumerate(cleared.stretches):
+        axes.plot(*np.asarray(one.axis.line(one.along).coords).T, color="tab:red", linewidth=2.4, alpha=0.8,
+                  label=None if number_ else "blocked stretch")
+    for number_, lane in enumerate(cleared.lanes):
+        maps.outline(axes, lane, color="tab:green", linewidth=1.2, label=None if number_ else
+                     f"lane of {about['clearing']['lane']:g} m, {about['clearing']['remove_lane']:,.0f} m3 to remove")
+    listed = np.argwhere(result.volume > 0)
+    if 0 < len(listed) <= LABELS:
         digits = 0 if result.volume.max() >= 10 else 2
-        for row, column in cleared:
+        for row, column in listed:
             x, y = mesh.corner(row, column)
             axes.add_patch(maps.plt.Rectangle((x, y), mesh.size, mesh.size, fill=False, linewidth=0.4))
             axes.text(x + mesh.size / 2, y + mesh.size / 2, f"{result.volume[row, column]:.{digits}f}",

@@ -48,7 +48,7 @@ def check_quantity(of: Optional[str], road: bool) -> str:
         return ON_ROAD if road else travel_shares.DISTANCE
     if of not in QUANTITIES:
         raise SlopeError("--of", f"must be one of {', '.join(QUANTITIES)}", of)
-    if of in study_table.ROAD_COLUMNS and not road:
+    if of in (*study_table.ROAD_COLUMNS, *study_table.LANE_COLUMNS) and not road:
         raise SlopeError("--road", f"must be given for {of}")
     return of
 

@@ -144,6 +144,7 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
     about["variables"] = {name: variable(runs, k, main) for k, name in enumerate(sample.names)}
     about["influence"] = {name: known_influence.evaluate(runs, name) for name in main[:1]}
     about["doubts"] = doubts(about, runs)
+    about["weights"] = whole_weights(runs)
     about["maps"] = [] if grids else known_maps.write(
         output / FOLDER, [run_folders.prefix_of(output / row["summary"]) for row in runs.rows], runs.mass,
         runs.several, runs.failed_share, levels, place)
@@ -167,16 +168,8 @@ def variable(runs: Runs, k: int, main: Sequence[str]) -> Dict[str, Any]:
     """Of a variable of the weighted runs: quantiles, and rank correlations with the main quantities."""
     places = runs.places[:, k]
     one = runs.sample.variables[k]
-    return {"quantiles": [one.value(place) for place in quantiles(places, runs.mass.share, MIDDLE)],
+    return {"quantiles": [one.value(place) for place in hazard.weighted(places, runs.mass.share, MIDDLE)],
             "rank": {name: rank(places, runs.column(name), runs.mass.share) for name in main}}
-
-
-def quantiles(values: np.ndarray, share: np.ndarray, wanted: Sequence[float]) -> List[float]:
-    """Values that shares of the weight lie at or below."""
-    order = np.argsort(values, kind="stable")
-    upto = np.cumsum(share[order])
-    return [float(values[order][min(int(np.searchsorted(upto, one * upto[-1] * (1 - 1e-12))), len(order) - 1)])
-            for one in wanted]
 
 
 def rank(x: np.ndarray, y: np.ndarray, share: np.ndarray) -> Optional[float]:
@@ -217,6 +210,13 @@ def doubts(about: Mapping[str, Any], runs: Runs) -> List[str]:
         found.append(f"{left} of {len(runs.rows)} runs lost more than {100 * LEFT:g} % of their volume over the edge: "
                      "their lengths, and so the weights, are those of what stayed; take a larger terrain")
     return found
+
+
+def whole_weights(runs: Runs) -> Dict[str, float]:
+    """The share of known events that each run stands for; the longest stands for those beyond it, too, as in maps."""
+    share = runs.mass.share.copy()
+    share[runs.mass.order[-1]] += runs.mass.far
+    return {row["run"]: float(one) for row, one in zip(runs.rows, share)}
 
 
 # --- tables ---

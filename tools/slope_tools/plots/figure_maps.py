@@ -185,6 +185,21 @@ def mesh_map(layers, removed, mesh, title, crs_name):
         return finish(sheet, layers, size, sheets.margins(frame)[0]), font >= LEAST_FONT
 
 
+def road_map(layers, parts, bounds, title, bar, crs_name):
+    """Parts of the road, areas in local metres, by a value in classes; parts: list of (area, value)."""
+    with plt.rc_context(STYLE):
+        frame = frame_of(layers, True, crs_name)
+        sheet, axes, size, beside, below = sheets.single(FULL, frame, title, TALL[FULL], bounds)
+        base_map(axes, layers)
+        cmap, norm = scheme(palettes.SHARE, bounds)
+        for area, value in parts:
+            for polygon in polygons_of(area):
+                axes.fill(*np.asarray(polygon.exterior.coords).T, color=cmap(norm(value)), lw=0, zorder=6.2)
+        sheets.draw_axes(axes, frame, size)
+        sheets.colour_bar(sheet, plt.cm.ScalarMappable(norm, cmap), bounds, bar, beside, below)
+        return finish(sheet, layers, size, sheets.margins(frame)[0])
+
+
 def terrain_map(layers, detail, crs_name):
     """The whole terrain, tinted by height; detail: the part that the other maps show."""
     with plt.rc_context(STYLE):

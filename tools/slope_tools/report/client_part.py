@@ -8,7 +8,7 @@ from .. import digits
 from ..deposits import travel_shares
 from ..ensembles import known_study
 from ..statistics import headline
-from . import body, caveats, structures_part
+from . import body, caveats, road_part, structures_part
 from .numbers import farthest_of
 
 WORDS = {"rolling": "the rolling resistance", "friction": "the friction", "d": "the size of the model's balls",
@@ -25,7 +25,8 @@ def content(data, ground, numbers, answers: Sequence[Optional[Dict[str, Any]]], 
     told, rest = caveats.shown(caveats.caveats(data, ground), warnings)
     return {"body": body.sentence(body.of_data(data, ground)),
             "answer": of_answer(data, main, numbers) if main else of_reach(data, numbers),
-            "sentences": sentences(data, ground, numbers, bool(main)), "caveats": told, "rest": rest,
+            "sentences": sentences(data, ground, numbers, bool(main))
+            + road_part.on_first_page(data, numbers, bool(main and main["withheld"])), "caveats": told, "rest": rest,
             "basis": basis(data)}
 
 

@@ -95,7 +95,7 @@ class Data:
     def __init__(self, folder, shown=None):
         self.folder, self.study = folder, None
         self.rows, self.finished, self.settings, self.repeats = [], [], {}, {}
-        self.road = self.removed = self._connected = self._releases = None
+        self.road = self.road_line = self.removed = self._connected = self._releases = None
         self.over_all, self.volumes = {}, {}
         if (folder / "study.yaml").is_file():
             self._read_study(shown)
@@ -119,8 +119,10 @@ class Data:
         self.drawn = [one for one in drawn if same_grid(one, self.result)]
         road = about.get("road")
         if road:
-            from ..survey import polygons
-            self.road = polygons.read_local(self.folder / str(road["local"]), self.result.deposit.raster, True)
+            from ..survey import roads
+            given = roads.read_local(self.folder / str(road["local"]), self.result.deposit.raster, roads.Asked.of(road),
+                                     True)
+            self.road, self.road_line = given
         # everything is read before anything is drawn: drawing takes a while
         if len(self.finished) > 1 and self.study.get("envelope"):
             for entry in (self.study["envelope"]["max_thickness"], *(self.study.get("exceedance") or ())):

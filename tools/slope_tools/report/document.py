@@ -9,7 +9,7 @@ from typing import List
 
 from .. import digits, disk
 from ..errors import SlopeError
-from .asked import Asked
+from .heading import Asked
 
 
 MADE_BY = "Made by tools/slope report"      # in each page

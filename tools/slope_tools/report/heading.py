@@ -1,6 +1,6 @@
-"""The heading of a report: project, client, author and survey, from the command line or from the site's file."""
+"""What is asked of a report, and its heading: project, client, author and survey, asked for or of the site's file."""
 from pathlib import Path
-from typing import Any, Dict, Optional
+from typing import Any, Dict, NamedTuple, Optional, Sequence
 
 from .. import schemas
 from ..schemas import TEXT, listed, mapping
@@ -10,6 +10,20 @@ SITE = "site.yaml"          # of `slope site`; its study is a folder in the site
 SECTIONS = mapping({}, project=mapping({}, null=True), terrain=mapping({}, null=True, files=listed(TEXT, null=True)),
                    release=mapping({}, null=True), found=mapping({}, null=True, body=mapping({}, null=True)))
 FIELDS = {"project": "name", "client": "client", "author": "author"}      # option: key below `project` in that file
+
+
+class Asked(NamedTuple):
+    """A page on a folder; all else may be left to the tools."""
+    folder: Path                                # of a study, or of a run
+    shown: Optional[str] = None                 # the run of a study whose maps are shown
+    section: Optional[Sequence[str]] = None     # X1 Y1 X2 Y2, the file of a line, or fall
+    local: bool = False                         # that line is in local metres
+    reference: Optional[Path] = None            # numbers from elsewhere
+    converge: Optional[Path] = None             # of slope sensitivity --converge
+    project: Optional[str] = None               # these three: the heading
+    client: Optional[str] = None
+    author: Optional[str] = None
+    film: Optional[Path] = None                 # file of the film, which is made, but written by the caller
 
 
 def heading(folder: Path, given: Dict[str, Optional[str]]) -> Dict[str, Optional[str]]:

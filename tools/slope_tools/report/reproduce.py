@@ -8,6 +8,7 @@ from typing import Any, Dict, Iterable, List, Tuple
 
 from .. import disk, provenance
 from ..case import run_folders
+from ..survey.roads import NOTHING, OPTIONS, Asked
 from .data import Data
 from .heading import site_file, site_of
 
@@ -87,6 +88,9 @@ def of_study(data) -> str:
     if road:
         words += ["--road", str(road["local"]), "--local", "--cut-angle", f"{road['cut_angle']:g}", "--mesh",
                   f"{road['mesh']:g}"]
+        asked = Asked.of(road)._asdict()
+        words += [word for field, option in OPTIONS.items() if asked[field] not in (None, NOTHING._asdict()[field])
+                  for word in (option, f"{asked[field]:g}")]
     return join([*words, "-o", str(data.folder)])
 
 

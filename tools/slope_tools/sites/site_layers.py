@@ -11,7 +11,7 @@ from shapely.geometry.base import BaseGeometry
 from ..errors import SlopeError
 from ..geometry import extent
 from ..releases import release_area
-from ..survey import polygons, rasters, vectors
+from ..survey import polygons, rasters, roads, vectors
 from ..survey.crs import as_crs, same_crs
 from ..survey.rasters import Raster, crs_name
 from ..warned import Warned
@@ -50,7 +50,7 @@ def read_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> L
 
     Raises SlopeError, which names the file, if one does not fit the terrain.
     """
-    road = polygon_layer(choices, choices["road"]["file"], raster, folder / ROAD, tell, warn)
+    road = road_layer(choices, raster, folder / ROAD, tell, warn)
     observed = observed_layer(choices, raster, folder, tell, warn)
     taken: Set[str] = set(site_inputs.TAKEN)
     structures = site_inputs.structures(choices["structures"]["files"], raster, folder, taken)
@@ -93,10 +93,10 @@ class Ground(NamedTuple):
         return f"{self.mean:.0f} m on average, a slope of {self.slope:.0f} degrees"
 
 
-def ground_of(choices: Choices, path: str, raster: Raster) -> Optional[Ground]:
-    """The ground in a polygon file, None if that cannot be read or has too few nodes."""
+def ground_of(choices: Choices, path: str, raster: Raster, asked: roads.Asked = roads.NOTHING) -> Optional[Ground]:
+    """The ground in a polygon file or on a road, None if that cannot be read or has too few nodes."""
     try:
-        geometry = polygons.read_local(path, raster, crs=assigned(choices, path))
+        geometry = roads.read_local(path, raster, asked, crs=assigned(choices, path)).polygon
     except SlopeError:
         return None
     inside = release_area.nodes_inside(raster, geometry) & np.isfinite(raster.z)
@@ -114,7 +114,8 @@ def swapped(choices: Choices, raster: Raster, wholly: bool = False) -> Optional[
     That is a road on higher and steeper ground; wholly: no part of it as low as the top of the release area.
     """
     paths = choices["release"]["polygon"], choices["road"]["file"]
-    release, road = (ground_of(choices, path, raster) if path else None for path in paths)
+    release, road = (ground_of(choices, path, raster, asked) if path else None for path, asked in
+                     zip(paths, (roads.NOTHING, roads.Asked.of(choices["road"]))))
     higher = release and road and (road.low > release.high if wholly else road.mean > release.mean)
     if release and road and higher and road.slope > release.slope:
         return f"--release {paths[0]}: {release.words}; --road {paths[1]}: {road.words}"
@@ -126,12 +127,32 @@ def polygon_layer(choices: Choices, path: Optional[str], raster: Raster, target:
     if not path:
         return None
     geometry = polygons.read_local(path, raster, crs=assigned(choices, path), advice=advice(choices, path), warn=warn)
-    beyond = 1 - geometry.intersection(box(*extent(raster))).area / geometry.area
-    if beyond > 1e-9:
-        warn(Warned("outside", {"file": str(path), "percent": 100 * beyond, "terrain": "the terrain"}))
+    warn_outside(path, geometry, raster, warn)
     geometry = polygons.write(target, geometry, raster)
     tell(f"{target.name}: {len(polygons.polygons_of(geometry))} polygon, {geometry.area:,.0f} m2")
     return geometry
+
+
+def road_layer(choices: Choices, raster: Raster, target: Path, tell, warn) -> Optional[BaseGeometry]:
+    """The road in local metres, written for the study; None if there is none."""
+    asked, path = roads.Asked.of(choices["road"]), choices["road"]["file"]
+    roads.check(asked)
+    if not path:
+        return None
+    road = roads.read_local(path, raster, asked, False, assigned(choices, path), advice(choices, path), warn)
+    if road.line is None:
+        warn_outside(path, road.polygon, raster, warn)
+    geometry = roads.write(target, road, raster)
+    what = "polygon" if road.line is None else f"line of {road.line.length:,.0f} m, {asked.width:g} m wide,"
+    tell(f"{target.name}: {len(polygons.polygons_of(geometry))} {what} {geometry.area:,.0f} m2")
+    return geometry
+
+
+def warn_outside(path: str, geometry: BaseGeometry, raster: Raster, warn) -> None:
+    """Warn of polygons that lie outside of the terrain in part."""
+    beyond = 1 - geometry.intersection(box(*extent(raster))).area / geometry.area
+    if beyond > 1e-9:
+        warn(Warned("outside", {"file": str(path), "percent": 100 * beyond, "terrain": "the terrain"}))
 
 
 def observed_layer(choices: Choices, raster: Raster, folder: Path, tell, warn):

@@ -13,7 +13,7 @@ from ..deposits import left, rest, travel_shares
 from ..ensembles import ensemble, known_study
 from ..runs import repeats
 from ..seismic import chain_files
-from ..survey import rasters
+from ..survey import rasters, roads
 from ..tables import (combinations, intensity, quantities, size_error, step_check, structures, study_table, usable,
                       withheld_words)
 from ..tables.size_error import SizeErrors
@@ -102,6 +102,9 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
             about["size_error_unusable"] = f"{unknown}. The volume falls with the size of the balls: nothing is added"
             unknown = ""
         usable.judge(best, rows, events_of(setup, first, finished[0]), case_of(setup, questions, finished[0]), unknown)
+    if setup.road and finished:
+        known = (about["ensemble"] or {}).get("known_events") or {}
+        about["stretches"] = stretches_of(output, finished, known.get("weights"))
     about["chain"] = chain_files.evaluate(questions.chain, rows, output, about["ensemble"]["withheld"]) \
         if questions.chain and order and finished else None
     about["intensity"] = intensity.collect(
@@ -148,10 +151,9 @@ def untrusted(errors: Optional[SizeErrors], groups) -> Optional[str]:
 
 def events_of(setup: Setup, run, row) -> Optional[usable.Events]:
     """Known events of the mass of a run, of its row."""
-    from ..survey import polygons
     summary = setup.output / row["summary"]
     raster = placed(run_folders.load_raster(run_folders.prefix_of(summary), "thickness"), run)
-    road = polygons.read_local(setup.road.file, raster, setup.road.local) if setup.road else None
+    road = setup.road.read(raster).polygon if setup.road else None
     return usable.known_events(run_folders.prefix_of(summary), terrain_of(run), row["released_m3"], road)
 
 
@@ -259,16 +261,16 @@ def result(run, row, maps):
 def on_road(run, setup: Setup, row, thickness, picture=True) -> Dict[str, Any]:
     """What `slope volume` says of a run, all of which goes to the folder volume of the run; and what lies beyond."""
     from ..deposits import volume
-    from ..survey import polygons
     road, summary = setup.road, setup.output / row["summary"]
     assert road
     prefix = run_folders.prefix_of(summary)
     terrain = terrain_of(run)
-    found = volume.of_run(str(prefix), volume.Wanted(road.file, road.mesh, road.cut_angle, road.local), terrain)
+    wanted = volume.Wanted(road.file, road.mesh, road.cut_angle, road.local, asked=road.asked)
+    found = volume.of_run(str(prefix), wanted, terrain)
     volume.write(found, run.folder / "volume", picture)
     about = disk.plain(found.about)       # numpy has no place in study.yaml
     released = run_folders.load_raster(prefix, "arrival").z == 0
-    polygon = polygons.read_local(road.file, placed(thickness, run), road.local)
+    polygon, total = road.read(placed(thickness, run)).polygon, about["clearing"]
     gone, passed = row["off_grid_m3"] + row["lost_m3"], run_folders.load_raster(prefix, "max_thickness")
     taken = on_body(thickness, released, polygon, row["ball_m3"])
     if taken > 0:
@@ -279,6 +281,8 @@ def on_road(run, setup: Setup, row, thickness, picture=True) -> Dict[str, Any]:
             "beyond_road_m3": beyond(thickness, released, polygon),
             "left_before_road_m3": left.before_road(gone, passed, released, polygon),
             "blocked_m": about["axis"]["blocked_length"], "axis_thickness_m": about["axis"]["largest_thickness"],
+            "remove_lane_m3": total.get("remove_lane"), "lane_hours": total.get("hours_lane"),
+            "clear_hours": total.get("hours"), "stretches": about["stretches"], "clearing": total,
             # what it says of the summary is in the table
             "road_warnings": entries(in_folder(one, run.folder) for one in found.warnings
                                      if one.kind not in OF_SUMMARY)}
@@ -336,10 +340,20 @@ def placed(raster, run):
 
 def write_road(output, road: Road, run, thickness) -> Dict[str, Any]:
     """Keep the road, in local metres, with the study; what study.yaml says of it."""
-    from ..survey import polygons
     raster = placed(thickness, run)
-    polygons.write(output / "road.csv", polygons.read_local(road.file, raster, road.local), raster)
-    return {"file": road.file.name, "local": "road.csv", "cut_angle": road.cut_angle, "mesh": road.mesh}
+    roads.write(output / "road.csv", road.read(raster), raster)
+    return {**road.about(), "local": "road.csv"}
+
+
+def stretches_of(output, rows, known) -> Dict[str, Any]:
+    """What study.yaml says of the stretches that finished runs block; known: weights by known events, or None."""
+    from ..tables import road_runs
+    weights = known or {row["run"]: 1.0 for row in rows if not row.get("batch")}
+    about = road_runs.evaluate([road_runs.Run(weights[row["run"]], row["stretches"], row["clearing"])
+                                for row in rows if row["run"] in weights])
+    head, *lines = road_runs.rows(about)
+    disk.write(output / road_runs.FILE, disk.csv_text(head, lines))
+    return {**about, "of_known_events": bool(known)}
 
 
 def terrain_place(run):

@@ -39,7 +39,7 @@ def quantities(wanted: Optional[str], road: bool, converge: bool) -> List[str]:
     for name in of:
         if name not in NAMES or of.count(name) > 1:
             raise SlopeError("--of", f"must be different ones of {', '.join(NAMES)}", wanted)
-        if name in study_table.ROAD_COLUMNS and not road:
+        if name in (*study_table.ROAD_COLUMNS, *study_table.LANE_COLUMNS) and not road:
             raise SlopeError("--road", f"must be given for {name} (--of takes others)")
     return of
 

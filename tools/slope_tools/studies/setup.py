@@ -2,6 +2,9 @@
 from pathlib import Path
 from typing import Any, Callable, Dict, NamedTuple, Optional
 
+from ..survey.roads import NOTHING, Asked, read_local
+from ..survey.vectors import ignore
+
 
 class Road(NamedTuple):
     """A road, and how the volume to remove from it is measured; see deposit.volume.Wanted."""
@@ -9,10 +12,15 @@ class Road(NamedTuple):
     cut_angle: float = 30.0     # degrees
     mesh: float = 10.0          # m
     local: bool = False         # in local metres
+    asked: Asked = NOTHING      # width of a line, lane, hours
 
     def about(self) -> Dict[str, Any]:
         """What a study keeps of it."""
-        return {"file": self.file.name, "cut_angle": self.cut_angle, "mesh": self.mesh}
+        return {"file": self.file.name, "cut_angle": self.cut_angle, "mesh": self.mesh, **self.asked.about()}
+
+    def read(self, raster, warn=ignore):
+        """The roads.Road, in the local metres of a raster or place."""
+        return read_local(self.file, raster, self.asked, self.local, warn=warn)
 
 
 class Setup(NamedTuple):

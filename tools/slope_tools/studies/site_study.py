@@ -17,6 +17,7 @@ from ..sites import ground, site_choices, site_deck, site_warnings
 from ..sites.site_budget import three_digits
 from ..sites.site_choices import Choices, OFFSETS, other_grounds
 from ..sites.site_layers import OBSERVED, ROAD
+from ..survey.roads import Asked
 from ..tables import energy
 from ..tables.quantities import NAMES
 from ..tables.size_error import SizeErrors, WHAT
@@ -79,7 +80,7 @@ def run_alone(folder: Path, choices: Choices, engine: Setup, method: str) -> Don
     road = choices["road"]
     setup = engine._replace(deck=deck, output=folder / STUDY, road=None)
     if road["file"]:
-        setup = setup._replace(road=Road(folder / ROAD, road["cut_angle"], road["mesh"]))
+        setup = setup._replace(road=Road(folder / ROAD, road["cut_angle"], road["mesh"], asked=Asked.of(road)))
     several = choices["study"]
     repeated = {name: words(several[name]) for name in OFFSETS if several[name]}
     found = Sizes(None, (), None)

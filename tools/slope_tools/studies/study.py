@@ -110,7 +110,8 @@ def check_thresholds(text, option="--exceed", what="thicknesses"):
 
 def check_road(road: Road, deck: Path, settings) -> None:
     """Raise SlopeError now if the road cannot be used after the runs, as far as the deck names its terrain."""
-    from ..survey import polygons
+    from ..survey import roads
+    roads.check(road.asked)
     if not road.file.is_file():
         raise SlopeError("--road", "must be an existing file", road.file)
     if not 0 < road.cut_angle < 90:
@@ -119,7 +120,7 @@ def check_road(road: Road, deck: Path, settings) -> None:
         raise SlopeError("--mesh", "must be > 0", f"{road.mesh:g}")
     path = terrain_of(deck, {name: several[0] for name, several in settings.items()})
     if path:
-        polygons.read_local(road.file, rasters.read_place(path), road.local)
+        road.read(rasters.read_place(path))
 
 
 def terrain_of(deck, chosen):

@@ -24,13 +24,14 @@ def lines_of(geometry):
     return MultiLineString(lines)
 
 
-def read_local(path, raster, local, what="line", advice=None, crs=None, warn=vectors.ignore):
+def read_local(path, raster, local, what="line", advice=None, crs=None, warn=vectors.ignore,
+               instead="draw one, as the outline of an area has no forward and back"):
     """The lines in a file, a MultiLineString in the local metres of a run, drawn in the file's direction.
 
     A CSV (x,y in its lines) or WKT is in the CRS of the run's terrain; local: coordinates of any file are local metres
     already; crs: the CRS of the file, whatever it names. what: what the line is, for messages; advice: a
     polygons.Advice for those on a missing CRS; warn is called with a line for each doubt. Raises SlopeError, which
-    names the file.
+    names the file; instead: its remedy for a file of polygons.
     """
     vectors.require_file(path)
     text_ = polygons.read_text(path)
@@ -44,10 +45,11 @@ def read_local(path, raster, local, what="line", advice=None, crs=None, warn=vec
         polygons.check_unit(path, unit, local, crs, advice or polygons.ADVICE)
     lines = lines_of(geometry)
     if lines.is_empty and (others := kinds(geometry)):
-        raise SlopeError(path, "must hold a line: draw one, as the outline of an area has no forward and back" if
-                         "Polygon" in others else "must hold a line: draw one", f"only {others}")
+        raise SlopeError(path, f"must hold a line: {instead if 'Polygon' in others else 'draw one'}",
+                         f"only {others}")
     if lines.is_empty or not all(np.isfinite(line.coords).all() for line in lines.geoms) or lines.length == 0:
         raise SlopeError(path, "must hold a line of a length > 0")
+    local = local or text_ is not None and polygons.is_local(path, text_, raster)
     plain = text_ is not None and crs is None
     crs = crs or own
     if not (local or plain or crs is None):

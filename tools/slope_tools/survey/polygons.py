@@ -75,7 +75,7 @@ def _read_local(path, raster, local, crs, advice, warn):
         polygons, own = _read_wkt(path, text), raster.crs
     else:
         (polygons, unit), own = _read_rings(path, text), raster.crs
-        local = local or _is_local(path, text, raster)
+        local = local or is_local(path, text, raster)
         check_unit(path, unit, local, crs, advice)
     geometry = polygons[0] if len(polygons) == 1 else unary_union(polygons)
     plain = not local and text is not None and crs is None      # numbers of which no file says what they are
@@ -249,7 +249,7 @@ def _with_holes(polygon, holes):
     return whole if whole.is_valid else polygon.difference(unary_union(holes))
 
 
-def _is_local(path, text, raster):
+def is_local(path, text, raster):
     """Whether a text was written by write(); SlopeError if it was for a terrain at another place.
 
     A run without a terrain that tells its place (no CRS, origin 0 0) is in the local metres of whatever terrain.
@@ -258,12 +258,12 @@ def _is_local(path, text, raster):
     if not place:
         return False
     unknown = raster.crs is None and tuple(raster.offset) == (0, 0)
-    if place.group(0) != _place_line(raster) and not unknown:
-        raise SlopeError(path, f"must be for this terrain ({_place_line(raster)[2:]})", place.group(0)[2:])
+    if place.group(0) != place_line(raster) and not unknown:
+        raise SlopeError(path, f"must be for this terrain ({place_line(raster)[2:]})", place.group(0)[2:])
     return True
 
 
-def _place_line(raster):
+def place_line(raster):
     east, north = (repr(float(value)) for value in raster.offset)
     return f"# {HEAD} east = x + {east}, north = y + {north}, CRS {crs_name(raster.crs)}"
 
@@ -341,5 +341,5 @@ def write(path, geometry, raster):
     if rounded.is_valid and rounded.area > 0:
         geometry = rounded
     rings = "\n".join("".join(f"{x!r},{y!r}\n" for x, y in ring.tolist()) for ring in rings_of(geometry))
-    disk.write(path, f"{_place_line(raster)}\n{rings}")
+    disk.write(path, f"{place_line(raster)}\n{rings}")
     return geometry

@@ -6,6 +6,8 @@ from ..deposits import travel_shares
 NAMES = {"remove_m3": ("to remove", "m3"), "remove_on_road_m3": ("on the road", "m3"),
          "remove_beside_road_m3": ("beside the road", "m3"), "beyond_road_m3": ("beyond the road", "m3"),
          "blocked_m": ("blocked length", "m"), "axis_thickness_m": ("thickness on the road's axis", "m"),
+         "remove_lane_m3": ("to remove for a lane", "m3"), "lane_hours": ("until a lane is open", "hours"),
+         "clear_hours": ("until the road is clear", "hours"),
          "released_m3": ("released", "m3"),
          **{f"distance_{share}_m": (f"{share} % within", "m") for share in travel_shares.SHARES},
          **{f"reach_{share}_deg": (f"reach angle of {share} %", "degrees") for share in travel_shares.SHARES},

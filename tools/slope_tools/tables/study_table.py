@@ -14,6 +14,7 @@ COLUMNS = ("released_m3", "on_grid_m3", "off_grid_m3", "lost_m3", "residual_m3",
 ROAD_COLUMNS = ("remove_m3", "remove_on_road_m3", "remove_beside_road_m3", "beyond_road_m3", "blocked_m",
                 "axis_thickness_m")
 STOP = "stop_angle_deg"     # of the ground, where it is known
+LANE_COLUMNS = ("remove_lane_m3", "lane_hours", "clear_hours")      # of those that are asked for
 MAYBE = (*travel_shares.COLUMNS, "connected_m", "connected_deg", "wall_s", "beyond_road_m3")     # that may be unknown
 ANSWER = {True: "yes", False: "no"}
 
@@ -25,13 +26,14 @@ SHOWN: Dict[str, Tuple[str, Any]] = {      # head, format
     "wall_s": ("wall s", "{:.0f}")}
 SHOWN_ROAD: Dict[str, Tuple[str, Any]] = {
     "remove_m3": ("to remove", None), "remove_on_road_m3": ("on the road", None),
-    "beyond_road_m3": ("beyond it", None), "blocked_m": ("blocked m", "{:.0f}")}
+    "beyond_road_m3": ("beyond it", None), "blocked_m": ("blocked m", "{:.0f}"), "remove_lane_m3": ("a lane", None),
+    "lane_hours": ("lane hours", "{:.1f}")}
 
 
 def table(settings, repeated, rows, defaults):
     """The CSV over all runs."""
     columns = [*COLUMNS, *(ROAD_COLUMNS if any("remove_m3" in row for row in rows) else ()),
-               *([STOP] if any(row.get(STOP) is not None for row in rows) else ()), "status", "error"]
+               *(key for key in (STOP, *LANE_COLUMNS) if any(row.get(key) is not None for row in rows)), "status", "error"]
     more = [name for name in repeated if name not in settings]
 
     def line(row):
@@ -63,7 +65,7 @@ def runs_shown(settings, rows, scatters, title) -> Table:
     shown = Table(title=title, caption=caption)
     columns = {**SHOWN, **(SHOWN_ROAD if any("remove_m3" in row for row in rows) else {})}
     finished = [row for row in rows if row["status"] == "finished"]
-    columns = {key: column for key, column in columns.items() if any(row[key] is not None for row in finished)}
+    columns = {key: column for key, column in columns.items() if any(row.get(key) is not None for row in finished)}
     repeated = any(row["repeat"] for row in rows)
     for head in (*names, *(["repeat"] * repeated)):
         shown.add_column(head, justify="right", no_wrap=True)

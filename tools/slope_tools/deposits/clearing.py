@@ -1,0 +1,84 @@
+"""How a road is cleared: its blocked stretches, what each takes, a lane through all of them, and the hours.
+
+What must be removed anywhere belongs to the stretch that is nearest along the axis, so that the stretches add up to the
+whole. The lanes of several stretches may cut the same ground, which counts once in their total.
+"""
+from typing import Any, Dict, List, NamedTuple, Optional, Sequence
+
+import numpy as np
+from shapely.geometry.base import BaseGeometry
+
+from ..geometry import Mesh
+from ..survey.roads import Asked
+from . import lanes
+from .axis import Axis
+from .lanes import Place, Stretch
+
+LANE = "remove_lane"        # of a stretch, and of a mesh cell
+DIGITS = 6                  # of lengths in m and of hours
+
+
+class Clearing(NamedTuple):
+    """What a road takes, for volume.yaml, tables and maps."""
+    stretches: List[Stretch]
+    entries: List[Dict[str, Any]]       # of each stretch: lengths in m, volumes in m3 of ground, hours
+    totals: Dict[str, Any]
+    lanes: List[BaseGeometry]           # of each stretch, local metres; none where no lane is asked for
+    mesh: Optional[np.ndarray]          # m3 of the lanes together in each mesh cell
+
+
+def of_road(run_, result, profile, axes: Sequence[Axis], width: float, road: Optional[BaseGeometry], asked: Asked,
+            mesh: Mesh, angle: float, samples: int) -> Clearing:
+    """The Clearing of a Deposit's road.
+
+    result: volume.Result; profile: along the axis; width: of the road, m; road: see lanes.stretches; angle: of the cut,
+    degrees.
+    """
+    found = lanes.stretches(run_.raster, axes, width, asked.blocked, road)
+    hours = asked.hours
+    entries = [{"from": round(one.along.low, DIGITS), "to": round(one.along.high, DIGITS),
+                "largest_thickness_on_axis": thickest(profile, one), "passable_width": round(one.passable, DIGITS),
+                "remove": result.rounded(volume)} for one, volume in zip(found, volumes(run_, result, found))]
+    totals = {"road_width": round(width, DIGITS), "blocked_above": asked.blocked,
+              "blocked_length": round(sum(one.along.high - one.along.low for one in found), DIGITS),
+              "remove": result.total(result.volume)}
+    areas, by_mesh = [], None
+    if asked.lane is not None:
+        lane = min(asked.lane, width)
+        cutter = lanes.Cutter(run_.raster, run_.base, angle, samples)
+        for one, entry in zip(found, entries):
+            place = cutter.least(one, width, lane)
+            areas.append(cutter.area(one, place.offset, lane))
+            entry.update(lane_offset=round(place.offset, DIGITS), **volumes_of_lane(run_, result, place, cutter, areas))
+        together = cutter.removed(areas, mesh)
+        by_mesh = result.rounded((together.mesh_road + together.mesh_beside) * run_.cell ** 2)
+        totals.update(lane=asked.lane, **{LANE: result.total(by_mesh)})
+        totals["remove_lane_of_two"] = result.rounded(sum(entry[LANE] for entry in entries) - totals[LANE])
+    if hours is not None:
+        totals.update(clearing=asked.clearing, loosening=asked.loosening)
+        for entry in (*entries, totals):
+            entry["hours"] = round(entry["remove"] * hours, DIGITS)
+            if LANE in entry:
+                entry["hours_lane"] = round(entry[LANE] * hours, DIGITS)
+    return Clearing(found, entries, totals, areas, by_mesh)
+
+
+def volumes_of_lane(run_, result, place: Place, cutter: lanes.Cutter, areas) -> Dict[str, float]:
+    """What the last of these lanes takes, m3, and the part of it where the cut lies below the ground."""
+    steep = cutter.removed(areas[-1:]).steep * run_.cell ** 2
+    return {LANE: result.rounded(place.volume), "remove_lane_where_cut_below_ground": result.rounded(steep)}
+
+
+def thickest(profile, stretch: Stretch) -> float:
+    """The largest thickness on the axis within a stretch, m."""
+    inside = (profile["to"] > stretch.along.low) & (profile["from"] < stretch.along.high)
+    return round(float(profile["thickness"][inside].max(initial=0.0)), DIGITS)
+
+
+def volumes(run_, result, found: Sequence[Stretch]) -> np.ndarray:
+    """What must be removed of each stretch, m3; together all of it."""
+    row, column = np.nonzero(result.removed > 0)
+    if not (found and len(row)):
+        return np.zeros(len(found))
+    mine = lanes.nearest(found, *(run_.raster.transform * (column + 0.5, row + 0.5)))
+    return np.bincount(mine, result.removed[row, column], len(found)) * run_.cell ** 2

@@ -1,0 +1,126 @@
+"""Which stretches of a road a deposit blocks, what passes beside it, and the least volume that opens a lane.
+
+Definitions, with chainage s and offset n as in axis.py (m), the thickness t of the deposit (m, even in a cell), the
+road's width W and a thickness T0 that vehicles pass:
+
+* a stretch is a largest range [s0, s1] in which the deposit is thicker than T0 somewhere within W/2 of the axis;
+* its passable width is the longest run of n within the road in which T(n) <= T0, T(n) being the largest thickness over
+  s of the stretch at the offset n;
+* its lane of a width w at the offset n0 is the ground with s in [s0, s1] and |n - n0| <= w/2, n0 being constant.
+  Removed is what `cut` removes of a road of that shape; the lane is where that is least, |n0| <= (W - w)/2.
+
+Stretches and passable widths are exact for the cells; so are the volumes of lanes on plane ground beside a straight
+axis.
+"""
+import math
+from typing import Callable, List, NamedTuple, Optional, Sequence
+
+import numpy as np
+import rasterio
+from scipy.optimize import minimize_scalar
+from shapely.geometry.base import BaseGeometry
+
+from .. import geometry
+from ..survey.rasters import Raster
+from . import cut
+from .axis import SAME, Axis, Span, longest_gap, merged, parts_of_mask
+
+STEPS = 4               # positions of a lane in the width of a cell
+FINE = 0.01             # of a cell: to this the best position is refined
+FLAT = 1e-9             # relative: volumes that differ less are the same
+
+
+class Stretch(NamedTuple):
+    """A blocked stretch of a road."""
+    axis: Axis
+    along: Span         # chainage, m
+    passable: float     # width, m
+
+
+class Place(NamedTuple):
+    """Where a lane goes, and what it takes."""
+    offset: float       # of its middle, m
+    volume: float       # m3 of ground
+
+
+def stretches(deposit: Raster, axes: Sequence[Axis], width: float, blocked: float,
+              road: Optional[BaseGeometry] = None) -> List[Stretch]:
+    """The blocked stretches of a road, by chainage.
+
+    deposit: thickness (m) in local metres; axes: the parts of the road's axis; width: W, m; blocked: T0, m; road: only
+    what lies in this area counts, too.
+    """
+    mask, found = deposit.z > blocked, []
+    for axis in axes:
+        with rasterio.Env():        # one for all parts
+            parts = [(piece, part) for piece in axis.pieces(width / 2)
+                     for part in parts_of_mask(mask, deposit.transform, piece.area)]
+        if road is not None:
+            parts = [(piece, one) for piece, part in parts for one in geometry.polygons_of(part.intersection(road))]
+        spans = [axis.spans(piece, part) for piece, part in parts if part.area > 0]
+        for along in merged([s for s, _ in spans], SAME):
+            across = [n for s, n in spans if along.low <= s.low <= along.high]
+            found.append(Stretch(axis, along, longest_gap(across, Span(-width / 2, width / 2))))
+    return found
+
+
+def nearest(found: Sequence[Stretch], x, y):
+    """The index of the stretch that is nearest along the axis to points x, y (1-d arrays); there must be one."""
+    axes = list({id(one.axis): one.axis for one in found}.values())
+    places = [axis.locate(x, y) for axis in axes]
+    mine = np.argmin([np.abs(n) for _, n in places], axis=0)        # of the parts of the axis
+    gaps = np.full((len(found), len(x)), np.inf)
+    for k, one in enumerate(found):
+        own = next(i for i, axis in enumerate(axes) if axis is one.axis)
+        s = places[own][0]
+        gap = np.maximum(np.maximum(one.along.low - s, s - one.along.high), 0)
+        gaps[k] = np.where(mine == own, gap, np.inf)
+    return gaps.argmin(axis=0)
+
+
+class Cutter:
+    """What lanes remove of a deposit.
+
+    deposit: thickness (m); base: the ground below it (m); angle: rise of the cut, degrees; samples: see cut.
+    """
+
+    def __init__(self, deposit: Raster, base: np.ndarray, angle: float, samples: int):
+        self.deposit, self.ground, self.samples = deposit, cut.Ground(base), samples
+        self.cell = float(deposit.transform.a)
+        self.tangent = math.tan(math.radians(angle)) * self.cell
+
+    def area(self, stretch: Stretch, offset: float, width: float) -> BaseGeometry:
+        """The lane of a width (m) at an offset (m), as far as it lies in the grid, in local metres."""
+        lane = stretch.axis.band(stretch.along, Span(offset - width / 2, offset + width / 2))
+        return geometry.as_multi(lane.intersection(geometry.box_of(self.deposit)))
+
+    def removed(self, areas: Sequence[BaseGeometry], mesh=None) -> cut.Removed:
+        """What lanes remove, together: the union of their cuts."""
+        inside = [geometry.to_index(one, self.deposit) for one in areas if one.area > 0]
+        return cut.removed(self.deposit.z, self.ground, inside, self.tangent, mesh or cut.one_cell(self.deposit.z),
+                           self.samples, silent=True)
+
+    def least(self, stretch: Stretch, road: float, lane: float) -> Place:
+        """The place of a lane (width, m) through a stretch where it takes least; road: the road's width, m."""
+        def volume(offset: float) -> float:
+            return float(self.removed([self.area(stretch, offset, lane)]).cells.sum()) * self.cell ** 2
+        return least(volume, (road - lane) / 2, self.cell / STEPS, FINE * self.cell)
+
+
+def least(volume: Callable[[float], float], most: float, step: float, fine: float) -> Place:
+    """Where a function of the offset is least within +-most: in steps, then to `fine` beside the best one.
+
+    Of places that are equally good the one nearest to 0. All lengths in m.
+    """
+    count = max(0, math.ceil(most / step - 1e-9))
+    known = {float(one): volume(float(one)) for one in most * np.arange(-count, count + 1) / max(count, 1)}
+
+    def best():
+        floor = min(known.values())
+        return min((one for one in known if known[one] <= floor + FLAT * abs(floor)), key=abs)
+
+    if count:
+        between = max(-most, best() - most / count), min(most, best() + most / count)
+        minimize_scalar(lambda one: known.setdefault(float(one), volume(float(one))), bounds=between, method="bounded",
+                        options={"xatol": fine})
+    return Place(best(), known[best()])

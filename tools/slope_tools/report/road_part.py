@@ -1,0 +1,75 @@
+"""What a report shows of a road: its blocked stretches over the runs, the lane and the hours."""
+from typing import Any, Dict, List, Optional
+
+from ..deposits.axis import Span
+from ..deposits.road_axis import axes_of, axis_of
+from ..geometry import box_of
+from ..plots import figure_maps, known_reach
+from ..survey.roads import Asked
+from .ensemble_part import ODDS
+
+# head, unit, number of tables.road_runs
+COLUMNS = (("length", "m", "length"), ("passable", "m", "passable_width"), ("to remove", "m3", "remove"),
+           ("for a lane", "m3", "remove_lane"), ("until clear", "h", "hours"),
+           ("until a lane is open", "h", "hours_lane"))
+
+
+def content(data, numbers, maps) -> Optional[Dict[str, Any]]:
+    """What the template takes; None where no run blocks the road, or of older studies."""
+    about = (data.study or {}).get("stretches")
+    if not (about and about["stretches"]):
+        return None
+    asked, all_ = Asked.of(data.study["study"]["road"]), about["share_blocked"]
+    columns = [one for one in COLUMNS if one[2] in about["stretches"][0]]
+
+    def cells(one, name):
+        yield f"{100 * one.get('share', all_):.0f}"
+        for head, unit, key in columns:
+            low, middle, high = (numbers(f"{head}, {share} %", unit, value, name) for share, value in zip(
+                (5, 50, 95), one[key])) if key in one else ("", "", "")
+            yield f"{middle} ({low} to {high})" if low != high else middle
+
+    lines = [(str(number), [f"{one['from']:,.1f} to {one['to']:,.1f}", *cells(one, f"stretch {number}")])
+             for number, one in enumerate(about["stretches"], 1)]
+    if len(lines) > 1:
+        lines.append(("all", ["", *cells(about["totals"], "all stretches")]))
+    runs = "known events" if about["of_known_events"] else "runs"
+    return {"heads": [("chainage", "m"), ("blocked in", f"% of {runs}"), *((head, unit) for head, unit, _ in columns)],
+            "rows": lines, "caption": caption(asked, about, runs), "map": shares(data, asked, about, runs, maps)}
+
+
+def caption(asked: Asked, about, runs: str) -> str:
+    text = (f"A stretch is a range of chainages each of which is blocked in one of {about['runs']} runs: the deposit "
+            f"is thicker than {asked.blocked:g} m somewhere across the road. Of each number the median, and in brackets "
+            f"what 5 and 95 % of the {runs} stay within.")
+    if asked.lane:
+        text += f" For a lane: the least volume that opens one of {asked.lane:g} m, parallel to the road's axis."
+    return text + (f" Hours: of {rate(asked)}, of ground that loosens by a factor of {asked.loosening:g}."
+                   if asked.hours else "")
+
+
+def rate(asked: Asked) -> str:
+    return f"one loader of {asked.clearing:g} m3/h"
+
+
+def shares(data, asked: Asked, about, runs: str, maps):
+    """The map of the road, coloured by the share of the runs that block it."""
+    raster = data.result.deposit.raster
+    axis, _, width = axis_of(data.road_line, data.road.intersection(box_of(raster)), asked)
+    parts = [(one.band(Span(low, high), Span(-width / 2, width / 2)), share)
+             for low, high, share in about["shares"] for one in axes_of(axis, asked)]
+    layers = maps.layers._replace(section=None, reach=known_reach.NOTHING)
+    title = "How likely the road is blocked"
+    return maps.picture(figure_maps.road_map(layers, parts, ODDS, title, f"share of the {runs}", maps.crs), title,
+                        f"Share of the {runs} in which the road is blocked, at each of its places.")
+
+
+def on_first_page(data, numbers, withheld: bool) -> List[str]:
+    """The sentence on the hours until a lane is open, in a list; none where no hours are asked for."""
+    about = (data.study or {}).get("stretches")
+    if not about or withheld or "hours_lane" not in about["totals"]:
+        return []
+    asked = Asked.of(data.study["study"]["road"])
+    low, _, high = (numbers("until a lane is open", "h", value) for value in about["totals"]["hours_lane"])
+    after = high if low == high else f"{low} to {high}"
+    return [f"A lane of {asked.lane:g} m is open after {after} hours of {rate(asked)}."]

@@ -1,0 +1,148 @@
+"""Reading a road to the local metres of a terrain: polygons, or a line with a width; the one place that does it.
+
+A file of a line keeps its direction: chainage runs along it. A CSV is rings without a width (polygons.py), with one the
+points of a line.
+"""
+from pathlib import Path
+from typing import Any, Dict, Mapping, NamedTuple, Optional
+
+import numpy as np
+from shapely.errors import ShapelyError
+from shapely.geometry import LineString, Point, box
+from shapely.geometry.base import BaseGeometry
+from shapely.ops import unary_union
+
+from .. import disk
+from ..errors import SlopeError
+from ..geometry import extent, numbers
+from . import lines, polygons, vectors
+
+ARCS = 45       # pieces of a quarter of a circle, outside of bends
+SLACK = 1e-5    # m, beyond the terrain; written coordinates are rounded
+
+
+class Road(NamedTuple):
+    """A road in local metres."""
+    polygon: BaseGeometry
+    line: Optional[LineString]      # None of a road that was given as polygons
+
+
+class Asked(NamedTuple):
+    """What is asked of a road beside its file and the cut."""
+    width: Optional[float] = None       # m, of a road that is a line; None: it is polygons
+    start: float = 0.0                  # chainage of its start, km
+    blocked: float = 0.1                # m; the road is blocked where the deposit is thicker
+    lane: Optional[float] = None        # m, width of the lane that is to be opened first
+    clearing: Optional[float] = None    # m3 of loosened ground that are cleared in an hour
+    loosening: Optional[float] = None   # volume of loosened ground over that of the ground
+
+    @classmethod
+    def of(cls, about: Mapping[str, Any]) -> "Asked":
+        """That of site.yaml or study.yaml; what is missing, as in older ones, has its default."""
+        return cls(**{field: about[key] for field, key in KEYS.items() if about.get(key) is not None})
+
+    def about(self) -> Dict[str, Any]:
+        """What of() reads."""
+        return {key: getattr(self, field) for field, key in KEYS.items()}
+
+    @property
+    def hours(self) -> Optional[float]:
+        """For one m3 of ground."""
+        return self.loosening / self.clearing if self.loosening and self.clearing else None
+
+
+NOTHING = Asked()
+KEYS = {"width": "width", "start": "from", "blocked": "blocked", "lane": "lane", "clearing": "clearing",
+        "loosening": "loosening"}       # in site.yaml and study.yaml
+OPTIONS = {"width": "--road-width", "start": "--road-from", "blocked": "--blocked", "lane": "--lane",
+           "clearing": "--clearing", "loosening": "--loosening"}
+MARK = "# the line of a road, whose width is given apart"
+
+
+def check(asked: Asked) -> None:
+    """Raise SlopeError, which names the option, unless the values make sense together."""
+    for field in ("width", "lane", "clearing"):
+        value = getattr(asked, field)
+        if value is not None and not value > 0:
+            raise SlopeError(OPTIONS[field], "must be > 0", f"{value:g}")
+    if asked.blocked < 0:
+        raise SlopeError("--blocked", "must be >= 0", f"{asked.blocked:g}")
+    if asked.loosening is not None and asked.loosening < 1:
+        raise SlopeError("--loosening", "must be >= 1, volume of loosened ground over that of the ground",
+                         f"{asked.loosening:g}")
+    for given, other in (("clearing", "loosening"), ("loosening", "clearing")):
+        if getattr(asked, given) is not None and getattr(asked, other) is None:
+            raise SlopeError(OPTIONS[given], f"must be given with {OPTIONS[other]}", f"{getattr(asked, given):g}")
+    if asked.width is not None:
+        check_lane(asked.lane, asked.width)
+
+
+def check_lane(lane: Optional[float], width: float) -> None:
+    """Raise SlopeError if a lane is wider than the road; both in m."""
+    if lane is not None and lane > width * (1 + 1e-6):
+        raise SlopeError("--lane", f"must be at most as wide as the road, {width:.6g} m", f"{lane:g}")
+
+
+def read_local(path, raster, asked: Asked = NOTHING, local=False, crs=None, advice=None,
+               warn=vectors.ignore) -> Road:
+    """The road of a file in the local metres of a terrain; arguments as of polygons.read_local(), which see.
+
+    Raises SlopeError, which names the file, and for a line the chainage.
+    """
+    vectors.require_file(path)
+    if asked.width is None:
+        try:
+            found = polygons.read_local(path, raster, local, crs, advice or polygons.ADVICE, warn)
+        except SlopeError:
+            if not is_line(path):
+                raise
+            found = None
+        if found is None or MARK in (polygons.read_text(path) or ""):
+            raise SlopeError(path, "is a line, whose width must be given: --road-width")
+        return Road(found, None)
+    found = lines.read_local(path, raster, local, "road", advice, crs, warn,
+                             "leave out --road-width, which is that of a line")
+    if len(found.geoms) != 1:
+        raise SlopeError(path, "must hold one line, for --road-width", f"{len(found.geoms)} that do not meet")
+    line = found.geoms[0]
+    check_line(path, line, getattr(raster, "extent", None) or extent(raster), asked.start)
+    return Road(line.buffer(asked.width / 2, cap_style=2, resolution=ARCS), line)
+
+
+def is_line(path) -> bool:
+    """Whether a file holds lines and no polygon, or is a CSV of too few points for one."""
+    try:
+        text = polygons.read_text(path)
+        if text is None:
+            kinds = lines.kinds(unary_union([one for _, one in vectors.read(path, "Line").features]))
+        elif polygons.WKT.match(text.lstrip()):
+            kinds = lines.kinds(lines.text_geometry(path, text))
+        else:
+            return len(lines.text_geometry(path, text).coords) == 2
+    except (SlopeError, ShapelyError):
+        return False
+    return "Line" in kinds and "Polygon" not in kinds
+
+
+def check_line(path, line: LineString, within, start: float) -> None:
+    """Raise SlopeError if a line crosses itself, or leaves the terrain (local xlo, ylo, xhi, yhi); start: km."""
+    def chainage(length):
+        return f"{1000 * start + length:.1f} m"
+    if not line.is_simple:
+        crossed = Point(unary_union(line).geoms[0].coords[-1])
+        raise SlopeError(path, "must be a line that does not cross itself; it does at the chainage "
+                         f"{chainage(line.project(crossed))}", numbers(crossed.coords[0]))
+    outside = line.difference(box(*within).buffer(SLACK))
+    if not outside.is_empty:
+        first = min((Point(one.coords[0]) for one in getattr(outside, "geoms", [outside])), key=line.project)
+        raise SlopeError(path, f"must lie in the terrain, local x y {polygons.decimetres(within)}; it leaves it at the "
+                         f"chainage {chainage(line.project(first))}", polygons.decimetres(first.coords[0]))
+
+
+def write(path: Path, road: Road, raster) -> BaseGeometry:
+    """Write a road in the local metres of a terrain, for read_local() with the same width; its polygon as written."""
+    if road.line is None:
+        return polygons.write(path, road.polygon, raster)
+    points = np.round(np.asarray(road.line.coords)[:, :2], polygons.DIGITS) + 0.0
+    disk.write(path, f"{polygons.place_line(raster)}\n{MARK}\n" + "".join(f"{x!r},{y!r}\n" for x, y in points.tolist()))
+    return road.polygon
