@@ -40,8 +40,8 @@ def content(data, numbers, maps) -> Optional[Dict[str, Any]]:
 
 def caption(asked: Asked, about, runs: str) -> str:
     text = (f"A stretch is a range of chainages each of which is blocked in one of {about['runs']} runs: the deposit "
-            f"is thicker than {asked.blocked:g} m somewhere across the road. Of each number the median, and in brackets "
-            f"what 5 and 95 % of the {runs} stay within.")
+            f"is thicker than {asked.blocked:g} m somewhere across the road. Of each number the median, and in "
+            f"brackets what 5 and 95 % of the {runs} stay within.")
     if asked.lane:
         text += f" For a lane: the least volume that opens one of {asked.lane:g} m, parallel to the road's axis."
     return text + (f" Hours: of {rate(asked)}, of ground that loosens by a factor of {asked.loosening:g}."

@@ -33,7 +33,8 @@ SHOWN_ROAD: Dict[str, Tuple[str, Any]] = {
 def table(settings, repeated, rows, defaults):
     """The CSV over all runs."""
     columns = [*COLUMNS, *(ROAD_COLUMNS if any("remove_m3" in row for row in rows) else ()),
-               *(key for key in (STOP, *LANE_COLUMNS) if any(row.get(key) is not None for row in rows)), "status", "error"]
+               *(key for key in (STOP, *LANE_COLUMNS) if any(row.get(key) is not None for row in rows)),
+               "status", "error"]
     more = [name for name in repeated if name not in settings]
 
     def line(row):

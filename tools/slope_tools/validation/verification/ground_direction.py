@@ -36,7 +36,8 @@ def aside(*results):
 
 CLAIMS = [
     Claim("ground_direction_travel",
-          "Travel at azimuths 0, 22.5, 45 degrees: largest difference from the mean, over that", "", "isotropy", turned(SMALL), spread, AtMost(0.04),
+          "Travel at azimuths 0, 22.5, 45 degrees: largest difference from the mean, over that", "", "isotropy",
+          turned(SMALL), spread, AtMost(0.04),
           Control("plan grid, spacing 1 d", turned(SMALL(pattern="grid", spacing=1)))),
     Claim("ground_direction_aside", "Way aside at azimuths 0, 22.5, 45 degrees over the travel", "", "symmetry",
           turned(SMALL), aside, AtMost(0.02),
