@@ -15,6 +15,7 @@ from ..releases.release_scar import KINDS
 from ..runs import jobs
 from ..sites import site, site_choices
 from ..slips import bodies
+from ..studies import site_ground
 from ..survey import roads
 from ..survey.rasters import UNITS
 from ..warned import printer
@@ -179,6 +180,8 @@ def run(args):
         made = site.make(choices, folder, site.Machine(program(args.lmp), cores, known_study.points),
                          lambda line: print(line, flush=True), printer("site"), site_map.draw,
                          again=args.folder is not None, known=known)
+    for line in site_ground.lines(folder):
+        print(line)
     print(f"written to {folder}: {' '.join(made.files)}")
     print(f"look at {folder / site.MAP}, then: tools/slope study {quote(str(folder))}")
 
