@@ -125,6 +125,7 @@ void FixControlLine::init()
   check_line();
   on_rank_zero(lmp, "Fix control/line", [this]() {
     Slope::FileSet::probe({prefix + ".line.csv", prefix + ".line.yaml"});
+    lock.take(prefix, lmp);
   });
 }
 

@@ -30,8 +30,9 @@ SurfaceRecorder::SurfaceRecorder(LAMMPS *lmp, const std::string &_caller,
     prefix(_prefix), caller(_caller), surface(_surface), largest(0.0), nrow(0.0), written(0.0),
     steps(0.0)
 {
-  on_rank_zero(lmp, caller, [this]() {
+  on_rank_zero(lmp, caller, [this, lmp]() {
     FileSet::probe({prefix + ".csv", prefix + ".triangles.csv", prefix + ".vtp"});
+    lock.take(prefix, lmp);
   });
 }
 

@@ -6,6 +6,7 @@
 #include "find_slip.h"
 
 #include "constants.h"
+#include "prefix_lock.h"
 #include "rank_zero.h"
 #include "slip_body.h"
 #include "slip_options.h"
@@ -41,8 +42,10 @@ void FindSlip::command(int narg, char **arg)
 {
   const SlipOptions options(lmp, narg, arg);
   check_variables(options);
+  Slope::PrefixLock lock;
   on_rank_zero(lmp, "Find_slip", [&]() {
     Slope::SlipWriter::probe(options.output, options.lone ? 1 : options.limits.keep);
+    lock.take(options.output, lmp);
   });
   const Slope::SlipSoil soil = options.soil();
   const std::vector<char> allowed = options.allowed();
