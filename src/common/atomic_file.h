@@ -26,7 +26,8 @@ namespace Slope {
 class AtomicFile {
  public:
   explicit AtomicFile(const std::string &_path) :
-      path(_path), beside(_path + "." + std::to_string(getpid()) + ".tmp"), fp(fopen(beside.c_str(), "w")), there(fp != nullptr)
+      path(_path), beside(_path + "." + std::to_string(getpid()) + ".tmp"),
+      fp(fopen(beside.c_str(), "w")), there(fp != nullptr)
   {
     if (!fp) fail();
     check_target();

@@ -181,10 +181,11 @@ void FindSlip::check_variables(const SlipOptions &options) const
     const std::string name = variable(options, end);
     const int n = input->variable->find(name.c_str());
     if (n >= 0 && !input->variable->internalstyle(n))
-      error->all(FLERR,
-                 "Find_slip output must not begin the names of variables that are not of a find_slip, got "
-                 "{}, and there is a variable {}: use another PREFIX, or delete the variable",
-                 options.output, name);
+      error->all(
+          FLERR,
+          "Find_slip output must not begin the names of variables that are not of a find_slip, got "
+          "{}, and there is a variable {}: use another PREFIX, or delete the variable",
+          options.output, name);
   }
 }
 

@@ -68,7 +68,8 @@ def test_a_run_that_is_killed(site):
         while not run.stdout.readline().startswith("Step"):
             assert run.poll() is None
         assert f", process {run.pid}, since 2" in (site / "out.lock").read_text()
-        run_deck(deck(WRITERS["Fix deposit/grid"]), site, expect_error=f"Fix deposit/grid: output out must be that of one "
+        run_deck(deck(WRITERS["Fix deposit/grid"]), site,
+                 expect_error=f"Fix deposit/grid: output out must be that of one "
                  f"run at a time, got a run on host {os.uname().nodename}, process {run.pid}, since ")
         os.kill(run.pid, signal.SIGKILL)
     assert (site / "out.lock").exists()
