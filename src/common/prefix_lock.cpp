@@ -123,8 +123,8 @@ void PrefixLock::take(const std::string &prefix, const void *run)
     held.reset(new HeldLock{path, fd, run, info, true});
     all.list.push_back(held);
     const std::string text = this_run();
-    if (ftruncate(fd, 0) != 0 || pwrite(fd, text.data(), text.size(), 0) < 0)
-      return;    // a full disk: no name
+    const bool named = ftruncate(fd, 0) == 0 && pwrite(fd, text.data(), text.size(), 0) > 0;
+    (void) named;    // without a name on a full disk
     return;
   }
 }

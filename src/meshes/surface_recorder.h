@@ -35,7 +35,7 @@ class SurfaceRecorder : protected Pointers {
   void write();                                                              // collective
 
   std::vector<double> pack();    // collective; for rank 0
-  void unpack(const double *numbers);
+  void unpack(const std::vector<double> &numbers);
 
  private:
   static constexpr int SEND = 50;    // steps
