@@ -47,6 +47,7 @@ void DepositReport::begin_run()
     for (const DepositWriter::File &file : DepositWriter::files(options.prefix, ""))
       paths.push_back(file.path);
     FileSet::probe(paths);
+    lock.take(options.prefix, lmp);
   });
   limit = timer->get_timeout_remain();    // fix halt ends a run as a time limit does
   limit_set = MPI_Wtime();

@@ -14,6 +14,7 @@
 #include "deposit_summary.h"
 #include "file_set.h"
 #include "pointers.h"
+#include "prefix_lock.h"
 
 #include <memory>
 #include <string>
@@ -55,6 +56,7 @@ class DepositReport : protected Pointers {
       last;    // in the runs before, in this one when files were written last
 
   std::unique_ptr<Slope::FileSet> files;    // on rank 0, as long as they are written
+  Slope::PrefixLock lock;                   // on rank 0
 
   template <typename Work> void on_files(Work);
   void write_raster(const std::string &path, const std::string &header,

@@ -7,7 +7,9 @@
 
 #include "comm.h"
 #include "error.h"
+#include "restart_count.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -15,7 +17,7 @@ using namespace LAMMPS_NS;
 using Slope::DepositRasters;
 using Slope::PlanGrid;
 
-static constexpr double FORMAT = 4.0;    // first number of what a restart file holds
+static constexpr double FORMAT = 5.0;    // first number of what a restart file holds
 static constexpr int PER_CELL = DepositRasters::PER_CELL;
 static constexpr double BYTES_PER_CELL = PER_CELL * sizeof(double);
 static constexpr int MOST_CELLS = (MAXSMALLINT - 1024) / static_cast<int>(BYTES_PER_CELL);
@@ -53,12 +55,13 @@ void DepositRestart::write(FILE *fp, const std::string &fix_id, const Saved &sav
   if (!fits) ncells = -ncells;
 
   if (comm->me == 0) {
-    const double head = sizeof(Key) + sizeof(Saved) + sizeof(double);
+    const RestartCount count(ncells);
+    const double head = sizeof(Key) + sizeof(Saved) + sizeof(count);
     const int size = (int) (head + (fits ? ncells * BYTES_PER_CELL : 0.0));
     fwrite(&size, sizeof(int), 1, fp);
     fwrite(&key, sizeof(Key), 1, fp);
     fwrite(&saved, sizeof(Saved), 1, fp);
-    fwrite(&ncells, sizeof(double), 1, fp);
+    fwrite(&count, sizeof(count), 1, fp);
     if (!fits)
       error->warning(FLERR, "Fix deposit/grid {}: nothing can go on from this restart file, {}",
                      fix_id, too_many(ncells));
@@ -88,12 +91,14 @@ void DepositRestart::read(const std::string &fix_id, const char *buffer, Saved &
   take(&found, sizeof(Key));
   check_key(fix_id, found);
   take(&saved, sizeof(Saved));
-  double ncells;
-  take(&ncells, sizeof(double));
-  if (ncells < 0.0)
+  RestartCount count;
+  take(&count, sizeof(count));
+  if (count.number < 0.0 && count.again == RestartCount(count.number).again)
     error->all(FLERR, "Fix deposit/grid {} cannot go on from this restart file, {}", fix_id,
-               too_many(ncells));
-  for (double c = 0.0; c < ncells; c++) {
+               too_many(count.number));
+  const size_t ncells = count.check(lmp, "Fix deposit/grid " + fix_id,
+                                    std::min<double>(MOST_CELLS, rasters.grid().ncells()));
+  for (size_t c = 0; c < ncells; c++) {
     double values[PER_CELL];
     take(values, sizeof(values));
     if (!(values[0] >= 0.0 && values[0] < rasters.grid().ncells()))

@@ -16,6 +16,7 @@
 #include "rank_zero.h"
 #include "region_surface.h"
 #include "requirements.h"
+#include "restart_count.h"
 #include "slope_version.h"
 #include "yaml_text.h"
 
@@ -38,7 +39,8 @@ using namespace FixConst;
 using Slope::CrossingLog;
 using Slope::PlanLine;
 
-static constexpr int BEGIN = 10;    // numbers with which what a restart file holds begins
+static constexpr double FORMAT = -2.0;    // in place of the number of coordinates of the first one
+static constexpr int BEGIN = 10;          // numbers with which what a restart file holds begins
 
 enum { X, Y, Z };
 
@@ -125,6 +127,7 @@ void FixControlLine::init()
   check_line();
   on_rank_zero(lmp, "Fix control/line", [this]() {
     Slope::FileSet::probe({prefix + ".line.csv", prefix + ".line.yaml"});
+    lock.take(prefix, lmp);
   });
 }
 
@@ -205,7 +208,12 @@ void FixControlLine::remember()
 void FixControlLine::post_integrate()
 {
   const int n = atom->nlocal;
-  if (places.size() != 3 * (size_t) n) remember();    // balls came or went at an odd moment
+  if (places.size() != 3 * (size_t) n)
+    error->one(
+        FLERR,
+        "Fix control/line {}: the number of balls must not change between two steps without a "
+        "set-up, which pre no leaves out, got {} after {}",
+        id, n, places.size() / 3);
   std::vector<PlanLine::Crossing> found;
   for (int i = 0; i < n; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
@@ -334,23 +342,21 @@ void FixControlLine::write_restart(FILE *fp)
   collect();
   if (comm->me != 0) return;
   const Slope::RunClock::State at = clock.state();
-  std::vector<double> list = {(double) line.xy.size(),
-                              line.length(),
-                              line.xlo,
-                              line.checksum(),
-                              at.base,
-                              at.base_step,
-                              at.last,
-                              at.step_size,
-                              at.on,
-                              (double) log.events.size()};
-  const double bytes = sizeof(double) * (list.size() + CrossingLog::NUMBERS * log.events.size());
+  const double list[BEGIN] = {FORMAT,          (double) line.xy.size(),
+                              line.length(),   line.xlo,
+                              line.checksum(), at.base,
+                              at.base_step,    at.last,
+                              at.step_size,    (double) at.on};
+  const RestartCount count((double) log.events.size());
+  const double bytes =
+      sizeof(list) + sizeof(count) + (double) sizeof(CrossingLog::Event) * log.events.size();
   if (bytes > MAXSMALLINT)
     error->one(FLERR, "Fix control/line must have at most {} bytes in a restart file, got {:.0f}",
                MAXSMALLINT, bytes);
   const int size = (int) bytes;
   fwrite(&size, sizeof(int), 1, fp);
-  fwrite(list.data(), sizeof(double), list.size(), fp);
+  fwrite(list, sizeof(list), 1, fp);
+  fwrite(&count, sizeof(count), 1, fp);
   fwrite(log.events.data(), sizeof(CrossingLog::Event), log.events.size(), fp);
 }
 
@@ -358,8 +364,14 @@ void FixControlLine::write_restart(FILE *fp)
 
 void FixControlLine::restart(char *buffer)
 {
-  double list[BEGIN];
-  memcpy(list, buffer, sizeof(list));
+  double whole[BEGIN], *const list = whole + 1;
+  memcpy(whole, buffer, sizeof(whole));
+  if (whole[0] != FORMAT)
+    error->all(
+        FLERR,
+        "Fix control/line {}: the restart file must be of this version of the fix, got one of "
+        "an older version: run from the start again",
+        id);
   const double mine[4] = {(double) line.xy.size(), line.length(), line.xlo, line.checksum()};
   if (!std::equal(mine, mine + 4, list))
     error->all(
@@ -370,10 +382,14 @@ void FixControlLine::restart(char *buffer)
         "another fix ID",
         id, 0.5 * list[0], list[1], list[3], 0.5 * mine[0], mine[1], mine[3]);
   clock.set_state({list[4], list[5], list[6], list[7], list[8]});
+  RestartCount count;
+  memcpy(&count, buffer + sizeof(whole), sizeof(count));
+  const size_t n = count.check(lmp, fmt::format("Fix control/line {}", id),
+                               MAXSMALLINT / sizeof(CrossingLog::Event));
   log.events.clear();
-  fresh.resize(comm->me == 0 ? (size_t) list[9] : 0);    // collect() brings them, and the results
-  if (comm->me == 0 && !fresh.empty())
-    memcpy(fresh.data(), buffer + sizeof(list), fresh.size() * sizeof(CrossingLog::Event));
+  fresh.resize(comm->me == 0 ? n : 0);    // collect() brings them, and the results
+  if (!fresh.empty())
+    memcpy(fresh.data(), buffer + sizeof(whole) + sizeof(count), n * sizeof(CrossingLog::Event));
 }
 
 /* ---------------------------------------------------------------------- */

@@ -16,6 +16,7 @@ FixStyle(control/line,FixControlLine);
 
 #include "crossing_log.h"
 #include "plan_line.h"
+#include "prefix_lock.h"
 #include "run_clock.h"
 
 #include <memory>
@@ -44,6 +45,7 @@ class FixControlLine : public Fix {
   static constexpr int NRESULT = 5;
 
   std::string file, prefix, deposit_id;
+  Slope::PrefixLock lock;    // on rank 0
   Slope::PlanLine line;
   Slope::RunClock clock;
   class FixDepositGrid *deposit;

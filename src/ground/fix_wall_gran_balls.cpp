@@ -180,15 +180,23 @@ void FixWallGranBalls::post_neighbor()
   const double *r = atom->radius;
   const int *mask = atom->mask, *type = atom->type;
   const double beyond = radius + 0.5 * neighbor->skin;
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(mask[i] & groupbit)) continue;
-    ContactList &l = lists[type[i]];
-    balls->visit_near(x[i], r[i] + beyond, [&](int k, double) {
-      l.add(i, k, nullptr, false, r[i], radius, atom->rmass[i], 1.0);
-    });
+  try {
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!(mask[i] & groupbit)) continue;
+      ContactList &l = lists[type[i]];
+      balls->visit_near(x[i], r[i] + beyond, [&](int k, double) {
+        l.add(i, k, nullptr, false, r[i], radius, atom->rmass[i], 1.0);
+      });
+    }
+    placement->forget();
+    give_histories();
+  } catch (std::bad_alloc &) {    // on this rank alone
+    error->one(FLERR, "{}: not enough memory for the fixed balls near {} balls: {}", caller,
+               atom->nlocal, "larger fixed balls, or more ranks");
+  } catch (std::length_error &e) {
+    error->one(FLERR, "{}: must be fewer than {}: larger fixed balls, or more ranks", caller,
+               e.what());
   }
-  placement->forget();
-  give_histories();
   if (pair->sizes_vary)
     for (ContactList &l : lists) l.let_vary();
 }
@@ -321,7 +329,9 @@ void FixWallGranBalls::restart(char *buf)
         "{}: the restart file must be of this version of the fix, got one of an older version, "
         "whose contacts may be those of other balls: run from the start again",
         caller);
-  std::vector<double> there(static_cast<size_t>(head[1]));
+  const size_t here =
+      placement->fingerprint().size();    // as many in a whole file, or another ground
+  std::vector<double> there(head[1] == here ? here : 2);
   memcpy(there.data(), buf + sizeof(head), there.size() * sizeof(double));
   const std::string why = placement->unlike(there);
   if (!why.empty())

@@ -18,6 +18,7 @@
 #include "neighbor.h"
 #include "pair_gran_restitution.h"
 #include "rank_zero.h"
+#include "restart_count.h"
 #include "text_file.h"
 #include "update.h"
 
@@ -32,8 +33,8 @@ using namespace Slope;
 
 static constexpr double SAME_SURFACE = 1.0e-9;
 static constexpr double COARSE = 0.05;    // largest rounding of a file, in smallest radii
-static constexpr double RESTART_FORMAT = 3.0;
-static constexpr int RESTART_SIZE = 12;    // numbers, without those of the recorder
+static constexpr double RESTART_FORMAT = 4.0;
+static constexpr int RESTART_SIZE = 13;    // numbers, without those of the recorder
 
 static Vector vector_of(const double *x)
 {
@@ -473,7 +474,8 @@ std::vector<double> FixWallGranMesh::restart_values()
   list.insert(list.end(), all + IMPULSE, all + IMPULSE + 3);
   const RunClock::State at = clock.state();
   list.insert(list.end(), {at.base, at.base_step, at.last, at.step_size, at.on});
-  list.push_back(static_cast<double>(recorded.size()));
+  const RestartCount count(recorded.size());
+  list.insert(list.end(), {count.number, count.again});
   list.insert(list.end(), recorded.begin(), recorded.end());
   return list;
 }
@@ -493,8 +495,10 @@ void FixWallGranMesh::restart(char *buf)
   for (int d = 0; d < 3 && comm->me == 0; d++) mine[IMPULSE + d] = list[3 + d];
   all_ready = false;
   clock.set_state({list[6], list[7], list[8], list[9], list[10]});
-  std::vector<double> recorded(static_cast<size_t>(list[RESTART_SIZE - 1]));
+  RestartCount count;
+  memcpy(&count, &list[RESTART_SIZE - 2], sizeof(count));
+  std::vector<double> recorded(count.check(lmp, caller, MAXSMALLINT / sizeof(double)));
   if (!recorder || recorded.empty()) return;
   memcpy(recorded.data(), buf + sizeof(list), recorded.size() * sizeof(double));
-  recorder->unpack(recorded.data());
+  recorder->unpack(recorded);
 }

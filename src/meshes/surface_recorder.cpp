@@ -14,10 +14,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 using namespace LAMMPS_NS;
 using namespace Slope;
 
+static constexpr size_t HEAD = 3;       // numbers of pack() before those of the loads
 static constexpr double GROWN = 1.5;    // rows over those in the file that make it worth writing
 
 /* ----------------------------------------------------------------------
@@ -30,8 +32,9 @@ SurfaceRecorder::SurfaceRecorder(LAMMPS *lmp, const std::string &_caller,
     prefix(_prefix), caller(_caller), surface(_surface), largest(0.0), nrow(0.0), written(0.0),
     steps(0.0)
 {
-  on_rank_zero(lmp, caller, [this]() {
+  on_rank_zero(lmp, caller, [this, lmp]() {
     FileSet::probe({prefix + ".csv", prefix + ".triangles.csv", prefix + ".vtp"});
+    lock.take(prefix, lmp);
   });
 }
 
@@ -113,11 +116,14 @@ std::vector<double> SurfaceRecorder::pack()
   return list;
 }
 
-void SurfaceRecorder::unpack(const double *numbers)
+void SurfaceRecorder::unpack(const std::vector<double> &numbers)
 {
+  on_rank_zero(lmp, caller, [&]() {
+    if (numbers.size() < HEAD)
+      throw std::runtime_error("the restart file must have the series of the surface, got none");
+    loads.unpack(numbers.data() + HEAD, numbers.size() - HEAD, surface.count());
+  });
   nrow = written = numbers[0];
   steps = numbers[2];
-  if (comm->me > 0) return;
-  largest = numbers[1];
-  loads.unpack(numbers + 3);
+  if (comm->me == 0) largest = numbers[1];
 }

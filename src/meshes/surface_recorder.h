@@ -8,6 +8,7 @@
 
 #include "pointers.h"
 
+#include "prefix_lock.h"
 #include "surface_loads.h"
 
 #include <string>
@@ -34,12 +35,13 @@ class SurfaceRecorder : protected Pointers {
   void write();                                                              // collective
 
   std::vector<double> pack();    // collective; for rank 0
-  void unpack(const double *numbers);
+  void unpack(const std::vector<double> &numbers);
 
  private:
   static constexpr int SEND = 50;    // steps
 
   std::string caller;
+  Slope::PrefixLock lock;    // on rank 0
   const Slope::TouchedSurface &surface;
   Slope::SurfaceLoads loads;                         // of all, on rank 0
   std::vector<Slope::SurfaceLoads::Record> fresh;    // of this rank, not sent yet

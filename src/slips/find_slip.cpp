@@ -6,6 +6,7 @@
 #include "find_slip.h"
 
 #include "constants.h"
+#include "prefix_lock.h"
 #include "rank_zero.h"
 #include "slip_body.h"
 #include "slip_options.h"
@@ -20,6 +21,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
 
 using namespace LAMMPS_NS;
 using Slope::ElevationGrid;
@@ -39,10 +41,24 @@ static const char *const ENDS[NVARIABLE] = {"_x", "_y", "_z", "_r", "_factor", "
 
 void FindSlip::command(int narg, char **arg)
 {
-  const SlipOptions options(lmp, narg, arg);
+  try {
+    find(SlipOptions(lmp, narg, arg));
+  } catch (std::bad_alloc &) {    // on this rank, in the middle of a search that all share
+    error->one(FLERR,
+               "Find_slip: not enough memory for the terrain and the search: use a terrain with "
+               "larger cells, or fewer ranks on a node");
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FindSlip::find(const SlipOptions &options)
+{
   check_variables(options);
+  Slope::PrefixLock lock;
   on_rank_zero(lmp, "Find_slip", [&]() {
     Slope::SlipWriter::probe(options.output, options.lone ? 1 : options.limits.keep);
+    lock.take(options.output, lmp);
   });
   const Slope::SlipSoil soil = options.soil();
   const std::vector<char> allowed = options.allowed();

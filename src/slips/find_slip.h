@@ -30,6 +30,7 @@ class FindSlip : public Command {
   void command(int, char **) override;
 
  private:
+  void find(const class SlipOptions &);
   std::vector<Slope::SlipBody> given(const class SlipOptions &, Slope::SlipBodyMaker &) const;
   std::vector<Slope::SlipBody> search(const class SlipOptions &, Slope::SlipBodyMaker &,
                                       Slope::ElevationGrid &least) const;

@@ -527,6 +527,53 @@ def test_a_raster_beyond_the_memory_is_refused(tmp_path, monkeypatch, cells, wri
     run_deck("region ground terrain large.asc\n", tmp_path, expect_error="Region terrain: not enough memory")
 
 
+SEARCHED = """region ground terrain large.asc
+find_slip ground strength 3000 19.6 2039 surface sphere 1485 1500 30 29 output crit
+"""
+DENSE = """
+units si
+atom_style sphere
+boundary f f f
+comm_modify vel yes
+region all block 0 16 0 16 -1 16
+create_box 2 all
+create_atoms 1 single 8 8 8.2
+set group all diameter 16 density 2000
+neighbor 0.2 bin
+pair_style gran/restitution
+pair_coeff * * stiffness 1e6 1e6 restitution 0.5 friction 30
+region flat block 0 16 0 16 -1 0
+fix balls all wall/gran/balls 2 0.01 surface flat upper spacing 0.009
+fix move all nve/sphere
+timestep 1e-4
+run 1
+"""
+
+
+@pytest.mark.skipif("ASAN_OPTIONS" in os.environ, reason="a sanitizer reserves more address space than there is memory")
+def test_a_search_beyond_the_memory_is_refused(tmp_path, monkeypatch):
+    """The raster fits, what the search keeps for each cell does not; which limit that is depends on the program."""
+    (tmp_path / "large.asc").write_text(HEAD.format(3000) + ("5 " * 1500 + "9 " * 1500 + "\n") * 3000)
+    found = []
+    for limit in range(240, 320, 20):
+        with monkeypatch.context() as one:
+            one.setattr(subprocess, "run", limited(subprocess.run, limit * 1_000_000))
+            with pytest.raises(AssertionError) as failed:
+                run_deck(SEARCHED, tmp_path)
+        errors = [line for line in str(failed.value).splitlines() if line.startswith("ERROR")]
+        assert len(errors) == 1 and "not enough memory" in errors[0], str(failed.value)[-500:]
+        found.append("not enough memory for the terrain and the search" in errors[0])
+    assert any(found) and not list(tmp_path.glob("crit*"))
+
+
+@pytest.mark.skipif("ASAN_OPTIONS" in os.environ, reason="a sanitizer reserves more address space than there is memory")
+def test_fixed_balls_beyond_the_memory_are_refused(tmp_path, monkeypatch):
+    """Two million near one ball: they are made in the set-up of a run, by one rank alone."""
+    monkeypatch.setattr(subprocess, "run", limited(subprocess.run, 240_000_000))
+    run_deck(DENSE, tmp_path,
+             expect_error="Fix wall/gran/balls balls: not enough memory for the fixed balls near 1 balls")
+
+
 def limited(run, limit):
     def run_limited(*args, **options):
         return run(*args, **options, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
