@@ -40,8 +40,8 @@ def content(data, numbers, maps) -> Optional[Dict[str, Any]]:
 
 def caption(asked: Asked, about, runs: str) -> str:
     text = (f"A stretch is a range of chainages each of which is blocked in one of {about['runs']} runs: the deposit "
-            f"is thicker than {asked.blocked:g} m somewhere across the road. Of each number the median, and in brackets "
-            f"what 5 and 95 % of the {runs} stay within.")
+            f"is thicker than {asked.blocked:g} m somewhere across the road. Of each number the median, and in "
+            f"brackets what 5 and 95 % of the {runs} stay within.")
     if asked.lane:
         text += f" For a lane: the least volume that opens one of {asked.lane:g} m, parallel to the road's axis."
     return text + (f" Hours: of {rate(asked)}, of ground that loosens by a factor of {asked.loosening:g}."
@@ -59,7 +59,7 @@ def shares(data, asked: Asked, about, runs: str, maps):
     parts = [(one.band(Span(low, high), Span(-width / 2, width / 2)), share)
              for low, high, share in about["shares"] for one in axes_of(axis, asked)]
     layers = maps.layers._replace(section=None, reach=known_reach.NOTHING)
-    title = "How likely the road is blocked"
+    title = "Where the road is blocked"
     return maps.picture(figure_maps.road_map(layers, parts, ODDS, title, f"share of the {runs}", maps.crs), title,
                         f"Share of the {runs} in which the road is blocked, at each of its places.")
 
