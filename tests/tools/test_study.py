@@ -206,7 +206,7 @@ def test_table_yaml_and_summaries_have_the_same_numbers(finished):
         assert expected["distance_50_m"] < expected["distance_99_m"] <= travel["farthest"]["distance"] == row["front_m"]
         removal = yaml.safe_load((folder / row["run"] / "volume" / "volume.yaml").read_text())
         expected.update(remove_m3=removal["volume"]["remove"], remove_on_road_m3=removal["volume"]["remove_on_road"],
-                        blocked_m=removal["axis"]["blocked_length"])
+                        blocked_m=removal["clearing"]["blocked_length"])
         for key, value in expected.items():
             assert row[key] == value and float(line[key]) == value, key
         assert (row["stop_reason"], line["stop_reason"]) == (summary["stop"]["reason"],) * 2

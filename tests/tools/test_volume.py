@@ -462,8 +462,7 @@ def test_without_a_terrain_there_is_a_warning(slope, here):  # noqa: F811
     status, _, err = slope("run --road road.geojson --mesh 10 --local")
     assert status == 0 and err == ("slope volume: warning: no --terrain and no terrain.asc: no CRS, coordinates are "
                                    "the local metres of the run\n")
-    assert sorted(os.listdir("run.volume")) == ["axis.csv", "volume.csv", "volume.geojson", "volume.png", "volume.tif",
-                                                "volume.yaml", "volume_mesh.tif"]
+    assert sorted(os.listdir("run.volume")) == sorted(volume.FILES)
     (here / "elsewhere").mkdir()
     write_sidecar(80, 100, 2.5, "elsewhere/dem.asc")
     write_geojson("road.geojson", translate(box(90, 0, 110, 200), EAST, NORTH), crs=CRS_M)
@@ -478,7 +477,7 @@ def test_the_folder_may_be_this_one_or_another_with_files(cleared, slope, here):
     for folder in (".", "out", "out/../new"):
         status, _, err = slope(f"run --road road.geojson --mesh 10 --local -o {folder}")
         assert status == 0, err
-    assert len(os.listdir("new")) == 7 and len(os.listdir("out")) == 8 and (here / "volume.yaml").exists()
+    assert len(os.listdir("new")) == 9 and len(os.listdir("out")) == 10 and (here / "volume.yaml").exists()
     assert not list(here.rglob(".*"))
 
 

@@ -6,7 +6,7 @@ from .options import Option
 from .results import load
 from .score import OBSERVED, THRESHOLD
 from .study import JOBS, RANKS
-from .volume import CUT_ANGLE, MESH
+from .volume import CUT_ANGLE, MESH, ROAD_WIDTH
 
 
 class Calibrate(Algorithm):
@@ -30,7 +30,7 @@ class Calibrate(Algorithm):
                choices=("connected", "95", "99"), advanced=True),
         Option("AREA", "--area", "number", "Area that was covered at any time (m2)"),
         Option("VOLUME", "--road-volume", "number", "Volume on the road (m3)"),
-        Option("ROAD", "--road", "polygons", "Road (polygons), for that volume"), CUT_ANGLE, MESH,
+        Option("ROAD", "--road", "road", "Road, for that volume"), ROAD_WIDTH, CUT_ANGLE, MESH,
         Option("TOLERANCE", "--tolerance", "words", "Standard deviation of what was observed, as a share of it "
                "(default: 0.05), or NAME=SHARE per line", advanced=True),
         THRESHOLD,

@@ -5,6 +5,7 @@ from .options import Option
 from .release import LOCAL, POLYGON, POLYGON_CRS, SCAR, SHAPE
 from .results import load
 from .terrain import DEM, with_terrain
+from .volume import ROAD_WIDTH
 
 
 class Mobility(Algorithm):
@@ -23,7 +24,7 @@ class Mobility(Algorithm):
     mobility.csv has the path (m) with the probability at each point; also a map, a profile and mobility.yaml."""
     options = (
         DEM, POLYGON, *SHAPE, *SCAR,
-        Option("ROAD", "--road", "polygons", "Road (polygons): how likely the mass reaches it"),
+        Option("ROAD", "--road", "road", "Road: how likely the mass reaches it"), ROAD_WIDTH,
         Option("PATH", "--path", "line", "Path from the crown down (default: steepest descent)"),
         Option("CONFINED", "--confined", "switch", "The path is confined, a valley"),
         Option("UNCONFINED", "--unconfined", "switch", "The path is not confined"),

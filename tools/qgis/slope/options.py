@@ -12,13 +12,17 @@ from qgis.core import (QgsProcessing, QgsProcessingException, QgsProcessingParam
 
 from . import layers
 
+GEOMETRIES = {"polygons": (QgsProcessing.TypeVectorPolygon,), "line": (QgsProcessing.TypeVectorLine,),
+              "road": (QgsProcessing.TypeVectorPolygon, QgsProcessing.TypeVectorLine)}
+
 
 @dataclass(frozen=True)
 class Option:
     """A parameter KEY of an algorithm and its option of the command line; flag "" is a positional argument.
 
     kind: number, whole, numbers (several, one flag), choice (of choices), switch, text, words (several, a flag before
-    each), file, files (several, a flag before each), folder, polygons, line, raster, crs, extent, new folder, new file.
+    each), file, files (several, a flag before each), folder, polygons, line, road (one of these), raster, crs, extent,
+    new folder, new file.
     own: its words are made by the algorithm. filter: of files.
     """
     key: str
@@ -52,9 +56,8 @@ class Option:
             return QgsProcessingParameterBoolean(*names, bool(self.default), optional)
         if self.kind in ("text", "words", "numbers"):
             return QgsProcessingParameterString(*names, self.default, self.kind == "words", optional)
-        if self.kind in ("polygons", "line"):
-            geometry = QgsProcessing.TypeVectorPolygon if self.kind == "polygons" else QgsProcessing.TypeVectorLine
-            return QgsProcessingParameterFeatureSource(*names, [geometry], self.default, optional)
+        if self.kind in GEOMETRIES:
+            return QgsProcessingParameterFeatureSource(*names, list(GEOMETRIES[self.kind]), self.default, optional)
         if self.kind == "files":
             return QgsProcessingParameterMultipleLayers(*names, QgsProcessing.TypeFile, self.default, optional)
         if self.kind == "raster":
@@ -104,7 +107,7 @@ class Option:
         if self.kind == "choice":
             word = asked.algorithm.parameterAsEnumString(*asked.of(self.key))
             return self.choices[int(word)] if word.isdigit() and int(word) < len(self.choices) else word
-        if self.kind in ("polygons", "line"):
+        if self.kind in GEOMETRIES:
             return layers.vector_file(asked, self.key)
         if self.kind == "raster":
             return layers.raster_file(asked, self.key)

@@ -7,7 +7,7 @@ from .algorithm import Algorithm
 from .options import Option
 from .release import SCAR, SHAPE
 from .results import load
-from .volume import CUT_ANGLE, MESH
+from .volume import CLEARING, CUT_ANGLE, MESH
 
 
 class Site(Algorithm):
@@ -30,8 +30,8 @@ class Site(Algorithm):
         Option("DEM", "--terrain", "raster", "Elevation model (heights in m)", needed=True),
         Option("RELEASE", "--release", "polygons", "Polygon where the mass is released"),
         *SHAPE,
-        Option("ROAD", "--road", "polygons", "Road (polygons): the volume to remove from it"),
-        CUT_ANGLE, MESH,
+        Option("ROAD", "--road", "road", "Road: the volume to remove from it"),
+        *CLEARING, CUT_ANGLE, MESH,
         Option("STRUCTURE", "--structure", "file", "Wall or building (STL, m)", filter="STL (*.stl)"),
         Option("LINE", "--line", "line", "Control line: what crosses it is counted"),
         Option("MOTION", "--motion", "file", "Motion of the ground, as slope quake wrote it (s, m/s2)"),

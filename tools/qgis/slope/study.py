@@ -6,7 +6,7 @@ from qgis.core import QgsProcessingException
 from .algorithm import Algorithm
 from .options import Option
 from .results import load
-from .volume import CUT_ANGLE, MESH
+from .volume import CLEARING, CUT_ANGLE, MESH
 
 DECK = Option("DECK", "", "file", "Deck, or site.yaml of a site", needed=True)
 RANKS = Option("RANKS", "--np", "whole", "MPI ranks of each run", 1, least=1)
@@ -33,8 +33,8 @@ class Study(Algorithm):
         DECK,
         Option("SET", "--set", "words", "Values of the deck's variables, one NAME=V1,V2,... per line"),
         Option("REPEAT", "--repeat", "words", "Repeats, one NAME=V1,V2,... per line"),
-        Option("ROAD", "--road", "polygons", "Road (polygons): the volume to remove from it"),
-        CUT_ANGLE, MESH, RANKS, JOBS,
+        Option("ROAD", "--road", "road", "Road: the volume to remove from it"),
+        *CLEARING, CUT_ANGLE, MESH, RANKS, JOBS,
         Option("EXCEED", "--exceed", "text", "Thicknesses of the maps of exceedance, with commas between (m)",
                "0.1,0.5,1", advanced=True),
         Option("LOCAL", "--local", "switch", "The road is in the local metres of the run, not in a CRS", advanced=True),

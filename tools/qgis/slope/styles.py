@@ -3,9 +3,10 @@ import math
 from typing import List, Sequence, Tuple
 
 from qgis.core import (QgsColorRampShader, QgsFillSymbol, QgsGraduatedSymbolRenderer, QgsHillshadeRenderer,
-                       QgsPalLayerSettings, QgsProcessingException, QgsRasterBandStats, QgsRasterDataProvider,
-                       QgsRasterPipe, QgsRasterShader, QgsRendererRange, QgsSingleBandPseudoColorRenderer,
-                       QgsTextBufferSettings, QgsTextFormat, QgsVectorLayerSimpleLabeling)
+                       QgsLineSymbol, QgsPalLayerSettings, QgsProcessingException, QgsRasterBandStats,
+                       QgsRasterDataProvider, QgsRasterPipe, QgsRasterShader, QgsRendererRange,
+                       QgsSingleBandPseudoColorRenderer, QgsSingleSymbolRenderer, QgsTextBufferSettings, QgsTextFormat,
+                       QgsVectorLayerSimpleLabeling)
 from qgis.PyQt.QtGui import QColor
 
 CLASSES = 7         # at most about so many
@@ -30,6 +31,7 @@ RASTERS = {
 }
 SERIES = {"thin to thick": (1, 2, 5), "powers": (1, 3)}     # upper bounds, times powers of ten
 GROUND = "ground"               # as a shaded relief
+STRETCHES = "stretches"         # of a road, lines
 MESH = "mesh cells"             # of `slope volume`, polygons
 OF_MESH = "remove"              # their column, m3
 # upper bounds that do not follow from the values
@@ -38,7 +40,10 @@ FIXED = {"shares": (0.05, 0.25, 0.5, 0.75, 1.0),
 
 
 def apply(layer, kind):
-    """Give a layer the renderer of a kind: of RASTERS, GROUND or MESH."""
+    """Give a layer the renderer of a kind: of RASTERS, GROUND, MESH or STRETCHES."""
+    if kind == STRETCHES:
+        return layer.setRenderer(QgsSingleSymbolRenderer(QgsLineSymbol.createSimple(
+            {"line_color": YELLOW_RED[-2], "line_width": "1.2"})))
     if kind == MESH:
         return mesh_cells(layer)
     if kind == GROUND:

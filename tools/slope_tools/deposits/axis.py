@@ -72,28 +72,34 @@ class Axis:
 
     def pieces(self, reach: float) -> List[Piece]:
         """All points within a reach (m) of the axis; the pieces do not overlap but where legs are that near."""
-        found = []
-        for k, length in enumerate(self.lengths):
-            for side in (1, -1):
-                first, last = np.maximum(side * self.half[k:k + 2], 0)
-                top = min(reach, length / max(first + last, 1e-12))
-                corners = [(0, 0), (length, 0), (length - last * top, top), (first * top, top)]
-                area = self.polygon(k, side, corners[:3 if top < reach else 4])
-                found.append(Piece(area, k, side, (first, last), False))
-        return found + [Piece(self.sector(k, reach), k, -1 if self.half[k] > 0 else 1, (0.0, 0.0), True)
-                        for k in np.flatnonzero(np.abs(self.half) > 1e-9)]
+        return [*(Piece(self.beside(k, side, 0, reach), k, side, self.inside(k, side), False)
+                  for k in range(len(self.lengths)) for side in (1, -1)),
+                *(Piece(self.sector(k, 0, reach), k, -1 if self.half[k] > 0 else 1, (0.0, 0.0), True)
+                  for k in np.flatnonzero(np.abs(self.half) > 1e-9))]
+
+    def inside(self, k: int, side: int) -> Tuple[float, float]:
+        """The tangents of the angles by which what has its foot on segment k narrows on a side."""
+        return max(0.0, side * self.half[k]), max(0.0, side * self.half[k + 1])
+
+    def beside(self, k: int, side: int, near: float, far: float) -> Polygon:
+        """The points on a side of segment k that have their feet on it, between two distances."""
+        length, (first, last) = self.lengths[k], self.inside(k, side)
+        far = min(far, length / max(first + last, 1e-12))
+        return self.polygon(k, side, [(first * near, near), (length - last * near, near), (length - last * far, far),
+                                      (first * far, far)]) if far > near else Polygon()
 
     def polygon(self, k: int, side: int, corners) -> Polygon:
         """Of points along segment k and beside it, m."""
         along, beside = np.transpose(corners)[:, :, None]
         return Polygon(self.points[k] + along * self.unit[k] + side * beside * self.left[k])
 
-    def sector(self, k: int, reach: float) -> Polygon:
-        """The points outside of the bend at vertex k, within a reach."""
+    def sector(self, k: int, near: float, far: float) -> Polygon:
+        """The points outside of the bend at vertex k, between two distances."""
         side = -1 if self.half[k] > 0 else 1
         start, turn = math.atan2(*(side * self.left[k - 1])[::-1]), 2 * math.atan(self.half[k])
         angles = start + np.linspace(0, turn, max(2, math.ceil(abs(turn) / STEP) + 1))
-        return Polygon([self.points[k], *self.points[k] + reach * np.column_stack([np.cos(angles), np.sin(angles)])])
+        arc = np.column_stack([np.cos(angles), np.sin(angles)])
+        return Polygon(self.points[k] + np.concatenate([far * arc, near * arc[::-1]])) if far > near else Polygon()
 
     def spans(self, piece: Piece, part: Polygon) -> Tuple[Span, Span]:
         """The chainages and the offsets of a connected part of a piece."""
@@ -114,14 +120,17 @@ class Axis:
         Its ends are perpendicular to the axis; it may be empty, or of several polygons.
         """
         parts = []
-        for piece in self.pieces(max(-across.low, across.high)):
-            k, (near, far) = piece.at, sorted(max(0.0, piece.side * n) for n in across)
-            if piece.bend and along.low - SAME <= self.s[k] <= along.high + SAME:
-                parts.append(self.sector(k, far).difference(self.sector(k, near)))
-            elif not piece.bend and along.low < self.s[k + 1] and self.s[k] < along.high and near < far:
+        for side in (1, -1):
+            near, far = sorted(max(0.0, side * n) for n in across)
+            for k, length in enumerate(self.lengths):
                 low, high = np.clip(along, self.s[k], self.s[k + 1]) - self.s[k]
-                strip = self.polygon(k, piece.side, [(low, near), (high, near), (high, far), (low, far)])
-                parts.append(piece.area.intersection(strip))
+                if high > low:
+                    parts.append(self.beside(k, side, near, far))
+                    if high - low < length:
+                        strip = self.polygon(k, side, [(low, near), (high, near), (high, far), (low, far)])
+                        parts[-1] = parts[-1].intersection(strip)
+                if side * self.half[k] < 0 and along.low - SAME <= self.s[k] <= along.high + SAME:
+                    parts.append(self.sector(k, near, far))
         # without the hairlines between them
         return as_multi(unary_union(parts).buffer(SAME, join_style=2).buffer(-SAME, join_style=2))
 

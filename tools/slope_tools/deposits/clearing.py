@@ -12,9 +12,8 @@ from ..geometry import Mesh
 from ..survey.roads import Asked
 from . import lanes
 from .axis import Axis
-from .lanes import Place, Stretch
+from .lanes import Stretch
 
-LANE = "remove_lane"        # of a stretch, and of a mesh cell
 DIGITS = 6                  # of lengths in m and of hours
 
 
@@ -35,7 +34,6 @@ def of_road(run_, result, profile, axes: Sequence[Axis], width: float, road: Opt
     degrees.
     """
     found = lanes.stretches(run_.raster, axes, width, asked.blocked, road)
-    hours = asked.hours
     entries = [{"from": round(one.along.low, DIGITS), "to": round(one.along.high, DIGITS),
                 "largest_thickness_on_axis": thickest(profile, one), "passable_width": round(one.passable, DIGITS),
                 "remove": result.rounded(volume)} for one, volume in zip(found, volumes(run_, result, found))]
@@ -49,24 +47,20 @@ def of_road(run_, result, profile, axes: Sequence[Axis], width: float, road: Opt
         for one, entry in zip(found, entries):
             place = cutter.least(one, width, lane)
             areas.append(cutter.area(one, place.offset, lane))
-            entry.update(lane_offset=round(place.offset, DIGITS), **volumes_of_lane(run_, result, place, cutter, areas))
+            steep = cutter.removed(areas[-1:]).steep * run_.cell ** 2
+            entry.update(lane_offset=round(place.offset, DIGITS), remove_lane=result.rounded(place.volume),
+                         remove_lane_where_cut_below_ground=result.rounded(steep))
         together = cutter.removed(areas, mesh)
         by_mesh = result.rounded((together.mesh_road + together.mesh_beside) * run_.cell ** 2)
-        totals.update(lane=asked.lane, **{LANE: result.total(by_mesh)})
-        totals["remove_lane_of_two"] = result.rounded(sum(entry[LANE] for entry in entries) - totals[LANE])
-    if hours is not None:
+        totals.update(lane=asked.lane, remove_lane=result.total(by_mesh))
+        totals["remove_lane_twice"] = max(0.0, result.rounded(sum(one["remove_lane"] for one in entries)
+                                                              - totals["remove_lane"]))
+    if asked.hours is not None:
         totals.update(clearing=asked.clearing, loosening=asked.loosening)
         for entry in (*entries, totals):
-            entry["hours"] = round(entry["remove"] * hours, DIGITS)
-            if LANE in entry:
-                entry["hours_lane"] = round(entry[LANE] * hours, DIGITS)
+            entry.update({hours: round(entry[volume] * asked.hours, DIGITS) for hours, volume in
+                          (("hours", "remove"), ("hours_lane", "remove_lane")) if volume in entry})
     return Clearing(found, entries, totals, areas, by_mesh)
-
-
-def volumes_of_lane(run_, result, place: Place, cutter: lanes.Cutter, areas) -> Dict[str, float]:
-    """What the last of these lanes takes, m3, and the part of it where the cut lies below the ground."""
-    steep = cutter.removed(areas[-1:]).steep * run_.cell ** 2
-    return {LANE: result.rounded(place.volume), "remove_lane_where_cut_below_ground": result.rounded(steep)}
 
 
 def thickest(profile, stretch: Stretch) -> float:

@@ -26,6 +26,7 @@ from . import cut
 from .axis import SAME, Axis, Span, longest_gap, merged, parts_of_mask
 
 STEPS = 4               # positions of a lane in the width of a cell
+COARSE = 2              # samples of a cell along a side while the best position is searched for
 FINE = 0.01             # of a cell: to this the best position is refined
 FLAT = 1e-9             # relative: volumes that differ less are the same
 
@@ -66,16 +67,11 @@ def stretches(deposit: Raster, axes: Sequence[Axis], width: float, blocked: floa
 
 def nearest(found: Sequence[Stretch], x, y):
     """The index of the stretch that is nearest along the axis to points x, y (1-d arrays); there must be one."""
-    axes = list({id(one.axis): one.axis for one in found}.values())
-    places = [axis.locate(x, y) for axis in axes]
-    mine = np.argmin([np.abs(n) for _, n in places], axis=0)        # of the parts of the axis
-    gaps = np.full((len(found), len(x)), np.inf)
-    for k, one in enumerate(found):
-        own = next(i for i, axis in enumerate(axes) if axis is one.axis)
-        s = places[own][0]
-        gap = np.maximum(np.maximum(one.along.low - s, s - one.along.high), 0)
-        gaps[k] = np.where(mine == own, gap, np.inf)
-    return gaps.argmin(axis=0)
+    places = {axis: axis.locate(x, y) for axis in {one.axis for one in found}}
+    far = [np.abs(places[one.axis][1]) + np.clip(np.maximum(one.along.low - places[one.axis][0],
+                                                            places[one.axis][0] - one.along.high), 0, None)
+           for one in found]        # of several axes, the one beside which they lie
+    return np.argmin(far, axis=0)
 
 
 class Cutter:
@@ -94,20 +90,21 @@ class Cutter:
         lane = stretch.axis.band(stretch.along, Span(offset - width / 2, offset + width / 2))
         return geometry.as_multi(lane.intersection(geometry.box_of(self.deposit)))
 
-    def removed(self, areas: Sequence[BaseGeometry], mesh=None) -> cut.Removed:
+    def removed(self, areas: Sequence[BaseGeometry], mesh=None, samples: Optional[int] = None) -> cut.Removed:
         """What lanes remove, together: the union of their cuts."""
         inside = [geometry.to_index(one, self.deposit) for one in areas if one.area > 0]
         return cut.removed(self.deposit.z, self.ground, inside, self.tangent, mesh or cut.one_cell(self.deposit.z),
-                           self.samples, silent=True)
+                           samples or self.samples, silent=True)
 
     def least(self, stretch: Stretch, road: float, lane: float) -> Place:
         """The place of a lane (width, m) through a stretch where it takes least; road: the road's width, m."""
-        def volume(offset: float) -> float:
-            return float(self.removed([self.area(stretch, offset, lane)]).cells.sum()) * self.cell ** 2
-        return least(volume, (road - lane) / 2, self.cell / STEPS, FINE * self.cell)
+        def volume(offset: float, samples: Optional[int] = COARSE) -> float:
+            return float(self.removed([self.area(stretch, offset, lane)], None, samples).cells.sum()) * self.cell ** 2
+        offset = least(volume, (road - lane) / 2, self.cell / STEPS, FINE * self.cell)
+        return Place(offset, volume(offset, None))
 
 
-def least(volume: Callable[[float], float], most: float, step: float, fine: float) -> Place:
+def least(volume: Callable[[float], float], most: float, step: float, fine: float) -> float:
     """Where a function of the offset is least within +-most: in steps, then to `fine` beside the best one.
 
     Of places that are equally good the one nearest to 0. All lengths in m.
@@ -123,4 +120,4 @@ def least(volume: Callable[[float], float], most: float, step: float, fine: floa
         between = max(-most, best() - most / count), min(most, best() + most / count)
         minimize_scalar(lambda one: known.setdefault(float(one), volume(float(one))), bounds=between, method="bounded",
                         options={"xatol": fine})
-    return Place(best(), known[best()])
+    return best()

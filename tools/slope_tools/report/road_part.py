@@ -59,7 +59,7 @@ def shares(data, asked: Asked, about, runs: str, maps):
     parts = [(one.band(Span(low, high), Span(-width / 2, width / 2)), share)
              for low, high, share in about["shares"] for one in axes_of(axis, asked)]
     layers = maps.layers._replace(section=None, reach=known_reach.NOTHING)
-    title = "How likely the road is blocked"
+    title = "Where the road is blocked"
     return maps.picture(figure_maps.road_map(layers, parts, ODDS, title, f"share of the {runs}", maps.crs), title,
                         f"Share of the {runs} in which the road is blocked, at each of its places.")
 

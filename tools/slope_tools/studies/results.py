@@ -14,8 +14,8 @@ from ..ensembles import ensemble, known_study
 from ..runs import repeats
 from ..seismic import chain_files
 from ..survey import rasters, roads
-from ..tables import (combinations, intensity, quantities, size_error, step_check, structures, study_table, usable,
-                      withheld_words)
+from ..tables import (combinations, intensity, quantities, road_runs, size_error, step_check, structures, study_table,
+                      usable, withheld_words)
 from ..tables.size_error import SizeErrors
 from ..tables.study_maps import Maps
 from ..warned import Warned, entries, warned
@@ -128,6 +128,9 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
             f"{deck.name}: {len(rows)} run{'s' * (len(rows) != 1)}, volumes in m3 of ground"))
     if any(scatters.values()) and not order:
         setup.tell(study_table.combinations_shown(settings, groups, scatters))
+    if about.get("stretches"):
+        setup.tell(f"{output / road_runs.FILE}: {len(about['stretches']['stretches'])} stretches of the road that runs "
+                   "block")
     setup.tell(f"{output / 'study.yaml'}, {output / 'study.csv'}, {output / 'combinations.csv'}: all numbers")
     if about["conservative"]:
         setup.tell("\n".join(combinations.describe(about["conservative"])))
@@ -283,7 +286,7 @@ def on_road(run, setup: Setup, row, thickness, picture=True) -> Dict[str, Any]:
             "remove_beside_road_m3": about["volume"]["remove_beside_road"],
             "beyond_road_m3": beyond(thickness, released, polygon),
             "left_before_road_m3": left.before_road(gone, passed, released, polygon),
-            "blocked_m": about["axis"]["blocked_length"], "axis_thickness_m": about["axis"]["largest_thickness"],
+            "blocked_m": total["blocked_length"], "axis_thickness_m": about["axis"]["largest_thickness"],
             "remove_lane_m3": total.get("remove_lane"), "lane_hours": total.get("hours_lane"),
             "clear_hours": total.get("hours"), "stretches": about["stretches"], "clearing": total,
             # what it says of the summary is in the table
@@ -350,7 +353,6 @@ def write_road(output, road: Road, run, thickness) -> Dict[str, Any]:
 
 def stretches_of(output, rows, known) -> Dict[str, Any]:
     """What study.yaml says of the stretches that finished runs block; known: weights by known events, or None."""
-    from ..tables import road_runs
     weights = known or {row["run"]: 1.0 for row in rows if not row.get("batch")}
     about = road_runs.evaluate([road_runs.Run(weights[row["run"]], row["stretches"], row["clearing"])
                                 for row in rows if row["run"] in weights])

@@ -92,14 +92,12 @@ def read_local(path, raster, asked: Asked = NOTHING, local=False, crs=None, advi
     vectors.require_file(path)
     if asked.width is None:
         try:
-            found = polygons.read_local(path, raster, local, crs, advice or polygons.ADVICE, warn)
+            if MARK not in (polygons.read_text(path) or ""):
+                return Road(polygons.read_local(path, raster, local, crs, advice or polygons.ADVICE, warn), None)
         except SlopeError:
             if not is_line(path):
                 raise
-            found = None
-        if found is None or MARK in (polygons.read_text(path) or ""):
-            raise SlopeError(path, "is a line, whose width must be given: --road-width")
-        return Road(found, None)
+        raise SlopeError(path, "is a line, whose width must be given: --road-width")
     found = lines.read_local(path, raster, local, "road", advice, crs, warn,
                              "leave out --road-width, which is that of a line")
     if len(found.geoms) != 1:
@@ -129,7 +127,7 @@ def check_line(path, line: LineString, within, start: float) -> None:
     def chainage(length):
         return f"{1000 * start + length:.1f} m"
     if not line.is_simple:
-        crossed = Point(unary_union(line).geoms[0].coords[-1])
+        crossed = min((Point(one.coords[-1]) for one in unary_union(line).geoms), key=line.project)
         raise SlopeError(path, "must be a line that does not cross itself; it does at the chainage "
                          f"{chainage(line.project(crossed))}", numbers(crossed.coords[0]))
     outside = line.difference(box(*within).buffer(SLACK))

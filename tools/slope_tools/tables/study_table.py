@@ -26,8 +26,7 @@ SHOWN: Dict[str, Tuple[str, Any]] = {      # head, format
     "wall_s": ("wall s", "{:.0f}")}
 SHOWN_ROAD: Dict[str, Tuple[str, Any]] = {
     "remove_m3": ("to remove", None), "remove_on_road_m3": ("on the road", None),
-    "beyond_road_m3": ("beyond it", None), "blocked_m": ("blocked m", "{:.0f}"), "remove_lane_m3": ("a lane", None),
-    "lane_hours": ("lane hours", "{:.1f}")}
+    "beyond_road_m3": ("beyond it", None), "blocked_m": ("blocked m", "{:.0f}")}
 
 
 def table(settings, repeated, rows, defaults):
@@ -66,7 +65,7 @@ def runs_shown(settings, rows, scatters, title) -> Table:
     shown = Table(title=title, caption=caption)
     columns = {**SHOWN, **(SHOWN_ROAD if any("remove_m3" in row for row in rows) else {})}
     finished = [row for row in rows if row["status"] == "finished"]
-    columns = {key: column for key, column in columns.items() if any(row.get(key) is not None for row in finished)}
+    columns = {key: column for key, column in columns.items() if any(row[key] is not None for row in finished)}
     repeated = any(row["repeat"] for row in rows)
     for head in (*names, *(["repeat"] * repeated)):
         shown.add_column(head, justify="right", no_wrap=True)
