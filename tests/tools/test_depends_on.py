@@ -29,9 +29,10 @@ FOLLOWED = {"deck", "lmp"}              # dependencies.py
 PLACE = {"output", "overwrite", "help", "dry_run"}      # where to, or no run
 ONE_RESULT = {"np", "jobs", "launcher", "engine", "slurm"}      # how it is run: the same but for rounding
 # computed from the runs, each time that the command is given
-ANEW = {"road", "road_width", "road_from", "blocked", "lane", "clearing", "loosening", "cut_angle", "mesh",
-        "local", "intensity", "more_than", "of", "exceed", "exceed_speed", "exceed_energy", "size_error", "equally_good", "observed", "front", "front_is", "area", "road_volume",
-        "tolerance", "threshold", "mobility", "confined", "left_out"}
+ANEW = {"road", "road_width", "road_from", "blocked", "lane", "clearing", "loosening", "cut_angle", "mesh", "local",
+        "intensity", "more_than", "of", "exceed", "exceed_speed", "exceed_energy", "size_error", "equally_good",
+        "observed", "front", "front_is", "area", "road_volume", "tolerance", "threshold", "mobility", "confined",
+        "left_out"}
 
 
 def options(command):
@@ -58,7 +59,8 @@ TRIAL = {"lmp", "jobs"}                         # what the trial run finds is wr
 # keys that slope study and the report read from site.yaml
 LATER = {("project", "name"), ("project", "client"), ("project", "author"), ("road", "cut_angle"), ("road", "mesh"),
          *(("road", key) for key in ("width", "from", "blocked", "lane", "clearing", "loosening")),
-         ("study", "rolling"), ("study", "spacing"), ("study", "xoffset"), ("study", "yoffset"), ("study", "zoffset"), ("study", "sizes")}
+         ("study", "rolling"), ("study", "spacing"),
+         ("study", "xoffset"), ("study", "yoffset"), ("study", "zoffset"), ("study", "sizes")}
 KEYS = [(section, key) for section, about in site_choices.sections() for key in about["properties"]]
 NOT_FILES = {("terrain", "crs"), ("terrain", "assign_crs"), ("terrain", "z_unit"), ("release", "shape"),
              ("release", "scar_is"), ("project", "name"), ("project", "client"), ("project", "author")}
