@@ -16,9 +16,10 @@ import run_helpers  # noqa: F401  (finds slope_tools)
 from tiny_collapse import TOP
 
 from slope_tools.case import data_files, run_folders  # noqa: E402
-from slope_tools.commands import site as site_command  # noqa: E402
+from slope_tools.commands import road_arguments, site as site_command  # noqa: E402
 from slope_tools.runs import dependencies, jobs  # noqa: E402
 from slope_tools.sites import site_choices  # noqa: E402
+from slope_tools.survey import roads  # noqa: E402
 
 # --- options of the commands that make runs ---
 
@@ -29,9 +30,9 @@ FOLLOWED = {"deck", "lmp"}              # dependencies.py
 PLACE = {"output", "overwrite", "help", "dry_run"}      # where to, or no run
 ONE_RESULT = {"np", "jobs", "launcher", "engine", "slurm"}      # how it is run: the same but for rounding
 # computed from the runs, each time that the command is given
-ANEW = {"road", "cut_angle", "mesh", "local", "intensity", "more_than", "of", "exceed", "exceed_speed",
-        "exceed_energy", "size_error", "equally_good", "observed", "front", "front_is", "area", "road_volume",
-        "tolerance", "threshold", "mobility", "confined", "left_out"}
+ANEW = {"road", *road_arguments.OPTIONS, "cut_angle", "mesh", "local", "intensity", "more_than", "of", "exceed",
+        "exceed_speed", "exceed_energy", "size_error", "equally_good", "observed", "front", "front_is", "area",
+        "road_volume", "tolerance", "threshold", "mobility", "confined", "left_out"}
 
 
 def options(command):
@@ -57,6 +58,7 @@ SET_CHOICES = {"slips", "body", "mobile"}       # of several keys
 TRIAL = {"lmp", "jobs"}                         # what the trial run finds is written as a choice
 # keys that slope study and the report read from site.yaml
 LATER = {("project", "name"), ("project", "client"), ("project", "author"), ("road", "cut_angle"), ("road", "mesh"),
+         *(("road", key) for key in roads.KEYS.values()),
          ("study", "rolling"), ("study", "xoffset"), ("study", "yoffset"), ("study", "zoffset"), ("study", "sizes")}
 KEYS = [(section, key) for section, about in site_choices.sections() for key in about["properties"]]
 NOT_FILES = {("terrain", "crs"), ("terrain", "assign_crs"), ("terrain", "z_unit"), ("release", "shape"),
