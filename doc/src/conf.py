@@ -35,10 +35,10 @@ html_show_sphinx = html_copy_source = html_show_sourcelink = False
 # what the pages name of LAMMPS' manual, as its own pages do; anything else that is not here is an error
 LAMMPS_MANUAL = "https://docs.lammps.org/{}.html"
 LAMMPS_PAGES = set("""
-boundary compute_pair_local create_atoms create_box delete_atoms displace_atoms dump fix fix_balance fix_deposit
-fix_freeze fix_gravity fix_halt fix_modify fix_move fix_nve_sphere fix_pour fix_rigid fix_wall_gran_region minimize
+balance boundary compute_pair_local create_atoms create_box delete_atoms displace_atoms dump fix fix_balance fix_deposit
+fix_freeze fix_gravity fix_halt fix_modify fix_move fix_nve fix_nve_sphere fix_pour fix_rigid fix_wall_gran_region minimize
 neigh_modify neighbor pair_coeff pair_gran pair_granular read_restart region reset_timestep restart run suffix
-thermo_modify timestep units
+thermo_modify timestep unfix units write_restart
 """.split())
 
 

@@ -1,3 +1,4 @@
+// No LAMMPS
 /* ----------------------------------------------------------------------
    SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
    Distributed under the GNU General Public License, version 2
@@ -12,11 +13,12 @@
 #include <stdexcept>
 #include <string>
 #include <sys/stat.h>
+#include <unistd.h>
 
 namespace Slope {
 
 // A text file that appears under its name only when it is complete: it is written beside, as
-// PATH.tmp, and commit() renames it. Without commit(), or after an error, nothing is left
+// PATH.PROCESS.tmp, and commit() renames it. Without commit(), or after an error, nothing is left
 // behind and an older file of that name stays as it was. Of several files that belong together,
 // close() all, which is the last that a full disk or a folder of that name can refuse, before the
 // first commit().
@@ -24,7 +26,8 @@ namespace Slope {
 class AtomicFile {
  public:
   explicit AtomicFile(const std::string &_path) :
-      path(_path), beside(_path + ".tmp"), fp(fopen(beside.c_str(), "w")), there(fp != nullptr)
+      path(_path), beside(_path + "." + std::to_string(getpid()) + ".tmp"),
+      fp(fopen(beside.c_str(), "w")), there(fp != nullptr)
   {
     if (!fp) fail();
     check_target();

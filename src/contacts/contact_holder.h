@@ -1,3 +1,4 @@
+// No LAMMPS
 /* ----------------------------------------------------------------------
    SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
    Distributed under the GNU General Public License, version 2
@@ -9,7 +10,8 @@
 namespace LAMMPS_NS {
 
 // Holders of contacts besides the pair style: the walls. Each registers in its
-// init(); the pair style asks all of them for their contacts before any force is computed.
+// init(); the pair style asks all of them for their contacts before any force is computed, and they ask it for laws: it
+// knows no more of them, or there would be a circle.
 class ContactHolder {
  public:
   // which contacts touch now (repeat: in the step that has just ended, at a set-up), counted with each ball

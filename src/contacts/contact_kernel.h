@@ -1,3 +1,4 @@
+// No LAMMPS
 /* ----------------------------------------------------------------------
    SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
    Distributed under the GNU General Public License, version 2
@@ -43,7 +44,8 @@ struct ContactBits {
   std::uint64_t solved;      // has a row: see ContactView
 };
 
-// a contact list as the kernels see it
+// a contact list as the kernels see it: pointers, so that no template of the standard library is compiled for an
+// instruction set that the processor may not have, and then chosen by the linker for all
 struct ContactView : ContactSizes {
   static constexpr int BLOCK = 64, ROW = 12;
 

@@ -1,3 +1,4 @@
+// No LAMMPS
 /* ----------------------------------------------------------------------
    SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
    Distributed under the GNU General Public License, version 2
@@ -9,7 +10,7 @@
 #ifndef SLOPE_BALL_TILES_H
 #define SLOPE_BALL_TILES_H
 
-#include "surface_sampler.h"
+#include "ball_sampler.h"
 #include "vector3.h"
 
 #include <cmath>
@@ -19,12 +20,6 @@
 #include <vector>
 
 namespace Slope {
-
-// nx by ny square tiles of the plan; the first and the last ones reach as far as their balls do
-struct TilePlan {
-  double xlo, ylo, size;
-  int nx, ny;
-};
 
 class BallTiles {
  public:
@@ -91,8 +86,10 @@ class BallTiles {
 template <typename Visit> void BallTiles::visit_near(const double *x, double reach, Visit visit)
 {
   const double inv = 1.0 / plan.size, spare = 1.0e-9;
-  const double ulo = (x[0] - reach - plan.xlo) * inv, uhi = (x[0] + reach - plan.xlo) * inv;
-  const double vlo = (x[1] - reach - plan.ylo) * inv, vhi = (x[1] + reach - plan.ylo) * inv;
+  const double px = plan.cosine * x[0] + plan.sine * x[1];
+  const double py = plan.cosine * x[1] - plan.sine * x[0];
+  const double ulo = (px - reach - plan.xlo) * inv, uhi = (px + reach - plan.xlo) * inv;
+  const double vlo = (py - reach - plan.ylo) * inv, vhi = (py + reach - plan.ylo) * inv;
 
   // balls lie up to a spacing beyond the plan, so less than a tile
 

@@ -1,3 +1,4 @@
+// No LAMMPS
 /* ----------------------------------------------------------------------
    SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
    Distributed under the GNU General Public License, version 2
@@ -13,6 +14,7 @@
 using namespace Slope;
 
 static constexpr double MAX_COUNT = 2147483647.0;
+static constexpr double ASIDE = 1.0e-6;    // of the spacing: farther than rounding
 static const double NaN = std::numeric_limits<double>::quiet_NaN();
 
 constexpr int PlanNodes::TILE;
@@ -105,6 +107,24 @@ const PlanNodes::Tile &PlanNodes::make_tile(int number)
   tiles[number] = std::move(looks);
   known++;
   return *tiles[number];
+}
+
+double PlanNodes::probe(int i, int j) const
+{
+  const double px = x(i), py = y(j), off = ASIDE * grid.spacing;
+  const double at[5][2] = {
+      {px, py}, {px - off, py}, {px + off, py}, {px, py - off}, {px, py + off}};
+  double height = 0.0, z;
+  int balls = 0;
+  for (int k = 0; k < 5; k++) {
+    const double kx = std::min(std::max(at[k][0], grid.xlo), grid.xhi);
+    const double ky = std::min(std::max(at[k][1], grid.ylo), grid.yhi);
+    const bool there = surface.height(kx, ky, z) && std::isfinite(z);
+    balls += there && (!surface.keep || surface.keep(kx, ky));
+    if (k == 0) height = z;
+  }
+  if (balls == 5) return height;
+  return balls == 0 ? NaN : -HUGE_VAL;
 }
 
 PlanNodes::Balls PlanNodes::around(int i, int j)

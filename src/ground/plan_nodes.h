@@ -1,3 +1,4 @@
+// No LAMMPS
 /* ----------------------------------------------------------------------
    SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
    Distributed under the GNU General Public License, version 2
@@ -71,6 +72,10 @@ class PlanNodes {
   const Look &at(int i, int j);
 
   bool has_ball(int i, int j) { return at(i, j).ball; }
+
+  // height of the ball on a node, NaN without; -infinite where rounding may decide on that, at a rim. Not
+  // remembered.
+  double probe(int i, int j) const;
 
   // 0 to 4 of the corners of a cell that have a ball
   int corners(int i, int j)

@@ -1,3 +1,4 @@
+// No LAMMPS
 /* ----------------------------------------------------------------------
    SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
    Distributed under the GNU General Public License, version 2
@@ -9,7 +10,6 @@
 #include <climits>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <stdexcept>
 
 using namespace Slope;
@@ -18,8 +18,7 @@ static constexpr int MOST_HIDDEN =
     24;                             // cells that a rim is followed without corners that show it
 static constexpr int BLOCK = 32;    // cells: more than a rim and the reach of a cell
 static constexpr int NOT_REFINED = INT_MAX;    // a steep cell that no rim runs through
-static constexpr int64_t OF_CELL = 1 << 20;    // numbers of the balls of one cell
-static constexpr double ASIDE = 1.0e-6;        // of the spacing: farther than rounding
+static constexpr int64_t OF_CELL = PlacedBall::OF_CELL;
 static constexpr size_t LEAST_KNOWN = 1024;    // tiles whose nodes are remembered
 
 /* ---------------------------------------------------------------------- */
@@ -47,22 +46,10 @@ void SurfaceSampler::remember_less(int tile_j)
 
 /* ---------------------------------------------------------------------- */
 
-double SurfaceSampler::node(int i, int j) const
+TilePlan SurfaceSampler::tiles() const
 {
-  const NodeGrid &g = nodes.grid;
-  const double x = nodes.x(i), y = nodes.y(j), off = ASIDE * g.spacing;
-  const double at[5][2] = {{x, y}, {x - off, y}, {x + off, y}, {x, y - off}, {x, y + off}};
-  double height = 0.0, z;
-  int balls = 0;
-  for (int k = 0; k < 5; k++) {
-    const double px = std::min(std::max(at[k][0], g.xlo), g.xhi);
-    const double py = std::min(std::max(at[k][1], g.ylo), g.yhi);
-    const bool there = nodes.surface.height(px, py, z) && std::isfinite(z);
-    balls += there && (!nodes.surface.keep || nodes.surface.keep(px, py));
-    if (k == 0) height = z;
-  }
-  if (balls == 5) return height;
-  return balls == 0 ? std::numeric_limits<double>::quiet_NaN() : -HUGE_VAL;
+  return {nodes.xfirst, nodes.yfirst, nodes.tile * nodes.grid.spacing, nodes.tiles_x,
+          nodes.tiles_y};
 }
 
 bool SurfaceSampler::has_balls(int tile)
@@ -245,18 +232,4 @@ void SurfaceSampler::close_patch(int64_t seed)
       throw std::length_error("a cell of the plan grid needs 2^20 balls");
   }
   patch.clear();
-}
-
-/* ---------------------------------------------------------------------- */
-
-bool Slope::is_extra(const PlacedBall &ball)
-{
-  return ball.number % OF_CELL != 0;
-}
-
-void Slope::in_order(std::vector<PlacedBall> &balls)
-{
-  std::sort(balls.begin(), balls.end(), [](const PlacedBall &a, const PlacedBall &b) {
-    return is_extra(a) != is_extra(b) ? is_extra(b) : a.number < b.number;
-  });
 }

@@ -16,6 +16,7 @@
 #include "modify.h"
 #include "neigh_request.h"
 #include "neighbor.h"
+#include "pair_hybrid.h"
 #include "region.h"
 #include "region_block.h"
 #include "region_cylinder.h"
@@ -107,6 +108,19 @@ inline bool moves_discs(Fix *fix)
   return sphere && sphere->*Reach::prefactor() > 0.45;    // 0.4 of a sphere, 0.5 of a disc
 }
 
+// pair styles that a pair hybrid is made of, empty if it is none: protected there
+inline std::vector<std::string> parts_of_hybrid(Pair *pair)
+{
+  struct Reach : public PairHybrid {
+    static int PairHybrid::*number() { return &Reach::nstyles; }
+    static char **PairHybrid::*names() { return &Reach::keywords; }
+  };
+  const auto hybrid = dynamic_cast<PairHybrid *>(pair);
+  if (!hybrid) return {};
+  char **const names = hybrid->*Reach::names();
+  return std::vector<std::string>(names, names + hybrid->*Reach::number());
+}
+
 // values of ghost atoms from, and to, those that own them, by the style's pack and unpack
 inline void forward_comm(Comm *comm, Pair *pair)
 {
@@ -135,10 +149,10 @@ inline void reverse_comm(Comm *comm, Pair *pair)
 #endif
 }
 
-// The shapes of LAMMPS' own regions. Their numbers are private and nothing hands them out: a region
-// with side out does not even have a bounding box. C++ does not check access in the arguments of an
+// What LAMMPS does not hand out. C++ does not check access in the arguments of an
 // explicit instantiation, which here gives away pointers to these members; their names have been
 // the same in all versions, and a new name would not compile.
+
 template <typename Tag, typename Tag::Type member> struct Reveal {
   friend typename Tag::Type reveal(Tag) { return member; }
 };
@@ -148,6 +162,8 @@ template <typename Tag, typename Tag::Type member> struct Reveal {
     friend Type reveal(CLASS##_##MEMBER); \
   };                                      \
   template struct Reveal<CLASS##_##MEMBER, &CLASS::MEMBER>;
+
+// the shapes of LAMMPS' own regions: one with side out does not even have a bounding box
 
 SLOPE_REVEAL(RegSphere, double, xc)
 SLOPE_REVEAL(RegSphere, double, yc)
@@ -170,7 +186,34 @@ SLOPE_REVEAL(RegCylinder, double, c2)
 SLOPE_REVEAL(RegCylinder, double, radius)
 SLOPE_REVEAL(RegCylinder, double, lo)
 SLOPE_REVEAL(RegCylinder, double, hi)
+
+// which fixes have something in the restart file that was read, and whether they were there to take it
+
+SLOPE_REVEAL(Modify, char **, id_restart_global)
+SLOPE_REVEAL(Modify, char **, style_restart_global)
+SLOPE_REVEAL(Modify, int *, used_restart_global)
+SLOPE_REVEAL(Modify, char **, id_restart_peratom)
+SLOPE_REVEAL(Modify, char **, style_restart_peratom)
+SLOPE_REVEAL(Modify, int *, used_restart_peratom)
 #undef SLOPE_REVEAL
+
+struct RestartList {
+  int number;
+  char **id, **style;
+  int *used;
+};
+
+inline RestartList restart_of_fixes(Modify *m)
+{
+  return {m->nfix_restart_global, m->*reveal(Modify_id_restart_global()),
+          m->*reveal(Modify_style_restart_global()), m->*reveal(Modify_used_restart_global())};
+}
+
+inline RestartList restart_by_atom(Modify *m)
+{
+  return {m->nfix_restart_peratom, m->*reveal(Modify_id_restart_peratom()),
+          m->*reveal(Modify_style_restart_peratom()), m->*reveal(Modify_used_restart_peratom())};
+}
 
 struct Sphere {
   double x, y, z, radius;

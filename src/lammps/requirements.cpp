@@ -13,6 +13,10 @@
 #include "modify.h"
 #include "update.h"
 
+#include <cmath>
+#include <functional>
+#include <vector>
+
 using namespace LAMMPS_NS;
 
 /* ----------------------------------------------------------------------
@@ -26,6 +30,8 @@ void LAMMPS_NS::require_run(LAMMPS *lmp, const std::string &caller)
   if (update->whichflag == 2) lmp->error->all(FLERR, "{} needs run, got minimize", caller);
   if (utils::strmatch(update->integrate_style, "^respa"))
     lmp->error->all(FLERR, "{} needs run_style verlet, got {}", caller, update->integrate_style);
+  if (!(update->dt > 0.0 && std::isfinite(update->dt)))
+    lmp->error->all(FLERR, "{} needs timestep > 0, got {:g}", caller, update->dt);
 }
 
 /* ----------------------------------------------------------------------
@@ -84,6 +90,57 @@ void LAMMPS_NS::require_spheres(LAMMPS *lmp, const std::string &caller)
           "{}: fix {} {} must turn balls as solid spheres, got disc: leave it out, in two "
           "dimensions, too",
           caller, fix->id, fix->style);
+}
+
+/* ----------------------------------------------------------------------
+   Friction turns a ball that rolls or slides. Where its integrator leaves the spin at 0, as fix nve does,
+   the spring of its contact holds it on any slope. Two integrators move a ball twice in a step.
+------------------------------------------------------------------------- */
+
+static bool integrates_spins(const std::string &style)
+{
+  return style.find("sphere") != std::string::npos || style == "move" || style == "nve/noforce" ||
+      style == "python/move";
+}
+
+void LAMMPS_NS::require_spins(LAMMPS *lmp, const std::string &caller, int frozen)
+{
+  const Atom *atom = lmp->atom;
+  const Modify *modify = lmp->modify;
+  const auto count = [&](const std::function<bool(int)> &test) {
+    bigint mine = 0, all;
+    for (int i = 0; i < atom->nlocal; i++) mine += test(atom->mask[i]);
+    MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, lmp->world);
+    return all;
+  };
+  std::vector<const Fix *> movers;
+  for (int k = 0; k < modify->nfix; k++)
+    if (modify->fix[k]->time_integrate) movers.push_back(modify->fix[k]);
+
+  std::string names;
+  for (const Fix *fix : movers) {
+    names += fmt::format("{}{} {}", names.empty() ? "" : ", ", fix->id, fix->style);
+    if (integrates_spins(Slope::plain_style(fix->style))) continue;
+    const bigint held = count([&](int mask) {
+      return (mask & fix->groupbit) && (mask & frozen);
+    });
+    const bigint all = count([&](int mask) {
+      return mask & fix->groupbit;
+    });
+    if (all > 0 && all == held) continue;    // none yet: of fix pour or fix deposit
+    lmp->error->all(FLERR,
+                    "{}: what moves balls must integrate their spins, got fix {} {}, with which "
+                    "friction holds a ball that should roll: use fix nve/sphere",
+                    caller, fix->id, fix->style);
+  }
+  const bigint twice = count([&](int mask) {
+    int n = 0;
+    for (const Fix *fix : movers) n += (mask & fix->groupbit) != 0;
+    return n > 1 && !(mask & frozen);
+  });
+  if (twice)
+    lmp->error->all(FLERR, "{}: each ball must be moved by one fix, got {} balls with more, of {}",
+                    caller, twice, names);
 }
 
 /* ----------------------------------------------------------------------

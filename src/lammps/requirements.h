@@ -18,12 +18,14 @@ namespace LAMMPS_NS {
 class LAMMPS;
 
 void require_run(LAMMPS *,
-                 const std::string &caller);    // with run_style verlet; no minimize
+                 const std::string &caller);    // with run_style verlet, forwards; no minimize
 // at the end of a step; set_up: the step of the last set-up
 void require_step(LAMMPS *, const std::string &caller, bigint set_up);
 void require_plain_units(LAMMPS *, const std::string &caller);
 void require_single_balls(LAMMPS *, const std::string &caller);    // no rigid bodies
 void require_spheres(LAMMPS *, const std::string &caller);         // no discs
+// what moves balls turns them, too, and one fix each; frozen: group bits of balls that do not move
+void require_spins(LAMMPS *, const std::string &caller, int frozen);
 void require_whole_contacts(LAMMPS *,
                             const std::string &caller);    // special_bonds, if there are bonds
 

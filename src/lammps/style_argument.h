@@ -8,8 +8,8 @@
 
 #include "error.h"
 #include "lammps.h"
-#include "utils.h"
 
+#include <cctype>
 #include <cerrno>
 #include <climits>
 #include <cmath>
@@ -18,22 +18,34 @@
 
 namespace LAMMPS_NS {
 
+// Whether a text is a decimal number as a whole, and finite: not 1.0.0, 1e, 0x10, inf or 1e999. LAMMPS' own
+// is_double() takes whatever has the letters of a number, in some versions.
+inline bool read_number(const std::string &text, double &value)
+{
+  if (text.empty() || text.find_first_not_of("0123456789+-.eE") != std::string::npos) return false;
+  char *end;
+  value = strtod(text.c_str(), &end);
+  return *end == '\0' && std::isfinite(value);
+}
+
 // Numbers among the arguments of a style. LAMMPS' own errors do not say which argument it was; here
 // what names style and argument: "Fix deposit/grid cell".
 
 inline double number_argument(LAMMPS *lmp, const std::string &what, const char *text)
 {
-  const double value = utils::is_double(text) ? strtod(text, nullptr) : HUGE_VAL;
-  if (!std::isfinite(value))    // 1e999, too
+  double value;
+  if (!read_number(text, value))
     lmp->error->all(FLERR, "{} must be a finite number, got {}", what, text);
   return value;
 }
 
 inline int whole_number_argument(LAMMPS *lmp, const std::string &what, const char *text)
 {
+  char *end;
   errno = 0;
-  const long value = utils::is_integer(text) ? strtol(text, nullptr, 10) : LONG_MAX;
-  if (errno != 0 || value > INT_MAX || value < INT_MIN)
+  const long value = strtol(text, &end, 10);
+  const bool whole = *text && !isspace(static_cast<unsigned char>(*text)) && *end == '\0';
+  if (!whole || errno != 0 || value > INT_MAX || value < INT_MIN)
     lmp->error->all(FLERR, "{} must be a whole number below 2^31, got {}", what, text);
   return (int) value;
 }

@@ -1,3 +1,4 @@
+// No LAMMPS
 /* ----------------------------------------------------------------------
    SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
    Distributed under the GNU General Public License, version 2
@@ -6,7 +7,9 @@
 #include "surface_loads.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <stdexcept>
 
 using namespace Slope;
 
@@ -144,9 +147,22 @@ std::vector<double> SurfaceLoads::pack() const
   return list;
 }
 
-void SurfaceLoads::unpack(const double *numbers)
+void SurfaceLoads::unpack(const double *numbers, size_t size, double triangles)
 {
-  const size_t nload = static_cast<size_t>(numbers[0]), nrow = static_cast<size_t>(numbers[1]);
+  static constexpr size_t LOAD = 5, ROW = sizeof(Row) / sizeof(double);
+  const double of_loads = size > 0 ? numbers[0] : 0.0, of_rows = size > 1 ? numbers[1] : 0.0;
+  bool whole = size > 1 && of_loads >= 0.0 && of_rows >= 0.0 && of_loads == std::floor(of_loads) &&
+      2.0 + LOAD * of_loads + ROW * of_rows == size;
+  const size_t nload = whole ? of_loads : 0, nrow = whole ? of_rows : 0;
+  for (size_t k = 0; k < nload; k++) {
+    const double triangle = numbers[2 + LOAD * k];
+    whole = whole && triangle >= 0.0 && triangle < triangles;
+  }
+  if (!whole)
+    throw std::runtime_error(
+        "the loads in the restart file must be those of triangles of the surface, "
+        "got others: the file is damaged, take an earlier one");
+
   const double *next = numbers + 2;
   loads.clear();
   rows.resize(nrow);

@@ -1,3 +1,4 @@
+// No LAMMPS
 /* ----------------------------------------------------------------------
    SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
    Distributed under the GNU General Public License, version 2
@@ -44,7 +45,8 @@ class SurfaceLoads {
                                                                              // of a sparse surface
   // for restart files
   std::vector<double> pack() const;
-  void unpack(const double *numbers);
+  void unpack(const double *numbers, size_t size,
+              double triangles);    // may throw: of a damaged file
 
  private:
   struct Load {

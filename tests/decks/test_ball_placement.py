@@ -176,7 +176,22 @@ BAD = [
     ("surface ball upper spacing 1 origin 2", "w origin must be followed by x y, got 1 of 2 values"),
     ("surface ball upper spacing 1 origin 2 y", "w origin y must be a finite number, got y"),
     ("surface ball upper spacing 1 within slab",
-     "w keyword must be spacing, origin, sink, sunk, smallest, inside, outside or write, got within"),
+     "w keyword must be spacing, origin, pattern, angle, sink, sunk, smallest, inside, outside or write, got within"),
+    ("surface ball upper spacing 0.4 pattern", "w pattern must be followed by grid or scattered, got 0 of 1 values"),
+    ("surface ball upper spacing 0.4 pattern hexagonal", "w pattern must be grid or scattered, got hexagonal"),
+    ("surface ball upper spacing 0.4 pattern scattered 0", "w pattern scattered SEED must be > 0, got 0"),
+    ("surface ball upper spacing 0.4 pattern scattered -3", "w pattern scattered SEED must be > 0, got -3"),
+    ("surface ball upper spacing 0.4 pattern scattered 1.5",
+     "w pattern scattered SEED must be a whole number, got 1.5"),
+    ("surface ball upper spacing 0.4 pattern scattered angle 10",
+     "w angle must be 0 with pattern scattered, which has no direction, got 10"),
+    ("surface ball upper spacing 0.4 angle 400", "w angle must be within +-360 (degrees), got 400"),
+    ("surface ball upper spacing 0.4 angle north", "w angle must be a finite number, got north"),
+    ("surface ball upper spacing 0.48 pattern scattered",
+     "w spacing must be <= 0.475 with pattern scattered, got 0.48"),
+    ("surface ball upper spacing 0.38 pattern scattered smallest 0.25",
+     "w spacing must be <= 0.35625 with pattern scattered, got 0.38"),
+    ("file balls.txt pattern scattered", "w keyword must be inside, outside or write, got pattern"),
     ("surface ball upper spacing 1 inside slab outside column",
      "w can have one filter (inside or outside), got outside column as well"),
     ("surface ball upper spacing 1 inside gone", "w region gone does not exist"),
@@ -279,3 +294,37 @@ def test_thin_part_is_found(tmp_path):
     assert counts(log)[1] == 17 * 17 and {z for _, _, z in balls(tmp_path / "sheet.txt")} == {4.0}
     run_deck(deck.format(placement="surface top upper spacing 1 inside nothing"), tmp_path,
              expect_error="w: the surface of region top holds no balls")
+
+
+# --- few balls on a large surface ---
+
+FAR = """
+units si
+atom_style sphere
+boundary f f f
+region box block 0 100000 0 100000 -10 10
+create_box 2 box
+region ground block 0 100000 0 100000 -5 0
+"""
+
+
+def test_the_only_ball_is_found_wherever_it_is(tmp_path):
+    """On nodes at the ends and edges of tiles of 32 nodes, 200 x 200 of them: each filter leaves one."""
+    places = [(i, j) for i in (0, 31, 32, 33, 100, 191, 192, 200) for j in (0, 32, 200)]
+    lines = ["units si", "atom_style sphere", "boundary f f f", "region box block -9 209 -9 209 -9 9",
+             "create_box 2 box", "region ground block 0 200 0 200 -5 0"]
+    for n, (i, j) in enumerate(places):
+        lines += [f"region r{n} block {i - 0.4} {i + 0.4} {j - 0.3} {j + 0.3} INF INF",
+                  f"fix w{n} all wall/gran/balls 2 1.0 surface ground upper spacing 1 inside r{n}"]
+    log = run_deck("\n".join(lines) + "\n", tmp_path)
+    assert log.count(": 1 fixed balls of diameter 1 (1 on the plan grid") == len(places)
+
+
+@pytest.mark.parametrize("x, found", [(50001, True), (50001.5, False)])
+def test_one_node_of_a_billion(tmp_path, x, found):
+    """A region of 100 km: only nodes near the filter are asked, all of them would take minutes."""
+    wall = (f"region few sphere {x} 50001 0 0.4\n"
+            "fix w all wall/gran/balls 2 0.05 surface ground upper spacing 3 inside few\n")
+    error = None if found else "Fix wall/gran/balls w: the surface of region ground holds no balls"
+    log = run_deck(FAR + wall, tmp_path, timeout=20, expect_error=error)
+    assert found == ("on a plan grid of 1111155556 nodes every 3" in log)

@@ -254,13 +254,26 @@ def test_a_group_without_balls_is_told(tmp_path, np_):
     assert "Fix control/line line: the group" not in log
 
 
-@pytest.mark.parametrize("np_, name", [(1, "out.line.csv"), (2, "out.line.yaml"), (1, "out.line.yaml.tmp")])
+@pytest.mark.parametrize("np_, name", [(1, "out.line.csv"), (2, "out.line.yaml")])
 def test_a_folder_where_a_file_must_be(tmp_path, monkeypatch, np_, name):
     (tmp_path / name).mkdir()
     monkeypatch.setattr(sys.modules[__name__], "run_deck", functools.partial(
-        run_deck, expect_error=f"Fix control/line: cannot write {name.removesuffix('.tmp')}: Is a directory"))
+        run_deck, expect_error=f"Fix control/line: cannot write {name}: Is a directory"))
     log = fly(tmp_path, [[-1, 0, 8]], [[3, 0, 0]], "0 -9\n0 9\n", "run 500\n", np_=np_)
-    assert "Step" not in log and [path.name for path in tmp_path.glob("out.line*")] == [name]
+    assert "Step" not in log and [path.name for path in tmp_path.glob("out*")] == [name]
+
+
+@pytest.mark.parametrize("np_", (1, 2))
+def test_balls_that_go_between_two_steps(tmp_path, np_):
+    """With pre no: which ball was where is not known, and the crossings of a step would be lost."""
+    balls = [[-1, 0, 8], [-1, 3, 8], [-3, 0, 8]]
+    gone = "group gone id 1\nrun 10\ndelete_atoms group gone compress no\nrun 1000"
+    fly(tmp_path, balls, [[3, 0, 0]] * 3, "0 -9\n0 9\n", gone + "\n", np_=np_)
+    assert sorted(row["ball"] for row in crossings(tmp_path)) == [2, 3]
+    with pytest.raises(AssertionError) as failed:
+        fly(tmp_path, balls, [[3, 0, 0]] * 3, "0 -9\n0 9\n", gone + " pre no\n", np_=np_)
+    assert "ERROR" in str(failed.value) and "Fix control/line line: the number of balls must not change between" in str(
+        failed.value)
 
 
 def test_doc_examples(tmp_path):

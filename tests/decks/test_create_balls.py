@@ -196,7 +196,8 @@ BAD = [
     ("2 0.5 2000 surface ball lower spacing 0.5", "2 0.5",
      "Create_balls needs TYPE DIAMETER DENSITY and surface or file, got 2 arguments"),
     ("spacing 0.5", "spacing 0.5 write out.txt",
-     "Create_balls keyword must be spacing, origin, sink, sunk, smallest, inside or outside, got write"),
+     "Create_balls keyword must be spacing, origin, pattern, angle, sink, sunk, smallest, inside or outside, got "
+     "write"),
     ("atom_style      sphere", "atom_style      atomic",
      "Create_balls atom_style must have radius and mass per atom, as sphere has, got atomic"),
     ("create_box      2 box", "", "Create_balls before the simulation box is defined"),

@@ -410,13 +410,13 @@ run 10
     assert "Step" not in log
 
 
-@pytest.mark.parametrize("np_, name", [(1, "out.summary.yaml"), (2, "out.last_motion.asc"), (1, "out.base.asc.tmp")])
+@pytest.mark.parametrize("np_, name", [(1, "out.summary.yaml"), (2, "out.last_motion.asc"), (1, "out.lock")])
 def test_a_folder_where_a_file_must_be(tmp_path, np_, name):
     flat(tmp_path, 10)
     write_balls(tmp_path / "balls.data", [[5, 5, 5]], 0.5, None, [(0.0, 10.0)] * 3)
     (tmp_path / name).mkdir()
     log = run_deck(head() + "fix dep all deposit/grid 1 0 cell 1 terrain ground output out\nrun 10\n", tmp_path, np=np_,
-                   expect_error=f"Fix deposit/grid: cannot write {name.removesuffix('.tmp')}: Is a directory")
+                   expect_error=f"Fix deposit/grid: cannot write {name}: Is a directory")
     assert "Step" not in log and [path.name for path in tmp_path.glob("out*")] == [name]
 
 

@@ -134,3 +134,43 @@ def test_sizes_that_vary_are_no_alarm(tmp_path):
     adapt = "variable size equal 0.02*(1+0.001*step)\nfix grow ball adapt 1 atom diameter v_size\n"
     log = run_deck(grown.replace("run          600", adapt + "run 600"), tmp_path)
     assert alarms(log) == []
+
+
+def with_others(deck, pair, more):
+    """The deck with another pair style, and more before its run."""
+    style = "gran/restitution scheme plain" if "scheme plain" in deck else "gran/restitution"
+    if pair:
+        deck = deck.replace(style, pair.replace("OURS", style)).replace("* * ", "* * gran/restitution ")
+    before, run = deck.split("run  ")
+    return f"{before}{more}\nrun {run}"
+
+
+# two balls that touch no more are driven apart, one that falls is put back with each step: no contact's doing
+FALL = BURST.replace("create_atoms 1 single 0 0 0.02\n", "create_atoms 1 single 0 0 0.5\n")
+SOFT = "pair_coeff * * soft 1.0\ncomm_modify cutoff 0.2"
+
+
+@pytest.mark.parametrize("deck, pair, more", [
+    (ELASTIC, "hybrid/overlay OURS soft 0.1", SOFT), (ELASTIC, "hybrid/overlay soft 0.1 OURS", SOFT),
+    (FALL, "", "fix back ball recenter INIT INIT INIT"), (ELASTIC, "", "fix hot all temp/rescale 1 1e22 1e22 0 1"),
+    (FALL, "", "fix spin ball momentum 1 linear 0 0 1 rescale\nfix back ball recenter INIT INIT INIT")],
+    ids=["overlay", "overlay last", "recenter", "temp", "momentum"])
+def test_work_of_others_is_no_alarm(tmp_path, deck, pair, more):
+    assert alarms(run_deck(with_others(deck, pair, more), tmp_path)) == []
+
+
+OBSERVERS = """
+compute e all ke
+fix mean all ave/time 10 1 10 c_e
+fix say all print 100 on
+fix even all balance 100 1.1 shift xyz 5 1.1
+group near dynamic ball every 10 region box
+fix stop all halt 100 tlimit > 1e6
+fix keep all store/force"""
+
+
+@pytest.mark.parametrize("pair, more", [
+    ("hybrid/overlay OURS zero 0.1", "pair_coeff * * zero"), ("hybrid OURS", ""), ("", OBSERVERS)],
+    ids=["zero", "alone", "observers"])
+def test_others_that_do_no_work_hide_none(tmp_path, pair, more):
+    assert alarms(run_deck(with_others(BURST, pair, more), tmp_path))

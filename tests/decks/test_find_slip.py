@@ -152,6 +152,9 @@ def test_layers_and_water(tmp_path):
     (f"{LOW_SPHERE} shape cube", "Find_slip shape must be sphere or ellipsoid, got cube"),
     (f"{LOW_SPHERE} water ru 1.5", "Find_slip water ru must be 0 to below 1, got 1.5"),
     (f"{LOW_SPHERE} seismic -0.1", "Find_slip seismic KH must be >= 0 (of the weight), got -0.1"),
+    (f"{LOW_SPHERE} seismic 0.1 0.1.2", "Find_slip seismic KV must be a finite number, got 0.1.2"),
+    (f"{LOW_SPHERE} seismic 0.1 .", "Find_slip seismic KV must be a finite number, got ."),
+    (f"{LOW_SPHERE} seismic 0.1-", "Find_slip seismic KH must be a finite number, got 0.1-"),
     (f"{LOW_SPHERE} layer none.asc 1 2 3", "none.asc"),
     (f"{LOW_SPHERE} bedrock ground.asc", "Find_slip bedrock must be below the ground somewhere, got none of it"),
     (f"{LOW_SPHERE} within ground", "Find_slip within: region ground must be of style polygon, got terrain"),
@@ -176,6 +179,35 @@ def test_spencer_balances_a_body_or_says_that_nothing_does(tmp_path):
     of_20_m(tmp_path)
     run_deck(deck(f"40000 0 {19000 / GRAVITY:.12g}", f"{HIGH_SPHERE} method spencer"), tmp_path,
              expect_error="Find_slip method spencer must find forces between columns")
+
+
+@pytest.mark.parametrize("ranks", (1, 2))
+def test_the_variables_are_those_of_the_last_find_slip(tmp_path, ranks):
+    of_10_m(tmp_path)
+    other = "find_slip ground strength {} 30 2039 surface sphere {} 25.25 54.0 {} output {}"
+    shown = 'print "DECK $(v_crit_factor:%.8g) $(v_crit_yield:%.8g) ${crit_x} ${crit_r} ${side_x} ${side_r}"'
+    after = "\n".join([other.format(5000, 11, 28.5, "side"), "variable last equal 7",
+                       other.format(50000, 11.25, 28, "crit"), shown])
+    log = run_deck(deck(after=after), tmp_path, np=ranks)
+    [row] = rows(tmp_path)
+    assert row["factor"] > 5.5                                       # of the first: 1.04
+    assert f"DECK {row['factor']:.8g} {row['yield']:.8g} 11.25 28 11 28.5" in log
+
+
+def test_a_variable_of_the_deck_is_not_replaced(tmp_path):
+    of_10_m(tmp_path)
+    run_deck("variable crit_yield equal 1\n" + deck(), tmp_path,
+             expect_error="Find_slip output must not begin the names of variables that are not of a find_slip, got "
+             "crit, and there is a variable crit_yield")
+    assert not list(tmp_path.glob("crit.*"))
+
+
+def test_a_yield_coefficient_that_does_not_exist_is_nan_in_the_deck(tmp_path):
+    of_10_m(tmp_path)
+    high = "surface sphere 19.182 25.25 44.242 20.0908 method spencer seismic 0 0.397"
+    log = run_deck(deck("41829.7 8.265 2039", high, 'print "DECK ${crit_yield} ${crit_x} $(v_crit_factor)"'), tmp_path)
+    [row] = rows(tmp_path)
+    assert math.isnan(row["yield"]) and f"DECK nan 19.182 {row['factor']:.6g}" in log
 
 
 def test_the_search_finds_the_least_on_any_number_of_ranks(tmp_path):

@@ -19,28 +19,31 @@ create_atoms 1 single 5.2 5.1 {z}
 set         type 1 diameter 1.0 density 2500
 group       ball type 1
 region      ground terrain flat.asc depth 2 headroom 8
-pair_style  gran/restitution {style}
+pair_style  {pair} {style}
 pair_coeff  {types} stiffness {k} {k} restitution {e} friction 30
 {floor}
 neighbor    {skin} bin
 neigh_modify every 1 delay 0 check yes
 {neigh}
 timestep    {dt}
-fix         move ball nve/sphere
-fix         weight ball gravity 9.80665 vector 0 0 -1
+{move}
+{weight}
 fix         deposit ball deposit/grid 10 0 cell 1 terrain ground output out
 {extra}
 thermo      1000
 thermo_modify lost ignore
 run         {steps}
 """
+MOVE = "fix move ball nve/sphere"
+WEIGHT = "fix weight ball gravity 9.80665 vector 0 0 -1"
 WALL = "fix floor ball wall/gran/balls 2 1.0 surface ground upper spacing 0.5"
 
 
 def run(tmp_path, expect_error=None, np=1, **settings):
     (tmp_path / "flat.asc").write_text("ncols 10\nnrows 10\nxllcorner 0\nyllcorner 0\ncellsize 1\n" + "0 " * 99 + "0\n")
-    deck = {"z": 2.0, "atoms": "", "style": "", "types": "* *", "e": 0.5, "k": 1e7, "floor": WALL,
-            "skin": 0.3, "neigh": "", "dt": 2e-3, "extra": "", "steps": 1000, **settings}
+    deck = {"z": 2.0, "atoms": "", "pair": "gran/restitution", "style": "", "types": "* *", "e": 0.5, "k": 1e7,
+            "floor": WALL, "move": MOVE, "weight": WEIGHT, "skin": 0.3, "neigh": "", "dt": 2e-3, "extra": "",
+            "steps": 1000, **settings}
     log = run_deck(DECK.format(**deck), tmp_path, np=np, expect_error=expect_error)
     if expect_error:
         return log, None
@@ -138,6 +141,110 @@ def test_missing_freeze(tmp_path, frozen):
     told = [w for w in warnings if "no integrator moves 1 balls and no fix freeze holds them" in w]
     assert len(told) == (0 if frozen else 1)
     assert summary["warnings"] == told
+
+
+# --- what moves balls turns them, and what rests is held ---
+
+@pytest.mark.parametrize("style", ["nve", "nve/limit 0.1", "nvt temp 1 1 1"])
+def test_spins_that_nothing_integrates(tmp_path, style):
+    """Friction holds such a ball on any slope: with fix nve one on a plane of 20 degrees had 1e-17 for 2.4 m/s2."""
+    message = f"must integrate their spins, got fix move {style.split()[0]},"
+    run(tmp_path, expect_error=message, move=f"fix move ball {style}")
+
+
+def test_spins_of_balls_that_are_not_there_yet(tmp_path):
+    run(tmp_path, expect_error="got fix move nve,", move="fix move none nve", atoms="group none empty")
+
+
+def test_balls_that_move_or_are_frozen_as_they_should(tmp_path):
+    """fix nve of frozen balls moves none."""
+    extra = """
+group stay type 2
+fix stay stay freeze
+fix nothing stay nve
+group low dynamic ball every 1 var is_low
+fix weight2 low gravity 1 vector 0 0 -1
+"""
+    warnings, _ = run(tmp_path, atoms=FIXED + "\nvariable is_low atom z<1", floor="", extra=extra, steps=10)
+    assert warnings == []
+
+
+def test_a_ball_that_two_fixes_move(tmp_path):
+    run(tmp_path, expect_error="each ball must be moved by one fix, got 1 balls with more, of move nve/sphere, "
+                               "again nve/sphere", move=MOVE + "\nfix again all nve/sphere")
+
+
+NOTHING_MOVES = "no integrator moves {} balls and no fix freeze holds them"
+
+
+@pytest.mark.parametrize("np", [1, 2])
+def test_a_ball_that_nothing_moves(tmp_path, np):
+    warnings, summary = run(tmp_path, np=np, move="", steps=10)
+    assert len(warnings) == 1 and NOTHING_MOVES.format(1) in warnings[0] and summary["warnings"] == warnings
+
+
+def test_where_nothing_should_move(tmp_path):
+    """run 0, with a force to look at, and rerun."""
+    extra = "dump d all custom 1 run.dump id type x y z vx vy vz\nrun 0\nrun 0"
+    warnings, _ = run(tmp_path, move="", extra=extra, steps=0)
+    assert warnings == []
+    assert (tmp_path / "run.dump").exists()
+    again = "unfix deposit\nrerun run.dump dump x y z vx vy vz"
+    warnings, _ = run(tmp_path, move="", extra=again, steps=0)
+    assert warnings == []
+
+
+def test_balls_that_come_and_that_nothing_moves(tmp_path):
+    extra = ("group new empty\nregion above block 2 8 2 8 4 6\n"
+             "fix pour new pour 3 1 5 vol 0.1 100 region above diam one 1.0 dens 2500 2500")
+    warnings, summary = run(tmp_path, extra=extra, steps=600)
+    assert [NOTHING_MOVES.format(3) in w for w in warnings if "integrator" in w] == [True]
+    assert set(warnings) == set(summary["warnings"])
+
+
+@pytest.mark.parametrize("other", ["", "create_atoms 1 single 8 8 5"])
+def test_a_ball_that_nothing_pulls(tmp_path, other):
+    """Without gravity on any ball, and where its group has one of two."""
+    weight = "group pulled id 1\nfix weight pulled gravity 9.80665 vector 0 0 -1" if other else ""
+    warnings, summary = run(tmp_path, weight=weight, atoms=other, steps=400)
+    told, = warnings
+    assert "1 balls hang at rest" in told and told in summary["warnings"]
+
+
+@pytest.mark.parametrize("weight, up", [
+    ("9.81 vector 0 0 1", "9.81"), ("-9.81 vector 0 0 -1", "9.81"), ("10 spherical 0 0", "10"),
+    ("v_up vector 0 0 -1", "2.5"), ("5 vector 0 0 -1\nfix more ball gravity 7 vector 0 0 1", "2")])
+def test_gravity_upwards(tmp_path, weight, up):
+    warnings, summary = run(tmp_path, weight=f"variable up equal -2.5\nfix weight ball gravity {weight}", steps=10)
+    told, = warnings
+    assert f"z of the gravity should be <= 0, got {up}, which pulls 1 balls upwards" in told
+    assert told in summary["warnings"]
+
+
+@pytest.mark.parametrize("weight", ["9.81 chute 25", "5 vector 1 0 0",
+                                    "7 vector 0 0 -1\nfix more all gravity 5 vector 0 0 1"])
+def test_gravity_that_is_not(tmp_path, weight):
+    warnings, _ = run(tmp_path, weight=f"fix weight ball gravity {weight}", steps=10)
+    assert warnings == []
+
+
+@pytest.mark.parametrize("spin, told", [(1e9, True), (501.0, True), (499.0, False)])
+def test_spins_that_no_step_follows(tmp_path, spin, told):
+    """1 rad in a step of 2 ms is 500 rad/s."""
+    warnings, summary = run(tmp_path, extra=f"set type 1 omega 0 0 {spin}", steps=10)
+    assert [("at most 500 rad/s" in w and "got 1 balls" in w) for w in warnings] == [True] * told
+    assert summary["warnings"] == warnings
+
+
+@pytest.mark.parametrize("dt, got", [("0", "0"), ("-1e-4", "-0.0001"), ("1e999", "inf")])
+def test_time_that_does_not_go_on(tmp_path, dt, got):
+    run(tmp_path, expect_error=f"needs timestep > 0, got {got}", dt=dt)
+
+
+def test_forces_that_are_scaled(tmp_path):
+    run(tmp_path, expect_error="pair_style must be hybrid or hybrid/overlay with others, got hybrid/scaled",
+        pair="hybrid/scaled 0.5 gran/restitution 0.5 zero 2.0", types="* * gran/restitution",
+        neigh="pair_coeff * * zero")
 
 
 def test_wall_type_without_coefficients(tmp_path):

@@ -30,6 +30,7 @@ SHORT = {
     "12_heap/in.heap": {"length": 10, "height": 9, "once": 30},
     "12_heap/in.rest": {"steps": 5000},
     "12_heap/in.resting_heap": {"wide": 4, "tall": 6, "begin": 2, "end": 4},
+    "13_ground_direction/in.ground_direction": {"wide": 5, "tend": 4},
     "20_embankment/in.embankment": {"d": 4, "duration": 20},
     "21_earthquake/in.earthquake": {"d": 4, "duration": 15},
     "22_structures/in.structures": {"d": 4, "duration": 15},

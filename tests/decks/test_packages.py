@@ -1,4 +1,5 @@
-"""Suffixes, bonds: some with LAMMPS packages that the default build does not have (tests/matrix.sh --only packages)."""
+"""Suffixes, bonds, compute fabric: some need packages of LAMMPS that the default build does not have (tests/matrix.sh
+--only packages)."""
 
 import functools
 import os
@@ -170,3 +171,39 @@ def test_parts_of_contacts_are_refused(tmp_path, special, values):
 
 def test_special_bonds_without_bonds_do_not_matter(tmp_path):
     run_deck("special_bonds lj/coul 0.5 1 1\n" + FLOOR, tmp_path)
+
+
+# --- compute fabric ---
+
+def fabric(n, weight):
+    """15/6 of the deviator of the mean of weight n n, over a third of its trace; n: normals of the contacts."""
+    sum_of = numpy.einsum("k,ki,kj->ij", weight, n, n) / len(n)
+    third = numpy.trace(sum_of) / 3
+    tensor = 15 / 6 * (sum_of / third - numpy.eye(3))
+    return [tensor[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))]
+
+
+@pytest.mark.parametrize("np_", [1, 2])
+def test_compute_fabric(tmp_path, np_):
+    """Of the contacts between balls that compute pair/local has; the normal forces are weighed by the first tensor."""
+    needs("GRANULAR")
+    write_collapse(tmp_path, balls=200)
+    more = """
+compute now all fabric radius contact force/normal
+compute pairs all pair/local dist force fx fy fz
+dump pairs all local 200 pairs.dump c_pairs[*]
+dump_modify pairs format float %.12g
+thermo_style custom step c_now[*]
+thermo_modify format float %.12g lost ignore
+run 200"""
+    log = run_deck(collapse_deck(more), tmp_path, np=np_)
+    got = [float(word) for word in re.search(r"^ +200 +([-\d. e+]*)$", log, re.MULTILINE)[1].split()]
+    frame = (tmp_path / "pairs.dump").read_text().split("ITEM: ENTRIES")[2]
+    rows = numpy.array([row.split() for row in frame.splitlines()[1:]], float)
+    rows = rows[rows[:, 1] != 0.0]
+    assert len(rows) > 10 and (rows[:, 0] < 1.0).all()
+    force, n = rows[:, 1], rows[:, 2:] / rows[:, 1:2]
+    first = fabric(n, numpy.ones(len(n)))
+    assert got[:6] == pytest.approx(first, abs=1e-8)
+    a = numpy.array([[first[0], first[3], first[4]], [first[3], first[1], first[5]], [first[4], first[5], first[2]]])
+    assert got[6:] == pytest.approx(fabric(n, force / (1 + numpy.einsum("ki,ij,kj->k", n, a, n))), abs=1e-6)

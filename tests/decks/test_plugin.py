@@ -39,7 +39,7 @@ def test_lmp_is_a_stock_one(tmp_path):
 
 def test_every_style_is_registered(tmp_path):
     styles = set()
-    for header in (TOP / "src" / "styles").glob("*.h"):
+    for header in (TOP / "src").glob("*/*.h"):
         for kind, name in re.findall(r"^(Command|Fix|Pair|Region)Style\((\S+?), *\w+\)", header.read_text(), re.M):
             styles.add(f"{kind.lower()} style plugin {name}")
     log = run_deck(f"plugin load {PLUGIN}\nplugin list", tmp_path)

@@ -2,8 +2,9 @@
 
 import struct
 
+import numpy
 import pytest
-from deck_helpers import run_deck
+from deck_helpers import run_deck, write_asc
 from mesh_helpers import mesh_deck, plane, write_case
 
 KEYS, HISTORY, FORCE = 3, 7, 9
@@ -53,3 +54,69 @@ def test_a_damaged_file_ends_the_run(tmp_path, whole, name, at, value, np_):
     begin = places[name] + 8 * at
     again(tmp_path, data[:begin] + struct.pack("<d", value) + data[begin + 8:], np_,
           expect_error=f"{PLACES[name][1]}: the contacts of ball ")
+
+
+# --- how much of a fix there is ---
+
+COUNTED = """
+units si
+atom_style sphere
+boundary f f f
+comm_modify vel yes
+{begin}
+region ground terrain ground.asc depth 2 headroom 6
+neighbor 0.2 bin
+pair_style gran/restitution
+pair_coeff * * stiffness 1e6 1e6 restitution 0.5 friction 30
+fix field all wall/gran/balls 2 1.0 surface ground upper spacing 1.0
+fix floor all wall/gran/mesh 2 terrain lower.asc output loads 5
+fix move all nve/sphere
+timestep 1e-3
+fix dep all deposit/grid 10 0 cell 1 terrain ground output out bulk 1.5
+fix line all control/line line.csv output out
+run 20
+"""
+CALLERS = {"mesh": "Fix wall/gran/mesh floor", "cells": "Fix deposit/grid dep", "crossings": "Fix control/line line"}
+
+
+@pytest.fixture(scope="module")
+def counted(tmp_path_factory):
+    """A folder with cut.restart, and where the numbers of records are in it, each there twice."""
+    folder = tmp_path_factory.mktemp("counted")
+    write_asc(folder / "ground.asc", numpy.zeros((16, 16)))
+    write_asc(folder / "lower.asc", numpy.full((16, 16), -0.4))
+    (folder / "line.csv").write_text("6.4,0\n6.4,16\n")
+    begin = ("region all block 0 16 0 16 -2 6\ncreate_box 2 all\nlattice sc 1.0\nregion soil block 6 8 6 8 0.9 1.1\n"
+             "create_atoms 1 region soil\nset group all diameter 0.9 density 2000\nvelocity all set 30 0 0")
+    run_deck(COUNTED.format(begin=begin) + "write_restart cut.restart\n", folder)
+    data = (folder / "cut.restart").read_bytes()
+    pairs = {at: struct.unpack_from("<dd", data, at) for at in range(len(data) - 16)}
+    found = [at for at, (number, again) in pairs.items() if 1 <= number < 1e6 and again == -1 - number]
+    assert len(found) == 3
+    return folder, data, dict(zip(CALLERS, found))
+
+
+@pytest.mark.parametrize("value", (1e300, -7.0, float("nan"), 1e6, 0.5, 0.0))
+@pytest.mark.parametrize("name", CALLERS)
+@pytest.mark.parametrize("word", (0, 1))
+def test_a_number_of_records_that_is_damaged(counted, name, word, value):
+    folder, data, places = counted
+    begin = places[name] + 8 * word
+    (folder / "cut.restart").write_bytes(data)
+    deck = COUNTED.format(begin="read_restart cut.restart")
+    if (word, value) == (0, 0.0):
+        run_deck(deck, folder)
+    (folder / "cut.restart").write_bytes(data[:begin] + struct.pack("<d", value) + data[begin + 8:])
+    run_deck(deck, folder, expect_error=f"{CALLERS[name]}: the number of its data in the restart file must be whole")
+
+
+def test_marks_of_a_ground_that_are_damaged(counted):
+    """The number of marks of the fixed balls: not read beyond the end, another ground."""
+    folder, data, _ = counted
+    begin = data.find(struct.pack("<d", -3.0))     # the format of fix wall/gran/balls, then the number
+    marks, = struct.unpack_from("<d", data, begin + 8)
+    assert 200 < marks < 300
+    for value in (1e300, 1e8, -1.0, float("nan"), marks + 1):
+        (folder / "cut.restart").write_bytes(data[:begin + 8] + struct.pack("<d", value) + data[begin + 16:])
+        run_deck(COUNTED.format(begin="read_restart cut.restart"), folder,
+                 expect_error="Fix wall/gran/balls field: the restart file was written with other fixed balls")

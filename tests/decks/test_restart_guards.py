@@ -18,7 +18,8 @@ region road polygon road.csv
 pair_style gran/restitution
 pair_coeff * * stiffness 1e6 1e6 restitution 0.5 friction 30
 group soil type 1
-fix balls soil wall/gran/balls 2 1.0 surface ground upper spacing 1.0 origin 0 0 sink 0.2 outside road
+fix balls soil wall/gran/balls 2 1.0 surface ground upper spacing 1.0 origin 0 0 angle 0 sink 0.2 outside road
+fix loose soil wall/gran/balls 2 1.0 surface ground upper spacing 0.9 pattern scattered 3
 fix places soil wall/gran/balls 2 1.0 file places.txt
 fix house soil wall/gran/mesh 3 house.stl scale 1 move 0 0 0
 fix floor soil wall/gran/mesh 3 terrain floor.asc
@@ -37,7 +38,9 @@ create_atoms 1 region soil
 set group all diameter 0.9 density 2000"""
 CHANGES = [("2 1.0 surface", "2 0.9 surface", "balls"), ("spacing 1.0", "spacing 0.9", "balls"),
            ("origin 0 0", "origin 0.3 0", "balls"), ("sink 0.2", "sink 0.1", "balls"),
-           ("outside road", "inside road", "balls"), ("outside road", "", "balls"),
+           ("angle 0", "angle 10", "balls"), ("pattern scattered 3", "pattern scattered 4", "loose"),
+           ("pattern scattered 3", "pattern grid", "loose"), ("outside road", "inside road", "balls"),
+           ("outside road", "", "balls"),
            ("file places.txt", "file other.txt", "places"), ("scale 1 move", "scale 1.1 move", "house"),
            ("move 0 0 0", "move 0 0 0.1", "house"), ("house.stl", "other.stl", "house"),
            ("terrain floor.asc", "terrain higher.asc", "floor"), ("terrain ground.asc", "terrain higher.asc", "balls"),
@@ -45,10 +48,11 @@ CHANGES = [("2 1.0 surface", "2 0.9 surface", "balls"), ("spacing 1.0", "spacing
            ("motion.txt", "other_motion.txt", "quake"), ("cell 1 ", "cell 2 ", "dep"), ("bulk 1.5", "bulk 1.6", "dep"),
            ("extent 0 16", "extent 0 15", "dep"), ("line.csv", "other.csv", "line")]
 # words of these parsers that a restart file does not guard, as decks may change them, or that another one stands for
-PARSERS = ("lammps/ground/placement_arguments", "lammps/meshes/surface_options", "lammps/deposit/deposit_options",
-           "styles/fix_ground_motion", "styles/fix_control_line")
+PARSERS = ("ground/placement_arguments", "meshes/surface_options", "deposit/deposit_options",
+           "motion/fix_ground_motion", "deposit/fix_control_line")
 OUTPUTS = {"output", "write", "series", "point", "motion", "window", "deposit"}
-LIKE = {"inside": "outside", "upper": "surface", "lower": "surface", "sunk": "sink", "smallest": "file"}
+LIKE = {"inside": "outside", "upper": "surface", "lower": "surface", "sunk": "sink", "smallest": "file",
+        "grid": "pattern"}
 
 
 @pytest.fixture(scope="module")
@@ -90,3 +94,38 @@ def test_every_word_is_guarded():
         found |= set(re.findall(r'(?:strcmp\(\w+\[[^]]*\], |\bkeyword == )"([a-z_]+)"', text))
     guarded = {word for old, _, _ in CHANGES for word in old.split()}
     assert found - guarded - OUTPUTS - {*LIKE} == set() and {*LIKE.values()} <= guarded
+
+
+# --- what LAMMPS drops from a restart file before a fix comes ---
+
+
+BALANCE = "balance 1.0 shift x 10 1.01"
+
+
+@pytest.mark.parametrize("fix, command", [
+    *((fix, BALANCE) for fix in ("balls", "places", "house", "quake", "dep", "line")),
+    ("balls", "run 0"), ("balls", "write_restart other.restart")])
+def test_a_fix_that_comes_too_late(site, fix, command):
+    """The contacts of walls, the sums of others: the fix would begin anew, without a word."""
+    deck = DECK.format(begin="read_restart at.restart\ncomm_modify vel yes")
+    line = next(line for line in deck.splitlines() if line.startswith(f"fix {fix} "))
+    early = deck.replace(line, "").replace("fix line soil", "# fix line soil" if fix == "dep" else "fix line soil")
+    run_deck(f"{early}\n{command}\n{line}\nrun 10\n", site, expect_error=f"Fix {fix} {line.split()[3]} must be defined "
+             f"before the first command after read_restart")
+
+
+def test_a_fix_of_lammps_that_comes_too_late(site):
+    wall = "fix stock soil wall/gran hooke/history 1e6 NULL 50 NULL 0.5 0 zplane -1 NULL\n"
+    run_deck(DECK.format(begin=NEW) + wall + "run 1\nwrite_restart stock.restart\n", site)
+    deck = DECK.format(begin="read_restart stock.restart")
+    run_deck(deck + wall + "run 1\n", site)
+    run_deck(deck + "run 1\n" + wall + "run 1\n", site, expect_error="Fix stock wall/gran must be defined before")
+
+
+@pytest.mark.parametrize("ranks", (1, 3))
+def test_with_another_id_or_before_it_goes_on(site, ranks):
+    deck = DECK.format(begin="read_restart at.restart\ncomm_modify vel yes")
+    line = next(line for line in deck.splitlines() if line.startswith("fix places "))
+    early = deck.replace(line, "")
+    run_deck(f"{early}{BALANCE}\n{line.replace('places', 'others', 1)}\nrun 10\n", site, np=ranks)
+    run_deck(f"{deck}{BALANCE}\nunfix places\n{line}\nrun 10\n", site, np=ranks)

@@ -77,10 +77,17 @@ TABLE = {
         1 1 -> pair_coeff 1 1: stiffness kn kt is required
         1 1 stiffness -> stiffness: value 1 is missing
         1 1 stiffness 1e6 -> stiffness: value 2 is missing
-        1 1 stiffness 1e6 restitution 0.5 -> stiffness: value 2 must be a number, got restitution
-        1 1 stiffness nan 1e6 restitution 0.5 -> stiffness: value 1 must be a number, got nan
-        1 1 stiffness 1e6 inf restitution 0.5 -> stiffness: value 2 must be a number, got inf
-        1 1 stiffness 1e999 1e6 restitution 0.5 -> stiffness must be > 0 (kn), got inf
+        1 1 stiffness 1e6 restitution 0.5 -> stiffness: value 2 must be a finite number, got restitution
+        1 1 stiffness nan 1e6 restitution 0.5 -> stiffness: value 1 must be a finite number, got nan
+        1 1 stiffness 1e6 inf restitution 0.5 -> stiffness: value 2 must be a finite number, got inf
+        1 1 stiffness 1e999 1e6 restitution 0.5 -> stiffness: value 1 must be a finite number, got 1e999
+        1 1 stiffness 1.0.0 1e6 restitution 0.5 friction 30 -> stiffness: value 1 must be a finite number, got 1.0.0
+        1 1 stiffness 1e6 . restitution 0.5 friction 30 -> stiffness: value 2 must be a finite number, got .
+        1 1 stiffness 1e6 1e restitution 0.5 friction 30 -> stiffness: value 2 must be a finite number, got 1e
+        1 1 stiffness 1e6 1e7e2 restitution 0.5 friction 30 -> stiffness: value 2 must be a finite number, got 1e7e2
+        1 1 stiffness 1e6 0x10 restitution 0.5 friction 30 -> stiffness: value 2 must be a finite number, got 0x10
+        1 1 stiffness 1e6 1e6 restitution - friction 30 -> restitution: value 1 must be a finite number, got -
+        1 1 stiffness 1e6 1e6 restitution 0.5 friction 30- -> friction: value 1 must be a finite number, got 30-
         1 1 stiffness 0 1e6 restitution 0.5 -> stiffness must be > 0 (kn), got 0
         1 1 stiffness 1e6 -1 restitution 0.5 -> stiffness must be >= 0 (kt), got -1
         1 1 stiffness 1e6 1e6 -> pair_coeff 1 1: exactly one of restitution and damping is required, got neither
@@ -88,18 +95,18 @@ TABLE = {
         1 1 stiffness 1e6 1e6 restitution -> restitution: value 1 is missing
         1 1 stiffness 1e6 1e6 restitution 0 -> restitution must be > 0 and <= 1, got 0
         1 1 stiffness 1e6 1e6 restitution 1.2 -> restitution must be > 0 and <= 1, got 1.2
-        1 1 stiffness 1e6 1e6 restitution nan -> restitution: value 1 must be a number, got nan
+        1 1 stiffness 1e6 1e6 restitution nan -> restitution: value 1 must be a finite number, got nan
         1 1 stiffness 1e6 1e6 restitution 0.5 damping 1 1 -> pair_coeff 1 1: exactly one of restitution and damping is
         1 1 stiffness 1e6 1e6 damping 1 -> damping: value 2 is missing
         1 1 stiffness 1e6 1e6 damping -1 0 -> damping must be >= 0 (cn), got -1
         1 1 stiffness 1e6 1e6 damping 1 -1 -> damping must be >= 0 (ct), got -1
-        1 1 stiffness 1e6 1e6 damping 1 inf -> damping: value 2 must be a number, got inf
+        1 1 stiffness 1e6 1e6 damping 1 inf -> damping: value 2 must be a finite number, got inf
         1 1 stiffness 1e6 0 damping 1 2.5 -> pair_coeff 1 1: ct must be 0 where kt is 0, got 2.5: give the contact a
         1 1 stiffness 1e6 1e6 restitution 0.5 friction 90 -> friction must be >= 0 and < 90 degrees, got 90
         1 1 stiffness 1e6 1e6 restitution 0.5 friction -1 -> friction must be >= 0 and < 90 degrees, got -1
-        1 1 stiffness 1e6 1e6 restitution 0.5 friction steep -> friction: value 1 must be a number, got steep
+        1 1 stiffness 1e6 1e6 restitution 0.5 friction steep -> friction: value 1 must be a finite number, got steep
         1 1 stiffness 1e6 1e6 restitution 0.5 rolling -0.1 -> rolling must be >= 0, got -0.1
-        1 1 stiffness 1e6 1e6 restitution 0.5 rolling inf -> rolling: value 1 must be a number, got inf
+        1 1 stiffness 1e6 1e6 restitution 0.5 rolling inf -> rolling: value 1 must be a finite number, got inf
         1 1 stiffness 1e6 1e6 restitution 0.5 rolling_spring 1 -> rolling_spring: value 2 is missing
         1 1 stiffness 1e6 1e6 restitution 0.5 rolling_spring -1 1 -> rolling_spring must be >= 0 (kr), got -1
         1 1 stiffness 1e6 1e6 restitution 0.5 rolling_spring 1 -1 -> rolling_spring must be >= 0 (cr), got -1
@@ -115,10 +122,16 @@ TABLE = {
         a 1.0 file balls.txt -> type must be a whole number below 2^31, got a
         1.5 1.0 file balls.txt -> type must be a whole number below 2^31, got 1.5
         4294967298 1.0 file balls.txt -> type must be a whole number below 2^31, got 4294967298
+        2-1 1.0 file balls.txt -> type must be a whole number below 2^31, got 2-1
+        + 1.0 file balls.txt -> type must be a whole number below 2^31, got +
+        2+ 1.0 file balls.txt -> type must be a whole number below 2^31, got 2+
         2 x file balls.txt -> diameter must be a finite number, got x
         2 nan file balls.txt -> diameter must be a finite number, got nan
         2 inf file balls.txt -> diameter must be a finite number, got inf
         2 1e999 file balls.txt -> diameter must be a finite number, got 1e999
+        2 1.0.0 file balls.txt -> diameter must be a finite number, got 1.0.0
+        2 1e file balls.txt -> diameter must be a finite number, got 1e
+        2 5- file balls.txt -> diameter must be a finite number, got 5-
         2 0 file balls.txt -> diameter must be > 0, got 0
         2 -1 file balls.txt -> diameter must be > 0, got -1
         2 1.0 plane ground -> needs surface or file, got plane
@@ -133,6 +146,7 @@ TABLE = {
         2 1.0 surface ground upper spacing 0 -> spacing must be > 0, got 0
         2 1.0 surface ground upper spacing -1 -> spacing must be > 0, got -1
         2 1.0 surface ground upper spacing x -> spacing must be a finite number, got x
+        2 1.0 surface ground upper spacing 1-2 -> spacing must be a finite number, got 1-2
         2 1.0 surface ground upper spacing nan -> spacing must be a finite number, got nan
         2 1.0 surface ground upper spacing inf -> spacing must be a finite number, got inf
         2 1.0 surface ground upper spacing 1e-9 -> : spacing must give fewer than 2^31 balls, got 6.4e+19 with 1e-09
@@ -163,7 +177,7 @@ TABLE = {
         2 1.0 surface ground upper spacing 1 inside -> inside must be followed by REGION, got 0 of 1 values
         2 1.0 surface ground upper spacing 1 inside nowhere -> region nowhere does not exist
         2 1.0 surface ground upper spacing 1 inside road outside road -> can have one filter (inside or outside), got
-        2 1.0 surface ground upper spacing 1 color red -> keyword must be spacing, origin, sink, sunk, smallest, inside,
+        2 1.0 surface ground upper spacing 1 color red -> keyword must be spacing, origin, pattern, angle, sink, sunk,
         2 1.0 surface ground upper spacing 1 write -> write must be followed by FILE, got 0 of 1 values
         2 1.0 surface ground upper spacing 1 write none/a.txt -> : cannot write none/a.txt: No such file or directory
         2 1.0 file -> file must be followed by FILE, got 0 of 1 values
@@ -188,6 +202,7 @@ TABLE = {
         deep.asc -> : deep.asc with depth and headroom must have an extent within +-1e+12, got x 0 to 2, y 0 to 1, z
         ground.asc depth -> depth: value is missing
         ground.asc depth x -> depth must be a finite number, got x
+        ground.asc depth 1.0.0 -> depth must be a finite number, got 1.0.0
         ground.asc depth 0 -> depth must be > 0, got 0
         ground.asc depth -1 -> depth must be > 0, got -1
         ground.asc depth nan -> depth must be a finite number, got nan
@@ -235,6 +250,7 @@ TABLE = {
         4 1.0 2000 file balls.txt -> type must be 1 to 3 (the atom types of the box), got 4
         4294967297 1.0 2000 file balls.txt -> type must be a whole number below 2^31, got 4294967297
         3 x 2000 file balls.txt -> diameter must be a finite number, got x
+        3 1e 2000 file balls.txt -> diameter must be a finite number, got 1e
         3 0 2000 file balls.txt -> diameter must be > 0, got 0
         3 nan 2000 file balls.txt -> diameter must be a finite number, got nan
         3 1e999 2000 file balls.txt -> diameter must be a finite number, got 1e999
@@ -259,6 +275,7 @@ TABLE = {
         nobody overlap 0.0 -> group must exist, got nobody
         soil touching 0.0 -> keyword must be overlap, got touching
         soil overlap x -> overlap must be a finite number, got x
+        soil overlap 0.0.1 -> overlap must be a finite number, got 0.0.1
         soil overlap -0.1 -> overlap must be >= 0 and < 1 (of the radius), got -0.1
         soil overlap 1 -> overlap must be >= 0 and < 1 (of the radius), got 1
         soil overlap nan -> overlap must be a finite number, got nan
@@ -269,6 +286,7 @@ TABLE = {
         10 -> needs Nevery Nfreq cell S terrain REGION output PREFIX
         10 20 -> keyword cell is missing
         x 20 cell 1 -> Nevery must be a whole number below 2^31, got x
+        1-0 20 cell 1 -> Nevery must be a whole number below 2^31, got 1-0
         1.5 20 cell 1 -> Nevery must be a whole number below 2^31, got 1.5
         0 20 cell 1 -> Nevery must be >= 1, got 0
         -1 20 cell 1 -> Nevery must be >= 1, got -1
@@ -281,6 +299,7 @@ TABLE = {
         10 20 cell 1.0 terrain ground -> keyword output is missing
         10 20 cell -> cell: value 1 is missing
         10 20 cell x -> cell must be a finite number, got x
+        10 20 cell 1e1e1 -> cell must be a finite number, got 1e1e1
         10 20 cell 0 -> cell must be > 0, got 0
         10 20 cell nan -> cell must be a finite number, got nan
         10 20 cell inf -> cell must be a finite number, got inf
@@ -321,6 +340,7 @@ TABLE = {
         none.txt -> : none.txt: must hold at least 2 lines t ax ay az, got 0
         motion.txt scale -> scale: value is missing
         motion.txt scale x -> scale must be a finite number, got x
+        motion.txt scale 1.0.0 -> scale must be a finite number, got 1.0.0
         motion.txt start inf -> start must be a finite number, got inf
         motion.txt color red -> : unknown keyword color, must be scale or start
         """,
@@ -505,6 +525,53 @@ def test_a_raster_beyond_the_memory_is_refused(tmp_path, monkeypatch, cells, wri
             out.truncate(size)
     monkeypatch.setattr(subprocess, "run", limited(subprocess.run, 400_000_000))
     run_deck("region ground terrain large.asc\n", tmp_path, expect_error="Region terrain: not enough memory")
+
+
+SEARCHED = """region ground terrain large.asc
+find_slip ground strength 3000 19.6 2039 surface sphere 1485 1500 30 29 output crit
+"""
+DENSE = """
+units si
+atom_style sphere
+boundary f f f
+comm_modify vel yes
+region all block 0 16 0 16 -1 16
+create_box 2 all
+create_atoms 1 single 8 8 8.2
+set group all diameter 16 density 2000
+neighbor 0.2 bin
+pair_style gran/restitution
+pair_coeff * * stiffness 1e6 1e6 restitution 0.5 friction 30
+region flat block 0 16 0 16 -1 0
+fix balls all wall/gran/balls 2 0.01 surface flat upper spacing 0.009
+fix move all nve/sphere
+timestep 1e-4
+run 1
+"""
+
+
+@pytest.mark.skipif("ASAN_OPTIONS" in os.environ, reason="a sanitizer reserves more address space than there is memory")
+def test_a_search_beyond_the_memory_is_refused(tmp_path, monkeypatch):
+    """The raster fits, what the search keeps for each cell does not; which limit that is depends on the program."""
+    (tmp_path / "large.asc").write_text(HEAD.format(3000) + ("5 " * 1500 + "9 " * 1500 + "\n") * 3000)
+    found = []
+    for limit in range(240, 320, 20):
+        with monkeypatch.context() as one:
+            one.setattr(subprocess, "run", limited(subprocess.run, limit * 1_000_000))
+            with pytest.raises(AssertionError) as failed:
+                run_deck(SEARCHED, tmp_path)
+        errors = [line for line in str(failed.value).splitlines() if line.startswith("ERROR")]
+        assert len(errors) == 1 and "not enough memory" in errors[0], str(failed.value)[-500:]
+        found.append("not enough memory for the terrain and the search" in errors[0])
+    assert any(found) and not list(tmp_path.glob("crit*"))
+
+
+@pytest.mark.skipif("ASAN_OPTIONS" in os.environ, reason="a sanitizer reserves more address space than there is memory")
+def test_fixed_balls_beyond_the_memory_are_refused(tmp_path, monkeypatch):
+    """Two million near one ball: they are made in the set-up of a run, by one rank alone."""
+    monkeypatch.setattr(subprocess, "run", limited(subprocess.run, 240_000_000))
+    run_deck(DENSE, tmp_path,
+             expect_error="Fix wall/gran/balls balls: not enough memory for the fixed balls near 1 balls")
 
 
 def limited(run, limit):

@@ -21,6 +21,7 @@ sys.path.insert(0, str(TOOLS))
 from slope_tools.errors import SlopeError  # noqa: E402
 from slope_tools.statistics import convergence  # noqa: E402
 from slope_tools.studies import size_study  # noqa: E402
+from slope_tools.tables import size_error  # noqa: E402
 from slope_tools.tables.size_error import SizeErrors  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
@@ -200,6 +201,16 @@ def test_a_size_error_of_balls_that_are_too_large_is_not_trusted(tmp_path, runs,
     found = SizeErrors(tmp_path / "c.yaml", "remove_m3").distrust([d])
     found = [text for text in found if "do not support" not in text]
     assert len(found) == len(words) and all(word in text for word, text in zip(words, found)), found
+
+
+@pytest.mark.parametrize("means, field, falls", [
+    ((30, 20, 10), "${d}", True), ((30, 10, 20), "${d}", False), ((30, 20, 0), "${d}", False),
+    ((30, 20, 10), "1.5", True), ((30, 20, 10), "1.0", False), ((30, 20, 10), "x", False)])
+def test_a_volume_that_falls_with_the_balls(tmp_path, means, field, falls):
+    """Down to balls below the size of the field's, or where the field's are as large as they."""
+    write_converge(tmp_path / "c.yaml", [(d, [mean, mean + 1.0] if mean else [0.0, 0.0])
+                                         for d, mean in zip((4.0, 2.0, 1.0), means)], base={"field_d": field})
+    assert size_error.falls(tmp_path / "c.yaml", "remove_m3") is falls
 
 
 # --- the command ---

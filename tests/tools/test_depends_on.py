@@ -16,10 +16,9 @@ import run_helpers  # noqa: F401  (finds slope_tools)
 from tiny_collapse import TOP
 
 from slope_tools.case import data_files, run_folders  # noqa: E402
-from slope_tools.commands import road_arguments, site as site_command  # noqa: E402
+from slope_tools.commands import site as site_command  # noqa: E402
 from slope_tools.runs import dependencies, jobs  # noqa: E402
 from slope_tools.sites import site_choices  # noqa: E402
-from slope_tools.survey import roads  # noqa: E402
 
 # --- options of the commands that make runs ---
 
@@ -30,9 +29,10 @@ FOLLOWED = {"deck", "lmp"}              # dependencies.py
 PLACE = {"output", "overwrite", "help", "dry_run"}      # where to, or no run
 ONE_RESULT = {"np", "jobs", "launcher", "engine", "slurm"}      # how it is run: the same but for rounding
 # computed from the runs, each time that the command is given
-ANEW = {"road", *road_arguments.OPTIONS, "cut_angle", "mesh", "local", "intensity", "more_than", "of", "exceed",
-        "exceed_speed", "exceed_energy", "size_error", "equally_good", "observed", "front", "front_is", "area",
-        "road_volume", "tolerance", "threshold", "mobility", "confined", "left_out"}
+ANEW = {"road", "road_width", "road_from", "blocked", "lane", "clearing", "loosening", "cut_angle", "mesh", "local",
+        "intensity", "more_than", "of", "exceed", "exceed_speed", "exceed_energy", "size_error", "equally_good",
+        "observed", "front", "front_is", "area", "road_volume", "tolerance", "threshold", "mobility", "confined",
+        "left_out"}
 
 
 def options(command):
@@ -58,8 +58,9 @@ SET_CHOICES = {"slips", "body", "mobile"}       # of several keys
 TRIAL = {"lmp", "jobs"}                         # what the trial run finds is written as a choice
 # keys that slope study and the report read from site.yaml
 LATER = {("project", "name"), ("project", "client"), ("project", "author"), ("road", "cut_angle"), ("road", "mesh"),
-         *(("road", key) for key in roads.KEYS.values()),
-         ("study", "rolling"), ("study", "xoffset"), ("study", "yoffset"), ("study", "zoffset"), ("study", "sizes")}
+         *(("road", key) for key in ("width", "from", "blocked", "lane", "clearing", "loosening")),
+         ("study", "rolling"), ("study", "spacing"),
+         ("study", "xoffset"), ("study", "yoffset"), ("study", "zoffset"), ("study", "sizes")}
 KEYS = [(section, key) for section, about in site_choices.sections() for key in about["properties"]]
 NOT_FILES = {("terrain", "crs"), ("terrain", "assign_crs"), ("terrain", "z_unit"), ("release", "shape"),
              ("release", "scar_is"), ("project", "name"), ("project", "client"), ("project", "author")}
@@ -159,17 +160,17 @@ NO_FILES = {"pair/gran/restitution", "fix/energy/ledger", "fix/deposit/grid", "f
 # words that the parsers compare with: what follows is a file, or not
 NAMES_FILE = {"file", "terrain", "layer", "table", "raster", "bedrock"}
 NAMES_NONE = {
-    "bulk", "cell", "damping", "deposit", "depth", "direction", "extent", "friction", "headroom", "inside", "keep",
-    "limit_damping", "lower", "mass", "method", "motion", "move", "open", "origin", "output", "outside", "overlap",
-    "point", "restitution", "rolling", "rolling_radius", "rolling_spring", "rotate", "scale", "scheme", "seismic",
-    "series", "shape", "side", "sink", "smallest", "spacing", "stiffness", "strength", "sunk", "surface", "units",
-    "upper", "volume", "water", "window", "within", "write"}
+    "angle", "bulk", "cell", "damping", "deposit", "depth", "direction", "extent", "friction", "grid", "headroom",
+    "inside", "keep", "limit_damping", "lower", "mass", "method", "motion", "move", "open", "origin", "output",
+    "outside", "overlap", "pattern", "point", "restitution", "rolling", "rolling_radius", "rolling_spring", "rotate",
+    "scale", "scattered", "scheme", "seismic", "series", "shape", "side", "sink", "smallest", "spacing", "stiffness",
+    "strength", "sunk", "surface", "units", "upper", "volume", "water", "window", "within", "write"}
 WORD = re.compile(r'(?:strcmp\(\w+\[[^]]*\], |given\(|\b(?:keyword|word|key|name) == )"([a-z_]+)"')
 
 
 def sources():
-    return [path for room in ("styles", "lammps") for path in (TOP / "src" / room).rglob("*")
-            if path.suffix in (".cpp", ".h")]
+    return [path for path in (TOP / "src").rglob("*") if path.suffix in (".cpp", ".h")
+            and not path.read_text().startswith("// No LAMMPS")]
 
 
 def test_every_style_and_word_is_guarded():

@@ -7,6 +7,7 @@ import errno
 import contextlib
 import csv
 import json
+import multiprocessing
 import os
 import random
 import re
@@ -292,6 +293,36 @@ def test_a_set_is_whole_or_void(tmp_path, monkeypatch, after):
     assert "volume.yaml" not in found or set(found.values()) in ({"old"}, {"new"})
     exchange("newer")
     assert {path.read_text() for path in folder.iterdir()} == {"newer"} and len(list(folder.iterdir())) == 3
+
+
+def many_sets(folder, name, number, failed):
+    """Write a set of three files, and two files at once, again and again; what fails goes to a queue."""
+    try:
+        for _ in range(number):
+            with disk.complete(folder, "marker") as new:
+                for part in ("a", "b", "marker"):
+                    (new / part).write_text(name)
+            with disk.beside(folder / "c", folder / "d") as pair:
+                for part in pair:
+                    part.write_text(name)
+    except Exception as error:
+        failed.put(repr(error))
+
+
+def test_processes_with_one_output_leave_one_of_their_sets(tmp_path):
+    """They have temporary names of their own, and take turns in renaming."""
+    failed = multiprocessing.Queue()
+    folder = tmp_path / "out"
+    folder.mkdir()
+    running = [multiprocessing.Process(target=many_sets, args=(folder, name, 40, failed)) for name in "123"]
+    for one in running:
+        one.start()
+    for one in running:
+        one.join()
+    assert failed.empty(), failed.get()
+    assert sorted(os.listdir(folder)) == ["a", "b", "c", "d", "marker"] and os.listdir(tmp_path) == ["out"]
+    for parts in (("a", "b", "marker"), ("c", "d")):
+        assert len({(folder / part).read_text() for part in parts}) == 1, parts
 
 
 def test_what_a_marker_promises_is_on_the_disk(tmp_path, monkeypatch):

@@ -276,6 +276,14 @@ def test_tiles_are_merged_whatever_they_come_in(here):
         assert crs == CRS.from_epsg(6677)
 
 
+def test_what_macos_adds_to_a_zip_is_skipped(here):
+    _, texts = quarters()
+    more = {f"__MACOSX/folder/._{name}": "\0\5" for name in texts}
+    texts = {f"folder/{name}": text for name, text in texts.items()}
+    write_zip("mac.zip", {**texts, **more, "._a.xml": "\0", "._b.zip": ""})
+    assert len(fggml.read("mac.zip")) == len(texts)
+
+
 def test_all_zips_in_a_zip_share_one_limit(here, monkeypatch):
     inner = []
     for number, text in enumerate(quarters()[1].values()):

@@ -1,5 +1,6 @@
 """Fragility of bodies: closed forms of an infinite slope, displacements, hazard, the command."""
 import csv
+import re
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,8 @@ from run_helpers import called, write_asc
 from test_newmark import noise
 from test_slips import CASES
 
-from slope_tools.seismic import fragility
+from slope_tools.errors import SlopeError
+from slope_tools.seismic import fragility, hazard_file
 from slope_tools.slips import bishop, columns, newmark
 from slope_tools.slips.bodies import Body
 from slope_tools.slips.columns import Columns, GRAVITY
@@ -131,6 +133,33 @@ def test_annual_frequency_is_the_integral():
 SOIL = "--terrain terrain.asc --density 2039 --cohesion 3e3:9e3 --friction 22:32"
 
 
+@pytest.mark.parametrize("text", [
+    "50,1e-2\n200,1e-3\n", "peak,exceedance\n50,1e-2\n200,1e-3\n", "rate,peak\n1e-2,50\n1e-3,200\n",
+    "pga (g),annual rate\n0.05098581,1e-2\n0.2039432,1e-3\n", "PGA [m/s2];frequency (1/yr)\n0.5;1e-2\n2;1e-3\n",
+    "# rate, pga_g\n1e-2,0.05098581\n1e-3,0.2039432\n", "pga (cm/s2),return period (years)\n50,100\n200,1000\n",
+    "peak_gal,annual probability of exceedance\n50,0.00995016625\n200,0.000999500167\n"])
+def test_the_head_of_a_hazard_counts(tmp_path, text):
+    (tmp_path / "h.csv").write_text(text)
+    found = hazard_file.read(tmp_path / "h.csv")
+    assert np.array(found) == pytest.approx(np.array([[50, 200], [1e-2, 1e-3]]), rel=1e-6)
+
+
+@pytest.mark.parametrize("text, rule", [
+    ("exceedance,peak\n1e-4,800\n1e-3,400\n1e-2,100\n", "row 3: must have a larger peak than the row before"),
+    ("1e-4,800\n1e-3,400\n1e-2,100\n", "must have peaks in gal, the largest of at least 30, or a head with their unit"),
+    ("0.05,1e-2\n0.8,1e-3\n", "must have peaks in gal, the largest of at least 30"),
+    ("pgv (cm/s),rate\n50,1e-2\n200,1e-3\n", "row 1: columns must be a peak, in gal, g or m/s2"),
+    ("pga (%g),rate\n50,1e-2\n200,1e-3\n", "head: columns must be a peak, in gal, g or m/s2"),
+    ("pga,probability in 50 years\n50,1e-2\n200,1e-3\n", "row 1: columns must be a peak"),
+    ("id,pga,rate\n1,50,1e-2\n2,200,1e-3\n", "row 1: columns must be a peak"),
+    ("50,1e-2x\n200,1e-3\n400,1e-4\n", "row 1: must be a peak (gal) and how often it is exceeded per year"),
+    ("peak;exceedance\n50;0,01\n200;0,001\n", "row 2: must be a peak (gal) and how often")])
+def test_a_hazard_in_another_order_or_unit(tmp_path, text, rule):
+    (tmp_path / "h.csv").write_text(text)
+    with pytest.raises(SlopeError, match=re.escape(f"h.csv: {rule}")):
+        hazard_file.read(tmp_path / "h.csv")
+
+
 @pytest.fixture
 def slips(tmp_path, monkeypatch):
     """What find_slip leaves on the embankment of 10 m: two spheres, of which the second lies deeper."""
@@ -185,17 +214,31 @@ def test_two_bodies_two_records_and_a_hazard(slips, capsys):
     frequency = last["annual_frequency"]
     assert sum(one["frequency"] for one in frequency["contributions"]) == pytest.approx(frequency["value"], rel=1e-6)
     assert 1e-6 < frequency["value"] < 1e-2 and "any body" in out and "per year" in out
+    most = sum(one["annual_frequency"]["value"] for one in about["curves"][:2])
+    assert f", {most:.3g} at most if each body" in out and most > 1.1 * frequency["value"]
     assert Path("out/fragility.png").stat().st_size > 10000
 
 
 def test_pseudo_static_is_said_to_be_cautious_and_is(slips, capsys):
     status, _, err = ran(capsys, f"slips/out.slips.csv {SOIL} --peaks 50:1500:50 --pseudo-static 1 "
                          "--sample 512 -o out")
-    assert status == 0 and "cautious" in err
+    assert status == 0 and "which is cautious\n" in err
     status, _, err = ran(capsys, f"slips {SOIL} --peaks 50:1500:50 --record motion.txt --sample 512 "
                          "-o slide")
     assert status == 0 and "one record" in err
     assert (table()["1"][1] >= table("slide/fragility.csv")["1"][1]).all()
+
+
+def test_pseudo_static_with_less_than_the_peak_is_not_cautious(slips, capsys):
+    """Of a motion that comes near its peak again and again more strengths fail than at 0.65 times the peak."""
+    t = np.arange(0.0, 20.0, 0.005)
+    x = 2.0 * np.sin(2 * np.pi * t) * np.minimum(1.0, t)
+    np.savetxt("waves.txt", np.column_stack([t, x, 0 * x, 0 * x]))
+    status, _, err = ran(capsys, f"slips {SOIL} --peaks 50:1500:50 --pseudo-static 0.65 --sample 512 -o out")
+    assert status == 0 and "with 0.65 times the peak counts as failed, which is not cautious" in err
+    assert ran(capsys, f"slips {SOIL} --peaks 50:1500:50 --record waves.txt --sample 512 -o slide")[0] == 0
+    less, more = table()["1"][1], table("slide/fragility.csv")["1"][1]
+    assert (less <= more).all() and (less < more - 0.1).any()
 
 
 def test_strengths_with_which_the_slope_would_not_stand_are_named(slips, capsys):

@@ -52,6 +52,20 @@ def test_a_mass_that_no_set_covers(mine, capsys, monkeypatch):  # noqa: F811
                           f"{volume:,.0f} m3; ours has 0.1 to 498 million m3\n")
 
 
+def test_other_grounds_at_both_ends_of_rolling(mine, capsys, monkeypatch):  # noqa: F811
+    """One position each, beside the rolling resistances and positions on the site's own ground."""
+    status, out, err = study(capsys, monkeypatch, "mine")
+    assert status == 0, err
+    runs = [line.split(":")[0] for line in out.splitlines() if line.startswith("rolling_") and "_spacing_" in line]
+    assert runs == [*(f"rolling_{rolling}_spacing_0.9{more}" for rolling in ("0", "0.05", "0.1")
+                      for more in ("", "_xoffset_0.5", "_yoffset_0.5")),
+                    *(f"rolling_{rolling}_spacing_{spacing}" for spacing in ("0.5", "0.7") for rolling in ("0", "0.1"))]
+    assert "13 runs, 0 of them finished" in out and "9 runs, 0 of them finished" in out
+    choices = site_choices.read(mine)
+    choices["study"].update(spacing=[0.5, 0.9], rolling=[0.2])      # its own ground is none of the others
+    assert site_choices.other_grounds(choices) == [(0.5, 0.2)]
+
+
 @pytest.mark.parametrize("words, line", [
     ("mine --paper --sample 8", "--paper: must not be given with --sample or --from"),
     ("mine --paper --from fit", "--paper: must not be given with --sample or --from"),
@@ -73,23 +87,17 @@ def test_why_not(large, monkeypatch):
     assert known_study.why_not(large, 3e5, False) == "the fall is small"
 
 
-def test_the_ground_is_as_rough_as_that_of_real_events(large, mine):  # noqa: F811
-    """Where known events cover the mass: both of inputs/ had field balls of the cube root of the volume over 22."""
-    model = site_choices.read(large)["model"]
-    assert model["field_diameter"] == pytest.approx(3e5 ** (1 / 3) / 22, rel=0.01)
-    other = site_choices.read(mine)
-    assert other["model"]["field_ratio"] is None and other["model"]["field_diameter"] == other["balls"]["diameter"]
-
-
 def test_the_estimate_is_of_the_study_that_is_made(large):
     choices = site_choices.read(large)
     assert site_choices.found(large)["study"]["runs"] == known_study.POINTS == 64
     plan = site_budget.plan(choices, 64)
     assert plan.runs == 64 and not plan.half_step and "up to half as many more" in plan.text
     plan = site_budget.plan(choices)
-    assert plan.runs == 18 and not plan.half_step       # no road: nothing to compare
+    assert plan.runs == 22 and not plan.half_step       # no road: nothing to compare
     assert site_budget.plan({**choices, "road": {**choices["road"], "file": "road.csv"}}).half_step
-    assert plan.text == "18 runs: 3 rolling resistances x 3 lattice positions, 3 sizes of balls x 3"
+    assert plan.text == ("22 runs: 3 rolling resistances x 3 lattice positions, 4 on other grounds, 3 sizes of balls x "
+                         "3")
+    assert site_budget.plan({**choices, "study": {**choices["study"], "spacing": []}}).runs == 18
 
 
 def test_the_method_is_in_the_results(mine, monkeypatch, capsys):  # noqa: F811

@@ -54,6 +54,9 @@ HEAD = "name,fall_m,length_m,volume_Mm3,confinement\n"
     (HEAD + "A,900,nan,1,lateral\n", ("line 2", "length_m", "nan")),
     (HEAD + "A,900,2,1,lateral\n", ("line 2", "length_m", "metres", "2 and 900")),
     (HEAD + "A,900,2000,1,narrow\n", ("line 2", "confinement", "narrow")),
+    (HEAD.replace("volume_Mm3", "volume_Mm3,fall_m") + "A,900,2000,1,3,lateral\n", ("each column once", "fall_m")),
+    (HEAD.replace("conf", "slope,conf") + "A,900,2000,1,5,3,lateral\n", ("line 2", "must have 6 cells", "7")),
+    (HEAD + "A,9_0,200,1,lateral\n", ("line 2", "fall_m", "9_0")),
     (HEAD + "A,900,2000,1,lateral\n" + "A,900,2000,1,lateral\n", ("line 3", "name", "A")),
 ])
 def test_wrong_sets(tmp_path, text, words):

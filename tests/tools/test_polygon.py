@@ -5,6 +5,7 @@ import re
 import shlex
 import sys
 import time
+import zipfile
 from pathlib import Path
 
 import fiona
@@ -13,7 +14,8 @@ import pytest
 import rasterio.warp
 from affine import Affine
 from rasterio.crs import CRS
-from shapely.geometry import MultiPolygon, Point, Polygon, box, mapping
+from shapely.affinity import translate
+from shapely.geometry import MultiLineString, MultiPolygon, Point, Polygon, box, mapping
 
 from run_helpers import called
 
@@ -23,7 +25,7 @@ sys.path.insert(0, str(TOOLS))
 
 from slope_tools import cli  # noqa: E402
 from slope_tools.commands import polygon as polygon_command  # noqa: E402
-from slope_tools.survey import polygons, rasters  # noqa: E402
+from slope_tools.survey import lines, polygons, rasters  # noqa: E402
 
 CRS_M = "EPSG:6677"
 EAST, NORTH = -12000.0, 34000.0    # local 0 0 of the terrain, which is 100 m x 80 m
@@ -300,6 +302,95 @@ def test_ten_thousand_vertices(written):
 
 # --- the page ---
 
+def zipped(path, *several, change=lambda name: name):
+    """A zip of all files of some shapefiles, as Finder packs them."""
+    with zipfile.ZipFile(path, "w") as out:
+        for one in several:
+            for part in sorted(Path().glob(f"{one}.*")):
+                out.write(part, change(part.name))
+                out.writestr(f"__MACOSX/._{part.name}", b"\0\5\x16\7")
+
+
+def test_a_zipped_shapefile(written, slope, here):
+    shapefile("a.shp", moved(ROAD), crs=CRS_M)
+    shapefile("b.shp", box(70, 40, 80, 50), crs="EPSG:4326")
+    road, _ = written("a.shp")
+    for name, change in (("flat.zip", str), ("below.ZIP", lambda name: f"sub/{name.upper()}"),
+                         ("odd {}.zip", lambda name: f"\u9053 {{/{name}")):
+        zipped(name, "a", change=change)
+        found, _ = written(f"'{name}' --overwrite")
+        assert all(np.array_equal(one, other) for one, other in zip(road, found)) and len(found) == 2, name
+    zipped("two.zip", "a", "b")
+    assert np.array_equal(written("two.zip --layer a --overwrite")[0][0], road[0])
+    assert "two.zip: must hold one layer, or one must be named (--layer, FILE|layername=NAME): a, b, got 2" in (
+        slope("two.zip -o out.csv --overwrite")[2])
+    for suffix, rule in ((".shx", "must have all files of the shapefile, a.shx is missing"),
+                         (".prj", "must have a CRS, so that polygon and terrain can be brought together")):
+        Path(f"a{suffix}").rename("kept")
+        zipped("part.zip", "a")
+        Path("kept").rename(f"a{suffix}")
+        assert f"part.zip: {rule}" in slope("part.zip -o new.csv")[2]
+    Path("cut.zip").write_bytes(Path("two.zip").read_bytes()[:900])
+    with zipfile.ZipFile("none.zip", "w") as out:
+        out.writestr("a.txt", "1")
+    for name in ("cut.zip", "none.zip"):
+        status, _, err = slope(f"{name} -o new.csv")
+        assert status == 2 and f"{name}: must be polygons that GDAL can read" in err and "vsizip" not in err
+
+
+@pytest.mark.parametrize("crs", [
+    {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::99999"}},
+    {"type": "EPSG", "properties": {"code": 99999}},
+    {"type": "name", "properties": {"name": "JGD2011 / zone IX"}}, {"type": "link", "properties": {"href": "http://a"}},
+    "EPSG:6677", {}])
+def test_a_geojson_that_names_an_unknown_crs(slope, written, crs):
+    """Metres in the file, or degrees: it was taken as longitude and latitude without a word."""
+    geojson("road.geojson", moved(ROAD), crs=CRS_M)
+    right, _ = written("road.geojson")
+    about = json.loads(Path("road.geojson").read_text())
+    Path("road.geojson").write_text(json.dumps({**about, "crs": crs}))
+    status, _, err = slope("road.geojson -o new.csv")
+    assert status == 2 and err.startswith("slope polygon: road.geojson: must name a CRS that PROJ knows, such as "
+                                          "EPSG:6677; --assign-crs EPSG:n overrides")
+    found, _ = written("road.geojson --assign-crs EPSG:6677 --overwrite")
+    assert np.array_equal(found[0], right[0])
+    with zipfile.ZipFile("road.zip", "w") as out:
+        out.write("road.geojson")
+    assert "road.zip: must name a CRS that PROJ knows" in slope("road.zip -o new.csv")[2]
+
+
+@pytest.mark.parametrize("name", ["urn:ogc:def:crs:OGC:1.3:CRS84", "urn:ogc:def:crs:EPSG::4326", "EPSG:4326", "WGS 84",
+                                  None])
+def test_a_geojson_that_names_longitude_and_latitude(written, name):
+    geojson("road.geojson", moved(ROAD, "EPSG:4326"))
+    about = json.loads(Path("road.geojson").read_text())
+    about["features"][0]["properties"]["crs"] = "of the survey"
+    crs = name and {"type": "name", "properties": {"name": name}}
+    Path("road.geojson").write_text(json.dumps({**about, "crs": crs}))
+    assert_is(written("road.geojson")[0], ROAD)
+
+
+@pytest.mark.parametrize("crs", ["EPSG:3832", "EPSG:2193", "EPSG:3460", "EPSG:32701"])
+def test_a_polygon_that_is_cut_at_180_degrees_is_one(slope, crs):
+    """As RFC 7946 demands; a road that is no rectangle, and a line."""
+    far = Polygon([(10, 10), (90, 14), (91, 40), (12, 38)])
+    (x,), (y,) = rasterio.warp.transform("EPSG:4326", crs, [180.0], [-44.0 if crs == "EPSG:2193" else -17.0])
+    offset = (round(x) - 50.0, round(y) - 30.0)
+    terrain("far.asc", crs, offset)
+    lon, lat = map(np.array, rasterio.warp.transform(crs, "EPSG:4326", *(np.array(far.exterior.coords) + offset).T))
+    whole = Polygon(np.column_stack([lon % 360, lat]))
+    west, east_ = (whole.intersection(box(*limits)) for limits in ((0, -90, 180, 90), (180, -90, 360, 90)))
+    halves = MultiPolygon([west, translate(east_, -360)])
+    Path("cut.geojson").write_text(json.dumps(mapping(halves)))
+    status, out, err = slope("cut.geojson -o cut.csv", "far.asc")
+    assert (status, err) == (0, "") and "1 polygon, 1 ring (0 holes)" in out
+    assert Polygon(rings("cut.csv")[0]).symmetric_difference(far).area < 0.02       # edges are straight in both systems
+    line = MultiLineString([[(179.9999, lat[0]), (180, lat[0])], [(-180, lat[0]), (-179.9999, lat[0])]])
+    Path("line.geojson").write_text(json.dumps(mapping(line)))
+    found = lines.read_local("line.geojson", rasters.read_place("far.asc"), False)
+    assert len(found.geoms) == 1 and found.length > 10
+
+
 def doc_examples():
     text = (TOP / "doc" / "src" / "tool_polygon.rst").read_text(encoding="ascii") + polygon_command.EPILOG
     return re.findall(r"^ +tools/slope polygon ((?!IN ).*)", text, re.MULTILINE)
@@ -321,6 +412,64 @@ def test_every_example_of_the_page_and_the_help_runs(here, capsys, command):
         assert cli.main(["polygon", *shlex.split(command)]) == 0
         out, err = capsys.readouterr()
         assert err == "" and re.search(r"\nregion \w+ polygon \w+.csv\n$", out)
+
+
+# --- heads of text ---
+
+def points_of(names, values, mark=","):
+    return "\n".join([mark.join(names), *(mark.join(map(repr, map(float, row))) for row in values)]) + "\n"
+
+
+@pytest.mark.parametrize("names, order, options", [
+    ("x,y", (0, 1), ""), ('"X","Y"', (0, 1), ""), ("y,x", (1, 0), ""), ("north,east", (1, 0), ""),
+    ("N (m),E (m)", (1, 0), ""),
+    ("Easting,Northing", (0, 1), ""), ("POINT_X,POINT_Y", (0, 1), ""), ("y_m,x_m", (1, 0), ""),
+    ("x,y,z", (0, 1, 0), ""),
+    ("z,y,x", (0, 1, 0), ""), ("lat,lon", (1, 0), "--assign-crs EPSG:4326"),
+    ("lon,lat", (0, 1), "--assign-crs EPSG:4326"),
+    ("Longitude (deg),Latitude (deg),alt", (0, 1, 0), "--assign-crs EPSG:6668")])
+def test_the_head_of_a_text_says_which_column_is_which(written, names, order, options):
+    road = Polygon(ROAD.exterior)
+    ring = np.array(moved(road, "EPSG:4326" if options else CRS_M).exterior.coords)[:-1]
+    if names == "z,y,x":
+        ring = np.column_stack([0 * ring[:, 0], ring[:, ::-1]])
+        order = (0, 1, 2)
+    Path("a.csv").write_text(points_of(names.split(","), ring[:, order]))
+    assert_is(written(f"a.csv {options}")[0], road)
+    line, unit = lines.text_geometry("a.csv", Path("a.csv").read_text())
+    x, y = (2, 1) if names == "z,y,x" else (0, 1)
+    assert np.array_equal(line.geoms[0].coords, ring[:, [x, y]]) and unit in (None, "m", "degrees")
+
+
+@pytest.mark.parametrize("head, options, message", [
+    ("E (ft),N (ft)", "", "a.csv: line 1: columns must be x,y or east,north (m), or lon,lat (degrees), in either"),
+    ("# x (ft), y (ft)", "", "a.csv: line 1: columns must be x,y"),
+    ("x_km,y_km", "", "a.csv: line 1: columns must be x,y"),
+    ("# y,x", "", "a.csv: line 1: a comment that names columns must name x before y, got y,x"),
+    ("# lat lon", "", "a.csv: line 1: a comment that names columns must name x before y, got lat lon"),
+    ("id,x", "", "a.csv: line 1: columns must be x,y"), ("x,x", "", "a.csv: line 1: columns must be x,y"),
+    ("north,south", "", "a.csv: line 1: columns must be x,y"),
+    ("x,y,z", "", "a.csv: line 2: must be three numbers, x,y and z"),
+    ("X\u5ea7\u6a19,Y\u5ea7\u6a19", "", "a.csv: line 1: columns must be x,y"),
+    ("lon,lat", "", "a.csv: columns in degrees must have a CRS in degrees; --assign-crs EPSG:n overrides"),
+    ("lon,lat", "--assign-crs EPSG:6677", "a.csv: columns in degrees must have a CRS in degrees"),
+    ("lat,lon", "--local", "a.csv: must have columns in m, local, got degrees"),
+    ("x (m),y (m)", "--assign-crs EPSG:4326", "a.csv: columns in m must have a CRS in m, got EPSG:4326")])
+def test_a_head_of_text_that_is_another(slope, head, options, message):
+    Path("a.csv").write_text(f"{head}\n{SQUARE}", encoding="utf-8")
+    status, _, err = slope(f"a.csv {options} -o out.csv")
+    assert status == 2 and err.startswith(f"slope polygon: {message}") and err.count("\n") == 1, err
+    if not options and "degrees must" not in message:
+        with pytest.raises(polygons.SlopeError, match="a.csv: must be a line: .* CSV with x,y in its lines .line "):
+            lines.text_geometry("a.csv", Path("a.csv").read_text(encoding="utf-8"))
+
+
+def test_a_text_of_two_lines_is_two():
+    found, _ = lines.text_geometry("a.csv", "\n# one\n0,0\n9,0\n# and\n9,5\n\n20,0\n20,9\n\n")
+    assert [len(line.coords) for line in found.geoms] == [3, 2]
+    for text in ("1,10,20\n2,20,30\n", "1_0,2\n3,4\n", "1,2\n", "1;2\n3;4\n"):
+        with pytest.raises(polygons.SlopeError, match="must be a line"):
+            lines.text_geometry("a.csv", text)
 
 
 # --- bad input ---

@@ -11,7 +11,8 @@ import yaml
 from run_helpers import TOP, called
 
 from slope_tools.commands import quake as quake_command  # noqa: E402
-from slope_tools.quakes import quake_motion, quake_records  # noqa: E402
+from slope_tools.errors import SlopeError  # noqa: E402
+from slope_tools.quakes import motion_file, quake_motion, quake_records  # noqa: E402
 
 DT = 0.01
 T = DT * np.arange(2000)
@@ -199,6 +200,55 @@ def test_not_at_right_angles(slope):
 
 
 # --- CSV ---
+
+
+@pytest.mark.parametrize("name, factor", [("time (ms)", 1e-3), ("t [msec]", 1e-3), ("time_ms", 1e-3), ("time (s)", 1.0),
+                                          ("Time (sec)", 1.0)])
+def test_the_unit_of_time_counts(tmp_path, monkeypatch, name, factor):
+    monkeypatch.chdir(tmp_path)
+    rows = [f"{round(t / factor, 6):g},{a:.9g}" for t, a in zip(T, EW / GAL)]
+    Path("a.csv").write_text(f"{name},EW (gal)\n" + "\n".join(rows) + "\n")
+    found, = quake_records.read("a.csv")
+    assert found.dt == pytest.approx(DT) and found.values == pytest.approx(EW, abs=1e-7)
+
+
+@pytest.mark.parametrize("head, rows, words", [
+    ("time (min),EW (gal)", "0,1\n0.01,2\n", "a.csv, line 1: time must be in s or ms, got 'min'"),
+    ("time,EW (gal)", "0,1\n10,2\n20,1\n", "a.csv: times must be in s, with a step of at most 1 s: are they in ms?"),
+    ("time,EW (gal)", "0,1_5\n0.01,2\n", "a.csv, line 2: must be 2 numbers, got '0,1_5'"),
+    ("time;EW (gal)", "0,00;1,5\n0,01;2,5\n", "a.csv, line 2: must be 2 numbers"),
+    ("time,NS (cm/s)", "0,1\n0.01,2\n", "a.csv, line 1: column ns needs a unit"),
+    ("# time,NS (gal)", "0,1\n0.01,2\n", "a.csv, line 2: the first line must name the columns")])
+def test_a_table_in_other_units(slope, head, rows, words):
+    Path("a.csv").write_text(f"{head}\n{rows}")
+    refused(slope, "a.csv -o motion.txt", words)
+
+
+@pytest.mark.parametrize("size", ["NPTS=  5, DT=  5.0 MSEC", "NPTS=  5, DT=  5.0 SEC", "NPTS=  5, DT=  0.005 MIN",
+                                  "5  0.005  NPTS, DT (MS)"])
+def test_the_time_step_of_at2_is_in_seconds(slope, size):
+    at2("c.AT2", EW[:5], "090", size=size)
+    refused(slope, "c.AT2 -o motion.txt", "c.AT2, line 4: must be NPTS= n, DT= s SEC")
+
+
+def test_a_velocity_is_no_acceleration(slope):
+    at2("c.AT2", EW[:5], "090")
+    Path("c.AT2").write_text(Path("c.AT2").read_text().replace("ACCELERATION", "VELOCITY"))
+    refused(slope, "c.AT2 -o motion.txt", "c.AT2, line 3: must be of an acceleration")
+
+
+@pytest.mark.parametrize("head, rule", [
+    ("# t ay ax az", "line 1: columns must be t ax ay az in s and m/s2, got t ay ax az"),
+    ("# time(s) ax(gal) ay(gal) az(gal)", "line 1: columns must be t ax ay az in s and m/s2"),
+    ("# t, ax, ay, az [ms, m/s2]", "line 1: columns must be t ax ay az in s and m/s2"),
+    ("0 300 0 0", "must have accelerations in m/s2, at most 50: are they in gal?, got 300"),
+    ("0 1_0 0 0", "line 1: must be four numbers"), ("t ax ay az", "line 1: must be four numbers")])
+def test_a_motion_in_another_order_or_unit(slope, head, rule):
+    Path("m.txt").write_text(f"{head}\n1 1 0 0\n2 2 0 0\n")
+    with pytest.raises(SlopeError, match=re.escape(rule)):
+        motion_file.read("m.txt")
+    Path("m.txt").write_text("# of fix ground/motion: t ax ay az (s, m/s2)\n1 1 0 0\n2 2 0 0\n")
+    assert motion_file.read("m.txt").shape == (2, 4)
 
 
 @pytest.mark.parametrize("head, unit, option", [

@@ -150,6 +150,17 @@ def test_the_first_run_may_have_a_value_of_set():
     assert [one.combination["rolling"] for one in todo] == ["0", "0", "1", "1"]
 
 
+def test_combinations_beside_the_product_are_one_run_each():
+    others = [{"rolling": "0", "spacing": "0.5"}]
+    todo = repeats.plan("out", {"rolling": ["0", "1"], "spacing": ["0.9"]}, {"seed": ["6"]}, {"seed": "0"}, others)
+    assert [one.name for one in todo] == ["rolling_0_spacing_0.9", "rolling_0_spacing_0.9_seed_6",
+                                          "rolling_1_spacing_0.9", "rolling_1_spacing_0.9_seed_6",
+                                          "rolling_0_spacing_0.5"]
+    assert todo[-1].varied == "rolling 0, spacing 0.5" and todo[0].varied == "rolling 0, spacing 0.9"
+    with pytest.raises(SlopeError, match="at most 10000 runs, got 10001"):
+        repeats.plan("out", {"rolling": [str(k) for k in range(10000)], "spacing": ["0.9"]}, {}, {}, others)
+
+
 # --- the conservative volume ---
 
 def rows(*several, names=("rolling",), rest=True):
@@ -196,6 +207,30 @@ def test_differences_are_those_of_the_governing_line():
     best = conservative({"rolling": ["0", "1"], "friction": ["20", "30"]}, several)
     assert [(entry["variable"], entry["by_m3"]) for entry in best["differences"]] == [("rolling", 20), ("friction", 40)]
     assert best["label"] == "rolling 1, friction 30"
+
+
+def test_which_ground_governs():
+    """One run each on other grounds: the largest over both, with the chance of a single run."""
+    settings = {"rolling": ["0", "1"], "spacing": ["0.9", "0.5"]}
+    several = rows((("0", "0.9"), (70.0, 71, 72)), (("1", "0.9"), (80.0, 82, 81)), (("0", "0.5"), (95.0,)),
+                   (("1", "0.5"), (40.0,)), names=("rolling", "spacing"))
+    for row in several:
+        row["stop_angle_deg"] = 15.5 if row["set"]["spacing"] == "0.5" else 24.5
+    best = conservative(settings, several)
+    assert best["ground"] == "the ground that governs: spacing 0.5, stop angle 15.5 degrees (tried: spacing 0.9, 0.5)"
+    assert best["ground"] in combinations.describe({**best, "withheld": [], "zero": None})
+    assert (best["mean_m3"], best["repeats"], best["label"]) == (95, 1, "rolling 0, spacing 0.5")
+    assert best["chance_m3"] == pytest.approx(best["quantile"] * best["scatter_m3"] * 2 ** 0.5)
+    assert [(entry["variable"], entry["by_m3"]) for entry in best["differences"]] == [("rolling", 55), ("spacing", 24)]
+    entry = combinations.entries(combinations.grouped(several), ["remove_m3"])[0]
+    assert entry["stop_angle_deg"] == 24.5
+    several[6]["remove_m3"] = 60.0
+    best = conservative(settings, several)
+    assert best["ground"].startswith("the ground that governs: spacing 0.9, stop angle 24.5")
+    for row in several:
+        row["stop_angle_deg"] = None
+    assert conservative(settings, several)["ground"] == "the ground that governs: spacing 0.9 (tried: spacing 0.9, 0.5)"
+    assert conservative({"rolling": ["0", "1"]}, rows(*SMALL))["ground"] is None
 
 
 def test_other_doubts():

@@ -1,6 +1,7 @@
 """slope site FOLDER over a folder that is there: what of it stays, what is found anew, what is refused, kills."""
 import math
 import os
+import re
 import shlex
 import shutil
 import signal
@@ -214,9 +215,6 @@ def test_another_body_gets_balls_of_its_own(inside, mine):
     second = site_choices.read(mine)
     assert second["balls"]["number"] == first["balls"]["number"] and second["release"]["depth"] is None
     assert second["balls"]["diameter"] < first["balls"]["diameter"] / 1.5
-    # the roughness of the ground stays, as far as the smallest balls of the study, of 0.7 d, do not fall through it
-    assert second["balls"]["diameter"] < second["model"]["field_diameter"] < first["model"]["field_diameter"]
-    assert 0.7 * second["balls"]["diameter"] == pytest.approx(0.545 * second["model"]["field_diameter"], rel=0.01)
     assert site_choices.found(mine)["balls"] == pytest.approx(4000, rel=0.02)
     for key in ("speed", "duration"):       # a trial run of the other body may have been slower
         edit(mine, "model", **{key: 99.0})
@@ -277,45 +275,88 @@ def test_a_large_body_needs_a_past_event():
     assert "36 million m3" in line and "farther" in line and "slope calibrate" in line
 
 
-def test_the_balls_of_the_ground_are_named(inside, mine):
-    """They stay when the number of balls changes, unless the smallest would fall through."""
-    first = site_choices.read(mine)["model"]["field_diameter"]
-    line, = [line for line in inside("mine --balls 60").out.splitlines() if "field_diameter" in line]
-    assert f" {first:g} m" in line and "fall" not in line
-    edit(mine, "model", field_diameter=50.0)
-    line, = [line for line in inside("mine --balls 90").out.splitlines() if "field_diameter" in line]
+def test_the_ground_is_scattered_balls_as_large_as_those_of_the_soil(inside, mine):
+    assert "spacing 0.8" in inside("mine --balls 60 --spacing 0.8").out
+    deck = decks.index_variables(mine / site_deck.NAME)
+    assert (deck["field_d"], deck["spacing"], deck["ground_seed"]) == ("${d}", "0.8", "1")
+    field, = [words for words in decks.commands(mine / site_deck.NAME) if words[:2] == ["fix", "field"]]
+    assert field[-3:-1] == ["pattern", "scattered"] and "pattern" not in " ".join(
+        *[words for words in decks.commands(mine / site_deck.NAME) if words[:2] == ["fix", "slip"]])
+
+
+def older(mine, **model):
+    """The same site as a version made it whose ground was a plan grid of one diameter."""
+    edit(mine, "model", **{"field_diameter": 2.0, "field_ratio": None, "spacing": 1, **model})
+    about = yaml.safe_load((mine / "site.yaml").read_text())
+    del about["study"]["spacing"]
+    deck = mine / site_deck.NAME
+    text = deck.read_text().replace("index ${d} ", "index 2    ").replace("pattern scattered ${which}", "")
+    deck.write_text(re.sub("variable  ground_seed .*\n", "", text))
+    (mine / "site.yaml").write_text(yaml.safe_dump(about))
+    about["found"].update(deck_sha256=disk.sha256(deck),
+                          choices_sha256=site_choices.fingerprint(site_choices.read(mine), mine))
+    (mine / "site.yaml").write_text(yaml.safe_dump(about))
+
+
+def test_the_study_of_an_older_site_is_as_it_was(mine):
+    older(mine)
     choices = site_choices.read(mine)
-    assert f" {choices['model']['field_diameter']:g} m" in line
-    assert "not 50 m, through which the smallest balls would fall" in line
-    assert choices["model"]["field_diameter"] < 1.3 * choices["balls"]["diameter"]
+    assert choices["model"]["field_diameter"] == 2 and choices["model"]["spacing"] == 1
+    site_study.check(mine, choices)
+    assert site_study.grounds(choices, decks.index_variables(mine / site_deck.NAME)) == []
+    edit(mine, "model", field_diameter=3.0)
+    with pytest.raises(SlopeError, match="must not have been changed since"):
+        site_study.check(mine, site_choices.read(mine))
+
+
+def test_an_older_site_is_rebuilt_with_the_ground_of_now(inside, mine):
+    older(mine)
+    before = contents(mine)
+    line = inside("mine", 2).err
+    assert line.startswith("slope site: mine/site.yaml: model.spacing: must be <= 0.95: ") and line.count("\n") == 1
+    assert "--spacing 0.9" in line and line.endswith(", got 1\n") and contents(mine) == before
+    assert "field_diameter and field_ratio of an older version" in inside("mine --spacing 0.9").out
+    choices = site_choices.read(mine)
+    assert choices["model"]["spacing"] == 0.9 and not set(site_choices.RETIRED) & set(choices["model"])
+    assert choices["study"]["spacing"] == [0.5, 0.7]
+    older(mine, spacing=0.33)
+    inside("mine")
+    assert decks.index_variables(mine / site_deck.NAME)["spacing"] == "0.33"
+
+
+@pytest.mark.parametrize("model, rule", [
+    ({"field_diameter": 2, "spacing": -1}, "model.spacing: must be > 0, got -1"),
+    ({"field_diameter": 2, "spacing": "x"}, "model.spacing: must be a finite number"),
+    ({"spacing": 1}, "model.spacing: must be <= 0.95, got 1")])
+def test_a_wrong_spacing_in_the_file(mine, model, rule):
+    edit(mine, "model", **model)
+    with pytest.raises(SlopeError, match=re.escape(f"site.yaml: {rule}")):
+        site_choices.read(mine)
 
 
 # --- soil and ground ---
 
 def test_options_of_soil_and_ground_reach_the_deck(inside, mine):
     told = inside("mine --friction 25 --rolling 0 0.07 --slip-friction 5 --spacing 0.5 --density 1600 "
-                  "--field-diameter 2 --field-restitution 0.3").out
+                  "--field-restitution 0.3").out
     choices = site_choices.read(mine)
     assert choices["study"]["rolling"] == [0, 0.07]
     assert "friction 25 degrees, on the slip surface 5; rolling resistance 0, 0.07" in told
     assert "bulk density 1,600 kg/m3" in told
     deck = decks.index_variables(mine / site_deck.NAME)
-    wanted = {"friction": 25, "slip": 5, "spacing": 0.5, "field_d": 2, "field_e": 0.3, "density": 1600 * 6 / math.pi}
+    wanted = {"friction": 25, "slip": 5, "spacing": 0.5, "field_e": 0.3, "density": 1600 * 6 / math.pi}
     assert {name: float(deck[name]) for name in wanted} == pytest.approx(wanted, rel=1e-4)
 
 
 def test_mobile_values_of_frank(inside, mine):
-    """Its own option replaces one of them; the ground's balls follow the volume, also where they were set before."""
+    """Its own option replaces one of them."""
     told = inside("mine --mobile --friction 9").out
     choices = site_choices.read(mine)
     model = choices["model"]
     assert (model["friction"], model["spacing"], model["field_restitution"]) == (9, 0.33, 0.16)
     assert choices["study"]["rolling"] == [0.05, 0.14]
-    volume = site_choices.found(mine)["body"]["volume"]
-    assert model["field_diameter"] == pytest.approx(volume ** (1 / 3) / 22, rel=0.005)
     assert "Frank slide of 1903" in told and "friction 9 degrees" in told
-    inside("mine --mobile --field-diameter 0.8")
-    assert site_choices.read(mine)["model"]["field_diameter"] == 0.8
+    assert "a mass that passes the road leaves less on it" in told
     assert "Frank" not in inside("mine --balls 70").out
 
 
@@ -323,7 +364,7 @@ def test_mobile_values_of_frank(inside, mine):
     ("--density 1.8", "--density: must be at least 100 kg/m3, of the ground with its voids, got 1.8"),
     ("--friction 95", "--friction: must be < 90, got 95"),
     ("--rolling 0 0", "--rolling: must"), ("--rolling 0.1 -0.1", "--rolling: second value: must be >= 0, got -0.1"),
-    ("--field-ratio 0", "--field-ratio: must be > 0, got 0"), ("--spacing 0", "--spacing: must be > 0, got 0"),
+    ("--spacing 0.96", "--spacing: must be <= 0.95, got 0.96"), ("--spacing 0", "--spacing: must be > 0, got 0"),
     ("--field-restitution 1.2", "--field-restitution: must be <= 1, got 1.2")])
 def test_refused_values_of_soil_and_ground(inside, mine, words, line):
     before = contents(mine)
@@ -383,7 +424,7 @@ def test_a_failed_run_leaves_score_and_report_of_the_others(inside, mine, monkey
     monkeypatch.setattr(film, "encode", lambda *_: b"")
     write_layer(mine.parent / "mapped.geojson", [(25, 25), (60, 25), (60, 55), (25, 55)])
     inside("mine --observed mapped.geojson --balls 60")
-    edit(mine, "study", rolling=[0.05, 0.1], xoffset=[], yoffset=[], sizes=[])
+    edit(mine, "study", rolling=[0.05, 0.1], spacing=[], xoffset=[], yoffset=[], sizes=[])
     Path("some").write_text(f"""#!/bin/sh\ncase "$*" in *"rolling 0.1"*) exit 1;; esac\nexec {LMP} "$@"\n""")
     Path("none").write_text("#!/bin/sh\nexit 1\n")
     for name in ("some", "none"):

@@ -1,5 +1,6 @@
 """What holds for every source of the package: see doc/src/architecture.rst and doc/src/developing.rst."""
 import re
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -8,21 +9,24 @@ SRC = Path(__file__).resolve().parents[2] / "src"
 SOURCES = sorted(SRC.glob("**/*.h")) + sorted(SRC.glob("**/*.cpp"))
 NAMES = {path.name: path for path in SOURCES}
 LONGEST_FUNCTION = 80
-# A room includes its own files and those of the rooms in this list; lammps, what is below it, styles and plugin need
-# LAMMPS, no other does.
-CORE = ("contacts", "deposit", "ground", "meshes", "motion", "slips")
-HOSTED = {"lammps": ("common",), "lammps/regions": ("common", "ground", "lammps"),
-          "lammps/contacts": ("common", "contacts", "lammps"), "lammps/meshes": ("common", "meshes", "lammps"),
-          "lammps/ground": ("common", "ground", "lammps", "lammps/regions"),
-          "lammps/slips": ("common", "slips", "lammps", "lammps/regions"),
-          "lammps/deposit": ("common", "deposit", "lammps", "lammps/regions", "lammps/contacts")}
-ROOMS = {"common": (), **{room: ("common",) for room in CORE}, **HOSTED,
-         "styles": ("common", *CORE, *HOSTED), "plugin": ("styles",)}
+# A room includes its own files and those of the rooms in this list; slope_version.h is above all of them.
+BELOW = ("common", "lammps")
+ROOMS = {"common": (), "lammps": ("common",), "contacts": BELOW, "regions": BELOW,
+         "ground": (*BELOW, "regions", "contacts"), "meshes": (*BELOW, "contacts"),
+         "deposit": (*BELOW, "regions", "contacts"), "motion": (*BELOW, "contacts"), "slips": (*BELOW, "regions"),
+         "plugin": ()}
+# first line of a file that needs no LAMMPS: it includes such files of its own room and of common alone
+FREE = "// No LAMMPS\n"
 
 
 def room_of(path):
     """The folder of a source below src; "" for src itself."""
     return path.parent.relative_to(SRC).as_posix().strip(".")
+
+
+def is_free(path):
+    """Whether a file says that it needs no LAMMPS."""
+    return path.read_text().startswith(FREE)
 
 
 def includes(path):
@@ -94,18 +98,15 @@ def test_a_long_function_is_found():
 
 
 def test_an_arrow_upwards_is_found():
-    assert not_allowed("ground", {"plan_nodes.h": "ground", "text_file.h": "common", "triangle.h": "meshes",
-                                  "pair_gran_restitution.h": "styles"}) == ["pair_gran_restitution.h", "triangle.h"]
+    assert not_allowed("regions", {"region_columns.h": "regions", "text_file.h": "common", "triangle.h": "meshes",
+                                   "pair_gran_restitution.h": "contacts"}) == ["pair_gran_restitution.h", "triangle.h"]
 
 
 def test_every_file_is_in_a_room():
     assert len(SOURCES) > 80 and len(NAMES) == len(SOURCES)
     assert {room_of(path) for path in SOURCES} == {"", *ROOMS}
     assert [path.name for path in SOURCES if path.parent == SRC] == ["slope_version.h"]
-    assert [room for room in ROOMS if "/" not in room and room != "plugin"
-            and not (SRC / room / "README.md").exists()] == []
-    below = (SRC / "lammps" / "README.md").read_text()
-    assert [room for room in HOSTED if "/" in room and f"| *{room.split('/')[1]}* |" not in below] == []
+    assert [room for room in ROOMS if room != "plugin" and not (SRC / room / "README.md").exists()] == []
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.name)
@@ -116,7 +117,30 @@ def test_no_arrow_upwards(path):
         assert not ours
         return
     assert not_allowed(room, {name: room_of(NAMES[name]) for name in ours}) == []
-    assert not others or room in (*HOSTED, "styles", "plugin")
+    if room == "common" or is_free(path):
+        assert is_free(path) and not others
+        assert [name for name in ours if not is_free(NAMES[name]) or room_of(NAMES[name]) not in (room, "common")] == []
+
+
+def syntax_errors(room, texts):
+    """What the compiler says of C++11 that finds the headers of a room and of common alone."""
+    code = "".join(texts)
+    where = [f"-I{SRC / room}", f"-I{SRC / 'common'}"]
+    ended = subprocess.run(["c++", "-std=c++11", "-fsyntax-only", "-Wno-psabi", *where, "-x", "c++", "-"], input=code,
+                           capture_output=True, text=True)
+    return ended.stderr if ended.returncode else ""
+
+
+@pytest.mark.parametrize("room", [room for room in ROOMS if room not in ("lammps", "regions", "plugin")])
+def test_headers_without_lammps_compile_without_it(room):
+    """Each alone; the .cpp files are compiled so by tests/CMakeLists.txt."""
+    headers = [path for path in sorted((SRC / room).glob("*.h")) if is_free(path)]
+    assert headers
+    assert {path.name: text for path in headers if (text := syntax_errors(room, [f'#include "{path.name}"\n']))} == {}
+
+
+def test_a_header_with_lammps_does_not_compile_without_it():
+    assert "pointers.h" in syntax_errors("contacts", ['#include "contact_table.h"\n'])
 
 
 def test_no_circle_of_pairs():

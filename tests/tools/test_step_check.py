@@ -31,6 +31,15 @@ def test_half_the_step_against_the_mean_and_chance(volume, within, words):
     assert entry["mean_m3"] == 100 and entry["within_chance"] is within and words in entry["text"]
 
 
+def test_runs_on_another_ground_are_not_compared():
+    rows = [{"status": "finished", "run": spacing, "set": {"rolling": "0", "spacing": spacing}, "repeat": {},
+             "remove_m3": volume, "front_m": volume} for spacing, volume in (("0.5", 300.0), ("0.9", 100.0))]
+    both = combinations.grouped(rows)
+    assert step_check.compare(Step("0", 100.0, spacing="0.9"), both, None)["mean_m3"] == 100
+    assert step_check.compare(Step("0", 100.0, spacing="0.7"), both, None)["mean_m3"] is None
+    assert step_check.compare(Step("0", 100.0, spacing="0.7"), groups(), None)["mean_m3"] == 100
+
+
 def test_nothing_is_said_in_words():
     rows = [{"status": "finished", "run": str(k), "set": {"rolling": "0"}, "repeat": {"seed": str(k)}, "remove_m3": 0.0,
              "front_m": 1.0} for k in range(3)]
@@ -66,6 +75,23 @@ def test_where_the_energy_went(tmp_path):
         "of 2.00 GJ that weight and ground motion put in, 1.00 GJ was taken: 70.0 % by sliding, 19.0 % by rolling "
         "resistance, 10.0 % by impacts (normal dashpots), 1.00 % by the finite step at the start and end of contacts; "
         "500 kJ left with balls; not accounted for: less than 0.01 %")
+
+
+def test_the_columns_of_an_energy_file_are_those_of_its_head(tmp_path):
+    """Any order of f_ID[1] to f_ID[11] is right, other columns are refused."""
+    values = [0, 1e6, 2e9, 0, 3e6, 1e8, 7e8, 1.9e8, 1e7, 1e3, 0, 5e5]
+    order = [6, 1, 2, 3, 4, 5, 11, 7, 8, 9, 10]
+    path = written(tmp_path, [0] + [values[k] for k in order])
+    path.write_text(path.read_text().replace("f_ledger[1]", " ".join(f"f_ledger[{k}]" for k in order)))
+    spent = energy.read(path)
+    assert (spent["sliding"], spent["left"], spent["kinetic"]) == (7e8, 5e5, 1e6)
+    for names in (" ".join(["v_kinetic"] + 10 * ["v_x"]), " ".join(11 * ["f_ledger[1]"]), "f_ledger[2] f_ledger[1]",
+                  " ".join(f"f_ledger[{k}]" for k in range(2, 13)),
+                  " ".join(["f_a[1]"] + [f"f_b[{k}]" for k in range(2, 12)])):
+        path = written(tmp_path, values)
+        path.write_text(path.read_text().replace("f_ledger[1]", names))
+        with pytest.raises(SlopeError, match="site.energy: must be what the run wrote of its energy"):
+            energy.read(path)
 
 
 def test_the_energy_of_a_continued_run_is_not_known(tmp_path):

@@ -399,6 +399,128 @@ def test_pits_and_a_ground_in_feet_are_said(slope, written):
     assert "the ground falls by " in err and "are the heights in feet? Then --z-unit ft, which makes it 37" in err
 
 
+F32 = float(np.finfo("float32").min)
+SURFER = 1.70141e38
+HOLE = np.s_[6:8, 5:8]      # 6 cells
+
+
+def with_hole(path, value, dtype="float32", unit=None, factor=1.0, **tags):
+    """A survey in a type and a unit, whose six cells hold a value as it is stored."""
+    z, transform = survey()
+    z = (z / factor).astype(dtype)
+    z[HOLE] = value
+    return write_tif(path, z, transform, nodata=None, dtype=dtype, tags={"units": (unit or "",), **tags})
+
+
+def proposed(err):
+    """The options that a message proposes."""
+    return " ".join(re.findall(r"--nodata [^ ]+", err))
+
+
+@pytest.mark.parametrize("value, dtype, unit, factor", [
+    (F32, "float32", None, 1), (F32, "float64", None, 1), (-1.7976931348623157e308, "float64", None, 1),
+    (1e31, "float32", None, 1), (1e31, "float64", None, 1), (SURFER, "float32", None, 1), (-9999.9, "float32", None, 1),
+    (-32767.1, "float32", None, 1), (-32768, "int16", None, 1), (-32767, "int16", None, 1), (65535, "uint16", None, 1),
+    (-2147483648, "int32", None, 1), (-99999, "float32", "ft", 0.3048), (-9999, "float32", "ft", 0.3048),
+    (-9999, "int16", "US survey foot", 1200 / 3937), (-32768, "float32", "ft", 0.3048), (30000, "int16", "ft", 0.3048)])
+def test_the_nodata_that_an_error_proposes_works(slope, written, value, dtype, unit, factor):
+    with_hole("dem.tif", value, dtype, unit, factor)
+    status, _, err = slope("dem.tif -o out.asc")
+    assert status == 2 and "row 7 column 6: must be a height in " in err and err.count("\n") == 1
+    assert float(proposed(err).split()[1]) == pytest.approx(value, rel=1e-7)
+    z, *_ = written(f"dem.tif {proposed(err)}")
+    assert np.isnan(z[HOLE]).all() and np.isnan(z).sum() == 6
+
+
+@pytest.mark.parametrize("value, dtype, unit, factor, words", [
+    (-3276.8, "float32", None, 1, "6 cells of -3276.8 m lie at least"),
+    (-999, "float32", "ft", 0.3048, "6 cells of -304.495 m (-999 in the file) lie at least"),
+    (-999, "int16", None, 1, "6 cells of -999 m lie at least"), (0, "uint16", None, 1, "6 cells of 0 m lie at least"),
+    (-500, "float32", None, 1, "6 cells of -500 m lie at least"),
+    (9999, "float32", "ft", 0.3048, "6 cells of 3047.7 m (9999 in the file) lie at least 2561 m above")])
+def test_the_nodata_that_a_warning_of_pits_proposes_works(slope, written, value, dtype, unit, factor, words):
+    with_hole("dem.tif", value, dtype, unit, factor)
+    status, _, err = slope("dem.tif -o out.asc")
+    assert status == 0 and words in err and f"{proposed(err)} makes them NODATA, with --fill 6 they are filled" in err
+    z, *_ = written(f"dem.tif {proposed(err)}")
+    assert np.isnan(z[HOLE]).all() and np.isnan(z).sum() == 6
+    assert slope(f"dem.tif {proposed(err)} --fill 6 -o out.asc")[2] == ""
+
+
+def test_the_largest_number_of_a_type_is_a_mark(slope, written):
+    """65535 of heights in centimetres, which stands for 655.35 m; a collar of a mark is not filled."""
+    with_hole("dem.tif", 65535, "uint16", factor=0.01, scales=(0.01,))
+    err = slope("dem.tif -o out.asc")[2]
+    assert "6 cells of 655.35 m (65535 in the file) lie at least" in err and " m above all cells beside them" in err
+    assert np.isnan(written(f"dem.tif {proposed(err)}")[0][HOLE]).all()
+    z, transform = survey()
+    z[:, :4] = -999
+    write_tif("collar.tif", z, transform, nodata=None)
+    err = slope("collar.tif -o collar.asc")[2]
+    assert "64 cells of -999 m" in err
+    assert "--nodata -999 makes them NODATA, which stays where it goes on to the edge" in err
+
+
+def test_a_mark_of_scaled_heights_is_that_of_the_file(slope, written):
+    """Heights in decimetres: -9999 stands for -999.9 m, which may be a height, -32768 for -3276.8."""
+    for value, shown in ((-9999, "-999.9 m (-9999 in the file)"), (-32768, "-3276.8 m (-32768 in the file)")):
+        with_hole("dem.tif", value, "int16", factor=0.1, scales=(0.1,))
+        err = slope("dem.tif -o out.asc")[2]
+        assert f"6 cells of {shown} lie" in err and proposed(err) == f"--nodata {value}"
+        assert np.isnan(written(f"dem.tif --nodata {value}")[0][HOLE]).all()
+
+
+@pytest.mark.parametrize("given", ["-3.4028234663852886e+38", "-3.4028235e+38", "-3.40282e+38", "-3.4e38"])
+def test_a_huge_mark_may_have_few_digits(slope, here, given):
+    with_hole("dem.tif", F32)
+    with_hole("dem64.tif", F32, "float64")
+    for name in ("dem", "dem64"):
+        assert slope(f"{name}.tif --nodata {given} -o {name}.asc")[::2] == (0, "")
+        assert yaml.safe_load((here / f"{name}.yaml").read_text())["nodata_cells"] == 6
+    text = asc_text(survey()[0], EAST, NORTH, 5.0, nodata=f"NODATA_value {given}\n")
+    (here / "grid.asc").write_text(text.rsplit(" ", 1)[0] + " -3.40282346638529e+38\n")
+    assert slope("grid.asc --crs EPSG:6677 -o out.asc")[::2] == (0, "")
+
+
+def test_a_mark_of_another_type(slope, here):
+    """-9999.9 in single precision is another number than -9999.9; a height beside a mark stays."""
+    with_hole("dem.tif", float(np.float32(-9999.9)), "float64")
+    assert slope("dem.tif --nodata -9999.9 -o out.asc")[::2] == (0, "")
+    z, transform = survey()
+    z[0, 0], z[0, 1] = 520.3, 520.300001
+    write_tif("dem.tif", z, transform)
+    assert slope("dem.tif --nodata 520.3 -o out.asc")[0] == 0
+    assert yaml.safe_load((here / "out.yaml").read_text())["nodata_cells"] == 1
+    with_hole("dem.tif", -32768, "int16")
+    for other in ("-32768.5", "32768", "-3.4e38"):
+        status, _, err = slope(f"dem.tif --nodata {other} -o out.asc")
+        assert status == 2 and f"--nodata {other.replace('.4e38', '.4e+38')} --nodata -32768" in err
+
+
+def test_two_marks_are_given_one_after_the_other(slope, written):
+    z, transform = survey()
+    z[HOLE], z[2, 2] = -9999, -32768
+    write_tif("dem.tif", z, transform, nodata=None)
+    first = proposed(slope("dem.tif -o out.asc")[2])
+    second = proposed(slope(f"dem.tif {first} -o out.asc")[2])
+    assert (first, second) == ("--nodata -32768", "--nodata -32768 --nodata -9999")
+    assert np.isnan(written(f"dem.tif {second}")[0]).sum() == 7
+
+
+def test_a_mark_that_no_cell_has_is_said(slope, here):
+    with_hole("dem.tif", -9999)
+    write_tif("whole.tif", *survey(east=EAST + 100))
+    status, _, err = slope("whole.tif --nodata -9999 -o out.asc")
+    assert status == 0 and "--nodata -9999: no cell of the input has that value; its heights are 476.5 to 5" in err
+    assert slope("dem.tif whole.tif --nodata -9999 -o both.asc")[2] == ""      # one of the tiles has it
+
+
+def test_mountains_in_feet_are_no_marks(slope):
+    z, transform = survey()
+    write_tif("dem.tif", z / 0.3048 + 15000, transform, tags={"units": ("ft",)})
+    assert slope("dem.tif -o out.asc")[::2] == (0, "")
+
+
 def test_level_ground_at_the_sea_is_no_pit(slope):
     z, transform = survey()
     z = np.maximum(z - np.median(z), 0.0)
@@ -561,6 +683,16 @@ BAD = {
                   "bad.asc: header: must have xllcorner and yllcorner, or xllcenter and yllcenter"),
     "cellsize": (bad_ascii(lambda t: t.replace("cellsize 2.0", "cellsize 0")), "bad.asc -o out.asc",
                  "bad.asc: header: cellsize: must be > 0, got 0"),
+    "cellsize twice": (bad_ascii(lambda t: t.replace("cellsize 2.0", "cellsize 2.0\ncellsize 4.0")),
+                       "bad.asc -o out.asc", "bad.asc: line 6: header key cellsize is given twice"),
+    "corner and centre": (bad_ascii(lambda t: t.replace("yllcorner", "xllcenter 1.0\nyllcorner")), "bad.asc -o out.asc",
+                          "bad.asc: line 4: xllcorner and xllcenter are both given"),
+    "cellsize and dx": (bad_ascii(lambda t: t.replace("cellsize 2.0", "cellsize 2.0\ndx 4.0")), "bad.asc -o out.asc",
+                        "bad.asc: line 6: cellsize and dx are both given"),
+    "1_5 in the header": (bad_ascii(lambda t: t.replace("cellsize 2.0", "cellsize 2_0")), "bad.asc -o out.asc",
+                          "bad.asc: line 5: must be a name and a number, got cellsize 2_0"),
+    "complex numbers": (bad_tif(dtype="complex64"), "bad.tif -o out.asc",
+                        "bad.tif: must hold real numbers, got complex64"),
     "all NODATA": (bad_tif(z=np.full((4, 4), np.nan)), "bad.tif -o out.asc", "bad.tif: must have a height, all cells"),
     "undeclared NODATA": (bad_tif(z=np.array([[1, 2], [3, -32768.0]]), nodata=None), "bad.tif -o out.asc",
                           "bad.tif: row 2 column 2: must be a height in metres between -9000 and 9000"),

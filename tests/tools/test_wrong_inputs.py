@@ -5,6 +5,7 @@ The table is also on the page on robustness, which a test compares; `python3 tes
 import json
 import os
 import shutil
+import subprocess
 from pathlib import Path
 from typing import Callable, NamedTuple
 
@@ -21,8 +22,11 @@ from shapely.affinity import translate
 from run_helpers import CRS_M, EAST, NORTH, TOP, called, write_run
 
 from slope_tools import programs
+from slope_tools.case import data_files
+from slope_tools.errors import SlopeError
 from slope_tools.plots import site_map
 from slope_tools.releases import release_chart
+from slope_tools.sites import site_budget
 from slope_tools.survey import rasters
 
 RIGHT, ASKED = "right: ", "asked: "     # before answers of commands that succeed
@@ -413,6 +417,77 @@ def test_a_wrong_input(case, files, tmp_path, monkeypatch, capsys):
     assert lines[0].startswith(f"slope {case.words[0]}: {case.answer}"), lines[0]
     left = set(os.listdir()) - before
     assert left <= {"new"} and os.listdir("new") == ["site.yaml"] if left else True
+
+
+@pytest.mark.parametrize("value, kind, units, rule", [
+    (-3276.8, "float32", None, "dem.tif: the ground must have no pits of a NODATA value: 6 cells of -3276.8 m lie"),
+    (-999, "float32", "ft", "dem.tif: the ground must have no pits of a NODATA value: 6 cells of -304.495 m (-999 in"),
+    (-9999, "float32", "ft", "dem.tif: row 13 column 21: must be a height in ft between -9000 and 29527")])
+def test_a_site_with_pits_ends_before_the_trial_run(files, tmp_path, monkeypatch, capsys, value, kind, units, rule):
+    shutil.copytree(files, tmp_path, dirs_exist_ok=True)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(site_budget, "trial_diameter", lambda *_: pytest.fail("a trial run"))
+    tif("dem.tif", spoilt(ground() / (0.3048 if units else 1), HOLE, value), units=units, kind=kind)
+    status, _, err = called(capsys, SITE)
+    assert status == 2 and err.startswith(f"slope site: {rule}") and f"--nodata {value:g} " in err
+
+
+# --- names ---
+
+CP932 = "\udc93\udcb9"      # two bytes that are not UTF-8, as an unpacked zip has them
+
+
+@pytest.mark.parametrize("words, where", [
+    (["terrain", f"{CP932}.tif", "-o", "new.asc"], r"\x93\xb9.tif"),
+    (["terrain", "dem.tif", "-o", f"{CP932}.asc"], r"\x93\xb9.asc"),
+    (["terrain", "dem.tif", "-o", "link/new.asc"], "link/new.asc"),     # to a folder of such a name
+    (["quake", f"{CP932}.AT2", "-o", "new.txt"], r"\x93\xb9.AT2"),
+    (["polygon", f"{CP932}.geojson", "-o", "new.csv", "--terrain", "t.asc"], r"\x93\xb9.geojson"),
+    ([*SITE[:2], f"{CP932}.tif", *SITE[3:]], r"\x93\xb9.tif"), ([*SITE[:-1], f"f{CP932}/new"], r"f\x93\xb9/new"),
+    (["study", "in.deck", "--set", "a=1", "-o", f"f{CP932}/new"], r"f\x93\xb9/new"),
+    (["export", "t", "-o", f"e{CP932}"], r"e\x93\xb9"), (["report", "t", "-o", f"e{CP932}.html"], r"e\x93\xb9.html")])
+def test_a_name_that_is_not_utf8(files, tmp_path, monkeypatch, capsys, words, where):
+    shutil.copytree(files, tmp_path, dirs_exist_ok=True)
+    monkeypatch.chdir(tmp_path)
+    os.mkdir(f"f{CP932}")
+    os.symlink(f"f{CP932}", "link")
+    shutil.copy("dem.tif", f"{CP932}.tif")
+    before = set(os.listdir())
+    status, out, err = called(capsys, words)
+    assert (status, out) == (2, "")
+    assert err.startswith(f"slope {words[0]}: {where}: must have a name in UTF-8: rename it")
+    assert set(os.listdir()) == before and not os.listdir(f"f{CP932}")
+
+
+def test_a_current_folder_whose_name_is_not_utf8(files, tmp_path, monkeypatch, capsys):
+    (tmp_path / CP932).mkdir()
+    monkeypatch.chdir(tmp_path / CP932)
+    for words in (SITE, ["study", "in.deck", "--set", "a=1"]):
+        status, _, err = called(capsys, words)
+        assert status == 2 and f"slope {words[0]}: the current folder: must have a name in UTF-8" in err
+        assert err.endswith("\\x93\\xb9\n") and not os.listdir()
+
+
+def test_data_whose_names_are_not_utf8_stay_where_they_are(tmp_path):
+    deck = tmp_path / "in.deck"
+    (tmp_path / f"{CP932}.csv").touch()
+    deck.write_bytes(b'print "\x93\xb9"\nregion a polygon road.csv\n')
+    assert list(data_files.data_files(deck, {})) == ["in.deck"]
+    deck.write_bytes(b"region a polygon \x93\xb9.csv\n")
+    with pytest.raises(SlopeError, match=r"in.deck: must name files in UTF-8: rename it, got .x93.xb9.csv"):
+        data_files.data_files(deck, {})
+
+
+@pytest.mark.parametrize("variables", [{"LC_ALL": "POSIX", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
+                                       {"PYTHONIOENCODING": "ascii"}])
+def test_names_in_utf8_under_another_locale(files, tmp_path, variables):
+    shutil.copytree(files, tmp_path, dirs_exist_ok=True)
+    name = "\u9053"
+    shutil.move(tmp_path / "dem.tif", tmp_path / f"{name}.tif")
+    done = subprocess.run([TOP / "tools" / "slope", "terrain", f"{name}.tif", "-o", f"{name}.asc"], cwd=tmp_path,
+                          env={**os.environ, **variables}, capture_output=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert f"{name}.tif" in (tmp_path / f"{name}.yaml").read_text(encoding="utf-8").encode().decode("unicode_escape")
 
 
 # --- the page ---

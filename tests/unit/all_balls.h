@@ -19,8 +19,9 @@ inline SurfaceBalls sample_surface(const NodeGrid &grid, double radius, const Su
   SurfaceSampler sampler(grid, radius, surface);
   SurfaceBalls all;
   std::vector<PlacedBall> balls;
-  for (int tile = 0; tile < sampler.tiles(); tile++) sampler.sample(tile, balls, all);
-  all.nodes = static_cast<int64_t>(sampler.plan().nx) * sampler.plan().ny;
+  const TilePlan tiles = sampler.tiles();
+  for (int tile = 0; tile < tiles.nx * tiles.ny; tile++) sampler.sample(tile, balls, all);
+  all.nodes = static_cast<int64_t>(count_nodes(grid));
   in_order(balls);
   for (const PlacedBall &b : balls) all.xyz.insert(all.xyz.end(), {b.x, b.y, b.z});
   return all;

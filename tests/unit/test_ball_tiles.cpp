@@ -7,12 +7,14 @@
    what was asked before; and the search in the tiles that were made finds what a loop over all finds. */
 
 #include "ball_tiles.h"
+#include "scattered_sampler.h"
 #include "surface_sampler.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <random>
 #include <set>
 #include <stdexcept>
@@ -48,54 +50,66 @@ NodeGrid grid(double spacing)
   return {0.0, SIDE, 0.0, 0.8 * SIDE, spacing, 0.3, 0.1};
 }
 
-std::vector<PlacedBall> by_tiles(double spacing, int tile, unsigned seed)
+// the two patterns
+
+typedef std::unique_ptr<BallSampler> (*Make)(double spacing, int tile);
+
+std::unique_ptr<BallSampler> on_grid(double spacing, int tile)
 {
-  SurfaceSampler sampler(grid(spacing), R, waves(), tile);
-  std::vector<int> order(sampler.tiles());
-  for (int k = 0; k < sampler.tiles(); k++) order[k] = k;
+  return std::unique_ptr<BallSampler>(new SurfaceSampler(grid(spacing), R, waves(), tile));
+}
+
+std::unique_ptr<BallSampler> scattered(double spacing, int tile)
+{
+  return std::unique_ptr<BallSampler>(new ScatteredSampler(grid(spacing), waves(), 7, tile));
+}
+
+std::vector<PlacedBall> by_tiles(Make make, double spacing, int tile, unsigned seed)
+{
+  const std::unique_ptr<BallSampler> sampler = make(spacing, tile);
+  std::vector<int> order(sampler->tiles().nx * sampler->tiles().ny);
+  for (size_t k = 0; k < order.size(); k++) order[k] = static_cast<int>(k);
   std::mt19937 random(seed);
   std::shuffle(order.begin(), order.end(), random);
   std::vector<PlacedBall> balls;
   SurfaceCounts counts;
   for (int k : order) {
-    if (random() % 4 == 0) sampler.forget();
-    sampler.sample(k, balls, counts);
+    if (random() % 4 == 0) sampler->forget();
+    sampler->sample(k, balls, counts);
   }
   EXPECT_EQ(counts.base + counts.extra, static_cast<int64_t>(balls.size()));
   in_order(balls);
   return balls;
 }
 
-TilePlan plan_of(const SurfaceSampler &s)
-{
-  return {s.plan().xfirst, s.plan().yfirst, s.plan().tile * s.plan().grid.spacing, s.tiles_x(), s.tiles_y()};
-}
-
 }    // namespace
 
 TEST(SurfaceTiles, size_and_order_of_tiles_change_nothing)
 {
-  for (double spacing : {2.0 * R, R}) {
-    const std::vector<PlacedBall> whole = by_tiles(spacing, 1024, 1);
-    EXPECT_GT(std::count_if(whole.begin(), whole.end(), is_extra), 200);
-    for (int tile : {32, 4, 64, 128}) {
-      const std::vector<PlacedBall> balls = by_tiles(spacing, tile, tile);
-      ASSERT_EQ(balls.size(), whole.size()) << tile;
-      for (size_t k = 0; k < balls.size(); k++) {
-        ASSERT_EQ(balls[k].number, whole[k].number) << tile;
-        ASSERT_TRUE(balls[k].x == whole[k].x && balls[k].y == whole[k].y && balls[k].z == whole[k].z) << tile;
+  for (Make make : {on_grid, scattered})
+    for (double spacing : {1.9 * R, R}) {
+      const std::vector<PlacedBall> whole = by_tiles(make, spacing, 1024, 1);
+      EXPECT_GT(std::count_if(whole.begin(), whole.end(), [](const PlacedBall &b) { return !b.first_of_cell(); }), 200);
+      for (int tile : {32, 4, 64, 128}) {
+        const std::vector<PlacedBall> balls = by_tiles(make, spacing, tile, tile);
+        ASSERT_EQ(balls.size(), whole.size()) << tile;
+        for (size_t k = 0; k < balls.size(); k++) {
+          ASSERT_EQ(balls[k].number, whole[k].number) << tile;
+          ASSERT_TRUE(balls[k].x == whole[k].x && balls[k].y == whole[k].y && balls[k].z == whole[k].z) << tile;
+        }
       }
     }
-  }
 }
 
 TEST(SurfaceTiles, numbers_are_exact_in_a_double_and_of_one_ball_each)
 {
-  std::set<int64_t> seen;
-  for (const PlacedBall &b : by_tiles(2.0 * R, 32, 3)) {
-    EXPECT_TRUE(seen.insert(b.number).second);
-    EXPECT_EQ(static_cast<int64_t>(static_cast<double>(b.number)), b.number);
-    EXPECT_LT(b.number, int64_t(1) << 52);
+  for (Make make : {on_grid, scattered}) {
+    std::set<int64_t> seen;
+    for (const PlacedBall &b : by_tiles(make, 2.0 * R, 32, 3)) {
+      EXPECT_TRUE(seen.insert(b.number).second);
+      EXPECT_EQ(static_cast<int64_t>(static_cast<double>(b.number)), b.number);
+      EXPECT_LT(b.number, int64_t(1) << 52);
+    }
   }
 }
 
@@ -107,14 +121,26 @@ TEST(SurfaceTiles, a_tile_must_be_a_power_of_two)
 
 /* ---------------------------------------------------------------------- */
 
-TEST(BallTiles, finds_what_a_loop_over_all_balls_finds_and_makes_only_what_is_near)
+// the same ground, turned about a place if angle is not 0
+
+static void expect_to_find_all(Make make, double angle)
 {
-  SurfaceSampler sampler(grid(1.0), R, waves());
-  const std::vector<PlacedBall> all = by_tiles(1.0, 32, 5);
+  const double about[2] = {31.0, -7.0}, c = std::cos(angle), s = std::sin(angle);
+  auto turn = [&](PlacedBall &b) {
+    const double dx = b.x - about[0], dy = b.y - about[1];
+    b.x = about[0] + c * dx - s * dy;
+    b.y = about[1] + s * dx + c * dy;
+  };
+  const std::unique_ptr<BallSampler> sampler = make(1.0, 32);
+  std::vector<PlacedBall> all = by_tiles(make, 1.0, 32, 5);
+  std::for_each(all.begin(), all.end(), turn);
   int made = 0;
-  BallTiles tiles(plan_of(sampler), 2.0 * R, [&](int tile, std::vector<PlacedBall> &balls) {
+  TilePlan plan = sampler->tiles();
+  plan.turn(angle, about);
+  BallTiles tiles(plan, 2.0 * R, [&](int tile, std::vector<PlacedBall> &balls) {
     SurfaceCounts counts;
-    sampler.sample(tile, balls, counts);
+    sampler->sample(tile, balls, counts);
+    std::for_each(balls.begin(), balls.end(), turn);
     made++;
   });
   std::mt19937 random(7);
@@ -123,8 +149,11 @@ TEST(BallTiles, finds_what_a_loop_over_all_balls_finds_and_makes_only_what_is_ne
     if (k == 1) {
       EXPECT_LE(made, 4);
     }
-    const double x = -3.0 + unit(random) * (SIDE + 6.0), y = -3.0 + unit(random) * (0.8 * SIDE + 6.0);
-    const double at[3] = {x, y, 0.7 * x + 8.0 * (unit(random) - 0.5)}, reach = 0.5 + 2.0 * unit(random);
+    PlacedBall here = {-3.0 + unit(random) * (SIDE + 6.0), -3.0 + unit(random) * (0.8 * SIDE + 6.0), 0.0, 0};
+    const double reach = 0.5 + 2.0 * unit(random);
+    here.z = 0.7 * here.x + 8.0 * (unit(random) - 0.5);
+    turn(here);
+    const double at[3] = {here.x, here.y, here.z};
     std::set<int64_t> expected, found;
     for (const PlacedBall &b : all)
       if (std::pow(b.x - at[0], 2) + std::pow(b.y - at[1], 2) + std::pow(b.z - at[2], 2) < reach * reach)
@@ -132,14 +161,20 @@ TEST(BallTiles, finds_what_a_loop_over_all_balls_finds_and_makes_only_what_is_ne
     tiles.visit_near(at, reach, [&](int b, double) { EXPECT_TRUE(found.insert(tiles.number(b)).second); });
     ASSERT_EQ(found, expected);
   }
-  EXPECT_EQ(made, sampler.tiles());
+  EXPECT_EQ(made, sampler->tiles().nx * sampler->tiles().ny);
+}
+
+TEST(BallTiles, finds_what_a_loop_over_all_balls_finds_and_makes_only_what_is_near)
+{
+  for (Make make : {on_grid, scattered})
+    for (double angle : {0.0, 0.4, 2.5}) expect_to_find_all(make, angle);
 }
 
 TEST(BallTiles, what_nobody_asks_for_is_dropped_and_made_again)
 {
   SurfaceSampler sampler(grid(1.0), R, waves());
   int made = 0;
-  BallTiles tiles(plan_of(sampler), 2.0 * R, [&](int tile, std::vector<PlacedBall> &balls) {
+  BallTiles tiles(sampler.tiles(), 2.0 * R, [&](int tile, std::vector<PlacedBall> &balls) {
     SurfaceCounts counts;
     sampler.sample(tile, balls, counts);
     made++;

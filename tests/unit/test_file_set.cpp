@@ -28,10 +28,12 @@ class Folder : public ::testing::Test {
 
   ~Folder() override
   {
-    for (const std::string &path : {a, b, a + ".tmp", b + ".tmp", folder}) remove(path.c_str());
+    for (const std::string &path : {a, b, beside(a), beside(b), folder}) remove(path.c_str());
   }
 
   std::string folder, a, b;
+
+  static std::string beside(const std::string &path) { return path + "." + std::to_string(getpid()) + ".tmp"; }
 
   static std::string text(const std::string &path)
   {
@@ -77,7 +79,7 @@ TEST_F(Folder, NoneAppearsWhereOneIsAFolder)
             }),
             "cannot write " + b + ": Is a directory");
   EXPECT_EQ(text(a), "old");
-  EXPECT_FALSE(there(a + ".tmp") || there(b + ".tmp"));
+  EXPECT_FALSE(there(beside(a)) || there(beside(b)));
 }
 
 TEST_F(Folder, NoneAppearsWhereOneBecomesAFolder)
@@ -91,14 +93,14 @@ TEST_F(Folder, NoneAppearsWhereOneBecomesAFolder)
             }),
             "cannot write " + b + ": Is a directory");
   EXPECT_EQ(text(a), "old");
-  EXPECT_FALSE(there(a + ".tmp") || there(b + ".tmp"));
+  EXPECT_FALSE(there(beside(a)) || there(beside(b)));
 }
 
 TEST_F(Folder, ProbeLeavesNothing)
 {
   FileSet::probe({a, b});
   EXPECT_EQ(text(a), "old");
-  EXPECT_FALSE(there(b) || there(a + ".tmp") || there(b + ".tmp"));
+  EXPECT_FALSE(there(b) || there(beside(a)) || there(beside(b)));
   EXPECT_EQ(problem([&] { FileSet::probe({a, folder + "/none/b"}); }),
             "cannot write " + folder + "/none/b: No such file or directory");
   mkdir(b.c_str(), 0777);

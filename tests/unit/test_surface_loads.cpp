@@ -42,10 +42,28 @@ TEST(SurfaceLoads, GoesThroughARestartFile)
   loads.take(records);
   loads.add_row({7, 0.5, {1, 2, 3}, {4, 5, 6}, {7, 8, 9}, 2, 10});
   other.add_row({1, 0.1, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0, 0});
-  other.unpack(loads.pack().data());
+  const std::vector<double> numbers = loads.pack();
+  other.unpack(numbers.data(), numbers.size(), 3.0);
   const TriangleMesh mesh = two();
   EXPECT_EQ(loads.series(), "step,time,fx,fy,fz,mx,my,mz,jx,jy,jz,contacts,largest_force\n"
                             "7,0.5,1,2,3,4,5,6,7,8,9,2,10\n");
+  EXPECT_EQ(other.series(), loads.series());
+
+  // of a damaged file: other numbers of loads or rows, a triangle that is not there, an end that is missing
+
+  const auto damaged = [&](size_t at, double value) {
+    std::vector<double> wrong = numbers;
+    wrong[at] = value;
+    EXPECT_THROW(other.unpack(wrong.data(), wrong.size(), 3.0), std::runtime_error) << at << " " << value;
+  };
+  for (double value : {-1.0, 1e300, 3.0, 1.5, double(NAN)}) {
+    damaged(0, value);
+    damaged(1, value);
+  }
+  damaged(2, 3.0);
+  damaged(2, -1.0);
+  EXPECT_THROW(other.unpack(numbers.data(), numbers.size() - 1, 3.0), std::runtime_error);
+  EXPECT_THROW(other.unpack(numbers.data(), 0, 3.0), std::runtime_error);
   EXPECT_EQ(other.series(), loads.series());
   EXPECT_EQ(other.triangles(mesh, 7.0), loads.triangles(mesh, 7.0));
   EXPECT_EQ(other.polydata(mesh, 7.0), loads.polydata(mesh, 7.0));

@@ -16,7 +16,7 @@ import sys
 import traceback
 from pathlib import Path
 
-from . import warned
+from . import disk, warned
 from .errors import SlopeError
 from .provenance import version
 
@@ -98,6 +98,17 @@ def with_new_names(command, argv):
     return words
 
 
+def check_names(words):
+    """Raise SlopeError if a file, or the current folder, has a name that is not UTF-8: libraries and YAML need it."""
+    places = {"the current folder": os.getcwd(), "LMP": os.environ.get("LMP", "")}
+    places.update((word, os.path.realpath(word.replace("\0", ""))) for word in words)
+    for word, place in places.items():
+        if not (disk.is_utf8(word) and disk.is_utf8(place)):
+            raise SlopeError(word if disk.is_utf8(word) else disk.shown(word), "must have a name in UTF-8: rename it "
+                             "(names of an unpacked zip may be in another encoding)",
+                             disk.shown(place) if disk.is_utf8(word) else None)
+
+
 def main(argv=None):
     """Run one subcommand on argv (default: the command line); the status is 0, 1 (a bug), 2 (bad input) or 130."""
     argv = sys.argv[1:] if argv is None else argv
@@ -126,6 +137,7 @@ def main(argv=None):
         else:
             print(f"slope {args.command}: {text}", file=sys.stderr)
     try:
+        check_names(argv)
         args.run(args)
     except SlopeError as error:
         if args.debug:

@@ -24,6 +24,16 @@ def write(path, content):
         new.write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
 
 
+def is_utf8(name: str) -> bool:
+    """Whether the name of a file, which may be any bytes, is UTF-8."""
+    return not any("\ud800" <= letter <= "\udfff" for letter in name)
+
+
+def shown(name: str) -> str:
+    """A name in a message; bytes that are not UTF-8 as \\x93."""
+    return os.fsencode(name).decode("utf-8", "backslashreplace")
+
+
 def csv_text(columns, rows) -> str:
     """A CSV: a line of names, then the rows; None is an empty cell."""
     text = io.StringIO()
@@ -43,8 +53,9 @@ def beside(*paths):
         yield new
         for part in new:
             flush(part)
-        for part, path in zip(new, places):
-            os.replace(part, path)
+        with renaming(places[-1].parent):
+            for part, path in zip(new, places):
+                os.replace(part, path)
         for folder in {path.parent for path in places}:
             flush(folder)
     except OSError as error:
@@ -53,6 +64,21 @@ def beside(*paths):
         for part in new:
             with suppress(OSError):     # a read-only file system refuses this too
                 part.unlink(missing_ok=True)
+
+
+@contextmanager
+def renaming(folder: Path):
+    """No other process gives files of a folder their names meanwhile: of two sets one is there, not a mixture.
+
+    It waits for the other process. A file system without locks does without.
+    """
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        with suppress(OSError):
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(handle)        # which ends the lock
 
 
 def sha256(path) -> str:
@@ -165,15 +191,16 @@ def complete(folder, marker, called=None):
         folder.mkdir(exist_ok=True)
         names = sorted(path.name for path in new.iterdir() if path.name != marker)
         void = void_of(folder / marker)
-        void.touch()
-        (folder / marker).unlink(missing_ok=True)
-        flush(folder)
-        for name in names:
-            os.replace(new / name, folder / name)
-        flush(folder)
-        os.replace(new / marker, folder / marker)
-        flush(folder)
-        void.unlink()
+        with renaming(folder):
+            void.touch()
+            (folder / marker).unlink(missing_ok=True)
+            flush(folder)
+            for name in names:
+                os.replace(new / name, folder / name)
+            flush(folder)
+            os.replace(new / marker, folder / marker)
+            flush(folder)
+            void.unlink()
         flush(folder.parent)
     except OSError as error:
         raise SlopeError(asked, f"cannot be written: {error.strerror or error}") from error

@@ -9,8 +9,9 @@ OTHER = "other"         # of the kinds that no reader tells apart, and of what o
 WORDS = {
     OTHER: "{text}",
     # of the files of a GIS
-    "pits": "{cells} cells of {mark:g} m lie at least {depth:.4g} m below all cells beside them, the first "
+    "pits": "{cells} cells of {mark} lie at least {depth:.4g} m {side} all cells beside them, the first "
             "at {east:.10g} {north:.10g}: NODATA that the file does not declare? {remedy}",
+    "no such cell": "--nodata {value}: no cell of the input has that value; its heights are {low:.6g} to {high:.6g} m",
     "picture": "all heights are whole numbers from {low:g} to {high:g}, as the values of a picture: is it a hillshade?",
     "in feet": "the ground falls by {degrees:.0f} degrees on average: are the heights in feet? Then --z-unit ft, which "
                "makes it {in_feet:.0f}",
@@ -100,7 +101,8 @@ WORDS = {
     "few columns": "the body has {cells} cells, fewer than {limit}: the line is rough",
     "no sphere": "the body is no sphere, and the line depends on the axis of moments: a far one changes the cohesion "
                  "by {percent:+.0f} % without friction",
-    "pseudo-static": "pseudo-static: a body that is at F < 1 for an instant counts as failed, which is cautious",
+    "pseudo-static": "pseudo-static: a body that is at F < 1 for an instant with {factor:g} times the peak counts as "
+                     "failed, which is {judged}",
     "one record": "one record: how much records differ is not seen, beta_r is 0",
     "at rest": "{which}: {percent:.2g} % of the strengths fail without an earthquake{makes}: if the slope stands, they "
                "are not its own; raise the lower bounds of the strengths",

@@ -54,7 +54,7 @@ TEST(BallPlacement, Flat)
   for (const char *side : {"outside", "inside"}) {
     int nodes = 0, wrong = 0;
     for (const PlacedBall &b : g.place({"surface", "flat", "upper", "spacing", "0.5", side, "half"})->all()) {
-      nodes += !Slope::is_extra(b);
+      nodes += b.first_of_cell();
       wrong += side[0] == 'o' ? b.x > 5.0 : b.x < 5.0;
     }
     EXPECT_EQ(nodes, side[0] == 'o' ? 10 * 21 : 11 * 21);

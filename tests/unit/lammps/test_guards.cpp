@@ -65,7 +65,38 @@ TEST(ContactGuards, Start)
   g.deck.one("fix move one nve/sphere");
   g.guards.start(0);
   g.guards.start(0);    // each is noted once
-  g.expect({"2 times the largest", "delay 5", "no integrator moves 1 balls"});
+  g.expect({"2 times the largest", "delay 5"});
+}
+
+// only a run that makes a step moves balls, and only what could have moved hangs
+TEST(ContactGuards, WhatMovesAndHolds)
+{
+  Guarded g;
+  g.deck.one("unfix move");
+  g.deck.one("group one id 1");
+  g.deck.one("fix move one nve/sphere");
+  for (int i = 0; i < g.deck.lmp->atom->nlocal; i++) std::fill_n(g.deck.lmp->atom->f[i], 3, 0.0);
+  g.guards.start(0);
+  g.guards.report();
+  g.expect({});
+  g.guards.begin_step();
+  g.guards.begin_step();
+  g.expect({"no integrator moves 1 balls"});
+  g.guards.report();
+  g.expect({"no integrator moves 1 balls", "1 balls hang at rest"});
+}
+
+TEST(ContactGuards, ForcesHold)
+{
+  Guarded g;
+  g.guards.start(0);
+  g.guards.begin_step();
+  for (int ball = 1; ball <= 2; ball++) {
+    int i;
+    if (g.deck.with(ball, i)) g.deck.lmp->atom->f[i][2] = -1.0;
+  }
+  g.guards.report();
+  g.expect({});
 }
 
 // a damping ratio above 2: cn = 2 zeta sqrt(kn m) of the mass of a pair, half a ball's

@@ -3,6 +3,7 @@ import os
 import re
 from typing import Set
 
+from .. import disk
 from ..errors import SlopeError
 from ..schemas import TEXT, listed, mapping
 from . import decks, run_folders
@@ -30,6 +31,10 @@ def data_files(deck, settings):
         left.update(run_folders.load_summary(summary, WRITTEN).get("files") or ())
     found = {}
     for path in sorted(folder.iterdir()):
+        if not disk.is_utf8(path.name):
+            if os.fsencode(path.name).decode("utf-8", "replace") in words:      # as decks.commands() reads it
+                raise SlopeError(deck, "must name files in UTF-8: rename it", disk.shown(path.name))
+            continue
         output = OUTPUTS.search(path.name) or path.name in left or path.name in written
         if path.is_file() and (path.name in words or not output):
             found[path.name] = path

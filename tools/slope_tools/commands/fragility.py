@@ -45,7 +45,8 @@ def add_arguments(parser):
     parser.add_argument("--displacement", metavar="D", type=number,
                         help="a body fails if it slides farther than this, m (default 0.1)")
     parser.add_argument("--pseudo-static", metavar="FACTOR", type=number,
-                        help="instead of records: a body fails if F < 1 with k = FACTOR peak / g, which is cautious")
+                        help="instead of records: a body fails if F < 1 with k = FACTOR peak / g, which is cautious if "
+                        "FACTOR is 1 or more")
     parser.add_argument("--hazard", metavar="CURVE.csv", type=Path,
                         help="lines peak,exceedance (gal, per year): gives the annual frequency of failure")
     parser.add_argument("--sample", metavar="N", type=whole, default=4096,
@@ -57,14 +58,14 @@ def add_arguments(parser):
 
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints medians, HCLPF and frequencies."""
-    from ..seismic import fragility, fragility_files as files      # scipy, matplotlib
+    from ..seismic import fragility, fragility_files as files, hazard_file      # scipy, matplotlib
     from ..slips import bodies
     from ..quakes import motion_file
 
     peaks = peaks_of(args.peaks)
     check(args)
     soil = soil_of(args)
-    hazard = files.read_hazard(args.hazard) if args.hazard else None
+    hazard = hazard_file.read(args.hazard) if args.hazard else None
     disk.check_folder(args.output, files.FILES, [args.slips, args.terrain], args.overwrite)
     limit = 0.1 if args.displacement is None else args.displacement
     failure: Any = fragility.PseudoStatic(args.pseudo_static) if args.pseudo_static is not None else \
@@ -168,7 +169,9 @@ def warnings_of(curves, found, pseudo_static, records, hazard):
     from ..slips.columns import FEWEST
 
     if pseudo_static is not None:
-        yield warned.Warned("pseudo-static")
+        judged = "cautious" if pseudo_static >= 1 else \
+            "not cautious: a long motion may move it at a lower peak, use --record"
+        yield warned.Warned("pseudo-static", {"factor": pseudo_static, "judged": judged})
     elif records == 1:
         yield warned.Warned("one record")
     for body in found:
@@ -192,6 +195,8 @@ def warnings_of(curves, found, pseudo_static, records, hazard):
 
 def summary(curves, folder, files):
     """What the user needs to know."""
+    from ..seismic.fragility_files import ANY
+
     lines = []
     for one in curves:
         line = one.title
@@ -202,5 +207,8 @@ def summary(curves, folder, files):
             total = one.frequency.total
             line += (f"; fails {float(total.value):.3g} times per year (90 %: {float(total.low):.3g} to "
                      f"{float(total.high):.3g})")
+            if one.name == ANY:
+                most = sum(other.frequency.total.value for other in curves if other is not one)
+                line += f", {float(most):.3g} at most if each body may have a strength of its own"
         lines.append(line)
     return "\n".join([*lines, f"written to {folder}: {' '.join(files)}"])

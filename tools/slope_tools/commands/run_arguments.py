@@ -86,7 +86,7 @@ def add_mobility(parser) -> None:
                         help="leave out this event of the set; may be given several times")
     kind = parser.add_mutually_exclusive_group()
     kind.add_argument("--confined", action="store_const", const=True, dest="confined",
-                      help="the path is laterally confined, a valley (default: taken for it, the severe case)")
+                      help="the path is laterally confined, a valley (default: taken for it, events go farther then)")
     kind.add_argument("--unconfined", action="store_const", const=False, dest="confined", help="the path is not")
 
 

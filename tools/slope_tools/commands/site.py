@@ -15,6 +15,7 @@ from ..releases.release_scar import KINDS
 from ..runs import jobs
 from ..sites import site, site_choices
 from ..slips import bodies
+from ..studies import site_ground
 from ..survey import roads
 from ..survey.rasters import UNITS
 from ..warned import printer
@@ -35,20 +36,17 @@ OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
            "peak_friction": ("motion", "peak_friction"), "friction": ("model", "friction"),
            "rolling": ("study", "rolling"), "slip_friction": ("model", "slip_friction"),
            "density": ("model", "density"), "spacing": ("model", "spacing"),
-           "field_diameter": ("model", "field_diameter"),
-           "field_ratio": ("model", "field_ratio"), "field_restitution": ("model", "field_restitution"),
+           "field_restitution": ("model", "field_restitution"),
            "observed": ("observed", "file"), "diameter": ("balls", "diameter"), "balls": ("balls", "number"),
            "minutes": ("balls", "minutes"), "memory": ("balls", "memory"), "name": ("project", "name"),
            "client": ("project", "client"), "author": ("project", "author")}
 # options that change neither the body nor its runs: what was determined for these is kept
 BESIDE = {"road", *road_arguments.OPTIONS, "cut_angle", "mesh", "line", "observed", "name", "client", "author"}
 # of each group, an option that is given replaces the others
-ONE_OF = (("depth", "volume", "curvature"), ("diameter", "balls", "minutes", "memory"),
-          ("field_diameter", "field_ratio"))
+ONE_OF = (("depth", "volume", "curvature"), ("diameter", "balls", "minutes", "memory"))
 # --mobile: the Frank slide of 1903, doc/src/events.rst: its likeliest values, and the least rolling resistance that its
 # length and area allow
-MOBILE = {"friction": 6, "rolling": [0.05, 0.14], "spacing": 0.33, "field_ratio": site.OF_EVENTS,
-          "field_restitution": 0.16}
+MOBILE = {"friction": 6, "rolling": [0.05, 0.14], "spacing": 0.33, "field_restitution": 0.16}
 LIGHT = 100                 # kg/m3; less is not a ground's density, but one in t/m3 or relative to water's
 OF_BALL = 6 / math.pi       # density of a ball over that of the ground, in a cubic packing
 
@@ -103,8 +101,9 @@ def add_ground(group):
     group.add_argument("--assign-crs", metavar="[FILE=]EPSG:n", action="append", help="the elevation model, or the "
                        "FILE of another option, is in this CRS, whatever it says; may be given several times")
     group.add_argument("--z-unit", choices=UNITS, help="of the heights of the elevation model, whatever it says")
-    group.add_argument("--nodata", type=number, metavar="V",
-                       help="a value of the elevation model that stands for no height, beside the one that it declares")
+    group.add_argument("--nodata", type=number, metavar="V", action="append",
+                       help="a value of the elevation model, in its own unit, that stands for no height, beside the "
+                            "one that it declares; may be given several times")
     group.add_argument("--bounds", nargs=4, type=number, metavar=("W", "S", "E", "N"), help="take this part, m")
     group.add_argument("--cell", type=number, metavar="S", help="wanted cell size, m")
     group.add_argument("--fill", type=whole, metavar="N", help="fill NODATA holes of at most N cells")
@@ -148,19 +147,16 @@ def add_layers(group):
 
 def add_model(group):
     group.add_argument("--mobile", action="store_true", help="the values of the Frank slide (36 million m3 of rock): "
-                       "less friction, a smoother ground; other options of this group replace single ones")
+                       "less friction, a smoother ground; not safer for a road near the source, which it passes; "
+                       "other options of this group replace single ones")
     group.add_argument("--friction", metavar="DEG", type=number, help="of soil and ground, degrees (default 30)")
     group.add_argument("--rolling", metavar="R", type=number, nargs="+",
                        help="rolling resistances of the study, of which the largest volume counts (default 0 0.05 0.1)")
     group.add_argument("--slip-friction", metavar="DEG", type=number, help="of the slip surface, degrees (default 0)")
     group.add_argument("--density", metavar="R", type=number, help="bulk density of the ground, kg/m3 (default 1786); "
                        "forces and energies are proportional to it, volumes and distances do not depend on it")
-    group.add_argument("--spacing", metavar="S", type=number, help="of the ground's balls, in their diameters (default "
-                       "1); less is smoother")
-    field = group.add_mutually_exclusive_group()
-    field.add_argument("--field-diameter", metavar="D", type=number, help="of the ground's balls, its roughness, m "
-                       "(default: that of the soil's)")
-    field.add_argument("--field-ratio", metavar="K", type=number, help="the same in cube roots of the body's volume")
+    group.add_argument("--spacing", metavar="S", type=number, help="of the ground's balls, in diameters, its "
+                       "roughness: up to 0.95 (default 0.9); less is smoother")
     group.add_argument("--field-restitution", metavar="E", type=number, help="on the ground (default 0.1)")
 
 
@@ -184,6 +180,8 @@ def run(args):
         made = site.make(choices, folder, site.Machine(program(args.lmp), cores, known_study.points),
                          lambda line: print(line, flush=True), printer("site"), site_map.draw,
                          again=args.folder is not None, known=known)
+    for line in site_ground.lines(folder):
+        print(line)
     print(f"written to {folder}: {' '.join(made.files)}")
     print(f"look at {folder / site.MAP}, then: tools/slope study {quote(str(folder))}")
 
@@ -198,14 +196,14 @@ def chosen(args):
     if "density" in given:
         given["density"] = density_of_ball(given["density"])
     if args.mobile:
-        given = {**{option: value for option, value in MOBILE.items()
-                    if not (option == "field_ratio" and "field_diameter" in given)}, **given}
+        given = {**MOBILE, **given}
     if args.folder is not None:
         if args.output is not None:
             raise SlopeError("-o", f"must not be given with the folder of a site, {args.folder}, which is rebuilt",
                              args.output)
         folder, choices = args.folder, site_choices.read(args.folder)
         known = site_choices.found(folder).get("derived") or {}
+        choices = of_new_ground(choices, folder, given)
         if given.keys() - BESIDE:
             site_choices.forget(choices, known)
             known = {}
@@ -219,6 +217,20 @@ def chosen(args):
                        {OPTIONS[option]: "--assign-crs" if option == "assigned" else f"--{option.replace('_', '-')}"
                         for option in given})
     return folder, choices, known
+
+
+def of_new_ground(choices, folder, given):
+    """The choices of a folder, an older one with the ground of this version, which is said."""
+    if not site_choices.has_old_ground(choices):
+        return choices
+    spacing, most = choices["model"]["spacing"], site_choices.widest()
+    if spacing > most and "spacing" not in given:
+        raise SlopeError(f"{folder / site_choices.NAME}: model.spacing", f"must be <= {most:g}: the ground of an older "
+                         "version was a plan grid, now it is scattered balls; give --spacing 0.9, the default, or keep "
+                         "the folder as it is: its study still runs", f"{spacing:g}")
+    print(f"{folder / site_choices.NAME}: {' and '.join(site_choices.RETIRED)} of an older version no longer count: "
+          "the ground is scattered balls as large as those of the soil")
+    return site_choices.without_old_ground(choices)
 
 
 def of_slips(args):
@@ -246,13 +258,10 @@ def model(args, choices):
     of = choices["model"]
     if args.mobile:
         yield ("--mobile: values of the Frank slide of 1903, 36 million m3 of rock; what is known of smaller or wet "
-               "masses is on the page events of the documentation")
-    if args.mobile or any(getattr(args, option) is not None for option in (*MOBILE, "density", "slip_friction",
-                                                                           "field_diameter")):
-        field = f"{of['field_diameter']:g} m" if of["field_diameter"] else \
-            f"{of['field_ratio']:.3g} of the cube root of the volume" if of["field_ratio"] else "those of the soil"
+               "masses is on the page events of the documentation; a mass that passes the road leaves less on it")
+    if args.mobile or any(getattr(args, option) is not None for option in (*MOBILE, "density", "slip_friction")):
         yield (f"friction {of['friction']:g} degrees, on the slip surface {of['slip_friction']:g}; rolling resistance "
-               f"{', '.join(f'{one:g}' for one in choices['study']['rolling'])}; the ground: balls of {field}, spacing "
+               f"{', '.join(f'{one:g}' for one in choices['study']['rolling'])}; the ground: spacing "
                f"{of['spacing']:g}, restitution {of['field_restitution']:g}; bulk density "
                f"{of['density'] / OF_BALL:,.0f} kg/m3")
 

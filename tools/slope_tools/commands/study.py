@@ -13,7 +13,7 @@ from ..runs import repeats
 from ..sites import site_choices, site_deck
 from ..sites.site_bodies import VARIABLE
 from ..sites.site_layers import ROAD
-from ..studies import results, site_study
+from ..studies import results, site_ground, site_study
 from ..studies.study import check_names, check_thresholds, perform
 from ..survey import roads
 from ..tables import intensity
@@ -109,6 +109,8 @@ def run_folder(args):
     refuse(args, NOT_OF_A_SITE)
     choices = site_choices.read(args.deck)
     site_study.check(args.deck, choices)
+    for line in site_ground.lines(args.deck):
+        print(line)
     volume = float(site_choices.found(args.deck)["body"]["volume"])
     why = "" if args.paper else known_study.why_not(args.deck, volume, bool(choices["observed"]["file"]))
     if args.paper or why:

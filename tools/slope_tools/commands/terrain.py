@@ -40,8 +40,9 @@ def add_arguments(parser):
     parser.add_argument("--z-unit", choices=rasters.UNITS,
                         help="of the heights, whatever the tags of the inputs say: m, ft (0.3048 m) or us-ft "
                              "(1200/3937 m); default: what a tag says, else m")
-    parser.add_argument("--nodata", type=number, metavar="V",
-                        help="a value of the inputs that stands for no height, beside the one that they declare")
+    parser.add_argument("--nodata", type=number, metavar="V", action="append", default=[],
+                        help="a value of the inputs, in their own unit, that stands for no height, beside the one that "
+                             "they declare; may be given several times")
     parser.add_argument("--bounds", nargs=4, type=number, metavar=("W", "S", "E", "N"),
                         help="crop to this box, in the output's CRS, m")
     parser.add_argument("--cell", type=number, metavar="S",

@@ -10,8 +10,9 @@ The points of a design are more even than independent ones. By how much this low
 of the length and of the quantity: many designs of the same kind against as many of independent points, each weighted
 as the ensemble is. Where the emulator knows little, chance (its residuals) prevails, and nothing is gained.
 
-Known events before the shortest run count as the runs of the shortest window, which are the graver ones; those beyond
-the longest exceed every value, in a lower bound none.
+Known events before the shortest run count as the runs of the shortest window; what they did is not known (on a road
+near the source they may leave more), so that in an upper bound they exceed every value and in a lower one none. Those
+beyond the longest exceed every value, in a lower bound none.
 """
 from dataclasses import dataclass
 from typing import Callable, List, NamedTuple, Optional, Sequence
@@ -34,22 +35,24 @@ class Masses:
     """Of the runs of an ensemble, in their own order.
 
     share: of the known events that each run stands for, with those before the shortest run; far: of those beyond the
-    longest; order: of the runs by length; effective: number of runs of equal weight; window: runs, see weights.Weights.
+    longest; order: of the runs by length; effective: number of runs of equal weight; window: runs, see weights.Weights;
+    early: what of share stands for the events before the shortest run.
     """
     share: np.ndarray
     far: float
     order: np.ndarray
     effective: float
     window: int
+    early: np.ndarray
 
 
 def masses(found: weights.Weights) -> Masses:
-    share = found.weights.copy()
-    first = found.order[:found.window]
-    share[first] += found.short * found.ratio[first] / found.ratio[first].sum()
+    first, early = found.order[:found.window], np.zeros(len(found.order))
+    early[first] = found.short * found.ratio[first] / found.ratio[first].sum()
+    share = found.weights + early
     inside = share.sum()
     effective = float(inside ** 2 / (share ** 2).sum()) if inside > 0 else 0.0
-    return Masses(share, found.far, found.order, effective, found.window)
+    return Masses(share, found.far, found.order, effective, found.window, early)
 
 
 def above(values: np.ndarray, levels: np.ndarray) -> np.ndarray:
@@ -72,7 +75,8 @@ def estimate(exceeding: np.ndarray, mass: Masses, factor=1.0, several: float = 1
     differ = ordered[1:] != ordered[:-1]
     found = (differ.T @ pair + UNSEEN * pair.mean()) * several * factor / inside ** 2
     low, high = bounds(np.clip(part / inside, 0, 1), found, mass.effective / several)
-    low, high = inside * low, inside * high
+    early = mass.early @ exceeding
+    low, high = np.maximum(inside * low - early, 0.0), inside * high + mass.early.sum() - early
     return part, low * (1 - failed), high + failed * (1 - high)
 
 

@@ -195,7 +195,7 @@ def doubts(about: Mapping[str, Any], runs: Runs) -> List[str]:
                          + (stopped or "vary towards more mobile masses"))
         if about["short"] > (1 - farther.REACHED) / 2:
             found.append(f"no run ends before {rounded(about['shortest_m'], 4)} m; {percent(about['short'])} of known "
-                         "events do: they count as the shortest runs")
+                         "events do: they count as the shortest runs, in the bounds as anything")
     found += [f"between {rounded(gap['low_m'], 4)} and {rounded(gap['high_m'], 4)} m no run ends; "
               f"{percent(gap['share'])} of known events do: they count as the runs on either side"
               for gap in about["gaps"]]

@@ -14,7 +14,7 @@ PAPER = "by the paper's method"
 ASKED = f"{PAPER}, as asked for"
 POINTS = 64             # a power of two: even in all directions
 # --vary, unless it is given: from values back-calculated for rock avalanches (doc/src/events.rst) to the defaults
-VARY = ("friction=5:30", "rolling=0:0.15", "spacing=0.3:1", "xoffset=0:0.99")
+VARY = ("friction=5:30", "rolling=0:0.15", "spacing=0.3:0.95", "xoffset=0:0.99")
 
 
 def covers(volume: float) -> bool:

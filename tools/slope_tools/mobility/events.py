@@ -39,8 +39,14 @@ def read(path: Path = OWN) -> List[Event]:
             if missing:
                 raise SlopeError(path, "must have the columns name, fall_m, length_m, volume_Mm3 and confinement",
                                  "none named " + ", ".join(missing))
+            names = [name for name in reader.fieldnames or () if name]
+            if len(set(names)) < len(names):
+                raise SlopeError(path, "must have each column once", ",".join(names)[:60])
             events: List[Event] = []
             for row in reader:
+                if None in row:
+                    raise SlopeError(f"{path}: line {reader.line_num}", f"must have {len(names)} cells (a decimal "
+                                     "comma?)", len(names) + len(row[None]))
                 events.append(event(row, f"{path}: line {reader.line_num}", {one.name for one in events}))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise SlopeError(path, f"cannot be read as a set of events: {error}") from None
@@ -72,7 +78,7 @@ def event(row, where, names) -> Event:
 
 def positive(text, where) -> float:
     try:
-        value = float(text)
+        value = float(text) if "_" not in text else math.nan     # Python takes 1_5 for 15
     except (TypeError, ValueError):
         value = math.nan
     if not (math.isfinite(value) and value > 0):

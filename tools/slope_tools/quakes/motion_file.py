@@ -1,9 +1,17 @@
 """The motion of the ground as decks read it, lines "t ax ay az" in s and m/s2: what `slope quake` writes."""
+import re
 from pathlib import Path
+from typing import List
 
 import numpy as np
 
+from .. import heads
 from ..errors import SlopeError
+from . import quake_records
+from .quake_records import MOST
+
+NAMES = re.compile(r"\b(?:a(?:cc)?_?([xyz])|([xyz])|t|time)\b", re.IGNORECASE)
+UNITS = re.compile(r"[(\[]([^)\]]*)[)\]]")
 
 
 def read(path) -> np.ndarray:
@@ -13,15 +21,15 @@ def read(path) -> np.ndarray:
     except (OSError, UnicodeDecodeError) as error:
         why = getattr(error, "strerror", None) or error
         raise SlopeError(path, f"must be text, lines t ax ay az ({why})") from None
-    rows = []
+    rows: List[List[float]] = []
     for number, line in enumerate(text.splitlines(), 1):
-        words = line.split("#")[0].split()
+        content, _, comment = line.partition("#")
+        words = content.split()
         if not words:
+            if not rows:
+                check_head(comment, f"{path}: line {number}")
             continue
-        try:
-            row = [float(word) for word in words]
-        except ValueError:
-            row = []
+        row = [heads.number(word) for word in words]
         if len(row) != 4 or not np.isfinite(row).all():
             raise SlopeError(f"{path}: line {number}", "must be four numbers, t ax ay az in s and m/s2 (slope quake "
                              "makes it from a record)", line[:60])
@@ -29,9 +37,24 @@ def read(path) -> np.ndarray:
     values = np.array(rows)
     if len(values) < 2 or not (np.diff(values[:, 0]) > 0).all():
         raise SlopeError(path, "must have two lines at least, with times that grow")
+    largest = np.abs(values[:, 1:]).max()
+    if largest > MOST:
+        raise SlopeError(path, f"must have accelerations in m/s2, at most {MOST:g}: are they in gal?", f"{largest:.6g}")
     if not peak(values) > 0:
         raise SlopeError(path, "must hold a motion, all horizontal accelerations are 0")
     return values
+
+
+def check_head(comment: str, where: str) -> None:
+    """Raise SlopeError if a comment names the columns, and they are in another order or other units."""
+    names = [(one[1] or one[2] or "t").lower() for one in NAMES.finditer(comment)]
+    if sorted(names) != ["t", "x", "y", "z"]:
+        return
+    units = [unit.strip().lower() for one in UNITS.findall(comment) for unit in one.split(",")]
+    others = [unit for unit in units if unit not in heads.TIMES and quake_records.unit_of(unit) is not None]
+    if names != ["t", "x", "y", "z"] or any(quake_records.unit_of(unit) != 1.0 for unit in others) or any(
+            heads.TIMES.get(unit, 1.0) != 1.0 for unit in units):
+        raise SlopeError(where, "columns must be t ax ay az in s and m/s2", comment.strip()[:60])
 
 
 def peak(values: np.ndarray) -> float:

@@ -8,12 +8,14 @@ from typing import Any, Optional
 
 import numpy as np
 
+from .. import heads
 from ..errors import SlopeError
 
 GAL, G = 0.01, 9.80665      # m/s2
 UNITS = {"gal": GAL, "cm/s2": GAL, "cm/s/s": GAL, "g": G, "m/s2": 1.0, "m/s/s": 1.0}
 UP = "up"
 MOST = 50.0                 # m/s2; no ground has moved with more
+SLOWEST = 1.0               # s, time step; records have 0.02 s or less
 EVEN = 1e-3                 # of a time step, that steps of a CSV may differ, beside the rounding of its times
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
 KIK_NET = {"1": 0.0, "2": 90.0, "3": UP, "4": 0.0, "5": 90.0, "6": UP}    # 1 to 3: in the borehole
@@ -129,9 +131,14 @@ def at2(path, lines):
     factor = unit_of(unit[1]) if unit else None
     if factor is None:
         raise SlopeError(f"{path}, line 3", "must end in UNITS OF G (or GAL, CM/S2, M/S2)", repr(lines[2].strip()))
+    if re.search("VELOCITY|DISPLACEMENT", lines[2].upper()):
+        raise SlopeError(f"{path}, line 3", "must be of an acceleration", repr(lines[2].strip()))
     size = (re.search(r"NPTS *= *(\d+)(?: *, *| +)DT *= *([\d.eE+-]+)", lines[3].upper()) or
             re.match(r" *(\d+) +([\d.eE+-]+) +NPTS", lines[3].upper()))
-    if not size or not 0 < number(size[2]) < 10:
+    after = re.findall("[A-Z]+", lines[3].upper()[size.end():]) if size else []
+    unit_of_time = [word for word in after[:2] if word != "DT"][:1]
+    in_seconds = {*unit_of_time} <= {"S", "SEC", "SECS", "SECONDS"}
+    if not size or not in_seconds or not 0 < heads.number(size[2]) <= SLOWEST:
         raise SlopeError(f"{path}, line 4", "must be NPTS= n, DT= s SEC", repr(lines[3].strip()))
     word = re.split(r"[,\s]+", lines[1].strip().upper())[-1]
     if word in ("UP", "DWN", "DOWN", "VER", "VERT", "V", "UD"):
@@ -144,15 +151,7 @@ def at2(path, lines):
     else:
         raise SlopeError(f"{path}, line 2", "must end in the direction, an azimuth or UP", repr(lines[1].strip()))
     values = values_of(path, lines, 4, int(size[1])) * (sign * factor)
-    return Component(str(path), direction, number(size[2]), values, unit_in_head=True)
-
-
-def number(text):
-    """The number, or nan."""
-    try:
-        return float(text)
-    except ValueError:
-        return math.nan
+    return Component(str(path), direction, heads.number(size[2]), values, unit_in_head=True)
 
 
 # --- CSV ---
@@ -165,10 +164,7 @@ def table(path, lines, unit):
     place, head = rows[0]
     mark = next((mark for mark in ";,\t" if mark in head), None)
     names = [name.strip().lower() for name in (head.split(mark) if mark else head.split())]
-    columns = {}
-    for k, name in enumerate(names):
-        match = re.fullmatch(r"([a-z-]+)\s*(?:[(\[]\s*([^)\]]*?)\s*[)\]])?", name)
-        columns[k] = (match[1], match[2]) if match else (name, None)
+    columns = dict(enumerate(map(heads.column, names)))
     if columns[0][0] not in ("t", "time") or len(columns) < 2:
         raise SlopeError(f"{path}, line {place}",
                          "the first line must name the columns, such as time,EW (gal),NS (gal)",
@@ -181,12 +177,18 @@ def table(path, lines, unit):
             raise SlopeError(f"{path}, line {place}",
                              f"column {name} needs a unit, gal, g or m/s2, in brackets or by --unit",
                              repr(own) if own else "none")
+    factor = heads.TIMES.get(columns[0].unit or "s")
+    if factor is None:
+        raise SlopeError(f"{path}, line {place}", "time must be in s or ms", repr(columns[0].unit))
     values = np.array([row_of(path, place, line, mark, len(columns)) for place, line in rows[1:]])
     if len(values) < 2:
         raise SlopeError(path, "must hold at least two lines of values", len(values))
-    dt = time_step(path, rows[1:], values[:, 0], mark)
+    dt = factor * time_step(path, rows[1:], values[:, 0], mark)
+    if dt > SLOWEST:
+        raise SlopeError(path, f"times must be in s, with a step of at most {SLOWEST:g} s: are they in ms? Then the "
+                         "head must say time (ms)", f"{dt:g} s")
     return [Component(str(path), COLUMNS[columns[k][0]], dt, values[:, k] * unit_of(columns[k][1] or unit),
-                      first_time=float(values[0, 0])) for k in list(columns)[1:]]
+                      first_time=factor * float(values[0, 0])) for k in list(columns)[1:]]
 
 
 def time_step(path, rows, times, mark):
@@ -215,7 +217,7 @@ def row_of(path, place, line, mark, count):
     """The numbers of a line of a table."""
     line = line.split("#")[0]
     words = [word.strip() for word in (line.split(mark) if mark else line.split())]
-    row = [number(word) for word in words]
+    row = [heads.number(word) for word in words]
     if len(row) != count or not all(map(math.isfinite, row)):
         raise SlopeError(f"{path}, line {place}", f"must be {count} numbers", repr(line.strip()[:60]))
     return row

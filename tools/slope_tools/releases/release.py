@@ -8,7 +8,7 @@ from scipy.ndimage import label
 
 from ..digits import rounded
 from ..errors import SlopeError
-from ..survey import plausible, polygons, rasters
+from ..survey import marks, plausible, polygons, rasters
 from ..survey.crs import as_crs
 from ..warned import Warned
 from . import release_area, release_bodies, release_scar, release_solve
@@ -137,14 +137,15 @@ def check_pits(raster, geometry, wanted: Wanted) -> None:
         return
     rim = release_area.RIM
     part = tuple(slice(max(0, one.min() - rim), one.max() + rim + 1) for one in (rows, columns))
-    found = plausible.pits(raster.z[part], float(raster.transform.a))
+    ground = marks.in_metres(raster.z[part])
+    found = plausible.pits(raster.z[part], float(raster.transform.a), ground)
     if found is None:
         return
     row, column = np.argwhere(found.cells)[0] + [part[0].start, part[1].start]
     x, y = raster.transform * (column + 0.5, row + 0.5)
     raise SlopeError(wanted.polygon, f"the ground in it must have no pits: {int(found.cells.sum())} cells of "
-                     f"{found.mark:g} m lie {found.least:.4g} m or more below all cells beside them; "
-                     f"{plausible.remedy(found)} (slope terrain, slope site)",
+                     f"{found.shown} lie {found.least:.4g} m or more {found.side} all cells beside them; "
+                     f"{plausible.remedy(found, ground)} (slope terrain, slope site)",
                      f"the first at east {x + raster.offset[0]:.1f} north {y + raster.offset[1]:.1f}")
 
 

@@ -12,8 +12,9 @@ from ..seismic import chain_files
 
 MOST_ROWS = 12          # of the contributions; smaller ones are joined
 HOW = ("The runs release one body each. Bodies that fail together in an earthquake have their volumes added, the "
-       "largest with the largest, as if they did not overlap. The bounds show whether there are enough runs and "
-       "samples, not the doubt in strengths, hazard and model.")
+       "largest with the largest or as independent ones, whichever is the likelier to exceed a volume. The bounds hold "
+       "for any dependence between them, and show whether there are enough runs and samples, not the doubt in "
+       "strengths, hazard and model, nor what the masses do to each other on their way.")
 
 
 def content(data, numbers, picture):
@@ -63,8 +64,10 @@ def per_year(data, about: Mapping[str, Any]):
     path = data.folder / chain_files.PER_YEAR
     try:
         with open(path, newline="", encoding="ascii") as lines:
-            return np.array([[float(one) for one in row] for row in list(csv.reader(lines))[1:]]).T.reshape(4, -1)
-    except (OSError, ValueError) as error:
+            rows = csv.DictReader(lines)
+            return np.array([[float(row[name]) for name in ("volume_m3", "per_year", "low", "high")]
+                             for row in rows]).T.reshape(4, -1)
+    except (OSError, ValueError, KeyError, TypeError) as error:
         raise SlopeError(path, f"must be what `slope study --fragility` wrote ({error})") from error
 
 

@@ -12,9 +12,13 @@ from .data import is_number
 
 AXIS = {"rolling": "rolling resistance (-)", "friction": "friction angle (degrees)", "restitution": "restitution (-)",
         "d": "diameter of the balls (m)", "field_d": "diameter of the field balls (m)",
+        "spacing": "spacing of the ground's balls (diameters)", "angle": "direction of the ground's grid (degrees)",
         "peak": "peak acceleration (gal)"}
 TERMS = {"rolling": "coefficient of rolling resistance of the balls", "friction": AXIS["friction"], "d": AXIS["d"],
          "field_d": "diameter of the field balls, which make the ground (m)",
+         "spacing": "distance between the fixed balls of the ground, in their diameters: its roughness",
+         "angle": "angle by which the plan grid of the ground's balls is turned (degrees)",
+         "ground_seed": "seed of the places of the ground's balls",
          "xoffset": "shift along x of the lattice on which the balls start, in lattice spacings",
          "yoffset": "the same along y", "zoffset": "the same along z",
          "seed": "seed of random numbers, such as those that displace the balls at the start"}

@@ -13,6 +13,7 @@ from .numbers import farthest_of
 
 WORDS = {"rolling": "the rolling resistance", "friction": "the friction", "d": "the size of the model's balls",
          "field_d": "the roughness of the ground", "spacing": "the roughness of the ground",
+         "angle": "the direction of the ground's grid",
          "restitution": "the restitution", "field_e": "the restitution", "peak": "the strength of the earthquake",
          "pga": "the strength of the earthquake", "depth": "the depth of the body", "slip": "the friction of the slip "
          "surface", "step": "the time step"}

@@ -3,7 +3,7 @@
 A run's length is that of its connected deposit, from the highest released ball, in plan and as the crow flies. That of
 a known event is the length of its path from crown to tip. The first is the shorter one: a path has bends, and a mapped
 tip may lie beyond the last ground that is covered by more than the connected deposit's 0.1 m. So a run seems to be less
-mobile than it is, which is the safe side. (A cell of the deposit adds up to its diagonal.)
+mobile than it is. (A cell of the deposit adds up to its diagonal.)
 """
 from typing import List, NamedTuple, Optional, Tuple
 
@@ -61,8 +61,8 @@ def sentence(found: Lies, numbers, label: str) -> str:
     who = "The connected deposit reaches" if len(ends) == 1 else "The connected deposits of the runs reach"
     return (f"{who} {reach} m: as far as {shares[0]} of rock avalanches of this volume and height do ({shares[1]} "
             "where the path is laterally confined); the others go farther. The lengths of the runs are as the crow "
-            "flies and without stray balls, those of the events along the path to the tip, so that this errs on the "
-            "safe side (slope mobility)." + beyond_the_terrain(found.mobility, numbers, label))
+            "flies and without stray balls, those of the events along the path to the tip, so that rather too many of "
+            "these seem to go farther (slope mobility)." + beyond_the_terrain(found.mobility, numbers, label))
 
 
 def beyond_the_terrain(mobility: exceedance.Mobility, numbers, label: str) -> str:

@@ -66,7 +66,7 @@ def answer(data, numbers):
     road, place = data.study["study"]["road"], best["place_m3"]
     if best.get("withheld"):        # older ones have none
         return {"title": withheld_words.UNUSABLE.capitalize(), "withheld": best["withheld"], "road": road,
-                "number": None, "parts": [], "predicted": False, "below": "", "zero": None}
+                "number": None, "parts": [], "predicted": False, "below": "", "zero": None, "ground": ""}
     who = best.get("label") or best.get("combination") or data.label(data.result)
 
     def part(key):
@@ -94,7 +94,7 @@ def answer(data, numbers):
         f"Volume to remove from the road: {best['kind']}"
     return {"number": part("volume_m3"), "title": title, "parts": parts, "predicted": predicted, "road": road,
             "zero": (best.get("zero") or {}).get("text"), "withheld": [],
-            "below": below_ground(data, numbers)}
+            "below": below_ground(data, numbers), "ground": best.get("ground") or ""}
 
 
 def below_ground(data, numbers):

@@ -26,7 +26,8 @@ MEANING = re.compile(r"^\s*variable\s+(\w+)\s+index\s.*?#\s*(.*?)\s*$", re.MULTI
 # columns of a study's table: head, unit, key
 COLUMNS = (("released", "m3", "released_m3"), ("99 % within", "m", "distance_99_m"),
            ("reach angle", "deg", "reach_99_deg"), ("connected deposit", "m", "connected_m"),
-           ("farthest ball", "m", "front_m"), ("thickness", "m", "thickness_m"), ("ended at", "s", "stop_time_s"))
+           ("farthest ball", "m", "front_m"), ("thickness", "m", "thickness_m"), ("ended at", "s", "stop_time_s"),
+           ("stop angle", "deg", "stop_angle_deg"))
 ROAD_COLUMNS = (("to remove", "m3", "remove_m3"), ("on the road", "m3", "remove_on_road_m3"),
                 ("beyond it", "m3", "beyond_road_m3"), ("road blocked", "m", "blocked_m"))
 MEANS = (("to remove", "m3", "remove_m3"), ("on the road", "m3", "remove_on_road_m3"),

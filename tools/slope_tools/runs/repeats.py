@@ -50,8 +50,11 @@ def check(names: Sequence[str], equally_good: str) -> None:
             raise SlopeError("--equally-good", "must name variables of --repeat", name)
 
 
-def plan(output, settings: Settings, repeated: Settings, defaults: Mapping[str, str]) -> List[Repeat]:
+def plan(output, settings: Settings, repeated: Settings, defaults: Mapping[str, str],
+         others: Sequence[Dict[str, str]] = ()) -> List[Repeat]:
     """The runs of the product of all settings, the last one varying fastest, each followed by its repeats.
+
+    others: combinations beside the product, with the same names, of one run each.
 
     A combination's first run has the deck's values of what is repeated, or the single one of settings; each of the
     other values is a run of its own, one variable at a time. defaults: of the deck's index variables.
@@ -60,12 +63,12 @@ def plan(output, settings: Settings, repeated: Settings, defaults: Mapping[str, 
         if len(settings.get(name, ())) > 1:
             raise SlopeError("--repeat", "must not name a variable of several values of --set", name)
     chances = chances_of(repeated, {**defaults, **{name: several[0] for name, several in settings.items()}})
-    total = math.prod(len(several) for several in settings.values()) * (1 + len(chances))
+    total = math.prod(len(several) for several in settings.values()) * (1 + len(chances)) + len(others)
     if total > MOST_RUNS:
         raise SlopeError("--set", f"must make at most {MOST_RUNS} runs", total)
-    varied = [name for name, several in settings.items() if len(several) > 1]
-    return with_repeats(output, (dict(zip(settings, chosen)) for chosen in itertools.product(*settings.values())),
-                        chances, varied)
+    varied = [name for name, several in settings.items() if len({*several, *(one[name] for one in others)}) > 1]
+    product = (dict(zip(settings, chosen)) for chosen in itertools.product(*settings.values()))
+    return with_repeats(output, product, chances, varied) + with_repeats(output, others, (), varied)
 
 
 def chances_of(repeated: Settings, base: Mapping[str, str]) -> List[Dict[str, str]]:

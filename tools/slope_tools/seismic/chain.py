@@ -2,24 +2,20 @@
 
 Of each sample of the strength and each record it is known from which peak acceleration on each body fails (fragility).
 The bodies that fail together at a peak are a set. Of each body there are runs, whose volumes have a distribution; of a
-set the volumes are added rank by rank, the largest of one body with the largest of the other, as if the bodies did not
-overlap. P(V > v | peak) is the mean over the samples, the annual frequency its integral over the hazard curve; the set
-is constant between two capacities, so that this integral is a sum. Bounds: those of the runs (hazard.curve), all bodies
-at their upper or lower one together, and the scatter between the sequences of samples. Every function is pure.
+set the volumes are added, once rank by rank and once as independent ones, and the larger probability counts: how they
+depend is not known, as the runs release one body each. P(V > v | peak) is the mean over the samples, the annual
+frequency its integral over the hazard curve; the set is constant between two capacities, so that this integral is a
+sum. Bounds: those of the runs (hazard.curve), all bodies at their upper or lower one together, for any dependence
+(together.py), and the scatter between the sequences of samples. Every function is pure.
 """
 from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
 from ..statistics import hazard
-from . import fragility
+from . import fragility, together
 from .fragility import Band, Hazard
-
-
-class Steps(NamedTuple):
-    """A distribution of volumes: the largest first, and the share of the runs up to each of them, rising to 1."""
-    volumes: np.ndarray
-    shares: np.ndarray
+from .together import Steps
 
 
 class Left(NamedTuple):
@@ -56,31 +52,29 @@ def left(values: Sequence[float], point: Sequence[int], most: float, failed: int
     return Left(*(steps(at, one, most) for one in (found.share, low, high)))
 
 
-def exceeded(bodies: Sequence[Steps], volumes: np.ndarray) -> np.ndarray:
-    """P(V > v) at volumes >= 0, if these bodies fail together: their volumes are added, rank by rank."""
-    if not bodies:
-        return np.zeros(len(volumes))
-    ends = np.unique(np.concatenate([one.shares for one in bodies]))
-    total = np.zeros(len(ends))
-    for one in bodies:      # up to a share its volume is that of the first one that reaches it
-        total += one.volumes[np.searchsorted(one.shares, ends, "left")]
-    above = len(ends) - np.searchsorted(total[::-1], volumes, "right")
-    return np.concatenate([[0.0], ends])[above]
+class Sums:
+    """P(V > v) at volumes >= 0 of the sets of bodies that fail together, each worked out once; see together.py."""
+
+    def __init__(self, bodies: Sequence[Left], volumes: np.ndarray):
+        self.bodies, self.volumes = bodies, volumes
+        self.known = {0: Band(*np.zeros((3, len(volumes))))}
+
+    def of(self, number: int) -> Band:
+        """Of the set whose bits are the bodies, with bounds for those of the runs and for any dependence."""
+        if number not in self.known:
+            value, low, high = ([getattr(one, side) for k, one in enumerate(self.bodies) if number >> k & 1]
+                                for side in Left._fields)
+            self.known[number] = Band(np.maximum(together.rank_by_rank(value, self.volumes),
+                                                 together.independent(value, self.volumes)),
+                                      together.at_least(low, self.volumes), together.at_most(high, self.volumes))
+        return self.known[number]
 
 
-def exceeded_by_set(sets: Sequence[int], bodies: Sequence[Left], volumes: np.ndarray) -> Band:
-    """exceeded() of sets, whose bits are the bodies: arrays (sets, volumes), with the bounds of the runs."""
-    def of(side: str) -> np.ndarray:
-        return np.array([exceeded([getattr(one, side) for k, one in enumerate(bodies) if number >> k & 1], volumes)
-                         for number in sets])
-    return Band(of("value"), of("low"), of("high"))
-
-
-def over_sets(weights: Dict[int, np.ndarray], bodies: Sequence[Left], volumes: np.ndarray) -> Band:
-    """The mean over sets with a weight for each sequence of samples, {set: weights}, at volumes."""
+def over_sets(weights: Dict[int, np.ndarray], sums: Sums) -> Band:
+    """The mean over sets with a weight for each sequence of samples, {set: weights}."""
     sets = sorted(weights)
     share = np.stack([weights[number] for number in sets], axis=1)
-    each = exceeded_by_set(sets, bodies, volumes)
+    each = Band(*(np.array(side) for side in zip(*(sums.of(number) for number in sets))))
     low, high = (fragility.banded(share @ side) for side in (each.low, each.high))
     return Band(share.mean(axis=0) @ each.value, np.minimum.accumulate(low.low),
                 np.maximum.accumulate(high.high[::-1])[::-1])
@@ -103,11 +97,11 @@ def bits(fails: np.ndarray) -> np.ndarray:
 
 def family(capacity: np.ndarray, peaks: np.ndarray, bodies: Sequence[Left], volumes: np.ndarray) -> Band:
     """P(V > v | peak) of capacities (samples, records, bodies) in gal: arrays (peaks, volumes)."""
-    found = []
+    found, sums = [], Sums(bodies, volumes)
     none = float(hazard.share_bounds(0, len(capacity))[1])
     for peak in peaks:
         sets = bits(capacity < peak)
-        band = over_sets(summed(sets, np.ones(sets.shape)), bodies, volumes)
+        band = over_sets(summed(sets, np.ones(sets.shape)), sums)
         high = band.high if sets.any() else np.maximum(band.high, none)
         found.append(Band(band.value, band.low, np.minimum(high, 1.0)))
     return Band(*(np.array(side) for side in zip(*found)))
@@ -137,14 +131,15 @@ def frequency(capacity: np.ndarray, rate: Hazard, peaks: np.ndarray, bodies: Seq
     Peaks below the curve's first are not counted; those above its last count as the last.
     """
     first, last = float(rate.peaks[0]), float(rate.peaks[-1])
+    sums = Sums(bodies, volumes)
 
     def between(low: float, high: float) -> Band:
-        return over_sets(summed(*of_failures(capacity, rate, low, high)), bodies, volumes)
+        return over_sets(summed(*of_failures(capacity, rate, low, high)), sums)
 
     ends = [first, *(float(one) for one in peaks if first < one < last), last, np.inf]
     parts = [(a, b, between(a, b).value) for a, b in zip(ends[:-1], ends[1:])]
     at_last = bits(capacity < last)
-    share = over_sets(summed(at_last, np.ones(at_last.shape)), bodies, volumes).value
+    share = over_sets(summed(at_last, np.ones(at_last.shape)), sums).value
     return Frequency(between(first, np.inf), parts, (1 - share) * float(rate.rates[-1]))
 
 

@@ -63,37 +63,6 @@ def read(folder: Path) -> Fragility:
                      about["warnings"])
 
 
-def read_hazard(path: Path) -> Hazard:
-    """Lines "peak,exceedance" (gal, per year), perhaps with a first line of words; SlopeError if it does not fall."""
-    try:
-        with open(path, newline="", encoding="utf-8-sig") as source:
-            rows = [row for row in csv.reader(source) if row and not row[0].lstrip().startswith("#")]
-    except (OSError, UnicodeDecodeError) as error:
-        raise SlopeError(path, f"cannot be read ({error})") from None
-    found: List[List[float]] = []
-    for place, row in enumerate(rows, 1):
-        try:
-            values = [float(word) for word in row]
-        except ValueError:
-            if place == 1:
-                continue        # names of the columns
-            values = []
-        if len(values) != 2 or not all(math.isfinite(one) and one > 0 for one in values):
-            raise SlopeError(f"{path}: row {place}", "must be a peak (gal) and how often it is exceeded per year, both "
-                             "> 0", ",".join(row)[:60])
-        if found and not values[0] > found[-1][0]:
-            raise SlopeError(f"{path}: row {place}", "must have a larger peak than the row before, "
-                             f"{found[-1][0]:g} gal", f"{values[0]:g} gal")
-        if found and not values[1] < found[-1][1]:
-            raise SlopeError(f"{path}: row {place}", "must be exceeded less often than the row before, "
-                             f"{found[-1][1]:g} per year", f"{values[1]:g} per year at {values[0]:g} gal")
-        found.append(values)
-    if len(found) < 2:
-        raise SlopeError(path, "must have two rows at least, a peak (gal) and how often it is exceeded per year")
-    peaks, rates = np.array(found).T
-    return Hazard(peaks, rates)
-
-
 def about_curve(one: Curve) -> Dict[str, Any]:
     """The numbers of a curve for the YAML."""
     about: Dict[str, Any] = {"body": one.name, "fails_without_earthquake": one.at_rest, "lognormal": None}

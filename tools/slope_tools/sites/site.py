@@ -25,10 +25,6 @@ from .site_choices import Choices, Derived
 from .site_folder import BODY, BODY_DECK, MAP, TERRAIN
 from .site_layers import Layers, Shown, advice, read_layers, swapped
 
-# field balls of masses that known events cover, in cube roots of the volume: doc/src/events.rst, both events
-OF_EVENTS = 0.0455
-THROUGH = 0.6495          # half of 1.299, see field_diameter()
-
 
 class Machine(NamedTuple):
     """With what a site is tried, and its study will run."""
@@ -132,16 +128,9 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
     parts = site_deck.Parts(title, ", ".join(Path(name).name for name in choices["terrain"]["files"]), body,
                             layers.structures, layers.lines, layers.motion, room_of(raster))
     trial, reached = tried(choices, parts, found, new, machine, tell)
-    model = choices["model"]
-    if model["field_ratio"] is None and machine.points(found.measures.volume):
-        model["field_ratio"] = OF_EVENTS
-    if model["field_diameter"] is None and model["field_ratio"]:
-        model["field_diameter"] = site_budget.three_digits(model["field_ratio"] * found.measures.volume ** (1 / 3))
-    chosen = model["field_diameter"]
     size = settle(choices, parts, found, trial, machine, raster)
     derived = site_choices.derived(given, choices, known)
-    too_large = None if chosen == model["field_diameter"] else chosen
-    say_size(choices, size, found, machine, too_large, tell)
+    say_size(choices, size, found, machine, tell)
     for one in (*site_warnings.of_resistance(choices),
                 *site_warnings.site_warnings(found.measures, size, trial)):
         keep(one)
@@ -182,10 +171,16 @@ def terrain(choices: Choices, new: Path, tell, warn) -> Raster:
     given = choices["terrain"]
     own = {path: crs for path in given["files"] if (crs := site_choices.assigned(choices, path))}
     wanted = local_terrain.Wanted(given["crs"], None, given["cell"], given["bounds"], given["fill"],
-                                  given["assign_crs"], own, given["z_unit"], given["nodata"])
+                                  given["assign_crs"], own, given["z_unit"], nodata_of(choices), pits=False)
     about = local_terrain.make(given["files"], new / TERRAIN, wanted, tell, warn)
     tell(local_terrain.summary(TERRAIN, about))
     return rasters.read_asc_local(new / TERRAIN)
+
+
+def nodata_of(choices: Choices) -> List[float]:
+    """Values of the rasters that stand for no height; site.yaml may have one, several, or none."""
+    given = choices["terrain"]["nodata"]
+    return given if isinstance(given, list) else [] if given is None else [given]
 
 
 def body_of(choices: Choices, wanted: release.Wanted, raster: Raster, warn) -> release.Body:
@@ -227,7 +222,7 @@ def numbers(choices: Choices, trial: Optional[Trial], size: Optional[Size], diam
     if trial and size:
         steps = trial.typical / site_budget.time_step(d, model["speed"], model["density"])
         seconds = trial.setup + steps * size.balls * trial.cost
-    return site_deck.Numbers(d, model["field_diameter"] or d, model["speed"] or site_budget.SPEED,
+    return site_deck.Numbers(d, model["speed"] or site_budget.SPEED,
                              model["duration"] or site_budget.LONGEST, model["cell"] or 1.0,
                              choices["motion"]["peak_friction"] or site_deck.LEAST_PEAK, trial and trial.typical,
                              seconds)
@@ -254,7 +249,7 @@ def tried(choices: Choices, parts: site_deck.Parts, found: release.Body, new: Pa
 def tried_with(d: float, choices: Choices, parts: site_deck.Parts, found: release.Body, new: Path, lmp: Path, tell,
                what="trial run"):
     """The Trial of a run with balls of diameter d (m), and its largest thickness."""
-    coarse = {**choices, "model": {**choices["model"], "field_diameter": d, "cell": max(found.area.cell, d / 2)}}
+    coarse = {**choices, "model": {**choices["model"], "cell": max(found.area.cell, d / 2)}}
     folder = new / "trial"
     folder.mkdir()
     for path in list(new.iterdir()):
@@ -283,34 +278,16 @@ def settle(choices: Choices, parts: site_deck.Parts, found: release.Body, trial:
     size = site_budget.size(choices, parts.body.volume, trial, machine.jobs, raster.z.size,
                             machine.points(found.measures.volume))
     balls["diameter"] = size.diameter
-    model["field_diameter"] = field_diameter(choices, size.diameter)
     model["cell"] = model["cell"] or max(found.area.cell, site_budget.three_digits(size.diameter / 2))
     return size
 
 
-def field_diameter(choices: Choices, diameter: float) -> float:
-    """That of the field balls (m): the ground's roughness stays, but no ball of the study may fall through them.
-
-    The smallest passes where its radius and a field ball's together are below spacing/1.299, on steep ground
-    (fix wall/gran/balls warns of it).
-    """
-    chosen = choices["model"]["field_diameter"] or diameter
-    spacing, smallest = choices["model"]["spacing"], diameter * min([1.0, *choices["study"]["sizes"]])
-    if spacing <= THROUGH:
-        return chosen
-    return min(chosen, site_budget.three_digits(0.99 * THROUGH * smallest / (spacing - THROUGH)))
-
-
-def say_size(choices: Choices, size: Size, found: release.Body, machine: Machine, chosen: Optional[float], tell):
-    """Tell the user the size of the balls, and the time and memory of the study.
-
-    chosen: diameter of the field balls (m) that was too large; None: it was not.
-    """
+def say_size(choices: Choices, size: Size, found: release.Body, machine: Machine, tell):
+    """Tell the user the size of the balls, and the time and memory of the study."""
     thick = found.measures.mean_depth / size.diameter, found.measures.largest_depth / size.diameter
     tell(f"balls of {size.diameter:g} m: {size.balls:,} of them, the body is {thick[0]:.1f} balls thick on average, "
          f"{thick[1]:.1f} at most")
-    tell(f"field balls of {choices['model']['field_diameter']:g} m (field_diameter): the roughness of the ground"
-         + (f"; not {chosen:g} m, through which the smallest balls would fall" if chosen else ""))
+    tell(f"the ground: scattered balls as large as those of the soil, spacing {choices['model']['spacing']:g}")
     took = "" if size.seconds is None else f", about {site_budget.duration_text(size.seconds)} if nothing else runs"
     tell(f"the study: {size.text}; {machine.jobs} at a time{took}, {size.gigabytes:.2g} GB")
 

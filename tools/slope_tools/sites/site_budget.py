@@ -15,7 +15,7 @@ from .. import processes
 from ..case import last_words, logs, run_folders
 from ..digits import rounded
 from ..errors import SlopeError
-from .site_choices import Choices, OFFSETS
+from .site_choices import Choices, OFFSETS, other_grounds
 
 DEFAULT = 4000          # balls, if no budget is given
 TRIAL = 800             # balls of the trial run
@@ -167,9 +167,12 @@ def plan(choices: Choices, points: int = 0) -> Plan:
                     "where these go farther (study --paper makes others)")
     study = choices["study"]
     each = 1 + sum(len(study[name]) for name in OFFSETS)
-    parts = [(1.0, each * len(study["rolling"])), *((float(factor), each) for factor in study["sizes"])]
+    grounds = other_grounds(choices)
+    parts = [(1.0, each * len(study["rolling"]) + len(grounds)), *((float(factor), each) for factor in study["sizes"])]
     text = (f"{sum(runs for _, runs in parts)} runs: {len(study['rolling'])} rolling resistances x {each} lattice "
             "positions")
+    if grounds:
+        text += f", {len(grounds)} on other grounds"
     if study["sizes"]:
         text += f", {len(study['sizes'])} sizes of balls x {each}"
     return Plan(parts, bool(choices["road"]["file"]), text)

@@ -37,6 +37,9 @@ BESIDE = (".prj", ".shx", ".dbf", ".cpg", ".tfw", ".hdr", ".yaml")
 DERIVED = (("balls", "diameter"), ("balls", "number"), ("model", "speed"), ("model", "duration"), ("model", "cell"),
            ("motion", "peak_friction"))
 
+# keys of model in older sites, whose ground was a plan grid of one diameter; their decks keep it
+RETIRED = ("field_diameter", "field_ratio")
+
 # sections that `slope study` and the report read when they run, except for files, of which the folder has copies
 READ_LATER = ("project", "road", "study")
 Choices = Dict[str, Any]        # {section: {key: value}}, complete
@@ -63,8 +66,37 @@ def defaults() -> Choices:
 
 
 def complete(given: Choices) -> Choices:
-    """Choices with the defaults of all that is not given."""
-    return {name: {**entries, **(given.get(name) or {})} for name, entries in defaults().items()}
+    """Choices with the defaults of all that is not given; with those of an older site's ground, if it has some."""
+    old = {"model": dict.fromkeys(RETIRED)} if has_old_ground(given) else {}
+    return {name: {**entries, **old.get(name, {}), **(given.get(name) or {})} for name, entries in defaults().items()}
+
+
+def has_old_ground(given: Choices) -> bool:
+    """Whether the choices are of an older site, see RETIRED."""
+    model = given.get("model")
+    return isinstance(model, dict) and any(key in model for key in RETIRED)
+
+
+def without_old_ground(given: Choices) -> Choices:
+    """Choices without keys of older sites, and with a spacing that is possible now."""
+    if not has_old_ground(given):
+        return given
+    model = {key: value for key, value in given["model"].items() if key not in RETIRED}
+    if disk.is_number(model.get("spacing")):
+        model["spacing"] = min(model["spacing"], widest())
+    return {**given, "model": model}
+
+
+def widest() -> float:
+    """The largest spacing of the ground's balls, in diameters: through a wider one balls fall."""
+    return schema()["properties"]["model"]["properties"]["spacing"]["maximum"]
+
+
+def other_grounds(choices: Choices) -> List[Tuple[float, float]]:
+    """(spacing, rolling resistance) of the study's runs on other grounds than the model's."""
+    rolling = choices["study"]["rolling"]
+    return [(spacing, one) for spacing in choices["study"]["spacing"] if spacing != choices["model"]["spacing"]
+            for one in sorted({min(rolling), max(rolling)})]
 
 
 def check(given: Any, where: str, options: Optional[Mapping[Tuple[str, str], str]] = None) -> None:
@@ -99,7 +131,7 @@ def read(folder: Path) -> Choices:
     if not path.is_file():
         raise SlopeError(folder, f"must be a folder with {NAME}, which slope site makes")
     given = disk.parse_yaml(path, WHAT)
-    check(given, str(path))
+    check(without_old_ground(given) if isinstance(given, dict) else given, str(path))
     return with_files(complete(given), lambda name: os.path.normpath(folder / name))
 
 

@@ -8,7 +8,7 @@ import jinja2
 
 from ..releases.release_deck import Body
 from ..slips.bodies import rank_of
-from .site_choices import Choices
+from .site_choices import Choices, widest
 from .site_inputs import Line, Motion, Structure
 
 NAME = "in.site"
@@ -35,7 +35,6 @@ class Parts(NamedTuple):
 class Numbers(NamedTuple):
     """What the choices leave open."""
     diameter: float         # m
-    field_diameter: float
     speed: float            # m/s
     duration: float         # s
     cell: float             # m
@@ -68,7 +67,7 @@ def values(choices: Choices, parts: Parts, numbers: Numbers) -> Dict[str, Any]:
                         "move": f" move {words(one.move)}" if any(one.move) else ""} for one in parts.structures],
         "lines": parts.lines, "motion": parts.motion.file if parts.motion else "", }
     parameters.update({name: plain(value) for name, value in (
-        ("d", numbers.diameter), ("field_d", numbers.field_diameter), ("spacing", model["spacing"]),
+        ("d", numbers.diameter), ("spacing", model["spacing"]), ("widest", widest()),
         ("rolling", choices["study"]["rolling"][0]), ("friction", model["friction"]), ("slip", model["slip_friction"]),
         ("restitution", model["restitution"]), ("field_e", model["field_restitution"]), ("density", model["density"]),
         ("speed", numbers.speed), ("duration", numbers.duration), ("cell", numbers.cell),

@@ -19,6 +19,7 @@ from ..tables import (combinations, intensity, quantities, road_runs, size_error
 from ..tables.size_error import SizeErrors
 from ..tables.study_maps import Maps
 from ..warned import Warned, entries, warned
+from . import site_ground
 from .setup import Road, Setup
 
 BALANCE = 1e-9          # of the released volume
@@ -244,7 +245,9 @@ def result(run, row, maps):
     base = run_folders.load_raster(prefix, "surface").z - thickness.z
     whole = connected.connected(deposit.Deposit(str(prefix), thickness, base, summary, None))
     state = rest.state(summary)
-    row = {**row, "variables": about.get("variables"), "ranks": about.get("ranks"), "package": about.get("package"),
+    row = {**row, "variables": about.get("variables"),
+           study_table.STOP: site_ground.of_variables(about.get("variables")), "ranks": about.get("ranks"),
+           "package": about.get("package"),
            **quantities.of_run(summary, whole), "ball_m3": volume["released"] / summary["balls"]["released"],
            "on_grid_m3": volume["on_grid"], "off_grid_m3": volume["off_grid"], "lost_m3": volume["lost"],
            "residual_m3": volume["residual"], "mass_error": (on_grid - stays) / volume["released"],

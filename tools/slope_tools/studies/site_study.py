@@ -13,9 +13,9 @@ from ..case import decks, run_folders
 from ..errors import SlopeError
 from ..runs import repeats
 from ..schemas import OBJECT, TEXT, listed, mapping
-from ..sites import site_choices, site_deck, site_warnings
+from ..sites import ground, site_choices, site_deck, site_warnings
 from ..sites.site_budget import three_digits
-from ..sites.site_choices import Choices, OFFSETS
+from ..sites.site_choices import Choices, OFFSETS, other_grounds
 from ..sites.site_layers import OBSERVED, ROAD
 from ..survey.roads import Asked
 from ..tables import energy
@@ -86,10 +86,15 @@ def run_alone(folder: Path, choices: Choices, engine: Setup, method: str) -> Don
     found = Sizes(None, (), None)
     if len(several["sizes"]) > 1:
         found = sizes(setup._replace(output=folder / SIZES), choices, repeated)
-    settings = {"rolling": words(several["rolling"])}
+    settings, variables = {"rolling": words(several["rolling"])}, decks.index_variables(deck)
     step = half_step(setup._replace(output=folder / STEP), settings["rolling"]) if setup.road else None
-    todo = repeats.plan(setup.output, settings, repeated, decks.index_variables(deck))
+    others = grounds(choices, variables)
+    if others:
+        settings["spacing"] = [variables["spacing"]]
+    todo = repeats.plan(setup.output, settings, repeated, variables, others)
     study.check_names(todo)
+    if others:
+        settings["spacing"] = list(dict.fromkeys([*settings["spacing"], *(one["spacing"] for one in others)]))
     questions = results.Questions(settings, repeated, THRESHOLDS, found.errors, size_error_unusable=found.unusable,
                                   notes=(*warnings_of(folder), *found.warnings), site=folder, sizes=found.path,
                                   step=step, method=method)
@@ -117,6 +122,12 @@ def warnings_of(folder: Path) -> List[Warned]:
     path = folder / site_warnings.NAME
     said = schemas.load(path, "what `slope site` wrote", SAID) if path.is_file() else None
     return [warned(one) for one in said or ()]
+
+
+def grounds(choices: Choices, variables: Dict[str, str]) -> List[Dict[str, str]]:
+    """The runs on other grounds; none for a deck of an older version, whose ground is a plan grid."""
+    return [{"rolling": rolling, "spacing": spacing} for spacing, rolling in map(words, other_grounds(choices))] \
+        if ground.SEED in variables else []
 
 
 class Sizes(NamedTuple):
@@ -184,7 +195,8 @@ def half_step(setup: Setup, rolling: List[str]) -> Optional[Step]:
         study.perform(setup, settings, todo, collect)
     except SlopeError as error:
         return Step(middle, None, str(error))
-    return Step(middle, volumes[0], energy=spent[0] if spent else None) if volumes else None
+    return Step(middle, volumes[0], energy=spent[0] if spent else None,
+                spacing=variables.get("spacing")) if volumes else None
 
 
 def unusable(setup: Setup, why: str, shortly: str = "") -> Sizes:

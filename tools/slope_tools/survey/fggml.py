@@ -22,8 +22,9 @@ from rasterio.crs import CRS
 
 from ..errors import SlopeError
 from ..warned import Warned
-from . import rasters
+from . import rasters, zips
 from .japan import DATUMS
+from .marks import Scale
 from .rasters import HIGHEST, NODATA, Raster
 
 SCHEMA = "http://fgd.gsi.go.jp/spec/"
@@ -94,7 +95,8 @@ def _read_zip(source, where, room=None):
     except (zipfile.BadZipFile, NotImplementedError, ValueError) as error:
         raise SlopeError(where, f"must be a whole zip file ({str(error)[:LONGEST]})") from error
     wanted = (".xml", ".zip") if outer else (".xml",)
-    members = [member for member in archive.infolist() if member.filename.lower().endswith(wanted)]
+    members = [member for member in archive.infolist() if member.filename.lower().endswith(wanted)
+               and not zips.is_of_macos(member.filename)]
     total = sum(member.file_size for member in members)
     room[0] -= total
     if room[0] < 0 or total > DEFLATE * size:
@@ -339,6 +341,15 @@ def _slow_heights(where, line, text):
 
 
 # --- all tiles of a terrain ---
+
+def without(tile, marks):
+    """A tile without the heights that a Marks is given."""
+    z = tile.raster.z
+    none = np.isnan(z)
+    marks.take(z, none)
+    marks.note(z, none, Scale())
+    return tile._replace(raster=tile.raster._replace(z=np.where(none, np.nan, z)))
+
 
 def spacing(tile):
     """Seconds of arc, along the longitude and the latitude."""

@@ -1,4 +1,6 @@
 """Reading lines (GeoJSON, shapefile, WKT, CSV) to the local metres of a run: the axis of a road, a section."""
+import re
+
 import numpy as np
 from shapely import wkt
 from shapely.errors import ShapelyError
@@ -6,7 +8,7 @@ from shapely.geometry import GeometryCollection, LineString, MultiLineString
 from shapely.ops import linemerge
 
 from ..errors import SlopeError
-from . import polygons, vectors
+from . import polygons, text_points, vectors
 from .crs import require_degrees, same_crs, transform
 from .rasters import crs_name
 
@@ -36,9 +38,11 @@ def read_local(path, raster, local, what="line", advice=None, crs=None, warn=vec
     own = raster.crs
     if text_ is None:
         found = vectors.read(path, "Line", warn)
-        own, geometry = found.crs, GeometryCollection([one for _, one in found.features])
+        own = None if local or crs else found.known_crs(path, (advice or polygons.ADVICE).wrong_crs)
+        geometry = GeometryCollection([one for _, one in found.features])
     else:
-        geometry = text_geometry(path, text_)
+        geometry, unit = text_geometry(path, text_)
+        polygons.check_unit(path, unit, local, crs, advice or polygons.ADVICE)
     lines = lines_of(geometry)
     if lines.is_empty and (others := kinds(geometry)):
         raise SlopeError(path, f"must hold a line: {instead if 'Polygon' in others else 'draw one'}",
@@ -63,16 +67,22 @@ def read_local(path, raster, local, what="line", advice=None, crs=None, warn=vec
         points = [np.transpose(transform(crs, raster.crs, *line.T)) for line in points]
         if not all(np.isfinite(line).all() for line in points):
             raise SlopeError(path, f"must lie where {crs_name(raster.crs)}, the CRS of the terrain, covers it")
+        if polygons.is_cut(lines, crs):
+            joined = lines_of(GeometryCollection(polygons.snapped(map(LineString, points))))
+            points = [np.asarray(line.coords) for line in joined.geoms]
     return MultiLineString([line - raster.offset for line in points])
 
 
 def text_geometry(path, text):
-    """The geometry of a text: WKT, or x,y in its lines."""
+    """The geometry of a text, WKT or x,y in its lines with a blank line between two lines, and the unit of its head."""
+    def fail(place, rule, got):
+        raise SlopeError(path, f"must be a line: GeoJSON, shapefile, WKT, or CSV with x,y in its lines (line {place} "
+                         f"{rule})", got)
     try:
-        if polygons.WKT.match(text.lstrip()):
-            return wkt.loads(text)
-        content = [line.split("#")[0].strip() for line in text.splitlines()]
-        return LineString([tuple(map(float, line.split(","))) for line in content if line])
+        if polygons.WKT.match(re.sub("#.*", "", text).lstrip()):
+            return wkt.loads(re.sub("#.*", "", text).strip()), None
+        found = text_points.read(text, fail)
+        return MultiLineString([[point for _, point in block] for block in found.blocks]), found.head.unit
     except (ShapelyError, ValueError, TypeError, AttributeError) as error:
         raise SlopeError(path, "must be a line: GeoJSON, shapefile, WKT, or CSV with x,y in its lines "
                          f"({error})") from error

@@ -16,6 +16,7 @@ from ..warned import Warned
 from . import fggml, plausible, rasters
 from .crs import as_crs, require_metres, warn_of_stretch
 from .holes import fill, small_holes
+from .marks import Marks, text
 from .rasters import Raster
 from .resampling import regrid
 from .terrain import declare, merge, read_fggml
@@ -31,7 +32,8 @@ class Wanted(NamedTuple):
     assigned: Optional[str] = None      # CRS that the files are in, whatever they say
     own: Mapping[str, str] = {}         # the same of single files, by their paths
     z_unit: Optional[str] = None        # of the heights in the files, of rasters.UNITS, whatever they say
-    nodata: Optional[float] = None      # a value of the files that stands for none, beside the declared one
+    nodata: Sequence[float] = ()        # values of the files that stand for none, beside the declared one
+    pits: bool = True                   # are warned of; else refused
 
 
 def checked_crs(wanted: Wanted) -> Tuple[Optional[CRS], Optional[CRS]]:
@@ -69,21 +71,24 @@ def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[st
         steps.append(step)
         tell(step)
 
-    cell = wanted.cell
+    cell, marks = wanted.cell, Marks(wanted.nodata)
     if any(map(fggml.is_one, inputs)):
         for option, value in (("--assign-crs", wanted.assigned or "".join(wanted.own.values()) or None),
-                              ("--z-unit", wanted.z_unit), ("--nodata", wanted.nodata)):
+                              ("--z-unit", wanted.z_unit)):
             if value is not None:
                 raise SlopeError(option, "must not be given for FG-GML, which has its CRS and heights in metres", value)
-        raster, crs, cell = read_fggml(inputs, crs, cell, keep, warn)
+        raster, crs, cell = read_fggml(inputs, crs, cell, keep, warn, marks)
     else:
-        raster = merge([declare(path, crs, keep, warn, own_crs(path, wanted, assigned), wanted.z_unit, wanted.nodata)
+        raster = merge([declare(path, crs, keep, warn, own_crs(path, wanted, assigned), wanted.z_unit, marks)
                         for path in inputs], inputs, keep)
         crs = crs or raster.crs
     require_metres(crs, inputs[0])
     if not np.isfinite(raster.z).any():
         raise SlopeError(", ".join(inputs), "must have a height, all cells are NODATA")
-    plausible.warn_of_pits(raster, warn)
+    for absent in marks.not_found:
+        warn(Warned("no such cell", {"value": text(absent), "low": float(np.nanmin(raster.z)),
+                                     "high": float(np.nanmax(raster.z))}))
+    check_pits(raster, marks, ", ".join(inputs), wanted.pits, warn)
     plausible.warn_of_picture(raster, warn)
     filled = 0
     if wanted.fill:
@@ -103,6 +108,16 @@ def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[st
         origin = math.floor(east + 1e-6), math.floor(north + 1e-6)  # 1e-6: rounding noise
     local = Raster(z, Affine.translation(-origin[0], -origin[1]) * raster.transform, crs, origin)
     return rasters.write_asc_local(output, local, {"filled_cells": filled, "sources": list(inputs), "steps": steps})
+
+
+def check_pits(raster: Raster, marks: Marks, where: str, allowed: bool, warn: Callable[[Warned], Any]) -> None:
+    """Warn of pits that a mark of NODATA makes; SlopeError if they are not allowed."""
+    said = plausible.pits_said(raster, marks)
+    if said is None:
+        return
+    if not allowed:
+        raise SlopeError(where, f"the ground must have no pits of a NODATA value: {said}")
+    warn(said)
 
 
 def summary(name: object, about: Dict[str, Any]) -> str:

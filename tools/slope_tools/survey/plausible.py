@@ -5,11 +5,12 @@ from typing import Any, Callable, NamedTuple, Optional
 import numpy as np
 
 from ..warned import Warned
+from .marks import Marks, text
 from .rasters import UNITS, Raster
 
-MARKS = (0.0, -99.0, -999.0, -3276.8)   # m, heights with which programs fill what they do not know
 DEEP = 10.0         # m; a pit is deeper than this and than STEEP_SIDES cells, on all sides
 STEEP_SIDES = 2.0
+FEW = 100           # cells; fewer do not show what a ground spans
 STEEPEST = 50.0     # degrees, mean of a terrain; steeper ones may be in feet
 BRIGHT, MOST = 240.0, 255.0     # of a picture: its brightest cell is between these
 ROWS = 1000         # of a terrain that are looked at for its slope
@@ -17,23 +18,58 @@ FOOT = UNITS["ft"]
 
 
 class Pits(NamedTuple):
-    """Groups of cells of one mark that lie far below all cells around them."""
+    """Cells of one mark that lie far below all cells around them, or above."""
     mark: float             # m
+    stored: str             # what the file has for it
     cells: np.ndarray       # mask
     largest: int            # cells of the largest group
     least: float            # m, depth of the shallowest
+    side: str = "below"     # or above
+
+    @property
+    def shown(self) -> str:
+        """The mark in words."""
+        return f"{self.mark:g} m" + f" ({self.stored} in the file)" * (self.stored != f"{self.mark:g}")
 
 
-def pits(z: np.ndarray, cell: float) -> Optional[Pits]:
+def pits(z: np.ndarray, cell: float, marks: Marks) -> Optional[Pits]:
     """The pits of the first mark that a terrain has; None if it has none."""
-    for mark in MARKS:
+    deep = max(DEEP, STEEP_SIDES * cell)
+    for mark, stored in marks.known.items():
         at = z == mark
-        if at.any() and (found := pits_of(z, at, mark, max(DEEP, STEEP_SIDES * cell))):
+        if at.any() and float(stored) <= 0 and (found := pits_of(z, at, mark, stored, deep)):
             return found
+        if at.any() and float(stored) > 0 and (found := pits_of(-z, at, -mark, stored, deep)):
+            return found._replace(mark=mark, side="above")
+    return apart(z, marks, deep)
+
+
+def apart(z: np.ndarray, marks: Marks, deep: float) -> Optional[Pits]:
+    """The cells of the lowest, or the highest, value if it is farther from all others than these span, and than deep.
+
+    No ground has such a gap: a mark that is none of the usual ones, or 9999 in feet.
+    """
+    known = z[np.isfinite(z)]
+    if known.size < FEW or known.max() - known.min() <= deep:
+        return None
+    for side, last, inner, other in (("below", known.min(), known[known > known.min()].min(), known.max()),
+                                     ("above", known.max(), known[known < known.max()].max(), known.min())):
+        gap, span = abs(inner - last), abs(other - inner)
+        if span > 0 and gap > max(deep, span):
+            at = z == last
+            mark = float(last)
+            return Pits(mark, marks.extremes.get(mark, text(mark)), at, largest_group(at), float(gap), side)
     return None
 
 
-def pits_of(z: np.ndarray, at: np.ndarray, mark: float, deep: float) -> Optional[Pits]:
+def largest_group(at: np.ndarray) -> int:
+    """Cells of the largest group of a mask; corners touch."""
+    from scipy import ndimage
+    groups, _ = ndimage.label(at, np.ones((3, 3)))
+    return int(np.bincount(groups.ravel())[1:].max())
+
+
+def pits_of(z: np.ndarray, at: np.ndarray, mark: float, stored: str, deep: float) -> Optional[Pits]:
     """The groups of a mask of cells (corners touch) whose neighbours are all more than `deep` (m) higher than mark."""
     from scipy import ndimage
     others = np.where(at | np.isnan(z), np.inf, z)
@@ -44,24 +80,26 @@ def pits_of(z: np.ndarray, at: np.ndarray, mark: float, deep: float) -> Optional
     if not is_pit.any():
         return None
     sizes = np.bincount(groups.ravel(), minlength=number + 1)
-    return Pits(mark, is_pit[groups], int(sizes[is_pit].max()), float(depth[is_pit[1:]].min()))
+    return Pits(mark, stored, is_pit[groups], int(sizes[is_pit].max()), float(depth[is_pit[1:]].min()))
 
 
-def remedy(found: Pits) -> str:
+def remedy(found: Pits, marks: Marks) -> str:
     """What can be done about pits."""
-    return f"--nodata {found.mark:g} makes them NODATA, with --fill {found.largest} they are filled"
+    at_edge = any(side.any() for side in (found.cells[[0, -1]], found.cells[:, [0, -1]]))
+    return f"{marks.options(found.stored)} makes them NODATA, " + (
+        "which stays where it goes on to the edge" if at_edge else f"with --fill {found.largest} they are filled")
 
 
-def warn_of_pits(raster: Raster, warn: Callable[[Warned], Any]) -> None:
-    """Warn of pits in a terrain."""
-    found = pits(raster.z, abs(raster.transform.a))
+def pits_said(raster: Raster, marks: Marks) -> Optional[Warned]:
+    """The warning of pits in a terrain, if it has any."""
+    found = pits(raster.z, abs(raster.transform.a), marks)
     if found is None:
-        return
+        return None
     row, column = np.argwhere(found.cells)[0]
     x, y = raster.transform * (column + 0.5, row + 0.5)
     x, y = x + raster.offset[0], y + raster.offset[1]
-    warn(Warned("pits", {"cells": int(found.cells.sum()), "mark": found.mark, "depth": found.least, "east": float(x),
-                         "north": float(y), "remedy": remedy(found)}))
+    return Warned("pits", {"cells": int(found.cells.sum()), "mark": found.shown, "depth": found.least,
+                           "side": found.side, "east": float(x), "north": float(y), "remedy": remedy(found, marks)})
 
 
 def warn_of_picture(raster: Raster, warn: Callable[[Warned], Any]) -> None:

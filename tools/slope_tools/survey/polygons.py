@@ -13,21 +13,25 @@ import rasterio.warp
 from shapely import wkt
 from shapely.errors import ShapelyError
 from shapely.geometry import MultiPolygon, Polygon, box
-from shapely.ops import unary_union
+from shapely.geometry.base import BaseGeometry
+from shapely.ops import snap, unary_union
 from shapely.validation import explain_validity
 
 from .. import disk
 from ..errors import SlopeError
 from ..geometry import extent, numbers, polygons_of
-from . import vectors
+from . import text_points, vectors
 from .crs import require_degrees, same_crs
+from .text_points import FARTHEST
 from .rasters import crs_name
 
-FARTHEST = 1e12    # m or degrees: larger coordinates are mistakes, region polygon refuses them, too
+AT_180 = 1e-6      # degrees, from 180, at which a geometry is cut there
+CUT = 1e-3         # m, between the halves of a cut geometry in another CRS
 DIGITS = 6     # decimals of a written coordinate, m: beyond them is the noise of origins and projections
 HEAD = "local metres:"       # in the first line of what write() wrote
 PLACE = re.compile(rf"^# {HEAD} .+", re.MULTILINE)
-WKT = re.compile(r"[A-Za-z]+\s*(?:Z|M|ZM)?\s*(?:\(|EMPTY)", re.IGNORECASE)
+WKT = re.compile(r"(?:(?:MULTI|COMPOUND)?(?:POLYGON|LINESTRING|POINT|CURVE|SURFACE)|GEOMETRYCOLLECTION|LINEARRING|"
+                 r"CURVEPOLYGON|CIRCULARSTRING|TRIANGLE|TIN)\s*(?:Z|M|ZM)?\s*(?:\(|EMPTY)", re.IGNORECASE)
 
 
 class Advice(NamedTuple):
@@ -66,12 +70,13 @@ def read_local(path, raster, local=False, crs=None, advice=ADVICE, warn=vectors.
 def _read_local(path, raster, local, crs, advice, warn):
     text = read_text(path)
     if text is None:
-        polygons, own = _read_layer(path, warn)
+        polygons, own = _read_layer(path, warn, None if local or crs else advice)
     elif WKT.match(re.sub("#.*", "", text).lstrip()):
         polygons, own = _read_wkt(path, text), raster.crs
     else:
-        polygons, own = _read_rings(path, text), raster.crs
+        (polygons, unit), own = _read_rings(path, text), raster.crs
         local = local or is_local(path, text, raster)
+        check_unit(path, unit, local, crs, advice)
     geometry = polygons[0] if len(polygons) == 1 else unary_union(polygons)
     plain = not local and text is not None and crs is None      # numbers of which no file says what they are
     as_it_stands = geometry.envelope
@@ -116,13 +121,13 @@ def read_text(path):
 
 # --- formats ---
 
-def _read_layer(path, warn):
-    """Polygons of a file of a GIS, and its CRS or None."""
+def _read_layer(path, warn, advice):
+    """Polygons of a file of a GIS, and its CRS or None; advice: None where the CRS does not matter."""
     found = vectors.read(path, "Polygon", warn)
     polygons = [part for where, geometry in found.features for part in _parts(where, geometry)]
     if not polygons:
         raise SlopeError(path, "must hold a polygon, it is empty")
-    return polygons, found.crs
+    return polygons, found.known_crs(path, advice.wrong_crs) if advice else None
 
 
 def _read_wkt(path, text):
@@ -180,48 +185,39 @@ def crossing(where, geometry):
 
 
 def _read_rings(path, text):
-    """The polygons that the rings of a text in the deck's format make by the even-odd rule."""
+    """The polygons that the rings of a text in the deck's format make by the even-odd rule; the unit of its head."""
     rings: List[Tuple[int, Polygon]] = []       # the line it starts at, its polygon
-    points: List[Tuple[float, ...]] = []
-    first = 0
-
-    def close():
-        if points:
-            where = f"{path}: line {first}"
-            if len(set(points)) < 3:
-                raise SlopeError(where, "a ring must have at least 3 points", len(set(points)))
-            rings.append((first, _checked(where, Polygon(points))))
-            points.clear()
-
-    header = True  # one line of names may come first
-    for number, line in enumerate(text.splitlines(), 1):
-        content = line.split("#")[0].strip()
-        if not content:
-            if not line.strip():
-                close()
-            continue
-        words = [word.strip() for word in content.split(",")]
-        if header and len(words) == 2 and all(re.fullmatch(r'"?[A-Za-z]\w*"?', word) for word in words) \
-                and not any(word.lower() in ("nan", "inf", "infinity") for word in words):
-            header = False
-            continue
-        header = False
-        try:
-            if "_" in content:     # Python's float takes 1_5 for 15
-                raise ValueError
-            x, y = map(float, words)
-        except ValueError:
-            raise SlopeError(f"{path}: line {number}", "must be two numbers, x,y", content[:60]) from None
-        if not (abs(x) <= FARTHEST and abs(y) <= FARTHEST):    # NaN, too
-            raise SlopeError(f"{path}: line {number}", f"must be two finite numbers within +-{FARTHEST:g}, x,y",
-                             content[:60])
-        if not points:
-            first = number
-        points.append((x, y))
-    close()
+    found = text_points.read(text, fail_in(path))
+    for block in found.blocks:
+        first, ring = block[0][0], [point for _, point in block]
+        where = f"{path}: line {first}"
+        if len(set(ring)) < 3:
+            raise SlopeError(where, "a ring must have at least 3 points", len(set(ring)))
+        rings.append((first, _checked(where, Polygon(ring))))
     if not rings:
         raise SlopeError(path, "must hold a polygon, it is empty")
-    return _even_odd(path, rings)
+    return _even_odd(path, rings), found.head.unit
+
+
+def fail_in(path):
+    """A function that raises the SlopeError on a line of a file."""
+    def fail(place, rule, got):
+        raise SlopeError(f"{path}: line {place}", rule, got)
+    return fail
+
+
+def check_unit(path, unit, local, crs, advice):
+    """Raise SlopeError if the unit that the head of a text names is not that of its coordinates.
+
+    crs: assigned to them; None: they are in metres, of the terrain's CRS.
+    """
+    degrees = not local and crs is not None and crs.is_geographic
+    if unit == "degrees" and not degrees:
+        raise SlopeError(path, "must have columns in m, local" if local else
+                         f"columns in degrees must have a CRS in degrees; {advice.wrong_crs}",
+                         "degrees" if local else crs_name(crs))
+    if unit == "m" and degrees:
+        raise SlopeError(path, "columns in m must have a CRS in m", crs_name(crs))
 
 
 def _even_odd(path, rings):
@@ -284,8 +280,25 @@ def _to_local(path, geometry, crs, raster, plain, advice):
                                  f"({remedy})", "none")
         require_degrees(crs, geometry.bounds, path, advice.wrong_crs)
     if not (plain or same_crs(crs, raster.crs)):
-        geometry = _reproject(path, geometry, crs, raster.crs)
+        moved = _reproject(path, geometry, crs, raster.crs)
+        geometry = unary_union(snapped(polygons_of(moved))) if is_cut(geometry, crs) else moved
     return map_points(geometry, lambda points: points - raster.offset)
+
+
+def is_cut(geometry, crs):
+    """Whether a geometry has parts on both sides of 180 degrees, cut there as RFC 7946 demands."""
+    west, _, east, _ = geometry.bounds
+    return crs.is_geographic and abs(west + 180) < AT_180 and abs(east - 180) < AT_180
+
+
+def snapped(parts):
+    """Geometries (m) whose points that are within CUT of those of the ones before are the same points."""
+    done: List[BaseGeometry] = []
+    for part in parts:
+        for other in done:
+            part = snap(part, other, CUT)
+        done = [snap(other, part, CUT) for other in done] + [part]
+    return done
 
 
 def _reproject(path, geometry, crs, target):

@@ -9,13 +9,14 @@ import os
 import sys
 import warnings
 from pathlib import Path
-from typing import NamedTuple, Optional, Tuple
+from typing import Dict, NamedTuple, Optional, Tuple
 
 import numpy as np
 import rasterio
 import yaml
 from affine import Affine
 from rasterio.crs import CRS
+from rasterio.enums import MaskFlags
 from rasterio.errors import CRSError, NotGeoreferencedWarning, RasterioError
 from rich.console import Console
 from rich.progress import track
@@ -23,6 +24,7 @@ from rich.progress import track
 from .. import disk, schemas
 from ..errors import SlopeError
 from ..schemas import COUNT, TEXT, mapping, numbers
+from .marks import Scale, cells_of, text
 
 WHAT_SIDECAR = "a sidecar that `slope terrain` wrote"
 ORIGIN, EXTENT = ("east", "north"), ("xlo", "ylo", "xhi", "yhi")
@@ -32,6 +34,9 @@ NODATA = -9999             # in written files
 HIGHEST = 9000.0           # m; beyond +-HIGHEST a value is a NODATA mark that the file does not declare (-9999, -32768)
 BYTES_PER_CELL = 40        # peak memory of `slope terrain` per cell, measured 22 to 33 for 16 million cells
 HEADER = {"ncols", "nrows", "xllcorner", "yllcorner", "xllcenter", "yllcenter", "cellsize", "dx", "dy", "nodata_value"}
+# keys that say the same
+AGAIN = {"xllcorner": {"xllcenter"}, "xllcenter": {"xllcorner"}, "yllcorner": {"yllcenter"}, "yllcenter": {"yllcorner"},
+         "cellsize": {"dx", "dy"}, "dx": {"cellsize"}, "dy": {"cellsize"}}
 UNITS = {"m": 1.0, "ft": 0.3048, "us-ft": 1200 / 3937}      # m, of heights
 TAGS = {"m": "m", "metre": "m", "meter": "m", "metres": "m", "meters": "m", "ft": "ft", "foot": "ft", "feet": "ft",
         "international foot": "ft", "us survey foot": "us-ft", "us survey feet": "us-ft", "ftus": "us-ft",
@@ -83,13 +88,13 @@ def crs_name(crs):
     return f"EPSG:{epsg(crs)}" if epsg(crs) else crs.to_wkt().split('"')[1]
 
 
-def read(path, heights=True, unit=None, nodata=None):
+def read(path, heights=True, unit=None, marks=None):
     """Read a single-band raster (GeoTIFF, ESRI ASCII grid, or another format of GDAL) into a Raster.
 
     The CRS is None where the file has none; it may be in degrees, the heights may not: they become metres, from what
     the file says, or from the unit (of UNITS) that is given. heights=False: other values than heights, such as the
-    energies of fix deposit/grid; their size is not checked. nodata: a value of the file that stands for none, too.
-    Raises SlopeError on anything that is not such a raster.
+    energies of fix deposit/grid; their size is not checked. marks: of the values, in the file's own unit, that stand
+    for none, too; what the file has of them is noted there. Raises SlopeError on anything that is not such a raster.
     """
     if not Path(path).is_file():
         raise SlopeError(path, "must be an existing file")
@@ -97,26 +102,44 @@ def read(path, heights=True, unit=None, nodata=None):
         with warnings.catch_warnings(), rasterio.Env():  # Env: GDAL's own messages are not for stderr
             warnings.simplefilter("ignore", NotGeoreferencedWarning)  # an error of our own, below
             with rasterio.open(path) as source:
-                raster = _read(path, source)
-                factor = UNITS[unit or unit_of(path, source, heights) or "m"]
+                stored, none = _read(path, source)
+                own = unit or unit_of(path, source, heights) or "m"
+                scale = Scale(source.scales[0], source.offsets[0], UNITS[own])
+                transform, crs = source.transform, source.crs
     except (RasterioError, OSError) as error:  # RasterioIOError is an OSError only
         raise SlopeError(path, f"must be a raster that GDAL can read ({error})") from error
-    if nodata is not None:
-        raster.z[raster.z == nodata] = np.nan
-    if factor != 1:
-        raster = raster._replace(z=raster.z * factor)
-    if not heights:
-        return raster
+    if marks:
+        marks.take(stored, none)
+    z = scale.in_unit(stored)
+    z[none] = np.nan
+    if heights:
+        check_heights(path, z, stored, own, unit is None, marks)
+        if marks:
+            marks.note(stored, none, scale)
+    return Raster(scale.metres(z), transform, crs)
+
+
+def check_heights(path, z, stored, unit, may_be_feet, marks):
+    """Raise SlopeError if heights (in a unit of UNITS) cannot be those of a ground.
+
+    None is higher than HIGHEST m, and none lower than -HIGHEST in its own unit: -9999 ft is a mark, 9999 ft a mountain.
+    stored: what the file has for them; may_be_feet: the unit was not given; marks: None where there is no --nodata.
+    """
+    top = HIGHEST / UNITS[unit]
     with np.errstate(invalid="ignore"):
-        wrong = np.argwhere(np.abs(raster.z) > HIGHEST)
-    if len(wrong):
-        row, column = wrong[0]
-        value = raster.z[row, column]
-        feet = "; --z-unit ft if these are feet" if unit is None and abs(value) * UNITS["ft"] < HIGHEST else ""
-        raise SlopeError(f"{path}: row {row + 1} column {column + 1}", "must be a height in metres between -9000 and "
-                         f"9000, or the NODATA value that the file declares; --nodata {value:g} if it means none{feet}",
-                         f"{value:g}")
-    return raster
+        wrong = np.argwhere((z > top) | (z < -HIGHEST))
+    if not len(wrong):
+        return
+    row, column = wrong[0]
+    value, shown = z[row, column], text(stored[row, column])
+    remedy = f"{marks.options(shown)} if it means none" if marks else f"gdal_translate -a_nodata {shown} declares it"
+    name = "metres" if unit == "m" else unit
+    feet = "; --z-unit ft (slope terrain, slope site) if these are feet" if (
+        may_be_feet and HIGHEST < value < HIGHEST / UNITS["ft"]) else ""
+    scaled = "" if float(stored[row, column]) == value else f", which stands for {value:g} {unit}"
+    raise SlopeError(f"{path}: row {row + 1} column {column + 1}", f"must be a height in {name} between -9000 and "
+                     f"{math.floor(top)}, or the NODATA value that the file declares; {remedy}{feet}",
+                     f"{shown}{scaled}")
 
 
 def unit_of(path, source, heights=True):
@@ -154,23 +177,30 @@ def is_picture(path):
 
 
 def _read(path, source):
+    """The values as they are stored, and the mask of those that the file says are none."""
     if source.count != 1:
         raise SlopeError(path, "must have one band, the heights", f"{source.count} bands")
+    if source.dtypes[0].startswith("complex"):
+        raise SlopeError(path, "must hold real numbers", source.dtypes[0])
     rows, columns = source.shape
     check_memory(rows, columns, path)
     if source.driver == "AAIGrid":
-        z = _read_ascii_heights(path, *source.shape)
+        stored, declared = _read_ascii_heights(path, rows, columns)
+        none = np.zeros(stored.shape, bool)
     else:
-        z = source.read(1, masked=True).astype(float) * source.scales[0] + source.offsets[0]
-        z = z.filled(np.nan)
+        read = source.read(1, masked=True)
+        stored, none = read.data, np.ma.getmaskarray(read)
+        declared = source.nodata if MaskFlags.nodata in source.mask_flag_enums[0] else None
     if source.transform.is_identity or source.transform.is_degenerate:
         raise SlopeError(path, "must be georeferenced: place and size of the cells are missing")
-    z[~np.isfinite(z)] = np.nan
-    return Raster(z, source.transform, source.crs)
+    none |= ~np.isfinite(stored)
+    if declared is not None:
+        none |= cells_of(stored, declared)    # GDAL's mask misses marks with few digits
+    return stored, none
 
 
 def _read_ascii_heights(path, rows, columns):
-    """Heights of an ESRI ASCII grid of that shape.
+    """Heights of an ESRI ASCII grid of that shape, and its mark of NODATA.
 
     GDAL gives shape and place of the grid and its CRS (.prj), but not the values: it takes words for 0, fills up a
     short last row with 0 and ignores values after the last. Here each of these is an error with its line.
@@ -201,8 +231,7 @@ def _read_ascii_heights(path, rows, columns):
     if count != z.size or (odd_line and line_count == rows):
         where = f"first at {odd_line}" if odd_line else f"in {line_count} rows"
         raise SlopeError(f"{path}: values", f"must be {rows} rows of {columns}, {z.size} values", f"{count}, {where}")
-    z[z == header.get("nodata_value", NODATA)] = np.nan  # ESRI's default where the header has none
-    return z.reshape(rows, columns)
+    return z.reshape(rows, columns), header.get("nodata_value", NODATA)     # ESRI's default
 
 
 def _check_ascii_header(path, lines):
@@ -210,7 +239,8 @@ def _check_ascii_header(path, lines):
 
     GDAL takes words for 0 here too, and puts a grid with xllcorner and yllcenter, or without one of them, at 0 0.
     """
-    header, number = {}, 0
+    header: Dict[str, float] = {}
+    number = 0
     for line in lines:
         words = line.split()
         if words and words[0].lower() not in HEADER:
@@ -219,10 +249,15 @@ def _check_ascii_header(path, lines):
         if not words:
             continue
         try:
-            key, value = words
-            header[key.lower()] = float(value)
+            key, word = words
+            value = float(word.replace("_", "?"))       # Python takes 1_5 for 15
         except ValueError:
             raise SlopeError(f"{path}: line {number}", "must be a name and a number", line) from None
+        if key.lower() in header:
+            raise SlopeError(f"{path}: line {number}", f"header key {key} is given twice")
+        if other := AGAIN.get(key.lower(), set()) & header.keys():
+            raise SlopeError(f"{path}: line {number}", f"{min(other)} and {key} are both given")
+        header[key.lower()] = value
     if not ({"xllcorner", "yllcorner"} <= header.keys() or {"xllcenter", "yllcenter"} <= header.keys()):
         raise SlopeError(f"{path}: header", "must have xllcorner and yllcorner, or xllcenter and yllcenter")
     for key in ("cellsize", "dx", "dy"):
@@ -231,20 +266,20 @@ def _check_ascii_header(path, lines):
     return header, number
 
 
-def read_asc_local(path, heights=True, unit=None, nodata=None):
+def read_asc_local(path, heights=True, unit=None, marks=None):
     """Read an .asc that write_asc_local wrote, and its sidecar, into a Raster: (z, transform, crs, offset).
 
     The transform gives local x, y; adding the offset (east, north) gives coordinates in crs. A raster without a
-    sidecar is read as by read(); heights, unit and nodata as there. Raises SlopeError if either file is broken or they
+    sidecar is read as by read(); heights, unit and marks as there. Raises SlopeError if either file is broken or they
     do not belong together.
     """
-    raster = read(path, heights, unit, nodata)
+    raster = read(path, heights, unit, marks)
     place = read_sidecar(path)
     if place is None:
         return raster
     if place.size != raster.z.shape or not np.allclose(raster.transform * (0, 0), place.extent[::3], rtol=0, atol=1e-3):
         raise SlopeError(Path(path).with_suffix(".yaml"), f"must be the sidecar of {path}: size and extent differ")
-    return Raster(raster.z, raster.transform, place.crs, place.offset)
+    return raster._replace(crs=place.crs, offset=place.offset)
 
 
 class Place(NamedTuple):

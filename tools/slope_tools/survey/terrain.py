@@ -8,19 +8,20 @@ from ..errors import SlopeError
 from ..warned import Warned
 from . import fggml, japan, rasters
 from .crs import require_degrees, same_crs
+from .marks import Marks
 from .rasters import Raster, crs_name
 from .resampling import STRIP, footprint, sample
 
 ON_GRID = 0.01         # cells; grids of two files that differ by less than this are the same grid
 
 
-def declare(path, crs, tell, warn, assigned=None, unit=None, nodata=None):
+def declare(path, crs, tell, warn, assigned=None, unit=None, marks=None):
     """Read a raster, in coordinates of its CRS; one without is taken to be in crs, or warned of if that is None.
 
-    assigned: the CRS of its coordinates, unit: that of its heights, whatever the file says; nodata: a height that is
-    none.
+    assigned: the CRS of its coordinates, unit: that of its heights, whatever the file says; marks: see
+    rasters.read().
     """
-    local = rasters.read_asc_local(path, unit=unit, nodata=nodata)
+    local = rasters.read_asc_local(path, unit=unit, marks=marks)
     if rasters.is_picture(path):
         raise SlopeError(path, "must be heights, not a picture such as a hillshade; if they are heights, "
                          "gdal_translate -ot Float32 stores them as such", "values of 8 bits")
@@ -45,13 +46,16 @@ def declare(path, crs, tell, warn, assigned=None, unit=None, nodata=None):
     return raster
 
 
-def read_fggml(paths, crs, cell, tell, warn):
-    """One raster in degrees of all FG-GML tiles in the files, and the wanted CRS and cell, found if they are None."""
+def read_fggml(paths, crs, cell, tell, warn, marks=None):
+    """One raster in degrees of all FG-GML tiles in the files, and the wanted CRS and cell, found if they are None.
+
+    marks: of heights that are none, too.
+    """
     tiles = []
     for path in paths:
         if not fggml.is_one(path):
             raise SlopeError(path, "must be FG-GML as other inputs are: make a terrain of each kind")
-        found = fggml.read(path)
+        found = [fggml.without(tile, marks or Marks()) for tile in fggml.read(path)]
         sizes = {f"{z.shape[1]} x {z.shape[0]} cells" for z in (tile.raster.z for tile in found)}
         tell(f"{path}: FG-GML, {len(found)} tile{'s' * (len(found) > 1)} of {' or '.join(sorted(sizes))}, "
              f"{' and '.join(sorted({tile.datum for tile in found}))}")

@@ -5,6 +5,10 @@ geometry.
 """
 import contextlib
 import io
+import json
+import os
+import re
+import zipfile
 from pathlib import Path
 from typing import Any, Callable, List, NamedTuple, Optional, Sequence, Tuple
 
@@ -15,9 +19,11 @@ from shapely.geometry import shape
 
 from ..errors import SlopeError
 from ..warned import Warned
+from . import zips
 
 MARK = "layername="         # QGIS: FILE|layername=NAME|geometrytype=...
 MAGIC = bytes([0, 0, 0x27, 0x0a])       # begins a shapefile
+LONGITUDE_LATITUDE = 4326   # EPSG
 SHOWN = 6                   # names of layers in a message
 fiona.drvsupport.supported_drivers.update(KML="r", LIBKML="r")      # GDAL reads them, fiona leaves them out
 
@@ -33,6 +39,14 @@ class Found(NamedTuple):
     features: List[Tuple[str, Any]]     # where (file and feature, for messages), geometry of shapely
     crs: Optional[CRS]
     empty: int                          # features without a geometry, which are not among them
+    unknown: Optional[str] = None       # what the file names as its CRS, if that is none that PROJ knows
+
+    def known_crs(self, where: object, remedy: str) -> Optional[CRS]:
+        """The CRS; SlopeError if it is unknown. remedy: what can be done."""
+        if self.unknown is not None:
+            raise SlopeError(source(where).path, f"must name a CRS that PROJ knows, such as EPSG:6677; {remedy}",
+                             self.unknown)
+        return self.crs
 
 
 def ignore(_: object) -> None:
@@ -71,22 +85,25 @@ def read(name: object, kind: str, warn: Callable[[Warned], Any] = ignore) -> Fou
     """
     where = require_file(name)
     check_shapefile(Path(where.path))
+    member = zips.layer_in(where.path, where.layer)
+    opened = f"/vsizip/{{{os.path.abspath(where.path)}}}/{member}" if member else where.path
     what = {"Polygon": "polygons", "Line": "lines"}[kind]
     try:
         # fiona prints what it cannot decode of GDAL's messages
         with contextlib.redirect_stderr(io.StringIO()), fiona.Env():
-            layer = where.layer if where.layer is not None else only_layer(where.path, kind)
-            if where.layer is not None and layer not in fiona.listlayers(where.path):
-                raise SlopeError(where.path, "must have the named layer, one of "
-                                 f"{some(fiona.listlayers(where.path))}", layer)
-            with fiona.open(where.path, layer=layer) as data:
+            layers = fiona.listlayers(opened)
+            if where.layer is not None and where.layer not in layers:
+                raise SlopeError(where.path, f"must have the named layer, one of {some(layers)}", where.layer)
+            layer = where.layer if where.layer is not None else only_layer(opened, layers, kind, where.path)
+            with fiona.open(opened, layer=layer) as data:
                 raw = [(f"{where.path}: feature {feature['id']}", feature["geometry"]) for feature in data]
                 crs = CRS.from_wkt(data.crs_wkt) if data.crs_wkt else None
+                unknown = unknown_crs(where.path, member, crs) if data.driver == "GeoJSON" else None
     except SlopeError:
         raise
     except Exception as error:  # GDAL's too, of classes that fiona keeps private
         raise SlopeError(where.path, f"must be {what} that GDAL can read: GeoJSON, shapefile, or another format of it "
-                         f"({error})") from error
+                         f"({str(error).replace(opened, where.path)})") from error
     features = [(place, shaped(place, geometry, kind)) for place, geometry in raw if geometry is not None]
     if raw and not features:
         raise SlopeError(where.path, f"must hold {what}, none of its features has a geometry", len(raw))
@@ -94,7 +111,31 @@ def read(name: object, kind: str, warn: Callable[[Warned], Any] = ignore) -> Fou
     if empty:
         first = next(place for place, geometry in raw if geometry is None)
         warn(Warned("no geometry", {"feature": first, "without": empty, "features": len(raw)}))
-    return Found(features, crs, empty)
+    return Found(features, crs, empty, unknown)
+
+
+def unknown_crs(path: str, member: Optional[str], taken: Optional[CRS]) -> Optional[str]:
+    """The CRS that a GeoJSON, or one in a .zip, names, if it is not the one that GDAL has taken; else None.
+
+    GDAL takes what it does not know for longitude and latitude.
+    """
+    if member:
+        with zipfile.ZipFile(path) as archive:
+            content = archive.read(member)
+    else:
+        content = Path(path).read_bytes()
+    if b'"crs"' not in content:
+        return None
+    try:
+        named_crs = json.loads(content).get("crs")
+    except (ValueError, AttributeError, RecursionError):    # of GDAL's dialect, without a crs that it would have taken
+        return None
+    other = taken is not None and taken.to_epsg() != LONGITUDE_LATITUDE and "CRS84" not in taken.to_wkt()
+    if named_crs is None or other:
+        return None
+    properties = named_crs.get("properties") if isinstance(named_crs, dict) else None
+    name = str((properties or {}).get("name") or (properties or {}).get("code") or named_crs)
+    return None if re.search(rf"CRS84$|\b{LONGITUDE_LATITUDE}$|^WGS ?(19)?84$", name.strip(), re.IGNORECASE) else name
 
 
 def shaped(where: str, geometry: Any, kind: str):
@@ -105,14 +146,13 @@ def shaped(where: str, geometry: Any, kind: str):
         raise SlopeError(where, f"must be a {kind.lower()} ({error})") from error
 
 
-def only_layer(path: str, kind: str) -> str:
+def only_layer(opened: str, layers: List[str], kind: str, path: str) -> str:
     """The layer of a file, the one with geometries of a kind if it has several; SlopeError if that is not clear."""
-    layers = fiona.listlayers(path)
     if len(layers) == 1:
         return layers[0]
     fit = []
     for layer in layers:
-        with fiona.open(path, layer=layer) as data:
+        with fiona.open(opened, layer=layer) as data:
             if kind in str(data.schema["geometry"]):
                 fit.append(layer)
     if len(fit) != 1:

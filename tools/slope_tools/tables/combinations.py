@@ -16,6 +16,7 @@ from .size_error import SizeErrors
 QUANTITIES = {"remove_m3": "to remove", "remove_on_road_m3": "on the road", "beyond_road_m3": "beyond the road",
               DISTANCE: "99 % within m", REACH: "99 % within deg", "connected_m": "connected m",
               "centroid_m": "centroid m", "front_m": "farthest ball m", "released_m3": "released"}
+GROUND = ("spacing", "angle")       # variables of decks that make another ground
 # runs that are the same in all of these are one run: two of chance never are
 SAME = ("released_m3", "centroid_m", "front_m", "max_speed_m_s", "remove_m3")
 
@@ -62,7 +63,8 @@ def entries(groups: Sequence[Group], names: Sequence[str]) -> List[Dict[str, Any
     found = []
     for group in groups:
         entry: Dict[str, Any] = {"combination": group.name, "set": dict(group.set),
-                                 "runs": [row["run"] for row in group.rows], "repeats": len(group.rows)}
+                                 "runs": [row["run"] for row in group.rows], "repeats": len(group.rows),
+                                 "stop_angle_deg": group.rows[0].get("stop_angle_deg")}
         for name in names:
             one = group.of(name)
             entry[name] = {"mean": one.mean, "scatter": one.scatter, "smallest": min(one.volumes.values()),
@@ -95,6 +97,18 @@ def straight(settings: Mapping[str, Sequence[str]], groups: Sequence[Group], cho
                          if all(group.set[other] == value for other, value in rest.items())]
 
 
+def ground(settings: Mapping[str, Sequence[str]], group: Group) -> Optional[str]:
+    """Which of the grounds that were tried is that of a combination; None where there was one."""
+    names = [name for name in GROUND if len(settings.get(name, ())) > 1]
+    if not names:
+        return None
+    text = "the ground that governs: " + ", ".join(f"{name} {group.set[name]}" for name in names)
+    degrees = group.rows[0].get("stop_angle_deg")
+    if degrees is not None:
+        text += f", stop angle {degrees:.1f} degrees"
+    return f"{text} (tried: " + "; ".join(f"{name} {', '.join(settings[name])}" for name in names) + ")"
+
+
 FEW = 0.05      # of the largest volume of runs that differ by chance alone: less is another outcome
 
 
@@ -119,7 +133,8 @@ def conservative(settings, rows, groups: Sequence[Group], errors: Optional[SizeE
         "volume_m3": best.volume, "mean_m3": best.mean, "chance_m3": best.chance, "size_m3": best.size,
         "rounded": {f"{name}_m3": value for name, value in best.rounded().items()}, "place_m3": best.place,
         "kind": best.kind, "combination": best.combination, "set": dict(governing.set),
-        "label": label(governing.set, settings), "repeats": best.repeats, "runs": best.runs,
+        "label": label(governing.set, settings), "ground": ground(settings, governing), "repeats": best.repeats,
+        "runs": best.runs,
         "combinations": len(groups), "scatter_m3": scatter and scatter.deviation,
         "degrees_of_freedom": scatter and scatter.degrees_of_freedom, "quantile": scatter and scatter.quantile,
         # the run whose maps represent it
@@ -202,7 +217,7 @@ def describe(best: Mapping[str, Any]) -> List[str]:
                 f"(s {number(best['scatter_m3'])}, {best['degrees_of_freedom']:.3g} degrees of freedom)")
         text += (f" + {number(parts['size'])}, size of the balls" if parts["size"] is not None
                  else "; the size of the balls is not in it")
-    lines = [text, *([best["zero"]["text"]] if best["zero"] else [])]
+    lines = [text, *([best["zero"]["text"]] if best["zero"] else []), *([best["ground"]] if best.get("ground") else [])]
     for entry in best["differences"]:
         if entry["clear"] is not None:
             word = "more than" if entry["clear"] else "no more than"

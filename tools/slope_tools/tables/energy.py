@@ -1,6 +1,7 @@
 """Where the energy of a run went: the last line of what fix ave/time writes of fix energy/ledger."""
+import re
 from pathlib import Path
-from typing import Any, Dict, Optional
+from typing import Any, Dict, List, Optional, Sequence
 
 import numpy as np
 
@@ -23,7 +24,7 @@ def read(path: Path) -> Optional[Dict[str, Any]]:
     """
     try:
         table = np.loadtxt(path, ndmin=2)
-        joules = dict(zip(ITEMS, table[-1, 1:].tolist(), strict=True))
+        joules = dict(zip(items_of(path, table.shape[1] - 1), table[-1, 1:].tolist(), strict=True))
         if not np.isfinite(table).all():
             raise ValueError("a number that is not finite")
     except (OSError, IndexError, ValueError) as error:
@@ -31,6 +32,23 @@ def read(path: Path) -> Optional[Dict[str, Any]]:
     if table[0, 0] != 0:
         return None
     return {**joules, "text": words(joules)}
+
+
+def items_of(path: Path, count: int) -> Sequence[str]:
+    """ITEMS in the order of the columns that the head of fix ave/time names, TimeStep f_ID[1] ...; or ValueError."""
+    with open(path, encoding="utf-8", errors="replace") as lines:
+        heads = [line[1:].split()[1:] for line in lines if line.startswith("#") and "TimeStep" in line]
+    head: List[str] = heads[0] if heads else []
+    found = [re.fullmatch(r"f_(\w+)\[(\d+)\]", name) for name in head]
+    places = [int(one[2]) if one else 0 for one in found]
+    if not all(found) or len({one[1] for one in found if one}) > 1 or len(set(places)) < len(places) or (
+            places and not 1 <= min(places) <= max(places) <= len(ITEMS)):
+        raise ValueError(f"columns {' '.join(head)[:60]!r} instead of those of fix energy/ledger")
+    if len(places) == count == len(ITEMS):
+        return [ITEMS[place - 1] for place in places]
+    if places != list(range(1, len(places) + 1)):
+        raise ValueError(f"{count} columns under {len(places)} names")
+    return ITEMS
 
 
 def words(joules: Dict[str, float]) -> str:

@@ -7,6 +7,7 @@ from ..case.settings import as_number
 from ..digits import three
 from ..errors import SlopeError
 from ..schemas import ABOVE_0, FLAG, MAYBE, NUMBER, OBJECT, TEXT, listed, mapping, named
+from ..sites.ground import SCALED
 from ..statistics.convergence import Estimate, error_of_line
 from ..statistics.headline import SizeError
 
@@ -28,7 +29,8 @@ TRUSTED = 0.15          # share: a larger error is that of balls which are too l
 
 
 def falls(path: Path, quantity: str) -> bool:
-    """Whether the quantity falls with each step to smaller balls, down to some below the size of the field's.
+    """Whether the quantity falls with each step to smaller balls, down to some below the size of the field's, unless
+    that is the same as theirs.
 
     A volume is then not too small for the size of its balls, however badly the size of its error is known.
     """
@@ -37,9 +39,10 @@ def falls(path: Path, quantity: str) -> bool:
         raise SlopeError(path, f"must be {WHAT}, with {quantity}")
     sizes = sorted((entry["value"], entry["mean"]) for entry in about["quantities"][quantity]["sizes"])
     field = as_number(about["study"]["base"].get("field_d", ""))
+    below = field == SCALED or isinstance(field, float) and sizes[0][0] < field * (1 - 1e-9)
     means = [mean for _, mean in sizes]
-    return (about["study"]["variable"] == "d" and isinstance(field, float) and sizes[0][0] < field * (1 - 1e-9)
-            and len(means) > 1 and means[0] > 0 and all(low <= high for low, high in zip(means, means[1:])))
+    return (about["study"]["variable"] == "d" and below and len(means) > 1 and means[0] > 0
+            and all(low <= high for low, high in zip(means, means[1:])))
 
 
 class SizeErrors:

@@ -15,6 +15,7 @@ class Step(NamedTuple):
     volume: Optional[float]     # m3 to remove
     why: str = ""
     energy: Optional[Dict[str, Any]] = None     # of energy.read()
+    spacing: Optional[str] = None       # of its ground
 
 
 def compare(step: Step, groups: Sequence[Group], scatter: Optional[headline.Scatter]) -> Dict[str, Any]:
@@ -25,7 +26,8 @@ def compare(step: Step, groups: Sequence[Group], scatter: Optional[headline.Scat
     """
     entry: Dict[str, Any] = {"step": float(HALF), "rolling": step.rolling, "volume_m3": step.volume, "mean_m3": None,
                              "chance_m3": None, "within_chance": None, "energy": step.energy}
-    same = next((group for group in groups if group.set.get("rolling") == step.rolling), None)
+    same = next((group for group in groups if group.set.get("rolling") == step.rolling
+                 and group.set.get("spacing", step.spacing) == step.spacing), None)
     if step.volume is None or same is None:
         return {**entry, "text": f"half the time step: not tried: {step.why or 'no run with the same values finished'}"}
     volumes = same.of(QUANTITY)

@@ -13,6 +13,7 @@ COLUMNS = ("released_m3", "on_grid_m3", "off_grid_m3", "lost_m3", "residual_m3",
            "max_speed_m_s", "stop_time_s", "stop_reason", "moving", "at_rest", "end", "wall_s")
 ROAD_COLUMNS = ("remove_m3", "remove_on_road_m3", "remove_beside_road_m3", "beyond_road_m3", "blocked_m",
                 "axis_thickness_m")
+STOP = "stop_angle_deg"     # of the ground, where it is known
 LANE_COLUMNS = ("remove_lane_m3", "lane_hours", "clear_hours")      # of those that are asked for
 MAYBE = (*travel_shares.COLUMNS, "connected_m", "connected_deg", "wall_s", "beyond_road_m3")     # that may be unknown
 ANSWER = {True: "yes", False: "no"}
@@ -31,7 +32,8 @@ SHOWN_ROAD: Dict[str, Tuple[str, Any]] = {
 def table(settings, repeated, rows, defaults):
     """The CSV over all runs."""
     columns = [*COLUMNS, *(ROAD_COLUMNS if any("remove_m3" in row for row in rows) else ()),
-               *(key for key in LANE_COLUMNS if any(row.get(key) is not None for row in rows)), "status", "error"]
+               *(key for key in (STOP, *LANE_COLUMNS) if any(row.get(key) is not None for row in rows)),
+               "status", "error"]
     more = [name for name in repeated if name not in settings]
 
     def line(row):

@@ -1,0 +1,223 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#include "contact_guards.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "contact_kernel.h"
+#include "contact_table.h"
+#include "error.h"
+#include "large_messages.h"
+#include "neighbor.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+
+static constexpr double ZETA_FOLLOWED = 2.0;    // damping ratio up to which the law is followed
+static constexpr double MASS_RATIO_TESTED = 1000.0;    // of two balls that touch
+static constexpr double DEEP = 0.1;    // overlap, of the smaller radius, that is not sensible
+
+/* ---------------------------------------------------------------------- */
+
+ContactGuards::ContactGuards(LAMMPS *lmp, const ContactTable &contacts) :
+    Pointers(lmp), table(contacts), energy(lmp), motion(lmp), overlaps{0.0, 0, 0, 0}
+{
+}
+
+/* ----------------------------------------------------------------------
+   by rank 0, or by all: to the screen, the log and the summaries
+------------------------------------------------------------------------- */
+
+template <typename... Args> void ContactGuards::warn(const char *format, const Args &...args)
+{
+  if (comm->me == 0) say("Pair gran/restitution: " + fmt::format(format, args...));
+}
+
+void ContactGuards::say(const std::string &text)
+{
+  if (comm->me > 0) return;
+  error->warning(FLERR, text);
+  if (std::find(warnings.begin(), warnings.end(), text) == warnings.end()) warnings.push_back(text);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void ContactGuards::start(int freeze_group_bit)
+{
+  print_table();
+  check_timestep();
+  check_dashpots();
+  check_neighbor_lists();
+  overlaps = {0.0, 0, 0, 0};
+  energy.start();
+  motion.start(freeze_group_bit);
+}
+
+void ContactGuards::print_table()
+{
+  const std::string text = table.text(update->dt) +
+      fmt::format("  contact kernel {}\n", Slope::ContactKernels::current_name());
+  if (text != printed && comm->me == 0) utils::logmesg(lmp, text);
+  printed = text;
+}
+
+/* ----------------------------------------------------------------------
+   warn when the step breaks dt <= 0.25 sqrt(m_min/kn)
+------------------------------------------------------------------------- */
+
+void ContactGuards::check_timestep()
+{
+  double bound = HUGE_VAL;
+  int iworst = 0, jworst = 0;
+  for (int i = 1; i <= atom->ntypes; i++)
+    for (int j = i; j <= atom->ntypes; j++) {
+      if (!table.can_touch(i, j)) continue;
+      const double b = table.bound_on_step(i, j);
+      if (b < bound) {
+        bound = b;
+        iworst = i;
+        jworst = j;
+      }
+    }
+  const double dt = update->dt;
+  if (dt <= bound * (1.0 + 1.0e-12) || comm->me > 0) return;
+  if (table.spring_bound(iworst, jworst) <= bound)
+    warn("time step {:.4g} s is {:.3g} times the largest that holds the restitution, "
+         "0.25 sqrt(m_min/kn) = {:.4g} s (types {} {})",
+         dt, dt / bound, bound, iworst, jworst);
+  else
+    warn("time step {:.4g} s is {:.3g} times the largest with which the dashpots of scheme plain "
+         "allow a heap to come to rest, 0.15 m_min/cn = {:.4g} s (types {} {})",
+         dt, dt / bound, bound, iworst, jworst);
+}
+
+/* ----------------------------------------------------------------------
+   warn of dashpots and mass ratios beyond what the law follows
+------------------------------------------------------------------------- */
+
+void ContactGuards::check_dashpots()
+{
+  for (int i = 1; i <= atom->ntypes; i++)
+    for (int j = i; j <= atom->ntypes; j++)
+      if (table.can_touch(i, j)) check_dashpots(i, j);
+}
+
+void ContactGuards::check_dashpots(int i, int j)
+{
+  const ContactTable::TypeRange &a = table.range(i), &b = table.range(j);
+  double lightest = HUGE_VAL, heaviest = 0.0;
+  for (const ContactTable::TypeRange *range : {&a, &b})
+    if (range->moving) {
+      lightest = std::min(lightest, range->mass_min);
+      heaviest = std::max(heaviest, range->mass_max);
+    }
+  if (heaviest > MASS_RATIO_TESTED * lightest && a.moving && b.moving)
+    warn("the masses of balls of types {} and {} that can touch are tested up to a ratio of {:g}, "
+         "got {:.4g}",
+         i, j, MASS_RATIO_TESTED, heaviest / lightest);
+  const double cn = table.law(i, j).cn(lightest);
+  const double zeta = cn / (2.0 * sqrt(table.coeff(i, j).kn * lightest));
+  if (zeta > ZETA_FOLLOWED && !table.is_plain())
+    warn("damping ratio of types {} and {} must be <= {:g} to be followed in time, got {:.4g} (cn "
+         "{:.4g} N s/m, lightest ball {:.4g} kg): these contacts do not rebound and rest at the "
+         "right overlap, but reach it too fast",
+         i, j, ZETA_FOLLOWED, zeta, cn, lightest);
+}
+
+/* ----------------------------------------------------------------------
+   warn when contacts can begin before the neighbor list has them
+------------------------------------------------------------------------- */
+
+void ContactGuards::check_neighbor_lists()
+{
+  if (neighbor->delay == 0 && neighbor->every == 1 && neighbor->dist_check) return;
+  warn("with neigh_modify every {} delay {} check {} contacts may be found late and rebound too "
+       "fast; every 1 delay 0 check yes finds them in time",
+       neighbor->every, neighbor->delay, neighbor->dist_check ? "yes" : "no");
+}
+
+/* ---------------------------------------------------------------------- */
+
+void ContactGuards::begin_step()
+{
+  for (const std::string &text : motion.begin_step()) warn("{}", text);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void ContactGuards::record_overlap(int i, double overlap, double radius)
+{
+  const double share = overlap / radius;
+  if (share > DEEP) overlaps.count++;
+  if (share > overlaps.most) overlaps = {share, atom->tag[i], update->ntimestep, overlaps.count};
+}
+
+/* ----------------------------------------------------------------------
+   the energy must not grow
+------------------------------------------------------------------------- */
+
+void ContactGuards::watch_energy(double elastic)
+{
+  if (energy.check(elastic))
+    warn("the energy of the balls grew by {:.3g} % of the largest kinetic and spring energy until "
+         "step {}, with nothing but contacts and gravity at work: the time step is too large, or "
+         "contacts were found late",
+         100.0 * energy.growth(), update->ntimestep);
+}
+
+/* ---------------------------------------------------------------------- */
+
+ContactGuards::Found ContactGuards::found() const
+{
+  Found f;
+  // copies: LAMMPS' stand-in for MPI takes no const
+  double most = overlaps.most;
+  bigint count = overlaps.count;
+  MPI_Allreduce(&most, &f.deepest, 1, MPI_DOUBLE, MPI_MAX, world);
+  MPI_Allreduce(&count, &f.deep, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  f.energy_growth = energy.growth();
+  f.energy_grew = energy.seen();
+  f.dangerous_builds = neighbor->ndanger;
+  return f;
+}
+
+void ContactGuards::Found::add(const Found &other)
+{
+  deepest = std::max(deepest, other.deepest);
+  energy_growth = std::max(energy_growth, other.energy_growth);
+  deep += other.deep;
+  energy_grew += other.energy_grew;
+  dangerous_builds += other.dangerous_builds;
+}
+
+/* ----------------------------------------------------------------------
+   warn, once per run and with a count, of what was not sensible
+------------------------------------------------------------------------- */
+
+void ContactGuards::report()
+{
+  const Found f = found();
+  if (f.deep) {
+    Overlaps deepest = overlaps;
+    with_largest(world, overlaps.most, deepest);
+    warn(
+        "{} contacts were seen deeper than {:g} % of the smaller radius, the deepest {:.3g} % "
+        "(ball {}, step {}): the stiffness is too small for the speeds, or the time step too large",
+        f.deep, 100.0 * DEEP, 100.0 * deepest.most, deepest.ball, deepest.step);
+  }
+  if (f.energy_grew > 1)
+    warn("the energy of the balls had grown at {} of the checks every {} steps, by {:.3g} % of the "
+         "largest kinetic and spring energy",
+         f.energy_grew, +EnergyGuard::EVERY, 100.0 * f.energy_growth);
+  if (f.dangerous_builds)
+    warn("{} neighbor lists came late (dangerous builds): balls went farther than half the skin "
+         "{:g} in one step, and contacts may have started too deep",
+         f.dangerous_builds, neighbor->skin);
+  for (const std::string &text : motion.end_run()) warn("{}", text);
+}

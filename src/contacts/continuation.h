@@ -1,0 +1,75 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#ifndef SLOPE_CONTINUATION_H
+#define SLOPE_CONTINUATION_H
+
+#include "pointers.h"
+
+#include "vector3.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// A run in pieces, or from a restart file, is the uncut one, to the bit as long as the neighbor lists have
+// the same order. LAMMPS finds the forces anew at a set-up, with the velocities of the end of the last
+// step, while that step made them with those of its middle. So the force on each ball at the end of a run
+// is kept, moves between ranks with it and goes into restart files; taken back, it gives the velocities of
+// the middle, and with these the set-up finds the forces of the last step once more, but for rounding.
+// Before the first step those that were kept take their place. If they differ by more, something has been
+// changed in between, and those of the set-up stand.
+class Continuation : protected Pointers {
+ public:
+  explicit Continuation(class LAMMPS *);
+  ~Continuation() override;
+
+  bool forces_known() const;    // those of the last step, of this length
+  void keep_forces();
+
+  // at the set-up; until it is over the balls have the velocities of the middle of the step: empty if
+  // these are not known, and the same as LAMMPS has them
+  void find_half_step();
+  void forget_half_step();
+  std::vector<Slope::Vector> v, omega;
+
+  void begin_step();    // the first one takes the forces back
+  double **before;      // force (3) on each ball in the step before the last one, for scheme exact
+
+  // --- storage by atom ---
+
+  static constexpr int STORED = 9;    // numbers of each ball
+  void grow(int nmax);
+  void copy(int from, int to);
+  void clear(int i);
+  int pack(int i, double *) const;
+  int unpack(int i, const double *);
+
+  struct Numbers {    // for restart files
+    double step, dt;
+  };
+  Numbers numbers() const { return {static_cast<double>(step), dt}; }
+  void set_numbers(const Numbers &);
+
+ private:
+  static constexpr int FORCE = 6, BEFORE = 3;
+  double **force;    // and torque, on each ball in the last step
+  bigint step;       // the step that they belong to
+  double dt;         // and its length
+};
+
+// what changes velocities in the second half of a step beside the forces; a class, as the style that does so is in a room
+// above
+class Kick {
+ public:
+  virtual void take_back_kick() = 0;    // from LAMMPS' velocities of this rank's balls
+
+ protected:
+  ~Kick() = default;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

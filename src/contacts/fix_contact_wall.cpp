@@ -1,0 +1,192 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#include "fix_contact_wall.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "exchange_size.h"
+#include "modify.h"
+#include "pair_gran_restitution.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+
+/* ---------------------------------------------------------------------- */
+
+FixContactWall::FixContactWall(LAMMPS *lmp, int narg, char **arg, int keys) :
+    Fix(lmp, narg, arg), caller(fmt::format("Fix {} {}", style, id)), pair(nullptr), wall_type(0),
+    records(keys), contacts_in_lists(false), kept_by_atom(false), restart_extra(lmp)
+{
+  scalar_flag = vector_flag = 1;
+  extscalar = extvector = 1;
+  global_freq = 1;
+  restart_global = restart_peratom = 1;
+  create_attribute = 1;
+  maxexchange_dynamic = 1;
+}
+
+FixContactWall::~FixContactWall()
+{
+  if (!kept_by_atom) return;
+  atom->delete_callback(id, Atom::GROW);
+  atom->delete_callback(id, Atom::RESTART);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixContactWall::keep_by_atom()
+{
+  records.resize(atom->nmax);
+  atom->add_callback(Atom::GROW);
+  atom->add_callback(Atom::RESTART);
+  kept_by_atom = true;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixContactWall::init()
+{
+  restart_extra.check(caller);
+  pair = PairGranRestitution::of(lmp);
+  if (!pair)
+    error->all(FLERR, "{}: requires pair_style gran/restitution, which holds its coefficients",
+               caller);
+  pair->announce_wall(this, wall_type, groupbit, style);
+
+  // contacts must be stored by atom before any fix migrates atoms
+
+  for (int i = 0; i < modify->nfix; i++) {
+    if (modify->fix[i] == this) break;
+    if (modify->fix[i]->pre_exchange_migrate)
+      error->all(FLERR, "{}: must come before fix {} {}, which moves atoms between ranks", caller,
+                 modify->fix[i]->id, modify->fix[i]->style);
+  }
+  reserve();    // of a restart file's contacts, too
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixContactWall::pre_exchange()
+{
+  store_contacts();
+  reserve();
+}
+
+void FixContactWall::post_run()
+{
+  store_contacts();
+  reserve();
+}
+
+void FixContactWall::reserve()
+{
+  maxexchange = exchange_size(lmp, records.largest(atom->nlocal));
+}
+
+/* ---------------------------------------------------------------------- */
+
+const Slope::ContactLaw &FixContactWall::law_of(int type) const
+{
+  const Slope::ContactLaw *law = pair->law(type, wall_type);
+  if (!law)    // a type that came after init(), by fix pour or fix deposit
+    error->one(FLERR, "{}: pair_coeff {} {} is not set (moving type {}, wall type {})", caller,
+               std::min(type, wall_type), std::max(type, wall_type), type, wall_type);
+  return *law;
+}
+
+/* ----------------------------------------------------------------------
+   contacts from the lists to storage by atom: before atoms migrate or are sorted, before a
+   restart file, at the end of a run
+------------------------------------------------------------------------- */
+
+void FixContactWall::store_contacts()
+{
+  if (!contacts_in_lists) return;
+  contacts_in_lists = false;
+  records.clear();
+  take_contacts();
+}
+
+/* ----------------------------------------------------------------------
+   storage by atom
+------------------------------------------------------------------------- */
+
+void FixContactWall::grow_arrays(int nmax)
+{
+  records.resize(nmax);
+}
+
+void FixContactWall::copy_arrays(int i, int j, int /*delflag*/)
+{
+  // a fix before this one deletes atoms before they migrate: the lists still hold the old indices
+
+  store_contacts();
+  records.copy(i, j);
+}
+
+void FixContactWall::set_arrays(int i)
+{
+  records.make(i, 0);
+}
+
+int FixContactWall::pack_exchange(int i, double *buf)
+{
+  return records.pack(i, buf);
+}
+
+int FixContactWall::unpack_exchange(int i, double *buf)
+{
+  return records.unpack(i, buf);
+}
+
+/* ----------------------------------------------------------------------
+   restart file: what identifies the wall, and the contacts of each atom
+------------------------------------------------------------------------- */
+
+void FixContactWall::write_restart(FILE *fp)
+{
+  const bool in_use = contacts_in_lists;
+  store_contacts();
+  contacts_in_lists = in_use;    // the run continues with the lists
+  const std::vector<double> list = restart_values();
+  if (comm->me > 0) return;
+  if (list.size() * sizeof(double) > MAXSMALLINT)
+    error->one(FLERR, "{} must have at most {} bytes in a restart file, got {}", caller,
+               MAXSMALLINT, list.size() * sizeof(double));
+  const int size = static_cast<int>(list.size() * sizeof(double));
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(list.data(), sizeof(double), list.size(), fp);
+}
+
+int FixContactWall::pack_restart(int i, double *buf)
+{
+  const int m = 1 + records.pack(i, &buf[1]);
+  buf[0] = m;
+  return m;
+}
+
+void FixContactWall::unpack_restart(int i, int nth)
+{
+  const int none = records.packed(0);
+  const double *list = restart_extra.find(i, nth, 1 + none, records.packed(1) - none);
+  if (list) maxexchange = std::max(maxexchange, records.unpack(i, list + 1));
+}
+
+int FixContactWall::size_restart(int i)
+{
+  return 1 + records.packed(records.contacts(i));
+}
+
+int FixContactWall::maxsize_restart()
+{
+  // over all ranks: rank 0 writes it, and read_restart sizes its buffer by it
+
+  int mine = 1 + records.largest(atom->nlocal), most;
+  MPI_Allreduce(&mine, &most, 1, MPI_INT, MPI_MAX, world);
+  return most;
+}

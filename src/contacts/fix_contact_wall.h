@@ -1,0 +1,71 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#ifndef LMP_FIX_CONTACT_WALL_H
+#define LMP_FIX_CONTACT_WALL_H
+
+#include "fix.h"
+
+#include "contact_holder.h"
+#include "contact_records.h"
+#include "restart_extra.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// Common part of the walls: the law of pair gran/restitution, and contacts that are stored by atom
+// between one neighbor list and the next, while atoms migrate or are sorted, and in restart files.
+// In between they are in lists, which a wall has in its own way.
+class FixContactWall : public Fix, public ContactHolder {
+ public:
+  FixContactWall(class LAMMPS *, int, char **, int keys);    // of a contact's record
+  ~FixContactWall() override;
+  void init() override;
+  void setup_post_neighbor() override { post_neighbor(); }
+  void pre_exchange() override;
+  void post_run() override;
+
+  void grow_arrays(int) override;
+  void copy_arrays(int, int, int) override;
+  void set_arrays(int) override;
+  int pack_exchange(int, double *) override;
+  int unpack_exchange(int, double *) override;
+  void write_restart(FILE *) override;
+  int pack_restart(int, double *) override;
+  void unpack_restart(int, int) override;
+  int size_restart(int) override;
+  int maxsize_restart() override;
+
+ protected:
+  std::string caller;    // style and ID, for messages
+  class PairGranRestitution *pair;
+  int wall_type;    // atom type that stands for the wall in pair_coeff
+  Slope::ContactRecords records;
+  bool contacts_in_lists;    // contacts have been updated since they were last stored by atom
+
+  // law of balls of a type on the wall
+  const Slope::ContactLaw &law_of(int type) const;
+
+  // the last call of a constructor: LAMMPS cannot undo it for a fix whose constructor has failed
+  void keep_by_atom();
+
+  // from the lists, which may hold balls that have been deleted, to the records, which are empty
+  virtual void take_contacts() = 0;
+
+  // what identifies the wall in a restart file, on rank 0; collective
+  virtual std::vector<double> restart_values() = 0;
+
+ private:
+  bool kept_by_atom;
+  RestartExtra restart_extra;
+  void store_contacts();
+  void reserve();    // room for a ball's contacts in messages between ranks; collective
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,228 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#include "deposit_report.h"
+
+#include "deposit_balls.h"
+#include "deposit_writer.h"
+#include "lammps_compat.h"
+#include "rank_zero.h"
+#include "slope_version.h"
+
+#include "comm.h"
+#include "error.h"
+#include "timer.h"
+#include "update.h"
+
+#include <stdexcept>
+
+using namespace LAMMPS_NS;
+using Slope::AtomicFile;
+using Slope::DepositRasters;
+using Slope::DepositSummary;
+using Slope::DepositWriter;
+using Slope::FileSet;
+typedef DepositResults Result;
+
+enum { X, Y, Z };
+
+/* ---------------------------------------------------------------------- */
+
+DepositReport::DepositReport(LAMMPS *lmp, const std::string &id, const DepositOptions &options_in,
+                             const DepositBalls &balls_in) :
+    Pointers(lmp),
+    fix_id(id), options(options_in), balls(balls_in), exchange(lmp), limit(0.0), limit_set(0.0),
+    before(), last()
+{
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DepositReport::begin_run()
+{
+  on_rank_zero(lmp, "Fix deposit/grid", [this]() {
+    std::vector<std::string> paths = {options.prefix + ".summary.yaml"};
+    for (const DepositWriter::File &file : DepositWriter::files(options.prefix, ""))
+      paths.push_back(file.path);
+    FileSet::probe(paths);
+    lock.take(options.prefix, lmp);
+  });
+  limit = timer->get_timeout_remain();    // fix halt ends a run as a time limit does
+  limit_set = MPI_Wtime();
+}
+
+/* ----------------------------------------------------------------------
+   fix halt and a time limit leave the loop before the last step, or in it, and look alike then,
+   but a time limit takes its time
+------------------------------------------------------------------------- */
+
+std::string DepositReport::reason() const
+{
+  if (update->ntimestep == update->laststep && !timer->is_timeout()) return "run completed";
+  const bool limited = limit != 0.0 && MPI_Wtime() - limit_set >= limit;
+  return limited || compat::fixes_of_style(lmp, "halt").empty() ? "time limit" : "halted";
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DepositReport::warn(const std::string &line)
+{
+  if (comm->me > 0) return;
+  warnings.push_back(fmt::format("Fix deposit/grid {}: {}", fix_id, line));
+  error->warning(FLERR, warnings.back());
+}
+
+/* ----------------------------------------------------------------------
+   the run may end here: temporary files must be removed before
+------------------------------------------------------------------------- */
+
+template <typename Work> void DepositReport::on_files(Work work)
+{
+  on_rank_zero(lmp, "Fix deposit/grid", [&]() {
+    try {
+      work();
+    } catch (...) {
+      files.reset();
+      throw;
+    }
+  });
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DepositReport::write(const std::string &why, const DepositResults &results,
+                          const DepositRasters &rasters, const ContactGuards *guards)
+{
+  DepositSummary about = summary(why, results);
+  add_guards(about, guards);
+  add_lost(about);
+  double mine[4] = {
+      rasters.largest(DepositRasters::THICKNESS), rasters.largest(DepositRasters::MAX_THICKNESS),
+      rasters.largest(DepositRasters::MAX_SPEED), rasters.largest(DepositRasters::MAX_ENERGY)};
+  double all[4];
+  MPI_Allreduce(mine, all, 4, MPI_DOUBLE, MPI_MAX, world);
+  about.largest = {all[0], all[1], all[2], all[3]};
+
+  if (comm->me == 0) files.reset(new FileSet);
+  const std::string number = options.series ? std::to_string(update->ntimestep) : std::string();
+  const std::string header = DepositWriter::header(rasters.grid());
+  for (const DepositWriter::File &file : DepositWriter::files(options.prefix, number)) {
+    auto text_of = [&](int band) {
+      return DepositWriter::text_of_band(rasters, file, band);
+    };
+    write_raster(file.path, header, text_of, rasters.bands());
+  }
+  on_files([&]() {
+    about.files = files->names();
+    files->add(options.prefix + ".summary.yaml").write(about.text());
+    files->commit();
+  });
+  files.reset();
+}
+
+/* ----------------------------------------------------------------------
+   the rows start in the north; ranks keep sending when the disk is full
+------------------------------------------------------------------------- */
+
+void DepositReport::write_raster(const std::string &path, const std::string &header,
+                                 const DepositExchange::MakeBytes &text_of,
+                                 const Slope::DepositBands &bands)
+{
+  AtomicFile *file = nullptr;
+  on_files([&]() {
+    file = &files->add(path);
+    file->write(header);
+  });
+
+  std::string problem;
+  auto take = [&](const std::string &text) {
+    if (!problem.empty()) return;
+    try {
+      file->write(text);
+    } catch (std::exception &e) {
+      problem = e.what();
+    }
+  };
+  exchange.to_rank_zero(bands, bands.number() - 1, 0, text_of, take);
+  on_files([&]() {
+    if (!problem.empty()) throw std::runtime_error(problem);
+  });
+}
+
+/* ----------------------------------------------------------------------
+   all but what the rasters hold
+------------------------------------------------------------------------- */
+
+DepositSummary DepositReport::summary(const std::string &why, const DepositResults &results) const
+{
+  const DepositRelease::Released &released = results.released;
+  const double *top = released.mass.top, *value = results.vector;
+  DepositSummary s = DepositSummary();
+  s.slope_version = SLOPE_VERSION;
+  s.lammps_version = lmp->version;
+  s.fix = fix_id;
+  s.step = update->ntimestep;
+  s.time = results.time;
+  s.dt = update->dt;
+  s.ranks = comm->nprocs;
+  s.reason = why;
+  s.grid = options.grid;
+  s.release = {released.mass.number, released.mass.solid, options.body, released.body,
+               balls.bulk()};
+  s.present = results.present;
+  s.lost = value[Result::NLOST];
+  s.volume = {value[Result::RELEASED], value[Result::ON_GRID], value[Result::OFF_GRID],
+              value[Result::LOST], value[Result::RESIDUAL]};
+  s.travel = {{top[X], top[Y], top[Z]},
+              released.front,
+              value[Result::CENTROID],
+              {value[Result::FRONT], value[Result::REACH]},
+              balls.quantiles(top, value[Result::LOST])};
+
+  double moving;
+  s.motion = balls.motion(options.motion, moving);
+  const double left = released.volume - value[Result::LOST];
+  s.motion.moving_share = results.present > 0.0 ? moving / left : 0.0;
+  s.motion.fast_share = s.motion.fast_volume / released.volume;
+  s.change_rate = value[Result::CHANGE];
+  return s;
+}
+
+/* ----------------------------------------------------------------------
+   what the guards of the contacts found in all runs, and all warnings so far
+------------------------------------------------------------------------- */
+
+void DepositReport::keep_guards()
+{
+  before.add(last);
+  last = ContactGuards::Found();
+}
+
+void DepositReport::add_guards(DepositSummary &s, const ContactGuards *guards)
+{
+  if (guards) {
+    last = guards->found();
+    ContactGuards::Found found = before;
+    found.add(last);
+    s.guards = {true, found.deepest, found.energy_growth, found.deep, found.dangerous_builds};
+    s.warnings = guards->warnings;
+  }
+  s.warnings.insert(s.warnings.end(), warnings.begin(), warnings.end());
+}
+
+/* ----------------------------------------------------------------------
+   of these results, so not among the warnings that stay; before those of single balls
+------------------------------------------------------------------------- */
+
+void DepositReport::add_lost(DepositSummary &s) const
+{
+  if (s.lost == 0.0) return;
+  const std::string text =
+      fmt::format("Fix deposit/grid {}: the released volume must stay in the box: {:.3g} % of it "
+                  "left, in {:.0f} of {:.0f} balls, and lies beyond what is written here; use a "
+                  "larger box",
+                  fix_id, 100.0 * s.volume.lost / s.volume.released, s.lost, s.release.balls);
+  s.warnings.insert(s.warnings.begin(), text);
+}

@@ -1,0 +1,71 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#ifndef SLOPE_DEPOSIT_REPORT_H
+#define SLOPE_DEPOSIT_REPORT_H
+
+#include "contact_guards.h"
+#include "deposit_exchange.h"
+#include "deposit_options.h"
+#include "deposit_rasters.h"
+#include "deposit_results.h"
+#include "deposit_summary.h"
+#include "file_set.h"
+#include "pointers.h"
+#include "prefix_lock.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// The output of fix deposit/grid: warnings, rasters and summary. All methods are collective.
+class DepositReport : protected Pointers {
+ public:
+  DepositReport(class LAMMPS *, const std::string &fix_id, const DepositOptions &,
+                const class DepositBalls &);
+
+  // files that cannot be written end the run before it begins, not at its end
+  void begin_run();
+
+  // at the set-up of a run: the guards of the contacts have begun again
+  void keep_guards();
+
+  // why a run ended
+  std::string reason() const;
+
+  // to the screen, the log and the summary
+  void warn(const std::string &);
+
+  // all files, or none
+  // guards of the contacts, or nullptr
+  void write(const std::string &reason, const DepositResults &, const Slope::DepositRasters &,
+             const ContactGuards *guards);
+
+ private:
+  const std::string fix_id;
+  const DepositOptions &options;
+  const class DepositBalls &balls;
+  DepositExchange exchange;
+  double limit, limit_set;              // wall time that the run has, when that was known; s
+  std::vector<std::string> warnings;    // so far, on rank 0
+  ContactGuards::Found before,
+      last;    // in the runs before, in this one when files were written last
+
+  std::unique_ptr<Slope::FileSet> files;    // on rank 0, as long as they are written
+  Slope::PrefixLock lock;                   // on rank 0
+
+  template <typename Work> void on_files(Work);
+  void write_raster(const std::string &path, const std::string &header,
+                    const DepositExchange::MakeBytes &, const Slope::DepositBands &);
+  Slope::DepositSummary summary(const std::string &reason, const DepositResults &) const;
+  void add_guards(Slope::DepositSummary &, const ContactGuards *);
+  void add_lost(Slope::DepositSummary &) const;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,401 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+/* What crosses a line: the path of every ball in every step is tested against the vertical plane over
+   the line, right after the balls have moved, before LAMMPS deletes those that left the box. */
+
+#include "fix_control_line.h"
+
+#include "constants.h"
+#include "file_set.h"
+#include "fix_deposit_grid.h"
+#include "lammps_compat.h"
+#include "large_messages.h"
+#include "rank_zero.h"
+#include "region_surface.h"
+#include "requirements.h"
+#include "restart_count.h"
+#include "slope_version.h"
+#include "yaml_text.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "force.h"
+#include "group.h"
+#include "modify.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using Slope::CrossingLog;
+using Slope::PlanLine;
+
+static constexpr double FORMAT = -2.0;    // in place of the number of coordinates of the first one
+static constexpr int BEGIN = 10;          // numbers with which what a restart file holds begins
+
+enum { X, Y, Z };
+
+/* ----------------------------------------------------------------------
+   fix ID group control/line FILE deposit ID output PREFIX
+------------------------------------------------------------------------- */
+
+FixControlLine::FixControlLine(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), deposit(nullptr)
+{
+  if (narg < 4) error->all(FLERR, "Fix control/line needs FILE deposit ID output PREFIX");
+  if (!atom->radius_flag || !atom->rmass_flag || !atom->omega_flag)
+    error->all(FLERR, "Fix control/line requires balls: atom_style must be sphere, got {}",
+               atom->atom_style);
+  file = arg[3];
+  read_keywords(narg, arg);
+  read_line();
+
+  nevery = 1;
+  std::fill(result, result + NRESULT, 0.0);
+  vector_flag = 1;
+  size_vector = NRESULT;
+  global_freq = 1;
+  extvector = -1;
+  extlist = new int[NRESULT];
+  for (int k = 0; k < NRESULT; k++) extlist[k] = k < 2;
+  restart_global = 1;
+}
+
+/* ---------------------------------------------------------------------- */
+
+FixControlLine::~FixControlLine()
+{
+  delete[] extlist;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixControlLine::read_keywords(int narg, char **arg)
+{
+  for (int iarg = 4; iarg < narg; iarg += 2) {
+    const std::string keyword = arg[iarg];
+    if (keyword != "deposit" && keyword != "output")
+      error->all(FLERR, "Fix control/line: unknown keyword {}, must be deposit or output", keyword);
+    if (iarg + 1 == narg) error->all(FLERR, "Fix control/line {}: value is missing", keyword);
+    (keyword == "deposit" ? deposit_id : prefix) = arg[iarg + 1];
+  }
+  if (prefix.empty()) error->all(FLERR, "Fix control/line keyword output is missing");
+}
+
+/* ----------------------------------------------------------------------
+   one rank reads; its errors end the run on all ranks
+------------------------------------------------------------------------- */
+
+void FixControlLine::read_line()
+{
+  std::vector<double> xy;
+  on_rank_zero(lmp, "Fix control/line", [&]() {
+    xy = PlanLine::read(file).xy;
+  });
+  share(world, xy);
+  line = PlanLine(xy);
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixControlLine::setmask()
+{
+  return POST_INTEGRATE | END_OF_STEP | POST_RUN;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixControlLine::init()
+{
+  for (Fix *fix : compat::fixes_of_style(lmp, "control/line"))
+    if (fix != this && static_cast<FixControlLine *>(fix)->prefix == prefix)
+      error->all(FLERR, "Fix control/line output must differ from that of fix {}, got {}", fix->id,
+                 prefix);
+  require_run(lmp, "Fix control/line");
+  find_deposit();
+  ground.reset(
+      new RegionSurface(lmp, "Fix control/line", deposit->terrain().c_str(), RegionSurface::UPPER));
+  check_line();
+  on_rank_zero(lmp, "Fix control/line", [this]() {
+    Slope::FileSet::probe({prefix + ".line.csv", prefix + ".line.yaml"});
+    lock.take(prefix, lmp);
+  });
+}
+
+/* ----------------------------------------------------------------------
+   the fix that knows the ground and the volume that a ball represents; the only one needs no name
+------------------------------------------------------------------------- */
+
+void FixControlLine::find_deposit()
+{
+  const std::vector<Fix *> all = compat::fixes_of_style(lmp, "deposit/grid");
+  Fix *found = deposit_id.empty() && all.size() == 1 ? all[0] : nullptr;
+  for (Fix *fix : all)
+    if (deposit_id == fix->id) found = fix;
+  deposit = static_cast<FixDepositGrid *>(found);
+  if (!found && deposit_id.empty())
+    error->all(FLERR,
+               "Fix control/line {} needs deposit ID, the fix deposit/grid that has the bulk "
+               "factor, where "
+               "there is not exactly one, got {}",
+               id, all.size());
+  if (!found)
+    error->all(FLERR, "Fix control/line {} deposit must be the ID of a fix deposit/grid, got {}",
+               id, deposit_id);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixControlLine::check_line() const
+{
+  for (size_t k = 0; k < line.xy.size(); k += 2) {
+    const double x = line.xy[k], y = line.xy[k + 1];
+    if (x < ground->xlo || x > ground->xhi || y < ground->ylo || y > ground->yhi)
+      error->all(
+          FLERR,
+          "Fix control/line {}: points of {} must lie in the terrain, x {:.8g} to {:.8g}, y {:.8g} "
+          "to {:.8g}, got {:.8g} {:.8g}",
+          id, file, ground->xlo, ground->xhi, ground->ylo, ground->yhi, x, y);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixControlLine::setup(int /*vflag*/)
+{
+  set_up = update->ntimestep;
+  clock.begin(update->ntimestep, update->dt);
+  if (group->count(igroup) == 0 && comm->me == 0)
+    error->warning(
+        FLERR, "Fix control/line {}: the group should have balls, got none at the start of the run",
+        id);
+  remember();
+}
+
+void FixControlLine::end_of_step()
+{
+  require_step(lmp, "Fix control/line", set_up);
+  clock.pass(update->ntimestep);
+  remember();
+}
+
+void FixControlLine::reset_dt()
+{
+  // between runs, where newer LAMMPS calls this too, the next set-up sees the change
+  if (update->whichflag == 1) clock.change_step_size(update->ntimestep, update->dt);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixControlLine::remember()
+{
+  const int n = atom->nlocal;
+  places.resize(3 * (size_t) n);
+  for (int i = 0; i < n; i++) domain->unmap(atom->x[i], atom->image[i], &places[3 * i]);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixControlLine::post_integrate()
+{
+  const int n = atom->nlocal;
+  if (places.size() != 3 * (size_t) n)
+    error->one(
+        FLERR,
+        "Fix control/line {}: the number of balls must not change between two steps without a "
+        "set-up, which pre no leaves out, got {} after {}",
+        id, n, places.size() / 3);
+  std::vector<PlanLine::Crossing> found;
+  for (int i = 0; i < n; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    const double *from = &places[3 * i];
+    double to[3];
+    domain->unmap(atom->x[i], atom->image[i], to);
+    found.clear();
+    line.cross(from, to, found);
+    for (const PlanLine::Crossing &crossing : found) note(i, from, to, crossing);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   velocities are those in the middle of the step, with which the ball has moved
+------------------------------------------------------------------------- */
+
+void FixControlLine::note(int i, const double *from, const double *to, const PlanLine::Crossing &c)
+{
+  const double *v = atom->v[i], *w = atom->omega[i], r = atom->radius[i];
+  const double square = v[X] * v[X] + v[Y] * v[Y] + v[Z] * v[Z];
+  const double spin = w[X] * w[X] + w[Y] * w[Y] + w[Z] * w[Z];
+  CrossingLog::Event e;
+  e.time = clock.at(update->ntimestep - 1) + c.share * update->dt;
+  e.step = (double) update->ntimestep;
+  e.tag = (double) atom->tag[i];
+  e.direction = c.direction;
+  e.along = c.along;
+  e.x[X] = c.x;
+  e.x[Y] = c.y;
+  e.x[Z] = from[Z] + c.share * (to[Z] - from[Z]);
+  std::string changed;
+  if (!ground->stands(changed))    // of a run with pre no
+    error->one(FLERR, "Fix control/line {}: region {} must not change before the run ends", id,
+               changed);
+  double z;
+  e.height = ground->height(c.x, c.y, z) ? e.x[Z] - z : std::numeric_limits<double>::quiet_NaN();
+  std::copy(v, v + 3, e.v);
+  e.speed = sqrt(square);
+  e.energy = 0.5 * atom->rmass[i] * (square + 0.4 * r * r * spin) * force->mvv2e;
+  e.volume = 4.0 / 3.0 * Slope::PI * r * r * r * deposit->bulk();
+  e.diameter = 2.0 * r;
+  fresh.push_back(e);
+}
+
+/* ----------------------------------------------------------------------
+   collective: the crossings of all ranks go to rank 0, and the results to all
+------------------------------------------------------------------------- */
+
+void FixControlLine::collect()
+{
+  int mine = !fresh.empty(), any;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  if (!any) return;
+
+  const std::vector<CrossingLog::Event> all = gather_records(world, fresh);
+  fresh.clear();
+  if (comm->me == 0) {
+    log.events.insert(log.events.end(), all.begin(), all.end());
+    log.sort();
+    const CrossingLog::Largest most = log.quantile(1.0);
+    const double values[NRESULT] = {log.way(1).volume, log.way(-1).volume, most.speed, most.height,
+                                    most.energy};
+    std::copy(values, values + NRESULT, result);
+  }
+  MPI_Bcast(result, NRESULT, MPI_DOUBLE, 0, world);
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixControlLine::compute_vector(int k)
+{
+  collect();
+  return result[k];
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixControlLine::post_run()
+{
+  if (update->whichflag == 1) write_files();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixControlLine::write_files()
+{
+  collect();
+  if (comm->me == 0 && log.main_direction() < 0)
+    error->warning(FLERR,
+                   "Fix control/line {}: more volume crossed back than forward, {:.1f} m3 against "
+                   "{:.1f}: largest values and quantiles are those of the crossings back; turn the "
+                   "line round, {}, if it was drawn against the motion",
+                   id, log.way(-1).volume, log.way(1).volume, file);
+  on_rank_zero(lmp, "Fix control/line", [this]() {
+    Slope::FileSet files;
+    files.add(prefix + ".line.csv").write(log.csv());
+    files.add(prefix + ".line.yaml").write(summary());
+    files.commit();
+  });
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::string FixControlLine::summary() const
+{
+  using namespace Slope::yaml;
+  std::string s = "# fix control/line of the SLOPE package for LAMMPS; units of the run\n";
+  Slope::yaml::line(s, "slope_version", quoted(SLOPE_VERSION));
+  Slope::yaml::line(s, "lammps_version", quoted(lmp->version));
+  Slope::yaml::line(s, "fix", quoted(id));
+  Slope::yaml::line(s, "step", std::to_string(update->ntimestep));
+  Slope::yaml::line(s, "time", real(clock.at(update->ntimestep)));
+  Slope::yaml::line(s, "line", quoted(file));
+  Slope::yaml::line(s, "length", real(line.length()));
+  Slope::yaml::line(s, "deposit", quoted(deposit->id));
+  Slope::yaml::line(s, "bulk_factor", real(deposit->bulk()));
+  return s + log.yaml();
+}
+
+/* ----------------------------------------------------------------------
+   collective; rank 0 writes
+------------------------------------------------------------------------- */
+
+void FixControlLine::write_restart(FILE *fp)
+{
+  collect();
+  if (comm->me != 0) return;
+  const Slope::RunClock::State at = clock.state();
+  const double list[BEGIN] = {FORMAT,          (double) line.xy.size(),
+                              line.length(),   line.xlo,
+                              line.checksum(), at.base,
+                              at.base_step,    at.last,
+                              at.step_size,    (double) at.on};
+  const RestartCount count((double) log.events.size());
+  const double bytes =
+      sizeof(list) + sizeof(count) + (double) sizeof(CrossingLog::Event) * log.events.size();
+  if (bytes > MAXSMALLINT)
+    error->one(FLERR, "Fix control/line must have at most {} bytes in a restart file, got {:.0f}",
+               MAXSMALLINT, bytes);
+  const int size = (int) bytes;
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(list, sizeof(list), 1, fp);
+  fwrite(&count, sizeof(count), 1, fp);
+  fwrite(log.events.data(), sizeof(CrossingLog::Event), log.events.size(), fp);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixControlLine::restart(char *buffer)
+{
+  double whole[BEGIN], *const list = whole + 1;
+  memcpy(whole, buffer, sizeof(whole));
+  if (whole[0] != FORMAT)
+    error->all(
+        FLERR,
+        "Fix control/line {}: the restart file must be of this version of the fix, got one of "
+        "an older version: run from the start again",
+        id);
+  const double mine[4] = {(double) line.xy.size(), line.length(), line.xlo, line.checksum()};
+  if (!std::equal(mine, mine + 4, list))
+    error->all(
+        FLERR,
+        "Fix control/line {} must have the line of the restart file, {:.0f} points, length "
+        "{:.8g} (sum {:.10g}); got "
+        "{:.0f} points, length {:.8g} (sum {:.10g}): another line, or another direction, needs "
+        "another fix ID",
+        id, 0.5 * list[0], list[1], list[3], 0.5 * mine[0], mine[1], mine[3]);
+  clock.set_state({list[4], list[5], list[6], list[7], list[8]});
+  RestartCount count;
+  memcpy(&count, buffer + sizeof(whole), sizeof(count));
+  const size_t n = count.check(lmp, fmt::format("Fix control/line {}", id),
+                               MAXSMALLINT / sizeof(CrossingLog::Event));
+  log.events.clear();
+  fresh.resize(comm->me == 0 ? n : 0);    // collect() brings them, and the results
+  if (!fresh.empty())
+    memcpy(fresh.data(), buffer + sizeof(whole) + sizeof(count), n * sizeof(CrossingLog::Event));
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixControlLine::memory_usage()
+{
+  return (double) places.capacity() * sizeof(double) +
+      (double) (fresh.capacity() + log.events.capacity()) * sizeof(CrossingLog::Event);
+}

@@ -1,0 +1,339 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+/* Fixed balls as a wall. They are no atoms: made and sorted into plan cells where moving balls come
+   near, listed for these when LAMMPS rebuilds its neighbor list, so that a step costs what the
+   contacts cost, and a rank holds what its own balls need, whatever the size of the terrain. */
+
+#include "fix_wall_gran_balls.h"
+
+#include "atom.h"
+#include "ball_placement.h"
+#include "comm.h"
+#include "contact_energy.h"
+#include "error.h"
+#include "initial_overlap.h"
+#include "neighbor.h"
+#include "pair_gran_restitution.h"
+#include "style_argument.h"
+#include "sunk_region.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace Slope;
+
+static constexpr double SAME_SIZE = 1.0e-9;
+static constexpr double RESTART_FORMAT =
+    -3.0;    // in place of the number of balls of the first one
+
+/* ----------------------------------------------------------------------
+   fix ID group wall/gran/balls TYPE DIAMETER surface|file ...
+------------------------------------------------------------------------- */
+
+FixWallGranBalls::FixWallGranBalls(LAMMPS *lmp, int narg, char **arg) :
+    FixContactWall(lmp, narg, arg, 1), smaller_warned(false)
+{
+  if (narg < 6)
+    error->all(FLERR, "{}: needs TYPE DIAMETER and surface or file, got {} arguments", caller,
+               narg - 3);
+
+  wall_type = whole_number_argument(lmp, caller + " type", arg[3]);
+  if (wall_type < 1 || wall_type > atom->ntypes)
+    error->all(FLERR, "{} type must be 1 to {} (the atom types of the box), got {}", caller,
+               atom->ntypes, wall_type);
+  diameter = number_argument(lmp, caller + " diameter", arg[4]);
+  if (!(diameter > 0.0)) error->all(FLERR, "{} diameter must be > 0, got {}", caller, arg[4]);
+  radius = 0.5 * diameter;
+
+  const double moving = BallPlacement::smallest_ball(lmp, groupbit);
+  placement.reset(new BallPlacement(lmp, caller, diameter, moving, narg - 5, &arg[5], true));
+  balls.reset(
+      new BallTiles(placement->tiles(), diameter, [this](int tile, std::vector<PlacedBall> &made) {
+        placement->make(tile, made);
+      }));
+
+  size_vector = 3;
+  for (int k = 0; k < 3; k++) force_mine[k] = force_all[k] = 0.0;
+  force_ready = 0;
+  keep_by_atom();
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixWallGranBalls::deepest_overlap(const double *x, double r) const
+{
+  double deepest = 0.0;
+  balls->visit_near(x, r + radius, [&](int, double d2) {
+    deepest = std::max(deepest, r + radius - std::sqrt(d2));
+  });
+  return deepest;
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixWallGranBalls::setmask()
+{
+  return PRE_EXCHANGE | POST_NEIGHBOR | POST_FORCE;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixWallGranBalls::init()
+{
+  FixContactWall::init();
+  placement->check_regions();
+  check_sizes();
+}
+
+/* ----------------------------------------------------------------------
+   were the balls that this ground was made for the smallest?
+------------------------------------------------------------------------- */
+
+void FixWallGranBalls::check_sizes()
+{
+  const double smallest = placement->smallest();
+  if (smallest == 0.0 || smaller_warned) return;
+  const double moving = BallPlacement::smallest_ball(lmp, groupbit);
+  if (moving == 0.0 || moving > smallest * (1.0 - SAME_SIZE)) return;
+  if (comm->me == 0)
+    error->warning(
+        FLERR,
+        "{}: balls of diameter {} may pass between these, placed for {} and larger, on steep "
+        "ground: define the fix after the balls, or with smallest {}",
+        caller, moving, smallest, moving);
+  smaller_warned = true;
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::shared_ptr<SunkRegion> FixWallGranBalls::body() const
+{
+  const auto sunk = placement->sunk();
+  return sunk && sunk->side == RegionSurface::LOWER ? sunk : nullptr;
+}
+
+const std::string &FixWallGranBalls::left_out() const
+{
+  return placement->outside();
+}
+
+/* ----------------------------------------------------------------------
+   a contact's key: the number of the fixed ball, which stays the same when its index does not
+------------------------------------------------------------------------- */
+
+void FixWallGranBalls::take_contacts()
+{
+  for (const ContactList &l : lists)
+    for (size_t k = 0, end; k < l.entries.size(); k = end) {
+      const int i = l.entries[k].i;    // its entries follow one another
+      int n = 0;
+      for (end = k; end < l.entries.size() && l.entries[end].i == i; end++) n += l.has_history(end);
+      if (n == 0 || i >= atom->nlocal) continue;
+      records.make(i, n);
+      for (n = 0; k < end; k++) {
+        if (!l.has_history(k)) continue;
+        *records.key(i, n) = static_cast<double>(balls->number(l.entries[k].j));
+        std::copy_n(l.histories[k], HISTORY, records.history(i, n++));
+      }
+    }
+}
+
+// a history for each entry of new lists: the stored one for a contact that is known
+
+void FixWallGranBalls::give_histories()
+{
+  size_t total = 0;
+  for (const ContactList &l : lists) total += l.entries.size();
+  histories.assign(total * HISTORY, 0.0);
+  double *next = histories.data();
+  for (ContactList &l : lists)
+    for (size_t k = 0; k < l.entries.size(); k++, next += HISTORY) {
+      const ContactList::Entry &e = l.entries[k];
+      l.histories[k] = next;
+      for (int n = 0; n < records.contacts(e.i); n++)
+        if (*records.key(e.i, n) == static_cast<double>(balls->number(e.j))) {
+          std::copy_n(records.history(e.i, n), HISTORY, next);
+          l.set_history(k);
+        }
+    }
+}
+
+/* ----------------------------------------------------------------------
+   list the fixed balls near each moving ball, with the history of those that touch
+   LAMMPS rebuilds when a ball has moved by half the skin; fixed balls do not move
+------------------------------------------------------------------------- */
+
+void FixWallGranBalls::post_neighbor()
+{
+  balls->drop_unused();
+  lists.resize(atom->ntypes + 1);
+  for (ContactList &l : lists) l.clear(true, false);
+
+  double **x = atom->x;
+  const double *r = atom->radius;
+  const int *mask = atom->mask, *type = atom->type;
+  const double beyond = radius + 0.5 * neighbor->skin;
+  try {
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!(mask[i] & groupbit)) continue;
+      ContactList &l = lists[type[i]];
+      balls->visit_near(x[i], r[i] + beyond, [&](int k, double) {
+        l.add(i, k, nullptr, false, r[i], radius, atom->rmass[i], 1.0);
+      });
+    }
+    placement->forget();
+    give_histories();
+  } catch (std::bad_alloc &) {    // on this rank alone
+    error->one(FLERR, "{}: not enough memory for the fixed balls near {} balls: {}", caller,
+               atom->nlocal, "larger fixed balls, or more ranks");
+  } catch (std::length_error &e) {
+    error->one(FLERR, "{}: must be fewer than {}: larger fixed balls, or more ranks", caller,
+               e.what());
+  }
+  if (pair->sizes_vary)
+    for (ContactList &l : lists) l.let_vary();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixWallGranBalls::setup(int)
+{
+  apply(true);
+}
+
+void FixWallGranBalls::post_force(int)
+{
+  apply(false);
+}
+
+/* ----------------------------------------------------------------------
+   called by the pair style before it computes forces
+------------------------------------------------------------------------- */
+
+void FixWallGranBalls::find_contacts(bool repeat)
+{
+  const MovingBalls moving = pair->moving_balls();
+  const FixedPartners fixed = partners();
+  InitialOverlap initial(lmp);
+  for (ContactList &l : lists) {
+    if (repeat)
+      l.adopt_overlaps(moving, fixed, [&](const ContactList::Entry &e, double overlap) {
+        const Vector &ball = balls->places()[e.j];
+        initial.record(
+            overlap, std::min(atom->radius[e.i], radius), atom->tag[e.i], atom->x[e.i],
+            fmt::format("the fixed ball at {:.6g} {:.6g} {:.6g},", ball.x, ball.y, ball.z));
+      });
+    l.find(repeat, moving, fixed);
+  }
+  if (repeat) initial.check(caller);
+}
+
+/* ----------------------------------------------------------------------
+   contact forces of the fixed balls on the moving ones
+------------------------------------------------------------------------- */
+
+void FixWallGranBalls::apply(bool repeat)
+{
+  const MovingBalls moving = pair->moving_balls();
+  const FixedPartners fixed = partners();
+  const ContactLaw *law = nullptr;
+  auto visit = [&](int i, int, const Vector &f, const Vector &d) {
+    pair->works.add(i, ContactWorks::FIXED, atom->radius[i], radius, *law, 1.0, f, d);
+  };
+  ContactTally tally = pair->works.wanted ? tally_of(visit) : ContactTally();
+
+  for (int type = 1; type <= atom->ntypes; type++) {
+    ContactList &l = lists[type];
+    if (l.entries.empty()) continue;
+    law = &law_of(type);
+    l.apply(*law, update->dt, repeat, moving, fixed, &tally);
+  }
+
+  force_mine[0] = -tally.force.x;
+  force_mine[1] = -tally.force.y;
+  force_mine[2] = -tally.force.z;
+  force_ready = 0;
+  contacts_in_lists = true;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixWallGranBalls::elastic_energy() const
+{
+  const MovingBalls moving = pair->moving_balls();
+  const FixedPartners fixed = partners();
+  double energy = 0.0;
+  for (size_t type = 1; type < lists.size(); type++)
+    if (!lists[type].entries.empty())
+      energy += Slope::elastic_energy(lists[type], law_of(type), update->dt, moving, fixed,
+                                      [this](const ContactList::Entry &e, double overlap) {
+                                        pair->guards.record_overlap(
+                                            e.i, overlap, std::min(atom->radius[e.i], radius));
+                                      });
+  return energy;
+}
+
+/* ----------------------------------------------------------------------
+   number of fixed balls; total force on them
+------------------------------------------------------------------------- */
+
+double FixWallGranBalls::compute_scalar()
+{
+  return static_cast<double>(placement->count());
+}
+
+double FixWallGranBalls::compute_vector(int n)
+{
+  if (!force_ready) {
+    MPI_Allreduce(force_mine, force_all, 3, MPI_DOUBLE, MPI_SUM, world);
+    force_ready = 1;
+  }
+  return force_all[n];
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixWallGranBalls::memory_usage()
+{
+  double bytes =
+      balls->memory_usage() + records.memory_usage() + histories.capacity() * sizeof(double);
+  for (const ContactList &l : lists) bytes += l.memory_usage();
+  return bytes;
+}
+
+/* ----------------------------------------------------------------------
+   restart file: what identifies the balls
+------------------------------------------------------------------------- */
+
+std::vector<double> FixWallGranBalls::restart_values()
+{
+  std::vector<double> list = placement->fingerprint();
+  list.insert(list.begin(), {RESTART_FORMAT, static_cast<double>(list.size())});
+  return list;
+}
+
+void FixWallGranBalls::restart(char *buf)
+{
+  double head[2];
+  memcpy(head, buf, sizeof(head));
+  if (head[0] != RESTART_FORMAT)
+    error->all(
+        FLERR,
+        "{}: the restart file must be of this version of the fix, got one of an older version, "
+        "whose contacts may be those of other balls: run from the start again",
+        caller);
+  const size_t here =
+      placement->fingerprint().size();    // as many in a whole file, or another ground
+  std::vector<double> there(head[1] == here ? here : 2);
+  memcpy(there.data(), buf + sizeof(head), there.size() * sizeof(double));
+  const std::string why = placement->unlike(there);
+  if (!why.empty())
+    error->all(FLERR, "{}: the restart file was written with other fixed balls ({})", caller, why);
+}

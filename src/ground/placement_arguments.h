@@ -1,0 +1,57 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#ifndef SLOPE_PLACEMENT_ARGUMENTS_H
+#define SLOPE_PLACEMENT_ARGUMENTS_H
+
+#include "pointers.h"
+
+#include <string>
+
+namespace LAMMPS_NS {
+
+// The arguments that say where fixed balls go, which fix wall/gran/balls and create_balls share:
+//
+//   surface REGION upper|lower spacing S [inside REGION | outside REGION [sunk H]] [origin x y]
+//     [sink H] [smallest D] [pattern grid | pattern scattered [SEED]] [angle DEG]
+//   file FILE [inside REGION | outside REGION]
+//   write FILE     in addition, if may_write
+//
+// Errors end the run on all ranks; messages start with caller.
+class PlacementArguments : protected Pointers {
+ public:
+  PlacementArguments(class LAMMPS *, const std::string &caller, double diameter, double smallest,
+                     int narg, char **arg, bool may_write);
+
+  const std::string caller;
+  const double diameter;
+
+  std::string region, file, write;    // region or file is empty
+  int side;                           // of RegionSurface
+  double spacing, origin[2];
+  bool scattered;
+  int seed;        // of the scattered pattern
+  double angle;    // of the plan grid, counterclockwise, radians
+  std::string filter;
+  bool filter_inside;
+  double sink, filter_sink;    // < 0: the sink of the fix that has sunk the filter's region
+
+  // diameter of the smallest moving ball, at most that of the fixed ones; 0: unknown (file)
+  double smallest;
+
+ private:
+  void need(int n, const char *values, int, char **) const;
+  double number(const char *what, int, char **) const;
+  void parse(int, char **, bool);
+  int parse_surface(int, char **);
+  int parse_pattern(int, char **);
+  void check_pattern() const;
+  int parse_any(int, char **, bool);
+  void check_sink(double, char **) const;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

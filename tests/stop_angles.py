@@ -1,0 +1,297 @@
+#!/usr/bin/python3
+"""The stop angle of a ground of fixed balls, and the table of them that the package has.
+
+    tests/stop_angles.py [--only scattered,0.8,30,0.05,0.3,3 ...] [--seeds 2] [--size 24,8] [--set NAME=VALUE ...]
+                         [--table FILE] [--jobs 1] [--lmp FILE] -o DIR
+    tests/stop_angles.py --sheet scattered,0.8,30,0.05,0.3,3 --angle 22.5 -o DIR
+
+Makes what runs are missing in DIR. The stop angle is midway between the greatest whole degree at which a sheet three
+balls thick, started at sqrt(g d), comes to rest within 40 s in a periodic strip of fixed balls, and the next. Balls
+are of 1 m; with others the time grows with the root of the diameter. A run ends at rest (hardly a ball moves), or
+once the sheet is half as fast again as at the start and faster than before; one that moves after 40 s has not stopped.
+
+A ground is pattern, spacing (diameters), friction (degrees), rolling resistance, restitution on it (0.48 within the
+sheet) and balls that the sheet is thick. Without --only: all of the table. --table: written once all are there.
+
+--sheet: 2,000 balls, 3 deep, on a slope with a flat below instead (inputs/13_ground_direction): what share stays
+on the slope 2 degrees below the stop angle (bound: at least 90 %) and 8 above it (at most 40 %). Status 1 otherwise.
+"""
+import argparse
+import csv
+import os
+import re
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+TOP = Path(__file__).resolve().parents[1]
+DECK = """
+variable th index 20
+variable kn index 1e8
+variable speed index $(sqrt(9.80665))
+variable tend index 40
+units si
+suffix slope
+atom_style sphere
+boundary p p f
+comm_modify vel yes
+read_data {data}
+group soil type 1
+group ground type 2
+pair_style gran/restitution
+pair_coeff 1 1 stiffness ${{kn}} ${{kn}} restitution 0.48 friction {friction} rolling {rolling}
+pair_coeff 1 2 stiffness ${{kn}} ${{kn}} restitution {restitution} friction {friction} rolling {rolling}
+pair_coeff 2 2 stiffness ${{kn}} ${{kn}} restitution {restitution} friction {friction} rolling {rolling}
+neighbor 0.2 bin
+neigh_modify every 1 delay 0 check yes exclude type 2 2
+timestep $(0.25*sqrt({density}*PI/6/v_kn))
+fix still ground freeze
+fix move soil nve/sphere
+fix weight soil gravity 9.80665 vector $(sin(v_th*PI/180)) 0 $(-cos(v_th*PI/180))
+velocity soil set ${{speed}} 0 0
+variable second equal ceil(1/dt)
+variable fast atom "vx*vx+vy*vy+vz*vz > 0.01"
+compute moving soil reduce sum v_fast
+compute vx soil reduce ave vx
+fix mean all ave/time 10 $(floor(v_second/10)) $(10*floor(v_second/10)) c_vx ave running
+variable rest equal "c_moving < 0.003*{number}"
+variable flows equal "step*dt > 5 && c_vx > 1.5*v_speed && c_vx > f_mean"
+variable ended equal v_rest||v_flows
+fix ended all halt $(10*floor(v_second/10)) v_ended == 1 error continue
+thermo $(10*floor(v_second/10))
+thermo_style custom step time atoms c_moving c_vx f_mean
+run $(ceil(v_tend/dt))
+print "RESULT $(v_rest) $(step*dt) $(c_vx) $(c_moving)"
+"""
+DENSITY = 3411.4
+RESULT = re.compile(r"^RESULT (\S+) (\S+) (\S+) (\S+)$", re.M)
+SHEET = TOP / "inputs" / "13_ground_direction" / "in.ground_direction"
+LEFT = re.compile(r"left on the slope (\S+) %, lost (\d+), moving (\d+) of (\d+)", re.M)
+FINER, NEAREST = 6, 0.795       # as src/ground/scattered_sampler.cpp
+SOLID = 0.55                    # share of the sheet's volume
+STEEPEST = 60
+
+
+class Ground(NamedTuple):
+    pattern: str
+    spacing: float
+    friction: float
+    rolling: float
+    restitution: float = 0.3
+    layers: float = 3
+
+    @property
+    def name(self):
+        return "_".join(map("{:g}".format, self[1:])).join((f"{self.pattern}_", ""))
+
+
+def grounds_of_the_table():
+    every = [Ground("scattered", spacing, 30, rolling) for rolling in (0.05, 0.0, 0.1)
+             for spacing in (0.8, 0.5, 0.95, 0.7, 0.6, 0.9, 0.35)]
+    for friction in (20, 10):
+        every += [Ground("scattered", spacing, friction, 0.05) for spacing in (0.8, 0.5, 0.95)]
+    every += [Ground("scattered", 0.8, 30, 0.05, e) for e in (0.1, 0.5)]
+    every += [Ground("scattered", 0.8, 30, 0.05, 0.3, layers) for layers in (1, 5)]
+    every += [Ground("grid", spacing, 30, 0.05) for spacing in (0.5, 0.8, 1.0)]
+    # the corners
+    every += [Ground("scattered", 0.8, 30, rolling, 0.1) for rolling in (0.0, 0.1)]
+    every += [Ground("scattered", spacing, friction, rolling) for friction in (20, 10) for rolling in (0.0, 0.1)
+              for spacing in (0.8, 0.5, 0.95)]
+    every += [Ground("scattered", spacing, 30, 0.05, 0.1) for spacing in (0.5, 0.95)]
+    every += [Ground("scattered", spacing, 40, 0.05) for spacing in (0.8, 0.5, 0.95)]
+    every += [Ground("scattered", spacing, 30, 0.2) for spacing in (0.8, 0.5, 0.95)]
+    every += [Ground("grid", 0.8, 30, rolling) for rolling in (0.0, 0.1)]
+    return every + [Ground("grid", 0.8, 30, 0.05, 0.1), Ground("grid", 1.0, 20, 0.05),
+                    Ground("scattered", 0.35, 10, 0.0), Ground("scattered", 0.95, 10, 0.0, 0.5)]
+
+
+def ground_of(text):
+    words = text.split(",")
+    if words[0] not in ("scattered", "grid") or not 4 <= len(words) <= 6:
+        raise argparse.ArgumentTypeError("PATTERN,SPACING,FRICTION,ROLLING[,RESTITUTION[,LAYERS]]")
+    return Ground(words[0], *map(float, words[1:]))
+
+
+# --- the strip ---
+
+def scattered(nx, ny, spacing, rng):
+    """Places on a torus of nx by ny spacings: a candidate in each cell of a finer lattice; in random order each is a
+    ball unless one is nearer than NEAREST spacings."""
+    i, j = np.meshgrid(np.arange(nx * FINER), np.arange(ny * FINER))
+    candidates = (np.column_stack([i.ravel(), j.ravel()]) + rng.random((i.size, 2))) / FINER
+    kept = np.empty((4 * nx * ny, 2))
+    number = 0
+    for one in rng.permutation(candidates):
+        apart = kept[:number] - one
+        apart -= np.rint(apart / (nx, ny)) * (nx, ny)
+        if not number or (apart ** 2).sum(axis=1).min() >= NEAREST ** 2:
+            kept[number] = one
+            number += 1
+    return kept[:number] * spacing
+
+
+def write_strip(path, ground, size, seed):
+    """The data file of a strip of whole spacings, balls of 1 m; its number of balls above the ground."""
+    rng = np.random.default_rng(seed)
+    nx, ny = (max(1, round(length / ground.spacing)) for length in size)
+    lx, ly = nx * ground.spacing, ny * ground.spacing
+    if ground.pattern == "scattered":
+        fixed = scattered(nx, ny, ground.spacing, rng)
+    else:
+        i, j = np.meshgrid(np.arange(nx), np.arange(ny))
+        fixed = ground.spacing * np.column_stack([i.ravel(), j.ravel()])
+    number = round(ground.layers * SOLID / (np.pi / 6) * lx * ly)
+    kx, ky = int(lx / 1.03), int(ly / 1.03)
+    levels = np.arange(number) // (kx * ky)
+    nodes = np.concatenate([rng.permutation(kx * ky) for _ in range(levels[-1] + 1)])[:number]
+    soil = np.column_stack([(nodes % kx + 0.5) * lx / kx, (nodes // kx + 0.5) * ly / ky, 1.13 + 1.03 * levels])
+    soil += rng.uniform(-0.01, 0.01, soil.shape)
+    fixed = np.column_stack([fixed % (lx, ly), np.zeros(len(fixed))])
+    rows = [(1, *at) for at in soil] + [(2, *at) for at in fixed]
+    path.write_text(f"strip\n\n{len(rows)} atoms\n2 atom types\n0 {lx:.9g} xlo xhi\n0 {ly:.9g} ylo yhi\n-3 60 zlo zhi\n"
+                    "\nAtoms # sphere\n\n"
+                    + "".join(f"{k} {kind} 1 {DENSITY} {x:.6f} {y:.6f} {z:.6f}\n"
+                              for k, (kind, x, y, z) in enumerate(rows, 1)))
+    return number
+
+
+def lammps(options, folder, deck, log, values):
+    words = [word for key, value in values.items() for word in ("-var", key, str(value))]
+    subprocess.run([options.lmp, "-in", deck, "-log", log, "-screen", "none", *words], check=True, cwd=folder,
+                   env=dict(os.environ, OMP_NUM_THREADS="1"), stdin=subprocess.DEVNULL)
+
+
+def stops(options, ground, seed, angle):
+    """Whether the sheet comes to rest."""
+    size = "" if options.size == [24, 8] else "_{:g}x{:g}".format(*options.size)
+    more = "".join(f"_{word}" for word in options.set)
+    name = f"{ground.name}{size}{more}_seed{seed}"
+    log = options.out / f"{name}_{angle}.log"
+    if not (log.is_file() and RESULT.search(log.read_text())):
+        data, deck = options.out / f"{name}.data", options.out / f"in.{name}"
+        number = write_strip(data, ground, options.size, seed)
+        deck.write_text(DECK.format(data=data.name, number=number, density=DENSITY, **ground._asdict()))
+        lammps(options, options.out, deck.name, log.name, {"th": angle, **options.values})
+        data.unlink()
+        deck.unlink()
+    found = RESULT.search(log.read_text())
+    if not found:
+        raise SystemExit(f"{log}: no result")
+    return found[1] == "1"
+
+
+def last_stop(rests, guess):
+    """The greatest whole degree at which rests(degree), searched from a guess outwards."""
+    low, high, step = 0, STEEPEST, 1
+    at = min(max(guess, 1), STEEPEST - 1)
+    while high - low > 1:
+        if rests(at):
+            low = at
+        else:
+            high = at
+        if low == 0 or high == STEEPEST:
+            at = max(high - step, 1) if low == 0 else min(low + step, STEEPEST - 1)
+            step *= 2
+        else:
+            at = (low + high) // 2
+        if low == 0 and high == 1 or low == STEEPEST - 1:
+            raise SystemExit(f"no stop angle within 1 and {STEEPEST - 1} degrees")
+    return low
+
+
+def measure(options, ground, seed, guess):
+    return last_stop(lambda angle: stops(options, ground, seed, angle), guess) + 0.5
+
+
+# --- the table ---
+
+def guess_of(found, ground):
+    """From the ground most like it that is measured; found: {ground: angles}."""
+    def far(other):
+        return sum(abs(a - b) / scale for a, b, scale in zip(ground[1:], other[1:], (0.1, 4, 0.02, 0.2, 1)))
+    return int(np.mean(found[min(found, key=far)])) if found else 20
+
+
+def write_table(path, found):
+    lines = [["pattern", "spacing_d", "friction_deg", "rolling", "restitution", "layers", "stop_angle_deg", "least_deg",
+              "greatest_deg", "seeds"]]
+    for ground, angles in sorted(found.items()):
+        lines.append([ground.pattern, *map("{:g}".format, (*ground[1:], np.mean(angles), min(angles), max(angles))),
+                      len(angles)])
+    beside = path.with_name(path.name + ".new")
+    with open(beside, "w", encoding="utf-8", newline="") as out:
+        csv.writer(out, lineterminator="\n").writerows(lines)
+    beside.replace(path)
+
+
+def make_table(options):
+    found = {}
+    with ThreadPoolExecutor(options.jobs) as pool:
+        for seed in range(1, options.seeds + 1):
+            def one(ground):
+                angle = measure(options, ground, seed, guess_of(found, ground))
+                found.setdefault(ground, []).append(angle)
+                print(f"{ground.name} seed {seed}: {angle}", flush=True)
+            list(pool.map(one, options.only or grounds_of_the_table()))
+    for ground, angles in sorted(found.items()):
+        print(f"{ground.name}: {np.mean(angles):.2f} ({min(angles)} to {max(angles)})")
+    if options.table:
+        write_table(options.table, found)
+
+
+# --- a sheet that is not periodic ---
+
+def check_sheet(options):
+    good = True
+    for ground in options.sheet:
+        for more, bound in ((-2, 90), (8, 40)):
+            slope = options.angle + more
+            log = options.out / f"sheet_{ground.name}_{slope:g}.log"
+            if not (log.is_file() and LEFT.search(log.read_text())):
+                lammps(options, options.out, SHEET, log.name, {
+                    "pattern": ground.pattern, "spacing": ground.spacing, "friction": ground.friction,
+                    "rolling": ground.rolling, "e": ground.restitution, "layers": ground.layers, "slope": slope,
+                    "wide": 24, "kn": 1e8, **options.values})
+            found = LEFT.search(log.read_text())
+            if not found:
+                raise SystemExit(f"{log}: no result")
+            left, lost, moving, balls = map(float, found.groups())
+            holds = lost == 0 and (left >= bound if more < 0 else left <= bound)
+            good &= holds
+            print(f"{ground.name}: {balls:.0f} balls on {slope:g} degrees, {more:+d} from the stop angle: {left:.1f} % "
+                  f"left, bound {bound} %, {moving:.0f} still move, {lost:.0f} lost{'' if holds else '   NOT'}",
+                  flush=True)
+    sys.exit(not good)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", type=ground_of, action="append", help="a ground; may be given again")
+    parser.add_argument("--seeds", type=int, default=2)
+    parser.add_argument("--size", type=lambda text: [float(word) for word in text.split(",")], default=[24, 8],
+                        help="of the strip along and across, m (24,8)")
+    parser.add_argument("--set", action="append", default=[], help="speed, kn or tend of the runs, NAME=VALUE")
+    parser.add_argument("--table", type=Path, help="CSV to write")
+    parser.add_argument("--sheet", type=ground_of, action="append", help="a ground; may be given again")
+    parser.add_argument("--angle", type=float, help="the stop angle of --sheet, degrees")
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--lmp", type=Path, default=TOP / "build" / "lmp")
+    parser.add_argument("-o", dest="out", type=Path, required=True)
+    options = parser.parse_args()
+    options.values = dict(word.split("=", 1) for word in options.set)
+    options.out = options.out.resolve()
+    options.out.mkdir(parents=True, exist_ok=True)
+    options.lmp = options.lmp.resolve()
+    if options.sheet:
+        if options.angle is None:
+            parser.error("--sheet needs --angle")
+        check_sheet(options)
+    make_table(options)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,36 @@
+"""The head of a table: the names of its columns, and their units."""
+import math
+import re
+from typing import NamedTuple, Optional
+
+BRACKETS = re.compile(r"(.*?)[\s_]*[(\[\uff08]\s*(.*?)\s*[)\]\uff09]")
+LENGTHS = {"m": 1.0, "metre": 1.0, "metres": 1.0, "meter": 1.0, "meters": 1.0}
+TIMES = {"s": 1.0, "sec": 1.0, "secs": 1.0, "second": 1.0, "seconds": 1.0, "ms": 1e-3, "msec": 1e-3,
+         "millisecond": 1e-3, "milliseconds": 1e-3}     # s
+DEGREES = ("deg", "degree", "degrees", "\u00b0")
+
+
+class Column(NamedTuple):
+    """The name of a column, in lower case, and its unit if one is in brackets or after the name."""
+    name: str
+    unit: Optional[str] = None
+
+
+def column(word: str) -> Column:
+    """Of a word such as "EW (gal)", 'x [m]', or easting_m."""
+    plain = " ".join(word.strip().strip("\"'").lower().split())
+    found = BRACKETS.fullmatch(plain)
+    if found:
+        return Column(found[1], found[2] or None)
+    name, _, last = plain.replace("_", " ").rpartition(" ")
+    if name and last in (*LENGTHS, *TIMES, *DEGREES, "ft", "us-ft", "feet", "km", "gal", "g", "m/s2", "cm/s2"):
+        return Column(name, last)
+    return Column(plain)
+
+
+def number(word: str) -> float:
+    """The number of a cell, nan if it is none; Python would take 1_5 for 15."""
+    try:
+        return float(word) if "_" not in word else math.nan
+    except ValueError:
+        return math.nan

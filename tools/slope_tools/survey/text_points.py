@@ -1,0 +1,100 @@
+"""Points x,y in the lines of a text, under a head that may name them in another order."""
+import re
+from typing import Callable, List, NamedTuple, NoReturn, Optional, Sequence, Tuple
+
+from ..heads import DEGREES, LENGTHS, column
+
+FARTHEST = 1e12    # m or degrees: larger coordinates are mistakes, region polygon refuses them, too
+EAST = {"x", "e", "east", "easting", "eastings"}
+NORTH = {"y", "n", "north", "northing", "northings"}
+LONGITUDE, LATITUDE = {"lon", "long", "lng", "longitude"}, {"lat", "latitude"}
+HEIGHT = {"z", "h", "height", "elevation", "elev", "altitude", "alt"}
+WORDS = re.compile(r"points?|coord(inate)?s?|[ _-]")      # of POINT_X, xcoord: what is left counts
+RULE = "columns must be x,y or east,north (m), or lon,lat (degrees), in either order, and perhaps z"
+Fail = Callable[[int, str, str], NoReturn]      # number of a line, rule, value
+
+
+class Head(NamedTuple):
+    """Which columns are x and y, of how many."""
+    x: int = 0
+    y: int = 1
+    width: int = 2
+    unit: Optional[str] = None      # m or degrees, where the head says it
+
+
+class Points(NamedTuple):
+    """What a text holds."""
+    blocks: List[List[Tuple[int, Tuple[float, float]]]]     # between blank lines: number of the line, point
+    head: Head
+
+
+def read(text: str, fail: Fail) -> Points:
+    """The points of a text: x,y in its lines, a blank line between two blocks, # before a comment.
+
+    The first line may be a head, and so may a comment before it. SlopeError of fail() where the text is something else.
+    """
+    head: Optional[Head] = None
+    blocks: List[List[Tuple[int, Tuple[float, float]]]] = [[]]
+    begun = False       # whether there was anything but comments
+    for place, line in enumerate(text.splitlines(), 1):
+        content, _, comment = line.partition("#")
+        content = content.strip()
+        if not content:
+            if not line.strip():
+                blocks.append([])
+            elif not begun:
+                words = re.split(r"[,;\s]+(?![(\[])", comment.strip())
+                found = head_of(words, lambda: fail(place, RULE, comment.strip()[:60]))
+                if found and found.x > found.y:     # region polygon reads no comments: there it would be x,y
+                    fail(place, "a comment that names columns must name x before y", comment.strip()[:60])
+                head = found or head
+            continue
+        words = [word.strip() for word in content.split(",")]
+        if not begun and len(words) > 1 and all(cell(word) is None for word in words):
+            head = head_of(words, lambda: fail(place, RULE, content[:60]))
+            if head is None:
+                fail(place, RULE, content[:60])
+            begun = True
+            continue
+        begun = True
+        head = head or Head()
+        blocks[-1].append((place, point_of(place, content, words, head, fail)))
+    return Points([block for block in blocks if block], head or Head())
+
+
+def cell(word: str) -> Optional[float]:
+    """A number, perhaps nan; None of anything else. Python would take 1_5 for 15."""
+    try:
+        return None if "_" in word else float(word)
+    except ValueError:
+        return None
+
+
+def head_of(words: Sequence[str], wrong_unit: Callable[[], object]) -> Optional[Head]:
+    """The Head with these columns, None if they are no coordinates; wrong_unit() is called if their unit is wrong."""
+    columns = [column(word) for word in words]
+    names = [WORDS.sub("", one.name) for one in columns]
+    for east, north, allowed in ((EAST, NORTH, (*LENGTHS, *DEGREES)), (LONGITUDE, LATITUDE, DEGREES)):
+        x, y = ([k for k, name in enumerate(names) if name in wanted] for wanted in (east, north))
+        rest = {name for k, name in enumerate(names) if k not in (*x, *y)}
+        if len(x) != 1 or len(y) != 1 or len(names) > 3 or not rest <= HEIGHT:
+            continue
+        units = {columns[k].unit for k in (*x, *y)} - {None}
+        in_degrees = allowed is DEGREES or bool(units & set(DEGREES))
+        if units - set(DEGREES if in_degrees else LENGTHS):
+            wrong_unit()
+        return Head(x[0], y[0], len(names), "degrees" if in_degrees else "m" if units else None)
+    return None
+
+
+def point_of(place: int, content: str, words: Sequence[str], head: Head, fail: Fail) -> Tuple[float, float]:
+    """The point of a line."""
+    values = [cell(word) for word in words]
+    what = "numbers, x,y" if head.width == 2 else "numbers, x,y and z"
+    many = "two" if head.width == 2 else "three"
+    if len(words) != head.width or None in values:
+        fail(place, f"must be {many} {what}", content[:60])
+    x, y = (float(values[k] or 0.0) for k in (head.x, head.y))
+    if not (abs(x) <= FARTHEST and abs(y) <= FARTHEST):     # NaN, too
+        fail(place, f"must be {many} finite {what}".replace("numbers", f"numbers within +-{FARTHEST:g}"), content[:60])
+    return x, y
