@@ -268,6 +268,30 @@ def test_a_body_at_a_limit_is_not_lost(tmp_path):
     assert 1.9 < row["depth"] <= 2 and 1.04 < row["factor"] < 1.13
 
 
+def six_mounds(path):
+    """Each of its own height, 90 m apart, on a plain; cells of 3 m. Their places x, y."""
+    per, cell = 30, 3.0
+    y, x = numpy.mgrid[0:2 * per, 0:3 * per] + 0.5
+    z, places = numpy.zeros((2 * per, 3 * per)), []
+    for k, top in enumerate((26, 25, 24, 23, 22, 21)):
+        place = (k % 3 + 0.5) * per, (k // 3 + 0.5) * per
+        places.append((cell * place[0], cell * place[1]))
+        z += top * numpy.clip((36 - cell * numpy.hypot(x - place[0], y - place[1])) / 20, 0, 1)
+    lines = "\n".join(" ".join(f"{value:.6g}" for value in row) for row in z[::-1])
+    (path / "ground.asc").write_text(
+        f"ncols {3 * per}\nnrows {2 * per}\nxllcorner 0\nyllcorner 0\ncellsize {cell}\n{lines}\n")
+    return numpy.array(places)
+
+
+def test_six_slopes_have_a_body_each(tmp_path):
+    places = six_mounds(tmp_path)
+    run_deck(DECK.format(strength="5000 25 2000", more="volume 1200 3000 direction 180 keep 6", after=""), tmp_path)
+    found = [[row[name] for name in ("x", "y", "radius", "factor")] for row in rows(tmp_path)]
+    nearest = {int(numpy.hypot(*(places - [x + 0.8 * radius, y]).T).argmin()) for x, y, radius, _ in found}
+    assert len(found) == 6 and nearest == set(range(6))
+    assert [one[3] for one in found] == sorted(one[3] for one in found)
+
+
 @pytest.mark.parametrize("strength, more, message", [
     (LOW, "volume 1e7 1e8", "Find_slip limits must leave a sphere inside the terrain"),
     (LOW, "volume 5 2", "Find_slip volume must be LO HI with 0 <= LO < HI, got 5 2"),
