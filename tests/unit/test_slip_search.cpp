@@ -175,7 +175,7 @@ TEST(SlipSearch, KeepsBodiesThatDifferInOrder)
         of_a += in_a;
         of_b += in_b;
       }
-      EXPECT_LE(common, 1.1 * SlipSearch::SHARED * std::min(of_a, of_b));
+      EXPECT_LE(common, SlipSearch::SHARED * std::min(of_a, of_b));
     }
   ASSERT_EQ(c.stages.size(), 5u);
   EXPECT_EQ(c.stages[0], "lattice");
