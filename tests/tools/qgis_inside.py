@@ -150,6 +150,11 @@ def rasters(dem, untagged, polygon, crs):
     return found
 
 
+def volume(prefix, road, width):
+    """The results of slope:volume of a road that is a line."""
+    return run("volume", RUN=prefix, ROAD=road, ROAD_WIDTH=float(width), LANE=3, MESH=5, OUTPUT="line")
+
+
 def project(prefix, road):
     """Layers that come into the project, with their styles."""
     import processing

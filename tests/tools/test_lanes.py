@@ -260,11 +260,13 @@ def cleared(slope):
     return run
 
 
-def patches(cell=2.0):
+PATCHES = (10, 20, 30, 2.0), (24, 30, 38, 3.0), (50, 70, 20, 1.5)     # m: y from, y to, x from, thickness
+
+
+def patches(some=PATCHES, cell=2.0):
     """Three patches of deposit on a road to the north, of which two are so near that their cuts meet."""
     x, y = centres(40, 40, cell)
-    return sum(np.where((y > low) & (y < high) & (x > west) & (x < 60), t, 0.0) for low, high, west, t in
-               ((10, 20, 30, 2.0), (24, 30, 38, 3.0), (50, 70, 20, 1.5)))
+    return sum(np.where((y > low) & (y < high) & (x > west) & (x < 60), t, 0.0) for low, high, west, t in some)
 
 
 def test_a_lane_as_wide_as_the_road_takes_what_volume_takes(cleared):
@@ -297,6 +299,33 @@ def test_stretches_add_up_with_mesh_and_total(cleared):
         assert one["hours"] == pytest.approx(one["remove"] * 1.3 / 60, rel=1e-6)
         assert one["hours_lane"] == pytest.approx(one["remove_lane"] * 1.3 / 60, rel=1e-6)
     assert total["blocked_length"] == pytest.approx(sum(one["to"] - one["from"] for one in stretches), abs=1e-5)
+    write_run(patches(PATCHES[2:]), 0.1 * x, 2.0)       # the third patch lies apart
+    alone = cleared(LineString([(42, 1), (40, 79)]), "--road-width 8", "alone")
+    assert stretches[2]["remove"] == pytest.approx(alone["volume"]["remove"], rel=1e-9)
+
+
+def test_the_union_of_lanes_along_rising_ground():
+    """Between two lanes both cuts count, the nearer and the lower one: the larger of both removals, by an integral."""
+    def deposit(x, y):
+        return np.where(within(y) & ((y < 32) | (y > 38)), 3.0, np.where(within(y) & (np.abs(x - 40) > 4), 3.0, 0.0))
+
+    def ground(x, y):
+        return 0.4 * y + 0 * x
+
+    road, raster = ROADS["straight"], gridded(deposit, 1.0)
+    found = lanes.stretches(raster, [road.axis()], WIDTH, 0.1)
+    cutter = lanes.Cutter(raster, gridded(ground, 1.0).z, 30, 4)
+    got = cutter.removed([cutter.area(one, 0.0, LANE) for one in found]).cells.sum()
+    step = 0.1
+    x, y = centres(round(SIDE / step), round(SIDE / step), step)
+    each = []
+    for one in found:
+        qx, qy = road.nearest(x, y, one.along, (-LANE / 2, LANE / 2))
+        distance = np.hypot(qx - x, qy - y)
+        above = np.where(distance == 0, 0, ground(qx, qy) + TAN30 * distance - ground(x, y))
+        each.append(np.maximum(0, deposit(x, y) - np.maximum(0, above)))
+    assert len(found) == 2 and got == pytest.approx(np.maximum(*each).sum() * step ** 2, rel=1e-3)
+    assert got < 0.97 * sum(one.sum() for one in each) * step ** 2
 
 
 def test_the_union_of_lanes_is_that_of_their_cuts(cleared):
@@ -421,6 +450,7 @@ def test_stretches_of_a_study_are_unions_with_shares_and_quantiles():
 @pytest.mark.parametrize("arguments, message", [
     ("--road line.geojson", "line.geojson: is a line, whose width must be given: --road-width"),
     ("--road two.csv", "two.csv: is a line, whose width must be given: --road-width"),
+    ("--road line.wkt", "line.wkt: is a line, whose width must be given: --road-width"),
     ("--road line.geojson --road-width 0", "--road-width: must be > 0, got 0"),
     ("--road line.geojson --road-width 4 --lane 4.5", "--lane: must be at most as wide as the road, 4 m, got 4.5"),
     ("--road polygon.geojson --lane 9", "--lane: must be at most as wide as the road, 8 m, got 9"),
@@ -447,6 +477,7 @@ def test_bad_input_is_one_line(slope, here, arguments, message):  # noqa: F811
     write_geojson("lines.geojson", LineString([(40, 0), (40, 30)]), LineString([(42, 40), (40, 80)]))
     write_geojson("polygon.geojson", box(36, 0, 44, 80))
     (here / "two.csv").write_text("40,0\n40,80\n")
+    (here / "line.wkt").write_text("# an axis\nLINESTRING (40 0, 40 30, 42 80)\n")
     before = sorted(here.rglob("*"))
     status, out, err = slope(f"run --local --mesh 10 -o out {arguments}")
     lines = [line for line in err.splitlines() if "warning" not in line]

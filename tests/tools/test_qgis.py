@@ -16,7 +16,8 @@ import pytest
 import rasterio
 import yaml
 from affine import Affine
-from shapely.geometry import box, shape
+from shapely.affinity import translate
+from shapely.geometry import LineString, box, shape
 
 from run_helpers import CRS_M, EAST, NORTH, TOOLS, TOP, write_geojson, write_sidecar
 from tiny_collapse import COLUMNS, LMP, ROWS, processes_in, read_asc, write_case
@@ -308,10 +309,24 @@ def test_a_crs_is_assigned_to_files_that_say_another(qgis, place):
     assert status == 0 and results["RELEASED"] == pytest.approx(200, rel=2e-3), err
 
 
+def test_the_volume_of_a_road_that_is_a_line(inside, place):
+    """As of its polygon, with stretches and a lane."""
+    west, south, east, north = ROAD
+    write_geojson("line.geojson", translate(LineString([((west + east) / 2, south), ((west + east) / 2, north)]),
+                                            EAST, NORTH), crs=CRS_M)
+    found = inside("volume", "run/tiny.thickness.asc", "line.geojson", east - west)
+    slope("volume", "run/tiny", "--road", "road.geojson", "--mesh", 5, "--lane", 3, "-o", "same")
+    about = yaml.safe_load(Path("same/volume.yaml").read_text())
+    assert found["REMOVE"] == pytest.approx(about["volume"]["remove"], rel=1e-6)
+    with fiona.open(found["STRETCHES"]) as stretches:
+        taken = [one["properties"]["remove_lane"] for one in stretches]
+    assert taken == pytest.approx([one["remove_lane"] for one in about["stretches"]], rel=1e-5) and taken
+
+
 def test_layers_come_into_the_project_with_their_styles(inside, place):
     found = inside("project", "run/tiny.thickness.asc", "road.geojson")
     assert sorted(style["renderer"] for style in found.values()) == \
-        ["QgsGraduatedSymbolRenderer", "QgsSingleBandPseudoColorRenderer"]
+        ["QgsGraduatedSymbolRenderer", "QgsSingleBandPseudoColorRenderer", "QgsSingleSymbolRenderer"]
     assert all(style["crs"] == CRS_M for style in found.values())
 
 

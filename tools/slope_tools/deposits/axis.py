@@ -131,8 +131,7 @@ class Axis:
                         parts[-1] = parts[-1].intersection(strip)
                 if side * self.half[k] < 0 and along.low - SAME <= self.s[k] <= along.high + SAME:
                     parts.append(self.sector(k, near, far))
-        # without the hairlines between them
-        return as_multi(unary_union(parts).buffer(SAME, join_style=2).buffer(-SAME, join_style=2))
+        return as_multi(opened(unary_union(parts), SAME))       # without the hairlines between them
 
 
 # --- ranges, and the parts of a mask ---
@@ -163,4 +162,10 @@ def parts_of_mask(mask, transform, area: BaseGeometry) -> List[Polygon]:
     if not window.any():
         return []
     found = shapes(window, window.astype(bool), connectivity=4, transform=transform * Affine.translation(left, top))
-    return [part for one, _ in found for part in polygons_of(shape(one).intersection(area)) if part.area > 0]
+    # cells that end where the area does would, by rounding, be hairlines in it, which join what is apart
+    return [part for one, _ in found for part in polygons_of(opened(shape(one).intersection(area), -SAME))]
+
+
+def opened(area: BaseGeometry, by: float) -> BaseGeometry:
+    """An area without what is narrower than twice a length (m); a length > 0 closes gaps instead."""
+    return area.buffer(by, join_style=2).buffer(-by, join_style=2)

@@ -3,6 +3,7 @@
 A file of a line keeps its direction: chainage runs along it. A CSV is rings without a width (polygons.py), with one the
 points of a line.
 """
+import re
 from pathlib import Path
 from typing import Any, Dict, Mapping, NamedTuple, Optional
 
@@ -111,14 +112,13 @@ def is_line(path) -> bool:
     """Whether a file holds lines and no polygon, or is a CSV of too few points for one."""
     try:
         text = polygons.read_text(path)
-        if text is None:
-            kinds = lines.kinds(unary_union([one for _, one in vectors.read(path, "Line").features]))
-        elif polygons.WKT.match(text.lstrip()):
-            kinds = lines.kinds(lines.text_geometry(path, text)[0])
-        else:
-            return sum(len(one.coords) for one in lines.text_geometry(path, text)[0].geoms) == 2
+        geometry = unary_union([one for _, one in vectors.read(path, "Line").features]) if text is None else \
+            lines.text_geometry(path, text)[0]
+        if text is not None and not polygons.WKT.match(re.sub("#.*", "", text).lstrip()):
+            return sum(len(one.coords) for one in geometry.geoms) == 2
     except (SlopeError, ShapelyError):
         return False
+    kinds = lines.kinds(geometry)
     return "Line" in kinds and "Polygon" not in kinds
 
 
