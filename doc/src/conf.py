@@ -36,8 +36,8 @@ html_show_sphinx = html_copy_source = html_show_sourcelink = False
 LAMMPS_MANUAL = "https://docs.lammps.org/{}.html"
 LAMMPS_PAGES = set("""
 balance boundary compute_pair_local create_atoms create_box delete_atoms displace_atoms dump fix fix_balance fix_deposit
-fix_freeze fix_gravity fix_halt fix_modify fix_move fix_nve fix_nve_sphere fix_pour fix_rigid fix_wall_gran_region minimize
-neigh_modify neighbor pair_coeff pair_gran pair_granular read_restart region reset_timestep restart run suffix
+fix_freeze fix_gravity fix_halt fix_modify fix_move fix_nve fix_nve_sphere fix_pour fix_rigid fix_wall_gran_region
+minimize neigh_modify neighbor pair_coeff pair_gran pair_granular read_restart region reset_timestep restart run suffix
 thermo_modify timestep unfix units write_restart
 """.split())
 

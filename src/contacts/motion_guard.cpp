@@ -12,7 +12,7 @@
 #include "modify.h"
 #include "update.h"
 
-#include <cmath>
+#include <algorithm>
 
 using namespace LAMMPS_NS;
 
@@ -117,8 +117,9 @@ void MotionGuard::check_gravity(std::vector<std::string> &found) const
   const bigint n = count_free([&](int i) {
     double g = 0.0;
     for (Fix *fix : fixes) {
+      if (!(atom->mask[i] & fix->groupbit)) continue;
       int dim;
-      if (atom->mask[i] & fix->groupbit) g += static_cast<double *>(fix->extract("gvec", dim))[up];
+      g += static_cast<double *>(fix->extract("gvec", dim))[up];
     }
     most = std::max(most, g);
     return g > 0.0;

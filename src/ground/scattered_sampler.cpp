@@ -97,7 +97,7 @@ ScatteredSampler::Place ScatteredSampler::place(int64_t i, int64_t j) const
 void ScatteredSampler::make(Block &made, int64_t bi, int64_t bj) const
 {
   const int wide = BLOCK + 1;
-  Place places[wide * wide];
+  std::vector<Place> places(static_cast<size_t>(wide) * wide);
   for (int b = 0; b < wide; b++)
     for (int a = 0; a < wide; a++) places[b * wide + a] = place(bi * BLOCK + a, bj * BLOCK + b);
 

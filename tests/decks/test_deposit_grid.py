@@ -512,18 +512,18 @@ set group all density 2000
                  expect_error="Fix deposit/grid dep must have the grid of the restart file, "
                  "cell 0.7, 15 x 15 cells from -2 -2, bulk 1.909859317; got")
 
-    # and so is data of an older format, whose first number is 3 and not 4; and a file without the cells, which
+    # and so is data of an older format, whose first number is 4 and not 5; and a file without the cells, which
     # would have taken more than 2 GB: then their number is negative
     data = (tmp_path / "a.1500.restart").read_bytes()
-    key = struct.pack("<4d", 4.0, 0.7, 15.0, 15.0)
+    key = struct.pack("<4d", 5.0, 0.7, 15.0, 15.0)
     assert data.count(key) == 1
     cells = data.index(key) + 8 * (7 + 18)       # key, numbers
     number = struct.unpack_from("<d", data, cells)[0]
     assert 0 < number <= 15 * 15 and number == int(number)
     for name, changed, message in [
-            ("old", data.replace(key, struct.pack("<d", 3.0) + key[8:]),
-             "Fix deposit/grid dep must have restart data of format 4, got 3: the file is of another version of SLOPE"),
-            ("large", data[:cells] + struct.pack("<d", -4e7) + data[cells + 8:],
+            ("old", data.replace(key, struct.pack("<d", 4.0) + key[8:]),
+             "Fix deposit/grid dep must have restart data of format 5, got 4: the file is of another version of SLOPE"),
+            ("large", data[:cells] + struct.pack("<2d", -4e7, 4e7 - 1) + data[cells + 16:],
              "Fix deposit/grid dep cannot go on from this restart file, in which it may have 38347903 cells that the "
              "mass touched, got 40000000: start again, with a larger cell")]:
         (tmp_path / f"{name}.restart").write_bytes(changed)

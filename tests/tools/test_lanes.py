@@ -6,7 +6,10 @@ cell, so that each case states the cell that its accuracy takes.
 """
 import csv
 import math
+import os
+import subprocess
 from pathlib import Path
+from types import SimpleNamespace
 
 import fiona
 import numpy as np
@@ -14,22 +17,35 @@ import pytest
 import yaml
 from affine import Affine
 from shapely.affinity import translate
-from shapely.geometry import LineString, box, shape
+from shapely.geometry import LineString, Polygon, box, shape
 
 from run_helpers import (CRS_M, EAST, NORTH, TOP, centres, here, run_command, write_geojson, write_run,  # noqa: F401
                          write_sidecar)
 
+import test_site
+from tiny_collapse import LMP, write_case
+
 from slope_tools.deposits import lanes, volume_files
 from slope_tools.deposits.axis import Axis, Span, longest_gap, merged
+from slope_tools.report import road_part
+from slope_tools.report.numbers import Numbers
+from slope_tools.statistics import headline
 from slope_tools.statistics.hazard import weighted
-from slope_tools.survey import roads
+from slope_tools.survey import rasters, roads
 from slope_tools.survey.rasters import Raster
 from slope_tools.tables import road_runs
 
 TAN30 = math.tan(math.radians(30))
 WIDTH, LANE = 8.0, 3.5          # m, of the road, of the lane
 SIDE = 80.0                     # m, of the terrain
+PROGRAM = str(TOP / "tools" / "slope")
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
+
+
+def program(*words):
+    """Run slope in a process of its own, with LAMMPS."""
+    return subprocess.run([PROGRAM, *words], env={**os.environ, "LMP": LMP}, capture_output=True, text=True,
+                          check=False)
 
 
 # --- deposits, grounds and roads as functions ---
@@ -162,7 +178,7 @@ def test_stretch_and_least_lane_are_the_integrals(way, ground, deposit):
 
 @pytest.mark.parametrize("way, cell", [("straight", 0.01), ("oblique", 0.005), ("curved", 0.01)])
 def test_stretch_and_passable_width_beside_a_cone(way, cell):
-    """A cone of 0.4 beside the road, 0.1 m thick on a circle of 4.75 m about the offset 5: to 0.1 %, of the curve to 0.5 %.
+    """A cone of 0.4 beside the road, 0.1 m thick on a circle of 4.75 m about the offset 5: to 0.1 or 0.5 %.
 
     The cells are as small as its round contour takes.
     """
@@ -437,3 +453,79 @@ def test_bad_input_is_one_line(slope, here, arguments, message):  # noqa: F811
     assert (status, out) == (2, "") and len(lines) == 1 and "Traceback" not in err
     assert lines[0].startswith("slope volume: ") and message in lines[0]
     assert sorted(here.rglob("*")) == before
+
+
+# --- site, study, report, mobility: through LAMMPS ---
+
+def test_a_study_of_a_line_is_that_of_the_polygon_and_is_reported(here):  # noqa: F811
+    """Two runs of a tiny collapse: volumes are the same; stretches, lane and hours are on the page, with bands."""
+    write_case(here / "case")
+    (here / "line.csv").write_text("15,0\n15,24\n")
+    (here / "polygon.csv").write_text("13,0\n17,0\n17,24\n13,24\n")
+    options = "--lane 1.5 --clearing 20 --loosening 1.25 --blocked 0.05"
+    abouts = []
+    for name, width in (("line", "--road-width 4"), ("polygon", "")):
+        words = f"case/in.tiny --set steps=900 --set rolling=0,0.3 --jobs 1 --mesh 4 -o {name} --road {name}.csv"
+        done = program("study", *f"{words} {width} {options}".split())
+        assert done.returncode == 0, done.stderr
+        abouts.append(yaml.safe_load(Path(name, "study.yaml").read_text()))
+    line, polygon = abouts
+    assert line["study"]["road"]["width"] == 4 and polygon["study"]["road"]["width"] is None
+    for one, other in zip(line["runs"], polygon["runs"], strict=True):
+        assert one["remove_lane_m3"] > 0 and one["clear_hours"] == pytest.approx(one["remove_m3"] / 16, rel=1e-6)
+        for key in ("remove_m3", "remove_on_road_m3", "beyond_road_m3", "blocked_m", "remove_lane_m3", "lane_hours"):
+            assert one[key] == pytest.approx(other[key], rel=1e-6), key
+    found = line["stretches"]
+    hours = sorted(run["lane_hours"] for run in line["runs"])
+    assert found["totals"]["hours_lane"] == [hours[0], hours[0], hours[1]] and hours[0] < hours[1]
+    assert max(one["share"] for one in found["stretches"]) == 1
+    with open("line/stretches.csv", newline="", encoding="ascii") as lines:
+        rows = list(csv.DictReader(lines))
+    assert len(rows) == len(found["stretches"]) + 1 and float(rows[-1]["hours_lane_95"]) == hours[1]
+    with open("line/study.csv", newline="", encoding="ascii") as lines:
+        table = list(csv.DictReader(lines))
+    assert [float(row["lane_hours"]) for row in table] == [one["lane_hours"] for one in line["runs"]]
+
+    done = program("report", "line")
+    assert done.returncode == 0, done.stderr
+    page = Path("line/report.html").read_text(encoding="utf-8")
+    assert 'id="road"' in page and "Where the road is blocked" in page
+    low, high = (headline.text(value, headline.place_of_digits(value)) for value in hours)
+    assert f"{low} ({low} to {high})" in page       # of the table
+    data, numbers = SimpleNamespace(study=line), Numbers()
+    assert road_part.on_first_page(data, numbers, False) == [
+        f"A lane of 1.5 m is open after {low} to {high} hours of one loader of 20 m3/h."]
+    assert road_part.on_first_page(data, numbers, True) == [] and "A lane of 1.5 m" not in page     # not at rest
+    reproduced = program("report", "line", "--reproduce").stdout
+    assert "--road-width 4" in reproduced and "--lane 1.5 --clearing 20 --loosening 1.25" in reproduced
+
+
+def test_a_site_with_a_line_and_the_mobility_of_it(tmp_path):
+    test_site.write_files(tmp_path)
+    test_site.write_layer(tmp_path / "axis.geojson", [(28, 0), (28, 80)], kind=LineString)
+    road = ("--road-width", "16", "--road-from", "7", "--clearing", "60", "--loosening", "1.3", "--lane")
+    body = ("--shape", "ellipsoid", "--depth", "5", "--balls", "300")
+    done = test_site.make(tmp_path, *body, "--road", "axis.geojson", *road, "3")
+    assert done.returncode == 0, done.stderr
+    choices = yaml.safe_load((tmp_path / "mine" / "site.yaml").read_text())["road"]
+    assert choices == {**choices, "width": 16, "from": 7, "lane": 3, "clearing": 60, "loosening": 1.3}
+    place = rasters.read_place(tmp_path / "mine" / "terrain.asc")
+    asked = roads.Asked.of(choices)
+    assert asked == roads.Asked(16, 7, 0.1, 3, 60, 1.3)
+    read = roads.read_local(tmp_path / "mine" / "road.csv", place, asked)
+    drawn = translate(Polygon(test_site.ROAD), *np.subtract((test_site.EAST, test_site.NORTH), place.offset))
+    assert read.polygon.symmetric_difference(drawn).area < 1e-3
+    (tmp_path / "mine").rename(tmp_path / "site")
+    wide = test_site.make(tmp_path, *body, "--road", "axis.geojson", *road, "17")
+    assert wide.returncode == 2 and "slope site: --lane: must be at most as wide as the road" in wide.stderr
+    without = test_site.make(tmp_path, *body, "--road", "axis.geojson")
+    assert without.returncode == 2 and "axis.geojson: is a line, whose width must be given: --road-w" in without.stderr
+
+    found = []
+    for words in (["site", "-o", "a"], ["site", "-o", "b", "--road", "road.geojson"],
+                  ["site", "-o", "c", "--road", "axis.geojson", *road[:2]]):
+        done = test_site.slope(tmp_path, "mobility", *words)
+        assert done.returncode == 0, done.stderr
+        found.append(yaml.safe_load((tmp_path / words[2] / "mobility.yaml").read_text())["road"])
+    assert found[0] is not None and found[0] == found[2]
+    assert {key: pytest.approx(value) for key, value in found[0].items()} == found[1]

@@ -620,7 +620,8 @@ def test_every_example_of_the_page_and_the_help_runs(slope, no_map, command):
     road = box(90, 0, 110, 200)
     write_geojson("route4.geojson", translate(road, EAST, NORTH), crs=CRS_M)
     Path("road.csv").write_text("".join(f"{x},{y}\n" for x, y in road.exterior.coords[:-1]))
-    write_geojson("centre.geojson", translate(LineString([(100, 0), (100, 200)]), EAST, NORTH), crs=CRS_M)
+    for name in ("centre", "axis"):
+        write_geojson(f"{name}.geojson", translate(LineString([(100, 0), (100, 200)]), EAST, NORTH), crs=CRS_M)
     status, out, err = slope(command)
     assert (status, err) == (0, "")
     assert "--help" in command or "to remove: " in out

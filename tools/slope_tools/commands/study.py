@@ -109,20 +109,23 @@ def run_folder(args):
     refuse(args, NOT_OF_A_SITE)
     choices = site_choices.read(args.deck)
     site_study.check(args.deck, choices)
-    for line in site_ground.lines(args.deck):
-        print(line)
     volume = float(site_choices.found(args.deck)["body"]["volume"])
     why = "" if args.paper else known_study.why_not(args.deck, volume, bool(choices["observed"]["file"]))
     if args.paper or why:
         condition_of(args)      # has no meaning here
         method = f"{known_study.PAPER}; {why}" if why else known_study.ASKED
-        print(method)
+        say(args.deck, method)
         return run_site(args, method)
     args.sample, args.mobility = known_study.POINTS, known_study.SET
     method = (f"weighted by known events of this volume and height, {known_study.SET}; --paper takes the largest "
               "volume over the rolling resistances of site.yaml instead")
-    print(method)
+    say(args.deck, method)
     return run_site_ensemble(args, "report.html", method)
+
+
+def say(folder, method):
+    """How the study of a site is made, and what its ground holds."""
+    print("\n".join([method, *site_ground.lines(folder)]))
 
 
 def run_deck(args):

@@ -143,8 +143,8 @@ def road_layer(choices: Choices, raster: Raster, target: Path, tell, warn) -> Op
     if road.line is None:
         warn_outside(path, road.polygon, raster, warn)
     geometry = roads.write(target, road, raster)
-    what = "polygon" if road.line is None else f"line of {road.line.length:,.0f} m, {asked.width:g} m wide,"
-    tell(f"{target.name}: {len(polygons.polygons_of(geometry))} {what} {geometry.area:,.0f} m2")
+    what = "polygon" if road.line is None else f"line of {road.line.length:,.0f} m, {asked.width:g} m wide"
+    tell(f"{target.name}: {len(polygons.polygons_of(geometry))} {what}, {geometry.area:,.0f} m2")
     return geometry
 
 

@@ -114,9 +114,9 @@ def is_line(path) -> bool:
         if text is None:
             kinds = lines.kinds(unary_union([one for _, one in vectors.read(path, "Line").features]))
         elif polygons.WKT.match(text.lstrip()):
-            kinds = lines.kinds(lines.text_geometry(path, text))
+            kinds = lines.kinds(lines.text_geometry(path, text)[0])
         else:
-            return len(lines.text_geometry(path, text).coords) == 2
+            return sum(len(one.coords) for one in lines.text_geometry(path, text)[0].geoms) == 2
     except (SlopeError, ShapelyError):
         return False
     return "Line" in kinds and "Polygon" not in kinds
