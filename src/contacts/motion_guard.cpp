@@ -12,7 +12,7 @@
 #include "modify.h"
 #include "update.h"
 
-#include <cmath>
+#include <algorithm>
 
 using namespace LAMMPS_NS;
 

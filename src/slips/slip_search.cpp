@@ -20,7 +20,7 @@ static constexpr int DEPTHS = 10;                       // radii for each centre
 static constexpr int LEAST_PLACES = 12, MOST_PLACES = 64;    // of centres, along the longer side
 static constexpr int ACROSS = 24;          // columns across a body, on the lattice
 static constexpr double ROUGH = 1.0e-4;    // precision of a factor there
-static constexpr double STARTS_OVERLAP = 0.8;
+static constexpr double STARTS_OVERLAP = 0.8, OVERLAP = 0.5;    // of bodies on the way to one
 static constexpr size_t TRIED = 4000;       // best of the lattice, to find starts among
 static constexpr int AGAIN = 8;             // new simplices at most
 static constexpr double GAIN = 1.0e-5;      // share of the factor that one must gain
@@ -200,7 +200,7 @@ void SlipSearch::mark(const SlipBody &body)
    the best surfaces of the lattice, the least factor first
 ------------------------------------------------------------------------- */
 
-std::vector<SlipBody> SlipSearch::lattice()
+SlipSearch::Best SlipSearch::lattice()
 {
   std::vector<double> factors(surfaces(), HUGE_VAL);
   const size_t places = static_cast<size_t>(centres[0]) * centres[1];
@@ -220,12 +220,17 @@ std::vector<SlipBody> SlipSearch::lattice()
   std::sort(order.begin(), order.end(), [&](size_t a, size_t b) {
     return factors[a] != factors[b] ? factors[a] < factors[b] : a < b;
   });
-  order.resize(std::min(order.size(), TRIED));
-  std::vector<SlipBody> best(order.size());
-  for (size_t k = 0; k < order.size(); k++) {
-    best[k].surface = lattice_surface(order[k]);
-    best[k].factor = factors[order[k]];
-  }
+  const auto body = [&](size_t k) {
+    SlipBody b = SlipBody();
+    b.surface = lattice_surface(k);
+    b.factor = factors[k];
+    return b;
+  };
+  Best best;
+  for (size_t k = 0; k < std::min(order.size(), TRIED); k++) best.of_all.push_back(body(order[k]));
+  std::vector<char> seen(places, 0);
+  for (const size_t k : order)
+    if (!seen[k / per_place()]++) best.of_places.push_back(body(k));
   return best;
 }
 
@@ -233,11 +238,11 @@ std::vector<SlipBody> SlipSearch::lattice()
    which bodies differ
 ------------------------------------------------------------------------- */
 
-SlipSearch::Plan SlipSearch::plan(const SlipSurface &s)
+SlipSearch::Plan SlipSearch::plan(const SlipSurface &s, int stride)
 {
   Plan found;
   SlipBody body;
-  found.stride = stride_for(s);
+  found.stride = stride ? stride : stride_for(s);
   maker.coarse(s, found.stride, body, ROUGH);    // a body at the edge has a plan, too
   const double block = found.stride * ground.cell;
   const SlipColumns &c = maker.columns();
@@ -264,7 +269,8 @@ bool SlipSearch::overlap(const Plan &a, const Plan &b, double share) const
   return area * common > share * smaller;
 }
 
-std::vector<SlipBody> SlipSearch::distinct(std::vector<SlipBody> bodies, size_t most, double share)
+std::vector<SlipBody> SlipSearch::distinct(std::vector<SlipBody> bodies, size_t most, double share,
+                                           int stride)
 {
   std::stable_sort(bodies.begin(), bodies.end(), [](const SlipBody &a, const SlipBody &b) {
     return a.factor < b.factor;
@@ -273,7 +279,7 @@ std::vector<SlipBody> SlipSearch::distinct(std::vector<SlipBody> bodies, size_t 
   std::vector<Plan> plans;
   for (const SlipBody &body : bodies) {
     if (kept.size() == most || !(body.factor < HUGE_VAL)) break;
-    Plan mine = plan(body.surface);
+    Plan mine = plan(body.surface, stride);
     bool differs = true;
     for (const Plan &other : plans) differs = differs && !overlap(mine, other, share);
     if (!differs) continue;
@@ -378,14 +384,43 @@ std::vector<SlipBody> SlipSearch::improve_all(const char *stage,
   return found;
 }
 
+/* ----------------------------------------------------------------------
+   For one body the best of the lattice that differ, which may all be on one slope; for more also those
+   that have a place of their own. On the way to the exact columns, again some of both.
+------------------------------------------------------------------------- */
+
+std::vector<SlipBody> SlipSearch::starts()
+{
+  static constexpr size_t OF_ONE = 12, OF_EACH = 2, MORE = 4;
+  const Best best = lattice();
+  std::vector<SlipBody> found = distinct(best.of_all, OF_ONE, STARTS_OVERLAP);
+  if (limits.keep == 1) return found;
+  const auto others = distinct(best.of_places, MORE + OF_EACH * limits.keep, SHARED);
+  found.insert(found.end(), others.begin(), others.end());
+  return found;
+}
+
+std::vector<SlipBody> SlipSearch::apart(const std::vector<SlipBody> &bodies)
+{
+  static constexpr size_t SPARE = 2;
+  std::vector<SlipBody> found = distinct(bodies, 1 + SPARE, OVERLAP);
+  if (limits.keep == 1) return found;
+  for (const SlipBody &b : distinct(bodies, limits.keep + SPARE, SHARED)) {
+    bool there = false;
+    for (const SlipBody &other : found)
+      there |= b.factor == other.factor && b.surface.x == other.surface.x &&
+          b.surface.y == other.surface.y;
+    if (!there) found.push_back(b);
+  }
+  return found;
+}
+
 /* ---------------------------------------------------------------------- */
 
 std::vector<SlipBody> SlipSearch::run()
 {
   static constexpr int LINES = 96;
-  const size_t keep = limits.keep;
-  std::vector<SlipBody> found = distinct(lattice(), 8 + 4 * keep, STARTS_OVERLAP);
-  found = distinct(improve_all("simplex", found, false, 0, 100, 1), keep + 2, OVERLAP);
+  const std::vector<SlipBody> found = apart(improve_all("simplex", starts(), false, 0, 100, 1));
 
   // one that slides into a better one's place is kept as it was on the way, or before
 
@@ -397,9 +432,8 @@ std::vector<SlipBody> SlipSearch::run()
   add(improve_all("exact columns", way, false, LINES, 100, AGAIN));
   add(way);
   add(improve_all("exact columns", found, false, LINES, 0, 0));
-  if (limits.ellipsoids)
-    add(improve_all("ellipsoids", distinct(all, keep + 2, OVERLAP), true, LINES, 200, AGAIN));
-  std::vector<SlipBody> kept = distinct(all, keep, OVERLAP);
+  if (limits.ellipsoids) add(improve_all("ellipsoids", apart(all), true, LINES, 200, AGAIN));
+  std::vector<SlipBody> kept = distinct(all, limits.keep, SHARED, 1);
   for (SlipBody &body : kept) {
     maker.exact(body.surface, body, LINES);
     body.yield = maker.yield();

@@ -34,12 +34,14 @@ struct SlipRanks {
 
 // Searches the spheres with the least factor of safety below a terrain: a lattice of centres and radii
 // with a column per cell or block of cells, then Nelder and Mead's simplex from the best that
-// differ, then the same with exact columns, and with the width free. Each surface is computed by one rank, and what comes next
+// differ, and, where several bodies are kept, from the best above each place that share no ground,
+// then the same with exact columns, and with the width free. Each surface is computed by one rank, and what comes next
 // depends on the factors of all: the result does not depend on the ranks.
 class SlipSearch {
  public:
-  static constexpr double OVERLAP = 0.5;    // of the smaller body's plan, for those that are kept
-  static constexpr double WIDEST = 4.0;     // across the direction of sliding / along it
+  static constexpr double SHARED =
+      0.1;    // at most, of the smaller one's plan, by bodies that are kept
+  static constexpr double WIDEST = 4.0;    // across the direction of sliding / along it
 
   SlipSearch(const ElevationGrid &ground, const SlipLimits &, const SlipRanks &, SlipBodyMaker &);
 
@@ -74,15 +76,21 @@ class SlipSearch {
   double nearest(double x, double y, double z, double reach) const;
   void above_place(size_t place, double *factors);
   SlipSurface lattice_surface(size_t number) const;
-  std::vector<SlipBody> lattice();
+  struct Best {
+    std::vector<SlipBody> of_all, of_places;    // the least factor first
+  };
+  Best lattice();
 
   int stride_for(const SlipSurface &) const;
   bool within(const SlipBody &) const;
   bool compute(const SlipSurface &, int lines, SlipBody &);
   void mark(const SlipBody &);
-  Plan plan(const SlipSurface &);
+  Plan plan(const SlipSurface &, int stride);
   bool overlap(const Plan &, const Plan &, double share) const;
-  std::vector<SlipBody> distinct(std::vector<SlipBody>, size_t most, double share);
+  std::vector<SlipBody> distinct(std::vector<SlipBody>, size_t most, double share,
+                                 int stride = 0);    // of their plans, 0: what is fast
+  std::vector<SlipBody> starts();
+  std::vector<SlipBody> apart(const std::vector<SlipBody> &);
 
   bool enter(const SlipBody &, int lines, SlipBody &);
   SlipBody improve(const SlipBody &, bool wide, int lines, int steps);

@@ -159,7 +159,7 @@ TEST(SlipSearch, KeepsBodiesThatDifferInOrder)
   Case c(valley());
   c.limits.keep = 4;
   const std::vector<SlipBody> found = c.search().run();
-  ASSERT_GE(found.size(), 3u);
+  ASSERT_GE(found.size(), 2u);    // one on each flank
   std::vector<ElevationGrid> bases;
   for (const SlipBody &body : found) {
     EXPECT_TRUE(c.within(body));
@@ -175,7 +175,7 @@ TEST(SlipSearch, KeepsBodiesThatDifferInOrder)
         of_a += in_a;
         of_b += in_b;
       }
-      EXPECT_LE(common, 1.1 * SlipSearch::OVERLAP * std::min(of_a, of_b));    // blocks of cells
+      EXPECT_LE(common, SlipSearch::SHARED * std::min(of_a, of_b));
     }
   ASSERT_EQ(c.stages.size(), 5u);
   EXPECT_EQ(c.stages[0], "lattice");
