@@ -1,10 +1,19 @@
 """What share of the slope below a body is steeper than the stop angle of its ground, and who says so."""
+import functools
+import re
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
+import yaml
 from test_mobility_path import disc, terrain
+from test_site import gis  # noqa: F401
+from test_site_anew import inside, mine, once  # noqa: F401
 
 from slope_tools.errors import SlopeError
-from slope_tools.mobility import steeper
+from slope_tools.mobility import body, steeper
+from slope_tools.report import limits_part
+from slope_tools.report.numbers import Numbers
 from slope_tools.sites.stop_angle import stop_angle
 from slope_tools.studies import site_ground
 
@@ -48,3 +57,53 @@ def test_a_grid_and_no_ground_at_all():
     assert site_ground.of_variables({**grid, "spacing": "0.8"}) == stop_angle(0.8, 30, 0.05, pattern="grid").degrees
     assert site_ground.of_variables({**grid, "spacing": "0.95", "pattern": "scattered 3"}) is not None
     assert site_ground.of_variables({}) is None and site_ground.of_variables(None) is None
+
+
+# --- who says so ---
+
+def angles(spacing, *rolling):
+    return ", ".join(f"{stop_angle(spacing, 30, one, 0.1).degrees:.1f}" for one in rolling)
+
+
+def test_a_site_and_its_study_say_it_of_each_ground(inside, mine):  # noqa: F811
+    """The site of its own; the study of the others at both ends of the rolling resistances; what is unknown is not."""
+    own = (f"the ground, spacing 0.9: stop angle {angles(0.9, 0, 0.05, 0.1)} degrees at a rolling resistance of 0, "
+           "0.05, 0.1")
+    said = site_ground.lines(mine)
+    assert len(said) == 1 and said[0].startswith(own) and said[0] in inside("mine --balls 70").out
+    both = site_ground.lines(mine, others=True)
+    assert both[0] == said[0] and [line.split(":")[0] for line in both] == [
+        f"the ground, spacing {spacing}" for spacing in ("0.9", "0.5", "0.7")]
+    assert f"stop angle {angles(0.7, 0, 0.1)} degrees at a rolling resistance of 0, 0.1; of" in both[2]
+    share = steeper.below(body.of_site(mine)).steeper(stop_angle(0.5, 30, 0, 0.1).degrees)
+    assert re.search(rf"of the slope below the body {100 * share:.0f}, \d+ % is steeper$", both[1])
+    about = yaml.safe_load((mine / "site.yaml").read_text())
+    about["study"]["rolling"] = [0, 0.9]
+    (mine / "site.yaml").write_text(yaml.safe_dump(about))
+    assert re.search("resistance of 0;", site_ground.lines(mine)[0])
+    inside("mine --friction 60")
+    assert site_ground.lines(mine, others=True) == []
+
+
+def shown(below, **row):
+    other = {"stop_angle_deg": 28.2}
+    data = SimpleNamespace(result=SimpleNamespace(row=row), label=lambda _: "rolling 0", finished=[row, other, {}])
+    return limits_part.resistance(data, below, Numbers())
+
+
+def test_the_report_says_it_of_its_run():
+    ground = SimpleNamespace(below=steeper.below(disc(terrain(broken), CENTRE)))
+    [(what, text)] = shown(ground, stop_angle_deg=24.36)
+    assert what == limits_part.RESISTANCE
+    assert "below 24.4 degrees (stop angle, run rolling 0; in all runs 24.4 to 28.2)" in text
+    assert f"{100 * ground.below.steeper(24.36):.0f} % is steeper" in text
+    assert "in all runs" not in shown(ground, stop_angle_deg=28.2)[0][1]
+    assert shown(ground, stop_angle_deg=None) == shown(ground) == []
+
+
+def test_a_body_on_level_ground_has_a_stop_angle_alone():
+    class Level:
+        @functools.cached_property
+        def below(self):
+            return steeper.below(disc(terrain(lambda x, y: 0 * x), CENTRE))
+    assert shown(Level(), stop_angle_deg=24.36)[0][1].endswith("24.4 to 28.2).")

@@ -114,7 +114,7 @@ def run_folder(args):
     if args.paper or why:
         condition_of(args)      # has no meaning here
         method = f"{known_study.PAPER}; {why}" if why else known_study.ASKED
-        say(args.deck, method)
+        say(args.deck, method, others=True)
         return run_site(args, method)
     args.sample, args.mobility = known_study.POINTS, known_study.SET
     method = (f"weighted by known events of this volume and height, {known_study.SET}; --paper takes the largest "
@@ -123,9 +123,9 @@ def run_folder(args):
     return run_site_ensemble(args, "report.html", method)
 
 
-def say(folder, method):
-    """How the study of a site is made, and what its ground holds."""
-    print("\n".join([method, *site_ground.lines(folder)]))
+def say(folder, method, others=False):
+    """How the study of a site is made, and what its ground holds; others: the other grounds of the study, too."""
+    print("\n".join([method, *site_ground.lines(folder, others)]))
 
 
 def run_deck(args):

@@ -9,7 +9,7 @@ from .. import geometry
 from ..deposits import scar
 from ..drawing import maps
 from ..errors import SlopeError
-from ..mobility import known
+from ..mobility import body, known, steeper
 from ..survey.resampling import sample
 from . import known_reach, obstacles
 
@@ -48,6 +48,11 @@ class Ground:
     def known(self) -> known.Known:
         """The mass among known events."""
         return known.of_mass(self.raster, self.before, self.slip_depth, self.volume)
+
+    @functools.cached_property
+    def below(self) -> steeper.Below:
+        """The slope below the body; SlopeError for one on level ground."""
+        return steeper.below(body.of_arrays(self.raster._replace(z=self.before), self.slip_depth, "the run"))
 
     @functools.cached_property
     def reach(self) -> known_reach.KnownReach:

@@ -5,15 +5,43 @@ from typing import List, Tuple
 from .. import disk
 from ..deposits import travel_shares
 from ..digits import rounded
+from ..errors import SlopeError
 from ..sites.site_warnings import LARGE
 from ..statistics import headline
+from ..tables.study_table import STOP
 
 CONTENT = List[Tuple[str, str]]
+RESISTANCE = "Resistance of the ground"
 
 
-def content(data, numbers) -> CONTENT:
+def content(data, ground, numbers) -> CONTENT:
     """(what, sentences) of the shown run and of its study."""
-    return [*uncertainty(data, numbers), ("Varied", varied(data)), *model(data)]
+    return [*uncertainty(data, numbers), ("Varied", varied(data)), *resistance(data, ground, numbers), *model(data)]
+
+
+def resistance(data, ground, numbers) -> CONTENT:
+    """The stop angle of the ground, where it is known, and what share of the slope below the body is steeper."""
+    degrees, label = data.result.row.get(STOP), data.label(data.result)
+    if degrees is None:
+        return []
+    others = [row[STOP] for row in data.finished if row.get(STOP) is not None]
+    text = (f"A sheet of three balls stops on it where the slope is below {shown(numbers, degrees, label)} degrees "
+            f"(stop angle, run {label}")
+    if max(others) - min(others) > 0.05:
+        text += f"; in all runs {shown(numbers, min(others))} to {shown(numbers, max(others))}"
+    try:
+        share = 100 * ground.below.steeper(degrees)
+    except SlopeError:      # a level body has no fall path
+        return [(RESISTANCE, f"{text}).")]
+    numbers.rows.append(("slope below the body that is steeper", "%", label, f"{share:.0f}", share))
+    return [(RESISTANCE, f"{text}). Of the slope below the body {share:.0f} % is steeper: of the height that the fall "
+             "path loses below its toe.")]
+
+
+def shown(numbers, degrees: float, label: str = "") -> str:
+    """A stop angle, which is known to half a degree."""
+    numbers.rows.append(("stop angle of the ground", "degrees", label, f"{degrees:.1f}", degrees))
+    return f"{degrees:.1f}"
 
 
 # --- uncertainty ---

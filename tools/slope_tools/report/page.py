@@ -88,7 +88,8 @@ class Page:
                            + one.summary["volume"]["lost"]) / one.summary["volume"]["released"],
             "view": view.content(data, self.ground, self.section, self.frames, self.no_frames, self.film.text),
             "heading": self.heading, "terms": self.terms(),
-            "limits": [*mobility_part.content(data, self.ground, numbers), *limits_part.content(data, numbers)],
+            "limits": [*mobility_part.content(data, self.ground, numbers),
+                       *limits_part.content(data, self.ground, numbers)],
             "place": self.place(), "ensemble": None, "known": None, "body": body.of_data(data, self.ground)}
         if study and study.get("ensemble"):
             from . import ensemble_part

@@ -25,23 +25,37 @@ def of_variables(variables: Optional[Mapping[str, Any]]) -> Optional[float]:
         return None     # of a deck that has no such ground
 
 
-def stop_angles(folder: Path) -> Dict[str, Optional[float]]:
-    """Of a site's folder: {rolling resistance: stop angle (degrees), None outside of the table}."""
-    variables = decks.index_variables(folder / site_deck.NAME)
-    return {f"{one:g}": of_variables({**variables, "rolling": one})
-            for one in site_choices.read(folder)["study"]["rolling"]}
+def stop_angles(folder: Path, others: bool = False) -> Dict[str, Dict[str, float]]:
+    """Of a site's folder: {spacing: {rolling resistance: stop angle (degrees)}}, without what is outside of the table.
+
+    others: those of the other grounds of its study, too.
+    """
+    variables, choices = decks.index_variables(folder / site_deck.NAME), site_choices.read(folder)
+    runs = [(variables.get("spacing", ""), f"{one:g}") for one in choices["study"]["rolling"]]
+    if others and ground.SEED in variables:
+        runs += [(f"{spacing:g}", f"{rolling:g}") for spacing, rolling in site_choices.other_grounds(choices)]
+    found: Dict[str, Dict[str, float]] = {}
+    for spacing, rolling in runs:
+        degrees = of_variables({**variables, "spacing": spacing, "rolling": rolling})
+        if degrees is not None:
+            found.setdefault(spacing, {})[rolling] = degrees
+    return found
 
 
-def lines(folder: Path) -> List[str]:
-    """In words, a line; none where the stop angle is unknown."""
-    known = {name: degrees for name, degrees in stop_angles(folder).items() if degrees is not None}
-    if not known:
-        return []
-    text = (f"the ground: stop angle {', '.join(f'{degrees:.1f}' for degrees in known.values())} degrees at a rolling "
-            f"resistance of {', '.join(known)}")
+def lines(folder: Path, others: bool = False) -> List[str]:
+    """In words, a line for each ground; none where the stop angle is unknown."""
+    grounds = stop_angles(folder, others)
     try:
-        slope = steeper.below(body.of_site(folder))
+        slope = steeper.below(body.of_site(folder)) if grounds else None
     except SlopeError:      # a level body has no fall path
-        return [text]
-    return [f"{text}; of the slope below the body "
-            f"{', '.join(f'{100 * slope.steeper(degrees):.0f}' for degrees in known.values())} % is steeper"]
+        slope = None
+    texts = []
+    for spacing, known in grounds.items():
+        text = (f"the ground, spacing {spacing}: stop angle "
+                f"{', '.join(f'{degrees:.1f}' for degrees in known.values())} degrees at a rolling resistance of "
+                f"{', '.join(known)}")
+        if slope:
+            text += ("; of the slope below the body "
+                     f"{', '.join(f'{100 * slope.steeper(degrees):.0f}' for degrees in known.values())} % is steeper")
+        texts.append(text)
+    return texts
