@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Apparent restitution of the balls of in.apparent_restitution: tables (CSV, and printed) and a picture.
 
-    python3 plot.py [OUT ...]    OUT as in the deck's variable out (default bounce)
+    python3 plot.py [OUT ...]         OUT as in the deck's variable out (default bounce)
+    python3 plot.py --means OUT ...   runs of several cells: mean rebound over the speed at the start, and its deviation
 
 Writes OUT.table.csv for each OUT, and apparent_restitution.png: the first OUT in detail, the means of all.
 """
@@ -26,6 +27,32 @@ def snapshots(path):
         yield np.array(rows.split(), float).reshape(-1, len(columns.split()))
 
 
+def flights(out, row, balls):
+    """Vertical velocities, m/s: after the first contact; at the start of the first flight that weight ends, or 0."""
+    frames = list(snapshots(f"{out}.{row['spacing']}.dump"))
+    vz = np.full((len(frames), balls), np.nan)
+    for frame, snapshot in zip(vz, frames):
+        frame[snapshot[:, 0].astype(int) - 1] = snapshot[:, 1]
+    free, ball = np.isfinite(vz), np.arange(balls)
+    # a flight is first seen half an interval late, on the average
+    began = vz + 0.5 * float(row["g"]) * float(row["tdump"])
+    begins = free & ~np.vstack([np.zeros_like(free[:1]), free[:-1]])
+    begin = np.maximum.accumulate(np.where(begins, np.arange(len(vz))[:, None], 0), axis=0)
+    apex = (vz[:-1] >= 0) & (vz[1:] < 0)
+    top = apex.argmax(axis=0)
+    return (np.where(free.any(axis=0), began[free.argmax(axis=0), ball], np.nan),
+            np.where(apex.any(axis=0), began[begin[top, ball], ball], 0))
+
+
+def means(out):
+    """A line for each spacing: mean first rebound over the speed at the start, and its standard deviation."""
+    with open(f"{out}.csv", newline="", encoding="ascii") as rows:
+        for row in csv.DictReader(rows):
+            start, = snapshots(f"{out}.{row['spacing']}.start.dump")
+            rebound = flights(out, row, len(start))[1] / abs(start[0, 4])
+            yield f"{out}, s/d {row['spacing']}: {rebound.mean():.3f} ({rebound.std():.3f})"
+
+
 class Drop:
     """The balls at one spacing: where they touch first, and vertical velocities over that of the first touch.
 
@@ -38,7 +65,7 @@ class Drop:
 
     def __init__(self, out, row):
         self.spacing, self.e, self.friction = (float(row[key]) for key in ("spacing", "e", "friction"))
-        d, g, tdump = (float(row[key]) for key in ("d", "g", "tdump"))
+        d, g = float(row["d"]), float(row["g"])
         start, = snapshots(f"{out}.{row['spacing']}.start.dump")
         at = start[:, 1:3] / d
         self.r = np.hypot(*at.T)
@@ -47,18 +74,8 @@ class Drop:
         impact = np.sqrt(start[:, 4] ** 2 + 2 * g * (start[:, 3] - d * height))
         self.alone = self.is_alone(np.column_stack([at, height]), impact * 2 * float(row["contact"]) / d)
 
-        frames = list(snapshots(f"{out}.{row['spacing']}.dump"))
-        vz = np.full((len(frames), len(start)), np.nan)
-        for frame, snapshot in zip(vz, frames):
-            frame[snapshot[:, 0].astype(int) - 1] = snapshot[:, 1]
-        free, ball = np.isfinite(vz), np.arange(len(start))
-        began = vz + 0.5 * g * tdump         # a flight is first seen half an interval late, on the average
-        self.first = np.where(free.any(axis=0), began[free.argmax(axis=0), ball], np.nan) / impact
-        begins = free & ~np.vstack([np.zeros_like(free[:1]), free[:-1]])
-        begin = np.maximum.accumulate(np.where(begins, np.arange(len(vz))[:, None], 0), axis=0)
-        apex = (vz[:-1] >= 0) & (vz[1:] < 0)
-        top = apex.argmax(axis=0)
-        self.rebound = np.where(apex.any(axis=0), began[begin[top, ball], ball], 0) / impact
+        first, rebound = flights(out, row, len(start))
+        self.first, self.rebound = first / impact, rebound / impact
 
     def is_alone(self, place, way):
         """place: of the first touch; way: what a ball travels at the speed of impact; both over d."""
@@ -131,10 +148,14 @@ def draw(runs):
 
 
 def main():
-    outs = sys.argv[1:] or ["bounce"]
+    alone = sys.argv[1:2] == ["--means"]
+    outs = sys.argv[2:] if alone else sys.argv[1:] or ["bounce"]
     for out in outs:
         if not Path(f"{out}.csv").is_file():
             sys.exit(f"plot.py: no {out}.csv here, run lmp -in in.apparent_restitution -var out {out} first")
+    if alone:
+        print("\n".join(line for out in outs for line in means(out)))
+        return
     runs = {out: read(out) for out in outs}
     for out, drops in runs.items():
         write_table(out, drops)

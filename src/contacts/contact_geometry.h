@@ -47,7 +47,7 @@ SLOPE_INLINE void set_contact(const ContactLaw &law, const MovingBalls &balls,
   const double *wi = &balls.omega[i].x, *wj = &partners.omega(j).x;
   delta = {xi[0] - xj[0], xi[1] - xj[1], xi[2] - xj[2]};
   const double r = distance(balls, partners, i, j);
-  c.overlap = ri + rj - r;
+  c.overlap = touching(ri, rj) - r;
   const Vector &a = balls.ahead[i], &b = partners.ahead(j);
   c.ahead = ((a.x - b.x) * delta.x + (a.y - b.y) * delta.y + (a.z - b.z) * delta.z) / r;
   c.follow_whole_step();

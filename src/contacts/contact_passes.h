@@ -200,7 +200,7 @@ class ContactPasses : ContactView {
   {
     const size_t start = block * BLOCK;
     const int listed = static_cast<int>(std::min<size_t>(BLOCK, size - start));
-    const double sum = radius_i + radius_j;
+    const double same = touching(radius_i, radius_j);
     std::uint64_t now = 0;
     const Entry *e = &entries[start];
     Entry padded[BLOCK];
@@ -211,7 +211,7 @@ class ContactPasses : ContactView {
     const Entry *next = start + 2 * BLOCK <= size ? e + BLOCK : e;
     for (int k = 0; k < BLOCK; k += 4) {
       for (int m = 0; m < 4; m++) __builtin_prefetch(&partners.x(next[k + m].j));
-      N reach = all<N>(sum);
+      N reach = all<N>(same);
       find_reach(&e[k], balls, partners, reach);
       Four d[3];
       find_distances(&e[k], balls, partners, d);
@@ -237,7 +237,12 @@ class ContactPasses : ContactView {
   SLOPE_INLINE static void find_reach(const Entry *e, const MovingBalls &balls,
                                       const Partners &partners, Four &reach)
   {
-    for (int m = 0; m < 4; m++) reach[m] = balls.radius[e[m].i] + partners.radius(e[m].j);
+    Four ri, rj;
+    for (int m = 0; m < 4; m++) {
+      ri[m] = balls.radius[e[m].i];
+      rj[m] = partners.radius(e[m].j);
+    }
+    reach = touching(ri, rj);
   }
 
   // vectors row(m), of several contacts m, by component
@@ -287,11 +292,12 @@ class ContactPasses : ContactView {
     find_distances(e, balls, partners, delta);
     const T rsq = delta[0] * delta[0] + delta[1] * delta[1] + delta[2] * delta[2];
     const T r = root(rsq), rinv = 1.0 / rsq * r;
-    c.overlap = ri + rj - r;
+    const N reach = touching(ri, rj);
+    c.overlap = reach - r;
     for (int d = 0; d < 3; d++) c.n[d] = delta[d] * rinv;
     find_velocities(e, ri, rj, balls, partners, c);
     c.follow_whole_step();
-    if (CHANGES) find_times(k, repeat, delta, rinv, T(N(ri + rj) + T()), same.step.dt, c);
+    if (CHANGES) find_times(k, repeat, delta, rinv, T(reach + T()), same.step.dt, c);
 
     T history[6];
     load(h, history);
@@ -379,7 +385,7 @@ class ContactPasses : ContactView {
   // that touched for the part g of its last step for g, of which the force before gave 1/2. Contacts
   // shorter than a step are found in that part of the cases only, and count for a whole one. A spring that
   // is stretched at a rate V then has V (f - 1/2)^2/2, V (g - 1/2)^2/2 more than the overlaps say.
-  // f and g are those of the overlaps now and a step ago; delta: vector of the centres, reach: of the radii.
+  // f and g are those of the overlaps now and a step ago; delta: vector of the centres.
   template <class T, class N>
   SLOPE_INLINE void find_times(const int *k, bool repeat, const T *delta, T rinv, T reach,
                                double dt, ContactOf<T, N> &c) const
@@ -387,7 +393,7 @@ class ContactPasses : ContactView {
     const T zero = T(), one = all<T>(1.0), vn = normal_velocity(c);
     typedef decltype(T() < T()) Flags;
     T lasted;      // as a step ago; < 0 if it ends
-    Flags ends;    // as find() saw it: an overlap of 0 is one or the other by rounding
+    Flags ends;    // as find() saw it
     for (int m = 0; m < lanes<T>(); m++) {
       lasted[m] = histories[k[m]][AGE];
       ends[m] = bits[k[m] / BLOCK].touching >> (k[m] % BLOCK) & 1 ? 0 : -1;

@@ -38,7 +38,7 @@ class ContactWorks {
   void add(int i, int j, double ri, double rj, const ContactLaw &law, double share, const Vector &f,
            const Vector &delta)
   {
-    const double overlap = std::max(ri + rj - std::sqrt(dot(delta, delta)), 0.0);
+    const double overlap = std::max(touching(ri, rj) - std::sqrt(dot(delta, delta)), 0.0);
     add(i, j, ri, rj, law, share, f, delta, overlap, overlap);
   }
 

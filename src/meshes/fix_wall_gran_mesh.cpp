@@ -358,9 +358,10 @@ void FixWallGranMesh::apply(bool repeat)
     auto add = [&](int i, int j, const Vector &f, const Vector &d) {
       const SurfaceWatch::Slot &slot = watch.slots[j];
       if (pair->works.wanted) {
-        const double overlap = std::max(slot.contact.overlap, 0.0), r = atom->radius[i];
+        const double r = atom->radius[i], apart = 2.0 * r - touching(r, r);
+        const double overlap = std::max(slot.contact.overlap - apart, 0.0);
         pair->works.add(i, ContactWorks::FIXED, r, r, law, 1.0, f, d, overlap,
-                        overlap > 0.0 ? slot.contact.spring : 0.0);
+                        overlap > 0.0 ? slot.contact.spring - apart : 0.0);
       }
       // of a contact that began in the step, f is the force of more or less than a step
 

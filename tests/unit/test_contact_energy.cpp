@@ -81,7 +81,8 @@ TEST(ContactEnergy, RollingSpring)
 // two contacts of a list, one of them shared with another rank, and a pair that does not touch
 TEST(ContactEnergy, ShareOfThisRank)
 {
-  std::vector<Vector> x = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.2 - OVERLAP}, {0.2 - OVERLAP, 0.0, 0.0}, {0.0, 0.5, 0.0}};
+  const double apart = touching(0.1, 0.1) - OVERLAP;
+  std::vector<Vector> x = {{0.0, 0.0, 0.0}, {0.0, 0.0, apart}, {apart, 0.0, 0.0}, {0.0, 0.5, 0.0}};
   std::vector<Vector> still(4, {0.0, 0.0, 0.0});
   std::vector<double> radius(4, RADIUS), mass(4, MASS);
   std::vector<unsigned char> counts(4, 0);

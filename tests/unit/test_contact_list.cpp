@@ -144,8 +144,8 @@ struct Reference {
       rsq += std::pow(xi[d] - xj[d], 2);
       before += std::pow(xi[d] - xj[d] - dt * (vi[d] - vj[d]), 2);
     }
-    c.overlap = ri + rj - std::sqrt(rsq);
-    was = ri + rj - std::sqrt(before);
+    c.overlap = touching(ri, rj) - std::sqrt(rsq);
+    was = touching(ri, rj) - std::sqrt(before);
     c.rolling_radius = 2.0 * ri * rj / (ri + rj);
     c.follow_whole_step();
     c.ahead = 0.0;
@@ -175,7 +175,7 @@ struct Reference {
     const double age = h[AGE];
     if (now && !was) history[k].fill(0.0);
     if (exact && now != was) {
-      const double vn = normal_velocity(c), reach = ri + rj - c.overlap;
+      const double vn = normal_velocity(c), r = touching(ri, rj) - c.overlap;
       const double across = c.v[0] * c.v[0] + c.v[1] * c.v[1] + c.v[2] * c.v[2] - vn * vn;
       const bool real = now ? before < 0.0 : before > 0.0;    // or the partner was put in place or taken away
       const double part = now ? (real ? c.overlap / (c.overlap - before) : 1.0)
@@ -183,7 +183,7 @@ struct Reference {
       const double late = real ? part - 0.5 : 0.0;
       c.weight = now ? (real ? part + 0.5 : 1.0) : real ? std::max(part, 1.0 - age) - 0.5 : 0.0;
       c.beyond = 0.5 * late * late * std::fabs(c.overlap - before);
-      c.turn = real ? 0.5 * (now ? 0.5 - part : part - 1.5) * dt / reach * across : 0.0;
+      c.turn = real ? 0.5 * (now ? 0.5 - part : part - 1.5) * dt / r * across : 0.0;
       c.touches = now ? 1.0 : 0.0;
       c.first = now && real ? 1.0 : 0.0;
       c.grown = now ? part : 0.0;
@@ -446,11 +446,25 @@ TEST_P(ContactLists, AgainGivesTheForcesOfTheStep)
   }
 }
 
+// whatever rounding makes of the distance of two neighbours in a lattice
+TEST_P(ContactLists, NeighboursInALatticeDoNotTouch)
+{
+  for (double rounding : {-1e-14, 0.0, 1e-14}) {
+    Trio trio(0.5);
+    trio.x[1].z = 0.2 * (1.0 + rounding);
+    const MovingBalls balls = trio.balls();
+    trio.list.adopt_overlaps(balls, MovingPartners{balls, 3},
+                             [](const ContactList::Entry &, double) { ADD_FAILURE(); });
+    trio.list.find(false, balls, MovingPartners{balls, 3});
+    EXPECT_FALSE(trio.list.touches(0)) << rounding;
+  }
+}
+
 // balls that overlap before the first step have begun already, and are counted so
 TEST_P(ContactLists, StartTakesOverlapsForOldContacts)
 {
   Trio trio(0.5);
-  trio.x[1].z = 0.2 - 1e-5;
+  trio.x[1].z = touching(0.1, 0.1) - 1e-5;
   trio.history[0][0] = 7.0;
   const MovingBalls balls = trio.balls();
   int visits = 0;
