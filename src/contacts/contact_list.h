@@ -103,8 +103,8 @@ class ContactList : public ContactSizes {
   {
     for (size_t k = 0; k < entries.size(); k++) {
       const Entry &e = entries[k];
-      const double overlap = touching(balls.radius[e.i], partners.radius(e.j)) -
-          distance(balls, partners, e.i, e.j);
+      const double overlap =
+          touching(balls.radius[e.i], partners.radius(e.j)) - distance(balls, partners, e.i, e.j);
       if (touches(k) || overlap <= 0.0) continue;
       visit(e, overlap);
       std::memset(histories[k], 0, HISTORY * sizeof(double));
