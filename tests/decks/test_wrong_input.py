@@ -49,9 +49,11 @@ FILES = {
     "gal.txt": "# t ax ay az (gal)\n0 0 0 0\n0.5 100 0 0\n", "hex.txt": "0 0 0 0\n1 0x1p3 0 0\n",
     "falling.txt": "0 0 0 0\n1 0 0 0\n0.5 0 0 0\n",
     "fence.csv": "1,7\n7 7\n", "one.csv": "1,7\n", "twice.csv": "1,7\n1,7\n", "off.csv": "1,7\n9,7\n",
-    "turned.csv": "# y,x\n1,7\n7,7\n", "apart.csv": "1,7\n4,7\n\n5,7\n7,7\n", "feet.csv": "# x (ft), y (ft)\n0,0\n1,0\n0,1\n",
+    "turned.csv": "# y,x\n1,7\n7,7\n", "apart.csv": "1,7\n4,7\n\n5,7\n7,7\n",
+    "feet.csv": "# x (ft), y (ft)\n0,0\n1,0\n0,1\n",
     "balls.txt": "# x y z\n1 1 0\n7 7 0.5\n", "two.txt": "1 2 3\n1 2\n", "word.txt": "1 2 x\n", "nan.txt": "1 nan 3\n",
-    "far.txt": "1e13 1 0\n", "order.txt": "# y x z\n1 1 0\n7 7 0.5\n", "none.txt": "# nothing\n", "outside.txt": "9 9 0\n",
+    "far.txt": "1e13 1 0\n", "order.txt": "# y x z\n1 1 0\n7 7 0.5\n",
+    "none.txt": "# nothing\n", "outside.txt": "9 9 0\n",
     "short.asc": "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n3\n",
     "far.asc": "ncols 2\nnrows 1\nxllcorner 1e300\nyllcorner 0\ncellsize 1\n1 2\n",
     "deep.asc": "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 -1e300\n",
@@ -359,7 +361,7 @@ TABLE = {
         word.csv output out -> : word.csv, line 2: must be 2 numbers, x y or x,y, got x
         far.csv output out -> : far.csv, line 2: x and y must be within +-1e+12, got 1e+13 0
         turned.csv output out -> : turned.csv, line 1: columns must be x y or x,y in m, got y,x
-        apart.csv output out -> : apart.csv, line 4: must be the next point of one line, without an empty line before it,
+        apart.csv output out -> : apart.csv, line 4: must be the next point of one line, without an empty line before
         one.csv output out -> : one.csv: must hold at least 2 points x y of a line, got 1
         twice.csv output out -> : twice.csv, line 2: two points in a row must differ, got 1 7 twice
         off.csv output out -> line: points of off.csv must lie in the terrain, x 0 to 8, y 0 to 8, got 9 7
