@@ -54,7 +54,7 @@ bool ends_word(char c)
   return c == '\0' || isspace((unsigned char) c);
 }
 
-// strtod, for the usual heights by whole numbers and then four times as fast: up to 15 digits and
+// strtod of a decimal number; for the usual heights by whole numbers and then four times as fast: up to 15 digits and
 // a power of ten are exact, so that their quotient is what strtod gives
 
 double parse(const char *text, char **end)
@@ -68,7 +68,12 @@ double parse(const char *text, char **end)
   if (digits > 0 && *c == '.')
     for (c++; *c >= '0' && *c <= '9' && digits <= 15; c++, digits++, decimals++)
       number = 10 * number + (*c - '0');
-  if (digits == 0 || digits > 15 || !ends_word(*c)) return strtod(text, end);
+  if (digits == 0 || digits > 15 || !ends_word(*c)) {
+    const char *first = text + (*text == '-' || *text == '+');
+    if (*first != '0' || tolower((unsigned char) first[1]) != 'x') return strtod(text, end);
+    *end = const_cast<char *>(text);    // hexadecimal
+    return 0.0;
+  }
   *end = const_cast<char *>(c);
   const double value = number / POWER[decimals];
   return negative ? -value : value;

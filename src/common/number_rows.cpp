@@ -6,12 +6,10 @@
 
 #include "number_rows.h"
 
+#include "decimal_number.h"
 #include "text_file.h"
 
 #include <algorithm>
-#include <cctype>
-#include <cmath>
-#include <cstdlib>
 
 using namespace Slope;
 
@@ -23,55 +21,58 @@ static const char *const BLANK = " \t\r\v\f";
 
 static bool parse(const std::string &text, std::vector<double> &values)
 {
-  const char *at = text.c_str(), *const stop = at + text.size();
-  auto skip_blanks = [&]() {
-    while (at != stop && isspace((unsigned char) *at)) at++;
-  };
   values.clear();
-  skip_blanks();
-  while (at != stop) {
-    if (!values.empty() && *at == ',') {
-      at++;
-      skip_blanks();
-    }
-    char *end;
-    const double value = strtod(at, &end);
-    if (end == at || !std::isfinite(value)) return false;
-    if (end != stop && *end != ',' && !isspace((unsigned char) *end)) return false;
+  for (size_t at = text.find_first_not_of(BLANK); at != std::string::npos;) {
+    if (!values.empty() && text[at] == ',') at = text.find_first_not_of(BLANK, at + 1);
+    if (at == std::string::npos) return false;
+    const size_t end = std::min(text.find_first_of(std::string(",") + BLANK, at), text.size());
+    double value;
+    if (!read_number(text.substr(at, end - at), value)) return false;
     values.push_back(value);
-    at = end;
-    skip_blanks();
+    at = text.find_first_not_of(BLANK, end);
   }
   return true;
 }
 
+// for messages
+
+static std::string trimmed(const std::string &text)
+{
+  const size_t from = text.find_first_not_of(BLANK);
+  return excerpt(from == std::string::npos
+                     ? text
+                     : text.substr(from, text.find_last_not_of(BLANK) - from + 1));
+}
+
 /* ---------------------------------------------------------------------- */
 
-std::vector<NumberRow> Slope::read_number_rows(const std::string &path, int count,
-                                               const std::string &names)
+void Slope::read_number_rows(const std::string &path, const Columns &columns,
+                             const std::function<void(const NumberRow &)> &take)
 {
   const std::string text = text_of(path);
-  std::vector<NumberRow> rows;
   NumberRow row = {0, false, {}};
+  bool head = true;
   for (size_t pos = 0; pos < text.size();) {
     const size_t end = std::min(text.find('\n', pos), text.size());
     const std::string whole = text.substr(pos, end - pos);
     pos = end + 1;
     row.line++;
     const std::string content = whole.substr(0, whole.find('#'));
-    const bool numbers = parse(content, row.values);
+    const bool numbers = parse(content, row.values), comment = content != whole;
     if (numbers && row.values.empty()) {
-      row.apart = row.apart || content == whole;
+      if (comment && head) {
+        const std::string said = whole.substr(content.size() + 1);
+        if (contradicts(said, columns))
+          throw line_error(path, row.line, columns.rule() + ", got " + trimmed(said));
+      }
+      row.apart = row.apart || !comment;
       continue;
     }
-    if (!numbers || (int) row.values.size() != count) {
-      const size_t from = content.find_first_not_of(BLANK), to = content.find_last_not_of(BLANK);
+    if (!numbers || row.values.size() != columns.letters.size())
       throw line_error(path, row.line,
-                       "must be " + std::to_string(count) + " numbers, " + names + ", got " +
-                           excerpt(content.substr(from, to - from + 1)));
-    }
-    rows.push_back(row);
-    row.apart = false;
+                       "must be " + std::to_string(columns.letters.size()) + " numbers, " +
+                           columns.names + ", got " + trimmed(content));
+    take(row);
+    row.apart = head = false;
   }
-  return rows;
 }

@@ -7,6 +7,9 @@
 #ifndef SLOPE_NUMBER_ROWS_H
 #define SLOPE_NUMBER_ROWS_H
 
+#include "table_head.h"
+
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,11 +22,12 @@ struct NumberRow {
   std::vector<double> values;    // finite
 };
 
-// Lines of count numbers each, with blanks, tabs or one comma between two of them; # starts a
-// comment, empty lines do not count. names: what the numbers are, for messages: "t ax ay az".
-// Errors are std::runtime_error with one line: file, line in it, rule, value.
-std::vector<NumberRow> read_number_rows(const std::string &path, int count,
-                                        const std::string &names);
+// Lines of as many numbers as there are columns, with blanks, tabs or one comma between two of them; # starts
+// a comment, empty lines do not count. Each is given to take. A comment above the first one that
+// names other columns or units is an error. Errors are std::runtime_error with one line: file, line in it,
+// rule, value.
+void read_number_rows(const std::string &path, const Columns &columns,
+                      const std::function<void(const NumberRow &)> &take);
 
 }    // namespace Slope
 

@@ -33,23 +33,28 @@ PlanLine::PlanLine(const std::vector<double> &_xy) :
 
 /* ---------------------------------------------------------------------- */
 
-PlanLine PlanLine::read(const std::string &path)
+PlanLine PlanLine::read(const std::string &path, bool si)
 {
   std::vector<double> points;
-  for (const NumberRow &row : read_number_rows(path, 2, "x y or x,y")) {
+  read_number_rows(path, {"xy", "x y or x,y", si, 1.0}, [&](const NumberRow &row) {
     const double x = row.values[0], y = row.values[1];
     if (!(std::fabs(x) <= LARGEST && std::fabs(y) <= LARGEST))
       throw line_error(path, row.line,
                        "x and y must be within +-" + number_text(LARGEST) + ", got " +
                            number_text(x) + " " + number_text(y));
     const size_t n = points.size();
+    if (n > 0 && row.apart)
+      throw line_error(path, row.line,
+                       "must be the next point of one line, without an empty line before it, got "
+                       "another line at " +
+                           number_text(x) + " " + number_text(y));
     if (n > 0 && x == points[n - 2] && y == points[n - 1])
       throw line_error(path, row.line,
                        "two points in a row must differ, got " + number_text(x) + " " +
                            number_text(y) + " twice");
     points.push_back(x);
     points.push_back(y);
-  }
+  });
   if (points.size() < 4)
     throw std::runtime_error(path + ": must hold at least 2 points x y of a line, got " +
                              std::to_string(points.size() / 2));

@@ -29,9 +29,10 @@ class PlanLine {
   PlanLine() : xlo(0.0), xhi(0.0), ylo(0.0), yhi(0.0) {}
   explicit PlanLine(const std::vector<double> &xy);    // x,y of all points, as read() takes them
 
-  // Read lines "x y" or "x,y", # starts a comment: at least two points, none like the one before.
+  // Read lines "x y" or "x,y", # starts a comment: at least two points, none like the one before, no empty
+  // line between two. si: a head must have metres (table_head.h).
   // Errors are std::runtime_error with one line: file, line in it, rule, value.
-  static PlanLine read(const std::string &path);
+  static PlanLine read(const std::string &path, bool si = true);
 
   // Crossings of a straight path are appended, first ones first.
   void cross(const double *from, const double *to, std::vector<Crossing> &found) const;

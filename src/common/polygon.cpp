@@ -45,10 +45,10 @@ struct Rings {
   std::vector<std::vector<int>> lines;
 };
 
-Rings read_rings(const std::string &path)
+Rings read_rings(const std::string &path, bool si)
 {
   Rings rings;
-  for (const NumberRow &row : read_number_rows(path, 2, "x,y")) {
+  read_number_rows(path, {"xy", "x,y", si, 1.0}, [&](const NumberRow &row) {
     const Point p = {row.values[0], row.values[1]};
     if (!(std::fabs(p.x) <= LARGEST && std::fabs(p.y) <= LARGEST))
       throw line_error(path, row.line,
@@ -58,10 +58,10 @@ Rings read_rings(const std::string &path)
       rings.points.emplace_back();
       rings.lines.emplace_back();
     }
-    if (!rings.points.back().empty() && rings.points.back().back() == p) continue;
+    if (!rings.points.back().empty() && rings.points.back().back() == p) return;
     rings.points.back().push_back(p);
     rings.lines.back().push_back(row.line);
-  }
+  });
   if (rings.points.empty())
     throw std::runtime_error(path + ": must hold a ring of points x,y, it has none");
 
@@ -310,9 +310,9 @@ void Polygon::cut_into_strips()
 
 /* ---------------------------------------------------------------------- */
 
-Polygon Polygon::read(const std::string &path)
+Polygon Polygon::read(const std::string &path, bool si)
 {
-  const Rings rings = read_rings(path);
+  const Rings rings = read_rings(path, si);
 
   std::vector<double> points;
   std::vector<int> sizes;

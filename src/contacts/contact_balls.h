@@ -52,15 +52,17 @@ struct MovingPartners {
   SLOPE_INLINE double mass(int j) const { return balls.mass[j]; }
 };
 
-// ... or fixed ones of one radius (m)
+// ... or fixed ones, all of one radius (m), or each of its own
 struct FixedPartners {
+  enum Radii { ONE = 0, EACH = 1 };
   static constexpr bool MOVE = false;
   const Vector *position;
-  double radius_all;
+  const double *radii;
+  Radii known;
   Vector still = {0.0, 0.0, 0.0};
 
-  SLOPE_INLINE FixedPartners(const Vector *positions, double radius) :
-      position(positions), radius_all(radius)
+  SLOPE_INLINE FixedPartners(const Vector *positions, const double *_radii, Radii _known) :
+      position(positions), radii(_radii), known(_known)
   {
   }
 
@@ -71,7 +73,7 @@ struct FixedPartners {
   SLOPE_INLINE const Vector &v(int) const { return still; }
   SLOPE_INLINE const Vector &omega(int) const { return still; }
   SLOPE_INLINE const Vector &ahead(int) const { return still; }
-  SLOPE_INLINE double radius(int) const { return radius_all; }
+  SLOPE_INLINE double radius(int j) const { return radii[known * j]; }
   SLOPE_INLINE double mass(int) const { return 1.0; }
 };
 

@@ -269,6 +269,26 @@ template <class T, class N> SLOPE_INLINE T held_back(N taken, T contacts, double
   return most / larger(T(taken * contacts), all<T>(most));
 }
 
+// The dashpots of nearly parallel contacts add up to more than that. If they take more than MOST_AHEAD of a motion
+// in a step, velocities ahead make their steps unstable, and they make energy: then they act on those of
+// the middle.
+static constexpr double MOST_AHEAD = 4.0 / 3.0;
+template <class T, class N>
+SLOPE_INLINE T acts_on(const ContactStepOf<N> &step, const ContactOf<T, N> &c, T contacts, T vn)
+{
+  return choose(T(step.taken_n * contacts) > all<T>(MOST_AHEAD), vn, c.ahead);
+}
+
+// In the step in which such contacts begin they take at most all of the motion: the weights of up to 3/2 would
+// make them turn it around.
+template <class T, class N>
+SLOPE_INLINE void hold_beginning(const ContactStepOf<N> &step, T contacts, ContactOf<T, N> &c)
+{
+  const T taken = step.taken_n * contacts;
+  const T most = larger(T(1.0 / taken), all<T>(1.0 / MOST_NORMAL));
+  c.weight = choose(taken > all<T>(MOST_AHEAD), smaller(c.weight, most), c.weight);
+}
+
 // Rolling: the same construction as sliding on Rr (wi - wj) in the tangent plane, torque arm Rr.
 // The dashpots of sliding and of rolling act on the same spin: one more than those of sliding.
 template <class T, class N>
@@ -296,14 +316,15 @@ SLOPE_INLINE void contact_force(const ContactStepOf<N> &step, const ContactOf<T,
   const T vn = normal_velocity(c), zero = T();
   const T elastic = spring_force(step, T(larger(c.overlap, zero) + c.beyond));
   const T cn = step.cn * held_back(step.taken_n, contacts, MOST_NORMAL);
+  const T ahead = acts_on(step, c, contacts, vn);
   const T own =
       1.0 + AHEAD * c.first * c.weight * step.taken_n;    // its force is not in c.ahead yet
-  const T fn = larger(T(elastic - cn * c.weight * (c.ahead + c.turn) / own), all<T>(step.fn_least));
+  const T fn = larger(T(elastic - cn * c.weight * (ahead + c.turn) / own), all<T>(step.fn_least));
 
   // friction and rolling are limited by a force without the weight, or they would depend on when in a step
   // contacts begin
 
-  const T pressing = c.touches * larger(T(elastic - cn * c.ahead / own), zero);
+  const T pressing = c.touches * larger(T(elastic - cn * ahead / own), zero);
   T vt[3], ft[3];
   sliding_velocity(c, vn, vt);
   const T ct =

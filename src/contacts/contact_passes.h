@@ -297,13 +297,16 @@ class ContactPasses : ContactView {
     for (int d = 0; d < 3; d++) c.n[d] = delta[d] * rinv;
     find_velocities(e, ri, rj, balls, partners, c);
     c.follow_whole_step();
-    if (CHANGES) find_times(k, repeat, delta, rinv, T(reach + T()), same.step.dt, c);
+    const T many = contacts<T>(e, sizes.step, balls, partners);
+    if (CHANGES) {
+      find_times(k, repeat, delta, rinv, T(reach + T()), same.step.dt, c);
+      hold_beginning(sizes.step, many, c);
+    }
 
     T history[6];
     load(h, history);
     ContactForceOf<T> out;
-    contact_force<ROLLING>(sizes.step, c, contacts<T>(e, sizes.step, balls, partners), history,
-                           out);
+    contact_force<ROLLING>(sizes.step, c, many, history, out);
     if (!repeat) store<ROLLING>(h, history);    // otherwise it is what the step has left
 
     T ti[3], tj[3];

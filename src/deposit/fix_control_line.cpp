@@ -99,7 +99,7 @@ void FixControlLine::read_line()
 {
   std::vector<double> xy;
   on_rank_zero(lmp, "Fix control/line", [&]() {
-    xy = PlanLine::read(file).xy;
+    xy = PlanLine::read(file, in_si(lmp)).xy;
   });
   share(world, xy);
   line = PlanLine(xy);

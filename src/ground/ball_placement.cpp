@@ -13,19 +13,19 @@
 #include "error.h"
 #include "lammps_compat.h"
 #include "large_messages.h"
+#include "number_rows.h"
 #include "rank_zero.h"
 #include "region_surface.h"
+#include "requirements.h"
 #include "scattered_sampler.h"
 #include "style_argument.h"
 #include "sunk_region.h"
 #include "surface_sampler.h"
-#include "tokenizer.h"
+#include "text_file.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
 #include <stdexcept>
 
 using namespace LAMMPS_NS;
@@ -461,39 +461,21 @@ std::string BallPlacement::unlike(const std::vector<double> &there)
 void BallPlacement::read_file()
 {
   const std::string &file = arguments.file;
-  std::ifstream in(file);
-  if (!in)
-    throw std::runtime_error(fmt::format("cannot open file {}: {}", file, utils::getsyserror()));
-
-  std::string line;
-  for (int nline = 1; std::getline(in, line); nline++) {
-    const std::string where = fmt::format("file {} line {}: ", file, nline);
-    const auto words = Tokenizer(line.substr(0, line.find('#'))).as_vector();
-    if (words.empty()) continue;
-    if (words.size() != 3)
-      throw std::runtime_error(
-          fmt::format("{}must hold x y z, got {} values", where, words.size()));
-
-    double x[3];
-    for (int d = 0; d < 3; d++) {
-      // not LAMMPS' own, which ends all ranks and is called by one here
-      x[d] = utils::is_double(words[d]) ? strtod(words[d].c_str(), nullptr) : NAN;
-      if (!std::isfinite(x[d]))
-        throw std::runtime_error(
-            fmt::format("{}{} must be a finite number, got {}", where, "xyz"[d], words[d]));
-      if (std::fabs(x[d]) > FARTHEST)
-        throw std::runtime_error(
-            fmt::format("{}{} must be within +-{:g}, got {}", where, "xyz"[d], FARTHEST, words[d]));
-    }
-    if (ground->keep(x[0], x[1]))
-      from_file.push_back({x[0], x[1], x[2], static_cast<int64_t>(from_file.size())});
-    else
-      dropped++;
-    if (from_file.size() > MAX_BALLS)
-      throw std::runtime_error(where + "must be fewer than 2^31 balls, got more");
-  }
-  if (in.bad())
-    throw std::runtime_error(fmt::format("cannot read file {}: {}", file, utils::getsyserror()));
+  Slope::read_number_rows(
+      file, {"xyz", "x y z", in_si(lmp), 1.0}, [&](const Slope::NumberRow &row) {
+        const std::vector<double> &x = row.values;
+        for (int d = 0; d < 3; d++)
+          if (std::fabs(x[d]) > FARTHEST)
+            throw Slope::line_error(
+                file, row.line,
+                fmt::format("{} must be within +-{:g}, got {:g}", "xyz"[d], FARTHEST, x[d]));
+        if (ground->keep(x[0], x[1]))
+          from_file.push_back({x[0], x[1], x[2], static_cast<int64_t>(from_file.size())});
+        else
+          dropped++;
+        if (from_file.size() > MAX_BALLS)
+          throw Slope::line_error(file, row.line, "must be fewer than 2^31 balls, got more");
+      });
 }
 
 // sums: of the coordinates with a weight of -1 to 1 that each ball's number decides on: two balls that

@@ -62,7 +62,10 @@ class FixWallGranBalls : public FixContactWall, public BallBody {
   double force_mine[3], force_all[3];    // on the fixed balls
   int force_ready;
 
-  Slope::FixedPartners partners() const { return {balls->places(), radius}; }
+  Slope::FixedPartners partners() const
+  {
+    return {balls->places(), &radius, Slope::FixedPartners::ONE};
+  }
   void check_sizes();
   void take_contacts() override;
   void give_histories();

@@ -134,7 +134,8 @@ int PlacementArguments::parse_pattern(int narg, char **arg)
   scattered = strcmp(arg[1], "scattered") == 0;
   if (!scattered && strcmp(arg[1], "grid") != 0)
     error->all(FLERR, "{} pattern must be grid or scattered, got {}", caller, arg[1]);
-  if (!scattered || narg < 3 || !utils::is_double(arg[2])) return 2;
+  double number;
+  if (!scattered || narg < 3 || !Slope::read_number(arg[2], number)) return 2;
   seed = whole_number_argument(lmp, fmt::format("{} pattern scattered SEED", caller), arg[2]);
   if (seed < 1) error->all(FLERR, "{} pattern scattered SEED must be > 0, got {}", caller, arg[2]);
   return 3;

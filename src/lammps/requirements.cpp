@@ -45,6 +45,13 @@ void LAMMPS_NS::require_step(LAMMPS *lmp, const std::string &caller, bigint set_
                     caller);
 }
 
+/* ---------------------------------------------------------------------- */
+
+bool LAMMPS_NS::in_si(const LAMMPS *lmp)
+{
+  return strcmp(lmp->update->unit_style, "si") == 0;
+}
+
 /* ----------------------------------------------------------------------
    the law takes stiffness times length for a force, and mass times velocity squared for an energy
 ------------------------------------------------------------------------- */

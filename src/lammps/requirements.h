@@ -17,6 +17,8 @@
 namespace LAMMPS_NS {
 class LAMMPS;
 
+bool in_si(const LAMMPS *);    // the units of the deck
+
 void require_run(LAMMPS *,
                  const std::string &caller);    // with run_style verlet, forwards; no minimize
 // at the end of a step; set_up: the step of the last set-up

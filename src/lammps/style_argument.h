@@ -6,27 +6,18 @@
 #ifndef SLOPE_STYLE_ARGUMENT_H
 #define SLOPE_STYLE_ARGUMENT_H
 
+#include "decimal_number.h"
+
 #include "error.h"
 #include "lammps.h"
 
 #include <cctype>
 #include <cerrno>
 #include <climits>
-#include <cmath>
 #include <cstdlib>
 #include <string>
 
 namespace LAMMPS_NS {
-
-// Whether a text is a decimal number as a whole, and finite: not 1.0.0, 1e, 0x10, inf or 1e999. LAMMPS' own
-// is_double() takes whatever has the letters of a number, in some versions.
-inline bool read_number(const std::string &text, double &value)
-{
-  if (text.empty() || text.find_first_not_of("0123456789+-.eE") != std::string::npos) return false;
-  char *end;
-  value = strtod(text.c_str(), &end);
-  return *end == '\0' && std::isfinite(value);
-}
 
 // Numbers among the arguments of a style. LAMMPS' own errors do not say which argument it was; here
 // what names style and argument: "Fix deposit/grid cell".
@@ -34,7 +25,7 @@ inline bool read_number(const std::string &text, double &value)
 inline double number_argument(LAMMPS *lmp, const std::string &what, const char *text)
 {
   double value;
-  if (!read_number(text, value))
+  if (!Slope::read_number(text, value))
     lmp->error->all(FLERR, "{} must be a finite number, got {}", what, text);
   return value;
 }

@@ -102,11 +102,9 @@ void FixWallGranMesh::take_contacts()
 
   std::vector<int> count(watch.balls(), 0);
   auto visit = [this](std::function<void(const ContactList &, size_t)> what) {
-    for (const auto &entry : lists) {
-      const ContactList &l = entry.second;
+    for (const ContactList &l : lists)
       for (size_t k = 0; k < l.entries.size(); k++)    // balls may have been deleted
         if (l.has_history(k) && l.entries[k].i < atom->nlocal) what(l, k);
-    }
   };
   visit([&](const ContactList &l, size_t k) {
     count[watch.slots[l.entries[k].j].ball]++;
@@ -130,7 +128,8 @@ void FixWallGranMesh::take_contacts()
 
 void FixWallGranMesh::post_neighbor()
 {
-  lists.clear();
+  lists.resize(atom->ntypes + 1);
+  for (ContactList &l : lists) l.clear(true, false);
   watch.clear();
   radii.clear();
   history.clear();
@@ -177,8 +176,7 @@ void FixWallGranMesh::add_contact(int slot, const double *from)
   const int i = watch.number_of(watch.slots[slot].ball);
   const double r = atom->radius[i];
   radii.push_back(r);
-  ContactList &l = lists[{atom->type[i], r}];
-  if (l.entries.empty()) l.clear(true, false);
+  ContactList &l = lists[atom->type[i]];
   l.add(i, slot, values, from != nullptr, r, r, atom->rmass[i], 1.0);
   if (pair->sizes_vary) l.let_vary();
 }
@@ -317,17 +315,16 @@ void FixWallGranMesh::find_contacts(bool repeat)
 {
   find_features();
   const MovingBalls moving = pair->moving_balls();
+  const FixedPartners fixed = phantoms(centres);
   InitialOverlap initial(lmp);
-  for (auto &entry : lists) {
-    ContactList &l = entry.second;
-    const FixedPartners phantoms(centres.data(), entry.first.radius);
+  for (ContactList &l : lists) {
     if (repeat)
-      l.adopt_overlaps(moving, phantoms, [&](const ContactList::Entry &e, double) {
+      l.adopt_overlaps(moving, fixed, [&](const ContactList::Entry &e, double) {
         const SurfaceWatch::Slot &slot = watch.slots[e.j];
         initial.record(slot.depth(), atom->radius[e.i], atom->tag[e.i], atom->x[e.i],
                        fmt::format("triangle {}", slot.contact.at.triangle + 1));
       });
-    l.find(repeat, moving, phantoms);
+    l.find(repeat, moving, fixed);
   }
   if (repeat)
     initial.check(caller, "move the surface, or remove the balls there with delete_atoms region");
@@ -352,9 +349,9 @@ void FixWallGranMesh::apply(bool repeat)
   };
   torque_of_balls(1.0);
 
-  for (auto &entry : lists) {
-    const FixedPartners phantoms(centres.data(), entry.first.radius);
-    const ContactLaw law = smooth_law(entry.first.type);
+  for (size_t type = 1; type < lists.size(); type++) {
+    if (lists[type].entries.empty()) continue;
+    const ContactLaw law = smooth_law(type);
     auto add = [&](int i, int j, const Vector &f, const Vector &d) {
       const SurfaceWatch::Slot &slot = watch.slots[j];
       if (pair->works.wanted) {
@@ -382,7 +379,7 @@ void FixWallGranMesh::apply(bool repeat)
                       dot(f, touched.normal) * update->dt);
     };
     ContactTally tally = tally_of(add);
-    entry.second.apply(law, update->dt, repeat, moving, phantoms, &tally);
+    lists[type].apply(law, update->dt, repeat, moving, phantoms(centres), &tally);
   }
   torque_of_balls(-1.0);
 
@@ -408,13 +405,13 @@ double FixWallGranMesh::elastic_energy() const
   }
   const MovingBalls moving = pair->moving_balls();
   double energy = 0.0;
-  for (const auto &entry : lists)
-    energy += Slope::elastic_energy(entry.second, smooth_law(entry.first.type), update->dt, moving,
-                                    FixedPartners(places.data(), entry.first.radius),
-                                    [this](const ContactList::Entry &e, double) {
-                                      pair->guards.record_overlap(e.i, watch.slots[e.j].depth(),
-                                                                  atom->radius[e.i]);
-                                    });
+  for (size_t type = 1; type < lists.size(); type++)
+    if (!lists[type].entries.empty())
+      energy += Slope::elastic_energy(
+          lists[type], smooth_law(type), update->dt, moving, phantoms(places),
+          [this](const ContactList::Entry &e, double) {
+            pair->guards.record_overlap(e.i, watch.slots[e.j].depth(), atom->radius[e.i]);
+          });
   return energy;
 }
 
@@ -455,7 +452,7 @@ double FixWallGranMesh::compute_vector(int n)
 double FixWallGranMesh::memory_usage()
 {
   double bytes = surface->memory_usage() + watch.memory_usage() + records.memory_usage();
-  for (const auto &entry : lists) bytes += entry.second.memory_usage();
+  for (const ContactList &l : lists) bytes += l.memory_usage();
   bytes += history.size() * sizeof(history[0]) + centres.capacity() * sizeof(Vector) +
       radii.capacity() * sizeof(double);
   return bytes;

@@ -23,7 +23,6 @@ FixStyle(wall/gran/mesh,FixWallGranMesh);
 
 #include <array>
 #include <deque>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -54,20 +53,12 @@ class FixWallGranMesh : public FixContactWall {
   SurfaceOptions options;
   std::unique_ptr<Slope::TouchedSurface> surface;
 
-  // The contacts of this rank's balls, by type and radius of the ball. Each has a slot in watch, and in the
+  // The contacts of this rank's balls, by type of the ball. Each has a slot in watch, and in the
   // contact list a phantom ball as partner: a fixed ball of the same size, so placed that it touches the
   // ball where the surface does, and as deep.
 
   Slope::SurfaceWatch watch;
-  struct Kind {
-    int type;
-    double radius;
-    bool operator<(const Kind &other) const
-    {
-      return type != other.type ? type < other.type : radius < other.radius;
-    }
-  };
-  std::map<Kind, Slope::ContactList> lists;
+  std::vector<Slope::ContactList> lists;
   std::vector<double> radii;    // of each slot's phantom
   std::deque<std::array<double, Slope::HISTORY>> history;
   std::vector<Slope::Vector> centres;    // of the phantoms
@@ -86,6 +77,10 @@ class FixWallGranMesh : public FixContactWall {
   SpeedGuard fast;
 
   Slope::ContactLaw smooth_law(int type) const;
+  Slope::FixedPartners phantoms(const std::vector<Slope::Vector> &places) const
+  {
+    return {places.data(), radii.data(), Slope::FixedPartners::EACH};
+  }
   void add_contact(int slot, const double *from);
   void find_features();
   void warn_of_enclosed();

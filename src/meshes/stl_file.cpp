@@ -6,13 +6,13 @@
 
 #include "stl_file.h"
 
+#include "decimal_number.h"
 #include "text_file.h"
 
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 
@@ -126,9 +126,8 @@ class Words {
   {
     std::string word;
     if (!next(word)) end(what);
-    char *stop = nullptr;
-    const double value = strtod(word.c_str(), &stop);
-    if (*stop || !std::isfinite(value))
+    double value;
+    if (!read_number(word, value))
       fail(std::string(what) + " must be a finite number, got " + excerpt(word));
     return value;
   }

@@ -74,7 +74,7 @@ void FixGroundMotion::read_record()
 {
   std::vector<MotionRecord::Point> points;
   on_rank_zero(lmp, "Fix ground/motion", [&]() {
-    points = MotionRecord::read(file, scale).list();
+    points = MotionRecord::read(file, scale, in_si(lmp)).list();
   });
   share(world, points);
   record = MotionRecord(points, scale);
@@ -94,7 +94,7 @@ void FixGroundMotion::announce() const
       "ground ends with velocity {:.4g} {:.4g} {:.4g}, displacement {:.4g} {:.4g} {:.4g}\n",
       id, record.list().size(), record.begin(), record.end(), record.peak(), v[0], v[1], v[2], d[0],
       d[1], d[2]);
-  if (record.peak() > DOUBTED && strcmp(update->unit_style, "si") == 0)
+  if (record.peak() > DOUBTED && in_si(lmp))
     error->warning(
         FLERR,
         "Fix ground/motion {}: the largest acceleration should be at most {:g} m/s2, got {:.6g} "

@@ -39,10 +39,10 @@ MotionRecord::MotionRecord(const std::vector<Point> &_points, double _scale) :
 
 /* ---------------------------------------------------------------------- */
 
-MotionRecord MotionRecord::read(const std::string &path, double scale)
+MotionRecord MotionRecord::read(const std::string &path, double scale, bool si)
 {
   std::vector<Point> points;
-  for (const NumberRow &row : read_number_rows(path, 4, "t ax ay az")) {
+  read_number_rows(path, {"txyz", "t ax ay az", si, scale}, [&](const NumberRow &row) {
     const Point p = {row.values[0], {row.values[1], row.values[2], row.values[3]}};
     for (const double value : row.values)
       if (std::fabs(value) > LARGEST)
@@ -59,7 +59,7 @@ MotionRecord MotionRecord::read(const std::string &path, double scale)
                        "at most two lines may have the same time, a jump, got a third one of " +
                            number_text(p.t));
     points.push_back(p);
-  }
+  });
   if (points.size() < 2)
     throw std::runtime_error(path + ": must hold at least 2 lines t ax ay az, got " +
                              std::to_string(points.size()));

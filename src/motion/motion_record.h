@@ -27,9 +27,9 @@ class MotionRecord {
   MotionRecord(const std::vector<Point> &points, double scale);
 
   // Read lines "t ax ay az", # starts a comment. Times must not fall, at most two may be equal, and
-  // there must be at least two points. Errors are std::runtime_error with one line: file, line in
+  // there must be at least two points. si: a head must have s and m/s2 (table_head.h). Errors are std::runtime_error with one line: file, line in
   // it, rule, value.
-  static MotionRecord read(const std::string &path, double scale);
+  static MotionRecord read(const std::string &path, double scale, bool si = true);
 
   // At a time t of the record (s). At a jump the acceleration is the one after it.
   void acceleration(double t, double *a) const;    // m/s2

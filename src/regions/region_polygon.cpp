@@ -10,6 +10,7 @@
 #include "error.h"
 #include "large_messages.h"
 #include "rank_zero.h"
+#include "requirements.h"
 
 #include <vector>
 
@@ -63,7 +64,7 @@ void RegPolygon::init()
 void RegPolygon::read(const char *path)
 {
   on_rank_zero(lmp, caller, [&]() {
-    polygon = Slope::Polygon::read(path);
+    polygon = Slope::Polygon::read(path, in_si(lmp));
   });
 
   std::vector<double> xy = polygon.xy;

@@ -204,12 +204,14 @@ BAD = [
     ("surface none upper spacing 1", "w: the surface of region none holds no balls"),
     ("surface ball upper spacing 1 inside nowhere", "w: the surface of region ball holds no balls"),
     ("file", "w file must be followed by FILE, got 0 of 1 values"),
-    ("file gone.txt", "w: cannot open file gone.txt: No such file or directory"),
+    ("file gone.txt", "w: cannot read gone.txt: No such file or directory"),
     ("file balls.txt spacing 1", "w keyword must be inside, outside or write, got spacing"),
-    ("file two.txt", "w: file two.txt line 3: must hold x y z, got 2 values"),
-    ("file word.txt", "w: file word.txt line 2: y must be a finite number, got zwei"),
-    ("file nan.txt", "w: file nan.txt line 1: z must be a finite number, got nan"),
-    ("file huge.txt", "w: file huge.txt line 1: z must be a finite number, got 1e999"),
+    ("file two.txt", "w: two.txt, line 3: must be 3 numbers, x y z, got 1 2"),
+    ("file word.txt", "w: word.txt, line 2: must be 3 numbers, x y z, got 1 zwei 3"),
+    ("file nan.txt", "w: nan.txt, line 1: must be 3 numbers, x y z, got 1 2 nan"),
+    ("file huge.txt", "w: huge.txt, line 1: must be 3 numbers, x y z, got 0 0 1e999"),
+    ("file hex.txt", "w: hex.txt, line 1: must be 3 numbers, x y z, got 0x10 0 0"),
+    ("file order.txt", "w: order.txt, line 1: columns must be x y z in m, got z y x"),
     ("file empty.txt", "w: file empty.txt holds no balls"),
     ("surface ball upper spacing 1 write gone/balls.txt", "w: cannot write gone/balls.txt: "),
 ]
@@ -225,6 +227,8 @@ def test_bad_input_ends_with_one_line(tmp_path):
         (path / "word.txt").write_text("1 2 3\n1 zwei 3\n")
         (path / "nan.txt").write_text("1 2 nan\n")
         (path / "huge.txt").write_text("0 0 1e999\n")
+        (path / "hex.txt").write_text("0x10 0 0\n")
+        (path / "order.txt").write_text("# z y x\n1 2 3\n")
         (path / "empty.txt").write_text("# nothing\n")
         before = set(path.iterdir())
         run_deck(DECK.format(placement=placement), path, expect_error=message)
@@ -237,10 +241,10 @@ def test_bad_input_ends_with_one_line(tmp_path):
 def test_error_on_rank_0_ends_all_ranks(tmp_path):
     (tmp_path / "two.txt").write_text("1 2 3\n1 2\n")
     run_deck(DECK.format(placement="file two.txt"), tmp_path, np=2, timeout=60,
-             expect_error="file two.txt line 2: must hold x y z, got 2 values")
+             expect_error="two.txt, line 2: must be 3 numbers, x y z, got 1 2")
     (tmp_path / "huge.txt").write_text("0 0 1e999\n")
     run_deck(DECK.format(placement="file huge.txt"), tmp_path, np=2, timeout=60,
-             expect_error="file huge.txt line 1: z must be a finite number, got 1e999")
+             expect_error="huge.txt, line 1: must be 3 numbers, x y z, got 0 0 1e999")
 
 
 # --- columns as intervals ---

@@ -50,6 +50,24 @@ def test_gaps_between_rows_of_triangles_make_no_contact_of_their_own(tmp_path, t
     assert np.abs(frames - two_triangles[1]).max() <= 1e-9 * np.abs(frames).max()
 
 
+def test_balls_of_any_sizes_are_each_as_alone(tmp_path):
+    """All are in one list of contacts; alone, a ball's list has one size.  The largest comes first and last."""
+    d = np.array([1.0, 0.61, 0.8, 0.99, 0.62, 1.0])
+    x = np.array([(-5 + 2 * k, 0.3 * k, 0.5 * d[k] + 0.1 * k) for k in range(len(d))])
+    v = np.array([(0.5, 0.3 * k, -1.0) for k in range(len(d))])
+    settings = dict(g=9.81, down="0.1 0 -1", dt=rule_step(0.6))
+    write_case(tmp_path, plane(10, height=lambda x, y: 0.1 * y), x, v, d=d)
+    rows, together, _ = run_case(tmp_path, "run 800", **settings)
+    assert rows[:, 2].max() >= 4
+    for k in range(len(d)):
+        folder = tmp_path / str(k)
+        folder.mkdir()
+        write_case(folder, plane(10, height=lambda x, y: 0.1 * y), x[k], v[k], d=d[k])
+        alone = run_case(folder, "run 800", **settings)[1][:, 0]
+        assert (np.diff(alone[:, 6]) > 0).sum() > 5
+        assert np.abs(together[:, k, 1:] - alone[:, 1:]).max() <= 1e-9 * np.abs(alone[:, 1:]).max()
+
+
 @pytest.mark.parametrize("e", [0.3, 0.48, 0.7, 1.0])
 @pytest.mark.parametrize("share, tolerance, rebound", [(1.0, 0.02, 0.01), (0.2, 0.01, 0.001)])
 def test_rebound_and_largest_force_of_an_impact(tmp_path, e, share, tolerance, rebound):

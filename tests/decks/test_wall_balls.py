@@ -525,7 +525,7 @@ pair_coeff * * stiffness 1e7 1e7 restitution 0.5
     ("wall/gran/balls 2 0 file floor.xyz", "diameter must be > 0, got 0"),
     ("wall/gran/balls 2 -0.1 file floor.xyz", "diameter must be > 0, got -0.1"),
     ("wall/gran/balls 2 0.1 file floor.xyz colour red", "keyword must be inside, outside or write, got colour"),
-    ("wall/gran/balls 2 0.1 file nowhere.xyz", "cannot open file nowhere.xyz"),
+    ("wall/gran/balls 2 0.1 file nowhere.xyz", "cannot read nowhere.xyz: No such file"),
     ("wall/gran/balls 2 0.1 plane", "needs surface or file, got plane"),
     ("wall/gran/balls 2 0.1", "Fix wall/gran/balls ground: needs TYPE DIAMETER and surface or file, got 2 arguments"),
 ])
@@ -535,8 +535,8 @@ def test_bad_fix(tmp_path, fix, message):
 
 
 @pytest.mark.parametrize("text, message", [
-    ("0 0 0\n0 0\n", "file floor.xyz line 2: must hold x y z, got 2 values"),
-    ("0 0 0\n0 zero 0\n", "file floor.xyz line 2: y must be a finite number, got zero"),
+    ("0 0 0\n0 0\n", "floor.xyz, line 2: must be 3 numbers, x y z, got 0 0"),
+    ("0 0 0\n0 zero 0\n", "floor.xyz, line 2: must be 3 numbers, x y z, got 0 zero 0"),
     ("# nothing\n", "file floor.xyz holds no balls"),
 ])
 def test_bad_file(tmp_path, text, message):

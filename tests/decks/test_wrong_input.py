@@ -46,10 +46,14 @@ FILES = {
     "road.csv": "6,0\n8,0\n8,8\n6,8\n", "line.csv": "0,0\n1,1\n", "bow.csv": "0,0\n1,1\n0,1\n1,0\n",
     "word.csv": "0,0\nx\n", "far.csv": "0,0\n1e13,0\n0,1\n", "empty.csv": "",
     "motion.txt": "# t ax ay az\n0 0 0 0\n0.5 1 0 0\n", "gap.txt": "0 0 0 0\n0.1 1 0\n",
+    "gal.txt": "# t ax ay az (gal)\n0 0 0 0\n0.5 100 0 0\n", "hex.txt": "0 0 0 0\n1 0x1p3 0 0\n",
     "falling.txt": "0 0 0 0\n1 0 0 0\n0.5 0 0 0\n",
     "fence.csv": "1,7\n7 7\n", "one.csv": "1,7\n", "twice.csv": "1,7\n1,7\n", "off.csv": "1,7\n9,7\n",
+    "turned.csv": "# y,x\n1,7\n7,7\n", "apart.csv": "1,7\n4,7\n\n5,7\n7,7\n",
+    "feet.csv": "# x (ft), y (ft)\n0,0\n1,0\n0,1\n",
     "balls.txt": "# x y z\n1 1 0\n7 7 0.5\n", "two.txt": "1 2 3\n1 2\n", "word.txt": "1 2 x\n", "nan.txt": "1 nan 3\n",
-    "far.txt": "1e13 1 0\n", "none.txt": "# nothing\n", "outside.txt": "9 9 0\n",
+    "far.txt": "1e13 1 0\n", "order.txt": "# y x z\n1 1 0\n7 7 0.5\n",
+    "none.txt": "# nothing\n", "outside.txt": "9 9 0\n",
     "short.asc": "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n3\n",
     "far.asc": "ncols 2\nnrows 1\nxllcorner 1e300\nyllcorner 0\ncellsize 1\n1 2\n",
     "deep.asc": "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 -1e300\n",
@@ -181,12 +185,13 @@ TABLE = {
         2 1.0 surface ground upper spacing 1 write -> write must be followed by FILE, got 0 of 1 values
         2 1.0 surface ground upper spacing 1 write none/a.txt -> : cannot write none/a.txt: No such file or directory
         2 1.0 file -> file must be followed by FILE, got 0 of 1 values
-        2 1.0 file missing.txt -> : cannot open file missing.txt: No such file or directory
-        2 1.0 file . -> : cannot read file .: Is a directory
-        2 1.0 file two.txt -> : file two.txt line 2: must hold x y z, got 2 values
-        2 1.0 file word.txt -> : file word.txt line 1: z must be a finite number, got x
-        2 1.0 file nan.txt -> : file nan.txt line 1: y must be a finite number, got nan
-        2 1.0 file far.txt -> : file far.txt line 1: x must be within +-1e+12, got 1e13
+        2 1.0 file missing.txt -> : cannot read missing.txt: No such file or directory
+        2 1.0 file . -> : cannot read .: Is a directory
+        2 1.0 file two.txt -> : two.txt, line 2: must be 3 numbers, x y z, got 1 2
+        2 1.0 file word.txt -> : word.txt, line 1: must be 3 numbers, x y z, got 1 2 x
+        2 1.0 file nan.txt -> : nan.txt, line 1: must be 3 numbers, x y z, got 1 nan 3
+        2 1.0 file order.txt -> : order.txt, line 1: columns must be x y z in m, got y x z
+        2 1.0 file far.txt -> : far.txt, line 1: x must be within +-1e+12, got 1e+13
         2 1.0 file none.txt -> : file none.txt holds no balls
         2 1.0 file balls.txt spacing 1.0 -> keyword must be inside, outside or write, got spacing
         2 1.0 file balls.txt inside nowhere -> region nowhere does not exist
@@ -228,6 +233,7 @@ TABLE = {
         . -> : cannot read .: Is a directory
         empty.csv -> : empty.csv: must hold a ring of points x,y, it has none
         line.csv -> : line.csv, line 1: a ring must have at least 3 points, got 2
+        feet.csv -> : feet.csv, line 1: columns must be x,y in m, got x (ft), y (ft)
         bow.csv -> : bow.csv, line 1: a ring must not cross or touch itself, the edges from lines 1 and 3 meet at
         word.csv -> : word.csv, line 2: must be 2 numbers, x,y, got x
         far.csv -> : far.csv, line 2: x and y must be within +-1e+12, got 1e+13,0
@@ -258,9 +264,9 @@ TABLE = {
         3 1.0 -1 file balls.txt -> density must be > 0, got -1
         3 1.0 inf file balls.txt -> density must be a finite number, got inf
         3 1.0 2000 lattice sc -> needs surface or file, got lattice
-        3 1.0 2000 file missing.txt -> : cannot open file missing.txt: No such file or directory
+        3 1.0 2000 file missing.txt -> : cannot read missing.txt: No such file or directory
         3 1.0 2000 file outside.txt -> balls must lie in the simulation box (below its upper faces), got 1 of 1
-        3 1.0 2000 file two.txt -> : file two.txt line 2: must hold x y z, got 2 values
+        3 1.0 2000 file two.txt -> : two.txt, line 2: must be 3 numbers, x y z, got 1 2
         3 1.0 2000 file balls.txt write a.txt -> keyword must be inside or outside, got write
         3 1.0 2000 surface ground upper -> surface needs a spacing, got none
         3 1.0 2000 surface ground upper spacing 0 -> spacing must be > 0, got 0
@@ -336,6 +342,8 @@ TABLE = {
         -> needs FILE with lines t ax ay az
         no.txt -> : cannot read no.txt: No such file or directory
         gap.txt -> : gap.txt, line 2: must be 4 numbers, t ax ay az, got 0.1 1 0
+        gal.txt -> : gal.txt, line 1: columns must be t ax ay az in s and m/s2, got t ax ay az (gal)
+        hex.txt -> : hex.txt, line 2: must be 4 numbers, t ax ay az, got 1 0x1p3 0 0
         falling.txt -> : falling.txt, line 3: times must not fall, got 0.5 after 1
         none.txt -> : none.txt: must hold at least 2 lines t ax ay az, got 0
         motion.txt scale -> scale: value is missing
@@ -352,6 +360,8 @@ TABLE = {
         no.csv output out -> : cannot read no.csv: No such file or directory
         word.csv output out -> : word.csv, line 2: must be 2 numbers, x y or x,y, got x
         far.csv output out -> : far.csv, line 2: x and y must be within +-1e+12, got 1e+13 0
+        turned.csv output out -> : turned.csv, line 1: columns must be x y or x,y in m, got y,x
+        apart.csv output out -> : apart.csv, line 4: must be the next point of one line, without an empty line before
         one.csv output out -> : one.csv: must hold at least 2 points x y of a line, got 1
         twice.csv output out -> : twice.csv, line 2: two points in a row must differ, got 1 7 twice
         off.csv output out -> line: points of off.csv must lie in the terrain, x 0 to 8, y 0 to 8, got 9 7

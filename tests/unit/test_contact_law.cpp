@@ -173,6 +173,36 @@ TEST(ContactLaw, SteppedSpring)
     }
 }
 
+// Dashpots that together take more than MOST_AHEAD look at the velocities of the middle, and when they begin take at
+// most all of the motion; others are as they are, to the bit.
+TEST(ContactLaw, DashpotsThatTakeMuchTogetherDoNotLookAhead)
+{
+  int crowded = 0, free = 0;
+  for (double zeta : {0.05, 0.6, 2.0})
+    for (int n : {1, 4, 6, 12}) {
+      const ContactStep step = on_fixed(law_of_ratio(zeta), rule_step());
+      Contact c = still_contact(1e-3);
+      c.v[2] = -0.1;
+      c.ahead = -0.3;
+      double history[HISTORY] = {0.0};
+      ContactForce out, still;
+      contact_force(step, c, 1.0 * n, history, out);
+      contact_force(step, still_contact(1e-3), 1.0 * n, history, still);
+      const double seen = (out.f[2] - still.f[2]) * step.dt / (MASS * std::min(step.taken_n, MOST_NORMAL / n));
+      const bool many = n * step.taken_n > MOST_AHEAD;
+      (many ? crowded : free)++;
+      EXPECT_NEAR(seen, many ? 0.1 : 0.3, 1e-9) << zeta << " " << n;
+      for (double weight : {-0.2, 0.3, 1.0, 1.5}) {
+        c.weight = weight;
+        hold_beginning(step, 1.0 * n, c);
+        EXPECT_EQ(c.weight, many ? std::min(weight, std::max(1.0 / (n * step.taken_n), 0.5)) : weight);
+        EXPECT_LE(!many ? 0.0 : c.weight * n * std::min(step.taken_n, MOST_NORMAL / n), 1.0 + 1e-12);
+      }
+    }
+  EXPECT_GE(crowded, 3);
+  EXPECT_GE(free, 5);
+}
+
 // What the dashpots of many contacts of one ball take of its motion is bounded, whatever they are and however
 // many; those of few are not touched.
 TEST(ContactLaw, DashpotsOfManyContactsAreHeldBack)

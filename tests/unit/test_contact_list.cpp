@@ -194,6 +194,7 @@ struct Reference {
     }
     (!now ? ended : was ? lasted : began)++;
     const double contacts = mean_contacts(step, 1.0 * count[i], 1.0 * count[j]);
+    if (exact && now != was) hold_beginning(step, contacts, c);
     ContactForce out;
     if (law.rolling > 0.0) contact_force<true>(step, c, contacts, h, out);
     else contact_force<false>(step, c, contacts, h, out);

@@ -157,7 +157,7 @@ TEST(PlanLine, WalksAroundAClosedLineAddUp)
 
 TEST_F(LineFile, ReadsBlanksAndCommas)
 {
-  const PlanLine line = read("# x y\n1 2\r\n\n 3,4 # last but one\n5 , 6\n");
+  const PlanLine line = read("\n# x y\n\n1 2\r\n# a bend\n 3,4 # last but one\n5 , 6\n\n");
   EXPECT_EQ(line.xy, (std::vector<double>{1, 2, 3, 4, 5, 6}));
   EXPECT_EQ(line.xlo, 1.0);
   EXPECT_EQ(line.yhi, 6.0);
@@ -168,6 +168,9 @@ TEST_F(LineFile, WhatIsWrongIsSaid)
   EXPECT_EQ(problem(""), path + ": must hold at least 2 points x y of a line, got 0");
   EXPECT_EQ(problem("1,2\n"), path + ": must hold at least 2 points x y of a line, got 1");
   EXPECT_EQ(problem("1,2\n1,2\n"), path + ", line 2: two points in a row must differ, got 1 2 twice");
+  EXPECT_EQ(problem("1,2\n3,4\n\n# on the other side\n5,6\n7,8\n"),
+            path + ", line 5: must be the next point of one line, without an empty line before it, got another line at 5 6");
+  EXPECT_EQ(problem("# y x\n1 2\n3 4\n"), path + ", line 1: columns must be x y or x,y in m, got y x");
   EXPECT_EQ(problem("1,2\n1,2,3\n"), path + ", line 2: must be 2 numbers, x y or x,y, got 1,2,3");
   EXPECT_EQ(problem("1,2\n1,,2\n"), path + ", line 2: must be 2 numbers, x y or x,y, got 1,,2");
   EXPECT_EQ(problem("1,2\n1;2\n"), path + ", line 2: must be 2 numbers, x y or x,y, got 1;2");

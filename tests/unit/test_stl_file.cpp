@@ -168,6 +168,8 @@ TEST(StlFile, SaysWhatIsWrongWithText)
   text = "solid x\n" + ONE + "endsolid x\n";
   text.replace(text.find("2 0 0"), 1, "inf");
   EXPECT_SAYS(text, "line 5: a coordinate must be a finite number, got inf");
+  text.replace(text.find("inf"), 3, "0x2");
+  EXPECT_SAYS(text, "line 5: a coordinate must be a finite number, got 0x2");
   text = "solid x\n" + ONE + "endsolid x\n";
   text.replace(text.find(" endloop"), 8, "  vertex 1 1 1\n endloop");
   EXPECT_SAYS(text, "line 7: endloop is expected here, got vertex");
