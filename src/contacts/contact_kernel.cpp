@@ -15,8 +15,7 @@ using namespace Slope;
 namespace Slope {
 extern const ContactKernel contact_kernel_baseline;
 #ifdef SLOPE_X86_KERNELS
-extern const ContactKernel contact_kernel_x86_64_v2, contact_kernel_x86_64_v3,
-    contact_kernel_x86_64_v4;
+extern const ContactKernel contact_kernel_x86_64_v3, contact_kernel_x86_64_v4;
 #endif
 }    // namespace Slope
 
@@ -33,14 +32,13 @@ static std::vector<ContactKernels::Choice> find_all()
 #endif
 #ifdef SLOPE_X86_KERNELS
   __builtin_cpu_init();
-  const bool v2 = __builtin_cpu_supports("ssse3") && __builtin_cpu_supports("sse4.2") &&
-      __builtin_cpu_supports("popcnt");
-  const bool v3 = v2 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") &&
-      __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("fma");
+  const bool v3 = __builtin_cpu_supports("ssse3") && __builtin_cpu_supports("sse4.2") &&
+      __builtin_cpu_supports("popcnt") && __builtin_cpu_supports("avx2") &&
+      __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") &&
+      __builtin_cpu_supports("fma");
   const bool v4 = v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
       __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
       __builtin_cpu_supports("avx512vl");
-  kernels.push_back({"x86-64-v2", v2, &contact_kernel_x86_64_v2});
   kernels.push_back({"x86-64-v3", v3, &contact_kernel_x86_64_v3});
   kernels.push_back({"x86-64-v4", v4, &contact_kernel_x86_64_v4});
 #endif

@@ -10,14 +10,14 @@
 
 using namespace Slope;
 
-static constexpr double NO_CENTRE = -1.0;    // where a speed is
+// of a cell without a ball, kind by kind; the speed: no centre
+static const double NOTHING[DepositBins::KINDS] = {0.0, -1.0, 0.0};
 
 enum { X, Y };
 
 /* ---------------------------------------------------------------------- */
 
-DepositBins::DepositBins() :
-    periodic{false, false}, boxlo{0.0, 0.0}, boxhi{0.0, 0.0}, bins({0.0, NO_CENTRE, 0.0})
+DepositBins::DepositBins() : periodic{false, false}, boxlo{0.0, 0.0}, boxhi{0.0, 0.0}, bins(NOTHING)
 {
 }
 
@@ -63,15 +63,15 @@ void DepositBins::add_volume(double volume)
   for (int l = 0; l < shares[Y].count; l++) {
     const int j = shares[Y].cell[l];
     const double strip = volume * shares[Y].part[l];
-    double *block = nullptr;
+    double *volumes = nullptr;
     int column = -1;
     for (int k = 0; k < shares[X].count; k++) {
       const int i = shares[X].cell[k];
-      if (DepositBlocks::of_cell(i) != column) {
-        column = DepositBlocks::of_cell(i);
-        block = bins.make(column, DepositBlocks::of_cell(j)) + VOLUME * DepositBlocks::CELLS;
+      if (BlockOfCells::of_cell(i) != column) {
+        column = BlockOfCells::of_cell(i);
+        volumes = bins.make(column, BlockOfCells::of_cell(j)).values[VOLUME];
       }
-      block[DepositBlocks::index(i, j)] += strip * shares[X].part[k];
+      volumes[BlockOfCells::index(i, j)] += strip * shares[X].part[k];
     }
   }
 }
@@ -86,10 +86,9 @@ void DepositBins::add_centre(const double *place, double speed, double energy)
         place[Y] < grid.hi[Y]))
     return;
   const int i = grid.cell_of(X, place[X]), j = grid.cell_of(Y, place[Y]);
-  double *block =
-      bins.make(DepositBlocks::of_cell(i), DepositBlocks::of_cell(j)) + DepositBlocks::index(i, j);
-  double &most_speed = block[SPEED * DepositBlocks::CELLS];
-  double &most_energy = block[ENERGY * DepositBlocks::CELLS];
+  Blocks::Block &block = bins.make(BlockOfCells::of_cell(i), BlockOfCells::of_cell(j));
+  double &most_speed = block.values[SPEED][BlockOfCells::index(i, j)];
+  double &most_energy = block.values[ENERGY][BlockOfCells::index(i, j)];
   most_speed = std::max(most_speed, speed);
   most_energy = std::max(most_energy, energy);
 }

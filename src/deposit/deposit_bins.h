@@ -22,6 +22,7 @@ class DepositBins {
   // of a cell: the volume that lies over it, and of the balls whose centre is over it the largest
   // speed (-1: no centre) and the largest energy
   enum { VOLUME, SPEED, ENERGY, KINDS };
+  typedef DepositBlocks<KINDS> Blocks;
 
   DepositBins();
 
@@ -36,7 +37,7 @@ class DepositBins {
   // exactly 0 for a square that does not touch the edge
   double bin(const double *x, double side, double speed, double energy);
 
-  const DepositBlocks &blocks() const { return bins; }
+  const Blocks &blocks() const { return bins; }
 
  private:
   struct Shares {    // of one ball's square in the cells along one axis
@@ -48,7 +49,7 @@ class DepositBins {
   PlanGrid grid;
   bool periodic[2];
   double boxlo[2], boxhi[2];
-  DepositBlocks bins;
+  Blocks bins;
   Shares shares[2];
 
   double wrap(int dim, double x) const    // balls leave a periodic box a little

@@ -7,82 +7,103 @@
 #ifndef SLOPE_DEPOSIT_BLOCKS_H
 #define SLOPE_DEPOSIT_BLOCKS_H
 
-#include "deposit_bands.h"
 #include "plan_grid.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 namespace Slope {
 
-// Values of the cells of a plan grid, several kinds of them, in memory only where there is something:
-// in blocks of SIDE x SIDE cells. A block has all values of one kind, row by row, then those of the
-// next kind.
-class DepositBlocks {
- public:
-  static constexpr int SIDE = DepositBands::ROWS;    // a band of rows is a row of blocks
+// A block of a deposit: SIDE x SIDE cells of a plan grid, row by row, and KINDS values of each. Numbers
+// only, so that ranks can send it.
+struct BlockOfCells {
+  static constexpr int SIDE = 8;
   static constexpr int CELLS = SIDE * SIDE;
 
+  int column, row;    // of blocks
+
+  // column or row of the block that a cell is in, and its place in the block
+  static int of_cell(unsigned k) { return k / SIDE; }
+  static int index(unsigned i, unsigned j) { return j % SIDE * SIDE + i % SIDE; }
+  static int across(int cells) { return cells / SIDE + (cells % SIDE > 0); }
+};
+
+// Values of the cells of a plan grid, in memory only where there is something.
+template <int KINDS> class DepositBlocks {
+ public:
+  struct Block : BlockOfCells {
+    double values[KINDS][CELLS];
+  };
+
   // what cells of a new block have, one value of each kind
-  explicit DepositBlocks(const std::vector<double> &start_in) :
-      start(start_in), across(0), last{-1, -1}, last_values(nullptr)
+  explicit DepositBlocks(const double *start) : across(0), last(nullptr)
   {
+    for (int kind = 0; kind < KINDS; kind++)
+      std::fill_n(empty.values[kind], empty.CELLS, start[kind]);
   }
 
-  void set_grid(const PlanGrid &);
-  void clear();    // no blocks; their memory is used again
-
-  size_t values_per_block() const { return CELLS * start.size(); }
-
-  // values of the block in this column and band of blocks, made if it is not there
-  double *make(int column, int band)
+  void set_grid(const PlanGrid &grid)
   {
-    if (column == last.column && band == last.band) return last_values;    // balls come in clusters
-    const std::vector<int32_t> &places = directory[band];
-    last_values = !places.empty() && places[column] >= 0 ? values[places[column]].get()
-                                                         : add(column, band);
-    last.column = column;
-    last.band = band;
-    return last_values;
+    across = Block::across(grid.n[0]);
+    blocks.clear();
+    last = nullptr;
+    directory.assign(Block::across(grid.n[1]), std::vector<int32_t>());
+  }
+
+  // address space for all blocks, so that none of them ever moves; memory is taken as they are made
+  void reserve() { blocks.reserve((size_t) across * directory.size()); }
+
+  void clear()    // no blocks; their memory is used again
+  {
+    for (const Block &block : blocks) directory[block.row][block.column] = -1;
+    blocks.clear();
+    last = nullptr;
+  }
+
+  // the block in this column and row of blocks, made if it is not there; valid until the next one is
+  Block &make(int column, int row)
+  {
+    if (last && column == last->column && row == last->row)
+      return *last;    // balls come in clusters
+    std::vector<int32_t> &places = directory[row];
+    if (places.empty()) places.assign(across, -1);
+    if (places[column] < 0) {
+      places[column] = (int32_t) blocks.size();
+      empty.column = column;
+      empty.row = row;
+      blocks.push_back(empty);
+    }
+    last = &blocks[places[column]];
+    return *last;
   }
 
   // nullptr if there is none
-  const double *find(int column, int band) const
+  const Block *find(int column, int row) const
   {
-    const std::vector<int32_t> &places = directory[band];
-    return places.empty() || places[column] < 0 ? nullptr : values[places[column]].get();
+    const std::vector<int32_t> &places = directory[row];
+    return places.empty() || places[column] < 0 ? nullptr : &blocks[places[column]];
   }
 
-  // column or band of the block that a cell is in, and where in the values of the block the cell has
-  // its value of kind 0
-  static int of_cell(unsigned k) { return k / SIDE; }
-  static int index(unsigned i, unsigned j) { return j % SIDE * SIDE + i % SIDE; }
+  // all of them, in the order in which they were made
+  std::vector<Block> &all() { return blocks; }
+  const std::vector<Block> &all() const { return blocks; }
 
-  // all blocks, in the order in which they were made
-  size_t size() const { return blocks.size(); }
-  int column(size_t k) const { return blocks[k].column; }
-  int band(size_t k) const { return blocks[k].band; }
-  double *operator[](size_t k) { return values[k].get(); }
-  const double *operator[](size_t k) const { return values[k].get(); }
-
-  double bytes() const;
+  double bytes() const
+  {
+    double sum = (double) blocks.size() * sizeof(Block);
+    for (const auto &places : directory)
+      sum += sizeof(places) + places.capacity() * sizeof(int32_t);
+    return sum;
+  }
 
  private:
-  struct Place {
-    int column, band;
-  };
-
-  std::vector<double> start;
-  int across;                                     // blocks in a band
-  std::vector<std::vector<int32_t>> directory;    // band, column: number of the block; -1: none
-  std::vector<Place> blocks;
-  std::vector<std::unique_ptr<double[]>> values;    // of more blocks than there are, after clear()
-  Place last;                                       // block of the last make()
-  double *last_values;
-
-  double *add(int column, int band);
+  Block empty;
+  int across;                                     // blocks in a row of them
+  std::vector<std::vector<int32_t>> directory;    // row, column: number of the block; -1: none
+  std::vector<Block> blocks;
+  Block *last;    // of the last make()
 };
 
 }    // namespace Slope

@@ -13,11 +13,13 @@
 #include "region_terrain.h"
 
 #include "atom.h"
+#include "comm.h"
 #include "error.h"
 #include "region.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using Slope::PlanGrid;
@@ -26,17 +28,20 @@ enum { X, Y };
 
 /* ---------------------------------------------------------------------- */
 
-void DepositGround::read(Slope::DepositRasters &rasters)
+std::vector<double> DepositGround::read(const PlanGrid &grid) const
 {
   const RegionSurface ground(lmp, "Fix deposit/grid terrain", region.c_str(), RegionSurface::UPPER);
-  const PlanGrid &grid = rasters.grid();
-  const Slope::DepositBands &bands = rasters.bands();
-  for (int band = bands.first(); band < bands.number(); band += bands.step())
-    for (int j = bands.first_row(band); j < bands.end_row(band); j++)
-      for (int i = 0; i < grid.n[X]; i++) {
-        double z;
-        if (ground.height(grid.centre(X, i), grid.centre(Y, j), z)) rasters.base(i, j) = z;
-      }
+  auto first_row = [&](int rank) {    // each rank has its share of them
+    return static_cast<int>(static_cast<bigint>(grid.n[Y]) * rank / comm->nprocs);
+  };
+  std::vector<double> mine;
+  for (int j = first_row(comm->me); j < first_row(comm->me + 1); j++)
+    for (int i = 0; i < grid.n[X]; i++) {
+      double z;
+      const bool any = ground.height(grid.centre(X, i), grid.centre(Y, j), z);
+      mine.push_back(any ? z : std::numeric_limits<double>::quiet_NaN());
+    }
+  return gather_records(world, mine);
 }
 
 /* ---------------------------------------------------------------------- */

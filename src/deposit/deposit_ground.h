@@ -6,10 +6,11 @@
 #ifndef SLOPE_DEPOSIT_GROUND_H
 #define SLOPE_DEPOSIT_GROUND_H
 
-#include "deposit_rasters.h"
+#include "plan_grid.h"
 #include "pointers.h"
 
 #include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -20,8 +21,8 @@ class DepositGround : protected Pointers {
   {
   }
 
-  // heights at the cell centres, NaN where there is none, into the rows of this rank
-  void read(Slope::DepositRasters &);
+  // heights at the cell centres, NaN where there is none, row by row from the south; on rank 0
+  std::vector<double> read(const Slope::PlanGrid &) const;
 
   // Every ball has ground below and around it, or the run ends: a hole in the elevation model
   // under the mass would swallow it.

@@ -12,8 +12,9 @@
 
 using namespace Slope;
 
-static constexpr int SIDE = DepositBlocks::SIDE;
-static constexpr int CELLS = DepositBlocks::CELLS;
+static constexpr int SIDE = BlockOfCells::SIDE;
+static constexpr int CELLS = BlockOfCells::CELLS;
+typedef DepositBlocks<DepositRasters::KINDS>::Block Block;
 static const double NaN = std::numeric_limits<double>::quiet_NaN();
 
 enum { X, Y };
@@ -23,45 +24,48 @@ static const double UNTOUCHED[DepositRasters::KINDS] = {0.0, 0.0, 0.0, 0.0, NaN,
 
 /* ---------------------------------------------------------------------- */
 
-DepositRasters::DepositRasters() :
-    snapshot_time(NaN), change(1.0), blocks(std::vector<double>(UNTOUCHED, UNTOUCHED + KINDS))
+DepositRasters::DepositRasters() : snapshot_time(NaN), change(1.0), blocks(UNTOUCHED) {}
+
+/* ---------------------------------------------------------------------- */
+
+void DepositRasters::create(const PlanGrid &grid_in)
 {
+  cells = grid_in;
+  blocks.set_grid(cells);
 }
 
 /* ---------------------------------------------------------------------- */
 
-void DepositRasters::create(const PlanGrid &grid_in, int me, int nranks)
+void DepositRasters::set_base(std::vector<double> heights)
 {
-  cells = grid_in;
-  rows = DepositBands(cells, me, nranks);
-  blocks.set_grid(cells);
-  ground.assign(rows.ncells(), NaN);
+  ground.swap(heights);
+  blocks.reserve();
 }
 
 /* ---------------------------------------------------------------------- */
 
 void DepositRasters::clear()
 {
-  for (size_t k = 0; k < blocks.size(); k++) std::fill_n(blocks[k] + THICKNESS * CELLS, CELLS, 0.0);
+  for (Block &block : blocks.all()) std::fill_n(block.values[THICKNESS], CELLS, 0.0);
 }
 
 /* ---------------------------------------------------------------------- */
 
-void DepositRasters::add(int column, int band, const double *bins, bool record, double time,
+void DepositRasters::add(const DepositBins::Blocks::Block &bins, bool record, double time,
                          double motion)
 {
   const double area = cells.cell * cells.cell;
-  double *block = blocks.make(column, band);
+  Block &block = blocks.make(bins.column, bins.row);
   for (int k = 0; k < CELLS; k++) {
-    block[THICKNESS * CELLS + k] += bins[DepositBins::VOLUME * CELLS + k] / area;
-    const double speed = bins[DepositBins::SPEED * CELLS + k];
+    block.values[THICKNESS][k] += bins.values[DepositBins::VOLUME][k] / area;
+    const double speed = bins.values[DepositBins::SPEED][k];
     if (!record || speed < 0.0) continue;
-    double &most_speed = block[MAX_SPEED * CELLS + k], &most_energy = block[MAX_ENERGY * CELLS + k];
-    double &arrival = block[ARRIVAL * CELLS + k];
+    double &most_speed = block.values[MAX_SPEED][k], &most_energy = block.values[MAX_ENERGY][k];
+    double &arrival = block.values[ARRIVAL][k];
     most_speed = std::max(most_speed, speed);
-    most_energy = std::max(most_energy, bins[DepositBins::ENERGY * CELLS + k]);
+    most_energy = std::max(most_energy, bins.values[DepositBins::ENERGY][k]);
     if (std::isnan(arrival)) arrival = time;
-    if (speed > motion) block[LAST_MOTION * CELLS + k] = time;
+    if (speed > motion) block.values[LAST_MOTION][k] = time;
   }
 }
 
@@ -69,33 +73,35 @@ void DepositRasters::add(int column, int band, const double *bins, bool record, 
    the volume is taken from what the raster holds, so that the balance checks the raster
 ------------------------------------------------------------------------- */
 
-double DepositRasters::finish(bool record)
+std::vector<double> DepositRasters::finish(bool record, int parts)
 {
-  double sum = 0.0;
-  for (size_t b = 0; b < blocks.size(); b++) {
-    const double *h = blocks[b] + THICKNESS * CELLS;
-    double *most = blocks[b] + MAX_THICKNESS * CELLS;
+  std::vector<double> sums(parts, 0.0);
+  for (Block &block : blocks.all()) {
+    const double *h = block.values[THICKNESS];
+    double *most = block.values[MAX_THICKNESS];
     double here = 0.0;
     for (int k = 0; k < CELLS; k++) here += h[k];
-    sum += here;
+    sums[block.row % parts] += here;
     if (!record) continue;
     for (int k = 0; k < CELLS; k++) most[k] = std::max(most[k], h[k]);
   }
-  return sum * cells.cell * cells.cell;
+  for (double &sum : sums) sum = sum * cells.cell * cells.cell;
+  return sums;
 }
 
 /* ---------------------------------------------------------------------- */
 
-double DepositRasters::moved() const
+std::vector<double> DepositRasters::moved(int parts) const
 {
-  double sum = 0.0;
-  for (size_t b = 0; b < blocks.size(); b++) {
-    const double *h = blocks[b] + THICKNESS * CELLS, *before = blocks[b] + SNAPSHOT * CELLS;
+  std::vector<double> sums(parts, 0.0);
+  for (const Block &block : blocks.all()) {
+    const double *h = block.values[THICKNESS], *before = block.values[SNAPSHOT];
     double here = 0.0;
     for (int k = 0; k < CELLS; k++) here += std::fabs(h[k] - before[k]);
-    sum += here;
+    sums[block.row % parts] += here;
   }
-  return 0.5 * sum * cells.cell * cells.cell;
+  for (double &sum : sums) sum = 0.5 * sum * cells.cell * cells.cell;
+  return sums;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -103,8 +109,8 @@ double DepositRasters::moved() const
 void DepositRasters::take_snapshot(double time, double share)
 {
   if (time > snapshot_time) change = share / (time - snapshot_time);
-  for (size_t b = 0; b < blocks.size(); b++)
-    std::copy_n(blocks[b] + THICKNESS * CELLS, CELLS, blocks[b] + SNAPSHOT * CELLS);
+  for (Block &block : blocks.all())
+    std::copy_n(block.values[THICKNESS], CELLS, block.values[SNAPSHOT]);
   snapshot_time = time;
 }
 
@@ -112,8 +118,8 @@ void DepositRasters::take_snapshot(double time, double share)
 
 double DepositRasters::at(Name name, int i, int j) const
 {
-  const double *block = blocks.find(i / SIDE, j / SIDE);
-  return block ? block[name * CELLS + DepositBlocks::index(i, j)] : UNTOUCHED[name];
+  const Block *block = blocks.find(i / SIDE, j / SIDE);
+  return block ? block->values[name][Block::index(i, j)] : UNTOUCHED[name];
 }
 
 /* ---------------------------------------------------------------------- */
@@ -122,9 +128,9 @@ void DepositRasters::row(Name name, int j, double *values) const
 {
   for (int i = 0; i < cells.n[X]; i += SIDE) {
     const int count = std::min(SIDE, cells.n[X] - i);
-    const double *block = blocks.find(i / SIDE, j / SIDE);
+    const Block *block = blocks.find(i / SIDE, j / SIDE);
     if (block)
-      std::copy_n(block + name * CELLS + DepositBlocks::index(i, j), count, values + i);
+      std::copy_n(block->values[name] + Block::index(i, j), count, values + i);
     else
       std::fill_n(values + i, count, UNTOUCHED[name]);
   }
@@ -135,10 +141,8 @@ void DepositRasters::row(Name name, int j, double *values) const
 double DepositRasters::largest(Name name) const
 {
   double found = 0.0;
-  for (size_t b = 0; b < blocks.size(); b++) {
-    const double *values = blocks[b] + name * CELLS;
-    found = std::max(found, *std::max_element(values, values + CELLS));
-  }
+  for (const Block &block : blocks.all())
+    found = std::max(found, *std::max_element(block.values[name], block.values[name] + CELLS));
   return found;
 }
 
@@ -151,20 +155,17 @@ double DepositRasters::bytes() const
 
 /* ---------------------------------------------------------------------- */
 
-std::vector<double> DepositRasters::touched(int band) const
+std::vector<double> DepositRasters::touched(int j) const
 {
   std::vector<double> found;
-  for (int j = rows.first_row(band); j < rows.end_row(band); j++)
-    for (int i = 0; i < cells.n[X]; i += SIDE) {
-      const double *block = blocks.find(i / SIDE, band);
-      if (!block) continue;
-      const double *cell = block + DepositBlocks::index(i, j);
-      for (int k = i; k < std::min(i + SIDE, cells.n[X]); k++, cell++) {
-        if (cell[MAX_THICKNESS * CELLS] == 0.0 && std::isnan(cell[ARRIVAL * CELLS])) continue;
-        found.push_back((double) j * cells.n[X] + k);
-        for (int kind = MAX_THICKNESS; kind < KINDS; kind++) found.push_back(cell[kind * CELLS]);
-      }
-    }
+  for (int i = 0; i < cells.n[X]; i++) {
+    const Block *block = blocks.find(i / SIDE, j / SIDE);
+    if (!block) continue;
+    const int k = Block::index(i, j);
+    if (block->values[MAX_THICKNESS][k] == 0.0 && std::isnan(block->values[ARRIVAL][k])) continue;
+    found.push_back((double) j * cells.n[X] + i);
+    for (int kind = MAX_THICKNESS; kind < KINDS; kind++) found.push_back(block->values[kind][k]);
+  }
   return found;
 }
 
@@ -174,7 +175,7 @@ void DepositRasters::restore(const double *values)
 {
   const int64_t number = (int64_t) values[0];
   const int i = (int) (number % cells.n[X]), j = (int) (number / cells.n[X]);
-  if (!rows.mine(j / SIDE)) return;
-  double *cell = blocks.make(i / SIDE, j / SIDE) + DepositBlocks::index(i, j);
-  for (int kind = MAX_THICKNESS; kind < KINDS; kind++) cell[kind * CELLS] = values[kind];
+  Block &block = blocks.make(i / SIDE, j / SIDE);
+  for (int kind = MAX_THICKNESS; kind < KINDS; kind++)
+    block.values[kind][Block::index(i, j)] = values[kind];
 }

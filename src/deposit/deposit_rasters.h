@@ -7,7 +7,6 @@
 #ifndef SLOPE_DEPOSIT_RASTERS_H
 #define SLOPE_DEPOSIT_RASTERS_H
 
-#include "deposit_bands.h"
 #include "deposit_bins.h"
 #include "deposit_blocks.h"
 #include "plan_grid.h"
@@ -17,8 +16,9 @@
 
 namespace Slope {
 
-// The rasters of a deposit, the rows of one rank: the ground without the body, the thickness now, and
-// the records of each cell so far. A sample is clear(), add() of all blocks of bins, finish().
+// The rasters of a deposit: the ground without the body, the thickness now, and the records of each cell
+// so far. A sample is clear(), add() of all blocks of bins, finish(). One rank holds them: on the others nothing
+// is added, and all volumes are 0.
 class DepositRasters {
  public:
   enum Name {
@@ -37,47 +37,48 @@ class DepositRasters {
 
   DepositRasters();
 
-  void create(const PlanGrid &, int me, int nranks);
+  void create(const PlanGrid &);
   const PlanGrid &grid() const { return cells; }
-  const DepositBands &bands() const { return rows; }
 
-  // height of the ground, NaN where there is none, of a cell of this rank
-  double &base(int i, int j) { return ground[rows.place(i, j)]; }
-  double base(int i, int j) const { return ground[rows.place(i, j)]; }
+  // heights of the ground, row by row from the south, NaN where there is none
+  void set_base(std::vector<double> heights);
+  double base(int i, int j) const { return ground[(size_t) j * cells.n[0] + i]; }
 
   // --- a sample; time: now; motion: a faster ball moves; record: also maxima and times ---
 
   void clear();
-  void add(int column, int band, const double *bins, bool record, double time, double motion);
-  double finish(bool record);    // returns the volume that the thickness raster holds here
+  void add(const DepositBins::Blocks::Block &, bool record, double time, double motion);
+  // returns the volume that the thickness raster holds, as parts whose sum it is: which ranks add them up
+  // decides on its last digits
+  std::vector<double> finish(bool record, int parts);
 
   // --- change since the last snapshot ---
 
-  double moved() const;    // volume that went to another cell, of these cells
+  // volume that went to another cell, in such parts
+  std::vector<double> moved(int parts) const;
 
-  // share: of the released volume, moved in all cells since the last snapshot, if there was one
+  // share: of the released volume, moved since the last snapshot, if there was one
   void take_snapshot(double time, double share);
 
-  // --- what the rows hold ---
+  // --- what the cells hold ---
 
   double at(Name, int i, int j) const;
   void row(Name, int j, double *values) const;    // of all columns
   double largest(Name) const;                     // of those that begin with 0
   double bytes() const;
 
-  // what cells that the mass touched saw, of a band and in the order of rows and columns, for restart
-  // files: number of the cell, all kinds but the thickness
+  // what cells of a row that the mass touched saw, for restart files: number of the cell, all kinds but
+  // the thickness
   static constexpr int PER_CELL = KINDS;
-  std::vector<double> touched(int band) const;
-  void restore(const double *values);    // of one cell; nothing if it is another rank's
+  std::vector<double> touched(int j) const;
+  void restore(const double *values);    // of one cell
 
   double snapshot_time, change;    // NaN before the first one; per time, 1 before the second one
 
  private:
   PlanGrid cells;
-  DepositBands rows;
   std::vector<double> ground;
-  DepositBlocks blocks;
+  DepositBlocks<KINDS> blocks;
 };
 
 }    // namespace Slope

@@ -7,6 +7,7 @@
 
 #include "deposit_balls.h"
 #include "deposit_writer.h"
+#include "file_set.h"
 #include "lammps_compat.h"
 #include "rank_zero.h"
 #include "slope_version.h"
@@ -16,10 +17,7 @@
 #include "timer.h"
 #include "update.h"
 
-#include <stdexcept>
-
 using namespace LAMMPS_NS;
-using Slope::AtomicFile;
 using Slope::DepositRasters;
 using Slope::DepositSummary;
 using Slope::DepositWriter;
@@ -33,8 +31,7 @@ enum { X, Y, Z };
 DepositReport::DepositReport(LAMMPS *lmp, const std::string &id, const DepositOptions &options_in,
                              const DepositBalls &balls_in) :
     Pointers(lmp),
-    fix_id(id), options(options_in), balls(balls_in), exchange(lmp), limit(0.0), limit_set(0.0),
-    before(), last()
+    fix_id(id), options(options_in), balls(balls_in), limit(0.0), limit_set(0.0), before(), last()
 {
 }
 
@@ -74,22 +71,6 @@ void DepositReport::warn(const std::string &line)
   error->warning(FLERR, warnings.back());
 }
 
-/* ----------------------------------------------------------------------
-   the run may end here: temporary files must be removed before
-------------------------------------------------------------------------- */
-
-template <typename Work> void DepositReport::on_files(Work work)
-{
-  on_rank_zero(lmp, "Fix deposit/grid", [&]() {
-    try {
-      work();
-    } catch (...) {
-      files.reset();
-      throw;
-    }
-  });
-}
-
 /* ---------------------------------------------------------------------- */
 
 void DepositReport::write(const std::string &why, const DepositResults &results,
@@ -98,56 +79,17 @@ void DepositReport::write(const std::string &why, const DepositResults &results,
   DepositSummary about = summary(why, results);
   add_guards(about, guards);
   add_lost(about);
-  double mine[4] = {
-      rasters.largest(DepositRasters::THICKNESS), rasters.largest(DepositRasters::MAX_THICKNESS),
-      rasters.largest(DepositRasters::MAX_SPEED), rasters.largest(DepositRasters::MAX_ENERGY)};
-  double all[4];
-  MPI_Allreduce(mine, all, 4, MPI_DOUBLE, MPI_MAX, world);
-  about.largest = {all[0], all[1], all[2], all[3]};
-
-  if (comm->me == 0) files.reset(new FileSet);
   const std::string number = options.series ? std::to_string(update->ntimestep) : std::string();
-  const std::string header = DepositWriter::header(rasters.grid());
-  for (const DepositWriter::File &file : DepositWriter::files(options.prefix, number)) {
-    auto text_of = [&](int band) {
-      return DepositWriter::text_of_band(rasters, file, band);
-    };
-    write_raster(file.path, header, text_of, rasters.bands());
-  }
-  on_files([&]() {
-    about.files = files->names();
-    files->add(options.prefix + ".summary.yaml").write(about.text());
-    files->commit();
-  });
-  files.reset();
-}
-
-/* ----------------------------------------------------------------------
-   the rows start in the north; ranks keep sending when the disk is full
-------------------------------------------------------------------------- */
-
-void DepositReport::write_raster(const std::string &path, const std::string &header,
-                                 const DepositExchange::MakeBytes &text_of,
-                                 const Slope::DepositBands &bands)
-{
-  AtomicFile *file = nullptr;
-  on_files([&]() {
-    file = &files->add(path);
-    file->write(header);
-  });
-
-  std::string problem;
-  auto take = [&](const std::string &text) {
-    if (!problem.empty()) return;
-    try {
-      file->write(text);
-    } catch (std::exception &e) {
-      problem = e.what();
-    }
-  };
-  exchange.to_rank_zero(bands, bands.number() - 1, 0, text_of, take);
-  on_files([&]() {
-    if (!problem.empty()) throw std::runtime_error(problem);
+  on_rank_zero(lmp, "Fix deposit/grid", [&]() {
+    about.largest = {
+        rasters.largest(DepositRasters::THICKNESS), rasters.largest(DepositRasters::MAX_THICKNESS),
+        rasters.largest(DepositRasters::MAX_SPEED), rasters.largest(DepositRasters::MAX_ENERGY)};
+    FileSet files;
+    for (const DepositWriter::File &file : DepositWriter::files(options.prefix, number))
+      DepositWriter::write(files.add(file.path), rasters, file);
+    about.files = files.names();
+    files.add(options.prefix + ".summary.yaml").write(about.text());
+    files.commit();
   });
 }
 

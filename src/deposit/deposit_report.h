@@ -7,16 +7,13 @@
 #define SLOPE_DEPOSIT_REPORT_H
 
 #include "contact_guards.h"
-#include "deposit_exchange.h"
 #include "deposit_options.h"
 #include "deposit_rasters.h"
 #include "deposit_results.h"
 #include "deposit_summary.h"
-#include "file_set.h"
 #include "pointers.h"
 #include "prefix_lock.h"
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -40,8 +37,7 @@ class DepositReport : protected Pointers {
   // to the screen, the log and the summary
   void warn(const std::string &);
 
-  // all files, or none
-  // guards of the contacts, or nullptr
+  // all files, or none; rasters: those of rank 0; guards of the contacts, or nullptr
   void write(const std::string &reason, const DepositResults &, const Slope::DepositRasters &,
              const ContactGuards *guards);
 
@@ -49,18 +45,13 @@ class DepositReport : protected Pointers {
   const std::string fix_id;
   const DepositOptions &options;
   const class DepositBalls &balls;
-  DepositExchange exchange;
   double limit, limit_set;              // wall time that the run has, when that was known; s
   std::vector<std::string> warnings;    // so far, on rank 0
   ContactGuards::Found before,
       last;    // in the runs before, in this one when files were written last
 
-  std::unique_ptr<Slope::FileSet> files;    // on rank 0, as long as they are written
-  Slope::PrefixLock lock;                   // on rank 0
+  Slope::PrefixLock lock;    // on rank 0
 
-  template <typename Work> void on_files(Work);
-  void write_raster(const std::string &path, const std::string &header,
-                    const DepositExchange::MakeBytes &, const Slope::DepositBands &);
   Slope::DepositSummary summary(const std::string &reason, const DepositResults &) const;
   void add_guards(Slope::DepositSummary &, const ContactGuards *);
   void add_lost(Slope::DepositSummary &) const;

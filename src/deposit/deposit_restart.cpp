@@ -34,47 +34,34 @@ static std::string too_many(double ncells)
 DepositRestart::DepositRestart(LAMMPS *lmp, const DepositOptions &options) :
     Pointers(lmp),
     key({FORMAT, options.grid.cell, (double) options.grid.n[0], (double) options.grid.n[1],
-         options.grid.lo[0], options.grid.lo[1], options.bulk}),
-    exchange(lmp)
+         options.grid.lo[0], options.grid.lo[1], options.bulk})
 {
 }
 
-/* ----------------------------------------------------------------------
-   the cells go to rank 0 band by band, so that it never holds more than one
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 void DepositRestart::write(FILE *fp, const std::string &fix_id, const Saved &saved,
-                           const DepositRasters &rasters)
+                           const DepositRasters &rasters) const
 {
-  const Slope::DepositBands &bands = rasters.bands();
-  double mine = 0.0, ncells;
-  for (int band = bands.first(); band < bands.number(); band += bands.step())
-    mine += rasters.touched(band).size() / PER_CELL;
-  MPI_Allreduce(&mine, &ncells, 1, MPI_DOUBLE, MPI_SUM, world);
+  if (comm->me > 0) return;
+  const int nrows = rasters.grid().n[1];
+  double ncells = 0.0;
+  for (int j = 0; j < nrows; j++) ncells += rasters.touched(j).size() / PER_CELL;
   const bool fits = ncells <= MOST_CELLS;
-  if (!fits) ncells = -ncells;
-
-  if (comm->me == 0) {
-    const RestartCount count(ncells);
-    const double head = sizeof(Key) + sizeof(Saved) + sizeof(count);
-    const int size = (int) (head + (fits ? ncells * BYTES_PER_CELL : 0.0));
-    fwrite(&size, sizeof(int), 1, fp);
-    fwrite(&key, sizeof(Key), 1, fp);
-    fwrite(&saved, sizeof(Saved), 1, fp);
-    fwrite(&count, sizeof(count), 1, fp);
-    if (!fits)
-      error->warning(FLERR, "Fix deposit/grid {}: nothing can go on from this restart file, {}",
-                     fix_id, too_many(ncells));
+  const RestartCount count(fits ? ncells : -ncells);
+  const double head = sizeof(Key) + sizeof(Saved) + sizeof(count);
+  const int size = (int) (head + (fits ? ncells * BYTES_PER_CELL : 0.0));
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(&key, sizeof(Key), 1, fp);
+  fwrite(&saved, sizeof(Saved), 1, fp);
+  fwrite(&count, sizeof(count), 1, fp);
+  for (int j = 0; j < nrows && fits; j++) {
+    const std::vector<double> cells = rasters.touched(j);
+    fwrite(cells.data(), sizeof(double), cells.size(), fp);
   }
-  if (!fits) return;
-  auto make = [&](int band) {
-    const std::vector<double> cells = rasters.touched(band);
-    return std::string(reinterpret_cast<const char *>(cells.data()), cells.size() * sizeof(double));
-  };
-  auto take = [fp](const std::string &bytes) {
-    fwrite(bytes.data(), 1, bytes.size(), fp);
-  };
-  exchange.to_rank_zero(bands, 0, bands.number() - 1, make, take);
+  if (!fits)
+    error->warning(FLERR, "Fix deposit/grid {}: nothing can go on from this restart file, {}",
+                   fix_id, too_many(ncells));
 }
 
 /* ---------------------------------------------------------------------- */
@@ -105,7 +92,7 @@ void DepositRestart::read(const std::string &fix_id, const char *buffer, Saved &
       error->all(FLERR,
                  "Fix deposit/grid {} must have a whole restart file, got cell {:g} of {:.0f}",
                  fix_id, values[0], rasters.grid().ncells());
-    rasters.restore(values);
+    if (comm->me == 0) rasters.restore(values);
   }
 }
 

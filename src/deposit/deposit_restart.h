@@ -6,7 +6,6 @@
 #ifndef SLOPE_DEPOSIT_RESTART_H
 #define SLOPE_DEPOSIT_RESTART_H
 
-#include "deposit_exchange.h"
 #include "deposit_options.h"
 #include "deposit_rasters.h"
 #include "deposit_release.h"
@@ -20,7 +19,7 @@ namespace LAMMPS_NS {
 
 // What fix deposit/grid has in restart files: numbers, and the cells that the mass touched. LAMMPS gives a
 // fix at most 2 GB there: cells that need more are left out, with a warning, and such a file is refused.
-// All methods are collective.
+// Rank 0 has the cells. All methods are collective.
 class DepositRestart : protected Pointers {
  public:
   struct Saved {    // numbers only
@@ -33,7 +32,7 @@ class DepositRestart : protected Pointers {
 
   DepositRestart(class LAMMPS *, const DepositOptions &);
 
-  void write(FILE *, const std::string &fix_id, const Saved &, const Slope::DepositRasters &);
+  void write(FILE *, const std::string &fix_id, const Saved &, const Slope::DepositRasters &) const;
   void read(const std::string &fix_id, const char *buffer, Saved &, Slope::DepositRasters &) const;
 
  private:
@@ -42,7 +41,6 @@ class DepositRestart : protected Pointers {
   };
 
   Key key;
-  DepositExchange exchange;
 
   void check_key(const std::string &fix_id, const Key &) const;
 };

@@ -37,19 +37,13 @@ std::vector<DepositWriter::File> DepositWriter::files(const std::string &prefix,
 
 /* ---------------------------------------------------------------------- */
 
-std::string DepositWriter::header(const PlanGrid &grid)
+void DepositWriter::write(AtomicFile &to, const DepositRasters &rasters, const File &file)
 {
-  return ElevationGrid::header(grid.n[X], grid.n[Y], grid.lo[X], grid.lo[Y], grid.cell);
-}
-
-/* ---------------------------------------------------------------------- */
-
-std::string DepositWriter::text_of_band(const DepositRasters &rasters, const File &file, int band)
-{
-  const int columns = rasters.grid().n[X];
+  const PlanGrid &grid = rasters.grid();
+  const int columns = grid.n[X];
   std::vector<double> row(columns, 0.0);
-  std::string text;
-  for (int j = rasters.bands().end_row(band) - 1; j >= rasters.bands().first_row(band); j--) {
+  std::string text = ElevationGrid::header(columns, grid.n[Y], grid.lo[X], grid.lo[Y], grid.cell);
+  for (int j = grid.n[Y] - 1; j >= 0; j--) {    // the rows start in the north
     if (file.content == SURFACE)
       rasters.row(DepositRasters::THICKNESS, j, row.data());
     else if (file.content != BASE)
@@ -57,6 +51,7 @@ std::string DepositWriter::text_of_band(const DepositRasters &rasters, const Fil
     for (int i = 0; i < columns && file.content >= BASE; i++)
       row[i] = rasters.base(i, j) + (file.content == SURFACE ? row[i] : 0.0);
     ElevationGrid::append_row(text, row.data(), columns, file.digits);
+    to.write(text);
+    text.clear();
   }
-  return text;
 }

@@ -7,6 +7,7 @@
 #ifndef SLOPE_DEPOSIT_WRITER_H
 #define SLOPE_DEPOSIT_WRITER_H
 
+#include "atomic_file.h"
 #include "deposit_rasters.h"
 
 #include <string>
@@ -14,8 +15,7 @@
 
 namespace Slope {
 
-// The raster files of a deposit, as text in parts: a header, then the bands of rows, of which each
-// rank has its own, from the last band to the first.
+// The raster files of a deposit.
 class DepositWriter {
  public:
   struct File {
@@ -28,8 +28,7 @@ class DepositWriter {
   // PREFIX.base.asc, .thickness.asc, ...; number: also PREFIX.NUMBER.thickness.asc, or empty
   static std::vector<File> files(const std::string &prefix, const std::string &number);
 
-  static std::string header(const PlanGrid &);
-  static std::string text_of_band(const DepositRasters &, const File &, int band);
+  static void write(AtomicFile &, const DepositRasters &, const File &);
 };
 
 }    // namespace Slope

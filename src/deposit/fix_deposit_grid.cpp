@@ -3,14 +3,15 @@
    Distributed under the GNU General Public License, version 2
 ------------------------------------------------------------------------- */
 
-/* The deposit on a plan grid, binned in the run. Every rank bins its own balls; the rows of the
-   rasters are shared out among the ranks, and each gets the bins of its rows from the others. */
+/* The deposit on a plan grid, binned in the run. Every rank bins its own balls; rank 0 gets the bins and
+   has the rasters. */
 
 #include "fix_deposit_grid.h"
 
 #include "constants.h"
 #include "deposit_ground.h"
 #include "lammps_compat.h"
+#include "large_messages.h"
 #include "node_memory.h"
 #include "pair_gran_restitution.h"
 #include "requirements.h"
@@ -21,9 +22,11 @@
 
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
+using Slope::DepositBins;
 using Slope::DepositRasters;
 using Slope::MassLedger;
 typedef DepositResults Result;
@@ -33,7 +36,7 @@ enum { X, Y, Z };
 /* ---------------------------------------------------------------------- */
 
 FixDepositGrid::FixDepositGrid(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), options(lmp, narg, arg), balls(lmp, groupbit, options.bulk), exchange(lmp),
+    Fix(lmp, narg, arg), options(lmp, narg, arg), balls(lmp, groupbit, options.bulk),
     losses(lmp, balls), report(lmp, id, options, balls), restart_data(lmp, options), results(),
     started(false), fresh(false), sampled(-1), warned(false), elapsed(0.0), offset(0.0)
 {
@@ -62,14 +65,15 @@ FixDepositGrid::~FixDepositGrid()
 
 void FixDepositGrid::make_rasters()
 {
-  const Slope::DepositBands bands(options.grid, comm->me, comm->nprocs);
-  check_node_memory(lmp, DepositRasters::MOST_BYTES_PER_CELL * bands.ncells(),
+  const double here = comm->me == 0 ? options.grid.ncells() : 0.0;
+  check_node_memory(lmp, DepositRasters::MOST_BYTES_PER_CELL * here,
                     fmt::format("Fix deposit/grid cell {:g}: {} x {} cells", options.cell,
                                 options.grid.n[X], options.grid.n[Y]),
-                    "a larger cell, a smaller extent, or more nodes");
+                    "a larger cell or a smaller extent");
   bins.set_grid(options.grid);
-  rasters.create(options.grid, comm->me, comm->nprocs);
-  DepositGround(lmp, options.terrain).read(rasters);
+  rasters.create(options.grid);
+  std::vector<double> base = DepositGround(lmp, options.terrain).read(options.grid);
+  if (comm->me == 0) rasters.set_base(std::move(base));
 }
 
 /* ---------------------------------------------------------------------- */
@@ -215,11 +219,22 @@ double FixDepositGrid::add_bins(bool record)
 {
   const double time = now();
   rasters.clear();
-  auto take = [&](int column, int band, const double *values) {
-    rasters.add(column, band, values, record, time, options.motion);
-  };
-  exchange.to_owners(bins.blocks(), rasters.bands(), take);
-  return exchange.sum(rasters.finish(record));
+  take_records(world, bins.blocks().all(), [&](const DepositBins::Blocks::Block &block) {
+    rasters.add(block, record, time, options.motion);
+  });
+  return add_up(rasters.finish(record, comm->nprocs));
+}
+
+/* ----------------------------------------------------------------------
+   volumes of rank 0: a part for each rank, so that MPI rounds their sum as it did when each had its rows
+------------------------------------------------------------------------- */
+
+double FixDepositGrid::add_up(const std::vector<double> &parts) const
+{
+  double mine, all;
+  MPI_Scatter(parts.data(), 1, MPI_DOUBLE, &mine, 1, MPI_DOUBLE, 0, world);
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -259,7 +274,7 @@ void FixDepositGrid::take_snapshot()
 {
   const double time = now();
   if (time - rasters.snapshot_time < (options.window - 0.5) * update->dt) return;
-  const double share = exchange.sum(rasters.moved()) / results.released.volume;
+  const double share = add_up(rasters.moved(comm->nprocs)) / results.released.volume;
   rasters.take_snapshot(time, share);
   results.vector[Result::CHANGE] = rasters.change;
 }

@@ -16,7 +16,6 @@ FixStyle(deposit/grid,FixDepositGrid);
 
 #include "deposit_balls.h"
 #include "deposit_bins.h"
-#include "deposit_exchange.h"
 #include "deposit_losses.h"
 #include "deposit_options.h"
 #include "deposit_rasters.h"
@@ -26,6 +25,7 @@ FixStyle(deposit/grid,FixDepositGrid);
 #include "deposit_results.h"
 
 #include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -57,13 +57,12 @@ class FixDepositGrid : public Fix {
  private:
   const DepositOptions options;
   DepositBalls balls;
-  DepositExchange exchange;
   DepositLosses losses;
   DepositReport report;
   DepositRestart restart_data;
 
   Slope::DepositBins bins;          // of the balls of this rank
-  Slope::DepositRasters rasters;    // the rows of this rank
+  Slope::DepositRasters rasters;    // on rank 0
   DepositResults results;
 
   bool started, fresh;    // the mass was released; and nothing was sampled yet
@@ -75,6 +74,7 @@ class FixDepositGrid : public Fix {
   void start();
   void sample(bool record);
   double add_bins(bool record);
+  double add_up(const std::vector<double> &parts) const;
   void find_travel(const DepositBalls::Sums &);
   void check_balance();
   void take_snapshot();

@@ -58,10 +58,11 @@ template <typename Record> void share(MPI_Comm world, std::vector<Record> &recor
   broadcast_bytes(world, records.data(), number * sizeof(Record), from);
 }
 
-// Collective: the records of all ranks, in the order of the ranks, on rank 0; nothing on the others.
-template <typename Record>
-std::vector<Record> gather_records(MPI_Comm world, const std::vector<Record> &mine,
-                                   bigint most = MESSAGE_BYTES)
+// Collective: take(record) on rank 0 for the records of all ranks, in the order of the ranks; nothing on the
+// others. Rank 0 holds those of one message at a time, beside its own.
+template <typename Record, typename Take>
+void take_records(MPI_Comm world, const std::vector<Record> &mine, Take take,
+                  bigint most = MESSAGE_BYTES)
 {
   int me, nprocs;
   MPI_Comm_rank(world, &me);
@@ -69,16 +70,34 @@ std::vector<Record> gather_records(MPI_Comm world, const std::vector<Record> &mi
   bigint number = mine.size();
   std::vector<bigint> numbers(me == 0 ? nprocs : 0);
   MPI_Gather(&number, 1, MPI_LMP_BIGINT, numbers.data(), 1, MPI_LMP_BIGINT, 0, world);
+  const bigint whole = std::max<bigint>(1, most / sizeof(Record)) * sizeof(Record);
   if (me != 0) {
-    send_bytes(world, mine.data(), number * sizeof(Record), 0, most);
-    return {};
+    send_bytes(world, mine.data(), number * sizeof(Record), 0, whole);
+    return;
   }
-  std::vector<Record> all(mine);
-  for (int rank = 1; rank < nprocs; rank++) {
-    const bigint place = all.size();
-    all.resize(place + numbers[rank]);
-    receive_bytes(world, all.data() + place, numbers[rank] * sizeof(Record), rank, most);
-  }
+  for (const Record &record : mine) take(record);
+  std::vector<Record> some;
+  for (int rank = 1; rank < nprocs; rank++)
+    for (bigint left = numbers[rank] * sizeof(Record); left > 0; left -= whole) {
+      const bigint bytes = std::min(left, whole);
+      some.resize(bytes / sizeof(Record));
+      receive_bytes(world, some.data(), bytes, rank, whole);
+      for (const Record &record : some) take(record);
+    }
+}
+
+// Collective: the records of all ranks, in the order of the ranks, on rank 0; nothing on the others.
+template <typename Record>
+std::vector<Record> gather_records(MPI_Comm world, const std::vector<Record> &mine,
+                                   bigint most = MESSAGE_BYTES)
+{
+  std::vector<Record> all;
+  take_records(
+      world, mine,
+      [&](const Record &record) {
+        all.push_back(record);
+      },
+      most);
   return all;
 }
 

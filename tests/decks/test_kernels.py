@@ -10,7 +10,7 @@ import pytest
 from deck_helpers import ENVIRONMENT, collapse_deck, run_deck, write_collapse
 
 BUILD = Path(os.environ.get("SLOPE_BUILD", Path(__file__).resolve().parents[2] / "build"))
-X86_LEVELS = "x86_64_v2", "x86_64_v3", "x86_64_v4"
+X86_LEVELS = "x86_64_v3", "x86_64_v4"
 
 
 def run_with(kernel, folder, monkeypatch, np=1, steps=200, **settings):

@@ -44,8 +44,8 @@ static double bin_all(DepositBins &bins, const std::vector<Ball> &balls)
 // of a cell; 0 where no block is
 static double volume_in(const DepositBins &bins, int i, int j)
 {
-  const double *block = bins.blocks().find(i / DepositBlocks::SIDE, j / DepositBlocks::SIDE);
-  return block ? block[DepositBlocks::index(i, j)] : 0.0;
+  const auto *block = bins.blocks().find(BlockOfCells::of_cell(i), BlockOfCells::of_cell(j));
+  return block ? block->values[DepositBins::VOLUME][BlockOfCells::index(i, j)] : 0.0;
 }
 
 // length of a..b in c..d
@@ -112,7 +112,7 @@ TEST(DepositBins, NothingIsBeyondInsideOfTheEdge)
   EXPECT_EQ(bin_all(bins, {ball}), 0.0);
   const Ball out = {{-20.0, 2.5}, 1.0};
   EXPECT_EQ(bin_all(bins, {out}), 1.0);
-  EXPECT_EQ(bins.blocks().size(), 0u);
+  EXPECT_TRUE(bins.blocks().all().empty());
 }
 
 TEST(DepositBins, PeriodicSides)
@@ -139,15 +139,15 @@ TEST(DepositBins, BlocksOnlyWhereBallsAre)
   const std::vector<Ball> balls = {{{4.0, 4.0}, 0.5}, {{904.0, 500.0}, 0.5}, {{4.2, 4.0}, 0.5}};
   for (int round = 0; round < 2; round++) {
     EXPECT_EQ(bin_all(bins, balls), 0.0);
-    const DepositBlocks &blocks = bins.blocks();
+    const auto &blocks = bins.blocks().all();
     ASSERT_EQ(blocks.size(), 3u);    // the second one lies on the edge of two blocks
-    EXPECT_EQ(blocks.column(0), 0);
-    EXPECT_EQ(blocks.band(0), 0);
+    EXPECT_EQ(blocks[0].column, 0);
+    EXPECT_EQ(blocks[0].row, 0);
     double sum = 0.0;
-    for (size_t k = 0; k < blocks.size(); k++)
-      for (int cell = 0; cell < DepositBlocks::CELLS; cell++) sum += blocks[k][cell];
+    for (const auto &block : blocks)
+      for (const double volume : block.values[DepositBins::VOLUME]) sum += volume;
     EXPECT_NEAR(sum, 3 * 0.125, 1e-15);    // not what was there before
-    EXPECT_EQ(blocks.find(50, 50), nullptr);
+    EXPECT_EQ(bins.blocks().find(50, 50), nullptr);
   }
   const double most = 4 * 1536 + 4 * 125 + 125 * 24 + 200 * 4;
   EXPECT_LT(bins.blocks().bytes(), 2 * most);
@@ -162,8 +162,8 @@ TEST(DepositBins, SpeedOfCentres)
   bins.clear();
   bins.bin(x[0], 1.0, 3.0, 5.0);
   bins.bin(x[1], 1.0, 2.0, 7.0);
-  const double *speeds = bins.blocks().find(0, 0) + DepositBins::SPEED * DepositBlocks::CELLS;
-  const double *energies = bins.blocks().find(0, 0) + DepositBins::ENERGY * DepositBlocks::CELLS;
+  const double *speeds = bins.blocks().find(0, 0)->values[DepositBins::SPEED];
+  const double *energies = bins.blocks().find(0, 0)->values[DepositBins::ENERGY];
   EXPECT_EQ(speeds[0], 3.0);
   EXPECT_EQ(energies[0], 7.0);
   EXPECT_EQ(speeds[1], -1.0);    // covered in part, no centre

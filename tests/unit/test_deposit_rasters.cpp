@@ -3,8 +3,8 @@
    Distributed under the GNU General Public License, version 2
 ------------------------------------------------------------------------- */
 
-// Rows in bands, shared out among ranks, hold together what one rank would hold; maxima, times and the
-// change of the deposit; the cells in restart files, in pieces; the files.
+// Bins of several ranks give the rasters that one rank would have; maxima, times and the change of the
+// deposit; the cells in restart files; the files.
 
 #include "deposit_bins.h"
 #include "deposit_rasters.h"
@@ -46,15 +46,13 @@ static std::vector<Ball> draw(int n)
   return balls;
 }
 
-// what ranks do without messages: each has some of the balls and its rows
+// what ranks do without messages: each has some of the balls, one has the rasters
 class Ranks {
  public:
-  Ranks(const PlanGrid &grid, int number) : bins(number), rasters(number)
+  Ranks(const PlanGrid &grid, int number) : bins(number)
   {
-    for (int me = 0; me < number; me++) {
-      bins[me].set_grid(grid);
-      rasters[me].create(grid, me, number);
-    }
+    for (DepositBins &mine : bins) mine.set_grid(grid);
+    rasters.create(grid);
   }
 
   // returns the volume on the grid
@@ -64,60 +62,17 @@ class Ranks {
     for (size_t k = 0; k < balls.size(); k++)
       bins[k * bins.size() / balls.size()].bin(balls[k].x, balls[k].side, balls[k].speed,
                                                10.0 * balls[k].speed);
-    double sum = 0.0;
-    for (Rasters &mine : rasters) {
-      mine.clear();
-      for (const DepositBins &from : bins)
-        for (size_t k = 0; k < from.blocks().size(); k++)
-          if (mine.bands().mine(from.blocks().band(k)))
-            mine.add(from.blocks().column(k), from.blocks().band(k), from.blocks()[k], record, time,
-                     0.1);
-      sum += mine.finish(record);
-    }
-    return sum;
-  }
-
-  double at(Rasters::Name name, int i, int j) const
-  {
-    const int owner = rasters[0].bands().owner(DepositBands::band_of(j));
-    EXPECT_TRUE(rasters[owner].bands().mine(DepositBands::band_of(j)));
-    return rasters[owner].at(name, i, j);
+    rasters.clear();
+    for (const DepositBins &from : bins)
+      for (const auto &block : from.blocks().all()) rasters.add(block, record, time, 0.1);
+    return rasters.finish(record, 1)[0];
   }
 
   std::vector<DepositBins> bins;
-  std::vector<Rasters> rasters;
+  Rasters rasters;
 };
 
-TEST(DepositBands, EveryRowHasOneOwner)
-{
-  for (const double cell : {0.05, 0.1, 0.7, 10.0}) {
-    const PlanGrid grid(EXTENT, cell);
-    for (const int number : {1, 2, 3, 7, 200}) {
-      std::vector<int> rows(grid.n[1], 0);
-      size_t most = 0, least = (size_t) -1, all = 0;
-      for (int me = 0; me < number; me++) {
-        const DepositBands bands(grid, me, number);
-        size_t mine = 0;
-        for (int band = bands.first(); band < bands.number(); band += bands.step())
-          for (int j = bands.first_row(band); j < bands.end_row(band); j++) {
-            EXPECT_EQ(bands.owner(band), me);
-            EXPECT_EQ(bands.band_of(j), band);
-            rows[j]++;
-            for (int i = 0; i < grid.n[0]; i++, mine++) ASSERT_EQ(bands.place(i, j), mine);
-          }
-        EXPECT_EQ(bands.ncells(), mine);
-        most = std::max(most, mine);
-        least = std::min(least, mine);
-        all += mine;
-      }
-      for (const int count : rows) EXPECT_EQ(count, 1);
-      EXPECT_EQ((double) all, grid.ncells());
-      EXPECT_LE(most - least, (size_t) DepositBands::ROWS * grid.n[0]);    // a band
-    }
-  }
-}
-
-TEST(DepositRasters, RanksHoldWhatOneHolds)
+TEST(DepositRasters, OfRanksThoseOfOne)
 {
   const PlanGrid grid(EXTENT, 0.1);
   const auto balls = draw(60);
@@ -126,9 +81,9 @@ TEST(DepositRasters, RanksHoldWhatOneHolds)
   double released = 0.0, on_grid = 0.0, moved = 0.0;
   for (const Ball &ball : first) released += std::pow(ball.side, 3);
   one.sample(balls, 0.5);
-  one.rasters[0].take_snapshot(0.5, 0.0);
+  one.rasters.take_snapshot(0.5, 0.0);
   on_grid = one.sample(first, 0.75);    // begins at 0 again
-  moved = one.rasters[0].moved();
+  moved = one.rasters.moved(1)[0];
   EXPECT_GT(moved, 0.1 * released);
 
   // what is on the grid, by the overlap of the squares with all of it
@@ -145,19 +100,15 @@ TEST(DepositRasters, RanksHoldWhatOneHolds)
   for (const int number : {2, 3, 5}) {
     Ranks ranks(grid, number);
     ranks.sample(balls, 0.5);
-    for (Rasters &mine : ranks.rasters) mine.take_snapshot(0.5, 0.0);
+    ranks.rasters.take_snapshot(0.5, 0.0);
     EXPECT_NEAR(ranks.sample(first, 0.75), on_grid, 1e-12 * released);
-    double sum = 0.0, largest = 0.0;
-    for (Rasters &mine : ranks.rasters) {
-      sum += mine.moved();
-      largest = std::max(largest, mine.largest(Rasters::MAX_THICKNESS));
-    }
-    EXPECT_NEAR(sum, moved, 1e-12 * released);
-    EXPECT_NEAR(largest, one.rasters[0].largest(Rasters::MAX_THICKNESS), 1e-12);
+    EXPECT_NEAR(ranks.rasters.moved(1)[0], moved, 1e-12 * released);
+    EXPECT_NEAR(ranks.rasters.largest(Rasters::MAX_THICKNESS),
+                one.rasters.largest(Rasters::MAX_THICKNESS), 1e-12);
     for (const Rasters::Name name : NAMES)
       for (int j = 0; j < grid.n[1]; j++)
         for (int i = 0; i < grid.n[0]; i++) {
-          const double a = one.at(name, i, j), b = ranks.at(name, i, j);
+          const double a = one.rasters.at(name, i, j), b = ranks.rasters.at(name, i, j);
           ASSERT_EQ(std::isnan(a), std::isnan(b)) << name << " " << i << " " << j;
           if (!std::isnan(a)) ASSERT_NEAR(a, b, 1e-12) << name << " " << i << " " << j;
         }
@@ -174,7 +125,7 @@ TEST(DepositRasters, WhatCellsSaw)
 {
   const PlanGrid grid(EXTENT, 1.0);
   Ranks ranks(grid, 1);
-  const Rasters &rasters = ranks.rasters[0];
+  const Rasters &rasters = ranks.rasters;
   sample(ranks, -2.5, 3.0, 0.0);
   sample(ranks, -2.5, 0.05, 1.0);
   sample(ranks, 1.5, 2.0, 2.0);
@@ -196,9 +147,9 @@ TEST(DepositRasters, WhatCellsSaw)
 TEST(DepositRasters, ChangePerTime)
 {
   Ranks ranks(PlanGrid(EXTENT, 1.0), 1);
-  Rasters &rasters = ranks.rasters[0];
+  Rasters &rasters = ranks.rasters;
   auto take_snapshot = [&](double time) {    // of 4 m3 released
-    rasters.take_snapshot(time, rasters.moved() / 4.0);
+    rasters.take_snapshot(time, rasters.moved(1)[0] / 4.0);
   };
   EXPECT_EQ(rasters.change, 1.0);
   sample(ranks, 1.5, 1.0, 0.0);
@@ -211,7 +162,17 @@ TEST(DepositRasters, ChangePerTime)
   EXPECT_EQ(rasters.change, 0.0);
 }
 
-// the same cells, in the same order, from any number of ranks; into any other number of them
+static std::vector<double> all_touched(const Rasters &rasters)
+{
+  std::vector<double> found;
+  for (int j = 0; j < rasters.grid().n[1]; j++) {
+    const auto cells = rasters.touched(j);
+    found.insert(found.end(), cells.begin(), cells.end());
+  }
+  return found;
+}
+
+// the same cells, in the same order, from any number of ranks; and back
 TEST(DepositRasters, TouchedCells)
 {
   const PlanGrid grid(EXTENT, 0.1);
@@ -219,13 +180,9 @@ TEST(DepositRasters, TouchedCells)
   for (const int number : {1, 2, 4}) {
     Ranks ranks(grid, number);
     ranks.sample(draw(20), 0.5);
-    for (Rasters &mine : ranks.rasters) mine.take_snapshot(0.5, 0.0);
+    ranks.rasters.take_snapshot(0.5, 0.0);
     ranks.sample(draw(1), 1.0, false);
-    saved.emplace_back();
-    for (int band = 0; band < ranks.rasters[0].bands().number(); band++) {
-      const auto cells = ranks.rasters[ranks.rasters[0].bands().owner(band)].touched(band);
-      saved.back().insert(saved.back().end(), cells.begin(), cells.end());
-    }
+    saved.push_back(all_touched(ranks.rasters));
   }
   const std::vector<double> &cells = saved[0];
   const size_t count = cells.size() / Rasters::PER_CELL;
@@ -240,34 +197,39 @@ TEST(DepositRasters, TouchedCells)
                                        : std::fabs(cells[k] - other[k]) < 1e-12);
   }
 
-  Ranks again(grid, 3);
-  for (Rasters &mine : again.rasters)
-    for (size_t k = 0; k < cells.size(); k += Rasters::PER_CELL) mine.restore(&cells[k]);
-  size_t next = 0;
-  for (int band = 0; band < again.rasters[0].bands().number(); band++)
-    for (const double value : again.rasters[band % 3].touched(band)) {
-      ASSERT_TRUE(value == cells[next] || std::isnan(cells[next]));
-      next++;
-    }
-  EXPECT_EQ(next, cells.size());
-  for (int band = 0; band < again.rasters[0].bands().number(); band++)
-    EXPECT_TRUE(again.rasters[(band + 1) % 3].touched(band).empty());    // not in others' rows
+  Rasters again;
+  again.create(grid);
+  for (size_t k = 0; k < cells.size(); k += Rasters::PER_CELL) again.restore(&cells[k]);
+  const auto found = all_touched(again);
+  ASSERT_EQ(found.size(), cells.size());
+  for (size_t k = 0; k < cells.size(); k++)
+    ASSERT_TRUE(found[k] == cells[k] || (std::isnan(found[k]) && std::isnan(cells[k])));
 }
 
-// bands put together are the file that one raster would write
-TEST(DepositWriter, TextOfBands)
+static std::string text_of(const std::string &path)
 {
-  const PlanGrid grid(EXTENT, 0.31);    // 40 x 20 cells: two bands and a half
+  std::string text;
+  FILE *fp = fopen(path.c_str(), "r");
+  for (int c; (c = fgetc(fp)) != EOF;) text += (char) c;
+  fclose(fp);
+  return text;
+}
+
+// each is the file that an elevation grid with the values of all cells writes
+TEST(DepositWriter, Files)
+{
+  const PlanGrid grid(EXTENT, 0.31);    // 40 x 20 cells: two rows of blocks and a half
   Ranks ranks(grid, 2);
   ranks.sample(draw(9), 0.5);
-  for (Rasters &mine : ranks.rasters)
-    for (int band = mine.bands().first(); band < 3; band += 2)
-      for (int j = mine.bands().first_row(band); j < mine.bands().end_row(band); j++)
-        for (int i = 0; i < grid.n[0]; i++) mine.base(i, j) = i == 7 ? NAN : 100.0 + 0.1 * i * j;
+  const Rasters &rasters = ranks.rasters;
+  std::vector<double> base;
+  for (int j = 0; j < grid.n[1]; j++)
+    for (int i = 0; i < grid.n[0]; i++) base.push_back(i == 7 ? NAN : 100.0 + 0.1 * i * j);
+  ranks.rasters.set_base(base);
 
   char folder[] = "/tmp/test_deposit.XXXXXX";
   ASSERT_TRUE(mkdtemp(folder));
-  const std::string path = std::string(folder) + "/one.asc";
+  const std::string path = std::string(folder) + "/one.asc", wanted = std::string(folder) + "/wanted.asc";
   const auto files = DepositWriter::files("out", "120");
   std::vector<std::string> names;
   for (const auto &file : files) names.push_back(file.path);
@@ -277,27 +239,23 @@ TEST(DepositWriter, TextOfBands)
                                 "out.base.asc", "out.max_thickness.asc", "out.max_speed.asc",
                                 "out.max_energy.asc", "out.arrival.asc", "out.last_motion.asc"}));
   for (const auto &file : files) {
-    std::string text = DepositWriter::header(grid);
-    for (int band = 2; band >= 0; band--)
-      text += DepositWriter::text_of_band(ranks.rasters[band % 2], file, band);
+    AtomicFile written(path);
+    DepositWriter::write(written, rasters, file);
+    written.commit();
 
     ElevationGrid raster(grid.n[0], grid.n[1], grid.lo[0], grid.lo[1], grid.cell, 0.0);
     for (int j = 0; j < grid.n[1]; j++)
       for (int i = 0; i < grid.n[0]; i++) {
-        const double base = ranks.rasters[j / 8 % 2].base(i, j);
-        const double h = ranks.at(Rasters::THICKNESS, i, j);
-        raster.at(i, j) = file.content == DepositWriter::BASE ? base
-            : file.content == DepositWriter::SURFACE          ? base + h
-                                                     : ranks.at((Rasters::Name) file.content, i, j);
+        const double z = base[j * grid.n[0] + i], h = rasters.at(Rasters::THICKNESS, i, j);
+        raster.at(i, j) = file.content == DepositWriter::BASE ? z
+            : file.content == DepositWriter::SURFACE          ? z + h
+                                                     : rasters.at((Rasters::Name) file.content, i, j);
       }
-    raster.write(path, file.path.find(".thickness") < std::string::npos ? 12 : 9);
-    std::string wanted;
-    FILE *fp = fopen(path.c_str(), "r");
-    for (int c; (c = fgetc(fp)) != EOF;) wanted += (char) c;
-    fclose(fp);
-    EXPECT_EQ(text, wanted) << file.path;
+    raster.write(wanted, file.path.find(".thickness") < std::string::npos ? 12 : 9);
+    EXPECT_EQ(text_of(path), text_of(wanted)) << file.path;
   }
   EXPECT_EQ(remove(path.c_str()), 0);
+  EXPECT_EQ(remove(wanted.c_str()), 0);
   EXPECT_EQ(rmdir(folder), 0);
 }
 
