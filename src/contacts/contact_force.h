@@ -51,15 +51,6 @@ static constexpr double POINT = 3.5;
 //   than there is (held_back()).
 // Derivation: doc/src/theory.rst.
 static constexpr double AHEAD = 0.25;
-template <class N> struct ContactStepOf {
-  double dt, grow;                // s; grow: what the springs grow by, 0 at set-up
-  N kn, cn, kt, ct, kr, cr;       // N/m, N s/m: as velocity Verlet needs them
-  N taken_n, taken_t, taken_r;    // share of a motion that its dashpot takes in a step; 0: plain
-  N per_kt, per_kr;               // 1 / kt, 1 / kr; 0 without a spring
-  N share_i, share_j;    // of the two balls in the inverse of the contact's mass; their sum is 1
-  double friction, rolling, fn_least;
-};
-using ContactStep = ContactStepOf<double>;
 
 // exp(-x), x >= 0, to 3e-8, and to 5e-9 of itself up to x = 2; no call, so that it takes several at a time
 template <class N> SLOPE_INLINE N decay_factor(N x)
@@ -129,7 +120,7 @@ SLOPE_INLINE ContactStepOf<N> contact_step(const ContactLaw &law, N inverse_i, N
   s.fn_least = law.fn_least;
   s.share_i = inverse_i / inverse;
   s.share_j = inverse_j / inverse;
-  s.kn = N() + law.kn;
+  s.kn = law.kn;
   s.kt = N() + law.kt;
   s.kr = N() + law.kr;
   s.cn = law.cn_given + law.cn_root * root_mass;

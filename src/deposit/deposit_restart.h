@@ -6,6 +6,7 @@
 #ifndef SLOPE_DEPOSIT_RESTART_H
 #define SLOPE_DEPOSIT_RESTART_H
 
+#include "archive.h"
 #include "deposit_exchange.h"
 #include "deposit_options.h"
 #include "deposit_rasters.h"
@@ -33,18 +34,20 @@ class DepositRestart : protected Pointers {
 
   DepositRestart(class LAMMPS *, const DepositOptions &);
 
-  void write(FILE *, const std::string &fix_id, const Saved &, const Slope::DepositRasters &);
+  void write(FILE *, const std::string &fix_id, Saved, const Slope::DepositRasters &);
   void read(const std::string &fix_id, const char *buffer, Saved &, Slope::DepositRasters &) const;
 
  private:
   struct Key {
-    double format, cell, nx, ny, xlo, ylo, bulk;
+    double cell, nx, ny, xlo, ylo, bulk;
   };
 
-  Key key;
+  const Slope::PlanGrid &grid;
+  const double bulk;
   DepositExchange exchange;
 
-  void check_key(const std::string &fix_id, const Key &) const;
+  void archive(Slope::Archive &, Saved &) const;
+  static void check_key(const Key &found, const Key &mine);
 };
 
 }    // namespace LAMMPS_NS
