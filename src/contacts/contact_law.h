@@ -52,6 +52,10 @@ struct SpringDashpot {
   double damping_ratio(double m) const { return c / (2.0 * std::sqrt(k * m)); }    // of a mass, kg
 };
 
+struct NormalSpring {
+  double kn;    // N/m
+};
+
 // What one pair of types needs per contact. A dashpot is either a number given by the user
 // (N s/m) or follows from a restitution and then grows with the root of the contact's mass:
 // c = c_given + c_root * sqrt(m). One of the two is zero.
@@ -71,6 +75,8 @@ struct ContactLaw {
   double mass_fixed(double mi) const { return mi; }
 
   double cn(double m) const { return cn_given + cn_root * std::sqrt(m); }
+
+  NormalSpring spring(double /*ri*/, double /*rj*/) const { return {kn}; }    // of two balls
 
   // --- for what bounds the time step and is said of a law, whatever its springs are like ---
 
@@ -101,7 +107,7 @@ template <class N> struct ContactStepOf : ContactShared, ContactOwnOf<N> {
 };
 using ContactStep = ContactStepOf<double>;
 
-// The normal spring at an overlap (m): its force, N, and what it holds, J. Law: ContactLaw, or what a step makes of it.
+// The normal spring at an overlap (m): its force, N, and what it holds, J. Law: NormalSpring, or a step.
 template <class Law, class T> SLOPE_INLINE T spring_force(const Law &law, T overlap)
 {
   return law.kn * overlap;

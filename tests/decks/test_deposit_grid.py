@@ -518,7 +518,8 @@ set group all density 2000
     style, left_out = (name.ljust(24, b"\0") + number for name in (b"deposit/grid", b"cells_left_out"))
     assert data.count(style + struct.pack("<d", 6.0)) == data.count(left_out + struct.pack("<d", 0.0)) == 1
     for name, member, value, message in [
-            ("old", style, 5.0, "Fix deposit/grid dep: the restart file must have data of version 6, got 5: start again"),
+            ("old", style, 5.0,
+             "Fix deposit/grid dep: the restart file must have data of version 6, got 5: start again"),
             ("large", left_out, 4e7,
              "Fix deposit/grid dep: nothing can go on from this restart file, in which it may have 38347849 cells that "
              "the mass touched, got 40000000: start again, with a larger cell")]:

@@ -1,4 +1,4 @@
-"""Bounds of the contact law: beyond them one line says what, where, and the value; restart files carry their version."""
+"""Bounds of the contact law: beyond them one line says what, where and the value; restart files carry a version."""
 import struct
 
 import pytest
@@ -60,4 +60,5 @@ def test_restart_file_of_another_version(tmp_path, other, got):
         changed = data[:head] + struct.pack("<5i", 20261123, 0, 0, 0, 0) + data[head + 20:]
     (tmp_path / "cut.10.restart").write_bytes(changed)
     run_deck("read_restart cut.10.restart\n", tmp_path,
-             expect_error=f"Pair gran/restitution: the restart file must have data of version {VERSION}, {got} start again")
+             expect_error="Pair gran/restitution: the restart file must have data of version "
+             f"{VERSION}, {got} start again")

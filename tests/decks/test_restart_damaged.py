@@ -125,4 +125,4 @@ def test_marks_of_a_ground_that_are_damaged(counted):
     for value in (1e300, 1e8, -1.0, float("nan"), marks + 1):
         (folder / "cut.restart").write_bytes(data[:begin] + struct.pack("<d", value) + data[begin + 8:])
         run_deck(COUNTED.format(begin="read_restart cut.restart"), folder,
-                 expect_error="Fix wall/gran/balls field: the restart file must have a whole number of values in marks_of_")
+                 expect_error="Fix wall/gran/balls field: the restart file must have a whole number of values in mark")
