@@ -47,18 +47,14 @@ class RunClock {
   double at(int64_t step) const { return base + (step - base_step) * step_size; }
   double now() const { return on ? at(last) : 0.0; }
 
-  // for restart files
-  struct State {
-    double base, base_step, last, step_size, on;
-  };
-  State state() const { return {base, (double) base_step, (double) last, step_size, (double) on}; }
-  void set_state(const State &s)
+  // members of a restart file
+  template <class Archive> void archive(Archive &a)
   {
-    base = s.base;
-    base_step = (int64_t) s.base_step;
-    last = (int64_t) s.last;
-    step_size = s.step_size;
-    on = s.on != 0.0;
+    a.number("clock_base", base);
+    a.number("clock_base_step", base_step);
+    a.number("clock_last_step", last);
+    a.number("clock_step_size", step_size);
+    a.number("clock_on", on);
   }
 
  private:

@@ -17,10 +17,6 @@
 
 namespace Slope {
 
-struct SpringDashpot {
-  double k, c;    // N/m, N s/m
-};
-
 // Twice the energy (J) that a spring of stretch s (m) can give back, its ends moving at u (m/s): at a
 // force of most (N) it slides. limit: the same for spring and dashpot together, now.
 inline double held(const SpringDashpot &law, double most, double limit, const double *s,

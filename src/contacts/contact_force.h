@@ -51,15 +51,6 @@ static constexpr double POINT = 3.5;
 //   than there is (held_back()).
 // Derivation: doc/src/theory.rst.
 static constexpr double AHEAD = 0.25;
-template <class N> struct ContactStepOf {
-  double dt, grow;                // s; grow: what the springs grow by, 0 at set-up
-  N kn, cn, kt, ct, kr, cr;       // N/m, N s/m: as velocity Verlet needs them
-  N taken_n, taken_t, taken_r;    // share of a motion that its dashpot takes in a step; 0: plain
-  N per_kt, per_kr;               // 1 / kt, 1 / kr; 0 without a spring
-  N share_i, share_j;    // of the two balls in the inverse of the contact's mass; their sum is 1
-  double friction, rolling, fn_least;
-};
-using ContactStep = ContactStepOf<double>;
 
 // exp(-x), x >= 0, to 3e-8, and to 5e-9 of itself up to x = 2; no call, so that it takes several at a time
 template <class N> SLOPE_INLINE N decay_factor(N x)
@@ -113,11 +104,11 @@ template <class N> SLOPE_INLINE N stepped_spring(N a, N h)
 
 // inverse_i, inverse_j (1/kg): 1/m_i and 1/m_j, 0 of a fixed ball. mass_dashpot (kg): that of the
 // conversion restitution -> dashpot. inverse_rolling (1/kg): 2.5 Rr^2 (1/(m_i R_i^2) + 1/(m_j R_j^2)),
-// of solid spheres. dt (s) > 0; repeat: for the forces of the step that has just ended once more.
+// of solid spheres. radius (m): reduced, RiRj/(Ri + Rj), for springs that depend on it. dt (s) > 0; repeat: for the forces of the step that has just ended once more.
 template <class N>
 SLOPE_INLINE ContactStepOf<N> contact_step(const ContactLaw &law, N inverse_i, N inverse_j,
-                                           N mass_dashpot, N inverse_rolling, double dt,
-                                           bool repeat)
+                                           N mass_dashpot, N inverse_rolling, N /*radius*/,
+                                           double dt, bool repeat)
 {
   const N root_mass = root(mass_dashpot);
   const N inverse = inverse_i + inverse_j, point = POINT * inverse;
@@ -129,7 +120,7 @@ SLOPE_INLINE ContactStepOf<N> contact_step(const ContactLaw &law, N inverse_i, N
   s.fn_least = law.fn_least;
   s.share_i = inverse_i / inverse;
   s.share_j = inverse_j / inverse;
-  s.kn = N() + law.kn;
+  s.kn = law.kn;
   s.kt = N() + law.kt;
   s.kr = N() + law.kr;
   s.cn = law.cn_given + law.cn_root * root_mass;

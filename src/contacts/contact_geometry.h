@@ -22,9 +22,9 @@ template <class N>
 SLOPE_INLINE ContactStepOf<N> step_of(const Sides &moves, const ContactLaw &law, double dt,
                                       bool repeat, N ri, N rj, N mi, N mj)
 {
-  return contact_step(law, N(moves.i / mi), N(moves.j / mj),
-                      N(moves.mass_factor(law) / moves.inverse_mass(mi, mj)),
-                      moves.inverse_rolling(law, ri, rj, mi, mj), dt, repeat);
+  return contact_step(
+      law, N(moves.i / mi), N(moves.j / mj), N(moves.mass_factor(law) / moves.inverse_mass(mi, mj)),
+      moves.inverse_rolling(law, ri, rj, mi, mj), N(ri * rj / (ri + rj)), dt, repeat);
 }
 
 // of the centres, m

@@ -121,13 +121,13 @@ void ContactGuards::check_dashpots(int i, int j)
     warn("the masses of balls of types {} and {} that can touch are tested up to a ratio of {:g}, "
          "got {:.4g}",
          i, j, MASS_RATIO_TESTED, heaviest / lightest);
-  const double cn = table.law(i, j).cn(lightest);
-  const double zeta = cn / (2.0 * sqrt(table.coeff(i, j).kn * lightest));
-  if (zeta > ZETA_FOLLOWED && !table.is_plain())
+  const Slope::SpringDashpot normal = table.normal(i, j);
+  const double zeta = normal.damping_ratio(lightest);
+  if (zeta > ZETA_FOLLOWED && table.is_exact())
     warn("damping ratio of types {} and {} must be <= {:g} to be followed in time, got {:.4g} (cn "
          "{:.4g} N s/m, lightest ball {:.4g} kg): these contacts do not rebound and rest at the "
          "right overlap, but reach it too fast",
-         i, j, ZETA_FOLLOWED, zeta, cn, lightest);
+         i, j, ZETA_FOLLOWED, zeta, normal.c, lightest);
 }
 
 /* ----------------------------------------------------------------------

@@ -47,7 +47,9 @@ struct ContactBits {
 // a contact list as the kernels see it: pointers, so that no template of the standard library is compiled for an
 // instruction set that the processor may not have, and then chosen by the linker for all
 struct ContactView : ContactSizes {
-  static constexpr int BLOCK = 64, ROW = 12;
+  static constexpr int BLOCK = 64;
+  static constexpr int NUMBERS = sizeof(ContactOwnOf<double>) / sizeof(double);
+  static constexpr int ROW = (NUMBERS + 3) / 4 * 4;    // whole fours
 
   const ContactEntry *entries;
   double *const *histories;    // HISTORY values of each

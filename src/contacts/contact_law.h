@@ -46,6 +46,16 @@ inline double contact_time(double k, double m, double zeta)
   return PI / (std::sqrt(k / m) * std::sqrt(1.0 - zeta * zeta));
 }
 
+struct SpringDashpot {
+  double k, c;    // N/m, N s/m
+
+  double damping_ratio(double m) const { return c / (2.0 * std::sqrt(k * m)); }    // of a mass, kg
+};
+
+struct NormalSpring {
+  double kn;    // N/m
+};
+
 // What one pair of types needs per contact. A dashpot is either a number given by the user
 // (N s/m) or follows from a restitution and then grows with the root of the contact's mass:
 // c = c_given + c_root * sqrt(m). One of the two is zero.
@@ -65,6 +75,19 @@ struct ContactLaw {
   double mass_fixed(double mi) const { return mi; }
 
   double cn(double m) const { return cn_given + cn_root * std::sqrt(m); }
+
+  NormalSpring spring(double /*ri*/, double /*rj*/) const { return {kn}; }    // of two balls
+
+  // --- for what bounds the time step and is said of a law, whatever its springs are like ---
+
+  // spring and dashpot of a contact of mass m (kg), as stiff as they get at overlaps of a tenth of the larger radius (m)
+  SpringDashpot normal(double m, double /*radius*/) const { return {kn, cn(m)}; }
+
+  // overlap (m) that a ball of mass m reaches on a fixed surface which it hits at a speed (m/s), undamped
+  double depth(double m, double /*radius*/, double speed) const
+  {
+    return speed * std::sqrt(m / kn);
+  }
 };
 
 // Distance of the centres, m, at which balls of these radii (m) touch. Neighbours in a lattice are apart by the sum of
@@ -75,7 +98,24 @@ template <class N> SLOPE_INLINE N touching(N ri, N rj)
   return ri + rj - 4.0e-7 * ri * rj / (ri + rj);
 }
 
-// The normal spring at an overlap (m): its force, N, and what it holds, J. Law: ContactLaw, or what a step makes of it.
+// What a step makes of the law, in two parts: what depends on the sizes of the balls, and is kept for each contact where they
+// differ (contact_rows.h), N's alone; and what all contacts share. See contact_step() of contact_force.h.
+template <class N> struct ContactOwnOf {
+  N cn, kt, ct, kr, cr;           // N/m, N s/m: as velocity Verlet needs them
+  N taken_n, taken_t, taken_r;    // share of a motion that its dashpot takes in a step; 0: plain
+  N per_kt, per_kr;               // 1 / kt, 1 / kr; 0 without a spring
+  N share_i, share_j;    // of the two balls in the inverse of the contact's mass; their sum is 1
+};
+struct ContactShared {
+  double dt, grow;    // s; grow: what the springs grow by, 0 at set-up
+  double kn;          // N/m
+  double friction, rolling, fn_least;
+};
+template <class N> struct ContactStepOf : ContactShared, ContactOwnOf<N> {
+};
+using ContactStep = ContactStepOf<double>;
+
+// The normal spring at an overlap (m): its force, N, and what it holds, J. Law: NormalSpring, or a step.
 template <class Law, class T> SLOPE_INLINE T spring_force(const Law &law, T overlap)
 {
   return law.kn * overlap;

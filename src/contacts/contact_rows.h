@@ -16,38 +16,42 @@
 #include "simd4.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace Slope {
 inline namespace SLOPE_INSTRUCTIONS {
 
-// what is in a row, and what all contacts of a law share: dt, grow, kn, friction, rolling, fn_least
-static_assert(sizeof(ContactStep) == (ContactView::ROW + 6) * sizeof(double),
-              "a number that depends on the balls must be in the rows");
-
 // to the rows of four contacts k
-SLOPE_INLINE void store_rows(const ContactView &view, const int *k, const ContactStepOf<Four> &s)
+SLOPE_INLINE void store_rows(const ContactView &view, const int *k, const ContactOwnOf<Four> &s)
 {
-  const Columns a(s.cn, s.kt, s.ct, s.kr), b(s.cr, s.taken_n, s.taken_t, s.taken_r),
-      c(s.per_kt, s.per_kr, s.share_i, s.share_j);
-  const Four rows[4][3] = {{a.x, b.x, c.x}, {a.y, b.y, c.y}, {a.z, b.z, c.z}, {a.w, b.w, c.w}};
-  for (int m = 0; m < 4; m++)
-    for (int n = 0; n < 3; n++) four(view.row(k[m]) + 4 * n) = rows[m][n];
+  Four numbers[ContactView::ROW] = {};
+  std::memcpy(numbers, &s, sizeof(s));
+  for (int n = 0; n < ContactView::ROW; n += 4) {
+    const Columns c(numbers[n], numbers[n + 1], numbers[n + 2], numbers[n + 3]);
+    four(view.row(k[0]) + n) = c.x;
+    four(view.row(k[1]) + n) = c.y;
+    four(view.row(k[2]) + n) = c.z;
+    four(view.row(k[3]) + n) = c.w;
+  }
 }
 
 // law: what all contacts share
 SLOPE_INLINE ContactStepOf<Four> load_rows(const ContactView &view, const int *k,
-                                           const ContactStep &law)
+                                           const ContactShared &law)
 {
   const double *const r[4] = {view.row(k[0]), view.row(k[1]), view.row(k[2]), view.row(k[3])};
-  const Columns a(four(r[0]), four(r[1]), four(r[2]), four(r[3])),
-      b(four(r[0] + 4), four(r[1] + 4), four(r[2] + 4), four(r[3] + 4)),
-      c(four(r[0] + 8), four(r[1] + 8), four(r[2] + 8), four(r[3] + 8));
-  return {law.dt,       law.grow,    all<Four>(law.kn),
-          a.x,          a.y,         a.z,
-          a.w,          b.x,         b.y,
-          b.z,          b.w,         c.x,
-          c.y,          c.z,         c.w,
-          law.friction, law.rolling, law.fn_least};
+  Four numbers[ContactView::ROW] = {};
+  for (int n = 0; n < ContactView::ROW; n += 4) {
+    const Columns c(four(r[0] + n), four(r[1] + n), four(r[2] + n), four(r[3] + n));
+    numbers[n] = c.x;
+    numbers[n + 1] = c.y;
+    numbers[n + 2] = c.z;
+    numbers[n + 3] = c.w;
+  }
+  ContactStepOf<Four> s;
+  static_cast<ContactShared &>(s) = law;
+  std::memcpy(static_cast<ContactOwnOf<Four> *>(&s), numbers, sizeof(ContactOwnOf<Four>));
+  return s;
 }
 
 // the rows of the contacts that have none yet

@@ -5,39 +5,29 @@
 
 #include "contact_table.h"
 
+#include "archive.h"
 #include "atom.h"
-#include "comm.h"
-#include "constants.h"
 #include "error.h"
 #include "fix.h"
 #include "lammps_compat.h"
-#include "style_argument.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace Slope;
 
 static constexpr double STEP_RULE = 0.25;       // dt <= STEP_RULE sqrt(m/kn)
 static constexpr double DASHPOT_RULE = 0.15;    // scheme plain: dt <= DASHPOT_RULE m/cn
-static constexpr int FORMAT =
-    20261123;    // of what restart files hold, histories of walls included
 
 /* ---------------------------------------------------------------------- */
 
-ContactTable::ContactTable(LAMMPS *lmp) :
-    Pointers(lmp), mass_ball(0), limit_damping(0), rolling_reduced(0), scheme(EXACT)
-{
-}
+ContactTable::ContactTable(LAMMPS *lmp) : Pointers(lmp) {}
 
 void ContactTable::allocate()
 {
   const int n = atom->ntypes + 1;
-  Coeff none;
-  memset(&none, 0, sizeof(Coeff));
-  coeffs.assign(n * n, none);
+  coeffs.assign(n * n, ContactCoeffs());
   laws.assign(n * n, ContactLaw());
   wall_type.assign(n, 0);
 }
@@ -47,169 +37,20 @@ int ContactTable::index(int itype, int jtype) const
   return itype * (atom->ntypes + 1) + jtype;
 }
 
-/* ----------------------------------------------------------------------
-   pair_style gran/restitution keyword value ...
-------------------------------------------------------------------------- */
-
-void ContactTable::read_settings(int narg, char **arg)
-{
-  mass_ball = limit_damping = rolling_reduced = 0;
-  scheme = EXACT;
-
-  struct Setting {
-    int *value;
-    const char *names[2];
-  };
-  for (int iarg = 0; iarg < narg; iarg += 2) {
-    const std::string keyword = arg[iarg];
-    if (iarg + 2 > narg)
-      error->all(FLERR, "Pair gran/restitution {}: value missing or unknown keyword", keyword);
-    const Setting setting = keyword == "mass" ? Setting{&mass_ball, {"pair", "ball"}}
-        : keyword == "limit_damping"          ? Setting{&limit_damping, {"no", "yes"}}
-        : keyword == "rolling_radius"         ? Setting{&rolling_reduced, {"ball", "reduced"}}
-        : keyword == "scheme"                 ? Setting{&scheme, {"exact", "plain"}}    // as Scheme
-                                              : Setting{nullptr, {nullptr, nullptr}};
-    if (!setting.value)
-      error->all(FLERR,
-                 "Pair gran/restitution: unknown keyword {}, must be mass, limit_damping, "
-                 "rolling_radius or scheme",
-                 keyword);
-    const std::string value = arg[iarg + 1];
-    if (value != setting.names[0] && value != setting.names[1])
-      error->all(FLERR, "Pair gran/restitution {} must be {} or {}, got {}", keyword,
-                 setting.names[0], setting.names[1], value);
-    *setting.value = value == setting.names[1];
-  }
-  make_laws();
-}
-
-/* ----------------------------------------------------------------------
-   pair_coeff I J keyword values ...; types: "I J", for messages
-------------------------------------------------------------------------- */
-
-ContactTable::Coeff ContactTable::read_coeff(const std::string &types, int narg, char **arg) const
-{
-  Coeff c;
-  memset(&c, 0, sizeof(Coeff));
-  c.set = 1;
-  bool stiffness = false, damping = false;
-
-  int iarg = 0;
-  while (iarg < narg) {
-    const std::string keyword = arg[iarg];
-    auto value = [&](int k) {
-      if (iarg + k >= narg)
-        error->all(FLERR, "Pair gran/restitution {}: value {} is missing", keyword, k);
-      return number_argument(lmp, fmt::format("Pair gran/restitution {}: value {}", keyword, k),
-                             arg[iarg + k]);
-    };
-    auto rule = [&](bool holds, const char *text, double got) {
-      if (!holds)
-        error->all(FLERR, "Pair gran/restitution {} must be {}, got {:.15g}", keyword, text, got);
-    };
-    auto read_two = [&](double &a, const char *rule_a, double &b, const char *rule_b) {
-      a = value(1);
-      b = value(2);
-      rule(a >= 0.0, rule_a, a);
-      rule(b >= 0.0, rule_b, b);
-      iarg += 3;
-    };
-    if (keyword == "stiffness") {
-      read_two(c.kn, "> 0 (kn)", c.kt, ">= 0 (kt)");
-      rule(c.kn > 0.0, "> 0 (kn)", c.kn);
-      stiffness = true;
-    } else if (keyword == "restitution") {
-      c.e = value(1);
-      rule(c.e > 0.0 && c.e <= 1.0, "> 0 and <= 1", c.e);
-      c.restitution_set = 1;
-      iarg += 2;
-    } else if (keyword == "damping") {
-      read_two(c.cn, ">= 0 (cn)", c.ct, ">= 0 (ct)");
-      damping = true;
-    } else if (keyword == "friction") {
-      c.phi = value(1);
-      rule(c.phi >= 0.0 && c.phi < 90.0, ">= 0 and < 90 degrees", c.phi);
-      iarg += 2;
-    } else if (keyword == "rolling") {
-      c.rolling = value(1);
-      rule(c.rolling >= 0.0, ">= 0", c.rolling);
-      iarg += 2;
-    } else if (keyword == "rolling_spring") {
-      read_two(c.kr, ">= 0 (kr)", c.cr, ">= 0 (cr)");
-      c.spring_set = 1;
-    } else {
-      error->all(FLERR,
-                 "Pair gran/restitution pair_coeff: unknown keyword {}, must be stiffness, "
-                 "restitution, damping, friction, rolling or rolling_spring",
-                 keyword);
-    }
-  }
-
-  check_coeff(types, c, stiffness, damping);
-  return c;
-}
-
-/* ----------------------------------------------------------------------
-   what the keywords of a pair_coeff must be together
-------------------------------------------------------------------------- */
-
-void ContactTable::check_coeff(const std::string &types, const Coeff &c, bool stiffness,
-                               bool damping) const
-{
-  if (!stiffness)
-    error->all(FLERR, "Pair gran/restitution pair_coeff {}: stiffness kn kt is required", types);
-  if (c.kt == 0.0 && c.ct > 0.0)
-    error->all(
-        FLERR,
-        "Pair gran/restitution pair_coeff {}: ct must be 0 where kt is 0, got {:.15g}: give the "
-        "contact a tangential stiffness",
-        types, c.ct);
-  if (c.rolling > 0.0 && c.spring_set && c.kr == 0.0 && c.cr == 0.0)
-    error->all(FLERR,
-               "Pair gran/restitution pair_coeff {}: rolling_spring must not be 0 0 where rolling "
-               "is > 0, got rolling {:.15g}: without spring and dashpot nothing resists rolling",
-               types, c.rolling);
-  if (damping == (c.restitution_set == 1))
-    error->all(FLERR,
-               "Pair gran/restitution pair_coeff {}: exactly one of restitution and damping is "
-               "required, got {}",
-               types, damping ? "both" : "neither");
-}
-
 /* ---------------------------------------------------------------------- */
 
-void ContactTable::set(int itype, int jtype, const Coeff &c)
+void ContactTable::set(const ContactSettings &its)
 {
-  coeffs[index(itype, jtype)] = coeffs[index(jtype, itype)] = c;
+  settings = its;
+  for (size_t k = 0; k < coeffs.size(); k++)
+    if (coeffs[k].set()) laws[k] = coeffs[k].law(settings);
 }
 
-/* ----------------------------------------------------------------------
-   contact laws from the coefficients: c = 2 zeta sqrt(k m) in both directions
-------------------------------------------------------------------------- */
-
-void ContactTable::make_laws()
+void ContactTable::set(int itype, int jtype, const ContactCoeffs &c)
 {
-  for (size_t k = 0; k < coeffs.size(); k++) {
-    const Coeff &c = coeffs[k];
-    if (!c.set) continue;
-    ContactLaw law = ContactLaw();
-    const double zeta = c.restitution_set ? damping_ratio(c.e) : 0.0;
-    law.kn = c.kn;
-    law.kt = c.kt;
-    law.cn_given = c.cn;
-    law.ct_given = c.ct;
-    law.cn_root = 2.0 * zeta * sqrt(c.kn);
-    law.ct_root = 2.0 * zeta * sqrt(c.kt);
-    law.kr = c.spring_set ? c.kr : law.kt;
-    law.cr_given = c.spring_set ? c.cr : law.ct_given;
-    law.cr_root = c.spring_set ? 0.0 : law.ct_root;
-    law.friction = tan(c.phi * DEGREE);
-    law.rolling = c.rolling;
-    law.mass_factor = mass_ball ? 2.0 : 1.0;
-    law.rolling_factor = rolling_reduced ? 1.0 : 2.0;
-    law.fn_least = limit_damping ? 0.0 : -HUGE_VAL;
-    law.exact = scheme == EXACT ? 1.0 : 0.0;
-    laws[k] = law;
+  for (const int k : {index(itype, jtype), index(jtype, itype)}) {
+    coeffs[k] = c;
+    laws[k] = c.law(settings);
   }
 }
 
@@ -292,7 +133,7 @@ bool ContactTable::balls_can_touch(int i, int j) const
 bool ContactTable::can_touch(int i, int j) const
 {
   const TypeRange &a = ranges[i], &b = ranges[j];
-  if (!coeffs[index(i, j)].set) return false;
+  if (!is_set(i, j)) return false;
   return (a.moving && (b.moving || b.frozen || wall_type[j])) ||
       (b.moving && (a.frozen || wall_type[i]));
 }
@@ -320,13 +161,24 @@ double ContactTable::bound_on_step(int i, int j) const
 
 double ContactTable::spring_bound(int i, int j) const
 {
-  return STEP_RULE * sqrt(lightest(i, j) / coeff(i, j).kn);
+  return STEP_RULE * sqrt(lightest(i, j) / normal(i, j).k);
 }
 
 double ContactTable::dashpot_bound(int i, int j) const
 {
-  const double m = lightest(i, j), cn = law(i, j).cn(m);
-  return is_plain() && cn > 0.0 ? DASHPOT_RULE * m / cn : HUGE_VAL;
+  const double cn = normal(i, j).c;
+  return !is_exact() && cn > 0.0 ? DASHPOT_RULE * lightest(i, j) / cn : HUGE_VAL;
+}
+
+SpringDashpot ContactTable::normal(int i, int j) const
+{
+  return law(i, j).normal(lightest(i, j), largest(i, j));
+}
+
+double ContactTable::largest(int i, int j) const
+{
+  const TypeRange &a = ranges[i], &b = ranges[j];
+  return std::max({a.radius_dynamic, b.radius_dynamic, a.radius_frozen, b.radius_frozen});
 }
 
 double ContactTable::lightest(int i, int j) const
@@ -342,85 +194,41 @@ double ContactTable::lightest(int i, int j) const
 std::string ContactTable::text(double dt) const
 {
   std::string text =
-      "Pair gran/restitution: contact coefficients (lightest balls of each type pair)\n"
-      "  types    kn N/m       kt N/m       cn N s/m     zeta     e moving e fixed  friction "
-      "rolling  contact/dt\n";
+      "Pair gran/restitution: contact coefficients (lightest balls of each type pair)\n";
+  text += ContactCoeffs::heading();
+  auto lightest_of = [this](int type) {
+    return ranges[type].moving ? ranges[type].mass_min : 0.0;
+  };
   for (int i = 1; i <= atom->ntypes; i++)
     for (int j = i; j <= atom->ntypes; j++)
-      if (can_touch(i, j)) text += line(i, j, dt);
+      if (can_touch(i, j))
+        text += fmt::format("  {:<3} {:<3}  ", i, j) +
+            coeffs[index(i, j)].line(law(i, j), lightest_of(i), lightest_of(j), largest(i, j), dt);
   return text + "  e fixed: against a fixed ball. friction, rolling: angles in degrees.\n";
 }
 
-std::string ContactTable::line(int i, int j, double dt) const
-{
-  auto number = [](double x) {
-    return std::isfinite(x) ? fmt::format("{:.4g}", x) : "inf";
-  };
-  const Coeff &c = coeffs[index(i, j)];
-  const TypeRange &a = ranges[i], &b = ranges[j];
-  const ContactLaw &law = laws[index(i, j)];
-  const bool both = a.moving && b.moving;
-
-  // a ball on a fixed one: the lighter of the moving types
-
-  const double single = lightest(i, j);
-  const double zeta_fixed = law.cn(law.mass_fixed(single)) / (2.0 * sqrt(c.kn * single));
-  double m = single, cn = law.cn(law.mass_fixed(single)), zeta = zeta_fixed;
-  std::string e_moving = "-";
-  if (both) {
-    m = a.mass_min * b.mass_min / (a.mass_min + b.mass_min);
-    cn = law.cn(law.mass(a.mass_min, b.mass_min));
-    zeta = cn / (2.0 * sqrt(c.kn * m));
-    e_moving = fmt::format("{:.4f}", restitution(zeta));
-  }
-  return fmt::format("  {:<3} {:<3}  {:<12.4g} {:<12.4g} {:<12.4g} {:<8.4f} {:<8} {:<8.4f} "
-                     "{:<8.4g} {:<8.4g} {}\n",
-                     i, j, c.kn, c.kt, cn, zeta, e_moving, restitution(zeta_fixed), c.phi,
-                     atan(c.rolling) / DEGREE, number(contact_time(c.kn, m, zeta) / dt));
-}
-
 /* ----------------------------------------------------------------------
-   settings and coefficients in the restart file
+   members of a restart file: the pairs of types that are set, and their coefficients
 ------------------------------------------------------------------------- */
 
-void ContactTable::write_settings(FILE *fp) const
+void ContactTable::archive_settings(Archive &archive)
 {
-  const int values[5] = {FORMAT, mass_ball, limit_damping, rolling_reduced, scheme};
-  fwrite(values, sizeof(int), 5, fp);
+  settings.archive(archive);
 }
 
-void ContactTable::write_coeffs(FILE *fp) const
+void ContactTable::archive_coeffs(Archive &archive)
 {
-  fwrite(coeffs.data(), sizeof(Coeff), coeffs.size(), fp);
-}
-
-void ContactTable::read_settings(FILE *fp)
-{
-  int values[5] = {0, 0, 0, 0, 0};
-  if (comm->me == 0) utils::sfread(FLERR, values, sizeof(int), 5, fp, nullptr, error);
-  MPI_Bcast(values, 5, MPI_INT, 0, world);
-  if (values[0] != FORMAT)
-    error->all(FLERR,
-               "Pair gran/restitution: restart file must have contacts of format {}, got {}: start "
-               "again, or continue with the version of the package that wrote it",
-               FORMAT, values[0] > 1 ? std::to_string(values[0]) : "one of an earlier version");
-  mass_ball = values[1];
-  limit_damping = values[2];
-  rolling_reduced = values[3];
-  scheme = values[4];
-}
-
-void ContactTable::read_coeffs(FILE *fp)
-{
-  if (comm->me == 0)
-    utils::sfread(FLERR, coeffs.data(), sizeof(Coeff), coeffs.size(), fp, nullptr, error);
-  MPI_Bcast(coeffs.data(), sizeof(Coeff) * coeffs.size(), MPI_BYTE, 0, world);
-  make_laws();
+  for (int i = 1; i <= atom->ntypes; i++)
+    for (int j = i; j <= atom->ntypes; j++) {
+      ContactCoeffs c = coeffs[index(i, j)];
+      c.archive(archive);
+      if (archive.reads() && c.set()) set(i, j, c);
+    }
 }
 
 /* ---------------------------------------------------------------------- */
 
 double ContactTable::memory_usage() const
 {
-  return coeffs.size() * (sizeof(Coeff) + sizeof(ContactLaw));
+  return coeffs.size() * (sizeof(ContactCoeffs) + sizeof(ContactLaw));
 }

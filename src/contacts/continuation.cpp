@@ -144,9 +144,3 @@ int Continuation::unpack(int i, const double *buf)
   memcpy(before[i], buf + FORCE, BEFORE * sizeof(double));
   return STORED;
 }
-
-void Continuation::set_numbers(const Numbers &found)
-{
-  step = static_cast<bigint>(found.step);
-  dt = found.dt;
-}

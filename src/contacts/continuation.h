@@ -47,11 +47,11 @@ class Continuation : protected Pointers {
   int pack(int i, double *) const;
   int unpack(int i, const double *);
 
-  struct Numbers {    // for restart files
-    double step, dt;
-  };
-  Numbers numbers() const { return {static_cast<double>(step), dt}; }
-  void set_numbers(const Numbers &);
+  template <class Archive> void archive(Archive &a)    // members of a restart file
+  {
+    a.number("last_step", step);
+    a.number("step_size", dt);
+  }
 
  private:
   static constexpr int FORCE = 6, BEFORE = 3;

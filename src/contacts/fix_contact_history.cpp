@@ -17,6 +17,7 @@
 #include "exchange_size.h"
 #include "lammps_compat.h"
 #include "memory.h"
+#include "restart_archive.h"
 #include "update.h"
 
 #include <algorithm>
@@ -27,6 +28,8 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 
 static constexpr int STORED = Continuation::STORED;
+static constexpr int VERSION = 2;    // of what restart files hold
+static const std::string CALLER = "Pair gran/restitution";
 
 /* ---------------------------------------------------------------------- */
 
@@ -129,7 +132,7 @@ int FixContactHistory::setmask()
 
 void FixContactHistory::init()
 {
-  restart_extra.check("Pair gran/restitution");
+  restart_extra.check(CALLER);
   FixNeighHistory::init();
   maxexchange = exchange_size(lmp, most_packed());    // of a restart file's contacts, too
 }
@@ -223,19 +226,24 @@ void FixContactHistory::write_restart(FILE *fp)
   pre_exchange();
   if (!continuation.forces_known() && update->whichflag == 1)    // in a run: forces are known
     continuation.keep_forces();
-  if (comm->me == 0) {
-    const Continuation::Numbers numbers = continuation.numbers();
-    const int size = sizeof(numbers);
-    fwrite(&size, sizeof(int), 1, fp);
-    fwrite(&numbers, size, 1, fp);
-  }
+  Slope::Archive to(style, VERSION);
+  archive(to);
+  write_archive(lmp, fp, CALLER, to);
 }
 
 void FixContactHistory::restart(char *buf)
 {
-  Continuation::Numbers numbers;
-  memcpy(&numbers, buf, sizeof(numbers));
-  continuation.set_numbers(numbers);
+  read_archive(lmp, CALLER, [&]() {
+    Slope::Archive from(style, VERSION, buf);
+    archive(from);
+  });
+}
+
+void FixContactHistory::archive(Slope::Archive &archive)
+{
+  archive.same("numbers_of_a_contact", dnum);
+  archive.same("numbers_of_a_ball", STORED);
+  continuation.archive(archive);
 }
 
 int FixContactHistory::pack_restart(int i, double *buf)

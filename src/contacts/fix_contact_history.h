@@ -14,6 +14,7 @@ FixStyle(CONTACT_HISTORY,FixContactHistory);
 
 #include "fix_neigh_history.h"
 
+#include "archive.h"
 #include "continuation.h"
 #include "restart_extra.h"
 
@@ -61,7 +62,8 @@ class FixContactHistory : public FixNeighHistory {
   RestartExtra restart_extra;
 
   void rename_partners();
-  int most_packed() const;    // numbers of a ball of this rank, as pack_exchange() has them
+  void archive(Slope::Archive &);    // members of a restart file
+  int most_packed() const;           // numbers of a ball of this rank, as pack_exchange() has them
 };
 
 }    // namespace LAMMPS_NS

@@ -11,10 +11,13 @@
 #include "exchange_size.h"
 #include "modify.h"
 #include "pair_gran_restitution.h"
+#include "restart_archive.h"
 
 #include <algorithm>
 
 using namespace LAMMPS_NS;
+
+static constexpr int VERSION = 5;    // of what restart files hold of a wall
 
 /* ---------------------------------------------------------------------- */
 
@@ -153,14 +156,23 @@ void FixContactWall::write_restart(FILE *fp)
   const bool in_use = contacts_in_lists;
   store_contacts();
   contacts_in_lists = in_use;    // the run continues with the lists
-  const std::vector<double> list = restart_values();
-  if (comm->me > 0) return;
-  if (list.size() * sizeof(double) > MAXSMALLINT)
-    error->one(FLERR, "{} must have at most {} bytes in a restart file, got {}", caller,
-               MAXSMALLINT, list.size() * sizeof(double));
-  const int size = static_cast<int>(list.size() * sizeof(double));
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(list.data(), sizeof(double), list.size(), fp);
+  Slope::Archive archive(style, VERSION);
+  restart_members(archive);
+  write_archive(lmp, fp, caller, archive);
+}
+
+void FixContactWall::restart(char *buf)
+{
+  read_archive(lmp, caller, [&]() {
+    Slope::Archive archive(style, VERSION, buf);
+    restart_members(archive);
+  });
+}
+
+void FixContactWall::restart_members(Slope::Archive &archive)
+{
+  archive.same("numbers_of_a_contact", records.packed(1) - records.packed(0));
+  archive_wall(archive);
 }
 
 int FixContactWall::pack_restart(int i, double *buf)

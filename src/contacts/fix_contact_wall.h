@@ -8,12 +8,12 @@
 
 #include "fix.h"
 
+#include "archive.h"
 #include "contact_holder.h"
 #include "contact_records.h"
 #include "restart_extra.h"
 
 #include <string>
-#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -35,6 +35,7 @@ class FixContactWall : public Fix, public ContactHolder {
   int pack_exchange(int, double *) override;
   int unpack_exchange(int, double *) override;
   void write_restart(FILE *) override;
+  void restart(char *) override;
   int pack_restart(int, double *) override;
   void unpack_restart(int, int) override;
   int size_restart(int) override;
@@ -56,13 +57,15 @@ class FixContactWall : public Fix, public ContactHolder {
   // from the lists, which may hold balls that have been deleted, to the records, which are empty
   virtual void take_contacts() = 0;
 
-  // what identifies the wall in a restart file, on rank 0; collective
-  virtual std::vector<double> restart_values() = 0;
+  // what a restart file has of the wall: to be written by rank 0, or read by all; collective. What is read must be of this wall,
+  // or a std::runtime_error says why not.
+  virtual void archive_wall(Slope::Archive &) = 0;
 
  private:
   bool kept_by_atom;
   RestartExtra restart_extra;
   void store_contacts();
+  void restart_members(Slope::Archive &);
   void reserve();    // room for a ball's contacts in messages between ranks; collective
 };
 

@@ -19,6 +19,7 @@
 #include "neighbor.h"
 #include "rank_zero.h"
 #include "requirements.h"
+#include "restart_archive.h"
 #include "update.h"
 
 #include <algorithm>
@@ -29,6 +30,8 @@
 using namespace LAMMPS_NS;
 using namespace Slope;
 
+static const std::string CALLER = "Pair gran/restitution";
+static const std::string SETTINGS = "pair_style", COEFFS = "pair_coeff";    // in restart files
 static constexpr int ROOM_IN_RESTART = 65536;    // numbers of a ball: of 8,000 contacts
 
 /* ---------------------------------------------------------------------- */
@@ -111,7 +114,9 @@ void PairGranRestitution::allocate()
 
 void PairGranRestitution::settings(int narg, char **arg)
 {
-  table.read_settings(narg, arg);
+  ContactSettings settings;
+  settings.read(lmp, narg, arg);
+  table.set(settings);
 }
 
 /* ----------------------------------------------------------------------
@@ -136,8 +141,8 @@ void PairGranRestitution::coeff(int narg, char **arg)
   types(arg[0], ilo, ihi);
   types(arg[1], jlo, jhi);
 
-  const ContactTable::Coeff c =
-      table.read_coeff(fmt::format("{} {}", arg[0], arg[1]), narg - 2, arg + 2);
+  ContactCoeffs c;
+  c.read(lmp, fmt::format("{} {}", arg[0], arg[1]), narg - 2, arg + 2);
 
   int count = 0;
   for (int i = ilo; i <= ihi; i++)
@@ -149,7 +154,6 @@ void PairGranRestitution::coeff(int narg, char **arg)
   if (count == 0)
     error->all(FLERR, "Pair gran/restitution pair_coeff {} {}: no pair I <= J of {} types", arg[0],
                arg[1], atom->ntypes);
-  table.make_laws();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -406,15 +410,21 @@ double PairGranRestitution::single(int i, int j, int itype, int jtype, double rs
 
 void PairGranRestitution::write_restart(FILE *fp)
 {
-  table.write_settings(fp);
-  table.write_coeffs(fp);
+  write_restart_settings(fp);
+  Archive to(COEFFS, ContactCoeffs::VERSION);
+  table.archive_coeffs(to);
+  fwrite(to.bytes().data(), 1, to.bytes().size(), fp);
 }
 
 void PairGranRestitution::read_restart(FILE *fp)
 {
-  table.read_settings(fp);
+  read_restart_settings(fp);
   allocate();
-  table.read_coeffs(fp);
+  const std::string bytes = archive_bytes(lmp, fp, CALLER);
+  read_archive(lmp, CALLER, [&]() {
+    Archive from(COEFFS, ContactCoeffs::VERSION, bytes.data());
+    table.archive_coeffs(from);
+  });
   for (int i = 1; i <= atom->ntypes; i++)
     for (int j = i; j <= atom->ntypes; j++)
       if (table.is_set(i, j)) setflag[i][j] = 1;
@@ -422,12 +432,18 @@ void PairGranRestitution::read_restart(FILE *fp)
 
 void PairGranRestitution::write_restart_settings(FILE *fp)
 {
-  table.write_settings(fp);
+  Archive to(SETTINGS, ContactCoeffs::VERSION);
+  table.archive_settings(to);
+  fwrite(to.bytes().data(), 1, to.bytes().size(), fp);
 }
 
 void PairGranRestitution::read_restart_settings(FILE *fp)
 {
-  table.read_settings(fp);
+  const std::string bytes = archive_bytes(lmp, fp, CALLER);
+  read_archive(lmp, CALLER, [&]() {
+    Archive from(SETTINGS, ContactCoeffs::VERSION, bytes.data());
+    table.archive_settings(from);
+  });
 }
 
 /* ---------------------------------------------------------------------- */

@@ -6,6 +6,7 @@
 #ifndef SLOPE_DEPOSIT_RESTART_H
 #define SLOPE_DEPOSIT_RESTART_H
 
+#include "archive.h"
 #include "deposit_options.h"
 #include "deposit_rasters.h"
 #include "deposit_release.h"
@@ -19,7 +20,7 @@ namespace LAMMPS_NS {
 
 // What fix deposit/grid has in restart files: numbers, and the cells that the mass touched. LAMMPS gives a
 // fix at most 2 GB there: cells that need more are left out, with a warning, and such a file is refused.
-// Rank 0 has the cells. All methods are collective.
+// All methods are collective.
 class DepositRestart : protected Pointers {
  public:
   struct Saved {    // numbers only
@@ -32,17 +33,19 @@ class DepositRestart : protected Pointers {
 
   DepositRestart(class LAMMPS *, const DepositOptions &);
 
-  void write(FILE *, const std::string &fix_id, const Saved &, const Slope::DepositRasters &) const;
+  void write(FILE *, const std::string &fix_id, Saved, const Slope::DepositRasters &) const;
   void read(const std::string &fix_id, const char *buffer, Saved &, Slope::DepositRasters &) const;
 
  private:
   struct Key {
-    double format, cell, nx, ny, xlo, ylo, bulk;
+    double cell, nx, ny, xlo, ylo, bulk;
   };
 
-  Key key;
+  const Slope::PlanGrid &grid;
+  const double bulk;
 
-  void check_key(const std::string &fix_id, const Key &) const;
+  void archive(Slope::Archive &, Saved &) const;
+  static void check_key(const Key &found, const Key &mine);
 };
 
 }    // namespace LAMMPS_NS

@@ -16,7 +16,7 @@
 #include "rank_zero.h"
 #include "region_surface.h"
 #include "requirements.h"
-#include "restart_count.h"
+#include "restart_archive.h"
 #include "slope_version.h"
 #include "yaml_text.h"
 
@@ -33,14 +33,15 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <stdexcept>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
 using Slope::CrossingLog;
 using Slope::PlanLine;
 
-static constexpr double FORMAT = -2.0;    // in place of the number of coordinates of the first one
-static constexpr int BEGIN = 10;          // numbers with which what a restart file holds begins
+static const std::string CALLER = "Fix control/line ";
+static constexpr int VERSION = 3;    // of what restart files hold
 
 enum { X, Y, Z };
 
@@ -337,59 +338,45 @@ std::string FixControlLine::summary() const
    collective; rank 0 writes
 ------------------------------------------------------------------------- */
 
+void FixControlLine::archive(Slope::Archive &archive, std::vector<CrossingLog::Event> &events)
+{
+  struct Line {
+    double numbers, length, xlo, checksum;
+  };
+  const Line mine = {(double) line.xy.size(), line.length(), line.xlo, line.checksum()};
+  Line found = mine;
+  archive.number("numbers_of_the_line", found.numbers);
+  archive.number("length", found.length);
+  archive.number("xlo", found.xlo);
+  archive.number("checksum", found.checksum);
+  if (memcmp(&found, &mine, sizeof(Line)) != 0)
+    throw std::runtime_error(fmt::format(
+        "the line must be that of the restart file, {:.0f} points, length {:.8g} (sum {:.10g}); "
+        "got "
+        "{:.0f} points, length {:.8g} (sum {:.10g}): another line, or another direction, needs "
+        "another fix ID",
+        0.5 * found.numbers, found.length, found.checksum, 0.5 * mine.numbers, mine.length,
+        mine.checksum));
+  clock.archive(archive);
+  archive.records("crossings", events);
+}
+
 void FixControlLine::write_restart(FILE *fp)
 {
   collect();
-  if (comm->me != 0) return;
-  const Slope::RunClock::State at = clock.state();
-  const double list[BEGIN] = {FORMAT,          (double) line.xy.size(),
-                              line.length(),   line.xlo,
-                              line.checksum(), at.base,
-                              at.base_step,    at.last,
-                              at.step_size,    (double) at.on};
-  const RestartCount count((double) log.events.size());
-  const double bytes =
-      sizeof(list) + sizeof(count) + (double) sizeof(CrossingLog::Event) * log.events.size();
-  if (bytes > MAXSMALLINT)
-    error->one(FLERR, "Fix control/line must have at most {} bytes in a restart file, got {:.0f}",
-               MAXSMALLINT, bytes);
-  const int size = (int) bytes;
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(list, sizeof(list), 1, fp);
-  fwrite(&count, sizeof(count), 1, fp);
-  fwrite(log.events.data(), sizeof(CrossingLog::Event), log.events.size(), fp);
+  Slope::Archive to(style, VERSION);
+  archive(to, log.events);
+  write_archive(lmp, fp, CALLER + id, to);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixControlLine::restart(char *buffer)
 {
-  double whole[BEGIN], *const list = whole + 1;
-  memcpy(whole, buffer, sizeof(whole));
-  if (whole[0] != FORMAT)
-    error->all(
-        FLERR,
-        "Fix control/line {}: the restart file must be of this version of the fix, got one of "
-        "an older version: run from the start again",
-        id);
-  const double mine[4] = {(double) line.xy.size(), line.length(), line.xlo, line.checksum()};
-  if (!std::equal(mine, mine + 4, list))
-    error->all(
-        FLERR,
-        "Fix control/line {} must have the line of the restart file, {:.0f} points, length "
-        "{:.8g} (sum {:.10g}); got "
-        "{:.0f} points, length {:.8g} (sum {:.10g}): another line, or another direction, needs "
-        "another fix ID",
-        id, 0.5 * list[0], list[1], list[3], 0.5 * mine[0], mine[1], mine[3]);
-  clock.set_state({list[4], list[5], list[6], list[7], list[8]});
-  RestartCount count;
-  memcpy(&count, buffer + sizeof(whole), sizeof(count));
-  const size_t n = count.check(lmp, fmt::format("Fix control/line {}", id),
-                               MAXSMALLINT / sizeof(CrossingLog::Event));
+  read_archive(lmp, CALLER + id, [&]() {
+    Slope::Archive from(style, VERSION, buffer);
+    archive(from, fresh);    // collect() brings them, and the results
+  });
   log.events.clear();
-  fresh.resize(comm->me == 0 ? n : 0);    // collect() brings them, and the results
-  if (!fresh.empty())
-    memcpy(fresh.data(), buffer + sizeof(whole) + sizeof(count), n * sizeof(CrossingLog::Event));
+  if (comm->me > 0) fresh.clear();
 }
 
 /* ---------------------------------------------------------------------- */

@@ -14,6 +14,7 @@ FixStyle(control/line,FixControlLine);
 
 #include "fix.h"
 
+#include "archive.h"
 #include "crossing_log.h"
 #include "plan_line.h"
 #include "prefix_lock.h"
@@ -69,6 +70,8 @@ class FixControlLine : public Fix {
   void collect();
   void write_files();
   std::string summary() const;
+  void archive(Slope::Archive &,
+               std::vector<Slope::CrossingLog::Event> &);    // members of a restart file
 };
 
 }    // namespace LAMMPS_NS

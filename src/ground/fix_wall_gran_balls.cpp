@@ -30,8 +30,6 @@ using namespace FixConst;
 using namespace Slope;
 
 static constexpr double SAME_SIZE = 1.0e-9;
-static constexpr double RESTART_FORMAT =
-    -3.0;    // in place of the number of balls of the first one
 
 /* ----------------------------------------------------------------------
    fix ID group wall/gran/balls TYPE DIAMETER surface|file ...
@@ -312,28 +310,12 @@ double FixWallGranBalls::memory_usage()
    restart file: what identifies the balls
 ------------------------------------------------------------------------- */
 
-std::vector<double> FixWallGranBalls::restart_values()
+void FixWallGranBalls::archive_wall(Slope::Archive &archive)
 {
-  std::vector<double> list = placement->fingerprint();
-  list.insert(list.begin(), {RESTART_FORMAT, static_cast<double>(list.size())});
-  return list;
-}
-
-void FixWallGranBalls::restart(char *buf)
-{
-  double head[2];
-  memcpy(head, buf, sizeof(head));
-  if (head[0] != RESTART_FORMAT)
-    error->all(
-        FLERR,
-        "{}: the restart file must be of this version of the fix, got one of an older version, "
-        "whose contacts may be those of other balls: run from the start again",
-        caller);
-  const size_t here =
-      placement->fingerprint().size();    // as many in a whole file, or another ground
-  std::vector<double> there(head[1] == here ? here : 2);
-  memcpy(there.data(), buf + sizeof(head), there.size() * sizeof(double));
-  const std::string why = placement->unlike(there);
+  std::vector<double> marks = placement->fingerprint();
+  archive.list("marks_of_the_balls", marks);
+  const std::string why = archive.reads() ? placement->unlike(marks) : "";
   if (!why.empty())
-    error->all(FLERR, "{}: the restart file was written with other fixed balls ({})", caller, why);
+    throw std::runtime_error(
+        fmt::format("the restart file was written with other fixed balls ({})", why));
 }

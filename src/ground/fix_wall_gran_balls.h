@@ -36,7 +36,6 @@ class FixWallGranBalls : public FixContactWall, public BallBody {
   double compute_vector(int) override;
 
   double memory_usage() override;
-  void restart(char *) override;
 
   void find_contacts(bool repeat) override;
   double elastic_energy() const override;
@@ -69,7 +68,7 @@ class FixWallGranBalls : public FixContactWall, public BallBody {
   void check_sizes();
   void take_contacts() override;
   void give_histories();
-  std::vector<double> restart_values() override;
+  void archive_wall(Slope::Archive &) override;
   void apply(bool);
 };
 

@@ -18,7 +18,6 @@
 #include "neighbor.h"
 #include "pair_gran_restitution.h"
 #include "rank_zero.h"
-#include "restart_count.h"
 #include "text_file.h"
 #include "update.h"
 
@@ -26,6 +25,7 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <stdexcept>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -33,8 +33,6 @@ using namespace Slope;
 
 static constexpr double SAME_SURFACE = 1.0e-9;
 static constexpr double COARSE = 0.05;    // largest rounding of a file, in smallest radii
-static constexpr double RESTART_FORMAT = 4.0;
-static constexpr int RESTART_SIZE = 13;    // numbers, without those of the recorder
 
 static Vector vector_of(const double *x)
 {
@@ -212,7 +210,7 @@ void FixWallGranMesh::check_speed(int i, const Vector &normal)
 {
   const double towards = -dot(vector_of(atom->v[i]), normal);
   const ContactLaw *law = pair->law(atom->type[i], wall_type);
-  if (law && towards > 0.0) fast.record(i, towards, law->kn);
+  if (law && towards > 0.0) fast.record(i, towards, *law);
 }
 
 /* ----------------------------------------------------------------------
@@ -462,41 +460,26 @@ double FixWallGranMesh::memory_usage()
    restart file: what identifies the surface, and sums so far
 ------------------------------------------------------------------------- */
 
-std::vector<double> FixWallGranMesh::restart_values()
+void FixWallGranMesh::archive_wall(Slope::Archive &archive)
 {
-  reduce();
+  double triangles = surface->count(), checksum = surface->checksum();
   std::vector<double> recorded;
-  if (recorder) recorded = recorder->pack();
-  std::vector<double> list = {RESTART_FORMAT, static_cast<double>(surface->count()),
-                              surface->checksum()};
-  list.insert(list.end(), all + IMPULSE, all + IMPULSE + 3);
-  const RunClock::State at = clock.state();
-  list.insert(list.end(), {at.base, at.base_step, at.last, at.step_size, at.on});
-  const RestartCount count(recorded.size());
-  list.insert(list.end(), {count.number, count.again});
-  list.insert(list.end(), recorded.begin(), recorded.end());
-  return list;
-}
+  if (!archive.reads()) {
+    reduce();
+    if (recorder) recorded = recorder->pack();
+  }
+  archive.number("triangles", triangles);
+  archive.number("checksum", checksum);
+  archive.numbers("impulse", archive.reads() && comm->me == 0 ? &mine[IMPULSE] : &all[IMPULSE], 3);
+  clock.archive(archive);
+  archive.list("recorded", recorded);
+  if (!archive.reads()) return;
 
-void FixWallGranMesh::restart(char *buf)
-{
-  double list[RESTART_SIZE];
-  memcpy(list, buf, sizeof(list));
-  if (list[0] != RESTART_FORMAT)
-    error->all(FLERR,
-               "{}: the restart file is of another version of the fix: run from the start again",
-               caller);
-  if (list[1] != surface->count() ||
-      std::fabs(list[2] - surface->checksum()) > SAME_SURFACE * std::fabs(surface->checksum()))
-    error->all(FLERR, "{}: the restart file was written with another surface ({} there, {} here)",
-               caller, counted(list[1], "triangle"), counted(surface->count(), "triangle"));
-  for (int d = 0; d < 3 && comm->me == 0; d++) mine[IMPULSE + d] = list[3 + d];
+  if (triangles != surface->count() ||
+      std::fabs(checksum - surface->checksum()) > SAME_SURFACE * std::fabs(surface->checksum()))
+    throw std::runtime_error(
+        fmt::format("the restart file was written with another surface ({} there, {} here)",
+                    counted(triangles, "triangle"), counted(surface->count(), "triangle")));
   all_ready = false;
-  clock.set_state({list[6], list[7], list[8], list[9], list[10]});
-  RestartCount count;
-  memcpy(&count, &list[RESTART_SIZE - 2], sizeof(count));
-  std::vector<double> recorded(count.check(lmp, caller, MAXSMALLINT / sizeof(double)));
-  if (!recorder || recorded.empty()) return;
-  memcpy(recorded.data(), buf + sizeof(list), recorded.size() * sizeof(double));
-  recorder->unpack(recorded);
+  if (recorder && !recorded.empty()) recorder->unpack(recorded);
 }

@@ -44,7 +44,6 @@ class FixWallGranMesh : public FixContactWall {
   double compute_vector(int) override;
 
   double memory_usage() override;
-  void restart(char *) override;
 
   void find_contacts(bool repeat) override;
   double elastic_energy() const override;
@@ -87,7 +86,7 @@ class FixWallGranMesh : public FixContactWall {
   void warn_of_rounding();
   void check_speed(int i, const Slope::Vector &normal);
   void take_contacts() override;
-  std::vector<double> restart_values() override;
+  void archive_wall(Slope::Archive &) override;
   void apply(bool);
   void reduce();
 };

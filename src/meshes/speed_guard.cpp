@@ -30,10 +30,10 @@ void SpeedGuard::start()
 
 /* ---------------------------------------------------------------------- */
 
-void SpeedGuard::record(int i, double speed, double stiffness)
+void SpeedGuard::record(int i, double speed, const Slope::ContactLaw &law)
 {
-  const double deep = speed * std::sqrt(atom->rmass[i] / stiffness);
-  const double share = deep / (DEEPEST * atom->radius[i]);
+  const double radius = atom->radius[i], deep = law.depth(atom->rmass[i], radius, speed);
+  const double share = deep / (DEEPEST * radius);
   if (!(share > 1.0)) return;
   if (count++ == 0)
     error->warning(

@@ -8,12 +8,14 @@
 
 #include "pointers.h"
 
+#include "contact_law.h"
+
 #include <string>
 
 namespace LAMMPS_NS {
 
 // The guard against balls so fast that they may pass through a surface. A ball that hits along
-// the normal at v penetrates to v sqrt(m/kn), undamped. Up to a quarter of its radius no ball
+// the normal goes as deep as the spring lets it, undamped. Up to a quarter of its radius no ball
 // passes, whatever the edges that it meets.
 class SpeedGuard : protected Pointers {
  public:
@@ -23,7 +25,7 @@ class SpeedGuard : protected Pointers {
 
   void start();    // of a run
   void record(int i, double speed,
-              double stiffness);               // towards the surface; warns of the first one
+              const Slope::ContactLaw &);      // towards the surface; warns of the first one
   void report(class ContactGuards &guards);    // at the end of a run; collective
 
  private:

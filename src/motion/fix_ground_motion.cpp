@@ -13,6 +13,7 @@
 #include "large_messages.h"
 #include "rank_zero.h"
 #include "requirements.h"
+#include "restart_archive.h"
 #include "style_argument.h"
 
 #include "atom.h"
@@ -24,11 +25,14 @@
 
 #include <algorithm>
 #include <cstring>
+#include <stdexcept>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
 using Slope::MotionRecord;
 
+static const std::string CALLER = "Fix ground/motion ";
+static constexpr int VERSION = 2;          // of what restart files hold
 static constexpr double DOUBTED = 50.0;    // m/s2, more than any ground has moved with
 
 /* ----------------------------------------------------------------------
@@ -277,43 +281,51 @@ void *FixGroundMotion::extract(const char *name, int &dim)
 
 /* ---------------------------------------------------------------------- */
 
-FixGroundMotion::Key FixGroundMotion::restart_key() const
+void FixGroundMotion::archive(Slope::Archive &archive)
 {
-  return {
-      (double) record.list().size(), record.begin(), record.end(), record.checksum(), scale, start};
+  struct Motion {
+    double points, begin, end, checksum, scale, start;
+  };
+  const Motion mine = {static_cast<double>(record.list().size()),
+                       record.begin(),
+                       record.end(),
+                       record.checksum(),
+                       scale,
+                       start};
+  Motion found = mine;
+  archive.number("points", found.points);
+  archive.number("begin", found.begin);
+  archive.number("end", found.end);
+  archive.number("checksum", found.checksum);
+  archive.number("scale", found.scale);
+  archive.number("start", found.start);
+  if (memcmp(&found, &mine, sizeof(Motion)) != 0) {
+    auto text = [](const Motion &m) {
+      return fmt::format("{:.0f} points from {:g} to {:g} (sum {:.10g}), scale {:g}, start {:g}",
+                         m.points, m.begin, m.end, m.checksum, m.scale, m.start);
+    };
+    throw std::runtime_error(fmt::format(
+        "the motion must be that of the restart file, {}; got {}: another motion needs another fix "
+        "ID",
+        text(found), text(mine)));
+  }
+  clock.archive(archive);
+  archive.numbers("last_kick", last_kick, 3);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixGroundMotion::write_restart(FILE *fp)
 {
-  if (comm->me != 0) return;
-  Saved saved = {restart_key(), clock.state(), {last_kick[0], last_kick[1], last_kick[2]}};
-  const int size = sizeof(Saved);
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(&saved, sizeof(Saved), 1, fp);
+  Slope::Archive to(style, VERSION);
+  archive(to);
+  write_archive(lmp, fp, CALLER + id, to);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixGroundMotion::restart(char *buffer)
 {
-  Saved saved;
-  memcpy(&saved, buffer, sizeof(Saved));
-  const Key mine = restart_key();
-  if (memcmp(&saved.key, &mine, sizeof(Key)) != 0) {
-    auto text = [](const Key &k) {
-      return fmt::format("{:.0f} points from {:g} to {:g} (sum {:.10g}), scale {:g}, start {:g}",
-                         k.points, k.begin, k.end, k.checksum, k.scale, k.start);
-    };
-    error->all(
-        FLERR,
-        "Fix ground/motion {} must have the motion of the restart file, {}; got {}: another motion "
-        "needs another fix ID",
-        id, text(saved.key), text(mine));
-  }
-  clock.set_state(saved.clock);
-  std::copy(saved.last_kick, saved.last_kick + 3, last_kick);
+  read_archive(lmp, CALLER + id, [&]() {
+    Slope::Archive from(style, VERSION, buffer);
+    archive(from);
+  });
 }
 
 /* ---------------------------------------------------------------------- */

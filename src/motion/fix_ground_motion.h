@@ -14,6 +14,7 @@ FixStyle(ground/motion,FixGroundMotion);
 
 #include "fix.h"
 
+#include "archive.h"
 #include "continuation.h"
 #include "motion_record.h"
 #include "run_clock.h"
@@ -60,16 +61,7 @@ class FixGroundMotion : public Fix, public Kick {
   bool follows(int mask) const { return (mask & groupbit) && (mask & kicked) && !(mask & frozen); }
   void check_integrators();
   void kick_until(double time, bool first_half);
-
-  struct Key {
-    double points, begin, end, checksum, scale, start;
-  };
-  struct Saved {
-    Key key;
-    Slope::RunClock::State clock;
-    double last_kick[3];
-  };
-  Key restart_key() const;
+  void archive(Slope::Archive &);    // members of a restart file
 };
 
 }    // namespace LAMMPS_NS

@@ -509,24 +509,22 @@ set group all density 2000
                          ("window 200", "bulk 1.5")]:
         dep = DEP.format("two").replace(change, what)
         run_deck(heap("read_restart a.1500.restart", dep, "run 0"), tmp_path,
-                 expect_error="Fix deposit/grid dep must have the grid of the restart file, "
+                 expect_error="Fix deposit/grid dep: the grid must be that of the restart file, "
                  "cell 0.7, 15 x 15 cells from -2 -2, bulk 1.909859317; got")
 
-    # and so is data of an older format, whose first number is 4 and not 5; and a file without the cells, which
-    # would have taken more than 2 GB: then their number is negative
+    # and so is data of an older version, and a file without the cells, which would have taken more than 2 GB
     data = (tmp_path / "a.1500.restart").read_bytes()
-    key = struct.pack("<4d", 5.0, 0.7, 15.0, 15.0)
-    assert data.count(key) == 1
-    cells = data.index(key) + 8 * (7 + 18)       # key, numbers
-    number = struct.unpack_from("<d", data, cells)[0]
-    assert 0 < number <= 15 * 15 and number == int(number)
-    for name, changed, message in [
-            ("old", data.replace(key, struct.pack("<d", 4.0) + key[8:]),
-             "Fix deposit/grid dep must have restart data of format 5, got 4: the file is of another version of SLOPE"),
-            ("large", data[:cells] + struct.pack("<2d", -4e7, 4e7 - 1) + data[cells + 16:],
-             "Fix deposit/grid dep cannot go on from this restart file, in which it may have 38347903 cells that the "
-             "mass touched, got 40000000: start again, with a larger cell")]:
-        (tmp_path / f"{name}.restart").write_bytes(changed)
+    number = struct.pack("<2d", 1.0, -2.0)
+    style, left_out = (name.ljust(24, b"\0") + number for name in (b"deposit/grid", b"cells_left_out"))
+    assert data.count(style + struct.pack("<d", 6.0)) == data.count(left_out + struct.pack("<d", 0.0)) == 1
+    for name, member, value, message in [
+            ("old", style, 5.0,
+             "Fix deposit/grid dep: the restart file must have data of version 6, got 5: start again"),
+            ("large", left_out, 4e7,
+             "Fix deposit/grid dep: nothing can go on from this restart file, in which it may have 38347849 cells that "
+             "the mass touched, got 40000000: start again, with a larger cell")]:
+        at = data.index(member) + len(member)
+        (tmp_path / f"{name}.restart").write_bytes(data[:at] + struct.pack("<d", value) + data[at + 8:])
         run_deck(heap(f"read_restart {name}.restart", DEP.format("two"), "run 0"), tmp_path, expect_error=message)
 
 

@@ -1,4 +1,4 @@
-"""Bounds of the contact law: beyond them one line says what, where, and the value; restart files carry their format."""
+"""Bounds of the contact law: beyond them one line says what, where and the value; restart files carry a version."""
 import struct
 
 import pytest
@@ -6,8 +6,8 @@ import pytest
 from deck_helpers import run_deck
 from test_guards import run
 
-# as in src/pair_gran_restitution.cpp
-FORMAT = 20261123
+# as in src/contacts/contact_coeffs.h
+VERSION = 20261126
 
 
 def law_warnings(warnings):
@@ -39,13 +39,26 @@ def test_mass_ratio(tmp_path, ratio, told):
         assert found[0] in summary["warnings"]
 
 
-# other format, the first value of the style then was 0 or 1
-@pytest.mark.parametrize("other, name", [(FORMAT - 1, str(FORMAT - 1)), (1, "one of an earlier version")])
-def test_restart_file_of_another_format(tmp_path, other, name):
+def named(name, number):
+    """A number of a restart file, with its name before it."""
+    return name.encode().ljust(24, b"\0") + struct.pack("<3d", 1.0, -2.0, number)
+
+
+# another version; as written before members had names: a format and four whole numbers
+@pytest.mark.parametrize("other, got", [
+    (named("pair_style", VERSION - 1), f"got {VERSION - 1}:"),
+    (b"", "got none, or those of an earlier version:")])
+def test_restart_file_of_another_version(tmp_path, other, got):
     run(tmp_path, steps=10, neigh="restart 10 cut.*.restart")
     data = (tmp_path / "cut.10.restart").read_bytes()
-    assert data.count(struct.pack("<i", FORMAT)) == 1
-    (tmp_path / "cut.10.restart").write_bytes(data.replace(struct.pack("<i", FORMAT), struct.pack("<i", other)))
+    mine = named("pair_style", VERSION)
+    assert data.count(mine) == 1 and data.count(named("kn", 1e7)) >= 1
+    if other:
+        changed = data.replace(mine, other)
+    else:
+        head = data.index(mine) - 24
+        changed = data[:head] + struct.pack("<5i", 20261123, 0, 0, 0, 0) + data[head + 20:]
+    (tmp_path / "cut.10.restart").write_bytes(changed)
     run_deck("read_restart cut.10.restart\n", tmp_path,
-             expect_error="Pair gran/restitution: restart file must have "
-             f"contacts of format {FORMAT}, got {name}")
+             expect_error="Pair gran/restitution: the restart file must have data of version "
+             f"{VERSION}, {got} start again")

@@ -76,6 +76,7 @@ fix dep all deposit/grid 10 0 cell 1 terrain ground output out bulk 1.5
 fix line all control/line line.csv output out
 run 20
 """
+MEMBERS = {"mesh": b"recorded", "cells": b"cells", "crossings": b"crossings"}
 CALLERS = {"mesh": "Fix wall/gran/mesh floor", "cells": "Fix deposit/grid dep", "crossings": "Fix control/line line"}
 
 
@@ -90,10 +91,14 @@ def counted(tmp_path_factory):
              "create_atoms 1 region soil\nset group all diameter 0.9 density 2000\nvelocity all set 30 0 0")
     run_deck(COUNTED.format(begin=begin) + "write_restart cut.restart\n", folder)
     data = (folder / "cut.restart").read_bytes()
-    pairs = {at: struct.unpack_from("<dd", data, at) for at in range(len(data) - 16)}
-    found = [at for at, (number, again) in pairs.items() if 1 <= number < 1e6 and again == -1 - number]
-    assert len(found) == 3
-    return folder, data, dict(zip(CALLERS, found))
+    found = {}
+    for name, member in MEMBERS.items():
+        label = member.ljust(24, b"\0")
+        assert data.count(label) == 1
+        found[name] = data.index(label) + 24
+        number, again = struct.unpack_from("<dd", data, found[name])
+        assert 1 <= number < 1e6 and again == -1 - number
+    return folder, data, found
 
 
 @pytest.mark.parametrize("value", (1e300, -7.0, float("nan"), 1e6, 0.5, 0.0))
@@ -107,16 +112,17 @@ def test_a_number_of_records_that_is_damaged(counted, name, word, value):
     if (word, value) == (0, 0.0):
         run_deck(deck, folder)
     (folder / "cut.restart").write_bytes(data[:begin] + struct.pack("<d", value) + data[begin + 8:])
-    run_deck(deck, folder, expect_error=f"{CALLERS[name]}: the number of its data in the restart file must be whole")
+    run_deck(deck, folder, expect_error=f"{CALLERS[name]}: the restart file must have a whole number of values in "
+             f"{MEMBERS[name].decode()}, from 0 to ")
 
 
 def test_marks_of_a_ground_that_are_damaged(counted):
     """The number of marks of the fixed balls: not read beyond the end, another ground."""
     folder, data, _ = counted
-    begin = data.find(struct.pack("<d", -3.0))     # the format of fix wall/gran/balls, then the number
-    marks, = struct.unpack_from("<d", data, begin + 8)
+    begin = data.find(b"marks_of_the_balls") + 24     # the number, twice
+    marks, = struct.unpack_from("<d", data, begin)
     assert 200 < marks < 300
     for value in (1e300, 1e8, -1.0, float("nan"), marks + 1):
-        (folder / "cut.restart").write_bytes(data[:begin + 8] + struct.pack("<d", value) + data[begin + 16:])
+        (folder / "cut.restart").write_bytes(data[:begin] + struct.pack("<d", value) + data[begin + 8:])
         run_deck(COUNTED.format(begin="read_restart cut.restart"), folder,
-                 expect_error="Fix wall/gran/balls field: the restart file was written with other fixed balls")
+                 expect_error="Fix wall/gran/balls field: the restart file must have a whole number of values in mark")

@@ -1,6 +1,7 @@
 // Acceleration, velocity and displacement of a record, against closed forms; files that are wrong
 
 #include "motion_record.h"
+#include "archive.h"
 #include "run_clock.h"
 
 #include <cmath>
@@ -196,7 +197,10 @@ TEST(RunClock, GoesOnToTheBitOrBeginsAtItsOwnTime)
   cut.begin(7, 0.1);
   for (int n = 8; n <= 20; n++) cut.pass(n);
   RunClock restarted;
-  restarted.set_state(cut.state());
+  Slope::Archive to("clock", 1);
+  cut.archive(to);
+  Slope::Archive from("clock", 1, to.bytes().data());
+  restarted.archive(from);
   EXPECT_TRUE(restarted.begin(20, 0.1));
   EXPECT_EQ(restarted.at(33), uncut.at(33));
 

@@ -1,8 +1,11 @@
 // Laws from the words of pair_style and pair_coeff, and from the balls of all ranks what can touch, how near and in
 // which step
 
+#include "archive.h"
 #include "contact_table.h"
 #include "deck.h"
+
+#include <cstring>
 
 using namespace LAMMPS_NS;
 
@@ -25,15 +28,18 @@ struct Table {
   {
     std::vector<char *> arg;
     for (std::string &word : words) arg.push_back(&word[0]);
-    table.read_settings(static_cast<int>(arg.size()), arg.data());
+    ContactSettings its;
+    its.read(deck.lmp.get(), static_cast<int>(arg.size()), arg.data());
+    table.set(its);
   }
 
   void coeff(int i, int j, std::vector<std::string> words)
   {
     std::vector<char *> arg;
     for (std::string &word : words) arg.push_back(&word[0]);
-    table.set(i, j, table.read_coeff("test", static_cast<int>(arg.size()), arg.data()));
-    table.make_laws();
+    ContactCoeffs c;
+    c.read(deck.lmp.get(), "test", static_cast<int>(arg.size()), arg.data());
+    table.set(i, j, c);
   }
 
   void find_ranges() { table.find_ranges(deck.lmp->group->bitmask[deck.lmp->group->find("held")]); }
@@ -60,7 +66,7 @@ TEST(ContactTable, Settings)
   t.coeff(1, 1, {"stiffness", "2e6", "1e6", "damping", "100", "50"});
   t.settings({"mass", "ball", "scheme", "plain", "rolling_radius", "reduced", "limit_damping", "yes"});
   const Slope::ContactLaw &law = t.table.law(1, 1);
-  EXPECT_TRUE(t.table.is_plain());
+  EXPECT_FALSE(t.table.is_exact());
   EXPECT_EQ(law.mass_factor, 2.0);
   EXPECT_EQ(law.rolling_factor, 1.0);
   EXPECT_EQ(law.fn_least, 0.0);
@@ -107,4 +113,28 @@ TEST(ContactTable, Step)
   t.settings({"scheme", "plain"});
   EXPECT_NEAR(t.table.dashpot_bound(1, 2), 0.15 * light / 500.0, 1e-12);
   EXPECT_EQ(t.table.dashpot_bound(1, 3), HUGE_VAL);
+}
+
+// the laws of a table that a restart file has are those of the one that wrote it, to the bit
+TEST(ContactTable, Restart)
+{
+  Table t, other;
+  t.coeff(1, 2, {"stiffness", "2e6", "1e6", "restitution", "0.3", "friction", "30", "rolling", "0.05"});
+  t.coeff(2, 2, {"stiffness", "3e6", "0", "damping", "500", "0", "rolling_spring", "1e4", "7"});
+  t.settings({"mass", "ball", "scheme", "plain"});
+  Slope::Archive settings("pair_style", 1), coeffs("pair_coeff", 1);
+  t.table.archive_settings(settings);
+  t.table.archive_coeffs(coeffs);
+  Slope::Archive from("pair_style", 1, settings.bytes().data()), more("pair_coeff", 1, coeffs.bytes().data());
+  other.table.archive_settings(from);
+  other.table.archive_coeffs(more);
+  EXPECT_FALSE(other.table.is_exact());
+  EXPECT_FALSE(other.table.is_set(1, 1));
+  for (const int i : {1, 2})
+    EXPECT_EQ(memcmp(&t.table.law(i, 2), &other.table.law(i, 2), sizeof(Slope::ContactLaw)), 0) << i;
+  EXPECT_EQ(other.table.law(2, 2).kr, 1e4);
+  for (const char *name : {"mass", "limit_damping", "rolling_radius", "scheme"})
+    EXPECT_NE(settings.bytes().find(name), std::string::npos) << name;
+  for (const char *name : {"kn", "kt", "restitution", "cn", "ct", "friction", "rolling", "kr", "cr"})
+    EXPECT_NE(coeffs.bytes().find(name), std::string::npos) << name;
 }

@@ -35,8 +35,9 @@ struct Guarded {
   {
     std::vector<char *> arg;
     for (std::string &word : words) arg.push_back(&word[0]);
-    table.set(1, 1, table.read_coeff("1 1", static_cast<int>(arg.size()), arg.data()));
-    table.make_laws();
+    ContactCoeffs c;
+    c.read(deck.lmp.get(), "1 1", static_cast<int>(arg.size()), arg.data());
+    table.set(1, 1, c);
   }
 
   // warnings are on rank 0 alone
