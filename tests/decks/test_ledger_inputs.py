@@ -31,6 +31,7 @@ SHORT = {
     "12_heap/in.rest": {"steps": 5000},
     "12_heap/in.resting_heap": {"wide": 4, "tall": 6, "begin": 2, "end": 4},
     "13_ground_direction/in.ground_direction": {"wide": 5, "tend": 4},
+    "14_repose_walls/in.repose_walls": {"plate": 10, "height": 4, "most": 20},
     "20_embankment/in.embankment": {"d": 4, "duration": 20},
     "21_earthquake/in.earthquake": {"d": 4, "duration": 15},
     "22_structures/in.structures": {"d": 4, "duration": 15},
