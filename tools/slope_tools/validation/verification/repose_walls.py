@@ -45,8 +45,8 @@ def angle(*results):
 
 WITHOUT = tuple(DECK(walls="no", thickness=8, seed=seed) for seed in SEEDS)
 CLAIMS = [
-    Claim("repose_without_walls", "Angle of repose of beads of 10 mm, no front and rear wall, three fillings", "degrees",
-          SOURCE, WITHOUT, angle, Near(measured(10), 2.0),
+    Claim("repose_without_walls", "Angle of repose of beads of 10 mm, no front and rear wall, three fillings",
+          "degrees", SOURCE, WITHOUT, angle, Near(measured(10), 2.0),
           Control("rolling resistance 0.1", (WITHOUT[0](rolling=0.1),)), quick=False,
           remark="The rolling resistance, 0.033, was fitted on the first of these fillings."),
 ]
