@@ -31,6 +31,8 @@ SHORT = {
     "12_heap/in.rest": {"steps": 5000},
     "12_heap/in.resting_heap": {"wide": 4, "tall": 6, "begin": 2, "end": 4},
     "13_ground_direction/in.ground_direction": {"wide": 5, "tend": 4},
+    "14_repose_walls/in.repose_walls": {"plate": 10, "height": 4, "most": 20},
+    "15_axisymmetric/in.axisymmetric": {"radius": 4},
     "20_embankment/in.embankment": {"d": 4, "duration": 20},
     "21_earthquake/in.earthquake": {"d": 4, "duration": 15},
     "22_structures/in.structures": {"d": 4, "duration": 15},
@@ -41,7 +43,7 @@ BEGIN_END = {"08_collisions/in.chain": 0.032}
 
 # walls and dampers of LAMMPS, whose work is item 3
 OTHERS = {"10_tochigi/in.tochigi", "11_column_collapse/in.column_collapse", "12_heap/in.heap",
-          "21_earthquake/in.earthquake"}
+          "15_axisymmetric/in.axisymmetric", "21_earthquake/in.earthquake"}
 
 
 def with_ledger(deck):

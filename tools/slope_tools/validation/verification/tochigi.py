@@ -2,11 +2,11 @@
 
 inputs/10_tochigi: the drawing is read from its lengths, and of the paper's curves only the axes are known: -5 to 3 m along
 the slope, -4 to 4 m across it. All rocks must lie within the axes, and the farthest not far from
-their ends: at most 2 m along and 1.5 m across.
+their ends: at most 2 m along and 1.5 m across. Each seed is a draw of 177 rocks: the draws must be of one distribution.
 """  # noqa: E501
 import numpy as np
 
-from .claims import Between, Claim, Control, Run
+from .claims import AtMost, Between, Claim, Control, Run
 
 CASE = "10_tochigi"
 ROCKS = Run("10_tochigi/in.tochigi")
@@ -30,7 +30,24 @@ def widest(*results):
     return np.abs(at_rest(results)[:, 1]).max()
 
 
+def apart(*results):
+    """Largest difference of the distribution along of a draw from that of the others: Kolmogorov and Smirnov."""
+    draws = [at_rest([result])[:, 0] for result in results]
+    gaps = []
+    for own in draws:
+        others = np.sort(np.concatenate([draw for draw in draws if draw is not own]))
+        own = np.sort(own)
+        places = np.concatenate([own, others])
+        gaps.append(np.abs(np.searchsorted(own, places, "right") / len(own)
+                           - np.searchsorted(others, places, "right") / len(others)).max())
+    return max(gaps)
+
+
 CLAIMS = [
+    Claim("tochigi_draws", "Ten draws of 177 rocks: largest difference of one distribution along from the others", "",
+          "statistics: 1.95 sqrt(1/177 + 1/1593), the 0.1 % level of independent rocks", SEEDS, apart,
+          AtMost(1.95 * (1 / 177 + 1 / 1593) ** 0.5),
+          Control("one of the ten with rolling resistance 0.1", SEEDS[1:] + HELD[1]), quick=False),
     Claim("tochigi_along", "Farthest of 1,770 rocks (ten seeds) along the slope, from its toe", "m", FIGURE, SEEDS,
           farthest, Between(-5.0, -3.0), Control(*HELD), quick=False,
           remark="Bounds set after these runs: -5 to -4 m, set before, failed with -3.87 m. The farthest of one run is "
