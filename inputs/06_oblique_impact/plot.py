@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Spin and tangential restitution against the angle: runs both decks of the README's alumina on glass, writes spin.png."""
+"""Alumina on glass: runs both decks of the README, prints the spins, writes spin.png. Argument: the program."""
 import subprocess
 import sys
 import tempfile

@@ -14,7 +14,7 @@ CASE = "06_oblique_impact"
 IMPACT = Run("06_oblique_impact/in.oblique_impact")
 E, MU, SPEED, RADIUS, KN = 0.98, 0.092, 3.9, 0.0025, 1e7
 MASS = 4000 * math.pi / 6 * 0.005 ** 3
-# alumina on glass; kn has Hertz' overlap with E* 63 GPa, kt/kn is 4 G*/E*; the largest spin lies between 24 and 41 degrees
+# alumina on glass; kn has Hertz' overlap with E* 63 GPa, kt/kn is 4 G*/E*; the spin is largest near 27 degrees
 ALUMINA = IMPACT(speed=3.85, kn=1.38e7, ktkn=0.857, first=24, each=1)
 TEST_3, TEST_4 = "Chung and Ooi (2011), test 3", "Chung and Ooi (2011), test 4"
 OSCILLATION = "damped oscillation"
@@ -100,8 +100,8 @@ CLAIMS = [
     Claim("impact_alumina", "Alumina on glass, 3.85 m/s, 24 to 41 degrees: largest spin after the impact", "rad/s",
           "another code, of the impacts of Kharaz et al. (2001)", (ALUMINA,), largest_spin, Near(610, 0.05, True),
           Control("friction coefficient 0.1", (ALUMINA(mu=0.1),)),
-          remark="No measured rebound is at hand. The other code's contacts are Hertz' and Mindlin's; bound set after the "
-                 "first run."),
+          remark="No measured rebound is at hand. The other code's contacts are Hertz' and Mindlin's; bound set after "
+                 "the first run."),
     Claim("impact_time", "Restitution 0.25: contact time over pi sqrt(m/k), 1/sqrt(1-z^2)", "", OSCILLATION,
           (IMPACT(e=0.25),), contact_time, Near(1 / math.sqrt(1 - damping_ratio(0.25) ** 2), 0.01, True),
           Control("restitution 0.445", (IMPACT(e=0.445),)), remark=FASTER),
