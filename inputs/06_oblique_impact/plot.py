@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Alumina on glass: plot.py DUMP...  prints and draws spin and contact against the angle of the runs; writes spin.png."""
+"""Alumina on glass: plot.py DUMP...  prints and draws spin and contact against the angle; writes spin.png."""
 import sys
 from pathlib import Path
 
