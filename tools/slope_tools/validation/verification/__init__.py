@@ -7,7 +7,8 @@ import importlib
 
 MODULES = ("restitution", "timestep", "slide_roll", "rolling_resistance", "apparent_restitution", "oblique_impact",
            "sticking_impact", "rolling", "collisions", "rough_gas", "tochigi", "column_collapse", "heap",
-           "resting_heap", "ground_direction", "flume", "pyramid")
+           "resting_heap", "ground_direction", "flume", "pyramid",
+           "penetration")
 
 
 def cases():
