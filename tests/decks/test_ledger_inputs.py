@@ -36,6 +36,10 @@ SHORT = {
     "20_embankment/in.embankment": {"d": 4, "duration": 20},
     "21_earthquake/in.earthquake": {"d": 4, "duration": 15},
     "22_structures/in.structures": {"d": 4, "duration": 15},
+    "16_flume/in.flume": {"length": 0.2, "height": 0.1},
+    "17_pyramid/in.pyramid": {"wide": 10, "long": 10, "tend": 25},
+    "18_penetration/in.penetration": {"balls": 2842, "time": 0.001, "settle": 0.02},
+    "19_wall_force/in.wall_force": {"d": 0.05, "duration": 1},
 }
 # Where two free balls of one mass meet, the beginning takes up to a quarter of kn dt^2/(m/2) of what is dissipated,
 # 3.2 %, and 2.1 % on average; on a fixed ball half of that.
@@ -43,7 +47,8 @@ BEGIN_END = {"08_collisions/in.chain": 0.032}
 
 # walls and dampers of LAMMPS, whose work is item 3
 OTHERS = {"10_tochigi/in.tochigi", "11_column_collapse/in.column_collapse", "12_heap/in.heap",
-          "15_axisymmetric/in.axisymmetric", "21_earthquake/in.earthquake"}
+          "15_axisymmetric/in.axisymmetric", "16_flume/in.flume", "18_penetration/in.penetration",
+          "19_wall_force/in.wall_force", "21_earthquake/in.earthquake"}
 
 
 def with_ledger(deck):
