@@ -326,7 +326,7 @@ def an_ensemble_of_the_region(slope, sets):
             ("--from out --sample 2", "--sample: must be from 3 to "),
             ("--from out --sample 65", "--sample: must be from 3 to "),
             ("--from out --seed 3", "--seed: must not be given with --from"),
-            ("--from out --mobility rock_avalanches", "--mobility: must not be given with --from"),
+            ("--from out --mobility rock_avalanches", "--known: must not be given with --from"),
             ("--from out --set friction=20", "--from: must not have a variable of --set, got friction"),
             ("--from spoiled", "spoiled/calibrate.yaml: must be what `slope calibrate` wrote, with its sets")):
         if "spoiled" in words:

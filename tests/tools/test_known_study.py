@@ -39,7 +39,7 @@ def test_a_mass_that_known_events_cover(large, capsys, monkeypatch):
     assert "64 runs" in out
     assert study(capsys, monkeypatch, "big --unconfined")[0] == 0
     status, _, err = study(capsys, monkeypatch, "big --paper --unconfined")
-    assert status == 2 and "must be given with --mobility" in err
+    assert status == 2 and "must be given with --known" in err
     status, out, _ = study(capsys, monkeypatch, "big --paper")
     assert status == 0 and out.startswith("by the paper's method, as asked for\n") and "64 runs" not in out
 
@@ -83,7 +83,7 @@ def test_why_not(large, monkeypatch):
         assert "no set of known events covers this volume" in known_study.why_not(large, volume, False)
         assert known_study.points(volume) == 0
     monkeypatch.setattr(exceedance, "of_body",
-                        lambda *_: exceedance.Mobility(None, 0.3, None, {}, ["the fall is small"]))
+                        lambda *_: exceedance.Mobility(None, 0.3, None, {}, "", None, ["the fall is small"]))
     assert known_study.why_not(large, 3e5, False) == "the fall is small"
 
 

@@ -15,7 +15,7 @@ from ..case import logs, run_folders
 from ..deposits import deposit
 from ..digits import rounded
 from ..errors import SlopeError
-from ..mobility import body, events, exceedance, relation, weights
+from ..mobility import body, exceedance, known, weights
 from ..mobility.results import percent
 from ..sites import site_choices
 from ..statistics import emulator, hazard
@@ -32,28 +32,19 @@ NOT_FARTHER = "released_m3", "stop_time_s"      # columns that a mass that goes 
 
 @dataclass(frozen=True)
 class Condition:
-    """What --mobility asks for.
-
-    confined: None for the severe curve; mobility: that of the site; None: of the body of the first run that finished.
-    """
-    path: Path
-    events: Sequence[events.Event]
-    left_out: Sequence[str]
-    confined: Optional[bool]
+    """What --known asks for; mobility: that of the site; None: of the body of the first run that finished."""
+    asked: known.Choice
     mobility: Optional[exceedance.Mobility]
 
 
-def check(name: str, left_out: Sequence[str], confined: Optional[bool], deck: Path) -> Condition:
-    """The Condition of the options; SlopeError if there is no such set, or if it does not cover the deck's site."""
-    path = events.OWN if name == events.OWN.stem else Path(name)
-    known = events.chosen(path, left_out)
-    relation.of_events(known, path)
+def check(asked: known.Choice, name: str, deck: Path) -> Condition:
+    """The Condition of a choice (name: as it was given); SlopeError if it does not cover the deck's site."""
     found = None
     if (deck.parent / site_choices.NAME).is_file():
-        found = exceedance.of_body(body.of_site(deck.parent), known, confined, path)
+        found = known.one_of_body(body.of_site(deck.parent), asked)
         if not found.in_range:
-            raise SlopeError("--mobility", f"must be a set that covers the mass: {'; '.join(found.outside)}", name)
-    return Condition(path, known, left_out, confined, found)
+            raise SlopeError("--known", f"must be a set that covers the mass: {'; '.join(found.outside)}", name)
+    return Condition(asked, found)
 
 
 def mobility_of(condition: Condition, folder: Path, summary: Path) -> exceedance.Mobility:
@@ -67,7 +58,7 @@ def mobility_of(condition: Condition, folder: Path, summary: Path) -> exceedance
     prefix = run_folders.prefix_of(summary)
     found = deposit.read(prefix, terrain, lambda text: None)
     mass = body.of_ground(found.raster, found.base, terrain, str(prefix))
-    return exceedance.of_body(mass, condition.events, condition.confined, condition.path)
+    return known.one_of_body(mass, condition.asked)
 
 
 # --- evaluation ---
@@ -124,8 +115,9 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
     first = next(row for row in rows if row["status"] == "finished")
     found = mobility_of(condition, output / first["run"], output / first["summary"])
     about: Dict[str, Any] = {
-        "set": condition.path.name, "events": len(condition.events), "left_out": list(condition.left_out),
-        "path": exceedance.WORDS[found.severe], "volume_Mm3": found.volume, "outside": found.outside}
+        "set": condition.asked.name, "events": condition.asked.number, "left_out": list(condition.asked.left_out),
+        "confined": condition.asked.confined,
+        "path": exceedance.WORDS[found.chosen], "volume_Mm3": found.volume, "outside": found.outside}
     for name in (HAZARD, WEIGHTS):
         (output / name).unlink(missing_ok=True)         # of a study before this one
     runs = Runs(sample, added.batches, rows, found)

@@ -51,7 +51,7 @@ def sentence(found: Lies, numbers, label: str) -> str:
     ends = list(dict.fromkeys((found.lengths[0], found.lengths[-1])))
     reach = " to ".join(numbers("connected deposit", "m", length, label) for length in ends)
     shares = []
-    for kind in (False, True):
+    for kind in (found.mobility.chosen, "confined", "unconfined"):
         lies = [found.mobility.where_lies(length, kind) for length in ends]
         for one in lies:
             numbers.rows.append((f"known events that reach at most as far, {exceedance.WORDS[kind]}", "%", label,
@@ -59,15 +59,16 @@ def sentence(found: Lies, numbers, label: str) -> str:
         shares.append("at least " * lies[-1].beyond
                       + " to ".join(dict.fromkeys(percent(one.at_most) for one in lies)))
     who = "The connected deposit reaches" if len(ends) == 1 else "The connected deposits of the runs reach"
-    return (f"{who} {reach} m: as far as {shares[0]} of rock avalanches of this volume and height do ({shares[1]} "
-            "where the path is laterally confined); the others go farther. The lengths of the runs are as the crow "
+    return (f"{who} {reach} m: as far as {shares[0]} of rock avalanches of this volume and height do "
+            f"({exceedance.WORDS[found.mobility.chosen]}; {shares[1]} of those on a laterally confined path, "
+            f"{shares[2]} of the others); the others go farther. The lengths of the runs are as the crow "
             "flies and without stray balls, those of the events along the path to the tip, so that rather too many of "
             "these seem to go farther (slope mobility)." + beyond_the_terrain(found.mobility, numbers, label))
 
 
 def beyond_the_terrain(mobility: exceedance.Mobility, numbers, label: str) -> str:
     """What the edge of the terrain hides, if half of the events of either kind go beyond; else nothing."""
-    shares = [mobility.beyond_path(kind) for kind in (False, True)]
+    shares = [mobility.beyond_path(kind) for kind in ("unconfined", "confined")]
     if max(shares) <= 0.5:      # with hardly any left, the path ends within the terrain
         return ""
     length = numbers("fall path within the terrain", "m", mobility.path.length[-1], label)

@@ -73,7 +73,7 @@ def mobile(case: Case) -> str:
     """An ensemble that has mobile masses too, weighted by the known events."""
     if case.sampled:
         return "the same command with --vary of more mobile masses: less friction and rolling, a denser field"
-    sample = "--sample 64 --mobility rock_avalanches"
+    sample = "--sample 64 --known rock_avalanches"
     if case.site:
         return f"tools/slope study {quote(str(case.site))} {sample}"
     words = " ".join(f"--vary {name}={span}" for name, span in (("friction", "10:30"), ("rolling", "0:0.1"))
