@@ -15,7 +15,7 @@ from ..case import logs, run_folders
 from ..deposits import deposit
 from ..digits import rounded
 from ..errors import SlopeError
-from ..mobility import body, exceedance, known, weights
+from ..mobility import body, exceedance, known, run_length, weights
 from ..mobility.results import percent
 from ..sites import site_choices
 from ..statistics import emulator, hazard
@@ -69,10 +69,10 @@ class Runs:
     def __init__(self, sample: Sample, added: Sequence[farther.Batch], rows: Sequence[Mapping[str, Any]],
                  found: exceedance.Mobility):
         self.sample, self.added = sample, added
-        self.rows = [row for row in rows if row["status"] == "finished" and row.get("connected_m") is not None]
+        self.rows = [row for row in rows if row["status"] == "finished" and row.get("length_m") is not None]
         self.failed = len(rows) - len(self.rows)
         self.point = [tuple(row["set"][name] for name in sample.names) for row in self.rows]
-        self.lengths = self.column("connected_m") if self.rows else np.empty(0)
+        self.lengths = self.column("length_m") if self.rows else np.empty(0)
         self.exceedance = found.exceedance
         self.beyond = np.asarray(found.exceedance(self.lengths), float)
         if len(self.rows) >= 2:
@@ -150,6 +150,8 @@ def reach(runs: Runs, found: exceedance.Mobility) -> Dict[str, Any]:
     one = runs.weights
     return {"reached": one.reached, "short": one.short, "far": one.far, "runs": len(runs.rows), "failed": runs.failed,
             "effective": one.effective, "distance": one.distance,
+            "far_by_lobe": [float(found.exceedance(max(row["length_by_lobe_m"][k] for row in runs.rows)))
+                            for k in range(len(run_length.OTHERS))],
             "gaps": [{"low_m": gap.low, "high_m": gap.high, "share": gap.share} for gap in one.gaps],
             "shortest_m": float(runs.lengths.min()), "longest_m": float(runs.lengths.max()),
             "half_beyond_m": found.length_at(0.5), "path_m": float(found.path.length[-1]),
@@ -239,8 +241,17 @@ def summary(about: Mapping[str, Any]) -> str:
     more = f" (those of {added} points towards longer ones among them)" if added else ""
     return (f"the runs reach from {rounded(about['shortest_m'], 4)} to {rounded(about['longest_m'], 4)} m, where "
             f"{percent(about['reached'])} of {about['events']} events of {about['set']} end ({percent(about['short'])} "
-            f"before, {percent(about['far'])} beyond; {about['path']}); weighted by them the {about['runs']} "
-            f"runs{more} say as much as {about['effective']:.0f}")
+            f"before, {percent(about['far'])} beyond{by_lobe(about)}; {about['path']}); weighted by them the "
+            f"{about['runs']} runs{more} say as much as {about['effective']:.0f}")
+
+
+def by_lobe(about: Mapping[str, Any]) -> str:
+    """What share lies beyond if other lobes count, where that is another one."""
+    shares = [percent(one) for one in about.get("far_by_lobe") or ()]       # none in older files
+    if all(one == percent(about["far"]) for one in shares):
+        return ""
+    least = " and ".join(percent(one) for one in run_length.OTHERS)
+    return f" (with lobes of {least} {' and '.join(shares)})"
 
 
 def quantile_text(one: Mapping[str, Any], unit: str) -> str:

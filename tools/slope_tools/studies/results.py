@@ -66,7 +66,7 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
     first = next((run for run in todo if not run.error), None)
     written = maps.write(output, terrain_place(first) if first else None)
     keys = ["front_m", "thickness_m", "max_thickness_m", "max_speed_m_s"]
-    keys += [key for key in (travel_shares.DISTANCE, "connected_m") if key in names]
+    keys += [key for key in (travel_shares.DISTANCE, "length_m") if key in names]
     confined = confined_of(setup, questions)
     about = {
         "study": {"deck": deck.name, "confined": confined,
@@ -243,7 +243,8 @@ def doubts(rows):
 
 def result(run, row, maps):
     """The row of a finished run, and its final thickness; adds its rasters to the maps."""
-    from ..deposits import connected, deposit
+    from ..deposits import deposit
+    from ..mobility import run_length
     marker = run_folders.ended(run.folder)
     path = run.folder / str(marker.get("summary"))
     about = run_folders.begun(run.folder)
@@ -256,12 +257,12 @@ def result(run, row, maps):
     stays = volume["released"] - volume["off_grid"] - volume["lost"]
     on_grid = float(np.nansum(thickness.z)) * thickness.transform.a ** 2
     base = run_folders.load_raster(prefix, "surface").z - thickness.z
-    whole = connected.connected(deposit.Deposit(str(prefix), thickness, base, summary, None))
+    length = run_length.of_run(deposit.Deposit(str(prefix), thickness, base, summary, None), terrain_of(run))
     state = rest.state(summary)
     row = {**row, "variables": about.get("variables"),
            study_table.STOP: site_ground.of_variables(about.get("variables")), "ranks": about.get("ranks"),
            "package": about.get("package"),
-           **quantities.of_run(summary, whole), "ball_m3": volume["released"] / summary["balls"]["released"],
+           **quantities.of_run(summary, length), "ball_m3": volume["released"] / summary["balls"]["released"],
            "on_grid_m3": volume["on_grid"], "off_grid_m3": volume["off_grid"], "lost_m3": volume["lost"],
            "residual_m3": volume["residual"], "mass_error": (on_grid - stays) / volume["released"],
            "max_thickness_m": most["max_thickness"], "max_speed_m_s": most["max_speed"],

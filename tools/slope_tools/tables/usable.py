@@ -41,7 +41,7 @@ def facts(rows: Sequence[Row], volume: float, on_road: float, events: Optional[E
     not trusted.
     """
     finished = [row for row in rows if row["status"] == "finished"]
-    lengths = [row["connected_m"] for row in finished if row["connected_m"] is not None]
+    lengths = [row["length_m"] for row in finished if row["length_m"] is not None]
     return Facts(volume, on_road, min(row["ball_m3"] for row in finished), len(rows), len(rows) - len(finished),
                  sum(not row["at_rest"] for row in finished),
                  max(row["left_before_road_m3"] / row["released_m3"] for row in finished),
