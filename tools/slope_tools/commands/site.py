@@ -120,7 +120,7 @@ def add_ground(group):
     group.add_argument("--direction", metavar="B", type=number, help="compass bearing to which the plane dips, degrees")
     group.add_argument("--scar", metavar="RASTER", help="the body is what this raster says, see --scar-is")
     group.add_argument("--scar-is", choices=KINDS, help="surface: heights after the event (default, "
-                       "if they follow the terrain); depth; change")
+                       "if they follow the terrain); depth; change; height of the mass on top of the terrain")
     group.add_argument("--slips", metavar="SLIPS", type=Path, help="the bodies are those that slope stability found on "
                        "this terrain, its folder or PREFIX.slips.csv; instead of --release. The first is released "
                        "where the deck's variable body does not say otherwise")
