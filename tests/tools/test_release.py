@@ -429,7 +429,8 @@ def test_a_mass_on_top_of_the_terrain(body, slope, no_picture, refused):
     assert (before.crs, before.offset) == (slip.crs, (EAST, NORTH))
     assert "region ground terrain r.ground.asc" in " ".join(Path("r.deck.txt").read_text().split())
     terrain(lambda x, y: mass(x, y) - 1, "below.asc")
-    refused("t.asc --scar below.asc --scar-is height -o other", "below.asc: must hold heights above the terrain >= 0", "got -1")
+    refused("t.asc --scar below.asc --scar-is height -o other", "below.asc: must hold heights above the terrain >= 0",
+            "got -1")
     assert slope("t.asc --scar mass.asc --scar-is height --overwrite -o r")[1].endswith("r.ground.asc, r.ground.yaml\n")
 
 

@@ -145,7 +145,7 @@ def hollow(area: Area, slip: np.ndarray) -> float:
     return float((level - z)[body].max(initial=0.0))
 
 
-def edge(shape: Tuple[int, int]) -> np.ndarray:
+def edge(shape: Tuple[int, ...]) -> np.ndarray:
     """Mask of the outermost nodes."""
     found = np.ones(shape, bool)
     found[1:-1, 1:-1] = False
