@@ -35,7 +35,7 @@ PROGRAM = [sys.executable, str(TOOLS / "slope")]
 
 def wanted(**options):
     return observations.Observations(observations.Wanted(*(options.get(name) for name in observations.KINDS), 0.05, 0.1,
-                                                         False, front_is=options.get("front_is", "connected")))
+                                                         False, front_is=options.get("front_is", "length")))
 
 
 @pytest.mark.parametrize("options, lost, told", [
@@ -45,12 +45,12 @@ def test_a_run_whose_mass_left_tells_no_length(options, lost, told):
     assert wanted(**options).told_by({"lost_m3": lost, "released_m3": 1000.0}) is told
 
 
-def test_the_front_is_that_of_the_connected_deposit():
-    row = {"connected_m": 12.5, travel_shares.DISTANCE: 40.0, "distance_95_m": None}
+def test_the_front_is_the_length_along_the_fall_path():
+    row = {"length_m": 12.5, travel_shares.DISTANCE: 40.0, "distance_95_m": None}
     columns = {name: column for name, (_, column) in observations.FRONTS.items()}
-    assert observations.front(Path("a.summary.yaml"), row, columns["connected"]) == 12.5
+    assert observations.front(Path("a.summary.yaml"), row, columns["length"]) == 12.5
     assert observations.front(Path("a.summary.yaml"), row, columns["99"]) == 40.0
-    assert observations.front(Path("a.summary.yaml"), {"connected_m": None}, columns["connected"]) == 0.0
+    assert observations.front(Path("a.summary.yaml"), {"length_m": None}, columns["length"]) == 0.0
     with pytest.raises(SlopeError, match="a.summary.yaml: must have the distance of a share of the volume .*older"):
         observations.front(Path("a.summary.yaml"), row, columns["95"])
 
@@ -326,7 +326,7 @@ def an_ensemble_of_the_region(slope, sets):
             ("--from out --sample 2", "--sample: must be from 3 to "),
             ("--from out --sample 65", "--sample: must be from 3 to "),
             ("--from out --seed 3", "--seed: must not be given with --from"),
-            ("--from out --mobility rock_avalanches", "--mobility: must not be given with --from"),
+            ("--from out --mobility rock_avalanches", "--known: must not be given with --from"),
             ("--from out --set friction=20", "--from: must not have a variable of --set, got friction"),
             ("--from spoiled", "spoiled/calibrate.yaml: must be what `slope calibrate` wrote, with its sets")):
         if "spoiled" in words:
@@ -350,7 +350,7 @@ def test_numbers_alone_with_a_failing_run(slope, here):
     assert failed and all(float(row["friction"]) > 37 and row["score"] == "" for row in failed)
     assert f"caveat: {len(failed)} of 12 runs failed and are left out" in out
     assert sum("xoffset" in text for text in about["doubts"]) == 1        # the deck has it, and nothing moves it
-    assert [entry["name"] for entry in about["targets"]] == ["end of the connected deposit", "area covered",
+    assert [entry["name"] for entry in about["targets"]] == ["length along the fall path", "area covered",
                                                              "volume on the road"]
     assert not Path("out/predicted.png").exists()
 

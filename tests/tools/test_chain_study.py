@@ -127,7 +127,7 @@ def bad(slips, capsys, monkeypatch):  # noqa: F811
 def test_bad_input_is_one_line(bad, capsys):
     for words, rule in (
             ("mine --fragility fragility", "--sample: must be given with --fragility"),
-            (f"{STUDY} --mobility rock_avalanches", "--mobility: must not be given with --fragility"),
+            (f"{STUDY} --mobility rock_avalanches", "--known: must not be given with --fragility"),
             (f"{STUDY} --of remove_m3", "--of: must not be given with --fragility"),
             (f"{STUDY} --vary body=list:1,2", "--vary: must not have body"),
             ("mine/in.site --sample 8 --vary rolling=0:0.1 -o out --fragility fragility",

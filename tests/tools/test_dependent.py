@@ -45,7 +45,7 @@ def speed(u, chance=None):
 def runs_of(number, seed, chance=None):
     """known_events.Runs of a stand-in, with its speeds."""
     u, lengths, _ = twins.runs("sobol", number, seed, chance=chance)
-    rows = [{"status": "finished", "connected_m": length, "speed": value, "batch": 0,
+    rows = [{"status": "finished", "length_m": length, "speed": value, "batch": 0,
              "set": dict(zip("abc", map(repr, place)))}
             for place, length, value in zip(u.tolist(), lengths, speed(u, chance))]
     found = SimpleNamespace(exceedance=twins.exceedance)

@@ -165,5 +165,5 @@ def test_a_study_is_continued(tmp_path):
     assert farther.Added(tmp_path, planned(high=9.0)).batches == []
     text = (tmp_path / farther.FILE).read_text()
     (tmp_path / farther.FILE).write_text(text.replace("box:", "bax:"))
-    with pytest.raises(SlopeError, match="must be what `slope study --mobility` wrote"):
+    with pytest.raises(SlopeError, match="must be what `slope study --known` wrote"):
         farther.Added(tmp_path, planned(high=10.0))

@@ -8,9 +8,10 @@ from test_site_anew import inside, mine, once  # noqa: F401
 from tiny_collapse import LMP
 
 from slope_tools.ensembles import known_study
-from slope_tools.mobility import exceedance
+from slope_tools.mobility import body, exceedance
 from slope_tools.sites import site_budget, site_choices
 from slope_tools.studies import site_study
+from slope_tools.survey import rasters
 
 CELL = 20.0
 
@@ -39,7 +40,7 @@ def test_a_mass_that_known_events_cover(large, capsys, monkeypatch):
     assert "64 runs" in out
     assert study(capsys, monkeypatch, "big --unconfined")[0] == 0
     status, _, err = study(capsys, monkeypatch, "big --paper --unconfined")
-    assert status == 2 and "must be given with --mobility" in err
+    assert status == 2 and "must be given with --known" in err
     status, out, _ = study(capsys, monkeypatch, "big --paper")
     assert status == 0 and out.startswith("by the paper's method, as asked for\n") and "64 runs" not in out
 
@@ -83,7 +84,7 @@ def test_why_not(large, monkeypatch):
         assert "no set of known events covers this volume" in known_study.why_not(large, volume, False)
         assert known_study.points(volume) == 0
     monkeypatch.setattr(exceedance, "of_body",
-                        lambda *_: exceedance.Mobility(None, 0.3, None, {}, ["the fall is small"]))
+                        lambda *_: exceedance.Mobility(None, 0.3, None, {}, "", None, ["the fall is small"]))
     assert known_study.why_not(large, 3e5, False) == "the fall is small"
 
 
@@ -109,3 +110,26 @@ def test_the_method_is_in_the_results(mine, monkeypatch, capsys):  # noqa: F811
     monkeypatch.setattr(site_study, "half_step", lambda *_: None)
     _, out, _ = study(capsys, monkeypatch, "mine")
     assert seen == [out.splitlines()[0]] and seen[0].startswith("by the paper's method; ")
+
+
+def test_a_site_of_a_mass_on_top_of_the_terrain(large, inside):  # noqa: F811
+    """Its ground before is the sum; what is said of known events stands in site.yaml, yes and no without quotes, too."""
+    ground = rasters.read_asc_local(large / "terrain.asc")
+    mass = np.where(np.hypot(*(values - 400 for values in np.meshgrid(
+        CELL * (np.arange(150) + 0.5), CELL * (39.5 - np.arange(40))))) < 100, 8.0, 0.0)
+    rows = "\n".join(" ".join(f"{value:g}" for value in row) for row in mass)
+    (large.parent / "mass.asc").write_text(f"ncols 150\nnrows 40\nxllcorner 0\nyllcorner 0\ncellsize {CELL:g}\n{rows}\n")
+    inside("--terrain large.asc --crs EPSG:6677 --scar mass.asc --scar-is height --confined no --known rockfalls "
+           "--balls 100 -o top")
+    top = large.parent / "top"
+    before, depth = (rasters.read_asc_local(top / name) for name in ("terrain.asc", "release.depth.asc"))
+    assert before.z == pytest.approx(ground.z + mass, abs=2e-3) and (before.crs, before.offset) == (ground.crs,
+                                                                                                    ground.offset)
+    assert np.nan_to_num(depth.z) == pytest.approx(mass, abs=2e-3)
+    assert body.of_site(top).base == pytest.approx(ground.z, abs=2e-3)
+    text = (top / "site.yaml").read_text()
+    assert "confined: 'no'" in text and "set: rockfalls" in text
+    (top / "site.yaml").write_text(text.replace("confined: 'no'", "confined: yes"))
+    assert site_choices.read(top)["known"] == {"set": "rockfalls", "confined": "yes"}
+    inside("top --name again")
+    assert rasters.read_asc_local(top / "terrain.asc").z == pytest.approx(before.z, abs=1e-6)      # once, not twice

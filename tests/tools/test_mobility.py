@@ -27,7 +27,7 @@ def test_one_more_event():
     assert [found.quantile(share, 1, 1000) for share in (0.05, 0.95)] == pytest.approx([1380, 3590], abs=6)
     assert found.exceedance(found.quantile(0.3, 5, 800, True), 5, 800, True) == pytest.approx(0.7)
     assert found.exceedance([1000, 2226], 1, [500, 1000])[1] == pytest.approx(0.5, abs=1e-3)
-    assert found.covers(1, 1000) and not found.covers(0.01, 1000) and not found.covers(1, 50)
+    assert found.volumes == (0.1, 498.0) and found.falls == (220.0, 1720.0)
 
 
 @pytest.mark.parametrize("level, inside", [(0.8, 38), (0.9, 46)])

@@ -5,10 +5,12 @@ import re
 import shutil
 from pathlib import Path
 
+import fiona
 import numpy as np
 import pytest
 import yaml
 from affine import Affine
+from rasterio.crs import CRS
 from scipy import stats
 from shapely.geometry import LineString, Point, box
 
@@ -16,12 +18,14 @@ from run_helpers import TOP, here, run_command, write_asc, write_geojson  # noqa
 
 from slope_tools.commands import mobility as mobility_command  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
-from slope_tools.mobility import body, charts, events, exceedance, fall_path, road  # noqa: E402
+from slope_tools.mobility import body, charts, events, exceedance, fall_path, known as known_events  # noqa: E402
+from slope_tools.mobility import relation, results, road  # noqa: E402
 from slope_tools.releases import release  # noqa: E402
 from slope_tools.survey import rasters  # noqa: E402
 from slope_tools.survey.rasters import Raster  # noqa: E402
 
 ALL = events.read()
+SET = relation.of_events(ALL)
 DATA = next((folder for folder in (top / "shared" / "data" for top in TOP.parents) if folder.is_dir()), TOP / "none")
 FRANK = DATA / "frank"
 STEEP = 0.5         # slope of the ground
@@ -161,6 +165,8 @@ def test_level_ground_has_no_path():
 
 def by_hand(path, volume, confined):
     """Exceedance at each point by the set's least squares and scipy's t, without the code that is tested."""
+    if confined == "mixture":
+        return (16 * by_hand(path, volume, True) + 33 * by_hand(path, volume, False)) / 49
     x = np.array([[1, math.log10(e.volume), math.log10(e.fall), e.confined] for e in ALL], float)
     y = np.log10([e.length for e in ALL])
     fit, squares, _, _ = np.linalg.lstsq(x, y, rcond=None)
@@ -173,48 +179,54 @@ def by_hand(path, volume, confined):
 
 @pytest.fixture(scope="module")
 def known():
-    return exceedance.of_body(disc(hillside(), (300, 300)), ALL)
+    return exceedance.of_body(disc(hillside(), (300, 300)), SET)
 
 
-@pytest.mark.parametrize("confined", [True, False])
-def test_exceedance(known, confined):
+@pytest.mark.parametrize("kind, confined", [("confined", True), ("unconfined", False), ("mixture", "mixture")])
+def test_exceedance(known, kind, confined):
     far = known.path.fall >= 220        # the set's least
-    curve = known.curves[confined]
+    assert (known.said == far).all()
+    curve = known.curves[kind]
     assert curve[far] == pytest.approx(by_hand(known.path, known.volume, confined)[far], abs=1e-9)
     assert (curve[~far] == 1).all() and (np.diff(curve) <= 0).all()
 
 
-def test_confined_is_severe(known):
-    assert known.severe and (known.curves[True] >= known.curves[False]).all()
-    assert known.exceedance(1800) == known.exceedance(1800, True) > known.exceedance(1800, False) + 0.1
+def test_what_counts(known):
+    assert known.chosen == "mixture" and (known.curves["confined"] >= known.curves["unconfined"]).all()
+    least, mixture, most = (known.exceedance(1800, kind) for kind in ("unconfined", None, "confined"))
+    assert most > mixture + 0.05 > least + 0.1
+    for answer, kind in exceedance.CONFINED.items():
+        found = known_events.of_body(disc(hillside(), (300, 300)), known_events.choice(confined=answer))
+        assert found.decides is found.by_set and found.decides.chosen == kind
+        assert found.decides.exceedance(1800) == pytest.approx(known.exceedance(1800, kind), abs=1e-3)
 
 
 def test_it_never_rises():
     """Before a cliff the probability is less than by the height below the cliff."""
     mass = disc(terrain(lambda x, y: 3000 - STEEP * np.minimum(x, 700) - 900 / (1 + np.exp((1900 - x) / 15))),
                 (200, 600))
-    found = exceedance.of_body(mass, ALL, False)
+    found = exceedance.of_body(mass, SET, "unconfined")
     raw = by_hand(found.path, found.volume, False)
     far = found.path.fall >= 220
     assert np.diff(raw[far]).max() > 0.1
-    assert found.curves[False][far] == pytest.approx(np.minimum.accumulate(raw[far]), abs=1e-9)
+    assert found.curves["unconfined"][far] == pytest.approx(np.minimum.accumulate(raw[far]), abs=1e-9)
     assert found.beyond_path() == pytest.approx(raw[far].min()) and raw[far].min() < raw[-1] - 0.1
 
 
 def test_where_a_run_lies(known):
-    median = known.length_at(0.5, False)
-    assert known.exceedance(median, False) == pytest.approx(0.5, abs=1e-9)
-    lies = known.where_lies(median, False)
+    median = known.length_at(0.5, "unconfined")
+    assert known.exceedance(median, "unconfined") == pytest.approx(0.5, abs=1e-9)
+    lies = known.where_lies(median, "unconfined")
     assert lies == pytest.approx((0.5, 0.5, False))
-    assert known.where_lies(median, True).at_most < 0.5 and known.where_lies(1e5, False).beyond
-    assert known.where_lies(0, False).at_least == 1
-    assert known.length_at(1e-6, True) is None and known.in_range
+    assert known.where_lies(median, "confined").at_most < 0.5 and known.where_lies(1e5).beyond
+    assert known.where_lies(0).at_least == 1
+    assert known.length_at(1e-6, "confined") is None and known.in_range
 
 
 @pytest.mark.parametrize("depth, slope, words", [(1.0, STEEP, ["volume, 0.03"]), (20.0, 0.05, ["height, "])])
 def test_out_of_range(depth, slope, words):
     mass = disc(terrain(lambda x, y: 3000 - slope * x), (300, 600), depth)
-    found = exceedance.of_body(mass, ALL)
+    found = exceedance.of_body(mass, SET)
     assert not found.in_range and len(found.outside) == len(words)
     assert all(f"covers this {word}" in line for word, line in zip(words, found.outside))
 
@@ -235,7 +247,7 @@ def test_the_frank_slide():
     others = [one for one in ALL if one.name != "Frank Slide"]
     across = fall_path.given(mass, LineString([(413, 1264), (3960, 3633)]), "line")
     for path in (None, across):
-        found = exceedance.of_body(mass, others, False, path=path)
+        found = exceedance.of_body(mass, relation.of_events(others), "unconfined", path)
         assert found.in_range and found.volume == pytest.approx(36.0, abs=0.1)
         assert 0.1 < found.exceedance(3080) < 0.9
     assert found.length_at(0.5) == pytest.approx(3080, rel=0.05)
@@ -255,13 +267,14 @@ def place(here, capsys, monkeypatch):       # noqa: F811
 
 
 BODY = "terrain.asc --polygon p.geojson --local --depth 20"
-COLUMNS = ["length_m", "height_m", "x", "y", "exceedance"]
+KINDS = ["confined", "unconfined", "mixture", "landslides_narrow", "landslides_wide", "landslides"]
+COLUMNS = ["length_m", "height_m", "elevation_m", "x", "y", *(f"exceedance_{kind}" for kind in KINDS)]
 
 
 def rows(folder="out"):
     with open(Path(folder, "mobility.csv"), encoding="ascii") as lines:
         found = list(csv.DictReader(lines))
-    return list(found[0]), {key: np.array([float(row[key]) for row in found]) for key in found[0]}
+    return list(found[0]), {key: np.array([float(row[key] or "nan") for row in found]) for key in found[0]}
 
 
 def summary(folder="out"):
@@ -272,20 +285,43 @@ def test_command(place):
     status, out, err = place(f"{BODY} --road road.wkt -o out")
     assert (status, err) == (0, "")
     heads, both = rows()
-    assert heads == [*COLUMNS, "exceedance_unconfined"]
+    assert heads == COLUMNS
     about = summary()
-    assert about["in_range"] and about["exceedance_is"] == "confined" and about["set"]["events"] == 49
+    assert about["in_range"] and about["exceedance_is"] == "mixture" and about["set"]["events"] == 49
     at = about["road"]
-    assert at["on_path"] and at["x"] == pytest.approx(1500)
-    for name in ("exceedance", "exceedance_unconfined"):
-        assert at[name] == pytest.approx(np.interp(at["length_m"], both["length_m"], both[name]), abs=1e-4)
-    assert about["confined"]["beyond_path"] == pytest.approx(both["exceedance"][-1], rel=1e-5)
-    assert "of the road" not in out and {path.name for path in Path("out").iterdir()} == set(about["files"])
-    place(f"{BODY} --unconfined -o open")
-    place(f"{BODY} --confined -o valley")
-    assert rows("open")[0] == rows("valley")[0] == COLUMNS
-    assert (rows("open")[1]["exceedance"] == both["exceedance_unconfined"]).all()
-    assert (rows("valley")[1]["exceedance"] == both["exceedance"]).all()
+    assert at["on_path"] and at["x"] == pytest.approx(1500) and at["passed_m"] - at["length_m"] == pytest.approx(20)
+    for kind in KINDS:
+        for name, length in (("exceedance", "length_m"), ("passed", "passed_m")):
+            share = np.interp(at[length], both["length_m"], both[f"exceedance_{kind}"])
+            assert at[f"{name}_{kind}"] == pytest.approx(share, abs=1e-4)
+        assert about[kind]["beyond_path"] == pytest.approx(both[f"exceedance_{kind}"][-1], rel=1e-5)
+    assert at["exceedance"] == at["exceedance_mixture"] > at["passed"] == at["passed_mixture"]
+    crown = about["crown"]
+    assert both["elevation_m"] == pytest.approx(crown["z"] - both["height_m"], abs=2e-3) and "elevation" in out
+    assert {path.name for path in Path("out").iterdir()} == set(about["files"])
+    for words, kind in (("--unconfined", "unconfined"), ("--confined", "confined"), ("--confined no", "unconfined"),
+                        ("--confined unknown", "mixture"), ("--confined yes", "confined")):
+        place(f"{BODY} {words} --road road.wkt --overwrite -o other")
+        other = summary("other")
+        assert other["exceedance_is"] == kind and other["road"]["exceedance"] == at[f"exceedance_{kind}"]
+
+
+def test_the_path_for_a_gis(tmp_path):
+    """A piece to each point of the table, in the CRS of the terrain."""
+    mass = disc(hillside(), (300, 300))
+    there = mass._replace(raster=mass.raster._replace(crs=CRS.from_epsg(6677), offset=(1000.0, -2000.0)))
+    found = known_events.of_body(there, known_events.choice())
+    results.write_lines(tmp_path / "path.gpkg", found, there)
+    path, shares = found.decides.path, found.decides.curves["mixture"]
+    with fiona.open(tmp_path / "path.gpkg", layer="path") as layer:
+        pieces = list(layer)
+        assert CRS.from_wkt(layer.crs_wkt) == there.raster.crs
+    assert len(pieces) == len(path.x) - 1
+    for k in (0, len(pieces) // 2, len(pieces) - 1):
+        end = pieces[k]["geometry"]["coordinates"][1]
+        assert end == pytest.approx((path.x[k + 1] + 1000, path.y[k + 1] - 2000))
+        share = pieces[k]["properties"]["exceedance_mixture"]
+        assert share == (pytest.approx(shares[k + 1]) if found.decides.said[k + 1] else None)
 
 
 def test_except(place):
@@ -300,7 +336,11 @@ def test_out_of_range_is_said(place):
     status, _, err = place("terrain.asc --polygon p.geojson --local --depth 0.5 -o out")
     about = summary()
     assert status == 0 and about["in_range"] is False and err.count("\n") == len(about["warnings"]) == 1
-    assert "no set of known events covers this volume" in err and "0.1 to 498" in err and "conditioned" in err
+    assert "no set of known events covers this volume" in err and "0.1 to 498" in err
+    assert about["mixture"] is None and about["exceedance_is"] == "landslides"
+    _, both = rows()
+    assert all(np.isnan(both[f"exceedance_{kind}"]).all() for kind in KINDS[:3])
+    assert np.isfinite(both["exceedance_landslides"][-1]) and np.isnan(both["exceedance_landslides"][0])
 
 
 def test_a_terrain_that_is_too_small(place):
@@ -327,7 +367,7 @@ def test_a_site(place):
     status, _, err = place(f"{of_site()} -o site/known")
     assert (status, err) == (0, "")
     for key, values in rows()[1].items():
-        assert rows("site/known")[1][key] == pytest.approx(values, abs=1e-3)
+        assert rows("site/known")[1][key] == pytest.approx(values, abs=1e-3, nan_ok=True)
     assert summary("site/known")["road"] == pytest.approx(summary()["road"], abs=1e-4)
     status, _, err = place("site --depth 3 -o other")
     assert status == 2 and "site: is the folder of a site" in err and err.count("\n") == 1
@@ -344,6 +384,10 @@ HEAD = "name,fall_m,length_m,volume_Mm3,confinement\n"
     (None, "--path road.wkt", ("road.wkt",)),
     (None, "--road none.wkt", ("none.wkt", "existing")),
     (None, "--confined --unconfined", ("--confined",)),
+    (None, "--confined perhaps", ("--confined", "perhaps", "unknown")),
+    (None, "--known landslips", ("--known", "TYPE[:PATH]", "landslips")),
+    (None, "--known rockfalls:deflected:all", ("--known", "rockfalls:deflected:all")),
+    (None, "--known rockfalls --except X", ("--except", "X")),
 ])
 def test_bad_input_is_one_line(place, text, more, words):
     if text:
@@ -376,5 +420,7 @@ def test_pictures(known, tmp_path):
     mass = disc(hillside(), (300, 300))
     lane = box(1000, 0, 1020, 1190)
     charts.draw_map(tmp_path / "map.png", known, mass, lane)
-    charts.draw_profile(tmp_path / "profile.png", known._replace(outside=["x"]), mass, road.at_road(known.path, lane))
+    found = known_events.of_body(mass, known_events.choice(), known.path)
+    out = found._replace(by_set=found.by_set._replace(outside=["x"]))
+    charts.draw_profile(tmp_path / "profile.png", out, mass, road.at_road(known.path, lane))
     assert all((tmp_path / name).read_bytes()[:4] == b"\x89PNG" for name in ("map.png", "profile.png"))

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from shapely.geometry import LineString, Point
 
-from test_mobility_path import ALL, disc, hillside
+from test_mobility_path import SET, disc, hillside
 
 from slope_tools.digits import three  # noqa: E402
 from slope_tools.mobility import exceedance, known as known_events  # noqa: E402
@@ -16,13 +16,13 @@ from slope_tools.report.numbers import Numbers  # noqa: E402
 
 
 def case(lengths, volume=0.78e6, study=True, scar=1):
-    """data, ground and numbers of runs whose connected deposits have these lengths (m)."""
+    """data, ground and numbers of runs of these lengths (m)."""
     mass = disc(hillside(), (300, 300))
     ground = ground_of(mass.raster._replace(z=np.zeros_like(mass.depth)), mass.raster.z, scar * mass.depth, volume)
-    rows = [{"connected_m": length, "released_m3": volume} for length in lengths]
+    rows = [{"length_m": length, "released_m3": volume} for length in lengths]
     one = SimpleNamespace(distance=lengths[0]) if lengths and lengths[0] else None
     data = SimpleNamespace(study=study or None, finished=rows, result=None, label=lambda one: "run",
-                           largest_release=lambda: volume, connected=lambda: one)
+                           largest_release=lambda: volume, length=lambda: one)
     return data, ground, Numbers()
 
 
@@ -33,22 +33,23 @@ def ground_of(raster, before, depth, volume=0.78e6):
 
 @pytest.fixture(scope="module")
 def known():
-    return exceedance.of_body(disc(hillside(), (300, 300)), ALL)
+    return exceedance.of_body(disc(hillside(), (300, 300)), SET)
 
 
 def test_a_run_lies_where_its_length_does(known):
-    length = known.length_at(0.96, False)
+    length = known.length_at(0.96)
     data, ground, numbers = case([length], study=False)
     (what, text), = mobility_part.content(data, ground, numbers)
-    share = known.where_lies(length, False).at_most
+    share = known.where_lies(length).at_most
     assert share == pytest.approx(0.04) and what == mobility_part.WHAT
     assert "as far as 4 % of rock avalanches of this volume and height do" in text
-    assert f"({percent(known.where_lies(length, True).at_most)} where the path is laterally confined)" in text
-    assert [row[4] for row in numbers.rows][1] == pytest.approx(4) and "too many of these seem to go farther" in text
+    for kind, words in (("confined", "of those on a laterally confined path"), ("unconfined", "of the others)")):
+        assert f"{percent(known.where_lies(length, kind).at_most)} {words}" in text
+    assert [row[4] for row in numbers.rows][1] == pytest.approx(4)
 
 
 def test_several_runs_lie_between(known):
-    ends = [known.length_at(share, False) for share in (0.98, 0.89)]
+    ends = [known.length_at(share) for share in (0.98, 0.89)]
     data, ground, numbers = case([ends[1], None, ends[0], (ends[0] + ends[1]) / 2])
     text = mobility_part.content(data, ground, numbers)[0][1]
     assert "deposits of the runs reach" in text and "as far as 2 % to 11 % of rock avalanches" in text
@@ -56,7 +57,7 @@ def test_several_runs_lie_between(known):
 
 def test_beyond_the_path_is_at_least(known):
     text = mobility_part.content(*case([known.path.length[-1] + 100]))[0][1]
-    assert f"as far as at least {percent(1 - known.beyond_path(False))} of rock" in text
+    assert f"as far as at least {percent(1 - known.beyond_path())} of rock" in text
 
 
 @pytest.mark.parametrize("columns, length", [(500, None), (340, None), (150, 1340)])
@@ -68,14 +69,14 @@ def test_a_terrain_that_ends_before_half_of_the_events(columns, length):
     if length is None:
         assert "leaves the terrain" not in text
         return
-    found = exceedance.of_body(disc(hillside(), (300, 300)), ALL)
-    shares = [percent(found.exceedance(length, kind)) for kind in (False, True)]
+    found = exceedance.of_body(disc(hillside(), (300, 300)), SET)
+    shares = [percent(found.exceedance(length, kind)) for kind in ("unconfined", "confined")]
     assert f"leaves the terrain after 1,340 m, where {shares[0]} ({shares[1]}) of them go on" in text
 
 
 @pytest.mark.parametrize("change, words", [
     ({"volume": 49e3}, ("No set of known events covers", "0.049 million m3", "0.1 to 498")),
-    ({"lengths": [None]}, ("No run has a connected deposit",)),
+    ({"lengths": [None]}, ("No run has a deposit",)),
     ({"scar": 0}, ("cannot be compared", "a body")),
 ])
 def test_otherwise_it_says_why(change, words):
@@ -95,9 +96,8 @@ def test_a_height_that_no_event_has():
 
 def test_marks_lie_across_the_path_where_shares_of_the_events_go_farther(known):
     reach = known_reach.of_mobility(known)
-    wanted = {(share, kind): length for share in (0.5, 0.1) for kind in (False, True)
-              if (length := known.length_at(share, kind)) is not None}
-    assert wanted and {(mark.share, mark.confined): mark.length for mark in reach.marks} == wanted
+    wanted = {share: length for share in (0.5, 0.1) if (length := known.length_at(share)) is not None}
+    assert wanted and {mark.share: mark.length for mark in reach.marks} == wanted
     path = LineString(np.column_stack([known.path.x, known.path.y]))
     for mark in reach.marks:
         bar = LineString(mark.ends)
@@ -108,8 +108,8 @@ def test_marks_lie_across_the_path_where_shares_of_the_events_go_farther(known):
         assert abs(across @ (after - before)) < 0.1 * np.hypot(*across) * np.hypot(*(after - before))
     assert LineString(reach.path).length == pytest.approx(max(wanted.values()), rel=1e-3)
     text = known_reach.words(reach)
-    assert f"half of known events of this volume and height go farther than {three(wanted[0.5, False])} m (not " in text
-    assert ("would lie beyond the terrain" in text) == (len(reach.marks) < 4)
+    assert f"half of known events of this volume and height go farther than {three(wanted[0.5])} m" in text
+    assert exceedance.WORDS["mixture"] in text and ("would lie beyond the terrain" in text) == (len(reach.marks) < 2)
     fewer = known_reach.words(reach._replace(marks=reach.marks[:1]))
     assert "a tenth" not in fewer and fewer.endswith("; other marks would lie beyond the terrain.")
 

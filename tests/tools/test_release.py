@@ -417,6 +417,39 @@ def test_depths_that_are_taken_for_heights(body, refused):
     assert found["volume"] == pytest.approx(9 * math.pi * 40 ** 2 / 3, rel=0.01) and about["scar_is"] == "depth"
 
 
+def test_a_mass_on_top_of_the_terrain(body, slope, no_picture, refused):
+    """--scar-is height: the terrain is the slip surface, and terrain and mass are the ground before."""
+    mass = lambda x, y: 9 * np.clip(1 - np.hypot(x - 120, y - 100) / 40, 0, None)      # noqa: E731
+    _, _, under = terrain(ramp(30))
+    terrain(mass, "mass.asc")
+    found, about = body("t.asc --scar mass.asc --scar-is height")
+    assert found["volume"] == pytest.approx(9 * math.pi * 40 ** 2 / 3, rel=0.01) and about["terrain"] == "r.ground.asc"
+    slip, before, top = (rasters.read_asc_local(name) for name in ("r.slip.asc", "r.ground.asc", "mass.asc"))
+    assert slip.z == pytest.approx(under, abs=1e-3) and before.z == pytest.approx(under + top.z, abs=2e-3)
+    assert (before.crs, before.offset) == (slip.crs, (EAST, NORTH))
+    assert "region ground terrain r.ground.asc" in " ".join(Path("r.deck.txt").read_text().split())
+    terrain(lambda x, y: mass(x, y) - 1, "below.asc")
+    refused("t.asc --scar below.asc --scar-is height -o other", "below.asc: must hold heights above the terrain >= 0",
+            "got -1")
+    assert slope("t.asc --scar mass.asc --scar-is height --overwrite -o r")[1].endswith("r.ground.asc, r.ground.yaml\n")
+
+
+def test_a_closed_hollow_in_a_slip_surface(slope, no_picture):
+    """A thick mass on a gentle slope, taken as depths: a hollow, as deep as the mass but for the fall across a cell."""
+    terrain(ramp(2))
+    terrain(lambda x, y: 10 * (np.hypot(x - 120, y - 100) < 31), "deep.asc")
+    status, _, err = slope("t.asc --scar deep.asc --scar-is depth -o low")
+    lowest = 10 - 2 * math.tan(math.radians(2))
+    line = next(line for line in err.splitlines() if "closed hollow" in line)
+    assert status == 0 and "--scar-is height" in line
+    assert float(re.search(r"hollow, (\S+) m deep", line)[1]) == pytest.approx(lowest, abs=0.03)
+    status, _, err = slope("t.asc --scar deep.asc --scar-is height -o high")
+    assert status == 0 and "hollow" not in err
+    terrain(lambda x, y: 10 * np.clip(1 - np.hypot(x - 120, y - 100) / 40, 0, None), "cone.asc")
+    terrain(ramp(30))
+    assert "hollow" not in slope("t.asc --scar cone.asc --scar-is depth -o other")[2]
+
+
 @pytest.mark.parametrize("shift", [-0.6, 0.0, 0.6])
 def test_two_surveys_over_different_datums(slope, no_picture, shift):
     """That the datums are not compared is said; what the two differ by beside the body is, too."""

@@ -411,7 +411,7 @@ def test_travel_is_what_99_percent_stay_within(slope, here):
     assert [row[:3] for row in table[1:5]] == [
         ["50 % of the volume", "10.0", "40.0"], ["90 % of the volume", "20.0", "30.0"],
         ["95 % of the volume", "30.0", "25.0"], ["99 % of the volume", "31.2", "22.5"]]
-    assert any(row[0].startswith("connected deposit") for row in table)
+    assert any(row[0].startswith("length along the fall path, to the farthest lobe of at least 1 %") for row in table)
     assert ["the one farthest ball", "99.0", "11.5"] in table
     values = {row["what"]: row["value"] for row in numbers("one/report.numbers.csv")}
     assert float(values["99 %: distance"]) == 31.25

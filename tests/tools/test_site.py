@@ -604,7 +604,7 @@ def test_an_ensemble_of_a_site(done):
     assert listed.returncode == 0 and "6 runs, 0 of them finished" in listed.stdout, listed.stderr
     assert all(listed.stdout.count(f"{name} 0.") >= 5 for name in ("rolling", "spacing", "xoffset"))
     refused(inside(done[0], "study", "mine", "--sample", "6", "--mobility", "rock_avalanches"),
-            "--mobility: must be a set that covers the mass: no set of known events covers this volume")
+            "--known: must be a set that covers the mass: no set of known events covers this volume")
     refused(inside(done[0], "study", "mine", "--sample", "6", "--mesh", "10"),
             "--mesh: must not be given with the folder of a site")
     assert not (done[0] / "mine" / "ensemble").exists()

@@ -55,12 +55,12 @@ ANEW = ("rm -r 'my site'/study 'my site'/sizes 'my site'/step; tools/slope site 
     ({"on_road": 50.0}, SITE, "on the road lies the volume of 5 balls, fewer than 10", ANEW.format(" --balls 2200")),
     ({"on_road": 50.0}, DECK, "5 balls", "the same command with --set d=1.54"),
     ({"length": 700.0}, SITE, "no run reaches 800 m, as half of known events of this volume and height do; the longest "
-     "connected deposit ends at 700 m", "tools/slope study 'my site' --sample 64 --mobility rock_avalanches"),
+     "one ends at 700 m", "tools/slope study 'my site' --sample 64 --known rock_avalanches"),
     ({"length": 700.0}, DECK, "no run reaches", "tools/slope calibrate in.slope, with a past event"),
     ({"length": None}, DECK, "no run reaches 800 m, as half of known events of this volume and height do; there is no "
-     "connected deposit", "tools/slope calibrate in.slope, with a past event"),
+     "deposit", "tools/slope calibrate in.slope, with a past event"),
     ({"length": 700.0}, DECK._replace(variables={"friction": "30"}), "no run reaches", "tools/slope study in.slope "
-     "--sample 64 --mobility rock_avalanches --vary friction=10:30 --road ROAD -o DIR"),
+     "--sample 64 --known rock_avalanches --vary friction=10:30 --road ROAD -o DIR"),
     ({"left": 0.3}, SITE, "30 % of the released volume left the terrain before or beside the road, more than 1 %",
      "a larger elevation model (terrain.files, terrain.bounds) in 'my site'/site.yaml, then: " + ANEW.format("")),
     ({"on_road": 10.0}, SITE._replace(asked=" --paper"), "the volume of 1 ball, fewer than 10",
@@ -98,7 +98,7 @@ def test_the_commands_are_ones_that_the_tools_take(case, changed):
 def rows(*volumes, **more):
     return [{"status": "finished", "run": f"seed_{k}", "set": {"rolling": "0"}, "repeat": {"seed": str(k)},
              "remove_m3": volume, "remove_on_road_m3": volume / 2, "ball_m3": 1.0, "released_m3": 1000.0,
-             "left_before_road_m3": 0.0, "at_rest": True, "connected_m": 500.0, "label": "", **more}
+             "left_before_road_m3": 0.0, "at_rest": True, "length_m": 500.0, "label": "", **more}
             for k, volume in enumerate(volumes)]
 
 

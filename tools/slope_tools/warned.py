@@ -36,6 +36,7 @@ WORDS = {
     "cliff": "the ground of the body falls by {degrees:.0f} degrees on average: a cliff, or heights in feet "
              "({in_feet:.0f} degrees)? slope terrain and site have --z-unit",
     "few cells": "the body covers {cells} cells of {cell:g} m: use a finer terrain",
+    "hollow": "the slip surface has a closed hollow, {depth:.3g} m deep, out of which the mass cannot slide: {remedy}",
     "rim": "the body is {depth:.3g} m deep at the rim of its area, where it ends in a wall: {remedy}",
     "shift": "beside the body {file} lies {metres:.3g} m {side} the terrain (median), which counts in the depths: "
              "vertical datums are not compared, are they the same?",

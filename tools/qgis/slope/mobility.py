@@ -15,25 +15,27 @@ class Mobility(Algorithm):
     title = "Mobility of known events"
     about = """
     The probability that a mass goes beyond each point of its fall path, by known events of its volume (m3) and fall
-    height (m). No run is needed.
+    height (m): rock avalanches where their set covers the mass, else landslides of all sizes. No run is needed.
 
     The body is that of the algorithm for the body: a shape below a polygon, or a scar. Known events: 49 rock avalanches
     of Canada, unless a table of others is given. The path is that of the steepest descent, or a line from the crown
     down.
 
-    mobility.csv has the path (m) with the probability at each point; also a map, a profile and mobility.yaml."""
+    mobility.csv and mobility.gpkg have the path (m) with the probability at each point; also a map, a profile and
+    mobility.yaml."""
     options = (
         DEM, POLYGON, *SHAPE, *SCAR,
         Option("ROAD", "--road", "road", "Road: how likely the mass reaches it"), ROAD_WIDTH,
         Option("PATH", "--path", "line", "Path from the crown down (default: steepest descent)"),
-        Option("CONFINED", "--confined", "switch", "The path is confined, a valley"),
-        Option("UNCONFINED", "--unconfined", "switch", "The path is not confined"),
-        Option("SET", "--set", "file", "Known events (default: 49 rock avalanches)", filter="Table (*.csv)",
+        Option("CONFINED", "--confined", "choice", "Path confined by valley sides (default: unknown)",
+               choices=("yes", "no", "unknown")),
+        Option("SET", "--known", "file", "Known events (default: 49 rock avalanches)", filter="Table (*.csv)",
                advanced=True),
         POLYGON_CRS, LOCAL, Option("OUTPUT", "-o", "new folder", "Folder for the results", own=True))
     outputs = (("number", "AT_ROAD", "Probability of going beyond the road (-)"),
                ("number", "VOLUME_OF_BODY", "Volume of the body (m3)"),
-               ("file", "TABLE", "Path with probabilities, CSV"), ("file", "PICTURE", "Map"),
+               ("file", "TABLE", "Path with probabilities, CSV"),
+               ("file", "PATH_LINE", "Path with probabilities, GeoPackage"), ("file", "PICTURE", "Map"),
                ("file", "PROFILE", "Profile"))
 
     def work(self, asked, results):
@@ -43,4 +45,5 @@ class Mobility(Algorithm):
         about = load(folder / "mobility.yaml")
         results.put(OUTPUT=str(folder), AT_ROAD=(about["road"] or {}).get("exceedance"),
                     VOLUME_OF_BODY=about["volume_m3"], TABLE=str(folder / "mobility.csv"),
+                    PATH_LINE=str(folder / "mobility.gpkg"),
                     PICTURE=str(folder / "mobility_map.png"), PROFILE=str(folder / "mobility_profile.png"))

@@ -21,7 +21,7 @@ SHAPE = (
 SCAR = (
     Option("SCAR", "--scar", "raster", "Scar: a second elevation model (m), or depths (m), instead of a shape"),
     Option("SCAR_IS", "--scar-is", "choice", "What the scar raster holds (default: surface)",
-           choices=("surface", "depth", "change")),
+           choices=("surface", "depth", "change", "height")),
     Option("LEAST", "--least", "number", "Depths of the scar below this are none (m)", advanced=True))
 POLYGON_CRS = Option("POLYGON_CRS", "--assign-crs", "crs", "The polygon is in this CRS, whatever it says",
                      advanced=True)

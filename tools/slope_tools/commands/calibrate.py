@@ -43,9 +43,9 @@ def add_arguments(parser):
     parser.add_argument("--observed", metavar="POLYGON|RASTER", type=Path,
                         help="the mapped deposit: its outline, or its thickness in metres, as for `slope score`")
     parser.add_argument("--front", metavar="L", type=number,
-                        help="how far the mass went, in plan from the highest released ball, m")
-    parser.add_argument("--front-is", choices=observations.FRONTS, default="connected",
-                        help="what of a run is compared with it: the end of the connected deposit (default), which "
+                        help="how far the mass went, from crown to tip along its fall path in plan, m")
+    parser.add_argument("--front-is", choices=observations.FRONTS, default="length",
+                        help="what of a run is compared with it: its length along the fall path (default), which "
                              "single balls do not move, or the distance that 95 or 99 %% of the volume stay within")
     parser.add_argument("--area", metavar="A", type=number,
                         help="total area that was covered at any time by more than --threshold, m2")

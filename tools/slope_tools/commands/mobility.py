@@ -3,7 +3,7 @@ from pathlib import Path
 
 from .. import disk
 from ..errors import SlopeError
-from ..mobility import body, events, exceedance, fall_path, relation, results, road
+from ..mobility import body, fall_path, known, results, road
 from ..options import add_overwrite
 from ..releases import release
 from ..sites import site_choices
@@ -11,7 +11,7 @@ from ..sites.site_layers import ROAD
 from ..survey import lines, roads
 from ..survey.crs import as_crs
 from ..warned import printer
-from . import road_arguments
+from . import known_arguments, road_arguments
 from .release_arguments import add_body, wanted
 
 DESCRIPTION = ("The probability that a mass goes beyond each point of its fall path, by known events of its volume "
@@ -19,12 +19,12 @@ DESCRIPTION = ("The probability that a mass goes beyond each point of its fall p
 EPILOG = """\
 EVENTS.csv: columns name, fall_m, length_m (crown to toe, in plan along the path), volume_Mm3 (million m3) and
 confinement (frontal, lateral or unconfined); at least 12 events.
-Writes DIR/mobility.csv (length_m,height_m,x,y,exceedance along the fall path), mobility_map.png, mobility_profile.png
-and mobility.yaml.
+Writes DIR/mobility.csv (length_m, height_m, elevation_m, x, y and exceedance_... along the fall path), mobility.gpkg
+(the path for a GIS), mobility_map.png, mobility_profile.png and mobility.yaml.
 
 examples:
   tools/slope mobility terrain.asc --polygon release.geojson --depth 40 --road road.geojson -o known
-  tools/slope mobility before.asc --scar after.asc --unconfined --except "Frank Slide" -o frank
+  tools/slope mobility before.asc --scar after.asc --confined no --except "Frank Slide" -o frank
   tools/slope mobility mine --confined -o mine/mobility
 """
 
@@ -34,14 +34,7 @@ def add_arguments(parser):
                         help="the ground before the collapse, as slope terrain wrote it; or the folder of a site")
     parser.add_argument("-o", dest="output", metavar="DIR", required=True, type=Path, help="folder of the results")
     add_body(parser.add_argument_group("the body, as slope release takes it (not with SITE)"))
-    parser.add_argument("--set", metavar="EVENTS.csv", dest="events", type=Path, default=events.OWN,
-                        help="known events (default: 49 rock avalanches of Canada)")
-    parser.add_argument("--except", metavar="NAME", dest="left_out", action="append", default=[],
-                        help="leave out this event of the set; may be given several times")
-    kind = parser.add_mutually_exclusive_group()
-    kind.add_argument("--confined", action="store_const", const=True, dest="confined",
-                      help="the path is laterally confined, a valley (default: both are shown)")
-    kind.add_argument("--unconfined", action="store_const", const=False, dest="confined", help="the path is not")
+    known_arguments.add_known(parser, "--set", "known events")
     parser.add_argument("--road", metavar="POLYGON|LINE", help="how likely the mass reaches " + road_arguments.ROAD
                         + " (default with SITE: its road)")
     road_arguments.add_width(parser)
@@ -53,16 +46,15 @@ def add_arguments(parser):
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints what was found and written."""
     disk.check_folder(args.output, results.FILES, [args.terrain], args.overwrite)
-    known = events.chosen(args.events, args.left_out)
-    relation.of_events(known, args.events)      # before the terrain is read
-    tell = printer("mobility")
     site = Path(args.terrain).is_dir()
+    asked = known_arguments.choice_of(args, Path(args.terrain) if site else None)      # before the terrain is read
+    tell = printer("mobility")
     mass = of_site(args) if site else of_release(args, tell)
     lane = road_of(args, site, mass)
     path = args.path and fall_path.given(mass, line_of(args, mass), args.path)
-    found = exceedance.of_body(mass, known, args.confined, args.events, path)
-    met = lane and road.at_road(found.path, lane)
-    source = results.Source(args.terrain, mass, str(args.events), len(known), args.left_out, lane)
+    found = known.of_body(mass, asked, path)
+    met = lane and road.at_road(found.decides.path, lane)
+    source = results.Source(args.terrain, mass, asked, lane)
     results.write(args.output, found, source, met)
     print("\n".join(results.words(found, source, met)))
     for line in results.doubts(found):

@@ -16,7 +16,7 @@ shapes: sphere (default) through the ends of the fall line in the polygon; ellip
   polygon; plane (default with --dip), through the toe unless a depth or volume is given; slbl, the sloping local base
   level. --depth or --volume finds their free number.
 Writes NAME.slip.asc (the ground without the body) and NAME.depth.asc with sidecars, NAME.png (map, section), NAME.yaml
-(choices, numbers) and NAME.deck.txt (lines of the deck).
+(choices, numbers) and NAME.deck.txt (lines of the deck); with --scar-is height also NAME.ground.asc, the ground before.
 
 examples:
   tools/slope release terrain.asc --polygon release.geojson --depth 12 -o release
@@ -40,7 +40,8 @@ def run(args):
     asked = wanted(args)
     sources = [path for path in (args.terrain, asked.polygon, args.scar) if path]
     release_files.check(args.output, [vectors.source(path).path for path in sources])
-    made = release_files.paths(args.output)
+    raised = args.scar_is == "height"
+    made = release_files.paths(args.output, raised)
     disk.check_standing(args.output.with_name(args.output.name + ".yaml"), made, sources, args.overwrite)
     body = release.body_of(asked)
     print(release.text(body), flush=True)
@@ -49,5 +50,5 @@ def run(args):
         tell(line)
     for path in (os.path.relpath(args.terrain, args.output.parent), args.output.name):
         decks.warn_of_name(path, tell)
-    release_files.write_body(args.output, asked, body)
-    print(f"wrote {', '.join(path.name for path in release_files.paths(args.output))}")
+    release_files.write_body(args.output, asked, body, raised)
+    print(f"wrote {', '.join(path.name for path in made)}")

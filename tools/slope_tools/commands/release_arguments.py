@@ -23,7 +23,8 @@ def add_body(parser) -> None:
     parser.add_argument("--scar", metavar="RASTER", help="the body is what this raster says, see --scar-is")
     parser.add_argument("--scar-is", choices=release_scar.KINDS,
                         help="surface: heights after the event (default, if they follow the terrain's); depth: of the "
-                             "slip surface, positive down; change: after minus before, of which the loss counts")
+                             "slip surface, positive down; change: after minus before, of which the loss counts; "
+                             "height: of the mass on top of the terrain, which is the ground without it")
     parser.add_argument("--least", metavar="D", type=number, default=0.0,
                         help="depths of a scar below this count as none, m (default 0): the noise of two surveys")
     place = parser.add_mutually_exclusive_group()

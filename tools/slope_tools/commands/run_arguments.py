@@ -10,11 +10,12 @@ from ..case.settings import check_settings
 from ..ensembles import known_events
 from ..errors import SlopeError
 from ..options import count, number, whole
+from ..sites import site_choices
 from ..statistics import designs
 from ..studies.setup import Road, Setup
 from ..tables import intensity
 from ..warned import printer
-from . import road_arguments
+from . import known_arguments, road_arguments
 
 
 def add_deck(parser, site=False):
@@ -77,26 +78,14 @@ def add_sample(parser) -> None:
     parser.add_argument("--seed", metavar="S", type=whole, help="seed of the design (default 1)")
 
 
-def add_mobility(parser) -> None:
-    """--mobility, --except, --confined and --unconfined."""
-    parser.add_argument("--mobility", metavar="SET",
-                        help="weight the runs of an ensemble so that they end where known events of this volume and "
-                             "height do: rock_avalanches (49 of Canada), or a file of `slope mobility --set`")
-    parser.add_argument("--except", metavar="NAME", dest="left_out", action="append", default=[],
-                        help="leave out this event of the set; may be given several times")
-    kind = parser.add_mutually_exclusive_group()
-    kind.add_argument("--confined", action="store_const", const=True, dest="confined",
-                      help="the path is laterally confined, a valley (default: taken for it, events go farther then)")
-    kind.add_argument("--unconfined", action="store_const", const=False, dest="confined", help="the path is not")
-
-
 def condition_of(args) -> Optional[known_events.Condition]:
-    """What these arguments ask for; SlopeError if some are there without --mobility."""
-    if args.mobility is not None:
-        return known_events.check(args.mobility, args.left_out, args.confined, args.deck)
+    """What --known and its company ask for; SlopeError if some are there without it."""
+    if args.known is not None:
+        site = args.deck.parent if (args.deck.parent / site_choices.NAME).is_file() else None
+        return known_events.check(known_arguments.choice_of(args, site), args.known, args.deck)
     for option, given in (("--except", args.left_out), ("--confined or --unconfined", args.confined is not None)):
         if given:
-            raise SlopeError(option, "must be given with --mobility")
+            raise SlopeError(option, "must be given with --known")
     return None
 
 
@@ -110,7 +99,7 @@ def add_intensity(parser):
 
 
 # options of one kind of study: whether they go with --sample, and their default
-OF_A_KIND = {"intensity": (False, None), "more_than": (False, ()), "of": (True, None), "mobility": (True, None),
+OF_A_KIND = {"intensity": (False, None), "more_than": (False, ()), "of": (True, None), "known": (True, None),
              "exceed_speed": (True, "5"),
              "exceed_energy": (True, "100000"), "design": (True, designs.SOBOL), "seed": (True, 1)}
 

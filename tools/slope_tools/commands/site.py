@@ -19,7 +19,7 @@ from ..studies import site_ground
 from ..survey import roads
 from ..survey.rasters import UNITS
 from ..warned import printer
-from . import road_arguments
+from . import known_arguments, road_arguments
 
 # option -> section and key of site.yaml
 OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
@@ -37,11 +37,13 @@ OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
            "rolling": ("study", "rolling"), "slip_friction": ("model", "slip_friction"),
            "density": ("model", "density"), "spacing": ("model", "spacing"),
            "field_restitution": ("model", "field_restitution"),
-           "observed": ("observed", "file"), "diameter": ("balls", "diameter"), "balls": ("balls", "number"),
+           "observed": ("observed", "file"), "known": ("known", "set"),
+           "confined": ("known", "confined"), "diameter": ("balls", "diameter"), "balls": ("balls", "number"),
            "minutes": ("balls", "minutes"), "memory": ("balls", "memory"), "name": ("project", "name"),
            "client": ("project", "client"), "author": ("project", "author")}
 # options that change neither the body nor its runs: what was determined for these is kept
-BESIDE = {"road", *road_arguments.OPTIONS, "cut_angle", "mesh", "line", "observed", "name", "client", "author"}
+BESIDE = {"road", *road_arguments.OPTIONS, "cut_angle", "mesh", "line", "observed", "known", "confined",
+          "name", "client", "author"}
 # of each group, an option that is given replaces the others
 ONE_OF = (("depth", "volume", "curvature"), ("diameter", "balls", "minutes", "memory"))
 # --mobile: the Frank slide of 1903, doc/src/events.rst: its likeliest values, and the least rolling resistance that its
@@ -118,7 +120,7 @@ def add_ground(group):
     group.add_argument("--direction", metavar="B", type=number, help="compass bearing to which the plane dips, degrees")
     group.add_argument("--scar", metavar="RASTER", help="the body is what this raster says, see --scar-is")
     group.add_argument("--scar-is", choices=KINDS, help="surface: heights after the event (default, "
-                       "if they follow the terrain); depth; change")
+                       "if they follow the terrain); depth; change; height of the mass on top of the terrain")
     group.add_argument("--slips", metavar="SLIPS", type=Path, help="the bodies are those that slope stability found on "
                        "this terrain, its folder or PREFIX.slips.csv; instead of --release. The first is released "
                        "where the deck's variable body does not say otherwise")
@@ -143,6 +145,7 @@ def add_layers(group):
                        "earthquake, degrees (default: 7 more than the slope of its slip surface, 33 at least)")
     group.add_argument("--observed", metavar="P|RASTER", help="a mapped deposit, outline or thickness, with which the "
                        "run shown in the report is compared")
+    known_arguments.add_site(group)
 
 
 def add_model(group):

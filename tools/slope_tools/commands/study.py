@@ -18,8 +18,8 @@ from ..studies.study import check_names, check_thresholds, perform
 from ..survey import roads
 from ..tables import intensity
 from ..tables.size_error import SizeErrors
-from . import road_arguments
-from .run_arguments import (OF_A_KIND, add_deck, add_intensity, add_mobility, add_repeats, add_runs, add_sample,
+from . import known_arguments, road_arguments
+from .run_arguments import (OF_A_KIND, add_deck, add_intensity, add_repeats, add_runs, add_sample,
                             condition_of, settle_kind, setup_of)
 
 THICKNESSES = "0.1,0.5,1"      # of the maps of exceedance, m; the parser has None, as for all that a site refuses
@@ -42,10 +42,10 @@ an ensemble: 64 runs with values drawn from distributions, the probability of a 
       --road road.geojson -o out
 
 the same, weighted so that the runs end where known events of this volume and height did:
-  tools/slope study in.collapse --sample 64 --mobility rock_avalanches --vary friction=5:35 --vary rolling=0:0.2 -o out
+  tools/slope study in.collapse --sample 64 --known rock_avalanches --vary friction=5:35 --vary rolling=0:0.2 -o out
 
 such an ensemble of a site that `slope site ... -o mine` made, with its road and report:
-  tools/slope study mine --sample 64 --mobility rock_avalanches
+  tools/slope study mine --sample 64 --known rock_avalanches
 
 the whole chain, from an earthquake to how often the road is blocked, of a site made with `slope site --slips`:
   tools/slope study mine --sample 64 --vary friction=25:35 --vary rolling=0:0.1 --fragility fragility --more-than 500
@@ -65,7 +65,8 @@ def add_arguments(parser):
     parser.add_argument("--set", metavar="NAME=V1,V2,...", action="append", default=[],
                         help="values of an index variable of the deck; A:B:STEP stands for A, A + STEP, ... up to B")
     add_sample(parser)
-    add_mobility(parser)
+    known_arguments.add_known(parser, "--mobility", "weight the runs of an ensemble so that they end where known "
+                              "events of this volume and height do")
     parser.add_argument("--fragility", metavar="FOLDER", type=Path,
                         help="of a site with several bodies, with --sample: what `slope fragility` wrote; how likely "
                              "which volume reaches the road at a peak acceleration, and per year")
@@ -116,7 +117,7 @@ def run_folder(args):
         method = f"{known_study.PAPER}; {why}" if why else known_study.ASKED
         say(args.deck, method, others=True)
         return run_site(args, method)
-    args.sample, args.mobility = known_study.POINTS, known_study.SET
+    args.sample, args.known = known_study.POINTS, known_study.SET
     method = (f"weighted by known events of this volume and height, {known_study.SET}; --paper takes the largest "
               "volume over the rolling resistances of site.yaml instead")
     say(args.deck, method)
@@ -166,7 +167,7 @@ def run_deck(args):
 
 def check_fit(args):
     """Raise SlopeError if --from is given with what says otherwise where the runs lie, or how they count."""
-    for option in ("vary", "design", "seed", "mobility"):
+    for option in ("vary", "design", "seed", "known"):
         if args.fit is not None and getattr(args, option) not in (None, []):
             raise SlopeError(f"--{option}", "must not be given with --from: a calibration has said which values are "
                              "equally good", " ".join(args.vary) if option == "vary" else getattr(args, option))
@@ -177,7 +178,7 @@ def chain_of(args):
     if args.fragility is None:
         return None
     from ..seismic import chain_files, fragility_files      # scipy
-    for option, given in (("mobility", args.mobility), ("from", args.fit), ("of", args.of)):
+    for option, given in (("known", args.known), ("from", args.fit), ("of", args.of)):
         if given is not None:
             raise SlopeError(f"--{option}", "must not be given with --fragility, whose runs are of several bodies "
                              "and of the volume on the road", given)

@@ -89,6 +89,22 @@ def relief(raster, base, shown, title):
     return figure, axes
 
 
+def crs_axes(axes, raster, name):
+    """Coordinates of the CRS (name) on the upper and the right side, where the raster has one."""
+    if raster.crs is None:
+        return
+    (east, north), style = raster.offset, {"size": 2, "labelsize": 6}
+    top = axes.secondary_xaxis("top", functions=(lambda x: x + east, lambda x: x - east))
+    right = axes.secondary_yaxis("right", functions=(lambda y: y + north, lambda y: y - north))
+    top.set_xlabel(f"east (m), {name}", fontsize=7)
+    right.set_ylabel("north (m)", fontsize=7)
+    for one, axis in ((top, top.xaxis), (right, right.yaxis)):
+        one.tick_params(**style)
+        axis.get_major_formatter().set_useOffset(False)
+        axis.get_major_formatter().set_scientific(False)
+        axis.get_major_locator().set_params(nbins=5)
+
+
 def values_on(axes, raster, values, shown, label, cmap=palettes.THICKNESS):
     """Draw values > 0 over the relief, with a colour bar."""
     values, where = part(raster, values, shown)

@@ -24,7 +24,7 @@ ON_ROAD = "remove_on_road_m3"
 QUANTITIES = {**quantities.NAMES, "max_thickness_m": ("largest thickness at any time", "m"),
               "max_speed_m_s": ("largest speed", "m/s"), "stop_time_s": ("end of the run", "s")}
 # those whose dependence on the variables is looked at
-MAIN = ("remove_m3", ON_ROAD, "beyond_road_m3", "blocked_m", travel_shares.DISTANCE, "connected_m", "centroid_m",
+MAIN = ("remove_m3", ON_ROAD, "beyond_road_m3", "blocked_m", travel_shares.DISTANCE, "length_m", "centroid_m",
         "thickness_m", "max_speed_m_s")
 FEW = 0.2       # share of failed runs from which on an ensemble is doubted
 

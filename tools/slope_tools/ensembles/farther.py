@@ -20,7 +20,7 @@ from ..statistics import backanalysis, designs, distributions, emulator
 from .sample import Sample
 
 FILE = "added.yaml"
-WHAT = "what `slope study --mobility` wrote"
+WHAT = "what `slope study --known` wrote"
 SCHEMA = mapping({"variables": OBJECT, "batches": listed(mapping({
     "box": listed(listed(NUMBER, 2), 1), "points": listed(named(TEXT, 1), 1)}))})
 REACHED = 0.95          # share of the known events that the runs should reach

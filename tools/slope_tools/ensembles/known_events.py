@@ -15,7 +15,7 @@ from ..case import logs, run_folders
 from ..deposits import deposit
 from ..digits import rounded
 from ..errors import SlopeError
-from ..mobility import body, events, exceedance, relation, weights
+from ..mobility import body, exceedance, known, run_length, weights
 from ..mobility.results import percent
 from ..sites import site_choices
 from ..statistics import emulator, hazard
@@ -32,28 +32,19 @@ NOT_FARTHER = "released_m3", "stop_time_s"      # columns that a mass that goes 
 
 @dataclass(frozen=True)
 class Condition:
-    """What --mobility asks for.
-
-    confined: None for the severe curve; mobility: that of the site; None: of the body of the first run that finished.
-    """
-    path: Path
-    events: Sequence[events.Event]
-    left_out: Sequence[str]
-    confined: Optional[bool]
+    """What --known asks for; mobility: that of the site; None: of the body of the first run that finished."""
+    asked: known.Choice
     mobility: Optional[exceedance.Mobility]
 
 
-def check(name: str, left_out: Sequence[str], confined: Optional[bool], deck: Path) -> Condition:
-    """The Condition of the options; SlopeError if there is no such set, or if it does not cover the deck's site."""
-    path = events.OWN if name == events.OWN.stem else Path(name)
-    known = events.chosen(path, left_out)
-    relation.of_events(known, path)
+def check(asked: known.Choice, name: str, deck: Path) -> Condition:
+    """The Condition of a choice (name: as it was given); SlopeError if it does not cover the deck's site."""
     found = None
     if (deck.parent / site_choices.NAME).is_file():
-        found = exceedance.of_body(body.of_site(deck.parent), known, confined, path)
+        found = known.one_of_body(body.of_site(deck.parent), asked)
         if not found.in_range:
-            raise SlopeError("--mobility", f"must be a set that covers the mass: {'; '.join(found.outside)}", name)
-    return Condition(path, known, left_out, confined, found)
+            raise SlopeError("--known", f"must be a set that covers the mass: {'; '.join(found.outside)}", name)
+    return Condition(asked, found)
 
 
 def mobility_of(condition: Condition, folder: Path, summary: Path) -> exceedance.Mobility:
@@ -67,7 +58,7 @@ def mobility_of(condition: Condition, folder: Path, summary: Path) -> exceedance
     prefix = run_folders.prefix_of(summary)
     found = deposit.read(prefix, terrain, lambda text: None)
     mass = body.of_ground(found.raster, found.base, terrain, str(prefix))
-    return exceedance.of_body(mass, condition.events, condition.confined, condition.path)
+    return known.one_of_body(mass, condition.asked)
 
 
 # --- evaluation ---
@@ -78,10 +69,10 @@ class Runs:
     def __init__(self, sample: Sample, added: Sequence[farther.Batch], rows: Sequence[Mapping[str, Any]],
                  found: exceedance.Mobility):
         self.sample, self.added = sample, added
-        self.rows = [row for row in rows if row["status"] == "finished" and row.get("connected_m") is not None]
+        self.rows = [row for row in rows if row["status"] == "finished" and row.get("length_m") is not None]
         self.failed = len(rows) - len(self.rows)
         self.point = [tuple(row["set"][name] for name in sample.names) for row in self.rows]
-        self.lengths = self.column("connected_m") if self.rows else np.empty(0)
+        self.lengths = self.column("length_m") if self.rows else np.empty(0)
         self.exceedance = found.exceedance
         self.beyond = np.asarray(found.exceedance(self.lengths), float)
         if len(self.rows) >= 2:
@@ -124,8 +115,9 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
     first = next(row for row in rows if row["status"] == "finished")
     found = mobility_of(condition, output / first["run"], output / first["summary"])
     about: Dict[str, Any] = {
-        "set": condition.path.name, "events": len(condition.events), "left_out": list(condition.left_out),
-        "path": exceedance.WORDS[found.severe], "volume_Mm3": found.volume, "outside": found.outside}
+        "set": condition.asked.name, "events": condition.asked.number, "left_out": list(condition.asked.left_out),
+        "confined": condition.asked.confined,
+        "path": exceedance.WORDS[found.chosen], "volume_Mm3": found.volume, "outside": found.outside}
     for name in (HAZARD, WEIGHTS):
         (output / name).unlink(missing_ok=True)         # of a study before this one
     runs = Runs(sample, added.batches, rows, found)
@@ -158,6 +150,8 @@ def reach(runs: Runs, found: exceedance.Mobility) -> Dict[str, Any]:
     one = runs.weights
     return {"reached": one.reached, "short": one.short, "far": one.far, "runs": len(runs.rows), "failed": runs.failed,
             "effective": one.effective, "distance": one.distance,
+            "far_by_lobe": [float(found.exceedance(max(row["length_by_lobe_m"][k] for row in runs.rows)))
+                            for k in range(len(run_length.OTHERS))],
             "gaps": [{"low_m": gap.low, "high_m": gap.high, "share": gap.share} for gap in one.gaps],
             "shortest_m": float(runs.lengths.min()), "longest_m": float(runs.lengths.max()),
             "half_beyond_m": found.length_at(0.5), "path_m": float(found.path.length[-1]),
@@ -247,8 +241,17 @@ def summary(about: Mapping[str, Any]) -> str:
     more = f" (those of {added} points towards longer ones among them)" if added else ""
     return (f"the runs reach from {rounded(about['shortest_m'], 4)} to {rounded(about['longest_m'], 4)} m, where "
             f"{percent(about['reached'])} of {about['events']} events of {about['set']} end ({percent(about['short'])} "
-            f"before, {percent(about['far'])} beyond; {about['path']}); weighted by them the {about['runs']} "
-            f"runs{more} say as much as {about['effective']:.0f}")
+            f"before, {percent(about['far'])} beyond{by_lobe(about)}; {about['path']}); weighted by them the "
+            f"{about['runs']} runs{more} say as much as {about['effective']:.0f}")
+
+
+def by_lobe(about: Mapping[str, Any]) -> str:
+    """What share lies beyond if other lobes count, where that is another one."""
+    shares = [percent(one) for one in about.get("far_by_lobe") or ()]       # none in older files
+    if all(one == percent(about["far"]) for one in shares):
+        return ""
+    least = " and ".join(percent(one) for one in run_length.OTHERS)
+    return f" (with lobes of {least} {' and '.join(shares)})"
 
 
 def quantile_text(one: Mapping[str, Any], unit: str) -> str:

@@ -7,7 +7,7 @@ resistances.
 from pathlib import Path
 
 from ..errors import SlopeError
-from ..mobility import body, events, exceedance, relation
+from ..mobility import body, events, known, relation
 
 SET = events.OWN.stem
 PAPER = "by the paper's method"
@@ -40,7 +40,7 @@ def why_not(site: Path, volume: float, observed: bool) -> str:
         return (f"no set of known events covers this volume, {volume:,.0f} m3; ours has {low:g} to {high:g} "
                 "million m3")
     try:
-        found = exceedance.of_body(body.of_site(site), events.read())
+        found = known.one_of_body(body.of_site(site), known.choice())
     except SlopeError as error:
         return f"the mass cannot be compared with known events: {error}"
     return "; ".join(found.outside)

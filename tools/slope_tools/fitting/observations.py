@@ -3,7 +3,7 @@
 A mapped deposit gives: the lack of overlap 1 - CSI, with CSI = both/(both + simulated only + mapped only) by area; the
 distance from the highest released ball that 99 % of the mapped volume, or area, stay within; of a raster the volume in
 each of ZONES bands of that distance, which hold equal shares of the mapped volume; of an outline its area, and the
-distances of 50 and 90 % of it. Single numbers: the front, which is the end of the connected deposit, or the distance of
+distances of 50 and 90 % of it. Single numbers: the front, which is the length along the fall path, or the distance of
 95 or 99 % of the volume; the area ever covered; the volume on the road.
 """
 from dataclasses import dataclass, field
@@ -23,7 +23,7 @@ SHARES = {True: (0.5, 0.9, 0.99), False: (0.99,)}      # of an outline, of a ras
 ROAD = "remove_on_road_m3"
 KINDS = ("observed", "front", "area", "volume")     # what can be observed, as the options call it
 # what is compared with a front: name, column of the table of `slope study`
-FRONTS = {"connected": ("end of the connected deposit", "connected_m"),
+FRONTS = {"length": ("length along the fall path", "length_m"),
           "95": ("95 % of the volume within", "distance_95_m"), "99": ("99 % of the volume within", "distance_99_m")}
 
 
@@ -41,7 +41,7 @@ class Wanted:
     threshold: float            # m; thinner is no deposit
     local: bool                 # the mapped deposit is in local metres
     own: Mapping[str, float] = field(default_factory=dict)
-    front_is: str = "connected"
+    front_is: str = "length"
 
     def share(self, kind: str) -> float:
         """The tolerance of a kind."""
@@ -173,7 +173,7 @@ class Observations:
 def front(summary: Path, row: Mapping[str, Any], column: str) -> float:
     """The front (m) of a run of which it is known; 0 where nothing is left of the deposit."""
     found = row.get(column)
-    if found is None and column == FRONTS["connected"][1]:
+    if found is None and column == FRONTS["length"][1]:
         return 0.0
     if found is None:
         raise SlopeError(summary, "must have the distance of a share of the volume (travel: quantiles), which runs of "

@@ -8,24 +8,26 @@ from shapely.geometry.base import BaseGeometry
 
 from ..drawing import figures, maps, palettes, pictures
 from ..drawing.figures import plt
+from ..survey.crs import crs_name
 from ..survey.resampling import sample
 from .body import Body
 from .exceedance import WORDS, Mobility
+from .known import Found
 from .road import AtRoad
 
 MARKED = (0.9, 0.5, 0.1, 0.01)      # probabilities that are marked on the path
-STYLES = {True: "-", False: "--"}
+STYLES = ("-", "--", ":")           # of the curve that counts, and the others
 
 
 def draw_map(path: Path, mobility: Mobility, body: Body, road: Optional[BaseGeometry]) -> None:
-    """Relief, body, road, and the path in the colour of its severe exceedance."""
+    """Relief, body, road, and the path in the colour of the exceedance that counts."""
     way, raster = mobility.path, body.raster
     row, column = np.nonzero(body.depth)
     xs, ys = raster.transform * np.array([column + 0.5, row + 0.5])
     boxes = [(way.x.min(), way.y.min(), way.x.max(), way.y.max()), (xs.min(), ys.min(), xs.max(), ys.max())]
     shown = maps.window(raster, *boxes)
     with plt.rc_context(figures.STYLE):
-        figure, axes = maps.relief(raster, raster.z, shown, f"fall path, {WORDS[mobility.severe]}")
+        figure, axes = maps.relief(raster, raster.z, shown, f"fall path, {WORDS[mobility.chosen]}")
         z, where = maps.part(raster, raster.z, shown)
         maps.contours(axes, z, where, figures.contour_interval(z))
         axes.contour(maps.part(raster, (body.depth > 0).astype(float), shown)[0], [0.5], extent=where, origin="upper",
@@ -33,10 +35,11 @@ def draw_map(path: Path, mobility: Mobility, body: Body, road: Optional[BaseGeom
         if road is not None:
             maps.outline(axes, road, color=figures.ROAD, linewidth=1.0)
         points = np.column_stack([way.x, way.y])
-        middle = (mobility.curves[mobility.severe][1:] + mobility.curves[mobility.severe][:-1]) / 2
+        curve = mobility.curves[mobility.chosen]
+        middle = (curve[1:] + curve[:-1]) / 2
         drawn = axes.add_collection(LineCollection(np.stack([points[:-1], points[1:]], axis=1), cmap=palettes.PATH,
                                                    norm=plt.Normalize(0, 1), linewidths=3, array=middle))
-        figure.colorbar(drawn, cax=axes.inset_axes([1.02, 0, 0.03, 1]), label="share of known events that go beyond")
+        figure.colorbar(drawn, cax=axes.inset_axes([1.12, 0, 0.03, 1]), label="share of known events that go beyond")
         axes.plot(*way.crown[:2], "^", color=figures.RELEASE, ms=6, mec="white", mew=0.5)
         for share in MARKED:
             length = mobility.length_at(share)
@@ -44,22 +47,27 @@ def draw_map(path: Path, mobility: Mobility, body: Body, road: Optional[BaseGeom
                 x, y = (np.interp(length, way.length, values) for values in (way.x, way.y))
                 axes.plot(x, y, "o", color="black", ms=3)
                 axes.annotate(f"{100 * share:g} %", (x, y), xytext=(4, 3), textcoords="offset points", fontsize=7)
+        maps.crs_axes(axes, raster, crs_name(raster.crs) if raster.crs is not None else "")
         maps.save(figure, path)
 
 
-def draw_profile(path: Path, mobility: Mobility, body: Body, road: Optional[AtRoad]) -> None:
-    """Ground along the path above, probabilities below."""
-    way = mobility.path
-    ground = sample(body.raster, way.x, way.y)
+def draw_profile(path: Path, found: Found, body: Body, road: Optional[AtRoad]) -> None:
+    """Ground along the path above, probabilities below: of the events that count, of others the curve that would."""
+    counts = found.decides
+    way = counts.path
+    ground = way.elevation(body)
     with plt.rc_context(figures.STYLE):
         figure, (above, below) = plt.subplots(2, 1, figsize=(figures.FULL, 4.6), sharex=True)
         above.plot(way.length, ground, color="black", lw=1.0)
         above.fill_between(way.length, sample(body.raster._replace(z=body.base), way.x, way.y), ground,
                            color=figures.RELEASE, alpha=0.25, lw=0, label="released body")
-        above.axhline(way.crown[2], color=figures.RELEASE, lw=0.7, ls=":", label="height of the crown")
-        above.set(ylabel="height (m)")
-        for kind, curve in mobility.curves.items():
-            below.plot(way.length, curve, STYLES[kind], color=figures.COLOURS[0], label=WORDS[kind])
+        above.axhline(way.crown[2], color=figures.RELEASE, lw=0.7, ls=":", label="elevation of the crown")
+        above.set(ylabel="elevation (m)")
+        for style, kind in zip(STYLES, (counts.chosen, *(one for one in counts.curves if one != counts.chosen))):
+            below.plot(way.length, counts.curves[kind], style, color=figures.COLOURS[0], label=WORDS[kind])
+        for one in found.each:
+            if one is not counts and one.in_range:
+                below.plot(way.length, one.curves[one.chosen], color=figures.COLOURS[1], label=one.law.name)
         below.set(xlabel="length along the fall path (m)", ylabel="share that goes beyond", ylim=(0, 1.02),
                   xlim=(0, way.length[-1]))
         for axes in (above, below):
@@ -68,6 +76,6 @@ def draw_profile(path: Path, mobility: Mobility, body: Body, road: Optional[AtRo
                              label="road" if road.met else f"nearest to the road, {road.beside:.0f} m beside")
             axes.legend(loc="upper right")
             axes.grid(color="#dddddd", lw=0.4)
-        if not mobility.in_range:
-            above.set_title("no set of known events covers this mass", loc="left", color="#b3131b")
+        if not (found.by_set and found.by_set.in_range):
+            above.set_title(counts.law.name, loc="left")
         pictures.save(figure, path)

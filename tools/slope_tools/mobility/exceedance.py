@@ -1,22 +1,29 @@
 """How likely a mass goes beyond each point of its fall path, as known events of its volume and fall did.
 
 At a point at the length L the fall H is that of the ground there (as in PRE-RA of Mitchell et al. 2020): the
-probability is that of a longer event with this H. Where the path is steep it may rise, though a mass that goes beyond
-a point was beyond all before: the running minimum counts. Where the fall is below the set's least, near the crown, the
-set says nothing, and it is 1.
+probability is that of a longer event with this H. It begins at the toe of the body, where H and L begin to be those of
+a mass that has left its scar. Where the path is steep it may rise, though a mass that goes beyond a point was beyond
+all before: the running minimum counts. Of a fall that none of the events had they say nothing: there the curve is that
+of the last point before of which they do, 1 before the first one, and `said` is False.
 """
-from typing import Dict, List, NamedTuple, Optional, Sequence
+from typing import Dict, List, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
 
-from . import fall_path, relation
+from . import fall_path
 from .body import Body
-from .events import Event
 from .fall_path import FallPath
+from .landslides import Row
 from .relation import Relation
 
 FAR = 0.999             # the path is followed to where so many events ended
-WORDS = {True: "laterally confined", False: "not laterally confined"}
+HALF = 0.5
+WORDS = {"confined": "laterally confined", "unconfined": "not laterally confined",
+         "mixture": "confined or not, as often as known events",
+         "landslides_narrow": "the smaller scatter", "landslides_wide": "the larger scatter",
+         "landslides": "whichever scatter says more"}
+CONFINED = {"yes": "confined", "no": "unconfined", "unknown": "mixture"}        # what is asked for, and its curve
+Law = Union[Relation, Row]
 
 
 class Lies(NamedTuple):
@@ -32,39 +39,37 @@ class Lies(NamedTuple):
 class Mobility(NamedTuple):
     """Of a body on its fall path.
 
-    curves: {laterally confined: probability that the mass goes beyond each point of the path}, 1 at its beginning.
-    outside: why known events say nothing of this mass, a line each; none of them: in range.
+    curves: {kind, of the law: probability that the mass goes beyond each point of the path}, 1 up to the body's toe;
+    chosen: kind of the curve that counts; said: of which points the law's events had the fall; outside: why they say
+    nothing of this mass, a line each; none of them: in range.
     """
     path: FallPath
     volume: float                   # million m3
-    relation: Relation
-    curves: Dict[bool, np.ndarray]
+    law: Law
+    curves: Dict[str, np.ndarray]
+    chosen: str
+    said: np.ndarray
     outside: List[str]
 
     @property
     def in_range(self) -> bool:
-        """Whether the set covers the volume, and the fall at its median; else nothing may be conditioned on it."""
+        """Whether the events cover the volume, and the fall at their median; else nothing may be conditioned on it."""
         return not self.outside
 
-    @property
-    def severe(self) -> bool:
-        """Whether `confined` is that of the curve that counts: the confined one, if it was asked for."""
-        return True in self.curves
-
-    def exceedance(self, length, confined: Optional[bool] = None):
+    def exceedance(self, length, kind: Optional[str] = None):
         """Probability of going beyond a length (m, a number or an array) of the path; beyond its end that of its end.
 
-        confined: None for the severe curve.
+        kind: None for the curve that counts.
         """
-        return np.interp(length, self.path.length, self.curves[self.severe if confined is None else confined])
+        return np.interp(length, self.path.length, self.curves[kind or self.chosen])
 
-    def beyond_path(self, confined: Optional[bool] = None) -> float:
+    def beyond_path(self, kind: Optional[str] = None) -> float:
         """Share that goes beyond the end of the path."""
-        return float(self.curves[self.severe if confined is None else confined][-1])
+        return float(self.curves[kind or self.chosen][-1])
 
-    def length_at(self, share: float, confined: Optional[bool] = None) -> Optional[float]:
+    def length_at(self, share: float, kind: Optional[str] = None) -> Optional[float]:
         """Length (m) that this share of known events goes beyond; None where that is beyond the path's end."""
-        curve = self.curves[self.severe if confined is None else confined]
+        curve = self.curves[kind or self.chosen]
         if curve[-1] > share:
             return None
         k = int(np.argmax(curve <= share))
@@ -72,53 +77,60 @@ class Mobility(NamedTuple):
             return 0.0
         return float(np.interp(-share, -curve[k - 1:k + 1], self.path.length[k - 1:k + 1]))
 
-    def where_lies(self, length: float, confined: Optional[bool] = None) -> Lies:
+    def where_lies(self, length: float, kind: Optional[str] = None) -> Lies:
         """Where a run that reaches a length (m, along the path) lies among known events."""
-        share = float(self.exceedance(length, confined))
+        share = float(self.exceedance(length, kind))
         return Lies(share, 1 - share, bool(length >= self.path.length[-1]))
 
+    def says(self, length: float) -> bool:
+        """Whether the events had the fall of the path at a length (m)."""
+        at = min(int(np.searchsorted(self.path.length, length)), len(self.said) - 1)
+        return self.in_range and bool(self.said[at])
 
-def of_body(body: Body, events: Sequence[Event], confined: Optional[bool] = None, where="the set of events",
-            path: Optional[FallPath] = None) -> Mobility:
-    """The Mobility of a body; confined: None for both curves; where: what messages name of the set; path: another one.
 
-    Raises SlopeError for a set that gives no relation, and for a body on level ground.
+def of_body(body: Body, law: Law, chosen: Optional[str] = None, path: Optional[FallPath] = None) -> Mobility:
+    """The Mobility of a body; chosen: kind of the curve that counts, None: the law's last one; path: another one.
+
+    Raises SlopeError for a body on level ground.
     """
-    found = relation.of_events(events, where)
-    volume = body.volume / 1e6
-    if path is None:
-        relief = body.crown[2] - float(np.nanmin(body.raster.z))
-        path = fall_path.trace(body, max(found.quantile(FAR, volume, relief, kind) for kind in (False, True)))
-    curves = {kind: curve(path, found, volume, kind) for kind in ((True, False) if confined is None else (confined,))}
-    mobility = Mobility(path, volume, found, curves, [])
+    path = path or path_of(body, [law])
+    return on(body, path, law, chosen or law.kinds[-1])
+
+
+def path_of(body: Body, laws: Sequence[Law]) -> FallPath:
+    """The fall path as far as hardly any of the laws' events went."""
+    volume, relief = body.volume / 1e6, body.crown[2] - float(np.nanmin(body.raster.z))
+    return fall_path.trace(body, max(law.farthest(FAR, volume, relief) for law in laws))
+
+
+def on(body: Body, path: FallPath, law: Law, chosen: str) -> Mobility:
+    volume, toe = body.volume / 1e6, fall_path.toe(body, path)
+    low, high = law.falls
+    said = (path.fall >= low) & (path.fall <= high) & (path.fall > 0) & (path.length > 0)
+    said[:toe] = False
+    curves = {}
+    for kind in law.kinds:
+        share = np.ones(len(path.length))
+        share[said] = law.beyond(kind, path.length[said], volume, path.fall[said])
+        curves[kind] = np.minimum.accumulate(share)
+    mobility = Mobility(path, volume, law, curves, chosen, said, [])
     return mobility._replace(outside=outside(mobility))
 
 
-def curve(path: FallPath, found: Relation, volume: float, confined: bool) -> np.ndarray:
-    """Probability of going beyond each point of a path."""
-    least = found.falls[0]
-    if path.fall.max() < least:     # out of range, and said so
-        least = 0.0
-    known = (path.length > 0) & (path.fall > 0) & (path.fall >= least)
-    share = np.ones(len(path.length))
-    share[known] = found.exceedance(path.length[known], volume, path.fall[known], confined)
-    return np.minimum.accumulate(share)
-
-
 def outside(mobility: Mobility) -> List[str]:
-    """Lines on volume and fall outside of the set's range: the fall where half of the events end, or the path does."""
-    found, path = mobility.relation, mobility.path
+    """Lines on volume and fall outside of the events' range: the fall where half of them end, or the path does."""
+    law, path, said = mobility.law, mobility.path, np.flatnonzero(mobility.said)
     lines = []
-    low, high = found.volumes
+    low, high = law.volumes
     if not low <= mobility.volume <= high:
         lines.append(f"no set of known events covers this volume, {mobility.volume:.4g} million m3: those of the set "
                      f"have {low:g} to {high:g}")
-    low, high = found.falls
-    falls = sorted(float(np.interp(end, path.length, path.fall)) for end in
-                   (path.length[-1] if length is None else length for length in
-                    (mobility.length_at(0.5, kind) for kind in mobility.curves)))
-    wrong = [fall for fall in falls if not low <= fall <= high]
-    if wrong:
-        lines.append(f"no set of known events covers this height, {wrong[0]:.4g} m where half of them end (or the path "
+    low, high = law.falls
+    median = mobility.length_at(HALF)
+    fall = float(np.interp(path.length[-1] if median is None else median, path.length, path.fall))
+    if len(said) and mobility.curves[mobility.chosen][said[0]] <= HALF:     # before any fall of the set
+        fall = min(fall, float(path.fall[max(said[0] - 1, 0)]))
+    if not (len(said) and low <= fall <= high):
+        lines.append(f"no set of known events covers this height, {fall:.4g} m where half of them end (or the path "
                      f"does): those of the set fell {low:g} to {high:g} m")
     return lines

@@ -24,6 +24,7 @@ LEVEL = 1e-3            # m; heights that differ by less are the same
 LEAST = 1e-5            # a gradient below is none
 SHORTEST = 8            # a step that does not descend is halved, down to this part of it
 MOST_POINTS = 4000      # of a path
+RIM = 0.01              # of a body's largest depth
 TERRAIN, EVENTS, LINE = "where the terrain ends", "where hardly any known event arrives", "where the given line ends"
 
 
@@ -39,6 +40,10 @@ class FallPath(NamedTuple):
     fall: np.ndarray        # m
     end: str
     crown: Tuple[float, float, float]
+
+    def elevation(self, body: Body) -> np.ndarray:
+        """Of the ground before the collapse, m."""
+        return sample(body.raster, self.x, self.y)
 
 
 def trace(body: Body, longest: float) -> FallPath:
@@ -79,6 +84,13 @@ def on(body: Body, line: LineString, end: str) -> FallPath:
     x, y = np.array([line.interpolate(at).coords[0][:2] for at in length]).T
     fall = np.maximum(crown[2] - sample(body.raster, x, y), 0.0)
     return FallPath(x, y, length, np.nan_to_num(fall), end, crown)
+
+
+def toe(body: Body, path: FallPath) -> int:
+    """Index of the last point of a path on the body; 0 where none is. Its rim has no depth: rounding would decide."""
+    depth = sample(body.raster._replace(z=body.depth), path.x, path.y)
+    within = np.flatnonzero(depth > RIM * body.depth.max())
+    return int(within[-1]) if len(within) else 0
 
 
 class Smooth:

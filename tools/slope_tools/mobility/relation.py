@@ -19,7 +19,8 @@ LEAST = 12      # events: three for each of the four coefficients
 class Relation(NamedTuple):
     """coefficients: a, b, c, d; deviation: residual standard deviation (log10); r2: share of the variance explained.
 
-    inverse: (X'X)^-1; free: degrees of freedom; volumes (million m3) and falls (m): range of the events.
+    inverse: (X'X)^-1; free: degrees of freedom; volumes (million m3) and falls (m): range of the events; lateral: share
+    of them that are laterally confined.
     """
     coefficients: np.ndarray
     deviation: float
@@ -28,6 +29,26 @@ class Relation(NamedTuple):
     free: int
     volumes: Tuple[float, float]
     falls: Tuple[float, float]
+    lateral: float
+
+    @property
+    def kinds(self) -> Tuple[str, ...]:
+        """Of curves; the last one counts unless another is asked for."""
+        return "confined", "unconfined", "mixture"
+
+    @property
+    def name(self) -> str:
+        return f"{self.free + len(self.coefficients)} events"
+
+    def beyond(self, kind: str, length, volume: float, fall) -> np.ndarray:
+        """Share of events of a kind that run farther; the mixture has as many confined ones as the set."""
+        share = {"confined": 1.0, "unconfined": 0.0, "mixture": self.lateral}[kind]
+        return share * self.exceedance(length, volume, fall, True) \
+            + (1 - share) * self.exceedance(length, volume, fall, False)
+
+    def farthest(self, share: float, volume: float, fall: float) -> float:
+        """Length (m) that this share of the events of any kind stays within."""
+        return max(self.quantile(share, volume, fall, confined) for confined in (True, False))
 
     def _centre_and_scale(self, volume: float, fall, confined: bool):
         """Of log10 L of one more event; volume in million m3, fall in m (a number or an array)."""
@@ -47,10 +68,6 @@ class Relation(NamedTuple):
         centre, scale = self._centre_and_scale(volume, fall, confined)
         return stats.t.sf((np.log10(length) - centre) / scale, self.free)
 
-    def covers(self, volume: float, fall: float) -> bool:
-        """Whether both lie within the range of the events."""
-        return self.volumes[0] <= volume <= self.volumes[1] and self.falls[0] <= fall <= self.falls[1]
-
 
 def of_events(events: Sequence[Event], where="the set of events") -> Relation:
     """The relation of a set; raises SlopeError for fewer than LEAST events, or for events that do not determine it.
@@ -68,7 +85,8 @@ def of_events(events: Sequence[Event], where="the set of events") -> Relation:
     free = len(y) - x.shape[1]
     volumes, falls = ([getattr(one, name) for one in events] for name in ("volume", "fall"))
     return Relation(found, math.sqrt(rest @ rest / free), 1 - rest @ rest / ((y - y.mean()) ** 2).sum(),
-                    np.linalg.inv(x.T @ x), free, (min(volumes), max(volumes)), (min(falls), max(falls)))
+                    np.linalg.inv(x.T @ x), free, (min(volumes), max(volumes)), (min(falls), max(falls)),
+                    float(np.mean([one.confined for one in events])))
 
 
 def left_out(events: Sequence[Event]) -> List[float]:

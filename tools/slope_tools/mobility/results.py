@@ -1,98 +1,170 @@
-"""The Mobility of a body in words, as a table and as files; all of them or none."""
+"""A mass among known events in words, as a table and as files; all of them or none."""
 from pathlib import Path
-from typing import Any, Dict, List, NamedTuple, Optional, Sequence
+from typing import Any, Dict, List, NamedTuple, Optional
 
+import numpy as np
+from shapely.geometry import LineString
 from shapely.geometry.base import BaseGeometry
 
 from .. import disk
 from ..digits import rounded
 from ..provenance import version
+from ..survey import geopackage
+from ..survey.geopackage import Layer
 from .body import Body
 from .exceedance import WORDS, Mobility
 from .fall_path import TERRAIN
+from .known import Choice, Found
+from .landslides import NOT_OF_ROADS
 from .road import AtRoad
 
 TABLE, SUMMARY, MAP, PROFILE = "mobility.csv", "mobility.yaml", "mobility_map.png", "mobility_profile.png"
-FILES = (TABLE, MAP, PROFILE, SUMMARY)
+LINES = "mobility.gpkg"
+FILES = (TABLE, LINES, MAP, PROFILE, SUMMARY)
 SHARES = (0.95, 0.9, 0.5, 0.1, 0.05)        # of known events, whose lengths are given
-NAMES = {True: "confined", False: "unconfined"}
 
 
 class Source(NamedTuple):
-    """What a Mobility was made of, for its summary."""
+    """What a result was made of, for its summary."""
     terrain: str                        # or the folder of the site
     body: Body
-    events: str                         # file of the set
-    number: int                         # of its events that count
-    left_out: Sequence[str]             # names
+    asked: Choice
     road: Optional[BaseGeometry]        # local m
 
 
-def table(mobility: Mobility) -> str:
-    """The path as CSV: length, height below the crown, place, probability of going beyond; see Mobility.severe."""
-    path, severe = mobility.path, mobility.severe
-    columns = {"length_m": path.length, "height_m": path.fall, "x": path.x, "y": path.y,
-               "exceedance": mobility.curves[severe]}
-    columns.update({f"exceedance_{NAMES[kind]}": curve for kind, curve in mobility.curves.items() if kind != severe})
-    return disk.csv_text(columns, ([*(f"{value:.3f}" for value in row[:4]), *(f"{value:.6g}" for value in row[4:])]
-                                   for row in zip(*columns.values())))
+def columns(found: Found, body: Body) -> Dict[str, np.ndarray]:
+    """The path: length, height below the crown, elevation, place, probability of going beyond by each kind of events.
+
+    NaN: the events do not cover the mass, or none of them had this fall.
+    """
+    path = found.decides.path
+    curves = {f"exceedance_{kind}": np.where(one.said & one.in_range, curve, np.nan)
+              for one in found.each for kind, curve in one.curves.items()}
+    return {"length_m": path.length, "height_m": path.fall, "elevation_m": path.elevation(body), "x": path.x,
+            "y": path.y, **curves}
 
 
-def doubts(mobility: Mobility) -> List[str]:
-    """What must be said of it: out of range, or a path that ends too early; a line each."""
-    lines = [f"{text}; nothing may be conditioned on these probabilities" for text in mobility.outside]
-    median = [kind for kind in mobility.curves if mobility.length_at(0.5, kind) is None]
-    if median and mobility.path.end == TERRAIN:
-        share = percent(max(mobility.beyond_path(kind) for kind in median))
-        lines.append(f"the path leaves the terrain after {rounded(mobility.path.length[-1], 4)} m, where {share} of "
-                     "known events go on: take a larger terrain")
+def table(found: Found, body: Body) -> str:
+    """The columns as CSV; an empty cell stands for NaN."""
+    values = columns(found, body)
+    return disk.csv_text(values, ([*(f"{value:.3f}" for value in row[:5]),
+                                   *("" if np.isnan(value) else f"{value:.6g}" for value in row[5:])]
+                                  for row in zip(*values.values())))
+
+
+def write_lines(path: Path, found: Found, body: Body) -> None:
+    """The path for a GIS: a piece from each point to the next, with what the table has at its end."""
+    values = columns(found, body)
+    places = np.column_stack([values.pop("x"), values.pop("y")])
+    features = [(LineString(places[k:k + 2]), {name: None if np.isnan(one[k + 1]) else float(one[k + 1])
+                                               for name, one in values.items()}) for k in range(len(places) - 1)]
+    geopackage.write(path, {"path": Layer("LineString", dict.fromkeys(values, "float"), features)}, body.raster)
+
+
+def doubts(found: Found) -> List[str]:
+    """What must be said: out of range, or a path that ends too early; a line each."""
+    counts = found.decides
+    lines = [f"{text}; that set says nothing of this mass" for text in (found.by_set.outside if found.by_set else [])]
+    if counts.length_at(0.5) is None and counts.path.end == TERRAIN:
+        lines.append(f"the path leaves the terrain after {rounded(counts.path.length[-1], 4)} m, where "
+                     f"{percent(counts.beyond_path())} of known events go on: take a larger terrain")
     return lines
 
 
-def about(mobility: Mobility, source: Source, road: Optional[AtRoad]) -> Dict[str, Any]:
+def of_events(one: Mobility) -> Dict[str, Any]:
+    """Lengths by the curves of a set or a row; None where it does not cover the mass."""
+    return {kind: {"lengths_m": {str(share): one.length_at(share, kind) for share in SHARES},
+                   "beyond_path": one.beyond_path(kind)} if one.in_range else None for kind in one.curves}
+
+
+def at_road(found: Found, road: AtRoad) -> Dict[str, Any]:
+    """What is said of the road's near edge, and of its far one, by each kind of events; None: nothing.
+
+    at_least: where those that count say nothing, as the road lies too high.
+    """
+    counts = found.decides
+    about: Dict[str, Any] = {"at_least": None if counts.says(road.length) else at_least(counts, road.length)}
+    for name, length in (("exceedance", road.length), ("passed", road.passed)):
+        about.update({f"{name}_{kind}": float(one.exceedance(length, kind)) if one.says(length) else None
+                      for one in found.each for kind in one.curves})
+        about[name] = about[f"{name}_{counts.chosen}"]
+    return about
+
+
+def at_least(one: Mobility, length: float) -> Optional[float]:
+    """The share that goes beyond the next point of the path of which the events say something, None without any."""
+    after = np.flatnonzero(one.said & (one.path.length >= length))
+    return float(one.curves[one.chosen][after[0]]) if one.in_range and len(after) else None
+
+
+def about(found: Found, source: Source, road: Optional[AtRoad]) -> Dict[str, Any]:
     """What SUMMARY holds."""
-    path, found = mobility.path, mobility.relation
-    each = {NAMES[kind]: {"lengths_m": {str(share): mobility.length_at(share, kind) for share in SHARES},
-                          "beyond_path": mobility.beyond_path(kind)} for kind in mobility.curves}
-    return {
+    counts, by_set, row = found.decides, found.by_set, source.asked.row
+    path = counts.path
+    whole: Dict[str, Any] = {
         "slope_version": version(), "terrain": source.terrain, "volume_m3": source.body.volume,
-        "crown": dict(zip("xyz", path.crown)), "in_range": mobility.in_range, "warnings": doubts(mobility),
-        "path": {"length_m": path.length[-1], "height_m": path.fall[-1],
-                 "ends": path.end},
-        "exceedance_is": NAMES[mobility.severe], **each,
-        "road": road and {"on_path": road.met, "beside_path_m": road.beside, "length_m": road.length,
-                          "height_m": road.fall, "x": road.x, "y": road.y,
-                          "exceedance": float(mobility.exceedance(road.length)),
-                          **{f"exceedance_{NAMES[kind]}": float(mobility.exceedance(road.length, kind))
-                             for kind in mobility.curves if kind != mobility.severe}},
-        "set": {"file": source.events, "events": source.number, "left_out": list(source.left_out),
-                "volumes_Mm3": found.volumes, "falls_m": found.falls},
-        "relation": {**dict(zip(("constant", "log_volume", "log_fall", "confined"), found.coefficients)),
-                     "deviation": found.deviation, "degrees_of_freedom": found.free, "r2": found.r2},
-        "files": list(FILES)}
+        "crown": dict(zip("xyz", path.crown)), "in_range": bool(by_set and by_set.in_range),
+        "warnings": doubts(found),
+        "path": {"length_m": path.length[-1], "height_m": path.fall[-1], "ends": path.end},
+        "exceedance_is": counts.chosen, "confined_path": source.asked.confined}
+    for one in found.each:
+        whole.update(of_events(one))
+    whole["road"] = road and {
+        "on_path": road.met, "beside_path_m": road.beside, "length_m": road.length, "passed_m": road.passed,
+        "height_m": road.fall, "x": road.x, "y": road.y, **at_road(found, road)}
+    whole["landslides"] = {"row": f"{row.type}:{row.path}", "events": row.events, "a": row.a, "b": row.b,
+                           "deviations": list(row.deviations), "note": NOT_OF_ROADS,
+                           **(whole["landslides"] or {})}
+    if by_set:
+        law = source.asked.relation
+        whole["set"] = {"file": str(source.asked.file), "events": len(source.asked.known),
+                        "left_out": list(source.asked.left_out), "volumes_Mm3": law.volumes, "falls_m": law.falls,
+                        "confined": law.lateral}
+        whole["relation"] = {**dict(zip(("constant", "log_volume", "log_fall", "confined"), law.coefficients)),
+                             "deviation": law.deviation, "degrees_of_freedom": law.free, "r2": law.r2}
+    return {**whole, "files": list(FILES)}
 
 
-def words(mobility: Mobility, source: Source, road: Optional[AtRoad]) -> List[str]:
+def words(found: Found, source: Source, road: Optional[AtRoad]) -> List[str]:
     """What the user reads."""
-    path = mobility.path
+    counts, path = found.decides, found.decides.path
     x, y, z = path.crown
-    lines = [f"{rounded(mobility.volume)} million m3, crown at {x:.1f} {y:.1f}, {z:.1f} m high; {source.number} events "
-             f"of {Path(source.events).name}",
+    lines = [f"{rounded(counts.volume)} million m3, crown at {x:.1f} {y:.1f}, elevation {z:.1f} m",
              f"fall path of {rounded(path.length[-1], 4)} m, down to {rounded(path.fall[-1], 4)} m below the crown, "
              + path.end]
-    for kind in mobility.curves:
-        lengths = [f"{percent(share)} beyond {rounded(length, 4)} m" for share in SHARES
-                   if (length := mobility.length_at(share, kind)) is not None]
-        lines.append(f"{WORDS[kind]}: {', '.join(lengths) or 'nearly all beyond the path'}; beyond the "
-                     f"{'terrain' if path.end == TERRAIN else 'path'}: {percent(mobility.beyond_path(kind))}")
+    for one in found.each:
+        name = f"{len(source.asked.known)} events of {source.asked.file.name}" if one is found.by_set else \
+            f"{source.asked.row.name} (Corominas 1996; {NOT_OF_ROADS})"
+        if not one.in_range:
+            lines.append(f"{name}: nothing, they do not cover this mass")
+            continue
+        lines.append(f"{name}: {'these count' if one is counts else 'beside them'}, {WORDS[one.chosen]}")
+        lines += [f"  {WORDS[kind]}: {lengths(one, kind)}" for kind in one.curves]
     if road:
-        shares = ", ".join(f"{percent(float(mobility.exceedance(road.length, kind)))} ({WORDS[kind]})"
-                           for kind in mobility.curves)
         where = "the road, first met" if road.met else \
             f"the path does not meet the road, and is nearest to it, {rounded(road.beside, 4)} m beside,"
-        at = f"{rounded(road.length, 4)} m, {rounded(road.fall, 4)} m below the crown"
-        lines.append(f"{where} after {at}: {shares} go beyond")
+        lines.append(f"{where} after {rounded(road.length, 4)} m, {rounded(road.fall, 4)} m below the crown: "
+                     f"{of_road(counts, road)}")
     return lines
+
+
+def lengths(one: Mobility, kind: str) -> str:
+    """How far shares of the events go, of a curve."""
+    parts = [f"{percent(share)} beyond {rounded(length, 4)} m" for share in SHARES
+             if (length := one.length_at(share, kind)) is not None]
+    return (f"{', '.join(parts) or 'nearly all beyond the path'}; beyond the "
+            f"{'terrain' if one.path.end == TERRAIN else 'path'}: {percent(one.beyond_path(kind))}")
+
+
+def of_road(counts: Mobility, road: AtRoad) -> str:
+    """What the events that count say of the road."""
+    if not counts.says(road.length):
+        least = at_least(counts, road.length)
+        return f"no known event fell so little; at least {percent(least)} reach it" if least is not None else \
+            "nothing, no known event had such a fall"
+    text = f"{percent(float(counts.exceedance(road.length)))} go beyond its near edge"
+    return text + f", {percent(float(counts.exceedance(road.passed)))} beyond its far edge" * (
+        road.passed > road.length and counts.says(road.passed))
 
 
 def percent(share: float) -> str:
@@ -105,12 +177,13 @@ def percent(share: float) -> str:
     return f"{value:.2g} %" if value < 10 else f"{value:.0f} %" if value < 99 else f"{value:.1f} %"
 
 
-def write(folder: Path, mobility: Mobility, source: Source, road: Optional[AtRoad]) -> None:
+def write(folder: Path, found: Found, source: Source, road: Optional[AtRoad]) -> None:
     """All files into a folder."""
     from . import charts        # matplotlib: only once all is there
     with disk.complete(folder, SUMMARY) as new:
-        (new / TABLE).write_text(table(mobility), encoding="ascii")
-        charts.draw_map(new / MAP, mobility, source.body, source.road)
-        charts.draw_profile(new / PROFILE, mobility, source.body, road)
-        disk.write_yaml(new / SUMMARY, about(mobility, source, road), "slope mobility: m, local x y, volumes in m3; "
+        (new / TABLE).write_text(table(found, source.body), encoding="ascii")
+        write_lines(new / LINES, found, source.body)
+        charts.draw_map(new / MAP, found.decides, source.body, source.road)
+        charts.draw_profile(new / PROFILE, found, source.body, road)
+        disk.write_yaml(new / SUMMARY, about(found, source, road), "slope mobility: m, local x y, volumes in m3; "
                         "exceedance: share of known events that go farther")

@@ -1,5 +1,5 @@
 """Where a fall path meets a road."""
-from typing import NamedTuple
+from typing import NamedTuple, Optional
 
 import numpy as np
 from shapely.geometry import LineString, Point
@@ -14,6 +14,7 @@ class AtRoad(NamedTuple):
     met: bool
     beside: float       # m from that point to the road, 0 where they meet
     length: float       # m, along the path
+    passed: float       # m, where the path leaves the road after it; length where it does not meet it
     fall: float         # m below the crown
     x: float            # local m
     y: float
@@ -27,11 +28,25 @@ def at_road(path: FallPath, road: BaseGeometry) -> AtRoad:
         piece = LineString([one, other])
         crossed = piece.intersection(road)
         if not crossed.is_empty:
-            return point_on(path, path.length[k] + piece.project(nearest_points(crossed, Point(one))[0]), True, 0.0)
+            length = path.length[k] + piece.project(nearest_points(crossed, Point(one))[0])
+            return point_on(path, length, True, 0.0, far_edge(path, line, k, road))
     here, there = nearest_points(line, road)
     return point_on(path, line.project(here), False, here.distance(there))
 
 
-def point_on(path: FallPath, length: float, met: bool, beside: float) -> AtRoad:
-    return AtRoad(met, float(beside), float(length),
+def far_edge(path: FallPath, line: LineString, k: int, road: BaseGeometry) -> float:
+    """Length (m) at which a path leaves the road that it meets in its piece k."""
+    length = path.length[k]
+    for one, other, start in zip(line.coords[k:-1], line.coords[k + 1:], path.length[k:]):
+        piece = LineString([one, other])
+        crossed = piece.intersection(road)
+        if not crossed.is_empty:
+            length = start + piece.project(nearest_points(crossed, Point(other))[0])
+        if not road.intersects(Point(other)):
+            break
+    return float(length)
+
+
+def point_on(path: FallPath, length: float, met: bool, beside: float, passed: Optional[float] = None) -> AtRoad:
+    return AtRoad(met, float(beside), float(length), float(length if passed is None else passed),
                   *(float(np.interp(length, path.length, values)) for values in (path.fall, path.x, path.y)))

@@ -4,7 +4,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..survey.resampling import sample
 from . import fall_path
 from .body import Body
 
@@ -26,8 +25,7 @@ def below(body: Body) -> Below:
     """
     rows, columns = body.raster.z.shape
     path = fall_path.trace(body, math.hypot(rows, columns) * body.cell)
-    within = np.flatnonzero(sample(body.raster._replace(z=body.depth), path.x, path.y) > 0)
-    toe = within[-1] if len(within) else 0
+    toe = fall_path.toe(body, path)
     width = max(body.volume ** (1 / 3), body.cell)
     middle = 0.5 * (path.length[toe:-1] + path.length[toe + 1:])
     ends = [np.clip(middle + part * width, 0, path.length[-1]) for part in (-0.5, 0.5)]

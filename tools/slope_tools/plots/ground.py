@@ -41,13 +41,14 @@ class Ground:
             self.touched = self.touched | (other.thickness > 0)
         self.obstacles = obstacles.of_run(one)
         self.volume = data.largest_release()
+        self.confined = (data.study or {}).get("study", {}).get("confined", "unknown")      # none in older files
         if not self.touched.any():
             raise SlopeError(f"{one.prefix}.max_thickness.asc", "must have a cell that the mass ever touched")
 
     @functools.cached_property
     def known(self) -> known.Known:
         """The mass among known events."""
-        return known.of_mass(self.raster, self.before, self.slip_depth, self.volume)
+        return known.of_mass(self.raster, self.before, self.slip_depth, self.volume, self.confined)
 
     @functools.cached_property
     def below(self) -> steeper.Below:

@@ -1,7 +1,7 @@
 """How far known events of a mass's volume and fall go, as maps and section show it: marks across the fall path.
 
-A mark lies where a share of the events goes farther; there is one for a path that is laterally confined, and one for a
-path that is not. Where a mark would lie beyond the terrain there is none.
+A mark lies where a share of the events goes farther, by the curve that counts (laterally confined or not). Where a mark
+would lie beyond the terrain there is none.
 """
 from typing import Iterator, List, NamedTuple, Tuple
 
@@ -19,16 +19,16 @@ BESIDE = 0.1        # of a mark's distance along the path: a section that is no 
 class Mark(NamedTuple):
     """Where a share of the events goes farther: at a length (m) of the path; its middle and its ends, local m."""
     share: float
-    confined: bool
     length: float
     middle: np.ndarray      # x y
     ends: np.ndarray        # (2, 2)
 
 
 class KnownReach(NamedTuple):
-    """The path to the farthest mark, rows of x y (local m), and the marks; no path without marks."""
+    """The path to the farthest mark, rows of x y (local m), the marks, and of what curve; no path without marks."""
     path: np.ndarray
     marks: List[Mark]
+    kind: str = ""
 
 
 NOTHING = KnownReach(np.zeros((0, 2)), [])
@@ -36,8 +36,7 @@ NOTHING = KnownReach(np.zeros((0, 2)), [])
 
 def of_mobility(mobility: Mobility) -> KnownReach:
     """The KnownReach of a Mobility."""
-    lengths = [(share, confined, length) for share in SHARES for confined in sorted(mobility.curves)
-               if (length := mobility.length_at(share, confined)) is not None and length > 0]
+    lengths = [(share, length) for share in SHARES if (length := mobility.length_at(share)) is not None and length > 0]
     if not lengths:
         return NOTHING
     path = mobility.path
@@ -50,12 +49,12 @@ def of_mobility(mobility: Mobility) -> KnownReach:
         return np.asarray(line.interpolate(scale * length).coords[0])
 
     marks = []
-    for share, confined, length in lengths:
+    for share, length in lengths:
         way = at(length + half) - at(length - half)
         across = np.array([-way[1], way[0]]) / max(float(np.hypot(*way)), 1e-9)
-        marks.append(Mark(share, confined, length, at(length), at(length) + half * np.outer((-1, 1), across)))
+        marks.append(Mark(share, length, at(length), at(length) + half * np.outer((-1, 1), across)))
     before = np.column_stack([path.x, path.y])[path.length < far]
-    return KnownReach(np.concatenate([before, [at(far)]]), marks)
+    return KnownReach(np.concatenate([before, [at(far)]]), marks, WORDS[mobility.chosen])
 
 
 def on_line(reach: KnownReach, line: LineString) -> Iterator[Tuple[Mark, float]]:
@@ -70,10 +69,7 @@ def words(reach: KnownReach) -> str:
     """What the marks are, for a caption; "" without marks."""
     if not reach.marks:
         return ""
-    parts = []
-    for share, what in SHARES.items():
-        found = [f"{digits.three(one.length)} m ({WORDS[one.confined]})" for one in reach.marks if one.share == share]
-        if found:
-            parts.append(f"{what} of known events of this volume and height go farther than {' and '.join(found)}")
-    more = "" if len(reach.marks) == 2 * len(SHARES) else "; other marks would lie beyond the terrain"
-    return f" Marks across the fall path: {', '.join(parts)}{more}."
+    parts = [f"{SHARES[one.share]} of known events of this volume and height go farther than "
+             f"{digits.three(one.length)} m" for one in reach.marks]
+    more = "" if len(reach.marks) == len(SHARES) else "; other marks would lie beyond the terrain"
+    return f" Marks across the fall path ({reach.kind}): {', '.join(parts)}{more}."

@@ -18,6 +18,7 @@ LITTLE = 0.75   # share of the polygon; a base level that takes less of it is a 
 SCAR_REMEDY = ": --polygon takes a part of the scar, --least D leaves out the noise of two surveys"
 CLIFF = 60.0    # degrees, mean of a body's ground; it may be in feet
 TINY = 0.02     # of the volume; a smaller part of a body is none
+HOLLOW = 0.05   # of a scar's largest depth; a shallower hollow in its slip surface may be the survey's
 SHIFT = 0.25    # m between two surveys, beside the body
 COARSE = 50     # cells; a body of fewer is drawn with a coarse brush
 
@@ -70,10 +71,13 @@ def body_of(wanted: Wanted) -> Body:
                                        warn=doubts.append)
     if wanted.polygon:
         check_pits(raster, geometry, wanted)
-    area, surface, choices = (from_scar if wanted.scar else from_shape)(wanted, raster, geometry)
+    scar = scar_of(wanted, raster) if wanted.scar else None
+    if scar:
+        raster = scar.ground
+    area, surface, choices = from_scar(wanted, scar, geometry) if scar else from_shape(wanted, raster, geometry)
     slip = release_solve.slip_surface(area, release_solve.depths(area, surface), wanted.where)
     found = release_solve.measures(area, slip)
-    doubts += [*warnings(choices, found, area), *in_parts(area, slip, geometry)]
+    doubts += [*warnings(choices, found, area, slip), *in_parts(area, slip, geometry)]
     return Body(raster, geometry, area, slip, choices, found, doubts)
 
 
@@ -149,12 +153,15 @@ def check_pits(raster, geometry, wanted: Wanted) -> None:
                      f"the first at east {x + raster.offset[0]:.1f} north {y + raster.offset[1]:.1f}")
 
 
-def from_scar(wanted: Wanted, raster, geometry):
-    """Area, slip surface on its nodes and choices of a body that a raster gives."""
+def scar_of(wanted: Wanted, raster) -> release_scar.Scar:
     assert wanted.scar
     crs = as_crs(f"--assign-crs {wanted.scar}", wanted.scar_crs) if wanted.scar_crs else None
-    scar = release_scar.read(wanted.scar, wanted.scar_is, raster, wanted.least, crs)
-    depth, inside = scar.depth, None
+    return release_scar.read(wanted.scar, wanted.scar_is, raster, wanted.least, crs)
+
+
+def from_scar(wanted: Wanted, scar: release_scar.Scar, geometry):
+    """Area, slip surface on its nodes and choices of a body that a raster gives."""
+    raster, depth, inside = scar.ground, scar.depth, None
     if geometry is not None:
         inside = release_area.nodes_inside(raster, geometry)
         depth = np.where(inside, depth, 0.0)
@@ -202,7 +209,7 @@ def from_shape(wanted: Wanted, raster, geometry):
     return area, area.z - depth, choices
 
 
-def warnings(choices, found, area) -> List[Warned]:
+def warnings(choices, found, area, slip) -> List[Warned]:
     """What makes the body doubtful."""
     doubts = []
     if choices.get("sagitta_m", 1) < 0:
@@ -215,6 +222,12 @@ def warnings(choices, found, area) -> List[Warned]:
     if choices["shape"] == "slbl" and (curvature < 0 or share < LITTLE):
         doubts.append(Warned("little", {"form": f"bulges (curvature {curvature:.3g} /m) and " * (curvature < 0),
                                         "percent": 100 * share, "depth": found.mean_depth}))
+    if choices["shape"] == "scar":
+        hollow = release_solve.hollow(area, slip)
+        if hollow > HOLLOW * found.largest_depth:
+            doubts.append(Warned("hollow", {"depth": hollow, "remedy": "is it the mass on top of the terrain? Then "
+                                            "--scar-is height" if choices["scar_is"] == "depth" else "a smaller body, "
+                                            "or a survey without what came to rest there?"}))
     if found.mean_slope > CLIFF:
         doubts.append(Warned("cliff", {"degrees": found.mean_slope, "in_feet": plausible.in_feet(found.mean_slope)}))
     if found.cells < COARSE:

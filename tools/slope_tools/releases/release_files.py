@@ -16,12 +16,13 @@ from .release import Body, Wanted
 from .release_area import Area
 
 ROOM = 1.0      # m, of the box below and above the body
+GROUND = ".ground.asc", ".ground.yaml"      # before the collapse, where that is not the terrain that was given
 SUFFIXES = (".slip.asc", ".slip.yaml", ".depth.asc", ".depth.yaml", ".png", ".yaml", ".deck.txt")
 
 
-def paths(name: Path) -> List[Path]:
-    """All files that write() makes."""
-    return [name.with_name(name.name + suffix) for suffix in SUFFIXES]
+def paths(name: Path, raised: bool = False) -> List[Path]:
+    """All files of a body; raised: the ground before is one of them, which is the terrain with the mass on it."""
+    return [name.with_name(name.name + suffix) for suffix in (*SUFFIXES, *GROUND[:2 * raised])]
 
 
 def check(name: Path, inputs: Iterable[str]) -> None:
@@ -33,7 +34,7 @@ def check(name: Path, inputs: Iterable[str]) -> None:
     for source in inputs:
         sidecar = [Path(source).with_suffix(".yaml")] if Path(source).suffix == ".asc" else []
         for path in (Path(source), *sidecar):
-            for made in paths(name):
+            for made in paths(name, raised=True):
                 if made.exists() and path.exists() and made.samefile(path):
                     raise SlopeError("-o", f"must be another name: {made} belongs to an input", name)
 
@@ -72,14 +73,25 @@ def write(name: Path, terrain: str, raster: Raster, area: Area, slip: np.ndarray
         made[".deck.txt"].write_text(release_deck.text(deck_body(name, terrain, raster, area, slip)), encoding="utf-8")
 
 
-def write_body(name: Path, wanted: Wanted, body: Body) -> None:
-    """Write all files of what release.body_of() gave."""
+def write_body(name: Path, wanted: Wanted, body: Body, raised: bool = False) -> None:
+    """Write all files of what release.body_of() gave; raised: the ground before, too."""
+    given, ground = wanted, name.with_name(name.name + GROUND[0])
+    if raised:
+        wanted = wanted._replace(terrain=str(ground))
     about = {"slope_version": version(), "terrain": wanted.terrain, "polygon": wanted.polygon, **body.choices,
              "body": body.measures._asdict(), "cell": body.area.cell, "crs": crs_name(body.raster.crs),
              "origin": {"east": float(body.raster.offset[0]), "north": float(body.raster.offset[1])},
              "warnings": [str(one) for one in body.warnings]}
     write(name, wanted.terrain, body.raster, body.area, body.slip, about, body.geometry,
           f"{name.name}: {body.measures.volume:,.0f} m\u00b3, up to {body.measures.largest_depth:.3g} m deep")
+    if raised:
+        write_ground(ground, given, body)
+
+
+def write_ground(path: Path, wanted: Wanted, body: Body) -> None:
+    """The ground before the collapse, where the mass lies on top of the terrain that was given."""
+    rasters.write_asc_local(path, body.raster, {"sources": [wanted.terrain, wanted.scar],
+                                                "steps": ["terrain and the height of the mass on it"]}, exact=True)
 
 
 def deck_body(name: Path, terrain: str, raster: Raster, area: Area, slip: np.ndarray) -> release_deck.Body:

@@ -1,4 +1,4 @@
-"""A body from a raster: a second survey of the surface, depths, or the change between two surveys."""
+"""A body from a raster: a second survey of the surface, depths, the change between two, or what lies on the terrain."""
 from typing import NamedTuple, Optional
 
 import numpy as np
@@ -12,7 +12,7 @@ from ..survey.rasters import Raster, crs_name
 from ..survey.resampling import sample
 from .release_solve import THINNEST
 
-KINDS = ("surface", "depth", "change")
+KINDS = ("surface", "depth", "change", "height")
 ALIKE = 0.7     # of the terrain's scatter: that of the differences to a second survey of it is smaller
 FEW = 50        # nodes on which two surveys must have heights, to be compared beside the scar
 
@@ -21,6 +21,7 @@ class Scar(NamedTuple):
     """What a raster says of a body."""
     depth: np.ndarray           # m, >= 0, on the nodes of the terrain, 0 where there is none
     kind: str                   # of KINDS
+    ground: Raster              # before the collapse: the terrain, with the mass on it where that is its height
     above: Optional[np.ndarray]     # m, of heights: the terrain's less the raster's, NaN where either has none
 
 
@@ -28,9 +29,9 @@ def read(path: str, kind: Optional[str], raster: Raster, least: float, crs: Opti
     """The scar of a raster on the nodes of a terrain.
 
     kind: "surface", heights after the event; "depth", of the slip surface below the terrain, positive down; "change",
-    after minus before, of which what is negative counts; None: heights, if they follow the terrain's. crs: of the
-    raster, whatever it says. Depths below `least` (m) are 0. The scar's grid may be
-    another one: bilinear between its cell centres, and reprojected. A raster without a CRS is taken to be in the
+    after minus before, of which what is negative counts; "height", of the mass on top of the terrain, which is the slip
+    surface; None: heights, if they follow the terrain's. crs: of the raster, whatever it says. Depths below `least` (m)
+    are 0. The scar's grid may be another one: bilinear between its cell centres, and reprojected. A raster without a CRS is taken to be in the
     terrain's. Depths below a millimetre, to which a terrain's heights are rounded, are none. Raises SlopeError on a
     raster that is none, lies elsewhere, or holds no depth.
     """
@@ -38,20 +39,22 @@ def read(path: str, kind: Optional[str], raster: Raster, least: float, crs: Opti
     if kind is None:
         check_heights(path, values, raster)
         kind = "surface"
-    if kind == "depth":
+    if kind in ("depth", "height"):
         wrong = np.nanmin(values)
         if wrong < 0:
-            raise SlopeError(path, "must hold depths >= 0, positive down; if it is the change of the surface, give "
-                             "--scar-is change", f"{wrong:.6g}")
-    depth = raster.z - values if kind == "surface" else values if kind == "depth" else -values
+            what = "depths >= 0, positive down" if kind == "depth" else "heights above the terrain >= 0"
+            raise SlopeError(path, f"must hold {what}; if it is the change of the surface, give --scar-is change",
+                             f"{wrong:.6g}")
+    depth = raster.z - values if kind == "surface" else -values if kind == "change" else values
     with np.errstate(invalid="ignore"):
         depth = np.where(depth >= max(least, THINNEST), depth, 0.0)      # NaN too
     depth = np.maximum(depth, 0.0)
     if not depth.any():
         what = {"surface": "be lower than the terrain (are the surveys before and after exchanged?)",
-                "depth": "hold a depth > 0", "change": "hold a change < 0"}
+                "depth": "hold a depth > 0", "change": "hold a change < 0", "height": "hold a height > 0"}
         raise SlopeError(path, f"must {what[kind]} somewhere" + (f", by --least {least:g} m" if least else ""))
-    return Scar(depth, kind, raster.z - values if kind == "surface" else None)
+    return Scar(depth, kind, raster._replace(z=raster.z + depth) if kind == "height" else raster,
+                raster.z - values if kind == "surface" else None)
 
 
 def check_heights(path: str, values: np.ndarray, raster: Raster) -> None:

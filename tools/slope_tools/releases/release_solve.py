@@ -1,4 +1,5 @@
 """From a slip surface to a body: its depths, its numbers, and the free number that makes a depth or a volume."""
+import heapq
 import math
 from typing import Callable, NamedTuple, Tuple
 
@@ -121,6 +122,34 @@ def measures(area: Area, slip: np.ndarray) -> Measures:
                     float(body.sum()) * area.cell ** 2, int(body.sum()), slope_of(area.z, area.cell, body),
                     slope_of(slip, area.cell, body), math.degrees(math.atan2(east[0], east[1])) % 360,
                     wall(depth, area.inside), float(area.z[body].max()), float(area.z[body].min()))
+
+
+def hollow(area: Area, slip: np.ndarray) -> float:
+    """The largest depth (m) of a closed hollow in the slip surface of a body: below the lowest way out of it.
+
+    The ground is flooded from the rim of the area, the lowest cells first.
+    """
+    z = np.where(np.isnan(slip), -np.inf, slip)     # NODATA is a way out
+    body = np.nan_to_num(area.z - slip) > 0
+    level = np.full(z.shape, np.nan)
+    queue = [(float(z[place]), place) for place in zip(*np.nonzero(~body | edge(z.shape)))]
+    for height, place in queue:
+        level[place] = height
+    heapq.heapify(queue)
+    while queue:
+        height, (row, column) = heapq.heappop(queue)
+        for near in ((row + down, column + right) for down in (-1, 0, 1) for right in (-1, 0, 1)):
+            if 0 <= near[0] < z.shape[0] and 0 <= near[1] < z.shape[1] and np.isnan(level[near]):
+                level[near] = max(height, z[near])
+                heapq.heappush(queue, (float(level[near]), near))
+    return float((level - z)[body].max(initial=0.0))
+
+
+def edge(shape: Tuple[int, ...]) -> np.ndarray:
+    """Mask of the outermost nodes."""
+    found = np.ones(shape, bool)
+    found[1:-1, 1:-1] = False
+    return found
 
 
 def wall(depth: np.ndarray, inside: np.ndarray) -> float:

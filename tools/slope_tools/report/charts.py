@@ -31,7 +31,7 @@ TITLES = {REMOVE: "Volume to remove from the road", "remove_on_road_m3": "Volume
 
 def quantities(data):
     """{column: what it is} of those that all finished runs have a number of; of a single run, of its summary."""
-    rows = data.finished or [of_run(data.result.summary, data.connected())]
+    rows = data.finished or [of_run(data.result.summary, data.length())]
     return {name: label for name, (label, _) in NAMES.items()
             if all(row.get(name) is not None for row in rows)}
 

@@ -95,7 +95,7 @@ class Data:
     def __init__(self, folder, shown=None):
         self.folder, self.study = folder, None
         self.rows, self.finished, self.settings, self.repeats = [], [], {}, {}
-        self.road = self.road_line = self.removed = self._connected = self._releases = None
+        self.road = self.road_line = self.removed = self._length = self._releases = None
         self.over_all, self.volumes = {}, {}
         if (folder / "study.yaml").is_file():
             self._read_study(shown)
@@ -215,12 +215,12 @@ class Data:
                 found.append((self.label_of(row), release(summary, texts)))
         return found
 
-    def connected(self):
-        """The connected deposit of the shown run; None where it is nowhere thick enough."""
-        if self._connected is None:
-            from ..deposits.connected import connected
-            self._connected = connected(self.result.deposit), True
-        return self._connected[0]
+    def length(self):
+        """The run_length.RunLength of the shown run; None where its deposit is nowhere thick enough."""
+        if self._length is None:
+            from ..mobility import run_length
+            self._length = run_length.of_run(self.result.deposit, self.result.terrain_path), True
+        return self._length[0]
 
     # --- runs and their names ---
 

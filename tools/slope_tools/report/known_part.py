@@ -9,7 +9,7 @@ from .ensemble_part import Ensemble, indices_text, read_curve
 
 
 class KnownEvents:
-    """Of a data.Data whose ensemble was made with --mobility; numbers writes and keeps them, picture the template's."""
+    """Of a data.Data whose ensemble was made with --known; numbers writes and keeps them, picture the template's."""
 
     def __init__(self, data, numbers, picture):
         self.data, self.numbers, self.picture = data, numbers, picture

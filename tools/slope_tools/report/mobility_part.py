@@ -1,9 +1,6 @@
 """Where the runs of a report lie among known events, by how far their deposits reach.
 
-A run's length is that of its connected deposit, from the highest released ball, in plan and as the crow flies. That of
-a known event is the length of its path from crown to tip. The first is the shorter one: a path has bends, and a mapped
-tip may lie beyond the last ground that is covered by more than the connected deposit's 0.1 m. So a run seems to be less
-mobile than it is. (A cell of the deposit adds up to its diagonal.)
+The lengths of both are along the fall path, from crown to tip (mobility.run_length).
 """
 from typing import List, NamedTuple, Optional, Tuple
 
@@ -15,7 +12,7 @@ WHAT = "Known events"
 
 class Lies(NamedTuple):
     """Where runs lie; mobility: None, and why, where no set covers them."""
-    lengths: List[float]                # m, of the connected deposits that there are
+    lengths: List[float]                # m, of the runs that left a deposit
     mobility: Optional[exceedance.Mobility]
     why: str
 
@@ -33,15 +30,15 @@ def where_lie(data, ground) -> Lies:
     lengths = lengths_of(data)
     found = ground.known
     if found.mobility and not lengths:
-        return Lies(lengths, None, "No run has a connected deposit, whose length could be compared with known events.")
+        return Lies(lengths, None, "No run has a deposit, whose length could be compared with known events.")
     return Lies(lengths, found.mobility, found.why and f"{found.why}.")
 
 
 def lengths_of(data) -> List[float]:
-    """Of the connected deposit of each finished run that has one."""
+    """Of each finished run that left a deposit."""
     if data.study:
-        return sorted(row["connected_m"] for row in data.finished if row.get("connected_m") is not None)
-    one = data.connected()
+        return sorted(row["length_m"] for row in data.finished if row.get("length_m") is not None)
+    one = data.length()
     return [one.distance] if one else []
 
 
@@ -49,25 +46,24 @@ def sentence(found: Lies, numbers, label: str) -> str:
     """How far the runs reach, and how many known events end there or before."""
     assert found.mobility is not None
     ends = list(dict.fromkeys((found.lengths[0], found.lengths[-1])))
-    reach = " to ".join(numbers("connected deposit", "m", length, label) for length in ends)
+    reach = " to ".join(numbers("length along the fall path", "m", length, label) for length in ends)
     shares = []
-    for kind in (False, True):
+    for kind in (found.mobility.chosen, "confined", "unconfined"):
         lies = [found.mobility.where_lies(length, kind) for length in ends]
         for one in lies:
             numbers.rows.append((f"known events that reach at most as far, {exceedance.WORDS[kind]}", "%", label,
                                  percent(one.at_most).split()[-2], 100 * one.at_most))
         shares.append("at least " * lies[-1].beyond
                       + " to ".join(dict.fromkeys(percent(one.at_most) for one in lies)))
-    who = "The connected deposit reaches" if len(ends) == 1 else "The connected deposits of the runs reach"
-    return (f"{who} {reach} m: as far as {shares[0]} of rock avalanches of this volume and height do ({shares[1]} "
-            "where the path is laterally confined); the others go farther. The lengths of the runs are as the crow "
-            "flies and without stray balls, those of the events along the path to the tip, so that rather too many of "
-            "these seem to go farther (slope mobility)." + beyond_the_terrain(found.mobility, numbers, label))
+    who = "The deposit reaches" if len(ends) == 1 else "The deposits of the runs reach"
+    return (f"{who} {reach} m: as far as {shares[0]} of rock avalanches of this volume and height do "
+            f"({exceedance.WORDS[found.mobility.chosen]}; {shares[1]} of those on a laterally confined path, "
+            f"{shares[2]} of the others); the others go farther." + beyond_the_terrain(found.mobility, numbers, label))
 
 
 def beyond_the_terrain(mobility: exceedance.Mobility, numbers, label: str) -> str:
     """What the edge of the terrain hides, if half of the events of either kind go beyond; else nothing."""
-    shares = [mobility.beyond_path(kind) for kind in (False, True)]
+    shares = [mobility.beyond_path(kind) for kind in ("unconfined", "confined")]
     if max(shares) <= 0.5:      # with hardly any left, the path ends within the terrain
         return ""
     length = numbers("fall path within the terrain", "m", mobility.path.length[-1], label)

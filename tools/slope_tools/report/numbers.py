@@ -4,6 +4,8 @@ import io
 
 from .. import digits, disk
 from ..deposits import rest, travel_shares
+from ..mobility.results import percent
+from ..mobility.run_length import LEAST, OF_99, OTHERS
 from ..statistics import headline
 from ..tables import withheld_words
 from .release_part import over_runs
@@ -166,20 +168,20 @@ def travel_card(data, numbers):
             return {"what": what, "number": UNKNOWN, "unit": "", "note": f"a run {LOST if left else OLD}{farthest}"}
         row = names[largest[key]["run"]]
         value, angle, name = row[key], row[travel_shares.REACH], data.label_of(row)
-        connected = row.get("connected_m")
+        length = row.get("length_m")
     else:
         shares = travel_shares.columns(data.result.summary)
         value, angle, name = shares[key], shares[travel_shares.REACH], ""
         farthest = f"; farthest ball {numbers('farthest ball', unit, farthest_of(data.result.summary)[0])} m"
-        connected = data.connected() and data.connected().distance
+        length = data.length() and data.length().distance
         if value is None:
             volume = data.result.summary["volume"]
             left = volume["lost"] > travel_shares.BEYOND * volume["released"]
             return {"what": what, "number": UNKNOWN, "unit": "", "note": f"a run {LOST if left else OLD}{farthest}"}
     note = ("in plan from the highest released ball, reach angle "
             f"{numbers('reach angle of 99 %', 'degrees', angle, name)} degrees")
-    if connected is not None:
-        note += f"; connected deposit {numbers('connected deposit', unit, connected, name)} m"
+    if length is not None:
+        note += f"; {numbers('length along the fall path', unit, length, name)} m along the fall path"
     return {"what": what, "number": numbers("99 % within", unit, value, name), "unit": unit,
             "note": note + farthest + (f". Run: {name}" if name and data.study else "")}
 
@@ -221,7 +223,7 @@ def rest_card(data):
 # --- tables ---
 
 def travel_rows(data, numbers):
-    """Share of the volume, distance and reach angle, of the shown run; the connected deposit and the farthest ball."""
+    """Shares of the volume, the length along the fall path and the farthest ball of the shown run: distance, angle."""
     one = data.result
     shares = travel_shares.columns(one.summary)
     rows = []
@@ -230,11 +232,17 @@ def travel_rows(data, numbers):
         rows.append((f"{share} % of the volume", *(numbers(f"{share} %: {what}", unit, shares[key])
                                                    for key, what, unit in zip(keys, ("distance", "reach angle"),
                                                                               ("m", "degrees")))))
-    found = data.connected()
+    found = data.length()
     if found is not None:
-        rows.append((f"connected deposit, thicker than {found.threshold:g} m",
-                     numbers("connected deposit: distance", "m", found.distance),
-                     numbers("connected deposit: reach angle", "degrees", found.reach_angle)))
+        lobe = "length along the fall path, to the farthest lobe of at least"
+        rows.append((f"{lobe} {percent(LEAST)}", numbers("length along the fall path", "m", found.distance),
+                     numbers("length along the fall path: reach angle", "degrees", found.angle)))
+        rows += [(f"{lobe} {percent(least)}", numbers(f"length by lobes of {percent(least)}", "m", length), "")
+                 for least, length in zip(OTHERS, found.others) if abs(length - found.distance) > 1e-6]
+        rows.append(("the same as the crow flies", numbers("straight length", "m", found.straight), ""))
+        check = shares[travel_shares.DISTANCE]
+        rows.append((f"a check of it without a threshold: 99 % over {OF_99:g}",
+                     numbers(f"99 % over {OF_99:g}", "m", check and check / OF_99), ""))
     distance, angle = farthest_of(one.summary)
     rows.append(("the one farthest ball", numbers("farthest ball: distance", "m", distance),
                  numbers("farthest ball: reach angle", "degrees", angle)))

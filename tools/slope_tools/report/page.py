@@ -25,14 +25,14 @@ from .warnings import AMBER, warnings
 MEANING = re.compile(r"^\s*variable\s+(\w+)\s+index\s.*?#\s*(.*?)\s*$", re.MULTILINE)
 # columns of a study's table: head, unit, key
 COLUMNS = (("released", "m3", "released_m3"), ("99 % within", "m", "distance_99_m"),
-           ("reach angle", "deg", "reach_99_deg"), ("connected deposit", "m", "connected_m"),
+           ("reach angle", "deg", "reach_99_deg"), ("length along the fall path", "m", "length_m"),
            ("farthest ball", "m", "front_m"), ("thickness", "m", "thickness_m"), ("ended at", "s", "stop_time_s"),
            ("stop angle", "deg", "stop_angle_deg"))
 ROAD_COLUMNS = (("to remove", "m3", "remove_m3"), ("on the road", "m3", "remove_on_road_m3"),
                 ("beyond it", "m3", "beyond_road_m3"), ("road blocked", "m", "blocked_m"))
 MEANS = (("to remove", "m3", "remove_m3"), ("on the road", "m3", "remove_on_road_m3"),
          ("beyond it", "m3", "beyond_road_m3"), ("99 % within", "m", "distance_99_m"),
-         ("connected deposit", "m", "connected_m"), ("centroid moved", "m", "centroid_m"))
+         ("length along the fall path", "m", "length_m"), ("centroid moved", "m", "centroid_m"))
 
 
 class Page:
@@ -181,7 +181,7 @@ class Page:
         tables: List[Dict[str, Any]] = []
         if self.reference is None:
             return None
-        own = self.data.finished or [of_run(self.data.result.summary, self.data.connected())]
+        own = self.data.finished or [of_run(self.data.result.summary, self.data.length())]
         for key, quantity in self.reference.quantities.items():
             what, unit = NAMES[key]
             xs = sorted({x for points in quantity.series.values() for x, _ in points})

@@ -118,6 +118,12 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
     wanted = wanted_body(choices, new)
     raster = terrain(choices, new, tell, keep)
     found = body_of(choices, wanted, raster, keep)
+    if found.choices.get("scar_is") == "height":
+        about = disk.parse_yaml((new / TERRAIN).with_suffix(".yaml"), "the sidecar of a terrain")
+        about["steps"] = [*about["steps"], f"the height of the mass in {wanted.scar} added"]
+        rasters.write_asc_local(new / TERRAIN, found.raster, {key: about[key] for key in ("filled_cells", "sources",
+                                                                                          "steps")}, exact=True)
+        raster = found.raster
     tell(release.text(found))
     for line in found.warnings:
         keep(line)

@@ -41,7 +41,7 @@ DERIVED = (("balls", "diameter"), ("balls", "number"), ("model", "speed"), ("mod
 RETIRED = ("field_diameter", "field_ratio")
 
 # sections that `slope study` and the report read when they run, except for files, of which the folder has copies
-READ_LATER = ("project", "road", "study")
+READ_LATER = ("project", "road", "study", "known")
 Choices = Dict[str, Any]        # {section: {key: value}}, complete
 Derived = Dict[str, Any]        # {"section.key": value} of DERIVED
 
@@ -68,7 +68,11 @@ def defaults() -> Choices:
 def complete(given: Choices) -> Choices:
     """Choices with the defaults of all that is not given; with those of an older site's ground, if it has some."""
     old = {"model": dict.fromkeys(RETIRED)} if has_old_ground(given) else {}
-    return {name: {**entries, **old.get(name, {}), **(given.get(name) or {})} for name, entries in defaults().items()}
+    found_ = {name: {**entries, **old.get(name, {}), **(given.get(name) or {})} for name, entries in defaults().items()}
+    known = found_["known"]
+    if isinstance(known["confined"], bool):        # yes and no without quotes
+        known["confined"] = "yes" if known["confined"] else "no"
+    return found_
 
 
 def has_old_ground(given: Choices) -> bool:

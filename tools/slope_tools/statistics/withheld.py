@@ -31,7 +31,7 @@ class Facts(NamedTuple):
     failed: int
     moving: int                     # not at rest at their end
     left: float                     # share of the released volume that left before or beside the road, the largest
-    length: Optional[float]         # m, of the longest connected deposit; None: no run has one
+    length: Optional[float]         # m, of the longest run; None: no run has one
     median: Optional[float]         # m, length that half of known events exceed; None: no set covers the mass
     size: str = ""                  # why the size error is not trusted; "": it is, or was not measured
 

@@ -13,6 +13,7 @@ from ..deposits import left, rest, travel_shares
 from ..ensembles import ensemble, known_study
 from ..runs import repeats
 from ..seismic import chain_files
+from ..sites import site_choices
 from ..survey import rasters, roads
 from ..tables import (combinations, intensity, quantities, road_runs, size_error, step_check, structures, study_table,
                       usable, withheld_words)
@@ -65,9 +66,11 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
     first = next((run for run in todo if not run.error), None)
     written = maps.write(output, terrain_place(first) if first else None)
     keys = ["front_m", "thickness_m", "max_thickness_m", "max_speed_m_s"]
-    keys += [key for key in (travel_shares.DISTANCE, "connected_m") if key in names]
+    keys += [key for key in (travel_shares.DISTANCE, "length_m") if key in names]
+    confined = confined_of(setup, questions)
     about = {
-        "study": {"deck": deck.name, "set": settings, "repeat": repeated, "runs": len(rows), "finished": len(finished),
+        "study": {"deck": deck.name, "confined": confined,
+                  "set": settings, "repeat": repeated, "runs": len(rows), "finished": len(finished),
                   "method": questions.method, "ranks": work.ranks, "jobs": work.jobs, "package": work.package,
                   "collected": provenance.now(), "machine": provenance.machine()},
         "largest": {key: largest(finished, key) for key in keys if finished},
@@ -81,7 +84,7 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
     if order:
         about["ensemble"] = ensemble.evaluate(order, rows, output, first and terrain_place(first), maps.problem)
         about["ensemble"]["withheld"] = usable.reasons_of_ensemble(
-            rows, events_of(setup, first, finished[0]),
+            rows, events_of(setup, first, finished[0], confined),
             case_of(setup, questions, finished[0])._replace(sampled=True)) if setup.road and finished else []
     elif setup.road and finished:
         distrust = untrusted(errors, groups)
@@ -102,7 +105,8 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         if unknown and questions.sizes and size_error.falls(questions.sizes, "remove_m3"):
             about["size_error_unusable"] = f"{unknown}. The volume falls with the size of the balls: nothing is added"
             unknown = ""
-        usable.judge(best, rows, events_of(setup, first, finished[0]), case_of(setup, questions, finished[0]), unknown)
+        usable.judge(best, rows, events_of(setup, first, finished[0], confined),
+                     case_of(setup, questions, finished[0]), unknown)
     if setup.road and finished:
         known = (about["ensemble"] or {}).get("known_events") or {}
         about["stretches"] = stretches_of(output, finished, known.get("weights"))
@@ -153,12 +157,21 @@ def untrusted(errors: Optional[SizeErrors], groups) -> Optional[str]:
     return "; ".join(errors.distrust(str(group.rows[0]["variables"][errors.variable]) for group in groups)) or None
 
 
-def events_of(setup: Setup, run, row) -> Optional[usable.Events]:
+def confined_of(setup: Setup, questions: Questions) -> str:
+    """What was said of the path of the mass: with the ensemble's known events, or in site.yaml; "unknown": nothing."""
+    condition = questions.order and questions.order.condition
+    if condition:
+        return condition.asked.confined
+    site = questions.site or setup.deck.parent
+    return site_choices.read(site)["known"]["confined"] if (site / site_choices.NAME).is_file() else "unknown"
+
+
+def events_of(setup: Setup, run, row, confined: str) -> Optional[usable.Events]:
     """Known events of the mass of a run, of its row."""
     summary = setup.output / row["summary"]
     raster = placed(run_folders.load_raster(run_folders.prefix_of(summary), "thickness"), run)
     road = setup.road.read(raster).polygon if setup.road else None
-    return usable.known_events(run_folders.prefix_of(summary), terrain_of(run), row["released_m3"], road)
+    return usable.known_events(run_folders.prefix_of(summary), terrain_of(run), row["released_m3"], road, confined)
 
 
 def case_of(setup: Setup, questions: Questions, row) -> withheld_words.Case:
@@ -230,7 +243,8 @@ def doubts(rows):
 
 def result(run, row, maps):
     """The row of a finished run, and its final thickness; adds its rasters to the maps."""
-    from ..deposits import connected, deposit
+    from ..deposits import deposit
+    from ..mobility import run_length
     marker = run_folders.ended(run.folder)
     path = run.folder / str(marker.get("summary"))
     about = run_folders.begun(run.folder)
@@ -243,12 +257,12 @@ def result(run, row, maps):
     stays = volume["released"] - volume["off_grid"] - volume["lost"]
     on_grid = float(np.nansum(thickness.z)) * thickness.transform.a ** 2
     base = run_folders.load_raster(prefix, "surface").z - thickness.z
-    whole = connected.connected(deposit.Deposit(str(prefix), thickness, base, summary, None))
+    length = run_length.of_run(deposit.Deposit(str(prefix), thickness, base, summary, None), terrain_of(run))
     state = rest.state(summary)
     row = {**row, "variables": about.get("variables"),
            study_table.STOP: site_ground.of_variables(about.get("variables")), "ranks": about.get("ranks"),
            "package": about.get("package"),
-           **quantities.of_run(summary, whole), "ball_m3": volume["released"] / summary["balls"]["released"],
+           **quantities.of_run(summary, length), "ball_m3": volume["released"] / summary["balls"]["released"],
            "on_grid_m3": volume["on_grid"], "off_grid_m3": volume["off_grid"], "lost_m3": volume["lost"],
            "residual_m3": volume["residual"], "mass_error": (on_grid - stays) / volume["released"],
            "max_thickness_m": most["max_thickness"], "max_speed_m_s": most["max_speed"],

@@ -14,7 +14,7 @@ from .size_error import SizeErrors
 
 # what a combination has a mean of, if all runs have it
 QUANTITIES = {"remove_m3": "to remove", "remove_on_road_m3": "on the road", "beyond_road_m3": "beyond the road",
-              DISTANCE: "99 % within m", REACH: "99 % within deg", "connected_m": "connected m",
+              DISTANCE: "99 % within m", REACH: "99 % within deg", "length_m": "length m",
               "centroid_m": "centroid m", "front_m": "farthest ball m", "released_m3": "released"}
 GROUND = ("pattern", "spacing", "angle")        # variables of decks that make another ground
 # runs that are the same in all of these are one run: two of chance never are

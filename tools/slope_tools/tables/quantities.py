@@ -11,19 +11,20 @@ NAMES = {"remove_m3": ("to remove", "m3"), "remove_on_road_m3": ("on the road", 
          "released_m3": ("released", "m3"),
          **{f"distance_{share}_m": (f"{share} % within", "m") for share in travel_shares.SHARES},
          **{f"reach_{share}_deg": (f"reach angle of {share} %", "degrees") for share in travel_shares.SHARES},
-         "connected_m": ("connected deposit", "m"),
-         "connected_deg": ("reach angle of the connected deposit", "degrees"),
+         "length_m": ("length along the fall path", "m"),
+         "length_deg": ("reach angle of that length", "degrees"),
          "front_m": ("farthest ball", "m"), "reach_angle_deg": ("reach angle of the farthest ball", "degrees"),
          "centroid_m": ("travel of the centroid", "m"), "thickness_m": ("largest thickness", "m")}
 
 
-def of_run(summary, connected) -> Dict[str, Any]:
-    """Of a summary (run_folders.load_summary) and its connected deposit (deposits.connected), or None without one."""
+def of_run(summary, length) -> Dict[str, Any]:
+    """Of a summary (run_folders.load_summary) and its run_length.RunLength, None where there is no deposit."""
     travel = summary["travel"]
     return {"released_m3": summary["volume"]["released"], "front_m": travel["front"],
             "reach_angle_deg": travel["reach_angle"], "centroid_m": travel["centroid"],
-            **travel_shares.columns(summary), "connected_m": connected and connected.distance,
-            "connected_deg": connected and connected.reach_angle, "thickness_m": summary["largest"]["thickness"]}
+            **travel_shares.columns(summary), "length_m": length and length.distance,
+            "length_by_lobe_m": length and list(length.others),
+            "length_deg": length and length.angle, "thickness_m": summary["largest"]["thickness"]}
 
 
 def number(value, sign=""):

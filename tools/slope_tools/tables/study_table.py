@@ -8,20 +8,20 @@ from ..deposits import rest, travel_shares
 from ..statistics import headline
 from . import combinations
 
-COLUMNS = ("released_m3", "on_grid_m3", "off_grid_m3", "lost_m3", "residual_m3", *travel_shares.COLUMNS, "connected_m",
-           "connected_deg", "front_m", "reach_angle_deg", "centroid_m", "thickness_m", "max_thickness_m",
+COLUMNS = ("released_m3", "on_grid_m3", "off_grid_m3", "lost_m3", "residual_m3", *travel_shares.COLUMNS, "length_m",
+           "length_deg", "front_m", "reach_angle_deg", "centroid_m", "thickness_m", "max_thickness_m",
            "max_speed_m_s", "stop_time_s", "stop_reason", "moving", "at_rest", "end", "wall_s")
 ROAD_COLUMNS = ("remove_m3", "remove_on_road_m3", "remove_beside_road_m3", "beyond_road_m3", "blocked_m",
                 "axis_thickness_m")
 STOP = "stop_angle_deg"     # of the ground, where it is known
 LANE_COLUMNS = ("remove_lane_m3", "lane_hours", "clear_hours")      # of those that are asked for
-MAYBE = (*travel_shares.COLUMNS, "connected_m", "connected_deg", "wall_s", "beyond_road_m3")     # that may be unknown
+MAYBE = (*travel_shares.COLUMNS, "length_m", "length_deg", "wall_s", "beyond_road_m3")     # that may be unknown
 ANSWER = {True: "yes", False: "no"}
 
 SHOWN: Dict[str, Tuple[str, Any]] = {      # head, format
     "released_m3": ("released", "{:,.0f}"), "on_grid_m3": ("on grid", "{:,.0f}"), "lost_m3": ("lost", "{:,.0f}"),
     travel_shares.DISTANCE: ("99 % within m", "{:.1f}"), travel_shares.REACH: ("deg", "{:.1f}"),
-    "connected_m": ("connected m", "{:.1f}"), "front_m": ("farthest ball m", "{:.1f}"),
+    "length_m": ("length m", "{:.1f}"), "front_m": ("farthest ball m", "{:.1f}"),
     "stop_time_s": ("stop s", "{:.1f}"), "end_short": ("end", "{}"), "moves_share": ("moves", rest.percent),
     "wall_s": ("wall s", "{:.0f}")}
 SHOWN_ROAD: Dict[str, Tuple[str, Any]] = {

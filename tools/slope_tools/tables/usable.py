@@ -14,23 +14,24 @@ Row = Mapping[str, Any]
 
 
 class Events(NamedTuple):
-    """What known events of the mass's volume and height did, those that are not laterally confined."""
+    """What known events of the mass's volume and height did."""
     median: float           # m, length that half of them exceed; that of the fall path where it ends before
     at_road: float          # share of them that go as far as the road
 
 
-def known_events(prefix: Path, terrain: Optional[Path], volume: float, road) -> Optional[Events]:
+def known_events(prefix: Path, terrain: Optional[Path], volume: float, road, confined: str) -> Optional[Events]:
     """Those of a run; None where no set covers its mass.
 
-    prefix: of its deposit; terrain: the ground before it; volume: released, m3; road: polygons in local metres.
+    prefix: of its deposit; terrain: the ground before it; volume: released, m3; road: polygons in local metres;
+    confined: its path, a key of exceedance.CONFINED.
     """
     found = deposit.read(prefix, terrain, lambda text: None)
-    mobility = known.of_mass(found.raster, *scar.before(found.raster, found.base, terrain), volume).mobility
+    mobility = known.of_mass(found.raster, *scar.before(found.raster, found.base, terrain), volume, confined).mobility
     if mobility is None:
         return None
-    median = mobility.length_at(0.5, False)
+    median = mobility.length_at(0.5)
     return Events(float(mobility.path.length[-1]) if median is None else median,
-                  float(mobility.exceedance(at_road(mobility.path, road).length, False)))
+                  float(mobility.exceedance(at_road(mobility.path, road).length)))
 
 
 def facts(rows: Sequence[Row], volume: float, on_road: float, events: Optional[Events], size: str = "") -> Facts:
@@ -40,7 +41,7 @@ def facts(rows: Sequence[Row], volume: float, on_road: float, events: Optional[E
     not trusted.
     """
     finished = [row for row in rows if row["status"] == "finished"]
-    lengths = [row["connected_m"] for row in finished if row["connected_m"] is not None]
+    lengths = [row["length_m"] for row in finished if row["length_m"] is not None]
     return Facts(volume, on_road, min(row["ball_m3"] for row in finished), len(rows), len(rows) - len(finished),
                  sum(not row["at_rest"] for row in finished),
                  max(row["left_before_road_m3"] / row["released_m3"] for row in finished),

@@ -29,8 +29,7 @@ def text(reason: Reason) -> str:
     if reason.kind is Kind.BALLS:
         return f"on the road lies the volume of {number:.2g} ball{'s' * (f'{number:.2g}' != '1')}, fewer than {bound:g}"
     if reason.kind is Kind.MOBILITY:
-        longest = "there is no connected deposit" if reason.number is None else \
-            f"the longest connected deposit ends at {rounded(number, 3)} m"
+        longest = "there is no deposit" if reason.number is None else f"the longest one ends at {rounded(number, 3)} m"
         return f"no run reaches {rounded(bound, 3)} m, as half of known events of this volume and height do; {longest}"
     if reason.kind is Kind.LEFT:
         return (f"{100 * number:.2g} % of the released volume left the terrain before or beside the road, more than "
@@ -73,7 +72,7 @@ def mobile(case: Case) -> str:
     """An ensemble that has mobile masses too, weighted by the known events."""
     if case.sampled:
         return "the same command with --vary of more mobile masses: less friction and rolling, a denser field"
-    sample = "--sample 64 --mobility rock_avalanches"
+    sample = "--sample 64 --known rock_avalanches"
     if case.site:
         return f"tools/slope study {quote(str(case.site))} {sample}"
     words = " ".join(f"--vary {name}={span}" for name, span in (("friction", "10:30"), ("rolling", "0:0.1"))

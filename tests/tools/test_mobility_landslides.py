@@ -1,0 +1,181 @@
+"""Landslides of all sizes: the rows, both scatters, and that they and the set give way to each other without a jump."""
+import math
+
+import numpy as np
+import pytest
+from affine import Affine
+from scipy import stats
+from shapely.geometry import box
+
+from run_helpers import TOP
+from test_mobility_path import RADIUS, STEEP, disc, hillside, terrain
+
+from slope_tools.errors import SlopeError  # noqa: E402
+from slope_tools.mobility import body, exceedance, fall_path, known, landslides, results, road  # noqa: E402
+from slope_tools.releases import release  # noqa: E402
+from slope_tools.survey import rasters  # noqa: E402
+
+EMBANKMENT = TOP / "inputs" / "20_embankment"
+ROW = landslides.named()
+
+
+def test_the_rows():
+    rows = landslides.read()
+    assert len(rows) == 13 and sum(row.events for row in rows if row.path == "all") == 204
+    assert {row.type for row in rows} == set(landslides.TYPES) and {row.path for row in rows} >= {"all", "channelized"}
+    assert ROW[:7] == ("translational_slides", "all", 69, -0.159, -0.068, 0.435, 0.67)
+
+
+@pytest.mark.parametrize("text, found", [
+    ("rockfalls", ("rockfalls", "all")), ("debris flows:Channelised", ("debris_flows", "channelized")),
+    ("trans:unob", ("translational_slides", "unobstructed")), ("earth", ("earthflows_and_mudslides", "all"))])
+def test_a_name(text, found):
+    assert landslides.named(text)[:2] == found
+
+
+@pytest.mark.parametrize("text", ["", "slides", "rock:", "rockfalls:channelized", "earth:obstructed", "rocks:all:x"])
+def test_no_name(text):
+    with pytest.raises(SlopeError, match="--known: must be"):
+        landslides.named(text)
+
+
+@pytest.mark.parametrize("text, half, twentieth", [
+    ("translational", 108, 295), ("translational:unobstructed", 119, 322)])
+def test_the_embankment(text, half, twentieth):
+    """49,000 m3 that fall 36 m, by hand."""
+    row = landslides.named(text)
+    assert row.farthest(0.5, 0.049, 36) == pytest.approx(half, abs=0.5)
+    assert row.farthest(0.95, 0.049, 36) == pytest.approx(twentieth, abs=0.5)
+    for share in (0.01, 0.05, 0.3, 0.5, 0.8, 0.99):
+        assert row.beyond("landslides", row.farthest(share, 0.01, 20), 0.01, 20) == pytest.approx(1 - share)
+
+
+def test_both_scatters():
+    """The one of the limit and the one of R2; the larger probability counts, on either side of the median."""
+    assert ROW.deviations == pytest.approx((0.0954, 0.2644), abs=1e-4)
+    assert all(row.deviations[0] < row.deviations[1] for row in landslides.read())
+    assert landslides.named("rockfalls:ob").deviations == pytest.approx((0.0626, 0.0824), abs=1e-4)     # R2's is larger
+    length, volume, fall = np.array([60.0, 300.0]), 0.049, 36.0
+    for kind, deviation in (("landslides_narrow", 0.095446), ("landslides_wide", 0.264438)):
+        scores = (np.log10(fall / length) + 0.159 + 0.068 * math.log10(49000)) / deviation
+        assert ROW.beyond(kind, length, volume, fall) == pytest.approx(stats.norm.cdf(scores), abs=1e-5)
+    narrow, wide = (ROW.beyond(kind, length, volume, fall) for kind in ROW.kinds[:2])
+    near, far = ROW.beyond("landslides", length, volume, fall)
+    assert near == narrow[0] > wide[0] and far == wide[1] > narrow[1]
+
+
+# --- on a path ---
+
+def gentle(depth=1.0):
+    """A hill of 90 m above a flat, and a small body, of 0.04 million m3 for 1 m, on it."""
+    ground = terrain(lambda x, y: 1000 - STEEP * np.clip(x - 240, 0, 180) - 0.001 * x, 300, 60)
+    return disc(ground, (260, 300), depth)
+
+
+def test_it_begins_at_the_toe_and_never_rises():
+    mass = gentle()
+    found = known.of_body(mass, known.choice())
+    assert found.decides is found.by_row and found.by_set is not None and not found.by_set.in_range
+    one, path = found.by_row, found.by_row.path
+    toe = fall_path.toe(mass, path)
+    assert path.x[toe] == pytest.approx(260 + RADIUS, abs=15)
+    for kind, curve in one.curves.items():
+        assert (curve[:toe] == 1).all() and (np.diff(curve) <= 0).all()
+        raw = ROW.beyond(kind, path.length[toe:], one.volume, path.fall[toe:])
+        assert curve[toe:] == pytest.approx(np.minimum.accumulate(raw))
+    crest = ROW.beyond("landslides_wide", path.length[1:toe], one.volume, np.maximum(path.fall[1:toe], 0.1))
+    assert crest.min() < 0.5 * one.curves["landslides_wide"][toe]       # what a running minimum from there would keep
+    assert not one.said[:toe].any() and one.said[toe:].all()
+
+
+def test_a_set_says_nothing_of_falls_that_none_of_its_events_had():
+    """On a hill of 210 m: no point has a fall of the set. On one of 240 m: not before it."""
+    for height, covered in ((210, False), (260, True)):
+        ground = terrain(lambda x, y: 1000 - STEEP * np.clip(x, 0, 2 * height), 300, 60)
+        found = known.of_body(disc(ground, (200, 300)), known.choice())
+        one = found.by_set
+        assert one.in_range == covered == (found.decides is one)
+        assert (one.path.fall[one.said] >= 220).all() and one.said.any() == covered
+        if covered:
+            assert (one.curves["mixture"][:np.flatnonzero(one.said)[0]] == 1).all()
+        else:
+            assert "220 to 1720" in one.outside[-1] and not one.says(one.path.length[-1])
+
+
+def test_half_of_them_end_before_any_fall_of_the_set():
+    """A path that falls far, but slowly: where the set begins, hardly any event arrives."""
+    ground = terrain(lambda x, y: 1000 - 0.06 * x, 500, 60)
+    found = known.of_body(disc(ground, (300, 300)), known.choice())
+    assert found.by_set.said.any() and not found.by_set.in_range and "covers this height" in found.by_set.outside[0]
+
+
+def test_a_row_that_is_asked_for():
+    found = known.of_body(gentle(20.0), known.choice("debris flows:channelized"))
+    assert found.by_set is None and found.decides.law is not ROW and found.decides.law.path == "channelized"
+
+
+# --- the embankment, 0.1 to 10 times as large ---
+
+WEST = 600      # cells of gentle fields are added, so that the path is long enough
+
+
+def embankment(factor):
+    raster = rasters.read_asc_local(EMBANKMENT / "terrain.asc")
+    files = (str(EMBANKMENT / name) for name in ("terrain.asc", "release.csv"))
+    mass = body.of_release(release.body_of(release.Wanted(*files, "slbl", 6.0, local=True)), "slbl")
+    fields = np.repeat([-4 + 0.1 * (np.arange(-WEST, 0) + 0.5)], len(raster.z), axis=0)
+    wide = raster._replace(z=factor * np.hstack([fields, raster.z]),
+                           transform=Affine(2.5 * factor, 0, -2.5 * WEST * factor, 0, -2.5 * factor, 160 * factor))
+    return body.of_arrays(wide, factor * np.hstack([np.zeros_like(fields), mass.depth]), "slbl")
+
+
+def numbers(one, factor):
+    """Lengths (m over the factor) that half and a twentieth go beyond."""
+    return [one.length_at(share) / factor for share in (0.5, 0.05)]
+
+
+def test_the_family_of_the_embankment():
+    """Never more farther down; the set takes over once, by less than the narrower band of 90 %."""
+    which = {}
+    for factor in np.geomspace(0.1, 10, 9):
+        found = known.of_body(embankment(factor), known.choice())
+        which[factor] = found.decides.chosen
+        assert all((np.diff(curve) <= 0).all() for one in found.each for curve in one.curves.values())
+        lane = road.at_road(found.decides.path, box(60 * factor, 0, 80 * factor, 160 * factor))
+        assert lane.met and lane.passed - lane.length == pytest.approx(20 * factor, rel=0.01)
+    assert [*which.values()] == ["landslides"] * 7 + ["mixture"] * 2
+    low, high = max(f for f, kind in which.items() if kind == "landslides"), min(
+        f for f, kind in which.items() if kind == "mixture")
+    for _ in range(6):      # where it takes over
+        middle = math.sqrt(low * high)
+        covered = known.of_body(embankment(middle), known.choice()).by_set.in_range
+        low, high = (low, middle) if covered else (middle, high)
+    before, after = (known.of_body(embankment(f), known.choice()).decides for f in (low, high))
+    assert {before.chosen, after.chosen} == {"landslides", "mixture"} and high < 1.02 * low
+    bands = [math.log10(one.length_at(0.05) / one.length_at(0.95)) for one in (before, after)]
+    jumps = [abs(math.log10(b / a)) for a, b in zip(numbers(before, low), numbers(after, high))]
+    assert max(jumps) < min(bands), (jumps, bands)
+
+
+def test_the_volume_where_the_set_begins():
+    """0.1 million m3 on a hill that is high enough."""
+    found = []
+    for depth in (2.82, 2.84):
+        mass = disc(hillside(), (300, 300), depth)
+        found.append(known.of_body(mass, known.choice()).decides)
+    before, after = found
+    assert (before.chosen, after.chosen) == ("landslides", "mixture")
+    bands = [math.log10(one.length_at(0.05) / one.length_at(0.95)) for one in found]
+    jumps = [abs(math.log10(after.length_at(share) / before.length_at(share))) for share in (0.5, 0.05)]
+    assert max(jumps) < min(bands), (jumps, bands)
+
+
+def test_at_the_road_that_lies_too_high():
+    """A fall that no event of the set had: at least what they say farther down."""
+    mass = disc(hillside(), (300, 300))
+    found = known.of_body(mass, known.choice())
+    at = road.at_road(found.decides.path, box(500, 0, 520, 600))
+    told = results.at_road(found, at)
+    assert at.fall < 220 and told["exceedance"] is None and told["at_least"] == pytest.approx(
+        found.decides.exceedance(found.decides.path.length[np.flatnonzero(found.decides.said)[0]]))
+    assert told["exceedance_landslides"] == exceedance.of_body(mass, ROW, path=found.by_row.path).exceedance(at.length)

@@ -1,0 +1,119 @@
+"""How far a run's mass went along its fall path: deposits made by hand, with gaps and lobes, and their lengths."""
+import math
+
+import numpy as np
+import pytest
+from affine import Affine
+from shapely.geometry import LineString
+
+from run_helpers import here, write_asc, write_run  # noqa: F401  (here is a fixture)
+from test_mobility_path import STEEP
+
+from slope_tools.deposits import deposit as deposits  # noqa: E402
+from slope_tools.deposits.deposit import Deposit  # noqa: E402
+from slope_tools.mobility import fall_path, run_length  # noqa: E402
+from slope_tools.survey.rasters import Raster  # noqa: E402
+
+CELL, ROWS, COLUMNS = 10.0, 60, 200
+MASS = 1e5                      # m3, released
+X, Y = np.meshgrid(CELL * (np.arange(COLUMNS) + 0.5), CELL * (ROWS - 0.5 - np.arange(ROWS)))
+TOP = 105.0, 305.0
+
+
+def deposit(*blocks):
+    """Of blocks: x and y of the middles of the first and the last cell (m), volume (m3); the ground falls along x."""
+    z = np.zeros((ROWS, COLUMNS))
+    for x0, x1, y0, y1, volume in blocks:
+        cells = (X >= x0) & (X <= x1) & (Y >= y0) & (Y <= y1)
+        z[cells] = volume / cells.sum() / CELL ** 2
+    top = 1000 - STEEP * TOP[0]
+    return Deposit("run", Raster(z, Affine(CELL, 0, 0, 0, -CELL, ROWS * CELL), None), 1000 - STEEP * X,
+                   {"volume": {"released": MASS}, "travel": {"top": [*TOP, top]}}, None)
+
+
+def path(*corners):
+    """A path along corners (m), from the first one; a point every 9 m."""
+    line = LineString(corners)
+    length = np.linspace(0, line.length, int(line.length / 9))
+    x, y = np.array([line.interpolate(one).coords[0] for one in length]).T
+    return fall_path.FallPath(x, y, length, STEEP * x, fall_path.TERRAIN, (*TOP, 1000.0))
+
+
+STRAIGHT = TOP, (1995.0, 305.0)
+BEND = TOP, (905.0, 305.0), (905.0, 5.0), (1995.0, 5.0)
+BULK = (205.0, 605.0, 285.0, 325.0)     # ends 500 m from the top
+TWELVE = {
+    "one part": ([(*BULK, 9e4)], STRAIGHT, 500, 1),
+    "a lobe of 1.2 % beyond a gap": ([(*BULK, 9e4), (805, 855, 305, 315, 1200)], STRAIGHT, 750, 2),
+    "a lobe of 0.9 % is none": ([(*BULK, 9e4), (805, 855, 305, 315, 900)], STRAIGHT, 500, 1),
+    "of 1 % of what was released, not of what lies here": ([(*BULK, 5e4), (805, 855, 305, 315, 900)], STRAIGHT, 500, 1),
+    "just 1 %": ([(*BULK, 9e4), (805, 855, 305, 315, 1000.01)], STRAIGHT, 750, 2),
+    "several gaps": ([(*BULK, 6e4), (755, 805, 305, 315, 2e3), (905, 955, 305, 315, 2e3)], STRAIGHT, 850, 3),
+    "the farthest one is too small": (
+        [(*BULK, 6e4), (755, 805, 305, 315, 2e3), (905, 955, 305, 315, 400)], STRAIGHT, 700, 2),
+    "the larger part is not the farther one": ([(905, 955, 305, 315, 3e3), (*BULK, 6e4)], STRAIGHT, 850, 2),
+    "cells that touch at a corner are one lobe": (
+        [(*BULK, 9e4), (805, 805, 305, 305, 600), (815, 815, 315, 315, 600)], STRAIGHT, 710, 2),
+    "thin ground is a gap": ([(*BULK, 9e4), (615, 795, 305, 305, 171), (805, 855, 305, 315, 1200)], STRAIGHT, 750, 2),
+    "a bend": ([(205, 895, 305, 305, 9e4), (905, 905, 105, 155, 1200)], BEND, 1000, 2),
+    "no lobe of 1 %: the largest": ([(205, 215, 305, 305, 500), (805, 805, 305, 305, 400)], STRAIGHT, 110, 1)}
+
+
+@pytest.mark.parametrize("name", TWELVE)
+def test_twelve_runs(name):
+    blocks, way, length, lobes = TWELVE[name]
+    found = run_length.of_deposit(deposit(*blocks), path(*way))
+    assert found.distance == pytest.approx(length, abs=0.6)        # cells may be half a metre beside the path
+    assert found.lobes == lobes and found.on_path
+    assert found.angle == pytest.approx(math.degrees(math.atan2(
+        STEEP * (found.tip[0] - TOP[0]) - thickness_at(blocks, found.tip), found.distance)))
+
+
+def thickness_at(blocks, place):
+    one = deposit(*blocks)
+    column, row = ~one.raster.transform * place
+    return one.raster.z[int(row), int(column)]
+
+
+def test_what_0_5_and_2_percent_change():
+    """The length by the least lobe; page and table take 1 %."""
+    one = deposit((*BULK, 8e4), (705, 755, 305, 315, 2500), (805, 855, 305, 315, 1500), (905, 955, 305, 315, 700))
+    lengths = [run_length.of_deposit(one, path(*STRAIGHT), least).distance for least in (0.005, 0.01, 0.02)]
+    assert lengths == pytest.approx([850, 750, 650], abs=0.6) and run_length.LEAST == 0.01
+
+
+def test_along_a_bend_and_straight():
+    """Along the path where it bends; at least the straight line, where the mass goes on and the path turns aside."""
+    one = deposit((205, 895, 305, 305, 9e4), (905, 905, 105, 155, 1200))
+    found = run_length.of_deposit(one, path(*BEND))
+    assert found.tip == (905.0, 105.0) and found.straight == pytest.approx(math.hypot(800, 200))
+    across = run_length.of_deposit(deposit((205, 1305, 305, 305, 9e4)), path(*BEND[:3]))
+    assert across.distance == pytest.approx(1200) == across.straight
+    places = np.array([[505.0, 405.0], [905.0, 205.0], [1305.0, 0.0], [0.0, 305.0], [3000.0, 5.0]])
+    assert run_length.along(path(*BEND[:3]), np.array([[1305.0, 305.0]])) == pytest.approx([800], abs=0.5)
+    assert run_length.along(path(*BEND), places) == pytest.approx([400, 900, 1500, 0, 2190], abs=0.5)
+
+
+def test_without_a_path_it_is_straight():
+    found = run_length.of_deposit(deposit((*BULK, 9e4)), None)
+    assert found.distance == found.straight == pytest.approx(math.hypot(500, 20), abs=1e-6) and not found.on_path
+    assert run_length.of_deposit(deposit((205, 305, 305, 305, 50.0)), None) is None       # nowhere thicker than 0.1 m
+
+
+def test_of_a_run(here):        # noqa: F811
+    """The path of its own body, from its terrain: a valley that bends; read once for all runs of a body."""
+    rows, columns = 120, 120
+    x, y = np.meshgrid(CELL * (np.arange(columns) + 0.5), CELL * (rows - 0.5 - np.arange(rows)))
+    # down along x to 600, then along y: the valley floor is where the two meet
+    ground = 1000 - 0.4 * np.minimum(x, 600) + 0.4 * np.maximum(x - 600, 0) - 0.1 * y * (x > 400)
+    body = 10 * np.clip(1 - ((x - 200) ** 2 + (y - 200) ** 2) / 100 ** 2, 0, 1)
+    thickness = np.zeros((rows, columns))
+    thickness[(np.abs(x - 605) < 20) & (y > 700) & (y < 900)] = 5.0
+    write_run(thickness, ground - body, CELL, travel={"top": [105.0, 205.0, 958.0]})
+    write_asc("terrain.asc", ground, CELL)
+    run_length._path.cache_clear()
+    found = [run_length.of_run(deposits.read("run", None, lambda text: None), here / "terrain.asc") for _ in range(2)]
+    assert run_length._path.cache_info()[:2] == (1, 1)
+    assert found[0].on_path and found[0].distance == found[1].distance
+    assert found[0].distance > 1.12 * found[0].straight and found[0].others == (found[0].distance,) * 2
+    assert not run_length.of_run(deposits.read("run", None, lambda text: None), None).on_path
