@@ -10,7 +10,7 @@ from ..case import run_folders
 from ..deposits import deposit, score
 from ..runs import jobs, repeats
 from ..statistics import backanalysis
-from ..studies import results, study
+from ..studies import results
 from ..studies.setup import Setup
 from ..tables import quantities
 from . import calibration, fit_words, observations
@@ -42,10 +42,7 @@ class Fit:
 
     def evaluate(self, todo: Sequence[repeats.Repeat]) -> List[Optional[np.ndarray]]:
         """Run what is not finished, and measure all."""
-        study.check_names(todo)
-        study.check_folder(self.setup, todo)
-        for one in todo:
-            jobs.check_finished(one, self.work.depends)
+        self.work.store.admit(todo)
         self.work.do(todo)
         rows, _ = results.rows_of(self.setup, todo, results.Maps(()), pictures=False)
         found: List[Optional[np.ndarray]] = []
@@ -56,7 +53,7 @@ class Fit:
         return found
 
     def summary(self, row: Mapping[str, Any]) -> Path:
-        return self.setup.output / row["summary"]
+        return run_folders.summary_of(self.setup.output, row)
 
     @staticmethod
     def terrain(one: repeats.Repeat) -> Optional[Path]:
