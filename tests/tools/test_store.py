@@ -1,4 +1,4 @@
-"""The folder of the runs: a run is known by the values of its deck's variables, made once, and made again when asked."""
+"""The folder of the runs: each is known by the values of its deck's variables, made once, and again when asked."""
 import shlex
 import shutil
 from pathlib import Path
@@ -73,8 +73,8 @@ def test_of_two_folders_the_finished_one_counts(here):
 def test_folders_of_older_versions(here):
     make({"rolling": "0.1"})
     Path("out").rename("sizes")
-    assert folders({"rolling": "0.1"}, {"rolling": "0.2"}, older=[Path("sizes")]) == ["sizes/rolling_0.1",
-                                                                                   "out/rolling_0.2"]
+    assert folders({"rolling": "0.1"}, {"rolling": "0.2"}, older=[Path("sizes")]) == [
+        "sizes/rolling_0.1", "out/rolling_0.2"]
 
 
 @pytest.mark.parametrize("prepare", [
@@ -126,7 +126,7 @@ def test_anew_makes_again_what_is_of_another_program(slope, here, monkeypatch):
     assert slope(f"{study}0.2 -o out")[0] == 0
     before = times("out")
     status, out, err = slope(f"{study}0,0.1,0.2 -o out")
-    assert status == 2 and err == (f"slope study: out/steps_10_rolling_0: was run with another LAMMPS program than the "
+    assert status == 2 and err == ("slope study: out/steps_10_rolling_0: was run with another LAMMPS program than the "
                                    "present one: --anew makes it again, with all others of which that holds\n")
     status, out, err = slope(f"{study}0,0.2 -o out --anew --dry-run")
     assert [line.rpartition(", ")[2] for line in out.splitlines()] == ["made again", "finished", "1 of them finished"]
