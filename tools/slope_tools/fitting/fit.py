@@ -3,7 +3,6 @@ from pathlib import Path
 from typing import Any, Dict, List, Mapping, Optional, Sequence
 
 import numpy as np
-import yaml
 
 from .. import disk, provenance
 from ..case import run_folders
@@ -89,8 +88,8 @@ class Fit:
             "pairs": self.pairs(found)}
         with disk.complete(output, ABOUT) as new:
             disk.write(new / TABLE, self.table(found))
-            disk.write(new / ABOUT, "# slope calibrate: lengths in m, areas in m2, volumes in m3 of ground (bulk)\n"
-                       + yaml.safe_dump(about, sort_keys=False))
+            disk.write(new / ABOUT, disk.yaml_text(
+                "slope calibrate: lengths in m, areas in m2, volumes in m3 of ground (bulk)", about))
             from . import calibrate_charts
             calibrate_charts.draw(new / CHART, found, self.variables, plan.ledger.places(plan.finished()),
                                   f"{self.setup.deck.name}: {len(plan.finished())} runs")

@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Any, Dict, Mapping, NamedTuple, Optional, Sequence
 
 import numpy as np
-import yaml
 
 from .. import disk, provenance
 from ..case import run_folders
@@ -120,8 +119,8 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         setup.warn(one)
     disk.write(output / "study.csv", study_table.table(settings, repeated, rows, work.defaults))
     disk.write(output / "combinations.csv", combinations.table(groups, names, settings))
-    disk.write(output / "study.yaml", "# slope study: volumes in m3 of ground (bulk), lengths in m, times in s\n"
-               + yaml.safe_dump(about, sort_keys=False))
+    disk.write(output / "study.yaml", disk.yaml_text(
+        "slope study: volumes in m3 of ground (bulk), lengths in m, times in s", about))
     if not order or len(rows) <= SHOWN:
         setup.tell(study_table.runs_shown(
             settings, rows, scatters,

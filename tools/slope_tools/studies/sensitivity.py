@@ -3,7 +3,6 @@ import math
 import statistics
 from typing import Any, Dict, List, Mapping, Optional
 
-import yaml
 from rich.table import Table
 
 from .. import disk, provenance
@@ -92,8 +91,8 @@ def collect(setup: Setup, base, of, todo, work):
     for one in warnings:
         setup.warn(one)
     disk.write(setup.output / "sensitivity.csv", table(rows, of, scatter, defaults))
-    disk.write(setup.output / "sensitivity.yaml", "# slope sensitivity: volumes in m3 of ground (bulk), lengths in m, "
-               "angles in degrees\n" + yaml.safe_dump(about, sort_keys=False))
+    disk.write(setup.output / "sensitivity.yaml", disk.yaml_text(
+        "slope sensitivity: volumes in m3 of ground (bulk), lengths in m, angles in degrees", about))
     from ..drawing import figures
     figures.tornado(setup.output / "sensitivity.png", panels(rows, of, scatter), bars(rows, defaults),
                     f"{setup.deck.name}: one variable at a time, {len(rows)} runs")

@@ -5,7 +5,6 @@ Order of the work: plan sizes and repeats (repeats.py), run them as `slope study
 """
 from typing import Dict, List, Mapping, NamedTuple, Sequence
 
-import yaml
 from rich.table import Table
 
 from .. import disk, provenance
@@ -91,8 +90,9 @@ def collect(planned: Plan, of, work) -> None:
     setup.output.mkdir(exist_ok=True)
     disk.write(setup.output / "converge.csv", table(fits, variable))
     disk.write(setup.output / "converge_runs.csv", study_table.table(settings, repeated, rows, work.defaults))
-    disk.write(setup.output / "converge.yaml", f"# slope sensitivity --converge: a line V0 + b {variable} through the "
-               "values; volumes in m3 of ground (bulk), lengths in m\n" + yaml.safe_dump(about, sort_keys=False))
+    disk.write(setup.output / "converge.yaml", disk.yaml_text(
+        f"slope sensitivity --converge: a line V0 + b {variable} through the values; volumes in m3 of ground (bulk), "
+        "lengths in m", about))
     from ..tables import convergence_chart
     convergence_chart.draw(
         setup.output / "converge.png", variable, [(*names[name], fits[name], [
