@@ -217,7 +217,7 @@ def test_a_finished_run_of_another_program_is_not_taken(slope, here, monkeypatch
         program.write(b"0")
     for more in ("", "--dry-run"):
         assert slope(more)[::2] == (2, f"slope study: {RUN}: was run with another LAMMPS program than the present one: "
-                                    "remove the folder to run it again (or out, for all of them), or give another -o\n")
+                                    "--anew makes it again, with all others of which that holds\n")
 
 
 def test_a_finished_run_of_another_library_is_not_taken(slope, here, monkeypatch):

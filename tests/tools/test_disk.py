@@ -468,3 +468,10 @@ def test_a_read_only_file_system_is_said(tmp_path, monkeypatch):
     monkeypatch.setattr(Path, "unlink", refuse)
     with pytest.raises(SlopeError, match="report.html: cannot be written: Read-only file system"):
         disk.write(tmp_path / "report.html", "text")
+
+
+def test_what_is_twice_in_a_yaml_is_written_twice():
+    """Aliases are of no use to those who read a study with another program."""
+    shared = {"rolling": "0.05"}
+    text = disk.yaml_text("a study", {"set": shared, "runs": [{"set": shared, "at": (1, np.float64(2.5))}]})
+    assert text == "# a study\nset:\n  rolling: '0.05'\nruns:\n- set:\n    rolling: '0.05'\n  at:\n  - 1\n  - 2.5\n"

@@ -61,7 +61,8 @@ def test_other_grounds_at_both_ends_of_rolling(mine, capsys, monkeypatch):  # no
     assert runs == [*(f"rolling_{rolling}_spacing_0.9{more}" for rolling in ("0", "0.05", "0.1")
                       for more in ("", "_xoffset_0.5", "_yoffset_0.5")),
                     *(f"rolling_{rolling}_spacing_{spacing}" for spacing in ("0.5", "0.7") for rolling in ("0", "0.1"))]
-    assert "13 runs, 0 of them finished" in out and "9 runs, 0 of them finished" in out
+    # three sizes of balls, of which one is the site's own, and half the step
+    assert sum("_d_" in line for line in out.splitlines()) == 6 and "20 runs, 0 of them finished" in out
     choices = site_choices.read(mine)
     choices["study"].update(spacing=[0.5, 0.9], rolling=[0.2])      # its own ground is none of the others
     assert site_choices.other_grounds(choices) == [(0.5, 0.2)]
@@ -94,11 +95,11 @@ def test_the_estimate_is_of_the_study_that_is_made(large):
     plan = site_budget.plan(choices, 64)
     assert plan.runs == 64 and not plan.half_step and "up to half as many more" in plan.text
     plan = site_budget.plan(choices)
-    assert plan.runs == 22 and not plan.half_step       # no road: nothing to compare
+    assert plan.runs == 19 and not plan.half_step       # no road: nothing to compare
     assert site_budget.plan({**choices, "road": {**choices["road"], "file": "road.csv"}}).half_step
-    assert plan.text == ("22 runs: 3 rolling resistances x 3 lattice positions, 4 on other grounds, 3 sizes of balls x "
-                         "3")
-    assert site_budget.plan({**choices, "study": {**choices["study"], "spacing": []}}).runs == 18
+    assert plan.text == ("19 runs: 3 rolling resistances x 3 lattice positions, 4 on other grounds, 2 other sizes of "
+                         "balls x 3")
+    assert site_budget.plan({**choices, "study": {**choices["study"], "spacing": []}}).runs == 15
 
 
 def test_the_method_is_in_the_results(mine, monkeypatch, capsys):  # noqa: F811
@@ -106,8 +107,8 @@ def test_the_method_is_in_the_results(mine, monkeypatch, capsys):  # noqa: F811
     seen = []
     monkeypatch.setattr(site_study.results, "collect", lambda setup, questions, *_: seen.append(questions.method))
     monkeypatch.setattr(site_study.study, "perform", lambda setup, settings, todo, collect: collect(todo, None))
-    monkeypatch.setattr(site_study, "sizes", lambda *_: site_study.Sizes(None, (), None))
-    monkeypatch.setattr(site_study, "half_step", lambda *_: None)
+    monkeypatch.setattr(site_study, "sizes", lambda *_: site_study.NOT_ASKED)
+    monkeypatch.setattr(site_study, "step_of", lambda *_: None)
     _, out, _ = study(capsys, monkeypatch, "mine")
     assert seen == [out.splitlines()[0]] and seen[0].startswith("by the paper's method; ")
 

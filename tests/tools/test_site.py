@@ -1,5 +1,6 @@
 """tools/slope site and slope study FOLDER: from a GeoTIFF and two layers of a GIS to a report; what is refused."""
 import contextlib
+import csv
 import io
 import json
 import os
@@ -174,8 +175,49 @@ def test_the_study_is_resumed(done, monkeypatch):
     before = {path: path.stat().st_mtime_ns for path in (folder / "mine").rglob("finished.yaml")}
     again = inside(folder, "study", "mine")
     assert again.returncode == 0, again.stderr
-    assert len(before) == 23 and "started" not in again.stdout
+    assert len(before) == 20 and "started" not in again.stdout and "20 of 20 runs are finished already" in again.stdout
     assert before == {path: path.stat().st_mtime_ns for path in before}
+
+
+def runs_in(folder):
+    return [path for path in folder.iterdir() if not path.name.startswith(".")]
+
+
+def test_no_run_is_made_twice(done):
+    """The balls of the site are one of the three sizes: those runs are of the study, too."""
+    mine = done[0] / "mine"
+    tables = []
+    for name in ("study/study.csv", "sizes/converge_runs.csv"):
+        with open(mine / name, encoding="ascii", newline="") as lines:
+            tables.append({row["run"]: row for row in csv.DictReader(lines)})
+    study, sizes = tables
+    both = study.keys() & sizes.keys()
+    assert (len(study), len(sizes), len(both)) == (13, 9, 3)
+    for run in both:
+        assert (mine / "runs" / run / "finished.yaml").exists()
+        assert study[run]["remove_m3"] == sizes[run]["remove_m3"]
+    values = [yaml.safe_load((path / "variables.yaml").read_text())["variables"] for path in runs_in(mine / "runs")]
+    assert len({tuple(sorted(one.items())) for one in values}) == len(values) == 20
+
+
+def test_runs_of_an_older_version_are_taken_over(done, tmp_path, monkeypatch):
+    """They were in the folders of the parts, and are left there."""
+    monkeypatch.setattr(study_command, "write_report", lambda *_: None)
+    mine = tmp_path / "mine"
+    shutil.copytree(done[0] / "mine", mine)
+    for name in ("dem.tif", "release.geojson", "road.geojson"):
+        shutil.copy(done[0] / name, tmp_path)
+    before = {name: (mine / name).read_text() for name in ("sizes/converge.csv", "study/combinations.csv")}
+    (mine / "step").mkdir()
+    for path in runs_in(mine / "runs"):
+        part = "sizes" if "_d_" in path.name else "step" if "_step_" in path.name else "study"
+        path.rename(mine / part / path.name)
+    again = inside(tmp_path, "study", "mine")
+    assert again.returncode == 0 and "20 of 20 runs are finished already" in again.stdout, again.stderr
+    assert not runs_in(mine / "runs")
+    assert before == {name: (mine / name).read_text() for name in before}
+    rows = yaml.safe_load((mine / "study" / "study.yaml").read_text())["runs"]
+    assert {row["summary"] for row in rows} == {f"{row['run']}/site.summary.yaml" for row in rows}
 
 
 def test_the_deck_by_hand_gives_the_numbers_of_the_study(done, tmp_path):
@@ -189,9 +231,9 @@ def test_the_deck_by_hand_gives_the_numbers_of_the_study(done, tmp_path):
     volume = slope(hand, "volume", "site", "--road", "road.csv", "--cut-angle", "30", "--mesh", "10", "-o", "removal")
     assert volume.returncode == 0, volume.stderr
     by_hand = yaml.safe_load((hand / "removal" / "volume.yaml").read_text())["volume"]
-    run = folder / "mine" / "study" / "rolling_0.05_spacing_0.9_yoffset_0.5" / "volume" / "volume.yaml"
+    run = folder / "mine" / "runs" / "rolling_0.05_spacing_0.9_yoffset_0.5" / "volume" / "volume.yaml"
     assert by_hand == yaml.safe_load(run.read_text())["volume"] and by_hand["remove"] > 0
-    other = folder / "mine" / "study" / "rolling_0.05_spacing_0.9" / "volume" / "volume.yaml"
+    other = folder / "mine" / "runs" / "rolling_0.05_spacing_0.9" / "volume" / "volume.yaml"
     assert by_hand != yaml.safe_load(other.read_text())["volume"]
 
 
@@ -234,7 +276,10 @@ def test_the_folder_is_made_anew_from_its_file(done, tmp_path):
 
     # the study does not mix runs of two decks
     study = inside(folder, "study", "mine")
-    assert study.returncode == 2 and "in.site" in study.stderr
+    assert study.returncode == 2 and "in.site" in study.stderr and "--anew" in study.stderr
+    listed = inside(folder, "study", "mine", "--anew", "--dry-run")
+    assert listed.returncode == 0 and listed.stdout.count(", made again\n") == 14      # of the other sizes 6 new ones
+    assert listed.stdout.endswith("20 runs, 0 of them finished\n")
 
     # a deck that was changed by hand is not lost
     deck = mine / "in.site"
@@ -261,7 +306,7 @@ def test_structures_lines_and_a_mapped_deposit(gis):
     path.write_text(re.sub(r"([xy])offset: \[.*?\]", r"\1offset: []", text))
     study = slope(gis, "study", "mine")
     assert study.returncode == 0, study.stderr
-    run = mine / "study" / "rolling_0.05"
+    run = mine / "runs" / "rolling_0.05"
     assert "wall" in (mine / "study" / "structures.csv").read_text()
     assert (run / "site.wall.csv").exists() and (run / "site.behind.line.yaml").exists()
     score = yaml.safe_load((mine / "score" / "score.yaml").read_text())
@@ -370,7 +415,7 @@ def test_the_time_step_is_the_decks(done):
     """The estimate's time step against that of a run."""
     folder = done[0] / "mine"
     variables = decks.index_variables(folder / "in.site")
-    summary = yaml.safe_load((folder / "study" / "rolling_0_spacing_0.9" / "site.summary.yaml").read_text())
+    summary = yaml.safe_load((folder / "runs" / "rolling_0_spacing_0.9" / "site.summary.yaml").read_text())
     wanted = site_budget.time_step(*(float(variables[name]) for name in ("d", "speed", "density")))
     assert summary["dt"] == pytest.approx(wanted, rel=1e-6)
 

@@ -469,7 +469,8 @@ def test_a_site_without_one_of_its_files(mine, gis, name):  # noqa: F811
 def test_one_command_at_a_time_works_in_a_site(inside, mine, gis):  # noqa: F811
     before = contents(mine)
     with disk.alone_in(mine):
-        refused(in_process(gis, "study", "mine"), "mine: must not be in use by another study: wait for it, or end it")
+        refused(in_process(gis, "study", "mine", "--lmp", LMP),
+                "mine: must not be in use by another study: wait for it, or end it")
         _, err = inside("mine --client Me", 2)
         assert "mine: must not be in use by another study" in err
     assert contents(mine) == {**before, Path(".lock"): b""}

@@ -412,8 +412,8 @@ def test_finished_runs_of_another_deck_are_not_taken(slope, here):
     edit("case/in.tiny", "0.1 friction", "0.2 friction")
     for words in ("", " --dry-run"):
         assert slope(f"case/in.tiny --set rolling=0 --set steps=20 -o out{words}")[::2] == (
-            2, "slope study: out/rolling_0_steps_20: was run with another in.tiny than that of case: remove the folder "
-               "to run it again (or out, for all of them), or give another -o\n")
+            2, "slope study: out/rolling_0_steps_20: was run with another in.tiny than that of case: --anew makes "
+               "it again, with all others of which that holds\n")
 
 
 def test_what_the_deck_writes_is_no_data(slope, here):
@@ -657,7 +657,6 @@ BAD = {
     "huge range": (nothing, "case/in.tiny --set rolling=0:1:1e-9 -o out", "--set: must make at most 10000 runs"),
     "huge product": (nothing, "case/in.tiny --set rolling=0:1:0.001 --set friction=0:80:1 -o out",
                      "--set: must make at most 10000 runs, got 81081"),
-    "same folder": (nothing, "case/in.tiny --set terrain=a_b,a/b -o out", "--set: must not give two runs the folder"),
     "no deck": (nothing, "case/in.none --set rolling=0 -o out", "case/in.none: must be a LAMMPS input deck (No such"),
     "deck is a folder": (nothing, "case --set rolling=0 -o out", "case: must be a LAMMPS input deck (Is a directory"),
     "no deposit": (deck(lambda text: text.replace("deposit/grid", "nve/none")), OK,
@@ -667,11 +666,6 @@ BAD = {
                    "path, got ../dem.asc"),
     "output is a file": (lambda: Path("out").write_text(""), OK, "-o: must be a folder, got out"),
     "output is the deck's": (nothing, "case/in.tiny --set rolling=0 -o case", "-o: must not be the folder of the deck"),
-    "folder of somebody": (lambda: Path("out/rolling_0").mkdir(parents=True), OK,
-                           "out/rolling_0: must be a run folder of a study, with variables.yaml"),
-    "folder of another run": (lambda: (Path("out/rolling_0").mkdir(parents=True),
-                                       Path("out/rolling_0/variables.yaml").write_text("set: {rolling: '7'}")), OK,
-                              "out/rolling_0/variables.yaml: must be of the run rolling_0"),
     "jobs": (nothing, OK + " --jobs 0", "argument --jobs: must be a whole number >= 1, got '0'"),
     "np": (nothing, OK + " --np 1.5", "argument --np: must be a whole number >= 1, got '1.5'"),
     "lmp": (nothing, OK + " --lmp none/lmp", "--lmp: must lead to the LAMMPS program, got "),

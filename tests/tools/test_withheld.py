@@ -47,8 +47,7 @@ def test_twelve_cases(changed, kinds):
     assert [one.kind for one in withheld.reasons(GOOD._replace(**changed))] == kinds
 
 
-ANEW = ("rm -r 'my site'/study 'my site'/sizes 'my site'/step; tools/slope site 'my site'{} && "
-        "tools/slope study 'my site'")
+ANEW = "tools/slope site 'my site'{} && tools/slope study 'my site' --anew"
 
 
 @pytest.mark.parametrize("changed, case, text, remedy", [
@@ -64,9 +63,9 @@ ANEW = ("rm -r 'my site'/study 'my site'/sizes 'my site'/step; tools/slope site 
     ({"left": 0.3}, SITE, "30 % of the released volume left the terrain before or beside the road, more than 1 %",
      "a larger elevation model (terrain.files, terrain.bounds) in 'my site'/site.yaml, then: " + ANEW.format("")),
     ({"on_road": 10.0}, SITE._replace(asked=" --paper"), "the volume of 1 ball, fewer than 10",
-     ANEW.format(" --balls 11000") + " --paper"),
+     ANEW.format(" --balls 11000").replace("--anew", "--paper --anew")),
     ({"left": 0.3}, SITE._replace(sampled=True), "30 %", "a larger elevation model (terrain.files, terrain.bounds) in "
-     "'my site'/site.yaml, then: tools/slope site 'my site'; the same command with another -o"),
+     "'my site'/site.yaml, then: tools/slope site 'my site'; the same command with --anew"),
     ({"moving": 5}, DECK, "5 of 20 runs failed or are not at rest, more than 10 %",
      "the same command with more time, --set duration=120"),
     ({"failed": 5}, DECK, "5 of 20 runs", "the same command again, once the cause of the failures is removed"),

@@ -275,6 +275,11 @@ def plain(value):
     return str(value) if isinstance(value, Path) else value
 
 
+def yaml_text(comment, about) -> str:
+    """A YAML file with a comment on its first line; what is in it twice is written twice, not as an alias."""
+    return f"# {comment}\n" + yaml.safe_dump(plain(about), sort_keys=False)
+
+
 def write_yaml(path, about, comment):
     with open(path, "w", encoding="utf-8") as out:
         out.write(f"# {comment}\n")

@@ -1,7 +1,8 @@
 """The files of a run: its summary and the rasters that fix deposit/grid wrote."""
+import os
 import re
 from pathlib import Path
-from typing import Any, Dict, NamedTuple, Optional
+from typing import Any, Dict, Mapping, NamedTuple, Optional, Tuple
 
 from .. import schemas
 from ..errors import SlopeError
@@ -28,7 +29,8 @@ BEGUN = mapping({}, set=named(TEXT), variables=named(TEXT), program=DIGESTS, env
                 continued=listed(OBJECT))
 ENDED = mapping({"summary": TEXT}, wall_seconds=NUMBER, environment=DIGESTS, inputs=DIGESTS)
 GOVERNING = mapping({"conservative": mapping({"run": TEXT}, null=True)}, farthest={"type": ["string", "null"]},
-                    largest=mapping({}, front_m=mapping({"run": TEXT})))
+                    largest=mapping({}, front_m=mapping({"run": TEXT})),
+                    runs=listed(mapping({"run": TEXT}, summary=TEXT)))
 WHAT = "a summary that fix deposit/grid wrote"
 # what `slope volume`, `score` and `export` need of one, and what the others do
 OF_DEPOSIT = mapping({"volume": mapping(numbers("on_grid", "off_grid", "lost")), "time": NUMBER, "moving": FLAG,
@@ -85,23 +87,30 @@ def named_run(name: str) -> Named:
         return Named(str(prefix_of(here[0])), path, None)
     for study in (path / "study.yaml", path / "study" / "study.yaml"):
         if study.is_file():
-            run = governing_run(study)
-            inside = summaries(study.parent / run)
+            run, folder = governing_run(study)
+            inside = summaries(folder)
             if len(inside) != 1:
-                raise SlopeError(study.parent / run, "must hold the governing run of the study, with its summary")
+                raise SlopeError(folder, "must hold the governing run of the study, with its summary")
             return Named(str(prefix_of(inside[0])), path, f"{run}, the governing run of {study.parent}")
     raise SlopeError(path, f"must be {OF_RUN}: it holds neither a PREFIX.summary.yaml nor a study.yaml")
 
 
-def governing_run(study: Path) -> str:
-    """The folder of the run on which a study's answer rests, or which went farthest where it has none."""
+def governing_run(study: Path) -> Tuple[str, Path]:
+    """Name and folder of the run on which a study's answer rests, or which went farthest where it has none."""
     about = schemas.load(study, OF_STUDY, GOVERNING)
-    if about["conservative"]:
-        return about["conservative"]["run"]
-    farthest = about.get("farthest") or about.get("largest", {}).get("front_m", {}).get("run")   # the latter in older
-    if not farthest:
+    best = about["conservative"] or about.get("largest", {}).get("front_m", {})      # the latter in older ones
+    name = about["conservative"] and best["run"] or about.get("farthest") or best.get("run")
+    if not name:
         raise SlopeError(study, f"must be {OF_STUDY}, with a finished run")
-    return farthest
+    for row in about.get("runs") or ():
+        if row["run"] == name and "summary" in row:
+            return name, summary_of(study.parent, row).parent
+    return name, study.parent / name
+
+
+def summary_of(output: Path, row: Mapping[str, Any]) -> Path:
+    """The summary of the run of a row of study.yaml in a folder; the runs may be in another one, that of a site."""
+    return Path(os.path.normpath(output / row["summary"]))
 
 
 def begun(folder: Path) -> Dict[str, Any]:

@@ -103,7 +103,7 @@ def run(args):
     setup = run_arguments.setup_of(args)
     if setup.road:
         study.check_road(setup.road, setup.deck, settings)
-    study.check_folder(setup, [])
+    study.check_output(setup)
     about = {**wanted.about, "deck": args.deck.name, "set": fixed, "repeat": repeated,
              "variables": {one.name: one.text for one in variables}, "seed": args.seed}
     ledger = calibration.Ledger(args.output, about, variables)

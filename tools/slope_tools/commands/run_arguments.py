@@ -41,6 +41,9 @@ def add_runs(parser, road=False, output=True):
     parser.add_argument("--lmp", metavar="FILE", help="the LAMMPS program (default: LMP of the environment, then "
                         "build/lmp beside tools/)")
     parser.add_argument("--dry-run", action="store_true", help="only list the runs")
+    parser.add_argument("--anew", action="store_true",
+                        help="make finished runs again that are of another program, deck or data than the present ones "
+                             "(default: refuse them)")
     parser.add_argument("--launcher", metavar="COMMAND",
                         help="what starts the ranks of a run instead of mpirun, such as 'srun --mpi=pmix' or 'mpiexec "
                              "-n {np}'; without {np}, -n N is added")
@@ -140,4 +143,4 @@ def setup_of(args) -> Setup:
     given = {name: value for name in ("cut_angle", "mesh") if (value := getattr(args, name)) is not None}
     road = Road(args.road, **given, local=args.local, asked=road_arguments.asked(args)) if args.road else None
     return Setup(args.deck, args.output, args.np, args.jobs, road, args.lmp, args.launcher, args.engine, args.slurm,
-                 args.dry_run, tell, printer(args.command))
+                 args.dry_run, args.anew, getattr(args, "site", None), tell, printer(args.command))

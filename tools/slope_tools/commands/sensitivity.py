@@ -61,7 +61,7 @@ def run(args):
             raise SlopeError("--converge", "must be given without --levels: one kind of study at a time",
                              args.levels[0])
         from ..studies import size_study
-        return size_study.run(setup, args.converge, base, repeated, of, {name: NAMES[name] for name in of})
+        return size_study.run(setup, args.converge, base, repeated, of)
     todo = plan(setup, base, kinds)
     settings = {name: list(dict.fromkeys(one.chosen[name] for one in todo if name in one.chosen))
                 for name in (*base, *kinds["vary"], *kinds["repeat"])}

@@ -14,7 +14,7 @@ from ..sites import site_choices, site_deck
 from ..sites.site_bodies import VARIABLE
 from ..sites.site_layers import ROAD
 from ..studies import results, site_ground, site_study
-from ..studies.study import check_names, check_thresholds, perform
+from ..studies.study import check_thresholds, perform
 from ..survey import roads
 from ..tables import intensity
 from ..tables.size_error import SizeErrors
@@ -150,7 +150,6 @@ def run_deck(args):
     if not settings:
         raise SlopeError("--set", "must be given, or --sample with --vary")
     todo = repeats.plan(args.output, settings, repeated, defaults)
-    check_names(todo)
     intensity.check(args.intensity, settings, bool(args.road))
     errors = None
     if args.size_error:
@@ -262,11 +261,10 @@ def run_ensemble(args, settings, repeated, thresholds, defaults, condition, chai
     levels = ensemble_maps.Thresholds(thresholds, check_thresholds(args.exceed_speed, "--exceed-speed", "speeds"),
                                       check_thresholds(args.exceed_energy, "--exceed-energy", "energies"))
     of = ensemble.check_quantity(args.of, args.road is not None)
-    todo = sample.plan(args.output, plan, fixed, repeated, defaults)
-    check_names(todo)
+    setup = setup_of(args)
+    todo = sample.plan(setup.runs, plan, fixed, repeated, defaults)
     sample.check_growth(args.output, plan)
     several = sample.settings_of(todo)
-    setup = setup_of(args)
     order = ensemble.Order(plan, of, levels, condition, condition and farther.Added(args.output, plan))
     questions = results.Questions(several, repeated, thresholds, None, order, site=getattr(args, "site", None),
                                   method=getattr(args, "method", ""), chain=chain)

@@ -78,8 +78,8 @@ def evaluate(order: Order, rows: Sequence[Mapping[str, Any]], output: Path, plac
     about["influence"] = {name: one.about() for name, one in analyses.items()}
     about["doubts"] = doubts(about)
     about["maps"] = [] if grids else ensemble_maps.write(
-        output / MAPS, [run_folders.prefix_of(output / row["summary"]) for row in finished], len(set(point)), failed,
-        order.levels, place)
+        output / MAPS, [run_folders.prefix_of(run_folders.summary_of(output, row)) for row in finished],
+        len(set(point)), failed, order.levels, place)
     about["known_events"] = None
     if order.condition:
         assert order.added

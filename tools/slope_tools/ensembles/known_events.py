@@ -113,7 +113,8 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
     dependence counts; levels, place, grids: of the maps, see ensemble.evaluate.
     """
     first = next(row for row in rows if row["status"] == "finished")
-    found = mobility_of(condition, output / first["run"], output / first["summary"])
+    summary = run_folders.summary_of(output, first)
+    found = mobility_of(condition, summary.parent, summary)
     about: Dict[str, Any] = {
         "set": condition.asked.name, "events": condition.asked.number, "left_out": list(condition.asked.left_out),
         "confined": condition.asked.confined,
@@ -138,7 +139,7 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
     about["doubts"] = doubts(about, runs)
     about["weights"] = whole_weights(runs)
     about["maps"] = [] if grids else known_maps.write(
-        output / FOLDER, [run_folders.prefix_of(output / row["summary"]) for row in runs.rows], runs.mass,
+        output / FOLDER, [run_folders.prefix_of(run_folders.summary_of(output, row)) for row in runs.rows], runs.mass,
         runs.several, runs.failed_share, levels, place)
     disk.write(output / HAZARD, hazard.table(curves))
     disk.write(output / WEIGHTS, weights_table(runs))

@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import Any, Dict, List, Mapping, Sequence, Tuple
 
 import numpy as np
-import yaml
 
 from .. import disk, schemas
 from ..case.settings import MOST_RUNS
@@ -109,4 +108,4 @@ def check_growth(folder: Path, sample: Sample) -> None:
 
 def keep(folder: Path, sample: Sample) -> None:
     """Write design.yaml, before the first run."""
-    disk.write(folder / FILE, f"# {WHAT}\n" + yaml.safe_dump(sample.about, sort_keys=False))
+    disk.write(folder / FILE, disk.yaml_text(WHAT, sample.about))

@@ -3,14 +3,13 @@ from pathlib import Path
 from typing import Any, Dict, List, Mapping, Optional, Sequence
 
 import numpy as np
-import yaml
 
 from .. import disk, provenance
 from ..case import run_folders
 from ..deposits import deposit, score
 from ..runs import jobs, repeats
 from ..statistics import backanalysis
-from ..studies import results, study
+from ..studies import results
 from ..studies.setup import Setup
 from ..tables import quantities
 from . import calibration, fit_words, observations
@@ -42,10 +41,7 @@ class Fit:
 
     def evaluate(self, todo: Sequence[repeats.Repeat]) -> List[Optional[np.ndarray]]:
         """Run what is not finished, and measure all."""
-        study.check_names(todo)
-        study.check_folder(self.setup, todo)
-        for one in todo:
-            jobs.check_finished(one, self.work.depends)
+        self.work.store.admit(todo)
         self.work.do(todo)
         rows, _ = results.rows_of(self.setup, todo, results.Maps(()), pictures=False)
         found: List[Optional[np.ndarray]] = []
@@ -56,7 +52,7 @@ class Fit:
         return found
 
     def summary(self, row: Mapping[str, Any]) -> Path:
-        return self.setup.output / row["summary"]
+        return run_folders.summary_of(self.setup.output, row)
 
     @staticmethod
     def terrain(one: repeats.Repeat) -> Optional[Path]:
@@ -92,8 +88,8 @@ class Fit:
             "pairs": self.pairs(found)}
         with disk.complete(output, ABOUT) as new:
             disk.write(new / TABLE, self.table(found))
-            disk.write(new / ABOUT, "# slope calibrate: lengths in m, areas in m2, volumes in m3 of ground (bulk)\n"
-                       + yaml.safe_dump(about, sort_keys=False))
+            disk.write(new / ABOUT, disk.yaml_text(
+                "slope calibrate: lengths in m, areas in m2, volumes in m3 of ground (bulk)", about))
             from . import calibrate_charts
             calibrate_charts.draw(new / CHART, found, self.variables, plan.ledger.places(plan.finished()),
                                   f"{self.setup.deck.name}: {len(plan.finished())} runs")

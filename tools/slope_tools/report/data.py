@@ -144,7 +144,7 @@ class Data:
         self.drawn = [self.result]
 
     def _load(self, row):
-        path = self.folder / row["summary"]
+        path = run_folders.summary_of(self.folder, row)
         return Result(path.parent, path, row)
 
     def _removed(self):
@@ -208,7 +208,7 @@ class Data:
         found = []
         for row in self.finished:
             one = loaded.get(row["run"])
-            path = self.folder / row["summary"]
+            path = run_folders.summary_of(self.folder, row)
             if one or path.is_file():
                 summary = one.summary if one else run_folders.load_summary(path)
                 texts = [*(one.log.notes if one else ()), *(row.get("log_warnings") or ())]

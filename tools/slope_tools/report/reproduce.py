@@ -37,7 +37,7 @@ def runs_of(data) -> Iterable[Run]:
         yield data.result.name, data.result.folder, data.result.about, data.result.marker
         return
     for row in data.finished:
-        folder = (data.folder / row["summary"]).parent
+        folder = run_folders.summary_of(data.folder, row).parent
         yield (f"run {data.number(row['run'])}, {data.label_of(row)}", folder, run_folders.begun(folder),
                run_folders.ended(folder))
 
@@ -101,7 +101,7 @@ def checksums(data, runs: List[Run]) -> List[str]:
         for name, digest in (marker.get("inputs") or {}).items():
             found.setdefault((Path(name).name, digest), folder / name)
     files = [data.folder / name for name in RESULTS if (data.folder / name).is_file()]
-    files += [data.folder / row["summary"] for row in data.finished] or [data.result.path]
+    files += [run_folders.summary_of(data.folder, row) for row in data.finished] or [data.result.path]
     return [f"{digest}  {relative(path, data.folder)}" for (_, digest), path in found.items()] + [
         f"{disk.sha256(path)}  {relative(path, data.folder)}" for path in files]
 
@@ -117,4 +117,5 @@ def sources(folder: Path) -> List[str]:
 
 
 def relative(path: Path, folder: Path) -> Path:
-    return path.relative_to(folder) if folder in path.parents else path
+    """The path from a folder, also of what is in a folder beside it; that of a file elsewhere as it is."""
+    return Path(os.path.relpath(path, folder)) if {folder, folder.parent} & set(path.parents) else path

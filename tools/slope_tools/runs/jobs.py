@@ -7,14 +7,13 @@ import signal
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, List, Optional
+from typing import Any, Dict, List, Mapping, Optional
 
 import yaml
 from .. import disk, processes, provenance
 from ..case import decks, last_words, logs, restarts, run_folders
 from ..errors import SlopeError
-from ..sites import site_choices
-from . import dependencies, launcher
+from . import dependencies, launcher, store
 from .job_display import Display
 
 POLL = 0.1              # s between two looks at the runs
@@ -36,29 +35,41 @@ def physical_cores():
     return min(len(siblings) or 1, cores())
 
 
+def name_of(chosen: Mapping[str, str]) -> str:
+    """The name that a run has by its values."""
+    return "_".join(f"{name}_{SAFE.sub('-', value)}" for name, value in chosen.items()) or "base"
+
+
 class Run:
     """One run: its values, its folder, and what became of it."""
 
     def __init__(self, output, chosen):
         self.chosen: Dict[str, str] = chosen
-        self.name = "_".join(f"{name}_{SAFE.sub('-', value)}" for name, value in chosen.items()) or "base"
-        self.folder = Path(output) / self.name
+        self.move(Path(output) / name_of(chosen))
         self.varied = self.name     # for a narrow terminal: the values that differ
         self.error = None
-        self.log = logs.Log(self.folder / logs.LOG)
+        self.changed: Optional[str] = None      # of a finished run that is to be made again: what is another
         self.restart = None         # step and path of the restart file from which it continues
         self.refused = set()        # restart files that LAMMPS could not read
         self.unlaunched: Optional[str] = None       # what was said when it failed before LAMMPS began
         self.output_before = 0              # bytes of screen output of its earlier parts
 
+    def move(self, folder: Path):
+        """Be the run in a folder."""
+        self.folder, self.name, self.log = folder, folder.name, logs.Log(folder / logs.LOG)
+
     @property
     def marker(self):
         return self.folder / run_folders.MARKER
 
+    @property
+    def finished(self):
+        return self.changed is None and self.marker.exists()
+
     def state(self):
-        if self.marker.exists():
+        if self.finished:
             return "finished"
-        return "unfinished" if self.folder.exists() else "new"
+        return "made again" if self.changed else "unfinished" if self.folder.exists() else "new"
 
     def fail(self, status):
         """Keep why it failed."""
@@ -92,17 +103,6 @@ def copied(files, folder):
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def check_finished(run, depends: dependencies.Dependencies):
-    """Raise SlopeError if a finished run depends on something that is not what it was; comments in decks may differ."""
-    changed = depends.changed(run) if run.marker.exists() else None
-    if changed:
-        deck = depends.source
-        other = "" if (deck.parent / site_choices.NAME).is_file() else ", or give another -o"
-        whose = f"that of {deck.parent}" if changed in depends.digests else "the present one"
-        raise SlopeError(run.folder, f"was run with another {changed} than {whose}: remove the folder to run it again "
-                         f"(or {run.folder.parent}, for all of them){other}")
-
-
 # --- processes ---
 
 @contextlib.contextmanager
@@ -130,21 +130,26 @@ class Active:
 class Work:
     """Runs the deck in the run folders, some at a time."""
 
-    def __init__(self, deck, digests, inputs, lmp, ranks, jobs, start: Optional[str] = None):
-        """start: the launcher.words of --launcher, None of mpirun."""
+    def __init__(self, deck, digests, inputs, lmp, ranks, jobs, start: Optional[str] = None, older=(), anew=False):
+        """start: the launcher.words of --launcher, None of mpirun; older, anew: see store.Store."""
         self.deck, self.digests, self.inputs = deck, digests, inputs
         self.lmp, self.ranks, self.jobs, self.start = lmp, ranks, jobs, start
         self.package = provenance.package_version()
         self.depends = dependencies.Dependencies(inputs / deck.name, digests, lmp, deck)
-        self.defaults = decks.index_variables(inputs / deck.name)
+        self.store = store.Store(inputs.parent, self.depends, older, anew)
+        self.defaults = self.store.defaults
         self.continues = any(CONTINUES in word for words in decks.commands(inputs / deck.name)
                              for word in (*words, " ".join(words)))
         self.active: List[Active] = []
 
     def do(self, todo):
-        """Run what is not finished. On an interruption, end the runs under way and leave their folders unfinished."""
-        waiting = [run for run in todo if not run.marker.exists()]
-        with Display(todo, waiting, self.at_a_time) as display:
+        """Run what is not finished. On an interruption, end the runs under way and leave their folders unfinished.
+
+        Runs of one folder are one: it is made as the first of them.
+        """
+        once = store.once(todo)
+        waiting = [run for run in once if not run.finished]
+        with Display(once, waiting, self.at_a_time) as display:
             try:
                 while waiting or self.active:
                     for run, said in self._begin(waiting):
@@ -163,6 +168,9 @@ class Work:
             except BaseException:
                 self._stop()
                 raise
+        made = {run.folder: run for run in once}
+        for run in todo:
+            run.error, run.log = made[run.folder].error, made[run.folder].log
 
     def at_a_time(self):
         """How many runs may be active at a time."""
@@ -310,6 +318,7 @@ class Work:
                  "inputs": {name: begun["inputs"].get(name, digest) for name, digest in state.files.items()}}
         disk.flush_all(run.folder)      # what it says is there, is
         disk.write(run.marker, yaml.safe_dump(about, sort_keys=False))
+        run.changed = None
         return None
 
     def _stop(self):

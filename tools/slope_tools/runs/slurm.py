@@ -125,7 +125,7 @@ class Work(jobs.Work):
     def __init__(self, *args, options: str = "", throttle: Optional[int] = None):
         super().__init__(*args)
         self.options, self.throttle, self.queue = shlex.split(options), throttle, Queue()
-        self.folder = self.inputs.parent / FOLDER
+        self.folder = self.store.folder / FOLDER
         self.tries: Dict[str, int] = {}
         self.running = 0        # tasks, when they were last looked at
         self.folder.mkdir(exist_ok=True)

@@ -168,13 +168,14 @@ def plan(choices: Choices, points: int = 0) -> Plan:
     study = choices["study"]
     each = 1 + sum(len(study[name]) for name in OFFSETS)
     grounds = other_grounds(choices)
-    parts = [(1.0, each * len(study["rolling"]) + len(grounds)), *((float(factor), each) for factor in study["sizes"])]
+    others = [float(factor) for factor in study["sizes"] if factor != 1]       # balls of the site's size are there
+    parts = [(1.0, each * len(study["rolling"]) + len(grounds)), *((factor, each) for factor in others)]
     text = (f"{sum(runs for _, runs in parts)} runs: {len(study['rolling'])} rolling resistances x {each} lattice "
             "positions")
     if grounds:
         text += f", {len(grounds)} on other grounds"
-    if study["sizes"]:
-        text += f", {len(study['sizes'])} sizes of balls x {each}"
+    if others:
+        text += f", {len(others)} other sizes of balls x {each}"
     return Plan(parts, bool(choices["road"]["file"]), text)
 
 
@@ -186,11 +187,10 @@ def study_seconds(d: float, volume: float, trial: Trial, speed: float, density: 
         size = factor * d
         steps = trial.typical / time_step(size, speed, density)
         total += runs * (trial.setup + steps * volume / size ** 3 * trial.cost)
-    alone = 0.0
-    if wanted.half_step:        # nothing else runs beside it
+    if wanted.half_step:
         steps = LEDGER * 2 * trial.typical / time_step(d, speed, density)
-        alone = trial.setup + steps * volume / d ** 3 * trial.cost
-    return total / jobs + alone + COLLECT * number + REPORT
+        total += trial.setup + steps * volume / d ** 3 * trial.cost
+    return total / jobs + COLLECT * number + REPORT
 
 
 def gigabytes(d: float, volume: float, cells: int, jobs: int) -> float:

@@ -1,10 +1,11 @@
 """Making the runs that an ensemble adds towards longer ones (farther), batch by batch."""
 from typing import Any, Dict, List, Mapping, Sequence
 
+from ..case import run_folders
 from ..ensembles import known_events
 from ..ensembles.ensemble import Order
 from ..runs import jobs, repeats
-from . import results, study
+from . import results
 from .setup import Setup
 
 
@@ -22,8 +23,8 @@ def make(setup: Setup, order: Order, fixed: Mapping[str, str], chances: Sequence
         finished = [row for row in rows if row["status"] == "finished"]
         if not finished:
             return
-        found = known_events.mobility_of(order.condition, setup.output / finished[0]["run"],
-                                         setup.output / finished[0]["summary"])
+        summary = run_folders.summary_of(setup.output, finished[0])
+        found = known_events.mobility_of(order.condition, summary.parent, summary)
         runs = known_events.Runs(order.sample, added.batches, rows, found)
         if found.outside or len(runs.rows) < 2:
             return
@@ -39,14 +40,11 @@ def batch(setup: Setup, order: Order, fixed: Mapping[str, str], chances: Sequenc
           todo: List[repeats.Repeat], work: jobs.Work, k: int) -> List[Dict[str, Any]]:
     """Make the runs of a batch and add them to todo; their rows."""
     assert order.added
-    more = repeats.with_repeats(setup.output, [{**fixed, **one} for one in order.added.batches[k].points], chances,
+    more = repeats.with_repeats(setup.runs, [{**fixed, **one} for one in order.added.batches[k].points], chances,
                                 order.sample.names)
     for one in more:
         one.batch = k + 1
-    study.check_names([*todo, *more])
-    study.check_folder(setup, more)
-    for one in more:
-        jobs.check_finished(one, work.depends)
+    work.store.admit(more)
     work.do(more)
     todo += more
     return rows_of(setup, more)

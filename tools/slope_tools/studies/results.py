@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Any, Dict, Mapping, NamedTuple, Optional, Sequence
 
 import numpy as np
-import yaml
 
 from .. import disk, provenance
 from ..case import run_folders
@@ -124,8 +123,8 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         setup.warn(one)
     disk.write(output / "study.csv", study_table.table(settings, repeated, rows, work.defaults))
     disk.write(output / "combinations.csv", combinations.table(groups, names, settings))
-    disk.write(output / "study.yaml", "# slope study: volumes in m3 of ground (bulk), lengths in m, times in s\n"
-               + yaml.safe_dump(about, sort_keys=False))
+    disk.write(output / "study.yaml", disk.yaml_text(
+        "slope study: volumes in m3 of ground (bulk), lengths in m, times in s", about))
     if not order or len(rows) <= SHOWN:
         setup.tell(study_table.runs_shown(
             settings, rows, scatters,
@@ -168,7 +167,7 @@ def confined_of(setup: Setup, questions: Questions) -> str:
 
 def events_of(setup: Setup, run, row, confined: str) -> Optional[usable.Events]:
     """Known events of the mass of a run, of its row."""
-    summary = setup.output / row["summary"]
+    summary = run_folders.summary_of(setup.output, row)
     raster = placed(run_folders.load_raster(run_folders.prefix_of(summary), "thickness"), run)
     road = setup.road.read(raster).polygon if setup.road else None
     return usable.known_events(run_folders.prefix_of(summary), terrain_of(run), row["released_m3"], road, confined)
@@ -199,7 +198,7 @@ def rows_of(setup: Setup, todo, maps, pictures=True):
         if run.error:
             rows.append({**row, "error": run.error, "log_warnings": run.log.warnings})
             continue
-        row, thickness = result(run, row, maps)
+        row, thickness = result(run, row, maps, setup.output)
         if setup.road:
             row.update(on_road(run, setup, row, thickness, pictures))
         rows.append(row)
@@ -241,8 +240,8 @@ def doubts(rows):
     return warnings
 
 
-def result(run, row, maps):
-    """The row of a finished run, and its final thickness; adds its rasters to the maps."""
+def result(run, row, maps, output):
+    """The row of a finished run for a table in a folder, and its final thickness; adds its rasters to the maps."""
     from ..deposits import deposit
     from ..mobility import run_length
     marker = run_folders.ended(run.folder)
@@ -271,7 +270,7 @@ def result(run, row, maps):
            "moves_share": state.share, "moving_share": motion["moving_share"], "fast_share": motion.get("fast_share"),
            "fast_volume_m3": motion.get("fast_volume"), "fast_speed_m_s": motion.get("fast_speed"),
            "change_rate": summary.get("change_rate"),
-           "wall_s": marker.get("wall_seconds"), "summary": f"{run.name}/{path.name}",
+           "wall_s": marker.get("wall_seconds"), "summary": os.path.relpath(path, output),
            "slope_version": summary["slope_version"], "lammps_version": summary["lammps_version"],
            "lmp_sha256": about.get("lmp_sha256"), "log_warnings": run.log.warnings,
            **structures.of_run(run.folder, run.log.settings)}
@@ -281,7 +280,7 @@ def result(run, row, maps):
 def on_road(run, setup: Setup, row, thickness, picture=True) -> Dict[str, Any]:
     """What `slope volume` says of a run, all of which goes to the folder volume of the run; and what lies beyond."""
     from ..deposits import volume
-    road, summary = setup.road, setup.output / row["summary"]
+    road, summary = setup.road, run_folders.summary_of(setup.output, row)
     assert road
     prefix = run_folders.prefix_of(summary)
     terrain = terrain_of(run)

@@ -3,7 +3,6 @@ import math
 import statistics
 from typing import Any, Dict, List, Mapping, Optional
 
-import yaml
 from rich.table import Table
 
 from .. import disk, provenance
@@ -16,7 +15,7 @@ from ..statistics.headline import Scatter
 from ..tables import study_table
 from ..tables.quantities import NAMES, number
 from ..warned import Warned, entries
-from . import results, study
+from . import results
 from .setup import Setup
 
 OF_ROAD = "remove_m3,remove_on_road_m3"
@@ -46,7 +45,7 @@ def quantities(wanted: Optional[str], road: bool, converge: bool) -> List[str]:
 
 def plan(setup: Setup, base: Mapping[str, str], kinds) -> List[Trial]:
     """The base run, and one for each value of each variable that is not the base's."""
-    first = Trial(setup.output, base, "base")
+    first = Trial(setup.runs, base, "base")
     defaults = {**decks.index_variables(setup.deck), **base}
     todo = [first]
     for kind, variables in kinds.items():
@@ -54,10 +53,9 @@ def plan(setup: Setup, base: Mapping[str, str], kinds) -> List[Trial]:
             for value in several:
                 if as_number(value) == as_number(defaults[name]):
                     continue
-                todo.append(Trial(setup.output, {**base, name: value}, kind, name))
+                todo.append(Trial(setup.runs, {**base, name: value}, kind, name))
     if len(todo) == 1:
         raise SlopeError("--levels, --repeat", "must give a value that is not the base's")
-    study.check_names(todo)
     return todo
 
 
@@ -72,7 +70,7 @@ def collect(setup: Setup, base, of, todo, work):
         if one.error:
             warnings.append(Warned("failed", {"error": one.error}, (one.name,)))
             continue
-        found, thickness = results.result(one, row, maps)
+        found, thickness = results.result(one, row, maps, setup.output)
         if setup.road:
             found.update(results.on_road(one, setup, found, thickness))
         rows.append(found)
@@ -93,8 +91,8 @@ def collect(setup: Setup, base, of, todo, work):
     for one in warnings:
         setup.warn(one)
     disk.write(setup.output / "sensitivity.csv", table(rows, of, scatter, defaults))
-    disk.write(setup.output / "sensitivity.yaml", "# slope sensitivity: volumes in m3 of ground (bulk), lengths in m, "
-               "angles in degrees\n" + yaml.safe_dump(about, sort_keys=False))
+    disk.write(setup.output / "sensitivity.yaml", disk.yaml_text(
+        "slope sensitivity: volumes in m3 of ground (bulk), lengths in m, angles in degrees", about))
     from ..drawing import figures
     figures.tornado(setup.output / "sensitivity.png", panels(rows, of, scatter), bars(rows, defaults),
                     f"{setup.deck.name}: one variable at a time, {len(rows)} runs")

@@ -1,9 +1,13 @@
 """The request for a set of runs: deck, folder, program, and what is measured of each run."""
 from pathlib import Path
-from typing import Any, Callable, Dict, NamedTuple, Optional
+from typing import Any, Callable, Dict, List, NamedTuple, Optional
 
 from ..survey.roads import NOTHING, Asked, read_local
 from ..survey.vectors import ignore
+
+
+RUNS = "runs"                                       # in a site's folder
+OLDER = ("study", "sizes", "step", "ensemble")      # where earlier versions had them
 
 
 class Road(NamedTuple):
@@ -35,5 +39,22 @@ class Setup(NamedTuple):
     engine: str = "local"               # or slurm
     slurm: str = ""                     # options of sbatch
     dry_run: bool = False               # only list the runs
+    anew: bool = False                  # make finished runs of another program, deck or data again
+    site: Optional[Path] = None         # folder of the site whose runs they are
     tell: Callable[[Any], None] = lambda line: None     # what gets lines for the user, and tables (rich.table.Table)
     warn: Callable[[Any], None] = lambda said: None     # what gets warnings, Warned or text
+
+    @property
+    def home(self) -> Path:
+        """The folder in which one command works at a time."""
+        return self.site or self.output
+
+    @property
+    def runs(self) -> Path:
+        """The folder of the runs: a study's own, one for all studies of a site."""
+        return self.site / RUNS if self.site else self.output
+
+    @property
+    def older(self) -> List[Path]:
+        """The folders in which earlier versions had runs of a site."""
+        return [self.site / name for name in OLDER] if self.site else []

@@ -1,14 +1,14 @@
 """The standard study of a site: sizes of balls, half the step, rolling resistances, repeats, the mapped deposit.
 
-Order of the work: the error of the size (size_study), a run with half the step, the study with both (study, results),
-the score of the run that the answer rests on. Every part is resumed by the same call.
+Order of the work: plan all runs, make them (study), the error of the size (size_study), what half the step changes, the
+study with both (results), the score of the run that the answer rests on. The same call resumes it.
 """
 import shutil
 from pathlib import Path
 from shlex import quote
-from typing import Any, Dict, Iterable, List, NamedTuple, Optional, Sequence
+from typing import Dict, Iterable, List, NamedTuple, Optional, Sequence, Tuple
 
-from .. import disk, schemas
+from .. import schemas
 from ..case import decks, run_folders
 from ..errors import SlopeError
 from ..runs import repeats
@@ -19,7 +19,6 @@ from ..sites.site_choices import Choices, OFFSETS, other_grounds
 from ..sites.site_layers import OBSERVED, ROAD
 from ..survey.roads import Asked
 from ..tables import energy
-from ..tables.quantities import NAMES
 from ..tables.size_error import SizeErrors, WHAT
 from ..tables.step_check import HALF, QUANTITY, Step
 from ..tables.study_file import read_study
@@ -29,7 +28,8 @@ from .sensitivity import quantities
 from .setup import Road, Setup
 
 # folders in the site's
-SIZES, STEP, STUDY, SCORE, ENSEMBLE = "sizes", "step", "study", "score", "ensemble"
+SIZES, STUDY, SCORE, ENSEMBLE = "sizes", "study", "score", "ensemble"
+LEDGER = "ledger"       # a deck's variable
 SAID = listed({"anyOf": [OBJECT, TEXT], "description": "warnings"}, null=True)     # of older versions, too
 THRESHOLDS = (0.1, 0.5, 1.0)        # m, of the maps of exceedance
 
@@ -53,8 +53,45 @@ def run(folder: Path, engine: Setup, method: str) -> Done:
     """
     choices = site_choices.read(folder)
     check(folder, choices)
-    with disk.alone_in(folder):
-        return run_alone(folder, choices, engine, method)
+    deck, road, several = folder / site_deck.NAME, choices["road"], choices["study"]
+    setup = engine._replace(deck=deck, output=folder / STUDY, site=folder, road=None)
+    if road["file"]:
+        setup = setup._replace(road=Road(folder / ROAD, road["cut_angle"], road["mesh"], asked=Asked.of(road)))
+    repeated = {name: words(several[name]) for name in OFFSETS if several[name]}
+    settings, variables = {"rolling": words(several["rolling"])}, decks.index_variables(deck)
+    middle = settings["rolling"][len(several["rolling"]) // 2]
+    others = grounds(choices, variables)
+    if others:
+        settings["spacing"] = [variables["spacing"]]
+    todo = repeats.plan(setup.runs, settings, repeated, variables, others)
+    if others:
+        settings["spacing"] = list(dict.fromkeys([*settings["spacing"], *(one["spacing"] for one in others)]))
+    planned, why = size_runs(setup._replace(output=folder / SIZES), several["sizes"], middle, repeated, variables)
+    half = half_steps(setup, middle, variables) if setup.road else []
+
+    def collect(_, work):
+        found = sizes(planned, variables, work) if planned else unusable(setup, why) if why else NOT_ASKED
+        questions = results.Questions(settings, repeated, THRESHOLDS, found.errors, size_error_unusable=found.unusable,
+                                      notes=(*warnings_of(folder), *found.warnings), site=folder, sizes=found.path,
+                                      step=step_of(setup, half[0], middle, variables) if half else None, method=method)
+        results.collect(setup, questions, todo, work)
+
+    failed: Optional[Exception] = None
+    try:
+        study.perform(setup, {**settings, **repeated}, [*todo, *(planned.todo if planned else ()), *half], collect)
+    except study.RunsFailed:
+        failed = study.failure(setup.output, todo)      # what is said of the others is with their results
+        if failed and all(one.error for one in todo):
+            raise failed from None
+    if setup.dry_run:
+        return Done(None, failed)
+    if choices["observed"]["file"]:
+        shutil.rmtree(folder / SCORE, ignore_errors=True)       # of other runs
+        try:
+            scored(folder, setup)
+        except Exception as error:      # whatever it is, the runs took hours: their report comes first
+            failed = failed or error
+    return Done(setup.output, failed)
 
 
 def check(folder: Path, choices: Choices) -> None:
@@ -72,49 +109,6 @@ def check(folder: Path, choices: Choices) -> None:
         if before.get(name, digest) != digest:
             raise SlopeError(folder / name, f"must not have changed since {site_deck.NAME} was made from it: "
                              f"`slope site {quote(str(folder))}` rebuilds the deck")
-
-
-def run_alone(folder: Path, choices: Choices, engine: Setup, method: str) -> Done:
-    """run() after its checks, with the folder locked."""
-    deck = folder / site_deck.NAME
-    road = choices["road"]
-    setup = engine._replace(deck=deck, output=folder / STUDY, road=None)
-    if road["file"]:
-        setup = setup._replace(road=Road(folder / ROAD, road["cut_angle"], road["mesh"], asked=Asked.of(road)))
-    several = choices["study"]
-    repeated = {name: words(several[name]) for name in OFFSETS if several[name]}
-    found = Sizes(None, (), None)
-    if len(several["sizes"]) > 1:
-        found = sizes(setup._replace(output=folder / SIZES), choices, repeated)
-    settings, variables = {"rolling": words(several["rolling"])}, decks.index_variables(deck)
-    step = half_step(setup._replace(output=folder / STEP), settings["rolling"]) if setup.road else None
-    others = grounds(choices, variables)
-    if others:
-        settings["spacing"] = [variables["spacing"]]
-    todo = repeats.plan(setup.output, settings, repeated, variables, others)
-    study.check_names(todo)
-    if others:
-        settings["spacing"] = list(dict.fromkeys([*settings["spacing"], *(one["spacing"] for one in others)]))
-    questions = results.Questions(settings, repeated, THRESHOLDS, found.errors, size_error_unusable=found.unusable,
-                                  notes=(*warnings_of(folder), *found.warnings), site=folder, sizes=found.path,
-                                  step=step, method=method)
-    failed: Optional[Exception] = None
-    try:
-        study.perform(setup, {**settings, **repeated}, todo,
-                      lambda todo, work: results.collect(setup, questions, todo, work))
-    except study.RunsFailed as error:
-        if all(one.error for one in todo):
-            raise
-        failed = error
-    if setup.dry_run:
-        return Done(None, failed)
-    if choices["observed"]["file"]:
-        shutil.rmtree(folder / SCORE, ignore_errors=True)       # of other runs
-        try:
-            scored(folder, setup)
-        except Exception as error:      # whatever it is, the runs took hours: their report comes first
-            failed = failed or error
-    return Done(setup.output, failed)
 
 
 def warnings_of(folder: Path) -> List[Warned]:
@@ -138,23 +132,35 @@ class Sizes(NamedTuple):
     path: Optional[Path] = None     # converge.yaml, with the means of all sizes
 
 
-def sizes(setup: Setup, choices: Choices, repeated: Dict[str, List[str]]) -> Sizes:
-    """The runs with balls of several sizes, and the error that they find."""
-    variables = decks.index_variables(setup.deck)
+NOT_ASKED = Sizes(None, (), None)
+
+
+def size_runs(setup: Setup, factors: Sequence[float], rolling: str, repeated: Dict[str, List[str]],
+              variables: Dict[str, str]) -> Tuple[Optional[size_study.Plan], str]:
+    """The runs with balls of several sizes, or why there are none although they were asked for."""
+    if len(factors) < 2:
+        return None, ""
     diameter = float(variables["d"])
-    values = words(diameter if factor == 1 else three_digits(factor * diameter) for factor in choices["study"]["sizes"])
-    rolling = words(choices["study"]["rolling"])
-    of = quantities(None, setup.road is not None, True)
+    values = words(diameter if factor == 1 else three_digits(factor * diameter) for factor in factors)
     try:
-        size_study.run(setup, "d=" + ",".join(values), {"rolling": rolling[len(rolling) // 2]}, repeated, of,
-                       {name: NAMES[name] for name in of})
-    except study.RunsFailed as error:
-        setup.warn(warned(str(error))._replace(part="sizes of balls"))
+        return size_study.plan(setup, "d=" + ",".join(values), {"rolling": rolling}, repeated), ""
+    except SlopeError as error:
+        return None, str(error)
+
+
+def sizes(planned: size_study.Plan, variables: Dict[str, str], work) -> Sizes:
+    """The error that these runs find."""
+    setup = planned.setup
+    failed = study.failure(setup.output, planned.todo)
+    if failed:
+        setup.warn(warned(str(failed))._replace(part="sizes of balls"))
+    try:
+        size_study.collect(planned, quantities(None, setup.road is not None, True), work)
     except SlopeError as error:
         return unusable(setup, str(error))
     path = setup.output / "converge.yaml"
-    if setup.dry_run or not setup.road:
-        return Sizes(None, (), None)
+    if not setup.road:
+        return NOT_ASKED
     if not path.is_file():
         return unusable(setup, "too few of its runs finished")
     said = [warned(one)._replace(part="sizes of balls")
@@ -168,35 +174,21 @@ def sizes(setup: Setup, choices: Choices, repeated: Dict[str, List[str]]) -> Siz
     return Sizes(errors, said, None, path)
 
 
-def half_step(setup: Setup, rolling: List[str]) -> Optional[Step]:
-    """One run with half the time step, at the rolling resistance in the middle; None of a dry run.
+def half_steps(setup: Setup, rolling: str, variables: Dict[str, str]) -> List[repeats.Repeat]:
+    """One run with half the time step, which keeps account of its energy, too, unless the deck is of a version that
+    cannot."""
+    settings = {"rolling": [rolling], "step": [HALF], **({LEDGER: ["1"]} if LEDGER in variables else {})}
+    return repeats.plan(setup.runs, settings, {}, variables)
 
-    It keeps account of its energy, too, unless the deck is of a version that cannot.
-    """
-    middle = rolling[len(rolling) // 2]
-    settings = {"rolling": [middle], "step": [HALF]}
-    variables = decks.index_variables(setup.deck)
-    if "ledger" in variables:
-        settings["ledger"] = ["1"]
-    todo = repeats.plan(setup.output, settings, {}, variables)
-    volumes: List[float] = []
-    spent: List[Optional[Dict[str, Any]]] = []
 
-    def collect(todo, _):
-        rows, _ = results.rows_of(setup, todo, results.Maps(()), pictures=False)
-        for row in rows:
-            if row["status"] == "finished":
-                volumes.append(row[QUANTITY])
-                if "ledger" in settings:
-                    prefix = str(setup.output / row["summary"]).removesuffix(".summary.yaml")
-                    spent.append(energy.read(Path(f"{prefix}.{energy.SUFFIX}")))
-
-    try:
-        study.perform(setup, settings, todo, collect)
-    except SlopeError as error:
-        return Step(middle, None, str(error))
-    return Step(middle, volumes[0], energy=spent[0] if spent else None,
-                spacing=variables.get("spacing")) if volumes else None
+def step_of(setup: Setup, run_: repeats.Repeat, rolling: str, variables: Dict[str, str]) -> Step:
+    """What that run tells."""
+    [row], _ = results.rows_of(setup, [run_], results.Maps(()), pictures=False)
+    if run_.error:
+        return Step(rolling, None, f"{run_.name}: {run_.error}")
+    prefix = run_folders.prefix_of(run_folders.summary_of(setup.output, row))
+    return Step(rolling, row[QUANTITY], energy=energy.read(Path(f"{prefix}.{energy.SUFFIX}"))
+                if LEDGER in variables else None, spacing=variables.get("spacing"))
 
 
 def unusable(setup: Setup, why: str, shortly: str = "") -> Sizes:
@@ -208,9 +200,10 @@ def scored(folder: Path, setup: Setup) -> None:
     """Compare the governing run with the mapped deposit."""
     from ..deposits import score_run
     path = setup.output / "study.yaml"
-    name = run_folders.governing_run(path)
-    row = next(row for row in read_study(path)["runs"] if row["run"] == name)
+    read_study(path)
+    name, place = run_folders.governing_run(path)
+    [summary] = run_folders.summaries(place)
     outline = folder / f"{OBSERVED}.csv"
-    setup.tell(f"{row['run']} against the mapped deposit:")
-    setup.tell(score_run.make(str(setup.output / row["summary"]).removesuffix(".summary.yaml"),
+    setup.tell(f"{name} against the mapped deposit:")
+    setup.tell(score_run.make(str(run_folders.prefix_of(summary)),
                               outline if outline.is_file() else folder / f"{OBSERVED}.tif", folder / SCORE))

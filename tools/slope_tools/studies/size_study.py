@@ -3,7 +3,8 @@
 Order of the work: plan sizes and repeats (repeats.py), run them as `slope study` does (study.py, jobs.py), fit
 (convergence.py), write converge.yaml, converge.csv, converge_runs.csv and the chart (convergence_chart.py).
 """
-import yaml
+from typing import Dict, List, Mapping, NamedTuple, Sequence
+
 from rich.table import Table
 
 from .. import disk, provenance
@@ -13,6 +14,7 @@ from ..errors import SlopeError
 from ..runs import repeats
 from ..statistics import convergence, headline
 from ..tables import combinations, study_table
+from ..tables.quantities import NAMES
 from ..warned import Warned, entries
 from . import results, study
 from .setup import Setup
@@ -20,8 +22,23 @@ from .setup import Setup
 OPTION = "--converge"
 
 
-def run(setup: Setup, converge: str, base, repeated, of, names) -> None:
-    """Do it; base: {name: value} of all runs, of: columns of the study's table, names: {column: (name, unit)}."""
+class Plan(NamedTuple):
+    """The runs, those of each size in settings followed by their repeats; variable: what the size is called."""
+    setup: Setup
+    settings: Dict[str, List[str]]
+    repeated: Mapping[str, Sequence[str]]
+    variable: str
+    todo: List[repeats.Repeat]
+
+
+def run(setup: Setup, converge: str, base, repeated, of) -> None:
+    """Do it; base: {name: value} of all runs, of: columns of the study's table."""
+    planned = plan(setup, converge, base, repeated)
+    study.perform(setup, {**planned.settings, **repeated}, planned.todo, lambda _, work: collect(planned, of, work))
+
+
+def plan(setup: Setup, converge: str, base, repeated) -> Plan:
+    """See run(); SlopeError on bad input."""
     [(variable, values)] = check_settings([converge], setup.deck, OPTION).items()
     for value in values:
         number = as_number(value)
@@ -33,14 +50,14 @@ def run(setup: Setup, converge: str, base, repeated, of, names) -> None:
         if variable in other:
             raise SlopeError(OPTION, f"must not name a variable of {option}", variable)
     settings = {**{name: [value] for name, value in base.items()}, variable: values}
-    todo = repeats.plan(setup.output, settings, repeated, decks.index_variables(setup.deck))
-    study.check_names(todo)
-    study.perform(setup, {**settings, **repeated}, todo,
-                  lambda todo, work: collect(setup, settings, repeated, variable, of, names, todo, work))
+    return Plan(setup, settings, repeated, variable,
+                repeats.plan(setup.runs, settings, repeated, decks.index_variables(setup.deck)))
 
 
-def collect(setup: Setup, settings, repeated, variable, of, names, todo, work):
+def collect(planned: Plan, of, work) -> None:
     """Fit and write what the finished runs tell."""
+    setup, settings, repeated, variable, todo = planned
+    names = {name: NAMES[name] for name in of}
     rows, _ = results.rows_of(setup, todo, results.Maps(()))
     finished = [row for row in rows if row["status"] == "finished"]
     groups = combinations.grouped(rows)
@@ -70,10 +87,12 @@ def collect(setup: Setup, settings, repeated, variable, of, names, todo, work):
              "warnings": entries(warnings)}
     for one in warnings:
         setup.warn(one)
+    setup.output.mkdir(exist_ok=True)
     disk.write(setup.output / "converge.csv", table(fits, variable))
     disk.write(setup.output / "converge_runs.csv", study_table.table(settings, repeated, rows, work.defaults))
-    disk.write(setup.output / "converge.yaml", f"# slope sensitivity --converge: a line V0 + b {variable} through the "
-               "values; volumes in m3 of ground (bulk), lengths in m\n" + yaml.safe_dump(about, sort_keys=False))
+    disk.write(setup.output / "converge.yaml", disk.yaml_text(
+        f"slope sensitivity --converge: a line V0 + b {variable} through the values; volumes in m3 of ground (bulk), "
+        "lengths in m", about))
     from ..tables import convergence_chart
     convergence_chart.draw(
         setup.output / "converge.png", variable, [(*names[name], fits[name], [

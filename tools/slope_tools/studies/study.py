@@ -3,20 +3,18 @@ import argparse
 import contextlib
 import functools
 from pathlib import Path
-from typing import Callable, Dict, Optional
+from typing import Callable, Optional
 
 from .. import disk
-from ..case import decks, run_folders
+from ..case import decks
 from ..case.data_files import data_files
 from ..errors import SlopeError
 from ..options import number
 from ..programs import find_lmp
-from ..runs import dependencies, jobs, launcher, slurm
+from ..runs import dependencies, jobs, launcher, slurm, store
 from ..survey import rasters
 from ..warned import Warned
 from .setup import Road, Setup
-
-MOST_LETTERS = 200      # of a folder's name; file systems take 255
 
 
 def perform(setup: Setup, settings, todo, collect, begin=None):
@@ -27,21 +25,21 @@ def perform(setup: Setup, settings, todo, collect, begin=None):
     files = data_files(setup.deck, settings)
     if setup.road:
         check_road(setup.road, setup.deck, settings)
-    check_folder(setup, todo)
+    check_output(setup)
     if setup.dry_run:
         digests = {name: disk.sha256(source) for name, source in files.items()}
         depends = dependencies.Dependencies(setup.deck, digests, program_of(setup))
-        for one in todo:
-            jobs.check_finished(one, depends)
-        return setup.tell("\n".join(listed(todo)))
+        store.Store(setup.runs, depends, setup.older, setup.anew).admit(todo)
+        return setup.tell("\n".join(listed(store.once(todo))))
     with prepared(setup, files, len(todo)) as work:
-        for one in todo:
-            jobs.check_finished(one, work.depends)
+        work.store.admit(todo)
         if begin:
             begin()
         work.do(todo)
         collect(todo, work)
-    raise_failed(setup.output, todo)
+    error = failure(setup.output, todo)
+    if error:
+        raise error
 
 
 def program_of(setup: Setup) -> Optional[Path]:
@@ -70,10 +68,11 @@ def prepared(setup: Setup, files, number):
     elif min(most, number) * setup.ranks > cores:
         setup.warn(Warned("ranks", {"runs": min(most, number), "ranks": setup.ranks, "cores": cores}))
     try:
-        setup.output.mkdir(parents=True, exist_ok=True)
-        inputs = setup.output / ".inputs"
-        with disk.alone_in(setup.output), jobs.signals_interrupt(), jobs.copied(files, inputs) as digests:
-            yield make(setup.deck, digests, inputs, lmp, setup.ranks, most, setup.launcher)
+        setup.home.mkdir(parents=True, exist_ok=True)
+        inputs = setup.runs / ".inputs"
+        with disk.alone_in(setup.home), jobs.signals_interrupt(), jobs.copied(files, inputs) as digests:
+            setup.output.mkdir(parents=True, exist_ok=True)
+            yield make(setup.deck, digests, inputs, lmp, setup.ranks, most, setup.launcher, setup.older, setup.anew)
     except OSError as error:
         place = error.filename2 or error.filename or setup.output        # of a copy, the second is where it goes
         raise SlopeError(place, f"cannot be used: {error.strerror}") from error
@@ -83,13 +82,12 @@ class RunsFailed(SlopeError):
     """Runs failed; all others were made and collected."""
 
 
-def raise_failed(output, todo):
-    """RunsFailed if runs failed, with the first of them."""
+def failure(output, todo) -> Optional[RunsFailed]:
+    """What is to be raised if runs failed, with the first of them."""
     failed = [one for one in todo if one.error]
-    if failed:
-        more = f" and {len(failed) - 1} more" if len(failed) > 1 else ""
-        raise RunsFailed(output, f"{len(failed)} of {len(todo)} runs failed: {failed[0].name}{more}: "
-                         f"{failed[0].error}")
+    more = f" and {len(failed) - 1} more" if len(failed) > 1 else ""
+    return RunsFailed(output, f"{len(failed)} of {len(todo)} runs failed: {failed[0].name}{more}: "
+                      f"{failed[0].error}") if failed else None
 
 
 # --- what is to be run ---
@@ -133,33 +131,12 @@ def terrain_of(deck, chosen):
     return None
 
 
-def check_names(todo):
-    """Raise SlopeError unless each run has a folder of its own."""
-    names: Dict[str, Dict[str, str]] = {}
-    for one in todo:
-        if len(one.name) > MOST_LETTERS:
-            raise SlopeError("--set", f"must make folder names of at most {MOST_LETTERS} letters", one.name)
-        if one.name in names:
-            raise SlopeError("--set", f"must not give two runs the folder {one.name}",
-                             f"{list(names[one.name].values())} and {list(one.chosen.values())}")
-        names[one.name] = one.chosen
-
-
-def check_folder(setup: Setup, todo) -> None:
-    """Raise SlopeError unless the output is a folder, or can become one, whose run folders are this study's."""
+def check_output(setup: Setup) -> None:
+    """Raise SlopeError unless the output is a folder, or can become one."""
     if setup.output.exists() and not setup.output.is_dir():
         raise SlopeError("-o", "must be a folder", setup.output)
     if setup.output.exists() and setup.output.samefile(setup.deck.parent):
         raise SlopeError("-o", "must not be the folder of the deck", setup.output)
-    for one in todo:
-        if not one.folder.exists():
-            continue
-        about = one.folder / run_folders.VARIABLES
-        if not about.is_file():
-            raise SlopeError(one.folder, f"must be a run folder of a study, with {run_folders.VARIABLES}: remove it, "
-                             "or give another -o")
-        if run_folders.begun(one.folder).get("set") != one.chosen:
-            raise SlopeError(about, f"must be of the run {one.name}: remove the folder, or give another -o")
 
 
 def listed(todo):
@@ -167,5 +144,5 @@ def listed(todo):
     for one in todo:
         values = " ".join(f"{name} {value}" for name, value in one.chosen.items())
         yield f"{one.name}: {values}, {one.state()}"
-    done = sum(one.marker.exists() for one in todo)
+    done = sum(one.finished for one in todo)
     yield f"{len(todo)} run{'s' * (len(todo) != 1)}, {done} of them finished"

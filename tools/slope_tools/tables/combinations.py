@@ -41,7 +41,7 @@ def grouped(rows: Sequence[Row]) -> List[Group]:
     for row in rows:
         if row["status"] != "finished":
             continue
-        group = found.setdefault(tuple(row["set"].values()), Group(jobs.Run("", row["set"]).name, row["set"]))
+        group = found.setdefault(tuple(row["set"].values()), Group(jobs.name_of(row["set"]), row["set"]))
         numbers = [row.get(name) for name in SAME]
         same = any([other.get(name) for name in SAME] == numbers for other in group.rows)
         (group.same if same else group.rows).append(row)

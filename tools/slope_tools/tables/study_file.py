@@ -1,5 +1,9 @@
 """study.yaml, read by those who work on with it."""
+from pathlib import Path
+from typing import Any, Dict, List, NamedTuple, Union
+
 from .. import schemas
+from ..case import run_folders
 from ..errors import SlopeError
 from ..schemas import ANY, FLAG, MAYBE as PERHAPS, NUMBER, OBJECT, TEXT, listed, mapping, numbers
 from .study_table import COLUMNS, MAYBE, ROAD_COLUMNS
@@ -43,3 +47,37 @@ def read_study(path):
     if best and (not about.get("road") or best["volume_m3"] is None and not best.get("withheld")):
         raise SlopeError(path, f"must be {WHAT}: conservative must have a volume, or why it is withheld, and a road")
     return study
+
+
+class Study(NamedTuple):
+    """A study, read back; about: study.yaml."""
+    folder: Path
+    about: Dict[str, Any]
+
+    @classmethod
+    def read(cls, folder: Union[str, Path]) -> "Study":
+        """That of its folder, or of the folder of its site; SlopeError if there is none."""
+        place = Path(folder)
+        places = place, place / "study", place / "ensemble"
+        found = next((one for one in places if (one / "study.yaml").is_file()), place)
+        return cls(found, read_study(found / "study.yaml"))
+
+    @property
+    def runs(self) -> List[Dict[str, Any]]:
+        """A row for each run: its values (set, repeat), its numbers, how it ended."""
+        return self.about["runs"]
+
+    def prefix(self, run: str) -> Path:
+        """Prefix of the rasters of a finished run, for deposits.deposit.read and others."""
+        for row in self.runs:
+            if row["run"] == run and "summary" in row:
+                return run_folders.prefix_of(run_folders.summary_of(self.folder, row))
+        raise SlopeError(self.folder, "must have a finished run of that name", run)
+
+    def frame(self):
+        """study.csv as a pandas.DataFrame: a row for each run, by its name."""
+        try:
+            import pandas
+        except ImportError:
+            raise SlopeError("pandas", "must be installed for a frame (Debian: python3-pandas)") from None
+        return pandas.read_csv(self.folder / "study.csv", index_col="run")

@@ -92,10 +92,8 @@ def changed(case: Case, in_site: str, in_deck: str) -> str:
 def anew(case: Case, options: str = "") -> str:
     """A site and its study, or ensemble, once more; runs of the deck before are not mixed with new ones."""
     site = quote(str(case.site))
-    if case.sampled:
-        return f"tools/slope site {site}{options}; the same command with another -o"
-    return (f"rm -r {site}/study {site}/sizes {site}/step; tools/slope site {site}{options} && "
-            f"tools/slope study {site}{case.asked}")
+    again = "the same command with" if case.sampled else f"tools/slope study {site}{case.asked}"
+    return f"tools/slope site {site}{options}{'; ' if case.sampled else ' && '}{again} --anew"
 
 
 def twice(case: Case) -> str:
