@@ -116,6 +116,7 @@ TEST(Archive, Damaged)
   // both words alike, beyond the end
   const size_t at = bytes.find("marks") + 24;
   EXPECT_TRUE(has(problem(with(with(bytes, at, 4.0), at + 8, -5.0)), "values in marks, from 0 to 3"));
+  EXPECT_TRUE(has(problem(with(with(bytes, 8, 100.0), 16, -101.0)), "all of its members, got fewer bytes"));
   const size_t three = bytes.find("kick") + 24;
   EXPECT_TRUE(has(problem(with(with(bytes, three, 2.0), three + 8, -3.0)), "3 values in kick, got 2"));
 }
