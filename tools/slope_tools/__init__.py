@@ -1,7 +1,7 @@
 """The subcommands of tools/slope and what they share.
 
-From Python: study(), sensitivity() and calibrate() are the commands of these names (commands/calls.py), Study reads what
-a study left; each is imported when it is used.
+From Python: study(), sensitivity() and calibrate() are the commands of these names (commands/calls.py), Study reads
+what a study left; each is imported when it is used.
 """
 import functools
 import importlib
