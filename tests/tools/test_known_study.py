@@ -113,12 +113,13 @@ def test_the_method_is_in_the_results(mine, monkeypatch, capsys):  # noqa: F811
 
 
 def test_a_site_of_a_mass_on_top_of_the_terrain(large, inside):  # noqa: F811
-    """Its ground before is the sum; what is said of known events stands in site.yaml, yes and no without quotes, too."""
+    """Its ground before is the sum; site.yaml says of known events what was asked, yes and no without quotes, too."""
     ground = rasters.read_asc_local(large / "terrain.asc")
     mass = np.where(np.hypot(*(values - 400 for values in np.meshgrid(
         CELL * (np.arange(150) + 0.5), CELL * (39.5 - np.arange(40))))) < 100, 8.0, 0.0)
     rows = "\n".join(" ".join(f"{value:g}" for value in row) for row in mass)
-    (large.parent / "mass.asc").write_text(f"ncols 150\nnrows 40\nxllcorner 0\nyllcorner 0\ncellsize {CELL:g}\n{rows}\n")
+    head = f"ncols 150\nnrows 40\nxllcorner 0\nyllcorner 0\ncellsize {CELL:g}\n"
+    (large.parent / "mass.asc").write_text(f"{head}{rows}\n")
     inside("--terrain large.asc --crs EPSG:6677 --scar mass.asc --scar-is height --confined no --known rockfalls "
            "--balls 100 -o top")
     top = large.parent / "top"
