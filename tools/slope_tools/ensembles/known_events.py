@@ -218,9 +218,10 @@ def whole_weights(runs: Runs) -> Dict[str, float]:
 
 def weights_table(runs: Runs) -> str:
     """The CSV of the runs' weights; they add up to what is reached."""
-    numbers = np.column_stack([runs.lengths, runs.beyond, runs.weights.ratio, runs.weights.weights])
+    numbers = np.column_stack([runs.beyond, runs.weights.ratio, runs.weights.weights])
     return disk.csv_text(["run", "length_m", "beyond", "ratio", "weight"], (
-        [row["run"], *(f"{one:.6g}" for one in several)] for row, several in zip(runs.rows, numbers)))
+        [row["run"], f"{length:.3f}", *(f"{one:.6g}" for one in several)]
+        for row, length, several in zip(runs.rows, runs.lengths, numbers)))
 
 
 # --- words ---

@@ -27,6 +27,7 @@ from .fall_path import FallPath
 LEAST = 0.01            # of the released volume, in a lobe
 OTHERS = 0.005, 0.02    # what else it might be: the change is shown
 OF_99 = 0.933           # 99 % of a volume stay within this part of the straight length: Acheron's deposit and its runs
+DECIMALS = 3            # of a distance, m: cells as far as each other tie, whatever rounding makes of them
 KEPT = 4                # paths: runs of a study have one body, or a few
 
 
@@ -66,7 +67,7 @@ def of_deposit(deposit: Deposit, path: Optional[FallPath], least: float = LEAST,
     straight = np.hypot(*(places - begin).T)
     distances = np.maximum(along(path, places), straight) if path else straight
     far = int(np.argmax(distances))
-    distance = float(distances[far])
+    distance = round(float(distances[far]), DECIMALS)
     drop = highest.z - float((deposit.base + deposit.raster.z)[rows[far], columns[far]])
     angle = math.degrees(math.atan2(drop, distance)) if math.isfinite(drop) else None
     held = float(deposit.raster.z[mask].sum()) * deposit.cell ** 2
