@@ -7,7 +7,6 @@
 #ifndef SLOPE_SURFACE_WATCH_H
 #define SLOPE_SURFACE_WATCH_H
 
-#include "surface_contact.h"
 #include "touched_surface.h"
 
 #include <cstddef>

@@ -35,6 +35,14 @@ class TouchedSurface {
   double rounding = 0.0;    // by how much its file may have rounded coordinates, m
 };
 
+// A contact of a ball with a surface
+struct SurfaceContact {
+  SurfacePoint at;
+  double overlap;    // that gives its force, m
+  double spring;     // compression of its spring in the energy, m
+  bool joined;       // of several points of one surface
+};
+
 }    // namespace Slope
 
 #endif

@@ -11,7 +11,6 @@
 #include "slip_body.h"
 #include "slip_options.h"
 #include "slip_search.h"
-#include "slip_writer.h"
 
 #include "comm.h"
 #include "error.h"

@@ -11,7 +11,6 @@
 #include "slip_columns.h"
 #include "slip_factor.h"
 #include "slip_soil.h"
-#include "slip_surface.h"
 
 #include <string>
 #include <vector>
@@ -66,6 +65,19 @@ class SlipBodyMaker {
 
   SlipSurface directed(const SlipSurface &) const;
   void fill(const SlipSurface &, SlipBody &, double precision);
+};
+
+// The files of bodies, all of them or none: PREFIX.slips.csv, PREFIX.factor.asc, PREFIX.N.base.asc.
+// Errors are std::runtime_error with one line.
+class SlipWriter {
+ public:
+  static void probe(const std::string &prefix, int bodies);    // whether they could be written
+
+  // least: factor of the surfaces through each cell, to which those of the bodies are added
+  static void write(const std::string &prefix, ElevationGrid least, const std::vector<SlipBody> &,
+                    SlipBodyMaker &);
+
+  static std::string table(const std::vector<SlipBody> &);
 };
 
 }    // namespace Slope

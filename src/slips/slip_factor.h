@@ -8,7 +8,6 @@
 #define SLOPE_SLIP_FACTOR_H
 
 #include "slip_columns.h"
-#include "slip_surface.h"
 
 #include <vector>
 

@@ -8,7 +8,6 @@
 #include "embankment.h"
 #include "slip_body.h"
 #include "slip_search.h"
-#include "slip_writer.h"
 
 #include <gtest/gtest.h>
 
