@@ -69,7 +69,7 @@ WIDE = DECK(radius=12)
 CLAIMS = [
     Claim("axisymmetric_glass", "Height over radius 1, glass beads, radius 8 d: run-out over radius", "",
           "Lajeunesse et al. (2004)", (GLASS,), runout, Near(1.0, 0.15),
-          Control("sand: friction 30 degrees, rolling resistance 0.1", (DECK,)), quick=False),
+          Control("friction 60 degrees, rolling resistance 1", (GLASS(friction=60, rolling=1),)), quick=False),
     Claim("axisymmetric_sand", "Height over radius 1, sand, radius 12 d, smooth floor: run-out over radius", "",
           "Lube et al. (2004)", (WIDE(floor="plane"),), runout, Near(lube(1), 0.15, True),
           Control("the rough floor", (WIDE,)), quick=False,
