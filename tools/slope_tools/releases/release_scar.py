@@ -50,9 +50,9 @@ def read(path: str, kind: Optional[str], raster: Raster, least: float, crs: Opti
         depth = np.where(depth >= max(least, THINNEST), depth, 0.0)      # NaN too
     depth = np.maximum(depth, 0.0)
     if not depth.any():
-        what = {"surface": "be lower than the terrain (are the surveys before and after exchanged?)",
+        must = {"surface": "be lower than the terrain (are the surveys before and after exchanged?)",
                 "depth": "hold a depth > 0", "change": "hold a change < 0", "height": "hold a height > 0"}
-        raise SlopeError(path, f"must {what[kind]} somewhere" + (f", by --least {least:g} m" if least else ""))
+        raise SlopeError(path, f"must {must[kind]} somewhere" + (f", by --least {least:g} m" if least else ""))
     return Scar(depth, kind, raster._replace(z=raster.z + depth) if kind == "height" else raster,
                 raster.z - values if kind == "surface" else None)
 
