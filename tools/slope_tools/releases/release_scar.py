@@ -32,8 +32,8 @@ def read(path: str, kind: Optional[str], raster: Raster, least: float, crs: Opti
     after minus before, of which what is negative counts; "height", of the mass on top of the terrain, which is the slip
     surface; None: heights, if they follow the terrain's. crs: of the raster, whatever it says. Depths below `least` (m)
     are 0. The scar's grid may be another one: bilinear between its cell centres, and reprojected. A raster without a
-    CRS is taken to be in the terrain's. Depths below a millimetre, to which a terrain's heights are rounded, are none. Raises SlopeError on a
-    raster that is none, lies elsewhere, or holds no depth.
+    CRS is taken to be in the terrain's. Depths below a millimetre, to which a terrain's heights are rounded, are none.
+    Raises SlopeError on a raster that is none, lies elsewhere, or holds no depth.
     """
     values = on_nodes(path, raster, kind in (None, "surface"), crs)
     if kind is None:
