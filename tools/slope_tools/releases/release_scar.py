@@ -42,8 +42,8 @@ def read(path: str, kind: Optional[str], raster: Raster, least: float, crs: Opti
     if kind in ("depth", "height"):
         wrong = np.nanmin(values)
         if wrong < 0:
-            what = "depths >= 0, positive down" if kind == "depth" else "heights above the terrain >= 0"
-            raise SlopeError(path, f"must hold {what}; if it is the change of the surface, give --scar-is change",
+            rule = "depths >= 0, positive down" if kind == "depth" else "heights above the terrain >= 0"
+            raise SlopeError(path, f"must hold {rule}; if it is the change of the surface, give --scar-is change",
                              f"{wrong:.6g}")
     depth = raster.z - values if kind == "surface" else -values if kind == "change" else values
     with np.errstate(invalid="ignore"):
