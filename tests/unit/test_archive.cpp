@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 
 using Slope::Archive;
@@ -61,8 +60,7 @@ static bool has(const std::string &text, const std::string &part)
 // bytes with another number at this place
 static std::string with(std::string bytes, size_t at, double value)
 {
-  memcpy(&bytes[at], &value, sizeof(value));
-  return bytes;
+  return bytes.replace(at, sizeof(value), reinterpret_cast<const char *>(&value), sizeof(value));
 }
 
 TEST(Archive, WhatIsReadIsWhatWasWritten)
