@@ -229,7 +229,7 @@ double FixDepositGrid::add_bins(bool record)
    volumes of rank 0: a part for each rank, so that MPI rounds their sum as it did when each had its rows
 ------------------------------------------------------------------------- */
 
-double FixDepositGrid::add_up(const std::vector<double> &parts) const
+double FixDepositGrid::add_up(std::vector<double> parts) const
 {
   double mine, all;
   MPI_Scatter(parts.data(), 1, MPI_DOUBLE, &mine, 1, MPI_DOUBLE, 0, world);

@@ -227,7 +227,7 @@ def test_other_line_in_the_restart(tmp_path, points):
     (tmp_path / "line.csv").write_text(points)
     text = collapse_deck("run 1", begin="read_restart cut.restart")
     text = text.replace("\nthermo 1000", "\nfix line soil control/line line.csv output out\nthermo 1000", 1)
-    run_deck(text, tmp_path, expect_error="Fix control/line line must have the line of the restart file, 3 points")
+    run_deck(text, tmp_path, expect_error="Fix control/line line: the line must be that of the restart file, 3 points")
 
 
 @pytest.mark.parametrize("closed", ["-4 -4\n4 -4\n4 4\n-4 4\n-4 -4\n", "4 4\n4 -4\n-4 -4\n-4 4\n4 4\n"])

@@ -109,9 +109,9 @@ def test_kept_over_runs_and_restarts(plane, np_, again):
     assert second["release"] == first["release"]
     assert second["volume"]["on_grid"] == pytest.approx(first["volume"]["on_grid"], rel=1e-12)
     wrong = "\n".join(lines).replace("bulk region body", "bulk 1.9")
-    run_deck(wrong, plane, expect_error="Fix deposit/grid dep must have the grid of the restart file, cell 1, 20 x 20 "
-                                        "cells from -10 -10, bulk region; got cell 1, 20 x 20 cells from -10 -10, "
-                                        "bulk 1.9")
+    run_deck(wrong, plane, expect_error="Fix deposit/grid dep: the grid must be that of the restart file, cell 1, "
+                                        "20 x 20 cells from -10 -10, bulk region; got cell 1, 20 x 20 cells from "
+                                        "-10 -10, bulk 1.9")
 
 
 def test_balls_that_leave_before_the_first_run_is_over(plane):

@@ -315,7 +315,8 @@ def test_other_motion_in_the_restart(tmp_path):
     collapse(tmp_path, "run 10\nwrite_restart cut.restart")
     text = collapse_deck("run 1", begin="read_restart cut.restart")
     run_deck(text.replace("fix deposit", SHAKE + " scale 2\nfix deposit", 1), tmp_path,
-             expect_error="Fix ground/motion shake must have the motion of the restart file, 301 points from 0 to 3")
+             expect_error="Fix ground/motion shake: the motion must be that of the restart file, 301 points from 0 "
+                          "to 3")
 
 
 # --- energy guard: the work of the motion is known to it ---

@@ -31,7 +31,7 @@ ONE_RESULT = {"np", "jobs", "launcher", "engine", "slurm"}      # how it is run:
 # computed from the runs, each time that the command is given
 ANEW = {"road", "road_width", "road_from", "blocked", "lane", "clearing", "loosening", "cut_angle", "mesh", "local",
         "intensity", "more_than", "of", "exceed", "exceed_speed", "exceed_energy", "size_error", "equally_good",
-        "observed", "front", "front_is", "area", "road_volume", "tolerance", "threshold", "mobility", "confined",
+        "observed", "front", "front_is", "area", "road_volume", "tolerance", "threshold", "known", "confined",
         "left_out"}
 AGAIN = {"anew"}        # which runs are made, not how
 
@@ -60,11 +60,12 @@ TRIAL = {"lmp", "jobs"}                         # what the trial run finds is wr
 # keys that slope study and the report read from site.yaml
 LATER = {("project", "name"), ("project", "client"), ("project", "author"), ("road", "cut_angle"), ("road", "mesh"),
          *(("road", key) for key in ("width", "from", "blocked", "lane", "clearing", "loosening")),
-         ("study", "rolling"), ("study", "spacing"),
+         ("study", "rolling"), ("study", "spacing"), ("known", "set"), ("known", "confined"),
          ("study", "xoffset"), ("study", "yoffset"), ("study", "zoffset"), ("study", "sizes")}
 KEYS = [(section, key) for section, about in site_choices.sections() for key in about["properties"]]
 NOT_FILES = {("terrain", "crs"), ("terrain", "assign_crs"), ("terrain", "z_unit"), ("release", "shape"),
-             ("release", "scar_is"), ("project", "name"), ("project", "client"), ("project", "author")}
+             ("release", "scar_is"), ("project", "name"), ("project", "client"), ("project", "author"),
+             ("known", "set"), ("known", "confined")}
 
 
 def test_every_option_of_a_site_is_a_choice():

@@ -72,7 +72,7 @@ def texts(figure):
 
 
 REACH = KnownReach(np.array([[5.0, 12], [30, 12]]), [
-    Mark(0.5, False, 25.0, np.array([30.0, 12]), np.array([[30.0, 10], [30, 14]]))])
+    Mark(0.5, 25.0, np.array([30.0, 12]), np.array([[30.0, 10], [30, 14]]))])
 
 
 def test_every_map_has_them(drawn):

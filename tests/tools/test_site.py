@@ -660,7 +660,7 @@ def test_a_site_has_its_own_choices(tmp_path):
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "site.yaml").touch()
     for option, *values in (("--set", "rolling=0"), ("--repeat", "xoffset=0.5"), ("--vary", "rolling=0:1"),
-                            ("--mobility", "rock_avalanches"), ("--except", "x"),
+                            ("--known", "rock_avalanches"), ("--except", "x"),
                             ("--equally-good", "d"), ("--size-error", "converge.yaml"),
                             ("--intensity", "peak"), ("--more-than", "10"), ("--exceed", "0.1,0.5,1"),
                             ("--exceed-speed", "5"), ("--exceed-energy", "100000"), ("--design", "sobol"),

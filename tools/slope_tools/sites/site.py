@@ -9,7 +9,7 @@ import os
 import shutil
 from pathlib import Path
 from shlex import quote
-from typing import Any, Callable, List, NamedTuple, Optional
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Tuple
 
 import numpy as np
 
@@ -116,13 +116,12 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
         warn(said)
     choices = {name: dict(section) for name, section in given.items()}
     wanted = wanted_body(choices, new)
-    raster = terrain(choices, new, tell, keep)
+    raster, about = terrain(choices, new, tell, keep)
     found = body_of(choices, wanted, raster, keep)
     if found.choices.get("scar_is") == "height":
-        about = disk.parse_yaml((new / TERRAIN).with_suffix(".yaml"), "the sidecar of a terrain")
-        about["steps"] = [*about["steps"], f"the height of the mass in {wanted.scar} added"]
-        rasters.write_asc_local(new / TERRAIN, found.raster, {key: about[key] for key in ("filled_cells", "sources",
-                                                                                          "steps")}, exact=True)
+        steps = [*about["steps"], f"the height of the mass in {wanted.scar} added"]
+        rasters.write_asc_local(new / TERRAIN, found.raster, {"filled_cells": about["filled_cells"],
+                                                              "sources": about["sources"], "steps": steps}, exact=True)
         raster = found.raster
     tell(release.text(found))
     for line in found.warnings:
@@ -172,15 +171,15 @@ def wanted_body(choices: Choices, new: Path) -> release.Wanted:
                                         advice=advice(choices, given["polygon"] or given["scar"])))
 
 
-def terrain(choices: Choices, new: Path, tell, warn) -> Raster:
-    """Write the terrain and read it back, as the deck will."""
+def terrain(choices: Choices, new: Path, tell, warn) -> Tuple[Raster, Dict[str, Any]]:
+    """Write the terrain and read it back, as the deck will; what its sidecar says."""
     given = choices["terrain"]
     own = {path: crs for path in given["files"] if (crs := site_choices.assigned(choices, path))}
     wanted = local_terrain.Wanted(given["crs"], None, given["cell"], given["bounds"], given["fill"],
                                   given["assign_crs"], own, given["z_unit"], nodata_of(choices), pits=False)
     about = local_terrain.make(given["files"], new / TERRAIN, wanted, tell, warn)
     tell(local_terrain.summary(TERRAIN, about))
-    return rasters.read_asc_local(new / TERRAIN)
+    return rasters.read_asc_local(new / TERRAIN), about
 
 
 def nodata_of(choices: Choices) -> List[float]:
