@@ -271,7 +271,8 @@ region thin block -5 5 -5 5 0 0.9 units box
         run_deck(deck(regions=regions, **settings), plane, np=np_)
         return
     log = run_deck(deck(regions=regions, **settings), plane, np=np_, expect_error=message)
-    assert "Step" not in log.replace("Time step", "") and not list(plane.glob("out.*"))
+    # of several ranks mpirun may end the one that would have removed the lock, which is then nobody's
+    assert "Step" not in log.replace("Time step", "") and {path.suffix for path in plane.glob("out.*")} <= {".lock"}
 
 
 def test_thin_parts_on_a_steep_slope(tmp_path):
