@@ -60,7 +60,8 @@ def write_shell(folder):
 
 def energies(log):
     rows = [line.split() for line in log.splitlines()]
-    return {int(row[0]): float(row[2]) for row in rows if len(row) > 2 and row[1] == str(CONTACTS + 1)}
+    return {int(row[0]): float(row[2]) for row in rows
+            if len(row) > 2 and row[0].isdigit() and row[1] == str(CONTACTS + 1)}
 
 
 @pytest.fixture(scope="module", params=(("on", False), ("off", False), ("on", True)),
