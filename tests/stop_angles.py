@@ -190,24 +190,34 @@ def lammps(options, folder, deck, log, values):
                    env=dict(os.environ, OMP_NUM_THREADS="1"), stdin=subprocess.DEVNULL)
 
 
+def result(options, name, angle, pattern, write):
+    """The match of a pattern in the log of a run, made unless it is there; write(data): its data, returns its deck."""
+    log = options.out / f"{name}_{angle:g}.log"
+    if not (log.is_file() and pattern.search(log.read_text())):
+        data, deck = options.out / f"{name}.data", options.out / f"in.{name}"
+        deck.write_text(write(data))
+        lammps(options, options.out, deck.name, log.name, {"th": angle, **options.values})
+        data.unlink()
+        deck.unlink()
+    found = pattern.search(log.read_text())
+    if not found:
+        raise SystemExit(f"{log}: no result")
+    return found
+
+
 def stops(options, ground, seed, angle):
     """Whether the sheet comes to rest."""
     size = "" if options.size == [24, 8] else "_{:g}x{:g}".format(*options.size)
     more = "".join(f"_{word}" for word in options.set)
     name = f"{ground.name}{size}{more}_seed{seed}"
-    log = options.out / f"{name}_{angle}.log"
-    if not (log.is_file() and RESULT.search(log.read_text())):
-        data, deck = options.out / f"{name}.data", options.out / f"in.{name}"
+
+    def write(data):
         box, soil, fixed = strip(ground, tuple(options.size), seed)
         write_data(data, box, soil, fixed)
-        deck.write_text(DECK.format(boundary="p p f", data=data.name, number=len(soil), density=DENSITY, bins=0.6,
-                                    **ground._asdict()))
-        lammps(options, options.out, deck.name, log.name, {"th": angle, **options.values})
-        data.unlink()
-        deck.unlink()
-    found = RESULT.search(log.read_text())
-    if not found:
-        raise SystemExit(f"{log}: no result")
+        return DECK.format(boundary="p p f", data=data.name, number=len(soil), density=DENSITY, bins=0.6,
+                           **ground._asdict())
+
+    found = result(options, name, angle, RESULT, write)
     return found[1] == "1"
 
 
@@ -275,21 +285,16 @@ def make_table(options):
 def left(options, ground, seed, angle):
     """Percent of the sheet that stay on the slope, seconds until hardly a ball moves, how many move."""
     name = f"sheet_{ground.name}{''.join(f'_{word}' for word in options.set)}_seed{seed}"
-    log = options.out / f"{name}_{angle:g}.log"
-    if not (log.is_file() and LEFT.search(log.read_text())):
-        data, deck = options.out / f"{name}.data", options.out / f"in.{name}"
+
+    def write(data):
         lx, ly = SHEET_SIZE
         soil = sheet_of(ground.layers, lx, ly, np.random.default_rng(seed))
         write_data(data, (-20, lx + FOOT, -30, ly + 30), soil, [])
         words = f"scattered {seed}" if ground.pattern == "scattered" else "grid"
-        deck.write_text(SHEET.format(boundary="f f f", data=data.name, number=len(soil), density=DENSITY, words=words,
-                                     bins=2.4, **ground._asdict()))
-        lammps(options, options.out, deck.name, log.name, {"th": angle, **options.values})
-        data.unlink()
-        deck.unlink()
-    found = LEFT.search(log.read_text())
-    if not found:
-        raise SystemExit(f"{log}: no result")
+        return SHEET.format(boundary="f f f", data=data.name, number=len(soil), density=DENSITY, words=words,
+                            bins=2.4, **ground._asdict())
+
+    found = result(options, name, angle, LEFT, write)
     return [float(word) for word in found.groups()]
 
 

@@ -21,6 +21,7 @@ static constexpr double MOST_BYTES = 2147483647.0;
 constexpr size_t Archive::HEAD;
 
 // a number, and again in another form: of a damaged file one of them may be anything
+namespace {
 struct Twice {
   double number, again;
   explicit Twice(double n = 0.0) : number(n), again(-1.0 - n) {}
@@ -31,6 +32,7 @@ struct Twice {
         again == -1.0 - number;
   }
 };
+}    // namespace
 
 static std::string text(double value)
 {

@@ -46,7 +46,7 @@ static std::string trimmed(const std::string &text)
 
 /* ---------------------------------------------------------------------- */
 
-void Slope::read_number_rows(const std::string &path, const Columns &columns,
+void Slope::read_number_rows(const std::string &path, const TableColumns &columns,
                              const std::function<void(const NumberRow &)> &take)
 {
   const std::string text = text_of(path);

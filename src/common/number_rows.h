@@ -26,7 +26,7 @@ struct NumberRow {
 // a comment, empty lines do not count. Each is given to take. A comment above the first one that
 // names other columns or units is an error. Errors are std::runtime_error with one line: file, line in it,
 // rule, value.
-void read_number_rows(const std::string &path, const Columns &columns,
+void read_number_rows(const std::string &path, const TableColumns &columns,
                       const std::function<void(const NumberRow &)> &take);
 
 }    // namespace Slope

@@ -109,12 +109,12 @@ namespace {
 // what the words of a head say
 
 struct Head {
-  const Columns &columns;
+  const TableColumns &columns;
   std::string letters;
   int names;
   bool wrong_unit;
 
-  explicit Head(const Columns &_columns) : columns(_columns), names(0), wrong_unit(false) {}
+  explicit Head(const TableColumns &_columns) : columns(_columns), names(0), wrong_unit(false) {}
 
   // scale may change the unit, and the amplitude beside
   bool is_right(double acceleration) const
@@ -157,7 +157,7 @@ struct Head {
 
 /* ---------------------------------------------------------------------- */
 
-bool Slope::contradicts(const std::string &comment, const Columns &columns)
+bool Slope::contradicts(const std::string &comment, const TableColumns &columns)
 {
   Head head(columns);
   bool whole = true;
@@ -178,7 +178,7 @@ bool Slope::contradicts(const std::string &comment, const Columns &columns)
 
 /* ---------------------------------------------------------------------- */
 
-std::string Columns::rule() const
+std::string TableColumns::rule() const
 {
   return "columns must be " + names + (!si ? "" : letters[0] == 't' ? " in s and m/s2" : " in m");
 }

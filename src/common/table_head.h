@@ -12,7 +12,7 @@
 namespace Slope {
 
 // The columns of a file that is read by position, and their units.
-struct Columns {
+struct TableColumns {
   std::string letters;    // a letter each: t, x, y or z (also of an acceleration along it)
   std::string names;      // for messages: "t ax ay az"
   bool si;                // m, s and m/s2: those of a head must be the same; else they do not count
@@ -23,7 +23,7 @@ struct Columns {
 // Whether a comment above the numbers names other columns, another order or other units. It names columns
 // if it, or what follows its last colon, begins with as many names as there are columns, or has
 // nothing but names and units: "t,ay,ax,az [gal]", "unit: ft". Anything else says nothing about them.
-bool contradicts(const std::string &comment, const Columns &columns);
+bool contradicts(const std::string &comment, const TableColumns &columns);
 
 }    // namespace Slope
 

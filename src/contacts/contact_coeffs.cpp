@@ -20,10 +20,12 @@ using namespace Slope;
    words of pair_style, each with two values, the first of which is meant without it
 ------------------------------------------------------------------------- */
 
+namespace {
 struct Setting {
   const char *word, *values[2];
   bool ContactSettings::*value;
 };
+}    // namespace
 
 static const Setting SETTINGS[] = {
     {"mass", {"pair", "ball"}, &ContactSettings::mass_ball},
@@ -35,6 +37,7 @@ static const Setting SETTINGS[] = {
    words of pair_coeff, and what their numbers must be
 ------------------------------------------------------------------------- */
 
+namespace {
 struct Number {
   double ContactCoeffs::*value;
   const char *name;    // in restart files
@@ -46,6 +49,7 @@ struct Word {
   const char *word;
   std::vector<Number> numbers;
 };
+}    // namespace
 
 static bool positive(double x)
 {

@@ -104,7 +104,8 @@ template <class N> SLOPE_INLINE N stepped_spring(N a, N h)
 
 // inverse_i, inverse_j (1/kg): 1/m_i and 1/m_j, 0 of a fixed ball. mass_dashpot (kg): that of the
 // conversion restitution -> dashpot. inverse_rolling (1/kg): 2.5 Rr^2 (1/(m_i R_i^2) + 1/(m_j R_j^2)),
-// of solid spheres. radius (m): reduced, RiRj/(Ri + Rj), for springs that depend on it. dt (s) > 0; repeat: for the forces of the step that has just ended once more.
+// of solid spheres. radius (m): reduced, RiRj/(Ri + Rj), for springs that depend on it. dt (s) > 0; repeat: for the
+// forces of the step that has just ended once more.
 template <class N>
 SLOPE_INLINE ContactStepOf<N> contact_step(const ContactLaw &law, N inverse_i, N inverse_j,
                                            N mass_dashpot, N inverse_rolling, N /*radius*/,
@@ -270,7 +271,7 @@ SLOPE_INLINE T acts_on(const ContactStepOf<N> &step, const ContactOf<T, N> &c, T
   return choose(T(step.taken_n * contacts) > all<T>(MOST_AHEAD), vn, c.ahead);
 }
 
-// In the step in which such contacts begin they take at most all of the motion: the weights of up to 3/2 would
+// In a step in which such contacts begin or end they take at most all of the motion: the weights of up to 3/2 would
 // make them turn it around.
 template <class T, class N>
 SLOPE_INLINE void hold_beginning(const ContactStepOf<N> &step, T contacts, ContactOf<T, N> &c)

@@ -76,6 +76,7 @@ struct ContactLaw {
 
   double cn(double m) const { return cn_given + cn_root * std::sqrt(m); }
 
+  // Radii are there for laws whose springs depend on them (architecture.rst has how to add one); those of this law do not.
   NormalSpring spring(double /*ri*/, double /*rj*/) const { return {kn}; }    // of two balls
 
   // --- for what bounds the time step and is said of a law, whatever its springs are like ---
@@ -91,8 +92,8 @@ struct ContactLaw {
 };
 
 // Distance of the centres, m, at which balls of these radii (m) touch. Neighbours in a lattice are apart by the sum of
-// their radii to within rounding, which differs from rank to rank; a tenth of a millionth less is farther from it
-// than rounding, and changes no result. The share is that of the smaller ball where one is a floor.
+// their radii to within rounding, which differs from rank to rank; this is less by a tenth of a millionth of a
+// diameter, which rounding does not bridge. The share is that of the smaller ball where one is a floor.
 template <class N> SLOPE_INLINE N touching(N ri, N rj)
 {
   return ri + rj - 4.0e-7 * ri * rj / (ri + rj);

@@ -208,7 +208,7 @@ std::string ContactTable::text(double dt) const
 }
 
 /* ----------------------------------------------------------------------
-   members of a restart file: the pairs of types that are set, and their coefficients
+   members of a restart file: the settings; the coefficients of all pairs I <= J, NaN where none are set
 ------------------------------------------------------------------------- */
 
 void ContactTable::archive_settings(Archive &archive)

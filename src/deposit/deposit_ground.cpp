@@ -35,6 +35,7 @@ std::vector<double> DepositGround::read(const PlanGrid &grid) const
     return static_cast<int>(static_cast<bigint>(grid.n[Y]) * rank / comm->nprocs);
   };
   std::vector<double> mine;
+  mine.reserve(static_cast<size_t>(grid.n[X]) * (first_row(comm->me + 1) - first_row(comm->me)));
   for (int j = first_row(comm->me); j < first_row(comm->me + 1); j++)
     for (int i = 0; i < grid.n[X]; i++) {
       double z;

@@ -73,35 +73,33 @@ void DepositRasters::add(const DepositBins::Blocks::Block &bins, bool record, do
    the volume is taken from what the raster holds, so that the balance checks the raster
 ------------------------------------------------------------------------- */
 
-std::vector<double> DepositRasters::finish(bool record, int parts)
+double DepositRasters::finish(bool record)
 {
-  std::vector<double> sums(parts, 0.0);
+  double sum = 0.0;
   for (Block &block : blocks.all()) {
     const double *h = block.values[THICKNESS];
     double *most = block.values[MAX_THICKNESS];
     double here = 0.0;
     for (int k = 0; k < CELLS; k++) here += h[k];
-    sums[block.row % parts] += here;
+    sum += here;
     if (!record) continue;
     for (int k = 0; k < CELLS; k++) most[k] = std::max(most[k], h[k]);
   }
-  for (double &sum : sums) sum = sum * cells.cell * cells.cell;
-  return sums;
+  return sum * cells.cell * cells.cell;
 }
 
 /* ---------------------------------------------------------------------- */
 
-std::vector<double> DepositRasters::moved(int parts) const
+double DepositRasters::moved() const
 {
-  std::vector<double> sums(parts, 0.0);
+  double sum = 0.0;
   for (const Block &block : blocks.all()) {
     const double *h = block.values[THICKNESS], *before = block.values[SNAPSHOT];
     double here = 0.0;
     for (int k = 0; k < CELLS; k++) here += std::fabs(h[k] - before[k]);
-    sums[block.row % parts] += here;
+    sum += here;
   }
-  for (double &sum : sums) sum = 0.5 * sum * cells.cell * cells.cell;
-  return sums;
+  return 0.5 * sum * cells.cell * cells.cell;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -48,14 +48,11 @@ class DepositRasters {
 
   void clear();
   void add(const DepositBins::Blocks::Block &, bool record, double time, double motion);
-  // returns the volume that the thickness raster holds, as parts whose sum it is: which ranks add them up
-  // decides on its last digits
-  std::vector<double> finish(bool record, int parts);
+  double finish(bool record);    // returns the volume that the thickness raster holds
 
   // --- change since the last snapshot ---
 
-  // volume that went to another cell, in such parts
-  std::vector<double> moved(int parts) const;
+  double moved() const;    // volume that went to another cell
 
   // share: of the released volume, moved since the last snapshot, if there was one
   void take_snapshot(double time, double share);

@@ -10,7 +10,6 @@
 #include "restart_archive.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <stdexcept>
 
@@ -27,7 +26,7 @@ static std::string too_many(double ncells)
 {
   return fmt::format("in which it may have {} cells that the mass touched, got {:.0f}: start "
                      "again, with a larger cell",
-                     MOST_CELLS, std::fabs(ncells));
+                     MOST_CELLS, ncells);
 }
 
 /* ---------------------------------------------------------------------- */

@@ -20,7 +20,7 @@ namespace LAMMPS_NS {
 
 // What fix deposit/grid has in restart files: numbers, and the cells that the mass touched. LAMMPS gives a
 // fix at most 2 GB there: cells that need more are left out, with a warning, and such a file is refused.
-// All methods are collective.
+// write(): by rank 0, the others do nothing; read(): on all ranks, the cells go to rank 0.
 class DepositRestart : protected Pointers {
  public:
   struct Saved {    // numbers only

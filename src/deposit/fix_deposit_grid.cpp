@@ -14,6 +14,7 @@
 #include "large_messages.h"
 #include "node_memory.h"
 #include "pair_gran_restitution.h"
+#include "rank_zero.h"
 #include "requirements.h"
 
 #include "comm.h"
@@ -73,7 +74,9 @@ void FixDepositGrid::make_rasters()
   bins.set_grid(options.grid);
   rasters.create(options.grid);
   std::vector<double> base = DepositGround(lmp, options.terrain).read(options.grid);
-  if (comm->me == 0) rasters.set_base(std::move(base));
+  on_rank_zero(lmp, "Fix deposit/grid", [&]() {
+    rasters.set_base(std::move(base));
+  });
 }
 
 /* ---------------------------------------------------------------------- */
@@ -222,19 +225,15 @@ double FixDepositGrid::add_bins(bool record)
   take_records(world, bins.blocks().all(), [&](const DepositBins::Blocks::Block &block) {
     rasters.add(block, record, time, options.motion);
   });
-  return add_up(rasters.finish(record, comm->nprocs));
+  return of_rank_zero(rasters.finish(record));
 }
 
-/* ----------------------------------------------------------------------
-   volumes of rank 0: a part for each rank, so that MPI rounds their sum as it did when each had its rows
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
-double FixDepositGrid::add_up(std::vector<double> parts) const
+double FixDepositGrid::of_rank_zero(double value) const
 {
-  double mine, all;
-  MPI_Scatter(parts.data(), 1, MPI_DOUBLE, &mine, 1, MPI_DOUBLE, 0, world);
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all;
+  MPI_Bcast(&value, 1, MPI_DOUBLE, 0, world);
+  return value;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -274,7 +273,7 @@ void FixDepositGrid::take_snapshot()
 {
   const double time = now();
   if (time - rasters.snapshot_time < (options.window - 0.5) * update->dt) return;
-  const double share = add_up(rasters.moved(comm->nprocs)) / results.released.volume;
+  const double share = of_rank_zero(rasters.moved()) / results.released.volume;
   rasters.take_snapshot(time, share);
   results.vector[Result::CHANGE] = rasters.change;
 }

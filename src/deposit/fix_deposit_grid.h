@@ -74,7 +74,7 @@ class FixDepositGrid : public Fix {
   void start();
   void sample(bool record);
   double add_bins(bool record);
-  double add_up(std::vector<double> parts) const;
+  double of_rank_zero(double) const;
   void find_travel(const DepositBalls::Sums &);
   void check_balance();
   void take_snapshot();

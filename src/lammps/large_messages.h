@@ -91,7 +91,10 @@ template <typename Record>
 std::vector<Record> gather_records(MPI_Comm world, const std::vector<Record> &mine,
                                    bigint most = MESSAGE_BYTES)
 {
+  bigint number = mine.size(), total = 0;
+  MPI_Reduce(&number, &total, 1, MPI_LMP_BIGINT, MPI_SUM, 0, world);
   std::vector<Record> all;
+  all.reserve(total);
   take_records(
       world, mine,
       [&](const Record &record) {

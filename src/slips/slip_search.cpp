@@ -293,8 +293,11 @@ SlipSearch::Best SlipSearch::lattice()
   Best best;
   for (size_t k = 0; k < std::min(order.size(), TRIED); k++) best.of_all.push_back(body(order[k]));
   std::vector<char> seen(places, 0);
-  for (const size_t k : order)
-    if (!seen[k / per_place()]++) best.of_places.push_back(body(k));
+  for (const size_t k : order) {
+    char &there = seen[k / per_place()];
+    if (!there) best.of_places.push_back(body(k));
+    there = 1;
+  }
   return best;
 }
 

@@ -65,7 +65,7 @@ class Ranks {
     rasters.clear();
     for (const DepositBins &from : bins)
       for (const auto &block : from.blocks().all()) rasters.add(block, record, time, 0.1);
-    return rasters.finish(record, 1)[0];
+    return rasters.finish(record);
   }
 
   std::vector<DepositBins> bins;
@@ -83,7 +83,7 @@ TEST(DepositRasters, OfRanksThoseOfOne)
   one.sample(balls, 0.5);
   one.rasters.take_snapshot(0.5, 0.0);
   on_grid = one.sample(first, 0.75);    // begins at 0 again
-  moved = one.rasters.moved(1)[0];
+  moved = one.rasters.moved();
   EXPECT_GT(moved, 0.1 * released);
 
   // what is on the grid, by the overlap of the squares with all of it
@@ -102,7 +102,7 @@ TEST(DepositRasters, OfRanksThoseOfOne)
     ranks.sample(balls, 0.5);
     ranks.rasters.take_snapshot(0.5, 0.0);
     EXPECT_NEAR(ranks.sample(first, 0.75), on_grid, 1e-12 * released);
-    EXPECT_NEAR(ranks.rasters.moved(1)[0], moved, 1e-12 * released);
+    EXPECT_NEAR(ranks.rasters.moved(), moved, 1e-12 * released);
     EXPECT_NEAR(ranks.rasters.largest(Rasters::MAX_THICKNESS),
                 one.rasters.largest(Rasters::MAX_THICKNESS), 1e-12);
     for (const Rasters::Name name : NAMES)
@@ -149,7 +149,7 @@ TEST(DepositRasters, ChangePerTime)
   Ranks ranks(PlanGrid(EXTENT, 1.0), 1);
   Rasters &rasters = ranks.rasters;
   auto take_snapshot = [&](double time) {    // of 4 m3 released
-    rasters.take_snapshot(time, rasters.moved(1)[0] / 4.0);
+    rasters.take_snapshot(time, rasters.moved() / 4.0);
   };
   EXPECT_EQ(rasters.change, 1.0);
   sample(ranks, 1.5, 1.0, 0.0);

@@ -8,12 +8,12 @@
 #include <gtest/gtest.h>
 #include <stdexcept>
 
-using Slope::Columns;
+using Slope::TableColumns;
 using Slope::contradicts;
 
-static const Columns PLAN = {"xy", "x,y", true, 1.0}, BALLS = {"xyz", "x y z", true, 1.0};
+static const TableColumns PLAN = {"xy", "x,y", true, 1.0}, BALLS = {"xyz", "x y z", true, 1.0};
 
-static Columns motion(double scale = 1.0)
+static TableColumns motion(double scale = 1.0)
 {
   return {"txyz", "t ax ay az", true, scale};
 }
@@ -73,7 +73,7 @@ TEST(TableHead, ScaleCounts)
 // in a deck of other units, names count alone
 TEST(TableHead, OtherUnits)
 {
-  Columns cgs = motion();
+  TableColumns cgs = motion();
   cgs.si = false;
   EXPECT_FALSE(contradicts("t ax ay az (gal)", cgs));
   EXPECT_TRUE(contradicts("t ay ax az (gal)", cgs));
@@ -84,7 +84,8 @@ TEST(TableHead, OtherUnits)
 
 static std::string rows_of(const std::string &text)
 {
-  const std::string path = "table_head_rows.txt";
+  // a file of each test: ctest runs several at a time
+  const std::string path = std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + ".txt";
   std::ofstream(path, std::ios::binary) << text;
   std::string found;
   try {
@@ -100,9 +101,9 @@ static std::string rows_of(const std::string &text)
 
 TEST(NumberRows, AHeadThatContradictsIsRefused)
 {
-  EXPECT_EQ(rows_of("# y,x\n1,2\n"), "table_head_rows.txt, line 1: columns must be x,y in m, got y,x");
+  EXPECT_EQ(rows_of("# y,x\n1,2\n"), "AHeadThatContradictsIsRefused.txt, line 1: columns must be x,y in m, got y,x");
   EXPECT_EQ(rows_of("\n# a road\n#  x (ft), y (ft) \r\n1,2\n"),
-            "table_head_rows.txt, line 3: columns must be x,y in m, got x (ft), y (ft)");
+            "AHeadThatContradictsIsRefused.txt, line 3: columns must be x,y in m, got x (ft), y (ft)");
   EXPECT_EQ(rows_of("# x,y\n1,2\n# y,x: of a ring\n3,4\n# y,x\n\n5,6 # y,x\n"), "2:2.000000 4:4.000000 7|6.000000 ");
 }
 
@@ -112,7 +113,7 @@ TEST(NumberRows, OnlyDecimalNumbers)
   for (const char *word : {"0x1p3", "0x10", "inf", "nan", "infinity", "1e999", "1.0.0", "1e", "30-", ".", "1_5", "1d3",
                            "2m", "1;2", "--1"})
     EXPECT_EQ(rows_of(std::string("0,0\n1,") + word + "\n"),
-              std::string("table_head_rows.txt, line 2: must be 2 numbers, x,y, got 1,") + word);
+              std::string("OnlyDecimalNumbers.txt, line 2: must be 2 numbers, x,y, got 1,") + word);
   for (const char *line : {"1,2,", ",1,2", "1,,2", "1,2,,"})
-    EXPECT_EQ(rows_of(line), std::string("table_head_rows.txt, line 1: must be 2 numbers, x,y, got ") + line);
+    EXPECT_EQ(rows_of(line), std::string("OnlyDecimalNumbers.txt, line 1: must be 2 numbers, x,y, got ") + line);
 }
