@@ -6,6 +6,7 @@ import shlex
 import statistics
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -236,6 +237,14 @@ def slope(tiny_case, capsys):
 def read(path):
     with open(path, encoding="ascii") as table:
         return list(csv.DictReader(table))
+
+
+def test_sizes_that_did_not_finish_leave_no_older_fit(tmp_path, monkeypatch):
+    write_converge(tmp_path / "converge.yaml", [(2.0, [79.0]), (1.0, [89.0])])
+    monkeypatch.setattr(size_study.results, "rows_of", lambda *_: ([], None))
+    plan = size_study.Plan(SimpleNamespace(output=tmp_path), {}, {}, "d", [])
+    size_study.collect(plan, ["front_m"], None)
+    assert not (tmp_path / "converge.yaml").exists()
 
 
 def test_the_command_fits_what_its_runs_gave(slope):

@@ -1,4 +1,6 @@
 """tools/slope study SITE: weighted by known events where a set covers the mass, else by the paper's method; said."""
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -8,7 +10,7 @@ from test_site_anew import inside, mine, once  # noqa: F401
 from tiny_collapse import LMP
 
 from slope_tools.ensembles import known_study
-from slope_tools.mobility import body, exceedance
+from slope_tools.mobility import body, exceedance, known
 from slope_tools.sites import site_budget, site_choices
 from slope_tools.studies import site_study
 from slope_tools.survey import rasters
@@ -79,14 +81,19 @@ def test_refused(mine, capsys, monkeypatch, words, line):  # noqa: F811
 
 
 def test_why_not(large, monkeypatch):
-    assert known_study.why_not(large, 3e5, False) == ""
-    assert "a mapped deposit is given" in known_study.why_not(large, 3e5, True)
+    assert known_study.why_not(large, 3e5, False, "unknown") == ""
+    assert "a mapped deposit is given" in known_study.why_not(large, 3e5, True, "unknown")
     for volume in (9e4, 6e8):
-        assert "no set of known events covers this volume" in known_study.why_not(large, volume, False)
+        assert "no set of known events covers this volume" in known_study.why_not(large, volume, False, "unknown")
         assert known_study.points(volume) == 0
+    asked = []
+    monkeypatch.setattr(known, "one_of_body",
+                        lambda _, choice: asked.append(choice.confined) or SimpleNamespace(outside=[]))
+    assert known_study.why_not(large, 3e5, False, "yes") == "" and asked == ["yes"]     # as its ensemble is weighted
+    monkeypatch.undo()
     monkeypatch.setattr(exceedance, "of_body",
                         lambda *_: exceedance.Mobility(None, 0.3, None, {}, "", None, ["the fall is small"]))
-    assert known_study.why_not(large, 3e5, False) == "the fall is small"
+    assert known_study.why_not(large, 3e5, False, "unknown") == "the fall is small"
 
 
 def test_the_estimate_is_of_the_study_that_is_made(large):

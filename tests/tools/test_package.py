@@ -114,6 +114,7 @@ def test_public_names():
      ["-omy out", "--road-width=5.0", "--exceed=0.1,1"]),
     ({"local": True, "dry_run": False, "anew": None, "unconfined": True, "from_": "fit"},
      ["--local", "--unconfined", "--from=fit"]),
+    ({"confined": True, "known": "rock_avalanches"}, ["--confined", "--known=rock_avalanches"]),
     ({"sample": 16, "vary": {"friction": "20:40"}}, ["--sample=16", "--vary=friction=20:40"]),
     ({"repeat": ["seed=1", "xoffset=0.5"]}, ["--repeat=seed=1", "--repeat=xoffset=0.5"])])
 def test_arguments_are_the_options(options, words):

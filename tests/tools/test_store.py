@@ -64,6 +64,13 @@ def test_runs_of_other_values_or_decks_are_not(here, about):
     assert folders({"rolling": "0.1"}) == ["out/rolling_0.1"]
 
 
+def test_a_folder_that_one_run_gets_is_no_others(here):
+    """A deck whose default has changed: the folder of a name has the values of another run, until it is made anew."""
+    make({"rolling": "0.1"}, friction="25")
+    one, other = folders({"rolling": "0.1"}, {"friction": "25", "rolling": "0.1"})
+    assert one == "out/rolling_0.1" and other == "out/friction_25_rolling_0.1"
+
+
 def test_of_two_folders_the_finished_one_counts(here):
     make({"rolling": "0.1", "friction": "30"}, done=False)
     make({"rolling": "0.1", "cell": "1"})

@@ -277,10 +277,8 @@ def plain(value):
 
 def yaml_text(comment, about) -> str:
     """A YAML file with a comment on its first line; what is in it twice is written twice, not as an alias."""
-    return f"# {comment}\n" + yaml.safe_dump(plain(about), sort_keys=False)
+    return f"# {comment}\n" + yaml.safe_dump(plain(about), sort_keys=False, allow_unicode=True)
 
 
 def write_yaml(path, about, comment):
-    with open(path, "w", encoding="utf-8") as out:
-        out.write(f"# {comment}\n")
-        yaml.safe_dump(plain(about), out, sort_keys=False, allow_unicode=True)
+    Path(path).write_text(yaml_text(comment, about), encoding="utf-8")

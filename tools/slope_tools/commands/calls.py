@@ -44,7 +44,7 @@ def words(parser: argparse.ArgumentParser, options: Mapping[str, Any]) -> List[s
                              f"{parser.prog}`: {', '.join(sorted(known))}", name)
         option, action = known[name.rstrip("_")]
         equals = "=" if option.startswith("--") else ""
-        if value is True and action.nargs == 0:
+        if value is True and action.nargs in (0, "?"):
             found.append(option)
         elif isinstance(value, Mapping):
             found += [f"{option}={key}={text(one)}" for key, one in value.items()]

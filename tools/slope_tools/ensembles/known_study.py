@@ -28,10 +28,10 @@ def points(volume: float) -> int:
     return POINTS if covers(volume) else 0
 
 
-def why_not(site: Path, volume: float, observed: bool) -> str:
+def why_not(site: Path, volume: float, observed: bool, confined: str) -> str:
     """Why the study of a site is not weighted by known events; empty: it is.
 
-    volume: of its body, m3; observed: whether a mapped deposit is given.
+    volume: of its body, m3; observed: whether a mapped deposit is given; confined: yes, no, unknown, its path.
     """
     if observed:
         return "a mapped deposit is given, with which a single run is compared"
@@ -40,7 +40,7 @@ def why_not(site: Path, volume: float, observed: bool) -> str:
         return (f"no set of known events covers this volume, {volume:,.0f} m3; ours has {low:g} to {high:g} "
                 "million m3")
     try:
-        found = known.one_of_body(body.of_site(site), known.choice())
+        found = known.one_of_body(body.of_site(site), known.choice(confined=confined))
     except SlopeError as error:
         return f"the mass cannot be compared with known events: {error}"
     return "; ".join(found.outside)

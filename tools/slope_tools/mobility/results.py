@@ -80,7 +80,7 @@ def of_events(one: Mobility) -> Dict[str, Any]:
 def at_road(found: Found, road: AtRoad) -> Dict[str, Any]:
     """What is said of the road's near edge, and of its far one, by each kind of events; None: nothing.
 
-    at_least: where those that count say nothing, as the road lies too high.
+    at_least: where those that count say nothing, as the road lies so near to the body.
     """
     counts = found.decides
     about: Dict[str, Any] = {"at_least": None if counts.says(road.length) else at_least(counts, road.length)}
@@ -160,9 +160,10 @@ def of_road(counts: Mobility, road: AtRoad) -> str:
     """What the events that count say of the road."""
     if not counts.says(road.length):
         least = at_least(counts, road.length)
-        return f"no known event fell so little; at least {percent(least)} reach it" if least is not None else \
-            "nothing, no known event had such a fall"
-    text = f"{percent(float(counts.exceedance(road.length)))} go beyond its near edge"
+        return "nothing, no known event had such a fall" if least is None else \
+            f"the events say nothing so near to the body; at least {percent(least)} reach it"
+    text = f"{percent(float(counts.exceedance(road.length)))} go beyond " + (
+        "its near edge" if road.met else "that point of the path")
     return text + f", {percent(float(counts.exceedance(road.passed)))} beyond its far edge" * (
         road.passed > road.length and counts.says(road.passed))
 

@@ -4,7 +4,7 @@ import math
 from typing import Callable, NamedTuple, Tuple
 
 import numpy as np
-from scipy.ndimage import binary_erosion, generate_binary_structure, maximum_filter
+from scipy.ndimage import binary_dilation, binary_erosion, generate_binary_structure, maximum_filter
 from scipy.optimize import brentq
 
 from ..digits import at_least, at_most
@@ -127,14 +127,13 @@ def measures(area: Area, slip: np.ndarray) -> Measures:
 def hollow(area: Area, slip: np.ndarray) -> float:
     """The largest depth (m) of a closed hollow in the slip surface of a body: below the lowest way out of it.
 
-    The ground is flooded from the rim of the area, the lowest cells first.
+    The body is flooded from its rim, the lowest cells first.
     """
     z = np.where(np.isnan(slip), -np.inf, slip)     # NODATA is a way out
     body = np.nan_to_num(area.z - slip) > 0
-    level = np.full(z.shape, np.nan)
-    queue = [(float(z[place]), place) for place in zip(*np.nonzero(~body | edge(z.shape)))]
-    for height, place in queue:
-        level[place] = height
+    rim = edge(z.shape) | ~body & binary_dilation(body, np.ones((3, 3)))
+    level = np.where(body & ~rim, np.nan, z)
+    queue = [(float(z[place]), place) for place in zip(*np.nonzero(rim))]
     heapq.heapify(queue)
     while queue:
         height, (row, column) = heapq.heappop(queue)
@@ -142,7 +141,7 @@ def hollow(area: Area, slip: np.ndarray) -> float:
             if 0 <= near[0] < z.shape[0] and 0 <= near[1] < z.shape[1] and np.isnan(level[near]):
                 level[near] = max(height, z[near])
                 heapq.heappush(queue, (float(level[near]), near))
-    return float((level - z)[body].max(initial=0.0))
+    return float((level[body] - z[body]).max(initial=0.0))
 
 
 def edge(shape: Tuple[int, ...]) -> np.ndarray:

@@ -234,7 +234,8 @@ def travel_rows(data, numbers):
                                                                               ("m", "degrees")))))
     found = data.length()
     if found is not None:
-        lobe = "length along the fall path, to the farthest lobe of at least"
+        lobe = ("length along the fall path" if found.on_path else "straight length, as there is no fall path") + \
+            ", to the farthest lobe of at least"
         rows.append((f"{lobe} {percent(LEAST)}", numbers("length along the fall path", "m", found.distance),
                      numbers("length along the fall path: reach angle", "degrees", found.angle)))
         rows += [(f"{lobe} {percent(least)}", numbers(f"length by lobes of {percent(least)}", "m", length), "")

@@ -64,7 +64,8 @@ class Store:
         if not mine:
             digest = hashlib.sha256(repr(sorted(values, key=str)).encode("utf-8")).hexdigest()[:LETTERS]
             usual = self.folder / f"{run.name[:MOST_LETTERS]}_{digest}"
-        return self._made().get(values, usual)
+        found = self._made().get(values, usual)
+        return usual if found in self.places.values() else found     # of another run, which will have other values
 
     def _made(self) -> Dict[Values, Path]:
         """The runs that are there, finished ones before others."""

@@ -102,8 +102,8 @@ def check(folder: Path, choices: Choices) -> None:
             raise SlopeError(folder / name, f"must exist; `slope site {quote(str(folder))}` rebuilds it")
     if found.get("choices_sha256", "") not in ("", site_choices.fingerprint(choices, folder)):
         raise SlopeError(folder / site_choices.NAME, f"must not have been changed since {site_deck.NAME} was made from "
-                         f"it: `slope site {quote(str(folder))}` rebuilds the deck (project, road and study may "
-                         "change)")
+                         f"it: `slope site {quote(str(folder))}` rebuilds the deck (project, road, study and "
+                         "known may change)")
     before = found.get("sources_sha256") or {}
     for name, digest in site_choices.sources(choices, folder).items():      # a folder may have gone without its sources
         if before.get(name, digest) != digest:
@@ -200,7 +200,7 @@ def scored(folder: Path, setup: Setup) -> None:
     """Compare the governing run with the mapped deposit."""
     from ..deposits import score_run
     path = setup.output / "study.yaml"
-    read_study(path)
+    read_study(path)        # SlopeError unless it is one
     name, place = run_folders.governing_run(path)
     [summary] = run_folders.summaries(place)
     outline = folder / f"{OBSERVED}.csv"

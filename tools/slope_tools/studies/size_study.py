@@ -61,8 +61,9 @@ def collect(planned: Plan, of, work) -> None:
     rows, _ = results.rows_of(setup, todo, results.Maps(()))
     finished = [row for row in rows if row["status"] == "finished"]
     groups = combinations.grouped(rows)
-    if len(groups) < 2:
-        return      # no line; perform() names the run that failed
+    if len(groups) < 2:     # no line; perform() names the run that failed
+        (setup.output / "converge.yaml").unlink(missing_ok=True)       # of runs before these
+        return
     for name in of:
         for row in finished:
             if row[name] is None:

@@ -56,10 +56,11 @@ class Study(NamedTuple):
 
     @classmethod
     def read(cls, folder: Union[str, Path]) -> "Study":
-        """That of its folder, or of the folder of its site; SlopeError if there is none."""
+        """That of its folder, or the last one of the folder of a site; SlopeError if there is none."""
         place = Path(folder)
-        places = place, place / "study", place / "ensemble"
-        found = next((one for one in places if (one / "study.yaml").is_file()), place)
+        several = [one for one in (place / "study", place / "ensemble") if (one / "study.yaml").is_file()]
+        found = place if (place / "study.yaml").is_file() else max(
+            several, key=lambda one: (one / "study.yaml").stat().st_mtime, default=place)
         return cls(found, read_study(found / "study.yaml"))
 
     @property
