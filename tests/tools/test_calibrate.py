@@ -255,6 +255,7 @@ def load():
 WORDS = "--vary friction=5:40 --vary rolling=0:0.4"
 
 
+@pytest.mark.long
 def test_a_calibration_of_small_collapses_goes_on_after_a_kill(slope, here):
     truth(slope)
     words = f"calibrate case/in.tiny --observed mapped.tif {WORDS} --repeat xoffset=0.2 --runs 16 --jobs 2 -o out"

@@ -226,6 +226,7 @@ def test_a_tool_and_no_folder(here, capsys, name):
     assert Path("results").read_text() == "not a folder\n"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", sorted(TOOLS_OUTPUTS.keys() - {"report"}))      # slow, and written as study's
 def test_a_tool_that_is_killed(before, here, name):
     """At any moment: every file is the one before or the one after, and no file is half of it.
@@ -428,6 +429,7 @@ def test_a_restart_file_that_does_not_fit_leaves_the_one_before(run_folder, tmp_
     assert done.returncode != 0 and "ERROR: I/O error while writing restart" in done.stdout
 
 
+@pytest.mark.long
 def test_a_run_that_is_killed(run_folder, tmp_path):
     """At any moment: rasters and summary can be read, and one of the two restart files is complete."""
     (tmp_path / "work").mkdir()
