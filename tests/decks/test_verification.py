@@ -1,18 +1,12 @@
 """The quick claims of `slope verify`: each must hold, and its control, something broken on purpose, must fail."""
 
-import os
-import sys
-from pathlib import Path
 
 import pytest
 
 from deck_helpers import LMP
 from test_energy_guard import alarms
 
-TOOLS = Path(os.environ.get("SLOPE_TOOLS", Path(__file__).resolve().parents[2] / "tools"))
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools.validation import verification, verify  # noqa: E402
+from slope_tools.validation import verification, verify
 
 CLAIMS = [claim for claim in verification.all_claims() if claim.quick]
 LONG = "dense_gas"      # claims whose name begins so

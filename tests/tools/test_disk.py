@@ -26,15 +26,13 @@ import yaml
 
 from tiny_collapse import DECK, LMP, TOP, read_asc, write_case
 
+from slope_tools import cli, disk  # noqa: F401
+from slope_tools.case import restarts as files, run_folders  # noqa: F401
+from slope_tools.errors import SlopeError
+from slope_tools.drawing import figures, maps  # noqa: F401
+from slope_tools.survey import rasters  # noqa: F401
+
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools import cli, disk  # noqa: E402,F401
-from slope_tools.case import restarts as files, run_folders  # noqa: E402,F401
-from slope_tools.errors import SlopeError  # noqa: E402
-from slope_tools.drawing import figures, maps  # noqa: E402,F401
-from slope_tools.survey import rasters  # noqa: E402,F401
-
 WRITES = ("restart     50 ${out}.1.restart ${out}.2.restart\n"
           "dump all all custom 50 ${out}.dump id type diameter x y z\n"
           "run         ${steps}\n")
