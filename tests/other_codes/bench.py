@@ -37,7 +37,8 @@ Writes DIR/bench.csv (every run), DIR/bench.yaml, DIR/bench.png, and the input o
 def add_arguments(parser):
     parser.add_argument("--quick", action="store_true",
                         help="a small scene, few steps and repeats, without 1e6 balls and runs to rest; two minutes")
-    parser.add_argument("--balls", type=count, metavar="N", help=f"moving balls, about (default {BALLS}; --quick 8000)")
+    parser.add_argument("--balls", type=count, metavar="N",
+                        help=f"moving balls, about, 100 at least (default {BALLS}; --quick 8000)")
     parser.add_argument("--field-factor", type=number, default=1.0, metavar="F",
                         help="area of the terrain, times that of the scene (default 1: about 28,000 fixed balls)")
     parser.add_argument("--steps", type=count, metavar="N", help="timed steps of a run (default 1000; --quick 300)")

@@ -38,7 +38,8 @@ def add_arguments(parser):
                         help="pore pressure over the weight per area, from 0 (default) to below 1")
     parser.add_argument("--correlation", metavar="R", type=number, default=0.0,
                         help="between cohesion and friction, -1 to 1 (default 0)")
-    parser.add_argument("--peaks", metavar="LO:HI[:STEP]", required=True, help="largest horizontal accelerations, gal")
+    parser.add_argument("--peaks", metavar="LO:HI[:STEP]", required=True,
+                        help="largest horizontal accelerations, gal; without STEP 45 of them")
     parser.add_argument("--record", metavar="MOTION", action="append", default=[], type=Path,
                         help="a motion of the ground, which is scaled to each peak; several may be given")
     parser.add_argument("--vertical", action="store_true", help="with the vertical component of the records")
@@ -50,7 +51,7 @@ def add_arguments(parser):
     parser.add_argument("--hazard", metavar="CURVE.csv", type=Path,
                         help="lines peak,exceedance (gal, per year): gives the annual frequency of failure")
     parser.add_argument("--sample", metavar="N", type=whole, default=4096,
-                        help="samples of the strength, at least 256 (default 4096)")
+                        help="samples of the strength, 256 to 1048576 (default 4096)")
     parser.add_argument("--seed", metavar="S", type=whole, default=1, help="seed of the samples (default 1)")
     parser.add_argument("-o", dest="output", metavar="DIR", type=Path, required=True, help="folder for the results")
     add_overwrite(parser)

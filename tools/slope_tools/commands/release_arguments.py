@@ -10,7 +10,8 @@ def add_body(parser) -> None:
                         "the scar inside it is used")
     parser.add_argument("--layer", metavar="NAME", help="of the layers of P this one (default: the only one, or the "
                         "only one of polygons)")
-    parser.add_argument("--shape", choices=release.SHAPES, help="of the slip surface")
+    parser.add_argument("--shape", choices=release.SHAPES, help="of the slip surface (default: "
+                        "sphere; plane with --dip, slbl with --curvature)")
     size = parser.add_mutually_exclusive_group()
     size.add_argument("--depth", metavar="D", type=number, help="largest depth below the ground, vertical, m")
     size.add_argument("--volume", metavar="V", type=number, help="volume of the body, m3")

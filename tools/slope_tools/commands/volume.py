@@ -47,7 +47,7 @@ def add_arguments(parser):
     parser.add_argument("--axis", metavar="LINE", type=Path,
                         help="the road's axis: GeoJSON, shapefile, CSV or WKT (default: the road's middle)")
     parser.add_argument("--samples", metavar="K", type=whole, default=SAMPLES,
-                        help=f"parts of a cell along a side for round corners and rough ground, even (default "
+                        help=f"parts of a cell along a side for round corners and rough ground, even, 2 to 32 (default "
                              f"{SAMPLES}); planes are exact with any")
     parser.add_argument("--no-picture", action="store_true", help="without volume.png, which takes longest")
     add_overwrite(parser)
