@@ -39,7 +39,7 @@ Writes DIR/bench.csv (every run), DIR/bench.yaml, DIR/bench.png, and the input o
 @dataclass(frozen=True, kw_only=True)
 class Request:
     quick: bool = flag("a small scene, few steps and repeats, without 1e6 balls and runs to rest; two minutes")
-    balls: Optional[int] = option(f"moving balls, about (default {BALLS}; --quick 8000)", metavar="N")
+    balls: Optional[int] = option(f"moving balls, about, 100 at least (default {BALLS}; --quick 8000)", metavar="N")
     field_factor: float = option(
         "area of the terrain, times that of the scene (default 1: about 28,000 fixed balls)", default=1.0, metavar="F")
     steps: Optional[int] = option("timed steps of a run (default 1000; --quick 300)", metavar="N")

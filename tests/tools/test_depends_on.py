@@ -15,11 +15,11 @@ import yaml
 import run_helpers  # noqa: F401  (finds slope_tools)
 from tiny_collapse import TOP
 
-from slope_tools.case import data_files, run_folders  # noqa: E402
-from slope_tools.commands import site as site_command  # noqa: E402
-from slope_tools.options import declare  # noqa: E402
-from slope_tools.runs import dependencies, jobs  # noqa: E402
-from slope_tools.sites import site_choices  # noqa: E402
+from slope_tools.case import data_files, run_folders
+from slope_tools.commands import site as site_command
+from slope_tools.options import declare
+from slope_tools.runs import dependencies, jobs
+from slope_tools.sites import site_choices
 
 # --- options of the commands that make runs ---
 

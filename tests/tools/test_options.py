@@ -10,7 +10,7 @@ import pytest
 
 import run_helpers  # noqa: F401  (finds slope_tools)
 
-from slope_tools import cli, options  # noqa: E402
+from slope_tools import cli, options
 
 
 @pytest.mark.parametrize("text, value", [("1", 1), ("007", 7), ("1000000", 1000000), ("1000000000", 10 ** 9)])

@@ -14,12 +14,10 @@ import yaml
 import tiny_collapse
 from run_helpers import TOOLS, TOP
 
-sys.path.insert(0, str(TOOLS))
-
-import slope_tools  # noqa: E402  (after the path is set)
-from slope_tools import cli, options as options_of  # noqa: E402
-from slope_tools.commands import calls, polygon, study  # noqa: E402
-from slope_tools.errors import SlopeError  # noqa: E402
+import slope_tools
+from slope_tools import cli, options as options_of
+from slope_tools.commands import calls, polygon, study
+from slope_tools.errors import SlopeError
 
 EXAMPLE = TOP / "doc" / "src" / "examples" / "clear_the_road.py"
 PAGE = TOP / "doc" / "src" / "python_package.rst"

@@ -15,9 +15,9 @@ import test_depends_on
 from run_helpers import called, write_asc
 from test_slips import CASES
 
-from slope_tools.commands import stability  # noqa: E402
-from slope_tools.slips import bishop, bodies, columns, doubts  # noqa: E402
-from slope_tools.survey.rasters import Raster  # noqa: E402
+from slope_tools.commands import stability
+from slope_tools.slips import bishop, bodies, columns, doubts
+from slope_tools.survey.rasters import Raster
 
 LMP = os.environ.get("LMP")
 needs_lmp = pytest.mark.skipif(not LMP, reason="needs the LAMMPS program (LMP)")

@@ -38,7 +38,7 @@ class Request(Overwrite):
     water: str = option(
         "pore pressure over the weight per area, from 0 (default) to below 1", metavar="DIST", default="0")
     correlation: float = option("between cohesion and friction, -1 to 1 (default 0)", metavar="R", default=0.0)
-    peaks: str = option("largest horizontal accelerations, gal", metavar="LO:HI[:STEP]")
+    peaks: str = option("largest horizontal accelerations, gal; without STEP 45 of them", metavar="LO:HI[:STEP]")
     record: List[Path] = several(
         "a motion of the ground, which is scaled to each peak; several may be given", metavar="MOTION")
     vertical: bool = flag("with the vertical component of the records")
@@ -48,7 +48,8 @@ class Request(Overwrite):
         metavar="FACTOR")
     hazard: Optional[Path] = option(
         "lines peak,exceedance (gal, per year): gives the annual frequency of failure", metavar="CURVE.csv")
-    sample: int = option("samples of the strength, at least 256 (default 4096)", metavar="N", type=whole, default=4096)
+    sample: int = option(
+        "samples of the strength, 256 to 1048576 (default 4096)", metavar="N", type=whole, default=4096)
     seed: int = option("seed of the samples (default 1)", metavar="S", type=whole, default=1)
     output: Path = option("folder for the results", "-o", metavar="DIR")
 

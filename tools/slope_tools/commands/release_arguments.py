@@ -16,7 +16,8 @@ class Body:
         "the release area; with --scar, only the part of the scar inside it is used", metavar="P")
     layer: Optional[str] = option(
         "of the layers of P this one (default: the only one, or the only one of polygons)", metavar="NAME")
-    shape: Optional[str] = option("of the slip surface", choices=release.SHAPES)
+    shape: Optional[str] = option(
+        "of the slip surface (default: sphere; plane with --dip, slbl with --curvature)", choices=release.SHAPES)
     depth: Optional[float] = option("largest depth below the ground, vertical, m", metavar="D", one_of="size")
     volume: Optional[float] = option("volume of the body, m3", metavar="V", one_of="size")
     curvature: Optional[float] = option(

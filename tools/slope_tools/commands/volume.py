@@ -47,7 +47,7 @@ class Request(road_arguments.Clearing, Overwrite):
     axis: Optional[Path] = option(
         "the road's axis: GeoJSON, shapefile, CSV or WKT (default: the road's middle)", metavar="LINE")
     samples: int = option(
-        f"parts of a cell along a side for round corners and rough ground, even (default "
+        f"parts of a cell along a side for round corners and rough ground, even, 2 to 32 (default "
         f"{SAMPLES}); planes are exact with any", metavar="K", type=whole, default=SAMPLES)
     no_picture: bool = flag("without volume.png, which takes longest")
 
