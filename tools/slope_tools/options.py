@@ -14,6 +14,7 @@ import dataclasses
 import json
 import math
 import re
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Callable, Dict, Mapping, Optional, Tuple, Type, TypeVar, Union, get_args, get_origin
@@ -83,8 +84,8 @@ class Describe(argparse.Action):
         super().__init__(option_strings, argparse.SUPPRESS, 0, help=argparse.SUPPRESS, **words)
 
     def __call__(self, parser, *_):
-        print(json.dumps({"command": parser.prog.split()[-1], "about": parser.description,
-                          "options": described(parser)}, indent=1, default=str))
+        about = {"command": parser.prog.split()[-1], "about": parser.description, "options": described(parser)}
+        parser._print_message(json.dumps(about, indent=1, default=str) + "\n", sys.stdout)     # as --help and --version
         parser.exit()
 
 
