@@ -70,3 +70,13 @@ def test_nothing_is_started_to_load_it():
     """The table of options imports no process, and reads one file."""
     text = (PLUGIN / "options.py").read_text(encoding="utf-8")
     assert "subprocess" not in text and "process" not in re.findall(r"^from \. import (.*)$", text, re.MULTILINE)
+
+
+@pytest.mark.parametrize("line, completed", [("slope vol", {"volume"}), ("slope volume --cut", {"--cut-angle"}),
+                                             ("slope calibrate deck --front-is ", {"length", "95", "99"})])
+def test_a_shell_completes_commands_options_and_choices(line, completed):
+    pytest.importorskip("argcomplete")
+    done = subprocess.run(["bash", "-c", '"$0" 8>&1 9>/dev/null', TOOLS / "slope"], text=True, capture_output=True,
+                          env={**os.environ, "_ARGCOMPLETE": "1", "_ARGCOMPLETE_IFS": "\n", "COMP_LINE": line,
+                               "COMP_POINT": str(len(line))}, check=False)
+    assert {word.strip() for word in done.stdout.split("\n")} - {""} == completed

@@ -10,6 +10,7 @@ Only the module that is asked for is imported: a subcommand starts fast, and nee
 """
 import argparse
 import importlib
+import importlib.util
 import os
 import re
 import sys
@@ -134,14 +135,18 @@ def main(argv=None):
                              "standard error, for programs that call this one (default words)")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
     every = {**COMMANDS, **IN_TESTS}
-    asked = next((word for word in argv if word in every), None)
-    before = argv[:argv.index(asked)] if asked else argv
+    completes = "_ARGCOMPLETE" in os.environ and importlib.util.find_spec("argcomplete")     # a shell asks: Tab
+    words = os.environ["COMP_LINE"].split() if completes else argv
+    asked = next((word for word in words if word in every), None)
+    before = argv[:argv.index(asked)] if asked in argv else argv
     warned.as_json = "--progress=json" in before or ("--progress", "json") in zip(before, before[1:])
     for name, summary in every.items():
         if name == asked:
             add_command(commands, name, module_of(name, parser), help=summary)
         else:
             commands.add_parser(name, help=summary)
+    if completes:
+        importlib.import_module("argcomplete").autocomplete(parser)     # ends here
     args = parser.parse_args(with_new_names(asked, argv))
     shown = warnings.showwarning
     try:
