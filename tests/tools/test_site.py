@@ -27,11 +27,12 @@ sys.path.insert(0, str(TOOLS))
 from slope_tools import cli, programs  # noqa: E402  (after the path is set)
 from slope_tools.case import decks  # noqa: E402
 from slope_tools.commands import study as study_command  # noqa: E402
-from slope_tools.ensembles import farther, known_study  # noqa: E402
+from slope_tools.ensembles import farther  # noqa: E402
 from slope_tools.releases import release_chart  # noqa: E402
 from slope_tools.sites import site_budget, site_choices, site_deck, site_warnings  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
 from slope_tools.plots import site_map  # noqa: E402
+from slope_tools.tables import answered  # noqa: E402
 
 DATA = Path(os.environ.get("SLOPE_DATA", TOP.parent.parent / "shared" / "data"))
 EAST, NORTH, CELL, COLUMNS, ROWS = -12000.0, 34000.0, 2.0, 60, 40      # of the survey, m, zone IX of Japan
@@ -166,7 +167,7 @@ def test_both_studies_give_one_number(done, tmp_path, monkeypatch, capsys):
     for name in ("dem.tif", "release.geojson", "road.geojson"):
         shutil.copy(done[0] / name, tmp_path)
     pages = []
-    monkeypatch.setattr(known_study, "POINTS", 12)
+    (mine / "site.yaml").write_text((mine / "site.yaml").read_text().replace("points: 64", "points: 12"))
     monkeypatch.setattr(farther, "MOST", 0.0)       # runs that are added are tested elsewhere
     monkeypatch.setattr(study_command, "write_report", lambda study, page, film=True: pages.append(
         (study.name, page.name, film)))
@@ -190,6 +191,8 @@ def test_both_studies_give_one_number(done, tmp_path, monkeypatch, capsys):
     assert found["ensemble"]["volume_m3"] == quantile["value"]
     volumes = [one for one in (found["paper"]["volume_m3"], quantile["value"]) if one is not None]
     assert found["kind"] == "floor" or found["volume_m3"] == max(volumes)
+    assert answered.governing(mine / "study", mine / "ensemble").name == ("study" if found["source"] == "paper" else
+                                                                          "ensemble")
     governs, other = ("study", "ensemble") if found["source"] == "paper" else ("ensemble", "study")
     assert pages == [(other, {"study": "paper.html", "ensemble": "ensemble.html"}[other], False),
                      (governs, "report.html", True)]

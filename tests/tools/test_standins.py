@@ -1,8 +1,8 @@
-"""Twenty stand-ins with known volumes on a road: how many lie within the 90 % band of an ensemble that known events weigh.
+"""Twenty stand-ins with known volumes on a road: how many lie in the 90 % band of an ensemble that known events weigh.
 
 A stand-in is a mass of a volume and a fall; it ends where one known event of these, drawn by the relation of the 49,
-did. Its deposit is a wedge that thins out towards its tip, by an exponent and on a width that nobody knows; on a road of
-10 m lies what the wedge has there. The ensemble has the same law with an exponent of its own, and draws what nobody
+did. Its deposit is a wedge that thins out towards its tip, by an exponent and on a width that nobody knows; on a road
+of 10 m lies what the wedge has there. The ensemble has the same law with an exponent of its own, and draws what nobody
 knows; how far its runs go has nothing to do with the events. Stated before anything was run: 15 to 20 of 20 within the
 band of 5 to 95 %, and its upper end at most 4 times its middle (median of the stand-ins half of whose runs reach it).
 """
@@ -25,7 +25,7 @@ BAND = 0.05, 0.5, 0.95
 
 
 def on_road(volume, length, at, exponent, spread):
-    """m3 on the road at a distance (m) of a mass (m3) that ends at a length (m); spread: of its width, over the mean."""
+    """m3 on the road at a distance (m) of a mass (m3) that ends at a length (m); spread: its width over the mean."""
     width = 3 * volume ** (1 / 3) * spread
     thickest = volume * (exponent + 1) / (width * length)       # at the source
     return ROAD * width * thickest * np.clip(1 - at / length, 0, None) ** exponent
@@ -46,7 +46,7 @@ def stand_in(rng, mean_exponent):
 
 
 def inside(seed, mean_exponent=1.0, wrong=1.0):
-    """How many of the stand-ins lie within their band, and the median of upper end over middle; wrong: of the truths."""
+    """How many of the stand-ins lie within their band, and the median of upper end over middle; wrong: a factor."""
     rng = np.random.default_rng(seed)
     found = [stand_in(rng, mean_exponent) for _ in range(NUMBER)]
     held = sum(low <= wrong * truth <= high for truth, (low, _, high) in found)
