@@ -129,6 +129,9 @@ class Charts:
 
     def scatter_of(self, key):
         """The scatter of a run in a column; None without repeats."""
+        best = (self.data.study or {}).get("conservative") or {}
+        if key == REMOVE and best.get("scatter_m3") is not None:        # that of the governing combination
+            return headline.Scatter(best["scatter_m3"], best["degrees_of_freedom"])
         found = self.scatter.get(key)
         if found:
             return headline.Scatter(found["deviation"], found["degrees_of_freedom"])

@@ -97,7 +97,7 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
                                              about["study"]["road"])
         best["doubts"] += unseen(repeated, work.defaults)
         if questions.step:
-            about["step"] = step_check.compare(questions.step, groups, scatters[step_check.QUANTITY])
+            about["step"] = step_check.compare(questions.step, groups)
             if about["step"]["within_chance"] is False:
                 best["doubts"].append(about["step"]["text"])
         unknown = about["size_error_unusable"] or ""
