@@ -176,7 +176,8 @@ def test_parts_by_hand():
     best = headline.headline([a, b])
     # variances in proportion to the means, 105 and 121
     scale = 121 / 105
-    deviation = math.sqrt((scale * statistics.variance(a.volumes.values()) + statistics.variance(b.volumes.values())) / 2)
+    variances = [statistics.variance(one.volumes.values()) for one in (a, b)]
+    deviation = math.sqrt((scale * variances[0] + variances[1]) / 2)
     assert (best.combination, best.repeats, best.runs, best.kind) == ("b", 3, 6, "prediction")
     assert best.mean == pytest.approx(121) and best.size is None
     assert best.scatter.deviation == pytest.approx(deviation)

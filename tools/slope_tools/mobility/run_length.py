@@ -63,9 +63,7 @@ def of_deposit(deposit: Deposit, path: Optional[FallPath], least: float = LEAST,
     highest = top(deposit)
     rows, columns = np.nonzero(mask)
     places = np.column_stack(deposit.raster.transform * np.array([columns + 0.5, rows + 0.5]))
-    begin = (path.x[0], path.y[0]) if path else (highest.x, highest.y)
-    straight = np.hypot(*(places - begin).T)
-    distances = np.maximum(along(path, places), straight) if path else straight
+    distances, straight = lengths_of(places, path, deposit)
     far = int(np.argmax(distances))
     distance = round(float(distances[far]), DECIMALS)
     drop = highest.z - float((deposit.base + deposit.raster.z)[rows[far], columns[far]])
@@ -73,6 +71,14 @@ def of_deposit(deposit: Deposit, path: Optional[FallPath], least: float = LEAST,
     held = float(deposit.raster.z[mask].sum()) * deposit.cell ** 2
     return RunLength(distance, float(straight.max()), (float(places[far, 0]), float(places[far, 1])), angle, number,
                      held / released(deposit), mask, path is not None)
+
+
+def lengths_of(places: np.ndarray, path: Optional[FallPath], deposit: Deposit) -> Tuple[np.ndarray, np.ndarray]:
+    """How far places (n, 2) lie from where a mass began, m: along the path, and as the crow flies."""
+    highest = top(deposit)
+    begin = (path.x[0], path.y[0]) if path else (highest.x, highest.y)
+    straight = np.hypot(*(places - begin).T)
+    return (np.maximum(along(path, places), straight) if path else straight), straight
 
 
 def released(deposit: Deposit) -> float:

@@ -8,7 +8,7 @@ from .. import digits
 from ..deposits import travel_shares
 from ..ensembles import known_study
 from ..statistics import headline
-from . import body, caveats, road_part, structures_part
+from . import body, caveats, mapped_part, road_part, structures_part
 from .numbers import farthest_of
 
 WORDS = {"rolling": "the rolling resistance", "friction": "the friction", "d": "the size of the model's balls",
@@ -75,8 +75,8 @@ def reaches(data) -> List[float]:
 
 def sentences(data, ground, numbers, has_road_number: bool) -> List[str]:
     """Three at most: how far, what lies on the road, what else."""
-    found = [distance(data, numbers, has_road_number), road(data, numbers), structures(data, ground),
-             thickness(data, numbers)]
+    found = [mapped_part.sentence(data, numbers), distance(data, numbers, has_road_number), road(data, numbers),
+             structures(data, ground), thickness(data, numbers)]
     return [text for text in found if text][:3]
 
 

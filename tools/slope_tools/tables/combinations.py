@@ -246,7 +246,8 @@ def describe(best: Mapping[str, Any]) -> List[str]:
                 f"(s {number(best['scatter_m3'])}, {best['degrees_of_freedom']:.3g} degrees of freedom)")
         text += (f" + {number(parts['size'])}, size of the balls" if parts["size"] is not None
                  else "; the size of the balls is not in it")
-    lines = [text, *starts(best), *([best["zero"]["text"]] if best["zero"] else []), *([best["ground"]] if best.get("ground") else [])]
+    lines = [text, *starts(best), *([best["zero"]["text"]] if best["zero"] else []),
+             *([best["ground"]] if best.get("ground") else [])]
     for entry in best["differences"]:
         if entry["clear"] is not None:
             word = "more than" if entry["clear"] else "no more than"

@@ -113,8 +113,8 @@ def doubts(about: Mapping[str, Any]) -> List[str]:
                          ("the mass reaches the road in some runs only", [one for one in mixed if not one["stood"]])):
         at = sorted({f"{one['at']:g}" for one in points}, key=float)
         if at:
-            found.append(f"at {about['variable']} {', '.join(at)} {text}: the scatter is that between the two, not that "
-                         "of a volume; use the probabilities at each intensity")
+            found.append(f"at {about['variable']} {', '.join(at)} {text}: the scatter is that between the two, not "
+                         "that of a volume; use the probabilities at each intensity")
     return found
 
 
