@@ -81,18 +81,19 @@ def test_refused(mine, capsys, monkeypatch, words, line):  # noqa: F811
 
 
 def test_why_not(large, monkeypatch):
-    assert known_study.why_not(large, 3e5, "unknown") == ""
+    assert known_study.why_not(large, 3e5, False, "unknown") == ""
+    assert "a mapped deposit is given" in known_study.why_not(large, 3e5, True, "unknown")
     for volume in (9e4, 6e8):
-        assert "no set of known events covers this volume" in known_study.why_not(large, volume, "unknown")
+        assert "no set of known events covers this volume" in known_study.why_not(large, volume, False, "unknown")
         assert known_study.points(volume) == 0
     asked = []
     monkeypatch.setattr(known, "one_of_body",
                         lambda _, choice: asked.append(choice.confined) or SimpleNamespace(outside=[]))
-    assert known_study.why_not(large, 3e5, "yes") == "" and asked == ["yes"]     # as its ensemble is weighted
+    assert known_study.why_not(large, 3e5, False, "yes") == "" and asked == ["yes"]     # as its ensemble is weighted
     monkeypatch.undo()
     monkeypatch.setattr(exceedance, "of_body",
                         lambda *_: exceedance.Mobility(None, 0.3, None, {}, "", None, ["the fall is small"]))
-    assert known_study.why_not(large, 3e5, "unknown") == "the fall is small"
+    assert known_study.why_not(large, 3e5, False, "unknown") == "the fall is small"
 
 
 def test_the_estimate_is_of_the_study_that_is_made(large):

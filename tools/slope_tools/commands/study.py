@@ -111,7 +111,8 @@ def run_folder(args):
     choices = site_choices.read(args.deck)
     site_study.check(args.deck, choices)
     volume = float(site_choices.found(args.deck)["body"]["volume"])
-    why = "" if args.paper else known_study.why_not(args.deck, volume, args.confined or choices["known"]["confined"])
+    why = "" if args.paper else known_study.why_not(args.deck, volume, bool(choices["observed"]["file"]),
+                                                    args.confined or choices["known"]["confined"])
     if args.paper or why:
         condition_of(args)      # has no meaning here
         method = f"{known_study.PAPER}; {why}" if why else known_study.ASKED

@@ -28,11 +28,13 @@ def points(volume: float) -> int:
     return POINTS if covers(volume) else 0
 
 
-def why_not(site: Path, volume: float, confined: str) -> str:
+def why_not(site: Path, volume: float, observed: bool, confined: str) -> str:
     """Why the study of a site is not weighted by known events; empty: it is.
 
-    volume: of its body, m3; confined: yes, no, unknown, its path.
+    volume: of its body, m3; observed: whether a mapped deposit is given; confined: yes, no, unknown, its path.
     """
+    if observed:
+        return "a mapped deposit is given, with which a single run is compared"
     if not covers(volume):
         low, high = relation.of_events(events.read()).volumes
         return (f"no set of known events covers this volume, {volume:,.0f} m3; ours has {low:g} to {high:g} "
