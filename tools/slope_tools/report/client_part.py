@@ -8,7 +8,8 @@ from .. import digits
 from ..deposits import travel_shares
 from ..ensembles import known_study
 from ..statistics import headline
-from . import body, caveats, mapped_part, road_part, structures_part
+from ..tables import combinations
+from . import answer_part, body, caveats, mapped_part, road_part, structures_part
 from .numbers import farthest_of
 
 WORDS = {"rolling": "the rolling resistance", "friction": "the friction", "d": "the size of the model's balls",
@@ -21,10 +22,10 @@ WORDS = {"rolling": "the rolling resistance", "friction": "the friction", "d": "
 
 def content(data, ground, numbers, answers: Sequence[Optional[Dict[str, Any]]], warnings: int) -> Dict[str, Any]:
     """What the template takes; answers: those of the study, the first that there is counts."""
-    main = next((one for one in answers if one), None)
+    main, spoken = next((one for one in answers if one), None), answer_part.of_study(data, numbers)
     told, rest = caveats.shown(caveats.caveats(data, ground), warnings)
     return {"body": body.sentence(body.of_data(data, ground)),
-            "answer": of_answer(data, main, numbers) if main else of_reach(data, numbers),
+            "answer": spoken or (of_answer(data, main, numbers) if main else of_reach(data, numbers)),
             "sentences": sentences(data, ground, numbers, bool(main))
             + road_part.on_first_page(data, numbers, bool(main and main["withheld"])), "caveats": told, "rest": rest,
             "basis": basis(data)}
@@ -32,24 +33,28 @@ def content(data, ground, numbers, answers: Sequence[Optional[Dict[str, Any]]], 
 
 # --- the number ---
 
+WITHHELD: Dict[str, Any] = {"kind": "withheld", "number": None, "unit": "", "band": "", "step": None}
+
+
 def of_answer(data, answer: Dict[str, Any], numbers) -> Dict[str, Any]:
     """Of an answer as the appendix has it: title, number, unit, reasons, band."""
     reasons = [one["text"] for one in answer["withheld"]]
     if reasons:
-        return {"title": answer["title"], "number": None, "unit": "", "reasons": reasons, "band": ""}
+        return {**WITHHELD, "title": answer["title"], "reasons": reasons, "step": answer_part.first_remedy(data)}
     best = data.study["conservative"]
     if answer.get("zero"):
         band = f"{answer['zero'][0].upper()}{answer['zero'][1:]}."
     elif "band" in answer:
-        band = f"Between {answer['band']}."
+        band = answer["band"]
     elif best["chance_m3"] is None:
         band = "No band: no run was repeated, so that chance is unknown."
     else:
         mean, chance = (best["rounded"][key] for key in ("mean_m3", "chance_m3"))
         low, high = (headline.text(value, best["place_m3"]) for value in (max(0.0, mean - chance), mean + chance))
         band = f"Another run gives {low} to {high} m3, in 95 % of cases; the mean is {answer['parts'][0]['number']} m3."
-    return {"title": answer["title"], "number": answer["number"], "unit": answer.get("unit", "m3"), "reasons": [],
-            "band": band}
+        band += "".join(f" {one[0].upper()}{one[1:]}." for one in combinations.starts(best))
+    return {"kind": "number", "title": answer["title"], "number": answer["number"], "unit": answer.get("unit", "m3"),
+            "reasons": [], "band": band, "step": None}
 
 
 def of_reach(data, numbers) -> Dict[str, Any]:
@@ -57,11 +62,11 @@ def of_reach(data, numbers) -> Dict[str, Any]:
     title = f"{travel_shares.HEADLINE} % of the volume stays within"
     values = reaches(data)
     if not values:
-        return {"title": title, "number": None, "unit": "", "band": "",
+        return {**WITHHELD, "title": title,
                 "reasons": ["more than 1 % of the volume left the terrain, farther than anybody knows"]}
     low, high = (numbers("99 % within", "m", value) for value in (min(values), max(values)))
     band = f"{low} to {high} m over {len(values)} runs." if len(values) > 1 else "One run: no band."
-    return {"title": title, "number": high, "unit": "m", "reasons": [], "band": band}
+    return {"kind": "number", "title": title, "number": high, "unit": "m", "reasons": [], "band": band, "step": None}
 
 
 def reaches(data) -> List[float]:
