@@ -122,7 +122,7 @@ def stood_in(draw, seed, studies=60, repeats=REPEATS, rule=headline.headline, se
         for _ in range(studies):
             table = draw(random, means[:, None], (3, repeats))
             best = rule([Combination(str(k), {str(i): 1e4 * value for i, value in enumerate(row)})
-                           for k, row in enumerate(table)])
+                         for k, row in enumerate(table)])
             further = 1e4 * draw(random, means[int(best.combination)], 400)
             found.append((further <= best.volume).mean())
     return round(float(np.mean(found)), 2)

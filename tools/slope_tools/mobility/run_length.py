@@ -27,6 +27,7 @@ from .fall_path import FallPath
 LEAST = 0.01            # of the released volume, in a lobe
 OTHERS = 0.005, 0.02    # what else it might be: the change is shown
 OF_99 = 0.933           # 99 % of a volume stay within this part of the straight length: Acheron's deposit and its runs
+STRAIGHT, ON_PATH = "straight", "along the fall path"       # what a length is
 DECIMALS = 3            # of a distance, m: cells as far as each other tie, whatever rounding makes of them
 KEPT = 4                # paths: runs of a study have one body, or a few
 

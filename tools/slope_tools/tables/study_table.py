@@ -5,6 +5,7 @@ from rich.table import Table
 
 from .. import disk
 from ..deposits import rest, travel_shares
+from ..mobility.run_length import STRAIGHT
 from ..statistics import headline
 from . import combinations
 
@@ -35,6 +36,8 @@ def table(settings, repeated, rows, defaults):
     columns = [*COLUMNS, *(ROAD_COLUMNS if any("remove_m3" in row for row in rows) else ()),
                *(key for key in (STOP, *LANE_COLUMNS, *MAPPED) if any(row.get(key) is not None for row in rows)),
                "status", "error"]
+    if any(row.get("length_is") == STRAIGHT for row in rows):
+        columns.insert(columns.index("length_deg") + 1, "length_is")
     more = [name for name in repeated if name not in settings]
 
     def line(row):
