@@ -22,7 +22,7 @@ def add_known(parser, alias: str, use: str) -> None:
 def add_site(group) -> None:
     """--known and --confined of a site, whose other commands take them from there."""
     group.add_argument("--known", metavar="SET",
-                       help=f"events that slope mobility compares the mass with; a study takes rock_avalanches: {SETS}")
+                       help=f"events that the mass is compared with, in slope mobility and the study: {SETS}")
     add_confined(group.add_mutually_exclusive_group())
 
 

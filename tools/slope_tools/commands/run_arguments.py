@@ -83,7 +83,7 @@ def add_sample(parser) -> None:
 
 def condition_of(args) -> Optional[known_events.Condition]:
     """What --known and its company ask for; SlopeError if some are there without it."""
-    if args.known is not None:
+    if args.known is not None or getattr(args, "weigh", False):
         site = args.deck.parent if (args.deck.parent / site_choices.NAME).is_file() else None
         return known_events.check(known_arguments.choice_of(args, site), args.known, args.deck)
     for option, given in (("--except", args.left_out), ("--confined or --unconfined", args.confined is not None)):

@@ -13,15 +13,17 @@ from ..runs import repeats
 from ..sites import site_choices, site_deck
 from ..sites.site_bodies import VARIABLE
 from ..sites.site_layers import ROAD
+from ..statistics.answer import Source
 from ..studies import results, site_ground, site_study
-from ..studies.study import check_thresholds, perform
+from ..studies.study import RunsFailed, check_thresholds, perform
 from ..survey import roads
-from ..tables import intensity
+from ..tables import answer_words, answered, intensity
 from ..tables.size_error import SizeErrors
 from . import known_arguments, road_arguments
 from .run_arguments import (OF_A_KIND, add_deck, add_intensity, add_repeats, add_runs, add_sample,
                             condition_of, settle_kind, setup_of)
 
+PAGES = {site_study.STUDY: "paper.html", site_study.ENSEMBLE: "ensemble.html"}     # beside report.html
 THICKNESSES = "0.1,0.5,1"      # of the maps of exceedance, m; the parser has None, as for all that a site refuses
 OF_A_ROAD = ("size_error", "road", *road_arguments.OPTIONS, "cut_angle", "mesh", "local")
 NOT_OF_A_SITE = ("set", "repeat", "vary", "sample", *OF_A_ROAD, "equally_good", "output", "exceed", "left_out",
@@ -50,8 +52,8 @@ such an ensemble of a site that `slope site ... -o mine` made, with its road and
 the whole chain, from an earthquake to how often the road is blocked, of a site made with `slope site --slips`:
   tools/slope study mine --sample 64 --vary friction=25:35 --vary rolling=0:0.1 --fragility fragility --more-than 500
 
-everything of a site that `slope site ... -o mine` made, with its report: where known events cover the mass, an ensemble
-that is weighted by them; otherwise, or with --paper, rolling resistances, repeats and sizes of balls:
+everything of a site that `slope site ... -o mine` made, with its report: rolling resistances, repeats and sizes of
+balls by the paper's method, and an ensemble that is weighted by known events; the larger volume of both counts:
   tools/slope study mine
 
 Every run has a folder of its own in DIR, and is not repeated once it is finished. Over all runs: DIR/study.csv,
@@ -71,8 +73,7 @@ def add_arguments(parser):
                         help="of a site with several bodies, with --sample: what `slope fragility` wrote; how likely "
                              "which volume reaches the road at a peak acceleration, and per year")
     parser.add_argument("--paper", action="store_true",
-                        help="of a site: the largest volume over the rolling resistances, the paper's method, also "
-                             "where a set of known events covers the mass")
+                        help="of a site: the paper's method alone, the largest volume over the rolling resistances")
     add_repeats(parser)
     parser.add_argument("--size-error", metavar="FILE", type=Path,
                         help="converge.yaml of `slope sensitivity --converge`: its error at the size of these balls "
@@ -100,7 +101,7 @@ def run(args):
 
 
 def run_folder(args):
-    """The study of a site's folder: weighted by known events, where a set covers the mass, or by the paper's method."""
+    """The study of a site's folder: by the paper's method, and weighted by known events."""
     if args.sample is not None or args.fit is not None:
         if args.paper:
             raise SlopeError("--paper", "must not be given with --sample or --from, which make an ensemble")
@@ -110,19 +111,41 @@ def run_folder(args):
     refuse(args, NOT_OF_A_SITE)
     choices = site_choices.read(args.deck)
     site_study.check(args.deck, choices)
-    volume = float(site_choices.found(args.deck)["body"]["volume"])
-    why = "" if args.paper else known_study.why_not(args.deck, volume, bool(choices["observed"]["file"]),
-                                                    args.confined or choices["known"]["confined"])
+    why = "" if args.paper else known_study.why_not(args.deck)
     if args.paper or why:
         condition_of(args)      # has no meaning here
         method = f"{known_study.PAPER}; {why}" if why else known_study.ASKED
         say(args.deck, method, others=True)
         return run_site(args, method)
-    args.sample, args.known = known_study.POINTS, known_study.SET
-    method = (f"weighted by known events of this volume and height, {known_study.SET}; --paper takes the largest "
-              "volume over the rolling resistances of site.yaml instead")
-    say(args.deck, method)
-    return run_site_ensemble(args, "report.html", method)
+    say(args.deck, f"{known_study.WEIGHTED}, which --paper makes alone", others=True)
+    return run_both(args)
+
+
+def run_both(args):
+    """The paper's study and the ensemble of a site, the number that both give, and a report of each."""
+    site = args.deck
+    paper = site_study.run(site, setup_of(args), known_study.BESIDE)
+    args.sample, args.known, args.weigh = known_study.POINTS, None, True
+    failed = paper.failed
+    try:
+        prepare_ensemble(args, known_study.WEIGHTED)
+        run_deck(args)
+    except RunsFailed as error:     # the others count
+        failed = failed or error
+    if args.dry_run:
+        return
+    both = [site / name / "study.yaml" for name in (site_study.STUDY, site_study.ENSEMBLE)]
+    found = answered.of_both(*both) if all(path.is_file() for path in both) else None
+    governs = site_study.STUDY if found and found.source is Source.PAPER else site_study.ENSEMBLE
+    for name in (site_study.STUDY, site_study.ENSEMBLE):
+        if name != governs and (site / name / "study.yaml").is_file():
+            write_report(site / name, site / PAGES[name], film=False)
+    if found:
+        print("\n".join(answer_words.lines(found)))
+    if (site / governs / "study.yaml").is_file():
+        write_report(site / governs, site / "report.html")
+    if failed:
+        raise failed
 
 
 def say(folder, method, others=False):
@@ -216,27 +239,34 @@ def refuse(args, options):
                              None if first is True else f"{first:g}" if isinstance(first, float) else first)
 
 
-def write_report(study, page):
+def write_report(study, page, film=True):
     from ..report import document
     from ..report.heading import Asked
-    print("\n".join(document.write(Asked(study, film=page.with_suffix(".mp4")), page)))
+    print("\n".join(document.write(Asked(study, film=page.with_suffix(".mp4") if film else None), page)))
 
 
-def run_site_ensemble(args, page=f"{site_study.ENSEMBLE}.html", method=""):
+def run_site_ensemble(args):
     """An ensemble of a site's deck with its road, in a folder of the site's, and the report."""
     refuse(args, OF_A_ROAD)
+    site = args.deck
+    prepare_ensemble(args)
+    run_deck(args)
+    if not args.dry_run:
+        write_report(args.output, site / PAGES[site_study.ENSEMBLE])
+
+
+def prepare_ensemble(args, method=""):
+    """Make the arguments those of a site's deck, its road, and a folder of the site's."""
     site, choices = args.deck, site_choices.read(args.deck)
     site_study.check(site, choices)
     args.deck = site / site_deck.NAME
+    args.wide = {} if args.vary or args.fit or args.fragility else known_study.WIDE
     args.vary = args.vary or ([] if args.fit else chances(choices) if args.fragility else list(known_study.VARY))
     args.site, args.method, args.output = site, method, args.output or site / site_study.ENSEMBLE
     if choices["road"]["file"]:
         args.road, args.cut_angle, args.mesh = site / ROAD, choices["road"]["cut_angle"], choices["road"]["mesh"]
         for option, field in road_arguments.OPTIONS.items():
             setattr(args, option, choices["road"][roads.KEYS[field]])
-    run_deck(args)
-    if not args.dry_run:
-        write_report(args.output, site / page)
 
 
 def chances(choices):
@@ -258,7 +288,8 @@ def run_ensemble(args, settings, repeated, thresholds, defaults, condition, chai
                          args.size_error)
     fixed = one_value_each(settings, "--set", "--vary")
     plan = calibrated.sample(args.fit, args.sample, args.deck, fixed, repeated) if args.fit else \
-        sample.check(args.sample, args.design, args.seed, args.vary, args.deck, fixed, repeated)
+        sample.check(args.sample, args.design, args.seed, args.vary, args.deck, fixed, repeated).widened(
+            getattr(args, "wide", {}))
     levels = ensemble_maps.Thresholds(thresholds, check_thresholds(args.exceed_speed, "--exceed-speed", "speeds"),
                                       check_thresholds(args.exceed_energy, "--exceed-energy", "energies"))
     of = ensemble.check_quantity(args.of, args.road is not None)

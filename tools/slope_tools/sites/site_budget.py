@@ -161,10 +161,7 @@ class Plan(NamedTuple):
 
 
 def plan(choices: Choices, points: int = 0) -> Plan:
-    """points: of an ensemble that is weighted by known events; 0: the study by the paper's method."""
-    if points:
-        return Plan([(1.0, points)], False, f"{points} runs, weighted by known events, and up to half as many more "
-                    "where these go farther (study --paper makes others)")
+    """points: of the ensemble that is weighted by known events, beside the study by the paper's method."""
     study = choices["study"]
     each = 1 + sum(len(study[name]) for name in OFFSETS)
     grounds = other_grounds(choices)
@@ -176,6 +173,10 @@ def plan(choices: Choices, points: int = 0) -> Plan:
         text += f", {len(grounds)} on other grounds"
     if others:
         text += f", {len(others)} other sizes of balls x {each}"
+    if points:
+        parts.append((1.0, points))
+        text += (f"; {points} runs weighted by known events, and up to as many more where these go farther (study "
+                 "--paper leaves them out)")
     return Plan(parts, bool(choices["road"]["file"]), text)
 
 

@@ -49,6 +49,11 @@ class Reason(NamedTuple):
     def about(self) -> Dict[str, Any]:
         return {"code": self.code.value, "numbers": dict(self.numbers)}
 
+    @classmethod
+    def read(cls, about: Mapping[str, Any]) -> "Reason":
+        """Of about()."""
+        return cls(Code(about["code"]), about["numbers"])
+
 
 class Road(NamedTuple):
     """A road on the fall path: its edges (m), the shares of the known events that reach the near and pass the far one.
