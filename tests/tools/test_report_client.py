@@ -94,7 +94,7 @@ HEADLINES = {
     "withheld": headline_of("withheld", reasons=[MOVING]),
     "nothing": headline_of("nothing", volume_m3=0.0, share=0.95, source="ensemble",
                            road={**ROAD, "reached": [0.02, 0.07]})}
-SAID = {"number": ("35,800 m³", "Between 21,000 m³ and 48,200 m³, with 90 % confidence.", "chance: 1,200 m³"),
+SAID = {"number": ("35,800 m³", "Between 21,000 m³ and 48,200 m³, with 90 % confidence.", "gives 1,200 m³"),
         "floor": ("at least 12,000 m³", "90 % of known events of this volume and height stay within 12,000 m³",
                   "12 % of known events of this volume and height go farther than the longest run, which ends after "
                   "2,300 m.", "Next step: a larger elevation model"),

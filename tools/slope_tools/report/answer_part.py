@@ -39,9 +39,9 @@ class Step(NamedTuple):
 
 
 def of_study(data, numbers) -> Optional[Dict[str, Any]]:
-    """What the template takes; None without a headline, and of one that is the paper's number alone."""
+    """What the template takes; None without a headline, and where the paper's study says all, with its parts."""
     about = (data.study or {}).get("headline")      # none in older files
-    if not about:
+    if not about or not about["ensemble"]:
         return None
     kind = Kind(about["kind"])
     if kind is Kind.NUMBER and about["source"] == Source.PAPER.value:
@@ -77,7 +77,7 @@ def of_paper(about: Mapping[str, Any], numbers) -> str:
     volume = (about["paper"] or {}).get("volume_m3")
     if volume is None or about["source"] != Source.ENSEMBLE.value:
         return ""
-    return (f" By the largest of the runs of a study without known events, and chance: "
+    return (" A study that takes the largest of few settings, without known events, gives "
             f"{numbers('conservative volume', 'm3', volume)} m3.")
 
 
