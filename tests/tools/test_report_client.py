@@ -13,9 +13,10 @@ from test_report import stands
 
 from slope_tools import digits
 from slope_tools.plots.obstacles import Obstacles
-from slope_tools.report import answer_part, body, caveats, client_part, warnings
+from slope_tools.report import body, caveats, client_part, warnings
 from slope_tools.report.numbers import Numbers
 from slope_tools.statistics.withheld import Kind as Rule
+from slope_tools.tables import next_step
 from slope_tools.warned import Warned, warned
 
 made, here, slope = test_report.made, test_report.here, test_report.slope       # its fixtures
@@ -127,15 +128,15 @@ def test_what_stands_first(slope, here, case):
         assert f"<code>{html.escape(remedy)}</code>" in page
 
 
-def test_the_next_step_and_its_time():
+def test_the_next_step_and_its_time(tmp_path):
     """By the first reason that something can be done about; as long as the runs took, several at a time."""
     design = {"points": 64, "variables": {"friction": "2:30", "rolling": "uniform:0:0.15", "slip": "list:a,b"}}
-    data = SimpleNamespace(study={"study": {"jobs": 2, "deck": "in.tiny"}, "conservative": None,
-                                  "ensemble": {"design": design, "known_events": {"set": "rock_avalanches.csv"}}},
-                           finished=[{"wall_s": 60.0}] * 20, folder=Path("site/ensemble"))
+    rows = [{"status": "finished", "wall_s": 60.0} for _ in range(20)]
+    made_ = next_step.Made({"study": {"jobs": 2, "deck": "in.tiny"}, "conservative": None, "runs": rows, "ensemble": {
+        "design": design, "known_events": {"set": "rock_avalanches.csv"}}}, Path("site/ensemble"))
 
-    def step(*codes):
-        return answer_part.next_step(data, {"reasons": [{"code": code, "numbers": numbers} for code, numbers in codes]})
+    def step(*codes, of=made_):
+        return next_step.of_reasons(of, {"reasons": [{"code": code, "numbers": numbers} for code, numbers in codes]})
 
     beyond = ("known beyond runs", BEYOND["numbers"])
     found = step(beyond, ("no more runs", {"points": 32}))
@@ -145,8 +146,11 @@ def test_the_next_step_and_its_time():
     assert step(beyond).command == found.command
     assert "--sample 64 " in step(("range ends", {"ends": "friction 2"})).command
     assert "--vary friction=1:30 --vary rolling=0:0.15 --vary slip=list:a,b" in step(("range ends", {})).command
-    assert answer_part.times(data, Rule.BALLS, {"number": 0.0045, "bound": 10}) == pytest.approx(600 * 10 ** (4 / 3))
-    data.finished[0] = {"wall_s": None}
+    assert next_step.times(made_, Rule.BALLS, {"number": 0.0045, "bound": 10}) == pytest.approx(600 * 10 ** (4 / 3))
+    (tmp_path / "site.yaml").touch()
+    assert step(("terrain ends", TERRAIN["numbers"]), of=made_._replace(folder=tmp_path / "ensemble")).command.endswith(
+        f"{tmp_path}/site.yaml, then: tools/slope site {tmp_path} && tools/slope study {tmp_path} --anew")
+    rows[0]["wall_s"] = None
     assert step(("too few runs", {})).time == ""
 
 

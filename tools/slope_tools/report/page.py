@@ -10,8 +10,8 @@ from ..plots.ground import Ground
 from ..plots.section import Section
 from ..survey.rasters import crs_name
 from ..tables.quantities import NAMES, name_of, of_run
-from . import (body, chain_part, client_part, convergence_part, heading, intensity_part, limits_part, mapped_part,
-               mobility_part, road_part)
+from . import (body, chain_part, client_part, convergence_part, heading, intensity_part, limits_part, mobility_part,
+               road_part)
 from .charts import Charts, REMOVE, TERMS, differences, quantities
 from .data import Data, find_deck
 from .heading import Asked
@@ -79,7 +79,7 @@ class Page:
             "intensity": intensity_part.content(data, numbers, self.picture),
             "chain": chain_part.content(data, numbers, self.picture),
             "hit": Structures(data, numbers, self.picture, self.ground).content(),
-            "road": road_part.content(data, numbers, maps), "mapped": mapped_part.content(data, numbers),
+            "road": road_part.content(data, numbers, maps), "mapped": mobility_part.mapped(data, numbers),
             "road_chart": charts.has_removal(), "removal": maps.removal(removal), "over_all": maps.over_all(),
             "beyond": self.beyond(),
             "reference": self.reference and self.reference_tables(),
