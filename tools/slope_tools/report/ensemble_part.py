@@ -1,6 +1,6 @@
 """What a report shows of an ensemble: how likely the volume is exceeded, which variables matter, maps over all runs."""
 import csv
-from typing import Any, Dict, List, Mapping
+from typing import Any, Dict, List, Mapping, Optional, Sequence
 
 import numpy as np
 
@@ -38,7 +38,7 @@ class Ensemble:
         for one in self.entry["quantiles"]:
             bounds = [None if one[side] is None else self.number(f"{100 * one['share']:g} % {side}", unit, one[side])
                       for side in ("low", "high")]
-            note = band(*bounds, unit, self.about["confidence"])
+            note = band(bounds, unit, self.about["confidence"])
             share = f"{100 * one['share']:g} % of the runs stay within"
             parts.append({"number": self.number(share, unit, one["value"]), "what": share,
                           "note": note})
@@ -153,8 +153,9 @@ class Ensemble:
         return entry["quantile"] == 0.9 and entry["raster"] != "thickness"
 
 
-def band(low, high, unit: str, confidence: float) -> str:
-    """Bounds (text, None: unknown), each with its unit."""
+def band(bounds: Sequence[Optional[str]], unit: str, confidence: float) -> str:
+    """The lower and the upper bound (None: unknown), each with its unit."""
+    low, high = bounds
     sure = f"with {100 * confidence:g} % confidence."
     if low is None and high is None:
         return "No bounds: the runs are too few for them."

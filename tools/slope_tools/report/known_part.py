@@ -40,7 +40,7 @@ class KnownEvents:
             share = f"{100 * one['share']:g} % of known events stay within"
             bounds = [None if one[side] is None else self.number(f"{share}, {side}", unit, one[side])
                       for side in ("low", "high")]
-            note = band(*bounds, unit, self.confidence)
+            note = band(bounds, unit, self.confidence)
             parts.append({"number": self.number(share, unit, one["value"]), "what": share, "note": note,
                           "unit": "" if one["value"] is None else unit})
         shown = next((part for part, one in zip(parts, self.entry["quantiles"]) if one["share"] == 0.9), parts[-1])

@@ -209,10 +209,10 @@ def outcome(group: Group, few: Sequence[Row]) -> str:
 
 def stood(few: Sequence[Row], rows: Sequence[Row]) -> Optional[int]:
     """In how many of a few of some rows the slope stood, by the travel of the centroid; None where that is unknown."""
-    travel = [row.get("centroid_m") for row in rows]
-    if None in travel:
+    if any(row.get("centroid_m") is None for row in rows):
         return None
-    return sum(row["centroid_m"] < STANDS * max(travel) for row in few)
+    most = max(row["centroid_m"] for row in rows)
+    return sum(row["centroid_m"] < STANDS * most for row in few)
 
 
 def starts(best: Mapping[str, Any]) -> List[str]:
