@@ -58,6 +58,10 @@ def test_both_studies_of_masses_of_all_sizes(request, capsys, monkeypatch, name,
     assert status == 2 and "must be given with --known" in err
     status, out, _ = study(capsys, monkeypatch, f"{words} --paper")
     assert status == 0 and out.startswith("by the paper's method, as asked for\n") and "64 runs" not in out
+    path = request.getfixturevalue(name) / "site.yaml"
+    path.write_text(path.read_text().replace("points: 64", "points: 0"))
+    status, out, _ = study(capsys, monkeypatch, words)
+    assert status == 0 and out.startswith("by the paper's method; site.yaml asks for no runs") and "64 runs" not in out
 
 
 def test_the_ensemble_varies_ground_and_restitution(large, capsys, monkeypatch):
@@ -132,9 +136,10 @@ def test_known_of_site_yaml_reaches_the_study(mine, capsys, monkeypatch):  # noq
 
 def test_the_estimate_is_of_the_study_that_is_made(large):
     choices = site_choices.read(large)
-    assert site_choices.found(large)["study"]["runs"] == 19 + known_study.POINTS == 83
-    plan = site_budget.plan(choices, 64)
+    assert site_choices.found(large)["study"]["runs"] == 19 + choices["study"]["points"] == 83
+    plan = site_budget.plan(choices)
     assert plan.runs == 83 and not plan.half_step and "64 runs weighted by known events" in plan.text
+    choices["study"]["points"] = 0
     plan = site_budget.plan(choices)
     assert plan.runs == 19 and not plan.half_step       # no road: nothing to compare
     assert site_budget.plan({**choices, "road": {**choices["road"], "file": "road.csv"}}).half_step

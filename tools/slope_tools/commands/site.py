@@ -5,7 +5,6 @@ from pathlib import Path
 from shlex import quote
 from typing import Any, Dict
 
-from ..ensembles import known_study
 from ..errors import SlopeError
 from ..options import count, number, whole
 from ..plots import site_map
@@ -174,7 +173,7 @@ def run(args):
         print(soil(choices))
     cores = args.jobs or jobs.cores()
     with jobs.signals_interrupt():
-        made = site.make(choices, folder, site.Machine(program(args.lmp), cores, known_study.POINTS),
+        made = site.make(choices, folder, site.Machine(program(args.lmp), cores),
                          lambda line: print(line, flush=True), printer("site"), site_map.draw,
                          again=args.folder is not None, known=known)
     for line in site_ground.lines(folder):

@@ -13,7 +13,6 @@ from ..runs import repeats
 from ..sites import site_choices, site_deck
 from ..sites.site_bodies import VARIABLE
 from ..sites.site_layers import ROAD
-from ..statistics.answer import Source
 from ..studies import results, site_ground, site_study
 from ..studies.study import RunsFailed, check_thresholds, perform
 from ..survey import roads
@@ -111,21 +110,22 @@ def run_folder(args):
     refuse(args, NOT_OF_A_SITE)
     choices = site_choices.read(args.deck)
     site_study.check(args.deck, choices)
-    why = "" if args.paper else known_study.why_not(args.deck)
+    points = choices["study"]["points"]
+    why = "" if args.paper else known_study.why_not(args.deck) if points else known_study.NONE
     if args.paper or why:
         condition_of(args)      # has no meaning here
         method = f"{known_study.PAPER}; {why}" if why else known_study.ASKED
         say(args.deck, method, others=True)
         return run_site(args, method)
     say(args.deck, f"{known_study.WEIGHTED}, which --paper makes alone", others=True)
-    return run_both(args)
+    return run_both(args, points)
 
 
-def run_both(args):
+def run_both(args, points):
     """The paper's study and the ensemble of a site, the number that both give, and a report of each."""
     site = args.deck
     paper = site_study.run(site, setup_of(args), known_study.BESIDE)
-    args.sample, args.known, args.weigh = known_study.POINTS, None, True
+    args.sample, args.known, args.weigh = points, None, True
     failed = paper.failed
     try:
         prepare_ensemble(args, known_study.WEIGHTED)
@@ -136,7 +136,7 @@ def run_both(args):
         return
     both = [site / name / "study.yaml" for name in (site_study.STUDY, site_study.ENSEMBLE)]
     found = answered.of_both(*both) if all(path.is_file() for path in both) else None
-    governs = site_study.STUDY if found and found.source is Source.PAPER else site_study.ENSEMBLE
+    governs = answered.governing(*(path.parent for path in both)).name
     for name in (site_study.STUDY, site_study.ENSEMBLE):
         if name != governs and (site / name / "study.yaml").is_file():
             write_report(site / name, site / PAGES[name], film=False)

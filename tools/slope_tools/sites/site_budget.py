@@ -160,9 +160,9 @@ class Plan(NamedTuple):
         return sum(runs for _, runs in self.parts)
 
 
-def plan(choices: Choices, points: int = 0) -> Plan:
-    """points: of the ensemble that is weighted by known events, beside the study by the paper's method."""
-    study = choices["study"]
+def plan(choices: Choices) -> Plan:
+    """Of the study by the paper's method, and the ensemble that is weighted by known events."""
+    study, points = choices["study"], choices["study"]["points"]
     each = 1 + sum(len(study[name]) for name in OFFSETS)
     grounds = other_grounds(choices)
     others = [float(factor) for factor in study["sizes"] if factor != 1]       # balls of the site's size are there
@@ -223,12 +223,12 @@ def duration(trial: Optional[Trial]) -> float:
     return max(LEAST_DURATION, 10.0 * math.ceil(PATIENCE * trial.rest / 10)) if trial else LONGEST
 
 
-def size(choices: Choices, volume: float, trial: Optional[Trial], jobs: int, cells: int, points: int = 0) -> Size:
+def size(choices: Choices, volume: float, trial: Optional[Trial], jobs: int, cells: int) -> Size:
     """The balls by the first of diameter, number, minutes, memory that is given; SlopeError if there are none such.
 
-    volume: of the body, m3; cells: of the terrain; points: see plan(). The choices hold speed and density.
+    volume: of the body, m3; cells: of the terrain. The choices hold speed and density.
     """
-    balls, model, wanted = choices["balls"], choices["model"], plan(choices, points)
+    balls, model, wanted = choices["balls"], choices["model"], plan(choices)
 
     def seconds(d: float) -> float:
         assert trial is not None

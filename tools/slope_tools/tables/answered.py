@@ -50,6 +50,17 @@ def road_of(about: Mapping[str, Any]) -> Optional[Road]:
     return Road(one["near_m"], one["far_m"], (reached, more_reached), (passed, more_passed), one["longest_m"])
 
 
+def governing(paper: Path, ensemble: Path) -> Path:
+    """Of the folders of both studies of a site that whose number it is; the one that there is, if it is one."""
+    there = [one for one in (ensemble, paper) if (one / "study.yaml").is_file()]
+    if len(there) < 2:
+        return there[0] if there else paper
+    said = schemas.load(ensemble / "study.yaml", "what `slope study` wrote", SCHEMA).get("headline")
+    if said and said["paper"]:
+        return paper if said["source"] == "paper" else ensemble
+    return max(there, key=lambda one: (one / "study.yaml").stat().st_mtime)      # not of one command
+
+
 def of_both(paper: Path, ensemble: Path) -> Optional[Answer]:
     """Of both study.yaml of a site, in which it is entered; None, and nothing is done, without a road."""
     said: Dict[Path, Any] = {path: schemas.load(path, "what `slope study` wrote", SCHEMA) for path in (paper, ensemble)}
