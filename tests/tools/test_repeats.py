@@ -65,7 +65,9 @@ def test_repeats_are_made_for_each_combination_and_the_headline_is_theirs(slope)
     best, larger = about["conservative"], means.index(max(means))
     assert min(means) > 1 and best["kind"] == "prediction"
     assert best["mean_m3"] == pytest.approx(max(means)) and best["set"]["rolling"] == ("0", "0.3")[larger]
-    deviation = ((statistics.variance(volumes[0]) + statistics.variance(volumes[1])) / 2) ** 0.5
+    assert max(means) <= 2 * min(means)     # the scatter is that of both, in proportion to the root of the mean
+    deviation = (sum(max(means) / mean * statistics.variance(each) for mean, each in zip(means, volumes)) / 2) ** 0.5
+    assert best["starts_m3"] == [min(volumes[larger]), max(volumes[larger])]
     assert best["scatter_m3"] == pytest.approx(deviation) and 2 <= best["degrees_of_freedom"] <= 4
     assert best["chance_m3"] == pytest.approx(best["quantile"] * deviation * (4 / 3) ** 0.5)
     assert best["repeats"] == 3 and best["size_m3"] is None
@@ -235,7 +237,7 @@ def test_other_doubts():
         row["front_m"] = i          # no two are the same run
     assert "0_14 gave more, 120.0 m3" in conservative({"rolling": ["0", "1"]}, above)["doubts"]
     loud = rows((("1",), (90.0, 120, 150)), (("0",), (100.0, 101, 102)))
-    assert any(text.startswith("its runs scatter more than the others, by 30.0 instead of 1.0 m3")
+    assert any(text.startswith("its runs scatter more than the others, by 30.0 instead of 1.1 m3")
                for text in conservative({"rolling": ["1", "0"]}, loud)["doubts"])
 
 
@@ -254,6 +256,11 @@ def test_runs_of_another_outcome_are_doubted():
     found = conservative({"rolling": ["0", "1"]}, rows((("0",), (500.0, 0, 520)), (("1",), (400.0, 420, 410))))
     assert any(text.startswith("1 of the 3 runs of rolling_0 have less than 5 % of the volume of the others")
                or text.startswith("1 of the 3 runs of ") for text in found["doubts"])
+    assert any("the slope stood in 1 of them" in text for text in found["doubts"])
+    several = rows((("0",), (500.0, 0, 520)), (("1",), (400.0, 420, 410)))
+    several[1]["centroid_m"] = 40.0
+    assert any("the mass came down in these, too" in text
+               for text in conservative({"rolling": ["0", "1"]}, several)["doubts"])
     none = conservative({"rolling": ["0", "1"]}, rows((("0",), (0.0, 0, 0)), (("1",), (400.0, 420, 410))))
     assert not any("of the others" in text for text in none["doubts"])
 
