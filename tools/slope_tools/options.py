@@ -91,6 +91,11 @@ def request(kind: Type[R], found: argparse.Namespace) -> R:
                    for name, value in vars(found).items() if name in names})
 
 
+def bare(asked: Any) -> bool:
+    """Whether a command was given without any word, where none must be."""
+    return asked == type(asked)()
+
+
 def number(text):
     """argparse type: a finite number."""
     try:
