@@ -70,7 +70,7 @@ def here(made, tmp_path, monkeypatch):
 @pytest.fixture
 def slope(capsys, monkeypatch):
     """Run `slope report ARGUMENTS`; gives status, stdout, stderr. Pictures are blank, as drawing takes its time."""
-    for name in ("value_map", "terrain_map", "small_maps"):
+    for name in ("value_map", "terrain_map", "small_maps", "road_map"):
         monkeypatch.setattr(figure_maps, name, lambda *_, **__: "data:image/png;base64,AAAA")
     monkeypatch.setattr(figure_maps, "mesh_map", lambda *_, **__: ("data:image/png;base64,AAAA", False))
     for name in ("chart", "bars", "convergence"):
