@@ -280,7 +280,7 @@ def curves():
 WORDS = f"--vary friction=10:40 --vary rolling=triangular:0:0:0.4 --set steps=900 --exceed 0.1,0.5 {ROAD} -o out"
 
 
-def test_an_ensemble_grows_and_its_tables_are_those_of_the_runs(slope):
+def test_an_ensemble_grows_and_its_tables_are_those_of_the_runs(slope, blank_pictures):
     status, out, err = slope(f"--sample 6 {WORDS}")
     assert status == 0, err
     first = load()[1]
@@ -357,6 +357,7 @@ def test_an_ensemble_grows_and_its_tables_are_those_of_the_runs(slope):
     about = yaml.safe_load(Path("out/study.yaml").read_text())
     about["ensemble"]["withheld"] = []
     Path("out/study.yaml").write_text(yaml.safe_dump(about))
+    blank_pictures()
     assert cli.main(["report", "out"]) == 0 and stays in Path("out/report.html").read_text()
 
 
