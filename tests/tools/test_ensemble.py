@@ -185,6 +185,7 @@ def ishigami_indices(a=7.0, b=0.1):
     return np.array([one, two, 0]) / (one + two + three), np.array([one + three, two, three]) / (one + two + three)
 
 
+@pytest.mark.long
 def test_indices_of_a_known_function():
     points = designs.points(designs.SOBOL, 3, 256, 1)
     found = emulator.analyse("abc", points, ishigami(points), range(256))
