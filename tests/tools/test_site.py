@@ -240,6 +240,7 @@ def test_no_run_is_made_twice(done):
     assert len({tuple(sorted(one.items())) for one in values}) == len(values) == 20
 
 
+@pytest.mark.long
 def test_runs_of_an_older_version_are_taken_over(done, tmp_path, monkeypatch):
     """They were in the folders of the parts, and are left there."""
     monkeypatch.setattr(study_command, "write_report", lambda *_: None)
