@@ -16,7 +16,7 @@ from slope_tools.deposits import rest, travel_shares
 from slope_tools.errors import SlopeError
 from slope_tools.runs import repeats
 from slope_tools.statistics import headline
-from slope_tools.tables import combinations, study_file, study_table
+from slope_tools.tables import combinations, quantities, study_file, study_table
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 ROAD = "--road case/road.csv --local"
@@ -359,3 +359,16 @@ TRAVEL = {"front": 1.0, "front_at_release": 1.0, "centroid": 1.0, "reach_angle":
 def test_wrong_values_of_a_summary_are_one_line(section, value, rule):
     with pytest.raises(SlopeError, match=f"a.yaml: must be a summary that fix deposit/grid wrote: .*{rule}"):
         schemas.check(value, run_folders.SUMMARY["properties"][section], "a.yaml", run_folders.WHAT)
+
+
+@pytest.mark.parametrize("kinds, name, column", [
+    (("straight", "straight"), "straight length", True),
+    (("along the fall path",) * 2, "length along the fall path", False),
+    (("straight", "along the fall path"), "length (straight in some runs)", True),
+    ((None, None), "length along the fall path", False)])
+def test_a_length_without_a_fall_path_is_called_straight(kinds, name, column):
+    several = [{**row, "length_is": kind, "length_m": 30.0} for row, kind in zip(rows((("0",), (5.0, 6.0))), kinds)]
+    assert quantities.name_of("length_m", several) == name
+    assert quantities.name_of("front_m", several) == "farthest ball"
+    head = study_table.table({"rolling": ["0"]}, {"seed": []}, several, {"seed": "0"}).splitlines()[0].split(",")
+    assert ("length_is" in head) == column and (not column or head[head.index("length_deg") + 1] == "length_is")
