@@ -46,8 +46,8 @@ WORDS = {
     "left terrain": "{percent:.2g} % of the mass left the terrain in the trial run: use a larger elevation model",
     "not at rest": "the trial run was not at rest after {seconds:.0f} s: the run time of the study is a guess",
     "large": "the body has {millions} million m3: masses of {limit:g} million m3 and more run farther than laboratory "
-             "friction gives; calibrate with a past event of that size (slope calibrate; --mobile has the values of "
-             "one)",
+             "friction gives; how far is what the runs show that known events weigh, or a calibration with a past "
+             "event of that size (slope calibrate)",
     "thin": "the body is {balls:.1f} balls thick on average, below {limit:g}: the numbers will be rough; use more "
             "balls (--balls, --minutes)",
     "first look": "the body is {balls:.1f} balls thick at most, below {limit:g}: a first look; to repeat it, use more "
