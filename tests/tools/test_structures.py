@@ -1,11 +1,8 @@
 """Structures and control lines in study and report: numbers against the runs' own files and closed forms."""
 import csv
 import html
-import os
 import re
 import shlex
-import sys
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -13,16 +10,13 @@ import pytest
 import yaml
 
 from run_helpers import called
-from tiny_collapse import LMP, TOP, write_case, write_stl
+from tiny_collapse import LMP, write_case, write_stl
 
-TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools import cli, digits, errors  # noqa: E402
-from slope_tools.plots import figure_structures  # noqa: E402
-from slope_tools.plots.obstacles import Obstacles  # noqa: E402
-from slope_tools.report import structures_part as report_structures  # noqa: E402
-from slope_tools.tables import structures  # noqa: E402
+from slope_tools import cli, digits, errors
+from slope_tools.plots import figure_structures
+from slope_tools.plots.obstacles import Obstacles
+from slope_tools.report import structures_part as report_structures
+from slope_tools.tables import structures
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 ADDED = """\
@@ -105,7 +99,7 @@ def test_lines_of_each_run_are_those_of_its_files(studied):
     assert held < free
 
 
-def test_report_draws_them(studied, capsys):
+def test_report_draws_them(studied, capsys, blank_pictures):
     status, _, err = slope(f"report {studied}", capsys)
     assert status == 0, err
     page = (studied / "report.html").read_text()
@@ -120,22 +114,25 @@ def test_report_draws_them(studied, capsys):
     shown = re.search(r"Maps of the run wall (\d)", page)[1]
     assert section.count('alt="Largest pressure on wall"') == int(shown)
     assert "Largest pressure on post" not in section        # nothing touched it
+    blank_pictures()
     assert slope(f"report {studied} --run wall_1 -o {studied}/one.html", capsys)[0] == 0
     assert (studied / "one.html").read_text().count('alt="Largest pressure on wall"') == 1
 
 
-def test_a_single_run_is_reported_too(studied, capsys):
+def test_a_single_run_is_reported_too(studied, capsys, blank_pictures):
+    blank_pictures()
     status, _, err = slope(f"report {studied / 'wall_1'} -o {studied}/single.html", capsys)
     assert status == 0, err
     assert (studied / "single.html").read_text().count('alt="Force on wall"') == 1
 
 
-def test_without_structures_there_is_nothing(tmp_path, monkeypatch, capsys):
+def test_without_structures_there_is_nothing(tmp_path, monkeypatch, capsys, blank_pictures):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("LMP", LMP)
     write_case(tmp_path / "case")
     assert slope("study case/in.tiny --set rolling=0 -o out", capsys)[0] == 0
     assert not (tmp_path / "out" / "structures.csv").exists() and not (tmp_path / "out" / "lines.csv").exists()
+    blank_pictures()
     assert slope("report out", capsys)[0] == 0
     assert 'id="structures"' not in (tmp_path / "out" / "report.html").read_text()
 
