@@ -92,6 +92,7 @@ def add_command(commands, name, module, **kwargs):
     """The parser of a subcommand, added to argparse's commands."""
     parser = commands.add_parser(name, formatter_class=argparse.RawDescriptionHelpFormatter, epilog=module.EPILOG,
                                  description=module.DESCRIPTION, **kwargs)
+    parser.add_argument("--describe", action=options.Describe)
     options.declare(parser, module.Request)
     parser.set_defaults(run=lambda found: module.run(options.request(module.Request, found)))
     return parser

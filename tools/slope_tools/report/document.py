@@ -1,5 +1,6 @@
 """The page of a report as HTML, and its pictures as files."""
 import base64
+import functools
 import hashlib
 import re
 from contextlib import contextmanager
@@ -83,8 +84,9 @@ def typeset(value):
     return digits.typeset(value) if type(value) is str else value
 
 
-def render(content):
-    """The page, from the templates beside this file and of the 3-D view."""
+@functools.lru_cache
+def templates():
+    """Those beside this file and of the 3-D view, each compiled once."""
     import jinja2
     import markupsafe
     from ..animation import view
@@ -94,4 +96,9 @@ def render(content):
     environment.filters.update(verbatim=markupsafe.escape, percent=lambda value: f"{100 * value:.1f} %",
                                signed=lambda value: f"{'-' if value < 0 else '+'} {abs(value):,.10g}",
                                fixed=lambda value, digits=1: f"{value:,.{digits}f}")
-    return environment.get_template("report.html.j2").render(content)
+    return environment
+
+
+def render(content):
+    """The page."""
+    return templates().get_template("report.html.j2").render(content)
