@@ -1,4 +1,5 @@
 """slope report --reproduce, the settings on the page, the table of what a report must hold against page and tests."""
+import argparse
 import ast
 import hashlib
 import html
@@ -12,6 +13,7 @@ import yaml
 import test_report
 from tiny_collapse import TOP
 
+from slope_tools import cli
 from slope_tools.report import page
 
 made, here, slope = test_report.made, test_report.here, test_report.slope       # its fixtures
@@ -94,5 +96,5 @@ def test_the_table_names_tests_and_places_that_are_there(what, where, test):
         template = (Path(page.__file__).parent / "report.html.j2").read_text(encoding="utf-8")
         assert f'id="{where.strip("`#")}"' in template, what
     elif where.startswith("*--"):
-        command = (Path(page.__file__).parents[1] / "commands" / "report.py").read_text(encoding="utf-8")
-        assert f'"{where.strip("*")}"' in command, what
+        parser = cli.add_command(argparse.ArgumentParser().add_subparsers(), "report", cli.module_of("report", None))
+        assert where.strip("*") in parser.format_help().split(), what
