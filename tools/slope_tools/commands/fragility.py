@@ -11,7 +11,7 @@ from ..options import add_overwrite, number, whole
 
 DESCRIPTION = "How likely the bodies of find_slip fail at a peak acceleration."
 EPILOG = """\
-SLIPS: PREFIX.slips.csv of find_slip, or the folder with it; PREFIX.N.base.asc lie beside it.
+SLIPS: PREFIX.slips.csv of find_slip, or the folder with it; PREFIX.N.base.asc lie beside it. Or the folder of a route.
 DIST: a number, or as in `slope study --vary`: LO:HI, uniform:LO:HI, loguniform:LO:HI, triangular:LO:MODE:HI,
 normal:MEAN:DEVIATION:LO:HI, lognormal:MEDIAN:DEVIATION_OF_LN:LO:HI, list:V1@WEIGHT,V2@WEIGHT,...
 MOTION: lines "t ax ay az" (s, m/s2), which `slope quake` makes of a record.
@@ -28,8 +28,9 @@ this folder `slope study SITE --sample N --fragility DIR` says how likely which 
 
 
 def add_arguments(parser):
-    parser.add_argument("slips", metavar="SLIPS", type=Path, help="what find_slip wrote")
-    parser.add_argument("--terrain", metavar="TERRAIN.asc", type=Path, required=True, help="the terrain of find_slip")
+    parser.add_argument("slips", metavar="SLIPS", type=Path, help="what find_slip wrote, or slope route")
+    parser.add_argument("--terrain", metavar="TERRAIN.asc", type=Path,
+                        help="the terrain of find_slip; not of a route, whose bodies have theirs")
     parser.add_argument("--density", metavar="R", type=number, required=True, help="density of the ground, kg/m3")
     parser.add_argument("--cohesion", metavar="DIST", required=True, help="Pa")
     parser.add_argument("--friction", metavar="DIST", required=True,
@@ -59,18 +60,17 @@ def add_arguments(parser):
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints medians, HCLPF and frequencies."""
     from ..seismic import fragility, fragility_files as files, hazard_file      # scipy, matplotlib
-    from ..slips import bodies
     from ..quakes import motion_file
 
     peaks = peaks_of(args.peaks)
     check(args)
     soil = soil_of(args)
     hazard = hazard_file.read(args.hazard) if args.hazard else None
-    disk.check_folder(args.output, files.FILES, [args.slips, args.terrain], args.overwrite)
+    disk.check_folder(args.output, files.FILES, [args.slips, *([args.terrain] if args.terrain else [])], args.overwrite)
     limit = 0.1 if args.displacement is None else args.displacement
     failure: Any = fragility.PseudoStatic(args.pseudo_static) if args.pseudo_static is not None else \
         fragility.Slide(limit, [motion_file.read(path) for path in args.record], args.vertical)
-    found = bodies.read(args.slips, args.terrain, args.density)
+    found = bodies_of(args)
     strengths = fragility.strengths_of(soil, math.ceil(args.sample / fragility.REPLICATES), args.seed)
     capacity = fragility.capacities(found, strengths, failure)
     names = [body.name for body in found]
@@ -96,6 +96,21 @@ def run(args):
              "pseudo_static": args.pseudo_static, "hazard": args.hazard, "warnings": kept}
     files.write(args.output, peaks, curves, capacity, about)
     print(summary(curves, args.output, files.FILES))
+
+
+def bodies_of(args):
+    """The bodies, on their ground."""
+    from ..route import choices, results, search
+    from ..slips import bodies
+
+    if (args.slips / choices.NAME).is_file():
+        if args.terrain is not None:
+            raise SlopeError("--terrain", "must not be given with the folder of a route", args.terrain)
+        return [search.columns_of(args.slips, one["body"], args.density)
+                for one in results.bodies_of(args.slips)["bodies"]]
+    if args.terrain is None:
+        raise SlopeError("--terrain", "must be given, the terrain of find_slip")
+    return bodies.read(args.slips, args.terrain, args.density)
 
 
 def check(args):

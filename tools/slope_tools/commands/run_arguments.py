@@ -27,9 +27,6 @@ def add_deck(parser, site=False):
 def add_runs(parser, road=False, output=True):
     """Arguments of how the runs are made and what is measured; road: it must be given. Defaults: see Road."""
     parser.add_argument("-o", dest="output", metavar="DIR", required=output, type=Path, help="the study's folder")
-    parser.add_argument("--np", type=count, default=1, metavar="N", help="MPI ranks of each run (default 1)")
-    parser.add_argument("--jobs", type=count, metavar="J",
-                        help="runs at a time (default: as many as the cores of this machine allow)")
     parser.add_argument("--road", metavar="POLYGON|LINE", type=Path, required=road,
                         help="also compute the volume to remove from " + road_arguments.ROAD)
     road_arguments.add_clearing(parser)
@@ -38,6 +35,14 @@ def add_runs(parser, road=False, output=True):
     parser.add_argument("--mesh", metavar="SIZE", type=number,
                         help="side of the mesh cells of that volume, m (default 10)")
     parser.add_argument("--local", action="store_true", help="the road is in local metres, not in a CRS")
+    add_engine(parser)
+
+
+def add_engine(parser):
+    """Arguments of how runs are made."""
+    parser.add_argument("--np", type=count, default=1, metavar="N", help="MPI ranks of each run (default 1)")
+    parser.add_argument("--jobs", type=count, metavar="J",
+                        help="runs at a time (default: as many as the cores of this machine allow)")
     parser.add_argument("--lmp", metavar="FILE", help="the LAMMPS program (default: LMP of the environment, then "
                         "build/lmp beside tools/)")
     parser.add_argument("--dry-run", action="store_true", help="only list the runs")
@@ -142,5 +147,11 @@ def setup_of(args) -> Setup:
     """What these arguments say."""
     given = {name: value for name in ("cut_angle", "mesh") if (value := getattr(args, name)) is not None}
     road = Road(args.road, **given, local=args.local, asked=road_arguments.asked(args)) if args.road else None
-    return Setup(args.deck, args.output, args.np, args.jobs, road, args.lmp, args.launcher, args.engine, args.slurm,
-                 args.dry_run, args.anew, getattr(args, "site", None), tell, printer(args.command))
+    return engine_of(args)._replace(deck=args.deck, output=args.output, road=road, site=getattr(args, "site", None),
+                                    tell=tell, warn=printer(args.command))
+
+
+def engine_of(args) -> Setup:
+    """How runs are made, of a deck and for a folder that are still to be said; says nothing."""
+    return Setup(Path(), Path(), args.np, args.jobs, None, args.lmp, args.launcher, args.engine, args.slurm,
+                 args.dry_run, args.anew)

@@ -1,5 +1,4 @@
 """slope site: make a folder with terrain, body, deck and map from GIS files, ready for `slope study`."""
-import math
 import os
 from pathlib import Path
 from shlex import quote
@@ -50,7 +49,6 @@ ONE_OF = (("depth", "volume", "curvature"), ("diameter", "balls", "minutes", "me
 # length and area allow
 MOBILE = {"friction": 6, "rolling": [0.05, 0.14], "spacing": 0.33, "field_restitution": 0.16}
 LIGHT = 100                 # kg/m3; less is not a ground's density, but one in t/m3 or relative to water's
-OF_BALL = 6 / math.pi       # density of a ball over that of the ground, in a cubic packing
 
 DESCRIPTION = "A folder for a site: terrain, body, layers, deck, map, and site.yaml with every choice."
 EPILOG = """\
@@ -253,7 +251,7 @@ def density_of_ball(bulk):
     """Of the balls (kg/m3) that together have a bulk density."""
     if bulk < LIGHT:
         raise SlopeError("--density", f"must be at least {LIGHT} kg/m3, of the ground with its voids", bulk)
-    return round(bulk * OF_BALL, 1)
+    return round(bulk * site_choices.OF_BALL, 1)
 
 
 def model(args, choices):
@@ -266,7 +264,7 @@ def model(args, choices):
         yield (f"friction {of['friction']:g} degrees, on the slip surface {of['slip_friction']:g}; rolling resistance "
                f"{', '.join(f'{one:g}' for one in choices['study']['rolling'])}; the ground: spacing "
                f"{of['spacing']:g}, restitution {of['field_restitution']:g}; bulk density "
-               f"{of['density'] / OF_BALL:,.0f} kg/m3")
+               f"{of['density'] / site_choices.OF_BALL:,.0f} kg/m3")
 
 
 def assigned_crs(words):

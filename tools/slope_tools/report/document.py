@@ -84,8 +84,8 @@ def typeset(value):
     return digits.typeset(value) if type(value) is str else value
 
 
-def render(content):
-    """The page, from the templates beside this file and of the 3-D view."""
+def render(content, template="report.html.j2"):
+    """A page, from the templates beside this file and of the 3-D view."""
     import jinja2
     import markupsafe
     from ..animation import view
@@ -95,4 +95,4 @@ def render(content):
     environment.filters.update(verbatim=markupsafe.escape, percent=lambda value: f"{100 * value:.1f} %",
                                signed=lambda value: f"{'-' if value < 0 else '+'} {abs(value):,.10g}",
                                fixed=lambda value, digits=1: f"{value:,.{digits}f}")
-    return environment.get_template("report.html.j2").render(content)
+    return environment.get_template(template).render(content)
