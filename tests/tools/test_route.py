@@ -24,8 +24,7 @@ import run_helpers
 from run_helpers import TOOLS, called, write_asc
 
 from slope_tools.errors import SlopeError  # noqa: E402
-from slope_tools.report import route_page  # noqa: E402
-from slope_tools.route import choices, corridor, results, search, zones  # noqa: E402
+from slope_tools.route import choices, corridor, page as route_page, results, search, zones  # noqa: E402
 from slope_tools.route.yearly import Yearly  # noqa: E402
 from slope_tools.seismic import chain, fragility  # noqa: E402
 from slope_tools.seismic.fragility_files import Fragility  # noqa: E402
@@ -385,8 +384,7 @@ import sys, numpy as np
 sys.path[:0] = [{tools!r}, {tests!r}]
 from pathlib import Path
 import route_stand_in
-from slope_tools.report import route_page
-from slope_tools.route import choices, corridor, results
+from slope_tools.route import choices, corridor, page as route_page, results
 draw = np.random.default_rng(1)
 bodies = []
 for k in range(300):

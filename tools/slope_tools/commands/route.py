@@ -72,8 +72,7 @@ def add_arguments(parser):
 def run(args):
     """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
     from ..plots import site_map
-    from ..report import route_page
-    from ..route import choices as route_choices, corridor, results, runs, search
+    from ..route import choices as route_choices, corridor, page, results, runs, search
     from ..sites import site
 
     given = {name: value for name in route_choices.Choices._fields if (value := getattr(args, name, None)) is not None}
@@ -109,10 +108,10 @@ def run(args):
                 return tell("\n".join(runs.listed(several)))
             failed = runs.make(several, tell)
             found = results.make(choices, ground, folder, table)
-            route_page.write(choices, ground, folder, found, warn)
+            page.write(choices, ground, folder, found, warn)
     except OSError as error:
         raise SlopeError(error.filename or folder, f"cannot be used: {error.strerror}") from error
-    tell("\n".join(route_page.sentences(found)))
+    tell("\n".join(page.sentences(found)))
     tell(f"written to {folder}: route.html {' '.join(results.FILES)}; next: tools/slope export {quote(str(folder))} "
          "--zones P1,P2,...")
     if failed:

@@ -84,15 +84,15 @@ def typeset(value):
     return digits.typeset(value) if type(value) is str else value
 
 
-def render(content, template="report.html.j2"):
+def render(content, template=Path("report.html.j2")):
     """A page, from the templates beside this file and of the 3-D view."""
     import jinja2
     import markupsafe
     from ..animation import view
-    loader = jinja2.FileSystemLoader([Path(__file__).parent, view.HERE])
+    loader = jinja2.FileSystemLoader([Path(__file__).parent, view.HERE, template.parent])
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True,
                                      undefined=jinja2.StrictUndefined, finalize=typeset)
     environment.filters.update(verbatim=markupsafe.escape, percent=lambda value: f"{100 * value:.1f} %",
                                signed=lambda value: f"{'-' if value < 0 else '+'} {abs(value):,.10g}",
                                fixed=lambda value, digits=1: f"{value:,.{digits}f}")
-    return environment.get_template(template).render(content)
+    return environment.get_template(template.name).render(content)

@@ -11,11 +11,11 @@ from .. import disk, provenance
 from ..deposits.axis import Axis, Span
 from ..drawing import figures, maps, palettes
 from ..drawing.figures import plt
-from ..route.choices import Choices
-from ..route.corridor import Corridor
+from ..report import document
 from ..statistics import hazard
 from ..survey.rasters import crs_name
-from . import document
+from .choices import Choices
+from .corridor import Corridor
 
 PAGE = "route.html"
 ALONG = 4000.0      # m of the road in a map
@@ -55,7 +55,7 @@ def write(choices: Choices, corridor: Corridor, folder: Path, found: Mapping[str
                   "results.yaml, stretches.csv, bodies.csv, pieces.csv; who hits what: governing.tif, route.gpkg"}
     for line in content["warnings"]:
         warn(line)
-    disk.write(folder / PAGE, document.render(content, "route.html.j2"))
+    disk.write(folder / PAGE, document.render(content, Path(__file__).with_name("route.html.j2")))
 
 
 def how(choices: Choices) -> str:
