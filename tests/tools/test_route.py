@@ -400,6 +400,7 @@ route_page.write(asked, ground, folder, found, print)
 """
 
 
+@pytest.mark.long
 def test_a_long_road(tmp_path):
     """40 km, 300 bodies: below 4 GB, the page below 20 MB."""
     folder = tmp_path / "R"
@@ -448,6 +449,7 @@ def without_times(path):
     return [{key: value for key, value in row.items() if key != "wall_s"} for row in rows]
 
 
+@pytest.mark.long
 @needs_lmp
 def test_a_body_alone_is_that_of_a_site(slope, capsys):
     status, out, err = route_of(capsys, *ROUTE)
@@ -471,6 +473,7 @@ def test_a_body_alone_is_that_of_a_site(slope, capsys):
     assert len(list(Path("R/bodies").glob("*/runs/*/*.summary.yaml"))) == len(made_) + 2 == 8
 
 
+@pytest.mark.long
 @needs_lmp
 def test_killed_at_random(slope):
     """Five times, then to the end: the same numbers as at once."""

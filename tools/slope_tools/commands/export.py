@@ -1,13 +1,14 @@
 """slope export: every raster of a run as a GeoTIFF in the coordinates of the survey, for a GIS; or zones."""
+from dataclasses import dataclass
 from pathlib import Path
-from typing import List
+from typing import Any, Dict, List, Optional
 
 from .. import disk, warned
 from ..case import run_folders
 from ..deposits import deposit
 from ..deposits.export import file_of, layers, write
 from ..errors import SlopeError
-from ..options import add_overwrite, number
+from ..options import Overwrite, option, positional
 from ..survey import rasters
 from ..survey.rasters import crs_name
 
@@ -29,33 +30,34 @@ Writes PREFIX.thickness.tif and so on, and export.yaml; with --zones zones.gpkg,
 """
 
 
-def add_arguments(parser):
-    parser.add_argument("prefix", metavar="PREFIX",
-                        help="output of fix deposit/grid: PREFIX.thickness.asc and so on; or one of these files; or "
-                             "the folder of a run, or of a study or site, which stands for its governing run")
-    parser.add_argument("-o", dest="output", metavar="DIR", type=Path,
-                        help="folder for the results (default PREFIX.export; of a folder, FOLDER/export)")
-    parser.add_argument("--terrain", metavar="TERRAIN.asc", type=Path,
-                        help="the run's terrain, whose sidecar holds the CRS (default: terrain.asc beside PREFIX)")
-    parser.add_argument("--zones", metavar="P1,P2,...", help="instead: polygons inside which something is exceeded "
-                        "with at least these probabilities, which fall")
-    parser.add_argument("--thicker", metavar="T", type=number, help="of --zones: a thickness above T, m (default 0.1)")
-    parser.add_argument("--intensity", metavar="QUANTITY:L1,L2,...", help="of --zones, instead of --thicker: thickness "
-                        "(m), speed (m/s) or energy (J) above each of these limits, which rise")
-    add_overwrite(parser)
+@dataclass(frozen=True, kw_only=True)
+class Request(Overwrite):
+    prefix: str = positional(
+        "output of fix deposit/grid: PREFIX.thickness.asc and so on; or one of these files; or the folder of a run, "
+        "or of a study or site, which stands for its governing run", metavar="PREFIX")
+    output: Optional[Path] = option(
+        "folder for the results (default PREFIX.export; of a folder, FOLDER/export)", "-o", metavar="DIR")
+    terrain: Optional[Path] = option(
+        "the run's terrain, whose sidecar holds the CRS (default: terrain.asc beside PREFIX)", metavar="TERRAIN.asc")
+    zones: Optional[str] = option("instead: polygons inside which something is exceeded with at least these "
+                                  "probabilities, which fall", metavar="P1,P2,...")
+    thicker: Optional[float] = option("of --zones: a thickness above T, m (default 0.1)", metavar="T")
+    intensity: Optional[str] = option("of --zones, instead of --thicker: thickness (m), speed (m/s) or energy (J) "
+                                      "above each of these limits, which rise", metavar="QUANTITY:L1,L2,...")
 
 
-def run(args):
+def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints what was written."""
     if args.zones is not None:
-        return run_zones(args)
-    for option in ("thicker", "intensity"):
-        if getattr(args, option) is not None:
-            raise SlopeError(f"--{option}", "must be given with --zones", getattr(args, option))
-    return run_rasters(args)
+        run_zones(args, args.zones)
+        return
+    for name in ("thicker", "intensity"):
+        if getattr(args, name) is not None:
+            raise SlopeError(f"--{name}", "must be given with --zones", getattr(args, name))
+    run_rasters(args)
 
 
-def run_zones(args):
+def run_zones(args: Request, zones_: str) -> None:
     """--zones."""
     from ..route import zones
     from ..survey import geopackage
@@ -64,14 +66,15 @@ def run_zones(args):
         raise SlopeError("--terrain", "must be given without --zones", args.terrain)
     if args.thicker is not None and args.intensity is not None:
         raise SlopeError("--thicker", "must be given without --intensity", f"{args.thicker:g}")
-    wanted = zones.probabilities(args.zones)
+    wanted = zones.probabilities(zones_)
     limits = zones.limits(0.1 if args.thicker is None else args.thicker, args.intensity)
-    folder = args.output or (Path(args.prefix, "zones") if Path(args.prefix).is_dir() else Path(f"{args.prefix}.zones"))
+    own = Path(args.prefix, "zones") if Path(args.prefix).is_dir() else Path(f"{args.prefix}.zones")
+    folder = args.output or own
     disk.check_folder(folder, ["zones.gpkg", "zones.yaml"], [args.prefix], args.overwrite)
     ground = zones.ground_of(args.prefix, warned.printer("export"))
     zones.check(ground, wanted, args.prefix)
     several = [zones.of(ground, limit, wanted) for limit in limits]
-    about = {"of": args.prefix, **zones.about(ground, several, wanted)}
+    about: Dict[str, Any] = {"of": args.prefix, **zones.about(ground, several, wanted)}
     with disk.complete(folder, "zones.yaml") as new:
         geopackage.write(new / "zones.gpkg", {zones.LAYER: zones.layer(ground, several, wanted)}, ground.raster,
                          {zones.LAYER: zones.style(several, wanted, about["per_year"])})
@@ -83,7 +86,7 @@ def run_zones(args):
     print(f"written to {folder}: zones.gpkg zones.yaml")
 
 
-def run_rasters(args):
+def run_rasters(args: Request) -> None:
     """The rasters of a run."""
     warnings: List[str] = []
     warn = warned.warner("export", warnings)

@@ -1,15 +1,17 @@
 """slope route: the bodies along a corridor, runs of all of them, and how likely which stretch is blocked."""
+from dataclasses import dataclass
 from pathlib import Path
 from shlex import quote
+from typing import Any, List, Optional
 
 from .. import disk
 from ..errors import SlopeError
-from ..options import count, number, whole
+from ..options import count, number, option, positional, whole
 from ..programs import find_lmp
 from ..runs import jobs
 from ..warned import printer
 from . import road_arguments
-from .run_arguments import add_engine, engine_of
+from .run_arguments import Engine, engine_of
 
 DESCRIPTION = "The slopes along a road: which bodies may fail, which stretches they block, how likely and how often."
 EPILOG = """\
@@ -33,66 +35,78 @@ bodies that are known, polygons with an attribute depth (m) or volume (m3):
 Writes FOLDER/route.html, results.yaml, stretches.csv, bodies.csv, pieces.csv, governing.tif and route.gpkg.
 FOLDER/bodies/N is a site of its own: `slope study FOLDER/bodies/N`, `slope report FOLDER/bodies/N`.
 """
-# options that are kept in route.yaml, by what they are
-TEXTS = {"road": "the road's axis, a line: GeoJSON, shapefile, CSV or WKT", "crs": "wanted CRS of the terrain, EPSG:n",
-         "assign_crs": "the elevation model is in this CRS, whatever it says",
-         "bodies": "no search: polygons with an attribute depth (m) or volume (m3)",
-         "fragility": "what `slope fragility FOLDER` wrote, with --hazard: also how often per year",
-         "name": "of the route, for the report",
-         "client": "recipient of the report", "author": "the person responsible"}
-NUMBERS = {"corridor": "bodies are searched up to this far on each side of the road, m",
-           "cohesion": "Pa", "friction": "friction angle, degrees", "density": "kg/m3",
-           "water": "pore pressure over the weight per area (default: dry)", "cell": "wanted cell size, m",
-           "cut_angle": "rise of the cut from the road's edges (default 30)",
-           "mesh": "side of mesh cells, m (default 10)",
-           "below": "bodies with a factor of safety below this may fail (default 1.5)",
-           "reach": "bodies of which a smaller share of known events go as far as the road are left out (default 0.01)",
-           "minutes": "choose the size of the balls so that all runs take about so long on this machine"}
-COUNTS = {"keep": "bodies of a window of the search (default 3)", "balls": "of each body (default 4000)",
-          "fill": "fill NODATA holes of at most so many cells"}
-PAIRS = {"volume": "limits of a body's volume, m3", "depth": "limits of its greatest depth, m"}
 
 
-def add_arguments(parser):
-    parser.add_argument("folder", metavar="FOLDER", type=Path, help="the route's folder, new or one to go on with")
-    parser.add_argument("--terrain", metavar="DEM", nargs="+", help="elevation model, as slope terrain takes it")
-    for texts, kind in ((TEXTS, None), (NUMBERS, number), (COUNTS, count)):
-        for name, text in texts.items():
-            parser.add_argument(f"--{name.replace('_', '-')}", metavar=name.upper(), type=kind, help=text)
-    for name, text in PAIRS.items():
-        parser.add_argument(f"--{name}", metavar=("LO", "HI"), nargs=2, type=number, help=text)
-    road_arguments.add_clearing(parser)
-    parser.add_argument("--confined", choices=("yes", "no", "unknown"), help="whether valley sides confine the masses")
-    parser.add_argument("--sample", metavar="N", type=whole, help="runs of each body (default 4)")
-    parser.add_argument("--vary", metavar="NAME=DISTRIBUTION", action="append", help="a variable of the runs, as of "
-                        "slope study (default rolling=0:0.1 and xoffset=0:0.99)")
-    add_engine(parser)
+@dataclass(frozen=True, kw_only=True)
+class Request(road_arguments.Clearing, Engine):
+    """What is not given is that of route.yaml, where there is one."""
+    folder: Path = positional("the route's folder, new or one to go on with", metavar="FOLDER")
+    terrain: Optional[List[str]] = option("elevation model, as slope terrain takes it", metavar="DEM", nargs="+")
+    crs: Optional[str] = option("wanted CRS of the terrain", metavar="EPSG:n")
+    assign_crs: Optional[str] = option("the elevation model is in this CRS, whatever it says", metavar="EPSG:n")
+    cell: Optional[float] = option("wanted cell size, m", metavar="S")
+    fill: Optional[int] = option("fill NODATA holes of at most N cells", metavar="N")
+    road: Optional[str] = option("the road's axis, a line: GeoJSON, shapefile, CSV or WKT", metavar="LINE")
+    corridor: Optional[float] = option("bodies are searched up to this far on each side of the road, m", metavar="M")
+    cohesion: Optional[float] = option("of the ground, Pa", metavar="C")
+    friction: Optional[float] = option("friction angle, degrees", metavar="PHI")
+    density: Optional[float] = option("of the ground, kg/m3", metavar="R")
+    water: Optional[float] = option("pore pressure over the weight per area (default: dry)", metavar="RU")
+    volume: Optional[List[float]] = option(
+        "limits of a body's volume, m3", metavar=("LO", "HI"), nargs=2, type=number)
+    depth: Optional[List[float]] = option(
+        "limits of its greatest depth, m", metavar=("LO", "HI"), nargs=2, type=number)
+    keep: Optional[int] = option("bodies of a window of the search (default 3)", metavar="N", type=count)
+    below: Optional[float] = option("bodies with a factor of safety below F may fail (default 1.5)", metavar="F")
+    bodies: Optional[str] = option("no search: polygons with an attribute depth (m) or volume (m3)", metavar="POLYGONS")
+    reach: Optional[float] = option(
+        "bodies of which a smaller share of known events go as far as the road are left out (default 0.01)",
+        metavar="P")
+    confined: Optional[str] = option(
+        "whether valley sides confine the masses (default unknown)", choices=("yes", "no", "unknown"))
+    sample: Optional[int] = option("runs of each body, of which more may be added later (default 4)", metavar="N",
+                                   type=whole)
+    vary: Optional[List[str]] = option(
+        "what differs between the runs, as of slope study (default rolling=0:0.1 and xoffset=0:0.99)",
+        metavar="NAME=DISTRIBUTION", action="append")
+    balls: Optional[int] = option("of each body (default 4000)", metavar="N", one_of="size")
+    minutes: Optional[float] = option(
+        "choose the size of the balls so that all runs take about so long on this machine", metavar="T", one_of="size")
+    cut_angle: Optional[float] = option("rise of the cut from the road's edges, degrees (default 30)", metavar="DEG")
+    mesh: Optional[float] = option("side of the mesh cells of the volume to remove, m (default 10)", metavar="SIZE")
+    fragility: Optional[str] = option(
+        "what `slope fragility FOLDER` wrote, with --hazard: also how often per year; may be given later",
+        metavar="DIR")
+    name: Optional[str] = option("of the route, for the report", metavar="NAME")
+    client: Optional[str] = option("recipient of the report", metavar="CLIENT")
+    author: Optional[str] = option("the person responsible", metavar="AUTHOR")
 
 
-def run(args):
+def quiet(_: Any) -> None:
+    """For what is in the folder of each body."""
+
+
+def tell(line: str) -> None:
+    print(line, flush=True)
+
+
+def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
     from ..plots import site_map
     from ..route import choices as route_choices, corridor, page, results, runs, search
     from ..sites import site
 
-    given = {name: value for name in route_choices.Choices._fields if (value := getattr(args, name, None)) is not None}
-    folder, engine = args.folder, engine_of(args)
+    given = {name: value for name in route_choices.Choices._fields if (value := getattr(args, name)) is not None}
+    folder, warn = args.folder, printer("route")
     choices = route_choices.settle(folder, given)
-    warn = printer("route")
-
-    def tell(line):
-        print(line, flush=True)
-
-    def quiet(_):
-        """Of what is in the folder of each body."""
     try:
         with disk.alone_in(folder, "route"), jobs.signals_interrupt():
             ground = corridor.make(choices, folder, quiet, warn)
             lmp = find_lmp(args.lmp)
             table = search.make(choices, ground, folder, lmp, args.np, tell, warn)
             if not table["bodies"]:
-                raise SlopeError(choices.road, "must be reached by a body, all are left out (--reach)", len(
-                    table["left_out"]))
+                raise SlopeError(choices.road, "must be reached by a body, all are left out (--reach)",
+                                 len(table["left_out"]))
             results.yearly_of(choices, folder, table["bodies"])      # SlopeError now, not after the runs
             machine = site.Machine(lmp, args.jobs or jobs.cores(), lambda volume: choices.sample)
             several = []
@@ -103,17 +117,17 @@ def run(args):
                 if new:
                     tell(f"body {about['body']} at {about['chainage_m']:.0f} m: {about['volume_m3']:,.0f} m3, "
                          f"factor of safety {about['factor']:.3f}")
-                several.append(runs.asked_of(choices, place, engine))
+                several.append(runs.asked_of(choices, place, engine_of(args)))
             if args.dry_run:
-                return tell("\n".join(runs.listed(several)))
+                tell("\n".join(runs.listed(several)))
+                return
             failed = runs.make(several, tell)
             found = results.make(choices, ground, folder, table)
             page.write(choices, ground, folder, found, warn)
     except OSError as error:
         raise SlopeError(error.filename or folder, f"cannot be used: {error.strerror}") from error
     tell("\n".join(page.sentences(found)))
-    tell(f"written to {folder}: route.html {' '.join(results.FILES)}; next: tools/slope export {quote(str(folder))} "
+    tell(f"written to {folder}: {page.PAGE} {' '.join(results.FILES)}; next: tools/slope export {quote(str(folder))} "
          "--zones P1,P2,...")
     if failed:
         raise SlopeError(folder, f"runs of {len(failed)} bodies failed: {failed[0]}")
-    return None
