@@ -443,6 +443,20 @@ def route_of(capsys, *words):
     return called(capsys, ["route", "R", *words])
 
 
+def slurm(folder, monkeypatch):
+    """Programs in place of Slurm's: each array is done at once."""
+    folder.mkdir()
+    sbatch = """for word; do case $word in --array=*) range=${word#--array=};; esac; script=$word; done
+echo $range >> CALLS
+for ((i = 0; i <= ${range#0-}; i++)); do SLURM_ARRAY_TASK_ID=$i bash "$script"; done
+echo 7
+"""
+    for name, text in {"sbatch": sbatch, "squeue": "", "scancel": ""}.items():
+        (folder / name).write_text("#!/bin/bash\n" + text.replace("CALLS", str(folder / "calls")))
+        (folder / name).chmod(0o755)
+    monkeypatch.setenv("PATH", f"{folder}:{os.environ['PATH']}")
+
+
 def without_times(path):
     rows = list(csv.DictReader(Path(path).read_text().splitlines()))
     assert rows
@@ -451,7 +465,7 @@ def without_times(path):
 
 @pytest.mark.long
 @needs_lmp
-def test_a_body_alone_is_that_of_a_site(slope, capsys):
+def test_a_body_alone_is_that_of_a_site(slope, capsys, monkeypatch):
     status, out, err = route_of(capsys, *ROUTE)
     assert status == 0, err
     about = yaml.safe_load(Path("R/results.yaml").read_text())
@@ -466,9 +480,11 @@ def test_a_body_alone_is_that_of_a_site(slope, capsys):
     status, _, err = called(capsys, words.split())
     assert status == 0, err
     assert without_times("alone/ensemble/study.csv") == without_times("R/bodies/2/ensemble/study.csv")
-    # the same runs once more, and none is made: with more of them, only these
+    # with more runs only these are made
     made_ = {path: path.stat().st_mtime for path in Path("R/bodies").glob("*/runs/*/*.summary.yaml")}
-    assert route_of(capsys, "--sample", "4")[0] == 0
+    slurm(slope / "slurm", monkeypatch)
+    assert route_of(capsys, "--sample", "4", "--engine", "slurm")[0] == 0
+    assert Path("slurm/calls").read_text().split() == ["0-1"]       # one array for the runs of both bodies
     assert {path: path.stat().st_mtime for path in made_} == made_
     assert len(list(Path("R/bodies").glob("*/runs/*/*.summary.yaml"))) == len(made_) + 2 == 8
 

@@ -107,7 +107,7 @@ def map_of(corridor: Corridor, found: Mapping[str, Any], yearly: bool, bounds, a
         values = np.array([max(one["per_year"]["counts"], LEAST) if yearly else one["share"] for one in here])
         coloured = axes.add_collection(LineCollection(lines, cmap=palettes.PATH, norm=norm, linewidths=3.2,
                                                       array=values))
-        figure.colorbar(coloured, cax=axes.inset_axes([1.12, 0, 0.03, 1]),
+        figure.colorbar(coloured, ax=axes, orientation="horizontal", aspect=50, shrink=0.6, pad=0.2,
                         label="blocked, times per year" if yearly else "share of the runs that block the road")
         for several, fill in ((found["bodies"], figures.RELEASE), (found["left_out"], "none")):
             for one in several:
