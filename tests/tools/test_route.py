@@ -545,6 +545,46 @@ def test_another_choice_is_refused(two, capsys):
     assert status == 2 and err.count("\n") == 1 and "--cohesion" in err and "8000" in err and "another folder" in err
 
 
+def test_before_there_are_bodies_choices_may_change(tmp_path):
+    first = {"terrain": ["dem.asc"], "road": "axis.csv", "road_width": 8.0, "corridor": 60.0, "cohesion": 9e3,
+             "friction": 30.0, "density": 1900.0}
+    choices.settle(tmp_path / "R", first)
+    for name in ("road.csv", "terrain.asc"):
+        (tmp_path / "R" / name).write_text("")
+    (tmp_path / "R/windows/1").mkdir(parents=True)
+    assert choices.settle(tmp_path / "R", {"reach": 0.5}).reach == 0.5 and (tmp_path / "R/windows/1").is_dir()
+    assert choices.settle(tmp_path / "R", {"road": "other.csv"}).road.endswith("other.csv")
+    assert sorted(path.name for path in (tmp_path / "R").iterdir()) == ["route.yaml"]
+    assert choices.read(tmp_path / "R").reach == 0.5
+
+
+def test_runs_of_other_grids_are_not_counted_together(two):
+    write_asc(two[0] / "bodies/1/runs/run_2/run.max_thickness.asc", np.zeros((3, 3)), CELL)
+    with pytest.raises(SlopeError) as error:
+        made(*two)
+    assert "bodies/1/runs/run_2" in str(error.value) and "grid" in str(error.value)
+
+
+def test_zones_of_a_study(two, capsys):
+    """Of a study by itself, with the weights of known events if it has them."""
+    folder = two[0] / "bodies/1/ensemble"
+    for k in range(4):
+        run_helpers.write_run(blob(20, 30, (4, 14), (5, 10 + k)), 10.0, CELL,
+                              str(two[0] / f"bodies/1/runs/run_{k}/run"), 10.0, 20.0)
+    assert zones_of(folder, capsys, "--zones", "0.4")[0] == 0
+    [entry] = yaml.safe_load((folder / "zones/zones.yaml").read_text())["zones"]
+    assert (entry["at_least_m2"], entry["cannot_tell_m2"]) == (50 * 25, 30 * 25)    # 4 of 4; 3, 2 and 1 of 4
+    about = yaml.safe_load((folder / "study.yaml").read_text())
+    weights = {"run_0": 0.02, "run_1": 0.02, "run_2": 0.02, "run_3": 0.94}
+    about["ensemble"] = {"known_events": {"weights": weights}}
+    (folder / "study.yaml").write_text(yaml.safe_dump(about))
+    assert zones_of(folder, capsys, "--zones", "0.4", "--overwrite")[0] == 0
+    [entry] = yaml.safe_load((folder / "zones/zones.yaml").read_text())["zones"]
+    worth = 1 / sum(one ** 2 for one in weights.values())
+    low, high = (float(side) for side in hazard.share_bounds(worth, worth))
+    assert (low < 0.4) and entry["at_least_m2"] == 0 and entry["cannot_tell_m2"] == 80 * 25
+
+
 def test_a_folder_of_something_else(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     Path("mine").mkdir()

@@ -104,9 +104,6 @@ def run(args: Request) -> None:
             ground = corridor.make(choices, folder, quiet, warn)
             lmp = find_lmp(args.lmp)
             table = search.make(choices, ground, folder, lmp, args.np, tell, warn)
-            if not table["bodies"]:
-                raise SlopeError(choices.road, "must be reached by a body, all are left out (--reach)",
-                                 len(table["left_out"]))
             results.yearly_of(choices, folder, table["bodies"])      # SlopeError now, not after the runs
             machine = site.Machine(lmp, args.jobs or jobs.cores(), lambda volume: choices.sample)
             several = []

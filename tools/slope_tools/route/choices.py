@@ -1,5 +1,6 @@
 """What is asked of a route, kept in its folder: route.yaml."""
 import os
+import shutil
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional
 
@@ -12,6 +13,11 @@ NAME = "route.yaml"
 VERSION = 1
 WHAT = "what `slope route` wrote"
 FILES = ("terrain", "road", "bodies", "fragility")                      # paths, kept as from the folder
+TABLE = "bodies.yaml"
+# what is made before that table, and of which options
+MADE = ("terrain.asc", "terrain.yaml", "road.csv", "windows")
+OF = ("terrain", "crs", "assign_crs", "cell", "fill", "road", "road_width", "corridor", "cohesion", "friction",
+      "density", "water", "volume", "depth", "keep")
 LATER = ("sample", "fragility", "name", "client", "author")      # may change once bodies are there
 NEEDED = ("terrain", "road", "road_width", "corridor", "cohesion", "friction", "density")
 VARY = ("rolling=0:0.1", "xoffset=0:0.99")
@@ -72,10 +78,11 @@ def settle(folder: Path, given: Mapping[str, Any]) -> Choices:
     """The choices of a folder with those that are given now, checked and kept; SlopeError if they do not fit."""
     path = folder / NAME
     known = read(folder)._asdict() if path.is_file() else {}
-    for name, value in given.items():
-        if known and name not in LATER and not same(name, known[name], value):
+    changed = [name for name, value in given.items() if known and not same(name, known[name], value)]
+    for name in changed:
+        if name not in LATER and (folder / TABLE).is_file():
             raise SlopeError(option(name), f"must be that of {path}, whose bodies and runs it has made: take another "
-                             "folder", value)
+                             "folder", given[name])
     for name in NEEDED:
         if name not in {**known, **given}:
             raise SlopeError(option(name), f"must be given, or the folder of a route with {NAME}")
@@ -84,6 +91,10 @@ def settle(folder: Path, given: Mapping[str, Any]) -> Choices:
     if not path.is_file() and folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise SlopeError(folder, "must be a new folder, an empty one, or that of a route")
     folder.mkdir(parents=True, exist_ok=True)
+    if set(changed) & set(OF):      # there are no bodies yet: what was made for them is begun anew
+        for place in MADE:
+            shutil.rmtree(folder / place, ignore_errors=True)
+            (folder / place).unlink(missing_ok=True)
     about = {name: from_folder(value, folder) if name in FILES else value for name, value in found._asdict().items()}
     text = disk.yaml_text("slope route: m, m3, Pa, degrees, kg/m3; paths as from here",
                           {"slope_route": VERSION, **about})

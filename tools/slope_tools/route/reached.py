@@ -9,6 +9,7 @@ from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
 import numpy as np
 
 from ..case import run_folders
+from ..errors import SlopeError
 from ..statistics import hazard
 from ..survey.rasters import Raster
 from .yearly import Yearly
@@ -87,14 +88,16 @@ def of(sources: Sequence[Source], ground: Raster, kind: str, limit: float) -> Re
 
 def shares(source: Source, ground: Raster, kind: str, limit: float):
     """Rows and columns of the cells of a ground that runs reach, and the share of the runs that do."""
-    total: Dict[str, np.ndarray] = {}
+    total: Optional[np.ndarray] = None
     for prefix, weight in zip(source.prefixes, source.weights):
         one = run_folders.load_raster(prefix, kind, heights=False)
-        if "sum" not in total:
-            total["sum"] = np.zeros(one.z.shape)
-            transform = one.transform
-        total["sum"] += weight * (np.nan_to_num(one.z) > limit)
-    found = total["sum"]
+        if total is None:
+            total, transform = np.zeros(one.z.shape), one.transform
+        if one.z.shape != total.shape or one.transform != transform:
+            raise SlopeError(f"{prefix}.{kind}.asc", f"must have the grid of {source.prefixes[0]}, as its cells are "
+                             "counted with those")
+        total += weight * (np.nan_to_num(one.z) > limit)
+    found = np.zeros((0, 0)) if total is None else total
     row, column = np.nonzero(found)
     if not len(row):
         return (row, column), np.zeros(0)

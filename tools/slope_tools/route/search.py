@@ -21,12 +21,11 @@ from ..releases import release, release_files
 from ..runs import slip_run
 from ..slips import bishop, bodies, failed
 from ..survey import rasters, vectors
-from .choices import Choices
+from .choices import TABLE, Choices
 from .corridor import TERRAIN, Corridor, Window, around, searches, write_line
 
 WINDOWS, SLIPS = "windows", "slips"
 DONE = "window.yaml"        # of a window that was searched
-TABLE = "bodies.yaml"
 SHARED = 0.1                # of the smaller body's cells; bodies that share more are one
 NO_BODY = "limits must leave a sphere"      # find_slip, where no body is within its limits
 
@@ -61,6 +60,8 @@ def make(choices: Choices, corridor: Corridor, folder: Path, lmp: Path, ranks: i
         (left if about["why_not"] else kept).append(about)
         if about["why_not"]:
             tell(f"body {number} at {about['chainage_m']:.0f} m is left out: {about['why_not']}")
+    if not kept:
+        raise SlopeError(choices.road, "must be reached by a body, all are left out (--reach)", len(left))
     disk.write_yaml(path, {"bodies": kept, "left_out": left}, "slope route: m, m2, m3; chainage of the road")
     return {"bodies": kept, "left_out": left}
 
