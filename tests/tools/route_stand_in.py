@@ -37,6 +37,7 @@ def make(folder, shape, cell, bodies, y_road=50.0, points=None, **given):
         slips = folder / search.SLIPS / str(number)
         slips.mkdir(parents=True)
         rasters.write_asc_local(slips / f"body.{number}.base.asc", raster(np.full((2, 2), 5.0), cell, x, y), {})
+        rasters.write_asc_local(slips / "terrain.asc", raster(np.full((2, 2), 9.0), cell, x, y), {})
         place = runs.folder_of(folder, number)
         (place / runs.STUDY).mkdir(parents=True)
         rasters.write_asc_local(place / "terrain.asc", raster(np.zeros((2, 2)), cell), {})

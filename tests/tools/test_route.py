@@ -21,6 +21,7 @@ from shapely.geometry import LineString, Point, box, shape
 
 import route_stand_in
 import run_helpers
+import test_export
 from run_helpers import TOOLS, called, write_asc
 
 from slope_tools.errors import SlopeError  # noqa: E402
@@ -65,11 +66,11 @@ def test_a_short_road_is_one_window():
 
 
 def test_the_ground_of_a_body_has_the_road_in_one_piece():
-    """A hairpin whose far leg leaves the ground around the body and comes back."""
-    one = corridor_of([(20, 60), (500, 60), (500, 110), (60, 110)], reach=30.0)
+    """A hairpin, which leaves the ground around the body and comes back."""
+    one = corridor_of([(20, 95), (300, 95), (300, 110), (60, 110)], reach=30.0)
     window, line, start = corridor.around(one, 90, 120, 120, 150)
     inner = box(*run_helpers_extent(one.clip(window)))
-    assert inner.covers(line) and line.length > 50 and one.axis.buffer(1e-6).covers(line)
+    assert inner.covers(line) and line.length > 400 and one.axis.buffer(1e-6).covers(line)
     assert start == pytest.approx(1000 + one.axis.project(Point(line.coords[0])))
 
 
@@ -354,6 +355,15 @@ def test_zones_of_a_run(tmp_path, monkeypatch, capsys):
     assert about["zones"][0]["at_least_m2"] == 70 * 25 and about["runs"] == 1     # 0.05 of one run are sure
 
 
+@pytest.mark.parametrize("command", [one for one in test_export.EXAMPLES if "--zones" in one])
+def test_every_example_of_zones_runs(two, capsys, monkeypatch, command):
+    monkeypatch.chdir(two[0].parent)
+    name, *words = command.split()
+    two[0].rename(name)
+    status, _, err = zones_of(name, capsys, *words)
+    assert (status, err) == (0, "") and len(list(Path().glob("**/zones.gpkg"))) == 1
+
+
 @pytest.mark.parametrize("words, said", [
     (["--zones", "0.1,0.5"], ("--zones", "fall", "0.1,0.5")), (["--zones", "1/100,1/100"], ("--zones", "fall")),
     (["--zones", "1.5"], ("--zones", "1.5")), (["--zones", "x"], ("--zones", "x")),
@@ -480,6 +490,15 @@ def test_a_body_alone_is_that_of_a_site(slope, capsys, monkeypatch):
     status, _, err = called(capsys, words.split())
     assert status == 0, err
     assert without_times("alone/ensemble/study.csv") == without_times("R/bodies/2/ensemble/study.csv")
+    # slope fragility takes the folder; without a hazard the route does not take that
+    status, _, err = called(capsys, "fragility R --density 1900 --cohesion 5e3:15e3 --friction 25:35 --peaks 100:1200 "
+                            "--pseudo-static 0.65 --sample 256 -o fragility".split())
+    assert status == 0, err
+    fragile = yaml.safe_load(Path("fragility/fragility.yaml").read_text())["bodies"]
+    volumes = [one["volume_m3"] for one in about["bodies"]]
+    assert [one["volume_m3"] for one in fragile] == pytest.approx(volumes, rel=0.01)
+    status, _, err = route_of(capsys, "--fragility", "fragility")
+    assert status == 2 and "--hazard" in err
     # with more runs only these are made
     made_ = {path: path.stat().st_mtime for path in Path("R/bodies").glob("*/runs/*/*.summary.yaml")}
     slurm(slope / "slurm", monkeypatch)
@@ -591,3 +610,39 @@ def test_a_folder_of_something_else(tmp_path, monkeypatch, capsys):
     Path("mine/notes.txt").write_text("")
     status, _, err = called(capsys, ["route", "mine", *ROUTE])
     assert status == 2 and "mine" in err and not Path("mine/route.yaml").exists()
+
+
+# --- a body that was given ---
+
+def hill(folder):
+    """A slope of 31 degrees to the south with a body on it; gives the body as a mass, and the corridor's choices."""
+    y = 5.0 * (59.5 - np.arange(60))
+    ground = route_stand_in.raster(np.add.outer(0.6 * np.clip(y - 100, 0, 120), np.zeros(40)), 5.0)
+    x, y = run_helpers.centres(60, 40, 5.0)
+    depth = np.clip(8.0 * (1 - ((x - 100) ** 2 + (y - 180) ** 2) / 25 ** 2), 0, None)
+    folder.mkdir(parents=True)
+    search.rasters.write_asc_local(folder / "terrain.asc", ground, {}, exact=True)
+    search.rasters.write_asc_local(folder / "body.1.base.asc", ground._replace(z=ground.z - depth), {}, exact=True)
+    given = choices.Choices(["dem.asc"], "axis.csv", 8.0, 100.0, 9e3, 30.0, 1900.0)
+    return search.falling.of_arrays(ground, depth, "body 1"), given
+
+
+def test_a_given_body_has_a_factor_and_a_fragility(tmp_path):
+    mass, given = hill(tmp_path / "slips" / "1")
+    found = search.columns_of(tmp_path, 1, 1900.0)
+    assert found.name == "1" and found.direction == pytest.approx(270, abs=2)
+    assert found.columns.volume == pytest.approx(mass.volume, rel=0.03)
+    factor = search.bishop_factor(given, mass.raster, tmp_path / "base.asc", mass.base)
+    strengths = search.bishop.Strengths(9e3, math.tan(math.radians(30)), 0.0)
+    assert factor == pytest.approx(float(search.bishop.factor_of_safety(found.columns, strengths)[0]))
+    assert 1 < factor < 3
+
+
+@pytest.mark.parametrize("ends, reach, said", [
+    (((20, 90), (180, 90)), 0.01, ""), (((20, 20), (180, 20)), 0.9, "known events"),
+    (((10, 20), (10, 280)), 0.01, "away from the road")])
+def test_whether_a_body_reaches_the_road(tmp_path, ends, reach, said):
+    mass, given = hill(tmp_path / "slips" / "1")
+    found = search.reaches(given._replace(reach=reach), mass, LineString(ends).buffer(4, cap_style=2))
+    assert (said in found["why_not"]) and bool(said) == bool(found["why_not"])
+    assert 0 < found["known_share"] <= 1

@@ -98,13 +98,17 @@ def run(args: Request) -> None:
 
     given = {name: value for name in route_choices.Choices._fields if (value := getattr(args, name)) is not None}
     folder, warn = args.folder, printer("route")
-    choices = route_choices.settle(folder, given)
     try:
+        choices = route_choices.settle(folder, given)
         with disk.alone_in(folder, "route"), jobs.signals_interrupt():
             ground = corridor.make(choices, folder, quiet, warn)
             lmp = find_lmp(args.lmp)
             table = search.make(choices, ground, folder, lmp, args.np, tell, warn)
-            results.yearly_of(choices, folder, table["bodies"])      # SlopeError now, not after the runs
+            try:
+                results.yearly_of(choices, folder, table["bodies"])      # now, not after the runs
+            except SlopeError:
+                route_choices.keep(folder, choices._replace(fragility=None))
+                raise
             machine = site.Machine(lmp, args.jobs or jobs.cores(), lambda volume: choices.sample)
             several = []
             for about in table["bodies"]:

@@ -95,12 +95,18 @@ def settle(folder: Path, given: Mapping[str, Any]) -> Choices:
         for place in MADE:
             shutil.rmtree(folder / place, ignore_errors=True)
             (folder / place).unlink(missing_ok=True)
+    keep(folder, found)
+    return found
+
+
+def keep(folder: Path, found: Choices) -> None:
+    """Write route.yaml, unless it says so already."""
+    path = folder / NAME
     about = {name: from_folder(value, folder) if name in FILES else value for name, value in found._asdict().items()}
     text = disk.yaml_text("slope route: m, m3, Pa, degrees, kg/m3; paths as from here",
                           {"slope_route": VERSION, **about})
     if not path.is_file() or path.read_text(encoding="utf-8") != text:
         disk.write(path, text)
-    return found
 
 
 def read(folder: Path) -> Choices:

@@ -207,9 +207,9 @@ def write_layers(path: Path, corridor: Corridor, folder: Path, about: Mapping[st
 
     def bodies():
         for one in (*about["bodies"], *about["left_out"]):
-            base = rasters.read_asc_local(folder / search.SLIPS / str(one["body"]) /
-                                          f"{search.PREFIX}.{one['body']}.base.asc")
-            mask = np.isfinite(base.z)
+            place = folder / search.SLIPS / str(one["body"])
+            base = rasters.read_asc_local(place / f"{search.PREFIX}.{one['body']}.base.asc")
+            mask = base.z < rasters.read_asc_local(place / "terrain.asc").z
             area = [shape(part) for part, _ in shapes(mask.astype(np.uint8), mask, transform=base.transform)]
             yield as_multi(unary_union(area)), {
                 "body": one["body"], "name": one["name"], "factor": one["factor"], "volume_m3": one["volume_m3"],

@@ -158,7 +158,7 @@ def given(choices: Choices, corridor: Corridor, warn) -> List[Slip]:
                 warn(one._replace(part=name))
             slip = release_files.ground_without(body.raster, body.area, body.slip)
             base = np.where(body.raster.z - slip > 0, slip, np.nan)
-            factor = bishop_factor(choices, body.raster, terrain.with_name("base.asc"), base)
+            factor = bishop_factor(choices, body.raster, terrain.with_name("base.asc"), slip)
             new = Slip(window, base, factor, None, name)
             for other in found:
                 if shared(new, other) > SHARED:
@@ -184,9 +184,9 @@ def features(path: Optional[str]):
             yield name, json.dumps(dict(feature["geometry"])), crs, size
 
 
-def bishop_factor(choices: Choices, raster, path: Path, base: np.ndarray) -> float:
-    """Of a body that was given, about the sphere that fits its base."""
-    rasters.write_asc_local(path, raster._replace(z=base), {}, exact=True)
+def bishop_factor(choices: Choices, raster, path: Path, without: np.ndarray) -> float:
+    """Of a body that was given, about the sphere that fits its base; without: the ground without it, for a file."""
+    rasters.write_asc_local(path, raster._replace(z=without), {}, exact=True)
     strengths = bishop.Strengths(choices.cohesion, np.tan(np.radians(choices.friction)), choices.water or 0.0)
     body = failed.of_base(raster, path, None, choices.density, None)
     return float(bishop.factor_of_safety(body.columns, strengths)[0])
@@ -206,7 +206,8 @@ def settled(choices: Choices, corridor: Corridor, place: Path, one: Slip, number
     base[common.inside(window)] = one.base[common.inside(one.window)]
     place.mkdir(parents=True, exist_ok=True)
     rasters.write_asc_local(place / TERRAIN, raster, {}, exact=True)
-    rasters.write_asc_local(place / f"{PREFIX}.{number}.base.asc", raster._replace(z=base), {"body": number},
+    whole = base if one.row else np.where(np.isfinite(base), base, raster.z)    # of a given one, the ground without it
+    rasters.write_asc_local(place / f"{PREFIX}.{number}.base.asc", raster._replace(z=whole), {"body": number},
                             exact=True)
     write_line(place / "road.csv", line, raster)
     if one.row:
