@@ -109,7 +109,7 @@ def run(args: Request) -> None:
             except SlopeError:
                 route_choices.keep(folder, choices._replace(fragility=None))
                 raise
-            machine = site.Machine(lmp, args.jobs or jobs.cores(), lambda volume: choices.sample)
+            machine = site.Machine(lmp, args.jobs or jobs.cores())
             several = []
             for about in table["bodies"]:
                 new = not runs.folder_of(folder, about["body"]).exists()

@@ -3,9 +3,10 @@ import argparse
 import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, List, Optional
+from typing import Any, Callable, List, Optional, Union
 
 from rich.console import Console
+from rich.table import Table
 
 from ..case.settings import check_settings
 from ..ensembles import known_events
@@ -14,7 +15,7 @@ from ..options import Program, flag, number, option, several, whole
 from ..sites import site_choices
 from ..statistics import designs
 from ..studies.setup import Road, Setup
-from ..tables import intensity
+from ..tables import intensity, study_table
 from ..warned import printer
 from . import known_arguments, road_arguments
 
@@ -37,6 +38,7 @@ class Engine(Program):
     np: int = option("MPI ranks of each run (default 1)", default=1, metavar="N")
     jobs: Optional[int] = option("runs at a time (default: as many as the cores of this machine allow)", metavar="J")
     dry_run: bool = flag("only list the runs")
+    all_columns: bool = flag("show all columns of the tables on the screen, also those for which it has no room")
     anew: bool = flag(
         "make finished runs again that are of another program, deck or data than the present ones (default: refuse "
         "them)")
@@ -98,7 +100,7 @@ class Sample:
 
 def condition_of(args: Any) -> Optional[known_events.Condition]:
     """What --known and its company of a study.Request ask for; SlopeError if some are there without it."""
-    if args.known is not None:
+    if args.known is not None or args.weigh:
         site = args.deck.parent if (args.deck.parent / site_choices.NAME).is_file() else None
         return known_events.check(known_arguments.choice_of(args.known, args.left_out, args.confined, site), args.known,
                                   args.deck)
@@ -142,12 +144,21 @@ def settle_kind(args: Any, sample: bool) -> Any:
     return replace(args, **defaults)
 
 
-def tell(what):
-    """Print a line, or a table of rich."""
-    if isinstance(what, str):
-        print(what, flush=True)
-    else:
-        (Console() if sys.stdout.isatty() else Console(width=180)).print(what)
+def teller(all_columns: bool) -> Callable[[Union[str, Table]], None]:
+    """A function that prints a line, or a table: with all its columns, or those for which the screen has room."""
+    def tell(what):
+        if isinstance(what, str):
+            print(what, flush=True)
+            return
+        width = Console().width if sys.stdout.isatty() else 180
+        if all_columns:
+            width = max(width, study_table.width_of(what))
+        left_out = study_table.fit(what, width)
+        if left_out:
+            note = f"left out, in the files: {', '.join(left_out)}; --all-columns shows all"
+            what.caption = "; ".join(filter(None, [what.caption, note]))
+        Console(width=width).print(what)
+    return tell
 
 
 def setup_of(args: Runs) -> Setup:
@@ -155,7 +166,7 @@ def setup_of(args: Runs) -> Setup:
     given = {name: value for name in ("cut_angle", "mesh") if (value := getattr(args, name)) is not None}
     road = Road(args.road, **given, local=args.local, asked=road_arguments.asked(args)) if args.road else None
     return engine_of(args)._replace(deck=args.deck, output=args.output or args.deck, road=road, site=args.site,
-                                    tell=tell, warn=printer(args.command))
+                                    tell=teller(args.all_columns), warn=printer(args.command))
 
 
 def engine_of(args: Engine) -> Setup:

@@ -13,7 +13,7 @@ from ..case.slip_deck import PREFIX
 from ..ensembles import ensemble, ensemble_maps, sample
 from ..errors import SlopeError
 from ..runs import jobs
-from ..sites import site, site_choices, site_deck
+from ..sites import site, site_budget, site_choices, site_deck
 from ..sites.site_layers import ROAD
 from ..slips import bodies
 from ..statistics import designs
@@ -60,7 +60,9 @@ def choices_of(choices: Choices, slips: Path, about: Mapping[str, Any], number: 
                             bodies=[base] if (slips / f"{PREFIX}{bodies.END}").is_file() else [])
     found["road"].update(file=str(slips / "road.csv"), cut_angle=choices.cut_angle, mesh=choices.mesh,
                          **choices.asked._replace(start=about["road_from_m"] / 1000).about())
-    found["balls"].update(number=choices.balls, minutes=choices.minutes and choices.minutes / number)
+    found["balls"]["number"] = choices.balls
+    if choices.minutes:     # a site's are those of its own study, which has more runs
+        found["balls"]["minutes"] = choices.minutes / number * site_budget.plan(found).runs / choices.sample
     found["model"]["density"] = choices.ball_density
     found["known"]["confined"] = choices.confined
     found["project"].update(name=f"{choices.name + ', ' if choices.name else ''}{about['name']}", client=choices.client,
