@@ -37,6 +37,7 @@ COMMANDS = {
     "mobility": "estimate from known events how likely a mass passes each point of its fall path",
     "stability": "find the slip surfaces with the least factor of safety below a terrain",
     "fragility": "estimate how likely the bodies of find_slip fail at a peak acceleration, and how often per year",
+    "route": "find the slopes along a road, run each, and say which stretch is blocked, how likely and how often",
     "verify": "check every case against closed forms and published numbers, and write a report",
     "report": "write one self-contained HTML page on a study or a run: maps, section, tables, warnings",
     "travel": "show where balls come to rest: cumulative distributions along and across the slope",

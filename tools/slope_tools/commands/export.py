@@ -1,12 +1,13 @@
-"""slope export: every raster of a run as a GeoTIFF in the coordinates of the survey, for a GIS."""
+"""slope export: every raster of a run as a GeoTIFF in the coordinates of the survey, for a GIS; or zones."""
 from dataclasses import dataclass
 from pathlib import Path
-from typing import List, Optional
+from typing import Any, Dict, List, Optional
 
 from .. import disk, warned
 from ..case import run_folders
 from ..deposits import deposit
 from ..deposits.export import file_of, layers, write
+from ..errors import SlopeError
 from ..options import Overwrite, option, positional
 from ..survey import rasters
 from ..survey.rasters import crs_name
@@ -20,7 +21,12 @@ examples: the rasters of a run, for QGIS; of a site, its governing run; of a run
   tools/slope export mine
   tools/slope export study/rolling_0.05/embankment --terrain terrain.asc -o gis
 
-Writes PREFIX.thickness.tif and so on, and export.yaml.
+zones of a study or a route: polygons in which a mass thicker than 0.5 m has at least these probabilities, per year
+where a route has a hazard, else as shares of the runs; classes of intensity against return periods:
+  tools/slope export mine --zones 0.9,0.5,0.1 --thicker 0.5
+  tools/slope export route --zones 1/100,1/1000,1/5000 --intensity speed:1,5 -o zones
+
+Writes PREFIX.thickness.tif and so on, and export.yaml; with --zones zones.gpkg, with a style for QGIS, and zones.yaml.
 """
 
 
@@ -33,10 +39,55 @@ class Request(Overwrite):
         "folder for the results (default PREFIX.export; of a folder, FOLDER/export)", "-o", metavar="DIR")
     terrain: Optional[Path] = option(
         "the run's terrain, whose sidecar holds the CRS (default: terrain.asc beside PREFIX)", metavar="TERRAIN.asc")
+    zones: Optional[str] = option("instead: polygons inside which something is exceeded with at least these "
+                                  "probabilities, which fall", metavar="P1,P2,...")
+    thicker: Optional[float] = option("of --zones: a thickness above T, m (default 0.1)", metavar="T")
+    intensity: Optional[str] = option("of --zones, instead of --thicker: thickness (m), speed (m/s) or energy (J) "
+                                      "above each of these limits, which rise", metavar="QUANTITY:L1,L2,...")
 
 
 def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints what was written."""
+    if args.zones is not None:
+        run_zones(args, args.zones)
+        return
+    for name in ("thicker", "intensity"):
+        if getattr(args, name) is not None:
+            raise SlopeError(f"--{name}", "must be given with --zones", getattr(args, name))
+    run_rasters(args)
+
+
+def run_zones(args: Request, zones_: str) -> None:
+    """--zones."""
+    from ..route import zones
+    from ..survey import geopackage
+
+    if args.terrain is not None:
+        raise SlopeError("--terrain", "must be given without --zones", args.terrain)
+    if args.thicker is not None and args.intensity is not None:
+        raise SlopeError("--thicker", "must be given without --intensity", f"{args.thicker:g}")
+    wanted = zones.probabilities(zones_)
+    limits = zones.limits(0.1 if args.thicker is None else args.thicker, args.intensity)
+    own = Path(args.prefix, "zones") if Path(args.prefix).is_dir() else Path(f"{args.prefix}.zones")
+    folder = args.output or own
+    disk.check_folder(folder, ["zones.gpkg", "zones.yaml"], [args.prefix], args.overwrite)
+    ground = zones.ground_of(args.prefix, warned.printer("export"))
+    zones.check(ground, wanted, args.prefix)
+    several = [zones.of(ground, limit, wanted) for limit in limits]
+    about: Dict[str, Any] = {"of": args.prefix, **zones.about(ground, several, wanted)}
+    with disk.complete(folder, "zones.yaml") as new:
+        geopackage.write(new / "zones.gpkg", {zones.LAYER: zones.layer(ground, several, wanted)}, ground.raster,
+                         {zones.LAYER: zones.style(several, wanted, about["per_year"])})
+        disk.write_yaml(new / "zones.yaml", about, "slope export --zones: m2; probabilities per year, or of the runs")
+    for one in about["zones"]:
+        print(f"{one['quantity']} > {one['exceeds']:g}, {'per year' if about['per_year'] else 'of the runs'} at least "
+              f"{one['probability']:.4g}: {one['at_least_m2']:,.0f} m2, and {one['cannot_tell_m2']:,.0f} m2 of which "
+              f"{about['runs']} runs cannot tell")
+    print(f"written to {folder}: zones.gpkg zones.yaml")
+
+
+def run_rasters(args: Request) -> None:
+    """The rasters of a run."""
     warnings: List[str] = []
     warn = warned.warner("export", warnings)
     named = run_folders.named_run(args.prefix)

@@ -12,7 +12,7 @@ from ..options import Overwrite, flag, option, positional, several, whole
 
 DESCRIPTION = "How likely the bodies of find_slip fail at a peak acceleration."
 EPILOG = """\
-SLIPS: PREFIX.slips.csv of find_slip, or the folder with it; PREFIX.N.base.asc lie beside it.
+SLIPS: PREFIX.slips.csv of find_slip, or the folder with it; PREFIX.N.base.asc lie beside it. Or the folder of a route.
 DIST: a number, or as in `slope study --vary`: LO:HI, uniform:LO:HI, loguniform:LO:HI, triangular:LO:MODE:HI,
 normal:MEAN:DEVIATION:LO:HI, lognormal:MEDIAN:DEVIATION_OF_LN:LO:HI, list:V1@WEIGHT,V2@WEIGHT,...
 MOTION: lines "t ax ay az" (s, m/s2), which `slope quake` makes of a record.
@@ -30,8 +30,9 @@ this folder `slope study SITE --sample N --fragility DIR` says how likely which 
 
 @dataclass(frozen=True, kw_only=True)
 class Request(Overwrite):
-    slips: Path = positional("what find_slip wrote", metavar="SLIPS")
-    terrain: Path = option("the terrain of find_slip", metavar="TERRAIN.asc")
+    slips: Path = positional("what find_slip wrote, or slope route", metavar="SLIPS")
+    terrain: Optional[Path] = option("the terrain of find_slip; not with a route, whose bodies have theirs",
+                                     metavar="TERRAIN.asc")
     density: float = option("density of the ground, kg/m3", metavar="R")
     cohesion: str = option("Pa", metavar="DIST")
     friction: str = option("friction angle, degrees; tan:DIST: its tangent", metavar="DIST")
@@ -57,18 +58,17 @@ class Request(Overwrite):
 def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints medians, HCLPF and frequencies."""
     from ..seismic import fragility, fragility_files as files, hazard_file      # scipy, matplotlib
-    from ..slips import bodies
     from ..quakes import motion_file
 
     peaks = peaks_of(args.peaks)
     check(args)
     soil = soil_of(args)
     hazard = hazard_file.read(args.hazard) if args.hazard else None
-    disk.check_folder(args.output, files.FILES, [args.slips, args.terrain], args.overwrite)
+    disk.check_folder(args.output, files.FILES, [args.slips, args.terrain or args.slips], args.overwrite)
     limit = 0.1 if args.displacement is None else args.displacement
     failure: Any = fragility.PseudoStatic(args.pseudo_static) if args.pseudo_static is not None else \
         fragility.Slide(limit, [motion_file.read(path) for path in args.record], args.vertical)
-    found = bodies.read(args.slips, args.terrain, args.density)
+    found = bodies_of(args)
     strengths = fragility.strengths_of(soil, math.ceil(args.sample / fragility.REPLICATES), args.seed)
     capacity = fragility.capacities(found, strengths, failure)
     names = [body.name for body in found]
@@ -95,6 +95,21 @@ def run(args: Request) -> None:
              "pseudo_static": args.pseudo_static, "hazard": args.hazard, "warnings": kept}
     files.write(args.output, peaks, curves, capacity, about)
     print(summary(curves, args.output, files.FILES))
+
+
+def bodies_of(args: Request) -> Any:
+    """The bodies (slips.bodies.Body), on their ground."""
+    from ..route import choices, results, search
+    from ..slips import bodies
+
+    if (args.slips / choices.NAME).is_file():
+        if args.terrain is not None:
+            raise SlopeError("--terrain", "must not be given with the folder of a route", args.terrain)
+        return [search.columns_of(args.slips, one["body"], args.density)
+                for one in results.bodies_of(args.slips)["bodies"]]
+    if args.terrain is None:
+        raise SlopeError("--terrain", "must be given, the terrain of find_slip")
+    return bodies.read(args.slips, args.terrain, args.density)
 
 
 def check(args: Request) -> None:

@@ -31,21 +31,12 @@ def volumes(text):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Runs(road_arguments.Clearing, Program):
-    """How the runs are made and what is measured. Defaults: see Road."""
+class Engine(Program):
+    """How the runs are made."""
     GROUP = "runs"
     command: str = ""
-    deck: Path
-    site: Optional[Path] = None     # whose deck it is
-    output: Optional[Path] = option("the study's folder", "-o", metavar="DIR")
     np: int = option("MPI ranks of each run (default 1)", default=1, metavar="N")
     jobs: Optional[int] = option("runs at a time (default: as many as the cores of this machine allow)", metavar="J")
-    road: Optional[Path] = option("also compute the volume to remove from " + road_arguments.ROAD,
-                                  metavar="POLYGON|LINE")
-    cut_angle: Optional[float] = option(
-        "rise of the cut surface from the road's edges, degrees (default 30); see `slope volume`", metavar="DEG")
-    mesh: Optional[float] = option("side of the mesh cells of that volume, m (default 10)", metavar="SIZE")
-    local: bool = flag("the road is in local metres, not in a CRS")
     dry_run: bool = flag("only list the runs")
     all_columns: bool = flag("show all columns of the tables on the screen, also those for which it has no room")
     anew: bool = flag(
@@ -55,11 +46,26 @@ class Runs(road_arguments.Clearing, Program):
         "what starts the ranks of a run instead of mpirun, such as 'srun --mpi=pmix' or 'mpiexec -n {np}'; without "
         "{np}, -n N is added", metavar="COMMAND")
     engine: str = option(
-        "local (default): runs on this machine; slurm: job arrays of a Slurm cluster, whose nodes see DIR",
+        "local (default): runs on this machine; slurm: job arrays of a Slurm cluster, whose nodes see the folder",
         choices=("local", "slurm"), default="local")
     slurm: str = option(
         "options of sbatch for --engine slurm, such as '--partition=long --time=2:00:00'", metavar="OPTIONS",
         default="")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Runs(road_arguments.Clearing, Engine):
+    """How the runs of a deck are made and what is measured. Defaults: see Road."""
+    GROUP = "runs"
+    deck: Path
+    site: Optional[Path] = None     # whose deck it is
+    output: Optional[Path] = option("the study's folder", "-o", metavar="DIR")
+    road: Optional[Path] = option("also compute the volume to remove from " + road_arguments.ROAD,
+                                  metavar="POLYGON|LINE")
+    cut_angle: Optional[float] = option(
+        "rise of the cut surface from the road's edges, degrees (default 30); see `slope volume`", metavar="DEG")
+    mesh: Optional[float] = option("side of the mesh cells of that volume, m (default 10)", metavar="SIZE")
+    local: bool = flag("the road is in local metres, not in a CRS")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -159,5 +165,11 @@ def setup_of(args: Runs) -> Setup:
     """What these arguments say."""
     given = {name: value for name in ("cut_angle", "mesh") if (value := getattr(args, name)) is not None}
     road = Road(args.road, **given, local=args.local, asked=road_arguments.asked(args)) if args.road else None
-    return Setup(args.deck, args.output or args.deck, args.np, args.jobs, road, args.lmp, args.launcher, args.engine,
-                 args.slurm, args.dry_run, args.anew, args.site, teller(args.all_columns), printer(args.command))
+    return engine_of(args)._replace(deck=args.deck, output=args.output or args.deck, road=road, site=args.site,
+                                    tell=teller(args.all_columns), warn=printer(args.command))
+
+
+def engine_of(args: Engine) -> Setup:
+    """How runs are made, of a deck and in a folder that are still to be said; says nothing."""
+    return Setup(Path(), Path(), args.np, args.jobs, None, args.lmp, args.launcher, args.engine, args.slurm,
+                 args.dry_run, args.anew)

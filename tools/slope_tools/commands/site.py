@@ -1,5 +1,4 @@
 """slope site: make a folder with terrain, body, deck and map from GIS files, ready for `slope study`."""
-import math
 import os
 from dataclasses import dataclass
 from pathlib import Path
@@ -48,7 +47,6 @@ BESIDE = {"road", *road_arguments.OPTIONS, "cut_angle", "mesh", "line", "observe
 ONE_OF = (("depth", "volume", "curvature"), ("diameter", "balls", "minutes", "memory"))
 OF_SOIL = ("friction", "rolling", "spacing", "field_restitution", "density", "slip_friction")
 LIGHT = 100                 # kg/m3; less is not a ground's density, but one in t/m3 or relative to water's
-OF_BALL = 6 / math.pi       # density of a ball over that of the ground, in a cubic packing
 
 DESCRIPTION = "A folder for a site: terrain, body, layers, deck, map, and site.yaml with every choice."
 EPILOG = """\
@@ -260,7 +258,7 @@ def density_of_ball(bulk):
     """Of the balls (kg/m3) that together have a bulk density."""
     if bulk < LIGHT:
         raise SlopeError("--density", f"must be at least {LIGHT} kg/m3, of the ground with its voids", bulk)
-    return round(bulk * OF_BALL, 1)
+    return round(bulk * site_choices.OF_BALL, 1)
 
 
 def soil(choices):
@@ -268,7 +266,7 @@ def soil(choices):
     of = choices["model"]
     return (f"friction {of['friction']:g} degrees, on the slip surface {of['slip_friction']:g}; rolling resistance "
             f"{', '.join(f'{one:g}' for one in choices['study']['rolling'])}; the ground: spacing {of['spacing']:g}, "
-            f"restitution {of['field_restitution']:g}; bulk density {of['density'] / OF_BALL:,.0f} kg/m3")
+            f"restitution {of['field_restitution']:g}; bulk density {of['density'] / site_choices.OF_BALL:,.0f} kg/m3")
 
 
 def assigned_crs(words):

@@ -85,12 +85,12 @@ def typeset(value):
 
 
 @functools.lru_cache
-def templates():
-    """Those beside this file and of the 3-D view, each compiled once."""
+def templates(more=Path()):
+    """Those beside this file, of the 3-D view and in one more folder, each compiled once."""
     import jinja2
     import markupsafe
     from ..animation import view
-    loader = jinja2.FileSystemLoader([Path(__file__).parent, view.HERE])
+    loader = jinja2.FileSystemLoader([Path(__file__).parent, view.HERE, more])
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True,
                                      undefined=jinja2.StrictUndefined, finalize=typeset)
     environment.filters.update(verbatim=markupsafe.escape, percent=lambda value: f"{100 * value:.1f} %",
@@ -99,6 +99,6 @@ def templates():
     return environment
 
 
-def render(content):
-    """The page."""
-    return templates().get_template("report.html.j2").render(content)
+def render(content, template=Path("report.html.j2")):
+    """A page; template: beside this file, or one that extends it, elsewhere."""
+    return templates(template.parent).get_template(template.name).render(content)

@@ -141,6 +141,10 @@ class Work:
         self.continues = any(CONTINUES in word for words in decks.commands(inputs / deck.name)
                              for word in (*words, " ".join(words)))
         self.active: List[Active] = []
+        self.parts: Dict[Path, "Work"] = {}     # of several decks in one queue: {folder of runs: what makes these}
+
+    def of(self, run) -> "Work":
+        return self.parts.get(run.folder.parent, self)
 
     def do(self, todo):
         """Run what is not finished. On an interruption, end the runs under way and leave their folders unfinished.
@@ -162,7 +166,7 @@ class Work:
                             if self._again(active):
                                 waiting.insert(0, active.run)
                                 continue
-                            self._ended(active)
+                            self.of(active.run)._ended(active)
                             display.ended(active)
                     display.update(self._shown(), len(waiting))
             except BaseException:
@@ -203,10 +207,10 @@ class Work:
     def _start(self, run):
         """Start a run, from its last restart file if there is one; returns a line for the user."""
         try:
-            said = self._prepare(run)
+            said = self.of(run)._prepare(run)
             with open(run.folder / SCREEN, "ab" if run.restart else "wb") as screen:
                 run.output_before = screen.tell()
-                process = processes.start(self._line(run), run.folder, screen)
+                process = processes.start(self.of(run)._line(run), run.folder, screen)
         except OSError as error:
             raise SlopeError(run.folder, f"cannot be run: {error.strerror} ({error.filename})") from error
         self.active.append(Active(run, process, time.monotonic()))

@@ -126,7 +126,7 @@ class Work(jobs.Work):
         super().__init__(*args)
         self.options, self.throttle, self.queue = shlex.split(options), throttle, Queue()
         self.folder = self.store.folder / FOLDER
-        self.tries: Dict[str, int] = {}
+        self.tries: Dict[Path, int] = {}
         self.running = 0        # tasks, when they were last looked at
         self.folder.mkdir(exist_ok=True)
         known = self.folder / KNOWN
@@ -146,13 +146,13 @@ class Work(jobs.Work):
         waiting.clear()
         lines = []
         for run in todo:
-            said.append((run, self._prepare(run)))
+            said.append((run, self.of(run)._prepare(run)))
             (run.folder / STATUS).unlink(missing_ok=True)
             screen = run.folder / jobs.SCREEN
             screen.touch()
             run.output_before = screen.stat().st_size
-            lines.append(f"{run.folder.absolute()}\t{shlex.join(self._line(run))}\n")
-            self.tries[run.name] = self.tries.get(run.name, 0) + 1
+            lines.append(f"{run.folder.absolute()}\t{shlex.join(self.of(run)._line(run))}\n")
+            self.tries[run.folder] = self.tries.get(run.folder, 0) + 1
         array = self._submit(lines)
         for i, run in enumerate(todo):
             task = Task(f"{array}_{i}", run.folder / STATUS, self.queue)
@@ -176,7 +176,7 @@ class Work(jobs.Work):
         return number
 
     def _again(self, active):
-        if active.process.lost and self.tries[active.run.name] < TRIES:
+        if active.process.lost and self.tries[active.run.folder] < TRIES:
             return True
         return super()._again(active)
 

@@ -6,6 +6,7 @@ import copy
 import functools
 import hashlib
 import json
+import math
 import os
 from pathlib import Path
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Tuple
@@ -19,6 +20,7 @@ from ..survey.crs import as_crs
 
 NAME = "site.yaml"
 VERSION = 1             # of site.yaml, also in its schema
+OF_BALL = 6 / math.pi       # density of a ball over that of the ground, in a cubic packing
 LONGEST_TEXT = 200      # letters of a name in the heading of a report
 OFFSETS = ("xoffset", "yoffset", "zoffset")        # of the study: its repeats
 SCHEMA = Path(__file__).with_name("site_schema.json")

@@ -21,8 +21,15 @@ class Layer(NamedTuple):
     features: Iterable[Tuple[BaseGeometry, Mapping[str, Any]]]
 
 
-def write(path: Path, layers: Dict[str, Layer], raster: Raster) -> None:
-    """Write layers, from the local metres of a raster to its CRS."""
+# where QGIS has the styles of a GeoPackage's layers
+STYLES = "layer_styles"
+OF_STYLE = {"f_table_catalog": "str", "f_table_schema": "str", "f_table_name": "str", "f_geometry_column": "str",
+            "styleName": "str", "styleQML": "str", "styleSLD": "str", "useAsDefault": "bool", "description": "str",
+            "owner": "str", "ui": "str", "update_time": "datetime"}
+
+
+def write(path: Path, layers: Dict[str, Layer], raster: Raster, styles: Mapping[str, str] = {}) -> None:
+    """Write layers, from the local metres of a raster to its CRS; styles: of QGIS (QML), {layer: text}."""
     crs = raster.crs.to_wkt() if raster.crs is not None else None
     with fiona.Env(OGR_CURRENT_DATE=NO_DATE), MemoryFile(ext=".gpkg") as memory:    # on disk it would be half-written
         for name, layer in layers.items():
@@ -31,4 +38,10 @@ def write(path: Path, layers: Dict[str, Layer], raster: Raster) -> None:
                 out.writerecords({"type": "Feature", "properties": values,
                                   "geometry": mapping(translate(one, *raster.offset))}
                                  for one, values in layer.features)
+        if styles:
+            with fiona.open(memory.name, "w", "GPKG", {"geometry": "None", "properties": OF_STYLE},
+                            layer=STYLES) as out:
+                out.writerecords({"type": "Feature", "geometry": None, "properties": {
+                    **dict.fromkeys(OF_STYLE, ""), "f_table_name": name, "f_geometry_column": "geom", "styleName": name,
+                    "styleQML": text, "useAsDefault": True, "update_time": NO_DATE}} for name, text in styles.items())
         disk.write(path, bytes(memory.getbuffer()))

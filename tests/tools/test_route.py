@@ -1,0 +1,648 @@
+"""slope route and zones: the corridor, frequencies, what runs made by hand say of a road, wrong input, kills."""
+import csv
+import json
+
+import math
+import os
+import resource
+
+import subprocess
+import time
+
+
+from pathlib import Path
+
+import fiona
+import numpy as np
+import pytest
+import rasterio
+import yaml
+from shapely.geometry import LineString, Point, box, shape
+
+import route_stand_in
+import run_helpers
+import test_export
+from run_helpers import TOOLS, called, write_asc
+
+from slope_tools.errors import SlopeError  # noqa: E402
+from slope_tools.route import choices, corridor, page as route_page, results, search, zones  # noqa: E402
+from slope_tools.route.yearly import Yearly  # noqa: E402
+from slope_tools.seismic import chain, fragility  # noqa: E402
+from slope_tools.seismic.fragility_files import Fragility  # noqa: E402
+from slope_tools.statistics import hazard  # noqa: E402
+from slope_tools.survey import geopackage  # noqa: E402
+
+LMP = os.environ.get("LMP")
+needs_lmp = pytest.mark.skipif(not LMP, reason="needs the LAMMPS program (LMP)")
+
+
+# --- the corridor ---
+
+def corridor_of(line, rows=40, columns=120, cell=5.0, reach=50.0):
+    ground = route_stand_in.raster(np.zeros((rows, columns)), cell)
+    return corridor.Corridor(ground, LineString(line), LineString(line).buffer(4, cap_style=2), 1000.0, reach)
+
+
+def test_windows_overlap_by_half():
+    one = corridor_of([(20, 100), (570, 100)])
+    found = list(corridor.searches(one))
+    assert len(found) == 10         # 550 m, 50 m steps, 100 m each
+    spans = [(ground.bounds[0], ground.bounds[2]) for _, ground in found]
+    assert spans[0] == pytest.approx((20, 120)) and spans[-1] == pytest.approx((470, 570))
+    assert all(b[0] - a[0] == pytest.approx(50) for a, b in zip(spans[:-1], spans[1:]))
+    assert all(ground.bounds[3] - ground.bounds[1] == pytest.approx(100) for _, ground in found)
+    for window, ground in found:
+        assert box(*run_helpers_extent(one.clip(window))).covers(ground)
+
+
+def run_helpers_extent(raster):
+    xlo, yhi = raster.transform * (0, 0)
+    xhi, ylo = raster.transform * raster.z.shape[::-1]
+    return xlo, ylo, xhi, yhi
+
+
+def test_a_short_road_is_one_window():
+    assert len(list(corridor.searches(corridor_of([(20, 100), (80, 100)])))) == 1
+
+
+def test_the_ground_of_a_body_has_the_road_in_one_piece():
+    """A hairpin, which leaves the ground around the body and comes back."""
+    one = corridor_of([(20, 95), (300, 95), (300, 110), (60, 110)], reach=30.0)
+    window, line, start = corridor.around(one, 90, 120, 120, 150)
+    inner = box(*run_helpers_extent(one.clip(window)))
+    assert inner.covers(line) and line.length > 400 and one.axis.buffer(1e-6).covers(line)
+    assert start == pytest.approx(1000 + one.axis.project(Point(line.coords[0])))
+
+
+def test_bodies_that_share_more_than_a_tenth_are_one():
+    def slip(left, width):
+        base = np.full((10, 40), np.nan)
+        base[:, left:left + width] = 1.0
+        return search.Slip(corridor.Window(0, 10, 10, 50), base, 1.0)
+    assert search.shared(slip(0, 10), slip(9, 20)) == pytest.approx(0.1)
+    assert search.shared(slip(0, 10), slip(8, 20)) > search.SHARED
+    other = slip(0, 10)._replace(window=corridor.Window(0, 14, 10, 54))
+    assert search.shared(slip(0, 10), other) == pytest.approx(0.6)      # 4 cells apart
+    assert search.shared(slip(0, 10), slip(0, 10)._replace(window=corridor.Window(20, 10, 30, 50))) == 0
+
+
+# --- frequencies ---
+
+def of_capacity(capacity, peaks=(100.0, 300.0, 900.0), rates=(1e-2, 1e-3, 5e-5)):
+    names = [str(k + 1) for k in range(capacity.shape[2])]
+    return Fragility(Path("fragility"), names, names, capacity, np.array(peaks), fragility.Hazard(np.array(peaks),
+                                                                                                  np.array(rates)), [])
+
+
+@pytest.fixture(scope="module")
+def capacity():
+    """Three bodies, 16 x 64 strengths that all share, two records."""
+    draw = np.random.default_rng(3)
+    strength = draw.normal(0, 0.4, (1024, 1, 1))
+    return np.exp(strength + draw.normal(0, 0.2, (1024, 2, 1)) + np.log([250.0, 400.0, 600.0]))
+
+
+def test_one_body_is_its_frequency_times_its_share(capacity):
+    found = of_capacity(capacity)
+    yearly = Yearly(found)
+    for k in range(3):
+        mine = float(fragility.frequency(capacity[:, :, k], found.rate, found.peaks).total.value)
+        for share in (1.0, 0.25):
+            rate = yearly.of([k + 1], [share])
+            assert rate.dependent == pytest.approx(share * mine, rel=1e-9)
+            assert rate.independent == pytest.approx(share * mine, rel=1e-3)
+
+
+def test_several_bodies_against_an_own_integral(capacity):
+    """A sum over small steps of the hazard curve, with both limits of dependence counted sample by sample."""
+    found, p = of_capacity(capacity), np.array([0.75, 0.25, 0.5])
+    rate = Yearly(found).of([1, 2, 3], p)
+    peaks = np.exp(np.linspace(np.log(100.0), np.log(900.0), 6001))
+    rates = np.exp(np.interp(np.log(peaks), np.log(found.peaks), np.log(found.rate.rates)))
+    each = capacity.reshape(-1, 3)
+    independent = dependent = 0.0
+    for a, step in zip(np.sqrt(peaks[:-1] * peaks[1:]), rates[:-1] - rates[1:]):
+        fails = each < a
+        independent += step * (1 - np.prod(1 - fails.mean(axis=0) * p))
+        dependent += step * (fails * p).max(axis=1).mean()
+    fails = each < 900.0
+    independent += rates[-1] * (1 - np.prod(1 - fails.mean(axis=0) * p))
+    dependent += rates[-1] * (fails * p).max(axis=1).mean()
+    assert rate.independent == pytest.approx(independent, rel=2e-3)
+    assert rate.dependent == pytest.approx(dependent, rel=2e-3)
+    assert rate.counts == rate.independent > rate.dependent
+
+
+def test_the_chain_of_a_site_lies_between(capacity):
+    """Bodies that fail together, runs that are independent: chain.py, of one sample's strength."""
+    found = of_capacity(capacity)
+    runs = [chain.left([1.0] * k + [0.0] * (4 - k), range(4), 1.0) for k in (3, 1, 2)]
+    value = float(chain.frequency(capacity, found.rate, found.peaks, runs, np.zeros(1)).total.value[0])
+    rate = Yearly(found).of([1, 2, 3], [0.75, 0.25, 0.5])
+    assert rate.dependent < value < rate.independent
+
+
+def test_a_fragility_without_a_hazard_is_refused(capacity):
+    with pytest.raises(SlopeError) as error:
+        Yearly(of_capacity(capacity)._replace(rate=None))
+    assert "--fragility" in str(error.value) and "--hazard" in str(error.value)
+
+
+# --- results of runs made by hand ---
+
+CELL = 5.0
+
+
+def blob(rows, columns, r, c, value=1.0):
+    z = np.zeros((rows, columns))
+    z[r[0]:r[1], c[0]:c[1]] = value
+    return z
+
+
+@pytest.fixture
+def two(tmp_path):
+    """Two bodies, four runs each, on grids of their own beside each other; the road is 8 m wide at y = 50."""
+    first = [blob(20, 30, (4, 14), (5, 10 + k)) for k in range(4)]
+    second = [blob(16, 20, (4, 12), (2, 10), 0.05 if k == 0 else 2.0) for k in range(4)]
+    return route_stand_in.make(tmp_path / "R", (40, 120), CELL, [
+        ((60.0, 120.0), first, CELL, 10.0, 20.0, [[(20.0, 45.0)], [(20.0, 50.0)], [], [(20.0, 60.0)]]),
+        ((100.0, 110.0), second, CELL, 45.0, 30.0, [[], [(55.0, 80.0)], [(55.0, 80.0)], [(90.0, 95.0)]])])
+
+
+def made(folder, table, **more):
+    asked = choices.read(folder)._replace(**more)
+    ground = corridor.read(asked, folder)
+    return results.make(asked, ground, folder, table), ground
+
+
+def test_stretches_and_bodies(two):
+    found, _ = made(*two)
+    assert [(one["from"], one["to"]) for one in found["stretches"]] == [(20.0, 80.0), (90.0, 95.0)]
+    one, other = found["stretches"][0]["bodies"]
+    assert (one["body"], one["share"], other["body"], other["share"]) == (1, 0.75, 2, 0.5)
+    low, high = hazard.share_bounds(3, 4)
+    assert (one["share_low"], one["share_high"]) == pytest.approx((float(low), float(high)))
+    # 95, 50, 5 % of lengths 25, 30, 0, 40
+    assert one["length"] == [0.0, 25.0, 40.0] and one["remove"] == [0.0, 10.0, 40.0]
+    assert found["route"]["share"] == 0.75 and found["route"]["per_year"] is None
+    by_place = {(one["from"], one["to"]): (one["share"], one["body"]) for one in found["pieces"]}
+    assert by_place[20.0, 45.0] == (0.75, 1) and by_place[50.0, 55.0] == (0.25, 1) and by_place[60.0, 80.0] == (0.5, 2)
+    assert (45.0, 50.0) in by_place and (80.0, 90.0) not in by_place
+    with open(two[0] / results.STRETCHES) as source:
+        rows = list(csv.DictReader(source))
+    assert [(row["stretch"], row["body"]) for row in rows] == [("1", "1"), ("1", "2"), ("2", "2")]
+
+
+def test_who_hits_what(two):
+    found, ground = made(*two)
+    folder = two[0]
+    with rasterio.open(folder / results.MAP) as source:
+        body, share, number, _ = source.read(masked=True)
+        assert source.crs.to_epsg() == 6677
+        cells = {name: source.index(run_helpers.EAST + x, run_helpers.NORTH + y) for name, (x, y) in {
+            "first": (37.5, 82.5), "both": (72.5, 62.5), "second": (90.0, 72.5), "none": (300.0, 100.0)}.items()}
+    assert (body[cells["first"]], share[cells["first"]], number[cells["first"]]) == (1, 1.0, 1)
+    assert body.mask[cells["none"]]
+    # own counts on a cell, from the rasters of the runs
+    for name, (x, y) in {"both": (72.5, 62.5), "second": (90.0, 72.5)}.items():
+        shares = {}
+        for one in (1, 2):
+            counted = 0
+            for k in range(4):
+                with rasterio.open(folder / f"bodies/{one}/runs/run_{k}/run.max_thickness.asc") as source:
+                    row, column = source.index(x, y)
+                    if 0 <= row < source.height and 0 <= column < source.width:
+                        counted += source.read(1)[row, column] > 0.1
+            shares[one] = counted / 4
+        assert share[cells[name]] == max(shares.values()) and number[cells[name]] == sum(v > 0 for v in shares.values())
+    with fiona.open(folder / results.LAYERS, layer="hits") as layer:
+        at = Point(run_helpers.EAST + 72.5, run_helpers.NORTH + 62.5)
+        [hit] = [one["properties"] for one in layer if shape(one["geometry"]).contains(at)]
+        assert layer.crs["init"] == "epsg:6677" if "init" in layer.crs else True
+    assert dict(word.split(":") for word in hit["shares"].split()) == {
+        str(one): f"{value:g}" for one, value in shares_at(folder, 72.5, 62.5).items() if value}
+    assert fiona.listlayers(folder / results.LAYERS) == ["road", "stretches", "bodies", "hits"]
+
+
+def shares_at(folder, x, y):
+    found = {}
+    for one in (1, 2):
+        values = []
+        for k in range(4):
+            with rasterio.open(folder / f"bodies/{one}/runs/run_{k}/run.max_thickness.asc") as source:
+                row, column = source.index(x, y)
+                inside = 0 <= row < source.height and 0 <= column < source.width
+                values.append(bool(inside and source.read(1)[row, column] > 0.1))
+        found[one] = float(np.mean(values))
+    return found
+
+
+def with_fragility(two, capacity, monkeypatch):
+    """The same route with fragilities of its two bodies, read from nowhere."""
+    found = of_capacity(capacity[:, :, :2])
+    digests = [results.disk.sha256(two[0] / f"slips/{k}/body.{k}.base.asc") for k in (1, 2)]
+    monkeypatch.setattr(results.fragility_files, "read", lambda path: found._replace(bases=digests))
+    asked = yaml.safe_load((two[0] / choices.NAME).read_text())
+    (two[0] / choices.NAME).write_text(yaml.safe_dump({**asked, "fragility": "fragility"}))
+    return found
+
+
+def test_a_year_of_a_stretch(two, capacity, monkeypatch):
+    with_fragility(two, capacity, monkeypatch)
+    found, ground = made(*two)
+    yearly = Yearly(of_capacity(capacity[:, :, :2]))
+    year = found["stretches"][0]["per_year"]
+    assert year["counts"] == yearly.of([1, 2], [0.75, 0.5]).counts == year["independent"]
+    low, high = zip(*(hazard.share_bounds(k, 4) for k in (3, 2)))
+    assert year["high"] == pytest.approx(yearly.of([1, 2], [float(one) for one in high]).independent)
+    assert year["low"] == pytest.approx(yearly.of([1, 2], [float(one) for one in low]).dependent)
+    assert found["bodies"][0]["per_year"]["blocks"] == pytest.approx(
+        0.75 * found["bodies"][0]["per_year"]["fails"], rel=1e-3)
+    said = []
+    route_page.write(choices.read(two[0]), ground, two[0], found, said.append)
+    page = (two[0] / route_page.PAGE).read_text()
+    assert page.count("<figure>") == 1 and "0.020 to 0.080" in page and f"{year['counts']:.2g}" in page
+    assert any("--sample" in one for one in said)
+
+
+def test_a_fragility_of_other_bodies_is_refused(two, capacity, monkeypatch):
+    with_fragility(two, capacity, monkeypatch)
+    (two[0] / "slips/2/body.2.base.asc").write_text("other")
+    with pytest.raises(SlopeError) as error:
+        made(*two)
+    assert "--fragility" in str(error.value) and "body 2" in str(error.value)
+
+
+# --- zones ---
+
+def zones_of(folder, capsys, *words):
+    return called(capsys, ["export", str(folder), *words])
+
+
+def test_zones_of_shares(two, capsys):
+    folder = two[0]
+    status, out, err = zones_of(folder, capsys, "--zones", "0.9,0.4", "--thicker", "0.5")
+    assert status == 0, err
+    with fiona.open(folder / "zones/zones.gpkg", layer="zones") as layer:
+        assert rasterio.crs.CRS.from_wkt(layer.crs_wkt).to_epsg() == 6677
+        found = [(shape(one["geometry"]), one["properties"]) for one in layer]
+    bounds = {k: [float(side) for side in hazard.share_bounds(k, 4)] for k in range(5)}
+    for x, y in ((37.5, 82.5), (62.5, 72.5), (72.5, 62.5), (150.0, 60.0)):
+        shares = shares_at(folder, x, y)
+        counts = [round(4 * value) for value in shares.values() if value]
+        at = Point(run_helpers.EAST + x, run_helpers.NORTH + y)
+        for p in (0.9, 0.4):
+            low, high = (max((bounds[k][side] for k in counts), default=0.0) for side in (0, 1))
+            wanted = [zones.AT_LEAST] if low >= p else [zones.UNSURE] if high >= p else []
+            assert [one["class"] for area, one in found if one["probability"] == p and area.contains(at)] == wanted
+    about = yaml.safe_load((folder / "zones/zones.yaml").read_text())
+    for entry in about["zones"]:
+        for kind, key in ((zones.AT_LEAST, "at_least_m2"), (zones.UNSURE, "cannot_tell_m2")):
+            mine = [(area, one) for area, one in found if (one["probability"], one["class"]) == (
+                entry["probability"], kind)]
+            assert entry[key] == pytest.approx(sum(one["cells"] for _, one in mine) * CELL ** 2)
+            for area, one in mine:      # a ring has four corners more to one side than to the other
+                rings = 1 - len(area.interiors)
+                assert area.area == pytest.approx(one["area_m2"] - rings * CELL ** 2 / 2) and area.is_valid
+    assert {one["class"] for _, one in found} == {zones.AT_LEAST, zones.UNSURE}
+    assert about["per_year"] is False and about["runs"] == 8
+
+
+def test_zones_have_a_style(two, capsys):
+    assert zones_of(two[0], capsys, "--zones", "0.9,0.4")[0] == 0
+    with fiona.open(two[0] / "zones/zones.gpkg", layer=geopackage.STYLES) as layer:
+        [style] = [one["properties"] for one in layer]
+    assert (style["f_table_name"], style["f_geometry_column"]) == ("zones", "geom") and style["useAsDefault"]
+    import xml.etree.ElementTree as tree
+    root = tree.fromstring(style["styleQML"].split("\n", 1)[1])
+    rules = root.findall(".//rule")
+    assert len(rules) == 4 and {one.get("symbol") for one in rules} == {one.get("name") for one in root.findall(
+        ".//symbol")}
+    assert '"probability" = 0.4' in "".join(one.get("filter") for one in rules)
+
+
+def test_corners_are_cut_at_half_a_cell():
+    area = box(0, 0, 30, 30).difference(box(10, 10, 20, 20)).union(box(30, 0, 40, 10))
+    found = zones.smoothed(area, 10.0)
+    assert found.area == pytest.approx(area.area - 50 + 50) and found.hausdorff_distance(area) < 5
+    assert zones.smoothed(box(0, 0, 10, 10), 10.0).area == pytest.approx(50)
+
+
+def test_zones_per_year(two, capsys, capacity, monkeypatch):
+    found = with_fragility(two, capacity, monkeypatch)
+    yearly = Yearly(found)
+    status, _, err = zones_of(two[0], capsys, "--zones", "1/500,1/1000,1/5000", "--intensity", "thickness:0.5,1.5")
+    assert status == 0, err
+    with fiona.open(two[0] / "zones/zones.gpkg", layer="zones") as layer:
+        several = [(shape(one["geometry"]), one["properties"]) for one in layer]
+    at = Point(run_helpers.EAST + 37.5, run_helpers.NORTH + 82.5)      # body 1 alone, all four runs, 1 m
+    low, high = (1 - math.exp(-yearly.of([1], [float(side)]).counts) for side in hazard.share_bounds(4, 4))
+    for p in (1 / 500, 1 / 1000, 1 / 5000):
+        wanted = [zones.AT_LEAST] if low >= p else [zones.UNSURE] if high >= p else []
+        here = [one for area, one in several if abs(one["probability"] / p - 1) < 1e-9 and area.contains(at)]
+        assert [(one["class"], one["exceeds"]) for one in here] == [(kind, 0.5) for kind in wanted]
+        assert all(one["return_period"] == pytest.approx(1 / p) for one in here)
+
+
+def test_zones_of_a_run(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    run_helpers.write_sidecar(20, 30, 5.0)
+    z = blob(20, 30, (4, 14), (5, 12))
+    run_helpers.write_run(z, 10.0, 5.0, "run")
+    write_asc("run.max_thickness.asc", z, 5.0)
+    assert zones_of("run", capsys, "--zones", "0.04")[0] == 0
+    about = yaml.safe_load(Path("run.zones/zones.yaml").read_text())
+    assert about["zones"][0]["at_least_m2"] == 70 * 25 and about["runs"] == 1     # 0.05 of one run are sure
+
+
+@pytest.mark.parametrize("command", [one for one in test_export.EXAMPLES if "--zones" in one])
+def test_every_example_of_zones_runs(two, capsys, monkeypatch, command):
+    monkeypatch.chdir(two[0].parent)
+    name, *words = command.split()
+    two[0].rename(name)
+    status, _, err = zones_of(name, capsys, *words)
+    assert (status, err) == (0, "") and len(list(Path().glob("**/zones.gpkg"))) == 1
+
+
+@pytest.mark.parametrize("words, said", [
+    (["--zones", "0.1,0.5"], ("--zones", "fall", "0.1,0.5")), (["--zones", "1/100,1/100"], ("--zones", "fall")),
+    (["--zones", "1.5"], ("--zones", "1.5")), (["--zones", "x"], ("--zones", "x")),
+    (["--zones", "1/0"], ("--zones", "1/0")), (["--thicker", "1"], ("--thicker", "--zones")),
+    (["--intensity", "speed:1"], ("--intensity", "--zones")),
+    (["--zones", "0.5", "--thicker", "-1"], ("--thicker", "-1")),
+    (["--zones", "0.5", "--intensity", "height:1"], ("--intensity", "height:1")),
+    (["--zones", "0.5", "--intensity", "speed:5,1"], ("--intensity", "rise", "speed:5,1")),
+    (["--zones", "0.5", "--intensity", "speed:1", "--thicker", "1"], ("--thicker", "--intensity")),
+    (["--zones", "0.5", "--terrain", "t.asc"], ("--terrain", "--zones"))])
+def test_wrong_zones(two, capsys, words, said):
+    status, out, err = zones_of(two[0], capsys, *words)
+    assert status == 2 and err.count("\n") == 1 and all(one in err for one in said), err
+    assert not (two[0] / "zones").exists()
+
+
+def test_a_hazard_that_does_not_reach(two, capsys, capacity, monkeypatch):
+    with_fragility(two, capacity, monkeypatch)
+    for words in ("1/100,1/50000", "1/50,1/1000"):
+        status, _, err = zones_of(two[0], capsys, "--zones", words)
+        assert status == 2 and err.count("\n") == 1 and "--zones" in err and "5e-05 to 0.00995" in err, err
+
+
+# --- a long road ---
+
+LONG = """
+import sys, numpy as np
+sys.path[:0] = [{tools!r}, {tests!r}]
+from pathlib import Path
+import route_stand_in
+from slope_tools.route import choices, corridor, page as route_page, results
+draw = np.random.default_rng(1)
+bodies = []
+for k in range(300):
+    x = 100.0 + 132.0 * k
+    several = [np.pad(np.ones((10 + k, 20 + k)), ((0, 30 - k), (0, 20 - k))) for k in range(4)]
+    at = x - 60.0 + 40.0 * draw.random(4)
+    bodies.append(((x, 120.0), several, 5.0, 5 * round((x - 100) / 5), 20.0, [[(a, a + 60.0)] for a in at.tolist()]))
+folder, table = route_stand_in.make(Path({folder!r}), (80, 8000), 5.0, bodies)
+asked = choices.read(folder)
+ground = corridor.read(asked, folder)
+found = results.make(asked, ground, folder, table)
+route_page.write(asked, ground, folder, found, print)
+"""
+
+
+@pytest.mark.long
+def test_a_long_road(tmp_path):
+    """40 km, 300 bodies: below 4 GB, the page below 20 MB."""
+    folder = tmp_path / "R"
+    code = LONG.format(tools=str(TOOLS), tests=str(Path(__file__).parent), folder=str(folder))
+    done = subprocess.run(["/usr/bin/python3", "-c", code], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss < 4e6      # kB
+    page = (folder / route_page.PAGE).stat().st_size
+    assert 1e5 < page < 20e6
+    about = yaml.load((folder / results.RESULTS).read_text(), yaml.CSafeLoader)
+    assert len(about["bodies"]) == 300 and about["chainage_m"][1] == pytest.approx(39990.0)
+
+
+# --- real runs ---
+
+ROUTE = ("--terrain dem.asc --crs EPSG:6677 --road axis.csv --road-width 8 --corridor 60 --cohesion 9e3 --friction 30 "
+         "--density 1900 --bodies slides.geojson --balls 40 --sample 3 --lane 4").split()
+
+
+@pytest.fixture
+def slope(tmp_path, monkeypatch):
+    """A plane slope of 30 degrees above a road, and two bodies on it, given as polygons."""
+    monkeypatch.chdir(tmp_path)
+    y = 3.0 * (39.5 - np.arange(40))
+    write_asc("dem.asc", np.add.outer(np.round(0.6 * np.clip(y - 35, 0, 50), 3), np.zeros(70)), 3.0)
+    Path("axis.csv").write_text("6,25\n110,25\n204,25\n")
+    slides([((40, 45), 4.0), ((150, 45), 3.0)])
+    return tmp_path
+
+
+def slides(several):
+    features = [{"type": "Feature", "properties": {"depth": depth},
+                 "geometry": box(x, y, x + 24, y + 24).__geo_interface__} for (x, y), depth in several]
+    Path("slides.geojson").write_text(json.dumps({
+        "type": "FeatureCollection", "features": features,
+        "crs": {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::6677"}}}))
+
+
+def route_of(capsys, *words):
+    return called(capsys, ["route", "R", *words])
+
+
+def slurm(folder, monkeypatch):
+    """Programs in place of Slurm's: each array is done at once."""
+    folder.mkdir()
+    sbatch = """for word; do case $word in --array=*) range=${word#--array=};; esac; script=$word; done
+echo $range >> CALLS
+for ((i = 0; i <= ${range#0-}; i++)); do SLURM_ARRAY_TASK_ID=$i bash "$script"; done
+echo 7
+"""
+    for name, text in {"sbatch": sbatch, "squeue": "", "scancel": ""}.items():
+        (folder / name).write_text("#!/bin/bash\n" + text.replace("CALLS", str(folder / "calls")))
+        (folder / name).chmod(0o755)
+    monkeypatch.setenv("PATH", f"{folder}:{os.environ['PATH']}")
+
+
+def without_times(path):
+    rows = list(csv.DictReader(Path(path).read_text().splitlines()))
+    assert rows
+    return [{key: value for key, value in row.items() if key != "wall_s"} for row in rows]
+
+
+@pytest.mark.long
+@needs_lmp
+def test_a_body_alone_is_that_of_a_site(slope, capsys, monkeypatch):
+    status, out, err = route_of(capsys, *ROUTE)
+    assert status == 0, err
+    about = yaml.safe_load(Path("R/results.yaml").read_text())
+    assert [one["body"] for one in about["bodies"]] == [1, 2]
+    assert [one["chainage_m"] for one in about["bodies"]] == pytest.approx([46, 156], abs=2)
+    assert all(one["runs"] == 3 and one["volume_m3"] > 100 for one in about["bodies"])
+    start = yaml.safe_load(Path("R/bodies.yaml").read_text())["bodies"][1]["road_from_m"] / 1000
+    words = ("site --terrain R/slips/2/terrain.asc --scar R/slips/2/body.2.base.asc --scar-is surface --road "
+             f"R/slips/2/road.csv --road-width 8 --lane 4 --density 1900 --balls 40 --road-from {start} -o alone")
+    assert called(capsys, words.split())[0] == 0
+    words = "study alone --sample 3 --seed 2 --vary rolling=0:0.1 --vary xoffset=0:0.99"
+    status, _, err = called(capsys, words.split())
+    assert status == 0, err
+    assert without_times("alone/ensemble/study.csv") == without_times("R/bodies/2/ensemble/study.csv")
+    # slope fragility takes the folder; without a hazard the route does not take that
+    status, _, err = called(capsys, "fragility R --density 1900 --cohesion 5e3:15e3 --friction 25:35 --peaks 100:1200 "
+                            "--pseudo-static 0.65 --sample 256 -o fragility".split())
+    assert status == 0, err
+    fragile = yaml.safe_load(Path("fragility/fragility.yaml").read_text())["bodies"]
+    volumes = [one["volume_m3"] for one in about["bodies"]]
+    assert [one["volume_m3"] for one in fragile] == pytest.approx(volumes, rel=0.01)
+    status, _, err = route_of(capsys, "--fragility", "fragility")
+    assert status == 2 and "--hazard" in err
+    # with more runs only these are made
+    made_ = {path: path.stat().st_mtime for path in Path("R/bodies").glob("*/runs/*/*.summary.yaml")}
+    slurm(slope / "slurm", monkeypatch)
+    assert route_of(capsys, "--sample", "4", "--engine", "slurm")[0] == 0
+    assert Path("slurm/calls").read_text().split() == ["0-1"]       # one array for the runs of both bodies
+    assert {path: path.stat().st_mtime for path in made_} == made_
+    assert len(list(Path("R/bodies").glob("*/runs/*/*.summary.yaml"))) == len(made_) + 2 == 8
+
+
+@pytest.mark.long
+@needs_lmp
+def test_killed_at_random(slope):
+    """Five times, then to the end: the same numbers as at once."""
+    def begun(folder):
+        return subprocess.Popen([str(TOOLS / "slope"), "route", folder, *ROUTE], stdout=subprocess.DEVNULL,
+                                stderr=subprocess.PIPE)
+    began = time.monotonic()
+    once = begun("R")
+    assert once.wait() == 0, once.stderr.read()
+    whole = time.monotonic() - began
+    draw = np.random.default_rng(5)
+    for _ in range(5):
+        one = begun("K")
+        time.sleep(float(draw.uniform(0.15, 0.6)) * whole)
+        one.kill()
+        one.wait()
+    last = begun("K")
+    assert last.wait() == 0, last.stderr.read()
+    found, wanted = ({name: {**yaml.safe_load(Path(folder, name).read_text()), "collected": None} for name in (
+        "results.yaml", "bodies.yaml")} for folder in "KR")
+    assert found == wanted
+    for k in (1, 2):
+        assert without_times(f"K/bodies/{k}/ensemble/study.csv") == without_times(f"R/bodies/{k}/ensemble/study.csv")
+
+
+@pytest.mark.parametrize("change, said", [
+    ({"--bodies": None, "--below": "0.01", "--volume": "60 800"}, ("axis.csv", "60 m", "0.01")),
+    ({"slides": [((40, 45), 4.0), ((55, 45), 4.0)]}, ("slides.geojson", "feature 1", "feature 2", "0.1")),
+    ({"slides": [((40, 45), None)]}, ("slides.geojson", "feature 1", "depth")),
+    ({"--reach": "1"}, ("--reach", "1")), ({"--corridor": "-5"}, ("--corridor", "-5")),
+    ({"--friction": None}, ("--friction", "must be given")), ({"--road": "slides.geojson"}, ("slides.geojson", "line")),
+    ({"--fragility": "nowhere"}, ("nowhere",)), ({"--minutes": "3"}, ("--minutes", "--balls")),
+    ({"--reach": "0.9999"}, ("axis.csv", "--reach"))])
+@needs_lmp
+def test_wrong_routes(slope, capsys, change, said):
+    if "slides" in change:
+        slides(change["slides"])
+    words = ROUTE[:]
+    for option, value in change.items():
+        if option in words:
+            at = words.index(option)
+            words[at:at + 2] = [] if value is None else [option, value]
+        elif option.startswith("--"):
+            words += [option, *value.split()]
+    status, out, err = route_of(capsys, *words)
+    lines = [line for line in err.splitlines() if "warning" not in line]
+    assert status == 2 and len(lines) == 1 and all(one in lines[0] for one in said), err
+    assert not Path("R/results.yaml").exists()
+
+
+def test_another_choice_is_refused(two, capsys):
+    status, _, err = called(capsys, ["route", str(two[0]), "--cohesion", "8e3"])
+    assert status == 2 and err.count("\n") == 1 and "--cohesion" in err and "8000" in err and "another folder" in err
+
+
+def test_before_there_are_bodies_choices_may_change(tmp_path):
+    first = {"terrain": ["dem.asc"], "road": "axis.csv", "road_width": 8.0, "corridor": 60.0, "cohesion": 9e3,
+             "friction": 30.0, "density": 1900.0}
+    choices.settle(tmp_path / "R", first)
+    for name in ("road.csv", "terrain.asc"):
+        (tmp_path / "R" / name).write_text("")
+    (tmp_path / "R/windows/1").mkdir(parents=True)
+    assert choices.settle(tmp_path / "R", {"reach": 0.5}).reach == 0.5 and (tmp_path / "R/windows/1").is_dir()
+    assert choices.settle(tmp_path / "R", {"road": "other.csv"}).road.endswith("other.csv")
+    assert sorted(path.name for path in (tmp_path / "R").iterdir()) == ["route.yaml"]
+    assert choices.read(tmp_path / "R").reach == 0.5
+
+
+def test_runs_of_other_grids_are_not_counted_together(two):
+    write_asc(two[0] / "bodies/1/runs/run_2/run.max_thickness.asc", np.zeros((3, 3)), CELL)
+    with pytest.raises(SlopeError) as error:
+        made(*two)
+    assert "bodies/1/runs/run_2" in str(error.value) and "grid" in str(error.value)
+
+
+def test_zones_of_a_study(two, capsys):
+    """Of a study by itself, with the weights of known events if it has them."""
+    folder = two[0] / "bodies/1/ensemble"
+    for k in range(4):
+        run_helpers.write_run(blob(20, 30, (4, 14), (5, 10 + k)), 10.0, CELL,
+                              str(two[0] / f"bodies/1/runs/run_{k}/run"), 10.0, 20.0)
+    assert zones_of(folder, capsys, "--zones", "0.4")[0] == 0
+    [entry] = yaml.safe_load((folder / "zones/zones.yaml").read_text())["zones"]
+    assert (entry["at_least_m2"], entry["cannot_tell_m2"]) == (50 * 25, 30 * 25)    # 4 of 4; 3, 2 and 1 of 4
+    about = yaml.safe_load((folder / "study.yaml").read_text())
+    weights = {"run_0": 0.02, "run_1": 0.02, "run_2": 0.02, "run_3": 0.94}
+    about["ensemble"] = {"known_events": {"weights": weights}}
+    (folder / "study.yaml").write_text(yaml.safe_dump(about))
+    assert zones_of(folder, capsys, "--zones", "0.4", "--overwrite")[0] == 0
+    [entry] = yaml.safe_load((folder / "zones/zones.yaml").read_text())["zones"]
+    worth = 1 / sum(one ** 2 for one in weights.values())
+    low, high = (float(side) for side in hazard.share_bounds(worth, worth))
+    assert (low < 0.4) and entry["at_least_m2"] == 0 and entry["cannot_tell_m2"] == 80 * 25
+
+
+def test_a_folder_of_something_else(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("mine").mkdir()
+    Path("mine/notes.txt").write_text("")
+    status, _, err = called(capsys, ["route", "mine", *ROUTE])
+    assert status == 2 and "mine" in err and not Path("mine/route.yaml").exists()
+
+
+# --- a body that was given ---
+
+def hill(folder):
+    """A slope of 31 degrees to the south with a body on it; gives the body as a mass, and the corridor's choices."""
+    y = 5.0 * (59.5 - np.arange(60))
+    ground = route_stand_in.raster(np.add.outer(0.6 * np.clip(y - 100, 0, 120), np.zeros(40)), 5.0)
+    x, y = run_helpers.centres(60, 40, 5.0)
+    depth = np.clip(8.0 * (1 - ((x - 100) ** 2 + (y - 180) ** 2) / 25 ** 2), 0, None)
+    folder.mkdir(parents=True)
+    search.rasters.write_asc_local(folder / "terrain.asc", ground, {}, exact=True)
+    search.rasters.write_asc_local(folder / "body.1.base.asc", ground._replace(z=ground.z - depth), {}, exact=True)
+    given = choices.Choices(["dem.asc"], "axis.csv", 8.0, 100.0, 9e3, 30.0, 1900.0)
+    return search.falling.of_arrays(ground, depth, "body 1"), given
+
+
+def test_a_given_body_has_a_factor_and_a_fragility(tmp_path):
+    mass, given = hill(tmp_path / "slips" / "1")
+    found = search.columns_of(tmp_path, 1, 1900.0)
+    assert found.name == "1" and found.direction == pytest.approx(270, abs=2)
+    assert found.columns.volume == pytest.approx(mass.volume, rel=0.03)
+    factor = search.bishop_factor(given, mass.raster, tmp_path / "base.asc", mass.base)
+    strengths = search.bishop.Strengths(9e3, math.tan(math.radians(30)), 0.0)
+    assert factor == pytest.approx(float(search.bishop.factor_of_safety(found.columns, strengths)[0]))
+    assert 1 < factor < 3
+
+
+@pytest.mark.parametrize("ends, reach, said", [
+    (((20, 90), (180, 90)), 0.01, ""), (((20, 20), (180, 20)), 0.9, "known events"),
+    (((10, 20), (10, 280)), 0.01, "away from the road")])
+def test_whether_a_body_reaches_the_road(tmp_path, ends, reach, said):
+    mass, given = hill(tmp_path / "slips" / "1")
+    found = search.reaches(given._replace(reach=reach), mass, LineString(ends).buffer(4, cap_style=2))
+    assert (said in found["why_not"]) and bool(said) == bool(found["why_not"])
+    assert 0 < found["known_share"] <= 1

@@ -1,0 +1,1 @@
+"""Many slopes beside one road: the bodies along a corridor, the runs of all, and what they say of the road together."""

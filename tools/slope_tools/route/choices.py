@@ -1,0 +1,155 @@
+"""What is asked of a route, kept in its folder: route.yaml."""
+import os
+import shutil
+from pathlib import Path
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional
+
+from .. import disk
+from ..errors import SlopeError
+from ..sites.site_choices import OF_BALL
+from ..survey import roads
+
+NAME = "route.yaml"
+VERSION = 1
+WHAT = "what `slope route` wrote"
+FILES = ("terrain", "road", "bodies", "fragility")                      # paths, kept as from the folder
+TABLE = "bodies.yaml"
+# what is made before that table, and of which options
+MADE = ("terrain.asc", "terrain.yaml", "road.csv", "windows")
+OF = ("terrain", "crs", "assign_crs", "cell", "fill", "road", "road_width", "corridor", "cohesion", "friction",
+      "density", "water", "volume", "depth", "keep")
+LATER = ("sample", "fragility", "name", "client", "author")      # may change once bodies are there
+NEEDED = ("terrain", "road", "road_width", "corridor", "cohesion", "friction", "density")
+VARY = ("rolling=0:0.1", "xoffset=0:0.99")
+
+
+class Choices(NamedTuple):
+    """The options of the command, with their units; see its help."""
+    terrain: List[str]
+    road: str
+    road_width: float
+    corridor: float
+    cohesion: float
+    friction: float
+    density: float
+    water: Optional[float] = None
+    crs: Optional[str] = None
+    assign_crs: Optional[str] = None
+    cell: Optional[float] = None
+    fill: int = 0
+    road_from: float = 0.0
+    blocked: float = roads.NOTHING.blocked
+    lane: Optional[float] = None
+    clearing: Optional[float] = None
+    loosening: Optional[float] = None
+    cut_angle: float = 30.0
+    mesh: float = 10.0
+    volume: Optional[List[float]] = None
+    depth: Optional[List[float]] = None
+    keep: int = 3
+    below: float = 1.5
+    bodies: Optional[str] = None
+    reach: float = 0.01
+    confined: str = "unknown"
+    sample: int = 4
+    vary: List[str] = list(VARY)
+    balls: Optional[int] = None
+    minutes: Optional[float] = None
+    fragility: Optional[str] = None
+    name: Optional[str] = None
+    client: Optional[str] = None
+    author: Optional[str] = None
+
+    @property
+    def asked(self) -> roads.Asked:
+        return roads.Asked(self.road_width, self.road_from, self.blocked, self.lane, self.clearing, self.loosening)
+
+    @property
+    def ball_density(self) -> float:
+        """kg/m3"""
+        return round(self.density * OF_BALL, 1)
+
+
+def option(name: str) -> str:
+    return f"--{name.replace('_', '-')}"
+
+
+def settle(folder: Path, given: Mapping[str, Any]) -> Choices:
+    """The choices of a folder with those that are given now, checked and kept; SlopeError if they do not fit."""
+    path = folder / NAME
+    known = read(folder)._asdict() if path.is_file() else {}
+    changed = [name for name, value in given.items() if known and not same(name, known[name], value)]
+    for name in changed:
+        if name not in LATER and (folder / TABLE).is_file():
+            raise SlopeError(option(name), f"must be that of {path}, whose bodies and runs it has made: take another "
+                             "folder", given[name])
+    for name in NEEDED:
+        if name not in {**known, **given}:
+            raise SlopeError(option(name), f"must be given, or the folder of a route with {NAME}")
+    found = Choices(**{**known, **given})
+    check(found)
+    if not path.is_file() and folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise SlopeError(folder, "must be a new folder, an empty one, or that of a route")
+    folder.mkdir(parents=True, exist_ok=True)
+    if set(changed) & set(OF):      # there are no bodies yet: what was made for them is begun anew
+        for place in MADE:
+            shutil.rmtree(folder / place, ignore_errors=True)
+            (folder / place).unlink(missing_ok=True)
+    keep(folder, found)
+    return found
+
+
+def keep(folder: Path, found: Choices) -> None:
+    """Write route.yaml, unless it says so already."""
+    path = folder / NAME
+    about = {name: from_folder(value, folder) if name in FILES else value for name, value in found._asdict().items()}
+    text = disk.yaml_text("slope route: m, m3, Pa, degrees, kg/m3; paths as from here",
+                          {"slope_route": VERSION, **about})
+    if not path.is_file() or path.read_text(encoding="utf-8") != text:
+        disk.write(path, text)
+
+
+def read(folder: Path) -> Choices:
+    """The choices of a route's folder; paths as from the working folder."""
+    path = folder / NAME
+    if not path.is_file():
+        raise SlopeError(folder, f"must be the folder of a route, with {NAME}")
+    about = disk.parse_yaml(path, WHAT)
+    if not isinstance(about, dict) or about.pop("slope_route", None) != VERSION or \
+            not set(NEEDED) <= set(about) <= set(Choices._fields):
+        raise SlopeError(path, f"must be {WHAT} of this version")
+    return Choices(**{name: to_here(value, folder) if name in FILES else value for name, value in about.items()})
+
+
+def from_folder(value: Any, folder: Path) -> Any:
+    if isinstance(value, list):
+        return [from_folder(one, folder) for one in value]
+    return value and Path(os.path.relpath(value, folder)).as_posix()
+
+
+def to_here(value: Any, folder: Path) -> Any:
+    if isinstance(value, list):
+        return [to_here(one, folder) for one in value]
+    return value and os.path.normpath(folder / value)
+
+
+def same(name: str, one: Any, other: Any) -> bool:
+    if name in FILES:
+        several = [value if isinstance(value, list) else [value] for value in (one, other)]
+        return [[value and os.path.realpath(value) for value in values] for values in several][0] == \
+            [value and os.path.realpath(value) for value in several[1]]
+    return one == other
+
+
+def check(found: Choices) -> None:
+    """The numbers that nothing else checks."""
+    numbers: Dict[str, Optional[float]] = {name: getattr(found, name) for name in (
+        "road_width", "corridor", "density", "below", "balls", "minutes")}
+    for name, value in numbers.items():
+        if value is not None and not value > 0:
+            raise SlopeError(option(name), "must be > 0", f"{value:g}")
+    if not 0 <= found.reach < 1:
+        raise SlopeError("--reach", "must be 0 to below 1, a share of known events", f"{found.reach:g}")
+    if found.balls and found.minutes:
+        raise SlopeError("--minutes", "must be given without --balls", f"{found.minutes:g}")
+    roads.check(found.asked)

@@ -1,0 +1,175 @@
+"""The report on a route: the corridor with its road in the colours of the chance, and tables by stretch and by body."""
+import math
+from pathlib import Path
+from typing import Any, Dict, Iterator, List, Mapping
+
+import numpy as np
+from matplotlib.collections import LineCollection
+from shapely.ops import substring
+
+from .. import disk, provenance
+from ..deposits.axis import Axis, Span
+from ..drawing import figures, maps, palettes
+from ..drawing.figures import plt
+from ..report import document
+from ..statistics import hazard
+from ..survey.rasters import crs_name
+from .choices import Choices
+from .corridor import Corridor
+
+PAGE = "route.html"
+ALONG = 4000.0      # m of the road in a map
+KM = "{:.3f}"
+LEAST = 1e-6        # per year: the lower end of the colours
+BIG = "{:,.3g}"
+
+
+def km(metres: float) -> str:
+    return KM.format(metres / 1000)
+
+
+def sentences(found: Mapping[str, Any]) -> List[str]:
+    """The answer."""
+    route, stretches = found["route"], found["stretches"]
+    blocked = sum(one["to"] - one["from"] for one in stretches)
+    text = (f"{len(found['bodies'])} bodies can reach the road; their runs block {len(stretches)} stretches of it, "
+            f"{blocked:,.0f} m in all")
+    if route["per_year"] is None:
+        return [text, f"the largest chance that a body which fails blocks the road is {100 * route['share']:.0f} % "
+                f"(body {route['body']}); how often they fail is not known (--fragility)"]
+    one = route["per_year"]
+    return [text, f"the route is blocked {one['counts']:.2g} times per year (90 % of the runs: {one['low']:.2g} to "
+            f"{one['high']:.2g}): {one['independent']:.2g} if the bodies are independent, {one['dependent']:.2g} if "
+            "all have the strength of one sample; the larger counts"]
+
+
+def write(choices: Choices, corridor: Corridor, folder: Path, found: Mapping[str, Any], warn) -> None:
+    """Write route.html."""
+    yearly = choices.fragility is not None
+    content = {
+        "title": choices.name or folder.absolute().name, "client": choices.client, "author": choices.author,
+        "made": provenance.now(), "mark": document.mark(folder), "sentences": sentences(found), "how": how(choices),
+        "warnings": list(doubts(choices, found)), "maps": list(drawn(corridor, found, yearly)),
+        "tables": [stretches(found, yearly), bodies(found, yearly), left_out(found)],
+        "footer": f"{document.MADE_BY.replace('report', 'route')}, SLOPE {provenance.version()}; all numbers: "
+                  "results.yaml, stretches.csv, bodies.csv, pieces.csv; who hits what: governing.tif, route.gpkg"}
+    for line in content["warnings"]:
+        warn(line)
+    disk.write(folder / PAGE, document.render(content, Path(__file__).with_name("route.html.j2")))
+
+
+def how(choices: Choices) -> str:
+    where = f"the polygons of {Path(choices.bodies).name}" if choices.bodies else (
+        f"those that a search found within {choices.corridor:g} m of the road with a factor of safety below "
+        f"{choices.below:g}, for a cohesion of {choices.cohesion:g} Pa, a friction angle of {choices.friction:g} "
+        f"degrees and {choices.density:g} kg/m3" + (f", water {choices.water:g}" if choices.water else ""))
+    return (f"The bodies are {where}. Each was released in {choices.sample} runs over {', '.join(choices.vary)}. A "
+            f"share is that of a body's runs in which the deposit on the road is thicker than {choices.blocked:g} m, "
+            "given that the body fails; its range is that of so few runs (Clopper and Pearson, 90 %).")
+
+
+def doubts(choices: Choices, found: Mapping[str, Any]) -> Iterator[str]:
+    failed = [one for one in found["bodies"] if one["failed"]]
+    if failed:
+        yield f"runs of {len(failed)} bodies failed; their shares are of the others, body {failed[0]['body']} first"
+    if choices.sample < 8:
+        low = hazard.share_bounds(choices.sample, choices.sample)[0]
+        yield (f"{choices.sample} runs of a body that all block the road tell no more than a share of {100 * low:.0f} "
+               "%: --sample adds more to those that are there")
+
+
+def drawn(corridor: Corridor, found: Mapping[str, Any], yearly: bool) -> Iterator[Dict[str, str]]:
+    """Maps of the corridor, of at most ALONG of its road each."""
+    length = corridor.axis.length
+    number = max(1, math.ceil(length / ALONG))
+    for k in range(number):
+        low, high = length * k / number, length * (k + 1) / number
+        part = substring(corridor.axis, low, high)
+        yield {"uri": map_of(corridor, found, yearly, part.bounds, Span(corridor.start + low, corridor.start + high)),
+               "caption": f"km {km(corridor.start + low)} to {km(corridor.start + high)}. The road in the colours of "
+               + ("how often per year it is blocked" if yearly else "the largest share of a body's runs that block it")
+               + "; white: no run does. Bodies with their numbers; hollow: left out, cannot reach the road."}
+
+
+def map_of(corridor: Corridor, found: Mapping[str, Any], yearly: bool, bounds, along: Span) -> str:
+    raster = corridor.raster
+    room = corridor.reach
+    shown = maps.window(raster, (bounds[0] - room, bounds[1] - room, bounds[2] + room, bounds[3] + room))
+    axis = Axis(np.asarray(corridor.axis.coords), corridor.start)
+    with plt.rc_context({**figures.STYLE, "figure.constrained_layout.use": False}):
+        figure, axes = maps.relief(raster, raster.z, shown, "")
+        maps.outline(axes, corridor.road, color="black", lw=0.4)
+        axes.plot(*np.asarray(corridor.axis.coords)[:, :2].T, color="white", lw=2.2)
+        here = [one for one in found["pieces"] if one["to"] > along.low and one["from"] < along.high]
+        lines = [np.asarray(axis.line(Span(max(one["from"], axis.s[0]), min(one["to"], axis.s[-1]))).coords)[:, :2]
+                 for one in here]
+        norm = plt.matplotlib.colors.LogNorm(LEAST, 1.0) if yearly else plt.Normalize(0, 1)
+        values = np.array([max(one["per_year"]["counts"], LEAST) if yearly else one["share"] for one in here])
+        coloured = axes.add_collection(LineCollection(lines, cmap=palettes.PATH, norm=norm, linewidths=3.2,
+                                                      array=values))
+        figure.colorbar(coloured, ax=axes, orientation="horizontal", aspect=50, shrink=0.6, pad=0.2,
+                        label="blocked, times per year" if yearly else "share of the runs that block the road")
+        for several, fill in ((found["bodies"], figures.RELEASE), (found["left_out"], "none")):
+            for one in several:
+                if shown[0] < one["x"] < shown[2] and shown[1] < one["y"] < shown[3]:
+                    axes.plot(one["x"], one["y"], "o", ms=5, mfc=fill, mec=figures.RELEASE)
+                    axes.annotate(str(one["body"]), (one["x"], one["y"]), xytext=(4, 4), textcoords="offset points",
+                                  fontsize=7)
+        maps.crs_axes(axes, raster, crs_name(raster.crs) if raster.crs is not None else "")
+        return figures.data_uri(figure)
+
+
+# --- tables ---
+
+def table(title: str, heads: List[str], rows: List[List[Any]], caption: str) -> Dict[str, Any]:
+    return {"id": title.lower().replace(" ", "_"), "title": title, "heads": heads, "rows": rows, "caption": caption}
+
+
+def cell(value, form: str = BIG) -> str:
+    return "-" if value is None else form.format(value)
+
+
+def often(one: Mapping[str, Any], yearly: bool) -> List[str]:
+    year = one["per_year"]
+    return [f"{year['counts']:.2g}", f"{year['low']:.2g} to {year['high']:.2g}"] if yearly else []
+
+
+def share(one: Mapping[str, Any], name: str) -> List[str]:
+    return [f"{100 * one[name]:.0f} %", f"{100 * one['share_low']:.0f} to {100 * one['share_high']:.0f} %"]
+
+
+def stretches(found: Mapping[str, Any], yearly: bool) -> Dict[str, Any]:
+    """Each stretch with the bodies that block it."""
+    rows = []
+    for one in found["stretches"]:
+        for by in one["bodies"]:
+            numbers = [cell(by.get(name, [None] * 3)[k]) for name, k in (
+                ("length", 1), ("remove", 1), ("remove", 2), ("remove_lane", 1), ("passable_width", 1),
+                ("hours_lane", 1), ("hours", 1))]
+            rows.append([one["stretch"], f"{km(one['from'])} to {km(one['to'])}", *often(one, yearly), by["body"],
+                         f"{by['factor']:.2f}", *share(by, "share"), *numbers])
+    heads = ["stretch", "km", *(["blocked, per year", "90 %"] if yearly else []), "body", "factor of safety",
+             "share of its runs", "90 %", "blocked m", "to remove m3", "95 % of the runs", "for a lane m3",
+             "passable m", "hours, lane", "hours"]
+    return table("By stretch", heads, rows, "Medians over the runs of a body, those that do not block the stretch "
+                 "among them.")
+
+
+def bodies(found: Mapping[str, Any], yearly: bool) -> Dict[str, Any]:
+    rows = [[one["body"], one["name"], km(one["chainage_m"]), f"{one['factor']:.3f}", cell(one["volume_m3"]),
+             cell(one["depth_m"]), cell(one["known_share"], "{:.2g}"), one["runs"], *share(one, "share_blocked"),
+             cell(one["on_road_median_m3"]), cell(one["on_road_most_m3"]),
+             *([f"{one['per_year']['fails']:.2g}", f"{one['per_year']['blocks']:.2g}"] if yearly else [])]
+            for one in found["bodies"]]
+    heads = ["body", "name", "km", "factor of safety", "volume m3", "depth m", "known events that reach the road",
+             "runs", "block the road", "90 %", "on the road m3, median", "most",
+             *(["fails, per year", "blocks, per year"] if yearly else [])]
+    return table("By body", heads, rows, "By chainage. Known events: of this volume and height, the share that goes as "
+                 "far as the road.")
+
+
+def left_out(found: Mapping[str, Any]) -> Dict[str, Any]:
+    rows = [[one["body"], km(one["chainage_m"]), f"{one['factor']:.3f}", cell(one["volume_m3"]), one["why_not"]]
+            for one in found["left_out"]]
+    return table("Left out", ["body", "km", "factor of safety", "volume m3", "why"], rows,
+                 "Bodies that may fail and cannot reach the road, by known mobility.")

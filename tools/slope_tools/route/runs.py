@@ -1,0 +1,126 @@
+"""The runs of a route: a site for each body, all runs of all bodies in one queue, and what each body's say.
+
+The folder of a body is a site as `slope site` makes it, with its own runs: `slope study bodies/N --sample ...` takes
+them over, and a route those.
+"""
+import contextlib
+from pathlib import Path
+from typing import Any, Dict, List, Mapping, NamedTuple, Sequence
+
+from ..case import decks
+from ..case.data_files import data_files
+from ..case.slip_deck import PREFIX
+from ..ensembles import ensemble, ensemble_maps, sample
+from ..errors import SlopeError
+from ..runs import jobs
+from ..sites import site, site_budget, site_choices, site_deck
+from ..sites.site_layers import ROAD
+from ..slips import bodies
+from ..statistics import designs
+from ..studies import results, site_study, study
+from ..studies.setup import Road, Setup
+from ..tables.study_file import read_study
+from .choices import Choices
+from .corridor import TERRAIN
+from .search import SLIPS
+
+SITES = "bodies"
+STUDY = site_study.ENSEMBLE
+
+
+class Asked(NamedTuple):
+    """What a body's study is made of."""
+    setup: Setup
+    questions: results.Questions
+    plan: sample.Sample
+    todo: List[Any]
+
+
+def folder_of(folder: Path, number: int) -> Path:
+    return folder / SITES / str(number)
+
+
+def make_site(choices: Choices, folder: Path, about: Mapping[str, Any], number: int, machine: site.Machine, tell, warn,
+              draw) -> Path:
+    """The site of a body, unless it is there; number: of bodies, which share the minutes."""
+    place, slips = folder_of(folder, about["body"]), folder / SLIPS / str(about["body"])
+    if not (place / site_choices.NAME).is_file() or site.site_folder.was_not_made(place):
+        place.parent.mkdir(exist_ok=True)
+        site.make(choices_of(choices, slips, about, number), place, machine, tell, warn, draw)
+    site_study.check(place, site_choices.read(place))
+    return place
+
+
+def choices_of(choices: Choices, slips: Path, about: Mapping[str, Any], number: int) -> site_choices.Choices:
+    """The choices of a body's site."""
+    base = str(slips / f"{PREFIX}.{about['body']}.base.asc")
+    found = site_choices.complete({})
+    found["terrain"]["files"] = [str(slips / TERRAIN)]
+    found["release"].update(scar=base, scar_is="surface",
+                            bodies=[base] if (slips / f"{PREFIX}{bodies.END}").is_file() else [])
+    found["road"].update(file=str(slips / "road.csv"), cut_angle=choices.cut_angle, mesh=choices.mesh,
+                         **choices.asked._replace(start=about["road_from_m"] / 1000).about())
+    found["balls"]["number"] = choices.balls
+    if choices.minutes:     # a site's are those of its own study, which has more runs
+        found["balls"]["minutes"] = choices.minutes / number * site_budget.plan(found).runs / choices.sample
+    found["model"]["density"] = choices.ball_density
+    found["known"]["confined"] = choices.confined
+    found["project"].update(name=f"{choices.name + ', ' if choices.name else ''}{about['name']}", client=choices.client,
+                            author=choices.author)
+    site_choices.check({"slope_site": site_choices.VERSION, **found}, str(slips))
+    return found
+
+
+def asked_of(choices: Choices, place: Path, engine: Setup) -> Asked:
+    """The study of a body's site, as `slope study SITE --sample N --seed BODY --vary ...` makes it."""
+    deck, given = place / site_deck.NAME, site_choices.read(place)["road"]
+    road = Road(place / ROAD, given["cut_angle"], given["mesh"], asked=choices.asked.of(given))
+    setup = engine._replace(deck=deck, output=place / STUDY, site=place, road=road)
+    plan = sample.check(choices.sample, designs.SOBOL, int(place.name), choices.vary, deck, {}, {})
+    todo = sample.plan(setup.runs, plan, {}, {}, decks.index_variables(deck))
+    thresholds = list(site_study.THRESHOLDS)
+    order = ensemble.Order(plan, ensemble.check_quantity(None, True),
+                           ensemble_maps.Thresholds(thresholds, [5.0], [1e5]))
+    questions = results.Questions(sample.settings_of(todo), {}, thresholds, None, order, site=place)
+    return Asked(setup, questions, plan, todo)
+
+
+def make(several: Sequence[Asked], tell) -> List[str]:
+    """Make all runs that are not finished, in one queue, and collect those of each body; returns why runs failed."""
+    with contextlib.ExitStack() as stack:
+        works: Dict[Path, jobs.Work] = {}
+        for one in several:
+            files = data_files(one.setup.deck, sample.all_values(sample.settings_of(one.todo), one.plan))
+            work = stack.enter_context(study.prepared(one.setup, files, len(one.todo)))
+            works[one.setup.runs] = work
+            work.store.admit(one.todo)
+            sample.keep(one.setup.output, one.plan)
+        todo = [run for one in several for run in one.todo]
+        new = {run.folder for run in todo if not run.finished}
+        first = next(iter(works.values()))
+        first.parts = works
+        first.do(todo)
+        for k, one in enumerate(several, 1):
+            if not is_collected(one, new):
+                results.collect(one.setup, one.questions, one.todo, works[one.setup.runs])
+                tell(f"body {one.setup.home.name}, {k} of {len(several)}: its runs are evaluated")
+    return [f"body {one.setup.home.name}: {failure}" for one in several
+            if (failure := study.failure(one.setup.output, one.todo))]
+
+
+def is_collected(one: Asked, new) -> bool:
+    """Whether the results in a body's folder are of these runs, none of which was made since."""
+    if any(run.folder in new or run.error for run in one.todo):
+        return False
+    try:
+        about = read_study(one.setup.output / "study.yaml")
+    except SlopeError:
+        return False
+    return [row["run"] for row in about["runs"] if row["status"] == "finished"] == [run.name for run in one.todo]
+
+
+def listed(several: Sequence[Asked]):
+    """Lines of a dry run."""
+    for one in several:
+        for line in study.listed(one.todo):
+            yield f"body {one.setup.home.name}: {line}"

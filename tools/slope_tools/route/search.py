@@ -1,0 +1,249 @@
+"""The bodies along a corridor: searched window by window, or given as polygons; each with ground of its own.
+
+A body has a folder slips/N: terrain.asc, the part of the terrain on which it runs; body.N.base.asc, the ground without
+it; body.slips.csv, its row of find_slip; road.csv, the road there. `slope site --slips` and `slope fragility` take it.
+"""
+import csv
+import json
+from pathlib import Path
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Tuple
+
+import fiona
+import numpy as np
+
+from .. import disk
+from ..case import slip_deck
+from ..case.slip_deck import PREFIX, Strength
+from ..errors import SlopeError
+from ..mobility import body as falling
+from ..mobility import known, road
+from ..releases import release, release_files
+from ..runs import slip_run
+from ..slips import bishop, bodies, failed
+from ..survey import rasters, vectors
+from .choices import TABLE, Choices
+from .corridor import TERRAIN, Corridor, Window, around, searches, write_line
+
+WINDOWS, SLIPS = "windows", "slips"
+DONE = "window.yaml"        # of a window that was searched
+SHARED = 0.1                # of the smaller body's cells; bodies that share more are one
+NO_BODY = "limits must leave a sphere"      # find_slip, where no body is within its limits
+
+
+class Slip(NamedTuple):
+    """A body: its ground's cells, the heights below it there (NaN beside it), and its row of find_slip, if any."""
+    window: Window
+    base: np.ndarray
+    factor: float
+    row: Optional[Mapping[str, str]] = None
+    name: str = ""          # of a body that was given
+
+    @property
+    def mask(self) -> np.ndarray:
+        return np.isfinite(self.base)
+
+
+def make(choices: Choices, corridor: Corridor, folder: Path, lmp: Path, ranks: int, tell, warn) -> Dict[str, Any]:
+    """The bodies of a route, in its folder: what bodies.yaml says. They are made once."""
+    path = folder / TABLE
+    if path.is_file():
+        return disk.parse_yaml(path, "what `slope route` wrote")
+    found = given(choices, corridor, warn) if choices.bodies else searched(choices, corridor, folder, lmp, ranks, tell)
+    if not found:
+        raise SlopeError(choices.road, f"must have a slope within {choices.corridor:g} m with a factor of safety below "
+                         f"{choices.below:g} (--below), for these strengths")
+    found.sort(key=lambda one: corridor.chainage(*middle(corridor, one)))
+    kept: List[Dict[str, Any]] = []
+    left: List[Dict[str, Any]] = []
+    for number, one in enumerate(found, 1):
+        about = settled(choices, corridor, folder / SLIPS / str(number), one, number)
+        (left if about["why_not"] else kept).append(about)
+        if about["why_not"]:
+            tell(f"body {number} at {about['chainage_m']:.0f} m is left out: {about['why_not']}")
+    if not kept:
+        raise SlopeError(choices.road, "must be reached by a body, all are left out (--reach)", len(left))
+    disk.write_yaml(path, {"bodies": kept, "left_out": left}, "slope route: m, m2, m3; chainage of the road")
+    return {"bodies": kept, "left_out": left}
+
+
+def middle(corridor: Corridor, one: Slip) -> Tuple[float, float]:
+    row, column = np.nonzero(one.mask)
+    x, y = corridor.clip(one.window).transform * (column.mean() + 0.5, row.mean() + 0.5)
+    return float(x), float(y)
+
+
+def shared(one: Slip, other: Slip) -> float:
+    """Of the smaller one's cells, those that both have."""
+    common = one.window.common(other.window)
+    if common.empty:
+        return 0.0
+    both = one.mask[common.inside(one.window)] & other.mask[common.inside(other.window)]
+    return float(both.sum()) / min(one.mask.sum(), other.mask.sum())
+
+
+# --- searched ---
+
+def searched(choices: Choices, corridor: Corridor, folder: Path, lmp: Path, ranks: int, tell) -> List[Slip]:
+    """The bodies of all windows with a factor of safety below the limit, the least first; none shares its ground."""
+    found: List[Slip] = []
+    windows = list(searches(corridor))
+    for k, (window, ground) in enumerate(windows, 1):
+        place = folder / WINDOWS / str(k)
+        if not (place / DONE).is_file():
+            search(choices, corridor, window, ground, place, lmp, ranks)
+            tell(f"window {k} of {len(windows)} is searched")
+        found += [one for one in of_window(place, window) if one.factor < choices.below]
+    found.sort(key=lambda one: one.factor)
+    several: List[Slip] = []
+    for one in found:
+        if all(shared(one, other) <= SHARED for other in several):
+            several.append(one)
+    return several
+
+
+def search(choices: Choices, corridor: Corridor, window: Window, ground, place: Path, lmp: Path, ranks: int) -> None:
+    """Search a window; its folder is whole, or not there."""
+    raster = corridor.clip(window)
+    place.parent.mkdir(parents=True, exist_ok=True)
+    with disk.complete(place, DONE) as new:
+        rasters.write_asc_local(new / TERRAIN, raster, {}, exact=True)
+        asked = slip_deck.Asked(new / TERRAIN, Strength(choices.cohesion, choices.friction, choices.density), (),
+                                choices.water, within=True, volume=limits(choices.volume), depth=limits(choices.depth),
+                                keep=choices.keep)
+        number, warnings = 0, []
+        try:
+            warnings = slip_run.run(asked, ground, raster, new, lmp, ranks, lambda line: None).warnings
+            number = len(bodies.rows_of(new / f"{PREFIX}{bodies.END}"))
+            slip_run.settle(asked._replace(terrain=place / TERRAIN), raster, new, number, place)
+        except SlopeError as error:
+            if NO_BODY not in str(error):
+                raise
+        disk.write_yaml(new / DONE, {"bodies": number, "warnings": warnings}, "slope route: a window of the search")
+
+
+def limits(given_: Optional[List[float]]) -> Optional[Tuple[float, float]]:
+    return (given_[0], given_[1]) if given_ else None
+
+
+def of_window(place: Path, window: Window) -> List[Slip]:
+    """The bodies of a window that was searched."""
+    table = place / f"{PREFIX}{bodies.END}"
+    if not disk.parse_yaml(place / DONE, "what `slope route` wrote")["bodies"]:
+        return []
+    with open(table, newline="", encoding="utf-8") as source:
+        rows = list(csv.DictReader(source))
+    return [Slip(window, rasters.read(place / f"{PREFIX}.{row['rank']}.base.asc").z, float(row["factor"]), row)
+            for row in rows]
+
+
+# --- given ---
+
+def given(choices: Choices, corridor: Corridor, warn) -> List[Slip]:
+    """The bodies of polygons with an attribute depth (m) or volume (m3); SlopeError if two share their ground."""
+    from tempfile import TemporaryDirectory
+    found: List[Slip] = []
+    with TemporaryDirectory() as folder:
+        terrain, polygon = Path(folder, TERRAIN), Path(folder, "polygon.geojson")
+        for name, feature, crs, size in features(choices.bodies):
+            polygon.write_text(feature, encoding="utf-8")
+            local = release.polygons.read_local(polygon, corridor.raster, crs=crs, warn=warn)
+            room = corridor.reach
+            xlo, ylo, xhi, yhi = local.bounds
+            window = corridor.window(xlo - room, ylo - room, xhi + room, yhi + room)
+            if window.empty:
+                raise SlopeError(f"{choices.bodies}: {name}", "must lie in the terrain")
+            rasters.write_asc_local(terrain, corridor.clip(window), {}, exact=True)
+            body = release.body_of(release.Wanted(str(terrain), str(polygon), crs=crs and crs.to_wkt(), **size))
+            for one in body.warnings:
+                warn(one._replace(part=name))
+            slip = release_files.ground_without(body.raster, body.area, body.slip)
+            base = np.where(body.raster.z - slip > 0, slip, np.nan)
+            factor = bishop_factor(choices, body.raster, terrain.with_name("base.asc"), slip)
+            new = Slip(window, base, factor, None, name)
+            for other in found:
+                if shared(new, other) > SHARED:
+                    raise SlopeError(choices.bodies, f"must hold bodies that share at most {SHARED:g} of their cells",
+                                     f"{other.name} and {name} share {shared(new, other):.2g}")
+            found.append(new)
+    return found
+
+
+def features(path: Optional[str]):
+    """Name, GeoJSON, CRS and size of the polygons of a file."""
+    where = vectors.require_file(path)
+    vectors.read(path, "Polygon")        # SlopeError
+    with fiona.open(where.path, layer=where.layer) as data:
+        crs = rasters.CRS.from_wkt(data.crs_wkt) if data.crs_wkt else None
+        for number, feature in enumerate(data, 1):
+            name = f"feature {number}"
+            size = {key: float(value) for key in ("depth", "volume")
+                    if (value := feature["properties"].get(key)) is not None}
+            if len(size) != 1 or not min(size.values()) > 0:
+                raise SlopeError(f"{path}: {name}", "must have one attribute, depth (m) or volume (m3), > 0",
+                                 size or None)
+            yield name, json.dumps(dict(feature["geometry"])), crs, size
+
+
+def bishop_factor(choices: Choices, raster, path: Path, without: np.ndarray) -> float:
+    """Of a body that was given, about the sphere that fits its base; without: the ground without it, for a file."""
+    rasters.write_asc_local(path, raster._replace(z=without), {}, exact=True)
+    strengths = bishop.Strengths(choices.cohesion, np.tan(np.radians(choices.friction)), choices.water or 0.0)
+    body = failed.of_base(raster, path, None, choices.density, None)
+    return float(bishop.factor_of_safety(body.columns, strengths)[0])
+
+
+# --- its ground, and whether it reaches the road ---
+
+def settled(choices: Choices, corridor: Corridor, place: Path, one: Slip, number: int) -> Dict[str, Any]:
+    """Write the folder of a body; what bodies.yaml says of it."""
+    row, column = np.nonzero(one.mask)
+    transform = corridor.clip(one.window).transform
+    (xlo, yhi), (xhi, ylo) = (transform * ends for ends in ((column.min(), row.min()),
+                                                            (column.max() + 1, row.max() + 1)))
+    window, line, start = around(corridor, xlo, ylo, xhi, yhi)
+    raster, base = corridor.clip(window), np.full(corridor.clip(window).z.shape, np.nan)
+    common = one.window.common(window)
+    base[common.inside(window)] = one.base[common.inside(one.window)]
+    place.mkdir(parents=True, exist_ok=True)
+    rasters.write_asc_local(place / TERRAIN, raster, {}, exact=True)
+    whole = base if one.row else np.where(np.isfinite(base), base, raster.z)    # of a given one, the ground without it
+    rasters.write_asc_local(place / f"{PREFIX}.{number}.base.asc", raster._replace(z=whole), {"body": number},
+                            exact=True)
+    write_line(place / "road.csv", line, raster)
+    if one.row:
+        disk.write(place / f"{PREFIX}{bodies.END}", disk.csv_text(one.row, [{**one.row, "rank": str(number)}.values()]))
+    depth = np.nan_to_num(raster.z - base)
+    x, y = middle(corridor, one)
+    return {"body": number, "name": one.name or f"body {number}", "chainage_m": round(corridor.chainage(x, y), 2),
+            "x": round(x, 2), "y": round(y, 2), "factor": one.factor,
+            "volume_m3": float(depth.sum()) * corridor.cell ** 2,
+            "area_m2": int(one.mask.sum()) * corridor.cell ** 2, "depth_m": float(depth.max()),
+            "road_from_m": round(start, 4),
+            **reaches(choices, falling.of_arrays(raster, depth, f"body {number}"), corridor.road)}
+
+
+def reaches(choices: Choices, mass: falling.Body, lane) -> Dict[str, Any]:
+    """The share of known events that reach the road, and why a body is left out, "" if it is not."""
+    try:
+        found = known.of_body(mass, known.choice(confined=choices.confined)).decides
+    except SlopeError as error:     # without a fall path nothing says that it does not reach the road
+        return {"known_share": None, "known_law": str(error), "why_not": ""}
+    met = road.at_road(found.path, lane)
+    share = float(found.exceedance(met.length))
+    why = ""
+    if not met.met and met.beside > mass.volume ** (1 / 3):
+        why = f"its fall path stays {met.beside:.0f} m away from the road"
+    elif share < choices.reach:
+        why = (f"{100 * share:.2g} % of known events of its volume and height go as far as the road, {met.length:.0f} "
+               f"m, {met.fall:.0f} m down (--reach {choices.reach:g})")
+    return {"known_share": share, "known_law": found.law.name, "why_not": why}
+
+
+def columns_of(folder: Path, number: int, density: float) -> bodies.Body:
+    """A body as `slope fragility` takes it."""
+    place = folder / SLIPS / str(number)
+    if (place / f"{PREFIX}{bodies.END}").is_file():
+        return bodies.read(place, place / TERRAIN, density)[0]
+    path = place / f"{PREFIX}.{number}.base.asc"
+    found = failed.of_base(rasters.read_asc_local(place / TERRAIN), path, None, density, None)
+    return bodies.Body(str(number), found.direction, found.columns, path)

@@ -1,0 +1,61 @@
+"""How often per year at least one of several bodies does something, of which each does it with a share of its runs.
+
+The bodies of an earthquake fail together or not, and how they depend is not known: two limits are worked out, and the
+larger counts. Independent: each body has a strength of its own, so that at a peak acceleration a
+
+    P(a) = 1 - (1 - f_1(a) p_1) (1 - f_2(a) p_2) ...
+
+with the fragilities f and the shares p. Dependent: all have the strength of one sample, and of the bodies that have
+failed at a the largest share counts. The frequency is the integral of P over the hazard curve, with what is below its
+first peak not counted, and what is above its last one counted as the last: as seismic/chain.py does.
+"""
+from typing import NamedTuple, Sequence
+
+import numpy as np
+
+from ..errors import SlopeError
+from ..seismic.fragility_files import Fragility
+
+STEPS = 2001        # peaks between the first and the last one of the hazard curve
+
+
+class Rate(NamedTuple):
+    """Per year."""
+    independent: float
+    dependent: float
+
+    @property
+    def counts(self) -> float:
+        return max(self)
+
+
+class Yearly:
+    """The fragilities of bodies with a hazard curve."""
+
+    def __init__(self, found: Fragility):
+        if found.rate is None:
+            raise SlopeError("--fragility", "must be of slope fragility with --hazard, for frequencies per year",
+                             found.folder)
+        self.names, self.rate = [int(one) for one in found.bodies], found.rate
+        first, last = float(self.rate.peaks[0]), float(self.rate.peaks[-1])
+        peaks = np.geomspace(first, last, STEPS)
+        each = found.capacity.reshape(-1, len(self.names))
+        self.fails = np.array([np.searchsorted(np.sort(one), peaks, "left") for one in each.T]).T / len(each)
+        rates = self.rate.at(peaks)
+        ends = np.concatenate([(rates[:-1] - rates[1:]) / 2, [0.0]])
+        self.weights = ends + np.concatenate([[0.0], ends[:-1]])        # trapezoids
+        self.weights[-1] += rates[-1]
+        self.capacity = each
+        with np.errstate(invalid="ignore"):     # at which rate each body fails, in each sample
+            self.fail_rate = np.where(each < last, self.rate.at(np.clip(each, first, last)), 0.0)
+
+    def of(self, bodies: Sequence[int], shares: Sequence[float]) -> Rate:
+        """bodies: their numbers; shares: of their runs."""
+        index = [self.names.index(one) for one in bodies]
+        p = np.asarray(shares, float)
+        independent = float(self.weights @ (1 - np.prod(1 - self.fails[:, index] * p, axis=1)))
+        order = np.argsort(self.capacity[:, index], axis=1)
+        rates = np.take_along_axis(self.fail_rate[:, index], order, axis=1)
+        largest = np.maximum.accumulate(p[order], axis=1)
+        until = np.concatenate([rates[:, 1:], np.zeros((len(rates), 1))], axis=1)
+        return Rate(independent, float((largest * (rates - until)).sum(axis=1).mean()))

@@ -1,0 +1,195 @@
+"""Zones: where something is exceeded with at least a probability, per year or of the runs, as polygons.
+
+Of a cell the bounds of the probability (the runs', 90 %) decide: both at least P, and the cell is in the zone; one on
+either side, and the runs cannot tell. Cells that no run reaches are in neither. Polygons follow the cells; each corner
+is cut at half a cell, which moves the edge by less than that.
+"""
+import math
+from pathlib import Path
+from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
+
+import numpy as np
+from rasterio.features import shapes
+from shapely.geometry import Polygon, shape
+
+from ..case import run_folders
+from ..deposits import deposit
+from ..errors import SlopeError
+from ..survey.geopackage import Layer
+from ..survey.rasters import Raster, crs_name
+from ..tables.study_file import Study
+from . import choices, corridor, reached, results
+from .reached import Source
+from .yearly import Yearly
+
+QUANTITIES = {"thickness": ("max_thickness", "m"), "speed": ("max_speed", "m/s"), "energy": ("max_energy", "J")}
+AT_LEAST, UNSURE = "at least", "runs cannot tell"
+PROPERTIES = {"quantity": "str", "exceeds": "float", "unit": "str", "probability": "float", "return_period": "float",
+              "class": "str", "cells": "int", "area_m2": "float"}
+LAYER = "zones"
+COLOURS = ("215,48,39", "252,141,89", "254,224,139", "217,239,139", "145,191,219")      # of the probabilities
+
+
+class Ground(NamedTuple):
+    """Where the zones are."""
+    raster: Raster
+    sources: Sequence[Source]
+    yearly: Optional[Yearly]
+
+
+class Limit(NamedTuple):
+    """What is exceeded."""
+    quantity: str
+    value: float
+
+
+def probabilities(text: str) -> List[float]:
+    """Those of --zones, each less than the one before."""
+    rule = "must be probabilities > 0 and < 1 that fall, such as 1/100,1/1000,1/5000 or 0.5,0.1"
+    try:
+        found = [float(over) / float(under or 1) for over, _, under in (one.partition("/") for one in text.split(","))]
+    except (ValueError, ZeroDivisionError):
+        found = []
+    if not found or not all(0 < one < 1 for one in found) or any(b >= a for a, b in zip(found[:-1], found[1:])):
+        raise SlopeError("--zones", rule, text)
+    return found
+
+
+def limits(thicker: float, intensity: Optional[str]) -> List[Limit]:
+    """Those of --thicker and --intensity."""
+    if thicker < 0:
+        raise SlopeError("--thicker", "must be >= 0 m", f"{thicker:g}")
+    if intensity is None:
+        return [Limit("thickness", thicker)]
+    quantity, _, values = intensity.partition(":")
+    try:
+        found = [float(one) for one in values.split(",")]
+    except ValueError:
+        found = []
+    if quantity not in QUANTITIES or not found or not all(math.isfinite(one) and one >= 0 for one in found) or any(
+            b <= a for a, b in zip(found[:-1], found[1:])):
+        raise SlopeError("--intensity", "must be thickness, speed or energy with limits >= 0 that rise, such as "
+                         "thickness:0.5,2 (m, m/s, J)", intensity)
+    return [Limit(quantity, one) for one in found]
+
+
+def ground_of(name: str, warn) -> Ground:
+    """Of a route, of a study or a site, or of one run."""
+    folder = Path(name)
+    if (folder / choices.NAME).is_file():
+        asked = choices.read(folder)
+        table = results.bodies_of(folder)
+        return Ground(corridor.read(asked, folder).raster,
+                      [results.read_body(folder, about).source for about in table["bodies"]],
+                      results.yearly_of(asked, folder, table["bodies"]))
+    if not any((folder / place).is_file() for place in ("study.yaml", "site.yaml")):
+        run = deposit.read(run_folders.named_run(name).prefix, None, warn)
+        return Ground(run.raster, [Source(1, [Path(run.prefix)], np.ones(1), 0, run.raster.offset)], None)
+    study = Study.read(folder)
+    known = ((study.about.get("ensemble") or {}).get("known_events") or {}).get("weights")
+    rows = [row for row in study.about["runs"] if row["status"] == "finished" and (
+        row["run"] in known if known else not row.get("batch"))]
+    prefixes = [run_folders.prefix_of(run_folders.summary_of(study.folder, row)) for row in rows]
+    weights = np.array([known[row["run"]] if known else 1.0 for row in rows])
+    run = deposit.read(str(prefixes[0]), None, warn)
+    failed = sum(row["status"] != "finished" for row in study.about["runs"])
+    return Ground(run.raster, [Source(1, prefixes, weights / weights.sum(), failed, run.raster.offset)], None)
+
+
+def check(ground: Ground, wanted: Sequence[float], name: object) -> None:
+    """Raise SlopeError if the hazard curve does not reach a probability."""
+    if ground.yearly is None:
+        return
+    most, least = (1 - math.exp(-float(ground.yearly.rate.rates[end])) for end in (0, -1))
+    for one in wanted:
+        if not least <= one <= most:
+            raise SlopeError("--zones", f"must be within the hazard curve of {name}, {least:.3g} to {most:.3g} per "
+                             "year", f"{one:g}")
+
+
+class Zones(NamedTuple):
+    """Of one limit: classes, of each probability an array of the cells: 1 in the zone, 2 the runs cannot tell, 0."""
+    limit: Limit
+    classes: List[np.ndarray]
+
+
+def of(ground: Ground, limit: Limit, wanted: Sequence[float]) -> Zones:
+    hits = reached.of(ground.sources, ground.raster, QUANTITIES[limit.quantity][0], limit.value)
+    low, high = np.array([bounds(one, ground) for one in hits.sets]).T
+    return Zones(limit, [np.where(low >= one, 1, np.where(high >= one, 2, 0)).astype(np.uint8)[hits.codes]
+                         for one in wanted])
+
+
+def bounds(one, ground: Ground) -> Tuple[float, float]:
+    """Of the probability of a set of bodies and shares."""
+    if not one:
+        return 0.0, 0.0
+    by_number = {source.body: source for source in ground.sources}
+    found = reached.combined([by_number[number] for number, _ in one], [share for _, share in one], ground.yearly)
+    if found.per_year is None:
+        return found.low, found.high
+    return 1 - math.exp(-found.per_year["low"]), 1 - math.exp(-found.per_year["high"])
+
+
+def smoothed(area: Polygon, cell: float) -> Polygon:
+    """A polygon along cells whose corners are cut at half a cell: each takes or adds an eighth of a cell."""
+    def ring(points) -> np.ndarray:
+        corners = np.asarray(points)[:-1]
+        before, after = np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0)
+        ends = [corners + (other - corners) / np.hypot(*(other - corners).T)[:, None] * cell / 2
+                for other in (before, after)]
+        return np.stack(ends, axis=1).reshape(-1, 2)
+    return Polygon(ring(area.exterior.coords), [ring(inner.coords) for inner in area.interiors])
+
+
+def features(ground: Ground, zones: Zones, wanted: Sequence[float]) -> Iterator[Tuple[Polygon, Dict[str, Any]]]:
+    """The polygons of a limit with the values of PROPERTIES, rare ones first."""
+    cell = float(ground.raster.transform.a)
+    for probability, classes in reversed(list(zip(wanted, zones.classes))):
+        for part, kind in shapes(classes, classes > 0, connectivity=4, transform=ground.raster.transform):
+            area = shape(part)
+            yield smoothed(area, cell), {
+                "quantity": zones.limit.quantity, "exceeds": zones.limit.value,
+                "unit": QUANTITIES[zones.limit.quantity][1], "probability": probability,
+                "return_period": 1 / probability if ground.yearly else None, "class": AT_LEAST if kind == 1 else UNSURE,
+                "cells": round(area.area / cell ** 2), "area_m2": area.area}
+
+
+def layer(ground: Ground, several: Sequence[Zones], wanted: Sequence[float]) -> Layer:
+    return Layer("Polygon", PROPERTIES, (one for zones in several for one in features(ground, zones, wanted)))
+
+
+def about(ground: Ground, several: Sequence[Zones], wanted: Sequence[float]) -> Dict[str, Any]:
+    """What zones.yaml says."""
+    area = float(ground.raster.transform.a) ** 2
+    return {"per_year": ground.yearly is not None, "crs": ground.raster.crs and crs_name(ground.raster.crs),
+            "runs": sum(len(one.prefixes) for one in ground.sources), "zones": [
+                {"quantity": zones.limit.quantity, "exceeds": zones.limit.value, "probability": probability,
+                 "at_least_m2": float((classes == 1).sum()) * area,
+                 "cannot_tell_m2": float((classes == 2).sum()) * area}
+                for zones in several for probability, classes in zip(wanted, zones.classes)]}
+
+
+def style(several: Sequence[Zones], wanted: Sequence[float], yearly: bool) -> str:
+    """A style of QGIS: a rule for each limit, probability and class."""
+    rules: List[str] = []
+    symbols: List[str] = []
+    for zones in several:
+        for k, probability in enumerate(wanted):
+            for kind, alpha in ((AT_LEAST, 170), (UNSURE, 40)):
+                number = len(rules)
+                unit = QUANTITIES[zones.limit.quantity][1]
+                words = f"{zones.limit.quantity} &gt; {zones.limit.value:g} {unit}: " + (
+                    f"1/{1 / probability:.6g} a year" if yearly else f"{100 * probability:g} % of the runs")
+                rules.append(
+                    f'<rule key="{number}" symbol="{number}" label="{words}, {kind}" filter="&quot;exceeds&quot; = '
+                    f'{zones.limit.value!r} AND &quot;probability&quot; = {probability!r} AND &quot;class&quot; = '
+                    f'\'{kind}\'"/>')
+                symbols.append(
+                    f'<symbol type="fill" name="{number}" alpha="1"><layer class="SimpleFill">'
+                    f'<prop k="color" v="{COLOURS[k % len(COLOURS)]},{alpha}"/><prop k="outline_color" '
+                    f'v="60,60,60,255"/><prop k="outline_style" v="{"solid" if kind == AT_LEAST else "dot"}"/>'
+                    '<prop k="outline_width" v="0.2"/></layer></symbol>')
+    return ("<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>\n<qgis version=\"3.22\"><renderer-v2 "
+            f"type=\"RuleRenderer\"><rules key=\"all\">{''.join(rules)}</rules><symbols>{''.join(symbols)}</symbols>"
+            "</renderer-v2></qgis>\n")
