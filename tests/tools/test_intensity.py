@@ -79,6 +79,11 @@ def test_a_scatter_of_failing_is_doubted():
     text, = intensity.doubts(intensity.entry("peak", combinations.grouped(rows), []))
     assert text.startswith("at peak 300 the slope fails in some runs")
     assert not intensity.doubts(intensity.entry("peak", combinations.grouped(rows[:2] + rows[4:]), []))
+    # it came down in all runs, and to the road in one only
+    for one in rows:
+        one["centroid_m"] += 100
+    text, = intensity.doubts(intensity.entry("peak", combinations.grouped(rows), []))
+    assert text.startswith("at peak 300 the mass reaches the road in some runs only")
 
 
 @pytest.mark.parametrize("settings, found", [({"peak": ["0", "300"]}, "peak"), ({"peak": ["300"]}, None),

@@ -15,7 +15,7 @@ import tiny_collapse
 from run_helpers import TOOLS, TOP
 
 import slope_tools
-from slope_tools import cli
+from slope_tools import cli, options as options_of
 from slope_tools.commands import calls, polygon, study
 from slope_tools.errors import SlopeError
 
@@ -117,7 +117,7 @@ def test_public_names():
     ({"repeat": ["seed=1", "xoffset=0.5"]}, ["--repeat=seed=1", "--repeat=xoffset=0.5"])])
 def test_arguments_are_the_options(options, words):
     parser = calls.Parser(prog="study", add_help=False)
-    study.add_arguments(parser)
+    options_of.declare(parser, study.Request)
     assert calls.words(parser, options) == words
 
 

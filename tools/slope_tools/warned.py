@@ -46,8 +46,8 @@ WORDS = {
     "left terrain": "{percent:.2g} % of the mass left the terrain in the trial run: use a larger elevation model",
     "not at rest": "the trial run was not at rest after {seconds:.0f} s: the run time of the study is a guess",
     "large": "the body has {millions} million m3: masses of {limit:g} million m3 and more run farther than laboratory "
-             "friction gives; calibrate with a past event of that size (slope calibrate; --mobile has the values of "
-             "one)",
+             "friction gives; how far is what the runs show that known events weigh, or a calibration with a past "
+             "event of that size (slope calibrate)",
     "thin": "the body is {balls:.1f} balls thick on average, below {limit:g}: the numbers will be rough; use more "
             "balls (--balls, --minutes)",
     "first look": "the body is {balls:.1f} balls thick at most, below {limit:g}: a first look; to repeat it, use more "
@@ -108,6 +108,8 @@ WORDS = {
     "at rest": "{which}: {percent:.2g} % of the strengths fail without an earthquake{makes}: if the slope stands, they "
                "are not its own; raise the lower bounds of the strengths",
     "no fit": "{which}: no lognormal fit, the peaks show fewer than three probabilities between 0 and 1",
+    "peaks": "{which}: at {peak:g} gal, the {end} of --peaks, {percent:.2g} % fail, and half of the strengths at "
+             "{half:.0f} gal: give {remedy} peaks",
     "fit is off": "{which}: the lognormal fit is off by up to {difference:.2f}",
     "HCLPF": "{which}: at the HCLPF {percent:.2g} % fail, the lognormal fit says {fitted:.2g} %: it is too favourable "
              "there",

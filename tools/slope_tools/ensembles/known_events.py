@@ -18,8 +18,8 @@ from ..errors import SlopeError
 from ..mobility import body, exceedance, known, run_length, weights
 from ..mobility.results import percent
 from ..sites import site_choices
-from ..statistics import emulator, hazard
-from ..tables import quantities
+from ..statistics import answer, emulator, hazard
+from ..tables import answer_words, quantities
 from . import conditioned, farther, known_influence, known_maps
 from .sample import Sample
 
@@ -27,30 +27,39 @@ FOLDER, HAZARD, WEIGHTS = "known_events", "hazard_known_events.csv", "weights.cs
 LEAST_EFFECTIVE = 20    # runs; fewer say little
 LEFT = 0.01             # share of the released volume beyond the grid, from which on a run's length is not its own
 MIDDLE = 0.05, 0.5, 0.95        # quantiles of the parameters of the weighted runs
+REMOVE = "remove_m3"    # the volume of the headline
 NOT_FARTHER = "released_m3", "stop_time_s"      # columns that a mass that goes farther need not exceed; nor any angle
 
 
 @dataclass(frozen=True)
 class Condition:
-    """What --known asks for; mobility: that of the site; None: of the body of the first run that finished."""
+    """What --known asks for; found: of the site; None: of the body of the first run that finished; named: whether a set
+    was asked for by its name, so that no landslides stand for it."""
     asked: known.Choice
-    mobility: Optional[exceedance.Mobility]
+    found: Optional[known.Found]
+    named: bool = True
 
 
-def check(asked: known.Choice, name: str, deck: Path) -> Condition:
-    """The Condition of a choice (name: as it was given); SlopeError if it does not cover the deck's site."""
+def check(asked: known.Choice, name: Optional[str], deck: Path) -> Condition:
+    """The Condition of a choice; SlopeError if a set that was named (name; None: none was) does not cover the deck's
+    site: of others the landslides count then."""
     found = None
     if (deck.parent / site_choices.NAME).is_file():
-        found = known.one_of_body(body.of_site(deck.parent), asked)
-        if not found.in_range:
-            raise SlopeError("--known", f"must be a set that covers the mass: {'; '.join(found.outside)}", name)
-    return Condition(asked, found)
+        found = known.of_body(body.of_site(deck.parent), asked)
+        if name is not None and not found.strict:
+            assert found.by_set
+            raise SlopeError("--known", f"must be a set that covers the mass: {'; '.join(found.by_set.outside)}", name)
+    return Condition(asked, found, name is not None)
 
 
 def mobility_of(condition: Condition, folder: Path, summary: Path) -> exceedance.Mobility:
-    """The Mobility of the condition; folder, summary: of a run, of whose body it is if there is no site."""
-    if condition.mobility:
-        return condition.mobility
+    """The Mobility by which runs count; folder, summary: of a run, of whose body it is if there is no site."""
+    found = condition.found or found_of(condition, folder, summary)
+    return found.by_set if condition.named and found.by_set else found.decides
+
+
+def found_of(condition: Condition, folder: Path, summary: Path) -> known.Found:
+    """The mass of a run among known events."""
     log = logs.Log(folder / logs.LOG).update()
     terrain = log.terrain and folder / log.terrain
     if not terrain or not terrain.is_file():
@@ -58,7 +67,7 @@ def mobility_of(condition: Condition, folder: Path, summary: Path) -> exceedance
     prefix = run_folders.prefix_of(summary)
     found = deposit.read(prefix, terrain, lambda text: None)
     mass = body.of_ground(found.raster, found.base, terrain, str(prefix))
-    return known.one_of_body(mass, condition.asked)
+    return known.of_body(mass, condition.asked)
 
 
 # --- evaluation ---
@@ -114,11 +123,11 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
     """
     first = next(row for row in rows if row["status"] == "finished")
     summary = run_folders.summary_of(output, first)
-    found = mobility_of(condition, summary.parent, summary)
+    found, asked = mobility_of(condition, summary.parent, summary), condition.asked
     about: Dict[str, Any] = {
-        "set": condition.asked.name, "events": condition.asked.number, "left_out": list(condition.asked.left_out),
-        "confined": condition.asked.confined,
-        "path": exceedance.WORDS[found.chosen], "volume_Mm3": found.volume, "outside": found.outside}
+        "set": asked.name(found), "events": asked.number(found), "left_out": list(asked.left_out),
+        "confined": asked.confined, "path": exceedance.WORDS[found.chosen], "volume_Mm3": found.volume,
+        "outside": found.outside}
     for name in (HAZARD, WEIGHTS):
         (output / name).unlink(missing_ok=True)         # of a study before this one
     runs = Runs(sample, added.batches, rows, found)
@@ -134,6 +143,8 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
     about["quantities"] = {
         name: {"name": names[name][0], "unit": names[name][1],
                "quantiles": [one._asdict() for one in conditioned.quantiles(curve)]} for name, curve in curves.items()}
+    about["to_remove"] = [one._asdict() for one in conditioned.quantiles(
+        curves[REMOVE], (answer.SHARE, *answer.FLOORS))] if REMOVE in curves else None
     about["variables"] = {name: variable(runs, k, main) for k, name in enumerate(sample.names)}
     about["influence"] = {name: known_influence.evaluate(runs, name) for name in main[:1]}
     about["doubts"] = doubts(about, runs)
@@ -183,14 +194,14 @@ def rank(x: np.ndarray, y: np.ndarray, share: np.ndarray) -> Optional[float]:
 def doubts(about: Mapping[str, Any], runs: Runs) -> List[str]:
     """The caveats, in the order of their weight."""
     found, stopped = [], (about.get("added") or {}).get("stopped")
-    if about["reached"] < farther.REACHED:
-        if about["far"] > (1 - farther.REACHED) / 2:
-            found.append(f"no run goes beyond {rounded(about['longest_m'], 4)} m; {percent(about['far'])} of known "
-                         "events do: they count as exceeding every value; "
-                         + (stopped or "vary towards more mobile masses"))
-        if about["short"] > (1 - farther.REACHED) / 2:
-            found.append(f"no run ends before {rounded(about['shortest_m'], 4)} m; {percent(about['short'])} of known "
-                         "events do: they count as the shortest runs, in the bounds as anything")
+    if about["far"] >= 1 - farther.REACHED:
+        found.append(f"no run goes beyond {rounded(about['longest_m'], 4)} m; {percent(about['far'])} of known "
+                     "events do: they count as exceeding every value; "
+                     + (answer_words.text(answer.Reason.read(stopped)) if stopped else
+                        "vary towards more mobile masses"))
+    if about["short"] > (1 - farther.REACHED) / 2 and about["reached"] < farther.REACHED:
+        found.append(f"no run ends before {rounded(about['shortest_m'], 4)} m; {percent(about['short'])} of known "
+                     "events do: they count as the shortest runs, in the bounds as anything")
     found += [f"between {rounded(gap['low_m'], 4)} and {rounded(gap['high_m'], 4)} m no run ends; "
               f"{percent(gap['share'])} of known events do: they count as the runs on either side"
               for gap in about["gaps"]]

@@ -40,15 +40,18 @@ class Ground:
         for other in data.drawn:
             self.touched = self.touched | (other.thickness > 0)
         self.obstacles = obstacles.of_run(one)
+        self.mapped = data.mapped
         self.volume = data.largest_release()
-        self.confined = (data.study or {}).get("study", {}).get("confined", "unknown")      # none in older files
+        about = (data.study or {}).get("study", {})
+        # of older files only whether it is confined, if that
+        self.events = {"confined": about.get("confined", "unknown"), **(about.get("known") or {})}
         if not self.touched.any():
             raise SlopeError(f"{one.prefix}.max_thickness.asc", "must have a cell that the mass ever touched")
 
     @functools.cached_property
     def known(self) -> known.Known:
         """The mass among known events."""
-        return known.of_mass(self.raster, self.before, self.slip_depth, self.volume, self.confined)
+        return known.of_mass(self.raster, self.before, self.slip_depth, self.events)
 
     @functools.cached_property
     def below(self) -> steeper.Below:
@@ -57,9 +60,9 @@ class Ground:
 
     @functools.cached_property
     def reach(self) -> known_reach.KnownReach:
-        """How far known events go; nothing where no set covers the mass."""
-        mobility = self.known.mobility
-        return known_reach.of_mobility(mobility) if mobility else known_reach.NOTHING
+        """How far known events go; nothing where the mass has no fall path."""
+        found = self.known.found
+        return known_reach.of_mobility(found.decides) if found else known_reach.NOTHING
 
     @property
     def source(self):
@@ -76,7 +79,7 @@ class Ground:
 
     def boxes(self):
         """Local xlo, ylo, xhi, yhi of what the mass touched, and of what else is shown and not far from it."""
-        found = [box_of(self.raster, self.touched)]
+        found = [box_of(self.raster, self.touched if self.mapped is None else self.touched | (self.mapped.share > 0))]
         far = max(found[0][2] - found[0][0], found[0][3] - found[0][1])
         near = geometry.box_of(self.raster).intersection(box(*found[0]).buffer(far))
         for one in (*self.obstacles.footprints.values(), *map(LineString, self.obstacles.lines.values()),

@@ -9,7 +9,7 @@ from ..case import decks
 from ..plots.ground import Ground
 from ..plots.section import Section
 from ..survey.rasters import crs_name
-from ..tables.quantities import NAMES, of_run
+from ..tables.quantities import NAMES, name_of, of_run
 from . import (body, chain_part, client_part, convergence_part, heading, intensity_part, limits_part, mobility_part,
                road_part)
 from .charts import Charts, REMOVE, TERMS, differences, quantities
@@ -23,16 +23,18 @@ from .warnings import AMBER, warnings
 
 # a variable of a deck and the comment on it, which has its unit
 MEANING = re.compile(r"^\s*variable\s+(\w+)\s+index\s.*?#\s*(.*?)\s*$", re.MULTILINE)
+LENGTH = "length_m"     # its head is quantities.name_of()
 # columns of a study's table: head, unit, key
 COLUMNS = (("released", "m3", "released_m3"), ("99 % within", "m", "distance_99_m"),
-           ("reach angle", "deg", "reach_99_deg"), ("length along the fall path", "m", "length_m"),
+           ("reach angle", "deg", "reach_99_deg"), ("", "m", LENGTH),
            ("farthest ball", "m", "front_m"), ("thickness", "m", "thickness_m"), ("ended at", "s", "stop_time_s"),
            ("stop angle", "deg", "stop_angle_deg"))
 ROAD_COLUMNS = (("to remove", "m3", "remove_m3"), ("on the road", "m3", "remove_on_road_m3"),
                 ("beyond it", "m3", "beyond_road_m3"), ("road blocked", "m", "blocked_m"))
+MOST_ROWS, ENDS = 40, 12    # of the study's table, and of each end of a longer one
 MEANS = (("to remove", "m3", "remove_m3"), ("on the road", "m3", "remove_on_road_m3"),
          ("beyond it", "m3", "beyond_road_m3"), ("99 % within", "m", "distance_99_m"),
-         ("length along the fall path", "m", "length_m"), ("centroid moved", "m", "centroid_m"))
+         ("", "m", LENGTH), ("centroid moved", "m", "centroid_m"))
 
 
 class Page:
@@ -73,12 +75,13 @@ class Page:
             "warnings": self.warnings, "answer": answer(data, numbers),
             "cards": cards(data, numbers), "travel": travel_rows(data, numbers),
             "balance": balance(data, numbers), "rows": self.rows(), "columns": self.columns(),
+            "which_rows": self.which_rows(),
             "means": self.means(), "differences": differences(data, numbers),
             "maps": maps.of_run(), "section": self.picture(*self.section.picture()), "charts": charts.all(),
             "intensity": intensity_part.content(data, numbers, self.picture),
             "chain": chain_part.content(data, numbers, self.picture),
             "hit": Structures(data, numbers, self.picture, self.ground).content(),
-            "road": road_part.content(data, numbers, maps),
+            "road": road_part.content(data, numbers, maps), "mapped": mobility_part.mapped(data, numbers),
             "road_chart": charts.has_removal(), "removal": maps.removal(removal), "over_all": maps.over_all(),
             "beyond": self.beyond(),
             "reference": self.reference and self.reference_tables(),
@@ -112,7 +115,7 @@ class Page:
         data = self.data
         wanted = COLUMNS + (ROAD_COLUMNS if data.road is not None else ())
         same = len({round(row["released_m3"], 3) for row in data.finished}) == 1
-        return [(head, unit, key) for head, unit, key in wanted
+        return [(name_of(key, data.finished) if key == LENGTH else head, unit, key) for head, unit, key in wanted
                 if any(row.get(key) is not None for row in data.finished) and not (same and key == "released_m3")]
 
     def beyond(self):
@@ -135,7 +138,7 @@ class Page:
         data, best = self.data, (self.data.study or {}).get("conservative") or {}
         varied = [key for key, several in data.settings.items() if len(several) > 1] or list(data.settings)
         found = []
-        for row in data.rows:
+        for row in self.in_table():
             repeat = ", ".join(f"{name} {value}" for name, value in (row.get("repeat") or {}).items()) or "base"
             entry = {"set": [row["set"][key] for key in varied], "repeat": repeat, "run": row["run"],
                      "number": data.number(row["run"]),
@@ -147,6 +150,27 @@ class Page:
                 entry["end"], entry["at_rest"] = row.get("end_short", row["end"]), row["at_rest"]
             found.append(entry)
         return found
+
+    def in_table(self):
+        """The runs of the table: of a long one those with the least and the most of what counts, and failed ones."""
+        rows = self.data.rows
+        if len(rows) <= MOST_ROWS:
+            return rows
+        key = self.counts()[2]
+        known = sorted((row for row in self.data.finished if row.get(key) is not None), key=lambda row: row[key])
+        return [*known[:ENDS], *known[-ENDS:], *[row for row in rows if row["status"] != "finished"][:ENDS]]
+
+    def counts(self):
+        """The column by which the runs of a long table are chosen."""
+        columns = {column[2]: column for column in self.columns()}
+        return next(columns[key] for key in (REMOVE, "distance_99_m", "front_m") if key in columns)
+
+    def which_rows(self):
+        """What the table says of its runs."""
+        if len(self.data.rows) <= MOST_ROWS:
+            return "All runs"
+        return (f"Of {len(self.data.rows)} runs those with the least and the most in the column "
+                f"\"{self.counts()[0]}\", in its order; study.csv has all")
 
     def cell(self, head, unit, key, row, name):
         value = row.get(key)
@@ -163,7 +187,8 @@ class Page:
         study = self.data.study
         if not (study and self.data.repeats and study.get("combinations")):
             return None
-        heads = [(head, unit, key) for head, unit, key in MEANS if all(key in entry for entry in study["combinations"])]
+        heads = [(name_of(key, self.data.finished) if key == LENGTH else head, unit, key)
+                 for head, unit, key in MEANS if all(key in entry for entry in study["combinations"])]
         varied = [key for key, several in self.data.settings.items() if len(several) > 1]
         rows = []
         for entry in study["combinations"]:

@@ -11,8 +11,8 @@ from ..warned import OTHER
 
 SMALL = 1e-6            # of the released volume
 NAMED = 4               # runs that a line names
-# kinds of warnings of a study that the page says in its own words here, or beside the maps
-SAID = ("failed", "moving", "lost", "no CRS", "large")
+# kinds of warnings of a study that the page says in its own words here; of all its parts, too: beside the maps
+SAID, BESIDE = ("failed", "moving", "lost", "large"), "no CRS"
 RED, AMBER = "red", "amber"
 
 
@@ -41,6 +41,8 @@ def of_study(data):
     whole: Dict[Any, Any] = {}
     entries = []
     for one in data.warnings():
+        if one.kind == BESIDE:
+            continue
         if one.part or not one.runs:
             if one.part or one.kind not in SAID:
                 whole.setdefault((one.part, one.kind, one.text if one.kind == OTHER else None), []).append(one)

@@ -1,10 +1,11 @@
 """The tables over all runs of a study, and over its combinations: as a CSV and on the screen."""
-from typing import Any, Dict, Tuple
+from typing import Any, Dict, List, Tuple
 
 from rich.table import Table
 
 from .. import disk
 from ..deposits import rest, travel_shares
+from ..mobility.run_length import STRAIGHT
 from ..statistics import headline
 from . import combinations
 
@@ -14,6 +15,7 @@ COLUMNS = ("released_m3", "on_grid_m3", "off_grid_m3", "lost_m3", "residual_m3",
 ROAD_COLUMNS = ("remove_m3", "remove_on_road_m3", "remove_beside_road_m3", "beyond_road_m3", "blocked_m",
                 "axis_thickness_m")
 STOP = "stop_angle_deg"     # of the ground, where it is known
+MAPPED = ("overlap", "beyond_mapped_m")     # against a mapped deposit
 LANE_COLUMNS = ("remove_lane_m3", "lane_hours", "clear_hours")      # of those that are asked for
 MAYBE = (*travel_shares.COLUMNS, "length_m", "length_deg", "wall_s", "beyond_road_m3")     # that may be unknown
 ANSWER = {True: "yes", False: "no"}
@@ -27,13 +29,18 @@ SHOWN: Dict[str, Tuple[str, Any]] = {      # head, format
 SHOWN_ROAD: Dict[str, Tuple[str, Any]] = {
     "remove_m3": ("to remove", None), "remove_on_road_m3": ("on the road", None),
     "beyond_road_m3": ("beyond it", None), "blocked_m": ("blocked m", "{:.0f}")}
+# heads of the columns that a narrow screen lacks first; then it lacks the last ones
+LESS = ("wall s", "deg", "lost", "on grid", "moves", "farthest ball m", "released", "blocked m", "stop s",
+        "99 % within m", "beyond it", "length m", "end", "on the road")
 
 
 def table(settings, repeated, rows, defaults):
     """The CSV over all runs."""
     columns = [*COLUMNS, *(ROAD_COLUMNS if any("remove_m3" in row for row in rows) else ()),
-               *(key for key in (STOP, *LANE_COLUMNS) if any(row.get(key) is not None for row in rows)),
+               *(key for key in (STOP, *LANE_COLUMNS, *MAPPED) if any(row.get(key) is not None for row in rows)),
                "status", "error"]
+    if any(row.get("length_is") == STRAIGHT for row in rows):
+        columns.insert(columns.index("length_deg") + 1, "length_is")
     more = [name for name in repeated if name not in settings]
 
     def line(row):
@@ -57,6 +64,30 @@ def varied(settings):
     same = {name: several[0] for name, several in settings.items() if len(several) == 1}
     caption = "in all runs " + ", ".join(f"{name} {value}" for name, value in same.items()) if same else None
     return [name for name in settings if name not in same], caption
+
+
+def width_of(shown: Table) -> int:
+    """Characters that a table needs so that no cell is cut; its heads may be broken between words."""
+    return 1 + sum(3 + least(column) for column in shown.columns)
+
+
+def least(column) -> int:
+    return max(map(len, (*str(column.header).split(), *column.cells)), default=0)
+
+
+def fit(shown: Table, width: int) -> List[str]:
+    """Take columns out of a table until it fits a width; their heads."""
+    left_out = []
+    while width_of(shown) > width and len(shown.columns) > 1:
+        heads = [str(column.header) for column in shown.columns]
+        head = next((head for head in LESS if head in heads), heads[-1])
+        del shown.columns[heads.index(head)]
+        left_out.append(head)
+    room = width - width_of(shown)
+    for k, column in enumerate(shown.columns):
+        more = min(max(room, 0), max(len(str(column.header)) - least(column), 0))
+        column.width, column._index, room = least(column) + more, k, room - more
+    return left_out
 
 
 def runs_shown(settings, rows, scatters, title) -> Table:

@@ -27,7 +27,8 @@ def text(reason: Reason) -> str:
     """A reason in words."""
     number, bound = reason.number or 0.0, reason.bound or 0.0
     if reason.kind is Kind.BALLS:
-        return f"on the road lies the volume of {number:.2g} ball{'s' * (f'{number:.2g}' != '1')}, fewer than {bound:g}"
+        balls = "less than one ball" if number < 1 else f"{number:.2g} ball{'s' * (f'{number:.2g}' != '1')}"
+        return f"on the road lies the volume of {balls}, fewer than {bound:g}"
     if reason.kind is Kind.MOBILITY:
         longest = "there is no deposit" if reason.number is None else f"the longest one ends at {rounded(number, 3)} m"
         return f"no run reaches {rounded(bound, 3)} m, as half of known events of this volume and height do; {longest}"
