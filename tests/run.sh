@@ -33,6 +33,11 @@ if [[ $kind == all ]] && /usr/bin/python3 -c "import coverage" 2>/dev/null; then
   mkdir -p "$SLOPE_COVERAGE"
 fi
 
+# cases that several test programs work on are made once, see tests/conftest.py
+SLOPE_SHARED=$(mktemp -d)
+export SLOPE_SHARED
+trap 'rm -rf "$SLOPE_SHARED"' EXIT
+
 tests=0 began=$SECONDS
 ctest --test-dir "$top/build" -j "${JOBS:-2}" --output-on-failure "${choice[@]}" || tests=$?
 took=$((SECONDS - began))

@@ -309,6 +309,7 @@ def test_wide_surfaces_on_an_extruded_profile(tmp_path):
     assert (row["along"], row["across"], row["straight"]) == (1, 15, 0)
 
 
+@pytest.mark.long
 def test_ellipsoids_are_not_above_spheres_on_any_number_of_ranks(tmp_path):
     of_10_m(tmp_path)
     run_deck(deck(more="volume 500 5000"), tmp_path)

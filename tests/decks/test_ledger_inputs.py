@@ -90,7 +90,10 @@ def check(folder, deck, values, begin_end=0.02, others=False):
     assert others or abs(last["others"]) < 1e-6 * dissipated
 
 
-@pytest.mark.parametrize("deck", SHORT)
+LONG = "10_tochigi/in.tochigi", "17_pyramid/in.pyramid"
+
+
+@pytest.mark.parametrize("deck", [pytest.param(deck, marks=[pytest.mark.long] * (deck in LONG)) for deck in SHORT])
 def test_closes(tmp_path, deck):
     folder = tmp_path / "case"
     shutil.copytree((INPUTS / deck).parent, folder)

@@ -531,6 +531,7 @@ def test_a_study_of_a_line_is_that_of_the_polygon_and_is_reported(here):  # noqa
     assert "--road-width 4" in reproduced and "--lane 1.5 --clearing 20 --loosening 1.25" in reproduced
 
 
+@pytest.mark.long
 def test_a_site_with_a_line_and_the_mobility_of_it(tmp_path):
     test_site.write_files(tmp_path)
     test_site.write_layer(tmp_path / "axis.geojson", [(28, 0), (28, 80)], kind=LineString)

@@ -36,9 +36,12 @@ pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreference
 
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory):
+def made(shared):
     """A study of two combinations with a road, in out, and the same with a repeat, in repeated; their folder."""
-    folder = tmp_path_factory.mktemp("made")
+    return shared("report", make_studies)
+
+
+def make_studies(folder):
     deck = write_case(folder / "case")
     text = deck.read_text()
     # a step above the rule's: a warning in the log
@@ -52,7 +55,6 @@ def made(tmp_path_factory):
                                "--set", "steps=1200", "-o", name, "--road", "case/road.csv", "--mesh", "4", *more],
                               cwd=folder, env={**os.environ, "LMP": LMP}, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr
-    return folder
 
 
 @pytest.fixture

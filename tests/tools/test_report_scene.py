@@ -23,7 +23,6 @@ sys.path.insert(0, str(TOOLS))
 
 from slope_tools import cli  # noqa: E402
 from slope_tools.animation import film, frames, scene, view  # noqa: E402
-from slope_tools.plots import figure_charts, figure_maps  # noqa: E402
 from slope_tools.plots.ground import Ground, box_of  # noqa: E402
 from slope_tools.report.data import Data  # noqa: E402
 
@@ -61,14 +60,9 @@ def page(ran):
 
 
 @pytest.fixture(autouse=True)
-def blank_pictures(monkeypatch):
-    """Maps and charts, which take their time, are blank but in `page`."""
-    monkeypatch.setattr(figure_maps, "mesh_map", lambda *_, **__: ("data:image/png;base64,AAAA", False))
-    for name in ("value_map", "terrain_map", "small_maps"):
-        monkeypatch.setattr(figure_maps, name, lambda *_, **__: "data:image/png;base64,AAAA")
-    for name in ("chart", "bars", "convergence"):
-        monkeypatch.setattr(figure_charts, name, lambda *_, **__: "data:image/svg+xml;base64,AAAA")
-    monkeypatch.setattr(figure_charts, "section", lambda *_: ("data:image/svg+xml;base64,AAAA", 1, None))
+def blank(blank_pictures):
+    """Maps and charts are blank but in `page`."""
+    blank_pictures()
 
 
 @pytest.fixture

@@ -27,6 +27,7 @@ sys.path.insert(0, str(TOOLS))
 from slope_tools import cli, programs  # noqa: E402  (after the path is set)
 from slope_tools.case import decks  # noqa: E402
 from slope_tools.commands import study as study_command  # noqa: E402
+from slope_tools.deposits import volume_files  # noqa: E402
 from slope_tools.ensembles import farther  # noqa: E402
 from slope_tools.releases import release_chart  # noqa: E402
 from slope_tools.sites import site_budget, site_choices, site_deck, site_warnings  # noqa: E402
@@ -211,6 +212,7 @@ def test_the_report_of_a_sites_folder(done, tmp_path):
 
 def test_the_study_is_resumed(done, monkeypatch):
     monkeypatch.setattr(study_command, "write_report", lambda *_: None)
+    monkeypatch.setattr(volume_files, "draw", lambda path, *_: path.touch())
     folder, _, _ = done
     before = {path: path.stat().st_mtime_ns for path in (folder / "mine").rglob("finished.yaml")}
     again = inside(folder, "study", "mine", "--paper")
@@ -240,10 +242,10 @@ def test_no_run_is_made_twice(done):
     assert len({tuple(sorted(one.items())) for one in values}) == len(values) == 20
 
 
-@pytest.mark.long
 def test_runs_of_an_older_version_are_taken_over(done, tmp_path, monkeypatch):
     """They were in the folders of the parts, and are left there."""
     monkeypatch.setattr(study_command, "write_report", lambda *_: None)
+    monkeypatch.setattr(volume_files, "draw", lambda path, *_: path.touch())
     mine = tmp_path / "mine"
     shutil.copytree(done[0] / "mine", mine)
     for name in ("dem.tif", "release.geojson", "road.geojson"):
