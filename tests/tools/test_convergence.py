@@ -184,10 +184,10 @@ def test_what_speaks_against_a_size_error(tmp_path):
     same = {"rolling": "0", "field_d": "1.250", "out": "b", "xoffset": "0"}
     road = {"cut_angle": 30.0, "mesh": 10.0}
     assert errors.doubts("in.tiny", same, ["xoffset"], road) == []
-    assert errors.doubts("in.other", {**same, "rolling": "0.1", "field_d": "0.9"}, ["rolling", "xoffset"],
-                         {"cut_angle": 35.0, "mesh": 10.0}) == [
-        "the size error is that of another deck, in.tiny",
-        "the size error was found with field_d 1.25 instead of 0.9, cut angle 30 instead of 35"]
+    assert [one.numbers for one in errors.doubts(
+        "in.other", {**same, "rolling": "0.1", "field_d": "0.9"}, ["rolling", "xoffset"],
+        {"cut_angle": 35.0, "mesh": 10.0})] == [
+            {"deck": "in.tiny"}, {"other": "field_d 1.25 instead of 0.9, cut angle 30 instead of 35"}]
 
 
 @pytest.mark.parametrize("runs, field, d, words", [

@@ -16,7 +16,7 @@ import sys
 import traceback
 from pathlib import Path
 
-from . import disk, warned
+from . import disk, findings
 from .errors import SlopeError
 from .provenance import version
 
@@ -129,11 +129,11 @@ def main(argv=None):
         else:
             commands.add_parser(name, help=summary)
     args = parser.parse_args(with_new_names(asked, argv))
-    warned.as_json = args.progress == "json"
+    findings.as_json = args.progress == "json"
 
     def fail(text):
-        if warned.as_json:
-            warned.say_json("error", command=args.command, text=str(text))
+        if findings.as_json:
+            findings.say_json("error", command=args.command, text=str(text))
         else:
             print(f"slope {args.command}: {text}", file=sys.stderr)
     try:

@@ -6,7 +6,7 @@ Order of the work: check what was observed (observations.py), make runs batch af
 import argparse
 from pathlib import Path
 
-from .. import options, warned
+from .. import options, findings
 from ..case import data_files, decks
 from ..case.settings import check_settings, one_value_each
 from ..deposits.score import THRESHOLD
@@ -97,7 +97,7 @@ def run(args):
     wanted.check(args.road is not None)
     terrain = study.terrain_of(args.deck, fixed)
     if terrain:
-        wanted.check_place(terrain, warned.printer("calibrate"))
+        wanted.check_place(terrain, findings.printer("calibrate"))
     settings = {name: [value] for name, value in fixed.items()}
     files = data_files.data_files(args.deck, {**settings, **repeated})
     setup = run_arguments.setup_of(args)

@@ -1,8 +1,7 @@
 """slope export: every raster of a run as a GeoTIFF in the coordinates of the survey, for a GIS."""
 from pathlib import Path
-from typing import List
 
-from .. import disk, warned
+from .. import disk, findings
 from ..case import run_folders
 from ..deposits import deposit
 from ..deposits.export import file_of, layers, write
@@ -36,8 +35,7 @@ def add_arguments(parser):
 
 def run(args):
     """Do the command; raises SlopeError on bad input. Prints what was written."""
-    warnings: List[str] = []
-    warn = warned.warner("export", warnings)
+    warn, warnings = findings.warner("export")
     named = run_folders.named_run(args.prefix)
     run_ = deposit.read(named.prefix, args.terrain, warn)
     folder = args.output or (named.folder / "export" if named.folder else Path(f"{named.prefix}.export"))
@@ -48,7 +46,7 @@ def run(args):
              "origin": {"east": place.offset[0], "north": place.offset[1]}, "cell": run_.cell,
              "run": {"slope_version": run_.summary.get("slope_version"), "time": run_.summary["time"]}, "rasters": []}
     if not any(layer.kind == "base" for layer in found):
-        warn(warned.Warned("no base", {"file": f"{named.prefix}.base.asc"}))
+        warn(findings.Finding("no base", {"file": f"{named.prefix}.base.asc"}))
     with disk.complete(folder, "export.yaml") as new:
         for layer in rasters.progress(found, "writing GeoTIFFs"):
             about["rasters"].append(write(new, layer, place))

@@ -3,6 +3,7 @@ from pathlib import Path
 
 from .. import disk
 from ..errors import SlopeError
+from ..findings import printer
 from ..mobility import body, fall_path, known, results, road
 from ..options import add_overwrite
 from ..releases import release
@@ -10,7 +11,6 @@ from ..sites import site_choices
 from ..sites.site_layers import ROAD
 from ..survey import lines, roads
 from ..survey.crs import as_crs
-from ..warned import printer
 from . import known_arguments, road_arguments
 from .release_arguments import add_body, wanted
 

@@ -2,7 +2,7 @@
 import os
 from pathlib import Path
 
-from .. import disk, warned
+from .. import disk, findings
 from ..case import decks
 from ..releases import release, release_files
 from ..survey import vectors
@@ -45,7 +45,7 @@ def run(args):
     disk.check_standing(args.output.with_name(args.output.name + ".yaml"), made, sources, args.overwrite)
     body = release.body_of(asked)
     print(release.text(body), flush=True)
-    tell = warned.printer("release")
+    tell = findings.printer("release")
     for line in body.warnings:
         tell(line)
     for path in (os.path.relpath(args.terrain, args.output.parent), args.output.name):

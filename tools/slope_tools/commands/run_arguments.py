@@ -9,12 +9,12 @@ from rich.console import Console
 from ..case.settings import check_settings
 from ..ensembles import known_events
 from ..errors import SlopeError
+from ..findings import printer
 from ..options import count, number, whole
 from ..sites import site_choices
 from ..statistics import designs
 from ..studies.setup import Road, Setup
 from ..tables import intensity
-from ..warned import printer
 from . import known_arguments, road_arguments
 
 

@@ -7,6 +7,7 @@ from typing import Any, Dict
 
 from ..ensembles import known_study
 from ..errors import SlopeError
+from ..findings import printer
 from ..options import count, number, whole
 from ..plots import site_map
 from ..programs import find_lmp
@@ -18,7 +19,6 @@ from ..slips import bodies
 from ..studies import site_ground
 from ..survey import roads
 from ..survey.rasters import UNITS
-from ..warned import printer
 from . import known_arguments, road_arguments
 
 # option -> section and key of site.yaml

@@ -1,9 +1,9 @@
 """slope stability: the slip surfaces with the least factor of safety below a terrain."""
 import argparse
 from pathlib import Path
-from typing import Dict, List, Optional, Tuple
+from typing import Dict, Optional, Tuple
 
-from .. import disk, warned
+from .. import disk, findings
 from ..case import slip_deck
 from ..case.slip_deck import PREFIX
 from ..errors import SlopeError
@@ -91,8 +91,7 @@ def run(args):
     disk.check_folder(args.output, FILES, [args.terrain], args.overwrite)
     raster = rasters.read_asc_local(args.terrain)
     polygon = polygons.read_local(args.within, raster, args.local) if args.within else None
-    kept: List[str] = []
-    warn = warned.warner("stability", kept)
+    warn, kept = findings.warner("stability")
     with disk.complete(args.output, FILES[-1]) as folder:
         said = slip_run.run(asked, polygon, raster, folder, lmp, args.np or 1,
                             lambda line: print(line, flush=True))
@@ -119,13 +118,13 @@ def warnings_of(args, rows, masks, rock):
     import numpy as np
 
     if 0 < args.cohesion < FAINT:
-        yield warned.Warned("in kPa", {"value": args.cohesion})
+        yield findings.Finding("in kPa", {"value": args.cohesion})
     if args.density < LIGHT:
-        yield warned.Warned("in kN", {"value": args.density})
+        yield findings.Finding("in kN", {"value": args.density})
     for row, mask in zip(rows, masks):
         share = 0.0 if rock is None else np.isnan(rock[mask]).mean()
         if share > 0:
-            yield warned.Warned("bedrock", {"body": int(row["rank"]), "percent": 100 * float(share)})
+            yield findings.Finding("bedrock", {"body": int(row["rank"]), "percent": 100 * float(share)})
 
 
 def asked_of(args) -> slip_deck.Asked:

@@ -2,7 +2,7 @@
 import argparse
 from pathlib import Path
 
-from .. import disk, warned
+from .. import disk, findings
 from ..deposits import travel
 from ..options import add_overwrite, number, whole
 
@@ -54,7 +54,7 @@ def run(args):
     wanted = travel.Wanted(args.axis, args.origin, args.along, args.across, args.type)
     travel.check(args.dumps, args.start, wanted)
     disk.check_folder(args.output, travel.FILES, args.dumps, args.overwrite)
-    about = travel.of_dumps(args.dumps, args.start, wanted, args.output, warned.printer("travel"))
+    about = travel.of_dumps(args.dumps, args.start, wanted, args.output, findings.printer("travel"))
     print(summary(about, args.output))
 
 

@@ -4,7 +4,7 @@ Order of the work: read the run, the road and its axis; cut (cut.py); sum per me
 """
 from pathlib import Path
 
-from .. import disk, warned
+from .. import disk, findings
 from ..deposits import volume
 from ..deposits.volume import CUT_ANGLE, MUCH_BELOW, SAMPLES
 from ..options import add_overwrite, number, whole
@@ -60,7 +60,7 @@ def run(args):
     volume.check(wanted)
     folder = args.output or Path(f"{args.prefix}.volume")
     disk.check_folder(folder, volume.FILES, [args.prefix, args.road], args.overwrite)
-    found = volume.of_run(args.prefix, wanted, args.terrain, warned.printer("volume"))
+    found = volume.of_run(args.prefix, wanted, args.terrain, findings.printer("volume"))
     volume.write(found, folder, picture=not args.no_picture)
     print(summary(found.about, folder))
 

@@ -8,7 +8,7 @@ from .. import digits
 from ..deposits import travel_shares
 from ..ensembles import known_study
 from ..statistics import headline
-from . import body, caveats, road_part, structures_part
+from . import body, road_part, structures_part, warnings
 from .numbers import farthest_of
 
 WORDS = {"rolling": "the rolling resistance", "friction": "the friction", "d": "the size of the model's balls",
@@ -19,14 +19,18 @@ WORDS = {"rolling": "the rolling resistance", "friction": "the friction", "d": "
          "surface", "step": "the time step"}
 
 
-def content(data, ground, numbers, answers: Sequence[Optional[Dict[str, Any]]], warnings: int) -> Dict[str, Any]:
-    """What the template takes; answers: those of the study, the first that there is counts."""
+def content(data, ground, numbers, answers: Sequence[Optional[Dict[str, Any]]], found,
+            listed: int) -> Dict[str, Any]:
+    """What the template takes; answers: those of the study, the first that there is counts; found: all findings.
+
+    listed: how many warnings the appendix has.
+    """
     main = next((one for one in answers if one), None)
-    told, rest = caveats.shown(caveats.caveats(data, ground), warnings)
     return {"body": body.sentence(body.of_data(data, ground)),
             "answer": of_answer(data, main, numbers) if main else of_reach(data, numbers),
             "sentences": sentences(data, ground, numbers, bool(main))
-            + road_part.on_first_page(data, numbers, bool(main and main["withheld"])), "caveats": told, "rest": rest,
+            + road_part.on_first_page(data, numbers, bool(main and main["withheld"])),
+            "caveats": warnings.first_page(found, ground)[:warnings.MOST], "rest": warnings.rest_of(listed),
             "basis": basis(data)}
 
 

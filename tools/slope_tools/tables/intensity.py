@@ -14,6 +14,7 @@ from rich.table import Table
 from .. import disk
 from ..case.settings import as_number
 from ..errors import SlopeError
+from ..findings import Finding
 from ..statistics import hazard
 from .combinations import Group
 
@@ -103,12 +104,11 @@ def point(at: float, group: Group, volumes: Sequence[float]) -> Dict[str, Any]:
             "exceed": exceed}
 
 
-def doubts(about: Mapping[str, Any]) -> List[str]:
+def doubts(about: Mapping[str, Any]) -> List[Finding]:
     """The caveat on a common scatter of all runs: chance decides whether the slope fails at all."""
     mixed = sorted({f"{one['at']:g}" for line in about["lines"] for one in line["points"]
                     if one["smallest_m3"] <= STANDS * one["released_m3"] < one["largest_m3"]}, key=float)
-    return [f"at {about['variable']} {', '.join(mixed)} the slope fails in some runs and stands in others: the scatter "
-            "is that between the two, not that of a volume; use the probabilities at each intensity"] if mixed else []
+    return [Finding("fails at times", {"variable": about["variable"], "values": ", ".join(mixed)})] if mixed else []
 
 
 def table(about: Mapping[str, Any]) -> str:
