@@ -296,7 +296,7 @@ def test_what_a_repeat_does_not_change_counts_once(slope):
     deck.write_text(deck.read_text().replace("variable  xoffset", "variable  seed index 0\nvariable  xoffset"))
     status, out, err = slope("--converge d=1.25,1 --set steps=100 --repeat seed=1,2 --of centroid_m -o out")
     assert status == 0, err
-    assert "a repeated variable has no effect, to the last digit, in steps_100_d_1.25_seed_1, " in err
+    assert "a repeated variable has no effect, to the last digit: left out (steps_100_d_1.25_seed_1; " in err
     sizes = yaml.safe_load(Path("out/converge.yaml").read_text())["quantities"]["centroid_m"]["sizes"]
     assert [size["runs"] for size in sizes] == [1, 1]
 
