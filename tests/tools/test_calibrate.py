@@ -18,15 +18,13 @@ import twins
 from run_helpers import called
 from tiny_collapse import LMP, TOP, write_case
 
+from slope_tools.deposits import travel_shares
+from slope_tools.errors import SlopeError
+from slope_tools.fitting import calibration, fit_words, observations
+from slope_tools.statistics import backanalysis, designs, distributions, emulator, tempering
+from slope_tools.survey import rasters
+
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools.deposits import travel_shares  # noqa: E402
-from slope_tools.errors import SlopeError  # noqa: E402
-from slope_tools.fitting import calibration, fit_words, observations  # noqa: E402
-from slope_tools.statistics import backanalysis, designs, distributions, emulator, tempering  # noqa: E402
-from slope_tools.survey import rasters  # noqa: E402
-
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 PROGRAM = [sys.executable, str(TOOLS / "slope")]
 
@@ -255,6 +253,7 @@ def load():
 WORDS = "--vary friction=5:40 --vary rolling=0:0.4"
 
 
+@pytest.mark.long
 def test_a_calibration_of_small_collapses_goes_on_after_a_kill(slope, here):
     truth(slope)
     words = f"calibrate case/in.tiny --observed mapped.tif {WORDS} --repeat xoffset=0.2 --runs 16 --jobs 2 -o out"

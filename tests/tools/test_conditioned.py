@@ -9,16 +9,16 @@ import rasterio
 import yaml
 from scipy import stats
 
+import known_twins as twins
 from run_helpers import called
 from tiny_collapse import read_asc
 
-import known_twins as twins  # noqa: E402  (run_helpers has set the path)
-from slope_tools import cli  # noqa: E402
-from slope_tools.ensembles import conditioned, known_events, known_maps  # noqa: E402
-from slope_tools.mobility import weights  # noqa: E402
-from slope_tools.report import known_part  # noqa: E402
-from slope_tools.report.numbers import Numbers  # noqa: E402
-from slope_tools.statistics.hazard import weighted  # noqa: E402
+from slope_tools import cli
+from slope_tools.ensembles import conditioned, known_events, known_maps
+from slope_tools.mobility import weights
+from slope_tools.report import known_part
+from slope_tools.report.numbers import Numbers
+from slope_tools.statistics.hazard import weighted
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 LONGER = 1.9

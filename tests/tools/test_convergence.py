@@ -1,10 +1,8 @@
 """tools/slope sensitivity --converge: the fit against numbers by hand, its intervals, the command, the size error."""
 import csv
 import math
-import os
 import shlex
 import statistics
-import sys
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -14,16 +12,12 @@ import yaml
 from scipy import stats
 
 from run_helpers import called
-from tiny_collapse import TOP
 
-TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools.errors import SlopeError  # noqa: E402
-from slope_tools.statistics import convergence  # noqa: E402
-from slope_tools.studies import size_study  # noqa: E402
-from slope_tools.tables import size_error  # noqa: E402
-from slope_tools.tables.size_error import SizeErrors  # noqa: E402
+from slope_tools.errors import SlopeError
+from slope_tools.statistics import convergence
+from slope_tools.studies import size_study
+from slope_tools.tables import size_error
+from slope_tools.tables.size_error import SizeErrors
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 SIZES = (4.0, 2.5, 1.25, 0.9)

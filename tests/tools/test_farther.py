@@ -1,20 +1,17 @@
 """Runs that an ensemble adds towards longer ones, on a stand-in: how they count, when they are made, when they end."""
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy import stats
 
-from run_helpers import TOOLS
 
-sys.path.insert(0, str(TOOLS))
+import known_twins as twins
 
-import known_twins as twins  # noqa: E402  (after the path is set)
-from slope_tools.ensembles import conditioned, farther, sample  # noqa: E402
-from slope_tools.errors import SlopeError  # noqa: E402
-from slope_tools.mobility import weights  # noqa: E402
-from slope_tools.statistics import designs, distributions  # noqa: E402
+from slope_tools.ensembles import conditioned, farther, sample
+from slope_tools.errors import SlopeError
+from slope_tools.mobility import weights
+from slope_tools.statistics import designs, distributions
 
 RUNS, SEEDS, PATH = 64, 4, 1e5
 LEVELS = np.array([5e3, 2e4, 4e4, 7e4])     # m3

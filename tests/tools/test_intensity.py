@@ -1,22 +1,17 @@
 """Volume against an intensity: probabilities against closed forms, a study whose collapse grows with it, its report."""
 import csv
-import os
 import re
 import shlex
-import sys
 from pathlib import Path
 
 import pytest
 import yaml
 
 from run_helpers import called
-from tiny_collapse import LMP, TOP, write_case
+from tiny_collapse import LMP, write_case
 
-TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools import cli, errors  # noqa: E402
-from slope_tools.tables import combinations, intensity  # noqa: E402
+from slope_tools import cli, errors
+from slope_tools.tables import combinations, intensity
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 STUDY = "case/in.tiny --set peak=0,300,900 --repeat xoffset=0.25 --road case/road.csv --local --jobs 1 -o out"

@@ -19,11 +19,11 @@ from shapely.geometry import Point, Polygon, box, mapping
 from run_helpers import (CRS_M, EAST, NORTH, TOP, here, run_command, write_asc,  # noqa: F401  (here: a fixture)
                          write_geojson)
 
-from slope_tools import findings  # noqa: E402
-from slope_tools.commands import release as release_command  # noqa: E402
-from slope_tools.drawing import maps  # noqa: E402
-from slope_tools.releases import release_area, release_bodies, release_chart, release_slbl, release_solve  # noqa: E402
-from slope_tools.survey import polygons, rasters  # noqa: E402
+from slope_tools import findings
+from slope_tools.commands import release as release_command
+from slope_tools.drawing import maps
+from slope_tools.releases import release_area, release_bodies, release_chart, release_slbl, release_solve
+from slope_tools.survey import polygons, rasters
 
 DATA = next((folder for folder in (top / "shared" / "data" for top in TOP.parents) if folder.is_dir()), TOP / "none")
 FRANK, S1000 = DATA / "frank", DATA / "s1000"

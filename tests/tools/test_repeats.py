@@ -1,28 +1,22 @@
 """tools/slope study --repeat: which runs are made, the headline over them, what is called a trend, rest and travel."""
 import csv
-import os
 import shlex
 import statistics
-import sys
 from pathlib import Path
 
 import pytest
 import yaml
 
 from run_helpers import called
-from tiny_collapse import TOP
 
-TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools import schemas  # noqa: E402
-from slope_tools.case import run_folders  # noqa: E402
-from slope_tools.deposits import rest, travel_shares  # noqa: E402
-from slope_tools.errors import SlopeError  # noqa: E402
-from slope_tools.findings import Finding  # noqa: E402
-from slope_tools.runs import repeats  # noqa: E402
-from slope_tools.statistics import headline  # noqa: E402
-from slope_tools.tables import combinations, study_file, study_table  # noqa: E402
+from slope_tools import schemas
+from slope_tools.case import run_folders
+from slope_tools.deposits import rest, travel_shares
+from slope_tools.errors import SlopeError
+from slope_tools.findings import Finding
+from slope_tools.runs import repeats
+from slope_tools.statistics import headline
+from slope_tools.tables import combinations, study_file, study_table
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 ROAD = "--road case/road.csv --local"

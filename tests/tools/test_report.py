@@ -526,7 +526,8 @@ def test_red_on_a_deposit_that_moves(slope, here, folder):
     assert status == 0 and len(red) == 1 and "not at rest" in red[0] and "42 % of the volume" in red[0]
     assert "WARNING: " in out and "not at rest" in out
     # first in the appendix, on the client's page in its words, and really red
-    assert page.index('id="appendix"') < page.index('<li class="red">not at rest') < page.index("<figure", page.index('id="appendix"'))
+    assert page.index('id="appendix"') < page.index('<li class="red">not at rest') < \
+        page.index("<figure", page.index('id="appendix"'))
     assert "more than a tenth of the mass in motion" in page[:page.index('id="appendix"')]
     assert re.search(r"\.warnings \.red \{[^}]*color: #7d0c12", page) and '--red: #b3131b' in page
     assert not [level for level, _ in reader.warnings if level == "green"]

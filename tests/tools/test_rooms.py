@@ -8,9 +8,7 @@ import pytest
 
 from run_helpers import TOOLS
 
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools import cli  # noqa: E402  (after the path is set)
+from slope_tools import cli
 
 PACKAGE = TOOLS / "slope_tools"
 MODULES = sorted(PACKAGE.rglob("*.py"))

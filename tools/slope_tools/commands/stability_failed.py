@@ -1,4 +1,5 @@
 """slope stability --failed: on which strengths a body that failed has F = 1."""
+from typing import Any, Sequence, Tuple
 
 from .. import disk, findings
 from ..errors import SlopeError
@@ -7,15 +8,15 @@ SEARCH = ("cohesion", "friction", "layer", "volume", "depth", "within", "method"
 APART = 0.1         # of the cohesion, between the axis of the nearest sphere and a far one
 
 
-def run(args):
-    """Do it; raises SlopeError on bad input. Prints points of the line."""
+def run(args: Any) -> None:
+    """Do it, a stability.Request; raises SlopeError on bad input. Prints points of the line."""
     from ..slips import back, back_files, columns, failed
     from ..survey import rasters, resampling
 
     for name in SEARCH:
         if getattr(args, name):
             raise SlopeError(f"--{name}", "must not be given with --failed, which searches no surface")
-    horizontal, vertical = shaking = inertia(args)
+    horizontal, vertical = shaking = inertia(args.seismic or [0.0])
     ratio = args.water or 0.0
     if not args.density > 0:
         raise SlopeError("--density", "must be > 0 kg/m3", f"{args.density:g}")
@@ -44,9 +45,8 @@ def run(args):
     print(f"written to {args.output}: {' '.join(back_files.FILES)}")
 
 
-def inertia(args):
+def inertia(given: Sequence[float]) -> Tuple[float, float]:
     """KH and KV of --seismic."""
-    given = args.seismic or [0.0]
     if len(given) > 2 or given[0] < 0 or not abs(given[-1]) < 1:
         raise SlopeError("--seismic", "must be KH >= 0, or KH KV with KV above -1 and below 1",
                          " ".join(f"{one:g}" for one in given))
