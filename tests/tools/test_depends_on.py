@@ -56,12 +56,12 @@ def test_other_values_have_another_folder(one, other):
 
 # --- a site: its options are choices in its site.yaml, which slope study holds against those of the deck ---
 
-SET_CHOICES = {"slips", "body", "mobile"}       # of several keys
+SET_CHOICES = {"slips", "body"}       # of several keys
 TRIAL = {"lmp", "jobs"}                         # what the trial run finds is written as a choice
 # keys that slope study and the report read from site.yaml
 LATER = {("project", "name"), ("project", "client"), ("project", "author"), ("road", "cut_angle"), ("road", "mesh"),
          *(("road", key) for key in ("width", "from", "blocked", "lane", "clearing", "loosening")),
-         ("study", "rolling"), ("study", "spacing"), ("known", "set"), ("known", "confined"),
+         ("study", "rolling"), ("study", "spacing"), ("study", "points"), ("known", "set"), ("known", "confined"),
          ("study", "xoffset"), ("study", "yoffset"), ("study", "zoffset"), ("study", "sizes")}
 KEYS = [(section, key) for section, about in site_choices.sections() for key in about["properties"]]
 NOT_FILES = {("terrain", "crs"), ("terrain", "assign_crs"), ("terrain", "z_unit"), ("release", "shape"),

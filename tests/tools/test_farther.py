@@ -5,15 +5,16 @@ import numpy as np
 import pytest
 from scipy import stats
 
-
 import known_twins as twins
 
-from slope_tools.ensembles import conditioned, farther, sample
+from slope_tools.ensembles import conditioned, farther, known_study, sample
 from slope_tools.errors import SlopeError
 from slope_tools.mobility import weights
 from slope_tools.statistics import designs, distributions
+from slope_tools.statistics.answer import Code
+from slope_tools.tables import answer_words
 
-RUNS, SEEDS, PATH = 64, 4, 1e5
+RUNS, SEEDS, PATH = 64, 4, farther.End(1e5, 0.0)
 LEVELS = np.array([5e3, 2e4, 4e4, 7e4])     # m3
 
 
@@ -122,32 +123,80 @@ def test_nothing_is_added_where_the_runs_reach_far_enough(tmp_path):
     added = farther.Added(tmp_path, planned())
     u = designs.points(designs.SOBOL, 3, RUNS, 1)
     lengths = np.geomspace(500, 9000, RUNS)
-    assert twins.exceedance(9000.0) < 0.025 and twins.exceedance(500.0) > 0.975
-    assert added.propose(u, lengths, twins.exceedance(lengths), PATH) is None
-    assert (added.stopped, added.number, list(tmp_path.iterdir())) == ("", 0, [])
-    # nor where only the sluggish ones are missing
-    beyond = np.minimum(twins.exceedance(lengths), 0.7)
-    assert added.propose(u, lengths, beyond, PATH) is None and added.stopped == ""
+    for far in (0.049, 0.0):        # though many are missing before the shortest
+        assert added.propose(u, lengths, np.linspace(0.7, far, RUNS), PATH) is None
+        assert (added.stopped, added.number, list(tmp_path.iterdir())) == (None, 0, [])
+    lengths = response(u)[0]
+    beyond = np.linspace(0.7, 0.051, RUNS)[np.argsort(np.argsort(lengths))]
+    assert added.propose(u, lengths, beyond, PATH) is not None
 
 
 def test_why_no_more_are_added(tmp_path):
     u = designs.points(designs.SOBOL, 3, RUNS, 1)
     lengths = response(u)[0]
     beyond = twins.exceedance(lengths)
+    far = float(beyond.min())
 
     def stopped(added, runs=RUNS, lengths=lengths, path=PATH):
         assert added.propose(u[:runs], lengths[:runs], beyond[:runs], path) is None
         return added.stopped
 
-    assert "take a larger terrain" in stopped(farther.Added(tmp_path, planned()), path=lengths.max())
-    assert "too few" in stopped(farther.Added(tmp_path, planned()), runs=7)
+    for path in (farther.End(float(lengths.max()), 0.0), farther.End(1e5, far - 0.02)):    # or hardly any are left
+        assert stopped(farther.Added(tmp_path, planned()), path=path) == (
+            Code.TERRAIN, {"share": path.share, "path_m": path.length})
+    assert farther.Added(tmp_path, planned()).propose(u, lengths, beyond, farther.End(1e5, far - 0.03)) is not None
+    assert stopped(farther.Added(tmp_path, planned()), runs=7).code is Code.FEW
     u[0] = 0, 0, 1          # the corner where the longest run is
-    assert "give wider ranges" in stopped(farther.Added(tmp_path, planned()), lengths=response(u)[0])
+    found = stopped(farther.Added(tmp_path, planned()), lengths=response(u)[0])
+    assert found.code is Code.RANGE and found.numbers["ends"].startswith("a 0.0")
+    assert "range" in answer_words.text(found) and "a 0.0" in answer_words.text(found)
     u[0] = 0.5
     added = farther.Added(tmp_path, planned())
-    for k in range(4):
+    for _ in range(8):
         assert len(added.propose(u, lengths, beyond, PATH).points) == 8
-    assert stopped(added) == "32 runs were added; a larger --sample allows more"
+    assert stopped(added) == (Code.RUNS, {"points": 64})
+
+
+# --- beyond the bounds of the distributions ---
+
+def test_values_beyond_the_bounds():
+    one = distributions.distribution("friction", "5:30", "--vary", "").widened(2.0, 30.0)
+    assert one.places == pytest.approx((-0.12, 1)) and [one.value(u) for u in (-0.12, -0.04, 0, 0.5, 1, 1.1, -0.5)] == [
+        "2", "4", "5", "17.5", "30", "30", "2"]
+    assert [one.unit(text) for text in ("2", "4", "5", "17.5", "30")] == pytest.approx([-0.12, -0.04, 0, 0.5, 1])
+    plain = distributions.distribution("friction", "5:30", "--vary", "")
+    assert (plain.places, plain.value(-0.1), plain.unit("2")) == ((0, 1), "5", 0.0)
+    known_ones = [distributions.distribution(*words.split("="), "--vary", "") for words in known_study.VARY]
+    wide = sample.Sample(RUNS, designs.SOBOL, 1, tuple(known_ones)).widened(known_study.WIDE)
+    assert wide.about["wide"] == {"friction": [2.0, 30.0], "spacing": [0.2, 0.95]}
+    assert {one.name: (one.low, one.high) for one in known_ones} == {
+        "friction": (5, 30), "rolling": (0, 0.15), "spacing": (0.3, 0.95), "field_e": (0.05, 0.5), "xoffset": (0, 0.99)}
+
+
+def test_runs_are_added_beyond_the_bounds(tmp_path):
+    """Where longer ones are, as far as the wider bounds, which are named where no values are left."""
+    wide = planned().widened({"a": (-0.2, 1.0)})
+    added = farther.Added(tmp_path, wide)
+    u = designs.points(designs.SOBOL, 3, RUNS, 1)
+    lengths = 10 ** (3 + 0.2 * (1 - u[:, 0]))
+    beyond = np.linspace(0.9, 0.3, RUNS)[np.argsort(np.argsort(lengths))]
+    batch = added.propose(u, lengths, beyond, PATH)
+    assert batch.box[0][0] == pytest.approx(-0.2) and batch.box[0][1] <= 0.1
+    values = [float(one["a"]) for one in batch.points]
+    assert min(values) < 0 and min(values) >= -0.2
+    u[:4, 0] = -0.2
+    lengths[:4], beyond[:4] = 10 ** (3 + 0.2 * 1.2), 0.2
+    lengths[0] *= 1.1
+    assert added.propose(u, lengths, beyond, PATH) is None
+    assert added.stopped == (Code.RANGE, {"ends": "a -0.20"})
+
+
+def test_the_design_has_no_points_beyond_the_bounds():
+    """By hand: 4 points in the cube, 1 in a box half of which lies beyond."""
+    batch = farther.Batch([[-0.1, 0.1], [0.0, 1.0]], [{}])
+    places = np.array([[0.05, 0.5], [0.5, 0.5], [0.6, 0.5], [0.7, 0.5], [-0.05, 0.5]])
+    assert farther.ratio(places, [0, 0, 0, 0, 1], [batch]) == pytest.approx(
+        [5 / (4 + 1 / 0.2), 5 / 4, 5 / 4, 5 / 4, 5 / (1 / 0.2)])
 
 
 def test_a_study_is_continued(tmp_path):

@@ -1,4 +1,4 @@
-"""tools/slope study SITE: weighted by known events where a set covers the mass, else by the paper's method; said."""
+"""tools/slope study SITE: by the paper's method, and weighted by known events, for masses of all sizes."""
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,10 +9,12 @@ from test_site import gis  # noqa: F401
 from test_site_anew import inside, mine, once  # noqa: F401
 from tiny_collapse import LMP
 
-from slope_tools.ensembles import known_study
-from slope_tools.mobility import body, exceedance, known
+from slope_tools.commands import known_arguments, study as study_command
+from slope_tools.ensembles import known_events, known_study
+from slope_tools.errors import SlopeError
+from slope_tools.mobility import body, known
 from slope_tools.sites import site_budget, site_choices
-from slope_tools.studies import site_study
+from slope_tools.studies import results, site_study
 from slope_tools.survey import rasters
 
 CELL = 20.0
@@ -35,29 +37,54 @@ def study(capsys, monkeypatch, words):
     return called(capsys, ["study", *words.split(), "--dry-run"])
 
 
-def test_a_mass_that_known_events_cover(large, capsys, monkeypatch):
-    status, out, err = study(capsys, monkeypatch, "big")
+@pytest.fixture
+def small(mine, gis):  # noqa: F811
+    """A site of few m3, which no set covers."""
+    return mine
+
+
+@pytest.mark.parametrize("name, words", [("large", "big"), ("small", "mine")])
+def test_both_studies_of_masses_of_all_sizes(request, capsys, monkeypatch, name, words):
+    """The paper's 19 runs, of which one more has half the step with a road, and 64 that known events weigh."""
+    request.getfixturevalue(name)
+    status, out, err = study(capsys, monkeypatch, words)
     assert status == 0, err
-    assert out.startswith("weighted by known events of this volume and height, rock_avalanches; --paper takes the ")
-    assert "64 runs" in out
-    assert study(capsys, monkeypatch, "big --unconfined")[0] == 0
-    status, _, err = study(capsys, monkeypatch, "big --paper --unconfined")
+    assert out.startswith("weighted by known events of this volume and height, beside the paper's method")
+    assert " 64 runs, 0 of them finished" in f" {out.splitlines()[-1]}"
+    assert sum("rolling_" in line and "friction_" in line for line in out.splitlines()) == 64
+    assert "19 runs, 0 of them finished" in out or "20 runs, 0 of them finished" in out
+    assert study(capsys, monkeypatch, f"{words} --unconfined")[0] == 0
+    status, _, err = study(capsys, monkeypatch, f"{words} --paper --unconfined")
     assert status == 2 and "must be given with --known" in err
-    status, out, _ = study(capsys, monkeypatch, "big --paper")
+    status, out, _ = study(capsys, monkeypatch, f"{words} --paper")
     assert status == 0 and out.startswith("by the paper's method, as asked for\n") and "64 runs" not in out
+    path = request.getfixturevalue(name) / "site.yaml"
+    path.write_text(path.read_text().replace("points: 64", "points: 0"))
+    status, out, _ = study(capsys, monkeypatch, words)
+    assert status == 0 and out.startswith("by the paper's method; site.yaml asks for no runs") and "64 runs" not in out
 
 
-def test_a_mass_that_no_set_covers(mine, capsys, monkeypatch):  # noqa: F811
-    status, out, err = study(capsys, monkeypatch, "mine")
-    assert status == 0, err
-    volume = site_choices.found(mine)["body"]["volume"]
-    assert out.startswith("by the paper's method; no set of known events covers this volume, "
-                          f"{volume:,.0f} m3; ours has 0.1 to 498 million m3\n")
+def test_the_ensemble_varies_ground_and_restitution(large, capsys, monkeypatch):
+    """Friction, rolling, spacing, restitution on the field and the lattice; runs that are added go farther."""
+    seen = []
+    monkeypatch.setattr(study_command, "perform", lambda setup, *rest, **more: None)
+    monkeypatch.setattr(study_command.results, "Questions", lambda *args, **more: seen.append(args[4]))
+    monkeypatch.setattr(study_command.site_study, "run", lambda *_: site_study.Done(None, None))
+    assert study(capsys, monkeypatch, "big")[0] == 0
+    [order] = seen
+    assert {one.name: (one.low, one.high) for one in order.sample.variables} == {
+        "friction": (5, 30), "rolling": (0, 0.15), "spacing": (0.3, 0.95), "field_e": (0.05, 0.5), "xoffset": (0, 0.99)}
+    assert {one.name: one.wide for one in order.sample.variables if one.wide} == {
+        "friction": (2, 30), "spacing": (0.2, 0.95)}
+    assert order.condition.found.by_set.in_range and not order.condition.named
+    seen.clear()
+    assert study(capsys, monkeypatch, "big --sample 16 --vary friction=5:9 --known rock_avalanches")[0] == 0
+    assert [one.wide for one in seen[0].sample.variables] == [None] and seen[0].condition.named
 
 
 def test_other_grounds_at_both_ends_of_rolling(mine, capsys, monkeypatch):  # noqa: F811
     """One position each, beside the rolling resistances and positions on the site's own ground."""
-    status, out, err = study(capsys, monkeypatch, "mine")
+    status, out, err = study(capsys, monkeypatch, "mine --paper")
     assert status == 0, err
     runs = [line.split(":")[0] for line in out.splitlines() if line.startswith("rolling_") and "_spacing_" in line]
     assert runs == [*(f"rolling_{rolling}_spacing_0.9{more}" for rolling in ("0", "0.05", "0.1")
@@ -81,26 +108,38 @@ def test_refused(mine, capsys, monkeypatch, words, line):  # noqa: F811
 
 
 def test_why_not(large, monkeypatch):
-    assert known_study.why_not(large, 3e5, False, "unknown") == ""
-    assert "a mapped deposit is given" in known_study.why_not(large, 3e5, True, "unknown")
-    for volume in (9e4, 6e8):
-        assert "no set of known events covers this volume" in known_study.why_not(large, volume, False, "unknown")
-        assert known_study.points(volume) == 0
-    asked = []
-    monkeypatch.setattr(known, "one_of_body",
-                        lambda _, choice: asked.append(choice.confined) or SimpleNamespace(outside=[]))
-    assert known_study.why_not(large, 3e5, False, "yes") == "" and asked == ["yes"]     # as its ensemble is weighted
-    monkeypatch.undo()
-    monkeypatch.setattr(exceedance, "of_body",
-                        lambda *_: exceedance.Mobility(None, 0.3, None, {}, "", None, ["the fall is small"]))
-    assert known_study.why_not(large, 3e5, False, "unknown") == "the fall is small"
+    """Level ground has no fall path; any other mass is compared, with a mapped deposit or without."""
+    assert known_study.why_not(large) == ""
+    whole = body.of_site(large)
+    monkeypatch.setattr(body, "of_site", lambda _: whole._replace(raster=whole.raster._replace(
+        z=np.full_like(whole.raster.z, 7.0))))
+    assert "cannot be compared with known events" in known_study.why_not(large) and "flat" in known_study.why_not(large)
+
+
+def test_known_of_site_yaml_reaches_the_study(mine, capsys, monkeypatch):  # noqa: F811
+    """Its row weighs the ensemble, and withholds the paper's number; without one landslides count, and do not."""
+    choices = (mine / "site.yaml").read_text()
+    for given, path, named in (("null", "all", False), ("debris_flows:channelized", "channelized", True)):
+        (mine / "site.yaml").write_text(choices.replace("  set: null", f"  set: {given}"))
+        asked = known_arguments.choice_of(SimpleNamespace(known=None, left_out=[], confined=None), mine)
+        condition = known_events.check(asked, None, mine / "in.site")
+        found = known_events.mobility_of(condition, mine, mine)
+        assert found.law.path == path and found.in_range and (condition.found.strict is not None) == named
+        assert asked.about() == {"set": None if given == "null" else given, "left_out": [], "confined": "unknown"}
+        setup = SimpleNamespace(deck=mine / "in.site")
+        assert results.known_of(setup, results.Questions({}, {}, ())) == {
+            "set": asked.about()["set"], "confined": "unknown"}
+        assert known.of_about(results.known_of(setup, results.Questions({}, {}, ()))).row == asked.row
+    with pytest.raises(SlopeError, match="--known: must be a set that covers the mass"):
+        known_events.check(known.choice("rock_avalanches"), "rock_avalanches", mine / "in.site")
 
 
 def test_the_estimate_is_of_the_study_that_is_made(large):
     choices = site_choices.read(large)
-    assert site_choices.found(large)["study"]["runs"] == known_study.POINTS == 64
-    plan = site_budget.plan(choices, 64)
-    assert plan.runs == 64 and not plan.half_step and "up to half as many more" in plan.text
+    assert site_choices.found(large)["study"]["runs"] == 19 + choices["study"]["points"] == 83
+    plan = site_budget.plan(choices)
+    assert plan.runs == 83 and not plan.half_step and "64 runs weighted by known events" in plan.text
+    choices["study"]["points"] = 0
     plan = site_budget.plan(choices)
     assert plan.runs == 19 and not plan.half_step       # no road: nothing to compare
     assert site_budget.plan({**choices, "road": {**choices["road"], "file": "road.csv"}}).half_step
@@ -116,8 +155,9 @@ def test_the_method_is_in_the_results(mine, monkeypatch, capsys):  # noqa: F811
     monkeypatch.setattr(site_study.study, "perform", lambda setup, settings, todo, collect: collect(todo, None))
     monkeypatch.setattr(site_study, "sizes", lambda *_: site_study.NOT_ASKED)
     monkeypatch.setattr(site_study, "step_of", lambda *_: None)
-    _, out, _ = study(capsys, monkeypatch, "mine")
-    assert seen == [out.splitlines()[0]] and seen[0].startswith("by the paper's method; ")
+    for words, method in (("mine --paper", known_study.ASKED), ("mine", known_study.BESIDE)):
+        study(capsys, monkeypatch, words)
+        assert seen.pop() == method
 
 
 def test_a_site_of_a_mass_on_top_of_the_terrain(large, inside):  # noqa: F811

@@ -10,6 +10,7 @@ from shapely.geometry import box
 from run_helpers import TOP
 from test_mobility_path import RADIUS, STEEP, disc, hillside, terrain
 
+from slope_tools.digits import rounded  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
 from slope_tools.mobility import body, exceedance, fall_path, known, landslides, results, road  # noqa: E402
 from slope_tools.releases import release  # noqa: E402
@@ -86,6 +87,50 @@ def test_it_begins_at_the_toe_and_never_rises():
     crest = ROW.beyond("landslides_wide", path.length[1:toe], one.volume, np.maximum(path.fall[1:toe], 0.1))
     assert crest.min() < 0.5 * one.curves["landslides_wide"][toe]       # what a running minimum from there would keep
     assert not one.said[:toe].any() and one.said[toe:].all()
+
+
+def test_at_most_where_the_curve_begins_below_a_share():
+    """From 1 before the toe it falls by what nobody knows: no length between two points, but the one it begins at."""
+    found = known.of_body(gentle(), known.choice())
+    one = found.by_row
+    toe = float(one.path.length[np.flatnonzero(one.said)[0]])
+    for kind, curve in one.curves.items():
+        for share in results.SHARES:
+            at, length = one.at_most(share, kind), one.length_at(share, kind)
+            if share > curve[one.said][0]:
+                assert at == toe and one.path.length[np.flatnonzero(one.said)[0] - 1] < length < toe
+            else:
+                assert at is None and (length is None or length >= toe)
+    told = results.of_events(one)["landslides_wide"]
+    assert one.curves["landslides_wide"][one.said][0] < 0.9
+    assert told["lengths_m"]["0.95"] is None and told["at_most_m"]["0.95"] == toe
+    assert told["lengths_m"]["0.1"] == one.length_at(0.1, "landslides_wide") and told["at_most_m"]["0.1"] is None
+    text = results.lengths(one, "landslides_wide")
+    assert text.startswith(f"95 % beyond at most {rounded(toe, 4)} m, 90 % beyond at most {rounded(toe, 4)} m, ")
+    assert f"10 % beyond {rounded(one.length_at(0.1, 'landslides_wide'), 4)} m" in text
+
+
+def test_both_scatters_at_an_edge():
+    """Of a row the smaller and the larger; of a set twice what counts; before the toe what holds there."""
+    one = known.of_body(gentle(), known.choice()).by_row
+    length = one.length_at(0.2)
+    assert one.shares(length) == tuple(sorted(float(one.exceedance(length, kind)) for kind in one.law.both))
+    assert one.shares(length)[0] < one.shares(length)[1] == pytest.approx(one.exceedance(length))
+    first = float(one.path.length[np.flatnonzero(one.said)[0]])
+    assert one.shares(0.5 * first) == one.shares(first) and one.shares(first)[1] < 1
+    by_set = known.of_body(disc(hillside(), (300, 300)), known.choice()).by_set
+    share = float(by_set.exceedance(1500.0))
+    assert by_set.shares(1500.0) == (share, share) and 0 < share < 1
+
+
+def test_what_withholds_a_number():
+    """A set that covers the mass, or a row that was asked for; not the landslides that stand for the set."""
+    small, large = gentle(), disc(hillside(), (300, 300))
+    assert known.of_body(small, known.choice()).strict is None
+    assert known.of_body(small, known.choice("rockfalls")).strict.law.type == "rockfalls"
+    assert known.of_body(large, known.choice()).strict.law.kinds[-1] == "mixture"
+    asked = known.choice("rockfalls", confined="no")
+    assert known.of_about(asked.about()) == asked and known.of_about({}) == known.choice()
 
 
 def test_a_set_says_nothing_of_falls_that_none_of_its_events_had():

@@ -15,10 +15,10 @@ from slope_tools.report import mobility_part  # noqa: E402
 from slope_tools.report.numbers import Numbers  # noqa: E402
 
 
-def case(lengths, volume=0.78e6, study=True, scar=1):
-    """data, ground and numbers of runs of these lengths (m)."""
+def case(lengths, volume=0.78e6, study=True, scar=1, **about):
+    """data, ground and numbers of runs of these lengths (m); about: of the known events."""
     mass = disc(hillside(), (300, 300))
-    ground = ground_of(mass.raster._replace(z=np.zeros_like(mass.depth)), mass.raster.z, scar * mass.depth, volume)
+    ground = ground_of(mass.raster._replace(z=np.zeros_like(mass.depth)), mass.raster.z, scar * mass.depth, **about)
     rows = [{"length_m": length, "released_m3": volume} for length in lengths]
     one = SimpleNamespace(distance=lengths[0]) if lengths and lengths[0] else None
     data = SimpleNamespace(study=study or None, finished=rows, result=None, label=lambda one: "run",
@@ -26,14 +26,14 @@ def case(lengths, volume=0.78e6, study=True, scar=1):
     return data, ground, Numbers()
 
 
-def ground_of(raster, before, depth, volume=0.78e6):
+def ground_of(raster, before, depth, **about):
     return SimpleNamespace(raster=raster, before=before, slip_depth=depth,
-                           known=known_events.of_mass(raster, before, depth, volume))
+                           known=known_events.of_mass(raster, before, depth, about))
 
 
 @pytest.fixture(scope="module")
 def known():
-    return exceedance.of_body(disc(hillside(), (300, 300)), SET)
+    return known_events.of_body(disc(hillside(), (300, 300)), known_events.choice()).by_set
 
 
 def test_a_run_lies_where_its_length_does(known):
@@ -75,21 +75,35 @@ def test_a_terrain_that_ends_before_half_of_the_events(columns, length):
 
 
 @pytest.mark.parametrize("change, words", [
-    ({"volume": 49e3}, ("No set of known events covers", "0.049 million m3", "0.1 to 498")),
     ({"lengths": [None]}, ("No run has a deposit",)),
     ({"scar": 0}, ("cannot be compared", "a body")),
+    ({"set": "gone.csv"}, ("cannot be compared", "gone.csv")),
 ])
 def test_otherwise_it_says_why(change, words):
     (_, text), = mobility_part.content(*case(**{"lengths": [900.0], **change}))
-    assert all(word in text for word in words) and "rock avalanches of this" not in text
+    assert all(word in text for word in words) and "of this volume" not in text
+
+
+@pytest.mark.parametrize("scar, set_, name", [
+    (0.05, None, "69 translational slides, all paths"),
+    (1, "rockfalls", "rockfalls, all paths"), (1, "debris_flows:chan", "debris flows on channelized paths")])
+def test_landslides_where_no_set_covers_the_mass_or_they_were_asked_for(scar, set_, name):
+    """A small mass, or a row of site.yaml: as far as these, by the larger of both scatters, and by each."""
+    data, ground, numbers = case([900.0], scar=scar, set=set_)
+    one = ground.known.found.decides
+    assert one.law.name in mobility_part.content(data, ground, numbers)[0][1] and name in one.law.name
+    text = mobility_part.content(data, ground, numbers)[0][1]
+    shares = [percent(one.where_lies(900.0, kind).at_most) for kind in (one.chosen, *one.law.both)]
+    assert f"as far as {shares[0]} of landslides" in text and "not of cuts and embankments of roads" in text
+    assert f"{shares[1]} by the smaller, {shares[2]} by the larger" in text and "rock avalanches" not in text
 
 
 def test_a_height_that_no_event_has():
     data, ground, numbers = case([500.0])
     low = ground.before.min()
     lower = ground_of(ground.raster, low + (ground.before - low) / 8, ground.slip_depth)
-    text = mobility_part.content(data, lower, numbers)[0][1]
-    assert "No set of known events covers this height" in text and "220 to 1720 m" in text
+    assert "220 to 1720 m" in lower.known.found.by_set.outside[0]
+    assert "of landslides of this volume" in mobility_part.content(data, lower, numbers)[0][1]
 
 
 # --- on maps and section ---

@@ -12,6 +12,7 @@ import test_report
 from test_report import stands
 
 from slope_tools import digits
+from slope_tools.ensembles import known_study
 from slope_tools.finding_words import WORDS, words_of
 from slope_tools.findings import LIMIT, NOTE, WARNING, Finding, finding, gathered
 from slope_tools.plots.obstacles import Obstacles
@@ -284,8 +285,9 @@ def test_what_the_runs_differ_in_is_said_without_names_of_variables():
     assert client_part.basis(data).endswith(
         "at the start. Known events of this size do not count in them: no set of known events covers this volume, "
         "900 m3.")
-    data.study["study"]["method"] = "weighted by known events"
-    assert client_part.basis(data).endswith("at the start.")
+    for method in (known_study.WEIGHTED, known_study.BESIDE):
+        data.study["study"]["method"] = method
+        assert client_part.basis(data).endswith("at the start.")
 
 
 def test_the_body_in_a_sentence():

@@ -27,10 +27,12 @@ sys.path.insert(0, str(TOOLS))
 from slope_tools import cli, programs  # noqa: E402  (after the path is set)
 from slope_tools.case import decks  # noqa: E402
 from slope_tools.commands import study as study_command  # noqa: E402
+from slope_tools.ensembles import farther  # noqa: E402
 from slope_tools.releases import release_chart  # noqa: E402
 from slope_tools.sites import site_budget, site_choices, site_deck, site_warnings  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
 from slope_tools.plots import site_map  # noqa: E402
+from slope_tools.tables import answered  # noqa: E402
 
 DATA = Path(os.environ.get("SLOPE_DATA", TOP.parent.parent / "shared" / "data"))
 EAST, NORTH, CELL, COLUMNS, ROWS = -12000.0, 34000.0, 2.0, 60, 40      # of the survey, m, zone IX of Japan
@@ -116,13 +118,13 @@ def gis(tmp_path):
 
 @pytest.fixture(scope="module")
 def done(tmp_path_factory):
-    """The two commands of a new user; gives the folder and what both printed."""
+    """The two commands of a new user, of the paper's study alone; gives the folder and what both printed."""
     folder = tmp_path_factory.mktemp("site")
     write_files(folder)
     first = make(folder, "--shape", "ellipsoid", "--depth", "5", "--road", "road.geojson", "--balls", BALLS,
                  "--author", "A. N. Engineer")
     assert first.returncode == 0, first.stderr
-    second = slope(folder, "study", "mine")
+    second = slope(folder, "study", "mine", "--paper")
     assert second.returncode == 0, second.stderr
     return folder, first.stdout, second.stdout
 
@@ -158,6 +160,44 @@ def test_two_commands_lead_from_gis_files_to_a_report(done):
     assert f"{round(site_choices.found(mine)['balls'])}" in first.replace(",", "")
 
 
+def test_both_studies_give_one_number(done, tmp_path, monkeypatch, capsys):
+    """The paper's runs are taken over; an ensemble of a few runs beside them; the larger number, in both study.yaml."""
+    mine = tmp_path / "mine"
+    shutil.copytree(done[0] / "mine", mine)
+    for name in ("dem.tif", "release.geojson", "road.geojson"):
+        shutil.copy(done[0] / name, tmp_path)
+    pages = []
+    (mine / "site.yaml").write_text((mine / "site.yaml").read_text().replace("points: 64", "points: 12"))
+    monkeypatch.setattr(farther, "MOST", 0.0)       # runs that are added are tested elsewhere
+    monkeypatch.setattr(study_command, "write_report", lambda study, page, film=True: pages.append(
+        (study.name, page.name, film)))
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("LMP", LMP)
+    assert cli.main(["study", "mine"]) == 0
+    out = capsys.readouterr().out
+    assert "20 of 20 runs are finished already" in out and "headline: " in out
+    paper, both = (yaml.safe_load((mine / name / "study.yaml").read_text()) for name in ("study", "ensemble"))
+    about = both["ensemble"]["known_events"]
+    assert about["set"] == "translational_slides:all" and about["events"] == 69 and about["runs"] == 12
+    assert paper["study"]["known"] == {"set": None, "confined": "unknown"} and both["study"]["known"] == {
+        "set": None, "left_out": [], "confined": "unknown"}
+    found = both["headline"]
+    assert found == paper["headline"] and found["paper"]["volume_m3"] == paper["conservative"]["volume_m3"]
+    low, high = found["road"]["reached"]
+    assert 0 < low <= high <= 1 and found["road"]["passed"][1] <= high
+    assert found["road"]["near_m"] < found["road"]["far_m"]
+    assert found["road"]["longest_m"] == max(row["length_m"] for row in (*paper["runs"], *both["runs"]))
+    [quantile] = [one for one in about["to_remove"] if one["share"] == 0.95]
+    assert found["ensemble"]["volume_m3"] == quantile["value"]
+    volumes = [one for one in (found["paper"]["volume_m3"], quantile["value"]) if one is not None]
+    assert found["kind"] == "floor" or found["volume_m3"] == max(volumes)
+    assert answered.governing(mine / "study", mine / "ensemble").name == ("study" if found["source"] == "paper" else
+                                                                          "ensemble")
+    governs, other = ("study", "ensemble") if found["source"] == "paper" else ("ensemble", "study")
+    assert pages == [(other, {"study": "paper.html", "ensemble": "ensemble.html"}[other], False),
+                     (governs, "report.html", True)]
+
+
 def test_the_report_of_a_sites_folder(done, tmp_path):
     made = inside(done[0], "report", "mine", "--no-film", "-o", tmp_path / "again.html")
     assert made.returncode == 0 and (tmp_path / "again.html").stat().st_size > 0, made.stderr
@@ -173,7 +213,7 @@ def test_the_study_is_resumed(done, monkeypatch):
     monkeypatch.setattr(study_command, "write_report", lambda *_: None)
     folder, _, _ = done
     before = {path: path.stat().st_mtime_ns for path in (folder / "mine").rglob("finished.yaml")}
-    again = inside(folder, "study", "mine")
+    again = inside(folder, "study", "mine", "--paper")
     assert again.returncode == 0, again.stderr
     assert len(before) == 20 and "started" not in again.stdout and "20 of 20 runs are finished already" in again.stdout
     assert before == {path: path.stat().st_mtime_ns for path in before}
@@ -212,7 +252,7 @@ def test_runs_of_an_older_version_are_taken_over(done, tmp_path, monkeypatch):
     for path in runs_in(mine / "runs"):
         part = "sizes" if "_d_" in path.name else "step" if "_step_" in path.name else "study"
         path.rename(mine / part / path.name)
-    again = inside(tmp_path, "study", "mine")
+    again = inside(tmp_path, "study", "mine", "--paper")
     assert again.returncode == 0 and "20 of 20 runs are finished already" in again.stdout, again.stderr
     assert not runs_in(mine / "runs")
     assert before == {name: (mine / name).read_text() for name in before}
@@ -275,9 +315,9 @@ def test_the_folder_is_made_anew_from_its_file(done, tmp_path):
     assert volume / float(variables["d"]) ** 3 == pytest.approx(300, rel=0.02)
 
     # the study does not mix runs of two decks
-    study = inside(folder, "study", "mine")
+    study = inside(folder, "study", "mine", "--paper")
     assert study.returncode == 2 and "in.site" in study.stderr and "--anew" in study.stderr
-    listed = inside(folder, "study", "mine", "--anew", "--dry-run")
+    listed = inside(folder, "study", "mine", "--paper", "--anew", "--dry-run")
     assert listed.returncode == 0 and listed.stdout.count(", made again\n") == 14      # of the other sizes 6 new ones
     assert listed.stdout.endswith("20 runs, 0 of them finished\n")
 
@@ -305,7 +345,7 @@ def test_structures_lines_and_a_mapped_deposit(gis):
     text = re.sub(r"rolling: \[.*?\]", "rolling: [0.05]", path.read_text())
     text = re.sub(r"(sizes|spacing): \[.*?\]", r"\1: []", text)
     path.write_text(re.sub(r"([xy])offset: \[.*?\]", r"\1offset: []", text))
-    study = slope(gis, "study", "mine")
+    study = slope(gis, "study", "mine", "--paper")
     assert study.returncode == 0, study.stderr
     run = mine / "runs" / "rolling_0.05"
     assert "wall" in (mine / "study" / "structures.csv").read_text()

@@ -348,16 +348,14 @@ def test_options_of_soil_and_ground_reach_the_deck(inside, mine):
     assert {name: float(deck[name]) for name in wanted} == pytest.approx(wanted, rel=1e-4)
 
 
-def test_mobile_values_of_frank(inside, mine):
-    """Its own option replaces one of them."""
-    told = inside("mine --mobile --friction 9").out
-    choices = site_choices.read(mine)
-    model = choices["model"]
-    assert (model["friction"], model["spacing"], model["field_restitution"]) == (9, 0.33, 0.16)
-    assert choices["study"]["rolling"] == [0.05, 0.14]
-    assert "Frank slide of 1903" in told and "friction 9 degrees" in told
-    assert "a mass that passes the road leaves less on it" in told
-    assert "Frank" not in inside("mine --balls 70").out
+def test_a_site_made_with_older_values_of_a_mobile_mass_is_read(inside, mine):
+    """Its site.yaml holds them; the option that gave them is no more."""
+    edit(mine, "model", friction=6, spacing=0.33, field_restitution=0.16)
+    edit(mine, "study", rolling=[0.05, 0.14])
+    inside("mine --balls 70")
+    assert decks.index_variables(mine / site_deck.NAME)["spacing"] == "0.33"
+    with pytest.raises(SystemExit):
+        cli.main(["site", "mine", "--mobile"])
 
 
 @pytest.mark.parametrize("words, line", [

@@ -101,6 +101,11 @@ def rows(*volumes, **more):
             for k, volume in enumerate(volumes)]
 
 
+def events(median, reached):
+    """Known events, of which a share reaches the near edge of the road."""
+    return Events(median, 300.0, 310.0, (reached / 2, reached), (0.0, reached / 2))
+
+
 def judged(several, events=None, size=""):
     best = combinations.conservative({"rolling": ["0"]}, several, combinations.grouped(several))
     usable.judge(best, several, events, SITE, size)
@@ -108,13 +113,13 @@ def judged(several, events=None, size=""):
 
 
 def test_a_number_that_may_stand():
-    best = judged(rows(90.0, 100, 110), Events(400.0, 0.6))
+    best = judged(rows(90.0, 100, 110), events(400.0, 0.6))
     assert best["withheld"] == [] and best["volume_m3"] > 110 and best["zero"] is None
     assert combinations.describe(best)[0].startswith("conservative volume to remove: ")
 
 
 def test_a_number_that_is_withheld_is_nowhere():
-    best = judged(rows(90.0, 100, 110), Events(600.0, 0.6))
+    best = judged(rows(90.0, 100, 110), events(600.0, 0.6))
     assert best["volume_m3"] is None and best["rounded"]["volume_m3"] is None
     lines = combinations.describe(best)
     assert lines[0] == "not usable as a conservative volume:" and "no run reaches 600 m" in lines[1]
@@ -122,7 +127,7 @@ def test_a_number_that_is_withheld_is_nowhere():
 
 
 def test_zero_has_a_probability():
-    best = judged(rows(0.0, 0, 0), Events(400.0, 0.25))
+    best = judged(rows(0.0, 0, 0), events(400.0, 0.25))
     assert best["volume_m3"] == 0 and best["zero"]["exceeded_at_most"] == pytest.approx(1 - 0.05 ** (1 / 3))
     assert combinations.describe(best)[1] == (
         "nothing is to be removed in any of 3 runs: in another one something is with a probability of at most 63 % "

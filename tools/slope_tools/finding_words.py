@@ -39,8 +39,8 @@ WORDS: Dict[str, Union[str, Words]] = {
                               "A part of the road lies on the mass that is released, and goes with it: what it takes "
                               "to build it anew is not in the volume.")),
     "large": Words("{millions} million m3: masses of {limit:g} million m3 and more are known to run farther than "
-                   "laboratory friction suggests; the run-out is not conservative unless the friction was calibrated "
-                   "with a past event of that size (slope calibrate; --mobile has the values of one)", NOTE,
+                   "laboratory friction suggests; the run-out is not conservative unless known events weigh the "
+                   "runs, or the friction was calibrated with a past event of that size (slope calibrate)", NOTE,
                    "Masses of {limit:g} million m\u00b3 and more are known to run farther than laboratory friction "
                    "suggests: the reach is not conservative unless a past event was used to calibrate it."),
     "moving": Words(AT_REST, NOTE,
@@ -171,8 +171,8 @@ WORDS: Dict[str, Union[str, Words]] = {
     "balls on the road": "on the road lies the volume of {number:.2g} ball{s}, fewer than {bound:g}",
     "known events": "no run reaches {bound} m, as half of known events of this volume and height do; {longest}",
     "left the terrain": "{percent:.2g} % of the released volume left the terrain before or beside the road, more than "
-                        "{bound:g} %",
-    "runs not at rest or failed": "{number} of {runs} runs failed or are not at rest at the end, more than {bound:g} %",
+                        "{most:g} %",
+    "runs not at rest or failed": "{number} of {bound} runs failed or are not at rest at the end, more than {most:g} %",
     "size error": "the size error is not trusted: {why}",
     # caveats on the volume to remove
     "single run": Words("nothing was varied: it comes from a single run", NOTE),

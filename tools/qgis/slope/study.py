@@ -70,7 +70,7 @@ class Study(Algorithm):
 
 
 def newest(site):
-    """The folder of a site's last study: by the paper's method, or an ensemble that known events weight."""
+    """The folder of a site's last study: the ensemble that known events weigh, or the paper's alone."""
     tables = [site / name / "study.yaml" for name in ("study", "ensemble")]
     return max((path for path in tables if path.exists()), key=lambda path: path.stat().st_mtime).parent
 
@@ -83,7 +83,7 @@ def show(folder, results):
     for kind, one in (about["envelope"] or {}).items():
         results.layer(kind.upper(), place(folder, one), "thickness", one["what"])
     results.put(OUTPUT=str(folder), TABLE=str(folder / "study.csv"),
-                CONSERVATIVE=(about.get("conservative") or {}).get("volume_m3"))
+                CONSERVATIVE=(about.get("headline") or about.get("conservative") or {}).get("volume_m3"))
 
 
 def place(folder, one):

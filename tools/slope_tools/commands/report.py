@@ -18,6 +18,7 @@ from ..report import document, paper
 from ..report.heading import Asked
 from ..report.heading import SITE
 from ..studies import site_study
+from ..tables import answered
 
 STUDY = "study.yaml"
 OF_SITE = f" (default: what {SITE} says, in DIR or above it)"
@@ -74,7 +75,7 @@ def study_of(folder: Path) -> Path:
     """The study inside the folder of a site; any other folder itself, as a site that holds a run made by hand only."""
     if not (folder / SITE).is_file() or (folder / STUDY).is_file():
         return folder
-    inside = folder / site_study.STUDY
+    inside = answered.governing(folder / site_study.STUDY, folder / site_study.ENSEMBLE)
     if (inside / STUDY).is_file():
         return inside
     if not run_folders.summaries(folder):

@@ -92,7 +92,7 @@ class Sample:
 
 def condition_of(args: Any) -> Optional[known_events.Condition]:
     """What --known and its company of a study.Request ask for; SlopeError if some are there without it."""
-    if args.known is not None:
+    if args.known is not None or args.weigh:
         site = args.deck.parent if (args.deck.parent / site_choices.NAME).is_file() else None
         return known_events.check(known_arguments.choice_of(args.known, args.left_out, args.confined, site), args.known,
                                   args.deck)

@@ -6,10 +6,9 @@ from pathlib import Path
 from shlex import quote
 from typing import Any, Dict, List, Optional
 
-from ..ensembles import known_study
 from ..errors import SlopeError
 from ..findings import printer
-from ..options import Program, flag, option, positional, whole
+from ..options import Program, option, positional, whole
 from ..plots import site_map
 from ..programs import find_lmp
 from ..releases.release import SHAPES
@@ -47,9 +46,7 @@ BESIDE = {"road", *road_arguments.OPTIONS, "cut_angle", "mesh", "line", "observe
           "name", "client", "author"}
 # of each group, an option that is given replaces the others
 ONE_OF = (("depth", "volume", "curvature"), ("diameter", "balls", "minutes", "memory"))
-# --mobile: the Frank slide of 1903, doc/src/events.rst: its likeliest values, and the least rolling resistance that its
-# length and area allow
-MOBILE = {"friction": 6, "rolling": [0.05, 0.14], "spacing": 0.33, "field_restitution": 0.16}
+OF_SOIL = ("friction", "rolling", "spacing", "field_restitution", "density", "slip_friction")
 LIGHT = 100                 # kg/m3; less is not a ground's density, but one in t/m3 or relative to water's
 OF_BALL = 6 / math.pi       # density of a ball over that of the ground, in a cubic packing
 
@@ -70,8 +67,7 @@ a scar from two surveys; a wall, an earthquake and a line behind the wall; finer
       --motion motion.txt -o quake
   tools/slope site mine --minutes 60
 
-a mass that may run as far as a rock avalanche; a light and smooth ground:
-  tools/slope site --terrain dem.tif --release release.geojson --volume 2e6 --mobile -o mobile
+a light and smooth ground:
   tools/slope site mine --friction 25 --rolling 0 0.05 --spacing 0.8 --density 1600
 
 FOLDER/site.yaml holds every choice, and what each means; change it and give FOLDER alone to rebuild the folder.
@@ -138,16 +134,13 @@ class Layers(road_arguments.Clearing):
         "a mapped deposit, outline or thickness, with which the run shown in the report is compared",
         metavar="P|RASTER")
     known: Optional[str] = known_arguments.known_option(
-        "events that slope mobility compares the mass with; a study takes rock_avalanches")
+        "events that the mass is compared with, in slope mobility and the study")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Model:
     """What the options leave open has the values of the paper."""
     GROUP = "soil and ground (default: the values of the paper)"
-    mobile: bool = flag(
-        "the values of the Frank slide (36 million m3 of rock): less friction, a smoother ground; not safer for a "
-        "road near the source, which it passes; other options of this group replace single ones")
     friction: Optional[float] = option("of soil and ground, degrees (default 30)", metavar="DEG")
     rolling: Optional[List[float]] = option(
         "rolling resistances of the study, of which the largest volume counts (default 0 0.05 0.1)", metavar="R",
@@ -193,11 +186,11 @@ class Request(Ground, Layers, known_arguments.Confined, Model, Size, About, Prog
 def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints what was read, found and written."""
     folder, choices, known = chosen(args)
-    for line in model(args, choices):
-        print(line)
+    if any(getattr(args, option) is not None for option in OF_SOIL):
+        print(soil(choices))
     cores = args.jobs or jobs.cores()
     with jobs.signals_interrupt():
-        made = site.make(choices, folder, site.Machine(program(args.lmp), cores, known_study.points),
+        made = site.make(choices, folder, site.Machine(program(args.lmp), cores),
                          lambda line: print(line, flush=True), printer("site"), site_map.draw,
                          again=args.folder is not None, known=known)
     for line in site_ground.lines(folder):
@@ -215,8 +208,6 @@ def chosen(args: Request):
     given.update(of_slips(args))
     if "density" in given:
         given["density"] = density_of_ball(given["density"])
-    if args.mobile:
-        given = {**MOBILE, **given}
     if args.folder is not None:
         if args.output is not None:
             raise SlopeError("-o", f"must not be given with the folder of a site, {args.folder}, which is rebuilt",
@@ -272,17 +263,12 @@ def density_of_ball(bulk):
     return round(bulk * OF_BALL, 1)
 
 
-def model(args: Model, choices):
-    """Lines with the values of soil and ground, where an option gave any."""
+def soil(choices):
+    """The values of soil and ground in words."""
     of = choices["model"]
-    if args.mobile:
-        yield ("--mobile: values of the Frank slide of 1903, 36 million m3 of rock; what is known of smaller or wet "
-               "masses is on the page events of the documentation; a mass that passes the road leaves less on it")
-    if args.mobile or any(getattr(args, option) is not None for option in (*MOBILE, "density", "slip_friction")):
-        yield (f"friction {of['friction']:g} degrees, on the slip surface {of['slip_friction']:g}; rolling resistance "
-               f"{', '.join(f'{one:g}' for one in choices['study']['rolling'])}; the ground: spacing "
-               f"{of['spacing']:g}, restitution {of['field_restitution']:g}; bulk density "
-               f"{of['density'] / OF_BALL:,.0f} kg/m3")
+    return (f"friction {of['friction']:g} degrees, on the slip surface {of['slip_friction']:g}; rolling resistance "
+            f"{', '.join(f'{one:g}' for one in choices['study']['rolling'])}; the ground: spacing {of['spacing']:g}, "
+            f"restitution {of['field_restitution']:g}; bulk density {of['density'] / OF_BALL:,.0f} kg/m3")
 
 
 def assigned_crs(words):

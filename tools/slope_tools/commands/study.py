@@ -3,9 +3,9 @@
 Order of the work: check the deck and the settings, plan the runs (repeats.py), make their folders and run what is not
 finished (jobs.py), collect (results.py), combine (combinations.py, headline.py).
 """
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import List, Optional
+from typing import Any, List, Mapping, Optional
 
 from ..case import decks
 from ..case.settings import check_settings, one_value_each
@@ -17,13 +17,14 @@ from ..sites import site_choices, site_deck
 from ..sites.site_bodies import VARIABLE
 from ..sites.site_layers import ROAD
 from ..studies import results, site_ground, site_study
-from ..studies.study import check_thresholds, perform
+from ..studies.study import RunsFailed, check_thresholds, perform
 from ..survey import roads
-from ..tables import intensity
+from ..tables import answer_words, answered, intensity
 from ..tables.size_error import SizeErrors
 from . import known_arguments, road_arguments
 from .run_arguments import DECK, OF_A_KIND, Intensity, Repeats, Runs, Sample, condition_of, settle_kind, setup_of
 
+PAGES = {site_study.STUDY: "paper.html", site_study.ENSEMBLE: "ensemble.html"}     # beside report.html
 THICKNESSES = "0.1,0.5,1"      # of the maps of exceedance, m; the parser has None, as for all that a site refuses
 OF_A_ROAD = ("size_error", "road", *road_arguments.OPTIONS, "cut_angle", "mesh", "local")
 NOT_OF_A_SITE = ("set", "repeat", "vary", "sample", *OF_A_ROAD, "equally_good", "output", "exceed", "left_out",
@@ -52,8 +53,8 @@ such an ensemble of a site that `slope site ... -o mine` made, with its road and
 the whole chain, from an earthquake to how often the road is blocked, of a site made with `slope site --slips`:
   tools/slope study mine --sample 64 --vary friction=25:35 --vary rolling=0:0.1 --fragility fragility --more-than 500
 
-everything of a site that `slope site ... -o mine` made, with its report: where known events cover the mass, an ensemble
-that is weighted by them; otherwise, or with --paper, rolling resistances, repeats and sizes of balls:
+everything of a site that `slope site ... -o mine` made, with its report: rolling resistances, repeats and sizes of
+balls by the paper's method, and an ensemble that is weighted by known events; the larger volume of both counts:
   tools/slope study mine
 
 Every run has a folder of its own in DIR, and is not repeated once it is finished. Over all runs: DIR/study.csv,
@@ -65,6 +66,8 @@ DIR/combinations.csv (mean and scatter), DIR/study.yaml, and the maps envelope_*
 @dataclass(frozen=True, kw_only=True)
 class Request(Sample, known_arguments.Known, Repeats, Intensity, Runs):
     method: str = ""        # of a site's study, in words
+    weigh: bool = False     # by the known events of a site, also without --known
+    wide: Mapping[str, Any] = field(default_factory=dict)       # {variable: its range outside of the given one}
     deck: Path = positional(f"{DECK}; or a folder made by `slope site`: its standard study is run", metavar="DECK|SITE")
     set: List[str] = several(
         "values of an index variable of the deck; A:B:STEP stands for A, A + STEP, ... up to B",
@@ -76,8 +79,7 @@ class Request(Sample, known_arguments.Known, Repeats, Intensity, Runs):
         "of a site with several bodies, with --sample: what `slope fragility` wrote; how likely which volume reaches "
         "the road at a peak acceleration, and per year", metavar="FOLDER")
     paper: bool = flag(
-        "of a site: the largest volume over the rolling resistances, the paper's method, also where a set of known "
-        "events covers the mass")
+        "of a site: the paper's method alone, the largest volume over the rolling resistances")
     size_error: Optional[Path] = option(
         "converge.yaml of `slope sensitivity --converge`: its error at the size of these balls counts in the "
         "conservative volume", metavar="FILE")
@@ -100,7 +102,7 @@ def run(args: Request) -> None:
 
 
 def run_folder(args: Request) -> None:
-    """The study of a site's folder: weighted by known events, where a set covers the mass, or by the paper's method."""
+    """The study of a site's folder: by the paper's method, and weighted by known events."""
     if args.sample is not None or args.fit is not None:
         if args.paper:
             raise SlopeError("--paper", "must not be given with --sample or --from, which make an ensemble")
@@ -110,18 +112,40 @@ def run_folder(args: Request) -> None:
     refuse(args, NOT_OF_A_SITE)
     choices = site_choices.read(args.deck)
     site_study.check(args.deck, choices)
-    volume = float(site_choices.found(args.deck)["body"]["volume"])
-    why = "" if args.paper else known_study.why_not(args.deck, volume, bool(choices["observed"]["file"]),
-                                                    args.confined or choices["known"]["confined"])
+    points = choices["study"]["points"]
+    why = "" if args.paper else known_study.why_not(args.deck) if points else known_study.NONE
     if args.paper or why:
         condition_of(args)      # has no meaning here
         method = f"{known_study.PAPER}; {why}" if why else known_study.ASKED
         say(args.deck, method, others=True)
         return run_site(args, method)
-    method = (f"weighted by known events of this volume and height, {known_study.SET}; --paper takes the largest "
-              "volume over the rolling resistances of site.yaml instead")
-    say(args.deck, method)
-    return run_site_ensemble(replace(args, sample=known_study.POINTS, known=known_study.SET), "report.html", method)
+    say(args.deck, f"{known_study.WEIGHTED}, which --paper makes alone", others=True)
+    return run_both(args, points)
+
+
+def run_both(args: Request, points: int) -> None:
+    """The paper's study and the ensemble of a site, the number that both give, and a report of each."""
+    site = args.deck
+    paper = site_study.run(site, setup_of(args), known_study.BESIDE)
+    failed = paper.failed
+    try:
+        run_deck(of_ensemble(replace(args, sample=points, known=None, weigh=True), known_study.WEIGHTED))
+    except RunsFailed as error:     # the others count
+        failed = failed or error
+    if args.dry_run:
+        return
+    both = [site / name / "study.yaml" for name in (site_study.STUDY, site_study.ENSEMBLE)]
+    found = answered.of_both(*both) if all(path.is_file() for path in both) else None
+    governs = answered.governing(*(path.parent for path in both)).name
+    for name in (site_study.STUDY, site_study.ENSEMBLE):
+        if name != governs and (site / name / "study.yaml").is_file():
+            write_report(site / name, site / PAGES[name], film=False)
+    if found:
+        print("\n".join(answer_words.lines(found)))
+    if (site / governs / "study.yaml").is_file():
+        write_report(site / governs, site / "report.html")
+    if failed:
+        raise failed
 
 
 def say(folder, method, others=False):
@@ -214,25 +238,34 @@ def refuse(args: Request, names) -> None:
                              None if first is True else f"{first:g}" if isinstance(first, float) else first)
 
 
-def write_report(study, page):
+def write_report(study, page, film=True):
     from ..report import document
     from ..report.heading import Asked
-    print("\n".join(document.write(Asked(study, film=page.with_suffix(".mp4")), page)))
+    print("\n".join(document.write(Asked(study, film=page.with_suffix(".mp4") if film else None), page)))
 
 
-def run_site_ensemble(args: Request, page=f"{site_study.ENSEMBLE}.html", method="") -> None:
+def run_site_ensemble(args: Request) -> None:
     """An ensemble of a site's deck with its road, in a folder of the site's, and the report."""
     refuse(args, OF_A_ROAD)
+    wanted = of_ensemble(args)
+    run_deck(wanted)
+    if not args.dry_run:
+        assert wanted.output is not None
+        write_report(wanted.output, args.deck / PAGES[site_study.ENSEMBLE])
+
+
+def of_ensemble(args: Request, method="") -> Request:
+    """The request with a site's deck, its road, and a folder of the site's."""
     site, choices = args.deck, site_choices.read(args.deck)
     site_study.check(site, choices)
-    output, about = args.output or site / site_study.ENSEMBLE, choices["road"]
+    about = choices["road"]
     road = {name: about[roads.KEYS[field]] for name, field in road_arguments.OPTIONS.items()}
     road.update(road=site / ROAD, cut_angle=about["cut_angle"], mesh=about["mesh"])
-    run_deck(replace(args, deck=site / site_deck.NAME, site=site, method=method, output=output,
-                     vary=args.vary or ([] if args.fit else chances(choices) if args.fragility
-                                        else list(known_study.VARY)), **(road if about["file"] else {})))
-    if not args.dry_run:
-        write_report(output, site / page)
+    return replace(args, deck=site / site_deck.NAME, site=site, method=method,
+                   output=args.output or site / site_study.ENSEMBLE,
+                   wide={} if args.vary or args.fit or args.fragility else known_study.WIDE,
+                   vary=args.vary or ([] if args.fit else chances(choices) if args.fragility
+                                      else list(known_study.VARY)), **(road if about["file"] else {}))
 
 
 def chances(choices):
@@ -258,7 +291,8 @@ def run_ensemble(args: Request, settings, repeated, thresholds, defaults, condit
         plan = calibrated.sample(args.fit, args.sample, args.deck, fixed, repeated)
     else:
         assert args.sample is not None and args.design is not None and args.seed is not None        # settle_kind()
-        plan = sample.check(args.sample, args.design, args.seed, args.vary, args.deck, fixed, repeated)
+        plan = sample.check(args.sample, args.design, args.seed, args.vary, args.deck, fixed,
+                            repeated).widened(args.wide)
     levels = ensemble_maps.Thresholds(thresholds, check_thresholds(args.exceed_speed, "--exceed-speed", "speeds"),
                                       check_thresholds(args.exceed_energy, "--exceed-energy", "energies"))
     of = ensemble.check_quantity(args.of, args.road is not None)

@@ -5,6 +5,10 @@ box of the unit cube in which an emulator of the length expects longer runs than
 all points is known: n0 points of the design, of density 1, and m points of each box, of density 1 over its volume. A
 point counts by the density of the design over that of the mixture (the balance heuristic: Veach and Guibas,
 SIGGRAPH 1995); among runs of one length the parameters then have the distribution that was given.
+
+Boxes may go beyond the bounds of uniform distributions, up to wider ones (distributions.Range.widened). The density
+that was given goes on there as it is within: all of the wide box is equally likely, and the design has points in a part
+of it.
 """
 from pathlib import Path
 from typing import Any, Dict, List, NamedTuple, Optional, Sequence
@@ -17,6 +21,7 @@ from ..digits import rounded
 from ..mobility.results import percent
 from ..schemas import NUMBER, OBJECT, TEXT, listed, mapping, named
 from ..statistics import backanalysis, designs, distributions, emulator
+from ..statistics.answer import Code, Reason
 from .sample import Sample
 
 FILE = "added.yaml"
@@ -24,14 +29,22 @@ WHAT = "what `slope study --known` wrote"
 SCHEMA = mapping({"variables": OBJECT, "batches": listed(mapping({
     "box": listed(listed(NUMBER, 2), 1), "points": listed(named(TEXT, 1), 1)}))})
 REACHED = 0.95          # share of the known events that the runs should reach
+NEAR_END = 0.025        # share of them between the longest run and the end of the path: no run can go much farther
 PART = 8                # a batch is this part of the design
 LEAST = 4               # points of a batch
-MOST = 0.5              # points that may be added, over those of the design
+MOST = 1.0              # points that may be added, over those of the design
 CLOUD = 4096            # points at which the emulator is looked at
 FITTED = 100            # runs that it is fitted to, of the longest; about as many of the others
 FEW, MANY = 32, 205     # of them, whose box is taken: at least, and at most
+NARROW = 0.5            # of a range: a box that is wider does not depend on it
 STEP = 0.05             # the sides of a box are multiples of it
 ROUNDING = 1e-5         # of a value that is written with six digits, in the cube
+
+
+class End(NamedTuple):
+    """Of the fall path: its length (m), and the share of the known events that go beyond it."""
+    length: float
+    share: float
 
 
 class Batch(NamedTuple):
@@ -51,7 +64,7 @@ class Batch(NamedTuple):
 def ratio(places: np.ndarray, batch: Sequence[int], batches: Sequence[Batch]) -> np.ndarray:
     """Density of the design over that of all points, at each of them; batch: which one it is of, from 1; 0: none."""
     count = np.bincount(np.asarray(batch, int), minlength=len(batches) + 1)
-    density = np.full(len(places), float(count[0]))
+    density = count[0] * Batch([[0.0, 1.0]] * places.shape[1], []).holds(places).astype(float)
     for number, one in zip(count[1:], batches):
         density += number * one.holds(places) / one.volume
     return len(places) / density
@@ -60,13 +73,13 @@ def ratio(places: np.ndarray, batch: Sequence[int], batches: Sequence[Batch]) ->
 class Added:
     """The batches of an ensemble in a folder; a file keeps them, so that the study can be continued.
 
-    stopped: why no more are added, though the runs do not reach far enough; empty where they do.
+    stopped: why no more are added, though the runs do not reach far enough; None where they do.
     """
 
     def __init__(self, folder: Path, sample: Sample):
         self.path, self.sample = folder / FILE, sample
         self.batches: List[Batch] = []
-        self.stopped = ""
+        self.stopped: Optional[Reason] = None
         if self.path.is_file():
             before = schemas.load(self.path, f"{WHAT} (remove it)", SCHEMA)
             if before["variables"] == sample.about["variables"]:
@@ -83,28 +96,28 @@ class Added:
             {"variables": self.sample.about["variables"], "batches": [one._asdict() for one in self.batches]},
             sort_keys=False))
 
-    def propose(self, places: np.ndarray, lengths: np.ndarray, beyond: np.ndarray, path_m: float) -> Optional[Batch]:
+    def propose(self, places: np.ndarray, lengths: np.ndarray, beyond: np.ndarray, end: End) -> Optional[Batch]:
         """The next batch, if known events go farther than the runs and parameters can; None where no more is added.
 
-        places, lengths (m): of all runs so far; beyond: share of the known events that go beyond each; path_m: length
-        of the fall path.
+        places, lengths (m): of all runs so far; beyond: share of the known events that go beyond each; end: of the
+        fall path.
         """
-        far, short = float(np.min(beyond)), 1 - float(np.max(beyond))
-        self.stopped = ""
-        if far + short <= 1 - REACHED or far <= (1 - REACHED) / 2:
+        far = float(np.min(beyond))
+        self.stopped = None
+        if far < 1 - REACHED:
             return None
-        left = int(MOST * self.sample.number) - self.number
-        box = None
-        if max(lengths) >= path_m:
-            self.stopped = "the fall path, or the terrain, ends there: take a larger terrain"
+        left, box = int(MOST * self.sample.number) - self.number, None
+        if max(lengths) >= end.length or far - end.share < NEAR_END:
+            self.stopped = Reason(Code.TERRAIN, {"share": end.share, "path_m": end.length})
         elif not emulator.enough(len(lengths), places.shape[1]):
-            self.stopped = "the runs are too few to tell which parameters go farther: take more points"
+            self.stopped = Reason(Code.FEW, {})
         elif left <= 0:
-            self.stopped = f"{self.number} runs were added; a larger --sample allows more"
+            self.stopped = Reason(Code.RUNS, {"points": self.number})
         else:
-            box = box_of(places, lengths, self.sample)
+            found = Longer(places, lengths, self.sample)
+            box = found.box if found.number else None
             if box is None:
-                self.stopped = "no values within --vary are expected to: give wider ranges"
+                self.stopped = Reason(Code.RANGE, {"ends": self.ends(found.box)})
         if box is None:
             return None
         number = min(left, max(LEAST, self.sample.number // PART))
@@ -118,8 +131,18 @@ class Added:
     def text(self, batch: Batch) -> str:
         """Where a batch lies, in words."""
         parts = [f"{one.name} {backanalysis.shown(one, low)} to {backanalysis.shown(one, high)}"
-                 for one, (low, high) in zip(self.sample.variables, batch.box) if high - low < 1]
+                 for one, (low, high) in zip(self.sample.variables, batch.box)
+                 if low > one.places[0] + ROUNDING or high < one.places[1] - ROUNDING]
         return ", ".join(parts) or "all of their ranges"
+
+    def ends(self, box: List[List[float]]) -> str:
+        """At which end of which range a box lies, in words; not of a variable that hardly matters for it."""
+        found = []
+        for one, (low, high) in zip(self.sample.variables, box):
+            least, most = low <= one.places[0] + ROUNDING, high >= one.places[1] - ROUNDING
+            if least != most and high - low <= NARROW * (one.places[1] - one.places[0]):
+                found.append(f"{one.name} {backanalysis.shown(one, low if least else high)}")
+        return ", ".join(found)
 
     def line(self, batch: Batch, lengths: np.ndarray, beyond: np.ndarray) -> str:
         """What is done, for the console."""
@@ -128,28 +151,30 @@ class Added:
 
     def about(self) -> Dict[str, Any]:
         """What study.yaml says of it."""
-        return {"points": self.number, "stopped": self.stopped,
+        return {"points": self.number, "stopped": self.stopped and self.stopped.about(),
                 "batches": [{"points": len(one.points), "ranges": self.text(one)} for one in self.batches]}
 
 
-def box_of(places: np.ndarray, lengths: np.ndarray, sample: Sample) -> Optional[List[List[float]]]:
-    """The box around where runs are expected to be the longest, and longer than all so far; None: nowhere.
+class Longer:
+    """Where runs are expected to be the longest: a box around it; number: of places where they are longer than all so
+    far, of CLOUD.
 
     Expected is the emulator's mean and a deviation: its own, as it knows little in corners without runs, with chance,
     as the longest run may owe its length to it.
     """
-    order = np.argsort(-lengths, kind="stable")
-    # the fit takes the cube of their number: the longest, and an even choice of the others
-    taken = np.concatenate([order[:FITTED], order[FITTED::max(1, len(order) // FITTED)]])
-    fitted = emulator.Emulator(places[taken], np.log10(lengths[taken]))
-    cloud = sample.snap(designs.points(designs.SOBOL, places.shape[1], CLOUD, emulator.SEED))
-    mean, deviation = fitted.spread(cloud)
-    expected = mean + np.hypot(deviation, fitted.noise)
-    number = int((expected > np.log10(max(lengths))).sum())
-    if number == 0:
-        return None
-    best = cloud[np.argsort(-expected, kind="stable")[:min(max(number, FEW), MANY)]]
-    low = np.floor(best.min(axis=0) / STEP) * STEP
-    high = np.ceil(best.max(axis=0) / STEP) * STEP
-    return [[0.0, 1.0] if isinstance(one, distributions.Listed) else [round(float(a), 6), round(float(b), 6)]
-            for one, a, b in zip(sample.variables, low, high)]
+
+    def __init__(self, places: np.ndarray, lengths: np.ndarray, sample: Sample):
+        order = np.argsort(-lengths, kind="stable")
+        # the fit takes the cube of their number: the longest, and an even choice of the others
+        taken = np.concatenate([order[:FITTED], order[FITTED::max(1, len(order) // FITTED)]])
+        fitted = emulator.Emulator(places[taken], np.log10(lengths[taken]))
+        least, most = sample.box.T
+        cloud = sample.snap(least + (most - least) * designs.points(designs.SOBOL, len(least), CLOUD, emulator.SEED))
+        mean, deviation = fitted.spread(cloud)
+        expected = mean + np.hypot(deviation, fitted.noise)
+        self.number = int((expected > np.log10(max(lengths))).sum())
+        best = cloud[np.argsort(-expected, kind="stable")[:min(max(self.number, FEW), MANY)]]
+        low = np.maximum(np.floor(best.min(axis=0) / STEP) * STEP, least)
+        high = np.minimum(np.ceil(best.max(axis=0) / STEP) * STEP, most)
+        self.box = [[0.0, 1.0] if isinstance(one, distributions.Listed) else [round(float(a), 6), round(float(b), 6)]
+                    for one, a, b in zip(sample.variables, low, high)]

@@ -19,8 +19,8 @@ from ..findings import Finding, entries, texts
 from ..mobility import body, exceedance, known, run_length, weights
 from ..mobility.results import percent
 from ..sites import site_choices
-from ..statistics import emulator, hazard
-from ..tables import quantities
+from ..statistics import answer, emulator, hazard
+from ..tables import answer_words, quantities
 from . import conditioned, farther, known_influence, known_maps
 from .sample import Sample
 
@@ -28,30 +28,39 @@ FOLDER, HAZARD, WEIGHTS = "known_events", "hazard_known_events.csv", "weights.cs
 LEAST_EFFECTIVE = 20    # runs; fewer say little
 LEFT = 0.01             # share of the released volume beyond the grid, from which on a run's length is not its own
 MIDDLE = 0.05, 0.5, 0.95        # quantiles of the parameters of the weighted runs
+REMOVE = "remove_m3"    # the volume of the headline
 NOT_FARTHER = "released_m3", "stop_time_s"      # columns that a mass that goes farther need not exceed; nor any angle
 
 
 @dataclass(frozen=True)
 class Condition:
-    """What --known asks for; mobility: that of the site; None: of the body of the first run that finished."""
+    """What --known asks for; found: of the site; None: of the body of the first run that finished; named: whether a set
+    was asked for by its name, so that no landslides stand for it."""
     asked: known.Choice
-    mobility: Optional[exceedance.Mobility]
+    found: Optional[known.Found]
+    named: bool = True
 
 
-def check(asked: known.Choice, name: str, deck: Path) -> Condition:
-    """The Condition of a choice (name: as it was given); SlopeError if it does not cover the deck's site."""
+def check(asked: known.Choice, name: Optional[str], deck: Path) -> Condition:
+    """The Condition of a choice; SlopeError if a set that was named (name; None: none was) does not cover the deck's
+    site: of others the landslides count then."""
     found = None
     if (deck.parent / site_choices.NAME).is_file():
-        found = known.one_of_body(body.of_site(deck.parent), asked)
-        if not found.in_range:
-            raise SlopeError("--known", f"must be a set that covers the mass: {'; '.join(found.outside)}", name)
-    return Condition(asked, found)
+        found = known.of_body(body.of_site(deck.parent), asked)
+        if name is not None and not found.strict:
+            assert found.by_set
+            raise SlopeError("--known", f"must be a set that covers the mass: {'; '.join(found.by_set.outside)}", name)
+    return Condition(asked, found, name is not None)
 
 
 def mobility_of(condition: Condition, folder: Path, summary: Path) -> exceedance.Mobility:
-    """The Mobility of the condition; folder, summary: of a run, of whose body it is if there is no site."""
-    if condition.mobility:
-        return condition.mobility
+    """The Mobility by which runs count; folder, summary: of a run, of whose body it is if there is no site."""
+    found = condition.found or found_of(condition, folder, summary)
+    return found.by_set if condition.named and found.by_set else found.decides
+
+
+def found_of(condition: Condition, folder: Path, summary: Path) -> known.Found:
+    """The mass of a run among known events."""
     log = logs.Log(folder / logs.LOG).update()
     terrain = log.terrain and folder / log.terrain
     if not terrain or not terrain.is_file():
@@ -59,7 +68,7 @@ def mobility_of(condition: Condition, folder: Path, summary: Path) -> exceedance
     prefix = run_folders.prefix_of(summary)
     found = deposit.read(prefix, terrain, lambda text: None)
     mass = body.of_ground(found.raster, found.base, terrain, str(prefix))
-    return known.one_of_body(mass, condition.asked)
+    return known.of_body(mass, condition.asked)
 
 
 # --- evaluation ---
@@ -115,11 +124,11 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
     """
     first = next(row for row in rows if row["status"] == "finished")
     summary = run_folders.summary_of(output, first)
-    found = mobility_of(condition, summary.parent, summary)
+    found, asked = mobility_of(condition, summary.parent, summary), condition.asked
     about: Dict[str, Any] = {
-        "set": condition.asked.name, "events": condition.asked.number, "left_out": list(condition.asked.left_out),
-        "confined": condition.asked.confined,
-        "path": exceedance.WORDS[found.chosen], "volume_Mm3": found.volume, "outside": found.outside}
+        "set": asked.name(found), "events": asked.number(found), "left_out": list(asked.left_out),
+        "confined": asked.confined, "path": exceedance.WORDS[found.chosen], "volume_Mm3": found.volume,
+        "outside": found.outside}
     for name in (HAZARD, WEIGHTS):
         (output / name).unlink(missing_ok=True)         # of a study before this one
     runs = Runs(sample, added.batches, rows, found)
@@ -136,6 +145,8 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
     about["quantities"] = {
         name: {"name": names[name][0], "unit": names[name][1],
                "quantiles": [one._asdict() for one in conditioned.quantiles(curve)]} for name, curve in curves.items()}
+    about["to_remove"] = [one._asdict() for one in conditioned.quantiles(
+        curves[REMOVE], (answer.SHARE, *answer.FLOORS))] if REMOVE in curves else None
     about["variables"] = {name: variable(runs, k, main) for k, name in enumerate(sample.names)}
     about["influence"] = {name: known_influence.evaluate(runs, name) for name in main[:1]}
     about["doubts"] = entries(doubts(about, runs))
@@ -185,11 +196,11 @@ def rank(x: np.ndarray, y: np.ndarray, share: np.ndarray) -> Optional[float]:
 def doubts(about: Mapping[str, Any], runs: Runs) -> List[Finding]:
     """The caveats, in the order of their weight."""
     found, stopped = [], (about.get("added") or {}).get("stopped")
-    few = (1 - farther.REACHED) / 2
-    if about["reached"] < farther.REACHED and about["far"] > few:
+    if about["far"] >= 1 - farther.REACHED:
+        remedy = answer_words.text(answer.Reason.read(stopped)) if stopped else "vary towards more mobile masses"
         found.append(Finding("events beyond", {"length": rounded(about["longest_m"], 4), "share": percent(about["far"]),
-                                               "remedy": stopped or "vary towards more mobile masses"}))
-    if about["reached"] < farther.REACHED and about["short"] > few:
+                                               "remedy": remedy}))
+    if about["reached"] < farther.REACHED and about["short"] > (1 - farther.REACHED) / 2:
         found.append(Finding("events before", {"length": rounded(about["shortest_m"], 4),
                                                "share": percent(about["short"])}))
     found += [Finding("gap", {"low": rounded(gap["low_m"], 4), "high": rounded(gap["high_m"], 4),

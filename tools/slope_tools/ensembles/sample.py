@@ -1,4 +1,5 @@
 """The plan of an ensemble: how many runs, where they lie in the distributions of --vary, what may be added later."""
+import dataclasses
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Sequence, Tuple
@@ -31,8 +32,19 @@ class Sample:
     @property
     def about(self) -> Dict[str, Any]:
         """What design.yaml and study.yaml say of it."""
+        wide = {one.name: list(one.wide) for one in self.variables if getattr(one, "wide", None)}
         return {"kind": self.kind, "seed": self.seed, "points": self.number,
-                "variables": {one.name: one.text for one in self.variables}}
+                "variables": {one.name: one.text for one in self.variables}, **({"wide": wide} if wide else {})}
+
+    def widened(self, bounds: Mapping[str, Tuple[float, float]]) -> "Sample":
+        """The same, whose variables of these names may have added runs between wider bounds."""
+        return dataclasses.replace(self, variables=tuple(
+            one.widened(*bounds[one.name]) if one.name in bounds else one for one in self.variables))
+
+    @property
+    def box(self) -> np.ndarray:
+        """Where runs may lie: low and high of each variable, 0 and 1 but for wider bounds."""
+        return np.array([one.places for one in self.variables])
 
     def combinations(self) -> List[Dict[str, str]]:
         """The values of each point."""

@@ -6,7 +6,7 @@ a mass that has left its scar. Where the path is steep it may rise, though a mas
 all before: the running minimum counts. Of a fall that none of the events had they say nothing: there the curve is that
 of the last point before of which they do, 1 before the first one, and `said` is False.
 """
-from typing import Dict, List, NamedTuple, Optional, Sequence, Union
+from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -81,6 +81,28 @@ class Mobility(NamedTuple):
         """Where a run that reaches a length (m, along the path) lies among known events."""
         share = float(self.exceedance(length, kind))
         return Lies(share, 1 - share, bool(length >= self.path.length[-1]))
+
+    def shares(self, length: float) -> Tuple[float, float]:
+        """The shares that go beyond a length (m) by a row's both scatters, the smaller first; of a set twice the same.
+
+        So near to the body that the events say nothing, those at the next point of which they do.
+        """
+        if not self.says(length):
+            after = np.flatnonzero(self.said & (self.path.length >= length))
+            length = float(self.path.length[after[0]]) if len(after) else length
+        kinds = self.law.both if isinstance(self.law, Row) else (self.chosen, self.chosen)
+        low, high = sorted(float(self.exceedance(length, kind)) for kind in kinds)
+        return low, high
+
+    def at_most(self, share: float, kind: Optional[str] = None) -> Optional[float]:
+        """The length (m) at which the events begin to say something, where fewer than a share go beyond that.
+
+        None where they say how far this share goes: length_at() does. From the point before it the curve falls by what
+        is not known; at_most() is the longest that the length can be.
+        """
+        curve = self.curves[kind or self.chosen]
+        k = int(np.argmax(curve <= share))
+        return float(self.path.length[k]) if curve[k] <= share and k > 0 and not self.said[k - 1] else None
 
     def says(self, length: float) -> bool:
         """Whether the events had the fall of the path at a length (m)."""

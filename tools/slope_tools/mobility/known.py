@@ -1,7 +1,7 @@
 """Which known events a mass is compared with, and how far they went: those of a set where it covers the mass, else
 landslides of all sizes, which have their angle of reach alone."""
 from pathlib import Path
-from typing import List, NamedTuple, Optional, Sequence
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
 
 import numpy as np
 
@@ -17,25 +17,29 @@ from .relation import Relation
 
 class Choice(NamedTuple):
     """file: set of events; known: those of it that count, none where a row was asked for; left_out: names; confined: a
-    key of exceedance.CONFINED."""
+    key of exceedance.CONFINED; given: the name that was asked for, None: our own set."""
     file: Path
     known: Sequence[events.Event]
     left_out: Sequence[str]
     row: Row
     confined: str
+    given: Optional[str] = None
 
     @property
     def relation(self) -> Relation:
         return relation.of_events(self.known, self.file)
 
-    @property
-    def name(self) -> str:
-        return self.file.name if self.known else f"{self.row.type}:{self.row.path}"
+    def name(self, one: Mobility) -> str:
+        """Of the events of one of both."""
+        return f"{self.row.type}:{self.row.path}" if isinstance(one.law, Row) else self.file.name
 
-    @property
-    def number(self) -> int:
-        """Of events."""
-        return len(self.known) or self.row.events
+    def number(self, one: Mobility) -> int:
+        """Of these events."""
+        return self.row.events if isinstance(one.law, Row) else len(self.known)
+
+    def about(self) -> Dict[str, Any]:
+        """What is kept of it, for of_about()."""
+        return {"set": self.given, "left_out": list(self.left_out), "confined": self.confined}
 
 
 class Found(NamedTuple):
@@ -49,13 +53,21 @@ class Found(NamedTuple):
         return self.by_set if self.by_set and self.by_set.in_range else self.by_row
 
     @property
+    def strict(self) -> Optional[Mobility]:
+        """What the runs of a study must reach: a set that covers the mass, or a row that was asked for; None: neither.
+
+        Landslides that stand for a set that does not cover the mass are shown, and withhold nothing.
+        """
+        return self.by_row if self.by_set is None else self.by_set if self.by_set.in_range else None
+
+    @property
     def each(self) -> List[Mobility]:
         return [one for one in self if one]
 
 
 class Known(NamedTuple):
-    """mobility: of a mass in a set, None and why (a sentence without its full stop) where it does not cover it."""
-    mobility: Optional[Mobility]
+    """found: of a mass, None and why (a sentence without its full stop) where it has no fall path."""
+    found: Optional[Found]
     why: str
 
 
@@ -69,8 +81,8 @@ def choice(name: Optional[str] = None, left_out: Sequence[str] = (), confined: s
         row = landslides.named(str(name))
         if left_out:
             raise SlopeError("--except", "must be an event of a set, of which --known names none", left_out[0])
-        return Choice(path, [], [], row, confined)
-    found = Choice(path, events.chosen(path, left_out), left_out, landslides.named(), confined)
+        return Choice(path, [], [], row, confined, name)
+    found = Choice(path, events.chosen(path, left_out), left_out, landslides.named(), confined, name)
     found.relation      # SlopeError
     return found
 
@@ -83,29 +95,18 @@ def of_body(mass: Body, asked: Choice, path: Optional[FallPath] = None) -> Found
                  exceedance.of_body(mass, asked.row, path=path))
 
 
-def one_of_body(mass: Body, asked: Choice) -> Mobility:
-    """The Mobility of a body among what was asked for alone."""
-    if not asked.known:
-        return exceedance.of_body(mass, asked.row)
-    return exceedance.of_body(mass, asked.relation, CONFINED[asked.confined])
+def of_about(about: Mapping[str, Any]) -> Choice:
+    """The Choice of what was kept of one; SlopeError where its file is gone."""
+    return choice(about.get("set"), about.get("left_out") or (), about.get("confined", "unknown"))
 
 
-def of_mass(raster: Raster, before: np.ndarray, depth: np.ndarray, volume: float, confined: str = "unknown") -> Known:
-    """A mass of a volume (m3) among the events of our own set.
+def of_mass(raster: Raster, before: np.ndarray, depth: np.ndarray, about: Mapping[str, Any]) -> Known:
+    """A mass among the known events of what was kept of a Choice.
 
     raster: the grid; before: the ground with the body, m; depth: of the body, m, 0 beside it.
     """
-    asked = choice(confined=confined)
-    low, high = asked.relation.volumes
-    volume /= 1e6
-    if not low <= volume <= high:
-        return Known(None, f"No set of known events covers a volume of {volume:.3g} million m3; ours are of {low:g} to "
-                           f"{high:g}. How far it runs rests on the parameters alone")
     try:
-        found = one_of_body(body.of_arrays(raster._replace(z=before), depth, "the run"), asked)
+        mass = body.of_arrays(raster._replace(z=before), depth, "the run")
+        return Known(of_body(mass, of_about(about)), "")
     except SlopeError as error:
         return Known(None, f"The runs cannot be compared with known events: {error}")
-    if not found.in_range:
-        return Known(None, "; ".join(f"{line[0].upper()}{line[1:]}" for line in found.outside)
-                     + ". How far the mass runs rests on the parameters alone")
-    return Known(found, "")

@@ -43,6 +43,11 @@ class Row(NamedTuple):
         return "landslides_narrow", "landslides_wide", "landslides"
 
     @property
+    def both(self) -> Tuple[str, str]:
+        """Of curves, those of both scatters."""
+        return self.kinds[0], self.kinds[1]
+
+    @property
     def volumes(self) -> Tuple[float, float]:
         """All: the table does not give the range of a row."""
         return 0.0, math.inf

@@ -74,7 +74,9 @@ def doubts(found: Found) -> List[Finding]:
 
 def of_events(one: Mobility) -> Dict[str, Any]:
     """Lengths by the curves of a set or a row; None where it does not cover the mass."""
-    return {kind: {"lengths_m": {str(share): one.length_at(share, kind) for share in SHARES},
+    return {kind: {"lengths_m": {str(share): None if one.at_most(share, kind) else one.length_at(share, kind)
+                                 for share in SHARES},
+                   "at_most_m": {str(share): one.at_most(share, kind) for share in SHARES},
                    "beyond_path": one.beyond_path(kind)} if one.in_range else None for kind in one.curves}
 
 
@@ -151,8 +153,13 @@ def words(found: Found, source: Source, road: Optional[AtRoad]) -> List[str]:
 
 def lengths(one: Mobility, kind: str) -> str:
     """How far shares of the events go, of a curve."""
-    parts = [f"{percent(share)} beyond {rounded(length, 4)} m" for share in SHARES
-             if (length := one.length_at(share, kind)) is not None]
+    parts = []
+    for share in SHARES:
+        length, most = one.length_at(share, kind), one.at_most(share, kind)
+        if most is not None:
+            parts.append(f"{percent(share)} beyond at most {rounded(most, 4)} m")
+        elif length is not None:
+            parts.append(f"{percent(share)} beyond {rounded(length, 4)} m")
     return (f"{', '.join(parts) or 'nearly all beyond the path'}; beyond the "
             f"{'terrain' if one.path.end == TERRAIN else 'path'}: {percent(one.beyond_path(kind))}")
 

@@ -41,14 +41,16 @@ class Ground:
             self.touched = self.touched | (other.thickness > 0)
         self.obstacles = obstacles.of_run(one)
         self.volume = data.largest_release()
-        self.confined = (data.study or {}).get("study", {}).get("confined", "unknown")      # none in older files
+        about = (data.study or {}).get("study", {})
+        # of older files only whether it is confined, if that
+        self.events = {"confined": about.get("confined", "unknown"), **(about.get("known") or {})}
         if not self.touched.any():
             raise SlopeError(f"{one.prefix}.max_thickness.asc", "must have a cell that the mass ever touched")
 
     @functools.cached_property
     def known(self) -> known.Known:
         """The mass among known events."""
-        return known.of_mass(self.raster, self.before, self.slip_depth, self.volume, self.confined)
+        return known.of_mass(self.raster, self.before, self.slip_depth, self.events)
 
     @functools.cached_property
     def below(self) -> steeper.Below:
@@ -57,9 +59,9 @@ class Ground:
 
     @functools.cached_property
     def reach(self) -> known_reach.KnownReach:
-        """How far known events go; nothing where no set covers the mass."""
-        mobility = self.known.mobility
-        return known_reach.of_mobility(mobility) if mobility else known_reach.NOTHING
+        """How far known events go; nothing where the mass has no fall path."""
+        found = self.known.found
+        return known_reach.of_mobility(found.decides) if found else known_reach.NOTHING
 
     @property
     def source(self):

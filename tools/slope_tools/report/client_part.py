@@ -161,7 +161,7 @@ def basis(data) -> str:
     if data.repeats:
         text += f"{' and' if known else ', which differ'}, by chance, in how the balls lie at the start"
     method = data.study["study"].get("method") or ""        # of a site's study
-    if method.startswith(known_study.PAPER):
+    if method.startswith(known_study.PAPER) and method != known_study.BESIDE:
         why = method.removeprefix(known_study.PAPER).removeprefix("; ")
         text += ". Known events of this size do not count in them" + ("" if method == known_study.ASKED else f": {why}")
     return f"{text}."

@@ -30,8 +30,6 @@ class Machine(NamedTuple):
     """With what a site is tried, and its study will run."""
     lmp: Optional[Path]     # None: there is none, nothing is tried
     jobs: int               # runs at a time
-    # m3 of a body -> runs of an ensemble weighted by known events; 0: none cover it
-    points: Callable[[float], int] = lambda volume: 0
 
 
 class Made(NamedTuple):
@@ -280,8 +278,7 @@ def settle(choices: Choices, parts: site_deck.Parts, found: release.Body, trial:
     model, balls = choices["model"], choices["balls"]
     model["speed"] = model["speed"] or site_budget.stiff_to(trial)
     model["duration"] = model["duration"] or site_budget.duration(trial)
-    size = site_budget.size(choices, parts.body.volume, trial, machine.jobs, raster.z.size,
-                            machine.points(found.measures.volume))
+    size = site_budget.size(choices, parts.body.volume, trial, machine.jobs, raster.z.size)
     balls["diameter"] = size.diameter
     model["cell"] = model["cell"] or max(found.area.cell, site_budget.three_digits(size.diameter / 2))
     return size

@@ -160,12 +160,9 @@ class Plan(NamedTuple):
         return sum(runs for _, runs in self.parts)
 
 
-def plan(choices: Choices, points: int = 0) -> Plan:
-    """points: of an ensemble that is weighted by known events; 0: the study by the paper's method."""
-    if points:
-        return Plan([(1.0, points)], False, f"{points} runs, weighted by known events, and up to half as many more "
-                    "where these go farther (study --paper makes others)")
-    study = choices["study"]
+def plan(choices: Choices) -> Plan:
+    """Of the study by the paper's method, and the ensemble that is weighted by known events."""
+    study, points = choices["study"], choices["study"]["points"]
     each = 1 + sum(len(study[name]) for name in OFFSETS)
     grounds = other_grounds(choices)
     others = [float(factor) for factor in study["sizes"] if factor != 1]       # balls of the site's size are there
@@ -176,6 +173,10 @@ def plan(choices: Choices, points: int = 0) -> Plan:
         text += f", {len(grounds)} on other grounds"
     if others:
         text += f", {len(others)} other sizes of balls x {each}"
+    if points:
+        parts.append((1.0, points))
+        text += (f"; {points} runs weighted by known events, and up to as many more where these go farther (study "
+                 "--paper leaves them out)")
     return Plan(parts, bool(choices["road"]["file"]), text)
 
 
@@ -222,12 +223,12 @@ def duration(trial: Optional[Trial]) -> float:
     return max(LEAST_DURATION, 10.0 * math.ceil(PATIENCE * trial.rest / 10)) if trial else LONGEST
 
 
-def size(choices: Choices, volume: float, trial: Optional[Trial], jobs: int, cells: int, points: int = 0) -> Size:
+def size(choices: Choices, volume: float, trial: Optional[Trial], jobs: int, cells: int) -> Size:
     """The balls by the first of diameter, number, minutes, memory that is given; SlopeError if there are none such.
 
-    volume: of the body, m3; cells: of the terrain; points: see plan(). The choices hold speed and density.
+    volume: of the body, m3; cells: of the terrain. The choices hold speed and density.
     """
-    balls, model, wanted = choices["balls"], choices["model"], plan(choices, points)
+    balls, model, wanted = choices["balls"], choices["model"], plan(choices)
 
     def seconds(d: float) -> float:
         assert trial is not None

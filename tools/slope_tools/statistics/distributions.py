@@ -1,9 +1,10 @@
 """The meaning of --vary in an ensemble: variables of a deck, and the distributions of their values."""
+import dataclasses
 import decimal
 import math
 import re
 from dataclasses import dataclass
-from typing import Any, Dict, List, Sequence, Tuple
+from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 from scipy import stats
@@ -29,6 +30,7 @@ class Range:
     high: float
     frozen: Any
     width: float            # in which nearly all values lie, at most high - low
+    wide: Optional[Tuple[float, float]] = None      # see widened()
 
     @property
     def decimals(self) -> int:
@@ -37,17 +39,35 @@ class Range:
 
     def value(self, u: float) -> str:
         """The value (text, for the deck) at which a share u of the distribution lies below."""
-        x = min(max(float(self.frozen.ppf(u)), self.low), self.high)
+        low, high = self.wide or (self.low, self.high)
+        x = float(self.frozen.ppf(u)) if 0 <= u <= 1 else self.low + u * (self.high - self.low)
+        x = min(max(x, low), high)
         text = f"{x:.{self.decimals}f}"
         if x != 0 and abs(x) < 10.0 ** (DIGITS - self.decimals):     # near 0 a loguniform value has few digits left
             text = f"{x:.{DIGITS}g}"
-        if not self.low <= float(text) <= self.high:        # rounded out of the range
+        if not low <= float(text) <= high:        # rounded out of the range
             text = repr(x)
         return settings.plain(decimal.Decimal(text))
 
     def unit(self, text: str) -> float:
-        """The share of the distribution below a value: the inverse of value()."""
-        return float(self.frozen.cdf(float(text)))
+        """The share of the distribution below a value: the inverse of value(), outside of the bounds, too."""
+        value = float(text)
+        if self.wide and not self.low <= value <= self.high:
+            return (value - self.low) / (self.high - self.low)
+        return float(self.frozen.cdf(value))
+
+    def widened(self, low: float, high: float) -> "Range":
+        """With wider bounds for runs that are added; of a uniform distribution, whose density goes on as it is there:
+        places below 0 and above 1."""
+        return dataclasses.replace(self, wide=(low, high))
+
+    @property
+    def places(self) -> Tuple[float, float]:
+        """The lowest and the highest that runs can have."""
+        if not self.wide:
+            return 0.0, 1.0
+        low, high = ((one - self.low) / (self.high - self.low) for one in self.wide)
+        return min(low, 0.0), max(high, 1.0)
 
     def snap(self, u: np.ndarray) -> np.ndarray:
         """The places that runs can have; of a range, all."""
@@ -79,6 +99,10 @@ class Listed:
     text: str
     values: Tuple[str, ...]
     edges: Tuple[float, ...]
+
+    @property
+    def places(self) -> Tuple[float, float]:
+        return 0.0, 1.0
 
     def _index(self, u) -> np.ndarray:
         return np.clip(np.searchsorted(self.edges, u, "right") - 1, 0, len(self.values) - 1)

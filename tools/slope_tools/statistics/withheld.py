@@ -3,6 +3,7 @@
 A rule takes the Facts of a study and returns a Finding, or None where the number may stand; withheld_words adds the
 command that mends it.
 """
+from enum import Enum
 from typing import List, NamedTuple, Optional
 
 from ..digits import rounded
@@ -14,7 +15,7 @@ UNFINISHED = 0.1        # of all runs, that failed or are not at rest
 CONFIDENCE = 0.95       # of the probability that no volume at all is exceeded
 
 
-class Kind:
+class Kind(str, Enum):
     """Of the findings: which rule."""
     BALLS = "balls on the road"
     MOBILITY = "known events"
@@ -43,30 +44,33 @@ def few_balls(facts: Facts) -> Optional[Finding]:
     number = facts.on_road / facts.ball
     if not facts.volume > 0 or number >= BALLS:
         return None
-    return Finding(Kind.BALLS, {"number": number, "bound": BALLS, "s": "" if f"{number:.2g}" == "1" else "s"})
+    return Finding(Kind.BALLS.value, {"number": number, "bound": BALLS, "s": "" if f"{number:.2g}" == "1" else "s"})
 
 
 def short(facts: Facts) -> Optional[Finding]:
     if facts.median is None or facts.length is not None and facts.length >= facts.median:
         return None
     longest = "there is no deposit" if facts.length is None else f"the longest one ends at {rounded(facts.length, 3)} m"
-    return Finding(Kind.MOBILITY, {"number": facts.length, "bound": facts.median, "longest": longest})
+    return Finding(Kind.MOBILITY.value, {"number": facts.length, "bound": facts.median, "longest": longest})
 
 
 def left(facts: Facts) -> Optional[Finding]:
-    return Finding(Kind.LEFT, {"percent": 100 * facts.left, "bound": 100 * LEFT}) if facts.left > LEFT else None
+    if facts.left <= LEFT:
+        return None
+    return Finding(Kind.LEFT.value, {"number": facts.left, "bound": LEFT, "percent": 100 * facts.left,
+                                     "most": 100 * LEFT})
 
 
 def unfinished(facts: Facts) -> Optional[Finding]:
     number = facts.failed + facts.moving
     if number <= UNFINISHED * facts.runs:
         return None
-    return Finding(Kind.RUNS, {"number": number, "runs": facts.runs, "failed": facts.failed,
-                               "bound": 100 * UNFINISHED})
+    return Finding(Kind.RUNS.value, {"number": number, "bound": facts.runs, "failed": facts.failed,
+                                     "most": 100 * UNFINISHED})
 
 
 def size_error(facts: Facts) -> Optional[Finding]:
-    return Finding(Kind.SIZE, {"why": facts.size}) if facts.size and facts.volume > 0 else None
+    return Finding(Kind.SIZE.value, {"why": facts.size}) if facts.size and facts.volume > 0 else None
 
 
 RULES = (few_balls, short, left, unfinished, size_error)

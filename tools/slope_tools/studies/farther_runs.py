@@ -2,7 +2,7 @@
 from typing import Any, Dict, List, Mapping, Sequence
 
 from ..case import run_folders
-from ..ensembles import known_events
+from ..ensembles import farther, known_events
 from ..ensembles.ensemble import Order
 from ..runs import jobs, repeats
 from . import results
@@ -28,7 +28,8 @@ def make(setup: Setup, order: Order, fixed: Mapping[str, str], chances: Sequence
         runs = known_events.Runs(order.sample, added.batches, rows, found)
         if found.outside or len(runs.rows) < 2:
             return
-        new = added.propose(runs.places, runs.lengths, runs.beyond, float(found.path.length[-1]))
+        end = farther.End(float(found.path.length[-1]), found.beyond_path())
+        new = added.propose(runs.places, runs.lengths, runs.beyond, end)
         if new is None:
             return
         setup.tell(added.line(new, runs.lengths, runs.beyond))

@@ -15,8 +15,8 @@ from ..runs import repeats
 from ..seismic import chain_files
 from ..sites import site_choices
 from ..survey import rasters, roads
-from ..tables import (combinations, intensity, judged, quantities, road_runs, size_error, step_check, structures,
-                      study_table, usable, withheld_words)
+from ..tables import (answered, combinations, intensity, judged, quantities, road_runs, size_error, step_check,
+                      structures, study_table, usable, withheld_words)
 from ..tables.size_error import SizeErrors
 from ..tables.study_maps import Maps
 from . import site_ground
@@ -53,8 +53,8 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
     maps = Maps(thresholds)
     rows, thickness = rows_of(setup, todo, maps, pictures=order is None)
     warnings = [finding(one) for one in questions.notes]
-    said = {one.kind for one in warnings if not one.part}
-    warnings += [one for one in judged.of_runs(rows) if one.kind not in said]
+    warned = {one.kind for one in warnings if not one.part}
+    warnings += [one for one in judged.of_runs(rows) if one.kind not in warned]
     if maps.problem:
         warnings.append(finding(maps.problem))
     finished = [row for row in rows if row["status"] == "finished"]
@@ -65,9 +65,10 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
     written = maps.write(output, terrain_place(first) if first else None)
     keys = ["front_m", "thickness_m", "max_thickness_m", "max_speed_m_s"]
     keys += [key for key in (travel_shares.DISTANCE, "length_m") if key in names]
-    confined = confined_of(setup, questions)
+    among = known_of(setup, questions)
+    events = events_of(setup, first, finished[0], among) if setup.road and finished else None
     about = {
-        "study": {"deck": deck.name, "confined": confined,
+        "study": {"deck": deck.name, "known": among,
                   "set": settings, "repeat": repeated, "runs": len(rows), "finished": len(finished),
                   "method": questions.method, "ranks": work.ranks, "jobs": work.jobs, "package": work.package,
                   "collected": provenance.now(), "machine": provenance.machine()},
@@ -81,9 +82,8 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         about["study"]["road"] = write_road(output, setup.road, first, thickness)
     if order:
         about["ensemble"] = ensemble.evaluate(order, rows, output, first and terrain_place(first), maps.problem)
-        about["ensemble"]["withheld"] = usable.reasons_of_ensemble(
-            rows, events_of(setup, first, finished[0], confined),
-            case_of(setup, questions, finished[0])._replace(sampled=True)) if setup.road and finished else []
+        case = case_of(setup, questions, finished[0])._replace(sampled=True)
+        about["ensemble"]["withheld"] = usable.reasons_of_ensemble(rows, events, case) if setup.road else []
     elif setup.road and finished:
         distrust = untrusted(errors, groups)
         trusted = None if distrust else errors
@@ -103,8 +103,8 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         if unknown and questions.sizes and size_error.falls(questions.sizes, "remove_m3"):
             about["size_error_unusable"] = f"{unknown}. The volume falls with the size of the balls: nothing is added"
             unknown = ""
-        usable.judge(best, rows, events_of(setup, first, finished[0], confined),
-                     case_of(setup, questions, finished[0]), unknown)
+        usable.judge(best, rows, events, case_of(setup, questions, finished[0]), unknown)
+    about["headline"] = (said := answered.of_study(about, events and events.road(finished))) and said.about()
     if setup.road and finished:
         known = (about["ensemble"] or {}).get("known_events") or {}
         about["stretches"] = stretches_of(output, finished, known.get("weights"))
@@ -122,8 +122,7 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         setup.warn(one)
     disk.write(output / "study.csv", study_table.table(settings, repeated, rows, work.defaults))
     disk.write(output / "combinations.csv", combinations.table(groups, names, settings))
-    disk.write(output / "study.yaml", disk.yaml_text(
-        "slope study: volumes in m3 of ground (bulk), lengths in m, times in s", about))
+    disk.write(output / "study.yaml", disk.yaml_text(answered.TITLE, about))
     if not order or len(rows) <= SHOWN:
         setup.tell(study_table.runs_shown(
             settings, rows, scatters,
@@ -155,21 +154,21 @@ def untrusted(errors: Optional[SizeErrors], groups) -> Optional[str]:
     return "; ".join(errors.distrust(str(group.rows[0]["variables"][errors.variable]) for group in groups)) or None
 
 
-def confined_of(setup: Setup, questions: Questions) -> str:
-    """What was said of the path of the mass: with the ensemble's known events, or in site.yaml; "unknown": nothing."""
+def known_of(setup: Setup, questions: Questions) -> Mapping[str, Any]:
+    """With which known events the runs are compared: the ensemble's, or those of site.yaml; for known.of_about()."""
     condition = questions.order and questions.order.condition
     if condition:
-        return condition.asked.confined
+        return condition.asked.about()
     site = questions.site or setup.deck.parent
-    return site_choices.read(site)["known"]["confined"] if (site / site_choices.NAME).is_file() else "unknown"
+    return site_choices.read(site)["known"] if (site / site_choices.NAME).is_file() else {}
 
 
-def events_of(setup: Setup, run, row, confined: str) -> Optional[usable.Events]:
-    """Known events of the mass of a run, of its row."""
+def events_of(setup: Setup, run, row, among: Mapping[str, Any]) -> Optional[usable.Events]:
+    """What known events did of the mass of a run, of its row."""
     summary = run_folders.summary_of(setup.output, row)
     raster = placed(run_folders.load_raster(run_folders.prefix_of(summary), "thickness"), run)
     road = setup.road.read(raster).polygon if setup.road else None
-    return usable.known_events(run_folders.prefix_of(summary), terrain_of(run), row["released_m3"], road, confined)
+    return usable.known_events(run_folders.prefix_of(summary), terrain_of(run), road, among)
 
 
 def case_of(setup: Setup, questions: Questions, row) -> withheld_words.Case:

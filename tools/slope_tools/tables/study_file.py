@@ -6,6 +6,7 @@ from .. import schemas
 from ..case import run_folders
 from ..errors import SlopeError
 from ..schemas import ANY, FLAG, MAYBE as PERHAPS, NUMBER, OBJECT, TEXT, listed, mapping, numbers
+from . import answered
 from .study_table import COLUMNS, MAYBE, ROAD_COLUMNS
 
 WHAT = "what `slope study` wrote, of this version (the same command rewrites it, and keeps the runs)"
@@ -57,11 +58,10 @@ class Study(NamedTuple):
 
     @classmethod
     def read(cls, folder: Union[str, Path]) -> "Study":
-        """That of its folder, or the last one of the folder of a site; SlopeError if there is none."""
+        """That of its folder, or the one that governs of the folder of a site; SlopeError if there is none."""
         place = Path(folder)
-        several = [one for one in (place / "study", place / "ensemble") if (one / "study.yaml").is_file()]
-        found = place if (place / "study.yaml").is_file() else max(
-            several, key=lambda one: (one / "study.yaml").stat().st_mtime, default=place)
+        own = (place / "study.yaml").is_file() or not (place / "site.yaml").is_file()
+        found = place if own else answered.governing(place / "study", place / "ensemble")
         return cls(found, read_study(found / "study.yaml"))
 
     @property

@@ -1,11 +1,11 @@
 """Whether the number of a study may be used: the Facts that withheld looks at, from its rows."""
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from ..deposits import deposit, scar
 from ..mobility import known
 from ..mobility.road import at_road
-from ..statistics import withheld
+from ..statistics import answer, withheld
 from ..statistics.withheld import Facts
 from . import withheld_words
 from .withheld_words import Case
@@ -14,24 +14,43 @@ Row = Mapping[str, Any]
 
 
 class Events(NamedTuple):
-    """What known events of the mass's volume and height did."""
-    median: float           # m, length that half of them exceed; that of the fall path where it ends before
-    at_road: float          # share of them that go as far as the road
+    """What known events of the mass's volume and height did.
 
-
-def known_events(prefix: Path, terrain: Optional[Path], volume: float, road, confined: str) -> Optional[Events]:
-    """Those of a run; None where no set covers its mass.
-
-    prefix: of its deposit; terrain: the ground before it; volume: released, m3; road: polygons in local metres;
-    confined: its path, a key of exceedance.CONFINED.
+    median: m, length that half of them exceed, that of the fall path where it ends before; None: they withhold nothing,
+    see known.Found.strict. near, far: m, the edges of the road; reached, passed: shares of them beyond these, by the
+    smaller and the larger scatter.
     """
-    found = deposit.read(prefix, terrain, lambda text: None)
-    mobility = known.of_mass(found.raster, *scar.before(found.raster, found.base, terrain), volume, confined).mobility
-    if mobility is None:
+    median: Optional[float]
+    near: float
+    far: float
+    reached: Tuple[float, float]
+    passed: Tuple[float, float]
+
+    def road(self, rows: Sequence[Row]) -> answer.Road:
+        """With the longest of a study's runs."""
+        return answer.Road(self.near, self.far, self.reached, self.passed, longest(rows))
+
+
+def known_events(prefix: Path, terrain: Optional[Path], road, about: Mapping[str, Any]) -> Optional[Events]:
+    """Those of a run; None where it has no fall path.
+
+    prefix: of its deposit; terrain: the ground before it; road: polygons in local metres; about: of the events, see
+    known.of_about().
+    """
+    read = deposit.read(prefix, terrain, lambda text: None)
+    found = known.of_mass(read.raster, *scar.before(read.raster, read.base, terrain), about).found
+    if found is None:
         return None
-    median = mobility.length_at(0.5)
-    return Events(float(mobility.path.length[-1]) if median is None else median,
-                  float(mobility.exceedance(at_road(mobility.path, road).length)))
+    one, median = found.decides, found.strict and found.strict.length_at(0.5)
+    if found.strict and median is None:
+        median = float(one.path.length[-1])
+    at = at_road(one.path, road)
+    return Events(median, at.length, at.passed, one.shares(at.length), one.shares(at.passed))
+
+
+def longest(rows: Sequence[Row]) -> Optional[float]:
+    """Length (m) of the longest of the runs that finished."""
+    return max((row["length_m"] for row in rows if row.get("length_m") is not None), default=None)
 
 
 def facts(rows: Sequence[Row], volume: float, on_road: float, events: Optional[Events], size: str = "") -> Facts:
@@ -41,11 +60,10 @@ def facts(rows: Sequence[Row], volume: float, on_road: float, events: Optional[E
     not trusted.
     """
     finished = [row for row in rows if row["status"] == "finished"]
-    lengths = [row["length_m"] for row in finished if row["length_m"] is not None]
     return Facts(volume, on_road, min(row["ball_m3"] for row in finished), len(rows), len(rows) - len(finished),
                  sum(not row["at_rest"] for row in finished),
                  max(row["left_before_road_m3"] / row["released_m3"] for row in finished),
-                 max(lengths, default=None), events and events.median, size)
+                 longest(finished), events and events.median, size)
 
 
 def reasons_of_ensemble(rows: Sequence[Row], events: Optional[Events], case: Case) -> List[Dict[str, Any]]:
@@ -69,4 +87,5 @@ def judge(best: Dict[str, Any], rows: Sequence[Row], events: Optional[Events], c
     if found:
         best["volume_m3"] = best["rounded"]["volume_m3"] = None
     elif best["volume_m3"] == 0:
-        best["zero"] = withheld_words.zero(sum(row["status"] == "finished" for row in rows), events and events.at_road)
+        finished = sum(row["status"] == "finished" for row in rows)
+        best["zero"] = withheld_words.zero(finished, events and max(events.reached))

@@ -1,0 +1,95 @@
+"""The number of a study: the larger of the paper's and an ensemble's, a floor, withheld, or nothing; by hand."""
+import sys
+
+import pytest
+
+from run_helpers import TOOLS
+
+sys.path.insert(0, str(TOOLS))
+
+from slope_tools import disk  # noqa: E402  (after the path is set)
+from slope_tools.statistics import answer  # noqa: E402
+from slope_tools.statistics.answer import Code, Ensemble, Kind, Paper, Road, Source, Withheld  # noqa: E402
+from slope_tools.statistics.withheld import Kind as Rule  # noqa: E402
+
+STOPPED = answer.Reason(Code.TERRAIN, {"share": 0.12, "path_m": 900.0})
+
+
+def ensemble(upto=0.99, far=0.01, rules=(), values=1000.0, **more):
+    """Quantiles of values * share, unknown above a share."""
+    return Ensemble({share: (values * share, 0.9 * values * share, 1.1 * values * share) if share <= upto
+                     else (None, None, None) for share in (answer.SHARE, *answer.FLOORS)}, far, 800.0,
+                    [Withheld(rule) for rule in rules], **more)
+
+
+def road(low, high, longest=500.0):
+    return Road(400.0, 410.0, (high, low), (0.9 * high, 0.9 * low), longest)
+
+
+def codes(found):
+    return [one.code for one in found.reasons]
+
+
+def test_the_larger_of_both():
+    found = answer.of(Paper(700.0), ensemble(), road(0.5, 0.6))
+    assert (found.kind, found.volume, found.source, found.share) == (Kind.NUMBER, 950.0, Source.ENSEMBLE, 0.95)
+    assert (found.low, found.high, found.reasons) == (pytest.approx(855), pytest.approx(1045), [])
+    found = answer.of(Paper(1200.0), ensemble(), road(0.5, 0.6))
+    assert (found.kind, found.volume, found.source, found.share, found.high) == (
+        Kind.NUMBER, 1200.0, Source.PAPER, None, None)
+    assert answer.of(Paper(5.0), None, None)[:2] == (Kind.NUMBER, 5.0)
+    assert answer.of(None, ensemble(), None)[:2] == (Kind.NUMBER, 950.0)
+    assert answer.of(None, None, None) is None
+
+
+def test_a_floor_where_known_events_lie_beyond_the_runs():
+    found = answer.of(Paper(0.0), ensemble(0.9, 0.08, stopped=STOPPED), road(0.5, 0.6))
+    assert (found.kind, found.volume, found.share, found.high) == (Kind.FLOOR, 900.0, 0.9, None)
+    assert codes(found) == [Code.BEYOND, Code.TERRAIN] and found.reasons[0].numbers == {"far": 0.08, "longest_m": 800.0}
+    found = answer.of(Paper(0.0), ensemble(0.3, 0.7), road(0.5, 0.6))
+    assert (found.volume, found.share) == (250.0, 0.25)
+    # the paper's more is a floor, too: what lies beyond is not known
+    found = answer.of(Paper(5000.0), ensemble(0.3, 0.7), road(0.5, 0.6))
+    assert (found.kind, found.volume, found.source) == (Kind.FLOOR, 5000.0, Source.PAPER)
+    # nor is nothing known at all
+    found = answer.of(None, ensemble(0.0, 0.95, [Rule.MOBILITY]), road(0.5, 0.6))
+    assert (found.kind, found.volume, found.share) == (Kind.FLOOR, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("low, high, kind, said", [
+    (0.02, 0.09, Kind.NOTHING, []), (0.05, 0.2, Kind.NOTHING, [Code.ONE_SCATTER]),
+    (0.11, 0.2, Kind.FLOOR, [Code.NOT_REACHED])])
+def test_a_road_that_no_run_reaches(low, high, kind, said):
+    """The near edge decides: both scatters, one, or none says that more than a tenth of the known events reach it."""
+    found = answer.of(Paper(0.0), ensemble(values=0.0), road(low, high, 399.0))
+    assert (found.kind, found.volume, codes(found)) == (kind, 0.0, said)
+    assert all(one.numbers == {"low": low, "high": high, "near_m": 400.0, "longest_m": 399.0} for one in found.reasons)
+    assert answer.of(Paper(0.0), ensemble(values=0.0), road(low, high, 400.0)).kind is Kind.NOTHING     # one reaches it
+    assert answer.of(Paper(0.0), ensemble(values=0.0), road(low, high, None)).kind is kind
+
+
+def test_rules_that_withhold_one_of_both():
+    mobility, balls, left = (Withheld(rule) for rule in (Rule.MOBILITY, Rule.BALLS, Rule.LEFT))
+    for harmless in (mobility, balls):      # which the ensemble makes up for
+        found = answer.of(Paper(None, [harmless]), ensemble(), road(0.5, 0.6))
+        assert (found.kind, found.volume, found.reasons) == (Kind.NUMBER, 950.0, [])
+        assert answer.of(Paper(None, [harmless]), None, None).kind is Kind.WITHHELD     # alone it stands
+    found = answer.of(Paper(None, [left]), ensemble(), road(0.5, 0.6))
+    assert (found.kind, found.volume, found.high, codes(found)) == (Kind.FLOOR, 950.0, None, [Code.RULE])
+    assert found.reasons[0].numbers["source"] == "paper" and found.reasons[0].numbers["rule"] == Rule.LEFT.value
+    found = answer.of(Paper(70.0), ensemble(rules=[Rule.LEFT]), road(0.5, 0.6))
+    assert (found.kind, found.volume, found.source) == (Kind.FLOOR, 70.0, Source.PAPER)
+    found = answer.of(Paper(70.0), ensemble(rules=[Rule.BALLS]), road(0.5, 0.6))     # its largest is less than balls
+    assert (found.kind, found.volume) == (Kind.NUMBER, 70.0)
+    found = answer.of(Paper(None, [left]), ensemble(rules=[Rule.RUNS]), road(0.5, 0.6))
+    assert (found.kind, found.volume, found.source, codes(found)) == (Kind.WITHHELD, None, None, [Code.RULE, Code.RULE])
+
+
+def test_what_study_yaml_says():
+    about = answer.of(Paper(700.0), ensemble(0.9, 0.08, stopped=STOPPED), road(0.5, 0.6)).about()
+    assert disk.plain(about) == about and list(about) == ["kind", "volume_m3", "share", "low_m3", "high_m3", "source",
+                                                          "paper", "ensemble", "road", "reasons"]
+    assert about["paper"] == {"volume_m3": 700.0, "withheld": []}
+    assert about["ensemble"] == {"volume_m3": None, "far": 0.08, "withheld": []}
+    assert about["road"]["reached"] == [0.5, 0.6] and about["reasons"][1] == {
+        "code": "terrain ends", "numbers": {"share": 0.12, "path_m": 900.0}}

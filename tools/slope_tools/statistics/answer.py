@@ -1,0 +1,206 @@
+"""The number of a study that a client reads, or what stands in its place: the larger of the paper's and an ensemble's.
+
+The paper's study gives a conservative volume, an ensemble that is weighted by known events the volume that 95 % of
+them stay within. A record of kinds, codes and numbers; words are made of it elsewhere.
+"""
+from enum import Enum
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+
+from .withheld import Kind as Rule
+
+SHARE = 0.95            # of the known events, which stay within the volume
+FLOORS = 0.9, 0.75, 0.5, 0.25, 0.1      # shares whose quantile is a floor, where that of SHARE is unknown
+MANY = 0.1              # of the known events: if more reach a road that no run does, its volume is a floor
+# rules that say of a number that it is small, or that few of the known were run: the other study makes up for them
+HARMLESS = {Rule.BALLS, Rule.MOBILITY}
+
+
+class Kind(Enum):
+    """What the number is."""
+    NUMBER = "number"
+    FLOOR = "floor"             # at least so much
+    WITHHELD = "withheld"
+    NOTHING = "nothing"         # 0, and no more than MANY of the known events reach the road
+
+
+class Source(Enum):
+    """Which study it is of."""
+    PAPER = "paper"
+    ENSEMBLE = "ensemble"
+
+
+class Code(Enum):
+    """Of a reason: why a number is a floor, why no more runs were added, what a rule says."""
+    BEYOND = "known beyond runs"
+    NOT_REACHED = "road not reached"
+    ONE_SCATTER = "one scatter reaches"
+    TERRAIN = "terrain ends"
+    RANGE = "range ends"
+    RUNS = "no more runs"
+    FEW = "too few runs"
+    RULE = "rule"
+
+
+class Reason(NamedTuple):
+    """A code and its numbers."""
+    code: Code
+    numbers: Mapping[str, Any]
+
+    def about(self) -> Dict[str, Any]:
+        return {"code": self.code.value, "numbers": dict(self.numbers)}
+
+    @classmethod
+    def read(cls, about: Mapping[str, Any]) -> "Reason":
+        """Of about()."""
+        return cls(Code(about["code"]), about["numbers"])
+
+
+class Road(NamedTuple):
+    """A road on the fall path: its edges (m), the shares of the known events that reach the near and pass the far one.
+
+    Of a row of landslides by the smaller and the larger scatter, of a set of events twice the same. longest: m, of the
+    runs; None: none has a length.
+    """
+    near: float
+    far: float
+    reached: Tuple[float, float]
+    passed: Tuple[float, float]
+    longest: Optional[float]
+
+    @property
+    def missed(self) -> bool:
+        """Whether no run reaches it."""
+        return self.longest is None or self.longest < self.near
+
+    def numbers(self) -> Dict[str, Any]:
+        return {"low": min(self.reached), "high": max(self.reached), "near_m": self.near, "longest_m": self.longest}
+
+    def about(self) -> Dict[str, Any]:
+        return {"near_m": self.near, "far_m": self.far, "reached": sorted(self.reached),
+                "passed": sorted(self.passed), "longest_m": self.longest}
+
+
+class Withheld(NamedTuple):
+    """A rule that a number breaks; see withheld."""
+    rule: Rule
+    number: Optional[float] = None
+    bound: Optional[float] = None
+
+    def reason(self, source: Source) -> Reason:
+        return Reason(Code.RULE, {"source": source.value, "rule": self.rule.value, "number": self.number,
+                                  "bound": self.bound})
+
+
+class Paper(NamedTuple):
+    """The conservative volume (m3) of the paper's study; None where it is withheld."""
+    volume: Optional[float]
+    withheld: Sequence[Withheld] = ()
+
+
+class Ensemble(NamedTuple):
+    """A weighted ensemble: (value, low, high) of its quantiles (m3) by share, of SHARE and FLOORS.
+
+    far: share of the known events beyond all runs; longest: m; stopped: why no more runs were added, None: enough were.
+    """
+    quantiles: Mapping[float, Tuple[Optional[float], Optional[float], Optional[float]]]
+    far: float
+    longest: float
+    withheld: Sequence[Withheld] = ()
+    stopped: Optional[Reason] = None
+
+
+class Answer(NamedTuple):
+    """See the page on `slope study`: headline of study.yaml."""
+    kind: Kind
+    volume: Optional[float]
+    share: Optional[float]
+    low: Optional[float]
+    high: Optional[float]
+    source: Optional[Source]
+    paper: Optional[Paper]
+    ensemble: Optional[Ensemble]
+    road: Optional[Road]
+    reasons: List[Reason]
+
+    def about(self) -> Dict[str, Any]:
+        """What study.yaml says of it."""
+        paper, ensemble = self.paper, self.ensemble
+        return {
+            "kind": self.kind.value, "volume_m3": self.volume, "share": self.share, "low_m3": self.low,
+            "high_m3": self.high, "source": self.source and self.source.value,
+            "paper": paper and {"volume_m3": paper.volume, "withheld": [one.rule.value for one in paper.withheld]},
+            "ensemble": ensemble and {"volume_m3": ensemble.quantiles[SHARE][0], "far": ensemble.far,
+                                      "withheld": [one.rule.value for one in ensemble.withheld]},
+            "road": self.road and self.road.about(), "reasons": [one.about() for one in self.reasons]}
+
+
+class Part(NamedTuple):
+    """What one study says alone."""
+    kind: Kind
+    volume: Optional[float]
+    share: Optional[float] = None
+    low: Optional[float] = None
+    high: Optional[float] = None
+    reasons: Sequence[Reason] = ()
+
+
+def of_paper(one: Paper, beside: bool) -> Optional[Part]:
+    """beside: an ensemble stands beside it, which makes up for HARMLESS rules; None: those alone withhold it."""
+    if one.volume is not None:
+        return Part(Kind.NUMBER, one.volume)
+    grave = [rule for rule in one.withheld if not (beside and rule.rule in HARMLESS)]
+    if not grave:
+        return None
+    return Part(Kind.WITHHELD, None, reasons=[rule.reason(Source.PAPER) for rule in grave])
+
+
+def of_ensemble(one: Ensemble, road: Optional[Road]) -> Part:
+    # that no run goes as far as half of the known events makes a floor
+    grave = [rule for rule in one.withheld if rule.rule is not Rule.MOBILITY]
+    if grave:
+        return Part(Kind.WITHHELD, None, reasons=[rule.reason(Source.ENSEMBLE) for rule in grave])
+    stopped = [one.stopped] if one.stopped else []
+    if road and road.missed:
+        low, high = min(road.reached), max(road.reached)
+        if low > MANY:
+            return Part(Kind.FLOOR, 0.0, 1 - high, reasons=[Reason(Code.NOT_REACHED, road.numbers()), *stopped])
+        said = [Reason(Code.ONE_SCATTER, road.numbers())] if high > MANY else []
+        return Part(Kind.NUMBER, 0.0, SHARE, 0.0, 0.0, said)
+    for share in (SHARE, *FLOORS):
+        value, low_m3, high_m3 = one.quantiles[share]
+        if value is not None:
+            if share == SHARE:
+                return Part(Kind.NUMBER, value, share, low_m3, high_m3)
+            break
+    else:
+        value, low_m3, share = 0.0, None, 0.0
+    return Part(Kind.FLOOR, value, share, low_m3, None,
+                [Reason(Code.BEYOND, {"far": one.far, "longest_m": one.longest}), *stopped])
+
+
+def of(paper: Optional[Paper], ensemble: Optional[Ensemble], road: Optional[Road]) -> Optional[Answer]:
+    """The larger of both; None without either.
+
+    Where one of them is withheld for a reason that the other does not make up for, the other is a floor.
+    """
+    parts: List[Tuple[Source, Part]] = []
+    if paper and (mine := of_paper(paper, ensemble is not None)):
+        parts.append((Source.PAPER, mine))
+    if ensemble:
+        parts.append((Source.ENSEMBLE, of_ensemble(ensemble, road)))
+    if not parts:
+        return None
+    reasons = [reason for _, part in parts[::-1] for reason in part.reasons]
+    known = [(source, part) for source, part in parts if part.volume is not None]
+    if not known:
+        return Answer(Kind.WITHHELD, None, None, None, None, None, paper, ensemble, road, reasons)
+    source, best = max(known, key=lambda one: one[1].volume or 0.0)
+    open_ = any(part.kind is Kind.FLOOR or part.kind is Kind.WITHHELD and not few(part) for _, part in parts)
+    kind = Kind.FLOOR if open_ else Kind.NUMBER if best.volume else Kind.NOTHING
+    return Answer(kind, best.volume, best.share, best.low, None if open_ else best.high, source, paper, ensemble, road,
+                  reasons)
+
+
+def few(part: Part) -> bool:
+    """Whether a number is withheld only because hardly a ball lies on the road."""
+    return all(one.numbers.get("rule") == Rule.BALLS.value for one in part.reasons)

@@ -1,0 +1,75 @@
+"""The headline of study.yaml (statistics.answer): of what a study says, and of both studies of a site."""
+from pathlib import Path
+from typing import Any, Dict, List, Mapping, Optional
+
+from .. import disk, schemas
+from ..schemas import OBJECT, mapping
+from ..statistics import answer
+from ..statistics.answer import Answer, Ensemble, Paper, Reason, Road, Withheld
+from ..statistics.withheld import Kind as Rule
+
+TITLE = "slope study: volumes in m3 of ground (bulk), lengths in m, times in s"
+SCHEMA = mapping({}, conservative=mapping({}, null=True), ensemble=mapping({}, null=True),
+                 headline=mapping({}, null=True, road=mapping({}, null=True)), study=OBJECT)
+
+
+def of_study(about: Mapping[str, Any], road: Optional[Road]) -> Optional[Answer]:
+    """Of one study.yaml; None without a road, and of an ensemble that no known events weigh."""
+    return answer.of(paper_of(about), ensemble_of(about), road)
+
+
+def paper_of(about: Mapping[str, Any]) -> Optional[Paper]:
+    """Its conservative volume, if it has one."""
+    best = about.get("conservative")
+    return Paper(best["volume_m3"], rules(best.get("withheld") or ())) if best else None
+
+
+def ensemble_of(about: Mapping[str, Any]) -> Optional[Ensemble]:
+    """Its weighted ensemble, if it has one with volumes."""
+    whole = about.get("ensemble") or {}
+    one = whole.get("known_events") or {}
+    if not one.get("to_remove"):
+        return None
+    stopped = (one.get("added") or {}).get("stopped")
+    return Ensemble({each["share"]: (each["value"], each["low"], each["high"]) for each in one["to_remove"]},
+                    one["far"], one["longest_m"], rules(whole.get("withheld") or ()),
+                    Reason.read(stopped) if stopped else None)
+
+
+def rules(entries) -> List[Withheld]:
+    """Of withheld_words.mended()."""
+    numbers = ((one, one.get("numbers") or {}) for one in entries)
+    return [Withheld(Rule(one["kind"]), of.get("number"), of.get("bound")) for one, of in numbers]
+
+
+def road_of(about: Mapping[str, Any]) -> Optional[Road]:
+    """That of a headline."""
+    one = (about.get("headline") or {}).get("road")
+    if not one:
+        return None
+    (reached, more_reached), (passed, more_passed) = one["reached"], one["passed"]
+    return Road(one["near_m"], one["far_m"], (reached, more_reached), (passed, more_passed), one["longest_m"])
+
+
+def governing(paper: Path, ensemble: Path) -> Path:
+    """Of the folders of both studies of a site that whose number it is; the one that there is, if it is one."""
+    there = [one for one in (ensemble, paper) if (one / "study.yaml").is_file()]
+    if len(there) < 2:
+        return there[0] if there else paper
+    said = schemas.load(ensemble / "study.yaml", "what `slope study` wrote", SCHEMA).get("headline")
+    if said and said["paper"]:
+        return paper if said["source"] == "paper" else ensemble
+    return max(there, key=lambda one: (one / "study.yaml").stat().st_mtime)      # not of one command
+
+
+def of_both(paper: Path, ensemble: Path) -> Optional[Answer]:
+    """Of both study.yaml of a site, in which it is entered; None, and nothing is done, without a road."""
+    said: Dict[Path, Any] = {path: schemas.load(path, "what `slope study` wrote", SCHEMA) for path in (paper, ensemble)}
+    roads = [one for one in map(road_of, said.values()) if one]
+    road = roads[-1]._replace(longest=max((one.longest for one in roads if one.longest is not None), default=None)) \
+        if roads else None
+    found = answer.of(paper_of(said[paper]), ensemble_of(said[ensemble]), road)
+    if found:
+        for path, about in said.items():
+            disk.write(path, disk.yaml_text(TITLE, {**about, "headline": found.about()}))
+    return found
