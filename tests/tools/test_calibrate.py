@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -20,8 +21,10 @@ from tiny_collapse import LMP, TOP, write_case
 
 from slope_tools.deposits import travel_shares
 from slope_tools.errors import SlopeError
-from slope_tools.fitting import calibration, fit_words, observations
+from slope_tools.fitting import calibration, fit, fit_words, observations
+from slope_tools.runs import repeats
 from slope_tools.statistics import backanalysis, designs, distributions, emulator, tempering
+from slope_tools.studies import mapped
 from slope_tools.survey import rasters
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
@@ -464,3 +467,68 @@ def test_every_example_of_the_pages_is_understood(line, here, capsys):
         words += ["--dry-run", *(["--local"] if "--local" not in words else [])]
     status, _, err = called(capsys, words)
     assert status == 0, err
+
+
+# --- runs that are not at rest, and a mass that is not the same ---
+
+def fit_of(tmp_path, monkeypatch, rest_after, duration="10", fixed=(), fails=()):
+    """A Fit whose runs are at rest from a duration (s) on, and what it tells; fails: durations of runs that fail."""
+    told = []
+
+    def rows_of(setup, todo, maps, pictures):
+        rows = []
+        for one in todo:
+            seconds = float(one.chosen.get("duration", duration))
+            one.error = "no" if seconds in fails else None
+            rows.append({"status": "failed"} if one.error else
+                        {"status": "finished", "run": one.name, "at_rest": seconds >= rest_after,
+                         "stop_reason": "halted" if seconds >= rest_after else "run completed", "released_m3": 1000.0,
+                         "lost_m3": 0.0, "seconds": seconds})
+        return rows, None
+
+    monkeypatch.setattr(fit.results, "rows_of", rows_of)
+    monkeypatch.setattr(fit.Fit, "summary", lambda self, row: None)
+    monkeypatch.setattr(fit.Fit, "terrain", staticmethod(lambda one: None))
+    work = SimpleNamespace(store=SimpleNamespace(admit=lambda todo: None), do=lambda todo: None,
+                           defaults={"duration": duration})
+    ledger = calibration.Ledger(tmp_path, {}, [])
+    plan = calibration.Calibration(ledger, tmp_path, dict(fixed), [], 1, 8, 2)
+    found = fit.Fit(SimpleNamespace(output=tmp_path, tell=told.append), SimpleNamespace(), plan, work)
+    found.observed = SimpleNamespace(told_by=lambda row: True, measure=lambda summary, terrain, row: row["seconds"],
+                                     volume=None)
+    plan.runs = [repeats.Repeat(tmp_path, {**dict(fixed), "friction": "20"}),
+                 repeats.Repeat(tmp_path, {**dict(fixed), "friction": "30"}, {"xoffset": "0.5"})]
+    return found, told
+
+
+def test_a_run_that_is_not_at_rest_gets_more_time(tmp_path, monkeypatch):
+    found, told = fit_of(tmp_path, monkeypatch, rest_after=35.0)
+    assert found.evaluate(list(found.plan.runs)) == [40.0, 40.0]
+    assert [one.chosen["duration"] for one in found.plan.runs] == ["40", "40"]
+    assert found.plan.runs[1].repeat == {"xoffset": "0.5"} and len(found.rows) == 2
+    assert [line.split(",")[-1] for line in told] == [" 20 s", " 40 s"]
+
+
+@pytest.mark.parametrize("more, seconds", [
+    ({"rest_after": 1e9}, 80.0),                                # three times, and no more
+    ({"rest_after": 5.0}, 10.0), ({"rest_after": 35.0, "fixed": {"duration": "10"}.items()}, 10.0),
+    ({"rest_after": 35.0, "duration": "${T}"}, None), ({"rest_after": 35.0, "fails": (40.0,)}, 20.0)])
+def test_how_much_more_time(tmp_path, monkeypatch, more, seconds):
+    if seconds is None:
+        found, _ = fit_of(tmp_path, monkeypatch, rest_after=35.0)
+        found.work.defaults["duration"] = "${T}"
+        assert not found.was_cut(repeats.Repeat(tmp_path, {}), {"status": "finished", "at_rest": False,
+                                                                "stop_reason": "run completed"})
+        return
+    found, _ = fit_of(tmp_path, monkeypatch, **more)
+    assert found.evaluate(list(found.plan.runs)) == [seconds] * 2
+
+
+def test_a_mapped_deposit_of_another_mass_is_named(tmp_path, monkeypatch):
+    found, _ = fit_of(tmp_path, monkeypatch, rest_after=5.0)
+    found.evaluate(list(found.plan.runs))
+    assert found.mass() == ""
+    found.observed.volume = 740.0
+    assert found.mass().startswith("the mapped deposit holds 26 % less than is released, 740 m3 of 1,000")
+    assert mapped.mass(1290.0, 1000.0).startswith("the mapped deposit holds 29 % more")
+    assert mapped.mass(905.0, 1000.0) == mapped.mass(None, 1000.0) == ""

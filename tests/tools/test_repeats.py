@@ -16,7 +16,7 @@ from slope_tools.errors import SlopeError
 from slope_tools.findings import Finding
 from slope_tools.runs import repeats
 from slope_tools.statistics import headline
-from slope_tools.tables import combinations, study_file, study_table
+from slope_tools.tables import combinations, quantities, study_file, study_table
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 ROAD = "--road case/road.csv --local"
@@ -66,7 +66,9 @@ def test_repeats_are_made_for_each_combination_and_the_headline_is_theirs(slope)
     best, larger = about["conservative"], means.index(max(means))
     assert min(means) > 1 and best["kind"] == "prediction"
     assert best["mean_m3"] == pytest.approx(max(means)) and best["set"]["rolling"] == ("0", "0.3")[larger]
-    deviation = ((statistics.variance(volumes[0]) + statistics.variance(volumes[1])) / 2) ** 0.5
+    assert max(means) <= 2 * min(means)     # the scatter is that of both, in proportion to the root of the mean
+    deviation = (sum(max(means) / mean * statistics.variance(each) for mean, each in zip(means, volumes)) / 2) ** 0.5
+    assert best["starts_m3"] == [min(volumes[larger]), max(volumes[larger])]
     assert best["scatter_m3"] == pytest.approx(deviation) and 2 <= best["degrees_of_freedom"] <= 4
     assert best["chance_m3"] == pytest.approx(best["quantile"] * deviation * (4 / 3) ** 0.5)
     assert best["repeats"] == 3 and best["size_m3"] is None
@@ -239,7 +241,7 @@ def test_other_doubts():
     assert Finding("more in a run", {"run": "0_14", "volume": 120.0}).entry() in conservative(
         {"rolling": ["0", "1"]}, above)["doubts"]
     loud = rows((("1",), (90.0, 120, 150)), (("0",), (100.0, 101, 102)))
-    assert Finding("scatters more", {"mine": 30.0, "others": 1.0}).entry() in conservative(
+    assert Finding("scatters more", {"mine": 30.0, "others": 1.1}).entry() in conservative(
         {"rolling": ["1", "0"]}, loud)["doubts"]
 
 
@@ -258,6 +260,10 @@ def test_runs_of_another_outcome_are_doubted():
     found = conservative({"rolling": ["0", "1"]}, rows((("0",), (500.0, 0, 520)), (("1",), (400.0, 420, 410))))
     assert [(one["numbers"]["few"], one["numbers"]["runs"]) for one in found["doubts"]
             if one["kind"] == "two outcomes"] == [(1, 3)]
+    assert "the slope stood in 1 of them" in str(found["doubts"])
+    several = rows((("0",), (500.0, 0, 520)), (("1",), (400.0, 420, 410)))
+    several[1]["centroid_m"] = 40.0
+    assert "the mass came down in these, too" in str(conservative({"rolling": ["0", "1"]}, several)["doubts"])
     none = conservative({"rolling": ["0", "1"]}, rows((("0",), (0.0, 0, 0)), (("1",), (400.0, 420, 410))))
     assert not any(one["kind"] == "two outcomes" for one in none["doubts"])
 
@@ -355,3 +361,16 @@ TRAVEL = {"front": 1.0, "front_at_release": 1.0, "centroid": 1.0, "reach_angle":
 def test_wrong_values_of_a_summary_are_one_line(section, value, rule):
     with pytest.raises(SlopeError, match=f"a.yaml: must be a summary that fix deposit/grid wrote: .*{rule}"):
         schemas.check(value, run_folders.SUMMARY["properties"][section], "a.yaml", run_folders.WHAT)
+
+
+@pytest.mark.parametrize("kinds, name, column", [
+    (("straight", "straight"), "straight length", True),
+    (("along the fall path",) * 2, "length along the fall path", False),
+    (("straight", "along the fall path"), "length (straight in some runs)", True),
+    ((None, None), "length along the fall path", False)])
+def test_a_length_without_a_fall_path_is_called_straight(kinds, name, column):
+    several = [{**row, "length_is": kind, "length_m": 30.0} for row, kind in zip(rows((("0",), (5.0, 6.0))), kinds)]
+    assert quantities.name_of("length_m", several) == name
+    assert quantities.name_of("front_m", several) == "farthest ball"
+    head = study_table.table({"rolling": ["0"]}, {"seed": []}, several, {"seed": "0"}).splitlines()[0].split(",")
+    assert ("length_is" in head) == column and (not column or head[head.index("length_deg") + 1] == "length_is")

@@ -2,6 +2,7 @@
 import html
 import re
 import string
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -18,7 +19,8 @@ from slope_tools.findings import LIMIT, NOTE, WARNING, Finding, finding, gathere
 from slope_tools.plots.obstacles import Obstacles
 from slope_tools.report import body, client_part, structures_part, warnings
 from slope_tools.report.numbers import Numbers
-from slope_tools.tables import judged
+from slope_tools.statistics.withheld import Kind as Rule
+from slope_tools.tables import judged, next_step
 
 made, here, slope = test_report.made, test_report.here, test_report.slope       # its fixtures
 # of options, files, runs and variables
@@ -29,6 +31,7 @@ def client(path):
     """The text of the first page, without its picture and style."""
     page = path.read_text(encoding="utf-8")
     part = page[page.index('<section id="client">'):page.index('id="appendix"')]
+    part = re.sub(r'(<div class="step">.*?)<code>[^<]*</code>', r"\1", part)       # the command of the next step
     return html.unescape(re.sub(r"<[^>]*>", " ", part))
 
 
@@ -70,6 +73,88 @@ def test_a_number_that_is_withheld_gives_way_to_its_reasons(slope, here):
     text = client(here / "out" / "report.html")
     assert "Not usable as a conservative volume" in text and "On the road lie 3 balls." in text
     assert not TOOLS_WORDS.search(text) and "slope study --set d=1" in (here / "out" / "report.html").read_text()
+
+
+ROAD = {"near_m": 2400.0, "far_m": 2412.0, "reached": [0.2, 0.3], "passed": [0.18, 0.27], "longest_m": 1846.0}
+BEYOND = {"code": "known beyond runs", "numbers": {"far": 0.12, "longest_m": 2300.0}}
+TERRAIN = {"code": "terrain ends", "numbers": {"share": 0.08, "path_m": 3600.0}}
+MISSED = {"code": "road not reached", "numbers": {"low": 0.2, "high": 0.3, "near_m": 2400.0, "longest_m": 1846.0}}
+MOVING = {"code": "rule", "numbers": {"source": "paper", "rule": "runs not at rest or failed", "number": 6, "bound": 6}}
+
+
+def headline_of(kind, **more):
+    """An entry of study.yaml as statistics.answer writes it."""
+    return {"kind": kind, "volume_m3": None, "share": None, "low_m3": None, "high_m3": None, "source": None,
+            "paper": {"volume_m3": None, "withheld": []}, "ensemble": {"volume_m3": None, "far": 0.03, "withheld": []},
+            "road": ROAD, "reasons": [], **more}
+
+
+HEADLINES = {
+    "number": headline_of("number", volume_m3=35812.0, share=0.95, low_m3=21040.0, high_m3=48230.0, source="ensemble",
+                          paper={"volume_m3": 1200.0, "withheld": []}),
+    "floor": headline_of("floor", volume_m3=12012.0, share=0.9, low_m3=9000.0, source="ensemble",
+                         reasons=[BEYOND, TERRAIN]),
+    "not reached": headline_of("floor", volume_m3=0.0, share=0.7, source="ensemble", reasons=[MISSED, TERRAIN]),
+    "withheld": headline_of("withheld", reasons=[MOVING]),
+    "nothing": headline_of("nothing", volume_m3=0.0, share=0.95, source="ensemble",
+                           road={**ROAD, "reached": [0.02, 0.07]})}
+SAID = {"number": ("35,800 m³", "Between 21,000 m³ and 48,200 m³, with 90 % confidence.", "gives 1,200 m³"),
+        "floor": ("at least 12,000 m³", "90 % of known events of this volume and height stay within 12,000 m³",
+                  "12 % of known events of this volume and height go farther than the longest run, which ends after "
+                  "2,300 m.", "Next step: a larger elevation model"),
+        "not reached": ("20 % to 30 % of known events reach it", "More than 0 m³", "the longest run ends after 1,846 m",
+                        "Next step: a larger elevation model"),
+        "withheld": ("Volume to remove from the road: not usable:", "had not come to rest",
+                     "Next step: more time for the mass to come to rest, about"),
+        "nothing": ("0 m³", "2 % to 7 % of known events of this volume and height reach the road.")}
+
+
+@pytest.mark.parametrize("case", HEADLINES)
+def test_what_stands_first(slope, here, case):
+    """A number, a floor, one that is withheld, nothing: never only that it is unknown, each number with its unit."""
+    path = here / "repeated" / "study.yaml"
+    path.write_text(yaml.safe_dump({**yaml.safe_load(path.read_text()), "headline": HEADLINES[case]}))
+    assert slope("repeated")[0] == 0
+    text = " ".join(client(here / "repeated" / "report.html").split())
+    for words in SAID[case]:
+        assert words in text
+    page = (here / "repeated" / "report.html").read_text(encoding="utf-8")
+    main = page[page.index('<div class="main'):page.index('<div class="note">')]
+    assert not TOOLS_WORDS.search(text) and "unknown" not in main and "?" not in main
+    assert ("Next step" in text) == (case in ("floor", "not reached", "withheld"))
+    kind = HEADLINES[case]["kind"]
+    assert f'<div class="main{" " + kind if kind != "number" else ""}">' in page
+    if case in ("floor", "not reached"):
+        assert "<code>tools/slope study in.tiny ... --anew</code>" in page
+    if case == "withheld":
+        remedy, = (one["remedy"] for one in yaml.safe_load(path.read_text())["conservative"]["withheld"])
+        assert f"<code>{html.escape(remedy)}</code>" in page
+
+
+def test_the_next_step_and_its_time(tmp_path):
+    """By the first reason that something can be done about; as long as the runs took, several at a time."""
+    design = {"points": 64, "variables": {"friction": "2:30", "rolling": "uniform:0:0.15", "slip": "list:a,b"}}
+    rows = [{"status": "finished", "wall_s": 60.0} for _ in range(20)]
+    made_ = next_step.Made({"study": {"jobs": 2, "deck": "in.tiny"}, "conservative": None, "runs": rows, "ensemble": {
+        "design": design, "known_events": {"set": "rock_avalanches.csv"}}}, Path("site/ensemble"))
+
+    def step(*codes, of=made_):
+        return next_step.of_reasons(of, {"reasons": [{"code": code, "numbers": numbers} for code, numbers in codes]})
+
+    beyond = ("known beyond runs", BEYOND["numbers"])
+    found = step(beyond, ("no more runs", {"points": 32}))
+    assert found.seconds == 600 and found.text == "more runs" and found.time.startswith(", about 10 minutes")
+    assert found.command == ("tools/slope study in.tiny -o site/ensemble --sample 128 --known rock_avalanches --vary "
+                             "friction=2:30 --vary rolling=uniform:0:0.15 --vary slip=list:a,b")
+    assert step(beyond).command == found.command
+    assert "--sample 64 " in step(("range ends", {"ends": "friction 2"})).command
+    assert "--vary friction=1:30 --vary rolling=0:0.15 --vary slip=list:a,b" in step(("range ends", {})).command
+    assert next_step.times(made_, Rule.BALLS, {"number": 0.0045, "bound": 10}) == pytest.approx(600 * 10 ** (4 / 3))
+    (tmp_path / "site.yaml").touch()
+    assert step(("terrain ends", TERRAIN["numbers"]), of=made_._replace(folder=tmp_path / "ensemble")).command.endswith(
+        f"{tmp_path}/site.yaml, then: tools/slope site {tmp_path} && tools/slope study {tmp_path} --anew")
+    rows[0]["wall_s"] = None
+    assert step(("too few runs", {})).time == ""
 
 
 def test_only_a_report_on_the_same_folder_is_replaced(slope, here):

@@ -352,7 +352,13 @@ def test_structures_lines_and_a_mapped_deposit(gis):
     assert (run / "site.wall.csv").exists() and (run / "site.behind.line.yaml").exists()
     score = yaml.safe_load((mine / "score" / "score.yaml").read_text())
     assert 0 < score["area"]["jaccard"] < 1
-    assert (mine / "report.html").exists()
+    # the same on the page, and of all runs
+    about = yaml.safe_load((mine / "study" / "study.yaml").read_text())
+    assert about["observed"]["file"] == "../observed.csv" and about["observed"]["best"] == "rolling_0.05"
+    assert about["runs"][0]["overlap"] == pytest.approx(score["area"]["jaccard"])
+    assert about["observed"]["area_m2"] == pytest.approx(35 * 30)
+    assert "mapped deposit: overlap (Jaccard) " in study.stdout
+    assert 'id="mapped"' in (mine / "report.html").read_text(encoding="utf-8")
 
 
 def test_an_earthquake_sets_the_body_off(gis):

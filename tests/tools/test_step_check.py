@@ -3,7 +3,6 @@
 import pytest
 
 from slope_tools.errors import SlopeError
-from slope_tools.statistics.headline import Scatter
 from slope_tools.tables import combinations, energy, step_check
 from slope_tools.tables.step_check import Step
 
@@ -12,16 +11,16 @@ def groups():
     return combinations.grouped([
         {"status": "finished", "run": f"{rolling}_{k}", "set": {"rolling": rolling}, "repeat": {"seed": str(k)},
          "remove_m3": volume, "front_m": volume}
-        for rolling, several in (("0", (90.0, 100, 110)), ("0.1", (50.0, 60, 70))) for k, volume in enumerate(several)])
+        for rolling, several in (("0", (90.0, 100, 110)), ("0.1", (56.0, 64, 72))) for k, volume in enumerate(several)])
 
 
 @pytest.mark.parametrize("volume, within, words", [
     (120.0, True, "half the time step, rolling 0: 120 m3 instead of 100 to remove, +20.0 %; no more than chance "),
-    (140.0, False, "+40.0 %; more than chance explains, "), (60.0, False, "-40.0 %; more than chance")])
+    (155.0, False, "+55.0 %; more than chance explains, "), (45.0, False, "-55.0 %; more than chance")])
 def test_half_the_step_against_the_mean_and_chance(volume, within, words):
-    entry = step_check.compare(Step("0", volume), groups(), Scatter(10.0, 4.0))
-    # t(0.975, 4) 10 sqrt(1 + 1/3)
-    assert entry["chance_m3"] == pytest.approx(2.776445 * 10 * (4 / 3) ** 0.5)
+    entry = step_check.compare(Step("0", volume), groups())
+    # s is 10, and 8 sqrt(100/64); all repeats are alike, 2 degrees of freedom: t(0.975, 2) s sqrt(1 + 1/3)
+    assert entry["chance_m3"] == pytest.approx(4.302653 * 10 * (4 / 3) ** 0.5)
     assert entry["mean_m3"] == 100 and entry["within_chance"] is within and words in entry["text"]
 
 
@@ -29,28 +28,29 @@ def test_runs_on_another_ground_are_not_compared():
     rows = [{"status": "finished", "run": spacing, "set": {"rolling": "0", "spacing": spacing}, "repeat": {},
              "remove_m3": volume, "front_m": volume} for spacing, volume in (("0.5", 300.0), ("0.9", 100.0))]
     both = combinations.grouped(rows)
-    assert step_check.compare(Step("0", 100.0, spacing="0.9"), both, None)["mean_m3"] == 100
-    assert step_check.compare(Step("0", 100.0, spacing="0.7"), both, None)["mean_m3"] is None
-    assert step_check.compare(Step("0", 100.0, spacing="0.7"), groups(), None)["mean_m3"] == 100
+    assert step_check.compare(Step("0", 100.0, spacing="0.9"), both)["mean_m3"] == 100
+    assert step_check.compare(Step("0", 100.0, spacing="0.7"), both)["mean_m3"] is None
+    assert step_check.compare(Step("0", 100.0, spacing="0.7"), groups())["mean_m3"] == 100
 
 
 def test_nothing_is_said_in_words():
     rows = [{"status": "finished", "run": str(k), "set": {"rolling": "0"}, "repeat": {"seed": str(k)}, "remove_m3": 0.0,
              "front_m": 1.0} for k in range(3)]
-    entry = step_check.compare(Step("0", 0.0), combinations.grouped(rows), Scatter(0.0, 2.0))
+    entry = step_check.compare(Step("0", 0.0), combinations.grouped(rows))
     assert entry["text"] == "half the time step, rolling 0: nothing to remove, as with the whole step"
     assert entry["within_chance"] is True and entry["chance_m3"] == 0
 
 
 def test_without_repeats_chance_is_unknown():
-    entry = step_check.compare(Step("0.1", 61.0), groups(), None)
-    assert entry["within_chance"] is None and entry["text"].endswith("instead of 60 to remove, +1.7 %; chance unknown")
+    entry = step_check.compare(Step("0.1", 65.0), [group for one in groups() for group in combinations.grouped(
+        one.rows[1:2])])
+    assert entry["within_chance"] is None and entry["text"].endswith("instead of 64 to remove, +1.6 %; chance unknown")
 
 
 def test_a_run_that_was_not_made_says_why():
-    entry = step_check.compare(Step("0", None, "the disk is full"), groups(), None)
+    entry = step_check.compare(Step("0", None, "the disk is full"), groups())
     assert entry["text"] == "half the time step: not tried: the disk is full"
-    entry = step_check.compare(Step("0.2", 5.0), groups(), None)
+    entry = step_check.compare(Step("0.2", 5.0), groups())
     assert entry["text"] == "half the time step: not tried: no run with the same values finished"
 
 

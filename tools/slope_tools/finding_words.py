@@ -168,7 +168,7 @@ WORDS: Dict[str, Union[str, Words]] = {
     "no effect": Words("a repeated variable has no effect, to the last digit: left out", NOTE),
     "size error unknown": "the size error is unknown: {why}",
     # why the number of a study is withheld
-    "balls on the road": "on the road lies the volume of {number:.2g} ball{s}, fewer than {bound:g}",
+    "balls on the road": "on the road lies the volume of {balls}, fewer than {bound:g}",
     "known events": "no run reaches {bound} m, as half of known events of this volume and height do; {longest}",
     "left the terrain": "{percent:.2g} % of the released volume left the terrain before or beside the road, more than "
                         "{most:g} %",
@@ -181,14 +181,15 @@ WORDS: Dict[str, Union[str, Words]] = {
     "more than released": Words("it is more than the {released:,.6g} m3 that are released, which is impossible: the "
                                 "scatter or the size error is too uncertain to give a number", NOTE),
     "two outcomes": Words("{few} of the {runs} runs of {combination} have less than {percent:g} % of the volume of the "
-                          "others, which the scatter by chance does not describe (did the slope fail in some runs "
-                          "only?)", NOTE),
+                          "others, which the scatter by chance does not describe ({outcome})", NOTE),
     "more in a run": Words("{run} gave more, {volume:,.6g} m3", NOTE),
     "scatters more": Words("its runs scatter more than the others, by {mine:,.6g} instead of {others:,.6g} m3: the "
                            "common scatter may be too small for it", NOTE),
     "fails at times": Words("at {variable} {values} the slope fails in some runs and stands in others: the scatter is "
                             "that between the two, not that of a volume; use the probabilities at each intensity",
                             NOTE),
+    "arrives at times": Words("at {variable} {values} the mass reaches the road in some runs only: the scatter is that "
+                              "between the two, not that of a volume; use the probabilities at each intensity", NOTE),
     "not repeated": Words("the scatter is that of {repeated} alone: {offsets} of the deck not repeated", NOTE),
     "half step": Words("{text}", NOTE),
     "no file of sizes": Words("{file}, from which the study took its size error, does not exist, so there are no "
@@ -227,6 +228,7 @@ WORDS: Dict[str, Union[str, Words]] = {
                        "far they went is unknown, and they are left out; use a larger one", NOTE),
     "underdetermined": Words("{known} cannot determine {asked} variables", NOTE),
     "no scatter": Words("too few runs to measure the scatter by chance of {which}: the region may be too narrow", NOTE),
+    "another mass": Words("{text}", NOTE),
     "one lattice": Words("all runs have the same lattice, {offsets} not being repeated: the scatter by chance (s) "
                          "lacks what another lattice changes, and the region may be too narrow or beside the truth",
                          NOTE),

@@ -4,7 +4,8 @@ from typing import Any, Mapping, Optional
 
 FAST = 0.1              # m/s: what is slower creeps or jitters (motion: fast_... of fix deposit/grid)
 MOST_FAST = 0.01        # share of the released volume that may be faster in a deposit at rest
-ENDS = {"halted": "ended by its rest criterion", "run completed": "stopped at its duration",
+CUT = "run completed"   # what a summary calls the end of a run that no criterion ended
+ENDS = {"halted": "ended by its rest criterion", CUT: "stopped at its duration",
         "time limit": "cut by a limit of computing time"}
 
 
@@ -38,7 +39,7 @@ class Rest:
         """For a narrow table."""
         if self.at_rest:
             return "at rest"
-        return "moves" if self.halted else "duration" if self.ended == ENDS["run completed"] else "cut"
+        return "moves" if self.halted else "duration" if self.ended == ENDS[CUT] else "cut"
 
 
 def percent(share: float) -> str:

@@ -24,6 +24,7 @@ HAZARD, INFLUENCE = "hazard.csv", "influence.csv"
 ON_ROAD = "remove_on_road_m3"
 QUANTITIES = {**quantities.NAMES, "max_thickness_m": ("largest thickness at any time", "m"),
               "max_speed_m_s": ("largest speed", "m/s"), "stop_time_s": ("end of the run", "s")}
+LENGTH = "length_m"
 # those whose dependence on the variables is looked at
 MAIN = ("remove_m3", ON_ROAD, "beyond_road_m3", "blocked_m", travel_shares.DISTANCE, "length_m", "centroid_m",
         "thickness_m", "max_speed_m_s")
@@ -67,6 +68,8 @@ def evaluate(order: Order, rows: Sequence[Mapping[str, Any]], output: Path, plac
     point = points_of(order.sample, finished)
     of_quantity = {name: QUANTITIES[name] for name in QUANTITIES
                    if all(row.get(name) is not None for row in finished)}
+    if LENGTH in of_quantity:
+        of_quantity[LENGTH] = quantities.name_of(LENGTH, finished), "m"
     curves = {name: hazard.curve(column(finished, name), point, failed) for name in of_quantity}
     about: Dict[str, Any] = {
         "design": order.sample.about, "runs": len(planned), "finished": len(finished), "failed": failed,

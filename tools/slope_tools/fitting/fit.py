@@ -6,16 +6,20 @@ import numpy as np
 
 from .. import disk, provenance
 from ..case import run_folders
+from ..case.settings import as_number
 from ..deposits import deposit, score
+from ..deposits.rest import CUT
 from ..findings import Finding, entries
 from ..runs import jobs, repeats
 from ..statistics import backanalysis
-from ..studies import results
+from ..studies import mapped, results
 from ..studies.setup import Setup
 from ..tables import judged, quantities
 from . import calibration, fit_words, observations
 
 SETS = 64               # sets of values that stand for the region
+DURATION = "duration"   # variable of a deck, its time limit
+DOUBLED = 3             # times, at most, where a run is not at rest then
 TABLE, ABOUT, CHART, MAP = "calibrate.csv", "calibrate.yaml", "calibrate.png", "predicted.png"
 
 
@@ -41,16 +45,44 @@ class Fit:
         self.write(found)
 
     def evaluate(self, todo: Sequence[repeats.Repeat]) -> List[Optional[np.ndarray]]:
-        """Run what is not finished, and measure all."""
-        self.work.store.admit(todo)
-        self.work.do(todo)
-        rows, _ = results.rows_of(self.setup, todo, results.Maps(()), pictures=False)
+        """Run what is not finished, longer where a deposit is not at rest, and measure all."""
+        rows = self.made(todo)
+        todo = list(todo)
+        for _ in range(DOUBLED):
+            longer = {i: self.longer(todo[i]) for i, row in enumerate(rows) if self.was_cut(todo[i], row)}
+            if not longer:
+                break
+            times = ", ".join(sorted({one.chosen[DURATION] for one in longer.values()}))
+            self.setup.tell(f"{len(longer)} run{'s' * (len(longer) > 1)} not at rest at the end of the duration: again "
+                            f"with twice as much, {times} s")
+            for (i, one), row in zip(longer.items(), self.made(list(longer.values()))):
+                if row["status"] == "finished":         # else the shorter one stays
+                    self.plan.replace(todo[i], one)
+                    todo[i], rows[i] = one, row
         found: List[Optional[np.ndarray]] = []
         for one, row in zip(todo, rows):
             self.rows[one.name] = row
             told = not one.error and self.observed.told_by(row)
             found.append(self.observed.measure(self.summary(row), self.terrain(one), row) if told else None)
         return found
+
+    def made(self, todo: Sequence[repeats.Repeat]) -> List[Mapping[str, Any]]:
+        """The rows of runs, which are made where they are not finished."""
+        self.work.store.admit(todo)
+        self.work.do(todo)
+        return list(results.rows_of(self.setup, todo, results.Maps(()), pictures=False)[0])
+
+    def was_cut(self, one: repeats.Repeat, row: Mapping[str, Any]) -> bool:
+        """Whether a run was stopped at its duration before it was at rest, and the duration may be another one."""
+        named = {variable.name for variable in self.variables} | self.plan.fixed.keys()
+        return (row["status"] == "finished" and not row["at_rest"] and row["stop_reason"] == CUT
+                and DURATION in self.work.defaults and DURATION not in named
+                and isinstance(as_number(one.chosen.get(DURATION, self.work.defaults[DURATION])), float))
+
+    def longer(self, one: repeats.Repeat) -> repeats.Repeat:
+        """The same run with twice its duration."""
+        seconds = float(one.chosen.get(DURATION, self.work.defaults[DURATION]))
+        return repeats.Repeat(self.setup.output, {**one.combination, DURATION: f"{2 * seconds:.10g}"}, one.repeat)
 
     def summary(self, row: Mapping[str, Any]) -> Path:
         return run_folders.summary_of(self.setup.output, row)
@@ -124,7 +156,16 @@ class Fit:
                                    *(one.name for one in self.variables)], self.work.defaults)
         if offsets:
             several.append(Finding("one lattice", {"offsets": ", ".join(offsets)}))
+        lacks = self.mass()
+        if lacks:
+            several.append(Finding("another mass", {"text": lacks}))
         return several + judged.not_at_rest([row for row in self.rows.values() if row["status"] == "finished"])
+
+    def mass(self) -> str:
+        """That the mapped thickness cannot be of the mass that is released; "" where it can, or nothing is known."""
+        released = [row["released_m3"] for row in self.rows.values() if row["status"] == "finished"]
+        volume = self.observed.volume
+        return mapped.mass(volume, sum(released) / len(released)) if released else ""
 
     def gone(self) -> List[Mapping[str, Any]]:
         """The runs that lost so much that they are left out."""

@@ -92,6 +92,13 @@ class Observations:
         self.shape: Tuple[int, ...] = ()        # of the grid of the first run
         self.edges = np.empty(0)                # of the bands of distance, m
 
+    @property
+    def volume(self) -> Optional[float]:
+        """Of the mapped deposit, m3; None of an outline, or where nothing is mapped."""
+        if self.mapped is None or self.mapped.thickness is None:
+            return None
+        return float(self.mapped.thickness.sum()) * float(self.transform.a) ** 2 + self.mapped.volume_outside
+
     def told_by(self, row: Mapping[str, Any]) -> bool:
         """Whether a run (a row of the table of `slope study`) says how far the mass goes, if that was asked.
 

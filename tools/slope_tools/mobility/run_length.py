@@ -27,6 +27,7 @@ from .fall_path import FallPath
 LEAST = 0.01            # of the released volume, in a lobe
 OTHERS = 0.005, 0.02    # what else it might be: the change is shown
 OF_99 = 0.933           # 99 % of a volume stay within this part of the straight length: Acheron's deposit and its runs
+STRAIGHT, ON_PATH = "straight", "along the fall path"       # what a length is
 DECIMALS = 3            # of a distance, m: cells as far as each other tie, whatever rounding makes of them
 KEPT = 4                # paths: runs of a study have one body, or a few
 
@@ -63,9 +64,7 @@ def of_deposit(deposit: Deposit, path: Optional[FallPath], least: float = LEAST,
     highest = top(deposit)
     rows, columns = np.nonzero(mask)
     places = np.column_stack(deposit.raster.transform * np.array([columns + 0.5, rows + 0.5]))
-    begin = (path.x[0], path.y[0]) if path else (highest.x, highest.y)
-    straight = np.hypot(*(places - begin).T)
-    distances = np.maximum(along(path, places), straight) if path else straight
+    distances, straight = lengths_of(places, path, deposit)
     far = int(np.argmax(distances))
     distance = round(float(distances[far]), DECIMALS)
     drop = highest.z - float((deposit.base + deposit.raster.z)[rows[far], columns[far]])
@@ -73,6 +72,14 @@ def of_deposit(deposit: Deposit, path: Optional[FallPath], least: float = LEAST,
     held = float(deposit.raster.z[mask].sum()) * deposit.cell ** 2
     return RunLength(distance, float(straight.max()), (float(places[far, 0]), float(places[far, 1])), angle, number,
                      held / released(deposit), mask, path is not None)
+
+
+def lengths_of(places: np.ndarray, path: Optional[FallPath], deposit: Deposit) -> Tuple[np.ndarray, np.ndarray]:
+    """How far places (n, 2) lie from where a mass began, m: along the path, and as the crow flies."""
+    highest = top(deposit)
+    begin = (path.x[0], path.y[0]) if path else (highest.x, highest.y)
+    straight = np.hypot(*(places - begin).T)
+    return (np.maximum(along(path, places), straight) if path else straight), straight
 
 
 def released(deposit: Deposit) -> float:

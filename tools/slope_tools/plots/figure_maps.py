@@ -20,6 +20,7 @@ SECTION_LINE = {"color": SECTION, "lw": 0.9, "ls": (0, (6, 2, 1, 2))}
 RELEASE_LINE = {"color": RELEASE, "lw": 0.9, "ls": "--"}
 WALL = {"color": "#111111", "lw": 1.2}
 LINE = {"color": "#8a5aa8", "lw": 1.2}
+MAPPED = {"color": "#1f2fbf", "lw": 1.3}
 PATH = {"color": "#00695c", "lw": 0.7, "ls": (0, (1, 1.5))}
 MARKS = {0.5: {"color": "#00695c", "lw": 1.6}, 0.1: {"color": "#00695c", "lw": 1.6, "ls": (0, (1.5, 0.8))}}
 TINTS = LinearSegmentedColormap.from_list(
@@ -38,6 +39,7 @@ class Layers(NamedTuple):
     walls: Mapping[str, Any] = {}        # what structures cover
     lines: Mapping[str, np.ndarray] = {}     # points of control lines, rows of x y
     reach: KnownReach = NOTHING              # of known events
+    mapped: Any = None                       # the deposit of an event: a polygon, or a mask of cells
 
 
 # --- what is drawn into the axes of a map ---
@@ -63,6 +65,7 @@ def base_map(axes, layers, labels=True):
         for polygon in polygons_of(layers.road):
             axes.fill(*np.asarray(polygon.exterior.coords)[:, :2].T, color=ROAD, alpha=0.13, lw=0, zorder=1.5)
     draw_obstacles(axes, layers)
+    draw_mapped(axes, layers)
     if layers.reach.marks:
         axes.plot(*layers.reach.path.T, zorder=6, **PATH)
     for mark in layers.reach.marks:
@@ -79,6 +82,17 @@ def draw_obstacles(axes, layers):
             axes.plot(*np.asarray(one.coords)[:, :2].T, zorder=6, **WALL)
     for points in layers.lines.values():
         axes.plot(*np.asarray(points).T, zorder=6, **LINE)
+
+
+def draw_mapped(axes, layers):
+    """The outline of a mapped deposit."""
+    if isinstance(layers.mapped, np.ndarray):
+        mask, where = part(layers.raster, layers.mapped.astype(float), layers.shown)
+        if min(mask.shape) >= 2 and np.ptp(mask) > 0:
+            axes.contour(mask, [0.5], extent=where, origin="upper", colors=MAPPED["color"], linewidths=MAPPED["lw"],
+                         zorder=6)
+    elif layers.mapped is not None:
+        outline(axes, layers.mapped, zorder=6, **MAPPED)
 
 
 def draw_values(axes, layers, values, bounds, colours, mask=None, alpha=0.82):
@@ -119,6 +133,8 @@ def entries(layers):
         found.append(Entry("structure", WALL))
     if layers.lines:
         found.append(Entry("control line", LINE))
+    if layers.mapped is not None:
+        found.append(Entry("mapped deposit", MAPPED))
     found += entries_of_marks({mark.share for mark in layers.reach.marks})
     if layers.section is not None:
         found.append(Entry("section A-A'", SECTION_LINE))

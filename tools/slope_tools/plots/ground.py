@@ -40,6 +40,7 @@ class Ground:
         for other in data.drawn:
             self.touched = self.touched | (other.thickness > 0)
         self.obstacles = obstacles.of_run(one)
+        self.mapped = data.mapped
         self.volume = data.largest_release()
         about = (data.study or {}).get("study", {})
         # of older files only whether it is confined, if that
@@ -78,7 +79,7 @@ class Ground:
 
     def boxes(self):
         """Local xlo, ylo, xhi, yhi of what the mass touched, and of what else is shown and not far from it."""
-        found = [box_of(self.raster, self.touched)]
+        found = [box_of(self.raster, self.touched if self.mapped is None else self.touched | (self.mapped.share > 0))]
         far = max(found[0][2] - found[0][0], found[0][3] - found[0][1])
         near = geometry.box_of(self.raster).intersection(box(*found[0]).buffer(far))
         for one in (*self.obstacles.footprints.values(), *map(LineString, self.obstacles.lines.values()),

@@ -7,7 +7,7 @@ from ..plots import figure_charts
 from ..plots.figure_charts import Series
 from ..runs.repeats import key_of
 from ..statistics import headline
-from ..tables.quantities import NAMES, of_run
+from ..tables.quantities import NAMES, name_of, of_run
 from .data import is_number
 
 AXIS = {"rolling": "rolling resistance (-)", "friction": "friction angle (degrees)", "restitution": "restitution (-)",
@@ -70,11 +70,11 @@ class Charts:
         return [self.bars(key) if name is None else self.chart(key, name) for key in wanted]
 
     def title(self, key):
-        what = NAMES[key][0]
+        what = name_of(key, self.data.finished)
         return TITLES.get(key, what[0].upper() + what[1:])
 
     def label(self, key):
-        return f"{NAMES[key][0]} ({unit(key)})"
+        return f"{name_of(key, self.data.finished)} ({unit(key)})"
 
     def bars(self, key):
         rows, title = self.data.finished, self.title(key)
@@ -129,6 +129,9 @@ class Charts:
 
     def scatter_of(self, key):
         """The scatter of a run in a column; None without repeats."""
+        best = (self.data.study or {}).get("conservative") or {}
+        if key == REMOVE and best.get("scatter_m3") is not None:        # that of the governing combination
+            return headline.Scatter(best["scatter_m3"], best["degrees_of_freedom"])
         found = self.scatter.get(key)
         if found:
             return headline.Scatter(found["deviation"], found["degrees_of_freedom"])

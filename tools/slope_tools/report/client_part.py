@@ -2,13 +2,17 @@
 
 No names of options, variables or files: these are in the appendix, and on the console.
 """
-from typing import Any, Dict, List, Optional, Sequence
+from typing import Any, Dict, List, Mapping, Optional, Sequence
 
 from .. import digits
 from ..deposits import travel_shares
 from ..ensembles import known_study
+from ..mobility.results import percent
 from ..statistics import headline
-from . import body, road_part, structures_part, warnings
+from ..statistics.answer import Code, Kind, Source
+from ..statistics.withheld import Kind as Rule
+from ..tables import combinations, next_step
+from . import body, mobility_part, road_part, structures_part, warnings
 from .numbers import farthest_of
 
 WORDS = {"rolling": "the rolling resistance", "friction": "the friction", "d": "the size of the model's balls",
@@ -25,35 +29,176 @@ def content(data, ground, numbers, answers: Sequence[Optional[Dict[str, Any]]], 
 
     listed: how many warnings the appendix has.
     """
-    main = next((one for one in answers if one), None)
+    main, spoken = next((one for one in answers if one), None), of_headline(data, numbers)
     return {"body": body.sentence(body.of_data(data, ground)),
-            "answer": of_answer(data, main, numbers) if main else of_reach(data, numbers),
+            "answer": spoken or (of_answer(data, main, numbers) if main else of_reach(data, numbers)),
             "sentences": sentences(data, ground, numbers, bool(main))
             + road_part.on_first_page(data, numbers, bool(main and main["withheld"])),
             "caveats": warnings.first_page(found, ground)[:warnings.MOST], "rest": warnings.rest_of(listed),
             "basis": basis(data)}
 
 
-# --- the number ---
+# --- the number, from the headline of study.yaml: of both studies of a site ---
+
+REMOVE = "Volume to remove from the road"
+WHO = "known events of this volume and height"
+RULES = {
+    Rule.BALLS: "fewer than ten of the model's balls come to lie on the road, which are single blocks and no volume",
+    Rule.MOBILITY: f"no run goes as far as half of {WHO}",
+    Rule.LEFT: "a part of the mass left the elevation model before it came to the road, and is not counted",
+    Rule.RUNS: "more than a tenth of the runs failed, or had not come to rest when they ended",
+    Rule.SIZE: "the runs do not tell what smaller balls in the model would change"}
+
+
+def of_headline(data, numbers) -> Optional[Dict[str, Any]]:
+    """What the template takes; None without a headline, and where the paper's study says all, with its parts."""
+    about = (data.study or {}).get("headline")      # none in older files
+    if not about or not about["ensemble"]:
+        return None
+    kind = Kind(about["kind"])
+    if kind is Kind.NUMBER and about["source"] == Source.PAPER.value:
+        return None
+    found = {Kind.NUMBER: of_number, Kind.FLOOR: of_floor, Kind.WITHHELD: of_withheld, Kind.NOTHING: of_nothing}[kind](
+        about, numbers)
+    open_ = kind in (Kind.FLOOR, Kind.WITHHELD)
+    step = next_step.of_reasons(next_step.Made(data.study, data.folder), about) if open_ else None
+    return {"kind": kind.value, "reasons": reasons(about), "step": step, **found}
+
+
+# --- what stands in the place of the number ---
+
+def of_number(about: Mapping[str, Any], numbers) -> Dict[str, Any]:
+    share = percent(about["share"])
+    return {"title": f"{REMOVE}: {share} of known events stay within", "unit": "m3",
+            "number": numbers(f"{REMOVE.lower()}, {share} of known events", "m3", about["volume_m3"]),
+            "band": bounds(about, numbers) + of_paper(about, numbers)}
+
+
+def bounds(about: Mapping[str, Any], numbers) -> str:
+    """Its bounds, each with its unit."""
+    low, high = (None if about[key] is None else numbers(f"{REMOVE.lower()}, {name} bound", "m3", about[key])
+                 for key, name in (("low_m3", "lower"), ("high_m3", "upper")))
+    if low is None and high is None:
+        return "No bounds: the runs are too few for them."
+    if high is None:
+        return f"At least {low} m3 with 90 % confidence; an upper bound would need more runs."
+    return f"Between {low or 0} m3 and {high} m3, with 90 % confidence."
+
+
+def of_paper(about: Mapping[str, Any], numbers) -> str:
+    """The conservative volume of the other study, where it has one and does not govern."""
+    volume = (about["paper"] or {}).get("volume_m3")
+    if volume is None or about["source"] != Source.ENSEMBLE.value:
+        return ""
+    return (" A study that takes the largest of few settings, without known events, gives "
+            f"{numbers('conservative volume', 'm3', volume)} m3.")
+
+
+def of_floor(about: Mapping[str, Any], numbers) -> Dict[str, Any]:
+    """At least so much; where no run reaches the road, how many known events do."""
+    if not about["volume_m3"]:
+        return not_reached(about)
+    text = numbers(f"{REMOVE.lower()}, at least", "m3", about["volume_m3"])
+    share = about["share"]
+    if share:
+        band = (f"{percent(share)} of {WHO} stay within {text} m3; the others bring more, how much these runs do not "
+                "show.")
+    elif about["source"] == Source.PAPER.value:
+        band = ("A further run of the governing settings stays below, in 97.5 % of such studies; more mobile masses "
+                "may bring more.")
+    else:
+        band = ""
+    title = f"{REMOVE}, with {percent(share)}" if share else REMOVE
+    return {"title": title, "number": f"at least {text}", "unit": "m3", "band": band + of_paper(about, numbers)}
+
+
+def not_reached(about: Mapping[str, Any]) -> Dict[str, Any]:
+    road = about["road"]
+    if not road:
+        return {"title": REMOVE, "number": "more than 0", "unit": "m3", "band": ""}
+    return {"title": "No run reaches the road, but known events do", "number": shares_of(road["reached"]),
+            "unit": "of known events reach it",
+            "band": "More than 0 m3 is to be removed then; how much, these runs do not show."}
+
+
+def of_withheld(about: Mapping[str, Any], numbers) -> Dict[str, Any]:
+    del about, numbers
+    return {"title": f"{REMOVE}: not usable", "number": None, "unit": "", "band": ""}
+
+
+def of_nothing(about: Mapping[str, Any], numbers) -> Dict[str, Any]:
+    road = about["road"]
+    band = f"{shares_of(road['reached'])} of {WHO} reach the road." if road else \
+        "No known events can be compared with this mass."
+    return {"title": REMOVE, "number": numbers(REMOVE.lower(), "m3", 0.0), "unit": "m3",
+            "band": f"Nothing comes to lie on the road in any run. {band}"}
+
+
+def shares_of(shares) -> str:
+    """Shares by the smaller and the larger scatter, as one text."""
+    return " to ".join(dict.fromkeys(map(percent, shares)))
+
+
+# --- why ---
+
+def reasons(about: Mapping[str, Any]) -> List[str]:
+    """A sentence each, without its full stop; the one that decides comes first."""
+    return [text for one in about["reasons"] if (text := reason(Code(one["code"]), one["numbers"]))]
+
+
+def reason(code: Code, of: Mapping[str, Any]) -> str:
+    if code is Code.BEYOND:
+        return (f"{percent(of['far'])} of {WHO} go farther than the longest run, which ends after "
+                f"{metres(of['longest_m'])}")
+    if code is Code.NOT_REACHED:
+        ends = "no run leaves a deposit" if of["longest_m"] is None else \
+            f"the longest run ends after {metres(of['longest_m'])}"
+        return f"the road begins after {metres(of['near_m'])} along the fall path, and {ends}"
+    if code is Code.ONE_SCATTER:
+        return (f"{shares_of((of['low'], of['high']))} of them reach the road, as their scatter is taken: only the "
+                "larger of two estimates says more than 10 %")
+    if code is Code.TERRAIN:
+        return (f"the elevation model ends after {metres(of['path_m'])} along the fall path, where "
+                f"{percent(of['share'])} of known events go on")
+    if code is Code.RANGE:
+        return "no values within the ranges that were tried are expected to go farther"
+    if code is Code.RUNS:
+        return f"{of['points']:g} runs were added towards longer ones, and no more"
+    if code is Code.FEW:
+        return "the runs are too few to tell which settings go farther"
+    text = RULES[Rule(of["rule"])]
+    return text if of["source"] == Source.PAPER.value else f"{text} (runs weighted by known events)"
+
+
+def metres(value: float) -> str:
+    return f"{digits.rounded(value, 3)} m"
+
+
+# --- the number of one study ---
+
+WITHHELD: Dict[str, Any] = {"kind": "withheld", "number": None, "unit": "", "band": "", "step": None}
+
 
 def of_answer(data, answer: Dict[str, Any], numbers) -> Dict[str, Any]:
     """Of an answer as the appendix has it: title, number, unit, reasons, band."""
     reasons = [one["text"] for one in answer["withheld"]]
     if reasons:
-        return {"title": answer["title"], "number": None, "unit": "", "reasons": reasons, "band": ""}
+        return {**WITHHELD, "title": answer["title"], "reasons": reasons,
+                "step": next_step.first_remedy(next_step.Made(data.study, data.folder))}
     best = data.study["conservative"]
     if answer.get("zero"):
         band = f"{answer['zero'][0].upper()}{answer['zero'][1:]}."
     elif "band" in answer:
-        band = f"Between {answer['band']}."
+        band = answer["band"]
     elif best["chance_m3"] is None:
         band = "No band: no run was repeated, so that chance is unknown."
     else:
         mean, chance = (best["rounded"][key] for key in ("mean_m3", "chance_m3"))
         low, high = (headline.text(value, best["place_m3"]) for value in (max(0.0, mean - chance), mean + chance))
         band = f"Another run gives {low} to {high} m3, in 95 % of cases; the mean is {answer['parts'][0]['number']} m3."
-    return {"title": answer["title"], "number": answer["number"], "unit": answer.get("unit", "m3"), "reasons": [],
-            "band": band}
+        band += "".join(f" {one[0].upper()}{one[1:]}." for one in combinations.starts(best))
+    return {"kind": "number", "title": answer["title"], "number": answer["number"], "unit": answer.get("unit", "m3"),
+            "reasons": [], "band": band, "step": None}
 
 
 def of_reach(data, numbers) -> Dict[str, Any]:
@@ -61,11 +206,11 @@ def of_reach(data, numbers) -> Dict[str, Any]:
     title = f"{travel_shares.HEADLINE} % of the volume stays within"
     values = reaches(data)
     if not values:
-        return {"title": title, "number": None, "unit": "", "band": "",
+        return {**WITHHELD, "title": title,
                 "reasons": ["more than 1 % of the volume left the terrain, farther than anybody knows"]}
     low, high = (numbers("99 % within", "m", value) for value in (min(values), max(values)))
     band = f"{low} to {high} m over {len(values)} runs." if len(values) > 1 else "One run: no band."
-    return {"title": title, "number": high, "unit": "m", "reasons": [], "band": band}
+    return {"kind": "number", "title": title, "number": high, "unit": "m", "reasons": [], "band": band, "step": None}
 
 
 def reaches(data) -> List[float]:
@@ -79,8 +224,8 @@ def reaches(data) -> List[float]:
 
 def sentences(data, ground, numbers, has_road_number: bool) -> List[str]:
     """Three at most: how far, what lies on the road, what else."""
-    found = [distance(data, numbers, has_road_number), road(data, numbers), structures(data, ground),
-             thickness(data, numbers)]
+    found = [mobility_part.mapped_sentence(data, numbers), distance(data, numbers, has_road_number),
+             road(data, numbers), structures(data, ground), thickness(data, numbers)]
     return [text for text in found if text][:3]
 
 

@@ -8,7 +8,7 @@ from affine import Affine
 
 from .. import schemas
 from ..case import logs, run_folders
-from ..deposits import deposit, travel_shares
+from ..deposits import deposit, score, travel_shares
 from ..errors import SlopeError
 from ..schemas import OBJECT, mapping
 from ..survey import rasters
@@ -76,14 +76,14 @@ class Data:
     study: study.yaml, None of a single run; rows: its runs, finished: those that finished; settings: its variables;
     repeats: the variables that are chance; result: the run of the maps, drawn: those beside it on maps and
     section, the same one among them; road: a polygon or None; removed: what is to be removed in the shown run, its
-    thickness in the cells and a Raster of volumes in a mesh; volumes: those of its volume.yaml; over_all: {file:
-    values} of the maps over all runs.
+    thickness in the cells and a Raster of volumes in a mesh; volumes: those of its volume.yaml; mapped: the
+    score.Observed of a mapped deposit, or None; over_all: {file: values} of the maps over all runs.
     """
 
     def __init__(self, folder, shown=None):
         self.folder, self.study = folder, None
         self.rows, self.finished, self.settings, self.repeats = [], [], {}, {}
-        self.road = self.road_line = self.removed = self._length = None
+        self.road = self.road_line = self.removed = self.mapped = self._length = None
         self.over_all, self.volumes = {}, {}
         if (folder / "study.yaml").is_file():
             self._read_study(shown)
@@ -111,6 +111,9 @@ class Data:
             given = roads.read_local(self.folder / str(road["local"]), self.result.deposit.raster, roads.Asked.of(road),
                                      True)
             self.road, self.road_line = given
+        if self.study.get("observed"):      # none in older files
+            self.mapped = score.read_observed(self.folder / str(self.study["observed"]["file"]),
+                                              self.result.deposit.raster, score.THRESHOLD, False)
         # everything is read before anything is drawn: drawing takes a while
         if len(self.finished) > 1 and self.study.get("envelope"):
             for entry in (self.study["envelope"]["max_thickness"], *(self.study.get("exceedance") or ())):

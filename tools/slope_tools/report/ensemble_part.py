@@ -1,6 +1,6 @@
 """What a report shows of an ensemble: how likely the volume is exceeded, which variables matter, maps over all runs."""
 import csv
-from typing import Any, Dict, List, Mapping
+from typing import Any, Dict, List, Mapping, Optional, Sequence
 
 import numpy as np
 
@@ -36,11 +36,12 @@ class Ensemble:
                     "unit": unit, "parts": [], "note": self.design()}
         parts = []
         for one in self.entry["quantiles"]:
-            low, high = ("?" if one[side] is None else self.number(f"{100 * one['share']:g} % {side}", unit, one[side])
-                         for side in ("low", "high"))
+            bounds = [None if one[side] is None else self.number(f"{100 * one['share']:g} % {side}", unit, one[side])
+                      for side in ("low", "high")]
+            note = band(bounds, unit, self.about["confidence"])
             share = f"{100 * one['share']:g} % of the runs stay within"
             parts.append({"number": self.number(share, unit, one["value"]), "what": share,
-                          "note": f"{low} to {high} with {100 * self.about['confidence']:g} % confidence"})
+                          "note": note})
         shown = next((part for part, one in zip(parts, self.entry["quantiles"]) if one["share"] == 0.9), parts[-1])
         return {"title": f"{what[0].upper()}{what[1:]}: 90 % of the runs stay within", "number": shown["number"],
                 "unit": unit, "parts": parts, "note": self.design(), "withheld": [], "band": shown["note"]}
@@ -150,6 +151,17 @@ class Ensemble:
             return entry["raster"] in ("thickness", "max_speed", "arrival") and (
                 entry["threshold"] > 0 or entry["raster"] == "arrival")
         return entry["quantile"] == 0.9 and entry["raster"] != "thickness"
+
+
+def band(bounds: Sequence[Optional[str]], unit: str, confidence: float) -> str:
+    """The lower and the upper bound (None: unknown), each with its unit."""
+    low, high = bounds
+    sure = f"with {100 * confidence:g} % confidence."
+    if low is None and high is None:
+        return "No bounds: the runs are too few for them."
+    if high is None:
+        return f"At least {low} {unit} {sure}"
+    return f"Between {low} {unit} and {high} {unit} {sure}" if low is not None else f"At most {high} {unit} {sure}"
 
 
 def share_of(what: str) -> str:

@@ -6,7 +6,7 @@ from ..findings import texts
 from ..mobility.results import percent
 from ..plots import ensemble_charts
 from ..tables import quantities
-from .ensemble_part import Ensemble, indices_text, read_curve
+from .ensemble_part import Ensemble, band, indices_text, read_curve
 
 
 class KnownEvents:
@@ -39,9 +39,9 @@ class KnownEvents:
         parts = []
         for one in self.entry["quantiles"]:
             share = f"{100 * one['share']:g} % of known events stay within"
-            low, high = ("?" if one[side] is None else self.number(f"{share}, {side}", unit, one[side])
-                         for side in ("low", "high"))
-            note = f"{low} to {high} with {100 * self.confidence:g} % confidence"
+            bounds = [None if one[side] is None else self.number(f"{share}, {side}", unit, one[side])
+                      for side in ("low", "high")]
+            note = band(bounds, unit, self.confidence)
             parts.append({"number": self.number(share, unit, one["value"]), "what": share, "note": note,
                           "unit": "" if one["value"] is None else unit})
         shown = next((part for part, one in zip(parts, self.entry["quantiles"]) if one["share"] == 0.9), parts[-1])

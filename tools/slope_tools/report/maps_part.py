@@ -8,6 +8,7 @@ from ..drawing import figures, palettes
 from ..plots import figure_maps, known_reach
 from ..plots.ground import box_of
 from ..survey.rasters import crs_name
+from . import mobility_part
 
 OPEN = " The last class is open: it holds the few thicker cells, most of them in the release."
 
@@ -28,7 +29,7 @@ class Maps:
             ground.raster, ground.before,
             ground.window(*ground.boxes(), (*line.min(axis=0), *line.max(axis=0))),
             ground.release, data.road, line, figures.contour_interval(ground.before), ground.obstacles.footprints,
-            ground.obstacles.lines, ground.reach)
+            ground.obstacles.lines, ground.reach, mobility_part.drawn(data))
 
     def thickness(self, values, title, alt, caption, width=figures.HALF, layers=None):
         """A map of a thickness, in classes that the release does not set."""

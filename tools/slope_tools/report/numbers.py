@@ -5,9 +5,10 @@ import io
 from .. import digits, disk
 from ..deposits import rest, travel_shares
 from ..mobility.results import percent
-from ..mobility.run_length import LEAST, OF_99, OTHERS
+from ..mobility.run_length import LEAST, OF_99, ON_PATH, OTHERS
 from ..statistics import headline
 from ..tables import withheld_words
+from ..tables.quantities import of_run
 from ..tables.released import over_runs
 
 UNKNOWN = "unknown"
@@ -170,10 +171,10 @@ def travel_card(data, numbers):
         value, angle, name = row[key], row[travel_shares.REACH], data.label_of(row)
         length = row.get("length_m")
     else:
-        shares = travel_shares.columns(data.result.summary)
-        value, angle, name = shares[key], shares[travel_shares.REACH], ""
+        row = of_run(data.result.summary, data.length())
+        value, angle, name = row[key], row[travel_shares.REACH], ""
         farthest = f"; farthest ball {numbers('farthest ball', unit, farthest_of(data.result.summary)[0])} m"
-        length = data.length() and data.length().distance
+        length = row["length_m"]
         if value is None:
             volume = data.result.summary["volume"]
             left = volume["lost"] > travel_shares.BEYOND * volume["released"]
@@ -181,7 +182,8 @@ def travel_card(data, numbers):
     note = ("in plan from the highest released ball, reach angle "
             f"{numbers('reach angle of 99 %', 'degrees', angle, name)} degrees")
     if length is not None:
-        note += f"; {numbers('length along the fall path', unit, length, name)} m along the fall path"
+        kind = row.get("length_is") or ON_PATH      # none in older files
+        note += f"; {numbers(f'length, {kind}', unit, length, name)} m {kind}"
     return {"what": what, "number": numbers("99 % within", unit, value, name), "unit": unit,
             "note": note + farthest + (f". Run: {name}" if name and data.study else "")}
 

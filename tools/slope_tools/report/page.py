@@ -9,7 +9,7 @@ from ..case import decks
 from ..plots.ground import Ground
 from ..plots.section import Section
 from ..survey.rasters import crs_name
-from ..tables.quantities import NAMES, of_run
+from ..tables.quantities import NAMES, name_of, of_run
 from . import (body, chain_part, client_part, convergence_part, heading, intensity_part, limits_part, mobility_part,
                road_part)
 from .charts import Charts, REMOVE, TERMS, differences, quantities
@@ -23,16 +23,17 @@ from .warnings import findings, listed
 
 # a variable of a deck and the comment on it, which has its unit
 MEANING = re.compile(r"^\s*variable\s+(\w+)\s+index\s.*?#\s*(.*?)\s*$", re.MULTILINE)
+LENGTH = "length_m"     # its head is quantities.name_of()
 # columns of a study's table: head, unit, key
 COLUMNS = (("released", "m3", "released_m3"), ("99 % within", "m", "distance_99_m"),
-           ("reach angle", "deg", "reach_99_deg"), ("length along the fall path", "m", "length_m"),
+           ("reach angle", "deg", "reach_99_deg"), ("", "m", LENGTH),
            ("farthest ball", "m", "front_m"), ("thickness", "m", "thickness_m"), ("ended at", "s", "stop_time_s"),
            ("stop angle", "deg", "stop_angle_deg"))
 ROAD_COLUMNS = (("to remove", "m3", "remove_m3"), ("on the road", "m3", "remove_on_road_m3"),
                 ("beyond it", "m3", "beyond_road_m3"), ("road blocked", "m", "blocked_m"))
 MEANS = (("to remove", "m3", "remove_m3"), ("on the road", "m3", "remove_on_road_m3"),
          ("beyond it", "m3", "beyond_road_m3"), ("99 % within", "m", "distance_99_m"),
-         ("length along the fall path", "m", "length_m"), ("centroid moved", "m", "centroid_m"))
+         ("", "m", LENGTH), ("centroid moved", "m", "centroid_m"))
 
 
 class Page:
@@ -79,7 +80,7 @@ class Page:
             "intensity": intensity_part.content(data, numbers, self.picture),
             "chain": chain_part.content(data, numbers, self.picture),
             "hit": Structures(data, numbers, self.picture, self.ground).content(),
-            "road": road_part.content(data, numbers, maps),
+            "road": road_part.content(data, numbers, maps), "mapped": mobility_part.mapped(data, numbers),
             "road_chart": charts.has_removal(), "removal": maps.removal(removal), "over_all": maps.over_all(),
             "beyond": self.beyond(),
             "reference": self.reference and self.reference_tables(),
@@ -114,7 +115,7 @@ class Page:
         data = self.data
         wanted = COLUMNS + (ROAD_COLUMNS if data.road is not None else ())
         same = len({round(row["released_m3"], 3) for row in data.finished}) == 1
-        return [(head, unit, key) for head, unit, key in wanted
+        return [(name_of(key, data.finished) if key == LENGTH else head, unit, key) for head, unit, key in wanted
                 if any(row.get(key) is not None for row in data.finished) and not (same and key == "released_m3")]
 
     def beyond(self):
@@ -165,7 +166,8 @@ class Page:
         study = self.data.study
         if not (study and self.data.repeats and study.get("combinations")):
             return None
-        heads = [(head, unit, key) for head, unit, key in MEANS if all(key in entry for entry in study["combinations"])]
+        heads = [(name_of(key, self.data.finished) if key == LENGTH else head, unit, key)
+                 for head, unit, key in MEANS if all(key in entry for entry in study["combinations"])]
         varied = [key for key, several in self.data.settings.items() if len(several) > 1]
         rows = []
         for entry in study["combinations"]:

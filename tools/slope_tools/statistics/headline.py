@@ -3,8 +3,10 @@
 The runs of a study are combinations of choices (rolling resistance, friction), each repeated with values of no
 preference (a seed, the position of the lattice). The model of the scatter: run i of combination k gives
 V = M_k + L_i + e, a mean of the combination, a part L_i that the runs i of all combinations have in common because they
-start from the same lattice (it may be 0), and a part of each run's own; both are normal, with the same standard
-deviations in all combinations. All volumes are in m3 of ground (bulk); every function is pure.
+start from the same lattice (it may be 0), and a part of each run's own; both are normal. Their variance grows with the
+mean, as that of counts does: between scatter that is equal and scatter that is a share of the volume, of which nobody
+knows beforehand. Combinations whose means differ by more than a factor NEAR tell nothing of each other. All volumes are
+in m3 of ground (bulk); every function is pure.
 """
 import math
 from dataclasses import dataclass
@@ -14,6 +16,7 @@ from scipy import stats
 
 CONFIDENCE = 0.975      # of the next single run: it is below the headline in 39 of 40 studies
 DIFFERENT = 0.95        # a difference is clear if chance gives it in fewer than one of twenty studies
+NEAR = 2.0              # ratio of the means of combinations whose scatter is taken together, at most
 DIGITS = 3              # of a volume whose scatter is unknown
 ROUNDING = 1e-9         # of a volume: smaller differences are rounding
 
@@ -137,6 +140,33 @@ def pooled(combinations: Sequence[Combination]) -> Optional[Scatter]:
     return Scatter(deviation, free * shared(combinations))
 
 
+def like(combinations: Sequence[Combination], one: Combination) -> List[Combination]:
+    """Those whose scatter says something of that of one, itself among them, their deviations as they would be there.
+
+    Variances grow with the mean: deviations count by the square root of the ratio of the means. Where a single run has
+    no near ones with repeats, all count that are not 0, by the ratio itself.
+    """
+    def scaled(other: Combination, power: float) -> Combination:
+        if other.mean == one.mean:
+            return other
+        scale = (one.mean / other.mean) ** power
+        return Combination(other.name, {key: scale * value for key, value in other.volumes.items()})
+
+    near = [other for other in combinations if other is one or one.mean <= NEAR * other.mean <= NEAR ** 2 * one.mean]
+    if one.runs > 1 or any(other.runs > 1 for other in near):
+        return [scaled(other, 0.5) for other in near]
+    return [scaled(other, 1.0) for other in combinations if other is one or other.mean > 0 and one.mean > 0]
+
+
+def scatter_of(combinations: Sequence[Combination], one: Combination) -> Optional[Scatter]:
+    """The scatter of a run of a combination, from all that are like it; None if none of them has two runs.
+
+    The dispersion of quasi-likelihood with a variance in proportion to the mean, by Pearson's statistic (McCullagh and
+    Nelder, Generalized Linear Models, 1989, section 9.2).
+    """
+    return pooled(like(combinations, one))
+
+
 def shared(combinations: Sequence[Combination]) -> float:
     """The share of the degrees of freedom that is left where repeats have a part in common: 1/K to 1 of K combinations.
 
@@ -167,15 +197,16 @@ def shared(combinations: Sequence[Combination]) -> float:
 
 
 def odd_one(combinations: Sequence[Combination], name: str) -> Optional[Tuple[float, float]]:
-    """s (m3) of a combination and that of the others, if its own is larger than chance explains.
+    """s (m3) of a combination and that of others like it, if its own is larger than chance explains.
 
     A common scatter is then too small for it. F test, one of twenty.
     """
     mine = next(one for one in combinations if one.name == name)
-    free = sum(one.runs - 1 for one in combinations if one.name != name)
+    rest = [one for one in like(combinations, mine) if one.name != name]
+    free = sum(one.runs - 1 for one in rest)
     if mine.scatter is None or free == 0:
         return None
-    others = math.sqrt(math.fsum(one.squares for one in combinations if one.name != name) / free)
+    others = math.sqrt(math.fsum(one.squares for one in rest) / free)
     most = others * math.sqrt(float(stats.f.ppf(DIFFERENT, mine.runs - 1, free)))
     return (mine.scatter, others) if mine.scatter > most else None
 
@@ -202,9 +233,9 @@ def headline(combinations: Sequence[Combination], errors: Optional[Dict[str, Siz
     size that is the one with the largest mean. If several means are about the same, the largest is high by chance, so
     the headline is conservative (see the page on `slope study`).
     """
-    scatter = pooled(combinations)
     found: List[Headline] = []
     for one in combinations:
+        scatter = scatter_of(combinations, one)
         chance = scatter.chance(one.runs) if scatter else None
         size = size_part(one.mean, chance, errors[one.name]) if errors else None
         found.append(Headline(one.mean + (chance or 0.0) + (size or 0.0), one.mean, chance, size, one.name, one.runs,

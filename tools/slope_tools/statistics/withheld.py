@@ -44,7 +44,9 @@ def few_balls(facts: Facts) -> Optional[Finding]:
     number = facts.on_road / facts.ball
     if not facts.volume > 0 or number >= BALLS:
         return None
-    return Finding(Kind.BALLS.value, {"number": number, "bound": BALLS, "s": "" if f"{number:.2g}" == "1" else "s"})
+    return Finding(Kind.BALLS.value, {
+        "number": number, "bound": BALLS, "balls": "less than one ball" if number < 1 else
+        f"{number:.2g} ball{'s' * (f'{number:.2g}' != '1')}"})
 
 
 def short(facts: Facts) -> Optional[Finding]:

@@ -19,7 +19,7 @@ from ..tables import (answered, combinations, intensity, judged, quantities, roa
                       structures, study_table, usable, withheld_words)
 from ..tables.size_error import SizeErrors
 from ..tables.study_maps import Maps
-from . import site_ground
+from . import mapped, site_ground
 from .setup import Road, Setup
 
 OF_SUMMARY = ("moves", "not counted")      # kinds of warnings
@@ -58,6 +58,7 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
     if maps.problem:
         warnings.append(finding(maps.problem))
     finished = [row for row in rows if row["status"] == "finished"]
+    observed = mapped.compare(mapped.of_site(questions.site), output, rows, [terrain_of(run) for run in todo])
     groups = combinations.grouped(rows)
     names = combinations.quantities(groups)
     scatters = combinations.scatters(groups)
@@ -77,7 +78,8 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         "conservative": None, "size_error_unusable": questions.size_error_unusable, "ensemble": None, "step": None,
         "scatter": {name: known and {"deviation": known.deviation, "degrees_of_freedom": known.degrees_of_freedom}
                     for name, known in scatters.items()},
-        "combinations": combinations.entries(groups, names), **written, "warnings": entries(warnings), "runs": rows}
+        "combinations": combinations.entries(groups, names), **written, "observed": observed,
+        "warnings": entries(warnings), "runs": rows}
     if setup.road and finished:
         about["study"]["road"] = write_road(output, setup.road, first, thickness)
     if order:
@@ -96,7 +98,7 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
                                                      [*settings, *repeated], about["study"]["road"]))
         best["doubts"] += entries(unseen(repeated, work.defaults))
         if questions.step:
-            about["step"] = step_check.compare(questions.step, groups, scatters[step_check.QUANTITY])
+            about["step"] = step_check.compare(questions.step, groups)
             if about["step"]["within_chance"] is False:
                 best["doubts"].append(Finding("half step", {"text": about["step"]["text"]}).entry())
         unknown = about["size_error_unusable"] or ""
@@ -141,6 +143,8 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         setup.tell("\n".join(ensemble.describe(about["ensemble"])))
         setup.tell(f"{output / ensemble.HAZARD}, {output / ensemble.INFLUENCE}: all curves and indices; "
                    f"{output / ensemble.MAPS}: {len(about['ensemble']['maps'])} maps of quantiles and exceedance")
+    if observed:
+        setup.tell("\n".join(mapped.describe(observed, rows)))
     if about["chain"]:
         setup.tell("\n".join(chain_files.describe(about["chain"], output)))
     for entry in [*(written["envelope"] or {}).values(), *(written["exceedance"] or ())]:

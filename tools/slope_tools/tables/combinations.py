@@ -111,6 +111,7 @@ def ground(settings: Mapping[str, Sequence[str]], group: Group) -> Optional[str]
 
 
 FEW = 0.05      # of the largest volume of runs that differ by chance alone: less is another outcome
+STANDS = 0.1    # of the largest travel of the centroid among them: less, and the slope did not fail
 
 
 def conservative(settings, rows, groups: Sequence[Group], errors: Optional[SizeErrors] = None) -> Dict[str, Any]:
@@ -121,6 +122,7 @@ def conservative(settings, rows, groups: Sequence[Group], errors: Optional[SizeE
     best = headline.headline(parts, sizes)
     governing = next(group for group in groups if group.name == best.combination)
     largest = max(governing.rows, key=lambda row: row["remove_m3"])
+    volumes = [row["remove_m3"] for row in governing.rows]
     differences = []
     for name, line in straight(settings, groups, governing.set):
         if len(line) < 2:
@@ -138,6 +140,8 @@ def conservative(settings, rows, groups: Sequence[Group], errors: Optional[SizeE
         "runs": best.runs,
         "combinations": len(groups), "scatter_m3": scatter and scatter.deviation,
         "degrees_of_freedom": scatter and scatter.degrees_of_freedom, "quantile": scatter and scatter.quantile,
+        # what other starts of the same combination gave
+        "starts_m3": [min(volumes), max(volumes)] if len(volumes) > 1 else None,
         # the run whose maps represent it
         "run": largest["run"], "remove_m3": largest["remove_m3"],
         "size": size and errors and {
@@ -172,11 +176,11 @@ def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline, dif
     if best.volume > released:
         found.append(Finding("more than released", {"released": headline.nearest(released, best.place)}))
     for group in groups:
-        volumes = list(group.of("remove_m3").volumes.values())
-        few = sum(volume < FEW * max(volumes) for volume in volumes)
+        most = max(row["remove_m3"] for row in group.rows)
+        few = [row for row in group.rows if row["remove_m3"] < FEW * most]
         if few:
-            found.append(Finding("two outcomes", {"few": few, "runs": len(volumes), "combination": group.name,
-                                                  "percent": 100 * FEW}))
+            found.append(Finding("two outcomes", {"few": len(few), "runs": len(group.rows), "combination": group.name,
+                                                  "percent": 100 * FEW, "outcome": outcome(group, few)}))
     above = max(finished, key=lambda row: row["remove_m3"])
     if above["remove_m3"] > best.volume:
         found.append(Finding("more in a run", {"run": above["run"], "volume": headline.nearest(above["remove_m3"],
@@ -187,6 +191,32 @@ def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline, dif
         mine, others = (headline.nearest(one, headline.place(odd[1] or odd[0])) for one in odd)
         found.append(Finding("scatters more", {"mine": mine, "others": others}))
     return found
+
+
+def outcome(group: Group, few: Sequence[Row]) -> str:
+    """Why some runs bring hardly anything, though they differ from others by chance alone: by how far the mass went."""
+    count = stood(few, group.rows)
+    if count is None:
+        return "did the slope fail in some runs only?"
+    return f"the slope stood in {count} of them" if count else \
+        "the mass came down in these, too, and hardly reached the road"
+
+
+def stood(few: Sequence[Row], rows: Sequence[Row]) -> Optional[int]:
+    """In how many of a few of some rows the slope stood, by the travel of the centroid; None where that is unknown."""
+    if any(row.get("centroid_m") is None for row in rows):
+        return None
+    most = max(row["centroid_m"] for row in rows)
+    return sum(row["centroid_m"] < STANDS * most for row in few)
+
+
+def starts(best: Mapping[str, Any]) -> List[str]:
+    """What only another start of the lattice gives: the range over the repeats of the governing combination, a line."""
+    if not best.get("starts_m3"):       # one run, or a study of an older version
+        return []
+    low, high = (headline.text(value, best["place_m3"]) for value in best["starts_m3"])
+    number = f"{low} to {high}" if low != high else high
+    return [f"another start of the lattice gives {number} m3 on the same site ({best['repeats']} runs)"]
 
 
 def describe(best: Mapping[str, Any]) -> List[str]:
@@ -211,7 +241,8 @@ def describe(best: Mapping[str, Any]) -> List[str]:
                 f"(s {number(best['scatter_m3'])}, {best['degrees_of_freedom']:.3g} degrees of freedom)")
         text += (f" + {number(parts['size'])}, size of the balls" if parts["size"] is not None
                  else "; the size of the balls is not in it")
-    lines = [text, *([best["zero"]["text"]] if best["zero"] else []), *([best["ground"]] if best.get("ground") else [])]
+    lines = [text, *starts(best), *([best["zero"]["text"]] if best["zero"] else []),
+             *([best["ground"]] if best.get("ground") else [])]
     for entry in best["differences"]:
         if entry["clear"] is not None:
             word = "more than" if entry["clear"] else "no more than"

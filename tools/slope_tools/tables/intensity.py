@@ -16,14 +16,14 @@ from ..case.settings import as_number
 from ..errors import SlopeError
 from ..findings import Finding
 from ..statistics import hazard
-from .combinations import Group
+from .combinations import Group, stood
 
 NAME = re.compile(r"peak|pga|\w*intensity")     # names of variables that are one without being named
 QUANTITY = "remove_on_road_m3"
 CONFIDENCE = 0.95       # of the interval of a probability
 DEFAULTS = 3            # volumes, if none are given
 FILE = "intensity.csv"
-STANDS = 0.01           # of the released volume: less on the road, and the mass has not failed
+REACHES = 0.01          # of the released volume: less on the road, and the mass has not reached it
 
 Settings = Mapping[str, Sequence[str]]
 
@@ -99,16 +99,23 @@ def point(at: float, group: Group, volumes: Sequence[float]) -> Dict[str, Any]:
         share, low, high = probability(above, len(found))
         exceed.append({"more_than_m3": volume, "runs": above, "probability": share, "low": low, "high": high})
     released = sum(row["released_m3"] for row in group.rows) / len(group.rows)
+    few = [row for row in group.rows if row[QUANTITY] <= REACHES * released]
     return {"at": at, "runs": len(found), "mean_m3": one.mean, "scatter_m3": one.scatter, "smallest_m3": min(found),
             "largest_m3": max(found), "released_m3": released, "share_of_released": one.mean / released,
-            "exceed": exceed}
+            "not_on_road": len(few), "stood": stood(few, group.rows), "exceed": exceed}
 
 
 def doubts(about: Mapping[str, Any]) -> List[Finding]:
-    """The caveat on a common scatter of all runs: chance decides whether the slope fails at all."""
-    mixed = sorted({f"{one['at']:g}" for line in about["lines"] for one in line["points"]
-                    if one["smallest_m3"] <= STANDS * one["released_m3"] < one["largest_m3"]}, key=float)
-    return [Finding("fails at times", {"variable": about["variable"], "values": ", ".join(mixed)})] if mixed else []
+    """The caveat on a common scatter of all runs: chance decides whether the slope fails, or the mass reaches the road.
+    """
+    mixed = [one for line in about["lines"] for one in line["points"] if 0 < one["not_on_road"] < one["runs"]]
+    found = []
+    for kind, points in (("fails at times", [one for one in mixed if one["stood"]]),
+                         ("arrives at times", [one for one in mixed if not one["stood"]])):
+        at = sorted({f"{one['at']:g}" for one in points}, key=float)
+        if at:
+            found.append(Finding(kind, {"variable": about["variable"], "values": ", ".join(at)}))
+    return found
 
 
 def table(about: Mapping[str, Any]) -> str:

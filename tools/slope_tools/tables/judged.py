@@ -13,7 +13,6 @@ from .released import Release, release
 
 BALANCE = 1e-9          # of the released volume
 LOST = 1e-6             # of the released volume
-CUT = "run completed"   # what a summary calls the end of a run that no criterion ended
 VERSIONS = ("slope_version", "lammps_version", "lmp_sha256")
 
 Row = Mapping[str, Any]
@@ -53,7 +52,7 @@ def not_at_rest(finished: Sequence[Row]) -> List[Finding]:
     for name, moving in (("in motion", True), ("moving", False)):
         mine = sorted((row for row in finished if not row["at_rest"] and row["moving"] == moving),
                       key=lambda row: -row["moves_share"])
-        cut = sum(row["stop_reason"] == CUT for row in mine)
+        cut = sum(row["stop_reason"] == rest.CUT for row in mine)
         among = f", {cut} of them stopped at their duration" if cut and len(mine) > 1 else ""
         found += [Finding(name, {"end": row["end"], "time": row["stop_time_s"], "share": row["moves_share"],
                                  "among": among}, of(row)) for row in mine]

@@ -1,7 +1,8 @@
 """The quantities of a run that studies evaluate, by their columns in the tables: names, units, and format."""
-from typing import Any, Dict
+from typing import Any, Dict, Iterable, Mapping
 
 from ..deposits import travel_shares
+from ..mobility.run_length import ON_PATH, STRAIGHT
 
 NAMES = {"remove_m3": ("to remove", "m3"), "remove_on_road_m3": ("on the road", "m3"),
          "remove_beside_road_m3": ("beside the road", "m3"), "beyond_road_m3": ("beyond the road", "m3"),
@@ -17,12 +18,22 @@ NAMES = {"remove_m3": ("to remove", "m3"), "remove_on_road_m3": ("on the road", 
          "centroid_m": ("travel of the centroid", "m"), "thickness_m": ("largest thickness", "m")}
 
 
+def name_of(key: str, rows: Iterable[Mapping[str, Any]]) -> str:
+    """What a quantity of some runs is called: a length is straight where a run has no fall path."""
+    if key != "length_m":
+        return NAMES[key][0]
+    kinds = {row["length_is"] for row in rows if row.get("length_is")}      # none in older files
+    return "straight length" if kinds == {STRAIGHT} else \
+        "length (straight in some runs)" if STRAIGHT in kinds else NAMES[key][0]
+
+
 def of_run(summary, length) -> Dict[str, Any]:
     """Of a summary (run_folders.load_summary) and its run_length.RunLength, None where there is no deposit."""
     travel = summary["travel"]
     return {"released_m3": summary["volume"]["released"], "front_m": travel["front"],
             "reach_angle_deg": travel["reach_angle"], "centroid_m": travel["centroid"],
             **travel_shares.columns(summary), "length_m": length and length.distance,
+            "length_is": length and (ON_PATH if length.on_path else STRAIGHT),
             "length_by_lobe_m": length and list(length.others),
             "length_deg": length and length.angle, "thickness_m": summary["largest"]["thickness"]}
 

@@ -18,7 +18,7 @@ class Step(NamedTuple):
     spacing: Optional[str] = None       # of its ground
 
 
-def compare(step: Step, groups: Sequence[Group], scatter: Optional[headline.Scatter]) -> Dict[str, Any]:
+def compare(step: Step, groups: Sequence[Group]) -> Dict[str, Any]:
     """The entry of study.yaml; its text is one sentence.
 
     within_chance: None where the scatter of a run is unknown. Chance: a single run differs from the mean of n by less
@@ -30,7 +30,8 @@ def compare(step: Step, groups: Sequence[Group], scatter: Optional[headline.Scat
                  and group.set.get("spacing", step.spacing) == step.spacing), None)
     if step.volume is None or same is None:
         return {**entry, "text": f"half the time step: not tried: {step.why or 'no run with the same values finished'}"}
-    volumes = same.of(QUANTITY)
+    parts = [group.of(QUANTITY) for group in groups]
+    volumes = parts[groups.index(same)]
     difference = step.volume - volumes.mean
     entry["mean_m3"] = volumes.mean
     text = f"half the time step, rolling {step.rolling}: "
@@ -40,6 +41,7 @@ def compare(step: Step, groups: Sequence[Group], scatter: Optional[headline.Scat
     text += f"{shown(step.volume)} m3 instead of {shown(volumes.mean)} to remove"
     if volumes.mean > 0:
         text += f", {100 * difference / volumes.mean:+.1f} %"
+    scatter = headline.scatter_of(parts, volumes) if volumes.mean > 0 else headline.pooled(parts)
     if scatter is None:
         return {**entry, "text": f"{text}; chance unknown"}
     chance = scatter.chance(volumes.runs)

@@ -5,6 +5,7 @@ from rich.table import Table
 
 from .. import disk
 from ..deposits import rest, travel_shares
+from ..mobility.run_length import STRAIGHT
 from ..statistics import headline
 from . import combinations
 
@@ -14,6 +15,7 @@ COLUMNS = ("released_m3", "on_grid_m3", "off_grid_m3", "lost_m3", "residual_m3",
 ROAD_COLUMNS = ("remove_m3", "remove_on_road_m3", "remove_beside_road_m3", "beyond_road_m3", "blocked_m",
                 "axis_thickness_m")
 STOP = "stop_angle_deg"     # of the ground, where it is known
+MAPPED = ("overlap", "beyond_mapped_m")     # against a mapped deposit
 LANE_COLUMNS = ("remove_lane_m3", "lane_hours", "clear_hours")      # of those that are asked for
 MAYBE = (*travel_shares.COLUMNS, "length_m", "length_deg", "wall_s", "beyond_road_m3")     # that may be unknown
 ANSWER = {True: "yes", False: "no"}
@@ -32,8 +34,10 @@ SHOWN_ROAD: Dict[str, Tuple[str, Any]] = {
 def table(settings, repeated, rows, defaults):
     """The CSV over all runs."""
     columns = [*COLUMNS, *(ROAD_COLUMNS if any("remove_m3" in row for row in rows) else ()),
-               *(key for key in (STOP, *LANE_COLUMNS) if any(row.get(key) is not None for row in rows)),
+               *(key for key in (STOP, *LANE_COLUMNS, *MAPPED) if any(row.get(key) is not None for row in rows)),
                "status", "error"]
+    if any(row.get("length_is") == STRAIGHT for row in rows):
+        columns.insert(columns.index("length_deg") + 1, "length_is")
     more = [name for name in repeated if name not in settings]
 
     def line(row):

@@ -1,0 +1,87 @@
+"""The runs of a site's study against its mapped deposit, whatever the method: overlap, run-out, volume of each.
+
+The length of the mapped deposit is that of a run, along the fall path to its farthest lobe; that of an outline to its
+farthest corner.
+"""
+import os
+from pathlib import Path
+from typing import Any, Dict, List, Mapping, Optional, Sequence
+
+import numpy as np
+
+from ..case import run_folders
+from ..deposits import deposit, score
+from ..mobility import run_length
+from ..sites.site_layers import OBSERVED
+from ..tables import study_table
+
+OVERLAP, BEYOND = study_table.MAPPED        # columns of the table of runs
+SAME_MASS = 0.1         # of the released volume: a mapped deposit that holds so much less or more is not the same mass
+
+
+def of_site(site: Optional[Path]) -> Optional[Path]:
+    """The mapped deposit of a site's folder: its outline, or its thickness; None without one."""
+    files = [site / f"{OBSERVED}{suffix}" for suffix in (".csv", ".tif")] if site else []
+    return next((one for one in files if one.is_file()), None)
+
+
+def compare(path: Optional[Path], output: Path, rows: Sequence[Dict[str, Any]],
+            terrains: Sequence[Optional[Path]]) -> Optional[Dict[str, Any]]:
+    """What study.yaml says of a mapped deposit, None without one; each finished row gets the columns of its run.
+
+    output: the study's folder; terrains: of the runs of the rows.
+    """
+    if path is None:
+        return None
+    about: Dict[str, Any] = {}
+    for row, terrain in zip(rows, terrains):
+        if row["status"] != "finished":
+            continue
+        run_ = deposit.read(run_folders.prefix_of(run_folders.summary_of(output, row)), terrain, lambda text: None)
+        observed = score.read_observed(path, run_.raster, score.THRESHOLD, False)
+        length = length_of(run_, terrain, observed)
+        area = score.overlap(run_.raster.z > score.THRESHOLD, observed, run_.cell)
+        row[OVERLAP] = area["jaccard"]
+        row[BEYOND] = None if length is None or row.get("length_m") is None else row["length_m"] - length
+        volume = None if observed.thickness is None else \
+            float(observed.thickness.sum()) * run_.cell ** 2 + observed.volume_outside
+        about = about or {"file": os.path.relpath(path.resolve(), output.resolve()), "threshold_m": score.THRESHOLD,
+                          "length_m": length, "area_m2": area["observed"], "volume_m3": volume,
+                          "released_m3": row["released_m3"]}
+    found = [row for row in rows if row.get(OVERLAP) is not None]
+    if not found:
+        return None
+    about["best"] = max(found, key=lambda row: row[OVERLAP])["run"]
+    return about
+
+
+def length_of(run_: deposit.Deposit, terrain: Optional[Path], observed: score.Observed) -> Optional[float]:
+    """Length (m) of a mapped deposit along the fall path of a run's body; straight where it has none."""
+    path = run_length.path_of(run_, terrain)
+    if observed.thickness is not None:
+        found = run_length.of_deposit(run_._replace(raster=run_.raster._replace(z=observed.thickness)), path)
+        return found and found.distance
+    points = np.asarray(observed.points)
+    return float(run_length.lengths_of(points, path, run_)[0].max()) if len(points) else None
+
+
+def describe(about: Mapping[str, Any], rows: Sequence[Mapping[str, Any]]) -> List[str]:
+    """The comparison on the console, a line each."""
+    found = [row for row in rows if row.get(OVERLAP) is not None]
+    best = next(row for row in found if row["run"] == about["best"])
+    low, high = min(row[OVERLAP] for row in found), best[OVERLAP]
+    text = f"mapped deposit: overlap (Jaccard) {low:.2f} to {high:.2f}" if len(found) > 1 else \
+        f"mapped deposit: overlap (Jaccard) {high:.2f}"
+    if best[BEYOND] is not None:
+        text += f", best of {best['run']}, {best[BEYOND]:+,.0f} m in run-out ({about['length_m']:,.0f} m mapped)"
+    lacks = mass(about["volume_m3"], about["released_m3"])
+    return [text, *([lacks] if lacks else [])]
+
+
+def mass(volume: Optional[float], released: float) -> str:
+    """That a mapped volume (m3) cannot be that of the released mass; "" where it can, or is not known."""
+    if volume is None or abs(volume - released) <= SAME_MASS * released:
+        return ""
+    share = 100 * (volume - released) / released
+    return (f"the mapped deposit holds {abs(share):.0f} % {'more' if share > 0 else 'less'} than is released, "
+            f"{volume:,.0f} m3 of {released:,.0f}: thicknesses and volumes cannot agree everywhere")

@@ -1,0 +1,127 @@
+"""What makes a number of a floor, or of one that is withheld: the next step, its command, and how long it takes."""
+from pathlib import Path
+from shlex import quote
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Tuple
+
+from ..mobility import events
+from ..sites import site_choices
+from ..sites.site_budget import duration_text
+from ..statistics.answer import Code
+from ..statistics.withheld import Kind as Rule
+from .withheld_words import FINER
+
+MORE = 2            # times the runs, where more are needed
+
+
+class Step(NamedTuple):
+    """What to do next; seconds: of computing; None: not known."""
+    text: str
+    command: str
+    seconds: Optional[float]
+
+    @property
+    def time(self) -> str:
+        return "" if self.seconds is None else f", about {duration_text(self.seconds)} of computing on this machine"
+
+
+class Made(NamedTuple):
+    """A study: study.yaml and its folder."""
+    study: Dict[str, Any]
+    folder: Path
+
+    @property
+    def seconds(self) -> Optional[float]:
+        """How long all runs took, as many at a time as they were; None: not known."""
+        walls = [row.get("wall_s") for row in self.study["runs"] if row["status"] == "finished"]
+        return None if None in walls or not walls else sum(walls) / max(1, self.study["study"].get("jobs") or 1)
+
+    @property
+    def site(self) -> Optional[Path]:
+        """The site's folder, if the study is one of a site."""
+        folder = self.folder.parent
+        return folder if (folder / site_choices.NAME).is_file() else None
+
+    @property
+    def withheld(self) -> List[Mapping[str, Any]]:
+        """Why its numbers are, as study.yaml has it."""
+        return [*((self.study["conservative"] or {}).get("withheld") or ()),
+                *((self.study["ensemble"] or {}).get("withheld") or ())]
+
+
+def of_reasons(made: Made, about: Mapping[str, Any]) -> Optional[Step]:
+    """What makes a number of it: by the first reason that something can be done about."""
+    found = [step for one in about["reasons"] if (step := step_of(made, Code(one["code"]), one["numbers"]))]
+    return found[0] if found else more_runs(made)
+
+
+def step_of(made: Made, code: Code, of: Mapping[str, Any]) -> Optional[Step]:
+    if code is Code.TERRAIN:
+        return Step(*larger_terrain(made), made.seconds)
+    if code in (Code.RUNS, Code.FEW):
+        return more_runs(made)
+    if code is Code.RANGE:
+        return Step("runs with less resistance than the least that was tried", ensemble(made, wider=True),
+                    made.seconds)
+    if code is not Code.RULE:
+        return None
+    rule = Rule(of["rule"])
+    if rule is Rule.LEFT:
+        return Step(*larger_terrain(made), made.seconds)
+    mine = next((one for one in made.withheld if one["kind"] == rule.value), None)
+    words = {Rule.BALLS: "smaller balls in the model", Rule.SIZE: "smaller balls in the model",
+             Rule.RUNS: "more time for the mass to come to rest", Rule.MOBILITY: "runs with less resistance"}
+    return Step(words[rule], mine["remedy"], times(made, rule, of)) if mine else None
+
+
+def first_remedy(made: Made) -> Optional[Step]:
+    """Of a study whose number is withheld: what mends the first of its reasons."""
+    found = [step_of(made, Code.RULE, {**one, "rule": one["kind"]}) for one in made.withheld]
+    return found[0] if found else None
+
+
+def times(made: Made, rule: Rule, of: Mapping[str, Any]) -> Optional[float]:
+    """Seconds of the study once more: steps are in proportion to the balls' diameter."""
+    whole = made.seconds
+    factor = {Rule.RUNS: 2.0, Rule.SIZE: FINER ** (4 / 3)}.get(rule, 1.0)
+    if rule is Rule.BALLS:
+        factor = (of["bound"] / max(of["number"] or 0.0, 1.0)) ** (4 / 3) if of["bound"] else 1.0
+    return None if whole is None else factor * whole
+
+
+def more_runs(made: Made) -> Optional[Step]:
+    if not made.study["ensemble"]:
+        return None
+    whole = made.seconds
+    return Step("more runs", ensemble(made, MORE), None if whole is None else (MORE - 1) * whole)
+
+
+def larger_terrain(made: Made) -> Tuple[str, str]:
+    site = made.site
+    if site is None:
+        return ("a larger elevation model, and the box of the deck with it",
+                f"tools/slope study {quote(str(made.study['study']['deck']))} ... --anew")
+    folder = quote(str(site))
+    return "a larger elevation model", (f"terrain.files, terrain.bounds in {folder}/{site_choices.NAME}, then: "
+                                        f"tools/slope site {folder} && tools/slope study {folder} --anew")
+
+
+def ensemble(made: Made, factor: int = 1, wider: bool = False) -> str:
+    """The command of an ensemble like this one: more points, or wider ranges of what resists."""
+    design = (made.study["ensemble"] or {}).get("design") or {}
+    known = ((made.study["ensemble"] or {}).get("known_events") or {}).get("set")
+    site = made.site
+    where = quote(str(site)) if site else f"{quote(str(made.study['study']['deck']))} -o {quote(str(made.folder))}"
+    words = [f"tools/slope study {where} --sample {factor * int(design.get('points') or 64)}"]
+    words += [f"--known {events.OWN.stem if known == events.OWN.name else quote(str(known))}"] if known else []
+    for name, text in design.get("variables", {}).items():
+        words.append(f"--vary {quote(f'{name}={widened(text) if wider else text}')}")
+    return " ".join(words)
+
+
+def widened(text: str) -> str:
+    """A range with half its least value."""
+    low, colon, high = text.removeprefix("uniform:").partition(":")
+    try:
+        return f"{float(low) / 2:g}:{float(high):g}" if colon else text
+    except ValueError:
+        return text
