@@ -11,9 +11,10 @@
 #               shared (liblammps.so, for Python and the library interface), packages (OPENMP and
 #               MOLECULE: suffix omp and bonds, see decks/test_packages.py) or plugin (slopeplugin.so
 #               in a stock lmp of the same source); default: all of them
-# --tests REGEX only these tests, as ctest -R; "none" builds alone
+# --tests REGEX only these tests, as ctest -R; "none" builds alone, without tests, and a plugin without an lmp for it
 # -o DIR        output folder (default: build/matrix)
 # JOBS=<n>      number of compilers at a time (default 2). ccache is used if it is installed.
+# BUILD_TYPE=<type> CMake's (default Release; None compiles without optimisation, for whether it compiles at all)
 #
 # Exit status: 0 if everything was built and every test passed, 1 if not, 2 for wrong arguments.
 set -euo pipefail
@@ -91,7 +92,8 @@ done
 
 # --- builds ---
 
-common=(-D CMAKE_BUILD_TYPE=Release)
+common=(-D CMAKE_BUILD_TYPE="${BUILD_TYPE:-Release}")
+[[ $tests == none ]] && common+=(-D BUILD_TESTING=OFF)
 if command -v ccache >/dev/null; then
   # all ways share what they can: the same code for libraries and programs, no headers ahead
   common+=(-D CMAKE_CXX_COMPILER_LAUNCHER=ccache -D CMAKE_POSITION_INDEPENDENT_CODE=ON
@@ -139,7 +141,7 @@ one() {
   esac
 
   [[ -t 1 ]] && printf '%s %s: building ...\r' "$version" "$way"
-  if ! { [[ $way != plugin ]] || stock "$folder.stock" "$tree"; } || ! build "$folder" "$top" "${options[@]}"; then
+  if ! { [[ $way != plugin || $tests == none ]] || stock "$folder.stock" "$tree"; } || ! build "$folder" "$top" "${options[@]}"; then
     row "$version" "$way" FAILED - - - $((SECONDS - began)) "$folder*.log"
     return 1
   fi

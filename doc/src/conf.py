@@ -25,6 +25,7 @@ copyright = "GNU General Public License version 2"
 exclude_patterns = ["_build"]
 highlight_language = "none"
 nitpicky = True
+smartquotes = False     # -- of options stays as it is typed
 
 html_theme = "sphinx_rtd_theme"
 html_theme_options = {"navigation_depth": 2, "style_external_links": True}

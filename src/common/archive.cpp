@@ -163,3 +163,16 @@ void Archive::same(const std::string &name, double value)
   if (found != value)
     other_version("one with " + name + " " + text(found) + " in place of " + text(value));
 }
+
+void Archive::same(const std::string &what, const std::vector<Mark> &marks,
+                   const std::function<std::string(const double *)> &text,
+                   const std::string &remedy)
+{
+  std::vector<double> mine;
+  for (const Mark &mark : marks) mine.push_back(mark.value);
+  std::vector<double> found = mine;
+  for (size_t k = 0; k < marks.size(); k++) number(marks[k].name, found[k]);
+  if (memcmp(found.data(), mine.data(), mine.size() * sizeof(double)) != 0)
+    throw std::runtime_error("the " + what + " must be that of the restart file, " +
+                             text(found.data()) + "; got " + text(mine.data()) + remedy);
+}

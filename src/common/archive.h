@@ -9,14 +9,16 @@
 
 #include <cstddef>
 #include <cstring>
+#include <functional>
 #include <string>
 #include <vector>
 
 namespace Slope {
 
-// What a restart file has for a style: its name and version, then members, each with its name and how many numbers it is.
-// The same calls, in the same order, write them and read them. Of what is read, name and number must be those that are asked
-// for: a file of another version, or a damaged one, throws std::runtime_error. All is numbers, in the machine's own bytes.
+// What a restart file has for a style: its name and version, then members, each with its name and how many
+// numbers it is. The same calls, in the same order, write them and read them. Of what is read, name and number
+// must be those that are asked for: a file of another version, or a damaged one, throws std::runtime_error. All
+// is numbers, in the machine's own bytes.
 class Archive {
  public:
   Archive(const std::string &style, int version);                        // to be written
@@ -47,6 +49,15 @@ class Archive {
 
   // a number that the reader must have, too: of what a contact has, for instance
   void same(const std::string &name, double value);
+
+  // Numbers that say which one WHAT is, which must be that of the file. If not: "the WHAT must be that of the
+  // restart file, TEXT of its numbers; got TEXT of mine", then the remedy.
+  struct Mark {
+    std::string name;
+    double value;
+  };
+  void same(const std::string &what, const std::vector<Mark> &mine,
+            const std::function<std::string(const double *)> &text, const std::string &remedy = "");
 
   // how many numbers of a member follow, which are not in the archive but after it; from 0 to most
   size_t count(const std::string &name, size_t n, double most);

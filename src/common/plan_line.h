@@ -30,7 +30,7 @@ class PlanLine {
   explicit PlanLine(const std::vector<double> &xy);    // x,y of all points, as read() takes them
 
   // Read lines "x y" or "x,y", # starts a comment: at least two points, none like the one before, no empty
-  // line between two. si: a head must have metres (table_head.h).
+  // line between two. si: a head must have metres (number_rows.h).
   // Errors are std::runtime_error with one line: file, line in it, rule, value.
   static PlanLine read(const std::string &path, bool si = true);
 

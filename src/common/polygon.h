@@ -30,7 +30,7 @@ class Polygon {
   // Read rings: a line "x,y" for each point, a blank line between two rings, # starts a comment.
   // The first point of a ring may be repeated at its end. An error is a ring with fewer than 3
   // points, without area, or whose edges cross or touch each other; and rings that cross. si: whether a head
-  // with other units than metres is one, too (table_head.h).
+  // with other units than metres is one, too (number_rows.h).
   static Polygon read(const std::string &path, bool si = true);
 
   bool inside(double x, double y) const;

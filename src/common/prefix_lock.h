@@ -12,10 +12,10 @@
 
 namespace Slope {
 
-// Files PREFIX.* belong to one run at a time: as long as it holds the lock of PREFIX.lock, which names it, another one gets
-// an error, a std::runtime_error with one line. The kernel releases the lock of a process that has ended in any way; its file
-// may be left then, and means nothing. Several writers of a run share the lock. Without locks in the file system (some of
-// those in a network) nothing is refused.
+// Files PREFIX.* belong to one run at a time: as long as it holds the lock of PREFIX.lock, which names it,
+// another one gets an error, a std::runtime_error with one line. The kernel releases the lock of a process that
+// has ended in any way; its file may be left then, and means nothing. Several writers of a run share the lock.
+// Without locks in the file system (some of those in a network) nothing is refused.
 class PrefixLock {
  public:
   // run: any address that tells the runs of this process from each other

@@ -3,8 +3,8 @@
    Distributed under the GNU General Public License, version 2
 ------------------------------------------------------------------------- */
 
-/* What a deck says of the contact law: the one place where the words of pair_style gran/restitution and of its pair_coeff are
-   read and checked, named in restart files, made into a ContactLaw and printed. */
+/* What a deck says of the contact law: the one place where the words of pair_style gran/restitution and of its
+   pair_coeff are read and checked, named in restart files, made into a ContactLaw and printed. */
 
 #ifndef SLOPE_CONTACT_COEFFS_H
 #define SLOPE_CONTACT_COEFFS_H
@@ -52,8 +52,8 @@ struct ContactCoeffs {
   void archive(Slope::Archive &);
   Slope::ContactLaw law(const ContactSettings &) const;
 
-  // A line of the table in the log, and its heading. mi, mj: mass (kg) of the lightest moving balls of the two types, 0 of one that
-  // has none; radius (m): of the largest; dt: time step, s
+  // A line of the table in the log, and its heading. mi, mj: mass (kg) of the lightest moving balls of the two
+  // types, 0 of one that has none; radius (m): of the largest; dt: time step, s
   static const char *heading();
   std::string line(const Slope::ContactLaw &, double mi, double mj, double radius, double dt) const;
 };

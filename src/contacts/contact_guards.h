@@ -12,18 +12,43 @@
 #include "pointers.h"
 
 #include "energy_guard.h"
-#include "motion_guard.h"
 
 #include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
 
-class ContactTable;
+// What moves the balls of a run and what holds them: a ball that nothing moves, or that nothing pulls,
+// hangs in the air and counts as one at rest.
+class MotionGuard : protected Pointers {
+ public:
+  explicit MotionGuard(LAMMPS *);
+
+  void start(int freeze_group_bit);    // at the set-up of a run
+
+  // What is not sensible, in words; collective. In the first step of a run: neither run 0 nor rerun moves
+  // anything.
+  std::vector<std::string> begin_step();
+  std::vector<std::string> end_run();    // balls that came since, or that hang
+
+ private:
+  int frozen;    // group bits
+  bool stepped;
+  bigint unmoved;    // balls
+
+  struct Movers {
+    int moved, guided;     // group bits
+    std::string guides;    // fixes
+  };
+  Movers movers() const;
+  template <typename Test> bigint count_free(Test test) const;
+  void check_unmoved(const Movers &, std::vector<std::string> &found);
+  void check_gravity(std::vector<std::string> &found) const;
+};
 
 class ContactGuards : protected Pointers {
  public:
-  ContactGuards(LAMMPS *, const ContactTable &);
+  ContactGuards(LAMMPS *, const class ContactTable &);
 
   // once per run, when masses, coefficients and step are final; prints the table if it has changed
   void start(int freeze_group_bit);
@@ -45,7 +70,7 @@ class ContactGuards : protected Pointers {
   std::vector<std::string> warnings;    // so far, each once; on rank 0
 
  private:
-  const ContactTable &table;
+  const class ContactTable &table;
   std::string printed;    // table as last printed
   EnergyGuard energy;
   MotionGuard motion;
@@ -63,6 +88,29 @@ class ContactGuards : protected Pointers {
   void check_dashpots();
   void check_dashpots(int itype, int jtype);
   void check_neighbor_lists();
+};
+
+// The guard against balls that are placed inside each other. A linear spring of this
+// stiffness turns an overlap of a few per cent of the radius into a shot; a run must not
+// start from one. Used by the pair style and by the wall fix at set-up; contacts that come
+// with a history (a continued or restarted run) are not looked at.
+class InitialOverlap : protected Pointers {
+ public:
+  static constexpr double LIMIT = 0.05;    // of the smaller radius
+
+  explicit InitialOverlap(class LAMMPS *lmp) : Pointers(lmp), worst(LIMIT), count(0) {}
+
+  // note one overlapping pair; partner names it in the message
+  void record(double overlap, double radius, tagint ball, const double *where,
+              const std::string &partner);
+
+  // collective: ends the run if any rank saw an overlap above the limit
+  void check(const std::string &caller, const std::string &remedy = "see delete_balls");
+
+ private:
+  double worst;        // overlap / radius
+  bigint count;        // pairs above the limit
+  std::string text;    // the worst pair
 };
 
 }    // namespace LAMMPS_NS

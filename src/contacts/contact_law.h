@@ -76,7 +76,8 @@ struct ContactLaw {
 
   double cn(double m) const { return cn_given + cn_root * std::sqrt(m); }
 
-  // Radii are there for laws whose springs depend on them (architecture.rst has how to add one); those of this law do not.
+  // Radii are there for laws whose springs depend on them (architecture.rst has how to add one); those of this
+  // law do not.
   NormalSpring spring(double /*ri*/, double /*rj*/) const { return {kn}; }    // of two balls
 
   // --- for what bounds the time step and is said of a law, whatever its springs are like ---
@@ -99,8 +100,9 @@ template <class N> SLOPE_INLINE N touching(N ri, N rj)
   return ri + rj - 4.0e-7 * ri * rj / (ri + rj);
 }
 
-// What a step makes of the law, in two parts: what depends on the sizes of the balls, and is kept for each contact where they
-// differ (contact_rows.h), N's alone; and what all contacts share. See contact_step() of contact_force.h.
+// What a step makes of the law, in two parts: what depends on the sizes of the balls, and is kept for each
+// contact where they differ (contact_rows.h), N's alone; and what all contacts share. See contact_step() of
+// contact_force.h.
 template <class N> struct ContactOwnOf {
   N cn, kt, ct, kr, cr;           // N/m, N s/m: as velocity Verlet needs them
   N taken_n, taken_t, taken_r;    // share of a motion that its dashpot takes in a step; 0: plain

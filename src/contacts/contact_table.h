@@ -3,8 +3,8 @@
    Distributed under the GNU General Public License, version 2
 ------------------------------------------------------------------------- */
 
-/* The contact laws of all pairs of atom types, and the balls of each type that they are for: what can touch, how near, and in
-   which time step. The words that the laws come from: contact_coeffs.h. */
+/* The contact laws of all pairs of atom types, and the balls of each type that they are for: what can touch,
+   how near, and in which time step. The words that the laws come from: contact_coeffs.h. */
 
 #ifndef SLOPE_CONTACT_TABLE_H
 #define SLOPE_CONTACT_TABLE_H

@@ -17,7 +17,6 @@
 #include "exchange_size.h"
 #include "lammps_compat.h"
 #include "memory.h"
-#include "restart_archive.h"
 #include "update.h"
 
 #include <algorithm>

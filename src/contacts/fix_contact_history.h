@@ -14,9 +14,8 @@ FixStyle(CONTACT_HISTORY,FixContactHistory);
 
 #include "fix_neigh_history.h"
 
-#include "archive.h"
 #include "continuation.h"
-#include "restart_extra.h"
+#include "restart_archive.h"
 
 namespace LAMMPS_NS {
 

@@ -11,7 +11,6 @@
 #include "exchange_size.h"
 #include "modify.h"
 #include "pair_gran_restitution.h"
-#include "restart_archive.h"
 
 #include <algorithm>
 

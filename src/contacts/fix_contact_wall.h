@@ -8,10 +8,9 @@
 
 #include "fix.h"
 
-#include "archive.h"
 #include "contact_holder.h"
 #include "contact_records.h"
-#include "restart_extra.h"
+#include "restart_archive.h"
 
 #include <string>
 
@@ -57,8 +56,8 @@ class FixContactWall : public Fix, public ContactHolder {
   // from the lists, which may hold balls that have been deleted, to the records, which are empty
   virtual void take_contacts() = 0;
 
-  // what a restart file has of the wall: to be written by rank 0, or read by all; collective. What is read must be of this wall,
-  // or a std::runtime_error says why not.
+  // what a restart file has of the wall: to be written by rank 0, or read by all; collective. What is read must
+  // be of this wall, or a std::runtime_error says why not.
   virtual void archive_wall(Slope::Archive &) = 0;
 
  private:

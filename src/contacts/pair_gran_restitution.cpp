@@ -19,7 +19,6 @@
 #include "neighbor.h"
 #include "rank_zero.h"
 #include "requirements.h"
-#include "restart_archive.h"
 #include "update.h"
 
 #include <algorithm>

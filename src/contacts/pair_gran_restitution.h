@@ -20,7 +20,7 @@ PairStyle(gran/restitution,PairGranRestitution);
 #include "contact_table.h"
 #include "contact_works.h"
 #include "pair_lists.h"
-#include "restart_drops.h"
+#include "restart_archive.h"
 
 #include <string>
 #include <vector>

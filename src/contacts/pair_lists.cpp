@@ -10,7 +10,6 @@
 #include "contact_energy.h"
 #include "contact_guards.h"
 #include "fix_neigh_history.h"
-#include "initial_overlap.h"
 #include "neigh_list.h"
 #include "update.h"
 

@@ -11,6 +11,7 @@
 #include "mass_ledger.h"
 #include "pointers.h"
 
+#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -62,6 +63,28 @@ class DepositBalls : protected Pointers {
   double volume_of(int i) const;
   double speed_of(int i) const;
   void seen_from(const double *place, int i, double &distance, double &angle) const;
+};
+
+// The ledger of a fix deposit/grid: balls that LAMMPS deletes because they left the box are counted when
+// LAMMPS does it.
+class DepositLosses : public Slope::MassLedger, protected Pointers {
+ public:
+  DepositLosses(class LAMMPS *lmp, const DepositBalls &balls_in) : Pointers(lmp), balls(balls_in) {}
+
+  // write_restart and others move the atoms to their ranks without a call of a fix, and then drop
+  // those outside of the box: who was outside before and is gone afterwards was lost in the command
+  void begin_command();
+  void end_command();
+
+  // LAMMPS is about to send every ball to the rank that owns its place. A ball that is beyond a fixed
+  // side of the box has no owner and is deleted without a message.
+  void before_exchange();
+
+  // collective: what all ranks lost since the last time; returns lines on the first balls
+  std::vector<std::string> add_up();
+
+ private:
+  const DepositBalls &balls;
 };
 
 }    // namespace LAMMPS_NS

@@ -6,6 +6,8 @@
 
 #include "deposit_rasters.h"
 
+#include "elevation_grid.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,6 +16,8 @@ using namespace Slope;
 
 static constexpr int SIDE = BlockOfCells::SIDE;
 static constexpr int CELLS = BlockOfCells::CELLS;
+// digits in files: the sum of the thickness as written is the volume on the grid to 1e-9
+static constexpr int EXACT = 12, DIGITS = 9;
 typedef DepositBlocks<DepositRasters::KINDS>::Block Block;
 static const double NaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -176,4 +180,42 @@ void DepositRasters::restore(const double *values)
   Block &block = blocks.make(i / SIDE, j / SIDE);
   for (int kind = MAX_THICKNESS; kind < KINDS; kind++)
     block.values[kind][Block::index(i, j)] = values[kind];
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::vector<DepositRasters::File> DepositRasters::files(const std::string &prefix,
+                                                        const std::string &number)
+{
+  std::vector<File> found;
+  if (!number.empty())
+    found.push_back({prefix + "." + number + ".thickness.asc", THICKNESS, EXACT});
+  const std::vector<File> always = {
+      {".thickness.asc", THICKNESS, EXACT},  {".surface.asc", SURFACE, DIGITS},
+      {".base.asc", BASE, DIGITS},           {".max_thickness.asc", MAX_THICKNESS, DIGITS},
+      {".max_speed.asc", MAX_SPEED, DIGITS}, {".max_energy.asc", MAX_ENERGY, DIGITS},
+      {".arrival.asc", ARRIVAL, DIGITS},     {".last_motion.asc", LAST_MOTION, DIGITS}};
+  for (const File &file : always) found.push_back({prefix + file.path, file.content, file.digits});
+  return found;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DepositRasters::write(AtomicFile &to, const File &file) const
+{
+  const int columns = cells.n[X];
+  std::vector<double> values(columns, 0.0);
+  std::string text =
+      ElevationGrid::header(columns, cells.n[Y], cells.lo[X], cells.lo[Y], cells.cell);
+  for (int j = cells.n[Y] - 1; j >= 0; j--) {    // the rows start in the north
+    if (file.content == SURFACE)
+      row(THICKNESS, j, values.data());
+    else if (file.content != BASE)
+      row((Name) file.content, j, values.data());
+    for (int i = 0; i < columns && file.content >= BASE; i++)
+      values[i] = base(i, j) + (file.content == SURFACE ? values[i] : 0.0);
+    ElevationGrid::append_row(text, values.data(), columns, file.digits);
+    to.write(text);
+    text.clear();
+  }
 }

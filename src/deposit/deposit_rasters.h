@@ -7,11 +7,12 @@
 #ifndef SLOPE_DEPOSIT_RASTERS_H
 #define SLOPE_DEPOSIT_RASTERS_H
 
+#include "atomic_file.h"
 #include "deposit_bins.h"
-#include "deposit_blocks.h"
 #include "plan_grid.h"
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace Slope {
@@ -29,7 +30,9 @@ class DepositRasters {
     ARRIVAL,
     LAST_MOTION,
     SNAPSHOT,
-    KINDS
+    KINDS,
+    BASE = KINDS,    // of files alone: the ground, and with what lies on it
+    SURFACE
   };
 
   // if the mass was in every cell: base, all kinds, and the bins of the balls
@@ -69,6 +72,18 @@ class DepositRasters {
   static constexpr int PER_CELL = KINDS;
   std::vector<double> touched(int j) const;
   void restore(const double *values);    // of one cell
+
+  // --- files ---
+
+  struct File {
+    std::string path;
+    int content;    // a Name
+    int digits;
+  };
+
+  // PREFIX.base.asc, .thickness.asc, ...; number: also PREFIX.NUMBER.thickness.asc, or empty
+  static std::vector<File> files(const std::string &prefix, const std::string &number);
+  void write(AtomicFile &, const File &) const;
 
   double snapshot_time, change;    // NaN before the first one; per time, 1 before the second one
 

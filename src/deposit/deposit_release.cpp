@@ -8,11 +8,12 @@
 #include "body_volume.h"
 #include "constants.h"
 #include "deposit_balls.h"
-#include "deposit_ground.h"
 #include "deposit_options.h"
 #include "lammps_compat.h"
 #include "large_messages.h"
 #include "region_columns.h"
+#include "region_surface.h"
+#include "region_terrain.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -21,11 +22,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <vector>
 
 using namespace LAMMPS_NS;
 
+static const char *const CALLER = "Fix deposit/grid terrain";
 static constexpr double UNBOUNDED = 1.0e19;          // LAMMPS writes INF as 1e20
 static constexpr double ASTRAY = 0.05;               // of the balls may lie far from the body
 static constexpr double SEARCH_STEPS = 1000.0;       // through a part of an unknown style
@@ -47,7 +50,7 @@ DepositRelease::DepositRelease(LAMMPS *lmp, const DepositBalls &balls_in,
 DepositRelease::Released DepositRelease::find() const
 {
   Released found = {find_mass(), 0.0, 0.0, 0.0};
-  DepositGround(lmp, options.terrain).check(balls);
+  check_ground();
   if (!options.body.empty()) found.body = body_volume(found.mass);
   double z;
   balls.farthest(found.mass.top, found.front, z);
@@ -71,6 +74,80 @@ void DepositRelease::log(const std::string &fix_id, const Released &released) co
                  "Fix deposit/grid {}: bulk factor {}\n",
                  fix_id, released.mass.number, released.volume, grid.n[X], grid.n[Y], grid.cell,
                  fix_id, factor);
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::vector<double> DepositRelease::ground() const
+{
+  const Slope::PlanGrid &grid = options.grid;
+  const RegionSurface ground(lmp, CALLER, options.terrain.c_str(), RegionSurface::UPPER);
+  auto first_row = [&](int rank) {    // each rank has its share of them
+    return static_cast<int>(static_cast<bigint>(grid.n[Y]) * rank / comm->nprocs);
+  };
+  std::vector<double> mine;
+  mine.reserve(static_cast<size_t>(grid.n[X]) * (first_row(comm->me + 1) - first_row(comm->me)));
+  for (int j = first_row(comm->me); j < first_row(comm->me + 1); j++)
+    for (int i = 0; i < grid.n[X]; i++) {
+      double z;
+      const bool any = ground.height(grid.centre(X, i), grid.centre(Y, j), z);
+      mine.push_back(any ? z : std::numeric_limits<double>::quiet_NaN());
+    }
+  return gather_records(world, mine);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DepositRelease::check_ground() const
+{
+  const RegionSurface ground(lmp, CALLER, options.terrain.c_str(), RegionSurface::UPPER);
+  Region *solid = compat::find_region(lmp, options.terrain);
+  const auto *terrain = dynamic_cast<const RegTerrain *>(solid);
+  if (terrain && (!solid->interior || terrain->grid().count_nodata() == 0)) terrain = nullptr;
+
+  // what was solid below the last place that was searched mostly is so below the next one
+
+  double guess = ground.zlo;
+  auto found = [&](double x, double y) {
+    if (solid->match(x, y, guess)) return true;
+    double z;
+    if (!ground.height(x, y, z)) return false;
+    guess = 0.5 * (z + ground.zlo);
+    return true;
+  };
+  auto hole = [&](const double *x, double diameter) {
+    if (!found(x[0], x[1])) return true;
+    if (terrain) return terrain->grid().nodata_within(x[0], x[1], diameter);
+    for (int k = 0; k < 8; k++) {
+      const double px = x[0] + diameter * cos(0.25 * Slope::PI * k);
+      const double py = x[1] + diameter * sin(0.25 * Slope::PI * k);
+      if (px < ground.xlo || px > ground.xhi || py < ground.ylo || py > ground.yhi) continue;
+      if (!found(px, py)) return true;
+    }
+    return false;
+  };
+
+  // the ball with the lowest ID is named, so that the message does not depend on the ranks
+
+  double worst[5] = {HUGE_VAL, 0.0, 0.0, 0.0, 0.0};    // tag, place, diameter
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!balls.selected(i) || atom->tag[i] >= worst[0]) continue;
+    const double *x = atom->x[i];
+    const double diameter = 2.0 * atom->radius[i];
+    if (!hole(x, diameter)) continue;
+    worst[0] = atom->tag[i];
+    std::copy(x, x + 3, worst + 1);
+    worst[4] = diameter;
+  }
+  with_largest(world, -worst[0], worst);
+  if (worst[0] == HUGE_VAL) return;
+  error->all(FLERR,
+             "Fix deposit/grid terrain region {} must have a height within one diameter {:g} of "
+             "every released ball, got none at ball {:.0f}, {:.8g} {:.8g} {:.8g}: there the slip "
+             "surface reaches below the bottom of the ground (check its toe and depth, or give "
+             "region terrain a larger depth), or the survey has a hole (tools/slope terrain "
+             "--fill)",
+             options.terrain, worst[4], worst[0], worst[1], worst[2], worst[3]);
 }
 
 /* ---------------------------------------------------------------------- */

@@ -6,9 +6,11 @@
 #ifndef SLOPE_DEPOSIT_RELEASE_H
 #define SLOPE_DEPOSIT_RELEASE_H
 
+#include "plan_grid.h"
 #include "pointers.h"
 
 #include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -31,6 +33,9 @@ class DepositRelease : protected Pointers {
 
   DepositRelease(class LAMMPS *, const class DepositBalls &, const class DepositOptions &);
 
+  // heights of the ground at the cell centres, NaN where there is none, row by row from the south; on rank 0
+  std::vector<double> ground() const;
+
   Released find() const;    // all but the bulk volume
 
   // to the log
@@ -39,6 +44,10 @@ class DepositRelease : protected Pointers {
  private:
   const class DepositBalls &balls;
   const class DepositOptions &options;
+
+  // every ball has ground below and around it, or the run ends: a hole in the elevation model under the mass
+  // would swallow it
+  void check_ground() const;
 
   Mass find_mass() const;
   double body_volume(const Mass &) const;

@@ -5,9 +5,8 @@
 
 #include "deposit_report.h"
 
+#include "atomic_file.h"
 #include "deposit_balls.h"
-#include "deposit_writer.h"
-#include "file_set.h"
 #include "lammps_compat.h"
 #include "rank_zero.h"
 #include "slope_version.h"
@@ -20,7 +19,6 @@
 using namespace LAMMPS_NS;
 using Slope::DepositRasters;
 using Slope::DepositSummary;
-using Slope::DepositWriter;
 using Slope::FileSet;
 typedef DepositResults Result;
 
@@ -41,7 +39,7 @@ void DepositReport::begin_run()
 {
   on_rank_zero(lmp, "Fix deposit/grid", [this]() {
     std::vector<std::string> paths = {options.prefix + ".summary.yaml"};
-    for (const DepositWriter::File &file : DepositWriter::files(options.prefix, ""))
+    for (const DepositRasters::File &file : DepositRasters::files(options.prefix, ""))
       paths.push_back(file.path);
     FileSet::probe(paths);
     lock.take(options.prefix, lmp);
@@ -85,8 +83,8 @@ void DepositReport::write(const std::string &why, const DepositResults &results,
         rasters.largest(DepositRasters::THICKNESS), rasters.largest(DepositRasters::MAX_THICKNESS),
         rasters.largest(DepositRasters::MAX_SPEED), rasters.largest(DepositRasters::MAX_ENERGY)};
     FileSet files;
-    for (const DepositWriter::File &file : DepositWriter::files(options.prefix, number))
-      DepositWriter::write(files.add(file.path), rasters, file);
+    for (const DepositRasters::File &file : DepositRasters::files(options.prefix, number))
+      rasters.write(files.add(file.path), file);
     about.files = files.names();
     files.add(options.prefix + ".summary.yaml").write(about.text());
     files.commit();

@@ -9,7 +9,7 @@
 #include "contact_guards.h"
 #include "deposit_options.h"
 #include "deposit_rasters.h"
-#include "deposit_results.h"
+#include "deposit_release.h"
 #include "deposit_summary.h"
 #include "pointers.h"
 #include "prefix_lock.h"
@@ -18,6 +18,30 @@
 #include <vector>
 
 namespace LAMMPS_NS {
+
+// State of the mass after a sample of fix deposit/grid, the same on all ranks.
+struct DepositResults {
+  enum {    // the fix's vector
+    RELEASED,
+    ON_GRID,
+    OFF_GRID,
+    LOST,
+    RESIDUAL,
+    CHANGE,
+    FRONT,
+    REACH,
+    CENTROID,
+    NLOST,
+    FAST_SHARE,
+    NUMBER
+  };
+  static bool extensive(int k) { return k <= RESIDUAL || k == NLOST; }
+
+  double vector[NUMBER];
+  double present;    // number of balls
+  double time;
+  DepositRelease::Released released;
+};
 
 // The output of fix deposit/grid: warnings, rasters and summary. All methods are collective.
 class DepositReport : protected Pointers {

@@ -8,8 +8,8 @@
 
 #include "fix_control_line.h"
 
+#include "atomic_file.h"
 #include "constants.h"
-#include "file_set.h"
 #include "fix_deposit_grid.h"
 #include "lammps_compat.h"
 #include "large_messages.h"
@@ -340,23 +340,16 @@ std::string FixControlLine::summary() const
 
 void FixControlLine::archive(Slope::Archive &archive, std::vector<CrossingLog::Event> &events)
 {
-  struct Line {
-    double numbers, length, xlo, checksum;
-  };
-  const Line mine = {(double) line.xy.size(), line.length(), line.xlo, line.checksum()};
-  Line found = mine;
-  archive.number("numbers_of_the_line", found.numbers);
-  archive.number("length", found.length);
-  archive.number("xlo", found.xlo);
-  archive.number("checksum", found.checksum);
-  if (memcmp(&found, &mine, sizeof(Line)) != 0)
-    throw std::runtime_error(fmt::format(
-        "the line must be that of the restart file, {:.0f} points, length {:.8g} (sum {:.10g}); "
-        "got "
-        "{:.0f} points, length {:.8g} (sum {:.10g}): another line, or another direction, needs "
-        "another fix ID",
-        0.5 * found.numbers, found.length, found.checksum, 0.5 * mine.numbers, mine.length,
-        mine.checksum));
+  archive.same(
+      "line",
+      {{"numbers_of_the_line", (double) line.xy.size()},
+       {"length", line.length()},
+       {"xlo", line.xlo},
+       {"checksum", line.checksum()}},
+      [](const double *k) {
+        return fmt::format("{:.0f} points, length {:.8g} (sum {:.10g})", 0.5 * k[0], k[1], k[3]);
+      },
+      ": another line, or another direction, needs another fix ID");
   clock.archive(archive);
   archive.records("crossings", events);
 }

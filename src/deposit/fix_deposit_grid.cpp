@@ -9,20 +9,22 @@
 #include "fix_deposit_grid.h"
 
 #include "constants.h"
-#include "deposit_ground.h"
 #include "lammps_compat.h"
 #include "large_messages.h"
 #include "node_memory.h"
 #include "pair_gran_restitution.h"
 #include "rank_zero.h"
 #include "requirements.h"
+#include "restart_archive.h"
 
 #include "comm.h"
 #include "error.h"
 #include "update.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <stdexcept>
 #include <utility>
 
 using namespace LAMMPS_NS;
@@ -32,14 +34,27 @@ using Slope::DepositRasters;
 using Slope::MassLedger;
 typedef DepositResults Result;
 
+static const std::string CALLER = "Fix deposit/grid ";
+static constexpr int VERSION = 6;    // of what restart files hold
+static constexpr int PER_CELL = DepositRasters::PER_CELL;
+static constexpr double BYTES_PER_CELL = PER_CELL * sizeof(double);
+static constexpr int MOST_CELLS = (MAXSMALLINT - 4096) / static_cast<int>(BYTES_PER_CELL);
+
+static std::string too_many(double ncells)
+{
+  return fmt::format("in which it may have {} cells that the mass touched, got {:.0f}: start "
+                     "again, with a larger cell",
+                     MOST_CELLS, ncells);
+}
+
 enum { X, Y, Z };
 
 /* ---------------------------------------------------------------------- */
 
 FixDepositGrid::FixDepositGrid(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), options(lmp, narg, arg), balls(lmp, groupbit, options.bulk),
-    losses(lmp, balls), report(lmp, id, options, balls), restart_data(lmp, options), results(),
-    started(false), fresh(false), sampled(-1), warned(false), elapsed(0.0), offset(0.0)
+    losses(lmp, balls), report(lmp, id, options, balls), results(), started(false), fresh(false),
+    sampled(-1), warned(false), elapsed(0.0), offset(0.0)
 {
   nevery = options.nevery;
   make_rasters();
@@ -73,7 +88,7 @@ void FixDepositGrid::make_rasters()
                     "a larger cell or a smaller extent");
   bins.set_grid(options.grid);
   rasters.create(options.grid);
-  std::vector<double> base = DepositGround(lmp, options.terrain).read(options.grid);
+  std::vector<double> base = DepositRelease(lmp, balls, options).ground();
   on_rank_zero(lmp, "Fix deposit/grid", [&]() {
     rasters.set_base(std::move(base));
   });
@@ -297,33 +312,104 @@ void FixDepositGrid::write_files(const std::string &reason)
   report.write(reason, results, rasters, law ? &law->guards : nullptr);
 }
 
-/* ---------------------------------------------------------------------- */
+/* ----------------------------------------------------------------------
+   What a restart file has: the grid, numbers, and then, after the archive, the cells that the mass touched.
+   LAMMPS gives a fix at most 2 GB there: cells that need more are left out, with a warning, and such a file
+   is refused.
+------------------------------------------------------------------------- */
+
+void FixDepositGrid::archive(Slope::Archive &archive)
+{
+  const Slope::PlanGrid &grid = options.grid;
+  archive.same("grid",
+               {{"cell", grid.cell},
+                {"columns", (double) grid.n[X]},
+                {"rows", (double) grid.n[Y]},
+                {"xlo", grid.lo[X]},
+                {"ylo", grid.lo[Y]},
+                {"bulk", options.bulk}},
+               [](const double *k) {
+                 return fmt::format(
+                     "cell {:.10g}, {:.0f} x {:.0f} cells from {:.10g} {:.10g}, bulk {}", k[0],
+                     k[1], k[2], k[3], k[4], k[5] > 0.0 ? fmt::format("{:.10g}", k[5]) : "region");
+               });
+
+  DepositRelease::Released &released = results.released;
+  double bulk = balls.bulk(), time = update->whichflag == 1 ? now() : elapsed;
+  archive.number("started", started);
+  archive.number("released_number", released.mass.number);
+  archive.number("released_solid", released.mass.solid);
+  archive.number("released_x", released.mass.x);
+  archive.number("released_y", released.mass.y);
+  archive.numbers("released_top", released.mass.top, 3);
+  archive.number("released_volume", released.volume);
+  archive.number("body", released.body);
+  archive.number("front", released.front);
+  archive.number("bulk_of_the_release", bulk);
+  archive.number("lost_number", losses.lost.number);
+  archive.number("lost_volume", losses.lost.volume);
+  archive.number("losses_in_the_log", losses.nlogged);
+  archive.number("elapsed", time);
+  archive.number("snapshot_time", rasters.snapshot_time);
+  archive.number("change", rasters.change);
+  archive.same("numbers_of_a_cell", PER_CELL);
+  if (!archive.reads()) return;
+  balls.set_bulk(bulk);
+  elapsed = time;
+  results.vector[Result::CHANGE] = rasters.change;
+}
 
 void FixDepositGrid::write_restart(FILE *fp)
 {
   if (started) losses.end_command();
   if (started && (sampled != update->ntimestep || update->whichflag == 0)) sample(false);
-  const DepositRestart::Saved saved = {
-      (double) started,      results.released,        balls.bulk(),
-      losses.lost,           (double) losses.nlogged, update->whichflag == 1 ? now() : elapsed,
-      rasters.snapshot_time, rasters.change};
-  restart_data.write(fp, id, saved, rasters);
+  if (comm->me > 0) return;
+
+  const int nrows = options.grid.n[Y];
+  double ncells = 0.0;
+  for (int j = 0; j < nrows; j++) ncells += rasters.touched(j).size() / PER_CELL;
+  const bool fits = ncells <= MOST_CELLS;
+  double left_out = fits ? 0.0 : ncells;
+
+  Slope::Archive to(style, VERSION);
+  archive(to);
+  to.number("cells_left_out", left_out);
+  to.count("cells", fits ? static_cast<size_t>(ncells) : 0, MOST_CELLS);
+  write_archive(lmp, fp, CALLER + id, to, fits ? ncells * BYTES_PER_CELL : 0.0);
+  for (int j = 0; j < nrows && fits; j++) {
+    const std::vector<double> cells = rasters.touched(j);
+    fwrite(cells.data(), sizeof(double), cells.size(), fp);
+  }
+  if (!fits)
+    error->warning(FLERR, "{}{}: nothing can go on from this restart file, {}", CALLER, id,
+                   too_many(ncells));
 }
 
-/* ---------------------------------------------------------------------- */
+/* ----------------------------------------------------------------------
+   the cells go to rank 0
+------------------------------------------------------------------------- */
 
 void FixDepositGrid::restart(char *buffer)
 {
-  DepositRestart::Saved saved;
-  restart_data.read(id, buffer, saved, rasters);
-  started = saved.started;
-  results.released = saved.released;
-  balls.set_bulk(saved.bulk);
-  losses.lost = saved.lost;
-  losses.nlogged = (int) saved.nlogged;
-  elapsed = saved.elapsed;
-  rasters.snapshot_time = saved.snapshot_time;
-  results.vector[Result::CHANGE] = rasters.change = saved.change;
+  const double all = options.grid.ncells();
+  read_archive(lmp, CALLER + id, [&]() {
+    Slope::Archive from(style, VERSION, buffer);
+    archive(from);
+    double left_out = 0.0;
+    from.number("cells_left_out", left_out);
+    if (left_out > 0.0)
+      throw std::runtime_error("nothing can go on from this restart file, " + too_many(left_out));
+    const size_t ncells = from.count("cells", 0, std::min<double>(MOST_CELLS, all));
+    const char *next = from.rest();
+    for (size_t c = 0; c < ncells; c++, next += sizeof(double) * PER_CELL) {
+      double values[PER_CELL];
+      memcpy(values, next, sizeof(values));
+      if (!(values[0] >= 0.0 && values[0] < all))
+        throw std::runtime_error(
+            fmt::format("the restart file must be whole, got cell {:g} of {:.0f}", values[0], all));
+      if (comm->me == 0) rasters.restore(values);
+    }
+  });
 }
 
 /* ----------------------------------------------------------------------

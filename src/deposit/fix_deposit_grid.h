@@ -14,15 +14,13 @@ FixStyle(deposit/grid,FixDepositGrid);
 
 #include "fix.h"
 
+#include "archive.h"
 #include "deposit_balls.h"
 #include "deposit_bins.h"
-#include "deposit_losses.h"
 #include "deposit_options.h"
 #include "deposit_rasters.h"
 #include "deposit_release.h"
 #include "deposit_report.h"
-#include "deposit_restart.h"
-#include "deposit_results.h"
 
 #include <string>
 #include <vector>
@@ -59,7 +57,6 @@ class FixDepositGrid : public Fix {
   DepositBalls balls;
   DepositLosses losses;
   DepositReport report;
-  DepositRestart restart_data;
 
   Slope::DepositBins bins;          // of the balls of this rank
   Slope::DepositRasters rasters;    // on rank 0
@@ -79,6 +76,7 @@ class FixDepositGrid : public Fix {
   void check_balance();
   void take_snapshot();
   void write_files(const std::string &reason);
+  void archive(Slope::Archive &);    // members of a restart file
 
   // --- time since the first set-up, whatever the deck does to steps and time step ---
 

@@ -20,8 +20,8 @@
 using namespace LAMMPS_NS;
 
 /* ----------------------------------------------------------------------
-   Contacts remember the steps before, which those of minimize do not have; r-RESPA asks each style for the forces of a level, which ours do not have: balls would fall through the
-   ground
+   Contacts remember the steps before, which those of minimize do not have; r-RESPA asks each style for the
+   forces of a level, which ours do not have: balls would fall through the ground
 ------------------------------------------------------------------------- */
 
 void LAMMPS_NS::require_run(LAMMPS *lmp, const std::string &caller)

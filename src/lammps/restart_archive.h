@@ -7,31 +7,21 @@
 #define LMP_RESTART_ARCHIVE_H
 
 #include "archive.h"
-#include "comm.h"
 #include "error.h"
 #include "pointers.h"
 
 #include <cstdio>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace LAMMPS_NS {
 
-// What a fix has in a restart file, its length first, as LAMMPS wants it; by rank 0. more: bytes that the fix itself writes after
-// the archive.
-inline void write_archive(LAMMPS *lmp, FILE *fp, const std::string &caller, Slope::Archive &archive,
-                          double more = 0.0)
-{
-  if (lmp->comm->me > 0) return;
-  const std::string &bytes = archive.bytes();
-  const double size = bytes.size() + more;
-  if (size > MAXSMALLINT)
-    lmp->error->one(FLERR, "{} must have at most {} bytes in a restart file, got {:.0f}", caller,
-                    MAXSMALLINT, size);
-  const int whole = static_cast<int>(size);
-  fwrite(&whole, sizeof(int), 1, fp);
-  fwrite(bytes.data(), 1, bytes.size(), fp);
-}
+// What a fix has in a restart file, its length first, as LAMMPS wants it; by rank 0. more: bytes that the fix
+// itself writes after the archive.
+void write_archive(LAMMPS *lmp, FILE *fp, const std::string &caller, Slope::Archive &archive,
+                   double more = 0.0);
 
 // Reading, on all ranks, which have the same: what is wrong ends the run with one line.
 template <typename Work> void read_archive(LAMMPS *lmp, const std::string &caller, const Work &work)
@@ -45,28 +35,43 @@ template <typename Work> void read_archive(LAMMPS *lmp, const std::string &calle
   if (!problem.empty()) lmp->error->all(FLERR, "{}: {}", caller, problem);
 }
 
-// The bytes of an archive at this place of a file, on all ranks, which opened it on rank 0; only their beginning if they are no
-// archive.
-inline std::string archive_bytes(LAMMPS *lmp, FILE *fp, const std::string &caller)
-{
-  using Slope::Archive;
-  std::string bytes(Archive::HEAD, '\0');
-  auto read = [&](size_t from) {
-    if (lmp->comm->me == 0 && bytes.size() > from)
-      utils::sfread(FLERR, &bytes[from], 1, bytes.size() - from, fp, nullptr, lmp->error);
-    MPI_Bcast(&bytes[from], static_cast<int>(bytes.size() - from), MPI_CHAR, 0, lmp->world);
-  };
-  read(0);
-  size_t size = 0;
-  read_archive(lmp, caller, [&]() {
-    size = Archive::length(bytes.data());
-  });
-  if (size > bytes.size()) {
-    bytes.resize(size);
-    read(Archive::HEAD);
-  }
-  return bytes;
-}
+// The bytes of an archive at this place of a file, on all ranks, which opened it on rank 0; only their
+// beginning if they are no archive.
+std::string archive_bytes(LAMMPS *lmp, FILE *fp, const std::string &caller);
+
+// What a restart file has for the balls of a fix, which LAMMPS hands over without its length. In a damaged
+// file the numbers in it may be anything: a ball is then left without contacts, and check() ends the run.
+class RestartExtra : protected Pointers {
+ public:
+  explicit RestartExtra(class LAMMPS *lmp) : Pointers(lmp), ball(0), wrong(0.0) {}
+
+  // for ball i, the nth fix: how many numbers there are, the number of contacts, and so on; all fit in what
+  // has been read, and are fixed numbers and those of each contact; nullptr: the file is damaged
+  const double *find(int i, int nth, int fixed, int each);
+
+  void check(const std::string &caller) const;    // collective
+
+ private:
+  tagint ball;     // the last one that is damaged; 0: none
+  double wrong;    // the number there
+
+  const double *reject(int i, double number);
+};
+
+// What a restart file has for fixes goes to those that are defined before the first command that sets LAMMPS up (run,
+// balance, write_restart, ...). Then LAMMPS drops the rest, and a fix that comes later, of the same ID and style, begins
+// without its contacts or sums.
+class RestartDrops : protected Pointers {
+ public:
+  explicit RestartDrops(class LAMMPS *lmp) : Pointers(lmp) {}
+
+  // at each set-up, before LAMMPS drops: ends the run if there is such a fix
+  void check();
+
+ private:
+  typedef std::pair<std::string, std::string> Name;    // ID and style
+  std::vector<Name> dropped;
+};
 
 }    // namespace LAMMPS_NS
 

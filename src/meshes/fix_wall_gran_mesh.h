@@ -16,7 +16,6 @@ FixStyle(wall/gran/mesh,FixWallGranMesh);
 
 #include "contact_list.h"
 #include "run_clock.h"
-#include "speed_guard.h"
 #include "surface_options.h"
 #include "surface_recorder.h"
 #include "surface_watch.h"
@@ -28,6 +27,29 @@ FixStyle(wall/gran/mesh,FixWallGranMesh);
 #include <vector>
 
 namespace LAMMPS_NS {
+
+// The guard against balls so fast that they may pass through a surface. A ball that hits along
+// the normal goes as deep as the spring lets it, undamped. Up to a quarter of its radius no ball
+// passes, whatever the edges that it meets.
+class SpeedGuard : protected Pointers {
+ public:
+  static constexpr double DEEPEST = 0.25;    // overlap over radius
+
+  SpeedGuard(class LAMMPS *, const std::string &caller);
+
+  void start();    // of a run
+  void record(int i, double speed,
+              const Slope::ContactLaw &);      // towards the surface; warns of the first one
+  void report(class ContactGuards &guards);    // at the end of a run; collective
+
+ private:
+  std::string caller;
+  struct Worst {
+    double share;    // of the speed up to which no ball passes
+    double speed, ball, step;
+  } worst;
+  bigint count;
+};
 
 class FixWallGranMesh : public FixContactWall {
  public:

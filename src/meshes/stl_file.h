@@ -21,7 +21,8 @@ namespace Slope {
 // text file may hold several solids.
 //
 // Errors are std::runtime_error with one line: file, line or triangle in it, rule, value. They are: a
-// file that is cut short, text that is no STL, an elevation grid, a coordinate that is not finite, no triangle with an area.
+// file that is cut short, text that is no STL, an elevation grid, a coordinate that is not finite, no
+// triangle with an area.
 struct StlFile {
   std::vector<Triangle> triangles;    // those that have an area
   int skipped;                        // those without: two corners, or all three on a line

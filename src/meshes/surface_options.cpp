@@ -7,7 +7,7 @@
 
 #include "elevation_grid.h"
 #include "large_messages.h"
-#include "node_array.h"
+#include "node_memory.h"
 #include "rank_zero.h"
 #include "stl_file.h"
 #include "style_argument.h"

@@ -5,7 +5,7 @@
 
 #include "surface_recorder.h"
 
-#include "file_set.h"
+#include "atomic_file.h"
 #include "large_messages.h"
 #include "rank_zero.h"
 

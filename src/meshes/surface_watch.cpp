@@ -18,7 +18,8 @@ using namespace Slope;
 
 namespace {
 
-// Which of the points that a ball touches belong to one smooth surface, and are one contact. Derivation: doc/src/theory.rst, Surfaces of triangles.
+// Which of the points that a ball touches belong to one smooth surface, and are one contact. Derivation:
+// doc/src/theory.rst, Surfaces of triangles.
 class OneSurface {
  public:
   // Contacts, the nearest one first, that turn little from a nearer one are one with it, and its overlap

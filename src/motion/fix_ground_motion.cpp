@@ -283,32 +283,19 @@ void *FixGroundMotion::extract(const char *name, int &dim)
 
 void FixGroundMotion::archive(Slope::Archive &archive)
 {
-  struct Motion {
-    double points, begin, end, checksum, scale, start;
-  };
-  const Motion mine = {static_cast<double>(record.list().size()),
-                       record.begin(),
-                       record.end(),
-                       record.checksum(),
-                       scale,
-                       start};
-  Motion found = mine;
-  archive.number("points", found.points);
-  archive.number("begin", found.begin);
-  archive.number("end", found.end);
-  archive.number("checksum", found.checksum);
-  archive.number("scale", found.scale);
-  archive.number("start", found.start);
-  if (memcmp(&found, &mine, sizeof(Motion)) != 0) {
-    auto text = [](const Motion &m) {
-      return fmt::format("{:.0f} points from {:g} to {:g} (sum {:.10g}), scale {:g}, start {:g}",
-                         m.points, m.begin, m.end, m.checksum, m.scale, m.start);
-    };
-    throw std::runtime_error(fmt::format(
-        "the motion must be that of the restart file, {}; got {}: another motion needs another fix "
-        "ID",
-        text(found), text(mine)));
-  }
+  archive.same(
+      "motion",
+      {{"points", static_cast<double>(record.list().size())},
+       {"begin", record.begin()},
+       {"end", record.end()},
+       {"checksum", record.checksum()},
+       {"scale", scale},
+       {"start", start}},
+      [](const double *k) {
+        return fmt::format("{:.0f} points from {:g} to {:g} (sum {:.10g}), scale {:g}, start {:g}",
+                           k[0], k[1], k[2], k[3], k[4], k[5]);
+      },
+      ": another motion needs another fix ID");
   clock.archive(archive);
   archive.numbers("last_kick", last_kick, 3);
 }

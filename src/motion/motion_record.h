@@ -26,9 +26,9 @@ class MotionRecord {
   // points that read() would take, without any check; scale: factor on all accelerations
   MotionRecord(const std::vector<Point> &points, double scale);
 
-  // Read lines "t ax ay az", # starts a comment. Times must not fall, at most two may be equal, and
-  // there must be at least two points. si: a head must have s and m/s2 (table_head.h). Errors are std::runtime_error with one line: file, line in
-  // it, rule, value.
+  // Read lines "t ax ay az", # starts a comment. Times must not fall, at most two may be equal, and there must
+  // be at least two points. si: a head must have s and m/s2 (number_rows.h). Errors are std::runtime_error with
+  // one line: file, line in it, rule, value.
   static MotionRecord read(const std::string &path, double scale, bool si = true);
 
   // At a time t of the record (s). At a jump the acceleration is the one after it.

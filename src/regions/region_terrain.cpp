@@ -7,7 +7,7 @@
 
 #include "comm.h"
 #include "error.h"
-#include "node_array.h"
+#include "node_memory.h"
 #include "rank_zero.h"
 #include "style_argument.h"
 

@@ -11,8 +11,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "atomic_file.h"
 #include "constants.h"
-#include "file_set.h"
 
 using namespace Slope;
 

@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy
 import pytest
 
+from messages import says
+
 LMP = os.environ.get("LMP", str(Path(__file__).resolve().parents[2] / "build" / "lmp"))
 
 ENVIRONMENT = {
@@ -29,25 +31,6 @@ def serial():
     """Whether LMP was built with LAMMPS' stand-in for MPI, which knows one rank."""
     help = subprocess.run([LMP, "-h"], env=ENVIRONMENT, stdin=subprocess.DEVNULL, capture_output=True, text=True)
     return "LAMMPS MPI STUBS" in help.stdout
-
-
-def says(line, message):
-    """Whether a line has the item, the numbers of the rule and the value of a message "ITEM must RULE, got VALUE".
-
-    The words of the rule and of a remedy after the value may change, if a number or a value is left to hold; a message
-    of another form must be in the line.
-    """
-    parts = re.fullmatch(r"(.+?) must (.+?)(?:, got (.*?)(?:: .*)?)?", message)
-    if not parts:
-        return message in line
-    item, rule, value = parts.groups()
-    # numbers and comparisons; what is in a name, such as x2, is not
-    pieces = re.findall(r"(?<![\w.])[-+]?\d[\d.]*(?:e[-+]?\d+)?(?![\w.])|[<>]=?", rule)
-    if value is None and not pieces:
-        return message in line
-    wanted = [item + " ", *pieces, *([f"got {value}"] if value is not None else [])]
-    whole = r"(?!\w|\.\d)" if wanted[-1][-1].isalnum() else ""     # not the 1 of 12
-    return re.search(".*?".join(map(re.escape, wanted)) + whole, line) is not None
 
 
 def run_deck(text, tmp_path, np=1, vars={}, expect_error=None, timeout=300):

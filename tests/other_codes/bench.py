@@ -11,7 +11,7 @@ from typing import List, Optional
 
 from slope_tools import disk
 from slope_tools.errors import SlopeError
-from slope_tools.options import count, flag, option
+from slope_tools.options import bare, count, flag, option
 from slope_tools.programs import find_lmp
 from slope_tools.runs import jobs
 from . import peers
@@ -52,7 +52,9 @@ class Request:
     lmp: Optional[List[str]] = option(
         "the LAMMPS program (default: LMP of the environment, then build/lmp beside tools/); with CODE= that of one "
         "code: granular, hooke, or build for another build of ours", metavar="[CODE=]FILE", action="append")
-    output: Path = option("folder of the results (default bench)", "-o", metavar="DIR", default=Path("bench"))
+    output: Optional[Path] = option(
+        "folder of the results (default bench); without any word the command says what it would do", "-o",
+        metavar="DIR")
 
 
 def run(args: Request) -> None:
@@ -67,19 +69,26 @@ def run(args: Request) -> None:
     if ranks and {"ranks", "weak"} & set(parts) and not shutil.which("mpirun"):
         raise SlopeError("--np", "needs mpirun, which is not on the PATH", args.np)
     check_timed(parts, ranks, args)
+    if bare(args):
+        print(f"would time {BALLS:,} balls against {', '.join(names)}, three quarters of an hour; nothing is run "
+              "without a word:\n  slope bench -o DIR        all of it\n"
+              "  slope bench --quick       a small scene, two minutes\n"
+              "  slope bench --only PART   " + "; ".join(f"{part}: {what}" for part, what in PARTS.items()))
+        return
     balls = args.balls or (8000 if args.quick else BALLS)
     if balls < 100:
         raise SlopeError("--balls", "must be >= 100", balls)
-    if args.output.exists() and not args.output.is_dir():
-        raise SlopeError("-o", "must be a folder", args.output)
-    plan = Plan(args.output, lmp, programs, args.steps or (300 if args.quick else 1000),
+    output = args.output or Path("bench")
+    if output.exists() and not output.is_dir():
+        raise SlopeError("-o", "must be a folder", output)
+    plan = Plan(output, lmp, programs, args.steps or (300 if args.quick else 1000),
                 args.runs or (3 if args.quick else 5), balls, args.field_factor, args.quick)
     try:
-        args.output.mkdir(parents=True, exist_ok=True)
-        with disk.alone_in(args.output), jobs.signals_interrupt(), plan:
+        output.mkdir(parents=True, exist_ok=True)
+        with disk.alone_in(output), jobs.signals_interrupt(), plan:
             plan.do(parts, names, ranks)
     except OSError as error:
-        raise SlopeError(error.filename or args.output, f"cannot be used: {error.strerror}") from error
+        raise SlopeError(error.filename or output, f"cannot be used: {error.strerror}") from error
 
 
 def check_timed(parts, ranks, args: Request) -> None:

@@ -11,7 +11,7 @@ from typing import Optional
 
 from slope_tools import disk
 from slope_tools.errors import SlopeError
-from slope_tools.options import Program, flag, option
+from slope_tools.options import Program, bare, flag, option
 from slope_tools.programs import find_lmp
 from slope_tools.runs import jobs
 from . import peers
@@ -38,26 +38,35 @@ class Request(Program):
     only: Optional[str] = option(f"these cases: {', '.join(CASES)} (default all)", metavar="CASE,...")
     peers: Optional[str] = option(
         "these codes: " + ", ".join(code.name for code in PEERS) + " (default all)", metavar="CODE,...")
-    output: Path = option("folder of the results (default crosscheck)", "-o", metavar="DIR", default=Path("crosscheck"))
+    output: Optional[Path] = option(
+        "folder of the results (default crosscheck); without any word the command says what it would do", "-o",
+        metavar="DIR")
 
 
 def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input, and when codes disagree. Prints the comparison."""
     cases = peers.chosen("--only", args.only, CASES)
     names = peers.chosen("--peers", args.peers, [code.name for code in PEERS])
-    if args.output.exists() and not args.output.is_dir():
-        raise SlopeError("-o", "must be a folder", args.output)
-    work = Work(args.output, find_lmp(args.lmp), names, args.quick)
+    if bare(args):
+        print(f"would run {', '.join(cases)} in {', '.join(names)}, some four minutes; nothing is run without a word:"
+              "\n  slope crosscheck -o DIR        all of it\n"
+              "  slope crosscheck --quick       coarser balls, a minute and a half\n"
+              f"  slope crosscheck --only CASE   of {', '.join(CASES)}")
+        return
+    output = args.output or Path("crosscheck")
+    if output.exists() and not output.is_dir():
+        raise SlopeError("-o", "must be a folder", output)
+    work = Work(output, find_lmp(args.lmp), names, args.quick)
     try:
-        args.output.mkdir(parents=True, exist_ok=True)
-        with disk.alone_in(args.output), jobs.signals_interrupt():
+        output.mkdir(parents=True, exist_ok=True)
+        with disk.alone_in(output), jobs.signals_interrupt():
             for case in cases:
                 CASES[case](work, case)
             report(work)
     except OSError as error:
-        raise SlopeError(error.filename or args.output, f"cannot be used: {error.strerror}") from error
+        raise SlopeError(error.filename or output, f"cannot be used: {error.strerror}") from error
     failed = [check for check in work.checks if check.passed is False]
     if failed:
         first = failed[0]
-        raise SlopeError(args.output, f"{len(failed)} of {sum(check.passed is not None for check in work.checks)} "
+        raise SlopeError(output, f"{len(failed)} of {sum(check.passed is not None for check in work.checks)} "
                          f"comparisons are outside of their tolerance: {first.case}, {first.quantity}, {first.code}")

@@ -16,3 +16,17 @@ def tiny_case(tmp_path, monkeypatch):
     monkeypatch.setenv("LMP", tiny_collapse.LMP)
     tiny_collapse.write_case(tmp_path / "case")
     return tmp_path
+
+
+@pytest.fixture
+def blank_pictures(monkeypatch):
+    """blank_pictures(): the maps and charts of a report are blank from now on, as drawing takes most of its time."""
+    def blank():
+        from slope_tools.plots import figure_charts, figure_maps
+        for name in ("value_map", "terrain_map", "small_maps", "road_map"):
+            monkeypatch.setattr(figure_maps, name, lambda *_, **__: "data:image/png;base64,AAAA")
+        monkeypatch.setattr(figure_maps, "mesh_map", lambda *_, **__: ("data:image/png;base64,AAAA", False))
+        for name in ("chart", "bars", "convergence"):
+            monkeypatch.setattr(figure_charts, name, lambda *_, **__: "data:image/svg+xml;base64,AAAA")
+        monkeypatch.setattr(figure_charts, "section", lambda *_: ("data:image/svg+xml;base64,AAAA", 1, None))
+    return blank

@@ -16,6 +16,7 @@ import rasterio
 import yaml
 
 import twins
+from messages import is_one
 from run_helpers import called
 from tiny_collapse import LMP, TOP, write_case
 
@@ -335,7 +336,7 @@ def an_ensemble_of_the_region(slope, sets):
             Path("spoiled").mkdir()
             Path("spoiled/calibrate.yaml").write_text("calibration: {variables: {friction: '5:40'}}\n")
         status, _, err = slope(f"study case/in.tiny {words} -o bad")
-        assert status == 2 and err.count("\n") == 1 and err.startswith(f"slope study: {message}"), err
+        assert status == 2 and is_one(err, f"slope study: {message}"), err
         assert not Path("bad").exists()
 
 
@@ -438,7 +439,7 @@ def test_wrong_calibrations_are_one_line(slope, here, arguments, message):
             out.write(np.ones((24, 40)), 1)
     Path("away.csv").write_text("900,900\n950,900\n950,950\n")
     status, out, err = slope(f"calibrate case/in.tiny {arguments} -o out")
-    assert (status, out) == (2, "") and err.count("\n") == 1 and err.startswith(f"slope calibrate: {message}"), err
+    assert (status, out) == (2, "") and is_one(err, f"slope calibrate: {message}"), err
     assert not Path("out").exists()
 
 

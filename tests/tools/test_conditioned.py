@@ -10,6 +10,7 @@ import yaml
 from scipy import stats
 
 import known_twins as twins
+from messages import is_one
 from run_helpers import called
 from tiny_collapse import read_asc
 
@@ -217,7 +218,7 @@ def test_an_ensemble_is_weighted(slope, capsys):
 def test_wrong_conditions_are_one_line(slope, arguments, message):
     Path("three.csv").write_text("".join(Path("small.csv").read_text().splitlines(True)[:4]))
     status, out, err = slope(f"{arguments} -o out")
-    assert (status, out) == (2, "") and err.count("\n") == 1 and err.startswith(f"slope study: {message}"), err
+    assert (status, out) == (2, "") and is_one(err, f"slope study: {message}"), err
     assert not Path("out").exists()
 
 

@@ -475,3 +475,11 @@ def test_what_is_twice_in_a_yaml_is_written_twice():
     shared = {"rolling": "0.05"}
     text = disk.yaml_text("a study", {"set": shared, "runs": [{"set": shared, "at": (1, np.float64(2.5))}]})
     assert text == "# a study\nset:\n  rolling: '0.05'\nruns:\n- set:\n    rolling: '0.05'\n  at:\n  - 1\n  - 2.5\n"
+
+
+@pytest.mark.parametrize("text", ["[" * 200000, "- " * 100000, "[\n" * 6000, '{"a": ' * 6000])
+def test_a_yaml_file_of_many_levels_is_refused(tmp_path, text):
+    """Not by the end of the program, which libyaml's recursion would be."""
+    (tmp_path / "a.yaml").write_text(text)
+    with pytest.raises(SlopeError, match="a.yaml: must be a list .*too deep"):
+        disk.parse_yaml(tmp_path / "a.yaml", "a list")

@@ -14,6 +14,8 @@ import yaml
 from affine import Affine
 from rasterio.crs import CRS
 
+from messages import is_one
+
 from slope_tools import cli
 from slope_tools.commands import terrain as terrain_command
 from slope_tools.survey import fggml, japan, rasters, terrain
@@ -468,7 +470,7 @@ def bad(old, new, message, at=None):
 def test_bad_tiles_are_one_line_and_nothing_is_written(slope, here, content, message):
     (here / "tile.xml").write_bytes(content if isinstance(content, bytes) else content.encode())
     status, out, err = slope("tile.xml")
-    assert status == 2 and err.startswith(f"slope terrain: {message}") and err.count("\n") == 1, err
+    assert status == 2 and is_one(err, f"slope terrain: {message}"), err
     assert os.listdir() == ["tile.xml"]
 
 
@@ -507,18 +509,18 @@ BOMB = zipped({"a.xml": b" " * 50_000_000})
     (zipped(edit=flip, compress=zipfile.ZIP_STORED), "z.zip: a.xml: is damaged (Bad CRC-32 for file 'a.xml')"),
     (zipped(change=encrypted), "z.zip: a.xml: must not be encrypted"),
     (zipped(change=declare(300_000_000)), "z.zip: must have at most 4000 MB unpacked, and 1100 times its size, got "
-     "300 MB in 0.00"),
+     "300 MB in"),
     (zipped({"a.xml": GOOD, "pad.bin": os.urandom(400_000)}, change=declare(300_000_000)),
      "z.zip: a.xml: must have at most 256 MB unpacked, got 300 MB"),
     (BOMB, "z.zip: a.xml: line 1: must be XML (no element found)"),
     (zipped({"i.zip": zipped({"j.zip": BOMB})}), "z.zip: must hold FG-GML elevation tiles (.xml), it has none"),
     (zipped({f"{k}.xml": GOOD for k in range(20)} | {"pad.bin": os.urandom(5_000_000)}, change=declare(250_000_000)),
-     "z.zip: must have at most 4000 MB unpacked, and 1100 times its size, got 5000 MB in 5.0"),
+     "z.zip: must have at most 4000 MB unpacked, and 1100 times its size, got 5000 MB in"),
 ], ids=lambda value: "")
 def test_bad_zips_are_one_line(slope, here, content, message):
     (here / "z.zip").write_bytes(content)
     status, out, err = slope("z.zip")
-    assert status == 2 and err.startswith(f"slope terrain: {message}") and err.count("\n") == 1, err
+    assert status == 2 and is_one(err, f"slope terrain: {message}"), err
     assert os.listdir() == ["z.zip"]
 
 

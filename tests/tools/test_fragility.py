@@ -252,6 +252,18 @@ def test_strengths_with_which_the_slope_would_not_stand_are_named(slips, capsys)
     assert f"which makes {100 * share:.2g} % of the frequency" in err and share > 0.05
 
 
+@pytest.mark.parametrize("peaks, said", [("50:1500:50", None), ("20:60:10", "at 60 gal, the largest of --peaks"),
+                                         ("1200:1500:100", "at 1200 gal, the smallest of --peaks")])
+def test_peaks_that_do_not_show_the_half_are_named_with_a_remedy(slips, capsys, peaks, said):
+    status, _, err = ran(capsys, f"slips {SOIL} --peaks {peaks} --pseudo-static 1 --sample 512 -o out")
+    assert status == 0 and (f"any body: {said}" in err if said else "of --peaks" not in err)
+    if said:
+        half = float(re.search(r"any body: at .* of the strengths at (\d+) gal: give (larger|smaller) peaks", err)[1])
+        with open("out/capacities.csv", encoding="ascii") as source:
+            capacity = np.loadtxt(source, delimiter=",", skiprows=1)[:, 2:].min(axis=1)
+        assert half == pytest.approx(np.median(capacity), abs=0.51) and 60 < half < 1200
+
+
 def test_the_share_below_a_peak_is_a_direct_simulation(slips, capsys):
     """Every sample's own displacement at one peak, instead of its capacity."""
     words = (f"slips {SOIL} --water 0:0.2 --peaks 200:400:200 --record motion.txt --sample 256 "

@@ -159,7 +159,7 @@ def test_report_has_the_table_and_the_charts(studied, monkeypatch, capsys):
     assert shown.count('"on the road, mean"') == 3
 
 
-def test_no_intensity_without_its_name(studied, monkeypatch, capsys):
+def test_no_intensity_without_its_name(studied, monkeypatch, capsys, blank_pictures):
     """A study of another variable has neither table nor section, and leaves none of an earlier study."""
     monkeypatch.chdir(studied)
     Path("other").mkdir()
@@ -170,5 +170,6 @@ def test_no_intensity_without_its_name(studied, monkeypatch, capsys):
     assert status == 0, err
     assert yaml.safe_load(Path("other/study.yaml").read_text())["intensity"] is None
     assert not Path("other/intensity.csv").exists()
+    blank_pictures()
     assert slope("report other", capsys)[0] == 0
     assert 'id="intensity"' not in Path("other/report.html").read_text()

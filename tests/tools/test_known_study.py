@@ -121,7 +121,7 @@ def test_known_of_site_yaml_reaches_the_study(mine, capsys, monkeypatch):  # noq
     choices = (mine / "site.yaml").read_text()
     for given, path, named in (("null", "all", False), ("debris_flows:channelized", "channelized", True)):
         (mine / "site.yaml").write_text(choices.replace("  set: null", f"  set: {given}"))
-        asked = known_arguments.choice_of(SimpleNamespace(known=None, left_out=[], confined=None), mine)
+        asked = known_arguments.choice_of(None, [], None, mine)
         condition = known_events.check(asked, None, mine / "in.site")
         found = known_events.mobility_of(condition, mine, mine)
         assert found.law.path == path and found.in_range and (condition.found.strict is not None) == named

@@ -118,7 +118,11 @@ def test_both_scatters_at_an_edge():
     assert one.shares(length)[0] < one.shares(length)[1] == pytest.approx(one.exceedance(length))
     first = float(one.path.length[np.flatnonzero(one.said)[0]])
     assert one.shares(0.5 * first) == one.shares(first) and one.shares(first)[1] < 1
-    by_set = known.of_body(disc(hillside(), (300, 300)), known.choice()).by_set
+    large = known.of_body(disc(hillside(), (300, 300)), known.choice())
+    near, (narrow, wide) = large.by_row.length_at(0.8), large.by_row.law.both
+    assert large.by_row.exceedance(near, narrow) > large.by_row.exceedance(near, wide)      # nearer than the median
+    assert large.by_row.shares(near)[0] == large.by_row.exceedance(near, wide) < large.by_row.shares(near)[1]
+    by_set = large.by_set
     share = float(by_set.exceedance(1500.0))
     assert by_set.shares(1500.0) == (share, share) and 0 < share < 1
 

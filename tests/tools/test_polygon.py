@@ -16,6 +16,7 @@ from rasterio.crs import CRS
 from shapely.affinity import translate
 from shapely.geometry import MultiLineString, MultiPolygon, Point, Polygon, box, mapping
 
+from messages import is_one
 from run_helpers import called
 
 from slope_tools import cli
@@ -455,7 +456,7 @@ def test_the_head_of_a_text_says_which_column_is_which(written, names, order, op
 def test_a_head_of_text_that_is_another(slope, head, options, message):
     Path("a.csv").write_text(f"{head}\n{SQUARE}", encoding="utf-8")
     status, _, err = slope(f"a.csv {options} -o out.csv")
-    assert status == 2 and err.startswith(f"slope polygon: {message}") and err.count("\n") == 1, err
+    assert status == 2 and is_one(err, f"slope polygon: {message}"), err
     if not options and "degrees must" not in message:
         with pytest.raises(polygons.SlopeError, match="a.csv: must be a line: .* CSV with x,y in its lines .line "):
             lines.text_geometry("a.csv", Path("a.csv").read_text(encoding="utf-8"))
@@ -533,7 +534,7 @@ def test_bad_input_is_one_line_and_nothing_is_written(slope, here, name, make, o
     make(name)
     status, out, err = slope(f"{name} {options} --overwrite -o out.csv")
     assert status == 2 and out == "", (out, err)
-    assert err.startswith(f"slope polygon: {message}") and err.count("\n") == 1, err
+    assert is_one(err, f"slope polygon: {message}"), err
     assert (here / "out.csv").read_text() == "from before\n"
     assert not [name for name in os.listdir() if ".new" in name]
 
@@ -551,4 +552,4 @@ def test_bad_arguments(slope, here, arguments, terrain, message):
     (here / "a.wkt").write_text(moved(ROAD).wkt)
     (here / "b.csv").write_text(SQUARE)
     status, _, err = slope(arguments, terrain)
-    assert status == 2 and err.startswith(f"slope polygon: {message}") and err.count("\n") == 1, err
+    assert status == 2 and is_one(err, f"slope polygon: {message}"), err

@@ -436,7 +436,7 @@ def test_every_example_of_the_page_runs(qgis, inside, place):
             assert "sizes: [0.7, 1, 1.4]" in Path(site["SITE"]).read_text()      # in the test fewer runs, one size
             text = re.sub(r"(?m)^  rolling: .*$", "  rolling: [0.05]", Path(site["SITE"]).read_text(), count=1)
             Path(site["SITE"]).write_text(re.sub(r"(?m)^  (sizes|xoffset|yoffset): .*$", r"  \1: []",
-                                                  text.replace("  points: 64", "  points: 0")))
+                                                 text.replace("  points: 64", "  points: 0")))
         if parameters.get("DECK") == "mine/site.yaml":
             study = results
     assert Path(site["SITE"]).is_file() and 200 < site["NUMBER_OF_BALLS"] < 450 and site["RELEASED"] > 100

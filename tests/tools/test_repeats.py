@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 import yaml
 
+from messages import is_one
 from run_helpers import called
 
 from slope_tools import schemas
@@ -138,7 +139,7 @@ def test_without_a_road_there_are_means_and_no_headline(slope):
 ])
 def test_wrong_repeats_are_one_line(slope, arguments, message):
     status, out, err = slope(f"{arguments} -o out")
-    assert (status, out) == (2, "") and err.count("\n") == 1 and err.startswith(f"slope study: {message}")
+    assert (status, out) == (2, "") and is_one(err, f"slope study: {message}"), err
     assert not Path("out").exists()
 
 

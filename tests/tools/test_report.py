@@ -70,14 +70,9 @@ def here(made, tmp_path, monkeypatch):
 
 
 @pytest.fixture
-def slope(capsys, monkeypatch):
-    """Run `slope report ARGUMENTS`; gives status, stdout, stderr. Pictures are blank, as drawing takes its time."""
-    for name in ("value_map", "terrain_map", "small_maps"):
-        monkeypatch.setattr(figure_maps, name, lambda *_, **__: "data:image/png;base64,AAAA")
-    monkeypatch.setattr(figure_maps, "mesh_map", lambda *_, **__: ("data:image/png;base64,AAAA", False))
-    for name in ("chart", "bars", "convergence"):
-        monkeypatch.setattr(figure_charts, name, lambda *_, **__: "data:image/svg+xml;base64,AAAA")
-    monkeypatch.setattr(figure_charts, "section", lambda *_: ("data:image/svg+xml;base64,AAAA", 1, None))
+def slope(capsys, blank_pictures):
+    """Run `slope report ARGUMENTS`; gives status, stdout, stderr. Pictures are blank."""
+    blank_pictures()
     return real_slope(capsys)
 
 

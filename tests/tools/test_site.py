@@ -240,6 +240,7 @@ def test_no_run_is_made_twice(done):
     assert len({tuple(sorted(one.items())) for one in values}) == len(values) == 20
 
 
+@pytest.mark.long
 def test_runs_of_an_older_version_are_taken_over(done, tmp_path, monkeypatch):
     """They were in the folders of the parts, and are left there."""
     monkeypatch.setattr(study_command, "write_report", lambda *_: None)
@@ -730,12 +731,9 @@ def test_without_lammps_the_folder_is_made_and_that_is_said(gis, monkeypatch, ca
 
 # --- the page ---
 
-def test_the_page_names_every_key_and_option():
+def test_the_page_names_every_key():
     page = (TOP / "doc" / "src" / "tool_site.rst").read_text(encoding="ascii")
     for section, about in site_choices.sections():
         assert f"*{section}*" in page, section
         for key in about["properties"]:
             assert re.search(rf"\*{key}\*|\*--{key.replace('_', '-')}\*", page), (section, key)
-    help_ = slope(TOP, "site", "--help").stdout
-    for option in set(re.findall(r"--[a-z-]+", help_)) - {"--help"}:
-        assert f"*{option}*" in page, option

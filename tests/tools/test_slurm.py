@@ -14,6 +14,8 @@ import pytest
 
 import tiny_collapse
 
+from messages import is_one
+
 from slope_tools import cli
 from slope_tools.errors import SlopeError
 from slope_tools.runs import job_display, jobs, launcher, slurm as engine
@@ -272,7 +274,7 @@ def test_a_launcher_of_the_working_folder_is_found_from_that_of_a_run(here, monk
 def test_wrong_launchers_are_one_line(here, capsys, words, message):
     assert cli.main(shlex.split(f"study case/in.tiny --set steps=20 {words} -o out")) == 2
     err = capsys.readouterr().err
-    assert err.count("\n") == 1 and err.startswith(f"slope study: {message}"), err
+    assert is_one(err, f"slope study: {message}"), err
 
 
 def test_without_slurm_it_is_said(here, capsys, monkeypatch):

@@ -99,7 +99,7 @@ def test_lines_of_each_run_are_those_of_its_files(studied):
     assert held < free
 
 
-def test_report_draws_them(studied, capsys):
+def test_report_draws_them(studied, capsys, blank_pictures):
     status, _, err = slope(f"report {studied}", capsys)
     assert status == 0, err
     page = (studied / "report.html").read_text()
@@ -114,22 +114,25 @@ def test_report_draws_them(studied, capsys):
     shown = re.search(r"Maps of the run wall (\d)", page)[1]
     assert section.count('alt="Largest pressure on wall"') == int(shown)
     assert "Largest pressure on post" not in section        # nothing touched it
+    blank_pictures()
     assert slope(f"report {studied} --run wall_1 -o {studied}/one.html", capsys)[0] == 0
     assert (studied / "one.html").read_text().count('alt="Largest pressure on wall"') == 1
 
 
-def test_a_single_run_is_reported_too(studied, capsys):
+def test_a_single_run_is_reported_too(studied, capsys, blank_pictures):
+    blank_pictures()
     status, _, err = slope(f"report {studied / 'wall_1'} -o {studied}/single.html", capsys)
     assert status == 0, err
     assert (studied / "single.html").read_text().count('alt="Force on wall"') == 1
 
 
-def test_without_structures_there_is_nothing(tmp_path, monkeypatch, capsys):
+def test_without_structures_there_is_nothing(tmp_path, monkeypatch, capsys, blank_pictures):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("LMP", LMP)
     write_case(tmp_path / "case")
     assert slope("study case/in.tiny --set rolling=0 -o out", capsys)[0] == 0
     assert not (tmp_path / "out" / "structures.csv").exists() and not (tmp_path / "out" / "lines.csv").exists()
+    blank_pictures()
     assert slope("report out", capsys)[0] == 0
     assert 'id="structures"' not in (tmp_path / "out" / "report.html").read_text()
 

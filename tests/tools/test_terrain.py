@@ -15,6 +15,7 @@ import yaml
 from affine import Affine
 from rasterio.crs import CRS
 
+from messages import says
 from run_helpers import called
 
 from slope_tools.commands import terrain as terrain_command
@@ -765,8 +766,7 @@ def test_bad_input_is_one_line_and_leaves_no_trace(slope, here, name):
     before = {path.name: path.is_file() and path.read_bytes() for path in here.iterdir()}
     status, _, err = slope(arguments)
     lines = [line for line in err.splitlines() if "warning: " not in line]
-    assert status == 2 and len(lines) == 1
-    assert lines[0].startswith(f"slope terrain: {message}")
+    assert status == 2 and len(lines) == 1 and says(lines[0], f"slope terrain: {message}"), err
     assert {path.name: path.is_file() and path.read_bytes() for path in here.iterdir()} == before
 
 

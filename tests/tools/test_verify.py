@@ -58,36 +58,36 @@ def lines_of(path):
 
 def test_what_is_finished_is_kept(slope):
     """The same runs are not made again; those of another program, deck or value are."""
-    slope("")
+    slope("-o verification")
     assert lines_of("count") == 2 and told()["kept"] == 0
-    slope("")
+    slope("-o verification")
     assert lines_of("count") == 2 and told()["kept"] == 2 and told()["passed"] == 1
     lines = Path("verification/verification.rst").read_text().splitlines()
     [at] = [i for i, line in enumerate(lines) if line.startswith("runs ")]
     assert "2, 2 of them made before" in lines[at] and not lines[at + 1].strip("= ")
-    slope("", claim(broken=0.35))
+    slope("-o verification", claim(broken=0.35))
     assert lines_of("count") == 3 and told()["kept"] == 1
-    slope("", Claim("bounce", "A ball", "m", "paper", (DROP(("0.25", "0.250"), e=0.25),), observed, Near(0.25, 0.003),
-                    Control("another e", (DROP(e=0.3),))))
+    slope("-o verification", Claim("bounce", "A ball", "m", "paper", (DROP(("0.25", "0.250"), e=0.25),), observed,
+                                   Near(0.25, 0.003), Control("another e", (DROP(e=0.3),))))
     assert lines_of("count") == 4       # its folder has another name
     program = Path("lmp")
     program.write_text(program.read_text() + "# another one\n")
-    slope("")
+    slope("-o verification")
     assert lines_of("count") == 6 and told()["kept"] == 0
 
 
 def test_a_run_that_failed_is_made_again(slope):
-    status, _, err = slope("", claim(broken="none"))
+    status, _, err = slope("-o verification", claim(broken="none"))
     assert status == 2 and "there is no e" in err
     finished = {path.parent.name for path in Path("verification/runs").glob("*/finished")}
     assert finished == {"01_restitution.restitution_e_0.25"}
     Path("verification/runs/01_restitution.restitution_e_0.25/finished").write_text("of another program\n")
-    slope("")
+    slope("-o verification")
     assert lines_of("count") == 3
 
 
 def test_all_is_well(slope):
-    status, out, err = slope("")
+    status, out, err = slope("-o verification")
     assert status == 0 and "all 1 claims hold" in out and "FAIL" not in out, err
     about = told()
     assert (about["claims"], about["passed"], about["controls_that_fail"], about["runs"]) == (1, 1, 1, 2)
@@ -103,7 +103,7 @@ def test_all_is_well(slope):
 
 
 def test_the_pages(slope):
-    assert slope("", claim(remark="Seen & noted."))[0] == 0
+    assert slope("-o verification", claim(remark="Seen & noted."))[0] == 0
     html, rst = (Path(f"verification/verification.{kind}").read_text() for kind in ("html", "rst"))
     assert "A ball &lt;bounces&gt;" in html and "Seen &amp; noted." in html and "FAIL" not in html
     assert "<h2>01_restitution: A ball rebounds</h2>" in html and "It falls on another one." in html
@@ -147,7 +147,7 @@ def test_a_broken_comparison_is_one_line(slope):
 @pytest.mark.parametrize("wrong", [claim(e=0.26), claim(broken=0.251), claim(broken="nan")],
                          ids=["the claim", "its control passes", "its control gives nothing"])
 def test_what_does_not_hold_is_status_2(slope, wrong):
-    status, out, err = slope("", claim("good"), wrong._replace(name="bad"))
+    status, out, err = slope("-o verification", claim("good"), wrong._replace(name="bad"))
     assert status == 2
     assert err.splitlines()[-1].endswith("1 of 2 claims do not hold or have a control that does not fail: bad")
     assert "FAIL 01_restitution bad" in out and "pass 01_restitution good" in out
@@ -164,7 +164,7 @@ def test_two_modules_of_one_folder(slope, capsys, monkeypatch):
     cases = [types.SimpleNamespace(CASE="01_restitution", CLAIMS=(claim(name),), __doc__=f"Title {name}\n\nIt falls.")
              for name in "ab"]
     monkeypatch.setattr(verification, "cases", lambda: cases)
-    assert run_command("verify", "", capsys)[0] == 0
+    assert run_command("verify", "-o verification", capsys)[0] == 0
     assert [row["name"] for row in told()["results"]] == ["a", "b"]
     html = Path("verification/verification.html").read_text()
     assert html.count("A ball &lt;bounces&gt;") == 2 and html.index("Title a") < html.index("Title b")

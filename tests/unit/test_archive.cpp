@@ -96,6 +96,30 @@ TEST(Archive, AnotherLayout)
   EXPECT_TRUE(has(problem(with(bytes, at, 9.0)), "with numbers_of_a_contact 9 in place of 10"));
 }
 
+// marks of what a file belongs to: those of the file and mine in words, NaN being NaN
+TEST(Archive, AnotherLine)
+{
+  auto line = [](Archive &a, double points, double height) {
+    a.same("line", {{"points", points}, {"height", height}},
+           [](const double *k) { return std::to_string((int) k[0]) + " points"; }, ": new ID");
+  };
+  Archive to("line", 1);
+  line(to, 3.0, NAN);
+  const std::string bytes = to.bytes();
+  auto said = [&](double points, double height) -> std::string {
+    Archive from("line", 1, bytes.data());
+    try {
+      line(from, points, height);
+    } catch (const std::runtime_error &e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(said(3.0, NAN), "");
+  EXPECT_EQ(said(4.0, NAN), "the line must be that of the restart file, 3 points; got 4 points: new ID");
+  EXPECT_TRUE(has(said(3.0, 1.0), "that of the restart file, 3 points"));
+}
+
 TEST(Archive, Damaged)
 {
   const std::string bytes = written();

@@ -8,9 +8,8 @@
 
 #include "deposit_bins.h"
 #include "deposit_rasters.h"
-#include "deposit_writer.h"
 #include "elevation_grid.h"
-#include "file_set.h"
+#include "atomic_file.h"
 
 #include <gtest/gtest.h>
 
@@ -216,7 +215,7 @@ static std::string text_of(const std::string &path)
 }
 
 // each is the file that an elevation grid with the values of all cells writes
-TEST(DepositWriter, Files)
+TEST(DepositRasters, Files)
 {
   const PlanGrid grid(EXTENT, 0.31);    // 40 x 20 cells: two rows of blocks and a half
   Ranks ranks(grid, 2);
@@ -230,7 +229,7 @@ TEST(DepositWriter, Files)
   char folder[] = "/tmp/test_deposit.XXXXXX";
   ASSERT_TRUE(mkdtemp(folder));
   const std::string path = std::string(folder) + "/one.asc", wanted = std::string(folder) + "/wanted.asc";
-  const auto files = DepositWriter::files("out", "120");
+  const auto files = DepositRasters::files("out", "120");
   std::vector<std::string> names;
   for (const auto &file : files) names.push_back(file.path);
   EXPECT_EQ(
@@ -240,15 +239,15 @@ TEST(DepositWriter, Files)
                                 "out.max_energy.asc", "out.arrival.asc", "out.last_motion.asc"}));
   for (const auto &file : files) {
     AtomicFile written(path);
-    DepositWriter::write(written, rasters, file);
+    rasters.write(written, file);
     written.commit();
 
     ElevationGrid raster(grid.n[0], grid.n[1], grid.lo[0], grid.lo[1], grid.cell, 0.0);
     for (int j = 0; j < grid.n[1]; j++)
       for (int i = 0; i < grid.n[0]; i++) {
         const double z = base[j * grid.n[0] + i], h = rasters.at(Rasters::THICKNESS, i, j);
-        raster.at(i, j) = file.content == DepositWriter::BASE ? z
-            : file.content == DepositWriter::SURFACE          ? z + h
+        raster.at(i, j) = file.content == DepositRasters::BASE ? z
+            : file.content == DepositRasters::SURFACE          ? z + h
                                                      : rasters.at((Rasters::Name) file.content, i, j);
       }
     raster.write(wanted, file.path.find(".thickness") < std::string::npos ? 12 : 9);

@@ -1,6 +1,6 @@
 /* Files that appear together: all of them, or none. */
 
-#include "file_set.h"
+#include "atomic_file.h"
 
 #include <gtest/gtest.h>
 

@@ -9,6 +9,7 @@ trap 'rm -rf "$folder"' EXIT
 
 mkdir "$folder/slope"
 cp "$here"/slope/*.py "$here"/slope/metadata.txt "$folder/slope/"
+"$here/describe.py" > "$folder/slope/commands.json"
 (cd "$folder" && /usr/bin/python3 - "$zip" <<'PYTHON'
 import pathlib
 import sys

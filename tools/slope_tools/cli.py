@@ -14,6 +14,7 @@ import os
 import re
 import sys
 import traceback
+import warnings
 from pathlib import Path
 
 from . import disk, options, findings
@@ -63,7 +64,16 @@ class Parser(argparse.ArgumentParser):
         self._negative_number_matcher = re.compile(r"-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
 
     def error(self, message):
-        self.exit(2, f"{self.prog}: {message}\n")
+        say("error", self.prog.rpartition(" ")[2], message)
+        self.exit(2)
+
+
+def say(level, command, text):
+    """An error or a note on standard error, as a line of words or of JSON."""
+    if findings.as_json:
+        findings.say_json(level, command=command, text=str(text))
+    else:
+        print(f"slope{f' {command}' * (command != 'slope')}: {'note: ' * (level == 'note')}{text}", file=sys.stderr)
 
 
 def module_of(name, parser):
@@ -71,8 +81,9 @@ def module_of(name, parser):
     if name in COMMANDS:
         return importlib.import_module(f"{__package__}.commands.{name}")
     if not (TESTS / "other_codes" / f"{name}.py").is_file():
-        parser.exit(2, f"slope {name}: must be called in a checkout of SLOPE, whose tests/other_codes it needs, "
-                    f"not in an installation, got {TESTS.parent}\n")
+        say("error", name, "must be called in a checkout of SLOPE, whose tests/other_codes it needs, not in an "
+            f"installation, got {TESTS.parent}")
+        parser.exit(2)
     sys.path.append(str(TESTS))
     return importlib.import_module(f"other_codes.{name}")
 
@@ -81,6 +92,7 @@ def add_command(commands, name, module, **kwargs):
     """The parser of a subcommand, added to argparse's commands."""
     parser = commands.add_parser(name, formatter_class=argparse.RawDescriptionHelpFormatter, epilog=module.EPILOG,
                                  description=module.DESCRIPTION, **kwargs)
+    parser.add_argument("--describe", action=options.Describe)
     options.declare(parser, module.Request)
     parser.set_defaults(run=lambda found: module.run(options.request(module.Request, found)))
     return parser
@@ -93,7 +105,7 @@ def with_new_names(command, argv):
     for word in argv:
         old, equals, value = word.partition("=")
         if old in names:
-            print(f"slope {command}: note: {old} is {names[old]} now", file=sys.stderr)
+            say("note", command, f"{old} is {names[old]} now")
         words.append(names.get(old, old) + equals + value)
     return words
 
@@ -123,32 +135,29 @@ def main(argv=None):
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
     every = {**COMMANDS, **IN_TESTS}
     asked = next((word for word in argv if word in every), None)
+    before = argv[:argv.index(asked)] if asked else argv
+    findings.as_json = "--progress=json" in before or ("--progress", "json") in zip(before, before[1:])
     for name, summary in every.items():
         if name == asked:
             add_command(commands, name, module_of(name, parser), help=summary)
         else:
             commands.add_parser(name, help=summary)
     args = parser.parse_args(with_new_names(asked, argv))
-    findings.as_json = args.progress == "json"
-
-    def fail(text):
-        if findings.as_json:
-            findings.say_json("error", command=args.command, text=str(text))
-        else:
-            print(f"slope {args.command}: {text}", file=sys.stderr)
+    shown = warnings.showwarning
     try:
         check_names(argv)
+        warnings.showwarning = lambda message, *_, **__: findings.printer(args.command)(str(message))     # of libraries
         args.run(args)
     except SlopeError as error:
         if args.debug:
             traceback.print_exc()
-        fail(error)
+        say("error", asked, error)
         return 2
     except MemoryError as error:
-        fail(f"not enough memory: {error}")
+        say("error", asked, f"not enough memory: {error}")
         return 2
     except KeyboardInterrupt:
-        fail("interrupted")
+        say("error", asked, "interrupted")
         return 130
     except BrokenPipeError:         # `slope ... | head`: nobody reads on
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -157,7 +166,9 @@ def main(argv=None):
         if args.debug:
             raise
         place = traceback.extract_tb(error.__traceback__)[-1]
-        fail(f"a bug in the tools: {type(error).__name__}: {' '.join(str(error).split())[:200]} "
-             f"({Path(place.filename).name}, line {place.lineno}); slope --debug {args.command} shows where")
+        say("error", asked, f"a bug in the tools: {type(error).__name__}: {' '.join(str(error).split())[:200]} "
+            f"({Path(place.filename).name}, line {place.lineno}); slope --debug {asked} shows where")
         return 1
+    finally:
+        warnings.showwarning = shown
     return 0

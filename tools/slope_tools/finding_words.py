@@ -158,6 +158,8 @@ WORDS: Dict[str, Union[str, Words]] = {
     "one record": "one record: how much records differ is not seen, beta_r is 0",
     "at rest": "{which}: {percent:.2g} % of the strengths fail without an earthquake{makes}: if the slope stands, they "
                "are not its own; raise the lower bounds of the strengths",
+    "peaks": "{which}: at {peak:g} gal, the {end} of --peaks, {percent:.2g} % fail, and half of the strengths at "
+             "{half:.0f} gal: give {remedy} peaks",
     "no fit": "{which}: no lognormal fit, the peaks show fewer than three probabilities between 0 and 1",
     "fit is off": "{which}: the lognormal fit is off by up to {difference:.2f}",
     "HCLPF": "{which}: at the HCLPF {percent:.2g} % fail, the lognormal fit says {fitted:.2g} %: it is too favourable "

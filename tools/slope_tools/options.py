@@ -11,8 +11,10 @@ help is no option.
 """
 import argparse
 import dataclasses
+import json
 import math
 import re
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Callable, Dict, Mapping, Optional, Tuple, Type, TypeVar, Union, get_args, get_origin
@@ -75,6 +77,34 @@ def declare(parser: argparse.ArgumentParser, kind: Any) -> None:
             add(name, dest=field.name, action="store_const", const=value, help=f"{names[0]} {value}")
 
 
+class Describe(argparse.Action):
+    """--describe: print the options of a command as JSON and end; for programs that call it."""
+
+    def __init__(self, option_strings, dest, **words):
+        super().__init__(option_strings, argparse.SUPPRESS, 0, help=argparse.SUPPRESS, **words)
+
+    def __call__(self, parser, *_):
+        about = {"command": parser.prog.split()[-1], "about": parser.description, "options": described(parser)}
+        parser._print_message(json.dumps(about, indent=1, default=str) + "\n", sys.stdout)     # as --help and --version
+        parser.exit()
+
+
+def described(parser: argparse.ArgumentParser) -> Dict[str, Dict[str, Any]]:
+    """{name of the field: what there is to know of the option} of a parser; option: "" of a word without one."""
+    found: Dict[str, Dict[str, Any]] = {}
+    for one in parser._actions:     # pylint: disable=protected-access
+        if one.dest in found or one.help == argparse.SUPPRESS or isinstance(one, argparse._HelpAction):
+            continue
+        kind = "switch" if one.nargs == 0 else "choice" if one.choices else KINDS.get(one.type, "text")
+        default = None if one.default is False or one.default == [] else one.default
+        found[one.dest] = {
+            "option": next((name for name in one.option_strings if name.startswith("--")), "".join(one.option_strings)),
+            "kind": kind, "default": default, "needed": one.required, "choices": list(one.choices or ()),
+            "several": one.nargs not in (None, 0, "?") or isinstance(one, argparse._AppendAction),
+            "metavar": one.metavar, "help": one.help and one.help.replace("%%", "%")}
+    return found
+
+
 def reader(hint: Any) -> Tuple[bool, Optional[Callable[[str], Any]]]:
     """Whether a value may be None, and how a word of it, or of a list of them, is read."""
     optional = get_origin(hint) is Union
@@ -89,6 +119,11 @@ def request(kind: Type[R], found: argparse.Namespace) -> R:
     names = {field.name for field in dataclasses.fields(kind)}
     return kind(**{name: list(value) if isinstance(value, list) else value
                    for name, value in vars(found).items() if name in names})
+
+
+def bare(asked: Any) -> bool:
+    """Whether a command was given without any word, where none must be."""
+    return asked == type(asked)()
 
 
 def number(text):
@@ -119,6 +154,7 @@ def count(text):
 
 
 READ: Dict[Any, Callable[[str], Any]] = {float: number, int: count, Path: Path}       # the others as they are
+KINDS: Dict[Any, str] = {number: "number", whole: "whole", count: "count", Path: "path"}     # of the others: text
 
 
 @dataclass(frozen=True, kw_only=True)

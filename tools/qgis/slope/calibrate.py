@@ -2,7 +2,7 @@
 from pathlib import Path
 
 from .algorithm import Algorithm
-from .options import Option
+from .options import Option, of
 from .results import load
 from .score import OBSERVED, THRESHOLD
 from .study import JOBS, RANKS
@@ -25,22 +25,22 @@ class Calibrate(Algorithm):
     against the map."""
     options = (
         Option("DECK", "", "file", "Deck", needed=True), *OBSERVED,
-        Option("FRONT", "--front", "number", "How far the mass went, in plan from the highest released ball (m)"),
-        Option("FRONT_IS", "--front-is", "choice", "What of a run is compared with it (default: connected)",
-               choices=("connected", "95", "99"), advanced=True),
-        Option("AREA", "--area", "number", "Area that was covered at any time (m2)"),
-        Option("VOLUME", "--road-volume", "number", "Volume on the road (m3)"),
-        Option("ROAD", "--road", "road", "Road, for that volume"), ROAD_WIDTH, CUT_ANGLE, MESH,
-        Option("TOLERANCE", "--tolerance", "words", "Standard deviation of what was observed, as a share of it "
-               "(default: 0.05), or NAME=SHARE per line", advanced=True),
+        of("calibrate", "front", "How far the mass went, in plan from the highest released ball (m)"),
+        of("calibrate", "front_is", "What of a run is compared with it", advanced=True),
+        of("calibrate", "area", "Area that was covered at any time (m2)"),
+        of("calibrate", "road_volume", "Volume on the road (m3)", key="VOLUME"),
+        of("calibrate", "road", "Road, for that volume", kind="road"), ROAD_WIDTH, CUT_ANGLE, MESH,
+        of("calibrate", "tolerance",
+           "Standard deviation of what was observed, as a share of it (default: 0.05), or NAME=SHARE per line",
+           kind="words", advanced=True),
         THRESHOLD,
-        Option("VARY", "--vary", "words", "Ranges of the deck's variables, one NAME=LO:HI per line", needed=True),
-        Option("RUNS", "--runs", "whole", "Number of runs", 40, needed=True, least=1),
-        Option("SET", "--set", "words", "Values of other variables, one NAME=VALUE per line"),
-        Option("REPEAT", "--repeat", "words", "Repeats, one NAME=V1,V2,... per line"),
-        Option("SEED", "--seed", "whole", "Seed of the first runs (default: 1)", advanced=True), RANKS, JOBS,
-        Option("LOCAL", "--local", "switch", "The road is in the local metres of the run, not in a CRS", advanced=True),
-        Option("OUTPUT", "-o", "new folder", "Folder of the study"))
+        of("calibrate", "vary", "Ranges of the deck's variables, one NAME=LO:HI per line", kind="words"),
+        of("calibrate", "runs", "Number of runs", default=40),
+        of("calibrate", "set", "Values of other variables, one NAME=VALUE per line", kind="words"),
+        of("calibrate", "repeat", "Repeats, one NAME=V1,V2,... per line", kind="words"),
+        of("calibrate", "seed", "Seed of the first runs (default: 1)", default=None, advanced=True), RANKS, JOBS,
+        of("calibrate", "local", "The road is in the local metres of the run, not in a CRS", advanced=True),
+        of("calibrate", "output", "Folder of the study", kind="new folder"))
     outputs = (("text", "BEST", "Best values, NAME=VALUE"), ("file", "TABLE", "Table of all runs"),
                ("file", "NUMBERS", "Numbers, YAML"), ("file", "PICTURE", "Regions over pairs of variables"),
                ("file", "MAP", "Prediction against the map"))

@@ -4,7 +4,7 @@ from pathlib import Path
 from qgis.core import QgsProcessingException
 
 from .algorithm import Algorithm
-from .options import Option
+from .options import Option, of
 from .results import load
 
 STYLES = {"base": "ground", "surface": "ground", "thickness": "thickness", "max_thickness": "thickness",
@@ -14,8 +14,8 @@ NAMES = {"base": "ground without the body", "surface": "ground and deposit", "th
          "max_energy": "largest energy of a ball (J)", "arrival": "arrival (s)", "last_motion": "last motion (s)"}
 RUN = Option("RUN", "", "file", "Result of a run: any of PREFIX.thickness.asc, PREFIX.summary.yaml ...", needed=True,
              own=True, filter="Results of a run (*.asc *.summary.yaml)")
-TERRAIN = Option("TERRAIN", "--terrain", "file", "Terrain of the run, if it is not terrain.asc beside it",
-                 filter="Terrain (*.asc)", advanced=True)
+TERRAIN = of("export", "terrain", "Terrain of the run, if it is not terrain.asc beside it", filter="Terrain (*.asc)",
+             advanced=True)
 
 
 def prefix_of(asked):
@@ -46,7 +46,7 @@ class Export(Algorithm):
     of the run.
 
     Beside each GeoTIFF lies its style (.qml)."""
-    options = (RUN, TERRAIN, Option("OUTPUT", "-o", "new folder", "Folder for the GeoTIFFs"))
+    options = (RUN, TERRAIN, of("export", "output", "Folder for the GeoTIFFs", kind="new folder"))
     outputs = tuple(("raster", kind.upper(), name[0].upper() + name[1:]) for kind, name in NAMES.items())
 
     def words(self, asked):

@@ -2,7 +2,7 @@
 from pathlib import Path
 
 from .algorithm import Algorithm
-from .options import Option
+from .options import Option, of
 from .results import load
 
 
@@ -23,25 +23,23 @@ class Fragility(Algorithm):
     Tables fragility.csv and fragility.yaml, and a picture."""
     options = (
         Option("SLIPS", "", "folder", "Folder of the slip surfaces", needed=True),
-        Option("TERRAIN", "--terrain", "file", "Terrain of the search", needed=True, filter="Terrain (*.asc)"),
-        Option("DENSITY", "--density", "number", "Density of the ground (kg/m3)", needed=True),
-        Option("COHESION", "--cohesion", "text", "Cohesion (Pa), a number or a distribution", needed=True),
-        Option("FRICTION", "--friction", "text", "Friction angle (degrees), a number or a distribution", needed=True),
-        Option("WATER", "--water", "text", "Pore pressure over the weight per area (-), a number or a distribution"),
-        Option("CORRELATION", "--correlation", "number", "Between cohesion and friction, -1 to 1 (-)", least=-1.0,
-               advanced=True),
-        Option("PEAKS", "--peaks", "text", "Peak accelerations LO:HI or LO:HI:STEP (gal)", needed=True),
-        Option("RECORD", "--record", "files", "Motions of the ground, as slope quake wrote them (s, m/s2)"),
-        Option("VERTICAL", "--vertical", "switch", "With the vertical component of the motions", advanced=True),
-        Option("DISPLACEMENT", "--displacement", "number", "A body fails if it slides farther than this (m; default: "
-               "0.1)"),
-        Option("PSEUDO_STATIC", "--pseudo-static", "number", "Instead of motions: this share of the peak, constant "
-               "(-)"),
-        Option("HAZARD", "--hazard", "file", "Hazard curve: peak (gal) and exceedance per year",
-               filter="Table (*.csv)"),
-        Option("SAMPLE", "--sample", "whole", "Samples of the strength (default: 4096)", advanced=True),
-        Option("SEED", "--seed", "whole", "Seed of the samples (default: 1)", advanced=True),
-        Option("OUTPUT", "-o", "new folder", "Folder for the results"))
+        of("fragility", "terrain", "Terrain of the search", filter="Terrain (*.asc)"),
+        of("fragility", "density", "Density of the ground (kg/m3)"),
+        of("fragility", "cohesion", "Cohesion (Pa), a number or a distribution"),
+        of("fragility", "friction", "Friction angle (degrees), a number or a distribution"),
+        of("fragility", "water", "Pore pressure over the weight per area (-), a number or a distribution",
+           default=None),
+        of("fragility", "correlation", "Between cohesion and friction, -1 to 1 (-)", default=None, least=-1.0,
+           advanced=True),
+        of("fragility", "peaks", "Peak accelerations LO:HI or LO:HI:STEP (gal)"),
+        of("fragility", "record", "Motions of the ground, as slope quake wrote them (s, m/s2)", kind="files"),
+        of("fragility", "vertical", "With the vertical component of the motions", advanced=True),
+        of("fragility", "displacement", "A body fails if it slides farther than this (m; default: 0.1)"),
+        of("fragility", "pseudo_static", "Instead of motions: this share of the peak, constant (-)"),
+        of("fragility", "hazard", "Hazard curve: peak (gal) and exceedance per year", filter="Table (*.csv)"),
+        of("fragility", "sample", "Samples of the strength (default: 4096)", default=None, advanced=True),
+        of("fragility", "seed", "Seed of the samples (default: 1)", default=None, advanced=True),
+        of("fragility", "output", "Folder for the results", kind="new folder"))
     outputs = (("number", "MEDIAN", "Peak at which failure is as likely as not (gal)"),
                ("number", "FREQUENCY", "Failures per year"), ("file", "TABLE", "Curves, CSV"),
                ("file", "NUMBERS", "Numbers, YAML"), ("file", "PICTURE", "Curves"))

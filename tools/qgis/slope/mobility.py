@@ -1,7 +1,7 @@
 """How far masses of this volume and height went: slope mobility."""
 from . import process
 from .algorithm import Algorithm
-from .options import Option
+from .options import of
 from .release import LOCAL, POLYGON, POLYGON_CRS, SCAR, SHAPE
 from .results import load
 from .terrain import DEM, with_terrain
@@ -25,13 +25,12 @@ class Mobility(Algorithm):
     mobility.yaml."""
     options = (
         DEM, POLYGON, *SHAPE, *SCAR,
-        Option("ROAD", "--road", "road", "Road: how likely the mass reaches it"), ROAD_WIDTH,
-        Option("PATH", "--path", "line", "Path from the crown down (default: steepest descent)"),
-        Option("CONFINED", "--confined", "choice", "Path confined by valley sides (default: unknown)",
-               choices=("yes", "no", "unknown")),
-        Option("SET", "--known", "file", "Known events (default: 49 rock avalanches)", filter="Table (*.csv)",
-               advanced=True),
-        POLYGON_CRS, LOCAL, Option("OUTPUT", "-o", "new folder", "Folder for the results", own=True))
+        of("mobility", "road", "Road: how likely the mass reaches it", kind="road"), ROAD_WIDTH,
+        of("mobility", "path", "Path from the crown down (default: steepest descent)", kind="line"),
+        of("mobility", "confined", "Path confined by valley sides (default: unknown)"),
+        of("mobility", "known", "Known events (default: 49 rock avalanches)", kind="file", key="SET",
+           filter="Table (*.csv)", advanced=True),
+        POLYGON_CRS, LOCAL, of("mobility", "output", "Folder for the results", kind="new folder", own=True))
     outputs = (("number", "AT_ROAD", "Probability of going beyond the road (-)"),
                ("number", "VOLUME_OF_BODY", "Volume of the body (m3)"),
                ("file", "TABLE", "Path with probabilities, CSV"),

@@ -1,6 +1,8 @@
 """What a user may choose: one table entry is a parameter of Processing and the words of the command line."""
+import json
 import shlex
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, List, Sequence
 
 from qgis.core import (QgsProcessing, QgsProcessingException, QgsProcessingParameterBoolean, QgsProcessingParameterCrs,
@@ -115,6 +117,20 @@ class Option:
             crs = asked.algorithm.parameterAsCrs(*asked.of(self.key))
             return crs.authid() or crs.toWkt()
         return asked.text(self.key)
+
+
+# {command: {name: option}}, what `slope COMMAND --describe` says; package.sh writes it, QGIS starts nothing to load it
+COMMANDS = json.loads((Path(__file__).parent / "commands.json").read_text(encoding="utf-8"))
+KINDS = {"count": "whole", "path": "file"}
+
+
+def of(command: str, name: str, label: str, kind: str = "", **more) -> Option:
+    """The Option of an option of a command; kind: where it is a layer, a folder or several; more: what is else here."""
+    about = COMMANDS[command][name]
+    kind = kind or KINDS.get(about["kind"], about["kind"])
+    return Option(**{"key": name.upper(), "flag": about["option"], "kind": kind, "label": label,
+                     "default": about["default"], "needed": about["needed"] and not kind.startswith("new"),
+                     "choices": tuple(about["choices"]), "least": float(about["kind"] == "count"), **more})
 
 
 def split(key: str, text: str) -> List[str]:

@@ -1,6 +1,6 @@
 """A record of an earthquake as the motion of the ground that decks read: slope quake."""
 from .algorithm import Algorithm
-from .options import Option
+from .options import Option, of
 from .results import load
 
 
@@ -20,16 +20,14 @@ class Quake(Algorithm):
     Beside the motion: its numbers (.yaml), response spectrum (.spectrum.csv, s and gal) and a picture (.png)."""
     options = (
         Option("RECORD", "", "files", "Files of one record", needed=True),
-        Option("PEAK", "--peak", "number", "Largest horizontal acceleration (gal)"),
-        Option("SCALE", "--scale", "number", "Scale by this factor, instead", least=-1e6, advanced=True),
-        Option("AZIMUTH", "--azimuth", "number", "Compass bearing of the deck's x axis (degrees; default: 90)"),
-        Option("WINDOW", "--window", "numbers", "Part of the record: begin and end (s)"),
-        Option("BAND", "--band", "numbers", "Band-pass: low and high frequency (Hz)"),
-        Option("BASELINE", "--baseline", "choice", "Baseline (default: rest)", choices=("rest", "mean", "none"),
-               advanced=True),
-        Option("UNIT", "--unit", "choice", "Unit of a CSV that names none", choices=("gal", "g", "m/s2"),
-               advanced=True),
-        Option("OUTPUT", "-o", "new file", "The motion", filter="Motion (*.txt)"))
+        of("quake", "peak", "Largest horizontal acceleration (gal)"),
+        of("quake", "scale", "Scale by this factor, instead", least=-1000000.0, advanced=True),
+        of("quake", "azimuth", "Compass bearing of the deck's x axis (degrees; default: 90)", default=None),
+        of("quake", "window", "Part of the record: begin and end (s)", kind="numbers"),
+        of("quake", "band", "Band-pass: low and high frequency (Hz)", kind="numbers"),
+        of("quake", "baseline", "Baseline (default: rest)", default=None, advanced=True),
+        of("quake", "unit", "Unit of a CSV that names none", advanced=True),
+        of("quake", "output", "The motion", kind="new file", filter="Motion (*.txt)"))
     outputs = (("number", "LARGEST", "Largest horizontal acceleration (gal)"), ("file", "NUMBERS", "Numbers, YAML"),
                ("file", "SPECTRUM", "Response spectrum, CSV"), ("file", "PICTURE", "Motion and spectrum"))
 

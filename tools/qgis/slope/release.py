@@ -3,30 +3,27 @@ from pathlib import Path
 
 from . import process, terrain
 from .algorithm import Algorithm
-from .options import Option
+from .options import Option, of
 from .results import load
 from .terrain import DEM, with_terrain
 
 SHAPES = ("sphere", "ellipsoid", "plane", "slbl")
-POLYGON = Option("POLYGON", "--polygon", "polygons", "Polygon where the mass is released")
+POLYGON = of("release", "polygon", "Polygon where the mass is released", kind="polygons")
 SHAPE = (
     Option("SHAPE", "--shape", "choice", "Shape of the slip surface (default: sphere; plane with a dip)",
            choices=SHAPES),
-    Option("DEPTH", "--depth", "number", "Largest depth of the slip surface below the ground (m)"),
-    Option("VOLUME", "--volume", "number", "Volume of the body (m3)"),
-    Option("CURVATURE", "--curvature", "number", "Curvature of the base level slbl (1/m)", advanced=True, least=-1e6),
-    Option("DIP", "--dip", "number", "Dip of the plane, below the horizontal (degrees)"),
-    Option("DIRECTION", "--direction", "number",
-           "Compass bearing to which the plane dips (degrees; default: fall line)"))
+    of("release", "depth", "Largest depth of the slip surface below the ground (m)"),
+    of("release", "volume", "Volume of the body (m3)"),
+    of("release", "curvature", "Curvature of the base level slbl (1/m)", least=-1000000.0, advanced=True),
+    of("release", "dip", "Dip of the plane, below the horizontal (degrees)"),
+    of("release", "direction", "Compass bearing to which the plane dips (degrees; default: fall line)"))
 SCAR = (
-    Option("SCAR", "--scar", "raster", "Scar: a second elevation model (m), or depths (m), instead of a shape"),
-    Option("SCAR_IS", "--scar-is", "choice", "What the scar raster holds (default: surface)",
-           choices=("surface", "depth", "change", "height")),
-    Option("LEAST", "--least", "number", "Depths of the scar below this are none (m)", advanced=True))
-POLYGON_CRS = Option("POLYGON_CRS", "--assign-crs", "crs", "The polygon is in this CRS, whatever it says",
-                     advanced=True)
-LOCAL = Option("LOCAL", "--local", "switch", "The polygon is in the terrain's local metres, not in a CRS",
-               advanced=True)
+    of("release", "scar", "Scar: a second elevation model (m), or depths (m), instead of a shape", kind="raster"),
+    of("release", "scar_is", "What the scar raster holds (default: surface)"),
+    of("release", "least", "Depths of the scar below this are none (m)", default=None, advanced=True))
+POLYGON_CRS = of("release", "crs", "The polygon is in this CRS, whatever it says", kind="crs", key="POLYGON_CRS",
+                 advanced=True)
+LOCAL = of("release", "local", "The polygon is in the terrain's local metres, not in a CRS", advanced=True)
 
 
 class Release(Algorithm):
@@ -46,7 +43,7 @@ class Release(Algorithm):
     if the raster is not one of SLOPE."""
     options = (
         DEM, POLYGON, *SHAPE, *SCAR, POLYGON_CRS, LOCAL,
-        Option("OUTPUT", "-o", "new folder", "Folder for the results", own=True))
+        of("release", "output", "Folder for the results", kind="new folder", own=True))
     outputs = (("raster", "DEPTH_LAYER", "Depth of the body (m)"),
                ("raster", "SLIP_LAYER", "Ground without the body (m)"),
                ("number", "RELEASED", "Volume of the body (m3)"), ("number", "LARGEST_DEPTH", "Largest depth (m)"),

@@ -1,6 +1,6 @@
 """The page on a study or a run: slope report."""
 from .algorithm import Algorithm
-from .options import Option
+from .options import Option, of
 
 
 class Report(Algorithm):
@@ -15,10 +15,10 @@ class Report(Algorithm):
     section (m) and all numbers, as CSV."""
     options = (
         Option("FOLDER", "", "folder", "Folder of a study or of a run", needed=True),
-        Option("SECTION", "--section", "line", "Line of the section"),
-        Option("SHOWN", "--run", "text", "Run of the study whose maps are shown", advanced=True),
-        Option("LOCAL", "--local", "switch", "The line is in the local metres of the run, not in a CRS", advanced=True),
-        Option("OUTPUT", "-o", "new file", "The page", filter="HTML (*.html)"))
+        of("report", "section", "Line of the section", kind="line"),
+        of("report", "shown", "Run of the study whose maps are shown", advanced=True),
+        of("report", "local", "The line is in the local metres of the run, not in a CRS", advanced=True),
+        of("report", "output", "The page", kind="new file", filter="HTML (*.html)"))
     outputs = (("file", "NUMBERS", "Numbers of the page, CSV"), ("file", "SECTION_TABLE", "Heights along the section"))
 
     def collect(self, asked, results):

@@ -3,12 +3,13 @@ from pathlib import Path
 
 from .algorithm import Algorithm
 from .export import RUN, TERRAIN, prefix_of
-from .options import Option
+from .options import of
 from .results import load
 
-OBSERVED = (Option("OBSERVED", "--observed", "polygons", "Mapped deposit, outline"),
-            Option("OBSERVED_THICKNESS", "--observed", "raster", "Mapped deposit, thickness (m), instead"))
-THRESHOLD = Option("THRESHOLD", "--threshold", "number", "Thickness above which a cell counts as deposit (m)", 0.1)
+OBSERVED = (of("score", "observed", "Mapped deposit, outline", kind="polygons", needed=False),
+            of("score", "observed", "Mapped deposit, thickness (m), instead", kind="raster", key="OBSERVED_THICKNESS",
+               needed=False))
+THRESHOLD = of("score", "threshold", "Thickness above which a cell counts as deposit (m)")
 
 
 class Score(Algorithm):
@@ -23,11 +24,10 @@ class Score(Algorithm):
     Also score.yaml with all numbers, score.csv, one row per cell, and a picture."""
     options = (
         RUN, *OBSERVED, THRESHOLD,
-        Option("MESH", "--mesh", "number", "Side of the mesh cells of the table (m; default: the run's cells)"),
+        of("score", "mesh", "Side of the mesh cells of the table (m; default: the run's cells)"),
         TERRAIN,
-        Option("LOCAL", "--local", "switch", "The mapped deposit is in the local metres of the run, not in a CRS",
-               advanced=True),
-        Option("OUTPUT", "-o", "new folder", "Folder for the results"))
+        of("score", "local", "The mapped deposit is in the local metres of the run, not in a CRS", advanced=True),
+        of("score", "output", "Folder for the results", kind="new folder"))
     outputs = (("number", "JACCARD", "Area in both over area in any of both (-)"),
                ("number", "DIFFERENCE", "Run-out, simulated less mapped (m)"),
                ("file", "TABLE", "Table of the cells"), ("file", "PICTURE", "Map"))

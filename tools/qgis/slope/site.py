@@ -4,7 +4,7 @@ from pathlib import Path
 
 from . import process, terrain
 from .algorithm import Algorithm
-from .options import Option
+from .options import of
 from .release import SCAR, SHAPE
 from .results import load
 from .volume import CLEARING, CUT_ANGLE, MESH
@@ -27,25 +27,25 @@ class Site(Algorithm):
     Layers that are no files of their own, or whose CRS was set in QGIS, are kept in a folder beside that of the
     site, FOLDER.layers, to which site.yaml refers."""
     options = (
-        Option("DEM", "--terrain", "raster", "Elevation model (heights in m)", needed=True),
-        Option("RELEASE", "--release", "polygons", "Polygon where the mass is released"),
+        of("site", "terrain", "Elevation model (heights in m)", kind="raster", key="DEM", needed=True),
+        of("site", "release", "Polygon where the mass is released", kind="polygons"),
         *SHAPE,
-        Option("ROAD", "--road", "road", "Road: the volume to remove from it"),
+        of("site", "road", "Road: the volume to remove from it", kind="road"),
         *CLEARING, CUT_ANGLE, MESH,
-        Option("STRUCTURE", "--structure", "file", "Wall or building (STL, m)", filter="STL (*.stl)"),
-        Option("LINE", "--line", "line", "Control line: what crosses it is counted"),
-        Option("MOTION", "--motion", "file", "Motion of the ground, as slope quake wrote it (s, m/s2)"),
-        Option("OBSERVED", "--observed", "polygons", "Mapped deposit, outline"),
-        Option("OBSERVED_THICKNESS", "--observed", "raster", "Mapped deposit, thickness (m)", advanced=True),
+        of("site", "structure", "Wall or building (STL, m)", kind="file", filter="STL (*.stl)"),
+        of("site", "line", "Control line: what crosses it is counted", kind="line"),
+        of("site", "motion", "Motion of the ground, as slope quake wrote it (s, m/s2)", kind="file"),
+        of("site", "observed", "Mapped deposit, outline", kind="polygons"),
+        of("site", "observed", "Mapped deposit, thickness (m)", kind="raster", key="OBSERVED_THICKNESS", advanced=True),
         *terrain.GROUND, *SCAR,
-        Option("BALLS", "--balls", "whole", "Balls in the body (default: 4000)", least=1),
-        Option("MINUTES", "--minutes", "number", "Minutes that the study may take"),
-        Option("MEMORY", "--memory", "number", "Memory that the study may take (GB)", advanced=True),
-        Option("DIAMETER", "--diameter", "number", "Diameter of the balls (m)", advanced=True),
-        Option("NAME", "--name", "text", "Name of the site, for the report"),
-        Option("CLIENT", "--client", "text", "Client, for the report"),
-        Option("AUTHOR", "--author", "text", "Author, for the report"),
-        Option("OUTPUT", "-o", "new folder", "New folder of the site"))
+        of("site", "balls", "Balls in the body (default: 4000)"),
+        of("site", "minutes", "Minutes that the study may take"),
+        of("site", "memory", "Memory that the study may take (GB)", advanced=True),
+        of("site", "diameter", "Diameter of the balls (m)", advanced=True),
+        of("site", "name", "Name of the site, for the report"),
+        of("site", "client", "Client, for the report"),
+        of("site", "author", "Author, for the report"),
+        of("site", "output", "New folder of the site", kind="new folder"))
     outputs = (("raster", "DEPTH_LAYER", "Depth of the body (m)"), ("raster", "TERRAIN_LAYER", "Terrain (m)"),
                ("number", "RELEASED", "Volume of the body (m3)"), ("number", "NUMBER_OF_BALLS", "Balls in the body"),
                ("number", "STUDY_MINUTES", "Estimated time of the study (minutes)"),

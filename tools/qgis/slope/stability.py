@@ -3,7 +3,7 @@ from pathlib import Path
 
 from . import process
 from .algorithm import Algorithm
-from .options import Option
+from .options import of
 from .release import LOCAL
 from .results import load, survey_tif
 from .terrain import DEM, with_terrain
@@ -26,22 +26,20 @@ class Stability(Algorithm):
     body."""
     options = (
         DEM,
-        Option("COHESION", "--cohesion", "number", "Cohesion (Pa)", needed=True),
-        Option("FRICTION", "--friction", "number", "Friction angle (degrees)", needed=True),
-        Option("DENSITY", "--density", "number", "Density of the ground (kg/m3)", needed=True),
-        Option("WATER", "--water", "number", "Pore pressure over the weight per area (-; default: dry)"),
-        Option("WATER_TABLE", "--water-table", "raster", "Heights of the water table (m), instead", advanced=True),
-        Option("BEDROCK", "--bedrock", "raster", "Heights of the bedrock, which no body cuts (m)", advanced=True),
-        Option("SEISMIC", "--seismic", "numbers", "Inertia in parts of the weight: horizontal, and vertical (-)"),
-        Option("VOLUME", "--volume", "numbers", "Volume of a body: from, to (m3)"),
-        Option("DEPTH", "--depth", "numbers", "Greatest depth of a body below the ground: from, to (m)"),
-        Option("WITHIN", "--within", "polygons", "Polygon in which the bodies lie"),
-        Option("DIRECTION", "--direction", "number", "Compass bearing of sliding (degrees; default: fall line)",
-               advanced=True),
-        Option("METHOD", "--method", "choice", "Method (default: bishop)", choices=("bishop", "ordinary", "spencer"),
-               advanced=True),
-        Option("KEEP", "--keep", "whole", "Bodies that differ (default: 3)", least=1), LOCAL,
-        Option("OUTPUT", "-o", "new folder", "Folder for the results", own=True))
+        of("stability", "cohesion", "Cohesion (Pa)", needed=True),
+        of("stability", "friction", "Friction angle (degrees)", needed=True),
+        of("stability", "density", "Density of the ground (kg/m3)"),
+        of("stability", "water", "Pore pressure over the weight per area (-; default: dry)"),
+        of("stability", "water_table", "Heights of the water table (m), instead", kind="raster", advanced=True),
+        of("stability", "bedrock", "Heights of the bedrock, which no body cuts (m)", kind="raster", advanced=True),
+        of("stability", "seismic", "Inertia in parts of the weight: horizontal, and vertical (-)", kind="numbers"),
+        of("stability", "volume", "Volume of a body: from, to (m3)", kind="numbers"),
+        of("stability", "depth", "Greatest depth of a body below the ground: from, to (m)", kind="numbers"),
+        of("stability", "within", "Polygon in which the bodies lie", kind="polygons"),
+        of("stability", "direction", "Compass bearing of sliding (degrees; default: fall line)", advanced=True),
+        of("stability", "method", "Method (default: bishop)", advanced=True),
+        of("stability", "keep", "Bodies that differ (default: 3)"), LOCAL,
+        of("stability", "output", "Folder for the results", kind="new folder", own=True))
     outputs = (("raster", "FACTOR_LAYER", "Least factor of safety (-)"),
                ("number", "FACTOR", "Least factor of all (-)"),
                ("number", "VOLUME_OF_BODY", "Volume of its body (m3)"), ("file", "TABLE", "Table of the bodies"),

@@ -4,13 +4,13 @@ from pathlib import Path
 from qgis.core import QgsProcessingException
 
 from .algorithm import Algorithm
-from .options import Option
+from .options import Option, of
 from .results import load
 from .volume import CLEARING, CUT_ANGLE, MESH
 
 DECK = Option("DECK", "", "file", "Deck, or site.yaml of a site", needed=True)
-RANKS = Option("RANKS", "--np", "whole", "MPI ranks of each run", 1, least=1)
-JOBS = Option("JOBS", "--jobs", "whole", "Runs at a time (default: as many as the cores allow)", least=1)
+RANKS = of("study", "np", "MPI ranks of each run", key="RANKS")
+JOBS = of("study", "jobs", "Runs at a time (default: as many as the cores allow)")
 WITH_A_SITE = ("RANKS", "JOBS")     # all other choices are in its site.yaml
 
 
@@ -31,14 +31,14 @@ class Study(Algorithm):
     1 m. Tables study.csv and combinations.csv: volumes in m3 of ground, lengths in m, times in s."""
     options = (
         DECK,
-        Option("SET", "--set", "words", "Values of the deck's variables, one NAME=V1,V2,... per line"),
-        Option("REPEAT", "--repeat", "words", "Repeats, one NAME=V1,V2,... per line"),
-        Option("ROAD", "--road", "road", "Road: the volume to remove from it"),
+        of("study", "set", "Values of the deck's variables, one NAME=V1,V2,... per line", kind="words"),
+        of("study", "repeat", "Repeats, one NAME=V1,V2,... per line", kind="words"),
+        of("study", "road", "Road: the volume to remove from it", kind="road"),
         *CLEARING, CUT_ANGLE, MESH, RANKS, JOBS,
-        Option("EXCEED", "--exceed", "text", "Thicknesses of the maps of exceedance, with commas between (m)",
-               "0.1,0.5,1", advanced=True),
-        Option("LOCAL", "--local", "switch", "The road is in the local metres of the run, not in a CRS", advanced=True),
-        Option("OUTPUT", "-o", "new folder", "Folder of the study"))
+        of("study", "exceed", "Thicknesses of the maps of exceedance, with commas between (m)", default="0.1,0.5,1",
+           advanced=True),
+        of("study", "local", "The road is in the local metres of the run, not in a CRS", advanced=True),
+        of("study", "output", "Folder of the study", kind="new folder"))
     outputs = (("raster", "THICKNESS", "Largest final thickness over all runs (m)"),
                ("raster", "MAX_THICKNESS", "Largest thickness over all runs and times (m)"),
                ("number", "CONSERVATIVE", "Conservative volume to remove (m3)"), ("file", "TABLE", "Table of all runs"),

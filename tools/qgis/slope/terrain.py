@@ -6,18 +6,18 @@ from qgis.core import QgsProcessingException
 
 from . import layers, process, styles
 from .algorithm import Algorithm
-from .options import Option
+from .options import Option, of
 from .results import TERRAIN_TAG, NewFolder, load, survey_tif
 
 FILES = ("terrain.asc", "terrain.yaml")
 DEM = Option("DEM", "", "raster", "Elevation model or terrain (heights in m)", needed=True, own=True)
 GROUND = (
-    Option("CRS", "--crs", "crs", "CRS of the terrain, in metres (default: the model's)"),
-    Option("ASSIGNED_CRS", "--assign-crs", "crs", "The elevation model is in this CRS, whatever it says",
-           advanced=True),
-    Option("CELL", "--cell", "number", "Cell size (m; default: the model's)"),
-    Option("BOUNDS", "--bounds", "extent", "Crop to this box", own=True),
-    Option("FILL", "--fill", "whole", "Fill holes of at most so many cells"))
+    of("terrain", "crs", "CRS of the terrain, in metres (default: the model's)", kind="crs"),
+    of("terrain", "assign_crs", "The elevation model is in this CRS, whatever it says", kind="crs", key="ASSIGNED_CRS",
+       advanced=True),
+    of("terrain", "cell", "Cell size (m; default: the model's)"),
+    of("terrain", "bounds", "Crop to this box", kind="extent", own=True),
+    of("terrain", "fill", "Fill holes of at most so many cells", default=None))
 
 
 def bounds(asked, model):
@@ -68,7 +68,7 @@ class Terrain(Algorithm):
     options = (
         Option("DEM", "", "raster", "Elevation model (heights in m)", needed=True),
         *GROUND,
-        Option("OUTPUT", "-o", "new file", "The terrain", filter="ESRI ASCII grid (*.asc)"))
+        of("terrain", "output", "The terrain", kind="new file", filter="ESRI ASCII grid (*.asc)"))
     outputs = (("raster", "LAYER", "Terrain at the survey's coordinates (m)"),)
 
     def words(self, asked):

@@ -4,21 +4,20 @@ from pathlib import Path
 from . import styles
 from .algorithm import Algorithm
 from .export import RUN, TERRAIN, prefix_of
-from .options import Option
+from .options import of
 from .results import geopackage, load
 
-ROAD = Option("ROAD", "--road", "road", "Road (polygons, or a line with a width)", needed=True)
-ROAD_WIDTH = Option("ROAD_WIDTH", "--road-width", "number", "Width of a road that is a line (m)")
+ROAD = of("volume", "road", "Road (polygons, or a line with a width)", kind="road")
+ROAD_WIDTH = of("volume", "road_width", "Width of a road that is a line (m)")
 CLEARING = (
     ROAD_WIDTH,
-    Option("ROAD_FROM", "--road-from", "number", "Chainage of the road's start (km)", advanced=True),
-    Option("BLOCKED", "--blocked", "number", "The road is blocked where the deposit is thicker than (m)", 0.1),
-    Option("LANE", "--lane", "number", "Width of a lane that is opened first (m)"),
-    Option("CLEARING", "--clearing", "number", "Loosened ground cleared in an hour (m3)"),
-    Option("LOOSENING", "--loosening", "number", "Volume of loosened ground over that of the ground (-)", least=1.0))
-CUT_ANGLE = Option("CUT_ANGLE", "--cut-angle", "number", "Rise of the cut surface from the road's edges (degrees)",
-                   30.0)
-MESH = Option("MESH", "--mesh", "number", "Side of the mesh cells (m)", 10.0)
+    of("volume", "road_from", "Chainage of the road's start (km)", advanced=True),
+    of("volume", "blocked", "The road is blocked where the deposit is thicker than (m)", default=0.1),
+    of("volume", "lane", "Width of a lane that is opened first (m)"),
+    of("volume", "clearing", "Loosened ground cleared in an hour (m3)"),
+    of("volume", "loosening", "Volume of loosened ground over that of the ground (-)", least=1))
+CUT_ANGLE = of("volume", "cut_angle", "Rise of the cut surface from the road's edges (degrees)")
+MESH = of("volume", "mesh", "Side of the mesh cells (m)", default=10.0, needed=False)
 
 
 class Volume(Algorithm):
@@ -38,12 +37,11 @@ class Volume(Algorithm):
     wanted beside it."""
     options = (
         RUN, ROAD, *CLEARING, CUT_ANGLE, MESH,
-        Option("AXIS", "--axis", "line", "Axis of the road (default: its middle)"),
-        Option("BULK", "--bulk", "number", "Volumes also for this bulk factor (-)", advanced=True),
+        of("volume", "axis", "Axis of the road (default: its middle)", kind="line"),
+        of("volume", "bulk", "Volumes also for this bulk factor (-)", advanced=True),
         TERRAIN,
-        Option("LOCAL", "--local", "switch", "Road and axis are in the local metres of the run, not in a CRS",
-               advanced=True),
-        Option("OUTPUT", "-o", "new folder", "Folder for the results"))
+        of("volume", "local", "Road and axis are in the local metres of the run, not in a CRS", advanced=True),
+        of("volume", "output", "Folder for the results", kind="new folder"))
     outputs = (("vector", "CELLS", "Mesh cells, volume to remove (m3)"),
                ("raster", "THICKNESS", "Thickness to remove (m)"), ("vector", "STRETCHES", "Blocked stretches"),
                ("number", "REMOVE", "To remove (m3)"), ("number", "REMOVE_ON_ROAD", "On the road (m3)"),

@@ -169,7 +169,8 @@ class Picture:
                  xlabel="distance from A (m); heights not exaggerated")
         axis.tick_params(labelsize=6)
         handles = [Line2D([], [], color="#333333", lw=0.7, ls="--"), Line2D([], [], color="#6b6459", lw=0.7)]
-        axis.legend(handles, ["ground before", "without the body"], fontsize=6, loc="best", framealpha=0.8)
+        self.figure.legend(handles, ["ground before", "without the body"], fontsize=6, loc="lower right", ncols=2,
+                           frameon=False)
 
     def at(self, time: float):
         """The picture at a time, as RGBA bytes."""

@@ -78,9 +78,10 @@ def run(args: Request) -> None:
         columns.append(capacity.min(axis=2))
     curves = [files.Curve(name, fragility.curve(one, peaks), fragility.fit(one, peaks),
                           fragility.frequency(one, hazard, peaks) if hazard else None,
-                          float((one <= 0).all(axis=1).mean())) for name, one in zip(names, columns)]
+                          float((one <= 0).all(axis=1).mean()), float(np.median(one)))
+              for name, one in zip(names, columns)]
     warn, kept = findings.warner("fragility")
-    for one in warnings_of(curves, found, args.pseudo_static, len(args.record), hazard):
+    for one in warnings_of(curves, peaks, found, args.pseudo_static, len(args.record), hazard):
         warn(one)
     about = {"bodies": [{"body": body.name, "volume_m3": body.columns.volume,
                          "base_sha256": disk.sha256(body.base)} for body in found],
@@ -161,7 +162,7 @@ def drawn(option, text, low, high, unit):
     return one
 
 
-def warnings_of(curves, found, pseudo_static, records, hazard):
+def warnings_of(curves, peaks, found, pseudo_static, records, hazard):
     """What a reader must know."""
     from ..slips.columns import FEWEST
 
@@ -179,6 +180,12 @@ def warnings_of(curves, found, pseudo_static, records, hazard):
         if one.at_rest > 0.01 or standing > 0.05:
             makes = f", which makes {100 * standing:.2g} % of the frequency" if standing > 0.05 else ""
             yield findings.Finding("at rest", {"which": one.title, "percent": 100 * one.at_rest, "makes": makes})
+        for k, outside, end, remedy in ((-1, peaks[-1] < one.half < math.inf, "largest", "larger"),
+                                        (0, 0 < one.half < peaks[0], "smallest", "smaller")):
+            if outside:
+                yield findings.Finding("peaks", {
+                    "which": one.title, "peak": float(peaks[k]), "end": end, "remedy": remedy,
+                    "percent": 100 * float(one.band.value[k]), "half": one.half})
         if one.fit is None:
             yield findings.Finding("no fit", {"which": one.title})
         elif one.fit.off > 0.05:

@@ -3,9 +3,10 @@ import argparse
 import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, List, Optional
+from typing import Any, Callable, List, Optional, Union
 
 from rich.console import Console
+from rich.table import Table
 
 from ..case.settings import check_settings
 from ..ensembles import known_events
@@ -15,7 +16,7 @@ from ..options import Program, flag, number, option, several, whole
 from ..sites import site_choices
 from ..statistics import designs
 from ..studies.setup import Road, Setup
-from ..tables import intensity
+from ..tables import intensity, study_table
 from . import known_arguments, road_arguments
 
 DECK = "LAMMPS input deck with one fix deposit/grid; the plain files beside it are its data"
@@ -46,6 +47,7 @@ class Runs(road_arguments.Clearing, Program):
     mesh: Optional[float] = option("side of the mesh cells of that volume, m (default 10)", metavar="SIZE")
     local: bool = flag("the road is in local metres, not in a CRS")
     dry_run: bool = flag("only list the runs")
+    all_columns: bool = flag("show all columns of the tables on the screen, also those for which it has no room")
     anew: bool = flag(
         "make finished runs again that are of another program, deck or data than the present ones (default: refuse "
         "them)")
@@ -136,12 +138,21 @@ def settle_kind(args: Any, sample: bool) -> Any:
     return replace(args, **defaults)
 
 
-def tell(what):
-    """Print a line, or a table of rich."""
-    if isinstance(what, str):
-        print(what, flush=True)
-    else:
-        (Console() if sys.stdout.isatty() else Console(width=180)).print(what)
+def teller(all_columns: bool) -> Callable[[Union[str, Table]], None]:
+    """A function that prints a line, or a table: with all its columns, or those for which the screen has room."""
+    def tell(what):
+        if isinstance(what, str):
+            print(what, flush=True)
+            return
+        width = Console().width if sys.stdout.isatty() else 180
+        if all_columns:
+            width = max(width, study_table.width_of(what))
+        left_out = study_table.fit(what, width)
+        if left_out:
+            note = f"left out, in the files: {', '.join(left_out)}; --all-columns shows all"
+            what.caption = "; ".join(filter(None, [what.caption, note]))
+        Console(width=width).print(what)
+    return tell
 
 
 def setup_of(args: Runs) -> Setup:
@@ -149,4 +160,4 @@ def setup_of(args: Runs) -> Setup:
     given = {name: value for name in ("cut_angle", "mesh") if (value := getattr(args, name)) is not None}
     road = Road(args.road, **given, local=args.local, asked=road_arguments.asked(args)) if args.road else None
     return Setup(args.deck, args.output or args.deck, args.np, args.jobs, road, args.lmp, args.launcher, args.engine,
-                 args.slurm, args.dry_run, args.anew, args.site, tell, printer(args.command))
+                 args.slurm, args.dry_run, args.anew, args.site, teller(args.all_columns), printer(args.command))

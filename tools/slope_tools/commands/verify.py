@@ -9,7 +9,7 @@ from typing import Optional
 
 from .. import disk
 from ..errors import SlopeError
-from ..options import Program, flag, option
+from ..options import Program, bare, flag, option
 from ..programs import find_lmp
 from ..runs import jobs
 from ..validation import verification
@@ -37,38 +37,58 @@ class Request(Program):
     jobs: Optional[int] = option("runs at a time (default: the cores of the machine)", metavar="J")
     crosscheck: Optional[Path] = option(
         "crosscheck.yaml of `slope crosscheck`: its comparisons with other codes go into the report", metavar="FILE")
-    output: Path = option(
-        f"folder of the report and of the runs (default {NAME})", "-o", metavar="DIR", default=Path(NAME))
+    output: Optional[Path] = option(
+        f"folder of the report and of the runs (default {NAME}); without any word the command says what it would do",
+        "-o", metavar="DIR")
 
 
 def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input and when a claim does not hold. Prints the claims."""
     claims = chosen(args.quick, args.only)
-    if args.output.exists() and not args.output.is_dir():
-        raise SlopeError("-o", "must be a folder", args.output)
+    if bare(args):
+        print(plan(claims))
+        return
+    output = args.output or Path(NAME)
+    if output.exists() and not output.is_dir():
+        raise SlopeError("-o", "must be a folder", output)
     peers = compared(args.crosscheck) if args.crosscheck else None
     lmp = find_lmp(args.lmp)
     began = time.monotonic()
     try:
-        args.output.mkdir(parents=True, exist_ok=True)
-        with disk.alone_in(args.output), jobs.signals_interrupt():
-            runner = Runner(args.output / "runs", lmp)
-            wanted = [one for claim in claims for one in (*claim.runs, *claim.control.runs)]
-            runner.do(wanted, args.jobs or jobs.cores())
+        output.mkdir(parents=True, exist_ok=True)
+        with disk.alone_in(output), jobs.signals_interrupt():
+            runner = Runner(output / "runs", lmp)
+            runner.do(runs_of(claims), args.jobs or jobs.cores())
             outcomes = [judge(claim, runner) for claim in claims]
             words = ["tools/slope verify"] + ["--quick"] * args.quick + [f"--only {args.only}"] * bool(args.only)
             about = made(" ".join(words), lmp, runner, outcomes, time.monotonic() - began)
-            write(args.output, outcomes, about, peers)
+            write(output, outcomes, about, peers)
     except OSError as error:
-        raise SlopeError(error.filename or args.output, f"cannot be used: {error.strerror}") from error
+        raise SlopeError(error.filename or output, f"cannot be used: {error.strerror}") from error
     for outcome in outcomes:
         print(line(outcome))
     wrong = [outcome for outcome in outcomes if not outcome.right]
     if wrong:
-        raise SlopeError(args.output / f"{NAME}.html", f"{len(wrong)} of {len(outcomes)} claims do not hold or have a "
+        raise SlopeError(output / f"{NAME}.html", f"{len(wrong)} of {len(outcomes)} claims do not hold or have a "
                          f"control that does not fail: {', '.join(outcome.claim.name for outcome in wrong[:5])}"
                          + (", ..." if len(wrong) > 5 else ""))
-    print(f"all {len(outcomes)} claims hold, and all controls fail: {args.output / NAME}.html")
+    print(f"all {len(outcomes)} claims hold, and all controls fail: {output / NAME}.html")
+
+
+def runs_of(claims):
+    """The runs that claims and their controls need."""
+    return [one for claim in claims for one in (*claim.runs, *claim.control.runs)]
+
+
+def plan(claims) -> str:
+    """What the command would do."""
+    def many(some):
+        return (f"{len(some)} claims on {len({claim.case for claim in some})} cases by {len(set(runs_of(some)))} runs")
+
+    return (f"would check {many(claims)}, which takes about two hours on one core; nothing is run without a word:\n"
+            f"  slope verify -o DIR        all of it\n"
+            f"  slope verify --quick       {many([claim for claim in claims if claim.quick])}, two minutes\n"
+            f"  slope verify --only CASE   of {', '.join(dict.fromkeys(claim.case for claim in claims))}")
 
 
 def chosen(quick: bool, only: Optional[str]):

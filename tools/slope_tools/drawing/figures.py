@@ -52,6 +52,11 @@ def data_uri(figure, kind="png"):
     return f"data:{mime};base64,{base64.b64encode(out.getvalue()).decode('ascii')}"
 
 
+def legend_above(axes) -> None:
+    """A legend above axes, at the right: a section may be lower than its legend."""
+    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=4, frameon=False, borderaxespad=0.1)
+
+
 # --- text ---
 
 def text_width(text, size, bold=False):

@@ -44,7 +44,7 @@ def draw(path, raster: Raster, area: Area, slip: np.ndarray, geometry, title: st
         section.plot(along, ground, color="black", lw=1.0, label="ground")
         section.plot(along, np.where(ground > base, base, np.nan), color=RELEASE, lw=1.1, label="slip surface")
         section.set(xlabel="A to A', down the fall line (m)", ylabel="height (m)", aspect="equal", xlim=(0, length))
-        section.legend(loc="upper right")
+        figures.legend_above(section)
         section.grid(color="#dddddd", lw=0.4)
         pictures.save(figure, path, bbox_inches="tight")
 

@@ -1,5 +1,6 @@
 """The page of a report as HTML, and its pictures as files."""
 import base64
+import functools
 import hashlib
 import re
 from contextlib import contextmanager
@@ -59,7 +60,7 @@ def make(asked: Asked):
     from .page import Page
     with trusted(asked.folder):
         page = Page(asked)
-        return page, render({**page.content(), "mark": mark(asked.folder)})
+    return page, render({**page.content(), "mark": mark(asked.folder)})
 
 
 def reproduce(folder: Path) -> List[str]:
@@ -71,11 +72,10 @@ def reproduce(folder: Path) -> List[str]:
 
 @contextmanager
 def trusted(folder: Path):
-    """What `slope study` wrote is trusted to be of the right kind: if it is not, one line."""
-    import jinja2
+    """While it is read, what `slope study` wrote is trusted to be of the right kind: if it is not, one line."""
     try:
         yield
-    except (jinja2.TemplateError, ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
         raise SlopeError(folder, "must hold what a run or `slope study` wrote, unchanged",
                          f"{type(error).__name__}: {error}"[:200]) from error
 
@@ -85,8 +85,9 @@ def typeset(value):
     return digits.typeset(value) if type(value) is str else value
 
 
-def render(content):
-    """The page, from the templates beside this file and of the 3-D view."""
+@functools.lru_cache
+def templates():
+    """Those beside this file and of the 3-D view, each compiled once."""
     import jinja2
     import markupsafe
     from ..animation import view
@@ -96,4 +97,9 @@ def render(content):
     environment.filters.update(verbatim=markupsafe.escape, percent=lambda value: f"{100 * value:.1f} %",
                                signed=lambda value: f"{'-' if value < 0 else '+'} {abs(value):,.10g}",
                                fixed=lambda value, digits=1: f"{value:,.{digits}f}")
-    return environment.get_template("report.html.j2").render(content)
+    return environment
+
+
+def render(content):
+    """The page."""
+    return templates().get_template("report.html.j2").render(content)

@@ -31,6 +31,7 @@ COLUMNS = (("released", "m3", "released_m3"), ("99 % within", "m", "distance_99_
            ("stop angle", "deg", "stop_angle_deg"))
 ROAD_COLUMNS = (("to remove", "m3", "remove_m3"), ("on the road", "m3", "remove_on_road_m3"),
                 ("beyond it", "m3", "beyond_road_m3"), ("road blocked", "m", "blocked_m"))
+MOST_ROWS, ENDS = 40, 12    # of the study's table, and of each end of a longer one
 MEANS = (("to remove", "m3", "remove_m3"), ("on the road", "m3", "remove_on_road_m3"),
          ("beyond it", "m3", "beyond_road_m3"), ("99 % within", "m", "distance_99_m"),
          ("", "m", LENGTH), ("centroid moved", "m", "centroid_m"))
@@ -75,6 +76,7 @@ class Page:
             "warnings": self.warnings, "answer": answer(data, numbers),
             "cards": cards(data, numbers), "travel": travel_rows(data, numbers),
             "balance": balance(data, numbers), "rows": self.rows(), "columns": self.columns(),
+            "which_rows": self.which_rows(),
             "means": self.means(), "differences": differences(data, numbers),
             "maps": maps.of_run(), "section": self.picture(*self.section.picture()), "charts": charts.all(),
             "intensity": intensity_part.content(data, numbers, self.picture),
@@ -138,7 +140,7 @@ class Page:
         data, best = self.data, (self.data.study or {}).get("conservative") or {}
         varied = [key for key, several in data.settings.items() if len(several) > 1] or list(data.settings)
         found = []
-        for row in data.rows:
+        for row in self.in_table():
             repeat = ", ".join(f"{name} {value}" for name, value in (row.get("repeat") or {}).items()) or "base"
             entry = {"set": [row["set"][key] for key in varied], "repeat": repeat, "run": row["run"],
                      "number": data.number(row["run"]),
@@ -150,6 +152,27 @@ class Page:
                 entry["end"], entry["at_rest"] = row.get("end_short", row["end"]), row["at_rest"]
             found.append(entry)
         return found
+
+    def in_table(self):
+        """The runs of the table: of a long one those with the least and the most of what counts, and failed ones."""
+        rows = self.data.rows
+        if len(rows) <= MOST_ROWS:
+            return rows
+        key = self.counts()[2]
+        known = sorted((row for row in self.data.finished if row.get(key) is not None), key=lambda row: row[key])
+        return [*known[:ENDS], *known[-ENDS:], *[row for row in rows if row["status"] != "finished"][:ENDS]]
+
+    def counts(self):
+        """The column by which the runs of a long table are chosen."""
+        columns = {column[2]: column for column in self.columns()}
+        return next(columns[key] for key in (REMOVE, "distance_99_m", "front_m") if key in columns)
+
+    def which_rows(self):
+        """What the table says of its runs."""
+        if len(self.data.rows) <= MOST_ROWS:
+            return "All runs"
+        return (f"Of {len(self.data.rows)} runs those with the least and the most in the column "
+                f"\"{self.counts()[0]}\", in its order; study.csv has all")
 
     def cell(self, head, unit, key, row, name):
         value = row.get(key)

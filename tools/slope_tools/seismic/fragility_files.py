@@ -27,6 +27,7 @@ class Curve(NamedTuple):
     fit: Optional[Fit]
     frequency: Optional[Frequency]
     at_rest: float      # share of the samples that fail without an earthquake
+    half: float         # gal, from which on half of the strengths fail
 
     @property
     def title(self) -> str:

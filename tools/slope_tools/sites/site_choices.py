@@ -237,7 +237,7 @@ def text(choices: Choices, found_: Dict[str, Any], folder: Path) -> str:
     lines += [f"  {line}" for line in yaml.safe_dump(disk.plain(found_), sort_keys=False, allow_unicode=True,
                                                      width=1000).splitlines()]
     whole = "\n".join(lines) + "\n"
-    check(yaml.safe_load(whole), NAME)
+    check(disk.load_yaml(whole), NAME)
     return whole
 
 

@@ -1,7 +1,7 @@
 """What `slope stability --failed` writes: the line as a table, its numbers, a picture."""
 import csv
 from pathlib import Path
-from typing import Any, Dict, Optional
+from typing import Any, Dict, Optional, Tuple
 
 import numpy as np
 
@@ -27,7 +27,7 @@ def write(folder: Path, line: Line, far: Optional[Line], about: Dict[str, Any]) 
 def draw(path: Path, line: Line, far: Optional[Line], about: Dict[str, Any]) -> None:
     with plt.rc_context(figures.STYLE):
         figure, axes = plt.subplots(figsize=(figures.WIDE, 2.9))
-        unit, name = (1e6, "MPa") if line.cohesion.max() >= 2e6 else (1e3, "kPa")
+        unit, name = unit_of(line)
         axes.plot(line.friction, line.cohesion / unit, color=figures.COLOURS[0], lw=1.4,
                   label="F = 1" + (", axis of the nearest sphere" if far else ""))
         axes.fill_between(line.friction, 0, line.cohesion / unit, color=figures.COLOURS[1], alpha=0.15, lw=0,
@@ -41,11 +41,17 @@ def draw(path: Path, line: Line, far: Optional[Line], about: Dict[str, Any]) -> 
         pictures.save(figure, path)
 
 
+def unit_of(line: Line) -> Tuple[float, str]:
+    """In which the cohesion is shown, Pa and its name; files have Pa."""
+    return (1e6, "MPa") if line.cohesion.max() >= 2e6 else (1e3, "kPa")
+
+
 def summary(line: Line, about: Dict[str, Any]) -> str:
     """Points of the line for the user."""
+    unit, name = unit_of(line)
     lines = [f"body of {about['volume']:.6g} m3, sliding to {about['bearing']:.1f} degrees",
-             "F = 1 with   friction, degrees   cohesion, Pa"]
+             f"F = 1 with   friction, degrees   cohesion, {name}"]
     places = [*np.arange(0.0, line.friction[-1], 10.0), line.friction[-1]]
     for phi in places:
-        lines.append(f"             {phi:17.2f}   {np.interp(phi, *line):12.5g}")
+        lines.append(f"             {phi:17.2f}   {np.interp(phi, *line) / unit:12.5g}")
     return "\n".join(lines)

@@ -109,7 +109,7 @@ def draw_section(axes, raster: Raster, row: Dict[str, float], mask: np.ndarray, 
     axes.plot(way, ground, color="black", lw=1.0)
     if below is not None:
         axes.plot(way, np.fmin(below, ground), color="gray", lw=1.0, ls="--", label="bedrock")
-        axes.legend(loc="best")
+        figures.legend_above(axes)
     axes.plot(way, np.where(there, base, np.nan), color=colour, lw=1.2)
     axes.set(xlabel="in the direction of sliding (m)", ylabel="height (m)", aspect="equal")
     axes.set_title(f"{row['rank']:.0f}: F = {row['factor']:.3f}, yield coefficient {row['yield']:.3f}", loc="left")

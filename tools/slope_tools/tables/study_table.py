@@ -1,5 +1,5 @@
 """The tables over all runs of a study, and over its combinations: as a CSV and on the screen."""
-from typing import Any, Dict, Tuple
+from typing import Any, Dict, List, Tuple
 
 from rich.table import Table
 
@@ -29,6 +29,9 @@ SHOWN: Dict[str, Tuple[str, Any]] = {      # head, format
 SHOWN_ROAD: Dict[str, Tuple[str, Any]] = {
     "remove_m3": ("to remove", None), "remove_on_road_m3": ("on the road", None),
     "beyond_road_m3": ("beyond it", None), "blocked_m": ("blocked m", "{:.0f}")}
+# heads of the columns that a narrow screen lacks first; then it lacks the last ones
+LESS = ("wall s", "deg", "lost", "on grid", "moves", "farthest ball m", "released", "blocked m", "stop s",
+        "99 % within m", "beyond it", "length m", "end", "on the road")
 
 
 def table(settings, repeated, rows, defaults):
@@ -61,6 +64,30 @@ def varied(settings):
     same = {name: several[0] for name, several in settings.items() if len(several) == 1}
     caption = "in all runs " + ", ".join(f"{name} {value}" for name, value in same.items()) if same else None
     return [name for name in settings if name not in same], caption
+
+
+def width_of(shown: Table) -> int:
+    """Characters that a table needs so that no cell is cut; its heads may be broken between words."""
+    return 1 + sum(3 + least(column) for column in shown.columns)
+
+
+def least(column) -> int:
+    return max(map(len, (*str(column.header).split(), *column.cells)), default=0)
+
+
+def fit(shown: Table, width: int) -> List[str]:
+    """Take columns out of a table until it fits a width; their heads."""
+    left_out = []
+    while width_of(shown) > width and len(shown.columns) > 1:
+        heads = [str(column.header) for column in shown.columns]
+        head = next((head for head in LESS if head in heads), heads[-1])
+        del shown.columns[heads.index(head)]
+        left_out.append(head)
+    room = width - width_of(shown)
+    for k, column in enumerate(shown.columns):
+        more = min(max(room, 0), max(len(str(column.header)) - least(column), 0))
+        column.width, column._index, room = least(column) + more, k, room - more
+    return left_out
 
 
 def runs_shown(settings, rows, scatters, title) -> Table:

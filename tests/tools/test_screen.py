@@ -1,0 +1,144 @@
+"""What commands show on a screen: tables that fit it, JSON in every line for programs, what a bare command would do."""
+import io
+import json
+import sys
+import warnings
+from types import SimpleNamespace
+
+import pytest
+from rich.console import Console
+from rich.table import Table
+
+from run_helpers import run_command
+
+from slope_tools import cli
+from slope_tools.commands import polygon, run_arguments
+from slope_tools.report import document, warnings as report_warnings
+from slope_tools.report.page import ENDS, MOST_ROWS, Page
+from slope_tools.tables import study_table
+from slope_tools.findings import Finding
+
+CELLS = {"rolling": "0.05", "released": "17,522", "wall s": "1,234", "deg": "22.1", "99 % within m": "123.4",
+         "length m": "130.2", "farthest ball m": "155.1", "end": "at rest", "to remove": "12,345",
+         "on the road": "9,876"}
+
+
+def runs():
+    found = Table(title="three runs", caption="in all runs friction 30")
+    for head in CELLS:
+        found.add_column(head, justify="right")
+    for _ in range(3):
+        found.add_row(*CELLS.values())
+    found.add_row("0.1", "failed")
+    return found
+
+
+@pytest.mark.parametrize("width", [180, 120, 90, 70, 50, 40])
+def test_a_table_fits_and_no_number_is_cut(width):
+    shown, out = runs(), io.StringIO()
+    left_out = study_table.fit(shown, width)
+    Console(file=out, width=width).print(shown)
+    lines = out.getvalue().splitlines()
+    kept = [cell for head, cell in CELLS.items() if head not in left_out]
+    assert max(map(len, lines)) <= width and "0.05" in kept
+    assert sum([cell.strip() for cell in line.strip("│ ").split("│")] == kept for line in lines) == 3
+    assert left_out == [head for head in study_table.LESS if head in CELLS][:len(left_out)]
+    assert bool(left_out) == (width < study_table.width_of(runs())) and len(left_out) < len(CELLS) - 2
+
+
+@pytest.mark.parametrize("all_columns", [False, True])
+def test_the_rest_is_named_or_asked_for(all_columns, monkeypatch, capsys):
+    monkeypatch.setenv("COLUMNS", "60")
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True, raising=False)
+    run_arguments.teller(all_columns)(runs())
+    out = capsys.readouterr().out
+    assert ("--all-columns" in out) != all_columns and "friction 30" in out
+    assert ("1,234" in out) == all_columns and "12,345" in out
+
+
+# --- --progress json ---
+
+@pytest.mark.parametrize("words, level, text", [
+    ("polygon none.csv --terrain none.asc -o out.csv", "error", "none.asc"),
+    ("polygon", "error", "the following arguments are required"),
+    ("polygon none.csv --terrain none.asc -o out.csv --crs EPSG:6677", "note", "--crs is --assign-crs now"),
+    ("nonsense", "error", "invalid choice"),
+    ("bench --quick", "error", "must be called in a checkout")])
+def test_every_line_is_an_object(words, level, text, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    if words.startswith("bench"):
+        monkeypatch.setattr(cli, "TESTS", tmp_path)
+    try:
+        status = cli.main(["--progress", "json", *words.split()])
+    except SystemExit as ended:
+        status = ended.code
+    said = [json.loads(line) for line in capsys.readouterr().err.splitlines()]
+    assert status == 2 and [one for one in said if one["level"] == level and text in one["text"]]
+
+
+@pytest.mark.parametrize("before", [[], ["--progress=json"]])
+def test_a_warning_of_a_library_is_a_line_of_ours(before, monkeypatch, capsys):
+    def warns(_):
+        warnings.warn("two\tnumbers are one", UserWarning)
+    monkeypatch.setattr(polygon, "run", warns)
+    mine = warnings.showwarning
+    with warnings.catch_warnings():
+        warnings.simplefilter("always")
+        assert cli.main([*before, "polygon", "a.csv", "--terrain", "t.asc", "-o", "o.csv"]) == 0
+        [line] = capsys.readouterr().err.splitlines()
+    if before:
+        assert json.loads(line)["level"] == "warning" and json.loads(line)["text"] == "two\tnumbers are one"
+    else:
+        assert line == "slope polygon: warning: two\tnumbers are one"
+    assert warnings.showwarning is mine
+
+
+# --- commands that take long ---
+
+@pytest.mark.parametrize("command, word", [("verify", "01_restitution"), ("bench", "throughput"),
+                                           ("crosscheck", "bounce")])
+def test_a_bare_command_says_what_it_would_do(command, word, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    status, out, err = run_command(command, "", capsys)
+    assert status == 0 and not err and word in out and "would" in out and f"slope {command} -o DIR" in out
+    assert not list(tmp_path.iterdir())
+
+
+# --- whose fault it is ---
+
+def test_a_fault_of_the_page_is_no_bad_input(tmp_path, monkeypatch, capsys):
+    class Broken:
+        def __init__(self, _):
+            pass
+
+        def content(self):
+            raise KeyError("cards")
+    monkeypatch.setattr("slope_tools.report.page.Page", Broken)
+    with pytest.raises(KeyError):
+        document.make(document.Asked(tmp_path))
+
+
+# --- the page ---
+
+def test_that_a_road_has_no_crs_is_said_beside_the_maps_not_in_red():
+    sizes = "sizes of balls"
+    several = [Finding("no CRS", {"file": "road.csv", "coordinates": "local"}, (), part) for part in ("", sizes)]
+    several.append(Finding("size error", {"why": "too few runs"}, (), sizes))
+    data = SimpleNamespace(rows=[], finished=[], warnings=lambda: several)
+    assert report_warnings.of_study(data) == [("red", "sizes of balls: the size error is unknown: too few runs")]
+
+
+@pytest.mark.parametrize("number", [MOST_ROWS, 96])
+def test_of_very_many_runs_the_table_has_the_ends(number):
+    volumes = [(37 * k) % 97 for k in range(number)]
+    rows = [{"run": f"r{k}", "status": "finished", "remove_m3": volume} for k, volume in enumerate(volumes)]
+    rows[3].update(status="failed")
+    data = SimpleNamespace(rows=rows, finished=[row for row in rows if row["status"] == "finished"])
+    page = SimpleNamespace(data=data, counts=lambda: ("to remove", "m3", "remove_m3"))
+    found = Page.in_table(page)
+    if number == MOST_ROWS:
+        assert found == rows and Page.which_rows(page) == "All runs"
+        return
+    left = sorted(volume for k, volume in enumerate(volumes) if k != 3)
+    assert [row["remove_m3"] for row in found[:-1]] == [*left[:ENDS], *left[-ENDS:]] and found[-1] is rows[3]
+    assert '96 runs' in Page.which_rows(page) and '"to remove"' in Page.which_rows(page)
