@@ -352,7 +352,7 @@ def test_numbers_alone_with_a_failing_run(slope, here):
     failed = [row for row in table if row["status"] == "failed"]
     assert failed and all(float(row["friction"]) > 37 and row["score"] == "" for row in failed)
     assert f"caveat: {len(failed)} of 12 runs failed and are left out" in out
-    assert sum("xoffset" in text for text in about["doubts"]) == 1        # the deck has it, and nothing moves it
+    assert sum("xoffset" in one["text"] for one in about["doubts"]) == 1        # the deck has it, and nothing moves it
     assert [entry["name"] for entry in about["targets"]] == ["length along the fall path", "area covered",
                                                              "volume on the road"]
     assert not Path("out/predicted.png").exists()

@@ -178,10 +178,10 @@ def test_what_speaks_against_a_size_error(tmp_path):
     same = {"rolling": "0", "field_d": "1.250", "out": "b", "xoffset": "0"}
     road = {"cut_angle": 30.0, "mesh": 10.0}
     assert errors.doubts("in.tiny", same, ["xoffset"], road) == []
-    assert errors.doubts("in.other", {**same, "rolling": "0.1", "field_d": "0.9"}, ["rolling", "xoffset"],
-                         {"cut_angle": 35.0, "mesh": 10.0}) == [
-        "the size error is that of another deck, in.tiny",
-        "the size error was found with field_d 1.25 instead of 0.9, cut angle 30 instead of 35"]
+    assert [one.numbers for one in errors.doubts(
+        "in.other", {**same, "rolling": "0.1", "field_d": "0.9"}, ["rolling", "xoffset"],
+        {"cut_angle": 35.0, "mesh": 10.0})] == [
+            {"deck": "in.tiny"}, {"other": "field_d 1.25 instead of 0.9, cut angle 30 instead of 35"}]
 
 
 @pytest.mark.parametrize("runs, field, d, words", [
@@ -290,7 +290,7 @@ def test_what_a_repeat_does_not_change_counts_once(slope):
     deck.write_text(deck.read_text().replace("variable  xoffset", "variable  seed index 0\nvariable  xoffset"))
     status, out, err = slope("--converge d=1.25,1 --set steps=100 --repeat seed=1,2 --of centroid_m -o out")
     assert status == 0, err
-    assert "a repeated variable has no effect, to the last digit, in steps_100_d_1.25_seed_1, " in err
+    assert "a repeated variable has no effect, to the last digit: left out (steps_100_d_1.25_seed_1; " in err
     sizes = yaml.safe_load(Path("out/converge.yaml").read_text())["quantities"]["centroid_m"]["sizes"]
     assert [size["runs"] for size in sizes] == [1, 1]
 

@@ -16,7 +16,7 @@ from slope_tools.commands import polygon, run_arguments
 from slope_tools.report import document, warnings as report_warnings
 from slope_tools.report.page import ENDS, MOST_ROWS, Page
 from slope_tools.tables import study_table
-from slope_tools.warned import Warned
+from slope_tools.findings import Finding
 
 CELLS = {"rolling": "0.05", "released": "17,522", "wall s": "1,234", "deg": "22.1", "99 % within m": "123.4",
          "length m": "130.2", "farthest ball m": "155.1", "end": "at rest", "to remove": "12,345",
@@ -122,8 +122,8 @@ def test_a_fault_of_the_page_is_no_bad_input(tmp_path, monkeypatch, capsys):
 
 def test_that_a_road_has_no_crs_is_said_beside_the_maps_not_in_red():
     sizes = "sizes of balls"
-    several = [Warned("no CRS", {"file": "road.csv", "coordinates": "local"}, (), part) for part in ("", sizes)]
-    several.append(Warned("size error", {"why": "too few runs"}, (), sizes))
+    several = [Finding("no CRS", {"file": "road.csv", "coordinates": "local"}, (), part) for part in ("", sizes)]
+    several.append(Finding("size error", {"why": "too few runs"}, (), sizes))
     data = SimpleNamespace(rows=[], finished=[], warnings=lambda: several)
     assert report_warnings.of_study(data) == [("red", "sizes of balls: the size error is unknown: too few runs")]
 

@@ -56,8 +56,8 @@ def test_bodies_table_map_and_warnings(low, capsys):
     assert rows[0]["cells"] * 0.25 == pytest.approx(rows[0]["area"], rel=0.02)
     about = yaml.safe_load(Path("slips/stability.yaml").read_text())
     assert test_depends_on.SAID["stability"] - {"failed"} <= about.keys() and about["method"] == "bishop"
-    assert f"only {len(rows)} of 9 bodies" in about["warnings"][0] and len(rows) < 9
-    assert all(f"stability: warning: {line}\n" in err for line in about["warnings"])
+    assert f"only {len(rows)} of 9 bodies" in about["warnings"][0]["text"] and len(rows) < 9
+    assert all(f"stability: warning: {one['text']}\n" in err for one in about["warnings"])
     assert Path("slips/stability.png").stat().st_size > 10000
 
     # its deck runs from where it lies, and slope fragility reads what it left

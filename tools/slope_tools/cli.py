@@ -18,7 +18,7 @@ import traceback
 import warnings
 from pathlib import Path
 
-from . import disk, options, warned
+from . import disk, options, findings
 from .errors import SlopeError
 from .provenance import version
 
@@ -72,8 +72,8 @@ class Parser(argparse.ArgumentParser):
 
 def say(level, command, text):
     """An error or a note on standard error, as a line of words or of JSON."""
-    if warned.as_json:
-        warned.say_json(level, command=command, text=str(text))
+    if findings.as_json:
+        findings.say_json(level, command=command, text=str(text))
     else:
         print(f"slope{f' {command}' * (command != 'slope')}: {'note: ' * (level == 'note')}{text}", file=sys.stderr)
 
@@ -140,7 +140,7 @@ def main(argv=None):
     words = os.environ["COMP_LINE"].split() if completes else argv
     asked = next((word for word in words if word in every), None)
     before = argv[:argv.index(asked)] if asked in argv else argv
-    warned.as_json = "--progress=json" in before or ("--progress", "json") in zip(before, before[1:])
+    findings.as_json = "--progress=json" in before or ("--progress", "json") in zip(before, before[1:])
     for name, summary in every.items():
         if name == asked:
             add_command(commands, name, module_of(name, parser), help=summary)
@@ -152,7 +152,7 @@ def main(argv=None):
     shown = warnings.showwarning
     try:
         check_names(argv)
-        warnings.showwarning = lambda message, *_, **__: warned.printer(args.command)(str(message))     # of libraries
+        warnings.showwarning = lambda message, *_, **__: findings.printer(args.command)(str(message))     # of libraries
         args.run(args)
     except SlopeError as error:
         if args.debug:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import List, Optional, Tuple
 
-from .. import warned
+from .. import findings
 from ..case import data_files, decks
 from ..case.settings import check_settings, one_value_each
 from ..deposits.score import THRESHOLD
@@ -96,7 +96,7 @@ def run(args: Request) -> None:
     wanted.check(args.road is not None)
     terrain = study.terrain_of(args.deck, fixed)
     if terrain:
-        wanted.check_place(terrain, warned.printer("calibrate"))
+        wanted.check_place(terrain, findings.printer("calibrate"))
     settings = {name: [value] for name, value in fixed.items()}
     files = data_files.data_files(args.deck, {**settings, **repeated})
     setup = run_arguments.setup_of(args)

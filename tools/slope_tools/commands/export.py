@@ -1,9 +1,9 @@
 """slope export: every raster of a run as a GeoTIFF in the coordinates of the survey, for a GIS; or zones."""
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, List, Optional
+from typing import Any, Dict, Optional
 
-from .. import disk, warned
+from .. import disk, findings
 from ..case import run_folders
 from ..deposits import deposit
 from ..deposits.export import file_of, layers, write
@@ -71,7 +71,7 @@ def run_zones(args: Request, zones_: str) -> None:
     own = Path(args.prefix, "zones") if Path(args.prefix).is_dir() else Path(f"{args.prefix}.zones")
     folder = args.output or own
     disk.check_folder(folder, ["zones.gpkg", "zones.yaml"], [args.prefix], args.overwrite)
-    ground = zones.ground_of(args.prefix, warned.printer("export"))
+    ground = zones.ground_of(args.prefix, findings.printer("export"))
     zones.check(ground, wanted, args.prefix)
     several = [zones.of(ground, limit, wanted) for limit in limits]
     about: Dict[str, Any] = {"of": args.prefix, **zones.about(ground, several, wanted)}
@@ -88,8 +88,7 @@ def run_zones(args: Request, zones_: str) -> None:
 
 def run_rasters(args: Request) -> None:
     """The rasters of a run."""
-    warnings: List[str] = []
-    warn = warned.warner("export", warnings)
+    warn, warnings = findings.warner("export")
     named = run_folders.named_run(args.prefix)
     run_ = deposit.read(named.prefix, args.terrain, warn)
     folder = args.output or (named.folder / "export" if named.folder else Path(f"{named.prefix}.export"))
@@ -100,7 +99,7 @@ def run_rasters(args: Request) -> None:
              "origin": {"east": place.offset[0], "north": place.offset[1]}, "cell": run_.cell,
              "run": {"slope_version": run_.summary.get("slope_version"), "time": run_.summary["time"]}, "rasters": []}
     if not any(layer.kind == "base" for layer in found):
-        warn(warned.Warned("no base", {"file": f"{named.prefix}.base.asc"}))
+        warn(findings.Finding("no base", {"file": f"{named.prefix}.base.asc"}))
     with disk.complete(folder, "export.yaml") as new:
         for layer in rasters.progress(found, "writing GeoTIFFs"):
             about["rasters"].append(write(new, layer, place))

@@ -6,7 +6,7 @@ from typing import Any, List, Optional
 
 import numpy as np
 
-from .. import disk, warned
+from .. import disk, findings
 from ..errors import SlopeError
 from ..options import Overwrite, flag, option, positional, several, whole
 
@@ -80,8 +80,7 @@ def run(args: Request) -> None:
                           fragility.frequency(one, hazard, peaks) if hazard else None,
                           float((one <= 0).all(axis=1).mean()), float(np.median(one)))
               for name, one in zip(names, columns)]
-    kept: List[str] = []
-    warn = warned.warner("fragility", kept)
+    warn, kept = findings.warner("fragility")
     for one in warnings_of(curves, peaks, found, args.pseudo_static, len(args.record), hazard):
         warn(one)
     about = {"bodies": [{"body": body.name, "volume_m3": body.columns.volume,
@@ -185,31 +184,32 @@ def warnings_of(curves, peaks, found, pseudo_static, records, hazard):
     if pseudo_static is not None:
         judged = "cautious" if pseudo_static >= 1 else \
             "not cautious: a long motion may move it at a lower peak, use --record"
-        yield warned.Warned("pseudo-static", {"factor": pseudo_static, "judged": judged})
+        yield findings.Finding("pseudo-static", {"factor": pseudo_static, "judged": judged})
     elif records == 1:
-        yield warned.Warned("one record")
+        yield findings.Finding("one record")
     for body in found:
         if len(body.columns.area) < FEWEST:
-            yield warned.Warned("columns", {"body": body.name, "value": len(body.columns.area), "limit": FEWEST})
+            yield findings.Finding("columns", {"body": body.name, "value": len(body.columns.area), "limit": FEWEST})
     for one in curves:
         standing = one.at_rest * hazard.rates[0] / one.frequency.total.value if one.frequency else 0.0
         if one.at_rest > 0.01 or standing > 0.05:
             makes = f", which makes {100 * standing:.2g} % of the frequency" if standing > 0.05 else ""
-            yield warned.Warned("at rest", {"which": one.title, "percent": 100 * one.at_rest, "makes": makes})
+            yield findings.Finding("at rest", {"which": one.title, "percent": 100 * one.at_rest, "makes": makes})
         for k, outside, end, remedy in ((-1, peaks[-1] < one.half < math.inf, "largest", "larger"),
                                         (0, 0 < one.half < peaks[0], "smallest", "smaller")):
             if outside:
-                yield warned.Warned("peaks", {"which": one.title, "peak": float(peaks[k]), "end": end, "remedy": remedy,
-                                              "percent": 100 * float(one.band.value[k]), "half": one.half})
+                yield findings.Finding("peaks", {
+                    "which": one.title, "peak": float(peaks[k]), "end": end, "remedy": remedy,
+                    "percent": 100 * float(one.band.value[k]), "half": one.half})
         if one.fit is None:
-            yield warned.Warned("no fit", {"which": one.title})
+            yield findings.Finding("no fit", {"which": one.title})
         elif one.fit.off > 0.05:
-            yield warned.Warned("fit is off", {"which": one.title, "difference": float(one.fit.off)})
+            yield findings.Finding("fit is off", {"which": one.title, "difference": float(one.fit.off)})
         if one.fit and one.fit.at_hclpf > 1.5 * one.fit.at_hclpf_fitted:
-            yield warned.Warned("HCLPF", {"which": one.title, "percent": 100 * float(one.fit.at_hclpf),
-                                          "fitted": 100 * float(one.fit.at_hclpf_fitted)})
+            yield findings.Finding("HCLPF", {"which": one.title, "percent": 100 * float(one.fit.at_hclpf),
+                                             "fitted": 100 * float(one.fit.at_hclpf_fitted)})
         if one.frequency and one.frequency.beyond > 0.1 * one.frequency.total.value:
-            yield warned.Warned("beyond the curve", {"which": one.title, "per_year": float(one.frequency.beyond)})
+            yield findings.Finding("beyond the curve", {"which": one.title, "per_year": float(one.frequency.beyond)})
 
 
 def summary(curves, folder, files):

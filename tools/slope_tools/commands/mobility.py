@@ -5,6 +5,7 @@ from typing import Optional
 
 from .. import disk
 from ..errors import SlopeError
+from ..findings import printer
 from ..mobility import body, fall_path, known, results, road
 from ..options import Overwrite, option, positional
 from ..releases import release
@@ -12,7 +13,6 @@ from ..sites import site_choices
 from ..sites.site_layers import ROAD
 from ..survey import lines, roads
 from ..survey.crs import as_crs
-from ..warned import printer
 from . import known_arguments, road_arguments
 from .release_arguments import Body, wanted
 

@@ -8,10 +8,10 @@ from shapely.geometry import box
 
 from ..case.decks import quoted, warn_of_name
 from ..disk import check_file, check_standing
+from ..findings import Finding, printer
 from ..options import Overwrite, flag, option, positional
 from ..survey import polygons, rasters, vectors
 from ..survey.crs import as_crs
-from ..warned import Warned, printer
 
 SLOW = 5.0     # s; a run that took longer says so
 DESCRIPTION = "Polygons (GeoJSON, shapefile, CSV, WKT) to the .csv in local metres that decks read."
@@ -55,7 +55,7 @@ def run(args: Request) -> None:
                                    advice=polygons.OF_ASSIGN_CRS, warn=warn)
     beyond = 1 - geometry.intersection(box(*place.extent)).area / geometry.area
     if beyond > 1e-9:
-        warn(Warned("outside", {"file": args.input, "percent": 100 * beyond, "terrain": args.terrain}))
+        warn(Finding("outside", {"file": args.input, "percent": 100 * beyond, "terrain": args.terrain}))
     warn_of_name(args.output, warn)
     geometry = polygons.write(args.output, geometry, place)
     print(summary(args.output, geometry))

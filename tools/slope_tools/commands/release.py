@@ -3,7 +3,7 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
-from .. import disk, warned
+from .. import disk, findings
 from ..case import decks
 from ..releases import release, release_files
 from ..survey import vectors
@@ -43,7 +43,7 @@ def run(args: Request) -> None:
     disk.check_standing(args.output.with_name(args.output.name + ".yaml"), made, sources, args.overwrite)
     body = release.body_of(asked)
     print(release.text(body), flush=True)
-    tell = warned.printer("release")
+    tell = findings.printer("release")
     for line in body.warnings:
         tell(line)
     for path in (os.path.relpath(args.terrain, args.output.parent), args.output.name):

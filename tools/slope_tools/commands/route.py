@@ -6,10 +6,10 @@ from typing import Any, List, Optional
 
 from .. import disk
 from ..errors import SlopeError
+from ..findings import printer
 from ..options import count, number, option, positional, whole
 from ..programs import find_lmp
 from ..runs import jobs
-from ..warned import printer
 from . import road_arguments
 from .run_arguments import Engine, engine_of
 

@@ -11,12 +11,12 @@ from rich.table import Table
 from ..case.settings import check_settings
 from ..ensembles import known_events
 from ..errors import SlopeError
+from ..findings import printer
 from ..options import Program, flag, number, option, several, whole
 from ..sites import site_choices
 from ..statistics import designs
 from ..studies.setup import Road, Setup
 from ..tables import intensity, study_table
-from ..warned import printer
 from . import known_arguments, road_arguments
 
 DECK = "LAMMPS input deck with one fix deposit/grid; the plain files beside it are its data"

@@ -6,6 +6,7 @@ from shlex import quote
 from typing import Any, Dict, List, Optional
 
 from ..errors import SlopeError
+from ..findings import printer
 from ..options import Program, option, positional, whole
 from ..plots import site_map
 from ..programs import find_lmp
@@ -17,7 +18,6 @@ from ..slips import bodies
 from ..studies import site_ground
 from ..survey import roads
 from ..survey.rasters import UNITS
-from ..warned import printer
 from . import known_arguments, road_arguments
 
 # option -> section and key of site.yaml

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Dict, List, Optional, Tuple
 
-from .. import disk, warned
+from .. import disk, findings
 from ..case import slip_deck
 from ..case.slip_deck import PREFIX
 from ..errors import SlopeError
@@ -94,8 +94,7 @@ def run(args: Request) -> None:
     disk.check_folder(args.output, FILES, [args.terrain], args.overwrite)
     raster = rasters.read_asc_local(args.terrain)
     polygon = polygons.read_local(args.within, raster, args.local) if args.within else None
-    kept: List[str] = []
-    warn = warned.warner("stability", kept)
+    warn, kept = findings.warner("stability")
     with disk.complete(args.output, FILES[-1]) as folder:
         said = slip_run.run(asked, polygon, raster, folder, lmp, args.np or 1,
                             lambda line: print(line, flush=True))
@@ -122,13 +121,13 @@ def warnings_of(cohesion: float, density: float, rows, masks, rock):
     import numpy as np
 
     if 0 < cohesion < FAINT:
-        yield warned.Warned("in kPa", {"value": cohesion})
+        yield findings.Finding("in kPa", {"value": cohesion})
     if density < LIGHT:
-        yield warned.Warned("in kN", {"value": density})
+        yield findings.Finding("in kN", {"value": density})
     for row, mask in zip(rows, masks):
         share = 0.0 if rock is None else np.isnan(rock[mask]).mean()
         if share > 0:
-            yield warned.Warned("bedrock", {"body": int(row["rank"]), "percent": 100 * float(share)})
+            yield findings.Finding("bedrock", {"body": int(row["rank"]), "percent": 100 * float(share)})
 
 
 def asked_of(args: Request) -> slip_deck.Asked:

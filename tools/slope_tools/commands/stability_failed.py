@@ -1,7 +1,7 @@
 """slope stability --failed: on which strengths a body that failed has F = 1."""
-from typing import Any, List, Sequence, Tuple
+from typing import Any, Sequence, Tuple
 
-from .. import disk, warned
+from .. import disk, findings
 from ..errors import SlopeError
 
 SEARCH = ("cohesion", "friction", "layer", "volume", "depth", "within", "method", "shape", "keep", "np", "lmp")
@@ -30,8 +30,7 @@ def run(args: Any) -> None:
     body = failed.read(args.failed, raster, way, args.density, table, rock)
     line = back.line(body.columns, horizontal, vertical, ratio)
     far = back.line(body.far, horizontal, vertical, ratio) if body.far else None
-    kept: List[str] = []
-    warn = warned.warner("stability", kept)
+    warn, kept = findings.warner("stability")
     for one in warnings_of(body, line, far):
         warn(one)
     about = {"terrain": args.terrain, "failed": args.failed, "density": args.density, "seismic": shaking,
@@ -59,8 +58,8 @@ def warnings_of(body, line, far):
     from ..slips.columns import FEWEST
 
     if len(body.columns.area) < FEWEST:
-        yield warned.Warned("few columns", {"cells": len(body.columns.area), "limit": FEWEST})
+        yield findings.Finding("few columns", {"cells": len(body.columns.area), "limit": FEWEST})
     if far is not None:
         change = far.cohesion[0] / line.cohesion[0] - 1
         if abs(change) > APART:
-            yield warned.Warned("no sphere", {"percent": 100 * float(change)})
+            yield findings.Finding("no sphere", {"percent": 100 * float(change)})

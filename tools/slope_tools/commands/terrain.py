@@ -7,9 +7,9 @@ from typing import List, Optional
 from ..case.decks import quoted, warn_of_name
 from ..disk import check_file, check_standing
 from ..errors import SlopeError
+from ..findings import printer
 from ..options import Overwrite, number, option, positional, several, whole
 from ..survey import local_terrain, rasters
-from ..warned import printer
 
 DESCRIPTION = "Survey rasters (GeoTIFF, ESRI ASCII grid, FG-GML) to the plain terrain.asc that decks read."
 EPILOG = """\

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import List, Optional
 
-from .. import disk, warned
+from .. import disk, findings
 from ..deposits import travel
 from ..options import Overwrite, number, option, positional, whole
 
@@ -55,7 +55,7 @@ def run(args: Request) -> None:
     wanted = travel.Wanted(args.axis, args.origin, args.along, args.across, args.type)
     travel.check(args.dumps, args.start, wanted)
     disk.check_folder(args.output, travel.FILES, args.dumps, args.overwrite)
-    about = travel.of_dumps(args.dumps, args.start, wanted, args.output, warned.printer("travel"))
+    about = travel.of_dumps(args.dumps, args.start, wanted, args.output, findings.printer("travel"))
     print(summary(about, args.output))
 
 

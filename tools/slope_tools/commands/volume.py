@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Optional
 
-from .. import disk, warned
+from .. import disk, findings
 from ..deposits import volume
 from ..deposits.volume import CUT_ANGLE, MUCH_BELOW, SAMPLES
 from ..options import Overwrite, flag, option, positional, whole
@@ -59,7 +59,7 @@ def run(args: Request) -> None:
     volume.check(wanted)
     folder = args.output or Path(f"{args.prefix}.volume")
     disk.check_folder(folder, volume.FILES, [args.prefix, args.road], args.overwrite)
-    found = volume.of_run(args.prefix, wanted, args.terrain, warned.printer("volume"))
+    found = volume.of_run(args.prefix, wanted, args.terrain, findings.printer("volume"))
     volume.write(found, folder, picture=not args.no_picture)
     print(summary(found.about, folder))
 

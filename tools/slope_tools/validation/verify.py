@@ -11,7 +11,7 @@ import yaml
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from .. import disk, processes, provenance, schemas, warned
+from .. import disk, processes, provenance, schemas, findings
 from ..case import last_words, logs
 from ..errors import SlopeError
 from ..runs import jobs
@@ -121,8 +121,8 @@ class Bar:
 
     def say(self, what):
         self.bar.update(self.task, description=what)
-        if self.as_lines and warned.as_json:
-            warned.say_json("progress", share=self.bar.tasks[0].percentage / 100, text=what)
+        if self.as_lines and findings.as_json:
+            findings.say_json("progress", share=self.bar.tasks[0].percentage / 100, text=what)
         elif self.as_lines:
             print(f"slope verify: {what}", file=sys.stderr, flush=True)
 
