@@ -183,15 +183,20 @@ WORDS: Dict[str, Union[str, Words]] = {
     "more than released": Words("it is more than the {released:,.6g} m3 that are released, which is impossible: the "
                                 "scatter or the size error is too uncertain to give a number", NOTE),
     "two outcomes": Words("{few} of the {runs} runs of {combination} have less than {percent:g} % of the volume of the "
-                          "others, which the scatter by chance does not describe ({outcome})", NOTE),
+                          "others, which the scatter by chance does not describe ({why})", NOTE),
+    "hardly reaches": Words("{few} of the {runs} runs of {combination} have less than {percent:g} % of the volume of "
+                            "the others, which the scatter by chance does not describe (the mass came down in these, "
+                            "too, and hardly reached the road)", NOTE),
     "more in a run": Words("{run} gave more, {volume:,.6g} m3", NOTE),
     "scatters more": Words("its runs scatter more than the others, by {mine:,.6g} instead of {others:,.6g} m3: the "
                            "common scatter may be too small for it", NOTE),
     "fails at times": Words("at {variable} {values} the slope fails in some runs and stands in others: the scatter is "
                             "that between the two, not that of a volume; use the probabilities at each intensity",
                             NOTE),
-    "arrives at times": Words("at {variable} {values} the mass reaches the road in some runs only: the scatter is that "
+    "reaches at times": Words("at {variable} {values} the mass reaches the road in some runs only: the scatter is that "
                               "between the two, not that of a volume; use the probabilities at each intensity", NOTE),
+    "other mass": Words("the mapped deposit holds {percent:.0f} % {which} than is released, {mapped:,.0f} m3 of "
+                        "{released:,.0f}: thicknesses and volumes cannot agree everywhere", NOTE),
     "not repeated": Words("the scatter is that of {repeated} alone: {offsets} of the deck not repeated", NOTE),
     "half step": Words("{text}", NOTE),
     "no file of sizes": Words("{file}, from which the study took its size error, does not exist, so there are no "
@@ -230,7 +235,6 @@ WORDS: Dict[str, Union[str, Words]] = {
                        "far they went is unknown, and they are left out; use a larger one", NOTE),
     "underdetermined": Words("{known} cannot determine {asked} variables", NOTE),
     "no scatter": Words("too few runs to measure the scatter by chance of {which}: the region may be too narrow", NOTE),
-    "another mass": Words("{text}", NOTE),
     "one lattice": Words("all runs have the same lattice, {offsets} not being repeated: the scatter by chance (s) "
                          "lacks what another lattice changes, and the region may be too narrow or beside the truth",
                          NOTE),

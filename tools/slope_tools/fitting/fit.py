@@ -158,14 +158,14 @@ class Fit:
             several.append(Finding("one lattice", {"offsets": ", ".join(offsets)}))
         lacks = self.mass()
         if lacks:
-            several.append(Finding("another mass", {"text": lacks}))
+            several.append(lacks)
         return several + judged.not_at_rest([row for row in self.rows.values() if row["status"] == "finished"])
 
-    def mass(self) -> str:
-        """That the mapped thickness cannot be of the mass that is released; "" where it can, or nothing is known."""
+    def mass(self) -> Optional[Finding]:
+        """That the mapped thickness cannot be of the mass that is released; None where it can, or nothing is known."""
         released = [row["released_m3"] for row in self.rows.values() if row["status"] == "finished"]
         volume = self.observed.volume
-        return mapped.mass(volume, sum(released) / len(released)) if released else ""
+        return mapped.mass(volume, sum(released) / len(released)) if released else None
 
     def gone(self) -> List[Mapping[str, Any]]:
         """The runs that lost so much that they are left out."""

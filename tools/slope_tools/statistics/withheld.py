@@ -44,9 +44,8 @@ def few_balls(facts: Facts) -> Optional[Finding]:
     number = facts.on_road / facts.ball
     if not facts.volume > 0 or number >= BALLS:
         return None
-    return Finding(Kind.BALLS.value, {
-        "number": number, "bound": BALLS, "balls": "less than one ball" if number < 1 else
-        f"{number:.2g} ball{'s' * (f'{number:.2g}' != '1')}"})
+    balls = "less than one ball" if number < 1 else f"{number:.2g} ball{'s' * (f'{number:.2g}' != '1')}"
+    return Finding(Kind.BALLS.value, {"number": number, "bound": BALLS, "balls": balls})
 
 
 def short(facts: Facts) -> Optional[Finding]:

@@ -179,8 +179,7 @@ def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline, dif
         most = max(row["remove_m3"] for row in group.rows)
         few = [row for row in group.rows if row["remove_m3"] < FEW * most]
         if few:
-            found.append(Finding("two outcomes", {"few": len(few), "runs": len(group.rows), "combination": group.name,
-                                                  "percent": 100 * FEW, "outcome": outcome(group, few)}))
+            found.append(outcome(group, few))
     above = max(finished, key=lambda row: row["remove_m3"])
     if above["remove_m3"] > best.volume:
         found.append(Finding("more in a run", {"run": above["run"], "volume": headline.nearest(above["remove_m3"],
@@ -193,13 +192,15 @@ def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline, dif
     return found
 
 
-def outcome(group: Group, few: Sequence[Row]) -> str:
-    """Why some runs bring hardly anything, though they differ from others by chance alone: by how far the mass went."""
+def outcome(group: Group, few: Sequence[Row]) -> Finding:
+    """That some runs bring hardly anything, though they differ from others by chance alone: by how far the mass went,
+
+    because the slope stood, or because the mass came down and hardly reached the road.
+    """
     count = stood(few, group.rows)
-    if count is None:
-        return "did the slope fail in some runs only?"
-    return f"the slope stood in {count} of them" if count else \
-        "the mass came down in these, too, and hardly reached the road"
+    return Finding("hardly reaches" if count == 0 else "two outcomes", {
+        "few": len(few), "runs": len(group.rows), "combination": group.name, "percent": 100 * FEW, "stood": count,
+        "why": "did the slope fail in some runs only?" if count is None else f"the slope stood in {count} of them"})
 
 
 def stood(few: Sequence[Row], rows: Sequence[Row]) -> Optional[int]:

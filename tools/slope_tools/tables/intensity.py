@@ -111,7 +111,7 @@ def doubts(about: Mapping[str, Any]) -> List[Finding]:
     mixed = [one for line in about["lines"] for one in line["points"] if 0 < one["not_on_road"] < one["runs"]]
     found = []
     for kind, points in (("fails at times", [one for one in mixed if one["stood"]]),
-                         ("arrives at times", [one for one in mixed if not one["stood"]])):
+                         ("reaches at times", [one for one in mixed if not one["stood"]])):
         at = sorted({f"{one['at']:g}" for one in points}, key=float)
         if at:
             found.append(Finding(kind, {"variable": about["variable"], "values": ", ".join(at)}))
