@@ -4,6 +4,7 @@ Formulas become drawings by matplotlib, which need neither a network nor fonts w
 """
 import html
 import re
+import sys
 from pathlib import Path
 
 from docutils import nodes
@@ -15,6 +16,8 @@ from sphinx.util import logging
 
 logger = logging.getLogger(__name__)
 
+sys.path.insert(0, str(Path(__file__).parent))
+extensions = ["slope_options"]
 project = "SLOPE"
 version = release = re.search(r'SLOPE_VERSION "(.*)"',
                               (Path(__file__).parents[2] / "src" / "slope_version.h").read_text(encoding="ascii"))[1]

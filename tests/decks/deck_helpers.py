@@ -16,6 +16,7 @@ ENVIRONMENT = {
     "OMP_NUM_THREADS": "1",
     "OMPI_ALLOW_RUN_AS_ROOT": "1",
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    "OMPI_MCA_mpi_yield_when_idle": "1",    # see CMakeLists.txt
 }
 
 # of a run without mpirun: Open MPI 4 starts no daemon, which takes half a second, and has no folder, which runs that

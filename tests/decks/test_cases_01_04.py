@@ -5,9 +5,7 @@ test_verification.py runs it.
 """
 
 import math
-import os
 import shutil
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -15,12 +13,11 @@ import pytest
 
 from deck_helpers import run_deck
 
+from slope_tools.validation.verification.claims import number
+from slope_tools.validation.verification.slide_roll import D, G, on_a_sphere
+
 TOP = Path(__file__).resolve().parents[2]
 INPUTS = TOP / "inputs"
-sys.path.insert(0, os.environ.get("SLOPE_TOOLS", str(TOP / "tools")))
-
-from slope_tools.validation.verification.claims import number  # noqa: E402
-from slope_tools.validation.verification.slide_roll import D, G, on_a_sphere  # noqa: E402
 
 
 def run_case(folder, tmp_path, **variables):

@@ -4,6 +4,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from deck_helpers import ENVIRONMENT
 
 SCRIPT = Path(__file__).resolve().parents[1] / "fuzz_runs.py"
@@ -12,6 +14,7 @@ sys.path.insert(0, str(SCRIPT.parent))
 import fuzz_runs  # noqa: E402
 
 
+@pytest.mark.long
 def test_what_goes_on_is_what_a_restart_file_brings():
     run = subprocess.run([sys.executable, SCRIPT, "--day", "--count", "10"], env=ENVIRONMENT, capture_output=True,
                          text=True)

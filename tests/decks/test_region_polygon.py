@@ -1,9 +1,6 @@
 """region polygon: the prism over it, alone and with other regions and commands, and bad input."""
 
-import os
 import re
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,9 +8,7 @@ from shapely.geometry import Point, Polygon, box
 
 from deck_helpers import doc_examples, run_deck, write_asc
 
-sys.path.insert(0, os.environ.get("SLOPE_TOOLS", str(Path(__file__).resolve().parents[2] / "tools")))
-
-from slope_tools.survey import polygons, rasters  # noqa: E402
+from slope_tools.survey import polygons, rasters
 
 SQUARE = "0,0\n10,0\n10,10\n0,10\n"
 HOLE = SQUARE + "\n4,4\n4,7\n7,7\n7,4\n"

@@ -1,7 +1,5 @@
 """Sticking impacts: in.sticking_impact gives the law of continuous time, in whatever way the same impacts are run."""
-import os
 import shutil
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -9,12 +7,10 @@ import pytest
 
 from deck_helpers import run_deck
 
+from slope_tools.validation.verification import sticking_impact
+from slope_tools.validation.verification.claims import Result
+
 TOP = Path(__file__).resolve().parents[2]
-sys.path.insert(0, os.environ.get("SLOPE_TOOLS", str(TOP / "tools")))
-
-from slope_tools.validation.verification import sticking_impact  # noqa: E402
-from slope_tools.validation.verification.claims import Result  # noqa: E402
-
 CASE = TOP / "inputs" / "06_oblique_impact"
 DECK = (CASE / "in.sticking_impact").read_text()
 ROUGH = dict(laws=36, rolling=0.1, spin=-0.5)

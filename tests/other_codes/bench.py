@@ -5,11 +5,13 @@ alternation, evaluate (medians of the ratios of neighbouring runs), write.
 """
 import argparse
 import shutil
+from dataclasses import dataclass
 from pathlib import Path
+from typing import List, Optional
 
 from slope_tools import disk
 from slope_tools.errors import SlopeError
-from slope_tools.options import count, number
+from slope_tools.options import count, flag, option
 from slope_tools.programs import find_lmp
 from slope_tools.runs import jobs
 from . import peers
@@ -34,28 +36,26 @@ Writes DIR/bench.csv (every run), DIR/bench.yaml, DIR/bench.png, and the input o
 """
 
 
-def add_arguments(parser):
-    parser.add_argument("--quick", action="store_true",
-                        help="a small scene, few steps and repeats, without 1e6 balls and runs to rest; two minutes")
-    parser.add_argument("--balls", type=count, metavar="N", help=f"moving balls, about (default {BALLS}; --quick 8000)")
-    parser.add_argument("--field-factor", type=number, default=1.0, metavar="F",
-                        help="area of the terrain, times that of the scene (default 1: about 28,000 fixed balls)")
-    parser.add_argument("--steps", type=count, metavar="N", help="timed steps of a run (default 1000; --quick 300)")
-    parser.add_argument("--runs", type=count, metavar="N", help="runs of each kind (default 5; --quick 3)")
-    parser.add_argument("--np", default="2", metavar="N1,N2,...",
-                        help="ranks of the parts ranks and weak, besides one (default 2)")
-    parser.add_argument("--only", metavar="PART,...", help=f"these parts: {', '.join(PARTS)} (default all)")
-    parser.add_argument("--peers", metavar="CODE,...",
-                        help="these codes: " + ", ".join(code.name for code in peers.ALL[1:])
-                        + " (default all; build: the one of --lmp build=FILE)")
-    parser.add_argument("--lmp", metavar="[CODE=]FILE", action="append",
-                        help="the LAMMPS program (default: LMP of the environment, then build/lmp beside tools/); "
-                        "with CODE= that of one code: granular, hooke, or build for another build of ours")
-    parser.add_argument("-o", dest="output", metavar="DIR", type=Path, default=Path("bench"),
-                        help="folder of the results (default bench)")
+@dataclass(frozen=True, kw_only=True)
+class Request:
+    quick: bool = flag("a small scene, few steps and repeats, without 1e6 balls and runs to rest; two minutes")
+    balls: Optional[int] = option(f"moving balls, about, 100 at least (default {BALLS}; --quick 8000)", metavar="N")
+    field_factor: float = option(
+        "area of the terrain, times that of the scene (default 1: about 28,000 fixed balls)", default=1.0, metavar="F")
+    steps: Optional[int] = option("timed steps of a run (default 1000; --quick 300)", metavar="N")
+    runs: Optional[int] = option("runs of each kind (default 5; --quick 3)", metavar="N")
+    np: str = option("ranks of the parts ranks and weak, besides one (default 2)", default="2", metavar="N1,N2,...")
+    only: Optional[str] = option(f"these parts: {', '.join(PARTS)} (default all)", metavar="PART,...")
+    peers: Optional[str] = option(
+        "these codes: " + ", ".join(code.name for code in peers.ALL[1:])
+        + " (default all; build: the one of --lmp build=FILE)", metavar="CODE,...")
+    lmp: Optional[List[str]] = option(
+        "the LAMMPS program (default: LMP of the environment, then build/lmp beside tools/); with CODE= that of one "
+        "code: granular, hooke, or build for another build of ours", metavar="[CODE=]FILE", action="append")
+    output: Path = option("folder of the results (default bench)", "-o", metavar="DIR", default=Path("bench"))
 
 
-def run(args):
+def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints the tables."""
     if args.field_factor < 1:
         raise SlopeError("--field-factor", "must be >= 1", f"{args.field_factor:g}")
@@ -82,7 +82,7 @@ def run(args):
         raise SlopeError(error.filename or args.output, f"cannot be used: {error.strerror}") from error
 
 
-def check_timed(parts, ranks, args):
+def check_timed(parts, ranks, args: Request) -> None:
     """Raise SlopeError if no part has a run to time."""
     without = {}
     if args.quick:
@@ -106,14 +106,14 @@ def lmp_of_each(options, names):
     paths. names: the codes that may have a program of their own.
     """
     everybody, own = None, {}
-    for option in options or ():
-        code, equals, file = option.partition("=")
+    for word in options or ():
+        code, equals, file = word.partition("=")
         if not equals:
             if everybody is not None:
-                raise SlopeError("--lmp", "must name one program for all, others as CODE=FILE", option)
-            everybody = option
+                raise SlopeError("--lmp", "must name one program for all, others as CODE=FILE", word)
+            everybody = word
         elif code not in names:
-            raise SlopeError("--lmp", f"must be FILE, or CODE=FILE with CODE of {', '.join(names)}", option)
+            raise SlopeError("--lmp", f"must be FILE, or CODE=FILE with CODE of {', '.join(names)}", word)
         else:
             own[code] = find_lmp(file)
     return find_lmp(everybody), own

@@ -5,10 +5,13 @@ Order of the work: read a deck's final numbers (its run, with zero steps), write
 A peer is held against its twin: pair gran/restitution with those keywords that make it as the peer is (scheme plain,
 limit_damping yes). What remains is explained in Code.differs; what ours does differently by default shows in the table.
 """
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Optional
 
 from slope_tools import disk
 from slope_tools.errors import SlopeError
+from slope_tools.options import Program, flag, option
 from slope_tools.programs import find_lmp
 from slope_tools.runs import jobs
 from . import peers
@@ -29,18 +32,16 @@ Writes DIR/crosscheck.csv, DIR/crosscheck.yaml, DIR/crosscheck.png, and the inpu
 CASES = {"bounce": bounce, "slide_roll": slide_roll, "rolling": rolling, "collapse": collapse}
 
 
-def add_arguments(parser):
-    parser.add_argument("--quick", action="store_true", help="a collapse of balls of 4 m instead of 2.5 m")
-    parser.add_argument("--only", metavar="CASE,...", help=f"these cases: {', '.join(CASES)} (default all)")
-    parser.add_argument("--peers", metavar="CODE,...",
-                        help="these codes: " + ", ".join(code.name for code in PEERS) + " (default all)")
-    parser.add_argument("--lmp", metavar="FILE", help="the LAMMPS program (default: LMP of the environment, then "
-                        "build/lmp beside tools/)")
-    parser.add_argument("-o", dest="output", metavar="DIR", type=Path, default=Path("crosscheck"),
-                        help="folder of the results (default crosscheck)")
+@dataclass(frozen=True, kw_only=True)
+class Request(Program):
+    quick: bool = flag("a collapse of balls of 4 m instead of 2.5 m")
+    only: Optional[str] = option(f"these cases: {', '.join(CASES)} (default all)", metavar="CASE,...")
+    peers: Optional[str] = option(
+        "these codes: " + ", ".join(code.name for code in PEERS) + " (default all)", metavar="CODE,...")
+    output: Path = option("folder of the results (default crosscheck)", "-o", metavar="DIR", default=Path("crosscheck"))
 
 
-def run(args):
+def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input, and when codes disagree. Prints the comparison."""
     cases = peers.chosen("--only", args.only, CASES)
     names = peers.chosen("--peers", args.peers, [code.name for code in PEERS])

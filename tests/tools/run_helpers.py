@@ -3,7 +3,6 @@ import json
 import math
 import os
 import shlex
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -12,12 +11,10 @@ import yaml
 from rasterio.crs import CRS
 from shapely.geometry import mapping
 
+from slope_tools import cli
+
 TOP = Path(__file__).resolve().parents[2]
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools import cli  # noqa: E402
-
 BULK = 6 / math.pi
 CRS_M = "EPSG:6677"               # metres, zone IX of Japan
 EAST, NORTH = -12000.0, 34000.0   # of local 0 0

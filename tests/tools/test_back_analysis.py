@@ -9,9 +9,9 @@ import yaml
 from run_helpers import called, write_asc
 from test_slips import CASES, embankment, plane
 
-from slope_tools.commands import stability_failed  # noqa: E402
-from slope_tools.slips import back, bishop, columns, failed  # noqa: E402
-from slope_tools.slips.bishop import Strengths  # noqa: E402
+from slope_tools.commands import stability_failed
+from slope_tools.slips import back, bishop, columns, failed
+from slope_tools.slips.bishop import Strengths
 
 HIGH = CASES[1]
 

@@ -5,7 +5,7 @@ from scipy import stats
 
 import run_helpers  # noqa: F401  (finds slope_tools)
 
-from slope_tools.seismic import chain, fragility  # noqa: E402
+from slope_tools.seismic import chain, fragility
 
 RATE = fragility.Hazard(np.array([50.0, 200.0, 800.0, 2000.0]), np.array([1e-2, 1e-3, 3e-5, 1e-6]))
 VOLUMES = np.array([0.0, 50.0, 120.0, 200.0, 350.0, 450.0])

@@ -11,11 +11,11 @@ import yaml
 from run_helpers import called
 from test_fragility import SOIL, slips  # noqa: F401  (a fixture)
 
-from slope_tools import programs  # noqa: E402
-from slope_tools.commands import study  # noqa: E402
-from slope_tools.report import chain_part  # noqa: E402
-from slope_tools.report.numbers import Numbers  # noqa: E402
-from slope_tools.seismic import chain_files, fragility_files  # noqa: E402
+from slope_tools import programs
+from slope_tools.commands import study
+from slope_tools.report import chain_part
+from slope_tools.report.numbers import Numbers
+from slope_tools.seismic import chain_files, fragility_files
 
 needs_lmp = pytest.mark.skipif(not os.environ.get("LMP"), reason="needs the LAMMPS program (LMP)")
 ROAD = "1,0\n8,0\n8,51\n1,51\n"

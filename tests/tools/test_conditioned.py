@@ -9,16 +9,16 @@ import rasterio
 import yaml
 from scipy import stats
 
+import known_twins as twins
 from run_helpers import called
 from tiny_collapse import read_asc
 
-import known_twins as twins  # noqa: E402  (run_helpers has set the path)
-from slope_tools import cli  # noqa: E402
-from slope_tools.ensembles import conditioned, known_events, known_maps  # noqa: E402
-from slope_tools.mobility import weights  # noqa: E402
-from slope_tools.report import known_part  # noqa: E402
-from slope_tools.report.numbers import Numbers  # noqa: E402
-from slope_tools.statistics.hazard import weighted  # noqa: E402
+from slope_tools import cli
+from slope_tools.ensembles import conditioned, known_events, known_maps
+from slope_tools.mobility import weights
+from slope_tools.report import known_part
+from slope_tools.report.numbers import Numbers
+from slope_tools.statistics.hazard import weighted
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 LONGER = 1.9
@@ -228,7 +228,7 @@ def test_what_is_not_reached_is_said():
     runs = type("Runs", (), {"rows": rows, "failed": 1})
     about = {"reached": 0.4, "far": 0.5, "short": 0.1, "longest_m": 1700.4, "shortest_m": 900, "effective": 11.6,
              "gaps": [{"low_m": 1200, "high_m": 1500, "share": 0.2}]}
-    lines = known_events.doubts(about, runs)
+    lines = list(map(str, known_events.doubts(about, runs)))
     for line, text in zip(lines, ("no run goes beyond 1,700 m; 50 % of known events do", "before 900 m; 10 %",
                                   "between 1,200 and 1,500 m no run ends; 20 % of known events do", "as 12 runs",
                                   "1 of 3 runs have no length", "1 of 2 runs lost more than 1 %")):

@@ -16,12 +16,10 @@ import yaml
 from run_helpers import called
 from tiny_collapse import DECK, LMP, TOP, processes_in, read_asc, serial, write_case
 
+from slope_tools.case import logs, restarts, run_folders
+from slope_tools.runs import jobs
+
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools.case import logs, restarts, run_folders  # noqa: E402
-from slope_tools.runs import jobs  # noqa: E402
-
 PROGRAM = [sys.executable, str(TOOLS / "slope")]
 # Rounding differs after a restart, and in a collapse it grows: measured here by a factor of 30 in 200 steps. The runs
 # of these tests end 200 to 300 steps after the restart.

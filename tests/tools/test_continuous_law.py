@@ -1,15 +1,11 @@
 """The contact law in continuous time, against closed forms and against a second solution by other means."""
 import math
-import sys
 
 import numpy as np
 import pytest
 
-from run_helpers import TOP
 
-sys.path.insert(0, str(TOP / "tools"))
-
-from slope_tools.validation.verification.continuous_law import Case, impacts, one_impact  # noqa: E402
+from slope_tools.validation.verification.continuous_law import Case, impacts, one_impact
 
 NO_SLIP = 89.999
 PARTNERS = [(math.inf, 1.0), (1.0, 1.0), (8.0, 2.0), (0.125, 0.5)]

@@ -1,10 +1,8 @@
 """tools/slope sensitivity --converge: the fit against numbers by hand, its intervals, the command, the size error."""
 import csv
 import math
-import os
 import shlex
 import statistics
-import sys
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -14,16 +12,12 @@ import yaml
 from scipy import stats
 
 from run_helpers import called
-from tiny_collapse import TOP
 
-TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools.errors import SlopeError  # noqa: E402
-from slope_tools.statistics import convergence  # noqa: E402
-from slope_tools.studies import size_study  # noqa: E402
-from slope_tools.tables import size_error  # noqa: E402
-from slope_tools.tables.size_error import SizeErrors  # noqa: E402
+from slope_tools.errors import SlopeError
+from slope_tools.statistics import convergence
+from slope_tools.studies import size_study
+from slope_tools.tables import size_error
+from slope_tools.tables.size_error import SizeErrors
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 SIZES = (4.0, 2.5, 1.25, 0.9)
@@ -184,10 +178,10 @@ def test_what_speaks_against_a_size_error(tmp_path):
     same = {"rolling": "0", "field_d": "1.250", "out": "b", "xoffset": "0"}
     road = {"cut_angle": 30.0, "mesh": 10.0}
     assert errors.doubts("in.tiny", same, ["xoffset"], road) == []
-    assert errors.doubts("in.other", {**same, "rolling": "0.1", "field_d": "0.9"}, ["rolling", "xoffset"],
-                         {"cut_angle": 35.0, "mesh": 10.0}) == [
-        "the size error is that of another deck, in.tiny",
-        "the size error was found with field_d 1.25 instead of 0.9, cut angle 30 instead of 35"]
+    assert [one.numbers for one in errors.doubts(
+        "in.other", {**same, "rolling": "0.1", "field_d": "0.9"}, ["rolling", "xoffset"],
+        {"cut_angle": 35.0, "mesh": 10.0})] == [
+            {"deck": "in.tiny"}, {"other": "field_d 1.25 instead of 0.9, cut angle 30 instead of 35"}]
 
 
 @pytest.mark.parametrize("runs, field, d, words", [
@@ -296,7 +290,7 @@ def test_what_a_repeat_does_not_change_counts_once(slope):
     deck.write_text(deck.read_text().replace("variable  xoffset", "variable  seed index 0\nvariable  xoffset"))
     status, out, err = slope("--converge d=1.25,1 --set steps=100 --repeat seed=1,2 --of centroid_m -o out")
     assert status == 0, err
-    assert "a repeated variable has no effect, to the last digit, in steps_100_d_1.25_seed_1, " in err
+    assert "a repeated variable has no effect, to the last digit: left out (steps_100_d_1.25_seed_1; " in err
     sizes = yaml.safe_load(Path("out/converge.yaml").read_text())["quantities"]["centroid_m"]["sizes"]
     assert [size["runs"] for size in sizes] == [1, 1]
 

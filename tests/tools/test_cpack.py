@@ -17,6 +17,7 @@ BUILD = Path(os.environ.get("SLOPE_BUILD", TOP / "build"))
 VERSION = re.search(r'SLOPE_VERSION "(.*)"', (TOP / "src" / "slope_version.h").read_text())[1]
 
 pytestmark = [
+    pytest.mark.long,
     pytest.mark.skipif(not (BUILD / "CPackConfig.cmake").exists(), reason=f"no build with packages in {BUILD}"),
     pytest.mark.skipif(not shutil.which("dpkg-shlibdeps"), reason="dpkg-dev is not installed"),
     pytest.mark.skipif("SLOPE_PLUGIN" in os.environ, reason="a plugin is no package of its own"),

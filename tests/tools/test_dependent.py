@@ -6,10 +6,11 @@ import pytest
 from scipy import stats
 
 import run_helpers  # noqa: F401  (sets the path)
-import known_twins as twins  # noqa: E402
-from slope_tools.ensembles import known_events, known_influence  # noqa: E402
-from slope_tools.ensembles.sample import Sample  # noqa: E402
-from slope_tools.statistics import dependent, distributions  # noqa: E402
+import known_twins as twins
+
+from slope_tools.ensembles import known_events, known_influence
+from slope_tools.ensembles.sample import Sample
+from slope_tools.statistics import dependent, distributions
 
 VARIABLES = tuple(distributions.Range(name, "0:1", 0.0, 1.0, stats.uniform(), 1.0) for name in "abc")
 

@@ -15,10 +15,11 @@ import yaml
 import run_helpers  # noqa: F401  (finds slope_tools)
 from tiny_collapse import TOP
 
-from slope_tools.case import data_files, run_folders  # noqa: E402
-from slope_tools.commands import site as site_command  # noqa: E402
-from slope_tools.runs import dependencies, jobs  # noqa: E402
-from slope_tools.sites import site_choices  # noqa: E402
+from slope_tools.case import data_files, run_folders
+from slope_tools.commands import site as site_command
+from slope_tools.options import declare
+from slope_tools.runs import dependencies, jobs
+from slope_tools.sites import site_choices
 
 # --- options of the commands that make runs ---
 
@@ -38,7 +39,7 @@ AGAIN = {"anew"}        # which runs are made, not how
 
 def options(command):
     parser = argparse.ArgumentParser()
-    importlib.import_module(f"slope_tools.commands.{command}").add_arguments(parser)
+    declare(parser, importlib.import_module(f"slope_tools.commands.{command}").Request)
     return {action.dest for action in parser._actions}
 
 

@@ -26,15 +26,13 @@ import yaml
 
 from tiny_collapse import DECK, LMP, TOP, read_asc, write_case
 
+from slope_tools import cli, disk  # noqa: F401
+from slope_tools.case import restarts as files, run_folders  # noqa: F401
+from slope_tools.errors import SlopeError
+from slope_tools.drawing import figures, maps  # noqa: F401
+from slope_tools.survey import rasters  # noqa: F401
+
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools import cli, disk  # noqa: E402,F401
-from slope_tools.case import restarts as files, run_folders  # noqa: E402,F401
-from slope_tools.errors import SlopeError  # noqa: E402
-from slope_tools.drawing import figures, maps  # noqa: E402,F401
-from slope_tools.survey import rasters  # noqa: E402,F401
-
 WRITES = ("restart     50 ${out}.1.restart ${out}.2.restart\n"
           "dump all all custom 50 ${out}.dump id type diameter x y z\n"
           "run         ${steps}\n")
@@ -226,6 +224,7 @@ def test_a_tool_and_no_folder(here, capsys, name):
     assert Path("results").read_text() == "not a folder\n"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", sorted(TOOLS_OUTPUTS.keys() - {"report"}))      # slow, and written as study's
 def test_a_tool_that_is_killed(before, here, name):
     """At any moment: every file is the one before or the one after, and no file is half of it.
@@ -428,6 +427,7 @@ def test_a_restart_file_that_does_not_fit_leaves_the_one_before(run_folder, tmp_
     assert done.returncode != 0 and "ERROR: I/O error while writing restart" in done.stdout
 
 
+@pytest.mark.long
 def test_a_run_that_is_killed(run_folder, tmp_path):
     """At any moment: rasters and summary can be read, and one of the two restart files is complete."""
     (tmp_path / "work").mkdir()

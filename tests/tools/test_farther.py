@@ -1,22 +1,18 @@
 """Runs that an ensemble adds towards longer ones, on a stand-in: how they count, when they are made, when they end."""
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy import stats
 
-from run_helpers import TOOLS
+import known_twins as twins
 
-sys.path.insert(0, str(TOOLS))
-
-import known_twins as twins  # noqa: E402  (after the path is set)
-from slope_tools.ensembles import conditioned, farther, known_study, sample  # noqa: E402
-from slope_tools.errors import SlopeError  # noqa: E402
-from slope_tools.mobility import weights  # noqa: E402
-from slope_tools.statistics import designs, distributions  # noqa: E402
-from slope_tools.statistics.answer import Code  # noqa: E402
-from slope_tools.tables import answer_words  # noqa: E402
+from slope_tools.ensembles import conditioned, farther, known_study, sample
+from slope_tools.errors import SlopeError
+from slope_tools.mobility import weights
+from slope_tools.statistics import designs, distributions
+from slope_tools.statistics.answer import Code
+from slope_tools.tables import answer_words
 
 RUNS, SEEDS, PATH = 64, 4, farther.End(1e5, 0.0)
 LEVELS = np.array([5e3, 2e4, 4e4, 7e4])     # m3

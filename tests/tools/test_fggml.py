@@ -3,7 +3,6 @@ import io
 import os
 import re
 import shlex
-import sys
 import warnings
 import zipfile
 from pathlib import Path
@@ -15,14 +14,11 @@ import yaml
 from affine import Affine
 from rasterio.crs import CRS
 
+from slope_tools import cli
+from slope_tools.commands import terrain as terrain_command
+from slope_tools.survey import fggml, japan, rasters, terrain
+
 TOP = Path(__file__).resolve().parents[2]
-TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools import cli  # noqa: E402
-from slope_tools.commands import terrain as terrain_command  # noqa: E402
-from slope_tools.survey import fggml, japan, rasters, terrain  # noqa: E402
-
 SECOND = 1 / 3600
 GROUND, WATER, MISSING = "\u5730\u8868\u9762", "\u5185\u6c34\u9762", "\u30c7\u30fc\u30bf\u306a\u3057"
 CENTRE = 36.625, 139.875    # south-west corner of the tiles below, in Tochigi: zone IX

@@ -13,6 +13,7 @@ sys.path.insert(0, str(FUZZ))
 import fuzz_readers  # noqa: E402  (after the path is set)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("target", fuzz_readers.TARGETS)
 def test_a_second_of_mutations(target, tmp_path):
     count, findings = fuzz_readers.fuzz(target, seconds=20, seed=0, keep=tmp_path, most=100)

@@ -1,19 +1,13 @@
 """The headline volume: that the next run stays below it, its parts against numbers by hand, and how it is rounded."""
 import math
-import os
 import statistics
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy import stats
 
-TOP = Path(__file__).resolve().parents[2]
-sys.path.insert(0, os.environ.get("SLOPE_TOOLS", str(TOP / "tools")))
-
-from slope_tools.statistics import headline  # noqa: E402
-from slope_tools.statistics.headline import Combination, Headline, Scatter, SizeError  # noqa: E402
+from slope_tools.statistics import headline
+from slope_tools.statistics.headline import Combination, Headline, Scatter, SizeError
 
 STUDIES = 400
 REPEATS = 3

@@ -3,16 +3,11 @@
 spoiled/VERSION.PLACE.RANKS.log and .screen: LAMMPS that reads a restart file of which 200 bytes are spoiled, in the
 header, among the balls, at the end (Open MPI 4.1.4; names of machines and folders replaced, traces shortened).
 """
-import os
-import sys
 from pathlib import Path
 
 import pytest
 
-TOP = Path(__file__).resolve().parents[2]
-sys.path.insert(0, os.environ.get("SLOPE_TOOLS", str(TOP / "tools")))
-
-from slope_tools.case import last_words, logs  # noqa: E402
+from slope_tools.case import last_words, logs
 
 SPOILED = Path(__file__).parent / "spoiled"
 MEMORY = "C++ memory allocation failed: std::bad_alloc"

@@ -6,7 +6,7 @@ from scipy.optimize import brentq
 
 import run_helpers  # noqa: F401  (finds slope_tools)
 
-from slope_tools.slips import newmark  # noqa: E402
+from slope_tools.slips import newmark
 
 YIELDS = np.array([0.3, 1.0, 1.9, 2.9])
 PULSE = 3.0

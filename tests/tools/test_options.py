@@ -1,14 +1,16 @@
-"""Types of options on the command line: what they take, and the one line for what they do not."""
+"""Options of the command line: the fields of a request; what types take, and the one line for what they do not."""
 import argparse
+import dataclasses
 import re
 import shlex
 from pathlib import Path
+from typing import List, Optional
 
 import pytest
 
 import run_helpers  # noqa: F401  (finds slope_tools)
 
-from slope_tools import cli, options  # noqa: E402
+from slope_tools import cli, options
 
 
 @pytest.mark.parametrize("text, value", [("1", 1), ("007", 7), ("1000000", 1000000), ("1000000000", 10 ** 9)])
@@ -83,3 +85,64 @@ def test_the_two_commands_of_the_readme_are_of_files_that_are_here():
     args = parser.parse_args(site)
     for path in [*args.terrain, args.release, args.road]:
         assert (top / str(path)).is_file()
+
+
+# --- a request ---
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Place:
+    GROUP = "place"
+    file: Optional[Path] = options.option("a file", metavar="F", one_of="place")
+    local: bool = options.flag("local metres", one_of="place")
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Asked(Place, options.Overwrite):
+    deck: Path = options.positional("the deck", metavar="DECK")
+    cut_angle: float = options.option("an angle", default=30.0)
+    mesh: float = options.option("a size")
+    shown: Optional[int] = options.option("a run", "--run")
+    ends: Optional[List[float]] = options.option("both ends", nargs=2)
+    set: List[str] = options.several("values")
+    sure: Optional[str] = options.option("is it", choices=["yes", "no"], also={"--unsure": "no"})
+    site: str = "none"
+
+
+def asked(words, **more):
+    parser = argparse.ArgumentParser(exit_on_error=False)
+    options.declare(parser, Asked)
+    return options.request(Asked, parser.parse_args(words.split(), argparse.Namespace(**more)))
+
+
+def test_fields_are_options():
+    assert asked("in.x --mesh 5") == Asked(deck=Path("in.x"), mesh=5.0)
+    one = asked("in.x --mesh 5 --cut-angle 1e1 --run 3 --ends 0 -1 --set a=1 --set b=2 --unsure --local --overwrite",
+                site="mine", nonsense=1)
+    assert dataclasses.asdict(one) == {
+        "deck": Path("in.x"), "cut_angle": 10.0, "mesh": 5.0, "shown": 3, "ends": [0.0, -1.0], "set": ["a=1", "b=2"],
+        "sure": "no", "site": "mine", "file": None, "local": True, "overwrite": True}
+
+
+def test_a_request_is_not_written_to():
+    one = asked("in.x --mesh 5")
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        one.mesh = 6.0
+    one.set.append("a=1")
+    assert asked("in.x --mesh 5").set == [] and dataclasses.replace(one, mesh=6.0).mesh == 6.0
+
+
+@pytest.mark.parametrize("words, rule", [
+    ("in.x", "required: --mesh"), ("in.x --mesh five", "finite number"), ("in.x --mesh 5 --run 0", "whole number >= 1"),
+    ("in.x --mesh 5 --local --file f", "not allowed with"), ("in.x --mesh 5 --site mine", "unrecognized"),
+    ("in.x --mesh 5 --sure perhaps", "invalid choice")])
+def test_what_a_field_does_not_take(words, rule, capsys):
+    with pytest.raises((SystemExit, argparse.ArgumentError)) as ended:
+        asked(words)
+    assert rule in capsys.readouterr().err + str(ended.value)
+
+
+def test_options_are_in_groups_their_own_first():
+    parser = argparse.ArgumentParser()
+    options.declare(parser, Asked)
+    told = parser.format_help().partition("\noptions:\n")[2]
+    assert told.index("--cut-angle") < told.index("--overwrite") < told.index("\nplace:\n") < told.index("--file F")

@@ -14,12 +14,10 @@ import yaml
 import tiny_collapse
 from run_helpers import TOOLS, TOP
 
-sys.path.insert(0, str(TOOLS))
-
-import slope_tools  # noqa: E402  (after the path is set)
-from slope_tools import cli  # noqa: E402
-from slope_tools.commands import calls, polygon, study  # noqa: E402
-from slope_tools.errors import SlopeError  # noqa: E402
+import slope_tools
+from slope_tools import cli, options as options_of
+from slope_tools.commands import calls, polygon, study
+from slope_tools.errors import SlopeError
 
 EXAMPLE = TOP / "doc" / "src" / "examples" / "clear_the_road.py"
 PAGE = TOP / "doc" / "src" / "python_package.rst"
@@ -119,7 +117,7 @@ def test_public_names():
     ({"repeat": ["seed=1", "xoffset=0.5"]}, ["--repeat=seed=1", "--repeat=xoffset=0.5"])])
 def test_arguments_are_the_options(options, words):
     parser = calls.Parser(prog="study", add_help=False)
-    study.add_arguments(parser)
+    options_of.declare(parser, study.Request)
     assert calls.words(parser, options) == words
 
 

@@ -3,7 +3,6 @@ import json
 import os
 import re
 import shlex
-import sys
 import time
 import zipfile
 from pathlib import Path
@@ -19,14 +18,12 @@ from shapely.geometry import MultiLineString, MultiPolygon, Point, Polygon, box,
 
 from run_helpers import called
 
+from slope_tools import cli
+from slope_tools.commands import polygon as polygon_command
+from slope_tools.survey import lines, polygons, rasters
+
 TOP = Path(__file__).resolve().parents[2]
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools import cli  # noqa: E402
-from slope_tools.commands import polygon as polygon_command  # noqa: E402
-from slope_tools.survey import lines, polygons, rasters  # noqa: E402
-
 CRS_M = "EPSG:6677"
 EAST, NORTH = -12000.0, 34000.0    # local 0 0 of the terrain, which is 100 m x 80 m
 ROAD = Polygon([(10, 10), (60, 12.5), (62.25, 30), (12, 27)], [[(20, 15), (20, 20), (25, 20), (25, 15)]])

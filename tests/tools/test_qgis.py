@@ -31,7 +31,7 @@ ALGORITHMS = {"terrain", "release", "site", "study", "report", "volume", "export
 ROAD, FAR = (8, 0, 15, ROWS), (16, 0, 20, ROWS)
 RELEASE = (16, 5, 30, 19)
 
-pytestmark = pytest.mark.skipif(QGIS is None, reason="QGIS is not installed (Debian: qgis, python3-qgis)")
+pytestmark = [pytest.mark.long, pytest.mark.skipif(QGIS is None, reason="no QGIS (Debian: qgis, python3-qgis)")]
 
 
 def in_survey(bounds):

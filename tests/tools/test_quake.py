@@ -10,9 +10,9 @@ import yaml
 
 from run_helpers import TOP, called
 
-from slope_tools.commands import quake as quake_command  # noqa: E402
-from slope_tools.errors import SlopeError  # noqa: E402
-from slope_tools.quakes import motion_file, quake_motion, quake_records  # noqa: E402
+from slope_tools.commands import quake as quake_command
+from slope_tools.errors import SlopeError
+from slope_tools.quakes import motion_file, quake_motion, quake_records
 
 DT = 0.01
 T = DT * np.arange(2000)

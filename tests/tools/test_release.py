@@ -19,10 +19,11 @@ from shapely.geometry import Point, Polygon, box, mapping
 from run_helpers import (CRS_M, EAST, NORTH, TOP, here, run_command, write_asc,  # noqa: F401  (here: a fixture)
                          write_geojson)
 
-from slope_tools.commands import release as release_command  # noqa: E402
-from slope_tools.drawing import maps  # noqa: E402
-from slope_tools.releases import release_area, release_bodies, release_chart, release_slbl, release_solve  # noqa: E402
-from slope_tools.survey import polygons, rasters  # noqa: E402
+from slope_tools import findings
+from slope_tools.commands import release as release_command
+from slope_tools.drawing import maps
+from slope_tools.releases import release_area, release_bodies, release_chart, release_slbl, release_solve
+from slope_tools.survey import polygons, rasters
 
 DATA = next((folder for folder in (top / "shared" / "data" for top in TOP.parents) if folder.is_dir()), TOP / "none")
 FRANK, S1000 = DATA / "frank", DATA / "s1000"
@@ -240,7 +241,7 @@ def test_a_sphere_bulges_where_the_ground_does(slope, body):
     found, about = body("t.asc --polygon p.csv --volume 40000")
     assert found["volume"] == pytest.approx(40000, rel=1e-5) and about["sagitta_m"] < 0
     assert "above its chord" in slope("t.asc --polygon p.csv --volume 40000 -o r")[1]
-    assert any("bulges" in line for line in about["warnings"])
+    assert any("bulges" in line for line in findings.texts(about["warnings"]))
 
 
 def test_a_depth_that_no_sphere_on_bulging_ground_has(refused):
@@ -268,18 +269,18 @@ def test_a_plane_that_does_not_come_out_downhill_is_warned_of(body):
     for dip, direction, warned in ((25, 270, False), (40, 270, True), (20, 90, True), (25, 330, True),
                                    (15, 330, False)):
         found, about = body(f"t.asc --polygon p.csv --dip {dip} --direction {direction} --depth 3")
-        assert any("cannot slide out" in line for line in about["warnings"]) == warned, (dip, direction)
+        assert any("cannot slide out" in line for line in findings.texts(about["warnings"])) == warned, (dip, direction)
 
 
 def test_a_body_in_parts_is_warned_of(body):
     terrain(lambda x, y: 0.5 * x + 12 * np.sin(y / 30), size=(150, 160))
     polygon(Point(150, 150).buffer(60))
     _, about = body("t.asc --polygon p.csv --volume 20000")
-    line, = (line for line in about["warnings"] if "parts that do not touch" in line)
+    line, = (line for line in findings.texts(about["warnings"]) if "parts that do not touch" in line)
     volumes = [float(text.replace(",", "")) for text in re.findall(r"([0-9.,]*[0-9]) (?:and|m3)", line)]
     assert len(volumes) == 2 and sum(volumes) == pytest.approx(20000, rel=0.02)
     _, about = body("t.asc --polygon p.csv --volume 90000")
-    assert not any("do not touch" in line for line in about["warnings"])
+    assert not any("do not touch" in line for line in findings.texts(about["warnings"]))
 
 
 def test_a_base_level_below_a_part_of_the_polygon_is_warned_of(body):
@@ -287,12 +288,12 @@ def test_a_base_level_below_a_part_of_the_polygon_is_warned_of(body):
     polygon(box(40, 60, 200, 140))
     found, about = body("t.asc --polygon p.csv --shape slbl --depth 1")
     assert about["curvature_per_m"] < 0
-    line, = about["warnings"]
+    line, = findings.texts(about["warnings"])
     inside = 80 * 40      # cells of 2 m
     assert "bulges" in line and f"takes {100 * found['cells'] / inside:.0f} % of the polygon" in line
     assert f"{found['mean_depth']:.3g} m deep on average" in line
     _, about = body("t.asc --polygon p.csv --shape slbl --depth 20")
-    assert about["curvature_per_m"] > 0 and not any("base level" in one for one in about["warnings"])
+    assert about["curvature_per_m"] > 0 and not any("base level" in one for one in findings.texts(about["warnings"]))
 
 
 def test_a_target_out_of_reach(refused):
@@ -726,7 +727,7 @@ def test_the_depths_of_s1000(body):
     shallow = f"{shlex.quote(str(S1000 / 'pre_runout_DEM.asc'))} --scar {S1000 / 'landslide_depth.asc'}"
     found, about = body(f"{shallow} --scar-is change")
     assert found["volume"] == pytest.approx(22481, abs=1) and found["largest_depth"] == pytest.approx(15.7, abs=0.05)
-    assert found["cells"] == 30 and any("30 cells" in line for line in about["warnings"])
+    assert found["cells"] == 30 and any("30 cells" in line for line in findings.texts(about["warnings"]))
 
 
 # --- the page ---

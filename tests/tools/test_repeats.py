@@ -1,27 +1,22 @@
 """tools/slope study --repeat: which runs are made, the headline over them, what is called a trend, rest and travel."""
 import csv
-import os
 import shlex
 import statistics
-import sys
 from pathlib import Path
 
 import pytest
 import yaml
 
 from run_helpers import called
-from tiny_collapse import TOP
 
-TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools import schemas  # noqa: E402
-from slope_tools.case import run_folders  # noqa: E402
-from slope_tools.deposits import rest, travel_shares  # noqa: E402
-from slope_tools.errors import SlopeError  # noqa: E402
-from slope_tools.runs import repeats  # noqa: E402
-from slope_tools.statistics import headline  # noqa: E402
-from slope_tools.tables import combinations, quantities, study_file, study_table  # noqa: E402
+from slope_tools import schemas
+from slope_tools.case import run_folders
+from slope_tools.deposits import rest, travel_shares
+from slope_tools.errors import SlopeError
+from slope_tools.findings import Finding
+from slope_tools.runs import repeats
+from slope_tools.statistics import headline
+from slope_tools.tables import combinations, quantities, study_file, study_table
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 ROAD = "--road case/road.csv --local"
@@ -103,7 +98,8 @@ def test_what_a_repeat_does_not_change_counts_once(slope):
     assert status == 0, err
     best = load()[0]["conservative"]
     assert best["kind"] == "largest of 2 runs; chance unknown" and best["repeats"] == 1
-    assert any(text.startswith("a repeated variable has no effect: rolling_0_unused_2, ") for text in best["doubts"])
+    same, = (one for one in best["doubts"] if one["kind"] == "no effect")
+    assert same["runs"][0] == "rolling_0_unused_2"
 
 
 def test_a_failed_repeat_leaves_the_others(slope):
@@ -113,9 +109,10 @@ def test_a_failed_repeat_leaves_the_others(slope):
     assert status == 2 and "2 of 8 runs failed: rolling_0_seed_2" in err
     about, _ = load()
     assert [entry["repeats"] for entry in about["combinations"]] == [3, 3]
-    assert sum(one["kind"] == "failed" for one in about["warnings"]) == 2
+    one, = (one for one in about["warnings"] if one["kind"] == "failed")
+    assert len(one["runs"]) == 2 and one["numbers"]["of"] == 8
     # seeds alone were repeated, although the deck has a lattice to move
-    assert "the scatter is that of seed alone: xoffset of the deck was not repeated" in about["conservative"]["doubts"]
+    assert {"repeated": "seed", "offsets": "xoffset"} in [one["numbers"] for one in about["conservative"]["doubts"]]
 
 
 def test_without_a_road_there_are_means_and_no_headline(slope):
@@ -195,7 +192,7 @@ def test_a_difference_below_chance_is_no_trend_and_no_doubt():
 def test_a_difference_larger_than_chance_at_the_end_of_a_range_is_a_doubt():
     best = conservative({"rolling": ["0", "1"]}, rows(*LARGE))
     assert best["differences"][0]["clear"] is True
-    assert best["doubts"] == ["it lies at the end of the range of rolling, 0 to 1"]
+    assert best["doubts"] == [Finding("end of range", {"variable": "rolling", "low": 0.0, "high": 1.0}).entry()]
     # a value of 0, which cannot be less, is no end; neither is one in the middle, or a name
     assert conservative({"rolling": ["0", "1"]}, rows((("0",), (90.0, 92)), (("1",), (10.0, 12))))["doubts"] == []
     middle = rows((("1",), (10.0, 12)), (("2",), (90.0, 92)), (("3",), (10.0, 12)))
@@ -237,38 +234,42 @@ def test_which_ground_governs():
 
 def test_other_doubts():
     alone = rows((("0",), (5.0,)))
-    assert conservative({"rolling": ["0"]}, alone)["doubts"] == ["nothing was varied: it comes from a single run"]
+    assert conservative({"rolling": ["0"]}, alone)["doubts"] == [Finding("single run").entry()]
     above = rows((("0",), [100.0] * 7 + [101.0] * 7 + [120.0]), (("1",), [100.0 + i / 100 for i in range(30)]))
     for i, row in enumerate(above):
         row["front_m"] = i          # no two are the same run
-    assert "0_14 gave more, 120.0 m3" in conservative({"rolling": ["0", "1"]}, above)["doubts"]
+    assert Finding("more in a run", {"run": "0_14", "volume": 120.0}).entry() in conservative(
+        {"rolling": ["0", "1"]}, above)["doubts"]
     loud = rows((("1",), (90.0, 120, 150)), (("0",), (100.0, 101, 102)))
-    assert any(text.startswith("its runs scatter more than the others, by 30.0 instead of 1.1 m3")
-               for text in conservative({"rolling": ["1", "0"]}, loud)["doubts"])
+    assert Finding("scatters more", {"mine": 30.0, "others": 1.1}).entry() in conservative(
+        {"rolling": ["1", "0"]}, loud)["doubts"]
 
 
 def test_more_than_is_released_is_doubted():
     several = rows((("0",), (700.0, 900, 800)), (("1",), (710.0, 890, 805)))
     found = conservative({"rolling": ["0", "1"]}, several)
-    assert found["volume_m3"] > 1000 and any("more than the 1,000 m3 that are released" in text
-                                             for text in found["doubts"])
+    assert found["volume_m3"] > 1000
+    assert Finding("more than released", {"released": 1000.0}).entry() in found["doubts"]
     for row in several:
         row["released_m3"] = 2000.0
     assert conservative({"rolling": ["0", "1"]}, several)["doubts"] == []
 
 
+def two_outcomes(found):
+    """Of these doubts: how many of how many runs have hardly any, and in how many of them the slope stood."""
+    return [tuple(one["numbers"][name] for name in ("few", "runs", "stood")) for one in found["doubts"]
+            if one["kind"] in ("two outcomes", "hardly reaches")]
+
+
 def test_runs_of_another_outcome_are_doubted():
     """One of three stands: its 0 m3 are no chance of a volume."""
     found = conservative({"rolling": ["0", "1"]}, rows((("0",), (500.0, 0, 520)), (("1",), (400.0, 420, 410))))
-    assert any(text.startswith("1 of the 3 runs of rolling_0 have less than 5 % of the volume of the others")
-               or text.startswith("1 of the 3 runs of ") for text in found["doubts"])
-    assert any("the slope stood in 1 of them" in text for text in found["doubts"])
+    assert two_outcomes(found) == [(1, 3, 1)]
     several = rows((("0",), (500.0, 0, 520)), (("1",), (400.0, 420, 410)))
     several[1]["centroid_m"] = 40.0
-    assert any("the mass came down in these, too" in text
-               for text in conservative({"rolling": ["0", "1"]}, several)["doubts"])
+    assert two_outcomes(conservative({"rolling": ["0", "1"]}, several)) == [(1, 3, 0)]
     none = conservative({"rolling": ["0", "1"]}, rows((("0",), (0.0, 0, 0)), (("1",), (400.0, 420, 410))))
-    assert not any("of the others" in text for text in none["doubts"])
+    assert not two_outcomes(none)
 
 
 @pytest.mark.parametrize("value, scatter, expected", [
@@ -321,8 +322,8 @@ def test_a_run_that_is_cut_is_not_at_rest_and_the_study_says_so(slope):
     about, table = load()
     assert [(row["at_rest"], row["moving"]) for row in table] == [("no", "no")] * 2
     assert table[0]["end"].startswith("stopped at its duration; 0 % of the volume")
-    assert "2 of 2 deposits are not at rest at the end: rolling_0_steps_2 at 0.0 s (stopped at its duration; " in err
-    assert [one["numbers"]["moving"] for one in about["warnings"] if one["kind"] == "moving"] == [2]
+    assert "not at rest at the end, 2 of them stopped at their duration: stopped at its duration; " in err
+    assert [len(one["runs"]) for one in about["warnings"] if one["kind"] == "moving"] == [2]
 
 
 @pytest.mark.parametrize("step, at_rest, end", [

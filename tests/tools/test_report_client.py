@@ -1,6 +1,7 @@
 """The first page of a report, for a client: no words of the tools, the number or why there is none, counted caveats."""
 import html
 import re
+import string
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -13,12 +14,13 @@ from test_report import stands
 
 from slope_tools import digits
 from slope_tools.ensembles import known_study
+from slope_tools.finding_words import WORDS, words_of
+from slope_tools.findings import LIMIT, NOTE, WARNING, Finding, finding, gathered
 from slope_tools.plots.obstacles import Obstacles
-from slope_tools.report import body, caveats, client_part, warnings
+from slope_tools.report import body, client_part, structures_part, warnings
 from slope_tools.report.numbers import Numbers
 from slope_tools.statistics.withheld import Kind as Rule
-from slope_tools.tables import next_step
-from slope_tools.warned import Warned, warned
+from slope_tools.tables import judged, next_step
 
 made, here, slope = test_report.made, test_report.here, test_report.slope       # its fixtures
 # of options, files, runs and variables
@@ -181,14 +183,21 @@ def test_without_a_road_the_reach_is_the_number(slope, here):
 
 # --- caveats ---
 
-def study_of(masses, **more):
-    """What caveats() takes of a study, of (lost m3, released m3) of each run."""
-    finished = [{"off_grid_m3": 0.0, "lost_m3": lost, "released_m3": released} for lost, released in masses]
-    found = {"study": {"conservative": None, "warnings": []}, "rows": finished, "finished": finished, "repeats": {},
-             "ends": lambda: [], "warnings": lambda: [], "releases": lambda: [], "below_ground": lambda: None,
-             "largest_release": lambda: max(released for _, released in masses),
-             "result": SimpleNamespace(summary={"volume": {"released": masses[0][1]}, "balls": {"released": 1000}})}
-    return SimpleNamespace(**{**found, **more})
+RELEASE = {"released": 50000.0, "body": 50000.0, "factor": 1.91, "from_cubic": 0.0, "removed": None}
+
+
+def rows_of(*masses, **more):
+    """The rows of runs that finished, of (lost m3, released m3) of each."""
+    return [{"run": f"run {k}", "status": "finished", "off_grid_m3": 0.0, "lost_m3": lost, "released_m3": released,
+             "at_rest": True, "moving": False, "release": RELEASE, **more} for k, (lost, released) in enumerate(masses)]
+
+
+def data_of(rows, **more):
+    """What the findings are made of, of a study."""
+    names = {row["run"]: row["run"] for row in rows}
+    result = SimpleNamespace(summary={"volume": {"released": 50000.0}, "balls": {"released": 1000}})
+    return SimpleNamespace(**{"study": {"conservative": None, "warnings": []}, "judged": rows, "repeats": {},
+                              "below_ground": lambda: None, "names": lambda: names, "result": result, **more})
 
 
 def ground_of(*touched, crs="EPSG:6677"):
@@ -200,56 +209,118 @@ def ground_of(*touched, crs="EPSG:6677"):
 
 
 def test_what_was_lost_is_counted_in_one_line_with_its_side():
-    rows = [(0.0, 50000.0)] * 6 + [(6000.0 - 10 * k, 50000.0) for k in range(9)]
-    found = caveats.lost(study_of(rows), ground_of((4, 2, 3.0), (2, 0, 2.5)))
-    assert found.text == ("9 of 15 runs lost up to 6,000 m³ over the edge: enlarge the terrain to the south-west.")
-    assert found.order == caveats.LOST_MUCH
-    little = caveats.lost(study_of([(1.0, 50000.0)]), ground_of((4, 2, 3.0), (2, 0, 0.5)))
-    assert little.text == "The run lost 1.00 m³ over the edge: enlarge the terrain to the south."
-    assert little.order == caveats.LOST
-    assert caveats.lost(study_of([(0.0, 5.0)]), ground_of()) is None
-    assert caveats.lost(study_of([(2.0, 5.0)]), ground_of((2, 5, 1), crs=None)).text.endswith(
+    rows = rows_of(*[(0.0, 50000.0)] * 6, *[(6000.0 - 10 * k, 50000.0) for k in range(9)])
+    found, = judged.lost(rows)
+    assert (found.kind, found.level, found.runs[0], len(found.runs)) == ("lost much", WARNING, "run 6", 9)
+    assert found.numbers["volume"] == 6000 and found.numbers["percent"] == 12 and found.numbers["of"] == 15
+    assert warnings.first_page([found], ground_of((4, 2, 3.0), (2, 0, 2.5))) == [
+        "9 of 15 runs lost up to 6,000 m³ over the edge: enlarge the terrain to the south-west."]
+    found, = judged.lost(rows_of((1.0, 50000.0)))
+    assert (found.kind, found.level) == ("lost", NOTE) and judged.lost(rows_of((0.01, 50000.0))) == []
+    assert warnings.first_page([found], ground_of((2, 5, 1), crs=None))[0].endswith(
         "enlarge the terrain beyond the right edge of the map.")
-    assert caveats.side_of(ground_of((0, 2, 1), (4, 2, 1))) == "to the north and the south"
+    assert warnings.side_of(ground_of((0, 2, 1), (4, 2, 1))) == "to the north and the south"
+    assert warnings.side_of(ground_of((4, 2, 3.0), (2, 0, 0.5))) == "to the south"
+
+
+def moved(rows, *shares):
+    for row, share in zip(rows, shares):
+        row.update(at_rest=False, moving=share > 0.1, moves_share=share, end=f"{share} moves", stop_time_s=20.0,
+                   stop_reason="run completed")
+    return rows
 
 
 def test_the_weightiest_come_first_and_three_are_shown():
-    rows = [(6000.0, 2e6)] * 4
-    data = study_of(rows, rows=[*study_of(rows).finished, {}],
-                    warnings=lambda: [Warned("thin", {"balls": 1.83, "limit": 3.0})],
-                    ends=lambda: [SimpleNamespace(at_rest=k > 1, moving=k == 0) for k in range(4)])
-    found = caveats.caveats(data, ground_of())
-    assert [one.order for one in found] == sorted(one.order for one in found)
-    told, rest = caveats.shown(found, 7)
-    assert told == ["1 of 5 runs failed and are not in the numbers.",
-                    "1 of 4 runs ended with more than a tenth of the mass in motion: the numbers are not those of a "
-                    "deposit.",
-                    "Masses of 1 million m³ and more are known to run farther than laboratory friction suggests: "
-                    "the reach is not conservative unless a past event was used to calibrate it."]
-    assert rest == "The appendix has all 7 warnings, the settings, the runs and the checks."
-    assert any("only 1.8 of the model's balls" in one.text for one in found)
+    """Each kind once, whatever its runs."""
+    rows = moved(rows_of(*[(6000.0, 2e6)] * 4), 0.2, 0.02, 0.05)
+    rows.append({"run": "cut", "status": "failed", "error": "ERROR: 3 atoms lost"})
+    rows.append({"run": "cut too", "status": "failed", "error": "ERROR: no memory"})
+    thin = Finding("thin", {"balls": 1.83, "limit": 3.0}).entry()
+    data = data_of(rows, study={"conservative": None, "warnings": [thin]})
+    found = warnings.findings(data, ground_of())
+    told = warnings.first_page(found, ground_of())
+    by_kind = {one.kind: one for one in found}
+    assert by_kind["in motion"].runs == ("run 0",) and by_kind["moving"].runs == ("run 2", "run 1")
+    assert by_kind["moving"].numbers["share"] == 0.05 and by_kind["moving"].numbers["differ"]
+    assert told[0].startswith("2 of 6 runs failed") and told[1].startswith("1 of 4 runs ended")
+    assert len(told) == 9
+    assert "1 million" in told[2] and told[3].startswith("2 of 4 runs") and "1.8 of the model" in told[6]
+    assert "All 4 runs lost up to 6,000 m" in told[7] and told[8].startswith("The slip surface")
+    levels = [level for level, _ in warnings.listed(found, data.names())]
+    assert levels == sorted(levels, reverse=True) and levels.count(NOTE) == 3      # large, moving, lost
+    assert warnings.rest_of(7) == "The appendix has all 7 warnings, the settings, the runs and the checks."
+
+
+def test_what_no_run_tells_is_on_the_first_page_alone():
+    rows = rows_of((0.0, 50000.0))
+    found = warnings.findings(data_of(rows), ground_of())
+    assert [one.kind for one in found] == ["no repeats", "no sizes", "slip assumed"]
+    assert warnings.listed(found, {}) == [] and len(warnings.first_page(found, ground_of())) == 3
+    found = warnings.findings(data_of(rows, repeats={"seed": ["1"]}, study={
+        "conservative": {"size_m3": 3.0, "doubts": []}, "warnings": []}), ground_of())
+    assert [one.kind for one in found] == ["slip assumed"]
+
+
+@pytest.mark.parametrize("change, kind, numbers", [
+    ({"from_cubic": 0.2, "factor": 2.29}, "bulk factor", {"off": "20 %", "side": "above"}),
+    ({"from_cubic": -0.2, "factor": 1.53}, "bulk factor", {"off": "20 %", "side": "below"}),
+    ({"body": 60000.0}, "body volume", {"off": "17 %", "side": "less"}),
+    ({"body": None, "removed": 0.3}, "balls removed", {"off": "30 %"}),
+    ({"body": None, "removed": 0.1}, None, {})])
+def test_a_release_that_is_not_the_body(change, kind, numbers):
+    found = judged.released(rows_of((0.0, 50000.0), release={**RELEASE, **change}))
+    assert [one.kind for one in found] == ([kind] if kind else [])
+    for one in found:
+        assert {**one.numbers, **numbers} == one.numbers and one.level == NOTE and one.runs == ("run 0",)
+        assert "50,000 m" in one.client()
 
 
 def test_runs_of_several_sizes_are_one_line():
-    sizes = [Warned("lost", {"volume": volume}, (f"rolling_0_d_{volume:g}",), "sizes of balls")
-             for volume in (4.21, 337.0)]
-    several = [sizes[0], warned("the slope is steep"), sizes[1], warned("the toe is wet"), Warned("moving", {})]
-    data = SimpleNamespace(rows=[], finished=[], warnings=lambda: several)
-    assert warnings.of_study(data) == [("red", text) for text in (
-        "sizes of balls: 4.21 m3 left the grid or the box (2 runs, other numbers in the others)", "the slope is steep",
-        "the toe is wet")]
-    del several[2:]
-    assert warnings.of_study(data)[0] == ("red", "sizes of balls: 4.21 m3 left the grid or the box")
+    sizes, = gathered([Finding("lost much", {"volume": volume, "percent": 3.0, "up_to": "up to "},
+                               (f"rolling_0_d_{volume:g}",), "sizes of balls") for volume in (337.0, 4.21)], 4)
+    several = [sizes.entry(), "the slope is steep", "the toe is wet",
+               {"kind": "moving", "text": "judged from the rows"}]
+    found = warnings.findings(data_of([], study={"conservative": None, "warnings": several}, repeats={"x": []}),
+                              ground_of())
+    assert [one.text for one in found if one.level == WARNING][1:] == ["the slope is steep", "the toe is wet"]
+    assert sizes.numbers["volume"] == 337 and sizes.numbers["of"] == 4 and len(sizes.runs) == 2
+    assert found[-3] == sizes and warnings.first_page([sizes], ground_of()) == []
 
 
-def test_a_warning_survives_its_file():
+def test_a_finding_survives_its_file():
     """Also one of another version, of which the text counts, and a plain line of an older one."""
-    one = Warned("lost", {"volume": 12345.678}, ("a", "b"), "sizes of balls")
-    assert str(one) == "a, b: sizes of balls: 12,346 m3 left the grid or the box"
-    assert warned(yaml.safe_load(yaml.safe_dump(one.entry()))) == one
+    one = Finding("balance", {"share": 2e-5, "of": 4}, ("a", "b"), "sizes of balls", "more of it")
+    assert str(one).startswith("sizes of balls: ") and str(one).endswith("(2 of 4 runs: a; b); more of it")
+    assert one.shown({"a": "first"}).endswith("(2 of 4 runs: first; b); more of it")
+    entry = yaml.safe_load(yaml.safe_dump(one.entry()))
+    assert finding(entry) == one and entry["level"] == NOTE and "more of it" not in entry["text"]
     newer = {"kind": "of tomorrow", "text": "it rains", "numbers": {"mm": 3}}
-    assert str(warned(newer)) == str(warned("it rains")) == "it rains"
-    assert str(warned({"kind": "lost", "text": "12 m3 left"})) == "12 m3 left"
+    assert str(finding(newer)) == str(finding("it rains")) == "it rains"
+    assert str(finding({"kind": "lost", "text": "12 m3 left"})) == "12 m3 left"
+
+
+class Any_:
+    """Whatever a table of words asks for."""
+
+    def __format__(self, spec):
+        return format(1.5, "" if spec == "cubic" else spec)
+
+
+class Numbers_(dict):
+    def __missing__(self, key):
+        return Any_()
+
+
+@pytest.mark.parametrize("kind", WORDS)
+def test_the_words_of_each_kind_can_be_rendered(kind):
+    """All the table: levels that exist, words that end without a full stop, and on the first page with one."""
+    words = words_of(kind)
+    assert words.level in (WARNING, NOTE, LIMIT)
+    text = string.Formatter().vformat(words.text, (), Numbers_())
+    assert text and not text.endswith((".", " ")) and "{" not in text
+    client = string.Formatter().vformat(words.client, (), Numbers_())
+    assert not client or client.endswith(".") and not TOOLS_WORDS.search(client.replace("slope fails", ""))
+    assert words.level != LIMIT or client
 
 
 def test_a_structure_of_few_balls_is_a_caveat():
@@ -259,10 +330,11 @@ def test_a_structure_of_few_balls_is_a_caveat():
         {"dam": wall}, {}))
     summary = {"volume": {"released": 64.0e3}, "balls": {"released": 1000}}
     data = SimpleNamespace(result=SimpleNamespace(summary=summary))
-    assert caveats.coarse(data, ground).text == ("dam is 3 of the model's balls high: the forces on it are those of "
-                                                 "single balls, and rough.")
+    found, = structures_part.coarse_walls(data, ground)
+    assert (found.kind, found.level) == ("few balls high", LIMIT)
+    assert found.numbers == {"name": "dam", "height": 12.0, "balls": pytest.approx(3.0)}
     summary["balls"]["released"] = 8000
-    assert caveats.coarse(data, ground) is None
+    assert structures_part.coarse_walls(data, ground) == []
 
 
 def test_a_mean_has_the_digits_that_its_scatter_leaves():

@@ -8,9 +8,7 @@ import pytest
 
 from run_helpers import TOOLS
 
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools import cli  # noqa: E402  (after the path is set)
+from slope_tools import cli
 
 PACKAGE = TOOLS / "slope_tools"
 MODULES = sorted(PACKAGE.rglob("*.py"))
@@ -101,7 +99,7 @@ def test_rooms_take_no_arguments_of_the_command_line():
 
 
 # the line of an error, a warning, progress, the names of a report's pictures
-PRINT = {"cli.py", "warned.py", "runs/job_display.py", "validation/verify.py", "report/document.py"}
+PRINT = {"cli.py", "findings.py", "runs/job_display.py", "validation/verify.py", "report/document.py"}
 
 
 def prints(text):

@@ -9,10 +9,10 @@ from shapely.geometry import LineString
 from run_helpers import here, write_asc, write_run  # noqa: F401  (here is a fixture)
 from test_mobility_path import STEEP
 
-from slope_tools.deposits import deposit as deposits  # noqa: E402
-from slope_tools.deposits.deposit import Deposit  # noqa: E402
-from slope_tools.mobility import fall_path, run_length  # noqa: E402
-from slope_tools.survey.rasters import Raster  # noqa: E402
+from slope_tools.deposits import deposit as deposits
+from slope_tools.deposits.deposit import Deposit
+from slope_tools.mobility import fall_path, run_length
+from slope_tools.survey.rasters import Raster
 
 CELL, ROWS, COLUMNS = 10.0, 60, 200
 MASS = 1e5                      # m3, released

@@ -1,25 +1,21 @@
 """YAML files that the tools read: each is checked against a schema; what is wrong with one is a line with its place."""
 import re
-import sys
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
+from slope_tools.case import run_folders
+from slope_tools.ensembles import farther, sample
+from slope_tools.errors import SlopeError
+from slope_tools.fitting import calibration
+from slope_tools.report import convergence_part, heading, reference
+from slope_tools.seismic import fragility_files
+from slope_tools.survey import rasters
+from slope_tools.tables import size_error, structures
+
 TOP = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(TOP / "tools"))
-
 TOOLS = TOP / "tools" / "slope_tools"
-
-from slope_tools.case import run_folders  # noqa: E402
-from slope_tools.ensembles import farther, sample  # noqa: E402
-from slope_tools.errors import SlopeError  # noqa: E402
-from slope_tools.fitting import calibration  # noqa: E402
-from slope_tools.report import convergence_part, heading, reference  # noqa: E402
-from slope_tools.seismic import fragility_files  # noqa: E402
-from slope_tools.survey import rasters  # noqa: E402
-from slope_tools.tables import size_error, structures  # noqa: E402
-
 LHS = SimpleNamespace(about={"variables": {}}, kind="lhs", number=4, seed=1)
 SIDECAR = ("{crs: null, origin: {east: 0, north: 0}, size: {rows: 3, columns: 4}, extent: {xlo: 0, xhi: 4, ylo: 0, "
            "yhi: %s}}")

@@ -95,14 +95,14 @@ def test_only_what_is_thicker_than_the_threshold_counts(scored):
     assert scored(whole, "--threshold 0.09")["area"]["jaccard"] == 1
     about = scored(whole, "--threshold 2")
     assert about["area"]["jaccard"] == 0 and about["area"]["precision"] is None
-    assert about["runout"]["difference"] is None and "nowhere thicker than 2 m" in about["warnings"][-1]
+    assert about["runout"]["difference"] is None and "nowhere thicker than 2 m" in about["warnings"][-1]["text"]
 
 
 def test_mapped_beyond_the_grid_is_not_met(scored):
     write_run(square(), 0.0, 2.5)
     about = scored(box(60, 30, 250, 60))
     assert about["area"] == pytest.approx(areas(1200, 190 * 30, 600))
-    assert "3000 m2 of it lie outside of the grid" in about["warnings"][-1]
+    assert "3000 m2 of it lie outside of the grid" in about["warnings"][-1]["text"]
     assert about["runout"]["observed"] > 150
 
 
@@ -173,8 +173,9 @@ def test_a_raster_without_a_crs_is_taken_to_be_in_that_of_the_terrain(slope, no_
     status, out, err = slope("run --observed nocrs.tif --overwrite")
     assert status == 0 and "Jaccard 1.000" in out
     assert err.startswith("slope score: warning: nocrs.tif has no CRS: taken to be in that of the terrain")
-    assert err.count("\n") == 1 and yaml.safe_load(Path("run.score/score.yaml").read_text())["warnings"] == [
-        err[len("slope score: warning: "):-1]]
+    said, = yaml.safe_load(Path("run.score/score.yaml").read_text())["warnings"]
+    assert (said["kind"], said["level"]) == ("CRS of terrain", "warning")
+    assert said["numbers"]["file"] == "nocrs.tif" and err == f"slope score: warning: {said['text']}\n"
     write_asc("local.asc", square(), 2.5)       # in local metres, but --local was not said
     status, out, err = slope("run --observed local.asc --overwrite")
     assert (status, out) == (2, "") and "warning: local.asc has no CRS" in err and "--local" in err

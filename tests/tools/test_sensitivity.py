@@ -1,24 +1,18 @@
 """tools/slope sensitivity: one variable at a time; scatter, effects and the sentence against numbers by hand."""
 import csv
 import math
-import os
 import shlex
 import shutil
 import statistics
-import sys
 from pathlib import Path
 
 import pytest
 import yaml
 
 from run_helpers import called
-from tiny_collapse import TOP
 
-TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools.studies import sensitivity  # noqa: E402
-from slope_tools.tables import quantities  # noqa: E402
+from slope_tools.studies import sensitivity
+from slope_tools.tables import quantities
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 T = 4.302652729911275       # t(0.975) of three runs

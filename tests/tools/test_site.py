@@ -331,6 +331,7 @@ def test_the_folder_is_made_anew_from_its_file(done, tmp_path):
 
 # --- what lies on the terrain ---
 
+@pytest.mark.long
 def test_structures_lines_and_a_mapped_deposit(gis):
     write_wall(gis / "wall.stl")
     write_layer(gis / "behind.geojson", [(36, 50), (36, 30)], kind=LineString)
@@ -384,6 +385,7 @@ def test_layers_in_other_systems_lie_where_they_belong(done):
         assert max(far) < 0.01
 
 
+@pytest.mark.long
 def test_a_volume_of_frank_by_polygon(tmp_path):
     """A body of 1e6 m3 below a polygon on frank's ground: released within 0.2 %, whatever the balls."""
     frank = DATA / "frank" / "Frankslide_topography.asc"

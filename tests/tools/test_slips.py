@@ -5,9 +5,9 @@ from affine import Affine
 
 import run_helpers  # noqa: F401  (finds slope_tools)
 
-from slope_tools.slips import bishop, columns  # noqa: E402
-from slope_tools.slips.bishop import Strengths  # noqa: E402
-from slope_tools.survey.rasters import Raster  # noqa: E402
+from slope_tools.slips import bishop, columns
+from slope_tools.slips.bishop import Strengths
+from slope_tools.survey.rasters import Raster
 
 CELL = 0.5
 

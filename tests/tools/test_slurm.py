@@ -14,13 +14,11 @@ import pytest
 
 import tiny_collapse
 
+from slope_tools import cli
+from slope_tools.errors import SlopeError
+from slope_tools.runs import job_display, jobs, launcher, slurm as engine
+
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", tiny_collapse.TOP / "tools"))
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools import cli  # noqa: E402
-from slope_tools.errors import SlopeError  # noqa: E402
-from slope_tools.runs import job_display, jobs, launcher, slurm as engine  # noqa: E402
-
 PROGRAM = [sys.executable, str(TOOLS / "slope")]
 PATH = f"{os.environ['PATH']}:/usr/sbin:/sbin"
 CONF = """\

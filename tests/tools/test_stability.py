@@ -1,5 +1,4 @@
 """slope stability: what find_slip finds on the embankments of Scoops3D, and what is said of it."""
-import argparse
 import csv
 import os
 import subprocess
@@ -16,9 +15,9 @@ import test_depends_on
 from run_helpers import called, write_asc
 from test_slips import CASES
 
-from slope_tools.commands import stability  # noqa: E402
-from slope_tools.slips import bishop, bodies, columns, doubts  # noqa: E402
-from slope_tools.survey.rasters import Raster  # noqa: E402
+from slope_tools.commands import stability
+from slope_tools.slips import bishop, bodies, columns, doubts
+from slope_tools.survey.rasters import Raster
 
 LMP = os.environ.get("LMP")
 needs_lmp = pytest.mark.skipif(not LMP, reason="needs the LAMMPS program (LMP)")
@@ -57,8 +56,8 @@ def test_bodies_table_map_and_warnings(low, capsys):
     assert rows[0]["cells"] * 0.25 == pytest.approx(rows[0]["area"], rel=0.02)
     about = yaml.safe_load(Path("slips/stability.yaml").read_text())
     assert test_depends_on.SAID["stability"] - {"failed"} <= about.keys() and about["method"] == "bishop"
-    assert f"only {len(rows)} of 9 bodies" in about["warnings"][0] and len(rows) < 9
-    assert all(f"stability: warning: {line}\n" in err for line in about["warnings"])
+    assert f"only {len(rows)} of 9 bodies" in about["warnings"][0]["text"] and len(rows) < 9
+    assert all(f"stability: warning: {one['text']}\n" in err for one in about["warnings"])
     assert Path("slips/stability.png").stat().st_size > 10000
 
     # its deck runs from where it lies, and slope fragility reads what it left
@@ -212,13 +211,12 @@ def test_a_site_of_a_body(low, capsys):
 
 
 def test_doubtful_input_is_named():
-    args = argparse.Namespace(cohesion=8.0, density=19.0)
     half = np.array([[1.0, np.nan], [np.nan, np.nan]])
     masks = [half == 1.0, np.ones((2, 2), bool)]
-    found = list(map(str, stability.warnings_of(args, [{"rank": 1}, {"rank": 2}], masks, half)))
+    found = list(map(str, stability.warnings_of(8.0, 19.0, [{"rank": 1}, {"rank": 2}], masks, half)))
     assert [one.split(":")[0] for one in found] == ["--cohesion 8", "--density 19", "body 2"]
     assert "no value below 75 % of its cells" in found[2]
-    assert not list(stability.warnings_of(argparse.Namespace(cohesion=0.0, density=1900.0), [], [], None))
+    assert not list(stability.warnings_of(0.0, 1900.0, [], [], None))
 
 
 @pytest.fixture

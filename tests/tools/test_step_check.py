@@ -1,16 +1,10 @@
 """What half the time step changes, against the runs that are otherwise the same."""
-import os
-import sys
-from pathlib import Path
 
 import pytest
 
-TOP = Path(__file__).resolve().parents[2]
-sys.path.insert(0, os.environ.get("SLOPE_TOOLS", str(TOP / "tools")))
-
-from slope_tools.errors import SlopeError  # noqa: E402
-from slope_tools.tables import combinations, energy, step_check  # noqa: E402
-from slope_tools.tables.step_check import Step  # noqa: E402
+from slope_tools.errors import SlopeError
+from slope_tools.tables import combinations, energy, step_check
+from slope_tools.tables.step_check import Step
 
 
 def groups():

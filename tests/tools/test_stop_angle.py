@@ -1,17 +1,13 @@
 """The stop angle of a ground of fixed balls: the table of measured ones, and what lies between them."""
 import csv
-import sys
 
 import numpy as np
 import pytest
 
-from run_helpers import TOOLS
 
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools.errors import SlopeError  # noqa: E402  (after the path is set)
-from slope_tools.sites import stop_angle as module  # noqa: E402
-from slope_tools.sites.stop_angle import stop_angle  # noqa: E402
+from slope_tools.errors import SlopeError
+from slope_tools.sites import stop_angle as module
+from slope_tools.sites.stop_angle import stop_angle
 
 with open(module.TABLE, encoding="utf-8", newline="") as lines:
     ROWS = list(csv.DictReader(lines))

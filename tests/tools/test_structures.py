@@ -1,11 +1,8 @@
 """Structures and control lines in study and report: numbers against the runs' own files and closed forms."""
 import csv
 import html
-import os
 import re
 import shlex
-import sys
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -13,16 +10,13 @@ import pytest
 import yaml
 
 from run_helpers import called
-from tiny_collapse import LMP, TOP, write_case, write_stl
+from tiny_collapse import LMP, write_case, write_stl
 
-TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools import cli, digits, errors  # noqa: E402
-from slope_tools.plots import figure_structures  # noqa: E402
-from slope_tools.plots.obstacles import Obstacles  # noqa: E402
-from slope_tools.report import structures_part as report_structures  # noqa: E402
-from slope_tools.tables import structures  # noqa: E402
+from slope_tools import cli, digits, errors
+from slope_tools.plots import figure_structures
+from slope_tools.plots.obstacles import Obstacles
+from slope_tools.report import structures_part as report_structures
+from slope_tools.tables import structures
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 ADDED = """\

@@ -17,13 +17,11 @@ from rasterio.crs import CRS
 
 from run_helpers import called
 
+from slope_tools.commands import terrain as terrain_command
+from slope_tools.survey import crs, holes as small_holes, rasters
+
 TOP = Path(__file__).resolve().parents[2]
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools.commands import terrain as terrain_command  # noqa: E402
-from slope_tools.survey import crs, holes as small_holes, rasters  # noqa: E402
-
 CRS_M = "EPSG:6677"               # metres, zone IX of Japan
 EAST, NORTH = -12000.0, 34000.0   # lower left corner of the surveys below
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")

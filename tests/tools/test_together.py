@@ -7,8 +7,8 @@ from scipy import optimize
 
 import run_helpers  # noqa: F401  (finds slope_tools)
 
-from slope_tools.seismic import chain, together  # noqa: E402
-from slope_tools.seismic.together import Steps  # noqa: E402
+from slope_tools.seismic import chain, together
+from slope_tools.seismic.together import Steps
 
 VOLUMES = np.arange(0.0, 16.0)
 

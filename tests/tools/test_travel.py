@@ -109,7 +109,8 @@ def test_limits_leave_no_ball_out_of_the_shares(travelled, capsys):
     about = travelled("a.dump --along 1.5 3.5")
     assert share("along", 1.5) == 0.25 and share("along", 3.5) == 0.75
     assert about["along"]["all"]["max"] == 4
-    assert about["warnings"] == ["--along 1.5 3.5: 2 of 4 balls lie beyond these limits"]
+    assert [one["text"] for one in about["warnings"]] == [
+        "--along 1.5 3.5: 2 of 4 balls lie beyond these limits"]
 
 
 def test_types(travelled):
@@ -151,7 +152,7 @@ def test_travel_and_run_out(travelled):
     Path("rest.dump").write_text(snapshot([(3, 2, 1), (0, 1, 2), (8, 1, 0)], id=[3, 1, 2]))
     about = travelled("rest.dump --start start.dump")
     run, = about["each_run"]
-    assert run["missing"] == 1 and "1 of 4 balls of the start are not there" in about["warnings"][0]
+    assert run["missing"] == 1 and "1 of 4 balls of the start are not there" in about["warnings"][0]["text"]
     assert [float(row["travel"]) for row in rows("out/balls.csv")] == [1, 8, 3]
     assert [float(row["drop"]) for row in rows("out/balls.csv")] == [3, 6, 4]
     assert float(rows("out/balls.csv")[1]["angle"]) == pytest.approx(math.degrees(math.atan2(6, 8)))
@@ -263,7 +264,7 @@ def test_moving_balls_are_told(travelled, capsys):
     write("a.dump", FOUR, columns="id x y z vx vy vz", vx=[0, 0.05, 0, 0.09], vz=[0, 0, -0.11, 0.09])
     about = travelled("a.dump")
     assert about["each_run"][0]["moving"] == 2
-    assert "a.dump: 2 of 4 balls are faster than 0.1 m/s" in about["warnings"][0]
+    assert "a.dump: 2 of 4 balls are faster than 0.1 m/s" in about["warnings"][0]["text"]
 
 
 # --- files, bad input ---

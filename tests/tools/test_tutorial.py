@@ -6,10 +6,12 @@ import subprocess
 import warnings
 from pathlib import Path
 
+import pytest
 import yaml
 
 from tiny_collapse import LMP, TOP
 
+pytestmark = pytest.mark.long
 BUILD = Path(os.environ.get("SLOPE_BUILD", TOP / "build"))
 NOT_HERE = ("tools/demo.sh", "FG-GML", "slope sensitivity")     # builds; the user's own file; runs for a minute
 NUMBER = re.compile(r"-?\d[\d,]*(?:\.\d+)?(?:e[+-]?\d+)?")

@@ -66,12 +66,12 @@ ANEW = "tools/slope site 'my site'{} && tools/slope study 'my site' --anew"
      ANEW.format(" --balls 11000").replace("--anew", "--paper --anew")),
     ({"left": 0.3}, SITE._replace(sampled=True), "30 %", "a larger elevation model (terrain.files, terrain.bounds) in "
      "'my site'/site.yaml, then: tools/slope site 'my site'; the same command with --anew"),
-    ({"moving": 5}, DECK, "5 of 20 runs failed or are not at rest, more than 10 %",
+    ({"moving": 5}, DECK, "5 of 20 runs failed or are not at rest at the end, more than 10 %",
      "the same command with more time, --set duration=120"),
     ({"failed": 5}, DECK, "5 of 20 runs", "the same command again, once the cause of the failures is removed"),
     ({"size": "it is -20 %"}, SITE, "the size error is not trusted: it is -20 %", ANEW.format(" --balls 8800"))])
 def test_the_reason_and_the_command_that_mends_it(changed, case, text, remedy):
-    [entry] = withheld_words.entries(withheld.reasons(GOOD._replace(**changed)), case)
+    [entry] = withheld_words.mended(withheld.reasons(GOOD._replace(**changed)), case)
     assert text in entry["text"] and entry["remedy"] == remedy
 
 
@@ -79,7 +79,7 @@ def test_the_reason_and_the_command_that_mends_it(changed, case, text, remedy):
                                   DECK._replace(variables={"friction": "30", "rolling": "0"})])
 @pytest.mark.parametrize("changed", [{"on_road": 50.0}, {"length": 700.0}, {"left": 0.3}, {"moving": 5}, {"size": "x"}])
 def test_the_commands_are_ones_that_the_tools_take(case, changed):
-    [entry] = withheld_words.entries(withheld.reasons(GOOD._replace(**changed)), case)
+    [entry] = withheld_words.mended(withheld.reasons(GOOD._replace(**changed)), case)
     typed = re.findall(r"tools/slope (?:'[^']*'|[^&;,])*", entry["remedy"])
     assert typed or case.site is None or case.sampled
     for words in map(shlex.split, typed):

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.long
 TOP = Path(__file__).resolve().parents[2]
 BUILD = Path(os.environ.get("SLOPE_BUILD", TOP / "build"))
 CALLING = sorted(path for path in (TOP / "src").glob("**/*.cpp") if re.search(r"\bMPI_[A-Z]\w+\(", path.read_text()))

@@ -1,6 +1,7 @@
 """What a user of a GIS gets wrong: forty kinds, two of each; one line that helps, or the right result, never silence.
 
-The table is also on the page on robustness, which a test compares; `python3 test_wrong_inputs.py` prints it.
+They are a page, too, which a test compares; `python3 tests/tools/test_wrong_inputs.py > doc/src/wrong_inputs.rst`
+makes it.
 """
 import json
 import os
@@ -492,8 +493,30 @@ def test_names_in_utf8_under_another_locale(files, tmp_path, variables):
 
 # --- the page ---
 
-def table():
-    """The list-table of the page on robustness."""
+HEAD = """\
+.. Made by python3 tests/tools/test_wrong_inputs.py > doc/src/wrong_inputs.rst; do not edit.
+
+Wrong inputs of a GIS
+=====================
+
+*For users.*  What users of a GIS get wrong, two of each kind, and what :doc:`slope terrain <tool_terrain>`,
+:doc:`polygon <tool_polygon>`, :doc:`release <tool_release>`, :doc:`site <tool_site>` and :doc:`export <tool_export>`
+answer: an error, one line with status 2 that begins so, or the right result, with what is said of it.  Nothing is
+wrong in silence, and nothing is a traceback.  Of a new site that could not be made, *site.yaml* is kept; else an error
+leaves no file.
+
+.. list-table::
+   :header-rows: 1
+   :widths: 16 26 58
+
+   * - Kind
+     - Input
+     - Answer
+"""
+
+
+def page():
+    """doc/src/wrong_inputs.rst."""
     lines, last = [], None
     for case in CASES:
         accepted = case.answer.startswith((RIGHT, ASKED))
@@ -501,7 +524,7 @@ def table():
         lines += [f"   * - {case.kind if case.kind != last else ''}".rstrip(), f"     - {case.what}",
                   f"     - {shown[:len(RIGHT)]}``{shown[len(RIGHT):].strip()}``"]
         last = case.kind
-    return "\n".join(lines) + "\n"
+    return HEAD + "\n".join(lines) + "\n"
 
 
 def test_two_of_each_of_forty_kinds():
@@ -510,10 +533,9 @@ def test_two_of_each_of_forty_kinds():
     assert len({(case.kind, case.what) for case in CASES}) == len(CASES)
 
 
-def test_the_page_has_the_table():
-    page = (TOP / "doc" / "src" / "robustness.rst").read_text(encoding="ascii")
-    assert table() in page, "python3 tests/tools/test_wrong_inputs.py prints it"
+def test_the_page_is_what_the_cases_say():
+    assert (TOP / "doc" / "src" / "wrong_inputs.rst").read_text(encoding="ascii") == page(), "make it again, see HEAD"
 
 
 if __name__ == "__main__":
-    print(table(), end="")
+    print(page(), end="")

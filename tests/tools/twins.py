@@ -1,15 +1,11 @@
 """Twin experiments for calibrations: a cheap stand-in for a collapse, with chance, whose values are looked for."""
-import os
-import sys
 from pathlib import Path
 
 import numpy as np
 
+from slope_tools.statistics import backanalysis, distributions
+
 TOP = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))))
-
-from slope_tools.statistics import backanalysis, distributions  # noqa: E402
-
 VARIABLES = [distributions.distribution(name, text, "--vary", text) for name, text in
              (("friction", "15:40"), ("rolling", "0:0.2"), ("spacing", "0.5:1.5"))]
 CLOSE = np.array([2.0, 0.02, 0.1])      # degrees, -, diameters

@@ -3,8 +3,8 @@
 A subcommand NAME is the module slope_tools.commands.NAME (of IN_TESTS: tests/other_codes/NAME.py) with
 
     DESCRIPTION, EPILOG     its help, before and after the options
-    add_arguments(parser)   adds its options to an argparse parser
-    run(args)               does the work; raises SlopeError on bad input
+    Request                 its options, the fields of a frozen class: see options.py
+    run(request)            does the work; raises SlopeError on bad input
 
 Only the module that is asked for is imported: a subcommand starts fast, and needs only its own libraries.
 """
@@ -16,7 +16,7 @@ import sys
 import traceback
 from pathlib import Path
 
-from . import disk, warned
+from . import disk, options, findings
 from .errors import SlopeError
 from .provenance import version
 
@@ -81,8 +81,8 @@ def add_command(commands, name, module, **kwargs):
     """The parser of a subcommand, added to argparse's commands."""
     parser = commands.add_parser(name, formatter_class=argparse.RawDescriptionHelpFormatter, epilog=module.EPILOG,
                                  description=module.DESCRIPTION, **kwargs)
-    module.add_arguments(parser)
-    parser.set_defaults(run=module.run)
+    options.declare(parser, module.Request)
+    parser.set_defaults(run=lambda found: module.run(options.request(module.Request, found)))
     return parser
 
 
@@ -129,11 +129,11 @@ def main(argv=None):
         else:
             commands.add_parser(name, help=summary)
     args = parser.parse_args(with_new_names(asked, argv))
-    warned.as_json = args.progress == "json"
+    findings.as_json = args.progress == "json"
 
     def fail(text):
-        if warned.as_json:
-            warned.say_json("error", command=args.command, text=str(text))
+        if findings.as_json:
+            findings.say_json("error", command=args.command, text=str(text))
         else:
             print(f"slope {args.command}: {text}", file=sys.stderr)
     try:

@@ -1,15 +1,94 @@
-"""Types of options on the command line."""
+"""The options of a command, each stated once: the fields of its request, a frozen class, and the types of their values.
+
+    @dataclass(frozen=True, kw_only=True)
+    class Request(Overwrite):
+        deck: Path = positional("LAMMPS input deck", metavar="DECK")
+        road_width: Optional[float] = option("the road is a line, of this width (m)", metavar="W")    # --road-width
+
+The annotation says how a word is read, and, without a default and Optional, that the option must be given. GROUP of a
+class is the heading of its options in --help; a class's own options come before those of its bases. A field without a
+help is no option.
+"""
 import argparse
+import dataclasses
 import math
 import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Callable, Dict, Mapping, Optional, Tuple, Type, TypeVar, Union, get_args, get_origin
+from typing import get_type_hints
 
 MOST = 10 ** 9      # of anything counted; more exceeds any memory or time
+R = TypeVar("R")
 
 
-def add_overwrite(parser):
-    """--overwrite, for disk.check_standing()."""
-    parser.add_argument("--overwrite", action="store_true", help="replace files of the same names that are not the "
-                        "result of the same input (default: refuse)")
+def option(what: str, *names: str, one_of: str = "", also: Mapping[str, str] = {}, default: Any = None,
+           **words: Any) -> Any:
+    """An option with a value; what: its help; names: where it is not called as the field; words: of add_argument().
+
+    one_of: only one option with this word may be given; also: {option: value}, short for this one with the value.
+    """
+    about = {"names": names, "one_of": one_of, "also": also, "words": {**words, "help": what, "default": default}}
+    if isinstance(default, list):
+        return dataclasses.field(default_factory=lambda: list(default), metadata=about)
+    return dataclasses.field(default=default, metadata=about)
+
+
+def several(what: str, *names: str, **words: Any) -> Any:
+    """An option that may be given several times; the values are a list."""
+    return option(what, *names, action="append", default=[], **words)
+
+
+def flag(what: str, *names: str, **words: Any) -> Any:
+    """An option without a value."""
+    return option(what, *names, action="store_true", default=False, **words)
+
+
+def positional(what: str, **words: Any) -> Any:
+    """A word without an option."""
+    return option(what, "", **words)
+
+
+def declare(parser: argparse.ArgumentParser, kind: Any) -> None:
+    """Add the options of a request to a parser."""
+    hints = get_type_hints(kind)
+    groups: Dict[Tuple[str, str], Any] = {("", ""): parser}
+    fields = {field.name: field for field in dataclasses.fields(kind) if field.metadata}
+    for field, title in [(fields.pop(name), vars(base).get("GROUP", "")) for base in kind.__mro__
+                         for name in vars(base).get("__annotations__", ()) if name in fields]:
+        names, one_of, also, words = (field.metadata[key] for key in ("names", "one_of", "also", "words"))
+        if (title, "") not in groups:
+            groups[title, ""] = parser.add_argument_group(title)
+        if (title, one_of) not in groups:
+            groups[title, one_of] = groups[title, ""].add_mutually_exclusive_group()
+        add = groups[title, one_of].add_argument
+        optional, read = reader(hints[field.name])
+        words = words if words.get("action") == "store_true" else {"type": read, **words}
+        if names == ("",):
+            add(field.name, **words)
+            continue
+        if words["default"] is None and not optional:
+            words["required"] = True
+        names = names or (f"--{field.name.replace('_', '-')}",)
+        add(*names, dest=field.name, **words)
+        for name, value in also.items():
+            add(name, dest=field.name, action="store_const", const=value, help=f"{names[0]} {value}")
+
+
+def reader(hint: Any) -> Tuple[bool, Optional[Callable[[str], Any]]]:
+    """Whether a value may be None, and how a word of it, or of a list of them, is read."""
+    optional = get_origin(hint) is Union
+    hint = get_args(hint)[0] if optional else hint
+    while get_origin(hint) is list:
+        hint = get_args(hint)[0]
+    return optional, READ.get(hint)
+
+
+def request(kind: Type[R], found: argparse.Namespace) -> R:
+    """The request of what a parser found."""
+    names = {field.name for field in dataclasses.fields(kind)}
+    return kind(**{name: list(value) if isinstance(value, list) else value
+                   for name, value in vars(found).items() if name in names})
 
 
 def number(text):
@@ -37,3 +116,20 @@ def count(text):
     if len(text.lstrip("0")) > len(str(MOST)) or int(text) > MOST:
         raise argparse.ArgumentTypeError(f"must be a whole number <= {MOST}, got {text!r}")
     return int(text)
+
+
+READ: Dict[Any, Callable[[str], Any]] = {float: number, int: count, Path: Path}       # the others as they are
+
+
+@dataclass(frozen=True, kw_only=True)
+class Overwrite:
+    """For disk.check_standing()."""
+    overwrite: bool = flag("replace files of the same names that are not the result of the same input (default: "
+                           "refuse)")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Program:
+    """For programs.find_lmp()."""
+    lmp: Optional[str] = option("the LAMMPS program (default: LMP of the environment, then build/lmp beside tools/)",
+                                metavar="FILE")

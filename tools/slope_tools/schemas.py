@@ -37,6 +37,9 @@ def listed(items: Mapping[str, Any], least: int = 0, null: bool = False) -> Dict
     return {"type": ["array", "null"] if null else "array", "items": items, "minItems": least}
 
 
+FINDINGS = listed({"anyOf": [OBJECT, TEXT], "description": "findings"}, null=True)     # TEXT: of older versions
+
+
 def load(path, what: str, schema: Mapping[str, Any]) -> Any:
     """What a YAML file holds; SlopeError unless it fits the schema. what: the file, for messages."""
     about = disk.parse_yaml(path, what)

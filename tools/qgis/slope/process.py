@@ -104,7 +104,7 @@ def follow(process, feedback):
             one = said(line)
             if one["level"] == "progress":
                 feedback.setProgress(100 * one["share"])
-            elif one["level"] == "warning":
+            elif one["level"] in ("warning", "note"):
                 feedback.pushWarning(f"{one['command']}: {one['text']}")
             else:
                 if last:

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any, Callable, Dict, Iterable, List, Mapping, Sequence, Set, Tuple
 
 from ..errors import SlopeError
-from ..warned import Warned
+from ..findings import Finding
 
 WORD = re.compile(r'"""(.*?)"""|"([^"]*)"|\'([^\']*)\'|(\S+)')
 PATHS = re.compile(r"[^\s\"'(),=]+")        # what may be a path in a word such as is_file(/data/a.asc)
@@ -71,11 +71,11 @@ def quoted(path: str) -> str:
     return f'"{path}"' if any(c.isspace() or c in "#$&" for c in path) else path
 
 
-def warn_of_name(path: object, warn: Callable[[Warned], Any]) -> None:
+def warn_of_name(path: object, warn: Callable[[Finding], Any]) -> None:
     """Warn of a path that no deck can name: LAMMPS changes what is not ASCII before it opens a file."""
     odd = sorted({c for c in str(path) if not c.isascii() or c == '"'})
     if odd:
-        warn(Warned("file name", {"file": str(path), "characters": " ".join(odd)}))
+        warn(Finding("file name", {"file": str(path), "characters": " ".join(odd)}))
 
 
 def filled(word: str, values: Mapping[str, str]) -> str:

@@ -4,16 +4,18 @@ Order of the work: check what was observed (observations.py), make runs batch af
 (calibration.py, backanalysis.py), run them as `slope study` does (study.py, jobs.py), write what they say together.
 """
 import argparse
+from dataclasses import dataclass
 from pathlib import Path
+from typing import List, Optional, Tuple
 
-from .. import options, warned
+from .. import findings
 from ..case import data_files, decks
 from ..case.settings import check_settings, one_value_each
 from ..deposits.score import THRESHOLD
 from ..errors import SlopeError
 from ..fitting import calibration, observations
 from ..fitting.fit import Fit
-from ..options import number
+from ..options import number, option, positional, several, whole
 from ..runs import jobs, repeats
 from ..statistics import backanalysis, distributions
 from ..studies import study
@@ -38,57 +40,54 @@ mapped DIR/predicted.png.
 """
 
 
-def add_arguments(parser):
-    run_arguments.add_deck(parser)
-    parser.add_argument("--observed", metavar="POLYGON|RASTER", type=Path,
-                        help="the mapped deposit: its outline, or its thickness in metres, as for `slope score`")
-    parser.add_argument("--front", metavar="L", type=number,
-                        help="how far the mass went, from crown to tip along its fall path in plan, m")
-    parser.add_argument("--front-is", choices=observations.FRONTS, default="length",
-                        help="what of a run is compared with it: its length along the fall path (default), which "
-                             "single balls do not move, or the distance that 95 or 99 %% of the volume stay within")
-    parser.add_argument("--area", metavar="A", type=number,
-                        help="total area that was covered at any time by more than --threshold, m2")
-    parser.add_argument("--road-volume", metavar="V", type=number, help="volume on the road of --road, m3")
-    parser.add_argument("--tolerance", metavar="[NAME=]SHARE", type=tolerance, action="append", default=[],
-                        help="standard deviation of what was observed, as a share of it "
-                             f"(default {TOLERANCE:g}); chance comes on top. NAME=SHARE: of one observation, observed, "
-                             "front, area or volume; may be repeated")
-    parser.add_argument("--threshold", metavar="T", type=number, default=THRESHOLD,
-                        help=f"thickness above which a cell counts as deposit, m (default {THRESHOLD:g})")
-    parser.add_argument("--vary", metavar="NAME=LO:HI", action="append", default=[], required=True,
-                        help="variable of the deck to be calibrated, and its range; all values in it are equally "
-                             "likely before (loguniform:LO:HI and the others of `slope study` too)")
-    parser.add_argument("--runs", metavar="N", type=options.count, required=True, help="total number of runs")
-    parser.add_argument("--set", metavar="NAME=VALUE", action="append", default=[],
-                        help="value of another index variable in all runs (default: the deck's)")
-    parser.add_argument("--seed", metavar="S", type=options.whole, default=1,
-                        help="seed of the first points (default 1)")
-    run_arguments.add_repeats(parser)
-    run_arguments.add_runs(parser)
-
-
 def tolerance(text):
-    """argparse type: (name of an observation or None, share)."""
+    """argparse type: (name of an observation, "" for all, share)."""
     name, equals, share = text.rpartition("=")
     if equals and name not in observations.KINDS:
         raise argparse.ArgumentTypeError(f"must name one of {', '.join(observations.KINDS)}, got {name!r}")
-    return name or None, number(share)
+    return name, number(share)
 
 
-def run(args):
+@dataclass(frozen=True, kw_only=True)
+class Request(run_arguments.Repeats, run_arguments.Runs):
+    deck: Path = positional(run_arguments.DECK, metavar="DECK")
+    output: Path = option("the study's folder", "-o", metavar="DIR")
+    observed: Optional[Path] = option(
+        "the mapped deposit: its outline, or its thickness in metres, as for `slope score`", metavar="POLYGON|RASTER")
+    front: Optional[float] = option(
+        "how far the mass went, from crown to tip along its fall path in plan, m", metavar="L")
+    front_is: str = option(
+        "what of a run is compared with it: its length along the fall path (default), which single balls do not move, "
+        "or the distance that 95 or 99 %% of the volume stay within", choices=observations.FRONTS, default="length")
+    area: Optional[float] = option("total area that was covered at any time by more than --threshold, m2", metavar="A")
+    road_volume: Optional[float] = option("volume on the road of --road, m3", metavar="V")
+    tolerance: List[Tuple[str, float]] = several(
+        "standard deviation of what was observed, as a share of it "
+        f"(default {TOLERANCE:g}); chance comes on top. NAME=SHARE: of one observation, observed, "
+        "front, area or volume; may be repeated", metavar="[NAME=]SHARE", type=tolerance)
+    threshold: float = option(
+        f"thickness above which a cell counts as deposit, m (default {THRESHOLD:g})", metavar="T", default=THRESHOLD)
+    vary: List[str] = several(
+        "variable of the deck to be calibrated, and its range; all values in it are equally likely before "
+        "(loguniform:LO:HI and the others of `slope study` too)", metavar="NAME=LO:HI", required=True)
+    runs: int = option("total number of runs", metavar="N")
+    set: List[str] = several("value of another index variable in all runs (default: the deck's)", metavar="NAME=VALUE")
+    seed: int = option("seed of the first points (default 1)", metavar="S", type=whole, default=1)
+
+
+def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input, and where too few runs finished."""
     shares = dict(args.tolerance)
-    wanted = observations.Wanted(args.observed, args.front, args.area, args.road_volume, shares.pop(None, TOLERANCE),
+    wanted = observations.Wanted(args.observed, args.front, args.area, args.road_volume, shares.pop("", TOLERANCE),
                                  args.threshold, args.local, shares, args.front_is)
     variables = distributions.parse(args.vary, args.deck, ranges_only=True)
     fixed = one_value_each(check_settings(args.set, args.deck), "--set", "--vary")
     repeated = check_settings(args.repeat, args.deck, "--repeat")
     repeats.check(list(repeated), args.equally_good)
     for one in variables:
-        for option, names in (("--set", fixed), ("--repeat", repeated)):
+        for given, names in (("--set", fixed), ("--repeat", repeated)):
             if one.name in names:
-                raise SlopeError("--vary", f"must not name a variable of {option}", one.name)
+                raise SlopeError("--vary", f"must not name a variable of {given}", one.name)
     least = 2 * len(variables) + 3
     if args.runs < least:
         raise SlopeError("--runs", f"must be at least {least} for {len(variables)} parameters", args.runs)
@@ -97,7 +96,7 @@ def run(args):
     wanted.check(args.road is not None)
     terrain = study.terrain_of(args.deck, fixed)
     if terrain:
-        wanted.check_place(terrain, warned.printer("calibrate"))
+        wanted.check_place(terrain, findings.printer("calibrate"))
     settings = {name: [value] for name, value in fixed.items()}
     files = data_files.data_files(args.deck, {**settings, **repeated})
     setup = run_arguments.setup_of(args)

@@ -4,6 +4,7 @@ import importlib
 from typing import Any, Iterable, List, Mapping
 
 from ..errors import SlopeError
+from ..options import declare, request
 from ..tables.study_file import Study
 
 
@@ -23,13 +24,13 @@ def call(command: str, deck: Any, **options: Any) -> Any:
     """
     module = importlib.import_module(f".{command}", __package__)
     parser = Parser(prog=command, allow_abbrev=False, add_help=False)
-    module.add_arguments(parser)
-    args = parser.parse_args([*words(parser, options), "--", str(deck)])
-    args.command = command
-    module.run(args)
-    if command != "study" or args.dry_run:
+    declare(parser, module.Request)
+    found = parser.parse_args([*words(parser, options), "--", str(deck)], argparse.Namespace(command=command))
+    asked = request(module.Request, found)
+    module.run(asked)
+    if command != "study" or asked.dry_run:
         return None
-    return Study.read(args.output or deck)
+    return Study.read(asked.output or deck)
 
 
 def words(parser: argparse.ArgumentParser, options: Mapping[str, Any]) -> List[str]:

@@ -1,12 +1,13 @@
 """slope export: every raster of a run as a GeoTIFF in the coordinates of the survey, for a GIS."""
+from dataclasses import dataclass
 from pathlib import Path
-from typing import List
+from typing import Optional
 
-from .. import disk, warned
+from .. import disk, findings
 from ..case import run_folders
 from ..deposits import deposit
 from ..deposits.export import file_of, layers, write
-from ..options import add_overwrite
+from ..options import Overwrite, option, positional
 from ..survey import rasters
 from ..survey.rasters import crs_name
 
@@ -23,21 +24,20 @@ Writes PREFIX.thickness.tif and so on, and export.yaml.
 """
 
 
-def add_arguments(parser):
-    parser.add_argument("prefix", metavar="PREFIX",
-                        help="output of fix deposit/grid: PREFIX.thickness.asc and so on; or one of these files; or "
-                             "the folder of a run, or of a study or site, which stands for its governing run")
-    parser.add_argument("-o", dest="output", metavar="DIR", type=Path,
-                        help="folder for the results (default PREFIX.export; of a folder, FOLDER/export)")
-    parser.add_argument("--terrain", metavar="TERRAIN.asc", type=Path,
-                        help="the run's terrain, whose sidecar holds the CRS (default: terrain.asc beside PREFIX)")
-    add_overwrite(parser)
+@dataclass(frozen=True, kw_only=True)
+class Request(Overwrite):
+    prefix: str = positional(
+        "output of fix deposit/grid: PREFIX.thickness.asc and so on; or one of these files; or the folder of a run, "
+        "or of a study or site, which stands for its governing run", metavar="PREFIX")
+    output: Optional[Path] = option(
+        "folder for the results (default PREFIX.export; of a folder, FOLDER/export)", "-o", metavar="DIR")
+    terrain: Optional[Path] = option(
+        "the run's terrain, whose sidecar holds the CRS (default: terrain.asc beside PREFIX)", metavar="TERRAIN.asc")
 
 
-def run(args):
+def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints what was written."""
-    warnings: List[str] = []
-    warn = warned.warner("export", warnings)
+    warn, warnings = findings.warner("export")
     named = run_folders.named_run(args.prefix)
     run_ = deposit.read(named.prefix, args.terrain, warn)
     folder = args.output or (named.folder / "export" if named.folder else Path(f"{named.prefix}.export"))
@@ -48,7 +48,7 @@ def run(args):
              "origin": {"east": place.offset[0], "north": place.offset[1]}, "cell": run_.cell,
              "run": {"slope_version": run_.summary.get("slope_version"), "time": run_.summary["time"]}, "rasters": []}
     if not any(layer.kind == "base" for layer in found):
-        warn(warned.Warned("no base", {"file": f"{named.prefix}.base.asc"}))
+        warn(findings.Finding("no base", {"file": f"{named.prefix}.base.asc"}))
     with disk.complete(folder, "export.yaml") as new:
         for layer in rasters.progress(found, "writing GeoTIFFs"):
             about["rasters"].append(write(new, layer, place))

@@ -1,13 +1,14 @@
 """slope fragility: how likely the bodies of find_slip fail at a peak acceleration."""
 import math
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, List
+from typing import Any, List, Optional
 
 import numpy as np
 
-from .. import disk, warned
+from .. import disk, findings
 from ..errors import SlopeError
-from ..options import add_overwrite, number, whole
+from ..options import Overwrite, flag, option, positional, several, whole
 
 DESCRIPTION = "How likely the bodies of find_slip fail at a peak acceleration."
 EPILOG = """\
@@ -27,36 +28,33 @@ this folder `slope study SITE --sample N --fragility DIR` says how likely which 
 """
 
 
-def add_arguments(parser):
-    parser.add_argument("slips", metavar="SLIPS", type=Path, help="what find_slip wrote")
-    parser.add_argument("--terrain", metavar="TERRAIN.asc", type=Path, required=True, help="the terrain of find_slip")
-    parser.add_argument("--density", metavar="R", type=number, required=True, help="density of the ground, kg/m3")
-    parser.add_argument("--cohesion", metavar="DIST", required=True, help="Pa")
-    parser.add_argument("--friction", metavar="DIST", required=True,
-                        help="friction angle, degrees; tan:DIST: its tangent")
-    parser.add_argument("--water", metavar="DIST", default="0",
-                        help="pore pressure over the weight per area, from 0 (default) to below 1")
-    parser.add_argument("--correlation", metavar="R", type=number, default=0.0,
-                        help="between cohesion and friction, -1 to 1 (default 0)")
-    parser.add_argument("--peaks", metavar="LO:HI[:STEP]", required=True, help="largest horizontal accelerations, gal")
-    parser.add_argument("--record", metavar="MOTION", action="append", default=[], type=Path,
-                        help="a motion of the ground, which is scaled to each peak; several may be given")
-    parser.add_argument("--vertical", action="store_true", help="with the vertical component of the records")
-    parser.add_argument("--displacement", metavar="D", type=number,
-                        help="a body fails if it slides farther than this, m (default 0.1)")
-    parser.add_argument("--pseudo-static", metavar="FACTOR", type=number,
-                        help="instead of records: a body fails if F < 1 with k = FACTOR peak / g, which is cautious if "
-                        "FACTOR is 1 or more")
-    parser.add_argument("--hazard", metavar="CURVE.csv", type=Path,
-                        help="lines peak,exceedance (gal, per year): gives the annual frequency of failure")
-    parser.add_argument("--sample", metavar="N", type=whole, default=4096,
-                        help="samples of the strength, at least 256 (default 4096)")
-    parser.add_argument("--seed", metavar="S", type=whole, default=1, help="seed of the samples (default 1)")
-    parser.add_argument("-o", dest="output", metavar="DIR", type=Path, required=True, help="folder for the results")
-    add_overwrite(parser)
+@dataclass(frozen=True, kw_only=True)
+class Request(Overwrite):
+    slips: Path = positional("what find_slip wrote", metavar="SLIPS")
+    terrain: Path = option("the terrain of find_slip", metavar="TERRAIN.asc")
+    density: float = option("density of the ground, kg/m3", metavar="R")
+    cohesion: str = option("Pa", metavar="DIST")
+    friction: str = option("friction angle, degrees; tan:DIST: its tangent", metavar="DIST")
+    water: str = option(
+        "pore pressure over the weight per area, from 0 (default) to below 1", metavar="DIST", default="0")
+    correlation: float = option("between cohesion and friction, -1 to 1 (default 0)", metavar="R", default=0.0)
+    peaks: str = option("largest horizontal accelerations, gal; without STEP 45 of them", metavar="LO:HI[:STEP]")
+    record: List[Path] = several(
+        "a motion of the ground, which is scaled to each peak; several may be given", metavar="MOTION")
+    vertical: bool = flag("with the vertical component of the records")
+    displacement: Optional[float] = option("a body fails if it slides farther than this, m (default 0.1)", metavar="D")
+    pseudo_static: Optional[float] = option(
+        "instead of records: a body fails if F < 1 with k = FACTOR peak / g, which is cautious if FACTOR is 1 or more",
+        metavar="FACTOR")
+    hazard: Optional[Path] = option(
+        "lines peak,exceedance (gal, per year): gives the annual frequency of failure", metavar="CURVE.csv")
+    sample: int = option(
+        "samples of the strength, 256 to 1048576 (default 4096)", metavar="N", type=whole, default=4096)
+    seed: int = option("seed of the samples (default 1)", metavar="S", type=whole, default=1)
+    output: Path = option("folder for the results", "-o", metavar="DIR")
 
 
-def run(args):
+def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints medians, HCLPF and frequencies."""
     from ..seismic import fragility, fragility_files as files, hazard_file      # scipy, matplotlib
     from ..slips import bodies
@@ -81,8 +79,7 @@ def run(args):
     curves = [files.Curve(name, fragility.curve(one, peaks), fragility.fit(one, peaks),
                           fragility.frequency(one, hazard, peaks) if hazard else None,
                           float((one <= 0).all(axis=1).mean())) for name, one in zip(names, columns)]
-    kept: List[str] = []
-    warn = warned.warner("fragility", kept)
+    warn, kept = findings.warner("fragility")
     for one in warnings_of(curves, found, args.pseudo_static, len(args.record), hazard):
         warn(one)
     about = {"bodies": [{"body": body.name, "volume_m3": body.columns.volume,
@@ -98,7 +95,7 @@ def run(args):
     print(summary(curves, args.output, files.FILES))
 
 
-def check(args):
+def check(args: Request) -> None:
     """The numbers, and what goes together."""
     if not args.density > 0:
         raise SlopeError("--density", "must be > 0 kg/m3", f"{args.density:g}")
@@ -135,7 +132,7 @@ def peaks_of(text):
     return parts[0] + step * np.arange(math.floor((parts[1] - parts[0]) / step + 1e-9) + 1)
 
 
-def soil_of(args):
+def soil_of(args: Request):
     """What is sampled, checked."""
     from ..seismic.fragility import Soil
 
@@ -171,26 +168,26 @@ def warnings_of(curves, found, pseudo_static, records, hazard):
     if pseudo_static is not None:
         judged = "cautious" if pseudo_static >= 1 else \
             "not cautious: a long motion may move it at a lower peak, use --record"
-        yield warned.Warned("pseudo-static", {"factor": pseudo_static, "judged": judged})
+        yield findings.Finding("pseudo-static", {"factor": pseudo_static, "judged": judged})
     elif records == 1:
-        yield warned.Warned("one record")
+        yield findings.Finding("one record")
     for body in found:
         if len(body.columns.area) < FEWEST:
-            yield warned.Warned("columns", {"body": body.name, "value": len(body.columns.area), "limit": FEWEST})
+            yield findings.Finding("columns", {"body": body.name, "value": len(body.columns.area), "limit": FEWEST})
     for one in curves:
         standing = one.at_rest * hazard.rates[0] / one.frequency.total.value if one.frequency else 0.0
         if one.at_rest > 0.01 or standing > 0.05:
             makes = f", which makes {100 * standing:.2g} % of the frequency" if standing > 0.05 else ""
-            yield warned.Warned("at rest", {"which": one.title, "percent": 100 * one.at_rest, "makes": makes})
+            yield findings.Finding("at rest", {"which": one.title, "percent": 100 * one.at_rest, "makes": makes})
         if one.fit is None:
-            yield warned.Warned("no fit", {"which": one.title})
+            yield findings.Finding("no fit", {"which": one.title})
         elif one.fit.off > 0.05:
-            yield warned.Warned("fit is off", {"which": one.title, "difference": float(one.fit.off)})
+            yield findings.Finding("fit is off", {"which": one.title, "difference": float(one.fit.off)})
         if one.fit and one.fit.at_hclpf > 1.5 * one.fit.at_hclpf_fitted:
-            yield warned.Warned("HCLPF", {"which": one.title, "percent": 100 * float(one.fit.at_hclpf),
-                                          "fitted": 100 * float(one.fit.at_hclpf_fitted)})
+            yield findings.Finding("HCLPF", {"which": one.title, "percent": 100 * float(one.fit.at_hclpf),
+                                             "fitted": 100 * float(one.fit.at_hclpf_fitted)})
         if one.frequency and one.frequency.beyond > 0.1 * one.frequency.total.value:
-            yield warned.Warned("beyond the curve", {"which": one.title, "per_year": float(one.frequency.beyond)})
+            yield findings.Finding("beyond the curve", {"which": one.title, "per_year": float(one.frequency.beyond)})
 
 
 def summary(curves, folder, files):

@@ -1,9 +1,11 @@
 """Arguments of the commands that compare a mass with known events: which ones, and whether its path is confined."""
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Optional
+from typing import Any, List, Optional
 
 from ..mobility import known, landslides
 from ..mobility.exceedance import CONFINED
+from ..options import option, several
 from ..sites import site_choices
 
 SETS = ("rock_avalanches (49 of Canada, the default; where they do not cover the mass, landslides of all sizes do), "
@@ -11,29 +13,31 @@ SETS = ("rock_avalanches (49 of Canada, the default; where they do not cover the
         "obstructed, deflected, channelized, unobstructed")
 
 
-def add_known(parser, alias: str, use: str) -> None:
-    """--known, which has an older name, --except, --confined and --unconfined; use: what they are for."""
-    parser.add_argument("--known", alias, metavar="SET", dest="known", help=f"{use}: EVENTS.csv, {SETS}")
-    parser.add_argument("--except", metavar="NAME", dest="left_out", action="append", default=[],
-                        help="leave out this event of the set; may be given several times")
-    add_confined(parser.add_mutually_exclusive_group())
+def known_option(use: str, *names: str) -> Any:
+    """--known; use: what the events are for."""
+    return option(f"{use}: {SETS}", *names, metavar="SET")
 
 
-def add_site(group) -> None:
-    """--known and --confined of a site, whose other commands take them from there."""
-    group.add_argument("--known", metavar="SET",
-                       help=f"events that the mass is compared with, in slope mobility and the study: {SETS}")
-    add_confined(group.add_mutually_exclusive_group())
+@dataclass(frozen=True, kw_only=True)
+class Confined:
+    """--confined and --unconfined."""
+    GROUP = "known events"
+    confined: Optional[str] = option(
+        "whether the path is laterally confined, a valley; unknown (default): as often as those of the set are; "
+        "without a value: yes", nargs="?", const="yes", choices=list(CONFINED), one_of="confined",
+        also={"--unconfined": "no"})
 
 
-def add_confined(group) -> None:
-    group.add_argument("--confined", nargs="?", const="yes", choices=list(CONFINED),
-                       help="whether the path is laterally confined, a valley; unknown (default): as often as those "
-                            "of the set are; without a value: yes")
-    group.add_argument("--unconfined", action="store_const", const="no", dest="confined", help="--confined no")
+@dataclass(frozen=True, kw_only=True)
+class Known(Confined):
+    """The same with --except, of the commands that compare with known events; they have a field known, too."""
+    GROUP = "known events"
+    left_out: List[str] = several("leave out this event of the set; may be given several times", "--except",
+                                  metavar="NAME")
 
 
-def choice_of(args, site: Optional[Path] = None) -> known.Choice:
-    """What they ask for; what they leave open is that of a site (a folder), if there is one."""
+def choice_of(events: Optional[str], left_out: List[str], confined: Optional[str],
+              site: Optional[Path] = None) -> known.Choice:
+    """What these options ask for; what they leave open is that of a site (a folder), if there is one."""
     own = site_choices.read(site)["known"] if site else {}
-    return known.choice(args.known or own.get("set"), args.left_out, args.confined or own.get("confined", "unknown"))
+    return known.choice(events or own.get("set"), left_out, confined or own.get("confined", "unknown"))

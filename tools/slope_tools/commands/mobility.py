@@ -1,18 +1,20 @@
 """slope mobility: how likely a mass goes beyond each point of its fall path, by how far known events went."""
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Optional
 
 from .. import disk
 from ..errors import SlopeError
+from ..findings import printer
 from ..mobility import body, fall_path, known, results, road
-from ..options import add_overwrite
+from ..options import Overwrite, option, positional
 from ..releases import release
 from ..sites import site_choices
 from ..sites.site_layers import ROAD
 from ..survey import lines, roads
 from ..survey.crs import as_crs
-from ..warned import printer
 from . import known_arguments, road_arguments
-from .release_arguments import add_body, wanted
+from .release_arguments import Body, wanted
 
 DESCRIPTION = ("The probability that a mass goes beyond each point of its fall path, by known events of its volume "
                "and height. No run is needed.")
@@ -29,29 +31,29 @@ examples:
 """
 
 
-def add_arguments(parser):
-    parser.add_argument("terrain", metavar="TERRAIN.asc|SITE",
-                        help="the ground before the collapse, as slope terrain wrote it; or the folder of a site")
-    parser.add_argument("-o", dest="output", metavar="DIR", required=True, type=Path, help="folder of the results")
-    add_body(parser.add_argument_group("the body, as slope release takes it (not with SITE)"))
-    known_arguments.add_known(parser, "--set", "known events")
-    parser.add_argument("--road", metavar="POLYGON|LINE", help="how likely the mass reaches " + road_arguments.ROAD
-                        + " (default with SITE: its road)")
-    road_arguments.add_width(parser)
-    parser.add_argument("--path", metavar="LINE", type=Path,
-                        help="a line from the crown down, instead of the steepest descent")
-    add_overwrite(parser)
+@dataclass(frozen=True, kw_only=True)
+class Request(Body, known_arguments.Known, road_arguments.Width, Overwrite):
+    terrain: str = positional(
+        "the ground before the collapse, as slope terrain wrote it; or the folder of a site",
+        metavar="TERRAIN.asc|SITE")
+    output: Path = option("folder of the results", "-o", metavar="DIR")
+    known: Optional[str] = known_arguments.known_option("known events: EVENTS.csv", "--known", "--set")
+    road: Optional[str] = option(
+        "how likely the mass reaches " + road_arguments.ROAD
+        + " (default with SITE: its road)", metavar="POLYGON|LINE")
+    path: Optional[Path] = option("a line from the crown down, instead of the steepest descent", metavar="LINE")
 
 
-def run(args):
+def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints what was found and written."""
     disk.check_folder(args.output, results.FILES, [args.terrain], args.overwrite)
     site = Path(args.terrain).is_dir()
-    asked = known_arguments.choice_of(args, Path(args.terrain) if site else None)      # before the terrain is read
+    asked = known_arguments.choice_of(args.known, args.left_out, args.confined,       # before the terrain is read
+                                      Path(args.terrain) if site else None)
     tell = printer("mobility")
     mass = of_site(args) if site else of_release(args, tell)
     lane = road_of(args, site, mass)
-    path = args.path and fall_path.given(mass, line_of(args, mass), args.path)
+    path = fall_path.given(mass, line_of(args.path, args.local, mass), args.path) if args.path else None
     found = known.of_body(mass, asked, path)
     met = lane and road.at_road(found.decides.path, lane)
     source = results.Source(args.terrain, mass, asked, lane)
@@ -62,7 +64,7 @@ def run(args):
     print(f"wrote {', '.join(str(args.output / name) for name in results.FILES)}")
 
 
-def of_site(args):
+def of_site(args: Request) -> body.Body:
     """The body of a site's folder."""
     asked = wanted(args)
     if asked != release.Wanted(args.terrain, local=args.local):
@@ -70,7 +72,7 @@ def of_site(args):
     return body.of_site(Path(args.terrain))
 
 
-def of_release(args, tell):
+def of_release(args: Request, tell) -> body.Body:
     """The body that the options ask for."""
     asked = wanted(args)
     found = release.body_of(asked)
@@ -79,7 +81,7 @@ def of_release(args, tell):
     return body.of_release(found, asked.where)
 
 
-def road_of(args, site, mass):
+def road_of(args: Request, site: bool, mass: body.Body):
     """The road in local metres; None without one."""
     asked = road_arguments.asked(args)
     roads.check(asked)
@@ -95,9 +97,9 @@ def road_of(args, site, mass):
     return roads.read_local(own, mass.raster, asked, local=True).polygon
 
 
-def line_of(args, mass):
+def line_of(path: Path, local: bool, mass: body.Body):
     """The line of --path."""
-    found = lines.read_local(args.path, mass.raster, args.local, "path").geoms
+    found = lines.read_local(path, mass.raster, local, "path").geoms
     if len(found) != 1:
-        raise SlopeError(args.path, "must hold one line, for --path", f"{len(found)} lines")
+        raise SlopeError(path, "must hold one line, for --path", f"{len(found)} lines")
     return found[0]

@@ -1,15 +1,17 @@
 """slope polygon: polygons of a GIS to the rings in local metres that `region polygon` reads."""
 import time
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Optional
 
 from shapely.geometry import box
 
 from ..case.decks import quoted, warn_of_name
 from ..disk import check_file, check_standing
-from ..options import add_overwrite
+from ..findings import Finding, printer
+from ..options import Overwrite, flag, option, positional
 from ..survey import polygons, rasters, vectors
 from ..survey.crs import as_crs
-from ..warned import Warned, printer
 
 SLOW = 5.0     # s; a run that took longer says so
 DESCRIPTION = "Polygons (GeoJSON, shapefile, CSV, WKT) to the .csv in local metres that decks read."
@@ -28,23 +30,20 @@ example:
 """
 
 
-def add_arguments(parser):
-    parser.add_argument("input", metavar="IN", help="polygons, also several and with holes; what overlaps becomes one")
-    parser.add_argument("-o", dest="output", metavar="OUT.csv", required=True, type=Path,
-                        help="rings for region polygon")
-    parser.add_argument("--terrain", metavar="TERRAIN.asc", required=True,
-                        help="terrain that `slope terrain` wrote; its sidecar TERRAIN.yaml has CRS and origin")
-    parser.add_argument("--layer", metavar="NAME", help="of the layers of IN this one (default: the only one, or the "
-                        "only one of polygons)")
-    place = parser.add_mutually_exclusive_group()
-    place.add_argument("--assign-crs", dest="crs", metavar="EPSG:n",
-                       help="the coordinates of IN are in this CRS, whatever IN says")
-    place.add_argument("--local", action="store_true",
-                       help="the coordinates of IN are the terrain's local metres, whatever IN says")
-    add_overwrite(parser)
+@dataclass(frozen=True, kw_only=True)
+class Request(Overwrite):
+    input: str = positional("polygons, also several and with holes; what overlaps becomes one", metavar="IN")
+    output: Path = option("rings for region polygon", "-o", metavar="OUT.csv")
+    terrain: str = option(
+        "terrain that `slope terrain` wrote; its sidecar TERRAIN.yaml has CRS and origin", metavar="TERRAIN.asc")
+    layer: Optional[str] = option(
+        "of the layers of IN this one (default: the only one, or the only one of polygons)", metavar="NAME")
+    crs: Optional[str] = option(
+        "the coordinates of IN are in this CRS, whatever IN says", "--assign-crs", metavar="EPSG:n", one_of="place")
+    local: bool = flag("the coordinates of IN are the terrain's local metres, whatever IN says", one_of="place")
 
 
-def run(args):
+def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints what was written and the line for the deck."""
     start = time.monotonic()
     check_file(args.output, ".csv", [vectors.source(args.input).path], "the input")
@@ -56,7 +55,7 @@ def run(args):
                                    advice=polygons.OF_ASSIGN_CRS, warn=warn)
     beyond = 1 - geometry.intersection(box(*place.extent)).area / geometry.area
     if beyond > 1e-9:
-        warn(Warned("outside", {"file": args.input, "percent": 100 * beyond, "terrain": args.terrain}))
+        warn(Finding("outside", {"file": args.input, "percent": 100 * beyond, "terrain": args.terrain}))
     warn_of_name(args.output, warn)
     geometry = polygons.write(args.output, geometry, place)
     print(summary(args.output, geometry))

@@ -1,10 +1,12 @@
 """slope quake: strong-motion records to the acceleration of the ground that fix ground/motion reads."""
+from dataclasses import dataclass
 from pathlib import Path
+from typing import List, Optional
 
 from ..case.decks import quoted
 from ..disk import check_file, check_standing
 from ..errors import SlopeError
-from ..options import add_overwrite, number
+from ..options import Overwrite, option, positional
 from ..quakes import quake_motion as motions, quake_records as records
 from ..quakes.quake import Processing, processed, write
 
@@ -22,27 +24,27 @@ examples:
 """
 
 
-def add_arguments(parser):
-    parser.add_argument("records", metavar="RECORD", nargs="+", help="files with the components of one record")
-    parser.add_argument("-o", dest="output", metavar="OUT.txt", required=True, type=Path,
-                        help="the motion; OUT.yaml, OUT.spectrum.csv and OUT.png are written beside it")
-    size = parser.add_mutually_exclusive_group()
-    size.add_argument("--peak", metavar="GAL", type=number,
-                      help="scale to this largest horizontal acceleration, of both components together")
-    size.add_argument("--scale", metavar="F", type=number, help="scale by this factor")
-    parser.add_argument("--azimuth", metavar="DEG", type=number, default=90.0,
-                        help="compass bearing of the deck's x axis (default 90: x is east, y is north)")
-    parser.add_argument("--window", metavar=("BEGIN", "END"), type=number, nargs=2,
-                        help="this part of the record only (s)")
-    parser.add_argument("--band", metavar=("LOW", "HIGH"), type=number, nargs=2,
-                        help=f"band-pass (Hz): Butterworth of order {motions.ORDER}, forwards and backwards")
-    parser.add_argument("--baseline", choices=("rest", "mean", "none"), default="rest",
-                        help="rest: the ground ends at rest where it began (default); mean: subtract the mean; none")
-    parser.add_argument("--unit", choices=("gal", "g", "m/s2"), help="unit of a CSV that names none")
-    add_overwrite(parser)
+@dataclass(frozen=True, kw_only=True)
+class Request(Overwrite):
+    records: List[str] = positional("files with the components of one record", metavar="RECORD", nargs="+")
+    output: Path = option(
+        "the motion; OUT.yaml, OUT.spectrum.csv and OUT.png are written beside it", "-o", metavar="OUT.txt")
+    peak: Optional[float] = option(
+        "scale to this largest horizontal acceleration, of both components together", metavar="GAL", one_of="size")
+    scale: Optional[float] = option("scale by this factor", metavar="F", one_of="size")
+    azimuth: float = option(
+        "compass bearing of the deck's x axis (default 90: x is east, y is north)", metavar="DEG", default=90.0)
+    window: Optional[List[float]] = option("this part of the record only (s)", metavar=("BEGIN", "END"), nargs=2)
+    band: Optional[List[float]] = option(
+        f"band-pass (Hz): Butterworth of order {motions.ORDER}, forwards and backwards", metavar=("LOW", "HIGH"),
+        nargs=2)
+    baseline: str = option(
+        "rest: the ground ends at rest where it began (default); mean: subtract the mean; none",
+        choices=("rest", "mean", "none"), default="rest")
+    unit: Optional[str] = option("unit of a CSV that names none", choices=("gal", "g", "m/s2"))
 
 
-def run(args):
+def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints what the motion is like and the line for the deck."""
     check(args)
     components = [component for path in args.records for component in records.read(path, args.unit)]
@@ -56,7 +58,7 @@ def run(args):
     print(text(args.output, about))
 
 
-def check(args):
+def check(args: Request) -> None:
     """The numbers, what would be overwritten, and where nothing can be written, before there is any work."""
     check_file(args.output, ".txt", args.records, "a record")
     check_standing(args.output.with_suffix(".yaml"), [args.output], args.records, args.overwrite)

@@ -1,13 +1,14 @@
 """slope release: the body that is released, below a polygon or from a scar, as rasters and lines of a deck."""
 import os
+from dataclasses import dataclass
 from pathlib import Path
 
-from .. import disk, warned
+from .. import disk, findings
 from ..case import decks
 from ..releases import release, release_files
 from ..survey import vectors
-from ..options import add_overwrite
-from .release_arguments import add_body, wanted
+from ..options import Overwrite, option, positional
+from .release_arguments import Body, wanted
 
 DESCRIPTION = "The body that is released: a slip surface below a polygon, or a scar, to a depth or volume."
 EPILOG = """\
@@ -26,16 +27,13 @@ examples:
 """
 
 
-def add_arguments(parser):
-    parser.add_argument("terrain", metavar="TERRAIN.asc",
-                        help="the ground before the collapse, as slope terrain wrote it")
-    parser.add_argument("-o", dest="output", metavar="NAME", required=True, type=Path,
-                        help="first part of the names of all files")
-    add_body(parser)
-    add_overwrite(parser)
+@dataclass(frozen=True, kw_only=True)
+class Request(Body, Overwrite):
+    terrain: str = positional("the ground before the collapse, as slope terrain wrote it", metavar="TERRAIN.asc")
+    output: Path = option("first part of the names of all files", "-o", metavar="NAME")
 
 
-def run(args):
+def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints the body's numbers before it writes any file."""
     asked = wanted(args)
     sources = [path for path in (args.terrain, asked.polygon, args.scar) if path]
@@ -45,7 +43,7 @@ def run(args):
     disk.check_standing(args.output.with_name(args.output.name + ".yaml"), made, sources, args.overwrite)
     body = release.body_of(asked)
     print(release.text(body), flush=True)
-    tell = warned.printer("release")
+    tell = findings.printer("release")
     for line in body.warnings:
         tell(line)
     for path in (os.path.relpath(args.terrain, args.output.parent), args.output.name):

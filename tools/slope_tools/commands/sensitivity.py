@@ -3,9 +3,13 @@
 Order of the work: plan the base run and those that differ from it by one variable, run them as `slope study` does
 (study.py, jobs.py), hold each against the mean of the equivalent runs. With --converge: size_study.py.
 """
+from dataclasses import dataclass
+from pathlib import Path
+from typing import List, Optional
 
 from ..case.settings import check_settings, one_value_each
 from ..errors import SlopeError
+from ..options import option, positional, several
 from ..runs import repeats
 from ..studies import study
 from ..studies.sensitivity import OF_ROAD, OF_TRAVEL, collect, plan, quantities
@@ -29,24 +33,23 @@ chart DIR/sensitivity.png; with --converge DIR/converge.csv, DIR/converge_runs.c
 """
 
 
-def add_arguments(parser):
-    run_arguments.add_deck(parser)
-    parser.add_argument("--levels", metavar="NAME=V1,V2,...", action="append", default=[],
-                        help="values of an index variable of the deck that are a choice, each in a run of its own; "
-                             "A:B:STEP stands for A, A + STEP, ... up to B")
-    parser.add_argument("--converge", metavar="NAME=V1,V2,...",
-                        help="sizes of the balls, or another variable that should tend to zero; fits a line and gives "
-                             "its value at 0; with --repeat at each size, without --levels")
-    run_arguments.add_repeats(parser)
-    parser.add_argument("--set", metavar="NAME=VALUE", action="append", default=[],
-                        help="value of an index variable in the base run (default: the deck's)")
-    parser.add_argument("--of", metavar="NAME,...",
-                        help=f"quantities to examine (default {OF_ROAD}; {OF_TRAVEL} of --converge without a road), of "
-                             f"{', '.join(NAMES)}")
-    run_arguments.add_runs(parser)
+@dataclass(frozen=True, kw_only=True)
+class Request(run_arguments.Repeats, run_arguments.Runs):
+    deck: Path = positional(run_arguments.DECK, metavar="DECK")
+    output: Path = option("the study's folder", "-o", metavar="DIR")
+    levels: List[str] = several(
+        "values of an index variable of the deck that are a choice, each in a run of its own; A:B:STEP stands for A, "
+        "A + STEP, ... up to B", metavar="NAME=V1,V2,...")
+    converge: Optional[str] = option(
+        "sizes of the balls, or another variable that should tend to zero; fits a line and gives its value at 0; with "
+        "--repeat at each size, without --levels", metavar="NAME=V1,V2,...")
+    set: List[str] = several("value of an index variable in the base run (default: the deck's)", metavar="NAME=VALUE")
+    of: Optional[str] = option(
+        f"quantities to examine (default {OF_ROAD}; {OF_TRAVEL} of --converge without a road), of "
+        f"{', '.join(NAMES)}", metavar="NAME,...")
 
 
-def run(args):
+def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
     base = one_value_each(check_settings(args.set, args.deck), "--set", "--levels, --repeat and --converge")
     repeated = check_settings(args.repeat, args.deck, "--repeat")

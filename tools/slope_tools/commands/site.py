@@ -1,12 +1,14 @@
 """slope site: make a folder with terrain, body, deck and map from GIS files, ready for `slope study`."""
 import math
 import os
+from dataclasses import dataclass
 from pathlib import Path
 from shlex import quote
-from typing import Any, Dict
+from typing import Any, Dict, List, Optional
 
 from ..errors import SlopeError
-from ..options import count, number, whole
+from ..findings import printer
+from ..options import Program, option, positional, whole
 from ..plots import site_map
 from ..programs import find_lmp
 from ..releases.release import SHAPES
@@ -17,7 +19,6 @@ from ..slips import bodies
 from ..studies import site_ground
 from ..survey import roads
 from ..survey.rasters import UNITS
-from ..warned import printer
 from . import known_arguments, road_arguments
 
 # option -> section and key of site.yaml
@@ -73,100 +74,116 @@ FOLDER/site.yaml holds every choice, and what each means; change it and give FOL
 """
 
 
-def add_arguments(parser):
-    parser.add_argument("folder", metavar="FOLDER", type=Path, nargs="?",
-                        help="a site's folder that is rebuilt from its site.yaml; options change its choices")
-    parser.add_argument("-o", dest="output", metavar="FOLDER", type=Path, help="the new folder")
-    add_ground(parser.add_argument_group("ground and body"))
-    add_layers(parser.add_argument_group("what lies on it"))
-    add_model(parser.add_argument_group("soil and ground", "What the options leave open has the values of the paper."))
-    add_size(parser.add_argument_group("size of the balls", "One of these (default: --balls 4000)."))
-    about = parser.add_argument_group("report")
-    about.add_argument("--name", help="of the site (default: of the folder)")
-    about.add_argument("--client", help="recipient of the report")
-    about.add_argument("--author", help="the person responsible")
-    parser.add_argument("--lmp", metavar="FILE", help="the LAMMPS program that tries the deck (default: LMP of the "
-                        "environment, then build/lmp beside tools/)")
-    parser.add_argument("--jobs", type=count, metavar="J", help="runs at a time, for the estimate (default: "
-                        "as many as the cores)")
+@dataclass(frozen=True, kw_only=True)
+class Ground:
+    """The ground and the body."""
+    GROUP = "ground and body"
+    terrain: Optional[List[str]] = option(
+        "elevation model, as slope terrain takes it: GeoTIFF, ESRI ASCII grid, FG-GML; several are merged",
+        metavar="DEM", nargs="+")
+    crs: Optional[str] = option("wanted CRS, in metres; an elevation model without one is in it", metavar="EPSG:n")
+    assign_crs: Optional[List[str]] = option(
+        "the elevation model, or the FILE of another option, is in this CRS, whatever it says; may be given several "
+        "times", metavar="[FILE=]EPSG:n", action="append")
+    z_unit: Optional[str] = option("of the heights of the elevation model, whatever it says", choices=UNITS)
+    nodata: Optional[List[float]] = option(
+        "a value of the elevation model, in its own unit, that stands for no height, beside the one that it declares; "
+        "may be given several times", metavar="V", action="append")
+    bounds: Optional[List[float]] = option("take this part, m", nargs=4, metavar=("W", "S", "E", "N"))
+    cell: Optional[float] = option("wanted cell size, m", metavar="S")
+    fill: Optional[int] = option("fill NODATA holes of at most N cells", type=whole, metavar="N")
+    release: Optional[str] = option(
+        "polygon of the ground that is released, in any CRS: GeoJSON, shapefile, CSV or WKT; with --scar, only the "
+        "part of the scar inside it is used", metavar="P")
+    shape: Optional[str] = option("of the slip surface, see slope release (default sphere)", choices=SHAPES)
+    depth: Optional[float] = option("largest depth of the body, vertical, m", metavar="D", one_of="size")
+    volume: Optional[float] = option("volume of the body, m3", metavar="V", one_of="size")
+    curvature: Optional[float] = option("of slbl, 1/m", metavar="K", one_of="size")
+    dip: Optional[float] = option("of a plane, degrees below the horizontal", metavar="A")
+    direction: Optional[float] = option("compass bearing to which the plane dips, degrees", metavar="B")
+    scar: Optional[str] = option("the body is what this raster says, see --scar-is", metavar="RASTER")
+    scar_is: Optional[str] = option(
+        "surface: heights after the event (default, if they follow the terrain); depth; change; height of the mass on "
+        "top of the terrain", choices=KINDS)
+    slips: Optional[Path] = option(
+        "the bodies are those that slope stability found on this terrain, its folder or PREFIX.slips.csv; instead of "
+        "--release. The first is released where the deck's variable body does not say otherwise", metavar="SLIPS")
+    body: Optional[int] = option("only the one of this rank (1 has the least factor of safety)", metavar="N")
+    least: Optional[float] = option("depths of a scar below this count as none, m", metavar="D")
 
 
-def add_ground(group):
-    group.add_argument("--terrain", metavar="DEM", nargs="+",
-                       help="elevation model, as slope terrain takes it: GeoTIFF, ESRI ASCII grid, FG-GML; several are "
-                            "merged")
-    group.add_argument("--crs", metavar="EPSG:n", help="wanted CRS, in metres; an elevation model without one is in it")
-    group.add_argument("--assign-crs", metavar="[FILE=]EPSG:n", action="append", help="the elevation model, or the "
-                       "FILE of another option, is in this CRS, whatever it says; may be given several times")
-    group.add_argument("--z-unit", choices=UNITS, help="of the heights of the elevation model, whatever it says")
-    group.add_argument("--nodata", type=number, metavar="V", action="append",
-                       help="a value of the elevation model, in its own unit, that stands for no height, beside the "
-                            "one that it declares; may be given several times")
-    group.add_argument("--bounds", nargs=4, type=number, metavar=("W", "S", "E", "N"), help="take this part, m")
-    group.add_argument("--cell", type=number, metavar="S", help="wanted cell size, m")
-    group.add_argument("--fill", type=whole, metavar="N", help="fill NODATA holes of at most N cells")
-    group.add_argument("--release", metavar="P", help="polygon of the ground that is released, in any CRS: GeoJSON, "
-                       "shapefile, CSV or WKT; with --scar, only the part of the scar inside it is used")
-    group.add_argument("--shape", choices=SHAPES, help="of the slip surface, see slope release (default sphere)")
-    size = group.add_mutually_exclusive_group()
-    size.add_argument("--depth", metavar="D", type=number, help="largest depth of the body, vertical, m")
-    size.add_argument("--volume", metavar="V", type=number, help="volume of the body, m3")
-    size.add_argument("--curvature", metavar="K", type=number, help="of slbl, 1/m")
-    group.add_argument("--dip", metavar="A", type=number, help="of a plane, degrees below the horizontal")
-    group.add_argument("--direction", metavar="B", type=number, help="compass bearing to which the plane dips, degrees")
-    group.add_argument("--scar", metavar="RASTER", help="the body is what this raster says, see --scar-is")
-    group.add_argument("--scar-is", choices=KINDS, help="surface: heights after the event (default, "
-                       "if they follow the terrain); depth; change; height of the mass on top of the terrain")
-    group.add_argument("--slips", metavar="SLIPS", type=Path, help="the bodies are those that slope stability found on "
-                       "this terrain, its folder or PREFIX.slips.csv; instead of --release. The first is released "
-                       "where the deck's variable body does not say otherwise")
-    group.add_argument("--body", metavar="N", type=count, help="only the one of this rank (1 has the least factor "
-                       "of safety)")
-    group.add_argument("--least", metavar="D", type=number, help="depths of a scar below this count as none, m")
+@dataclass(frozen=True, kw_only=True)
+class Layers(road_arguments.Clearing):
+    """What lies on it."""
+    GROUP = "what lies on it"
+    road: Optional[str] = option("for the volume to remove, " + road_arguments.ROAD, metavar="P")
+    cut_angle: Optional[float] = option("rise of the cut from its edges (default 30)", metavar="DEG")
+    mesh: Optional[float] = option("side of the mesh cells, m (default 10)", metavar="SIZE")
+    structure: Optional[List[str]] = option(
+        "a wall or building of triangles, m, in local coordinates or the terrain's CRS; may be given several times",
+        metavar="STL", action="append")
+    line: Optional[List[str]] = option(
+        "control line: what crosses it is counted; may be given several times", metavar="LINE", action="append")
+    motion: Optional[str] = option(
+        "ground motion written by slope quake: the body stands, is shaken, and loses its strength once it has moved "
+        "far enough", metavar="FILE")
+    peak_friction: Optional[float] = option(
+        "strength that holds the body before the earthquake, degrees (default: 7 more than the slope of its slip "
+        "surface, 33 at least)", metavar="DEG")
+    observed: Optional[str] = option(
+        "a mapped deposit, outline or thickness, with which the run shown in the report is compared",
+        metavar="P|RASTER")
+    known: Optional[str] = known_arguments.known_option(
+        "events that the mass is compared with, in slope mobility and the study")
 
 
-def add_layers(group):
-    group.add_argument("--road", metavar="P", help="for the volume to remove, " + road_arguments.ROAD)
-    road_arguments.add_clearing(group)
-    group.add_argument("--cut-angle", metavar="DEG", type=number, help="rise of the cut from its edges (default 30)")
-    group.add_argument("--mesh", metavar="SIZE", type=number, help="side of the mesh cells, m (default 10)")
-    group.add_argument("--structure", metavar="STL", action="append",
-                       help="a wall or building of triangles, m, in local coordinates or the terrain's CRS; may be "
-                            "given several times")
-    group.add_argument("--line", metavar="LINE", action="append", help="control line: what crosses it is counted; may "
-                       "be given several times")
-    group.add_argument("--motion", metavar="FILE", help="ground motion written by slope quake: the body stands, is "
-                       "shaken, and loses its strength once it has moved far enough")
-    group.add_argument("--peak-friction", metavar="DEG", type=number, help="strength that holds the body before the "
-                       "earthquake, degrees (default: 7 more than the slope of its slip surface, 33 at least)")
-    group.add_argument("--observed", metavar="P|RASTER", help="a mapped deposit, outline or thickness, with which the "
-                       "run shown in the report is compared")
-    known_arguments.add_site(group)
+@dataclass(frozen=True, kw_only=True)
+class Model:
+    """What the options leave open has the values of the paper."""
+    GROUP = "soil and ground (default: the values of the paper)"
+    friction: Optional[float] = option("of soil and ground, degrees (default 30)", metavar="DEG")
+    rolling: Optional[List[float]] = option(
+        "rolling resistances of the study, of which the largest volume counts (default 0 0.05 0.1)", metavar="R",
+        nargs="+")
+    slip_friction: Optional[float] = option("of the slip surface, degrees (default 0)", metavar="DEG")
+    density: Optional[float] = option(
+        "bulk density of the ground, kg/m3 (default 1786); forces and energies are proportional to it, volumes and "
+        "distances do not depend on it", metavar="R")
+    spacing: Optional[float] = option(
+        "of the ground's balls, in diameters, its roughness: up to 0.95 (default 0.9); less is smoother", metavar="S")
+    field_restitution: Optional[float] = option("on the ground (default 0.1)", metavar="E")
 
 
-def add_model(group):
-    group.add_argument("--friction", metavar="DEG", type=number, help="of soil and ground, degrees (default 30)")
-    group.add_argument("--rolling", metavar="R", type=number, nargs="+",
-                       help="rolling resistances of the study, of which the largest volume counts (default 0 0.05 0.1)")
-    group.add_argument("--slip-friction", metavar="DEG", type=number, help="of the slip surface, degrees (default 0)")
-    group.add_argument("--density", metavar="R", type=number, help="bulk density of the ground, kg/m3 (default 1786); "
-                       "forces and energies are proportional to it, volumes and distances do not depend on it")
-    group.add_argument("--spacing", metavar="S", type=number, help="of the ground's balls, in diameters, its "
-                       "roughness: up to 0.95 (default 0.9); less is smoother")
-    group.add_argument("--field-restitution", metavar="E", type=number, help="on the ground (default 0.1)")
+@dataclass(frozen=True, kw_only=True)
+class Size:
+    """Of the balls."""
+    GROUP = "size of the balls: one of these (default: --balls 4000)"
+    balls: Optional[int] = option("number of balls in the body", metavar="N", one_of="size")
+    minutes: Optional[float] = option(
+        "choose the size so that the study takes M minutes on this machine", metavar="M", one_of="size")
+    memory: Optional[float] = option(
+        "choose the size so that the active runs together take this much memory", metavar="GB", one_of="size")
+    diameter: Optional[float] = option("of the balls, m", metavar="D", one_of="size")
 
 
-def add_size(group):
-    size = group.add_mutually_exclusive_group()
-    size.add_argument("--balls", metavar="N", type=count, help="number of balls in the body")
-    size.add_argument("--minutes", metavar="M", type=number,
-                      help="choose the size so that the study takes M minutes on this machine")
-    size.add_argument("--memory", metavar="GB", type=number,
-                      help="choose the size so that the active runs together take this much memory")
-    size.add_argument("--diameter", metavar="D", type=number, help="of the balls, m")
+@dataclass(frozen=True, kw_only=True)
+class About:
+    """Of the report."""
+    GROUP = "report"
+    name: Optional[str] = option("of the site (default: of the folder)")
+    client: Optional[str] = option("recipient of the report")
+    author: Optional[str] = option("the person responsible")
 
 
-def run(args):
+@dataclass(frozen=True, kw_only=True)
+class Request(Ground, Layers, known_arguments.Confined, Model, Size, About, Program):
+    folder: Optional[Path] = positional(
+        "a site's folder that is rebuilt from its site.yaml; options change its choices", metavar="FOLDER", nargs="?")
+    output: Optional[Path] = option("the new folder", "-o", metavar="FOLDER")
+    jobs: Optional[int] = option("runs at a time, for the estimate (default: as many as the cores)", metavar="J")
+
+
+def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints what was read, found and written."""
     folder, choices, known = chosen(args)
     if any(getattr(args, option) is not None for option in OF_SOIL):
@@ -182,11 +199,11 @@ def run(args):
     print(f"look at {folder / site.MAP}, then: tools/slope study {quote(str(folder))}")
 
 
-def chosen(args):
+def chosen(args: Request):
     """The folder; the choices of the command line, or of the folder with those of the command line; and what of them
     was found before.
     """
-    given = {option: value for option in OPTIONS if (value := getattr(args, option, None)) is not None}
+    given = {name: value for name in OPTIONS if (value := getattr(args, name, None)) is not None}
     given.update(assigned_crs(given.pop("assign_crs", ())))
     given.update(of_slips(args))
     if "density" in given:
@@ -202,9 +219,8 @@ def chosen(args):
             site_choices.forget(choices, known)
             known = {}
     else:
-        for option in ("terrain", "output"):
-            if getattr(args, option) is None:
-                raise SlopeError("-o" if option == "output" else "--terrain", "must be given, or the folder of a site")
+        if args.terrain is None or args.output is None:
+            raise SlopeError("--terrain" if args.terrain is None else "-o", "must be given, or the folder of a site")
         folder, choices, known = args.output, site_choices.complete({}), {}
     replace(choices, given)
     site_choices.check({"slope_site": site_choices.VERSION, **choices}, str(folder / site_choices.NAME),
@@ -227,15 +243,15 @@ def of_new_ground(choices, folder, given):
     return site_choices.without_old_ground(choices)
 
 
-def of_slips(args):
+def of_slips(args: Ground) -> Dict[str, Any]:
     """--slips and --body as options of a scar: the surface of the first body, and those of all that may be released."""
     if args.slips is None:
         if args.body is not None:
             raise SlopeError("--body", "must be given with --slips", args.body)
         return {}
-    for option in ("scar", "release"):
-        if getattr(args, option) is not None:
-            raise SlopeError("--slips", f"must be given without --{option}: it is the body", args.slips)
+    for name in ("scar", "release"):
+        if getattr(args, name) is not None:
+            raise SlopeError("--slips", f"must be given without --{name}: it is the body", args.slips)
     found = [bodies.base_file(args.slips, args.body)] if args.body else bodies.base_files(args.slips)
     return {"scar": str(found[0]), "scar_is": "surface", "bodies": [str(one) for one in found]}
 
@@ -273,16 +289,16 @@ def assigned_crs(words):
 def replace(choices, given):
     """Enter options in the choices; those that one of them replaces become null."""
     for group in ONE_OF:
-        if any(option in given for option in group):
-            for option in group:
-                section, key = OPTIONS[option]
+        if any(name in given for name in group):
+            for name in group:
+                section, key = OPTIONS[name]
                 choices[section][key] = None
     if "scar" in given or "release" in given:
         choices["release"]["bodies"] = []
     if "scar" in given:
         choices["release"].update(shape=None, depth=None, volume=None, curvature=None, dip=None, direction=None)
-    for option, value in given.items():
-        section, key = OPTIONS[option]
+    for name, value in given.items():
+        section, key = OPTIONS[name]
         choices[section][key] = {**choices[section][key], **value} if isinstance(value, dict) else value
 
 

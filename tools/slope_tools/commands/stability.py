@@ -1,13 +1,14 @@
 """slope stability: the slip surfaces with the least factor of safety below a terrain."""
 import argparse
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Dict, List, Optional, Tuple
 
-from .. import disk, warned
+from .. import disk, findings
 from ..case import slip_deck
 from ..case.slip_deck import PREFIX
 from ..errors import SlopeError
-from ..options import add_overwrite, count, number
+from ..options import Overwrite, Program, flag, number, option, positional, several
 from ..programs import find_lmp
 from . import stability_failed
 
@@ -33,51 +34,53 @@ LIGHT = 500.0       # kg/m3
 FILES = ["stability.csv", "stability.png", "stability.yaml"]
 
 
-def add_arguments(parser):
-    parser.add_argument("terrain", metavar="TERRAIN.asc", type=Path, help="the ground, as slope terrain wrote it")
-    add_soil(parser.add_argument_group("ground"))
-    add_search(parser.add_argument_group("search"))
-    parser.add_argument("--failed", metavar="BODY", help="no search: the strengths with which this body has F = 1, a "
-                        "sphere X,Y,Z,R (m), what find_slip wrote, or a raster of the ground without the body")
-    parser.add_argument("--np", type=count, metavar="N", help="MPI ranks (default 1)")
-    parser.add_argument("--lmp", metavar="FILE", help="the LAMMPS program (default: LMP of the environment, then "
-                        "build/lmp beside tools/)")
-    parser.add_argument("-o", dest="output", metavar="DIR", type=Path, required=True, help="folder for the results")
-    add_overwrite(parser)
+@dataclass(frozen=True, kw_only=True)
+class Soil:
+    """The ground."""
+    GROUP = "ground"
+    cohesion: Optional[float] = option("Pa; must be given without --failed", metavar="C")
+    friction: Optional[float] = option("friction angle, degrees; must be given without --failed", metavar="PHI")
+    density: float = option("kg/m3", metavar="R")
+    layer: List[List[str]] = several(
+        "below the heights in this raster another strength begins; may be given several times, from above",
+        metavar=("RASTER", "C", "PHI", "R"), nargs=4)
+    water: Optional[float] = option(
+        "pore pressure over the weight per area, 0 to below 1 (default: dry)", metavar="RU", one_of="water")
+    water_table: Optional[Path] = option("heights of the water table", metavar="RASTER", one_of="water")
+    bedrock: Optional[Path] = option("no body goes below the heights in this raster", metavar="RASTER")
+    seismic: Optional[List[float]] = option(
+        "KH [KV]: horizontal inertia in the direction of sliding, and vertical one upwards, in parts of the weight",
+        metavar="K", nargs="+")
 
 
-def add_soil(group):
-    group.add_argument("--cohesion", metavar="C", type=number, help="Pa; must be given without --failed")
-    group.add_argument("--friction", metavar="PHI", type=number,
-                       help="friction angle, degrees; must be given without --failed")
-    group.add_argument("--density", metavar="R", type=number, required=True, help="kg/m3")
-    group.add_argument("--layer", metavar=("RASTER", "C", "PHI", "R"), nargs=4, action="append", default=[],
-                       help="below the heights in this raster another strength begins; may be given several times, "
-                            "from above")
-    water = group.add_mutually_exclusive_group()
-    water.add_argument("--water", metavar="RU", type=number,
-                       help="pore pressure over the weight per area, 0 to below 1 (default: dry)")
-    water.add_argument("--water-table", metavar="RASTER", type=Path, help="heights of the water table")
-    group.add_argument("--bedrock", metavar="RASTER", type=Path, help="no body goes below the heights in this raster")
-    group.add_argument("--seismic", metavar="K", type=number, nargs="+",
-                       help="KH [KV]: horizontal inertia in the direction of sliding, and vertical one upwards, in "
-                            "parts of the weight")
+@dataclass(frozen=True, kw_only=True)
+class Search:
+    """Which bodies are looked for, and how."""
+    GROUP = "search"
+    volume: Optional[List[float]] = option("limits of a body's volume, m3", metavar=("LO", "HI"), nargs=2)
+    depth: Optional[List[float]] = option("limits of its greatest depth, m", metavar=("LO", "HI"), nargs=2)
+    within: Optional[str] = option("the bodies lie in this polygon: GeoJSON, shapefile, CSV or WKT", metavar="P")
+    local: bool = flag("the polygon is in the terrain's local metres")
+    direction: Optional[float] = option(
+        "compass bearing of sliding, degrees (default: where the weight drives most)", metavar="B")
+    shape: Optional[str] = option(
+        "ellipsoid: the width across the direction of sliding is free, too (default: sphere)",
+        choices=("sphere", "ellipsoid"))
+    method: Optional[str] = option("default: bishop", choices=("bishop", "ordinary", "spencer"))
+    keep: Optional[int] = option("bodies that differ (default 3)", metavar="N")
 
 
-def add_search(group):
-    group.add_argument("--volume", metavar=("LO", "HI"), type=number, nargs=2, help="limits of a body's volume, m3")
-    group.add_argument("--depth", metavar=("LO", "HI"), type=number, nargs=2, help="limits of its greatest depth, m")
-    group.add_argument("--within", metavar="P", help="the bodies lie in this polygon: GeoJSON, shapefile, CSV or WKT")
-    group.add_argument("--local", action="store_true", help="the polygon is in the terrain's local metres")
-    group.add_argument("--direction", metavar="B", type=number,
-                       help="compass bearing of sliding, degrees (default: where the weight drives most)")
-    group.add_argument("--shape", choices=("sphere", "ellipsoid"),
-                       help="ellipsoid: the width across the direction of sliding is free, too (default: sphere)")
-    group.add_argument("--method", choices=("bishop", "ordinary", "spencer"), help="default: bishop")
-    group.add_argument("--keep", metavar="N", type=count, help="bodies that differ (default 3)")
+@dataclass(frozen=True, kw_only=True)
+class Request(Soil, Search, Program, Overwrite):
+    terrain: Path = positional("the ground, as slope terrain wrote it", metavar="TERRAIN.asc")
+    failed: Optional[str] = option(
+        "no search: the strengths with which this body has F = 1, a sphere X,Y,Z,R (m), what find_slip wrote, or a "
+        "raster of the ground without the body", metavar="BODY")
+    np: Optional[int] = option("MPI ranks (default 1)", metavar="N")
+    output: Path = option("folder for the results", "-o", metavar="DIR")
 
 
-def run(args):
+def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints the bodies."""
     if args.failed is not None:
         stability_failed.run(args)
@@ -91,8 +94,7 @@ def run(args):
     disk.check_folder(args.output, FILES, [args.terrain], args.overwrite)
     raster = rasters.read_asc_local(args.terrain)
     polygon = polygons.read_local(args.within, raster, args.local) if args.within else None
-    kept: List[str] = []
-    warn = warned.warner("stability", kept)
+    warn, kept = findings.warner("stability")
     with disk.complete(args.output, FILES[-1]) as folder:
         said = slip_run.run(asked, polygon, raster, folder, lmp, args.np or 1,
                             lambda line: print(line, flush=True))
@@ -102,7 +104,7 @@ def run(args):
                              f"below {HUGE:g} somewhere", f"{rows[0]['factor']:.4g}")
         masks = [bodies.mask_of(folder / f"{PREFIX}.{k + 1}.base.asc") for k in range(len(rows))]
         rock = args.bedrock and resampling.sample(rasters.read(args.bedrock), *columns.centres(raster))
-        for one in [*warnings_of(args, rows, masks, rock), *said.warnings,
+        for one in [*warnings_of(asked.strength.cohesion, args.density, rows, masks, rock), *said.warnings,
                     *doubts.of_all(raster, rows, masks, asked.volume, asked.depth,
                                    polygon and doubts.cells_in(raster, polygon))]:
             warn(one)
@@ -114,25 +116,25 @@ def run(args):
     print(summary(table, args.output, said.notes))
 
 
-def warnings_of(args, rows, masks, rock):
+def warnings_of(cohesion: float, density: float, rows, masks, rock):
     """What a reader must know of the input."""
     import numpy as np
 
-    if 0 < args.cohesion < FAINT:
-        yield warned.Warned("in kPa", {"value": args.cohesion})
-    if args.density < LIGHT:
-        yield warned.Warned("in kN", {"value": args.density})
+    if 0 < cohesion < FAINT:
+        yield findings.Finding("in kPa", {"value": cohesion})
+    if density < LIGHT:
+        yield findings.Finding("in kN", {"value": density})
     for row, mask in zip(rows, masks):
         share = 0.0 if rock is None else np.isnan(rock[mask]).mean()
         if share > 0:
-            yield warned.Warned("bedrock", {"body": int(row["rank"]), "percent": 100 * float(share)})
+            yield findings.Finding("bedrock", {"body": int(row["rank"]), "percent": 100 * float(share)})
 
 
-def asked_of(args) -> slip_deck.Asked:
+def asked_of(args: Request) -> slip_deck.Asked:
     """What the options ask for; find_slip checks the numbers, this what has no number there."""
-    for option in ("cohesion", "friction"):
-        if getattr(args, option) is None:
-            raise SlopeError(f"--{option}", "must be given, or --failed a body that failed")
+    if args.cohesion is None or args.friction is None:
+        raise SlopeError("--cohesion" if args.cohesion is None else "--friction",
+                         "must be given, or --failed a body that failed")
     for path in (args.terrain, args.water_table, args.bedrock, *(layer[0] for layer in args.layer)):
         if path is not None and not Path(path).is_file():
             raise SlopeError(path, "must be an existing file")
@@ -171,7 +173,7 @@ def numbers_of(raster, row: Dict[str, float], mask) -> Dict[str, float]:
             "cells": int(mask.sum()), **{name: row[name] for name in ("x", "y", "z", "radius", "across")}}
 
 
-def write(folder, args, raster, rows, masks, rock, found) -> None:
+def write(folder: Path, args: Request, raster, rows, masks, rock, found) -> None:
     """stability.csv, .png and .yaml; rock: heights of the bedrock in the cells of the terrain, or None."""
     from ..slips import chart
     from ..survey import rasters

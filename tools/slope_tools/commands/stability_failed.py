@@ -1,22 +1,22 @@
 """slope stability --failed: on which strengths a body that failed has F = 1."""
-from typing import List
+from typing import Any, Sequence, Tuple
 
-from .. import disk, warned
+from .. import disk, findings
 from ..errors import SlopeError
 
 SEARCH = ("cohesion", "friction", "layer", "volume", "depth", "within", "method", "shape", "keep", "np", "lmp")
 APART = 0.1         # of the cohesion, between the axis of the nearest sphere and a far one
 
 
-def run(args):
-    """Do it; raises SlopeError on bad input. Prints points of the line."""
+def run(args: Any) -> None:
+    """Do it, a stability.Request; raises SlopeError on bad input. Prints points of the line."""
     from ..slips import back, back_files, columns, failed
     from ..survey import rasters, resampling
 
     for name in SEARCH:
         if getattr(args, name):
             raise SlopeError(f"--{name}", "must not be given with --failed, which searches no surface")
-    horizontal, vertical = shaking = inertia(args)
+    horizontal, vertical = shaking = inertia(args.seismic or [0.0])
     ratio = args.water or 0.0
     if not args.density > 0:
         raise SlopeError("--density", "must be > 0 kg/m3", f"{args.density:g}")
@@ -30,8 +30,7 @@ def run(args):
     body = failed.read(args.failed, raster, way, args.density, table, rock)
     line = back.line(body.columns, horizontal, vertical, ratio)
     far = back.line(body.far, horizontal, vertical, ratio) if body.far else None
-    kept: List[str] = []
-    warn = warned.warner("stability", kept)
+    warn, kept = findings.warner("stability")
     for one in warnings_of(body, line, far):
         warn(one)
     about = {"terrain": args.terrain, "failed": args.failed, "density": args.density, "seismic": shaking,
@@ -46,9 +45,8 @@ def run(args):
     print(f"written to {args.output}: {' '.join(back_files.FILES)}")
 
 
-def inertia(args):
+def inertia(given: Sequence[float]) -> Tuple[float, float]:
     """KH and KV of --seismic."""
-    given = args.seismic or [0.0]
     if len(given) > 2 or given[0] < 0 or not abs(given[-1]) < 1:
         raise SlopeError("--seismic", "must be KH >= 0, or KH KV with KV above -1 and below 1",
                          " ".join(f"{one:g}" for one in given))
@@ -60,8 +58,8 @@ def warnings_of(body, line, far):
     from ..slips.columns import FEWEST
 
     if len(body.columns.area) < FEWEST:
-        yield warned.Warned("few columns", {"cells": len(body.columns.area), "limit": FEWEST})
+        yield findings.Finding("few columns", {"cells": len(body.columns.area), "limit": FEWEST})
     if far is not None:
         change = far.cohesion[0] / line.cohesion[0] - 1
         if abs(change) > APART:
-            yield warned.Warned("no sphere", {"percent": 100 * float(change)})
+            yield findings.Finding("no sphere", {"percent": 100 * float(change)})

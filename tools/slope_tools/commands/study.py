@@ -3,12 +3,15 @@
 Order of the work: check the deck and the settings, plan the runs (repeats.py), make their folders and run what is not
 finished (jobs.py), collect (results.py), combine (combinations.py, headline.py).
 """
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any, List, Mapping, Optional
 
 from ..case import decks
 from ..case.settings import check_settings, one_value_each
 from ..ensembles import known_study, sample
 from ..errors import SlopeError
+from ..options import flag, option, positional, several
 from ..runs import repeats
 from ..sites import site_choices, site_deck
 from ..sites.site_bodies import VARIABLE
@@ -19,8 +22,7 @@ from ..survey import roads
 from ..tables import answer_words, answered, intensity
 from ..tables.size_error import SizeErrors
 from . import known_arguments, road_arguments
-from .run_arguments import (OF_A_KIND, add_deck, add_intensity, add_repeats, add_runs, add_sample,
-                            condition_of, settle_kind, setup_of)
+from .run_arguments import DECK, OF_A_KIND, Intensity, Repeats, Runs, Sample, condition_of, settle_kind, setup_of
 
 PAGES = {site_study.STUDY: "paper.html", site_study.ENSEMBLE: "ensemble.html"}     # beside report.html
 THICKNESSES = "0.1,0.5,1"      # of the maps of exceedance, m; the parser has None, as for all that a site refuses
@@ -61,36 +63,36 @@ DIR/combinations.csv (mean and scatter), DIR/study.yaml, and the maps envelope_*
 """
 
 
-def add_arguments(parser):
-    add_deck(parser, site=True)
-    parser.add_argument("--set", metavar="NAME=V1,V2,...", action="append", default=[],
-                        help="values of an index variable of the deck; A:B:STEP stands for A, A + STEP, ... up to B")
-    add_sample(parser)
-    known_arguments.add_known(parser, "--mobility", "weight the runs of an ensemble so that they end where known "
-                              "events of this volume and height do")
-    parser.add_argument("--fragility", metavar="FOLDER", type=Path,
-                        help="of a site with several bodies, with --sample: what `slope fragility` wrote; how likely "
-                             "which volume reaches the road at a peak acceleration, and per year")
-    parser.add_argument("--paper", action="store_true",
-                        help="of a site: the paper's method alone, the largest volume over the rolling resistances")
-    add_repeats(parser)
-    parser.add_argument("--size-error", metavar="FILE", type=Path,
-                        help="converge.yaml of `slope sensitivity --converge`: its error at the size of these balls "
-                             "counts in the conservative volume")
-    parser.add_argument("--exceed", metavar="T1,T2,...",
-                        help="thicknesses of the maps of exceedance, m (default 0.1,0.5,1)")
-    parser.add_argument("--exceed-speed", metavar="V1,V2,...",
-                        help="speeds of the maps of exceedance of an ensemble, m/s (default 5)")
-    parser.add_argument("--exceed-energy", metavar="E1,E2,...",
-                        help="energies of a ball for the same, J (default 100000)")
-    parser.add_argument("--of", metavar="NAME",
-                        help="quantity of the hazard curve of an ensemble, a column of study.csv (default: "
-                             "remove_on_road_m3; without a road distance_99_m)")
-    add_intensity(parser)
-    add_runs(parser, output=False)
+@dataclass(frozen=True, kw_only=True)
+class Request(Sample, known_arguments.Known, Repeats, Intensity, Runs):
+    method: str = ""        # of a site's study, in words
+    weigh: bool = False     # by the known events of a site, also without --known
+    wide: Mapping[str, Any] = field(default_factory=dict)       # {variable: its range outside of the given one}
+    deck: Path = positional(f"{DECK}; or a folder made by `slope site`: its standard study is run", metavar="DECK|SITE")
+    set: List[str] = several(
+        "values of an index variable of the deck; A:B:STEP stands for A, A + STEP, ... up to B",
+        metavar="NAME=V1,V2,...")
+    known: Optional[str] = known_arguments.known_option(
+        "weight the runs of an ensemble so that they end where known events of this volume and height do: EVENTS.csv",
+        "--known", "--mobility")
+    fragility: Optional[Path] = option(
+        "of a site with several bodies, with --sample: what `slope fragility` wrote; how likely which volume reaches "
+        "the road at a peak acceleration, and per year", metavar="FOLDER")
+    paper: bool = flag(
+        "of a site: the paper's method alone, the largest volume over the rolling resistances")
+    size_error: Optional[Path] = option(
+        "converge.yaml of `slope sensitivity --converge`: its error at the size of these balls counts in the "
+        "conservative volume", metavar="FILE")
+    exceed: Optional[str] = option("thicknesses of the maps of exceedance, m (default 0.1,0.5,1)", metavar="T1,T2,...")
+    exceed_speed: Optional[str] = option(
+        "speeds of the maps of exceedance of an ensemble, m/s (default 5)", metavar="V1,V2,...")
+    exceed_energy: Optional[str] = option("energies of a ball for the same, J (default 100000)", metavar="E1,E2,...")
+    of: Optional[str] = option(
+        "quantity of the hazard curve of an ensemble, a column of study.csv (default: remove_on_road_m3; without a "
+        "road distance_99_m)", metavar="NAME")
 
 
-def run(args):
+def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
     if args.deck.is_dir() and (args.output is None or (args.deck / site_choices.NAME).exists()):
         return run_folder(args)
@@ -99,7 +101,7 @@ def run(args):
     return run_deck(args)
 
 
-def run_folder(args):
+def run_folder(args: Request) -> None:
     """The study of a site's folder: by the paper's method, and weighted by known events."""
     if args.sample is not None or args.fit is not None:
         if args.paper:
@@ -121,15 +123,13 @@ def run_folder(args):
     return run_both(args, points)
 
 
-def run_both(args, points):
+def run_both(args: Request, points: int) -> None:
     """The paper's study and the ensemble of a site, the number that both give, and a report of each."""
     site = args.deck
     paper = site_study.run(site, setup_of(args), known_study.BESIDE)
-    args.sample, args.known, args.weigh = points, None, True
     failed = paper.failed
     try:
-        prepare_ensemble(args, known_study.WEIGHTED)
-        run_deck(args)
+        run_deck(of_ensemble(replace(args, sample=points, known=None, weigh=True), known_study.WEIGHTED))
     except RunsFailed as error:     # the others count
         failed = failed or error
     if args.dry_run:
@@ -153,13 +153,13 @@ def say(folder, method, others=False):
     print("\n".join([method, *site_ground.lines(folder, others)]))
 
 
-def run_deck(args):
+def run_deck(args: Request) -> None:
     """The runs of a deck."""
     if args.output is None and not args.deck.exists():
         raise SlopeError(args.deck, "must be a deck or the folder of a site, there is none of that name")
     if args.output is None:
         raise SlopeError("-o", "must be given, the study's folder")
-    chain = chain_of(args)
+    args, chain = chain_of(args)
     settings = check_settings(args.set, args.deck)
     repeated = check_settings(args.repeat, args.deck, "--repeat")
     repeats.check(list(repeated), args.equally_good)
@@ -167,7 +167,7 @@ def run_deck(args):
     defaults = decks.index_variables(args.deck)
     many = args.sample is not None or bool(args.vary) or args.fit is not None
     check_fit(args)
-    settle_kind(args, sample=many)
+    args = settle_kind(args, sample=many)
     condition = condition_of(args)
     if many:
         return run_ensemble(args, settings, repeated, thresholds, defaults, condition, chain)
@@ -182,30 +182,30 @@ def run_deck(args):
         errors = SizeErrors(args.size_error, "remove_m3")
         errors.check(settings, defaults)
     setup = setup_of(args)
-    questions = results.Questions(settings, repeated, thresholds, errors, None, args.intensity, args.more_than,
+    questions = results.Questions(settings, repeated, thresholds, errors, None, args.intensity, args.more_than or (),
                                   sizes=args.size_error)
     return perform(setup, {**settings, **repeated}, todo,
                    lambda todo, work: results.collect(setup, questions, todo, work))
 
 
-def check_fit(args):
+def check_fit(args: Request) -> None:
     """Raise SlopeError if --from is given with what says otherwise where the runs lie, or how they count."""
-    for option in ("vary", "design", "seed", "known"):
-        if args.fit is not None and getattr(args, option) not in (None, []):
-            raise SlopeError(f"--{option}", "must not be given with --from: a calibration has said which values are "
-                             "equally good", " ".join(args.vary) if option == "vary" else getattr(args, option))
+    for name in ("vary", "design", "seed", "known"):
+        if args.fit is not None and getattr(args, name) not in (None, []):
+            raise SlopeError(f"--{name}", "must not be given with --from: a calibration has said which values are "
+                             "equally good", " ".join(args.vary) if name == "vary" else getattr(args, name))
 
 
-def chain_of(args):
-    """What --fragility asks for, None without it; the bodies become a variable of the ensemble."""
+def chain_of(args: Request):
+    """The request in which the bodies vary, too, and what --fragility asks for; None without it."""
     if args.fragility is None:
-        return None
+        return args, None
     from ..seismic import chain_files, fragility_files      # scipy
-    for option, given in (("known", args.known), ("from", args.fit), ("of", args.of)):
+    for name, given in (("known", args.known), ("from", args.fit), ("of", args.of)):
         if given is not None:
-            raise SlopeError(f"--{option}", "must not be given with --fragility, whose runs are of several bodies "
+            raise SlopeError(f"--{name}", "must not be given with --fragility, whose runs are of several bodies "
                              "and of the volume on the road", given)
-    if args.sample is None or getattr(args, "site", None) is None:
+    if args.sample is None or args.site is None:
         raise SlopeError("--fragility", "must be given with the folder of a site and --sample", args.fragility)
     if not args.road:
         raise SlopeError("--fragility", "needs a site with a road: what counts is the volume on it", args.fragility)
@@ -215,11 +215,10 @@ def chain_of(args):
     found = chain_files.check(fragility_files.read(args.fragility),
                               site_choices.found(args.site).get("bodies") or {}, args.site, args.more_than or ())
     fixed, drawn = chain_files.options(found)
-    args.set, args.vary, args.more_than = [*args.set, *fixed], [*args.vary, *drawn], None
-    return found
+    return replace(args, set=[*args.set, *fixed], vary=[*args.vary, *drawn], more_than=None), found
 
 
-def run_site(args, method):
+def run_site(args: Request, method: str) -> None:
     """The standard study of a site's folder, and the report."""
     done = site_study.run(args.deck, setup_of(args), method)
     if done.study:
@@ -228,13 +227,13 @@ def run_site(args, method):
         raise done.failed
 
 
-def refuse(args, options):
+def refuse(args: Request, names) -> None:
     """Raise SlopeError if one of these options, which a site decides on, is given."""
-    for option in options:
-        value = getattr(args, option)
+    for name in names:
+        value = getattr(args, name)
         if value is not None and value is not False and value not in ("", []):
             first = value[0] if isinstance(value, list) else value
-            raise SlopeError(OPTIONS.get(option, f"--{option.replace('_', '-')}"), "must not be given with "
+            raise SlopeError(OPTIONS.get(name, f"--{name.replace('_', '-')}"), "must not be given with "
                              f"the folder of a site: {args.deck / 'site.yaml'} says what is run",
                              None if first is True else f"{first:g}" if isinstance(first, float) else first)
 
@@ -245,28 +244,28 @@ def write_report(study, page, film=True):
     print("\n".join(document.write(Asked(study, film=page.with_suffix(".mp4") if film else None), page)))
 
 
-def run_site_ensemble(args):
+def run_site_ensemble(args: Request) -> None:
     """An ensemble of a site's deck with its road, in a folder of the site's, and the report."""
     refuse(args, OF_A_ROAD)
-    site = args.deck
-    prepare_ensemble(args)
-    run_deck(args)
+    wanted = of_ensemble(args)
+    run_deck(wanted)
     if not args.dry_run:
-        write_report(args.output, site / PAGES[site_study.ENSEMBLE])
+        assert wanted.output is not None
+        write_report(wanted.output, args.deck / PAGES[site_study.ENSEMBLE])
 
 
-def prepare_ensemble(args, method=""):
-    """Make the arguments those of a site's deck, its road, and a folder of the site's."""
+def of_ensemble(args: Request, method="") -> Request:
+    """The request with a site's deck, its road, and a folder of the site's."""
     site, choices = args.deck, site_choices.read(args.deck)
     site_study.check(site, choices)
-    args.deck = site / site_deck.NAME
-    args.wide = {} if args.vary or args.fit or args.fragility else known_study.WIDE
-    args.vary = args.vary or ([] if args.fit else chances(choices) if args.fragility else list(known_study.VARY))
-    args.site, args.method, args.output = site, method, args.output or site / site_study.ENSEMBLE
-    if choices["road"]["file"]:
-        args.road, args.cut_angle, args.mesh = site / ROAD, choices["road"]["cut_angle"], choices["road"]["mesh"]
-        for option, field in road_arguments.OPTIONS.items():
-            setattr(args, option, choices["road"][roads.KEYS[field]])
+    about = choices["road"]
+    road = {name: about[roads.KEYS[field]] for name, field in road_arguments.OPTIONS.items()}
+    road.update(road=site / ROAD, cut_angle=about["cut_angle"], mesh=about["mesh"])
+    return replace(args, deck=site / site_deck.NAME, site=site, method=method,
+                   output=args.output or site / site_study.ENSEMBLE,
+                   wide={} if args.vary or args.fit or args.fragility else known_study.WIDE,
+                   vary=args.vary or ([] if args.fit else chances(choices) if args.fragility
+                                      else list(known_study.VARY)), **(road if about["file"] else {}))
 
 
 def chances(choices):
@@ -276,7 +275,7 @@ def chances(choices):
     return [*several, "xoffset=0:0.99"]
 
 
-def run_ensemble(args, settings, repeated, thresholds, defaults, condition, chain=None):
+def run_ensemble(args: Request, settings, repeated, thresholds, defaults, condition, chain=None) -> None:
     """The runs of --sample, and what they say together."""
     from ..ensembles import ensemble, ensemble_maps, farther
     from ..fitting import calibrated
@@ -287,19 +286,23 @@ def run_ensemble(args, settings, repeated, thresholds, defaults, condition, chai
         raise SlopeError("--size-error", "must not be given with --sample: an ensemble has no conservative volume",
                          args.size_error)
     fixed = one_value_each(settings, "--set", "--vary")
-    plan = calibrated.sample(args.fit, args.sample, args.deck, fixed, repeated) if args.fit else \
-        sample.check(args.sample, args.design, args.seed, args.vary, args.deck, fixed, repeated).widened(
-            getattr(args, "wide", {}))
+    plan: sample.Sample
+    if args.fit:
+        plan = calibrated.sample(args.fit, args.sample, args.deck, fixed, repeated)
+    else:
+        assert args.sample is not None and args.design is not None and args.seed is not None        # settle_kind()
+        plan = sample.check(args.sample, args.design, args.seed, args.vary, args.deck, fixed,
+                            repeated).widened(args.wide)
     levels = ensemble_maps.Thresholds(thresholds, check_thresholds(args.exceed_speed, "--exceed-speed", "speeds"),
                                       check_thresholds(args.exceed_energy, "--exceed-energy", "energies"))
     of = ensemble.check_quantity(args.of, args.road is not None)
     setup = setup_of(args)
     todo = sample.plan(setup.runs, plan, fixed, repeated, defaults)
-    sample.check_growth(args.output, plan)
+    sample.check_growth(setup.output, plan)
     several = sample.settings_of(todo)
-    order = ensemble.Order(plan, of, levels, condition, condition and farther.Added(args.output, plan))
-    questions = results.Questions(several, repeated, thresholds, None, order, site=getattr(args, "site", None),
-                                  method=getattr(args, "method", ""), chain=chain)
+    order = ensemble.Order(plan, of, levels, condition, condition and farther.Added(setup.output, plan))
+    questions = results.Questions(several, repeated, thresholds, None, order, site=args.site, method=args.method,
+                                  chain=chain)
 
     def collect(todo, work):
         if condition:
@@ -307,4 +310,4 @@ def run_ensemble(args, settings, repeated, thresholds, defaults, condition, chai
         results.collect(setup, questions._replace(settings=sample.settings_of(todo)), todo, work)
 
     perform(setup, {**sample.all_values(several, plan), **repeated}, todo, collect,
-            begin=lambda: sample.keep(args.output, plan))
+            begin=lambda: sample.keep(setup.output, plan))

@@ -1,13 +1,15 @@
 """slope terrain: survey rasters to the plain terrain.asc that `region terrain` reads, with a sidecar."""
 import argparse
+from dataclasses import dataclass
 from pathlib import Path
+from typing import List, Optional
 
 from ..case.decks import quoted, warn_of_name
 from ..disk import check_file, check_standing
 from ..errors import SlopeError
-from ..options import add_overwrite, number, whole
+from ..findings import printer
+from ..options import Overwrite, number, option, positional, several, whole
 from ..survey import local_terrain, rasters
-from ..warned import printer
 
 DESCRIPTION = "Survey rasters (GeoTIFF, ESRI ASCII grid, FG-GML) to the plain terrain.asc that decks read."
 EPILOG = """\
@@ -25,37 +27,37 @@ Writes terrain.asc and terrain.yaml (CRS, origin, sources, what was done).
 """
 
 
-def add_arguments(parser):
-    parser.add_argument("inputs", metavar="IN", nargs="+",
-                        help="raster of heights in metres, or FG-GML (.xml, or .zip of them); several are merged, "
-                             "which needs one CRS and one grid")
-    parser.add_argument("-o", dest="output", metavar="OUT.asc", required=True, type=Path,
-                        help="the terrain; OUT.yaml beside it is its sidecar")
-    parser.add_argument("--crs", metavar="EPSG:n",
-                        help="wanted CRS, in metres: an input in another CRS is reprojected to it (bilinear); "
-                             "the coordinates of an input that names no CRS are taken to be in this one")
-    parser.add_argument("--assign-crs", metavar="EPSG:n",
-                        help="the coordinates of the inputs are in this CRS, whatever their tags say (not of FG-GML); "
-                             "--crs may then reproject them")
-    parser.add_argument("--z-unit", choices=rasters.UNITS,
-                        help="of the heights, whatever the tags of the inputs say: m, ft (0.3048 m) or us-ft "
-                             "(1200/3937 m); default: what a tag says, else m")
-    parser.add_argument("--nodata", type=number, metavar="V", action="append", default=[],
-                        help="a value of the inputs, in their own unit, that stands for no height, beside the one that "
-                             "they declare; may be given several times")
-    parser.add_argument("--bounds", nargs=4, type=number, metavar=("W", "S", "E", "N"),
-                        help="crop to this box, in the output's CRS, m")
-    parser.add_argument("--cell", type=number, metavar="S",
-                        help="wanted cell size, m (bilinear; larger cells get the mean of several points)")
-    parser.add_argument("--origin", nargs="+", default=["auto"], metavar=("auto|E", "N"),
-                        help="what becomes 0 0: auto (default), the lower left corner rounded down to whole metres; "
-                             "or E N, in the output's CRS, m")
-    parser.add_argument("--fill", type=whole, default=0, metavar="N",
-                        help="fill NODATA holes of at most N cells (default 0: none); holes at the edge stay")
-    add_overwrite(parser)
+@dataclass(frozen=True, kw_only=True)
+class Request(Overwrite):
+    inputs: List[str] = positional(
+        "raster of heights in metres, or FG-GML (.xml, or .zip of them); several are merged, which needs one CRS and "
+        "one grid", metavar="IN", nargs="+")
+    output: Path = option("the terrain; OUT.yaml beside it is its sidecar", "-o", metavar="OUT.asc")
+    crs: Optional[str] = option(
+        "wanted CRS, in metres: an input in another CRS is reprojected to it (bilinear); the coordinates of an input "
+        "that names no CRS are taken to be in this one", metavar="EPSG:n")
+    assign_crs: Optional[str] = option(
+        "the coordinates of the inputs are in this CRS, whatever their tags say (not of FG-GML); --crs may then "
+        "reproject them", metavar="EPSG:n")
+    z_unit: Optional[str] = option(
+        "of the heights, whatever the tags of the inputs say: m, ft (0.3048 m) or us-ft (1200/3937 m); default: what "
+        "a tag says, else m", choices=rasters.UNITS)
+    nodata: List[float] = several(
+        "a value of the inputs, in their own unit, that stands for no height, beside the one that they declare; may "
+        "be given several times", metavar="V")
+    bounds: Optional[List[float]] = option(
+        "crop to this box, in the output's CRS, m", nargs=4, metavar=("W", "S", "E", "N"))
+    cell: Optional[float] = option(
+        "wanted cell size, m (bilinear; larger cells get the mean of several points)", metavar="S")
+    origin: List[str] = option(
+        "what becomes 0 0: auto (default), the lower left corner rounded down to whole metres; or E N, in the "
+        "output's CRS, m", nargs="+", default=["auto"], metavar=("auto|E", "N"))
+    fill: int = option(
+        "fill NODATA holes of at most N cells (default 0: none); holes at the edge stay", type=whole, default=0,
+        metavar="N")
 
 
-def run(args):
+def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints what was done, a summary and the line for the deck."""
     wanted = check(args)
     warn = printer("terrain")
@@ -64,7 +66,7 @@ def run(args):
     print(f"{local_terrain.summary(args.output, about)}\nregion ground terrain {quoted(str(args.output))}")
 
 
-def check(args):
+def check(args: Request) -> local_terrain.Wanted:
     """Check what can be checked before any reading; return what is wanted."""
     check_file(args.output, ".asc", args.inputs)
     check_standing(args.output.with_suffix(".yaml"), [args.output], args.inputs, args.overwrite)

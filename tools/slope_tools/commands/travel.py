@@ -1,10 +1,12 @@
 """slope travel: where balls come to rest, along and across the slope, over several runs."""
 import argparse
+from dataclasses import dataclass
 from pathlib import Path
+from typing import List, Optional
 
-from .. import disk, warned
+from .. import disk, findings
 from ..deposits import travel
-from ..options import add_overwrite, number, whole
+from ..options import Overwrite, number, option, positional, whole
 
 DESCRIPTION = "Where balls come to rest: cumulative distributions along and across the slope."
 EPILOG = """\
@@ -20,27 +22,6 @@ Writes travel.yaml (percentiles), travel.csv (distributions), balls.csv (one row
 """
 
 
-def add_arguments(parser):
-    parser.add_argument("dumps", metavar="DUMP", nargs="+", help="dump of the final state, one for each run")
-    parser.add_argument("--axis", metavar="x|y|DEG", type=axis, default=0.0,
-                        help="direction along the slope, in plan: x, y, or degrees from x towards y; across is 90 "
-                             "degrees more (default x)")
-    parser.add_argument("--origin", metavar=("X", "Y"), nargs=2, type=number, default=[0.0, 0.0],
-                        help="where both coordinates are 0, m (default 0 0)")
-    parser.add_argument("--along", metavar=("LO", "HI"), nargs=2, type=number,
-                        help="limits of the axis along the slope, m (default: all balls)")
-    parser.add_argument("--across", metavar=("LO", "HI"), nargs=2, type=number,
-                        help="limits of the axis across the slope, m (default: all balls)")
-    parser.add_argument("--type", metavar="N", nargs="+", type=whole,
-                        help="only balls of these atom types (default: all)")
-    parser.add_argument("--start", metavar="DUMP", nargs="+",
-                        help="dump of the start, one for all runs or one for each: adds travelled distances, run-out "
-                             "and reach angle, and the number of balls that are missing at the end")
-    parser.add_argument("-o", dest="output", metavar="DIR", type=Path, default=Path("travel"),
-                        help="folder for the results (default travel)")
-    add_overwrite(parser)
-
-
 def axis(text):
     """argparse type: degrees from x towards y."""
     try:
@@ -49,12 +30,32 @@ def axis(text):
         raise argparse.ArgumentTypeError(f"must be x, y or degrees, got {text!r}") from None
 
 
-def run(args):
+@dataclass(frozen=True, kw_only=True)
+class Request(Overwrite):
+    dumps: List[str] = positional("dump of the final state, one for each run", metavar="DUMP", nargs="+")
+    axis: float = option(
+        "direction along the slope, in plan: x, y, or degrees from x towards y; across is 90 degrees more (default x)",
+        metavar="x|y|DEG", type=axis, default=0.0)
+    origin: List[float] = option(
+        "where both coordinates are 0, m (default 0 0)", metavar=("X", "Y"), nargs=2, default=[0.0, 0.0])
+    along: Optional[List[float]] = option(
+        "limits of the axis along the slope, m (default: all balls)", metavar=("LO", "HI"), nargs=2)
+    across: Optional[List[float]] = option(
+        "limits of the axis across the slope, m (default: all balls)", metavar=("LO", "HI"), nargs=2)
+    type: Optional[List[int]] = option(
+        "only balls of these atom types (default: all)", metavar="N", nargs="+", type=whole)
+    start: Optional[List[str]] = option(
+        "dump of the start, one for all runs or one for each: adds travelled distances, run-out and reach angle, and "
+        "the number of balls that are missing at the end", metavar="DUMP", nargs="+")
+    output: Path = option("folder for the results (default travel)", "-o", metavar="DIR", default=Path("travel"))
+
+
+def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints the percentiles."""
     wanted = travel.Wanted(args.axis, args.origin, args.along, args.across, args.type)
     travel.check(args.dumps, args.start, wanted)
     disk.check_folder(args.output, travel.FILES, args.dumps, args.overwrite)
-    about = travel.of_dumps(args.dumps, args.start, wanted, args.output, warned.printer("travel"))
+    about = travel.of_dumps(args.dumps, args.start, wanted, args.output, findings.printer("travel"))
     print(summary(about, args.output))
 
 

@@ -3,11 +3,13 @@
 Order of the work: collect the claims and their runs, run these (a run that several claims need once), evaluate, write.
 """
 import time
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Optional
 
 from .. import disk
 from ..errors import SlopeError
-from ..options import count
+from ..options import Program, flag, option
 from ..programs import find_lmp
 from ..runs import jobs
 from ..validation import verification
@@ -28,23 +30,20 @@ holds and every control fails, as it must, else 2.
 """
 
 
-def add_arguments(parser):
-    parser.add_argument("--quick", action="store_true", help="only runs that take seconds")
-    parser.add_argument("--only", metavar="CASE,...",
-                        help="these folders of inputs/, such as 01_restitution (default all)")
-    parser.add_argument("--jobs", type=count, metavar="J", help="runs at a time (default: the cores of the machine)")
-    parser.add_argument("--lmp", metavar="FILE", help="the LAMMPS program (default: LMP of the environment, then "
-                        "build/lmp beside tools/)")
-    parser.add_argument("--crosscheck", metavar="FILE", type=Path,
-                        help="crosscheck.yaml of `slope crosscheck`: its comparisons with other codes go into the "
-                        "report")
-    parser.add_argument("-o", dest="output", metavar="DIR", type=Path, default=Path(NAME),
-                        help=f"folder of the report and of the runs (default {NAME})")
+@dataclass(frozen=True, kw_only=True)
+class Request(Program):
+    quick: bool = flag("only runs that take seconds")
+    only: Optional[str] = option("these folders of inputs/, such as 01_restitution (default all)", metavar="CASE,...")
+    jobs: Optional[int] = option("runs at a time (default: the cores of the machine)", metavar="J")
+    crosscheck: Optional[Path] = option(
+        "crosscheck.yaml of `slope crosscheck`: its comparisons with other codes go into the report", metavar="FILE")
+    output: Path = option(
+        f"folder of the report and of the runs (default {NAME})", "-o", metavar="DIR", default=Path(NAME))
 
 
-def run(args):
+def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input and when a claim does not hold. Prints the claims."""
-    claims = chosen(args)
+    claims = chosen(args.quick, args.only)
     if args.output.exists() and not args.output.is_dir():
         raise SlopeError("-o", "must be a folder", args.output)
     peers = compared(args.crosscheck) if args.crosscheck else None
@@ -72,15 +71,15 @@ def run(args):
     print(f"all {len(outcomes)} claims hold, and all controls fail: {args.output / NAME}.html")
 
 
-def chosen(args):
+def chosen(quick: bool, only: Optional[str]):
     """The claims that are asked for."""
-    claims = [claim for claim in verification.all_claims() if claim.quick or not args.quick]
-    if args.only:
+    claims = [claim for claim in verification.all_claims() if claim.quick or not quick]
+    if only:
         known = [case.CASE for case in verification.cases()]
-        for name in args.only.split(","):
+        for name in only.split(","):
             if name not in known:
                 raise SlopeError("--only", f"must be of {', '.join(known)}", name)
-        claims = [claim for claim in claims if claim.case in args.only.split(",")]
+        claims = [claim for claim in claims if claim.case in only.split(",")]
     if not claims:
-        raise SlopeError("--only", "has no claims that are quick", args.only)
+        raise SlopeError("--only", "has no claims that are quick", only)
     return claims

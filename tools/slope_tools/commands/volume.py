@@ -2,12 +2,14 @@
 
 Order of the work: read the run, the road and its axis; cut (cut.py); sum per mesh cell; write tables and maps.
 """
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Optional
 
-from .. import disk, warned
+from .. import disk, findings
 from ..deposits import volume
 from ..deposits.volume import CUT_ANGLE, MUCH_BELOW, SAMPLES
-from ..options import add_overwrite, number, whole
+from ..options import Overwrite, flag, option, positional, whole
 from . import road_arguments
 
 DESCRIPTION = ("Volume to remove from a road, per mesh cell and in total, above a cut surface that rises from the "
@@ -27,40 +29,37 @@ volume.png.
 """
 
 
-def add_arguments(parser):
-    parser.add_argument("prefix", metavar="PREFIX", help="output of fix deposit/grid: PREFIX.thickness.asc and so on")
-    parser.add_argument("--road", metavar="POLYGON|LINE", required=True, type=Path, help=road_arguments.ROAD)
-    road_arguments.add_clearing(parser)
-    parser.add_argument("--cut-angle", metavar="DEG", type=number, default=CUT_ANGLE,
-                        help=f"rise of the cut surface with distance from the road's edges, degrees (default "
-                             f"{CUT_ANGLE:g})")
-    parser.add_argument("--mesh", metavar="SIZE", type=number, required=True,
-                        help="side of the mesh cells, m; their corners are at multiples of it in local x and y")
-    parser.add_argument("-o", dest="output", metavar="DIR", type=Path,
-                        help="folder for the results (default PREFIX.volume)")
-    parser.add_argument("--terrain", metavar="TERRAIN.asc", type=Path,
-                        help="the run's terrain, whose sidecar holds the CRS (default: terrain.asc beside PREFIX)")
-    parser.add_argument("--local", action="store_true",
-                        help="the road and the axis are in local metres, not in a CRS")
-    parser.add_argument("--bulk", metavar="FACTOR", type=number,
-                        help="also give the volumes for this bulk factor (volume of ground / volume of the balls)")
-    parser.add_argument("--axis", metavar="LINE", type=Path,
-                        help="the road's axis: GeoJSON, shapefile, CSV or WKT (default: the road's middle)")
-    parser.add_argument("--samples", metavar="K", type=whole, default=SAMPLES,
-                        help=f"parts of a cell along a side for round corners and rough ground, even (default "
-                             f"{SAMPLES}); planes are exact with any")
-    parser.add_argument("--no-picture", action="store_true", help="without volume.png, which takes longest")
-    add_overwrite(parser)
+@dataclass(frozen=True, kw_only=True)
+class Request(road_arguments.Clearing, Overwrite):
+    prefix: str = positional("output of fix deposit/grid: PREFIX.thickness.asc and so on", metavar="PREFIX")
+    road: Path = option(road_arguments.ROAD, metavar="POLYGON|LINE")
+    cut_angle: float = option(
+        f"rise of the cut surface with distance from the road's edges, degrees (default "
+        f"{CUT_ANGLE:g})", metavar="DEG", default=CUT_ANGLE)
+    mesh: float = option(
+        "side of the mesh cells, m; their corners are at multiples of it in local x and y", metavar="SIZE")
+    output: Optional[Path] = option("folder for the results (default PREFIX.volume)", "-o", metavar="DIR")
+    terrain: Optional[Path] = option(
+        "the run's terrain, whose sidecar holds the CRS (default: terrain.asc beside PREFIX)", metavar="TERRAIN.asc")
+    local: bool = flag("the road and the axis are in local metres, not in a CRS")
+    bulk: Optional[float] = option(
+        "also give the volumes for this bulk factor (volume of ground / volume of the balls)", metavar="FACTOR")
+    axis: Optional[Path] = option(
+        "the road's axis: GeoJSON, shapefile, CSV or WKT (default: the road's middle)", metavar="LINE")
+    samples: int = option(
+        f"parts of a cell along a side for round corners and rough ground, even, 2 to 32 (default "
+        f"{SAMPLES}); planes are exact with any", metavar="K", type=whole, default=SAMPLES)
+    no_picture: bool = flag("without volume.png, which takes longest")
 
 
-def run(args):
+def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints the totals."""
     wanted = volume.Wanted(args.road, args.mesh, args.cut_angle, args.local, args.axis, args.bulk,
                            road_arguments.asked(args), args.samples)
     volume.check(wanted)
     folder = args.output or Path(f"{args.prefix}.volume")
     disk.check_folder(folder, volume.FILES, [args.prefix, args.road], args.overwrite)
-    found = volume.of_run(args.prefix, wanted, args.terrain, warned.printer("volume"))
+    found = volume.of_run(args.prefix, wanted, args.terrain, findings.printer("volume"))
     volume.write(found, folder, picture=not args.no_picture)
     print(summary(found.about, folder))
 

@@ -10,10 +10,10 @@ import numpy as np
 
 from ..case import run_folders
 from ..errors import SlopeError
+from ..findings import Finding
 from ..geometry import extent, numbers
 from ..survey import rasters
 from ..survey.rasters import Raster
-from ..warned import Warned
 
 SAME_BALANCE = 1e-6    # relative; volume of the raster and in the summary
 SAME_HEIGHT = 1e-7     # of the largest height; two rasters of nine digits
@@ -45,7 +45,7 @@ class Deposit(NamedTuple):
 def read(prefix, terrain, warn):
     """The Deposit that a run wrote to PREFIX, in the CRS of terrain (None: terrain.asc in the same folder, if any).
 
-    warn is called with a Warned for each thing that makes the numbers doubtful.
+    warn is called with a Finding for each thing that makes the numbers doubtful.
     """
     names = [f"{prefix}.{kind}" for kind in ("thickness.asc", "surface.asc", "summary.yaml")]
     for name in names:
@@ -70,10 +70,10 @@ def read(prefix, terrain, warn):
         raise SlopeError(names[0], f"must hold the volume of {names[2]}, {reported:.10g} m3: are they of one run?",
                          f"{deposit.volume:.10g} m3")
     if summary["moving"]:
-        warn(Warned("moves", {"file": names[2], "seconds": summary["time"]}))
+        warn(Finding("moves", {"file": names[2], "seconds": summary["time"]}))
     lost = summary["volume"]["off_grid"] + summary["volume"]["lost"]
     if lost > SAME_BALANCE * deposit.volume:
-        warn(Warned("not counted", {"file": names[2], "volume": lost}))
+        warn(Finding("not counted", {"file": names[2], "volume": lost}))
     return deposit
 
 
@@ -101,7 +101,7 @@ def find_terrain(prefix, terrain, raster, warn):
     """The file that tells where the run's grid lies and its Place; a warning and None, None without one."""
     found = terrain or Path(prefix).with_name("terrain.asc")
     if terrain is None and not found.is_file():
-        warn(Warned("no terrain", {"file": str(found)}))
+        warn(Finding("no terrain", {"file": str(found)}))
         return None, None
     place = rasters.read_place(found)
     grid, slack = extent(raster), 1e-6 * raster.transform.a
@@ -113,6 +113,6 @@ def find_terrain(prefix, terrain, raster, warn):
         raise SlopeError(found, f"must be the terrain of the run, whose grid is {numbers(grid)}; --terrain names "
                          "another", numbers(place.extent))
     if place.crs is None:
-        warn(Warned("no CRS", {"file": str(found), "coordinates": "metres as in that file" if place.offset != (0, 0)
-                               else "the local metres of the run"}))
+        warn(Finding("no CRS", {"file": str(found), "coordinates": "metres as in that file" if place.offset != (0, 0)
+                                else "the local metres of the run"}))
     return str(found), place

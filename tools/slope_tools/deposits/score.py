@@ -8,11 +8,11 @@ from affine import Affine
 from .. import disk, geometry
 from ..drawing import maps
 from ..errors import SlopeError
+from ..findings import Finding
 from ..geometry import coverage, extent
 from ..survey import polygons, rasters
 from ..survey.crs import same_crs
 from ..survey.rasters import Raster, crs_name
-from ..warned import Warned
 from . import reach
 from .connected import connected, top
 from .volume_files import text
@@ -43,8 +43,8 @@ def read_observed(path, raster, threshold, local, warn=None):
     if mapped.crs is None and raster.crs is not None and not local:
         mapped = mapped._replace(crs=raster.crs)
         if warn:
-            warn(Warned("CRS of terrain", {"file": str(path),
-                                           "remedy": " (--local if it is in the run's local metres)"}))
+            warn(Finding("CRS of terrain", {"file": str(path),
+                                            "remedy": " (--local if it is in the run's local metres)"}))
     return from_raster(path, mapped, raster, threshold, local)
 
 

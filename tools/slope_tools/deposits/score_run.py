@@ -1,8 +1,8 @@
 """Comparison of a run's deposit with a mapped one: all that `slope score` does."""
 from pathlib import Path
-from typing import List, Optional
+from typing import Optional
 
-from .. import disk, warned
+from .. import disk, findings
 from ..errors import SlopeError
 from ..survey.rasters import crs_name
 from . import deposit
@@ -24,17 +24,16 @@ def make(prefix: str, mapped: Path, folder: Path, threshold: float = THRESHOLD, 
         raise SlopeError("--threshold", "must be >= 0", f"{threshold:g}")
     if mesh is not None and mesh <= 0:
         raise SlopeError("--mesh", "must be > 0", f"{mesh:g}")
-    warnings: List[str] = []
-    warn = warned.warner("score", warnings)
+    warn, warnings = findings.warner("score")
     run_ = deposit.read(prefix, terrain, warn)
     disk.check_folder(folder, FILES, [run_.prefix, mapped], overwrite)
     squares = make_mesh(mesh or run_.cell, run_.raster)
     observed = read_observed(mapped, run_.raster, threshold, local, warn)
     if observed.outside > 0:
-        warn(warned.Warned("outside of grid", {"file": str(mapped), "area": observed.outside}))
+        warn(findings.Finding("outside of grid", {"file": str(mapped), "area": observed.outside}))
     simulated = run_.raster.z > threshold
     if not simulated.any():
-        warn(warned.Warned("nowhere thicker", {"file": f"{run_.prefix}.thickness.asc", "threshold": threshold}))
+        warn(findings.Finding("nowhere thicker", {"file": f"{run_.prefix}.thickness.asc", "threshold": threshold}))
     about = {"prefix": run_.prefix, "observed": mapped, "terrain": run_.terrain,
              "crs": None if run_.raster.crs is None else crs_name(run_.raster.crs),
              "run": {"slope_version": run_.summary.get("slope_version"), "time": run_.summary["time"],

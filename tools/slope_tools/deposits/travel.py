@@ -8,8 +8,8 @@ from .. import disk
 from ..drawing import figures, pictures
 from ..drawing.figures import plt
 from ..errors import SlopeError
+from ..findings import Finding
 from ..survey import rasters
-from ..warned import Warned
 from . import dumps, reach
 
 DIRECTIONS = "along", "across"
@@ -71,17 +71,18 @@ def of_dumps(paths: Sequence[str], starts: Optional[Sequence[str]], wanted: Want
     each_start *= len(paths) // len(each_start)
     arrivals = [read(path, start, wanted) for path, start in
                 rasters.progress(list(zip(paths, each_start)), "reading the dumps")]
-    warnings: List[str] = []
+    warnings: List[Dict[str, Any]] = []
 
-    def warn(text):
-        warnings.append(str(text))
-        tell(text)
+    def warn(one):
+        warnings.append(one.entry())
+        tell(one)
 
     for one in arrivals:
         if one.moving:
-            warn(Warned("not arrived", {"file": one.name, "moving": one.moving, "balls": len(one.id), "speed": MOVING}))
+            warn(Finding("not arrived", {"file": one.name, "moving": one.moving, "balls": len(one.id),
+                                         "speed": MOVING}))
         if one.missing:
-            warn(Warned("missing", {"file": one.name, "missing": one.missing, "balls": one.missing + len(one.id)}))
+            warn(Finding("missing", {"file": one.name, "missing": one.missing, "balls": one.missing + len(one.id)}))
     tables = {name: distribution(arrivals, name, wanted.limits(name), warn) for name in DIRECTIONS}
     about: Dict[str, Any] = {
         "axis": {"along": wanted.axis, "across": wanted.axis + 90, "origin": wanted.origin}, "types": wanted.types,
@@ -162,8 +163,8 @@ def distribution(arrivals, name, limits, warn):
     lo, hi = limits or (balls.min(), balls.max())
     outside = ((balls < lo) | (balls > hi)).sum()
     if outside:
-        warn(Warned("beyond limits", {"option": f"--{name}", "low": float(lo), "high": float(hi),
-                                      "outside": int(outside), "balls": len(balls)}))
+        warn(Finding("beyond limits", {"option": f"--{name}", "low": float(lo), "high": float(hi),
+                                       "outside": int(outside), "balls": len(balls)}))
     step = step_of(hi - lo)
     first = math.floor(lo / step + 1e-9) if limits else math.ceil(lo / step - 1e-9) - 1    # where the share is still 0
     at = (step * np.arange(first, math.ceil(hi / step - 1e-9) + 1)).round(12)

@@ -10,12 +10,12 @@ import numpy as np
 
 from .. import disk, geometry
 from ..errors import SlopeError
+from ..findings import Finding, entries, finding
 from ..geometry import Mesh
 from ..sites.site_warnings import of_angles
 from ..survey import rasters, roads
 from ..survey.lines import read_local
 from ..survey.rasters import crs_name
-from ..warned import Warned, warned
 from . import clearing, cut, deposit, stretch_files, volume_files
 from .road_axis import along, axes_of, axis_of, in_grid_of, stretches, width_of
 
@@ -52,7 +52,7 @@ class Removal(NamedTuple):
     clearing: clearing.Clearing         # stretches, lanes, hours
     factor: Optional[float]             # by which the volumes change at the other bulk factor
     about: Dict[str, Any]               # content of volume.yaml
-    warnings: List[Warned]
+    warnings: List[Finding]
 
 
 def of_run(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], None] = lambda text: None) -> Removal:
@@ -61,10 +61,10 @@ def of_run(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], None] = l
     terrain: the run's, whose sidecar has the CRS (default: terrain.asc beside PREFIX). Raises SlopeError on bad input.
     """
     check(wanted)
-    warnings: List[Warned] = []
+    warnings: List[Finding] = []
 
     def warn(said):
-        warnings.append(warned(said))
+        warnings.append(finding(said))
         tell(said)
 
     for one in of_angles({"--cut-angle": wanted.cut_angle}):
@@ -92,9 +92,9 @@ def of_run(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], None] = l
     about = totals(wanted, run, mesh, result, profile, source)
     about.update(clearing=cleared.totals, stretches=cleared.entries)
     if result.unknown > 0:
-        warn(Warned("no ground", {"volume": float(result.unknown)}))
+        warn(Finding("no ground", {"volume": float(result.unknown)}))
         about["volume"]["unknown"] = result.unknown
-    about["warnings"] = [str(one) for one in warnings]
+    about["warnings"] = entries(warnings)
     return Removal(run, road, axis, mesh, result, profile, cleared, wanted.bulk / run.bulk if wanted.bulk else None,
                    disk.plain(about), warnings)
 
@@ -154,7 +154,7 @@ def in_grid(polygon, raster, path, warn):
                          "metres)", geometry.numbers(polygon.bounds))
     outside = 1 - inside.area / polygon.area
     if outside > 1e-9:
-        warn(Warned("cut off", {"file": str(path), "percent": 100 * outside}))
+        warn(Finding("cut off", {"file": str(path), "percent": 100 * outside}))
     return inside
 
 

@@ -13,6 +13,7 @@ from .. import disk
 from ..case import run_folders
 from ..deposits import travel_shares
 from ..errors import SlopeError
+from ..findings import Finding, entries, texts
 from ..statistics import emulator, hazard
 from ..tables import quantities, study_table, withheld_words
 from . import ensemble_maps, farther, known_events
@@ -79,7 +80,7 @@ def evaluate(order: Order, rows: Sequence[Mapping[str, Any]], output: Path, plac
     analyses = {name: emulator.analyse(order.sample.names, places, column(finished, name), point, order.sample.snap)
                 for name in main}
     about["influence"] = {name: one.about() for name, one in analyses.items()}
-    about["doubts"] = doubts(about)
+    about["doubts"] = entries(doubts(about))
     about["maps"] = [] if grids else ensemble_maps.write(
         output / MAPS, [run_folders.prefix_of(run_folders.summary_of(output, row)) for row in finished],
         len(set(point)), failed, order.levels, place)
@@ -115,23 +116,22 @@ def numbers(finished, name: str, point: Sequence[int], failed: int) -> Dict[str,
             "quantiles": [one._asdict() for one in hazard.quantiles(values, point, failed)]}
 
 
-def doubts(about: Mapping[str, Any]) -> List[str]:
+def doubts(about: Mapping[str, Any]) -> List[Finding]:
     """The caveats on the numbers."""
     found = []
     if about["failed"]:
-        share = about["failed"] / about["runs"]
-        found.append(f"{about['failed']} of {about['runs']} runs failed: the estimates exclude them, and the bounds "
-                     "allow any value for them" + (", so they are wide" if share > FEW else ""))
+        wide = about["failed"] / about["runs"] > FEW
+        found.append(Finding("failed points", {"failed": about["failed"], "runs": about["runs"],
+                                               "wide": ", so they are wide" * wide}))
     of = about["of"]
     if of:
+        quantity, one = about["quantities"][of]["name"], about["influence"][of]
         open_ = [entry["share"] for entry in about["quantities"][of]["quantiles"] if entry["high"] is None]
         if open_:
-            shares = ", ".join(f"{100 * share:g} %" for share in open_)
-            found.append(f"{about['finished']} runs do not bound the {shares} quantile from above: "
-                         f"{about['quantities'][of]['name']}")
-        one = about["influence"][of]
+            found.append(Finding("unbounded", {"finished": about["finished"], "quantity": quantity,
+                                               "shares": ", ".join(f"{100 * share:g} %" for share in open_)}))
         if one["emulator"] and one["emulator"]["verdict"] != "good":
-            found.append(f"{about['quantities'][of]['name']}: {one['text']}")
+            found.append(Finding("emulator", {"quantity": quantity, "verdict": one["text"]}))
     return found
 
 
@@ -160,7 +160,7 @@ def describe(about: Mapping[str, Any]) -> List[str]:
             shares = (quantile_text(one, entry["unit"]) for one in entry["quantiles"])
             lines.append(f"{entry['name']}: " + "; ".join(shares))
         lines.append(f"{entry['name']} depends on " + dependence_text(about["influence"][of]))
-    lines += [f"caveat: {text}" for text in about["doubts"]]
+    lines += [f"caveat: {text}" for text in texts(about["doubts"])]
     return lines + (known_events.describe(about["known_events"], of) if about.get("known_events") else [])
 
 

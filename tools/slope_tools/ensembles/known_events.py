@@ -15,6 +15,7 @@ from ..case import logs, run_folders
 from ..deposits import deposit
 from ..digits import rounded
 from ..errors import SlopeError
+from ..findings import Finding, entries, texts
 from ..mobility import body, exceedance, known, run_length, weights
 from ..mobility.results import percent
 from ..sites import site_choices
@@ -132,7 +133,8 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
         (output / name).unlink(missing_ok=True)         # of a study before this one
     runs = Runs(sample, added.batches, rows, found)
     if found.outside or len(runs.rows) < 2:
-        return {**about, "reached": None, "doubts": found.outside or ["fewer than two runs have a deposit"]}
+        return {**about, "reached": None, "doubts": entries(
+            [Finding("no event", {"text": text}) for text in found.outside] or [Finding("few lengths")])}
     about.update(reach(runs, found), added=added.about())
     names = {name: one for name, one in names.items() if name not in NOT_FARTHER and not name.endswith("_deg")}
     main = [name for name in main if name in names]
@@ -147,7 +149,7 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
         curves[REMOVE], (answer.SHARE, *answer.FLOORS))] if REMOVE in curves else None
     about["variables"] = {name: variable(runs, k, main) for k, name in enumerate(sample.names)}
     about["influence"] = {name: known_influence.evaluate(runs, name) for name in main[:1]}
-    about["doubts"] = doubts(about, runs)
+    about["doubts"] = entries(doubts(about, runs))
     about["weights"] = whole_weights(runs)
     about["maps"] = [] if grids else known_maps.write(
         output / FOLDER, [run_folders.prefix_of(run_folders.summary_of(output, row)) for row in runs.rows], runs.mass,
@@ -191,30 +193,25 @@ def rank(x: np.ndarray, y: np.ndarray, share: np.ndarray) -> Optional[float]:
     return float(w @ (both[0] * both[1])) / scale ** 0.5 if scale > 1e-18 else None
 
 
-def doubts(about: Mapping[str, Any], runs: Runs) -> List[str]:
+def doubts(about: Mapping[str, Any], runs: Runs) -> List[Finding]:
     """The caveats, in the order of their weight."""
     found, stopped = [], (about.get("added") or {}).get("stopped")
     if about["far"] >= 1 - farther.REACHED:
-        found.append(f"no run goes beyond {rounded(about['longest_m'], 4)} m; {percent(about['far'])} of known "
-                     "events do: they count as exceeding every value; "
-                     + (answer_words.text(answer.Reason.read(stopped)) if stopped else
-                        "vary towards more mobile masses"))
-    if about["short"] > (1 - farther.REACHED) / 2 and about["reached"] < farther.REACHED:
-        found.append(f"no run ends before {rounded(about['shortest_m'], 4)} m; {percent(about['short'])} of known "
-                     "events do: they count as the shortest runs, in the bounds as anything")
-    found += [f"between {rounded(gap['low_m'], 4)} and {rounded(gap['high_m'], 4)} m no run ends; "
-              f"{percent(gap['share'])} of known events do: they count as the runs on either side"
-              for gap in about["gaps"]]
+        remedy = answer_words.text(answer.Reason.read(stopped)) if stopped else "vary towards more mobile masses"
+        found.append(Finding("events beyond", {"length": rounded(about["longest_m"], 4), "share": percent(about["far"]),
+                                               "remedy": remedy}))
+    if about["reached"] < farther.REACHED and about["short"] > (1 - farther.REACHED) / 2:
+        found.append(Finding("events before", {"length": rounded(about["shortest_m"], 4),
+                                               "share": percent(about["short"])}))
+    found += [Finding("gap", {"low": rounded(gap["low_m"], 4), "high": rounded(gap["high_m"], 4),
+                              "share": percent(gap["share"])}) for gap in about["gaps"]]
     if about["effective"] < LEAST_EFFECTIVE:
-        found.append(f"the weighted runs say as much as {about['effective']:.0f} runs of equal weight: take more "
-                     "points")
+        found.append(Finding("few effective", {"effective": about["effective"]}))
     if runs.failed:
-        found.append(f"{runs.failed} of {len(runs.rows) + runs.failed} runs have no length (they failed, or left no "
-                     "deposit): the bounds allow any value for them")
+        found.append(Finding("no length", {"failed": runs.failed, "runs": len(runs.rows) + runs.failed}))
     left = sum(row["off_grid_m3"] + row["lost_m3"] > LEFT * row["released_m3"] for row in runs.rows)
     if left:
-        found.append(f"{left} of {len(runs.rows)} runs lost more than {100 * LEFT:g} % of their volume over the edge: "
-                     "their lengths, and so the weights, are those of what stayed; take a larger terrain")
+        found.append(Finding("lengths lost", {"lost": left, "runs": len(runs.rows), "percent": 100 * LEFT}))
     return found
 
 
@@ -246,7 +243,7 @@ def describe(about: Mapping[str, Any], of: Optional[str]) -> List[str]:
             entry = about["quantities"][of]
             lines.append(f"{entry['name']}: " + "; ".join(quantile_text(one, entry["unit"])
                                                           for one in entry["quantiles"]))
-    return lines + [f"caveat: known events: {text}" for text in about["doubts"]]
+    return lines + [f"caveat: known events: {text}" for text in texts(about["doubts"])]
 
 
 def summary(about: Mapping[str, Any]) -> str:

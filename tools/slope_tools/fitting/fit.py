@@ -9,11 +9,12 @@ from ..case import run_folders
 from ..case.settings import as_number
 from ..deposits import deposit, score
 from ..deposits.rest import CUT
+from ..findings import Finding, entries
 from ..runs import jobs, repeats
 from ..statistics import backanalysis
 from ..studies import mapped, results
 from ..studies.setup import Setup
-from ..tables import quantities
+from ..tables import judged, quantities
 from . import calibration, fit_words, observations
 
 SETS = 64               # sets of values that stand for the region
@@ -110,7 +111,7 @@ class Fit:
                          predicted[None], found, targets)[0])},
             "variables": {one.name: self.known(found, i) for i, one in enumerate(self.variables)},
             "correlation": [[round(float(value), 3) for value in row] for row in found.correlation()],
-            "misfit": found.misfit, "words": words, "doubts": doubts,
+            "misfit": found.misfit, "words": words, "doubts": entries(doubts),
             "targets": [{"name": one.name, "unit": one.unit, "observed": one.value, "attainable": float(goal),
                          "tolerance": one.deviation, "chance": float(noise),
                          "predicted": None if predicted is None else float(predicted[i])}
@@ -133,44 +134,38 @@ class Fit:
                                    *(f"caveat: {text}" for text in doubts)]))
         self.setup.tell(f"best values: run {best.name}; written to {output}: {' '.join(names)}")
 
-    def doubts(self, found: backanalysis.Posterior) -> List[str]:
+    def doubts(self, found: backanalysis.Posterior) -> List[Finding]:
         """The caveats on the result."""
         plan, targets = self.plan, self.observed.targets
-        failed = [one.name for one in plan.runs if one.error]
-        doubts = [f"{len(failed)} of {len(plan.runs)} runs failed and are left out: {', '.join(failed[:3])}"] \
-            if failed else []
-        gone = self.gone()
+        failed, gone, runs = [one.name for one in plan.runs if one.error], self.gone(), len(plan.runs)
+        several = []
+        if failed:
+            several.append(Finding("failed fits", {"failed": len(failed), "runs": runs,
+                                                   "which": ", ".join(failed[:3])}))
         if gone:
-            most = max(row["lost_m3"] for row in gone)
-            doubts.append(f"{len(gone)} of {len(plan.runs)} runs lost up to {most:,.0f} m3 over the edge of the "
-                          "terrain or the box: how far they went is unknown, and they are left out; use a larger one")
+            several.append(Finding("lost fits", {"lost": len(gone), "runs": runs,
+                                                 "volume": max(row["lost_m3"] for row in gone)}))
         if len(targets) < len(self.variables):
             known, asked = len(targets), len(self.variables)
-            doubts.append(f"{in_words(known)} observed number{'s' * (known > 1)} cannot determine {in_words(asked)} "
-                          "variables")
+            several.append(Finding("underdetermined", {
+                "known": f"{in_words(known)} observed number{'s' * (known > 1)}", "asked": in_words(asked)}))
         blind = [target.name for target, one in zip(targets, found.emulators) if not one.noise_seen]
         if blind:
-            doubts.append(f"too few runs to measure the scatter by chance of {', '.join(blind)}: the region may be too "
-                          "narrow")
+            several.append(Finding("no scatter", {"which": ", ".join(blind)}))
         offsets = repeats.unmoved([*(name for one in plan.chances for name in one),
                                    *(one.name for one in self.variables)], self.work.defaults)
         if offsets:
-            doubts.append(f"all runs have the same lattice, {', '.join(offsets)} not being repeated: the scatter by "
-                          "chance (s) lacks what another lattice changes, and the region may be too narrow or beside "
-                          "the truth")
+            several.append(Finding("one lattice", {"offsets": ", ".join(offsets)}))
         lacks = self.mass()
         if lacks:
-            doubts.append(lacks)
-        moving = sum(not row["at_rest"] for row in self.rows.values() if row["status"] == "finished")
-        if moving:
-            doubts.append(f"{moving} deposits are not at rest")
-        return doubts
+            several.append(lacks)
+        return several + judged.not_at_rest([row for row in self.rows.values() if row["status"] == "finished"])
 
-    def mass(self) -> str:
-        """That the mapped thickness cannot be of the mass that is released; "" where it can, or nothing is known."""
+    def mass(self) -> Optional[Finding]:
+        """That the mapped thickness cannot be of the mass that is released; None where it can, or nothing is known."""
         released = [row["released_m3"] for row in self.rows.values() if row["status"] == "finished"]
         volume = self.observed.volume
-        return mapped.mass(volume, sum(released) / len(released)) if released else ""
+        return mapped.mass(volume, sum(released) / len(released)) if released else None
 
     def gone(self) -> List[Mapping[str, Any]]:
         """The runs that lost so much that they are left out."""

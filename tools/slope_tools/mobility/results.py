@@ -8,6 +8,7 @@ from shapely.geometry.base import BaseGeometry
 
 from .. import disk
 from ..digits import rounded
+from ..findings import Finding, entries
 from ..provenance import version
 from ..survey import geopackage
 from ..survey.geopackage import Layer
@@ -61,14 +62,14 @@ def write_lines(path: Path, found: Found, body: Body) -> None:
     geopackage.write(path, {"path": Layer("LineString", dict.fromkeys(values, "float"), features)}, body.raster)
 
 
-def doubts(found: Found) -> List[str]:
-    """What must be said: out of range, or a path that ends too early; a line each."""
+def doubts(found: Found) -> List[Finding]:
+    """What must be said: out of range, or a path that ends too early."""
     counts = found.decides
-    lines = [f"{text}; that set says nothing of this mass" for text in (found.by_set.outside if found.by_set else [])]
+    several = [Finding("outside of set", {"text": text}) for text in (found.by_set.outside if found.by_set else [])]
     if counts.length_at(0.5) is None and counts.path.end == TERRAIN:
-        lines.append(f"the path leaves the terrain after {rounded(counts.path.length[-1], 4)} m, where "
-                     f"{percent(counts.beyond_path())} of known events go on: take a larger terrain")
-    return lines
+        several.append(Finding("path ends", {"length": rounded(counts.path.length[-1], 4),
+                                             "share": percent(counts.beyond_path())}))
+    return several
 
 
 def of_events(one: Mobility) -> Dict[str, Any]:
@@ -106,7 +107,7 @@ def about(found: Found, source: Source, road: Optional[AtRoad]) -> Dict[str, Any
     whole: Dict[str, Any] = {
         "slope_version": version(), "terrain": source.terrain, "volume_m3": source.body.volume,
         "crown": dict(zip("xyz", path.crown)), "in_range": bool(by_set and by_set.in_range),
-        "warnings": doubts(found),
+        "warnings": entries(doubts(found)),
         "path": {"length_m": path.length[-1], "height_m": path.fall[-1], "ends": path.end},
         "exceedance_is": counts.chosen, "confined_path": source.asked.confined}
     for one in found.each:

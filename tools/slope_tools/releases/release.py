@@ -8,9 +8,9 @@ from scipy.ndimage import label
 
 from ..digits import rounded
 from ..errors import SlopeError
+from ..findings import Finding
 from ..survey import marks, plausible, polygons, rasters
 from ..survey.crs import as_crs
-from ..warned import Warned
 from . import release_area, release_bodies, release_scar, release_solve
 
 SHAPES = ("sphere", "ellipsoid", "plane", "slbl")
@@ -55,7 +55,7 @@ class Body(NamedTuple):
     slip: np.ndarray                    # m, on the nodes of the area
     choices: Dict[str, Any]             # shape and its numbers
     measures: release_solve.Measures
-    warnings: List[Warned]
+    warnings: List[Finding]
 
 
 def body_of(wanted: Wanted) -> Body:
@@ -63,7 +63,7 @@ def body_of(wanted: Wanted) -> Body:
     wanted = check(wanted)
     raster = read_terrain(wanted.terrain)
     geometry = None
-    doubts: List[Warned] = []
+    doubts: List[Finding] = []
     if wanted.polygon:
         crs = as_crs("--assign-crs", wanted.crs) if wanted.crs else None
         geometry = polygons.read_local(wanted.polygon, raster, local=wanted.local, crs=crs,
@@ -209,41 +209,41 @@ def from_shape(wanted: Wanted, raster, geometry):
     return area, area.z - depth, choices
 
 
-def warnings(choices, found, area, slip) -> List[Warned]:
+def warnings(choices, found, area, slip) -> List[Finding]:
     """What makes the body doubtful."""
     doubts = []
     if choices.get("sagitta_m", 1) < 0:
-        doubts.append(Warned("bulges", {"shape": choices["shape"]}))
+        doubts.append(Finding("bulges", {"shape": choices["shape"]}))
     share = found.cells / int(area.inside.sum())
     curvature = choices.get("curvature_per_m", 0)
     if choices["shape"] == "plane" and (steep := no_way_out(choices, area)) is not None:
-        doubts.append(Warned("no way out", {"dip": choices["dip_degrees"], "direction": choices["direction_degrees"],
-                                            "ground": steep}))
+        doubts.append(Finding("no way out", {"dip": choices["dip_degrees"], "direction": choices["direction_degrees"],
+                                             "ground": steep}))
     if choices["shape"] == "slbl" and (curvature < 0 or share < LITTLE):
-        doubts.append(Warned("little", {"form": f"bulges (curvature {curvature:.3g} /m) and " * (curvature < 0),
-                                        "percent": 100 * share, "depth": found.mean_depth}))
+        doubts.append(Finding("little", {"form": f"bulges (curvature {curvature:.3g} /m) and " * (curvature < 0),
+                                         "percent": 100 * share, "depth": found.mean_depth}))
     if choices["shape"] == "scar":
         hollow = release_solve.hollow(area, slip)
         if hollow > HOLLOW * found.largest_depth:
-            doubts.append(Warned("hollow", {"depth": hollow, "remedy": "is it the mass on top of the terrain? Then "
-                                            "--scar-is height" if choices["scar_is"] == "depth" else "a smaller body, "
-                                            "or a survey without what came to rest there?"}))
+            doubts.append(Finding("hollow", {"depth": hollow, "remedy": "is it the mass on top of the terrain? Then "
+                                             "--scar-is height" if choices["scar_is"] == "depth" else "a smaller body, "
+                                             "or a survey without what came to rest there?"}))
     if found.mean_slope > CLIFF:
-        doubts.append(Warned("cliff", {"degrees": found.mean_slope, "in_feet": plausible.in_feet(found.mean_slope)}))
+        doubts.append(Finding("cliff", {"degrees": found.mean_slope, "in_feet": plausible.in_feet(found.mean_slope)}))
     if found.cells < COARSE:
-        doubts.append(Warned("few cells", {"cells": found.cells, "cell": area.cell}))
+        doubts.append(Finding("few cells", {"cells": found.cells, "cell": area.cell}))
     if found.wall > 0.5 * found.largest_depth:
-        doubts.append(Warned("rim", {"depth": found.wall, "remedy": {
+        doubts.append(Finding("rim", {"depth": found.wall, "remedy": {
             "sphere": "a wider polygon, or --shape ellipsoid?",
             "scar": "does the raster, or the polygon, end in the middle of the scar?"}.get(
                 choices["shape"], "is the polygon large enough?")}))
     if abs(shift := choices.get("beside_m") or 0.0) > SHIFT:
-        doubts.append(Warned("shift", {"file": choices["scar"], "metres": abs(shift),
-                                       "side": "below" if shift > 0 else "above"}))
+        doubts.append(Finding("shift", {"file": choices["scar"], "metres": abs(shift),
+                                        "side": "below" if shift > 0 else "above"}))
     return doubts
 
 
-def in_parts(area, slip, geometry) -> List[Warned]:
+def in_parts(area, slip, geometry) -> List[Finding]:
     """A warning of a body in more parts than the polygon, None for a scar, has; tiny ones do not count."""
     if geometry is None:
         return []
@@ -253,8 +253,8 @@ def in_parts(area, slip, geometry) -> List[Warned]:
     volumes = volumes[volumes > TINY * volumes.sum()]
     if len(volumes) <= len(polygons.polygons_of(geometry)):
         return []
-    return [Warned("parts", {"parts": len(volumes), "volumes": " and ".join(map(rounded, volumes[:3]))
-                             + " and less" * (len(volumes) > 3)})]
+    return [Finding("parts", {"parts": len(volumes), "volumes": " and ".join(map(rounded, volumes[:3]))
+                              + " and less" * (len(volumes) > 3)})]
 
 
 def no_way_out(choices, area) -> Optional[float]:

@@ -8,6 +8,7 @@ from scipy.ndimage import binary_dilation
 
 from ..disk import complete, write_yaml
 from ..errors import SlopeError
+from ..findings import entries
 from ..provenance import version
 from ..survey import rasters
 from ..survey.rasters import Raster, crs_name
@@ -81,7 +82,7 @@ def write_body(name: Path, wanted: Wanted, body: Body, raised: bool = False) -> 
     about = {"slope_version": version(), "terrain": wanted.terrain, "polygon": wanted.polygon, **body.choices,
              "body": body.measures._asdict(), "cell": body.area.cell, "crs": crs_name(body.raster.crs),
              "origin": {"east": float(body.raster.offset[0]), "north": float(body.raster.offset[1])},
-             "warnings": [str(one) for one in body.warnings]}
+             "warnings": entries(body.warnings)}
     write(name, wanted.terrain, body.raster, body.area, body.slip, about, body.geometry,
           f"{name.name}: {body.measures.volume:,.0f} m\u00b3, up to {body.measures.largest_depth:.3g} m deep")
     if raised:

@@ -7,6 +7,7 @@ import numpy as np
 from ..drawing import figures
 from ..drawing.figures import COLOURS, plt
 from ..errors import SlopeError
+from ..findings import texts
 from ..plots.ensemble_charts import THOUSANDS
 from ..seismic import chain_files
 
@@ -32,7 +33,7 @@ def content(data, numbers, picture):
         caption += " Right: how often per year a volume is exceeded."
     return {"sentences": [f"{text[0].upper()}{text[1:]}." for text in chain_files.sentences(about)], "how": HOW,
             "bodies": bodies(about, numbers), "volumes": [f"{one:,.6g}" for one in about["more_than_m3"]],
-            "parts": parts(about), "doubts": about["doubts"],
+            "parts": parts(about), "doubts": texts(about["doubts"]),
             "picture": picture(draw(about, per_year(data, about), title), title, caption)}
 
 

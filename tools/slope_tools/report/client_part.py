@@ -12,7 +12,7 @@ from ..statistics import headline
 from ..statistics.answer import Code, Kind, Source
 from ..statistics.withheld import Kind as Rule
 from ..tables import combinations, next_step
-from . import body, caveats, mobility_part, road_part, structures_part
+from . import body, mobility_part, road_part, structures_part, warnings
 from .numbers import farthest_of
 
 WORDS = {"rolling": "the rolling resistance", "friction": "the friction", "d": "the size of the model's balls",
@@ -23,14 +23,18 @@ WORDS = {"rolling": "the rolling resistance", "friction": "the friction", "d": "
          "surface", "step": "the time step"}
 
 
-def content(data, ground, numbers, answers: Sequence[Optional[Dict[str, Any]]], warnings: int) -> Dict[str, Any]:
-    """What the template takes; answers: those of the study, the first that there is counts."""
+def content(data, ground, numbers, answers: Sequence[Optional[Dict[str, Any]]], found,
+            listed: int) -> Dict[str, Any]:
+    """What the template takes; answers: those of the study, the first that there is counts; found: all findings.
+
+    listed: how many warnings the appendix has.
+    """
     main, spoken = next((one for one in answers if one), None), of_headline(data, numbers)
-    told, rest = caveats.shown(caveats.caveats(data, ground), warnings)
     return {"body": body.sentence(body.of_data(data, ground)),
             "answer": spoken or (of_answer(data, main, numbers) if main else of_reach(data, numbers)),
             "sentences": sentences(data, ground, numbers, bool(main))
-            + road_part.on_first_page(data, numbers, bool(main and main["withheld"])), "caveats": told, "rest": rest,
+            + road_part.on_first_page(data, numbers, bool(main and main["withheld"])),
+            "caveats": warnings.first_page(found, ground)[:warnings.MOST], "rest": warnings.rest_of(listed),
             "basis": basis(data)}
 
 

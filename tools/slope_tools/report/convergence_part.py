@@ -3,6 +3,7 @@ from pathlib import Path
 
 from .. import schemas
 from ..errors import SlopeError
+from ..findings import Finding
 from ..plots import figure_charts
 from ..plots.figure_charts import Convergence
 from ..statistics import headline
@@ -30,8 +31,7 @@ def find(asked, data):
     for path in (data.folder / named, named):       # older files name it from where `slope study` was called
         if path.is_file():
             return path, None
-    return None, (f"The size of the balls: {data.folder / named}, from which the study took its size error, does not "
-                  "exist, so there are no charts of it; --converge names another place")
+    return None, Finding("no file of sizes", {"file": str(data.folder / named)})
 
 
 class Sizes:

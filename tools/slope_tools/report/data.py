@@ -1,34 +1,22 @@
 """What a report is made of: the finished runs of a study, or one run, read back."""
 import math
 from pathlib import Path
-from typing import Any, Dict, List, NamedTuple, Optional
+from typing import Any, Dict, List
 
 import numpy as np
 from affine import Affine
 
 from .. import schemas
 from ..case import logs, run_folders
-from ..deposits import deposit, rest, score, travel_shares
+from ..deposits import deposit, score, travel_shares
 from ..errors import SlopeError
 from ..schemas import OBJECT, mapping
 from ..survey import rasters
+from ..tables import judged
+from ..tables.released import Release
 from ..tables.study_file import read_study
-from ..warned import Warned, warned
-from .release_part import release
 
 MOST_SHOWN = 9          # runs that get a map and a line in the section
-CUT = "run completed"   # what a summary calls the end of a run that no criterion ended
-
-
-class End(NamedTuple):
-    """How a run ended; name: None of a single run."""
-    name: Optional[str]
-    at_rest: bool
-    cut: bool           # it stopped at its duration
-    text: str
-    share: float        # of the volume that moves
-    moving: bool        # more than 10 % of it
-    time: float         # s
 
 
 class Result:
@@ -95,7 +83,7 @@ class Data:
     def __init__(self, folder, shown=None):
         self.folder, self.study = folder, None
         self.rows, self.finished, self.settings, self.repeats = [], [], {}, {}
-        self.road = self.road_line = self.removed = self.mapped = self._length = self._releases = None
+        self.road = self.road_line = self.removed = self.mapped = self._length = None
         self.over_all, self.volumes = {}, {}
         if (folder / "study.yaml").is_file():
             self._read_study(shown)
@@ -182,41 +170,24 @@ class Data:
 
     # --- how the runs began and ended ---
 
-    def ends(self):
-        """The End of each finished run."""
-        if self.study:
-            return [End(self.label_of(row), row["at_rest"], row["stop_reason"] == CUT, row["end"],
-                        row["moving_share"] if row.get("fast_share") is None else row["fast_share"], row["moving"],
-                        row["stop_time_s"]) for row in self.finished]
+    @property
+    def judged(self):
+        """The rows that findings are of: those of the study, or that of a run alone, without a name."""
         one = self.result
-        state = rest.state(one.summary)
-        stop = one.summary["stop"]
-        return [End(None, state.at_rest, stop["reason"] == CUT, state.text, state.share, one.summary["moving"],
-                    stop["time"])]
+        return self.rows if self.study else [{"run": "", "status": "finished",
+                                              **judged.columns(one.summary, one.log)}]
 
-    def warnings(self) -> List[Warned]:
-        """Those of study.yaml; none of a run alone."""
-        return [warned(one) for one in (self.study or {}).get("warnings") or ()]
+    def names(self):
+        """Labels of the runs by their folders."""
+        return {row["run"]: self.label_of(row) for row in self.rows}
+
+    def ends(self):
+        """The rows of finished runs: how they ended."""
+        return [row for row in self.judged if row["status"] == "finished"]
 
     def releases(self):
-        """(name, Release) of each finished run whose summary is in reach."""
-        if self._releases is None:
-            self._releases = self._read_releases()
-        return self._releases
-
-    def _read_releases(self):
-        if not self.study:
-            return [(None, release(self.result.summary, [*self.result.log.notes, *self.result.log.warnings]))]
-        loaded = {one.row["run"]: one for one in self.drawn}
-        found = []
-        for row in self.finished:
-            one = loaded.get(row["run"])
-            path = run_folders.summary_of(self.folder, row)
-            if one or path.is_file():
-                summary = one.summary if one else run_folders.load_summary(path)
-                texts = [*(one.log.notes if one else ()), *(row.get("log_warnings") or ())]
-                found.append((self.label_of(row), release(summary, texts)))
-        return found
+        """(row, Release) of each finished run."""
+        return [(row, Release(**row["release"])) for row in self.ends()]
 
     def length(self):
         """The run_length.RunLength of the shown run; None where its deposit is nowhere thick enough."""

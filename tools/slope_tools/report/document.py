@@ -9,6 +9,7 @@ from typing import List
 
 from .. import digits, disk
 from ..errors import SlopeError
+from ..findings import WARNING
 from .heading import Asked
 
 
@@ -50,7 +51,7 @@ def write(asked: Asked, output: Path) -> List[str]:
     written = (f"{output}: {len(html) / 1e6:.1f} MB, {page.pictures} pictures{view}; "
                f"{', '.join(map(str, [*tables, *films]))}")
     return [written, *([f"note: {page.film.text}"] if page.film.text and not films else []),
-            *(f"{'WARNING' if level == 'red' else 'note'}: {text}" for level, text in page.warnings)]
+            *(f"{'WARNING' if level == WARNING else level}: {text}" for level, text in page.warnings)]
 
 
 def make(asked: Asked):

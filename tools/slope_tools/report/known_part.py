@@ -2,6 +2,7 @@
 from typing import Any, Dict, List, Mapping, Optional
 
 from ..ensembles import known_events
+from ..findings import texts
 from ..mobility.results import percent
 from ..plots import ensemble_charts
 from ..tables import quantities
@@ -20,7 +21,7 @@ class KnownEvents:
 
     def content(self) -> Dict[str, Any]:
         """What the template takes."""
-        lines = [f"{text[0].upper()}{text[1:]}." for text in self.about["doubts"]]
+        lines = [f"{text[0].upper()}{text[1:]}." for text in texts(self.about["doubts"])]
         if self.about["reached"] is None:
             return {"lines": lines, "answer": None, "curve": None, "rows": [], "variables": [], "maps": []}
         text = known_events.summary(self.about)

@@ -6,7 +6,6 @@ from .. import disk
 from ..deposits import travel_shares
 from ..digits import rounded
 from ..errors import SlopeError
-from ..sites.site_warnings import LARGE
 from ..statistics import headline
 from ..tables.study_table import STOP
 
@@ -110,11 +109,7 @@ def model(data) -> CONTENT:
     about = data.result.summary
     ball = about["volume"]["released"] / about["balls"]["released"]
     side = headline.text(ball ** (1 / 3), 10.0 ** (math.floor(math.log10(ball) / 3) - 2))
-    large = data.largest_release() >= LARGE
     return [
-        *([("Large masses", f"Masses of {LARGE / 1e6:g} million m3 and more are known to run farther than laboratory "
-                            "friction suggests: the run-out is not conservative unless the friction was calibrated "
-                            "with a past event of that size (page on events of the documentation).")] * large),
         ("The body", "Its slip surface and volume were given, not computed: the report does not say whether, or how "
                      "likely, the slope fails. The body is released at once; no trigger is modelled, except with an "
                      "earthquake."),

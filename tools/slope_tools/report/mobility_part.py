@@ -109,7 +109,7 @@ def mapped_sentence(data, numbers) -> str:
         by = numbers("farther than the mapped deposit", "m", abs(best[BEYOND]), data.label_of(best))
         text += f", and ends {by} m {'beyond' if best[BEYOND] > 0 else 'short of'} its tip"
     lacks = mass(about["volume_m3"], about["released_m3"])
-    return f"{text}." + (f" {lacks[0].upper()}{lacks[1:]}." if lacks else "")
+    return f"{text}." + (f" {lacks.text[0].upper()}{lacks.text[1:]}." if lacks else "")
 
 
 def mapped(data, numbers) -> Optional[Dict[str, Any]]:
@@ -149,7 +149,7 @@ def mapped(data, numbers) -> Optional[Dict[str, Any]]:
     if len(found) > 1:
         rows.append((f"all {len(found)} runs", cells(found, "")))
     lacks = mass(volume, about["released_m3"])
-    return {"lines": [f"{lacks[0].upper()}{lacks[1:]}."] if lacks else [], "heads": heads, "rows": rows,
+    return {"lines": [f"{lacks.text[0].upper()}{lacks.text[1:]}."] if lacks else [], "heads": heads, "rows": rows,
             "caption": "Overlap: the area that both cover over that which either covers, thicker than "
                        f"{about['threshold_m']:g} m. Lengths are those of the table of runs; of an outline that to its "
                        "farthest point. Negative differences: the run ends short, or holds less."}

@@ -9,7 +9,7 @@ from ..mobility.run_length import LEAST, OF_99, ON_PATH, OTHERS
 from ..statistics import headline
 from ..tables import withheld_words
 from ..tables.quantities import of_run
-from .release_part import over_runs
+from ..tables.released import over_runs
 
 UNKNOWN = "unknown"
 
@@ -144,9 +144,9 @@ def released_card(data, numbers):
     values = sorted({round(row["released_m3"], 3) for row in data.finished}
                     or {data.result.summary["volume"]["released"]})
     texts = list(dict.fromkeys(numbers.whole("released", "m3", value) for value in (values[0], values[-1])))
-    for name, release in releases:
+    for row, release in releases:
         if release.body is not None:
-            numbers.whole("body", "m3", release.body, name or "")
+            numbers.whole("body", "m3", release.body, data.label_of(row) if data.study else "")
     return {"what": "Released", "number": " - ".join(texts), "unit": "m3",
             "note": over_runs([release for _, release in releases], False)}
 
@@ -210,16 +210,17 @@ def thickness_card(data, numbers):
 
 def rest_card(data):
     ends = data.ends()
-    resting = [end for end in ends if end.at_rest]
-    worst = next((end for level in (True, False) for end in ends if not end.at_rest and end.moving == level), None)
-    status = "rest" if worst is None else "moving" if worst.moving else "doubt"
+    resting = [end for end in ends if end["at_rest"]]
+    worst = next((end for level in (True, False) for end in ends if not end["at_rest"] and end["moving"] == level),
+                 None)
+    status = "rest" if worst is None else "moving" if worst["moving"] else "doubt"
     if data.study:
         note = "ended by their rest criterion, less than 1 % of the volume faster than 0.1 m/s" if worst is None else \
-            f"{worst.name}: {worst.text}, at {worst.time:.1f} s"
+            f"{data.label_of(worst)}: {worst['end']}, at {worst['stop_time_s']:.1f} s"
         return {"what": "At rest at the end", "number": f"{len(resting)} of {len(ends)}", "unit": "runs", "note": note,
                 "status": status}
-    return {"what": "At the end of the run", "number": f"{ends[0].time:.1f}", "unit": "s", "status": status,
-            "note": ends[0].text + (", ended by its rest criterion" if worst is None else "")}
+    return {"what": "At the end of the run", "number": f"{ends[0]['stop_time_s']:.1f}", "unit": "s", "status": status,
+            "note": ends[0]["end"] + (", ended by its rest criterion" if worst is None else "")}
 
 
 # --- tables ---
@@ -254,8 +255,8 @@ def travel_rows(data, numbers):
 
 def balance(data, numbers):
     """The release of the shown run, how it ended, and what else a table says of it."""
-    release = next((release for name, release in data.releases()
-                    if name is None or name == data.label(data.result)), None)
+    release = next((release for row, release in data.releases()
+                    if row["run"] in ("", data.result.name)), None)
     one = data.result
     state = rest.state(one.summary)
     return {"release": release.text if release else UNKNOWN, "rest": state.text,

@@ -19,7 +19,7 @@ from .maps_part import Maps
 from .numbers import Numbers, answer, balance, cards, travel_rows
 from .reference import read as read_reference
 from .structures_part import Structures
-from .warnings import AMBER, warnings
+from .warnings import findings, listed
 
 # a variable of a deck and the comment on it, which has its unit
 MEANING = re.compile(r"^\s*variable\s+(\w+)\s+index\s.*?#\s*(.*?)\s*$", re.MULTILINE)
@@ -37,7 +37,7 @@ MEANS = (("to remove", "m3", "remove_m3"), ("on the road", "m3", "remove_on_road
 
 
 class Page:
-    """A page: data, ground, section, warnings (red or amber, text), and the number of pictures."""
+    """A page: data, ground, section, findings, warnings (level, text), and the number of pictures."""
 
     def __init__(self, asked: Asked):
         self.data = Data(asked.folder, asked.shown)
@@ -47,7 +47,8 @@ class Page:
             if asked.reference else None
         path, missing = convergence_part.find(asked.converge, self.data)
         self.sizes = path and convergence_part.Sizes(path)
-        self.warnings = [*warnings(self.data), *([(AMBER, missing)] if missing else [])]
+        self.findings = [*findings(self.data, self.ground), *([missing] if missing else [])]
+        self.warnings = listed(self.findings, self.data.names())
         self.numbers = Numbers()
         self.heading = heading.heading(asked.folder, {name: getattr(asked, name) for name in heading.FIELDS})
         self.frames, self.no_frames = frames.read(self.data.result)
@@ -103,7 +104,8 @@ class Page:
                 if known["answer"] and not (mine["answer"] or {}).get("withheld"):
                     mine["answer"] = {**known["answer"], "withheld": []}
         answers = found["answer"], found["ensemble"] and found["ensemble"]["answer"]
-        found["client"] = client_part.content(data, self.ground, numbers, answers, len(self.warnings))
+        found["client"] = client_part.content(data, self.ground, numbers, answers, self.findings,
+                                              len(self.warnings))
         return {**found, **self.what_was_run(), **self.provenance()}
 
     # --- tables ---

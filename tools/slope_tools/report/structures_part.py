@@ -5,6 +5,7 @@ from typing import Any, Dict, List
 import numpy as np
 
 from .. import digits
+from ..findings import Finding
 from ..plots import figure_structures
 from ..tables import structures
 
@@ -59,8 +60,7 @@ class Structures:
 
     def coarse(self) -> List[str]:
         """Structures that are not several of the shown run's balls high, with what that means."""
-        return [f"{name} is {digits.three(tall)} m high, {tall / ball:.2g} of the model's balls: the loads on it are "
-                "those of single balls, and rough" for name, tall, ball in coarse_walls(self.data, self.ground)]
+        return [one.text for one in coarse_walls(self.data, self.ground)]
 
     def mine(self, style):
         return structures.outputs(self.data.result.log.settings, style)
@@ -152,10 +152,10 @@ class Structures:
                             "the direction in which more crossed.")
 
 
-def coarse_walls(data, ground):
-    """Structures of the shown run that are lower than FEW balls: (name, height above the ground, size of a ball), m.
+def coarse_walls(data, ground) -> List[Finding]:
+    """On structures of the shown run that are lower than FEW balls, the lowest first.
 
-    Size: the side of the cube of ground that a ball stands for. Not of those below the ground or beside it.
+    A ball: the side of the cube of ground that it stands for. Not of structures below the ground or beside it.
     """
     found = []
     summary = data.result.summary
@@ -165,8 +165,8 @@ def coarse_walls(data, ground):
         above = z - ground.along(ground.before, x, y)
         tall = float(above[np.isfinite(above)].max(initial=0.0))
         if 0 < tall < FEW * ball:
-            found.append((name, tall, ball))
-    return found
+            found.append(Finding("few balls high", {"name": name, "height": tall, "balls": tall / ball}))
+    return sorted(found, key=lambda one: one.numbers["balls"])
 
 
 def lengths(obstacles) -> Dict[str, float]:

@@ -1,174 +1,86 @@
-"""The warnings of a report: one line for each kind, with the runs concerned."""
-from typing import Any, Dict
+"""The findings of a report: all of them, those of the list in the appendix, and those of the first page."""
+from typing import List, Sequence, Tuple
 
-from ..case.logs import kind
-from ..deposits.travel_shares import BEYOND
 from ..deposits.volume import MUCH_BELOW
-from ..digits import rounded, to_three
-from ..sites.site_warnings import LARGE
+from ..finding_words import WORDS, words_of
+from ..findings import LIMIT, OTHER, WARNING, Finding, finding, gathered
 from ..statistics import headline
-from ..warned import OTHER
+from ..tables import judged
+from . import structures_part
 
-SMALL = 1e-6            # of the released volume
-NAMED = 4               # runs that a line names
-# kinds of warnings of a study that the page says in its own words here, or beside the maps
-SAID = ("failed", "moving", "lost", "no CRS", "large")
-RED, AMBER = "red", "amber"
+MOST = 3                # on the first page
+SIDE = 0.5              # of the mass at the most touched edge: another edge with as much is named too
+BESIDE_MAPS = "no CRS"  # the page says so there
+WEIGHT = {kind: place for place, kind in enumerate(WORDS)}
 
 
-def warnings(data):
-    """(red or amber, text) of a data.Data, the most serious first."""
-    found = failures(data)
-    found += not_at_rest(data)
-    found += (gone := lost(data))
-    found += (doubtful := releases(data))
-    found += below_ground(data)
-    found += large(data)
+def findings(data, ground) -> List[Finding]:
+    """All of a data.Data on its ground.Ground."""
+    of_runs = judged.of_runs(data.judged)
+    found = [*of_runs, *below_ground(data), *judged.limits(data.study, bool(data.repeats)),
+             *structures_part.coarse_walls(data, ground)[:1]]
     if data.study:
-        for text in (data.study["conservative"] or {}).get("doubts") or ():
-            found.append((AMBER, f"The volume to remove: {text}"))
-        ensemble = data.study.get("ensemble") or {}
-        for what, about in (("ensemble", ensemble), ("known events", ensemble.get("known_events") or {})):
-            found += [(AMBER, f"The {what}: {text}") for text in about.get("doubts") or ()]
-        found += of_study(data)
-    found += from_logs(data, ["removed"] * bool(doubtful) + ["lost"] * bool(gone))
-    return sorted(found, key=lambda one: one[0] != RED)
+        about, ensemble = data.study, data.study.get("ensemble") or {}
+        for part, entry in (("The volume to remove", about["conservative"]), ("The ensemble", ensemble),
+                            ("The known events", ensemble.get("known_events"))):
+            found += [finding(one)._replace(part=part) for one in (entry or {}).get("doubts") or ()]
+        known = {(one.kind, one.text) for one in of_runs}
+        found += [one for said in about.get("warnings") or () if (one := finding(said)).part or
+                  kind_of(said) not in judged.KINDS and (one.kind, one.text) not in known]
+    kinds = {one.kind for one in of_runs}
+    covered = [line for line, those in (("removed", ("bulk factor", "body volume", "balls removed")),
+                                        ("lost", ("lost", "lost much"))) if kinds.intersection(those)]
+    return [one for one in (*found, *judged.of_logs(data.judged, covered)) if one.kind != BESIDE_MAPS]
 
 
-def of_study(data):
-    """The warnings of study.yaml: those of the study and of its parts, each kind in red, and those of runs."""
-    names = {row["run"]: data.label_of(row) for row in data.rows}
-    whole: Dict[Any, Any] = {}
-    entries = []
-    for one in data.warnings():
-        if one.part or not one.runs:
-            if one.part or one.kind not in SAID:
-                whole.setdefault((one.part, one.kind, one.text if one.kind == OTHER else None), []).append(one)
-        elif one.kind not in SAID:
-            entries += [(one.text, one.text if one.kind == OTHER else one.kind, names.get(run, run))
-                        for run in one.runs]
-    return [*((RED, mine[0].text + (f" ({plural(len(mine), 'run')}, other numbers in the others)"
-                                    if len(mine) > 1 else "")) for mine in whole.values()),
-            *by_kind(entries, len(data.finished))]
+def kind_of(said) -> str:
+    """The kind of an entry, also where its words are of another version."""
+    return str(said.get("kind")) if isinstance(said, dict) else OTHER
 
 
-def failures(data):
-    """Runs that failed, by their error."""
-    failed = [(text := str(row.get("error")), kind(text), data.label_of(row))
-              for row in data.rows if row["status"] != "finished"]
-    return [(RED, f"{plural(len(names), 'run')} failed: {texts[0]}" + of_runs(names, None))
-            for texts, names in kinds(failed)]
+def listed(found: Sequence[Finding], names) -> List[Tuple[str, str]]:
+    """(level, text) of those that are warnings, the most serious first; names: of the runs, by their folders."""
+    return sorted(((one.level, one.shown(names)) for one in found if one.level != LIMIT),
+                  key=lambda one: one[0] != WARNING)
 
 
-def not_at_rest(data):
-    """Deposits that move when their runs end, or whose runs reached their time limit."""
-    found, ends = [], data.ends()
-    for level, moving, note in ((RED, True, " More than 10 % of the volume is in motion: these numbers are not those "
-                                            "of a deposit."), (AMBER, False, "")):
-        mine = [end for end in ends if not end.at_rest and end.moving == moving]
-        if not mine:
-            continue
-        worst = max(mine, key=lambda end: end.share)
-        moment = f"{worst.text}, at {worst.time:.1f} s."
-        if not data.study:
-            found.append((level, f"The deposit is not at rest: {moment}{note}"))
-            continue
-        cut = sum(end.cut for end in mine)
-        who = f"{len(mine)} of {plural(len(ends), 'deposit')} not at rest at the end"
-        who += f", {cut} of them stopped at their duration" if cut and len(mine) > 1 else ""
-        found.append((level, f"{who}{of_runs([end.name for end in mine], None) if len(mine) < len(ends) else ''}: "
-                             f"{'most moves in ' * (len(mine) > 1)}{worst.name}: {moment}{note}"))
-    return found
+def first_page(found: Sequence[Finding], ground) -> List[str]:
+    """What a client must know beside the number: a line for each kind of doubt, counted, the weightiest first."""
+    mine = sorted((one for one in found if words_of(one.kind).client and not one.part),
+                  key=lambda one: WEIGHT[one.kind])
+    side = side_of(ground) if any(one.kind in ("lost", "lost much") for one in mine) else ""
+    return [one.client(side=f" {side}" * bool(side))
+            for one in gathered(mine, alike=lambda one: words_of(one.kind).client)]
 
 
-def lost(data):
-    """Mass that is not on the maps."""
-    rows = [(row["off_grid_m3"] + row["lost_m3"], row["released_m3"], data.label_of(row)) for row in data.finished]
-    if not data.study:
-        volume = data.result.summary["volume"]
-        rows = [(volume["off_grid"] + volume["lost"], volume["released"], None)]
-    gone = [row for row in rows if row[0] > SMALL * row[1]]
-    if not gone:
-        return []
-    left, released, _ = max(gone)
-    text = (f"{'up to ' * (len(gone) > 1)}{rounded(to_three(left))} m3 ({100 * left / released:.2g} % of the released "
-            "volume) left the grid or the box and are not on the maps")
-    many = any(volume > BEYOND * whole for volume, whole, _ in gone)
-    if many:
-        text += ", and how far they went is unknown: enlarge the terrain and the box"
-    return [(RED if many else AMBER, text + of_runs([name for *_, name in gone], len(rows)) if data.study else text)]
+def rest_of(warnings: int) -> str:
+    """What the first page says of all others."""
+    first = f"The appendix has {'both warnings' if warnings == 2 else f'all {warnings} warnings'}, the" \
+        if warnings > 1 else "The appendix has the warning, the" if warnings else \
+        "The programs gave no warnings. The appendix has the"
+    return f"{first} settings, the runs and the checks."
 
 
-def releases(data):
-    """Reasons why the released mass may not be the body."""
-    entries = [(release.doubt, kind(release.doubt), name) for name, release in data.releases() if release.doubt]
-    return by_kind(entries, len(data.finished))
-
-
-def large(data):
-    """A mass whose run-out the defaults underestimate."""
-    volume = data.largest_release()
-    if volume < LARGE:
-        return []
-    return [(AMBER, f"The run-out: {volume / 1e6:,.3g} million m3 are released, and such masses are known to run "
-                    "farther than laboratory friction suggests. The run-out is not conservative unless the friction "
-                    "was calibrated with a past event of that size (page on events of the documentation).")]
-
-
-def below_ground(data):
+def below_ground(data) -> List[Finding]:
     """A cut surface flatter than the hillside: much of the volume lies where that surface is below the ground."""
     below, share = data.below_ground() or (0, 0)
     if share <= MUCH_BELOW:
         return []
-    volume = headline.text(below, headline.place_of_digits(below))
-    angle = data.study["study"]["road"]["cut_angle"]
-    return [(AMBER, f"The volume to remove: {100 * share:.0f} % of it ({volume} m3 in the run "
-                    f"{data.label(data.result)}) lies where the cut surface is below the ground before the collapse. "
-                    f"The hillside is about as steep as the cut of {angle:g} degrees there, or steeper, so that all of "
-                    "the deposit on it is counted; a steeper cut angle gives less.")]
+    known = headline.nearest(below, headline.place_of_digits(below))
+    return [Finding("cut below ground", {"percent": 100 * share, "volume": known, "run": data.label(data.result),
+                                         "angle": data.study["study"]["road"]["cut_angle"]})]
 
 
-def from_logs(data, said):
-    """The warnings of LAMMPS and its styles; said: kinds that other lines cover."""
-    lines = [(line, data.label_of(row)) for row in data.rows for line in row.get("log_warnings") or ()] \
-        if data.study else [(line, None) for line in data.result.log.warnings]
-    return by_kind([(f"LAMMPS: {line}", kind(line), name) for line, name in lines if kind(line) not in said],
-                   len(data.rows))
-
-
-# --- kinds ---
-
-def kinds(entries):
-    """(their different texts, names of their runs) of each kind, of (text, kind, name or None)."""
-    found: Dict[str, Any] = {}
-    for text, one, name in entries:
-        texts, names = found.setdefault(one, ([], []))
-        texts += [text] * (text not in texts)
-        names.append(name)
-    return found.values()
-
-
-def by_kind(entries, runs):
-    """A line for each kind; runs: how many there are."""
-    found = []
-    for (text, *others), names in kinds(entries):
-        known = list(dict.fromkeys(name for name in names if name is not None))
-        if known:
-            text += of_runs(known, runs, "; other numbers in some" if others else "")
-        elif len(names) > 1:
-            text += f" ({len(names)} times, with other numbers)" if others else f" ({len(names)} times)"
-        found.append((AMBER, text))
-    return found
-
-
-def of_runs(names, runs, more=""):
-    """Which runs, in brackets; runs: how many there are, None if the number stands before."""
-    if runs is not None and len(names) == runs:
-        return f" (all {runs} runs{more})" if runs > 1 else ""
-    named = "; ".join(names[:NAMED]) + (f"; and {len(names) - NAMED} more" if len(names) > NAMED else "")
-    count = "" if runs is None else f"{len(names)} of {plural(runs, 'run')}: "
-    return f" ({count}{named}{more})"
-
-
-def plural(number, what):
-    return f"{number} {what}{'s' * (number != 1)}"
+def side_of(ground) -> str:
+    """Towards which side the mass left, by the depth of what reached each edge of the shown run; "" if none did."""
+    z = ground.max_thickness
+    edges = {"north": z[0].sum(), "south": z[-1].sum(), "west": z[:, 0].sum(), "east": z[:, -1].sum()}
+    most = max(edges.values())
+    if not most > 0:
+        return ""
+    named = [name for name, value in edges.items() if value > SIDE * most]
+    if ground.raster.crs is None:       # nobody knows where north is
+        sides = {"north": "upper", "south": "lower", "west": "left", "east": "right"}
+        return f"beyond the {' and the '.join(sides[name] for name in named)} edge of the map"
+    return "to the " + ("-".join(named) if len(named) == 2 and named[0] in ("north", "south")
+                        and named[1] in ("west", "east") else " and the ".join(named))

@@ -8,7 +8,7 @@ from rich.live import Live
 from rich.progress_bar import ProgressBar
 from rich.table import Table
 
-from .. import warned
+from .. import findings
 
 TELL = 30.0             # s between two lines about a run, where there is no terminal
 
@@ -25,7 +25,7 @@ class Display:
         self.printed = {}      # name -> when the last line about it was printed
         self.live = None
         self.share = 0.0       # done, as it was said last
-        if sys.stderr.isatty() and not warned.as_json:
+        if sys.stderr.isatty() and not findings.as_json:
             # without auto_refresh there is no thread, and the study may fork
             self.live = Live(console=Console(stderr=True), auto_refresh=False, transient=True)
         self.done_before = self.total - self.waiting
@@ -94,13 +94,13 @@ class Display:
 
     def _say_share(self, active=()):
         """How much of all runs is done, for programs that call this one, if it has changed by 1 %."""
-        if not warned.as_json:
+        if not findings.as_json:
             return
         share = (self.done_before + self.ended_runs + sum(self._progress(job)[0] or 0 for job in active)) / self.total
         if abs(share - self.share) >= 0.01:
             self.share = share
-            warned.say_json("progress", share=share, runs=self.total, ended=self.done_before + self.ended_runs,
-                            failed=self.failed)
+            findings.say_json("progress", share=share, runs=self.total, ended=self.done_before + self.ended_runs,
+                              failed=self.failed)
 
     @staticmethod
     def _progress(job):

@@ -10,6 +10,7 @@ import numpy as np
 
 from .. import disk
 from ..errors import SlopeError
+from ..findings import Finding, entries, finding, texts
 from ..sites.site_bodies import VARIABLE
 from ..statistics import hazard
 from ..tables import intensity
@@ -108,7 +109,7 @@ def evaluate(asked: Chain, rows: Sequence[Mapping[str, Any]], output: Path,
         disk.write(output / PER_YEAR, table(("volume_m3", "per_year", "low", "high"), zip(volumes, *yearly.total)))
         about["per_year"] = [of_year(yearly, volume, k) for volume, k in zip(more_than, at)]
         about["files"].append(PER_YEAR)
-    about["doubts"] = doubts(about, found.warnings)
+    about["doubts"] = entries(doubts(about, found.warnings))
     return about
 
 
@@ -127,18 +128,13 @@ def of_year(yearly: chain.Frequency, volume: float, k: int) -> Dict[str, Any]:
                               for a, b, part in yearly.parts]}
 
 
-def doubts(about: Mapping[str, Any], warnings: Sequence[str]) -> List[str]:
-    """The caveats."""
-    found = [f"fragility: {text}" for text in warnings]
-    for one in about["bodies"]:
-        if one["weight"] > 0 and not one["finished"]:
-            found.append(f"body {one['body']} has no finished run: all of it, {one['volume_m3']:,.0f} m3, counts as on "
-                         "the road; more points (--sample)")
-    for one in about["per_year"] or ():
-        if one["more_at_most"] > BEYOND * one["value"]:
-            found.append(f"peaks above the hazard curve's last may add up to {one['more_at_most']:.2g} per year to "
-                         f"more than {one['more_than_m3']:,.6g} m3")
-    return found
+def doubts(about: Mapping[str, Any], warnings: Sequence[Any]) -> List[Finding]:
+    """The caveats; warnings: of the fragility."""
+    return [*(finding(one)._replace(part="fragility") for one in warnings),
+            *(Finding("body without run", {"body": one["body"], "volume": one["volume_m3"]})
+              for one in about["bodies"] if one["weight"] > 0 and not one["finished"]),
+            *(Finding("more per year", {"per_year": one["more_at_most"], "volume": one["more_than_m3"]})
+              for one in about["per_year"] or () if one["more_at_most"] > BEYOND * one["value"])]
 
 
 def table(head: Sequence[str], rows) -> str:
@@ -168,7 +164,7 @@ def percent(share: float) -> str:
 
 def describe(about: Mapping[str, Any], output: Path) -> List[str]:
     """The lines of the console; ensemble.describe() says why volumes are withheld."""
-    lines = [f"caveat: {text}" for text in about["doubts"]]
+    lines = [f"caveat: {text}" for text in texts(about["doubts"])]
     if about["withheld"]:
         lines.append("how likely the road is blocked is withheld, as the volumes are")
     else:

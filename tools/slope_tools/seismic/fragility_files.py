@@ -9,7 +9,7 @@ from scipy import stats
 
 from .. import disk, schemas
 from ..errors import SlopeError
-from ..schemas import NUMBER, TEXT, listed, mapping
+from ..schemas import FINDINGS, NUMBER, TEXT, listed, mapping
 from .fragility import REPLICATES, Band, Fit, Frequency, Hazard
 
 ANY = "any"
@@ -17,7 +17,7 @@ ABOUT, CAPACITIES = "fragility.yaml", "capacities.csv"
 FILES = ["fragility.csv", "fragility.png", CAPACITIES, ABOUT]
 WHAT = "what `slope fragility` wrote"
 SCHEMA = mapping({"bodies": listed(mapping({"body": TEXT, "base_sha256": TEXT}), 1), "peaks_gal": listed(NUMBER, 1),
-                  "hazard_curve": listed(listed(NUMBER, 2), 2, null=True), "warnings": listed(TEXT)})
+                  "hazard_curve": listed(listed(NUMBER, 2), 2, null=True), "warnings": FINDINGS})
 
 
 class Curve(NamedTuple):
@@ -41,7 +41,7 @@ class Fragility(NamedTuple):
     capacity: np.ndarray            # gal: samples, records, bodies
     peaks: np.ndarray               # gal
     rate: Optional[Hazard]
-    warnings: List[str]
+    warnings: List[Any]
 
 
 def read(folder: Path) -> Fragility:

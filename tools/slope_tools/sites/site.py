@@ -15,10 +15,10 @@ import numpy as np
 
 from .. import disk, geometry, provenance
 from ..errors import SlopeError
+from ..findings import Finding, finding
 from ..releases import release, release_files
 from ..survey import local_terrain, polygons, rasters
 from ..survey.rasters import Raster, crs_name
-from ..warned import Warned, warned
 from . import site_bodies, site_budget, site_choices, site_deck, site_folder, site_warnings
 from .site_budget import Size, Trial
 from .site_choices import Choices, Derived
@@ -107,10 +107,10 @@ def built(choices: Choices, known: Derived, new: Path, folder: Path, machine: Ma
 
 def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Machine, tell, warn, draw: Draw) -> Made:
     """Everything, into the folder `new`, which will be `folder`."""
-    warnings: List[Warned] = []
+    warnings: List[Finding] = []
 
     def keep(said) -> None:
-        warnings.append(warned(said))
+        warnings.append(finding(said))
         warn(said)
     choices = {name: dict(section) for name, section in given.items()}
     wanted = wanted_body(choices, new)
@@ -196,7 +196,7 @@ def body_of(choices: Choices, wanted: release.Wanted, raster: Raster, warn) -> r
                              "road", line) from None
         raise
     if line := swapped(choices, raster, wholly=True):
-        warn(Warned("swapped", {"grounds": line}))
+        warn(Finding("swapped", {"grounds": line}))
     return found
 
 

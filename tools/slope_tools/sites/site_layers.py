@@ -9,12 +9,12 @@ from shapely.geometry import box
 from shapely.geometry.base import BaseGeometry
 
 from ..errors import SlopeError
+from ..findings import Finding
 from ..geometry import extent
 from ..releases import release_area
 from ..survey import polygons, rasters, roads, vectors
 from ..survey.crs import as_crs, same_crs
 from ..survey.rasters import Raster, crs_name
-from ..warned import Warned
 from . import site_choices, site_inputs
 from .site_choices import Choices
 from .site_inputs import Line, Motion, Structure
@@ -152,7 +152,7 @@ def warn_outside(path: str, geometry: BaseGeometry, raster: Raster, warn) -> Non
     """Warn of polygons that lie outside of the terrain in part."""
     beyond = 1 - geometry.intersection(box(*extent(raster))).area / geometry.area
     if beyond > 1e-9:
-        warn(Warned("outside", {"file": str(path), "percent": 100 * beyond, "terrain": "the terrain"}))
+        warn(Finding("outside", {"file": str(path), "percent": 100 * beyond, "terrain": "the terrain"}))
 
 
 def observed_layer(choices: Choices, raster: Raster, folder: Path, tell, warn):
@@ -166,7 +166,7 @@ def observed_layer(choices: Choices, raster: Raster, folder: Path, tell, warn):
     mapped = mapped._replace(crs=assigned(choices, path) or mapped.crs)
     if mapped.crs is None:
         mapped = mapped._replace(crs=raster.crs)
-        warn(Warned("CRS of terrain", {"file": str(path), "remedy": ""}))
+        warn(Finding("CRS of terrain", {"file": str(path), "remedy": ""}))
     if not same_crs(mapped.crs, raster.crs):
         raise SlopeError(path, f"must be in the CRS of the terrain, {crs_name(raster.crs)} (gdalwarp -t_srs "
                          "reprojects)", crs_name(mapped.crs))

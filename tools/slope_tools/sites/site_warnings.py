@@ -7,8 +7,8 @@ import yaml
 
 from .. import disk
 from ..errors import SlopeError
+from ..findings import Finding, entries
 from ..releases.release_solve import Measures
-from ..warned import Warned, entries
 from .site_budget import Size, Trial
 from .site_choices import Choices
 
@@ -24,52 +24,52 @@ STEEP = 65.0            # degrees; tried: some faces of balls stand at 60, none 
 FALLS = ("does not stand before it is shaken", "Lost atoms", "must be the body that the balls fill")
 
 
-def site_warnings(found: Measures, size: Size, trial: Optional[Trial]) -> List[Warned]:
+def site_warnings(found: Measures, size: Size, trial: Optional[Trial]) -> List[Finding]:
     """Warnings on a body and its balls; trial: None where there is no LAMMPS program."""
     return [*of_trial(trial), *of_volume(found.volume),
             *of_thickness(found.mean_depth / size.diameter, found.largest_depth / size.diameter)]
 
 
-def of_trial(trial: Optional[Trial]) -> List[Warned]:
+def of_trial(trial: Optional[Trial]) -> List[Finding]:
     """What the trial run showed."""
     if trial is None:
-        return [Warned("no program")]
+        return [Finding("no program")]
     lines = []
     if trial.left > LOST:
-        lines.append(Warned("left terrain", {"percent": 100 * trial.left}))
+        lines.append(Finding("left terrain", {"percent": 100 * trial.left}))
     if not trial.at_rest:
-        lines.append(Warned("not at rest", {"seconds": trial.rest}))
+        lines.append(Finding("not at rest", {"seconds": trial.rest}))
     return lines
 
 
-def of_volume(volume: float) -> List[Warned]:
+def of_volume(volume: float) -> List[Finding]:
     """Whether the default friction can be that of so large a mass (m3)."""
     if volume < LARGE:
         return []
-    return [Warned("large", {"millions": volume / 1e6, "limit": LARGE / 1e6})]
+    return [Finding("large", {"millions": volume / 1e6, "limit": LARGE / 1e6})]
 
 
-def of_resistance(choices: Choices) -> List[Warned]:
+def of_resistance(choices: Choices) -> List[Finding]:
     """Angles that look like coefficients, and coefficients that look like angles or percents."""
     angles = {"--friction": choices["model"]["friction"], "--slip-friction": choices["model"]["slip_friction"]}
     if choices["road"]["file"]:
         angles["--cut-angle"] = choices["road"]["cut_angle"]
-    return [*of_angles(angles), *(Warned("large rolling", {"rolling": value, "limit": ROLLS_NOT})
+    return [*of_angles(angles), *(Finding("large rolling", {"rolling": value, "limit": ROLLS_NOT})
                                   for value in choices["study"]["rolling"] if value > ROLLS_NOT)]
 
 
-def of_angles(angles: Mapping[str, float]) -> List[Warned]:
+def of_angles(angles: Mapping[str, float]) -> List[Finding]:
     """Angles (degrees, by their options) that look like coefficients."""
-    return [Warned("small angle", {"option": option, "degrees": value, "meant": math.degrees(math.atan(value))})
+    return [Finding("small angle", {"option": option, "degrees": value, "meant": math.degrees(math.atan(value))})
             for option, value in angles.items() if 0 < value < COEFFICIENT]
 
 
-def of_thickness(mean: float, largest: float) -> List[Warned]:
+def of_thickness(mean: float, largest: float) -> List[Finding]:
     """Whether the body is thick enough; mean and largest thickness in balls."""
     if mean < ROUGH:
-        return [Warned("thin", {"balls": mean, "limit": ROUGH})]
+        return [Finding("thin", {"balls": mean, "limit": ROUGH})]
     if largest < THICK:
-        return [Warned("first look", {"balls": largest, "limit": THICK})]
+        return [Finding("first look", {"balls": largest, "limit": THICK})]
     return []
 
 
@@ -89,7 +89,7 @@ def require_standing(error: SlopeError, peak_friction: float, slope: float) -> N
                      f"thinner body; or {alone}", f"{peak_friction:g}") from None
 
 
-def write(folder: Path, several: Sequence[Warned]) -> None:
+def write(folder: Path, several: Sequence[Finding]) -> None:
     """All warnings of a site into its folder: a YAML list, empty if there are none."""
     about = "# slope site: what makes this site doubtful\n"
     disk.write(folder / NAME, about + yaml.safe_dump(entries(several), allow_unicode=True, sort_keys=False))

@@ -6,8 +6,8 @@ import numpy as np
 from rasterio.features import geometry_mask
 from scipy import ndimage
 
+from ..findings import Finding
 from ..survey.rasters import Raster
-from ..warned import Warned
 from .columns import FEWEST
 
 NEAR = 0.01         # of a limit
@@ -37,22 +37,22 @@ def cells_in(raster: Raster, polygon) -> np.ndarray:
     return geometry_mask([polygon], raster.z.shape, raster.transform, invert=True)
 
 
-def near_limits(row: Dict[str, float], name: str, limits: Tuple[float, float]) -> Iterator[Warned]:
+def near_limits(row: Dict[str, float], name: str, limits: Tuple[float, float]) -> Iterator[Finding]:
     """Of one body, whose volume or depth is at a limit."""
     low, high = limits
     if low > 0 and row[name] <= (1 + NEAR) * low:
-        yield Warned(f"{name} low", {"body": int(row["rank"]), "limit": low})
+        yield Finding(f"{name} low", {"body": int(row["rank"]), "limit": low})
     if row[name] >= (1 - NEAR) * high:
-        yield Warned(f"{name} high", {"body": int(row["rank"]), "limit": high})
+        yield Finding(f"{name} high", {"body": int(row["rank"]), "limit": high})
 
 
 def of_body(raster: Raster, row: Dict[str, float], inside: np.ndarray, volume: Optional[Tuple[float, float]],
-            depth: Optional[Tuple[float, float]], allowed: Optional[np.ndarray]) -> List[Warned]:
+            depth: Optional[Tuple[float, float]], allowed: Optional[np.ndarray]) -> List[Finding]:
     """Of one body: row of the table, mask of its cells; limits that were given, cells of the polygon within."""
     found = []
 
     def doubt(kind, **numbers):
-        found.append(Warned(kind, {"body": int(row["rank"]), **numbers}))
+        found.append(Finding(kind, {"body": int(row["rank"]), **numbers}))
 
     if inside.sum() < FEWEST:
         doubt("columns", value=int(inside.sum()), limit=FEWEST)
@@ -74,6 +74,6 @@ def of_body(raster: Raster, row: Dict[str, float], inside: np.ndarray, volume: O
 
 def of_all(raster: Raster, rows: Sequence[Dict[str, float]], masks: Sequence[np.ndarray],
            volume: Optional[Tuple[float, float]], depth: Optional[Tuple[float, float]],
-           allowed: Optional[np.ndarray]) -> List[Warned]:
+           allowed: Optional[np.ndarray]) -> List[Finding]:
     """of_body() of all bodies."""
     return [one for row, inside in zip(rows, masks) for one in of_body(raster, row, inside, volume, depth, allowed)]

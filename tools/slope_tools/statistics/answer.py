@@ -81,7 +81,7 @@ class Road(NamedTuple):
 
 
 class Withheld(NamedTuple):
-    """A rule that a number breaks; see withheld.Reason."""
+    """A rule that a number breaks; see withheld."""
     rule: Rule
     number: Optional[float] = None
     bound: Optional[float] = None

@@ -1,20 +1,22 @@
 """When the number of a study is withheld, because it governs nothing: one function for each rule.
 
-A rule takes the Facts of a study and returns a Reason, or None where the number may stand; withheld_words makes the
-words of it.
+A rule takes the Facts of a study and returns a Finding, or None where the number may stand; withheld_words adds the
+command that mends it.
 """
 from enum import Enum
 from typing import List, NamedTuple, Optional
 
+from ..digits import rounded
+from ..findings import Finding
+
 BALLS = 10              # on the road: fewer are not a volume but single balls
 LEFT = 0.01             # of the released volume, that left the terrain before or beside the road
 UNFINISHED = 0.1        # of all runs, that failed or are not at rest
-FAILED = "most of them failed"
 CONFIDENCE = 0.95       # of the probability that no volume at all is exceeded
 
 
-class Kind(Enum):
-    """Which rule."""
+class Kind(str, Enum):
+    """Of the findings: which rule."""
     BALLS = "balls on the road"
     MOBILITY = "known events"
     LEFT = "left the terrain"
@@ -36,46 +38,46 @@ class Facts(NamedTuple):
     size: str = ""                  # why the size error is not trusted; "": it is, or was not measured
 
 
-class Reason(NamedTuple):
-    """Why a number is withheld: its rule, what was found, and the bound that it breaks (None: there is no number)."""
-    kind: Kind
-    number: Optional[float]
-    bound: Optional[float]
-    detail: str = ""
-
-
 # --- rules ---
 
-def few_balls(facts: Facts) -> Optional[Reason]:
+def few_balls(facts: Facts) -> Optional[Finding]:
     number = facts.on_road / facts.ball
-    return Reason(Kind.BALLS, number, BALLS) if facts.volume > 0 and number < BALLS else None
+    if not facts.volume > 0 or number >= BALLS:
+        return None
+    balls = "less than one ball" if number < 1 else f"{number:.2g} ball{'s' * (f'{number:.2g}' != '1')}"
+    return Finding(Kind.BALLS.value, {"number": number, "bound": BALLS, "balls": balls})
 
 
-def short(facts: Facts) -> Optional[Reason]:
+def short(facts: Facts) -> Optional[Finding]:
     if facts.median is None or facts.length is not None and facts.length >= facts.median:
         return None
-    return Reason(Kind.MOBILITY, facts.length, facts.median)
+    longest = "there is no deposit" if facts.length is None else f"the longest one ends at {rounded(facts.length, 3)} m"
+    return Finding(Kind.MOBILITY.value, {"number": facts.length, "bound": facts.median, "longest": longest})
 
 
-def left(facts: Facts) -> Optional[Reason]:
-    return Reason(Kind.LEFT, facts.left, LEFT) if facts.left > LEFT else None
+def left(facts: Facts) -> Optional[Finding]:
+    if facts.left <= LEFT:
+        return None
+    return Finding(Kind.LEFT.value, {"number": facts.left, "bound": LEFT, "percent": 100 * facts.left,
+                                     "most": 100 * LEFT})
 
 
-def unfinished(facts: Facts) -> Optional[Reason]:
+def unfinished(facts: Facts) -> Optional[Finding]:
     number = facts.failed + facts.moving
     if number <= UNFINISHED * facts.runs:
         return None
-    return Reason(Kind.RUNS, number, facts.runs, FAILED if facts.failed > facts.moving else "")
+    return Finding(Kind.RUNS.value, {"number": number, "bound": facts.runs, "failed": facts.failed,
+                                     "most": 100 * UNFINISHED})
 
 
-def size_error(facts: Facts) -> Optional[Reason]:
-    return Reason(Kind.SIZE, None, None, facts.size) if facts.size and facts.volume > 0 else None
+def size_error(facts: Facts) -> Optional[Finding]:
+    return Finding(Kind.SIZE.value, {"why": facts.size}) if facts.size and facts.volume > 0 else None
 
 
 RULES = (few_balls, short, left, unfinished, size_error)
 
 
-def reasons(facts: Facts) -> List[Reason]:
+def reasons(facts: Facts) -> List[Finding]:
     """Why a number is withheld; empty where it may stand."""
     return [found for rule in RULES if (found := rule(facts))]
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..case import run_folders
 from ..deposits import deposit, score
+from ..findings import Finding
 from ..mobility import run_length
 from ..sites.site_layers import OBSERVED
 from ..tables import study_table
@@ -75,13 +76,13 @@ def describe(about: Mapping[str, Any], rows: Sequence[Mapping[str, Any]]) -> Lis
     if best[BEYOND] is not None:
         text += f", best of {best['run']}, {best[BEYOND]:+,.0f} m in run-out ({about['length_m']:,.0f} m mapped)"
     lacks = mass(about["volume_m3"], about["released_m3"])
-    return [text, *([lacks] if lacks else [])]
+    return [text, *([lacks.text] if lacks else [])]
 
 
-def mass(volume: Optional[float], released: float) -> str:
-    """That a mapped volume (m3) cannot be that of the released mass; "" where it can, or is not known."""
+def mass(volume: Optional[float], released: float) -> Optional[Finding]:
+    """That a mapped volume (m3) cannot be that of the released mass; None where it can, or is not known."""
     if volume is None or abs(volume - released) <= SAME_MASS * released:
-        return ""
+        return None
     share = 100 * (volume - released) / released
-    return (f"the mapped deposit holds {abs(share):.0f} % {'more' if share > 0 else 'less'} than is released, "
-            f"{volume:,.0f} m3 of {released:,.0f}: thicknesses and volumes cannot agree everywhere")
+    return Finding("other mass", {"percent": abs(share), "which": "more" if share > 0 else "less", "mapped": volume,
+                                  "released": released})

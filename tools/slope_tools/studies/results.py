@@ -8,22 +8,20 @@ import numpy as np
 
 from .. import disk, provenance
 from ..case import run_folders
-from ..deposits import left, rest, travel_shares
+from ..deposits import left, travel_shares
 from ..ensembles import ensemble, known_study
+from ..findings import Finding, entries, finding
 from ..runs import repeats
 from ..seismic import chain_files
 from ..sites import site_choices
 from ..survey import rasters, roads
-from ..tables import (answered, combinations, intensity, quantities, road_runs, size_error, step_check, structures,
-                      study_table, usable, withheld_words)
+from ..tables import (answered, combinations, intensity, judged, quantities, road_runs, size_error, step_check,
+                      structures, study_table, usable, withheld_words)
 from ..tables.size_error import SizeErrors
 from ..tables.study_maps import Maps
-from ..warned import Warned, entries, warned
 from . import mapped, site_ground
 from .setup import Road, Setup
 
-BALANCE = 1e-9          # of the released volume
-NAMED = 3               # runs that a warning names
 OF_SUMMARY = ("moves", "not counted")      # kinds of warnings
 SHOWN = 20              # runs of an ensemble whose table is printed
 
@@ -54,10 +52,11 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         return      # study.perform says so
     maps = Maps(thresholds)
     rows, thickness = rows_of(setup, todo, maps, pictures=order is None)
-    warnings = [warned(one) for one in questions.notes]
-    warnings += [one for one in doubts(rows) if one not in warnings]
+    warnings = [finding(one) for one in questions.notes]
+    warned = {one.kind for one in warnings if not one.part}
+    warnings += [one for one in judged.of_runs(rows) if one.kind not in warned]
     if maps.problem:
-        warnings.append(warned(maps.problem))
+        warnings.append(finding(maps.problem))
     finished = [row for row in rows if row["status"] == "finished"]
     observed = mapped.compare(mapped.of_site(questions.site), output, rows, [terrain_of(run) for run in todo])
     groups = combinations.grouped(rows)
@@ -95,13 +94,13 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         if trusted:
             # from the folder of study.yaml, so that both may move together
             best["size"]["file"] = os.path.relpath(trusted.path.resolve(), output.resolve())
-            best["doubts"] += trusted.doubts(deck.name, {**work.defaults, **best["set"]}, [*settings, *repeated],
-                                             about["study"]["road"])
-        best["doubts"] += unseen(repeated, work.defaults)
+            best["doubts"] += entries(trusted.doubts(deck.name, {**work.defaults, **best["set"]},
+                                                     [*settings, *repeated], about["study"]["road"]))
+        best["doubts"] += entries(unseen(repeated, work.defaults))
         if questions.step:
             about["step"] = step_check.compare(questions.step, groups)
             if about["step"]["within_chance"] is False:
-                best["doubts"].append(about["step"]["text"])
+                best["doubts"].append(Finding("half step", {"text": about["step"]["text"]}).entry())
         unknown = about["size_error_unusable"] or ""
         if unknown and questions.sizes and size_error.falls(questions.sizes, "remove_m3"):
             about["size_error_unusable"] = f"{unknown}. The volume falls with the size of the balls: nothing is added"
@@ -119,7 +118,7 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
     if not about["intensity"]:
         (output / intensity.FILE).unlink(missing_ok=True)       # of a study before this one in the folder
     else:
-        about["conservative"]["doubts"] += intensity.doubts(about["intensity"])
+        about["conservative"]["doubts"] += entries(intensity.doubts(about["intensity"]))
     structures.collect(output, finished, setup.tell)
     for one in warnings:
         setup.warn(one)
@@ -185,8 +184,8 @@ def case_of(setup: Setup, questions: Questions, row) -> withheld_words.Case:
 def unseen(repeated, defaults):
     """The caveat that the scatter is incomplete: only seeds were repeated, though the deck can move its lattice."""
     offsets = repeats.only_seeds(repeated, defaults)
-    return [f"the scatter is that of {', '.join(repeated)} alone: {', '.join(offsets)} of the deck "
-            f"{'was' if len(offsets) == 1 else 'were'} not repeated"] if offsets else []
+    return [Finding("not repeated", {"repeated": ", ".join(repeated), "offsets": ", ".join(offsets)})] \
+        if offsets else []
 
 
 def rows_of(setup: Setup, todo, maps, pictures=True):
@@ -208,41 +207,6 @@ def rows_of(setup: Setup, todo, maps, pictures=True):
     return rows, thickness
 
 
-def moving_warnings(finished):
-    """The warning of those deposits that are not at rest, in a list; an empty one without any."""
-    moving = [row for row in finished if not row["at_rest"]]
-    if not moving:
-        return []
-    more = f"; and {len(moving) - NAMED} more" if len(moving) > NAMED else ""
-    return [Warned("moving", {"moving": len(moving), "finished": len(finished), "which": "; ".join(
-        f"{row['run']} at {row['stop_time_s']:.1f} s ({row['end']})" for row in moving[:NAMED]) + more})]
-
-
-def doubts(rows):
-    """Warnings about runs."""
-    warnings = [Warned("failed", {"error": row["error"]}, (row["run"],)) for row in rows if row["status"] == "failed"]
-    finished = [row for row in rows if row["status"] == "finished"]
-    warnings += moving_warnings(finished)
-    for row in finished:
-        left = row["off_grid_m3"] + row["lost_m3"]
-        if left > 1e-6 * row["released_m3"]:
-            warnings.append(Warned("lost", {"volume": float(left)}, (row["run"],)))
-        if not abs(row["mass_error"]) <= BALANCE:
-            warnings.append(Warned("balance", {"share": float(row["mass_error"])}, (row["run"],)))
-    of_road: Dict[str, Any] = {}
-    for row in finished:
-        for entry in row.get("road_warnings", ()):
-            one = warned(entry)
-            of_road.setdefault(one.text, (one, []))[1].append(row["run"])
-    for one, names in of_road.values():
-        warnings.append(one if len(names) == len(finished) else one._replace(runs=tuple(names)))
-    for what in ("slope_version", "lammps_version", "lmp_sha256"):
-        if len({row[what] for row in finished}) > 1:
-            warnings.append(Warned("programs", {"what": what, "which": ", ".join(
-                sorted({str(row[what]) for row in finished}))}))
-    return warnings
-
-
 def result(run, row, maps, output):
     """The row of a finished run for a table in a folder, and its final thickness; adds its rasters to the maps."""
     from ..deposits import deposit
@@ -255,28 +219,22 @@ def result(run, row, maps, output):
     thickness = run_folders.load_raster(prefix, "thickness")
     maps.add(run.name, thickness, run_folders.load_raster(prefix, "max_thickness"), not row.get("batch"))
     run.log.update()
-    volume, most, motion = summary["volume"], summary["largest"], summary["motion"]
+    volume, most = summary["volume"], summary["largest"]
     stays = volume["released"] - volume["off_grid"] - volume["lost"]
     on_grid = float(np.nansum(thickness.z)) * thickness.transform.a ** 2
     base = run_folders.load_raster(prefix, "surface").z - thickness.z
     length = run_length.of_run(deposit.Deposit(str(prefix), thickness, base, summary, None), terrain_of(run))
-    state = rest.state(summary)
     row = {**row, "variables": about.get("variables"),
            study_table.STOP: site_ground.of_variables(about.get("variables")), "ranks": about.get("ranks"),
            "package": about.get("package"),
            **quantities.of_run(summary, length), "ball_m3": volume["released"] / summary["balls"]["released"],
-           "on_grid_m3": volume["on_grid"], "off_grid_m3": volume["off_grid"], "lost_m3": volume["lost"],
-           "residual_m3": volume["residual"], "mass_error": (on_grid - stays) / volume["released"],
+           "on_grid_m3": volume["on_grid"], "residual_m3": volume["residual"],
+           "mass_error": (on_grid - stays) / volume["released"],
            "max_thickness_m": most["max_thickness"], "max_speed_m_s": most["max_speed"],
-           "stop_time_s": summary["stop"]["time"], "stop_reason": summary["stop"]["reason"],
-           "moving": summary["moving"], "at_rest": state.at_rest, "end": state.text, "end_short": state.short,
-           "moves_share": state.share, "moving_share": motion["moving_share"], "fast_share": motion.get("fast_share"),
-           "fast_volume_m3": motion.get("fast_volume"), "fast_speed_m_s": motion.get("fast_speed"),
-           "change_rate": summary.get("change_rate"),
+           **judged.columns(summary, run.log), "change_rate": summary.get("change_rate"),
            "wall_s": marker.get("wall_seconds"), "summary": os.path.relpath(path, output),
            "slope_version": summary["slope_version"], "lammps_version": summary["lammps_version"],
-           "lmp_sha256": about.get("lmp_sha256"), "log_warnings": run.log.warnings,
-           **structures.of_run(run.folder, run.log.settings)}
+           "lmp_sha256": about.get("lmp_sha256"), **structures.of_run(run.folder, run.log.settings)}
     return row, thickness
 
 
@@ -296,7 +254,7 @@ def on_road(run, setup: Setup, row, thickness, picture=True) -> Dict[str, Any]:
     gone, passed = row["off_grid_m3"] + row["lost_m3"], run_folders.load_raster(prefix, "max_thickness")
     taken = on_body(thickness, released, polygon, row["ball_m3"])
     if taken > 0:
-        found.warnings.append(Warned("road on body", {"file": road.file.name}))
+        found.warnings.append(Finding("road on body", {"file": road.file.name}))
     return {"road_on_body_m2": taken, "remove_m3": about["volume"]["remove"],
             "remove_on_road_m3": about["volume"]["remove_on_road"],
             "remove_beside_road_m3": about["volume"]["remove_beside_road"],
@@ -310,7 +268,7 @@ def on_road(run, setup: Setup, row, thickness, picture=True) -> Dict[str, Any]:
                                      if one.kind not in OF_SUMMARY)}
 
 
-def in_folder(one: Warned, folder: Path) -> Warned:
+def in_folder(one: Finding, folder: Path) -> Finding:
     """The same, whose files are named as from a run's folder: one warning for all runs."""
     return one._replace(numbers={name: value.replace(f"{folder}/", "") if isinstance(value, str) else value
                                  for name, value in one.numbers.items()})

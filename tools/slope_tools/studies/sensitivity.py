@@ -10,11 +10,11 @@ from ..case import decks
 from ..case.settings import as_number
 from ..deposits import travel_shares
 from ..errors import SlopeError
+from ..findings import Finding, entries
 from ..runs import jobs
 from ..statistics.headline import Scatter
-from ..tables import study_table
+from ..tables import judged, study_table
 from ..tables.quantities import NAMES, number
-from ..warned import Warned, entries
 from . import results
 from .setup import Setup
 
@@ -68,7 +68,7 @@ def collect(setup: Setup, base, of, todo, work):
         row = {"run": one.name, "kind": one.kind, "variable": one.variable,
                "value": one.chosen[one.variable] if one.variable else None}
         if one.error:
-            warnings.append(Warned("failed", {"error": one.error}, (one.name,)))
+            warnings.append(Finding("failed", {"error": one.error}, (one.name,)))
             continue
         found, thickness = results.result(one, row, maps, setup.output)
         if setup.road:
@@ -80,7 +80,7 @@ def collect(setup: Setup, base, of, todo, work):
         for row in rows:
             if row[name] is None:
                 raise SlopeError("--of", f"must be known of every run; {name} is not of {row['run']}")
-    warnings += results.moving_warnings(rows)
+    warnings += judged.not_at_rest(rows)
     scatter = {name: spread(rows, name) for name in of}
     about = {"study": {"deck": setup.deck.name, "base": defaults, "runs": len(todo), "finished": len(rows),
                        "ranks": work.ranks, "package": work.package, "collected": provenance.now(),

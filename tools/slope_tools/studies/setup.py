@@ -42,7 +42,7 @@ class Setup(NamedTuple):
     anew: bool = False                  # make finished runs of another program, deck or data again
     site: Optional[Path] = None         # folder of the site whose runs they are
     tell: Callable[[Any], None] = lambda line: None     # what gets lines for the user, and tables (rich.table.Table)
-    warn: Callable[[Any], None] = lambda said: None     # what gets warnings, Warned or text
+    warn: Callable[[Any], None] = lambda said: None     # what gets warnings, Finding or text
 
     @property
     def home(self) -> Path:

@@ -11,8 +11,9 @@ from typing import Dict, Iterable, List, NamedTuple, Optional, Sequence, Tuple
 from .. import schemas
 from ..case import decks, run_folders
 from ..errors import SlopeError
+from ..findings import Finding, finding
 from ..runs import repeats
-from ..schemas import OBJECT, TEXT, listed, mapping
+from ..schemas import FINDINGS, mapping
 from ..sites import ground, site_choices, site_deck, site_warnings
 from ..sites.site_budget import three_digits
 from ..sites.site_choices import Choices, OFFSETS, other_grounds
@@ -22,7 +23,6 @@ from ..tables import energy
 from ..tables.size_error import SizeErrors, WHAT
 from ..tables.step_check import HALF, QUANTITY, Step
 from ..tables.study_file import read_study
-from ..warned import Warned, warned
 from . import results, size_study, study
 from .sensitivity import quantities
 from .setup import Road, Setup
@@ -30,7 +30,6 @@ from .setup import Road, Setup
 # folders in the site's
 SIZES, STUDY, SCORE, ENSEMBLE = "sizes", "study", "score", "ensemble"
 LEDGER = "ledger"       # a deck's variable
-SAID = listed({"anyOf": [OBJECT, TEXT], "description": "warnings"}, null=True)     # of older versions, too
 THRESHOLDS = (0.1, 0.5, 1.0)        # m, of the maps of exceedance
 
 
@@ -111,11 +110,11 @@ def check(folder: Path, choices: Choices) -> None:
                              f"`slope site {quote(str(folder))}` rebuilds the deck")
 
 
-def warnings_of(folder: Path) -> List[Warned]:
+def warnings_of(folder: Path) -> List[Finding]:
     """The warnings of `slope site`, which the results repeat; none for a site of an older version."""
     path = folder / site_warnings.NAME
-    said = schemas.load(path, "what `slope site` wrote", SAID) if path.is_file() else None
-    return [warned(one) for one in said or ()]
+    said = schemas.load(path, "what `slope site` wrote", FINDINGS) if path.is_file() else None
+    return [finding(one) for one in said or ()]
 
 
 def grounds(choices: Choices, variables: Dict[str, str]) -> List[Dict[str, str]]:
@@ -127,7 +126,7 @@ def grounds(choices: Choices, variables: Dict[str, str]) -> List[Dict[str, str]]
 class Sizes(NamedTuple):
     """What the runs with balls of several sizes found."""
     errors: Optional[SizeErrors]
-    warnings: Sequence[Warned]      # of these runs
+    warnings: Sequence[Finding]      # of these runs
     unusable: Optional[str]         # why there are no errors although they were to be measured
     path: Optional[Path] = None     # converge.yaml, with the means of all sizes
 
@@ -153,7 +152,7 @@ def sizes(planned: size_study.Plan, variables: Dict[str, str], work) -> Sizes:
     setup = planned.setup
     failed = study.failure(setup.output, planned.todo)
     if failed:
-        setup.warn(warned(str(failed))._replace(part="sizes of balls"))
+        setup.warn(finding(str(failed))._replace(part="sizes of balls"))
     try:
         size_study.collect(planned, quantities(None, setup.road is not None, True), work)
     except SlopeError as error:
@@ -163,8 +162,8 @@ def sizes(planned: size_study.Plan, variables: Dict[str, str], work) -> Sizes:
         return NOT_ASKED
     if not path.is_file():
         return unusable(setup, "too few of its runs finished")
-    said = [warned(one)._replace(part="sizes of balls")
-            for one in schemas.load(path, WHAT, mapping({}, warnings=SAID)).get("warnings") or ()]
+    said = [finding(one)._replace(part="sizes of balls")
+            for one in schemas.load(path, WHAT, mapping({}, warnings=FINDINGS)).get("warnings") or ()]
     try:
         errors = SizeErrors(path, "remove_m3")
         errors.check({}, variables)
@@ -192,7 +191,7 @@ def step_of(setup: Setup, run_: repeats.Repeat, rolling: str, variables: Dict[st
 
 
 def unusable(setup: Setup, why: str, shortly: str = "") -> Sizes:
-    setup.warn(Warned("size error", {"why": why}))
+    setup.warn(Finding("size error unknown", {"why": why}))
     return Sizes(None, (), shortly or why)
 
 

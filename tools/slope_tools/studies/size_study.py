@@ -11,11 +11,11 @@ from .. import disk, provenance
 from ..case import decks
 from ..case.settings import as_number, check_settings
 from ..errors import SlopeError
+from ..findings import Finding, entries
 from ..runs import repeats
 from ..statistics import convergence, headline
-from ..tables import combinations, study_table
+from ..tables import combinations, judged, study_table
 from ..tables.quantities import NAMES
-from ..warned import Warned, entries
 from . import results, study
 from .setup import Setup
 
@@ -68,10 +68,10 @@ def collect(planned: Plan, of, work) -> None:
         for row in finished:
             if row[name] is None:
                 raise SlopeError("--of", f"must be known of every run; {name} is not of {row['run']}")
-    warnings = results.doubts(rows)
+    warnings = judged.of_runs(rows)
     same = [row["run"] for group in groups for row in group.same]
     if same:
-        warnings.append(Warned("no effect", {"which": ", ".join(same)}))
+        warnings.append(Finding("no effect", runs=same))
     fits = {}
     for name in of:
         fits[name] = convergence.fit([(float(group.set[variable]), list(group.of(name).volumes.values()))

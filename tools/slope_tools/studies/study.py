@@ -9,11 +9,11 @@ from .. import disk
 from ..case import decks
 from ..case.data_files import data_files
 from ..errors import SlopeError
+from ..findings import Finding
 from ..options import number
 from ..programs import find_lmp
 from ..runs import dependencies, jobs, launcher, slurm, store
 from ..survey import rasters
-from ..warned import Warned
 from .setup import Road, Setup
 
 
@@ -66,7 +66,7 @@ def prepared(setup: Setup, files, number):
     elif setup.slurm:
         raise SlopeError("--slurm", "must be given with --engine slurm", setup.slurm)
     elif min(most, number) * setup.ranks > cores:
-        setup.warn(Warned("ranks", {"runs": min(most, number), "ranks": setup.ranks, "cores": cores}))
+        setup.warn(Finding("ranks", {"runs": min(most, number), "ranks": setup.ranks, "cores": cores}))
     try:
         setup.home.mkdir(parents=True, exist_ok=True)
         inputs = setup.runs / ".inputs"

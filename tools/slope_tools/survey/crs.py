@@ -8,8 +8,8 @@ from rasterio.crs import CRS
 from rasterio.errors import CRSError
 
 from ..errors import SlopeError
+from ..findings import Finding
 from ..geometry import numbers
-from ..warned import Warned
 from .rasters import crs_name, epsg
 
 STRETCH = 0.01         # relative error of lengths in a CRS from which on the user is warned
@@ -54,7 +54,7 @@ def warn_of_stretch(raster, warn):
     factors = projection.get_factors(*projection(x, y, inverse=True))
     for scale in (factors.parallel_scale, factors.meridional_scale):
         if not abs(1 / scale - 1) < STRETCH:
-            return warn(Warned("stretched", {"crs": crs_name(raster.crs), "metres": 1 / scale}))
+            return warn(Finding("stretched", {"crs": crs_name(raster.crs), "metres": 1 / scale}))
 
 
 def transform(source, target, x, y):

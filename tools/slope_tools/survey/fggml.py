@@ -21,7 +21,7 @@ from affine import Affine
 from rasterio.crs import CRS
 
 from ..errors import SlopeError
-from ..warned import Warned
+from ..findings import Finding
 from . import rasters, zips
 from .japan import DATUMS
 from .marks import Scale
@@ -375,7 +375,7 @@ def one_datum(tiles, warn):
     if len(datums) == 1:
         return tiles
     first = {datum: next(tile.name for tile in tiles if tile.datum == datum) for datum in datums}
-    warn(Warned("datums", {"datums": " and ".join(f"{datum} ({first[datum]})" for datum in datums),
-                           "what": "heights and places" if "JGD2000" in datums else "heights"}))
+    warn(Finding("datums", {"datums": " and ".join(f"{datum} ({first[datum]})" for datum in datums),
+                            "what": "heights and places" if "JGD2000" in datums else "heights"}))
     crs = tiles[0].raster.crs
     return [tile._replace(raster=tile.raster._replace(crs=crs)) for tile in tiles]

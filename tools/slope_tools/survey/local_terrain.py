@@ -11,8 +11,8 @@ from affine import Affine
 from rasterio.crs import CRS
 
 from ..errors import SlopeError
+from ..findings import Finding
 from ..geometry import numbers
-from ..warned import Warned
 from . import fggml, plausible, rasters
 from .crs import as_crs, require_metres, warn_of_stretch
 from .holes import fill, small_holes
@@ -59,7 +59,7 @@ def own_crs(path: str, wanted: Wanted, assigned: Optional[CRS]) -> Optional[CRS]
 
 
 def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[str], Any],
-         warn: Callable[[Warned], Any]) -> Dict[str, Any]:
+         warn: Callable[[Finding], Any]) -> Dict[str, Any]:
     """Write the terrain of survey files to output (.asc, with its sidecar); returns the sidecar.
 
     tell is called with a line for each thing that was done, warn with warnings. Raises SlopeError on bad input.
@@ -86,8 +86,8 @@ def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[st
     if not np.isfinite(raster.z).any():
         raise SlopeError(", ".join(inputs), "must have a height, all cells are NODATA")
     for absent in marks.not_found:
-        warn(Warned("no such cell", {"value": text(absent), "low": float(np.nanmin(raster.z)),
-                                     "high": float(np.nanmax(raster.z))}))
+        warn(Finding("no such cell", {"value": text(absent), "low": float(np.nanmin(raster.z)),
+                                      "high": float(np.nanmax(raster.z))}))
     check_pits(raster, marks, ", ".join(inputs), wanted.pits, warn)
     plausible.warn_of_picture(raster, warn)
     filled = 0
@@ -110,7 +110,7 @@ def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[st
     return rasters.write_asc_local(output, local, {"filled_cells": filled, "sources": list(inputs), "steps": steps})
 
 
-def check_pits(raster: Raster, marks: Marks, where: str, allowed: bool, warn: Callable[[Warned], Any]) -> None:
+def check_pits(raster: Raster, marks: Marks, where: str, allowed: bool, warn: Callable[[Finding], Any]) -> None:
     """Warn of pits that a mark of NODATA makes; SlopeError if they are not allowed."""
     said = plausible.pits_said(raster, marks)
     if said is None:

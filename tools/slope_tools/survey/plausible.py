@@ -4,7 +4,7 @@ from typing import Any, Callable, NamedTuple, Optional
 
 import numpy as np
 
-from ..warned import Warned
+from ..findings import Finding
 from .marks import Marks, text
 from .rasters import UNITS, Raster
 
@@ -90,7 +90,7 @@ def remedy(found: Pits, marks: Marks) -> str:
         "which stays where it goes on to the edge" if at_edge else f"with --fill {found.largest} they are filled")
 
 
-def pits_said(raster: Raster, marks: Marks) -> Optional[Warned]:
+def pits_said(raster: Raster, marks: Marks) -> Optional[Finding]:
     """The warning of pits in a terrain, if it has any."""
     found = pits(raster.z, abs(raster.transform.a), marks)
     if found is None:
@@ -98,15 +98,15 @@ def pits_said(raster: Raster, marks: Marks) -> Optional[Warned]:
     row, column = np.argwhere(found.cells)[0]
     x, y = raster.transform * (column + 0.5, row + 0.5)
     x, y = x + raster.offset[0], y + raster.offset[1]
-    return Warned("pits", {"cells": int(found.cells.sum()), "mark": found.shown, "depth": found.least,
-                           "side": found.side, "east": float(x), "north": float(y), "remedy": remedy(found, marks)})
+    return Finding("pits", {"cells": int(found.cells.sum()), "mark": found.shown, "depth": found.least,
+                            "side": found.side, "east": float(x), "north": float(y), "remedy": remedy(found, marks)})
 
 
-def warn_of_picture(raster: Raster, warn: Callable[[Warned], Any]) -> None:
+def warn_of_picture(raster: Raster, warn: Callable[[Finding], Any]) -> None:
     """Warn of values that only a picture of 8 bits has as a rule, such as a hillshade that was converted."""
     known = raster.z[np.isfinite(raster.z)]
     if known.min() >= 0 and BRIGHT <= known.max() <= MOST and not (known % 1).any():
-        warn(Warned("picture", {"low": float(known.min()), "high": float(known.max())}))
+        warn(Finding("picture", {"low": float(known.min()), "high": float(known.max())}))
 
 
 def mean_slope(raster: Raster) -> float:
@@ -127,10 +127,10 @@ def in_feet(slope: float) -> float:
     return math.degrees(math.atan(math.tan(math.radians(slope)) * FOOT))
 
 
-def warn_of_slope(raster: Raster, warn: Callable[[Warned], Any]) -> None:
+def warn_of_slope(raster: Raster, warn: Callable[[Finding], Any]) -> None:
     """Warn of a terrain that is too steep for one in metres."""
     slope = mean_slope(raster)
     if slope > STEEPEST > in_feet(slope):
-        warn(Warned("in feet", {"degrees": slope, "in_feet": in_feet(slope)}))
+        warn(Finding("in feet", {"degrees": slope, "in_feet": in_feet(slope)}))
     elif slope > STEEPEST:
-        warn(Warned("no ground's slope", {"degrees": slope, "in_feet": in_feet(slope)}))
+        warn(Finding("no ground's slope", {"degrees": slope, "in_feet": in_feet(slope)}))

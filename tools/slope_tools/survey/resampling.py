@@ -7,8 +7,8 @@ import rasterio.warp
 from affine import Affine
 
 from ..errors import SlopeError
+from ..findings import Finding
 from ..geometry import numbers
-from ..warned import Warned
 from . import rasters
 from .crs import not_covered, same_crs, transform
 from .rasters import Raster, crs_name
@@ -37,7 +37,7 @@ def regrid(raster, crs, cell, bounds, tell, warn):
         if wanted[0] >= wanted[2] or wanted[1] >= wanted[3]:
             raise SlopeError("--bounds", f"must overlap the input, {numbers(extent)}", numbers(bounds))
         if not np.allclose(wanted, bounds, rtol=0, atol=cell * SAME_CELL):
-            warn(Warned("cut to input", {"extent": numbers(extent)}))
+            warn(Finding("cut to input", {"extent": numbers(extent)}))
 
     t = raster.transform
     square = t.b == t.d == 0 and t.a > 0 and abs(t.a + t.e) <= SAME_CELL * t.a

@@ -5,7 +5,7 @@ import numpy as np
 from affine import Affine
 
 from ..errors import SlopeError
-from ..warned import Warned
+from ..findings import Finding
 from . import fggml, japan, rasters
 from .crs import require_degrees, same_crs
 from .marks import Marks
@@ -42,7 +42,7 @@ def declare(path, crs, tell, warn, assigned=None, unit=None, marks=None):
         tell(f"{path} has no CRS: taken as {crs_name(crs)}")
         return raster._replace(crs=crs)
     if raster.crs is None:
-        warn(Warned("no CRS", {"file": str(path), "coordinates": "taken as metres; --crs declares one"}))
+        warn(Finding("no CRS", {"file": str(path), "coordinates": "taken as metres; --crs declares one"}))
     return raster
 
 

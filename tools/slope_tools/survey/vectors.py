@@ -18,7 +18,7 @@ from shapely.errors import ShapelyError
 from shapely.geometry import shape
 
 from ..errors import SlopeError
-from ..warned import Warned
+from ..findings import Finding
 from . import zips
 
 MARK = "layername="         # QGIS: FILE|layername=NAME|geometrytype=...
@@ -78,7 +78,7 @@ def require_file(name: object) -> Source:
     return found
 
 
-def read(name: object, kind: str, warn: Callable[[Warned], Any] = ignore) -> Found:
+def read(name: object, kind: str, warn: Callable[[Finding], Any] = ignore) -> Found:
     """The features of a file, of the layer that it names or the one with geometries of a kind ("Polygon", "Line").
 
     Raises SlopeError, which names the file.
@@ -110,7 +110,7 @@ def read(name: object, kind: str, warn: Callable[[Warned], Any] = ignore) -> Fou
     empty = len(raw) - len(features)
     if empty:
         first = next(place for place, geometry in raw if geometry is None)
-        warn(Warned("no geometry", {"feature": first, "without": empty, "features": len(raw)}))
+        warn(Finding("no geometry", {"feature": first, "without": empty, "features": len(raw)}))
     return Found(features, crs, empty, unknown)
 
 

@@ -37,8 +37,9 @@ def ensemble_of(about: Mapping[str, Any]) -> Optional[Ensemble]:
 
 
 def rules(entries) -> List[Withheld]:
-    """Of withheld_words.entries()."""
-    return [Withheld(Rule(one["kind"]), one["number"], one["bound"]) for one in entries]
+    """Of withheld_words.mended()."""
+    numbers = ((one, one.get("numbers") or {}) for one in entries)
+    return [Withheld(Rule(one["kind"]), of.get("number"), of.get("bound")) for one, of in numbers]
 
 
 def road_of(about: Mapping[str, Any]) -> Optional[Road]:

@@ -5,6 +5,7 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence
 from .. import disk
 from ..case.settings import as_number
 from ..deposits.travel_shares import DISTANCE, REACH
+from ..findings import Finding, texts
 from ..runs import jobs
 from ..runs.repeats import key_of
 from ..statistics import headline
@@ -147,64 +148,59 @@ def conservative(settings, rows, groups: Sequence[Group], errors: Optional[SizeE
             "file": str(errors.path), "variable": errors.variable,
             "value": str(governing.rows[0]["variables"][errors.variable]), "error_percent": 100 * size.share,
             "half_percent": None if size.half is None else 100 * size.half},
-        "differences": differences, "doubts": doubts(settings, rows, groups, best, differences),
+        "differences": differences,
+        "doubts": [one.entry() for one in doubts(settings, rows, groups, best, differences)],
         "withheld": [], "zero": None}       # see usable.judge
 
 
-def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline, differences) -> List[str]:
-    """The caveats: reasons why the volume may be larger than the headline."""
+def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline, differences) -> List[Finding]:
+    """Reasons why the volume may be larger than the headline."""
     found = []
     finished = [row for row in rows if row["status"] == "finished"]
     if len(rows) == 1:
-        found.append("nothing was varied: it comes from a single run")
+        found.append(Finding("single run"))
+    elif best.chance is None:
+        found.append(Finding("no chance"))
     chosen = next(group.set for group in groups if group.name == best.combination)
-    ends = []
     for entry in differences:
         name = entry["variable"]
         numbers = [as_number(value) for value in settings[name]]
         value = as_number(chosen[name])
         if entry["clear"] is not False and value == as_number(entry["largest_at"]) and value != 0 \
                 and all(isinstance(one, float) for one in numbers) and value in (min(numbers), max(numbers)):
-            ends.append(f"it lies at the end of the range of {name}, {min(numbers):g} to {max(numbers):g}")
-    if best.chance is not None:
-        found += ends
-    elif len(rows) > 1:
-        found.append("; ".join(["without repeats (--repeat) the scatter by chance is unknown", *ends]))
+            found.append(Finding("end of range", {"variable": name, "low": min(numbers), "high": max(numbers)}))
     same = [row["run"] for group in groups for row in group.same]
     if same:
-        found.append(f"a repeated variable has no effect: {', '.join(same[:3])}{' and more' * (len(same) > 3)} "
-                     f"{'is' if len(same) == 1 else 'are'} identical to another run to the last digit and "
-                     f"{'is' if len(same) == 1 else 'are'} not counted")
+        found.append(Finding("no effect", runs=same))
     released = max(row["released_m3"] for row in finished)
     if best.volume > released:
-        found.append(f"it is more than the {headline.text(released, best.place)} m3 that are released, which is "
-                     "impossible: the scatter or the size error is too uncertain to give a number")
+        found.append(Finding("more than released", {"released": headline.nearest(released, best.place)}))
     for group in groups:
         most = max(row["remove_m3"] for row in group.rows)
         few = [row for row in group.rows if row["remove_m3"] < FEW * most]
         if few:
-            found.append(f"{len(few)} of the {len(group.rows)} runs of {group.name} "
-                         f"{'has' if len(few) == 1 else 'have'} less than {100 * FEW:g} % of the "
-                         f"volume of the others, which the scatter by chance does not describe ({outcome(group, few)})")
+            found.append(outcome(group, few))
     above = max(finished, key=lambda row: row["remove_m3"])
     if above["remove_m3"] > best.volume:
-        found.append(f"{above['run']} gave more, {headline.text(above['remove_m3'], best.place)} m3")
+        found.append(Finding("more in a run", {"run": above["run"], "volume": headline.nearest(above["remove_m3"],
+                                                                                               best.place)}))
     parts = [group.of("remove_m3") for group in groups]
     odd = headline.odd_one(parts, best.combination)
     if odd:
-        mine, others = (headline.text(one, headline.place(odd[1] or odd[0])) for one in odd)
-        found.append(f"its runs scatter more than the others, by {mine} instead of {others} m3: the common scatter may "
-                     "be too small for it")
+        mine, others = (headline.nearest(one, headline.place(odd[1] or odd[0])) for one in odd)
+        found.append(Finding("scatters more", {"mine": mine, "others": others}))
     return found
 
 
-def outcome(group: Group, few: Sequence[Row]) -> str:
-    """Why some runs bring hardly anything, though they differ from others by chance alone: by how far the mass went."""
+def outcome(group: Group, few: Sequence[Row]) -> Finding:
+    """That some runs bring hardly anything, though they differ from others by chance alone: by how far the mass went,
+
+    because the slope stood, or because the mass came down and hardly reached the road.
+    """
     count = stood(few, group.rows)
-    if count is None:
-        return "did the slope fail in some runs only?"
-    return f"the slope stood in {count} of them" if count else \
-        "the mass came down in these, too, and hardly reached the road"
+    return Finding("hardly reaches" if count == 0 else "two outcomes", {
+        "few": len(few), "runs": len(group.rows), "combination": group.name, "percent": 100 * FEW, "stood": count,
+        "why": "did the slope fail in some runs only?" if count is None else f"the slope stood in {count} of them"})
 
 
 def stood(few: Sequence[Row], rows: Sequence[Row]) -> Optional[int]:
@@ -233,7 +229,7 @@ def describe(best: Mapping[str, Any]) -> List[str]:
         return headline.text(value, best["place_m3"])
 
     if best["withheld"]:
-        return [*withheld_words.lines(best["withheld"]), *(f"caveat: {doubt}" for doubt in best["doubts"])]
+        return [*withheld_words.lines(best["withheld"]), *(f"caveat: {text}" for text in texts(best["doubts"]))]
     parts = {name: best["rounded"][f"{name}_m3"] for name in ("volume", "mean", "chance", "size")}
     if parts["chance"] is None:
         text = f"{best['kind']}: {number(parts['volume'])} m3 to remove"
@@ -255,4 +251,4 @@ def describe(best: Mapping[str, Any]) -> List[str]:
                           for key in ("by_m3", "chance_m3"))
             lines.append(f"{entry['variable']}: {by} m3 between {entry['smallest_at']} and {entry['largest_at']}, "
                          f"{word} expected by chance, {chance} m3")
-    return lines + [f"it may be exceeded: {doubt}" for doubt in best["doubts"]]
+    return lines + [f"it may be exceeded: {text}" for text in texts(best["doubts"])]

@@ -14,6 +14,7 @@ from rich.table import Table
 from .. import disk
 from ..case.settings import as_number
 from ..errors import SlopeError
+from ..findings import Finding
 from ..statistics import hazard
 from .combinations import Group, stood
 
@@ -104,17 +105,16 @@ def point(at: float, group: Group, volumes: Sequence[float]) -> Dict[str, Any]:
             "not_on_road": len(few), "stood": stood(few, group.rows), "exceed": exceed}
 
 
-def doubts(about: Mapping[str, Any]) -> List[str]:
+def doubts(about: Mapping[str, Any]) -> List[Finding]:
     """The caveat on a common scatter of all runs: chance decides whether the slope fails, or the mass reaches the road.
     """
     mixed = [one for line in about["lines"] for one in line["points"] if 0 < one["not_on_road"] < one["runs"]]
     found = []
-    for text, points in (("the slope fails in some runs and stands in others", [one for one in mixed if one["stood"]]),
-                         ("the mass reaches the road in some runs only", [one for one in mixed if not one["stood"]])):
+    for kind, points in (("fails at times", [one for one in mixed if one["stood"]]),
+                         ("reaches at times", [one for one in mixed if not one["stood"]])):
         at = sorted({f"{one['at']:g}" for one in points}, key=float)
         if at:
-            found.append(f"at {about['variable']} {', '.join(at)} {text}: the scatter is that between the two, not "
-                         "that of a volume; use the probabilities at each intensity")
+            found.append(Finding(kind, {"variable": about["variable"], "values": ", ".join(at)}))
     return found
 
 

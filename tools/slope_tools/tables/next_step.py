@@ -75,7 +75,8 @@ def step_of(made: Made, code: Code, of: Mapping[str, Any]) -> Optional[Step]:
 
 def first_remedy(made: Made) -> Optional[Step]:
     """Of a study whose number is withheld: what mends the first of its reasons."""
-    found = [step_of(made, Code.RULE, {**one, "rule": one["kind"]}) for one in made.withheld]
+    found = [step_of(made, Code.RULE, {**one, **(one.get("numbers") or {}), "rule": one["kind"]})
+             for one in made.withheld]
     return found[0] if found else None
 
 

@@ -6,6 +6,7 @@ from .. import disk, schemas
 from ..case.settings import as_number
 from ..digits import three
 from ..errors import SlopeError
+from ..findings import Finding
 from ..schemas import ABOVE_0, FLAG, MAYBE, NUMBER, OBJECT, TEXT, listed, mapping, named
 from ..sites.ground import SCALED
 from ..statistics.convergence import Estimate, error_of_line
@@ -118,11 +119,11 @@ class SizeErrors:
         return found
 
     def doubts(self, deck: str, variables: Mapping[str, str], free: Sequence[str],
-               road: Mapping[str, Any]) -> List[str]:
+               road: Mapping[str, Any]) -> List[Finding]:
         """The caveats on these errors for runs with these variables; free: names that may differ."""
         found = []
         if self.deck != deck:
-            found.append(f"the size error is that of another deck, {self.deck}")
+            found.append(Finding("deck of sizes", {"deck": self.deck}))
         other = [f"{name} {value} instead of {variables[name]}" for name, value in self.base.items()
                  if name in variables and name not in UNIMPORTANT and name not in free and name != self.variable
                  and as_number(value) != as_number(variables[name])]
@@ -131,5 +132,5 @@ class SizeErrors:
                   if disk.is_number(self.road.get(key)) and self.road[key] != road.get(key)]
         if other:
             more = f" and {len(other) - 3} more" if len(other) > 3 else ""
-            found.append(f"the size error was found with {', '.join(other[:3])}{more}")
+            found.append(Finding("base of sizes", {"other": ", ".join(other[:3]) + more}))
         return found

@@ -22,7 +22,8 @@ STUDY = mapping(
      "largest": OBJECT},
     exceedance=listed(mapping(numbers("threshold_m", "area_in_any_run_m2", "area_in_every_run_m2")), null=True),
     envelope=mapping({"max_thickness": mapping({"file": ANY})}, null=True))
-OTHERS = {"moving": FLAG, "at_rest": FLAG, "stop_reason": ANY, "end": ANY, "summary": TEXT}     # columns of no number
+OTHERS = {"moving": FLAG, "at_rest": FLAG, "stop_reason": ANY, "end": ANY, "release": OBJECT,
+          "summary": TEXT}      # columns of no number
 
 
 def row_of(columns):

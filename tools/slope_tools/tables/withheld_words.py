@@ -1,12 +1,12 @@
-"""What is said in the place of a number that is withheld: the reasons, and for each the command that mends it."""
+"""The command that mends each reason for which a number is withheld, and what is said in its place."""
 import math
 from pathlib import Path
 from shlex import quote
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
 
-from ..digits import rounded
+from ..findings import Finding, entries, texts
 from ..mobility.results import percent
-from ..statistics.withheld import BALLS, CONFIDENCE, FAILED, Kind, Reason, UNFINISHED, exceeded_at_most
+from ..statistics.withheld import BALLS, CONFIDENCE, Kind, exceeded_at_most
 
 UNUSABLE = "not usable as a conservative volume"
 FINER = 8               # times the balls: half their diameter
@@ -23,36 +23,18 @@ class Case(NamedTuple):
     asked: str = ""                 # option that chose the study of the site
 
 
-def text(reason: Reason) -> str:
-    """A reason in words."""
-    number, bound = reason.number or 0.0, reason.bound or 0.0
-    if reason.kind is Kind.BALLS:
-        balls = "less than one ball" if number < 1 else f"{number:.2g} ball{'s' * (f'{number:.2g}' != '1')}"
-        return f"on the road lies the volume of {balls}, fewer than {bound:g}"
-    if reason.kind is Kind.MOBILITY:
-        longest = "there is no deposit" if reason.number is None else f"the longest one ends at {rounded(number, 3)} m"
-        return f"no run reaches {rounded(bound, 3)} m, as half of known events of this volume and height do; {longest}"
-    if reason.kind is Kind.LEFT:
-        return (f"{100 * number:.2g} % of the released volume left the terrain before or beside the road, more than "
-                f"{100 * bound:g} %")
-    if reason.kind is Kind.RUNS:
-        return (f"{number:g} of {bound:g} runs failed or {'is' if bound == 1 else 'are'} not at rest, more than "
-                f"{100 * UNFINISHED:g} %")
-    return f"the size error is not trusted: {reason.detail}"
-
-
-def remedy(reason: Reason, case: Case) -> str:
+def remedy(reason: Finding, case: Case) -> str:
     """The command that mends it."""
-    if reason.kind is Kind.BALLS:
-        return finer(case, BALLS / max(reason.number or 0.0, 1.0))
-    if reason.kind is Kind.SIZE:
+    if reason.kind == Kind.BALLS:
+        return finer(case, BALLS / max(reason.numbers["number"], 1.0))
+    if reason.kind == Kind.SIZE:
         return finer(case, FINER)
-    if reason.kind is Kind.MOBILITY:
+    if reason.kind == Kind.MOBILITY:
         return mobile(case)
-    if reason.kind is Kind.LEFT:
+    if reason.kind == Kind.LEFT:
         return changed(case, "a larger elevation model (terrain.files, terrain.bounds)",
                        "a larger terrain and box in the deck")
-    if reason.detail == FAILED:
+    if 2 * reason.numbers["failed"] > reason.numbers["number"]:
         return "the same command again, once the cause of the failures is removed"
     return changed(case, "more time (model.duration)", "the same command with more time"
                    + ("" if "duration" not in case.variables else f", --set duration={twice(case)}"))
@@ -104,15 +86,14 @@ def twice(case: Case) -> str:
         return "SECONDS"
 
 
-def entries(found: Sequence[Reason], case: Case) -> List[Dict[str, Any]]:
-    """What study.yaml says of reasons."""
-    return [{"kind": one.kind.value, "number": one.number, "bound": one.bound, "text": text(one),
-             "remedy": remedy(one, case)} for one in found]
+def mended(found: Sequence[Finding], case: Case) -> List[Dict[str, Any]]:
+    """What study.yaml says of reasons: with what mends each."""
+    return entries(one._replace(remedy=remedy(one, case)) for one in found)
 
 
 def lines(withheld: Sequence[Mapping[str, Any]]) -> List[str]:
-    """What stands in the place of the number, of entries()."""
-    return [f"{UNUSABLE}:", *(f"  {one['text']}; {one['remedy']}" for one in withheld)]
+    """What stands in the place of the number, of mended()."""
+    return [f"{UNUSABLE}:", *(f"  {text}" for text in texts(withheld))]
 
 
 def zero(runs: int, known: Optional[float]) -> Dict[str, Any]:

@@ -1,9 +1,10 @@
 """What a run released, compared with the body that it represents."""
 import math
-from typing import NamedTuple, Optional
+from typing import List, NamedTuple, Optional
 
-from .. import disk
+from .. import digits, disk
 from ..case.logs import removed
+from ..findings import Finding
 
 CUBIC = 6 / math.pi         # bulk volume of balls in a simple cubic packing / volume of the balls
 DOUBTFUL = 0.15             # the bulk factor is farther from that only if the balls are not the body
@@ -28,22 +29,21 @@ class Release(NamedTuple):
         return over_runs([self])
 
     @property
-    def doubt(self):
-        """Why the released mass may not be the body; None without such a reason."""
+    def doubts(self) -> List[Finding]:
+        """Why the released mass may not be the body: one reason, or none."""
+        also = {"released": self.released, "of_body": f" of {digits.cubic(self.body)}" if self.body else ""}
         if abs(self.from_cubic) > DOUBTFUL:
-            what, side = "there are more balls than the body has room for", "below"
-            if self.from_cubic > 0:
-                what, side = (f"the balls fill only {100 / (1 + self.from_cubic):.0f} % of the body, and each stands "
-                              "for more ground than it has room for"), "above"
-            return (f"The released mass is doubtful: the bulk factor {self.factor:.3g} is "
-                    f"{percent(abs(self.from_cubic))} {side} 6/pi: {what}")
+            why = "there are more balls than the body has room for" if self.from_cubic < 0 else (
+                f"the balls fill only {100 / (1 + self.from_cubic):.0f} % of the body, and each stands for more ground "
+                "than it has room for")
+            return [Finding("bulk factor", {"factor": self.factor, "off": percent(abs(self.from_cubic)), "why": why,
+                                            "side": "below" if self.from_cubic < 0 else "above", **also})]
         if self.left_out is not None and abs(self.left_out) > DOUBTFUL:
-            return (f"The released mass is doubtful: it is {percent(abs(self.left_out))} "
-                    f"{'less' if self.left_out > 0 else 'more'} than the body of {self.body:,.0f} m3")
+            return [Finding("body volume", {"off": percent(abs(self.left_out)), "body": self.body,
+                                            "side": "less" if self.left_out > 0 else "more", **also})]
         if self.body is None and self.removed is not None and 1 / (1 - self.removed) > 1 + DOUBTFUL:
-            return (f"The released mass is doubtful: {percent(self.removed)} of the balls were removed at the start, "
-                    "and the body that the others represent is unknown (fix deposit/grid ... bulk region)")
-        return None
+            return [Finding("balls removed", {"off": percent(self.removed), **also})]
+        return []
 
 
 def over_runs(releases, factor=True):

@@ -1,0 +1,244 @@
+"""The words of all findings: one table. A test renders each of them.
+
+Numbers stand in braces: a float has three digits where nothing else is asked for, `cubic` is a volume with its unit.
+"""
+from typing import Dict, NamedTuple, Union
+
+# how grave: of the whole result, or of a part of it; an assumption of the model, which no list of warnings has
+WARNING, NOTE, LIMIT = "warning", "note", "limit"
+OTHER = "other"         # of the kinds that no reader tells apart, and of what older files say
+
+
+class Words(NamedTuple):
+    """Of a kind; client: for the first page of a report, without words of the tools; {who}: the runs."""
+    text: str
+    level: str = WARNING
+    client: str = ""
+
+
+NOT_BODY = "{who} released a mass that may not be the body: {released:cubic}{of_body}."
+LOST = "{who} lost {up_to}{volume:cubic} over the edge: enlarge the terrain{side}."
+LEFT = "{up_to}{volume} m3 ({percent:.2g} % of the released volume) left the grid or the box and are not on the maps"
+AT_REST = "not at rest at the end{among}: {end}, at {time:.1f} s"
+DOUBTFUL = "the released mass is doubtful: "
+
+WORDS: Dict[str, Union[str, Words]] = {
+    OTHER: "{text}",
+    # those of the first page, the heaviest first
+    "failed": Words("failed: {error}", client="{who} failed and are not in the numbers."),
+    "in motion": Words(f"{AT_REST}. More than 10 % of the volume is in motion: these numbers are not those of a "
+                       "deposit", client="{who} ended with more than a tenth of the mass in motion: the numbers are "
+                                         "not those of a deposit."),
+    "lost much": Words(f"{LEFT}, and how far they went is unknown: enlarge the terrain and the box", client=LOST),
+    "bulk factor": Words(f"{DOUBTFUL}the bulk factor {{factor:.3g}} is {{off}} {{side}} 6/pi: {{why}}", NOTE, NOT_BODY),
+    "body volume": Words(f"{DOUBTFUL}it is {{off}} {{side}} than the body of {{body:,.0f}} m3", NOTE, NOT_BODY),
+    "balls removed": Words(f"{DOUBTFUL}{{off}} of the balls were removed at the start, and the body that the others "
+                           "represent is unknown (fix deposit/grid ... bulk region)", NOTE, NOT_BODY),
+    "road on body": Words("{file}: a part of the road lies on the body, and goes with it: the volume to remove does "
+                          "not tell what it takes to build the road anew", client=(
+                              "A part of the road lies on the mass that is released, and goes with it: what it takes "
+                              "to build it anew is not in the volume.")),
+    "large": Words("{millions} million m3: masses of {limit:g} million m3 and more are known to run farther than "
+                   "laboratory friction suggests; the run-out is not conservative unless known events weigh the "
+                   "runs, or the friction was calibrated with a past event of that size (slope calibrate)", NOTE,
+                   "Masses of {limit:g} million m\u00b3 and more are known to run farther than laboratory friction "
+                   "suggests: the reach is not conservative unless a past event was used to calibrate it."),
+    "moving": Words(AT_REST, NOTE,
+                    "{who} ended before the whole mass was at rest: it may go a little farther."),
+    "no repeats": Words("no run was repeated: the scatter by chance is unknown", LIMIT,
+                        "No run was repeated: how much chance changes the numbers, usually several percent, is "
+                        "unknown."),
+    "no sizes": Words("the effect of smaller balls is unknown", LIMIT,
+                      "What smaller balls in the model would change is unknown."),
+    "few balls high": Words("{name} is {height} m high, {balls:.2g} of the model's balls: the loads on it are those "
+                            "of single balls, and rough",
+                            LIMIT, "{name} is {balls:.2g} of the model's balls high: the forces on it are those of "
+                                   "single balls, and rough."),
+    "cut below ground": Words("{percent:.0f} % of it ({volume:,.6g} m3 in the run {run}) lies where the cut surface is "
+                              "below the ground before the collapse. The hillside is about as steep as the cut of "
+                              "{angle:g} degrees there, or steeper, so that all of the deposit on it is counted; a "
+                              "steeper cut angle gives less", NOTE,
+                              "{percent:.0f} % of the volume to remove lies where the hillside is as steep as the cut "
+                              "or steeper: a steeper cut gives less."),
+    "thin": Words("the body is {balls:.1f} balls thick on average, below {limit:g}: the numbers will be rough; use "
+                  "more balls (--balls, --minutes)", client=(
+                      "The body is only {balls:.1f} of the model's balls thick on average: the numbers are rough.")),
+    "lost": Words(LEFT, NOTE, LOST),
+    "slip assumed": Words("the slip surface is given, not computed", LIMIT,
+                          "The slip surface is an assumption: whether, and how likely, the slope fails is not said "
+                          "here."),
+    # of runs
+    "balance": Words("the volume in the thickness raster differs from released - off the grid - lost by {share:.1e} of "
+                     "the released volume", NOTE),
+    "LAMMPS": Words("LAMMPS: {line}", NOTE),
+    "programs": "the runs are of different programs: {what} {which}",
+    # of the files of a GIS
+    "pits": "{cells} cells of {mark} lie at least {depth:.4g} m {side} all cells beside them, the first "
+            "at {east:.10g} {north:.10g}: NODATA that the file does not declare? {remedy}",
+    "no such cell": "--nodata {value}: no cell of the input has that value; its heights are {low:.6g} to {high:.6g} m",
+    "picture": "all heights are whole numbers from {low:g} to {high:g}, as the values of a picture: is it a hillshade?",
+    "in feet": "the ground falls by {degrees:.0f} degrees on average: are the heights in feet? Then --z-unit ft, which "
+               "makes it {in_feet:.0f}",
+    "no ground's slope": "the ground falls by {degrees:.0f} degrees on average, {in_feet:.0f} if it is in feet: are "
+                         "these heights, and the cells in metres?",
+    "stretched": "a metre in {crs} is {metres:.3f} m on the ground: choose a local CRS",
+    "CRS of terrain": "{file} has no CRS: taken to be in that of the terrain{remedy}",
+    "datums": "tiles of {datums} are mixed and not converted: {what} may differ where they meet",
+    "cut to input": "--bounds reaches beyond the input, {extent}: cut to it",
+    "outside": "{file}: {percent:.2g} % of the area lies outside of {terrain}",
+    "no geometry": "{feature} has no geometry ({without} of {features} have none): left out",
+    "file name": "{file}: LAMMPS cannot read {characters} in the name of a file: rename it before it goes into a deck",
+    "swapped": "--release and --road may be swapped, the road lies above the release area: {grounds}",
+    # of a body
+    "bulges": "the ground bulges above the line from toe to shoulder, and so does the {shape}: a smaller polygon, or "
+              "--shape slbl?",
+    "no way out": "the plane dips {dip:.3g} degrees towards {direction:.3g}, where the ground falls by {ground:.3g}: "
+                  "it does not come out of the ground below the body, which cannot slide out; a smaller --dip, or "
+                  "another --direction?",
+    "little": "the base level {form}takes {percent:.0f} % of the polygon, {depth:.3g} m deep on average: is this the "
+              "intended body? A larger depth or a smaller polygon gives another one",
+    "cliff": "the ground of the body falls by {degrees:.0f} degrees on average: a cliff, or heights in feet "
+             "({in_feet:.0f} degrees)? slope terrain and site have --z-unit",
+    "few cells": "the body covers {cells} cells of {cell:g} m: use a finer terrain",
+    "hollow": "the slip surface has a closed hollow, {depth:.3g} m deep, out of which the mass cannot slide: {remedy}",
+    "rim": "the body is {depth:.3g} m deep at the rim of its area, where it ends in a wall: {remedy}",
+    "shift": "beside the body {file} lies {metres:.3g} m {side} the terrain (median), which counts in the depths: "
+             "vertical datums are not compared, are they the same?",
+    "parts": "the body is in {parts} parts that do not touch, of {volumes} m3: is that the body you mean?",
+    # of a body and its balls
+    "no program": "no LAMMPS program (LMP, --lmp, build/lmp): no trial run, time and speeds are unknown",
+    "left terrain": "{percent:.2g} % of the mass left the terrain in the trial run: use a larger elevation model",
+    "not at rest": "the trial run was not at rest after {seconds:.0f} s: the run time of the study is a guess",
+    "first look": "the body is {balls:.1f} balls thick at most, below {limit:g}: a first look; to repeat it, use more "
+                  "balls (--balls, --minutes)",
+    "small angle": "{option} {degrees:g}: is it in degrees? A coefficient of {degrees:g} is {meant:.3g} degrees",
+    "large rolling": "--rolling {rolling:g}: is it a coefficient? More than {limit:g} stands for bodies that do not "
+                     "roll",
+    # of a run and its road, in the metres of its terrain
+    "moves": "{file}: the mass was still moving at {seconds:g} s: these are not final numbers",
+    "not counted": "{file}: {volume:.6g} m3 of the mass left the grid or the box and are not counted",
+    "no terrain": "no --terrain and no {file}: no CRS, coordinates are the local metres of the run",
+    "no CRS": "{file} has no CRS: coordinates are {coordinates}",
+    "cut off": "{file}: {percent:.3g} % of the polygon lies outside of the grid of the run: cut off",
+    "no ground": "{volume:.6g} m3 lie on cells without ground, beside the road: not in the volume to remove",
+    "outside of grid": "{file}: {area:.6g} m2 of it lie outside of the grid of the run: counted as false negative",
+    "nowhere thicker": "{file} is nowhere thicker than {threshold:g} m",
+    "no base": "no {file}, as of a run by an older version: no ground without the body",
+    # of where balls came to
+    "not arrived": "{file}: {moving} of {balls} balls are faster than {speed:g} m/s: they have not arrived",
+    "missing": "{file}: {missing} of {balls} balls of the start are not there: shares of the run-out count them as "
+               "beyond all others, all else leaves them out",
+    "beyond limits": "{option} {low:g} {high:g}: {outside} of {balls} balls lie beyond these limits",
+    # of a slope's stability: bodies of a search, one that failed, fragility
+    "in kPa": "--cohesion {value:g}: is it in Pa? Values in kPa are a thousand times smaller",
+    "in kN": "--density {value:g}: is it in kg/m3? Values in kN/m3 are about a hundred times smaller",
+    "bedrock": "body {body}: --bedrock has no value below {percent:.2g} % of its cells",
+    "columns": "body {body} has {value:.0f} cells of the terrain, fewer than {limit:g}: its numbers are rough",
+    "terrain": "body {body} is within {limit:g} cells of the edge of the terrain or of cells without a height: a "
+               "larger terrain may have a lower factor",
+    "within": "body {body} is at the edge of --within: beyond it the factor may be lower",
+    "volume low": "body {body} has the least volume that is allowed, {limit:.6g} m3: a smaller body may have a lower "
+                  "factor",
+    "volume high": "body {body} has the largest volume that is allowed, {limit:.6g} m3: a larger body may have a lower "
+                   "factor",
+    "depth low": "body {body} has the least depth that is allowed, {limit:.6g} m: a shallower body may have a lower "
+                 "factor",
+    "depth high": "body {body} has the largest depth that is allowed, {limit:.6g} m: a deeper body may have a lower "
+                  "factor",
+    "flat": "body {body} is nearly a plane, radius {value:.4g} m for a length of {limit:.4g} m: at the edge of a "
+            "search of spheres",
+    "wide": "body {body} is {value:.3g} times as wide as a sphere, which is a limit of the search: another width may "
+            "have a lower factor",
+    "fails": "body {body} has a factor of {value:.3f}, below 1: with these numbers it does not stand",
+    "few columns": "the body has {cells} cells, fewer than {limit}: the line is rough",
+    "no sphere": "the body is no sphere, and the line depends on the axis of moments: a far one changes the cohesion "
+                 "by {percent:+.0f} % without friction",
+    "pseudo-static": "pseudo-static: a body that is at F < 1 for an instant with {factor:g} times the peak counts as "
+                     "failed, which is {judged}",
+    "one record": "one record: how much records differ is not seen, beta_r is 0",
+    "at rest": "{which}: {percent:.2g} % of the strengths fail without an earthquake{makes}: if the slope stands, they "
+               "are not its own; raise the lower bounds of the strengths",
+    "no fit": "{which}: no lognormal fit, the peaks show fewer than three probabilities between 0 and 1",
+    "fit is off": "{which}: the lognormal fit is off by up to {difference:.2f}",
+    "HCLPF": "{which}: at the HCLPF {percent:.2g} % fail, the lognormal fit says {fitted:.2g} %: it is too favourable "
+             "there",
+    "beyond the curve": "{which}: peaks above the hazard curve's last may add up to {per_year:.2g} failures per year",
+    # of a study
+    "ranks": "{runs} runs of {ranks} ranks at a time on {cores} cores: they slow each other down",
+    "no effect": Words("a repeated variable has no effect, to the last digit: left out", NOTE),
+    "size error unknown": "the size error is unknown: {why}",
+    # why the number of a study is withheld
+    "balls on the road": "on the road lies the volume of {balls}, fewer than {bound:g}",
+    "known events": "no run reaches {bound} m, as half of known events of this volume and height do; {longest}",
+    "left the terrain": "{percent:.2g} % of the released volume left the terrain before or beside the road, more than "
+                        "{most:g} %",
+    "runs not at rest or failed": "{number} of {bound} runs failed or are not at rest at the end, more than {most:g} %",
+    "size error": "the size error is not trusted: {why}",
+    # caveats on the volume to remove
+    "single run": Words("nothing was varied: it comes from a single run", NOTE),
+    "end of range": Words("it lies at the end of the range of {variable}, {low:g} to {high:g}", NOTE),
+    "no chance": Words("without repeats (--repeat) the scatter by chance is unknown", NOTE),
+    "more than released": Words("it is more than the {released:,.6g} m3 that are released, which is impossible: the "
+                                "scatter or the size error is too uncertain to give a number", NOTE),
+    "two outcomes": Words("{few} of the {runs} runs of {combination} have less than {percent:g} % of the volume of the "
+                          "others, which the scatter by chance does not describe ({why})", NOTE),
+    "hardly reaches": Words("{few} of the {runs} runs of {combination} have less than {percent:g} % of the volume of "
+                            "the others, which the scatter by chance does not describe (the mass came down in these, "
+                            "too, and hardly reached the road)", NOTE),
+    "more in a run": Words("{run} gave more, {volume:,.6g} m3", NOTE),
+    "scatters more": Words("its runs scatter more than the others, by {mine:,.6g} instead of {others:,.6g} m3: the "
+                           "common scatter may be too small for it", NOTE),
+    "fails at times": Words("at {variable} {values} the slope fails in some runs and stands in others: the scatter is "
+                            "that between the two, not that of a volume; use the probabilities at each intensity",
+                            NOTE),
+    "reaches at times": Words("at {variable} {values} the mass reaches the road in some runs only: the scatter is that "
+                              "between the two, not that of a volume; use the probabilities at each intensity", NOTE),
+    "other mass": Words("the mapped deposit holds {percent:.0f} % {which} than is released, {mapped:,.0f} m3 of "
+                        "{released:,.0f}: thicknesses and volumes cannot agree everywhere", NOTE),
+    "not repeated": Words("the scatter is that of {repeated} alone: {offsets} of the deck not repeated", NOTE),
+    "half step": Words("{text}", NOTE),
+    "no file of sizes": Words("{file}, from which the study took its size error, does not exist, so there are no "
+                              "charts of it; --converge names another place", NOTE),
+    "deck of sizes": Words("the size error is that of another deck, {deck}", NOTE),
+    "base of sizes": Words("the size error was found with {other}", NOTE),
+    # on an ensemble, one by known events, a chain
+    "failed points": Words("{failed} of {runs} runs failed: the estimates exclude them, and the bounds allow any value "
+                           "for them{wide}", NOTE),
+    "unbounded": Words("{finished} runs do not bound the {shares} quantile from above: {quantity}", NOTE),
+    "emulator": Words("{quantity}: {verdict}", NOTE),
+    "no event": Words("{text}", NOTE),
+    "few lengths": Words("fewer than two runs have a deposit", NOTE),
+    "events beyond": Words("no run goes beyond {length} m; {share} of known events do: they count as exceeding every "
+                           "value; {remedy}", NOTE),
+    "events before": Words("no run ends before {length} m; {share} of known events do: they count as the shortest "
+                           "runs, in the bounds as anything", NOTE),
+    "gap": Words("between {low} and {high} m no run ends; {share} of known events do: they count as the runs on either "
+                 "side", NOTE),
+    "few effective": Words("the weighted runs say as much as {effective:.0f} runs of equal weight: take more points",
+                           NOTE),
+    "no length": Words("{failed} of {runs} runs have no length (they failed, or left no deposit): the bounds allow any "
+                       "value for them", NOTE),
+    "lengths lost": Words("{lost} of {runs} runs lost more than {percent:g} % of their volume over the edge: their "
+                          "lengths, and so the weights, are those of what stayed; take a larger terrain", NOTE),
+    "outside of set": "{text}; that set says nothing of this mass",
+    "path ends": "the path leaves the terrain after {length} m, where {share} of known events go on: take a larger "
+                 "terrain",
+    "body without run": Words("body {body} has no finished run: all of it, {volume:,.0f} m3, counts as on the road; "
+                              "more points (--sample)", NOTE),
+    "more per year": Words("peaks above the hazard curve's last may add up to {per_year:.2g} per year to more than "
+                           "{volume:,.6g} m3", NOTE),
+    # on a calibration
+    "failed fits": Words("{failed} of {runs} runs failed and are left out: {which}", NOTE),
+    "lost fits": Words("{lost} of {runs} runs lost up to {volume:,.0f} m3 over the edge of the terrain or the box: how "
+                       "far they went is unknown, and they are left out; use a larger one", NOTE),
+    "underdetermined": Words("{known} cannot determine {asked} variables", NOTE),
+    "no scatter": Words("too few runs to measure the scatter by chance of {which}: the region may be too narrow", NOTE),
+    "one lattice": Words("all runs have the same lattice, {offsets} not being repeated: the scatter by chance (s) "
+                         "lacks what another lattice changes, and the region may be too narrow or beside the truth",
+                         NOTE),
+}
+
+
+def words_of(kind: str) -> Words:
+    found = WORDS[kind]
+    return found if isinstance(found, Words) else Words(found)

@@ -1,0 +1,159 @@
+"""A finding: what is wrong or doubtful, as a value that console, files and pages show; its words: finding_words."""
+import json
+import sys
+from typing import Any, Callable, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+
+from . import digits
+from .finding_words import LIMIT, NOTE, OTHER, WARNING, words_of
+
+__all__ = ["LIMIT", "NOTE", "OTHER", "WARNING", "Finding", "finding", "entries", "texts", "gathered", "who"]
+NAMED = 4               # runs that a line names
+
+
+class _Shown(float):
+    """A number that is written with three digits where the words ask for none."""
+
+    def __format__(self, spec):
+        if spec == "cubic":
+            return digits.cubic(float(self))
+        return format(float(self), spec) if spec else digits.rounded(self, 3)
+
+
+class Finding(NamedTuple):
+    """kind: of finding_words; numbers: and names, that its words take; runs: concerned, none if it is about all.
+
+    numbers may have `of`, how many runs there are, and `differ`: they are those of the first run, the gravest. part:
+    of a study, before the words; remedy: what to do, after them.
+    """
+    kind: str
+    numbers: Mapping[str, Any] = {}
+    runs: Sequence[str] = ()
+    part: str = ""
+    remedy: str = ""
+
+    @property
+    def level(self) -> str:
+        return words_of(self.kind).level
+
+    @property
+    def text(self) -> str:
+        """Its words, without runs and remedy."""
+        return f"{self.part}: " * bool(self.part) + self._filled(words_of(self.kind).text)
+
+    def client(self, **more) -> str:
+        """Its words for the first page of a report, "" if it has none; more: numbers that only that page has."""
+        numbers = {"who": who(len(self.runs), self.numbers.get("of", 1)), "side": "", **self.numbers, **more}
+        return self._replace(numbers=numbers)._filled(words_of(self.kind).client)
+
+    def _filled(self, words: str) -> str:
+        return words.format(**{name: _Shown(value) if isinstance(value, float) else value
+                               for name, value in self.numbers.items()})
+
+    def shown(self, names: Mapping[str, str]) -> str:
+        """Words, runs by their names (those without one as they are) and remedy: what is read."""
+        return f"{self.text}{self._which([names.get(run, run) for run in self.runs])}" + (
+            f"; {self.remedy}" if self.remedy else "")
+
+    def __str__(self):
+        return self.shown({})
+
+    def _which(self, names: Sequence[str]) -> str:
+        """Which runs, in brackets."""
+        runs, more = self.numbers.get("of"), "; other numbers in some" if self.numbers.get("differ") else ""
+        if not names:
+            return ""
+        if runs == len(names):
+            return f" (all {runs} runs{more})" if runs > 1 else ""
+        named = "; ".join(names[:NAMED]) + (f"; and {len(names) - NAMED} more" if len(names) > NAMED else "")
+        count = "" if runs is None else f"{len(names)} of {runs} runs: "
+        return f" ({count}{named}{more})"
+
+    def entry(self) -> Dict[str, Any]:
+        """What a YAML file and JSON have of it."""
+        found = {"kind": self.kind, "level": self.level, "text": str(self._replace(remedy="")),
+                 "numbers": dict(self.numbers), "runs": list(self.runs), "part": self.part, "remedy": self.remedy}
+        return {key: value for key, value in found.items() if value}
+
+
+Said = Union[str, Mapping[str, Any], Finding]
+
+
+def who(count: int, runs: int) -> str:
+    """How many of the runs, as the subject of a sentence."""
+    return "The run" if runs == 1 else f"All {runs} runs" if count == runs else f"{count} of {runs} runs"
+
+
+def finding(said: Said) -> Finding:
+    """The Finding of one, of its entry in a file, or of a line; a file of another version may have unknown kinds."""
+    if isinstance(said, Finding):
+        return said
+    if not isinstance(said, Mapping):
+        return Finding(OTHER, {"text": str(said)})
+    found = Finding(str(said.get("kind")), said.get("numbers") or {}, tuple(said.get("runs") or ()),
+                    str(said.get("part") or ""), str(said.get("remedy") or ""))
+    try:
+        str(found)
+    except (KeyError, ValueError, TypeError, AttributeError):
+        return Finding(OTHER, {"text": str(said.get("text"))}, remedy=found.remedy)
+    return found
+
+
+def entries(several: Iterable[Said]) -> List[Dict[str, Any]]:
+    """The same of several, as a file has them."""
+    return [finding(one).entry() for one in several]
+
+
+def texts(several: Iterable[Said]) -> List[str]:
+    """Several as they are read."""
+    return [str(finding(one)) for one in several]
+
+
+def _alike(one: Finding):
+    return one.part, one.kind, one.text if one.kind == OTHER else None
+
+
+def gathered(several: Iterable[Finding], of: Optional[int] = None,
+             alike: Callable[[Finding], Any] = _alike) -> List[Finding]:
+    """One for all that are alike, with the numbers of the first; of: how many runs there are, None: as they have it."""
+    groups: Dict[Any, List[Finding]] = {}
+    for one in several:
+        groups.setdefault(alike(one), []).append(one)
+    found = []
+    for first, *others in groups.values():
+        runs = tuple(dict.fromkeys(run for one in (first, *others) for run in one.runs))
+        numbers = {**first.numbers, **({"of": of} if runs and of is not None else {})}
+        if any(dict(one.numbers) != dict(first.numbers) for one in others):
+            numbers["differ"] = True
+        found.append(first._replace(numbers=numbers, runs=runs))
+    return found
+
+
+# --- on standard error: words, or after `slope --progress json` an object a line ---
+
+as_json = False     # pylint: disable=invalid-name
+
+
+def say_json(level: str, **values) -> None:
+    """level: progress, error, or that of a finding."""
+    print(json.dumps({"level": level, **values}), file=sys.stderr, flush=True)
+
+
+def printer(command: str) -> Callable[[Said], None]:
+    """A function that prints a finding of a command."""
+    def tell(said):
+        one = finding(said)
+        if as_json:
+            say_json(**{"command": command, **one.entry()})
+        else:
+            print(f"slope {command}: {one.level}: {one}", file=sys.stderr)
+    return tell
+
+
+def warner(command: str) -> Tuple[Callable[[Said], None], List[Dict[str, Any]]]:
+    """The same, and the list of what a file has of those that it printed."""
+    tell, kept = printer(command), []
+
+    def warn(said):
+        kept.append(finding(said).entry())
+        tell(said)
+    return warn, kept
