@@ -51,7 +51,7 @@ def make(folder, shape, cell, bodies, y_road=50.0, points=None, **given):
             entries = [{"from": low, "to": high, "passable_width": 2.0, "remove": 10.0 * (k + 1)}
                        for low, high in ranges]
             rows.append({"run": f"run_{k}", "status": "finished", "set": {"rolling": str(k)}, **numbers,
-                         "moving": False, "at_rest": True, "stop_reason": "halt", "end": "at rest",
+                         "moving": False, "at_rest": True, "stop_reason": "halt", "end": "at rest", "release": {},
                          "remove_on_road_m3": 10.0 * k,
                          "summary": f"../runs/run_{k}/run.summary.yaml", "stretches": entries,
                          "clearing": {"road_width": 8.0, "blocked_length": sum(b - a for a, b in ranges),

@@ -98,14 +98,14 @@ def run(args: Request) -> None:
 
 def bodies_of(args: Request) -> Any:
     """The bodies (slips.bodies.Body), on their ground."""
-    from ..route import choices, results, search
+    from ..route import choices, search
     from ..slips import bodies
 
     if (args.slips / choices.NAME).is_file():
         if args.terrain is not None:
             raise SlopeError("--terrain", "must not be given with the folder of a route", args.terrain)
         return [search.columns_of(args.slips, one["body"], args.density)
-                for one in results.bodies_of(args.slips)["bodies"]]
+                for one in search.table_of(args.slips)["bodies"]]
     if args.terrain is None:
         raise SlopeError("--terrain", "must be given, the terrain of find_slip")
     return bodies.read(args.slips, args.terrain, args.density)

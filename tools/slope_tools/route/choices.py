@@ -2,9 +2,9 @@
 import os
 import shutil
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Union, get_args, get_origin, get_type_hints
 
-from .. import disk
+from .. import disk, schemas
 from ..errors import SlopeError
 from ..sites.site_choices import OF_BALL
 from ..survey import roads
@@ -70,6 +70,22 @@ class Choices(NamedTuple):
         return round(self.density * OF_BALL, 1)
 
 
+def schema() -> Dict[str, Any]:
+    """Of route.yaml: the choices."""
+    fields = {name: of_hint(hint) for name, hint in get_type_hints(Choices).items()}
+    needed = {"slope_route": {"enum": [VERSION]}, **{name: fields.pop(name) for name in NEEDED}}
+    return {**schemas.mapping(needed), "properties": {**needed, **fields}, "additionalProperties": False}
+
+
+def of_hint(hint: Any) -> Dict[str, Any]:
+    """The schema of a field."""
+    if get_origin(hint) is Union:
+        return {"anyOf": [of_hint(get_args(hint)[0]), {"type": "null"}], "description": "a value of its kind, or null"}
+    if get_origin(hint) is list:
+        return schemas.listed(of_hint(get_args(hint)[0]))
+    return {str: schemas.TEXT, float: schemas.NUMBER, int: {"type": "integer"}}[hint]
+
+
 def option(name: str) -> str:
     return f"--{name.replace('_', '-')}"
 
@@ -114,10 +130,8 @@ def read(folder: Path) -> Choices:
     path = folder / NAME
     if not path.is_file():
         raise SlopeError(folder, f"must be the folder of a route, with {NAME}")
-    about = disk.parse_yaml(path, WHAT)
-    if not isinstance(about, dict) or about.pop("slope_route", None) != VERSION or \
-            not set(NEEDED) <= set(about) <= set(Choices._fields):
-        raise SlopeError(path, f"must be {WHAT} of this version")
+    about = schemas.load(path, f"{WHAT} of this version", schema())
+    del about["slope_route"]
     return Choices(**{name: to_here(value, folder) if name in FILES else value for name, value in about.items()})
 
 

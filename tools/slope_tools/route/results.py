@@ -58,11 +58,6 @@ def read_body(folder: Path, about: Mapping[str, Any]) -> BodyRuns:
     return BodyRuns(about, [road_runs.Run(1.0, row["stretches"], row["clearing"]) for row in done], source, done)
 
 
-def bodies_of(folder: Path) -> Dict[str, Any]:
-    """What bodies.yaml of a route says."""
-    return disk.parse_yaml(folder / search.TABLE, "what `slope route` wrote")
-
-
 def yearly_of(choices: Choices, folder: Path, bodies: Sequence[Mapping[str, Any]]) -> Optional[Yearly]:
     """The fragilities of the bodies, None if none are given; SlopeError unless they are of these."""
     if choices.fragility is None:

@@ -11,7 +11,7 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Tuple
 import fiona
 import numpy as np
 
-from .. import disk
+from .. import disk, schemas
 from ..case import slip_deck
 from ..case.slip_deck import PREFIX, Strength
 from ..errors import SlopeError
@@ -27,6 +27,11 @@ from .corridor import TERRAIN, Corridor, Window, around, searches, write_line
 WINDOWS, SLIPS = "windows", "slips"
 DONE = "window.yaml"        # of a window that was searched
 SHARED = 0.1                # of the smaller body's cells; bodies that share more are one
+WHAT = "what `slope route` wrote"
+BODY = schemas.mapping({
+    "body": schemas.COUNT, "name": schemas.TEXT, "factor": schemas.MAYBE, "known_share": schemas.MAYBE,
+    "why_not": schemas.TEXT,
+    **schemas.numbers("chainage_m", "x", "y", "volume_m3", "area_m2", "depth_m", "road_from_m")})
 NO_BODY = "limits must leave a sphere"      # find_slip, where no body is within its limits
 
 
@@ -47,7 +52,7 @@ def make(choices: Choices, corridor: Corridor, folder: Path, lmp: Path, ranks: i
     """The bodies of a route, in its folder: what bodies.yaml says. They are made once."""
     path = folder / TABLE
     if path.is_file():
-        return disk.parse_yaml(path, "what `slope route` wrote")
+        return table_of(folder)
     found = given(choices, corridor, warn) if choices.bodies else searched(choices, corridor, folder, lmp, ranks, tell)
     if not found:
         raise SlopeError(choices.road, f"must have a slope within {choices.corridor:g} m with a factor of safety below "
@@ -64,6 +69,12 @@ def make(choices: Choices, corridor: Corridor, folder: Path, lmp: Path, ranks: i
         raise SlopeError(choices.road, "must be reached by a body, all are left out (--reach)", len(left))
     disk.write_yaml(path, {"bodies": kept, "left_out": left}, "slope route: m, m2, m3; chainage of the road")
     return {"bodies": kept, "left_out": left}
+
+
+def table_of(folder: Path) -> Dict[str, Any]:
+    """What bodies.yaml of a route says."""
+    return schemas.load(folder / TABLE, WHAT, schemas.mapping({"bodies": schemas.listed(BODY), "left_out":
+                                                               schemas.listed(BODY)}))
 
 
 def middle(corridor: Corridor, one: Slip) -> Tuple[float, float]:
@@ -128,7 +139,7 @@ def limits(given_: Optional[List[float]]) -> Optional[Tuple[float, float]]:
 def of_window(place: Path, window: Window) -> List[Slip]:
     """The bodies of a window that was searched."""
     table = place / f"{PREFIX}{bodies.END}"
-    if not disk.parse_yaml(place / DONE, "what `slope route` wrote")["bodies"]:
+    if not schemas.load(place / DONE, WHAT, schemas.mapping({"bodies": {"type": "integer"}}))["bodies"]:
         return []
     with open(table, newline="", encoding="utf-8") as source:
         rows = list(csv.DictReader(source))

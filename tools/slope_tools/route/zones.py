@@ -18,7 +18,7 @@ from ..errors import SlopeError
 from ..survey.geopackage import Layer
 from ..survey.rasters import Raster, crs_name
 from ..tables.study_file import Study
-from . import choices, corridor, reached, results
+from . import choices, corridor, reached, results, search
 from .reached import Source
 from .yearly import Yearly
 
@@ -78,7 +78,7 @@ def ground_of(name: str, warn) -> Ground:
     folder = Path(name)
     if (folder / choices.NAME).is_file():
         asked = choices.read(folder)
-        table = results.bodies_of(folder)
+        table = search.table_of(folder)
         return Ground(corridor.read(asked, folder).raster,
                       [results.read_body(folder, about).source for about in table["bodies"]],
                       results.yearly_of(asked, folder, table["bodies"]))
