@@ -30,7 +30,7 @@ Writes terrain.asc and terrain.yaml (CRS, origin, sources, what was done).
 @dataclass(frozen=True, kw_only=True)
 class Request(Overwrite):
     inputs: List[str] = positional(
-        "raster of heights in metres, or FG-GML (.xml, or .zip of them); several are merged, which needs one CRS and "
+        "raster of heights, or FG-GML (.xml, or .zip of them); several are merged, which needs one CRS and "
         "one grid", metavar="IN", nargs="+")
     output: Path = option("the terrain; OUT.yaml beside it is its sidecar", "-o", metavar="OUT.asc")
     crs: Optional[str] = option(
